@@ -1,0 +1,53 @@
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <exception>
+#include <new>
+
+#include "commands.h"
+#include "common.h"
+#include "pcednet/core/error.h"
+#include "pcednet/core/parallel.h"
+#include "pcednet/core/version.h"
+
+namespace pcednet::app {
+namespace {
+
+int run(int argc, char** argv) {
+  CLI::App app{"pcednet finds edges in 3D point clouds.\n\nExamples:\n"
+               "  pcednet classify scan.ply              labels and confidences in scan_edges.ply\n"
+               "  pcednet classify folder/ --out-dir out every point file of a folder\n"
+               "  pcednet train painted.ply -o my.safetensors\n"};
+  app.set_version_flag("--version", std::string("pcednet ") + kVersion);
+  app.require_subcommand(1);
+  app.fallthrough(false);
+  Common common;
+  app.parse_complete_callback([&] { set_thread_count(common.threads); });
+  install_interrupt_handler();
+  // One line per subcommand, in the order of the help.
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    const bool asked_for_help = error.get_exit_code() == 0;
+    app.exit(error, asked_for_help ? std::cout : std::cerr, std::cerr);
+    return asked_for_help ? 0 : static_cast<int>(ErrorKind::kUsage);
+  }
+  return 0;
+}
+
+}  // namespace
+}  // namespace pcednet::app
+
+int main(int argc, char** argv) {
+  try {
+    return pcednet::app::run(argc, argv);
+  } catch (const pcednet::Error& error) {
+    pcednet::app::say(fmt::format("pcednet: {}", error.what()));
+    return static_cast<int>(error.kind());
+  } catch (const std::bad_alloc&) {
+    pcednet::app::say("pcednet: not enough memory");
+  } catch (const std::exception& error) {
+    pcednet::app::say(fmt::format("pcednet: {}", error.what()));
+  }
+  return static_cast<int>(pcednet::ErrorKind::kFailure);
+}

@@ -1,0 +1,10 @@
+#!/bin/sh
+# Installs what is missing, builds, and runs the whole test suite.
+set -eu
+cd "$(dirname "$0")/.."
+scripts/setup.sh test
+
+echo "== release build and its tests"
+cmake --preset release -DPCEDNET_TESTS=ON
+cmake --build --preset release
+ctest --preset release -j "$(nproc)"

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <limits>
+#include <span>
+
+#include "pcednet/core/vec3.h"
+
+namespace pcednet {
+
+/// The axis-aligned box of the finite points; empty (min > max) if there are none.
+struct BoundingBox {
+  Vec3 min = Vec3::Constant(std::numeric_limits<double>::infinity());
+  Vec3 max = Vec3::Constant(-std::numeric_limits<double>::infinity());
+
+  bool empty() const { return !(min.x() <= max.x()); }
+  Vec3 centre() const { return min + 0.5 * (max - min); }
+  double diagonal() const { return empty() ? 0.0 : (max - min).norm(); }
+};
+
+BoundingBox bounding_box(std::span<const Vec3> positions);
+
+}  // namespace pcednet

@@ -1,0 +1,69 @@
+#include "pcednet/core/output_file.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <system_error>
+#include <utility>
+
+#include "pcednet/core/error.h"
+
+namespace pcednet {
+
+OutputFile::OutputFile(std::filesystem::path path, Overwrite overwrite) : path_(std::move(path)) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path_, ignored)) {
+    throw Error(ErrorKind::kUsage, fmt::format("{}: is a folder", path_.string()));
+  }
+  if (overwrite == Overwrite::kNo && std::filesystem::exists(path_, ignored)) {
+    throw Error(ErrorKind::kUsage,
+                fmt::format("{}: exists already; give --overwrite to replace it", path_.string()));
+  }
+  temporary_ = path_;
+  temporary_ += fmt::format(".part-{}", getpid());
+  file_ = std::fopen(temporary_.c_str(), "wb");
+  if (!file_) fail("cannot create");
+}
+
+OutputFile::~OutputFile() {
+  if (!file_) return;
+  std::fclose(file_);
+  std::error_code ignored;
+  std::filesystem::remove(temporary_, ignored);
+}
+
+void OutputFile::fail(const std::string& action) const {
+  throw Error(ErrorKind::kFailure,
+              fmt::format("{}: {} the file: {}", path_.string(), action, std::strerror(errno)));
+}
+
+void OutputFile::write(std::span<const std::byte> bytes) {
+  if (bytes.empty()) return;
+  if (std::fwrite(bytes.data(), 1, bytes.size(), file_) != bytes.size()) fail("cannot write");
+}
+
+void OutputFile::write(std::string_view text) { write(std::as_bytes(std::span(text))); }
+
+void OutputFile::commit() {
+  if (std::fflush(file_) != 0 || fsync(fileno(file_)) != 0) fail("cannot write");
+  if (std::fclose(std::exchange(file_, nullptr)) != 0) fail("cannot write");
+  std::error_code error;
+  std::filesystem::rename(temporary_, path_, error);
+  if (error) {
+    std::error_code ignored;
+    std::filesystem::remove(temporary_, ignored);
+    throw Error(ErrorKind::kFailure,
+                fmt::format("{}: cannot rename into place: {}", path_.string(), error.message()));
+  }
+}
+
+void write_text_file(const std::filesystem::path& path, std::string_view text,
+                     Overwrite overwrite) {
+  OutputFile file(path, overwrite);
+  file.write(text);
+  file.commit();
+}
+
+}  // namespace pcednet

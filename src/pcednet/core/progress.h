@@ -1,0 +1,39 @@
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <functional>
+#include <mutex>
+#include <string>
+
+namespace pcednet {
+
+/// How long work tells its caller where it stands, and learns that it should stop.
+/// Both functions may be empty. `report` is called by one thread at a time.
+struct Progress {
+  std::function<void(const std::string& stage, double fraction)> report;
+  std::function<bool()> cancelled;
+};
+
+/// One stage of long work, counted up from any thread.
+class Stage {
+ public:
+  /// `progress` may be null; otherwise it must outlive the stage.
+  Stage(const Progress* progress, std::string name, std::size_t total);
+
+  /// Counts `steps` more as done. Throws Error(kCancelled) once the caller wants to stop.
+  void advance(std::size_t steps = 1);
+
+ private:
+  const Progress* progress_;
+  std::string name_;
+  std::size_t total_;
+  std::atomic<std::size_t> done_ = 0;
+  std::size_t reported_permille_ = 0;
+  std::mutex mutex_;
+};
+
+/// Throws Error(kCancelled) if `progress` (which may be null) says so.
+void throw_if_cancelled(const Progress* progress);
+
+}  // namespace pcednet
