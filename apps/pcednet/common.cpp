@@ -25,8 +25,8 @@ void on_interrupt(int signal) {
 bool progress_line_open = false;
 
 bool is_point_file(const std::filesystem::path& path) {
-  static constexpr std::array kExtensions = {".ply", ".obj", ".xyz", ".txt", ".csv", ".asc",
-                                             ".pts", ".pcd"};
+  static constexpr std::array kExtensions = {".ply", ".obj", ".xyz", ".txt",
+                                             ".csv", ".asc", ".pts", ".pcd"};
   std::string extension = path.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
@@ -102,7 +102,9 @@ void say(const std::string& line) {
   fmt::print(stderr, "{}\n", line);
 }
 
-void warn(const std::string& line) { say("pcednet: warning: " + line); }
+void warn(const std::string& line) {
+  say("pcednet: warning: " + line);
+}
 
 std::vector<std::filesystem::path> expand_inputs(const std::vector<std::string>& arguments) {
   namespace fs = std::filesystem;

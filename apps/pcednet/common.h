@@ -40,8 +40,8 @@ void say(const std::string& line);
 void warn(const std::string& line);
 
 /// The point files that the arguments name: a folder stands for every point file in it, in name
-/// order. Throws Error(kUnreadable) for a path that does not exist, Error(kInsufficient) for a folder
-/// without point files.
+/// order. Throws Error(kUnreadable) for a path that does not exist, Error(kInsufficient) for a
+/// folder without point files.
 std::vector<std::filesystem::path> expand_inputs(const std::vector<std::string>& arguments);
 
 }  // namespace pcednet::app

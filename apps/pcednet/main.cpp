@@ -14,10 +14,11 @@ namespace pcednet::app {
 namespace {
 
 int run(int argc, char** argv) {
-  CLI::App app{"pcednet finds edges in 3D point clouds.\n\nExamples:\n"
-               "  pcednet classify scan.ply              labels and confidences in scan_edges.ply\n"
-               "  pcednet classify folder/ --out-dir out every point file of a folder\n"
-               "  pcednet train painted.ply -o my.safetensors\n"};
+  CLI::App app{
+      "pcednet finds edges in 3D point clouds.\n\nExamples:\n"
+      "  pcednet classify scan.ply              labels and confidences in scan_edges.ply\n"
+      "  pcednet classify folder/ --out-dir out every point file of a folder\n"
+      "  pcednet train painted.ply -o my.safetensors\n"};
   app.set_version_flag("--version", std::string("pcednet ") + kVersion);
   app.require_subcommand(1);
   app.fallthrough(false);

@@ -7,12 +7,12 @@ namespace pcednet {
 
 /// What went wrong, as far as a caller (and the exit code of the command line) is concerned.
 enum class ErrorKind {
-  kFailure = 1,       ///< anything else: disk full, no memory, internal limits
-  kUsage = 2,         ///< the request itself makes no sense
-  kUnreadable = 3,    ///< an input cannot be read: missing, truncated, not of the format it claims
-  kInsufficient = 4,  ///< an input was read but lacks what is needed: no points, no labels
-  kModelMismatch = 5, ///< a model file is damaged, foreign, or does not fit the request
-  kCancelled = 130,   ///< the user stopped the work
+  kFailure = 1,        ///< anything else: disk full, no memory, internal limits
+  kUsage = 2,          ///< the request itself makes no sense
+  kUnreadable = 3,     ///< an input cannot be read: missing, truncated, not of the format it claims
+  kInsufficient = 4,   ///< an input was read but lacks what is needed: no points, no labels
+  kModelMismatch = 5,  ///< a model file is damaged, foreign, or does not fit the request
+  kCancelled = 130,    ///< the user stopped the work
 };
 
 /// The one exception of the library. The message names the file and the place in it.

@@ -17,8 +17,8 @@ enum class Overwrite { kNo, kYes };
 /// cancel) nothing stays behind and an existing target is untouched.
 class OutputFile {
  public:
-  /// Throws Error(kUsage) if `path` exists and `overwrite` is kNo, Error(kFailure) if nothing can be
-  /// written there.
+  /// Throws Error(kUsage) if `path` exists and `overwrite` is kNo, Error(kFailure) if nothing can
+  /// be written there.
   explicit OutputFile(std::filesystem::path path, Overwrite overwrite = Overwrite::kNo);
   ~OutputFile();
   OutputFile(const OutputFile&) = delete;

@@ -17,8 +17,8 @@ std::unique_ptr<tbb::global_control> thread_limit;  // NOLINT: set once by set_t
 void set_thread_count(int threads) {
   const int wanted = threads > 0 ? threads : tbb::info::default_concurrency();
   thread_limit.reset();
-  thread_limit = std::make_unique<tbb::global_control>(
-      tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(wanted));
+  thread_limit = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
+                                                       static_cast<std::size_t>(wanted));
 }
 
 int thread_count() {

@@ -1,0 +1,96 @@
+#include "pcednet/spatial/kd_tree.h"
+
+#include <algorithm>
+#include <nanoflann.hpp>
+#include <utility>
+
+#include "pcednet/spatial/curve_order.h"
+
+namespace pcednet::spatial {
+namespace {
+
+/// The points in curve order, as nanoflann wants to see them.
+struct OrderedPoints {
+  std::vector<Vec3> positions;
+  std::vector<std::uint32_t> original;
+
+  std::size_t kdtree_get_point_count() const { return positions.size(); }
+  double kdtree_get_pt(std::size_t i, std::size_t axis) const {
+    return positions[i][static_cast<Eigen::Index>(axis)];
+  }
+  template <typename Box>
+  bool kdtree_get_bbox(Box&) const {
+    return false;
+  }
+};
+
+using Index =
+    nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, OrderedPoints>,
+                                        OrderedPoints, 3, std::uint32_t>;
+
+OrderedPoints order_points(std::span<const Vec3> positions) {
+  OrderedPoints points;
+  points.original = curve_order(positions);
+  points.positions.reserve(points.original.size());
+  for (const std::uint32_t i : points.original) points.positions.push_back(positions[i]);
+  return points;
+}
+
+}  // namespace
+
+struct KdTree::Impl {
+  explicit Impl(std::span<const Vec3> positions)
+      : points(order_points(positions)),
+        index(3, points, nanoflann::KDTreeSingleIndexAdaptorParams(16)) {}
+
+  /// Turns places in curve order into the caller's indices, sorted as the header promises.
+  void finish(std::vector<Neighbour>& found) const {
+    std::sort(found.begin(), found.end(), [&](const Neighbour& a, const Neighbour& b) {
+      if (a.sq_distance != b.sq_distance) return a.sq_distance < b.sq_distance;
+      const Vec3 &p = points.positions[a.index], &q = points.positions[b.index];
+      if (p != q)
+        return std::lexicographical_compare(p.data(), p.data() + 3, q.data(), q.data() + 3);
+      return a.index < b.index;
+    });
+    for (Neighbour& neighbour : found) neighbour.index = points.original[neighbour.index];
+  }
+
+  OrderedPoints points;
+  Index index;
+};
+
+KdTree::KdTree(std::span<const Vec3> positions) : impl_(std::make_unique<Impl>(positions)) {}
+KdTree::~KdTree() = default;
+KdTree::KdTree(KdTree&&) noexcept = default;
+KdTree& KdTree::operator=(KdTree&&) noexcept = default;
+
+std::size_t KdTree::size() const {
+  return impl_->points.positions.size();
+}
+
+void KdTree::nearest(const Vec3& query, std::size_t count, std::vector<Neighbour>& found) const {
+  count = std::min(count, size());
+  found.clear();
+  if (count == 0) return;
+  thread_local std::vector<std::uint32_t> indices;
+  thread_local std::vector<double> sq_distances;
+  indices.resize(count);
+  sq_distances.resize(count);
+  impl_->index.knnSearch(query.data(), count, indices.data(), sq_distances.data());
+  for (std::size_t i = 0; i < count; ++i) found.push_back({indices[i], sq_distances[i]});
+  impl_->finish(found);
+}
+
+void KdTree::within(const Vec3& query, double radius, std::vector<Neighbour>& found) const {
+  thread_local std::vector<std::pair<std::uint32_t, double>> matches;
+  matches.clear();
+  found.clear();
+  if (size() == 0) return;
+  nanoflann::SearchParams parameters;
+  parameters.sorted = false;
+  impl_->index.radiusSearch(query.data(), radius * radius, matches, parameters);
+  for (const auto& [index, sq_distance] : matches) found.push_back({index, sq_distance});
+  impl_->finish(found);
+}
+
+}  // namespace pcednet::spatial

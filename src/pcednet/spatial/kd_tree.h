@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "pcednet/core/vec3.h"
+
+namespace pcednet::spatial {
+
+struct Neighbour {
+  std::uint32_t index;  ///< into the positions the tree was made from
+  double sq_distance;
+};
+
+/// Exact nearest-neighbour and radius queries over a fixed set of points.
+///
+/// Answers depend on the set of positions alone, not on how they are numbered: they are sorted by
+/// distance, ties by x, y, z of the neighbour, and where equally distant points compete for the
+/// last place the choice is the same for any numbering. Queries may run in parallel.
+class KdTree {
+ public:
+  /// Points that are not finite are never found. Keeps its own copy of the positions.
+  explicit KdTree(std::span<const Vec3> positions);
+  ~KdTree();
+  KdTree(KdTree&&) noexcept;
+  KdTree& operator=(KdTree&&) noexcept;
+
+  /// The finite points.
+  std::size_t size() const;
+
+  /// The `count` points nearest to `query` (which is among them if it is a point of the set), fewer
+  /// if the set is smaller. `query` must be finite. Replaces the content of `found`.
+  void nearest(const Vec3& query, std::size_t count, std::vector<Neighbour>& found) const;
+
+  /// Every point closer to `query` than `radius`. Replaces the content of `found`.
+  void within(const Vec3& query, double radius, std::vector<Neighbour>& found) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace pcednet::spatial
