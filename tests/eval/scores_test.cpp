@@ -1,0 +1,74 @@
+#include "pcednet/eval/scores.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "pcednet/core/error.h"
+#include "pcednet/eval/report.h"
+
+namespace pcednet::eval {
+namespace {
+
+const std::vector<std::uint8_t> kTruth = {0, 0, 0, 1, 1, 2, 2, 2, 255, 0};
+const std::vector<std::uint8_t> kPredicted = {0, 1, 2, 1, 2, 2, 1, 0, 2, 255};
+
+TEST(Scores, CountsSharpAlone) {
+  const ConfusionCounts counts = count_confusion(kTruth, kPredicted, Positive::kSharp);
+  EXPECT_EQ(counts.tp, 1u);
+  EXPECT_EQ(counts.fp, 2u);
+  EXPECT_EQ(counts.fn, 2u);
+  EXPECT_EQ(counts.tn, 4u);
+}
+
+TEST(Scores, CountsBothEdgeClasses) {
+  const ConfusionCounts counts = count_confusion(kTruth, kPredicted, Positive::kEdge);
+  EXPECT_EQ(counts.tp, 4u);
+  EXPECT_EQ(counts.fp, 2u);
+  EXPECT_EQ(counts.fn, 1u);
+  EXPECT_EQ(counts.tn, 2u);
+}
+
+TEST(Scores, FollowTheirDefinitions) {
+  const Scores scores = scores_of({.tp = 4, .fp = 2, .tn = 10, .fn = 1});
+  EXPECT_DOUBLE_EQ(scores.precision, 4.0 / 6.0);
+  EXPECT_DOUBLE_EQ(scores.recall, 0.8);
+  EXPECT_DOUBLE_EQ(scores.f1, 8.0 / 11.0);
+  EXPECT_DOUBLE_EQ(scores.accuracy, 14.0 / 17.0);
+  EXPECT_DOUBLE_EQ(scores.iou, 4.0 / 7.0);
+  // MCC is the correlation of the two binary variables: phi^2 = chi^2 / n, from expected counts.
+  EXPECT_NEAR(scores.mcc, (4.0 * 10 - 2 * 1) / std::sqrt(6.0 * 5 * 12 * 11), 1e-15);
+}
+
+TEST(Scores, AreZeroWhereUndefinedAndExactForHugeCounts) {
+  EXPECT_EQ(scores_of({}).mcc, 0.0);
+  EXPECT_EQ(scores_of({.tn = 5}).precision, 0.0);
+  const std::size_t many = 3'000'000'000;  // products of four such counts exceed 64 bits
+  EXPECT_NEAR(scores_of({.tp = many, .fp = 0, .tn = many, .fn = 0}).mcc, 1.0, 1e-12);
+}
+
+TEST(Scores, RefusePredictionsOfAnotherSize) {
+  const std::vector<std::uint8_t> short_one = {0, 1};
+  EXPECT_THROW(count_confusion(kTruth, short_one, Positive::kSharp), Error);
+}
+
+TEST(EvaluationReport, GivesMedianAndPooledAsJson) {
+  const std::vector<CloudScore> clouds = {{"a", {.tp = 1, .fp = 1, .tn = 8, .fn = 0}},
+                                          {"b", {.tp = 9, .fp = 1, .tn = 0, .fn = 0}}};
+  const auto json = nlohmann::json::parse(to_json(clouds));
+  EXPECT_EQ(json["clouds"].size(), 2u);
+  EXPECT_EQ(json["clouds"][0]["name"], "a");
+  EXPECT_EQ(json["clouds"][0]["points"], 10);
+  EXPECT_DOUBLE_EQ(json["median"]["precision"], 0.5 * (0.5 + 0.9));
+  EXPECT_EQ(json["pooled"]["tp"], 10);
+  EXPECT_DOUBLE_EQ(json["pooled"]["precision"], 10.0 / 12.0);
+  for (const char* key : {"precision", "recall", "mcc", "f1", "accuracy", "iou"}) {
+    EXPECT_TRUE(json["clouds"][1].contains(key)) << key;
+    EXPECT_TRUE(json["median"].contains(key)) << key;
+  }
+}
+
+}  // namespace
+}  // namespace pcednet::eval
