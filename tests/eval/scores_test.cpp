@@ -15,7 +15,7 @@ namespace {
 const std::vector<std::uint8_t> kTruth = {0, 0, 0, 1, 1, 2, 2, 2, 255, 0};
 const std::vector<std::uint8_t> kPredicted = {0, 1, 2, 1, 2, 2, 1, 0, 2, 255};
 
-TEST(Scores, CountsSharpAlone) {
+TEST(Scores, CountSharpAlone) {
   const ConfusionCounts counts = count_confusion(kTruth, kPredicted, Positive::kSharp);
   EXPECT_EQ(counts.tp, 1u);
   EXPECT_EQ(counts.fp, 2u);
@@ -23,7 +23,7 @@ TEST(Scores, CountsSharpAlone) {
   EXPECT_EQ(counts.tn, 4u);
 }
 
-TEST(Scores, CountsBothEdgeClasses) {
+TEST(Scores, CountBothEdgeClasses) {
   const ConfusionCounts counts = count_confusion(kTruth, kPredicted, Positive::kEdge);
   EXPECT_EQ(counts.tp, 4u);
   EXPECT_EQ(counts.fp, 2u);
@@ -38,7 +38,6 @@ TEST(Scores, FollowTheirDefinitions) {
   EXPECT_DOUBLE_EQ(scores.f1, 8.0 / 11.0);
   EXPECT_DOUBLE_EQ(scores.accuracy, 14.0 / 17.0);
   EXPECT_DOUBLE_EQ(scores.iou, 4.0 / 7.0);
-  // MCC is the correlation of the two binary variables: phi^2 = chi^2 / n, from expected counts.
   EXPECT_NEAR(scores.mcc, (4.0 * 10 - 2 * 1) / std::sqrt(6.0 * 5 * 12 * 11), 1e-15);
 }
 
@@ -50,8 +49,8 @@ TEST(Scores, AreZeroWhereUndefinedAndExactForHugeCounts) {
 }
 
 TEST(Scores, RefusePredictionsOfAnotherSize) {
-  const std::vector<std::uint8_t> short_one = {0, 1};
-  EXPECT_THROW(count_confusion(kTruth, short_one, Positive::kSharp), Error);
+  const std::vector<std::uint8_t> too_few = {0, 1};
+  EXPECT_THROW(count_confusion(kTruth, too_few, Positive::kSharp), Error);
 }
 
 TEST(EvaluationReport, GivesMedianAndPooledAsJson) {

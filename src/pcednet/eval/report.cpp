@@ -1,0 +1,89 @@
+#include "pcednet/eval/report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+namespace pcednet::eval {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+double median_of(std::vector<double> values) {
+  if (values.empty()) return 0.0;
+  std::sort(values.begin(), values.end());
+  const std::size_t middle = values.size() / 2;
+  return values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
+}
+
+void put(Json& row, const ConfusionCounts& counts) {
+  row["points"] = counts.total();
+  row["tp"] = counts.tp;
+  row["fp"] = counts.fp;
+  row["tn"] = counts.tn;
+  row["fn"] = counts.fn;
+}
+
+void put(Json& row, const Scores& scores) {
+  row["precision"] = scores.precision;
+  row["recall"] = scores.recall;
+  row["mcc"] = scores.mcc;
+  row["f1"] = scores.f1;
+  row["accuracy"] = scores.accuracy;
+  row["iou"] = scores.iou;
+}
+
+std::string table_row(const std::string& name, const std::string& points, const Scores& s) {
+  return fmt::format("{:<24} {:>10} {:>9.3f} {:>7.3f} {:>7.3f} {:>7.3f} {:>8.3f} {:>7.3f}\n", name,
+                     points, s.precision, s.recall, s.mcc, s.f1, s.accuracy, s.iou);
+}
+
+}  // namespace
+
+Scores median_scores(const std::vector<CloudScore>& clouds) {
+  const auto median = [&](double Scores::*score) {
+    std::vector<double> values;
+    for (const CloudScore& cloud : clouds) values.push_back(scores_of(cloud.counts).*score);
+    return median_of(std::move(values));
+  };
+  return {median(&Scores::precision), median(&Scores::recall),   median(&Scores::mcc),
+          median(&Scores::f1),        median(&Scores::accuracy), median(&Scores::iou)};
+}
+
+ConfusionCounts pooled_counts(const std::vector<CloudScore>& clouds) {
+  ConfusionCounts pooled;
+  for (const CloudScore& cloud : clouds) pooled += cloud.counts;
+  return pooled;
+}
+
+std::string to_json(const std::vector<CloudScore>& clouds) {
+  Json report;
+  report["clouds"] = Json::array();
+  for (const CloudScore& cloud : clouds) {
+    Json row;
+    row["name"] = cloud.name;
+    put(row, cloud.counts);
+    put(row, scores_of(cloud.counts));
+    report["clouds"].push_back(row);
+  }
+  put(report["median"] = Json::object(), median_scores(clouds));
+  const ConfusionCounts pooled = pooled_counts(clouds);
+  put(report["pooled"] = Json::object(), pooled);
+  put(report["pooled"], scores_of(pooled));
+  return report.dump(2) + "\n";
+}
+
+std::string to_table(const std::vector<CloudScore>& clouds) {
+  std::string table = fmt::format("{:<24} {:>10} {:>9} {:>7} {:>7} {:>7} {:>8} {:>7}\n", "cloud",
+                                  "points", "precision", "recall", "MCC", "F1", "accuracy", "IoU");
+  for (const CloudScore& cloud : clouds) {
+    table += table_row(cloud.name, std::to_string(cloud.counts.total()), scores_of(cloud.counts));
+  }
+  const ConfusionCounts pooled = pooled_counts(clouds);
+  table += table_row("median", "", median_scores(clouds));
+  table += table_row("pooled", std::to_string(pooled.total()), scores_of(pooled));
+  return table;
+}
+
+}  // namespace pcednet::eval

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "pcednet/eval/scores.h"
+
+namespace pcednet::eval {
+
+/// One evaluated cloud.
+struct CloudScore {
+  std::string name;
+  ConfusionCounts counts;
+};
+
+/// The median over the clouds of each score by itself (of an even number, the mean of the middle
+/// two). All zero without clouds.
+Scores median_scores(const std::vector<CloudScore>& clouds);
+
+/// The summed counts, whose scores are the pooled ones.
+ConfusionCounts pooled_counts(const std::vector<CloudScore>& clouds);
+
+/// {"clouds":[{"name","points","tp",...,"iou"}],"median":{...},"pooled":{...}}, indented, with a
+/// final newline.
+std::string to_json(const std::vector<CloudScore>& clouds);
+
+/// A table for people: a row per cloud, then median and pooled.
+std::string to_table(const std::vector<CloudScore>& clouds);
+
+}  // namespace pcednet::eval

@@ -1,0 +1,61 @@
+#include "pcednet/eval/scores.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "pcednet/cloud/point_cloud.h"
+#include "pcednet/core/error.h"
+
+namespace pcednet::eval {
+namespace {
+
+bool is_positive(std::uint8_t label, Positive positive) {
+  return label == kSharpEdge || (positive == Positive::kEdge && label == kSmoothEdge);
+}
+
+double ratio(double numerator, double denominator) {
+  return denominator == 0.0 ? 0.0 : numerator / denominator;
+}
+
+}  // namespace
+
+ConfusionCounts& ConfusionCounts::operator+=(const ConfusionCounts& other) {
+  tp += other.tp;
+  fp += other.fp;
+  tn += other.tn;
+  fn += other.fn;
+  return *this;
+}
+
+ConfusionCounts count_confusion(std::span<const std::uint8_t> truth,
+                                std::span<const std::uint8_t> predicted, Positive positive) {
+  if (truth.size() != predicted.size()) {
+    throw Error(ErrorKind::kInsufficient, fmt::format("{} predicted classes for {} labelled points",
+                                                      predicted.size(), truth.size()));
+  }
+  ConfusionCounts counts;
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    if (truth[i] == kUnlabelled) continue;
+    const bool is = is_positive(truth[i], positive);
+    const bool said = is_positive(predicted[i], positive);
+    ++(is ? (said ? counts.tp : counts.fn) : (said ? counts.fp : counts.tn));
+  }
+  return counts;
+}
+
+Scores scores_of(const ConfusionCounts& counts) {
+  const auto tp = static_cast<double>(counts.tp), fp = static_cast<double>(counts.fp);
+  const auto tn = static_cast<double>(counts.tn), fn = static_cast<double>(counts.fn);
+  return {
+      .precision = ratio(tp, tp + fp),
+      .recall = ratio(tp, tp + fn),
+      .mcc = ratio(tp * tn - fp * fn, std::sqrt(tp + fp) * std::sqrt(tp + fn) * std::sqrt(tn + fp) *
+                                          std::sqrt(tn + fn)),
+      .f1 = ratio(2 * tp, 2 * tp + fp + fn),
+      .accuracy = ratio(tp + tn, tp + tn + fp + fn),
+      .iou = ratio(tp, tp + fp + fn),
+  };
+}
+
+}  // namespace pcednet::eval

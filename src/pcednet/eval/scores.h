@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+namespace pcednet::eval {
+
+/// How often prediction and truth agree about the positive class.
+struct ConfusionCounts {
+  std::size_t tp = 0, fp = 0, tn = 0, fn = 0;
+
+  std::size_t total() const { return tp + fp + tn + fn; }
+  ConfusionCounts& operator+=(const ConfusionCounts& other);
+};
+
+/// Which classes count as positive, in the truth and in the prediction alike.
+enum class Positive {
+  kSharp,  ///< sharp-edge alone
+  kEdge,   ///< sharp-edge and smooth-edge
+};
+
+/// Compares the classes of every point; both spans have one class per point. A point whose truth is
+/// kUnlabelled is left out; a prediction that is no edge class counts as negative.
+/// Throws Error(kInsufficient) if the sizes differ.
+ConfusionCounts count_confusion(std::span<const std::uint8_t> truth,
+                                std::span<const std::uint8_t> predicted, Positive positive);
+
+/// The scores of Himeur et al. 2021, appendix B. A score whose denominator is zero is 0.
+struct Scores {
+  double precision = 0, recall = 0, mcc = 0, f1 = 0, accuracy = 0, iou = 0;
+};
+Scores scores_of(const ConfusionCounts& counts);
+
+}  // namespace pcednet::eval
