@@ -1,0 +1,20 @@
+#pragma once
+
+#include <cstdint>
+
+namespace pcednet::gls {
+
+/// How far a description may be trusted. It depends on the number of neighbours, and on nothing
+/// else unless the fit has no answer at all.
+enum class FitStatus : std::uint8_t {
+  kStable = 0,     ///< 6 neighbours or more
+  kUnstable = 1,   ///< 3 to 5: usable
+  kUndefined = 2,  ///< fewer, or no surface is singled out by them: every feature is 0
+};
+
+constexpr FitStatus status_of_count(std::uint32_t neighbours) {
+  if (neighbours < 3) return FitStatus::kUndefined;
+  return neighbours < 6 ? FitStatus::kUnstable : FitStatus::kStable;
+}
+
+}  // namespace pcednet::gls

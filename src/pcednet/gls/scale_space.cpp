@@ -1,0 +1,246 @@
+#include "pcednet/gls/scale_space.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "pcednet/core/error.h"
+#include "pcednet/core/parallel.h"
+#include "pcednet/gls/descriptor.h"
+#include "pcednet/gls/moments.h"
+#include "pcednet/gls/plane_fit.h"
+#include "pcednet/gls/scales.h"
+#include "pcednet/gls/sphere_fit.h"
+#include "pcednet/spatial/curve_order.h"
+
+namespace pcednet::gls {
+namespace {
+
+constexpr std::uint32_t kNowhere = std::numeric_limits<std::uint32_t>::max();
+constexpr double kSmallestMove = 0.01;  // of t: after a shorter step the projection ends
+
+bool is_usable(const Vec3& normal) {
+  return normal.allFinite() && !normal.isZero(0.0);
+}
+
+bool is_less(const Vec3& a, const Vec3& b) {
+  return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3);
+}
+
+void check(OrientedPoints points, const ScaleSpaceOptions& options) {
+  const auto refuse = [](const std::string& why) { throw Error(ErrorKind::kUsage, why); };
+  if (points.positions.size() != points.normals.size()) {
+    refuse(fmt::format("{} positions with {} normals", points.positions.size(),
+                       points.normals.size()));
+  }
+  if (points.positions.size() >= kNowhere) refuse("more than 2^32 - 2 points");
+  if (options.max_projection_steps < 0) refuse("max_projection_steps is negative");
+  if (options.side_gate && !(std::abs(*options.side_gate) <= 1.0)) {
+    refuse(fmt::format("the side gate {} is not within -1 to 1", *options.side_gate));
+  }
+  for (std::size_t i = 0; i < points.normals.size(); ++i) {
+    const Vec3& n = points.normals[i];
+    if (is_usable(n) && !(std::abs(n.squaredNorm() - 1.0) <= 2e-3)) {
+      refuse(fmt::format("the normal of point {} has length {}, not 1", i, n.norm()));
+    }
+  }
+}
+
+/// Writes `features` as Numbers; false, with zeros written, if one of them is not finite then.
+template <typename Number>
+bool store(std::span<const double> features, std::span<Number> out) {
+  std::transform(features.begin(), features.end(), out.begin(),
+                 [](double f) { return static_cast<Number>(f); });
+  if (std::all_of(out.begin(), out.end(), [](Number f) { return std::isfinite(f); })) return true;
+  std::fill(out.begin(), out.end(), Number(0));
+  return false;
+}
+
+}  // namespace
+
+/// A surface fitted around an evaluation point, and its description there.
+struct ExactScaleSpace::Fit {
+  FitStatus status = FitStatus::kUndefined;
+  AlgebraicSphere surface;
+  Descriptor descriptor;
+};
+
+/// What a thread needs to describe points, kept from one point to the next.
+struct ExactScaleSpace::Scratch {
+  std::vector<spatial::Neighbour> found;
+  Neighbourhood neighbours;  ///< of the point, at the largest scale
+  Neighbourhood projected;   ///< of its projection, at one scale
+};
+
+ExactScaleSpace::ExactScaleSpace(OrientedPoints points, const ScaleSpaceOptions& options,
+                                 const Progress* progress)
+    : options_(options), tree_({}) {
+  check(points, options);
+  Stage stage(progress, "prepare", 3);
+  renumber(points);
+  stage.advance();
+  tree_ = spatial::KdTree(positions_);
+  stage.advance();
+  scales_ =
+      sample_scales(scale_range(positions_, tree_, {options.s_min, options.s_max}), options.scales);
+  stage.advance();
+}
+
+/// Orders the points by place along a curve and, in one place, by normal: whatever is computed from
+/// the ordered arrays cannot depend on the numbering.
+void ExactScaleSpace::renumber(OrientedPoints points) {
+  const auto usable = [&](std::uint32_t i) {
+    return is_usable(points.normals[i]) ? points.normals[i] : Vec3::Zero().eval();
+  };
+  std::vector<std::uint32_t> order = spatial::curve_order(points.positions);
+  for (auto first = order.begin(); first != order.end();) {
+    const auto last = std::find_if(first, order.end(), [&](std::uint32_t i) {
+      return points.positions[i] != points.positions[*first];
+    });
+    std::sort(first, last,
+              [&](std::uint32_t i, std::uint32_t j) { return is_less(usable(i), usable(j)); });
+    first = last;
+  }
+  place_.assign(points.positions.size(), kNowhere);
+  for (const std::uint32_t i : order) {
+    place_[i] = static_cast<std::uint32_t>(positions_.size());
+    positions_.push_back(points.positions[i]);
+    normals_.push_back(usable(i));
+  }
+}
+
+/// The neighbours of the evaluation point `offset` away from the point at `place`, which keeps
+/// lending its normal to the gate. An offset and not a position, so that differences of large
+/// coordinates are taken before anything small is added.
+void ExactScaleSpace::gather(std::uint32_t place, const Vec3& offset, double radius,
+                             std::vector<spatial::Neighbour>& found,
+                             Neighbourhood& neighbours) const {
+  const Vec3& origin = positions_[place];
+  const Vec3& own = normals_[place];
+  const bool gated = options_.side_gate && !own.isZero(0.0);
+  tree_.within(origin + offset, radius, found);
+  neighbours.clear();
+  for (const spatial::Neighbour& neighbour : found) {
+    const Vec3& n = normals_[neighbour.index];
+    if (n.isZero(0.0)) continue;
+    const double gate = gated ? side_gate(n, own, *options_.side_gate) : 1.0;
+    if (gate == 0.0) continue;
+    const Vec3 y = (positions_[neighbour.index] - origin) - offset;
+    const double sq_distance = y.x() * y.x() + y.y() * y.y() + y.z() * y.z();
+    if (sq_distance < radius * radius) neighbours.push_back({y, n, sq_distance, gate});
+  }
+}
+
+ExactScaleSpace::Fit ExactScaleSpace::fit(std::span<const LocalNeighbour> neighbours,
+                                          double t) const {
+  switch (options_.reconstruction) {
+    case Reconstruction::kCovariancePlane:
+    case Reconstruction::kPlaneMls: {
+      const PlaneFit plane = fit_covariance_plane(neighbours, t);
+      return {plane.status, plane.plane, plane.descriptor};
+    }
+    case Reconstruction::kSphere:
+    case Reconstruction::kSphereMls:
+      break;
+  }
+  const MomentSet moments = sum_moments(neighbours, t);
+  const SphereFit sphere = fit_sphere(moments.value, moments.count, t);
+  return {sphere.status, sphere.sphere, describe_sphere(sphere, moments)};
+}
+
+/// Moves the evaluation point onto the surface until it hardly moves (or the fit is not stable, or
+/// the next one would be undefined). The descriptor is that of the last evaluation point but for
+/// tau, which stays the distance of the point itself to the last surface.
+ExactScaleSpace::Fit ExactScaleSpace::project(std::uint32_t place, Fit fit, double t,
+                                              Scratch& scratch) const {
+  Vec3 offset = Vec3::Zero();
+  for (int step = 0; step < options_.max_projection_steps; ++step) {
+    if (fit.status != FitStatus::kStable) break;
+    const Vec3 move = projection_move(fit.surface);
+    gather(place, offset + move, t, scratch.found, scratch.projected);
+    const Fit next = this->fit(scratch.projected, t);
+    if (next.status == FitStatus::kUndefined) break;
+    fit = next;
+    offset += move;
+    if (move.norm() < kSmallestMove * t) break;
+  }
+  fit.descriptor.tau = algebraic_distance(fit.surface, -offset);
+  return fit;
+}
+
+template <typename Number>
+void ExactScaleSpace::describe_point(std::uint32_t place, Scratch& scratch, std::span<Number> out,
+                                     std::span<FitStatus> status) const {
+  const auto width = static_cast<std::size_t>(feature_count(options_.features));
+  std::array<double, 28> features;
+  gather(place, Vec3::Zero(), scales_.back(), scratch.found, scratch.neighbours);
+  const std::span<const LocalNeighbour> neighbours = scratch.neighbours;
+  std::size_t count = 0;
+  for (std::size_t s = 0; s < scales_.size(); ++s) {
+    const double t = scales_[s];
+    while (count < neighbours.size() && neighbours[count].sq_distance < t * t) ++count;
+    Fit fit = this->fit(neighbours.first(count), t);
+    if (projects(options_.reconstruction)) fit = project(place, fit, t, scratch);
+    write_features(options_.features, fit.descriptor, t, features);
+    const bool finite =
+        store<Number>(std::span(features).first(width), out.subspan(s * width, width));
+    status[s] = finite ? fit.status : FitStatus::kUndefined;
+  }
+}
+
+template <typename Number>
+void ExactScaleSpace::describe_all(std::span<const std::uint32_t> targets, std::span<Number> out,
+                                   std::span<FitStatus> status, const Progress* progress) const {
+  const std::size_t scales = scales_.size();
+  const std::size_t row = scales * static_cast<std::size_t>(feature_count(options_.features));
+  if (out.size() != targets.size() * row || status.size() != targets.size() * scales) {
+    throw Error(
+        ErrorKind::kUsage,
+        fmt::format("{} targets need {} features and {} statuses, not {} and {}", targets.size(),
+                    targets.size() * row, targets.size() * scales, out.size(), status.size()));
+  }
+  // Neighbours one after the other, whatever the order of the targets: they share memory.
+  std::vector<std::pair<std::uint32_t, std::size_t>> visits;
+  for (std::size_t i = 0; i < targets.size(); ++i) {
+    if (targets[i] >= place_.size()) {
+      throw Error(ErrorKind::kUsage,
+                  fmt::format("there is no point {} among {}", targets[i], place_.size()));
+    }
+    visits.emplace_back(place_[targets[i]], i);
+  }
+  std::sort(visits.begin(), visits.end());
+
+  constexpr std::size_t kBlock = 64;
+  Stage stage(progress, "describe", visits.size());
+  parallel_blocks(visits.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+    Scratch scratch;
+    for (std::size_t v = begin; v < end; ++v) {
+      const auto [place, i] = visits[v];
+      const std::span<Number> features = out.subspan(i * row, row);
+      const std::span<FitStatus> statuses = status.subspan(i * scales, scales);
+      if (place == kNowhere) {
+        std::fill(features.begin(), features.end(), Number(0));
+        std::fill(statuses.begin(), statuses.end(), FitStatus::kUndefined);
+      } else {
+        describe_point(place, scratch, features, statuses);
+      }
+    }
+    stage.advance(end - begin);
+  });
+}
+
+void ExactScaleSpace::describe(std::span<const std::uint32_t> targets, std::span<float> out,
+                               std::span<FitStatus> status, const Progress* progress) const {
+  describe_all(targets, out, status, progress);
+}
+
+void ExactScaleSpace::describe(std::span<const std::uint32_t> targets, std::span<double> out,
+                               std::span<FitStatus> status, const Progress* progress) const {
+  describe_all(targets, out, status, progress);
+}
+
+}  // namespace pcednet::gls

@@ -1,0 +1,86 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "pcednet/core/progress.h"
+#include "pcednet/core/vec3.h"
+#include "pcednet/gls/features.h"
+#include "pcednet/gls/fit_status.h"
+#include "pcednet/gls/neighbourhood.h"
+#include "pcednet/gls/projection.h"
+#include "pcednet/spatial/kd_tree.h"
+
+namespace pcednet::gls {
+
+struct ScaleSpaceOptions {
+  int scales = 16;                  ///< a power of two, 4 to 128
+  double s_min = 0.0, s_max = 0.0;  ///< 0: from the cloud, see scale_range()
+  FeatureSet features = FeatureSet::kPaper6;
+  Reconstruction reconstruction = Reconstruction::kSphere;
+  int max_projection_steps = 5;     ///< for the reconstructions that project
+  std::optional<double> side_gate;  ///< the a of side_gate(), -1 to 1; without one all count alike
+};
+
+/// Points and their normals, which must be of unit length; a normal that is zero or not finite is
+/// unusable.
+struct OrientedPoints {
+  std::span<const Vec3> positions;
+  std::span<const Vec3> normals;
+};
+
+/// The scale-space matrix of a cloud, evaluated from exact neighbourhoods in double precision.
+///
+/// Made once for a cloud, then asked for any of its points. The neighbourhood of a point at scale t
+/// is every point closer than t, itself included, but for points whose normal is unusable (or whose
+/// gate is shut): these are not counted either. All results are the same bits for any numbering of
+/// the points and any number of threads, and never NaN or infinite.
+class ExactScaleSpace {
+ public:
+  /// Copies what it needs of `points`. Throws Error(kUsage) for options out of range, for arrays of
+  /// different sizes and for normals that are not of unit length (to 1e-3), Error(kInsufficient)
+  /// for clouds without a range of scales (see scale_range()).
+  ExactScaleSpace(OrientedPoints points, const ScaleSpaceOptions& options,
+                  const Progress* progress = nullptr);
+
+  const ScaleSpaceOptions& options() const { return options_; }
+
+  /// The support radii, smallest first.
+  const std::vector<double>& scales() const { return scales_; }
+
+  /// Describes the points numbered `targets`, on all threads. `out` is targets x scales x
+  /// feature_count() numbers, `status` targets x scales. A point that is not finite is undefined at
+  /// every scale; so is a description beyond the range of float. May be called from many threads.
+  /// Throws Error(kUsage) if a target or a size is wrong.
+  void describe(std::span<const std::uint32_t> targets, std::span<float> out,
+                std::span<FitStatus> status, const Progress* progress = nullptr) const;
+  void describe(std::span<const std::uint32_t> targets, std::span<double> out,
+                std::span<FitStatus> status, const Progress* progress = nullptr) const;
+
+ private:
+  struct Fit;
+  struct Scratch;
+
+  void renumber(OrientedPoints points);
+  void gather(std::uint32_t place, const Vec3& offset, double radius,
+              std::vector<spatial::Neighbour>& found, Neighbourhood& neighbours) const;
+  Fit fit(std::span<const LocalNeighbour> neighbours, double t) const;
+  Fit project(std::uint32_t place, Fit fit, double t, Scratch& scratch) const;
+  template <typename Number>
+  void describe_point(std::uint32_t place, Scratch& scratch, std::span<Number> out,
+                      std::span<FitStatus> status) const;
+  template <typename Number>
+  void describe_all(std::span<const std::uint32_t> targets, std::span<Number> out,
+                    std::span<FitStatus> status, const Progress* progress) const;
+
+  ScaleSpaceOptions options_;
+  std::vector<std::uint32_t> place_;  ///< of each point in the arrays below, or kNowhere
+  std::vector<Vec3> positions_;       ///< the finite points, in an order free of their numbering
+  std::vector<Vec3> normals_;         ///< (0,0,0) where unusable
+  spatial::KdTree tree_;
+  std::vector<double> scales_;
+};
+
+}  // namespace pcednet::gls
