@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "pcednet/core/progress.h"
+#include "pcednet/core/vec3.h"
+#include "pcednet/normals/neighbour_graph.h"
+
+namespace pcednet::normals {
+
+struct EstimateOptions {
+  int neighbours = 12;  ///< distinct points around each point, at least 2
+};
+
+/// The unit normal of the surface at every point, its sign arbitrary (see orient.h).
+///
+/// It is the direction in which the k nearest distinct points y_j, the point itself among them,
+/// vary least: the eigenvector of the smallest eigenvalue of
+///
+///     C = sum w_j (y_j - m)(y_j - m)^T,   m = sum w_j y_j / sum w_j,   w_j = (1 - (r_j/h)^2)^2
+///
+/// with r_j the distance to the point and h^2 = 1.05 times the largest r_j^2. The weights keep the
+/// plane of a point beside an edge from leaning over it.
+///
+/// (0,0,0) where there is no plane to fit: the position is not finite, there are fewer than three
+/// distinct points, or the neighbourhood is a line (second eigenvalue below 1e-10 of the largest).
+/// The result has the same bytes for any number of threads and any order of the points, and points
+/// at the same position get the same normal. Throws Error(kUsage) on `neighbours` < 2.
+std::vector<Vec3> estimate_normals(std::span<const Vec3> positions,
+                                   const EstimateOptions& options = {},
+                                   const Progress* progress = nullptr);
+
+/// The same for the points of a graph, from all its neighbours.
+std::vector<Vec3> estimate_normals(const NeighbourGraph& graph, const Progress* progress = nullptr);
+
+}  // namespace pcednet::normals

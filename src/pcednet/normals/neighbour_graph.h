@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "pcednet/core/progress.h"
+#include "pcednet/core/vec3.h"
+
+namespace pcednet::normals {
+
+inline constexpr std::uint32_t kNoPoint = 0xffffffff;
+
+/// The distinct finite positions of a cloud, each with its nearest others.
+///
+/// The points stand in curve order, so all that is computed from this graph, ties included, is the
+/// same for any numbering of the cloud; neighbours lie close in memory.
+struct NeighbourGraph {
+  std::vector<Vec3> points;
+  std::vector<std::uint32_t> point_of;    ///< per position of the cloud, kNoPoint if not finite
+  std::size_t degree = 0;                 ///< neighbours of each point
+  std::vector<std::uint32_t> neighbours;  ///< points x degree, nearest first, the point left out
+
+  std::span<const std::uint32_t> of(std::size_t point) const {
+    return {neighbours.data() + point * degree, degree};
+  }
+};
+
+/// `degree` becomes `count`, or less if there are not so many distinct points. At most 2^32 - 1
+/// positions.
+NeighbourGraph make_neighbour_graph(std::span<const Vec3> positions, std::size_t count,
+                                    const Progress* progress);
+
+/// For every point those that it has among its neighbours and those that have it among theirs,
+/// each once: the graph without directions.
+struct Adjacency {
+  std::vector<std::size_t> first;     ///< points + 1
+  std::vector<std::uint32_t> target;  ///< of point i: first[i] to first[i + 1], ascending
+
+  std::size_t size() const { return first.size() - 1; }
+  std::span<const std::uint32_t> of(std::size_t point) const {
+    return {target.data() + first[point], first[point + 1] - first[point]};
+  }
+};
+
+/// Uses the nearest `count` neighbours of each point at most.
+Adjacency make_adjacency(const NeighbourGraph& graph, std::size_t count);
+
+/// The values of the distinct points handed to every position; `missing` where there is none.
+template <typename T>
+std::vector<T> spread_to_cloud(const NeighbourGraph& graph, std::span<const T> values,
+                               const T& missing) {
+  std::vector<T> spread;
+  spread.reserve(graph.point_of.size());
+  for (const std::uint32_t point : graph.point_of) {
+    spread.push_back(point == kNoPoint ? missing : values[point]);
+  }
+  return spread;
+}
+
+}  // namespace pcednet::normals

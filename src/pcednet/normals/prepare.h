@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "pcednet/core/progress.h"
+#include "pcednet/core/vec3.h"
+#include "pcednet/normals/estimate.h"
+#include "pcednet/normals/orient.h"
+
+namespace pcednet::normals {
+
+struct PrepareOptions {
+  int neighbours = EstimateOptions{}.neighbours;  ///< for estimation and for orientation
+  std::optional<Vec3> viewpoint = {};             ///< as in OrientOptions
+};
+
+struct PreparedNormals {
+  std::vector<Vec3> normals;  ///< per position; (0,0,0) where none could be found
+  std::size_t unusable = 0;   ///< how many are (0,0,0)
+  Orientation orientation;
+};
+
+/// estimate_normals() and orient_normals() on one search for neighbours.
+PreparedNormals estimate_oriented_normals(std::span<const Vec3> positions,
+                                          const PrepareOptions& options = {},
+                                          const Progress* progress = nullptr);
+
+}  // namespace pcednet::normals
