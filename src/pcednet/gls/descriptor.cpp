@@ -3,18 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pcednet/gls/half_space.h"
+
 namespace pcednet::gls {
 namespace {
 
 /// The part of `v` orthogonal to the unit vector `eta`.
 Vec3 tangential(const Vec3& v, const Vec3& eta) {
   return v - eta * eta.dot(v);
-}
-
-/// True for exactly one of v and -v, unless v is zero.
-bool points_down(const Vec3& v) {
-  if (v.z() != 0.0) return v.z() < 0.0;
-  return v.y() != 0.0 ? v.y() < 0.0 : v.x() < 0.0;
 }
 
 }  // namespace
@@ -59,8 +55,8 @@ Descriptor describe_sphere(const SphereFit& fit, const MomentSet& moments) {
 
 PrincipalCurvatures principal_curvatures(const Mat3& deta_dx, const Vec3& eta, double tie) {
   // An orthonormal basis of the tangent plane without a square root and without a weak spot (Duff
-  // et al. 2017), made from whichever of eta and -eta points up so that both have the same one.
-  const Vec3 up = points_down(eta) ? Vec3(-eta) : eta;
+  // et al. 2017), the same for eta and -eta.
+  const Vec3 up = upward(eta);
   const double a = -1.0 / (1.0 + up.z());
   const double b = up.x() * up.y() * a;
   const Vec3 b1(1.0 + up.x() * up.x() * a, b, -up.x());

@@ -11,6 +11,7 @@
 #include "pcednet/core/error.h"
 #include "pcednet/core/parallel.h"
 #include "pcednet/gls/descriptor.h"
+#include "pcednet/gls/half_space.h"
 #include "pcednet/gls/moments.h"
 #include "pcednet/gls/plane_fit.h"
 #include "pcednet/gls/scales.h"
@@ -27,8 +28,11 @@ bool is_usable(const Vec3& normal) {
   return normal.allFinite() && !normal.isZero(0.0);
 }
 
+/// An order of normals that turning them all leaves alone, but for exactly opposite ones.
 bool is_less(const Vec3& a, const Vec3& b) {
-  return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3);
+  const Vec3 p = upward(a), q = upward(b);
+  if (p == q) return points_down(a) && !points_down(b);
+  return std::lexicographical_compare(p.data(), p.data() + 3, q.data(), q.data() + 3);
 }
 
 void check(OrientedPoints points, const ScaleSpaceOptions& options) {

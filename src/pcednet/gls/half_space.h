@@ -1,0 +1,19 @@
+#pragma once
+
+#include "pcednet/core/vec3.h"
+
+namespace pcednet::gls {
+
+/// True for exactly one of v and -v, unless v is zero.
+inline bool points_down(const Vec3& v) {
+  if (v.z() != 0.0) return v.z() < 0.0;
+  return v.y() != 0.0 ? v.y() < 0.0 : v.x() < 0.0;
+}
+
+/// Whichever of v and -v does not point down: what is made from it does not change, in any bit,
+/// when normals are turned.
+inline Vec3 upward(const Vec3& v) {
+  return points_down(v) ? Vec3(-v) : v;
+}
+
+}  // namespace pcednet::gls

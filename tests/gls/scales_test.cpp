@@ -1,0 +1,87 @@
+#include "pcednet/gls/scales.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "gls/test_clouds.h"
+#include "pcednet/core/error.h"
+
+namespace pcednet::gls {
+namespace {
+
+ErrorKind kind_of_error(const std::vector<Vec3>& positions, const ScaleRange& given = {}) {
+  try {
+    scale_range(positions, spatial::KdTree(positions), given);
+  } catch (const Error& error) {
+    return error.kind();
+  }
+  return ErrorKind::kFailure;
+}
+
+TEST(Scales, SmallestIsTheMeanDistanceToTenNeighbours) {
+  const auto cloud = test::cube(3000, 4, 0.01, 0.1);
+  double sum = 0.0;
+  for (const Vec3& p : cloud.positions) {
+    std::vector<double> distances;
+    for (const Vec3& q : cloud.positions) distances.push_back((p - q).norm());
+    std::partial_sort(distances.begin(), distances.begin() + 11, distances.end());
+    sum += std::accumulate(distances.begin() + 1, distances.begin() + 11, 0.0) / 10;
+  }
+  const auto range = scale_range(cloud.positions, spatial::KdTree(cloud.positions), {});
+  EXPECT_NEAR(range.s_min / (sum / 3000), 1.0, 1e-13);
+  // The cube with noise at its corners: between 1 and 1.1 times its own diagonal.
+  EXPECT_GT(range.s_max, 0.1 * std::sqrt(3.0));
+  EXPECT_LT(range.s_max, 0.11 * std::sqrt(3.0));
+}
+
+TEST(Scales, AreSampledEvenlyInTheLogarithm) {
+  const auto scales = sample_scales({0.5, 4.0}, 4);
+  ASSERT_EQ(scales.size(), 4u);
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(scales[i], std::ldexp(0.5, int(i)), 1e-15);
+  for (const int count : {4, 8, 16, 32, 64, 128}) {
+    const auto many = sample_scales({0.1, 1.7}, count);
+    EXPECT_EQ(many.size(), static_cast<std::size_t>(count));
+    EXPECT_DOUBLE_EQ(many.front(), 0.1);
+    EXPECT_DOUBLE_EQ(many.back(), 1.7);
+    EXPECT_TRUE(std::is_sorted(many.begin(), many.end()));
+  }
+}
+
+TEST(Scales, RefuseCountsThatAreNotPowersOfTwo) {
+  for (const int count : {-4, 0, 1, 2, 3, 12, 17, 256}) {
+    EXPECT_THROW(sample_scales({0.1, 1.0}, count), Error) << count;
+  }
+  EXPECT_THROW(sample_scales({1.0, 1.0}, 16), Error);
+  EXPECT_THROW(sample_scales({0.0, 1.0}, 16), Error);
+}
+
+TEST(Scales, RefuseCloudsWithoutARange) {
+  const Vec3 p(1, 2, 3);
+  EXPECT_EQ(kind_of_error({}), ErrorKind::kInsufficient);
+  EXPECT_EQ(kind_of_error({p}), ErrorKind::kInsufficient);
+  EXPECT_EQ(kind_of_error(std::vector<Vec3>(50, p)), ErrorKind::kInsufficient);
+  EXPECT_EQ(kind_of_error({p, 2 * p}), ErrorKind::kInsufficient);  // spacing > 10 % of the diagonal
+  std::vector<Vec3> copies(20, p);
+  copies.insert(copies.end(), 20, 2 * p);
+  EXPECT_EQ(kind_of_error(copies), ErrorKind::kInsufficient);
+}
+
+TEST(Scales, KeepGivenBoundsAndRefuseImpossibleOnes) {
+  const auto cloud = test::cube(1000, 1);
+  const spatial::KdTree tree(cloud.positions);
+  const auto range = scale_range(cloud.positions, tree, {0.05, 0.0});
+  EXPECT_EQ(range.s_min, 0.05);
+  EXPECT_NEAR(range.s_max, 0.1 * std::sqrt(3.0), 1e-3);
+  EXPECT_EQ(scale_range(cloud.positions, tree, {0.0, 0.7}).s_max, 0.7);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const ScaleRange& bad : {ScaleRange{-1, 0}, ScaleRange{0, -1}, ScaleRange{nan, 0},
+                                ScaleRange{0, 1 / 0.0}, ScaleRange{0.5, 0.5}, ScaleRange{2, 1}}) {
+    EXPECT_EQ(kind_of_error(cloud.positions, bad), ErrorKind::kUsage);
+  }
+  EXPECT_EQ(kind_of_error(cloud.positions, {0.5, 0}), ErrorKind::kInsufficient);
+}
+
+}  // namespace
+}  // namespace pcednet::gls
