@@ -86,6 +86,31 @@ TEST(Estimate, IsExactOnABoxAwayFromItsEdges) {
   }
 }
 
+TEST(Estimate, TakesMoreNeighboursWhereThereIsNoise) {
+  Shape shape = sphere(4000, 1.0);
+  EXPECT_EQ(make_neighbour_graph(shape.positions, 0, nullptr).degree, 12u);
+  Random random(8);
+  // The spacing is about 0.05.
+  for (Vec3& p : shape.positions) p += 0.015 * p * random.normal();
+  EXPECT_EQ(make_neighbour_graph(shape.positions, 0, nullptr).degree, 48u);
+  const auto mean_angle = [&](int neighbours) {
+    const auto normals = estimate_normals(shape.positions, {.neighbours = neighbours});
+    double sum = 0.0;
+    for (std::size_t i = 0; i < normals.size(); ++i) {
+      sum += angle_between_lines(normals[i], shape.normals[i]);
+    }
+    return sum / static_cast<double>(normals.size());
+  };
+  // Four times the points halve the error of a mean, and twice the radius halves what it tilts.
+  EXPECT_LT(mean_angle(0), 0.3 * mean_angle(12));
+  EXPECT_EQ(mean_angle(0), mean_angle(48));
+}
+
+TEST(Estimate, TakesFewNeighboursWhereTheSurfaceBends) {
+  const Shape coarse = sphere(300, 1.0);  // thickness above 0.01 at 12 neighbours
+  EXPECT_EQ(make_neighbour_graph(coarse.positions, 0, nullptr).degree, 12u);
+}
+
 TEST(Estimate, GivesTheSameBytesForAnyOrderAndNumberOfThreads) {
   Shape shape = box(Vec3(1, 2, 3), 15, 0.4);
   append(shape, box(Vec3::Ones(), 9), Vec3(4, 0, 0));  // with a grid's many ties
@@ -146,7 +171,9 @@ TEST(Estimate, LooksPastPointsThatAreNotFinite) {
 }
 
 TEST(Estimate, RefusesTooFewNeighbours) {
-  EXPECT_THROW(estimate_normals(std::vector<Vec3>(5), {.neighbours = 1}), Error);
+  for (const int count : {1, -1}) {
+    EXPECT_THROW(estimate_normals(std::vector<Vec3>(5), {.neighbours = count}), Error);
+  }
 }
 
 }  // namespace

@@ -11,8 +11,12 @@
 namespace pcednet::normals {
 
 struct EstimateOptions {
-  int neighbours = 12;  ///< distinct points around each point, at least 2
+  int neighbours = 0;  ///< distinct points around each point, 0: as many as the noise asks for
 };
+
+/// The graph that normals are estimated on. Throws as estimate_normals() does.
+NeighbourGraph make_estimation_graph(std::span<const Vec3> positions, int neighbours,
+                                     const Progress* progress);
 
 /// The unit normal of the surface at every point, its sign arbitrary (see orient.h).
 ///
@@ -24,10 +28,12 @@ struct EstimateOptions {
 /// with r_j the distance to the point and h^2 = 1.05 times the largest r_j^2. The weights keep the
 /// plane of a point beside an edge from leaning over it.
 ///
+/// k is 12 unless given, more on noisy clouds: see choose_neighbour_count().
+///
 /// (0,0,0) where there is no plane to fit: the position is not finite, there are fewer than three
 /// distinct points, or the neighbourhood is a line (second eigenvalue below 1e-10 of the largest).
 /// The result has the same bytes for any number of threads and any order of the points, and points
-/// at the same position get the same normal. Throws Error(kUsage) on `neighbours` < 2.
+/// at the same position get the same normal. Throws Error(kUsage) on 1 neighbour or less than 0.
 std::vector<Vec3> estimate_normals(std::span<const Vec3> positions,
                                    const EstimateOptions& options = {},
                                    const Progress* progress = nullptr);

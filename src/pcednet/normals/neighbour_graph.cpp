@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "pcednet/core/parallel.h"
+#include "pcednet/normals/neighbour_count.h"
 #include "pcednet/spatial/curve_order.h"
 #include "pcednet/spatial/kd_tree.h"
 
@@ -29,11 +30,11 @@ NeighbourGraph make_neighbour_graph(std::span<const Vec3> positions, std::size_t
   collect_distinct_points(positions, graph);
   const std::size_t points = graph.points.size();
   if (points == 0) return graph;
-  graph.degree = std::min(count, points - 1);
-  graph.neighbours.resize(points * graph.degree);
-
   Stage stage(progress, "neighbours", points);
   const spatial::KdTree tree(graph.points);
+  if (count == 0) count = choose_neighbour_count(graph.points, tree);
+  graph.degree = std::min(count, points - 1);
+  graph.neighbours.resize(points * graph.degree);
   parallel_blocks(points, kBlock, [&](std::size_t begin, std::size_t end) {
     std::vector<spatial::Neighbour> found;
     for (std::size_t i = begin; i < end; ++i) {

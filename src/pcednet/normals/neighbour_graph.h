@@ -27,8 +27,8 @@ struct NeighbourGraph {
   }
 };
 
-/// `degree` becomes `count`, or less if there are not so many distinct points. At most 2^32 - 1
-/// positions.
+/// `degree` becomes `count`, or less if there are not so many distinct points; if `count` is 0, it
+/// is chosen by choose_neighbour_count(). At most 2^32 - 1 positions.
 NeighbourGraph make_neighbour_graph(std::span<const Vec3> positions, std::size_t count,
                                     const Progress* progress);
 

@@ -107,8 +107,12 @@ Orientation orient_normals(std::span<const Vec3> positions, std::span<Vec3> norm
     throw Error(ErrorKind::kUsage,
                 fmt::format("{} normals for {} positions", normals.size(), positions.size()));
   }
-  const std::size_t count = options.viewpoint ? 0 : static_cast<std::size_t>(options.neighbours);
-  const NeighbourGraph graph = make_neighbour_graph(positions, count, progress);
+  if (options.viewpoint) {
+    face_viewpoint(positions, normals, *options.viewpoint);
+    return {};
+  }
+  const NeighbourGraph graph =
+      make_neighbour_graph(positions, static_cast<std::size_t>(options.neighbours), progress);
   std::vector<Vec3> of_points(graph.points.size(), Vec3::Zero());
   for (std::size_t i = positions.size(); i-- > 0;) {
     if (graph.point_of[i] != kNoPoint) of_points[graph.point_of[i]] = normals[i];

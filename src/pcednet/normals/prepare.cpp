@@ -1,25 +1,18 @@
 #include "pcednet/normals/prepare.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-
-#include "pcednet/core/error.h"
 
 namespace pcednet::normals {
 
 PreparedNormals estimate_oriented_normals(std::span<const Vec3> positions,
                                           const PrepareOptions& options, const Progress* progress) {
-  if (options.neighbours < 2) {
-    throw Error(ErrorKind::kUsage,
-                fmt::format("a normal needs at least 2 neighbours, not {}", options.neighbours));
-  }
-  const NeighbourGraph graph =
-      make_neighbour_graph(positions, static_cast<std::size_t>(options.neighbours), progress);
+  const NeighbourGraph graph = make_estimation_graph(positions, options.neighbours, progress);
   std::vector<Vec3> of_points = estimate_normals(graph, progress);
   PreparedNormals prepared;
-  prepared.orientation =
-      orient_normals(graph, of_points, {options.neighbours, options.viewpoint}, progress);
+  prepared.orientation = orient_normals(
+      graph, of_points,
+      {.neighbours = std::max(static_cast<int>(graph.degree), 1), .viewpoint = options.viewpoint},
+      progress);
   prepared.normals = spread_to_cloud<Vec3>(graph, of_points, Vec3::Zero());
   prepared.unusable = static_cast<std::size_t>(
       std::count_if(prepared.normals.begin(), prepared.normals.end(),

@@ -1,0 +1,55 @@
+#include "pcednet/normals/neighbour_count.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "pcednet/core/parallel.h"
+#include "pcednet/normals/plane_fit.h"
+
+namespace pcednet::normals {
+namespace {
+
+constexpr std::array<std::size_t, 3> kCounts = {12, 24, 48};
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+}  // namespace
+
+std::size_t choose_neighbour_count(std::span<const Vec3> points, const spatial::KdTree& tree) {
+  if (points.size() <= kCounts.back()) return kCounts.front();
+  const std::size_t samples = std::min<std::size_t>(points.size(), 2000);
+  std::array<std::vector<double>, kCounts.size()> thickness;
+  for (std::vector<double>& of_count : thickness) of_count.resize(samples);
+  parallel_blocks(samples, 100, [&](std::size_t begin, std::size_t end) {
+    std::vector<spatial::Neighbour> found;
+    std::vector<std::uint32_t> neighbours(kCounts.back());
+    for (std::size_t s = begin; s < end; ++s) {
+      const std::size_t point = s * points.size() / samples;
+      tree.nearest(points[point], kCounts.back() + 1, found);
+      std::transform(found.begin() + 1, found.end(), neighbours.begin(),
+                     [](const spatial::Neighbour& neighbour) { return neighbour.index; });
+      for (std::size_t c = 0; c < kCounts.size(); ++c) {
+        thickness[c][s] =
+            fit_plane(points, point, std::span(neighbours).first(kCounts[c])).thickness;
+      }
+    }
+  });
+  double thinnest = median(thickness[0]);
+  if (thinnest <= 0.01) return kCounts[0];
+  std::size_t chosen = 0;
+  for (std::size_t c = 1; c < kCounts.size(); ++c) {
+    const double wider = median(thickness[c]);
+    if (wider >= thinnest) break;
+    thinnest = wider;
+    chosen = c;
+  }
+  return kCounts[chosen];
+}
+
+}  // namespace pcednet::normals
