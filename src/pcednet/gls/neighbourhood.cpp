@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <utility>
 
+#include "pcednet/gls/scales.h"
+
 namespace pcednet::gls {
 
 void order_by_shell(std::span<const double> radii, std::vector<spatial::Neighbour>& neighbours,
@@ -18,9 +20,9 @@ void order_by_shell(std::span<const double> radii, std::vector<spatial::Neighbou
     }
     return shell;
   };
-  std::vector<std::size_t> next(radii.size() + 1);  // where the next one of each shell goes
+  std::array<std::size_t, kMaxScales + 1> next = {};  // where the next one of each shell goes
   for (const spatial::Neighbour& neighbour : neighbours) ++next[shell_of(neighbour) + 1];
-  for (std::size_t s = 1; s < next.size(); ++s) next[s] += next[s - 1];
+  for (std::size_t s = 1; s < radii.size(); ++s) next[s] += next[s - 1];
   scratch.resize(neighbours.size());
   for (const spatial::Neighbour& neighbour : neighbours) {
     scratch[next[shell_of(neighbour)]++] = neighbour;
