@@ -26,6 +26,8 @@ int run(int argc, char** argv) {
   app.parse_complete_callback([&] { set_thread_count(common.threads); });
   install_interrupt_handler();
   // One line per subcommand, in the order of the help.
+  add_info(app, common);
+  add_convert(app, common);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

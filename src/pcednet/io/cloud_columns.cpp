@@ -1,0 +1,241 @@
+#include "pcednet/io/cloud_columns.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <iterator>
+#include <limits>
+#include <set>
+
+namespace pcednet::io {
+namespace {
+
+bool is_int64(ScalarType type) {
+  return type == ScalarType::kInt64 || type == ScalarType::kUint64;
+}
+
+template <typename T>
+bool survives(double value) {
+  if constexpr (std::numeric_limits<T>::is_integer) {
+    // 2^bits is a double, the largest value of a 64-bit type is not.
+    constexpr double kEnd = 2.0 * static_cast<double>(std::numeric_limits<T>::max() / 2 + 1);
+    if (!(value >= static_cast<double>(std::numeric_limits<T>::min()) && value < kEnd))
+      return false;
+    if (value == 0.0 && std::signbit(value)) return false;
+  }
+  return std::isnan(value) || static_cast<double>(static_cast<T>(value)) == value;
+}
+
+ScalarType position_type(const PointCloud& cloud, const ColumnNames& names) {
+  if (is_int64(cloud.position_type) && !names.has_int64) return ScalarType::kFloat64;
+  const bool all_survive = visit_scalar(cloud.position_type, [&](auto zero) {
+    using T = decltype(zero);
+    return std::all_of(cloud.positions.begin(), cloud.positions.end(), [](const Vec3& p) {
+      return survives<T>(p.x()) && survives<T>(p.y()) && survives<T>(p.z());
+    });
+  });
+  return all_survive ? cloud.position_type : ScalarType::kFloat64;
+}
+
+/// `quality` first, then scalar_*, then the rest, each in the cloud's order.
+std::vector<const Attribute*> in_writing_order(const PointCloud& cloud) {
+  std::vector<const Attribute*> ordered;
+  const auto rank = [](const Attribute* a) {
+    if (a->name == "quality") return 0;
+    return a->name.starts_with("scalar_") ? 1 : 2;
+  };
+  for (const Attribute& attribute : cloud.attributes) ordered.push_back(&attribute);
+  std::stable_sort(ordered.begin(), ordered.end(),
+                   [&](const auto* a, const auto* b) { return rank(a) < rank(b); });
+  return ordered;
+}
+
+const std::byte* bytes_of(const void* pointer) {
+  return static_cast<const std::byte*>(pointer);
+}
+
+void add_vectors(std::vector<ColumnView>& columns, const std::vector<Vec3>& vectors,
+                 const std::vector<std::string>& names, ScalarType type) {
+  if (vectors.empty()) return;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    columns.push_back({names[axis], type, bytes_of(vectors[0].data() + axis), sizeof(Vec3)});
+  }
+}
+
+void add_attribute(std::vector<ColumnView>& columns, const Attribute& attribute,
+                   const ColumnNames& names) {
+  const bool widen = is_int64(attribute.type) && !names.has_int64;
+  for (std::size_t c = 0; c < attribute.components; ++c) {
+    std::string name = plain_name(attribute.name);
+    if (attribute.components > 1 && !names.has_counts) name += fmt::format("_{}", c);
+    columns.push_back({std::move(name), widen ? ScalarType::kFloat64 : attribute.type,
+                       attribute.bytes.data() + c * size_of(attribute.type), attribute.stride(),
+                       attribute.type, c});
+  }
+}
+
+/// Appends underscores to names that stand further left already. The label column is never
+/// renamed, and keeps its place at the end.
+void make_names_unique(std::vector<ColumnView>& columns, bool has_label, bool has_counts) {
+  std::set<std::string> taken = {"rgb"};  // what write_pcd adds
+  if (has_label) taken.insert(columns.back().name);
+  const std::size_t count = columns.size() - (has_label ? 1 : 0);
+  for (std::size_t c = 0; c < count; ++c) {
+    if (has_counts && columns[c].component > 0) {
+      columns[c].name = columns[c - 1].name;
+      continue;
+    }
+    while (!taken.insert(columns[c].name).second) columns[c].name += '_';
+  }
+}
+
+void write_number(double value, ScalarType type, std::byte* to) {
+  visit_scalar(type, [&](auto zero) {
+    const auto number = static_cast<decltype(zero)>(value);
+    std::memcpy(to, &number, sizeof number);
+  });
+}
+
+template <std::size_t kSize>
+void copy_column(const std::byte* from, std::size_t from_stride, std::byte* to,
+                 std::size_t to_stride, std::size_t count) {
+  for (std::size_t i = 0; i < count; ++i) {
+    std::memcpy(to + i * to_stride, from + i * from_stride, kSize);
+  }
+}
+
+void convert_column(const ColumnView& column, const std::byte* from, std::byte* to,
+                    std::size_t to_stride, std::size_t count) {
+  const bool to_float =
+      column.stored == ScalarType::kFloat64 && column.type == ScalarType::kFloat32;
+  if (column.stored == column.type) {
+    switch (size_of(column.type)) {
+      case 1:
+        return copy_column<1>(from, column.stride, to, to_stride, count);
+      case 2:
+        return copy_column<2>(from, column.stride, to, to_stride, count);
+      case 4:
+        return copy_column<4>(from, column.stride, to, to_stride, count);
+      default:
+        return copy_column<8>(from, column.stride, to, to_stride, count);
+    }
+  }
+  if (to_float) {  // positions and normals: the case that must be quick
+    for (std::size_t i = 0; i < count; ++i) {
+      double wide = 0.0;
+      std::memcpy(&wide, from + i * column.stride, sizeof wide);
+      const float narrow = static_cast<float>(wide);
+      std::memcpy(to + i * to_stride, &narrow, sizeof narrow);
+    }
+    return;
+  }
+  visit_scalar(column.stored, [&](auto number) {
+    for (std::size_t i = 0; i < count; ++i) {
+      std::memcpy(&number, from + i * column.stride, sizeof number);
+      write_number(static_cast<double>(number), column.type, to + i * to_stride);
+    }
+  });
+}
+
+template <typename T>
+void append_shortest(T value, std::string& out) {
+  std::array<char, 64> digits;
+  const auto result = std::to_chars(digits.data(), digits.data() + digits.size(), value);
+  out.append(digits.data(), result.ptr);
+}
+
+}  // namespace
+
+std::string plain_name(std::string_view name) {
+  std::string plain;
+  for (const char c : name) {
+    const auto code = static_cast<unsigned char>(c);
+    plain += code <= ' ' || code == 127 || c == ',' || c == ';' || c == '"' ? '_' : c;
+  }
+  return plain.empty() ? "unnamed" : plain;
+}
+
+std::vector<ColumnView> columns_of(const PointCloud& cloud, const ColumnNames& names) {
+  check_consistent(cloud);
+  std::vector<ColumnView> columns;
+  if (cloud.empty()) {
+    for (const char* axis : {"x", "y", "z"}) columns.push_back({axis, cloud.position_type});
+    return columns;
+  }
+  add_vectors(columns, cloud.positions, {"x", "y", "z"}, position_type(cloud, names));
+  add_vectors(columns, cloud.normals, names.normals, ScalarType::kFloat32);
+  if (!cloud.colours.empty()) {
+    for (std::size_t c = 0; c < names.colours.size(); ++c) {
+      columns.push_back({names.colours[c], ScalarType::kUint8,
+                         bytes_of(cloud.colours[0].data() + c), sizeof(Rgb), ScalarType::kUint8});
+    }
+  }
+  for (const Attribute* attribute : in_writing_order(cloud)) {
+    add_attribute(columns, *attribute, names);
+  }
+  if (cloud.has_labels()) {
+    columns.push_back(
+        {"label", names.label_type, bytes_of(cloud.labels.data()), 1, ScalarType::kUint8});
+  }
+  make_names_unique(columns, cloud.has_labels(), names.has_counts);
+  return columns;
+}
+
+std::vector<std::string> column_losses(const PointCloud& cloud, const ColumnNames& names) {
+  std::vector<std::string> losses;
+  for (const Attribute& attribute : cloud.attributes) {
+    if (is_int64(attribute.type) && !names.has_int64) {
+      losses.push_back(fmt::format("attribute {}: 64-bit integers become double", attribute.name));
+    }
+    if (plain_name(attribute.name) != attribute.name) {
+      losses.push_back(fmt::format("attribute \"{}\" is renamed to {}", attribute.name,
+                                   plain_name(attribute.name)));
+    }
+  }
+  return losses;
+}
+
+std::size_t row_bytes(const std::vector<ColumnView>& columns) {
+  std::size_t bytes = 0;
+  for (const ColumnView& column : columns) bytes += size_of(column.type);
+  return bytes;
+}
+
+void append_binary(const std::vector<ColumnView>& columns, std::size_t begin, std::size_t end,
+                   std::string& out) {
+  const std::size_t row = row_bytes(columns);
+  const std::size_t start = out.size();
+  out.resize(start + (end - begin) * row);
+  auto* to = reinterpret_cast<std::byte*>(out.data() + start);
+  for (const ColumnView& column : columns) {
+    convert_column(column, column.first + begin * column.stride, to, row, end - begin);
+    to += size_of(column.type);
+  }
+}
+
+void append_number(ScalarType type, const std::byte* number, std::string& out) {
+  visit_scalar(type, [&](auto value) {
+    std::memcpy(&value, number, sizeof value);
+    append_shortest(value, out);
+  });
+}
+
+void append_text(const std::vector<ColumnView>& columns, std::size_t begin, std::size_t end,
+                 char separator, std::string& out) {
+  for (std::size_t i = begin; i < end; ++i) {
+    for (std::size_t c = 0; c < columns.size(); ++c) {
+      if (c > 0) out += separator;
+      std::byte number[8];
+      const std::byte* from = columns[c].first + i * columns[c].stride;
+      convert_column(columns[c], from, number, 0, 1);
+      append_number(columns[c].type, number, out);
+    }
+    out += '\n';
+  }
+}
+
+}  // namespace pcednet::io

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "pcednet/cloud/point_cloud.h"
+
+namespace pcednet::io {
+
+/// One column of a cloud's numbers to write, wherever in the cloud they are kept.
+struct ColumnView {
+  std::string name;
+  ScalarType type = ScalarType::kFloat64;    ///< to write
+  const std::byte* first = nullptr;          ///< the number of point 0
+  std::size_t stride = 0;                    ///< bytes from point to point
+  ScalarType stored = ScalarType::kFloat64;  ///< type of the numbers in memory
+  std::size_t component = 0;                 ///< which one of an attribute's components
+};
+
+/// How a format names columns and which types it has.
+struct ColumnNames {
+  std::vector<std::string> normals = {"nx", "ny", "nz"};
+  std::vector<std::string> colours = {"red", "green", "blue"};  ///< empty: colours are left out
+  ScalarType label_type = ScalarType::kUint8;
+  bool has_int64 = true;    ///< otherwise 64-bit integers are written as double
+  bool has_counts = false;  ///< columns of several numbers; otherwise name_0, name_1, ...
+};
+
+/// The columns of `cloud`, in the order of write_ply. Names are unique, have no blanks, commas or
+/// semicolons. An attribute of several components gives that many columns side by side.
+///
+/// Positions get the cloud's position_type if every one of them survives in it, otherwise double.
+/// The views point into `cloud`. Throws Error(kFailure) unless check_consistent(cloud) holds.
+std::vector<ColumnView> columns_of(const PointCloud& cloud, const ColumnNames& names);
+
+/// `name` without characters that end a word in some format; never empty.
+std::string plain_name(std::string_view name);
+
+/// Attributes of `cloud` (or its positions) that lose something as columns named by `names`, one
+/// sentence part each.
+std::vector<std::string> column_losses(const PointCloud& cloud, const ColumnNames& names);
+
+/// Bytes of a row of packed columns.
+std::size_t row_bytes(const std::vector<ColumnView>& columns);
+
+/// Appends the points [begin, end) to `out` as packed rows.
+void append_binary(const std::vector<ColumnView>& columns, std::size_t begin, std::size_t end,
+                   std::string& out);
+
+/// Appends the number of type `type` at `number`, as short as it can be and still be read back
+/// exactly.
+void append_number(ScalarType type, const std::byte* number, std::string& out);
+
+/// Appends the points [begin, end) to `out` as lines of text, of numbers like append_number's.
+void append_text(const std::vector<ColumnView>& columns, std::size_t begin, std::size_t end,
+                 char separator, std::string& out);
+
+}  // namespace pcednet::io

@@ -1,0 +1,149 @@
+#include "pcednet/io/npy.h"
+
+#include <fmt/format.h>
+
+#include <cstring>
+#include <optional>
+#include <string>
+
+#include "pcednet/core/error.h"
+#include "pcednet/io/input_file.h"
+#include "pcednet/io/text_scan.h"
+
+namespace pcednet::io {
+namespace {
+
+constexpr std::string_view kMagic = "\x93NUMPY";
+
+std::string header_of(const std::vector<std::size_t>& shape, ScalarType type) {
+  std::string sizes;
+  for (const std::size_t size : shape) sizes += fmt::format("{}, ", size);
+  if (shape.size() > 1) sizes.resize(sizes.size() - 2);
+  if (shape.size() == 1) sizes.resize(sizes.size() - 1);
+  std::string dictionary = fmt::format(
+      "{{'descr': '<f{}', 'fortran_order': False, 'shape': ({}), }}", size_of(type), sizes);
+  // The numbers begin at a multiple of 64 bytes, after a line feed.
+  const std::size_t before = kMagic.size() + 4;
+  dictionary.append(63 - (before + dictionary.size()) % 64, ' ');
+  dictionary += '\n';
+  std::string header(kMagic);
+  header += std::string_view("\x01\x00", 2);
+  header += static_cast<char>(dictionary.size() & 0xFF);
+  header += static_cast<char>(dictionary.size() >> 8);
+  return header + dictionary;
+}
+
+std::optional<ScalarType> parse_type(std::string_view descr) {
+  static constexpr std::pair<std::string_view, ScalarType> kTypes[] = {
+      {"<f4", ScalarType::kFloat32}, {"<f8", ScalarType::kFloat64}, {"|i1", ScalarType::kInt8},
+      {"|u1", ScalarType::kUint8},   {"<i2", ScalarType::kInt16},   {"<u2", ScalarType::kUint16},
+      {"<i4", ScalarType::kInt32},   {"<u4", ScalarType::kUint32},  {"<i8", ScalarType::kInt64},
+      {"<u8", ScalarType::kUint64},
+  };
+  for (const auto& [name, type] : kTypes) {
+    if (name == descr) return type;
+  }
+  return std::nullopt;
+}
+
+/// What stands behind `key` in the dictionary, up to `end`.
+std::string_view entry(std::string_view dictionary, std::string_view key, char end) {
+  const std::size_t at = dictionary.find(key);
+  if (at == std::string_view::npos) return {};
+  const std::string_view rest = trim(dictionary.substr(at + key.size()));
+  return rest.substr(0, std::min(rest.find(end), rest.size()));
+}
+
+/// The shape, or none if it is not one or its product overflows.
+std::optional<std::vector<std::size_t>> parse_shape(std::string_view text, std::size_t& product) {
+  std::vector<std::string_view> words;
+  split(text, words, Separators(" ,"));
+  std::vector<std::size_t> shape;
+  product = 1;
+  for (const std::string_view word : words) {
+    const auto size = parse_count(word);
+    if (!size || (*size != 0 && product > (SIZE_MAX >> 4) / *size)) return std::nullopt;
+    product *= *size;
+    shape.push_back(*size);
+  }
+  return shape;
+}
+
+}  // namespace
+
+NpyWriter::NpyWriter(const std::filesystem::path& path, const std::vector<std::size_t>& shape,
+                     ScalarType type, Overwrite overwrite)
+    : file_(path, overwrite), path_(path), type_(type) {
+  for (const std::size_t size : shape) missing_ *= size;
+  file_.write(header_of(shape, type));
+}
+
+template <typename From>
+void NpyWriter::append_as(std::span<const From> numbers) {
+  if (numbers.size() > missing_) {
+    throw Error(ErrorKind::kFailure,
+                fmt::format("{}: more numbers than its shape holds", path_.string()));
+  }
+  missing_ -= numbers.size();
+  if (scalar_type_of<From>() == type_) {
+    file_.write(std::as_bytes(numbers));
+  } else if (type_ == ScalarType::kFloat32) {
+    const std::vector<float> converted(numbers.begin(), numbers.end());
+    file_.write(std::as_bytes(std::span(converted)));
+  } else {
+    const std::vector<double> converted(numbers.begin(), numbers.end());
+    file_.write(std::as_bytes(std::span(converted)));
+  }
+}
+
+void NpyWriter::append(std::span<const float> numbers) {
+  append_as(numbers);
+}
+
+void NpyWriter::append(std::span<const double> numbers) {
+  append_as(numbers);
+}
+
+void NpyWriter::commit() {
+  if (missing_ != 0) {
+    throw Error(ErrorKind::kFailure,
+                fmt::format("{}: {} numbers fewer than its shape holds", path_.string(), missing_));
+  }
+  file_.commit();
+}
+
+NpyArray read_npy(const std::filesystem::path& path) {
+  const InputFile file(path);
+  const std::string start = file.text(0, 12);
+  if (start.size() < 12 || !start.starts_with(kMagic)) throw unreadable(path, "not a .npy file");
+  const auto byte = [&](std::size_t i) {
+    return std::uint64_t{static_cast<unsigned char>(start[i])};
+  };
+  const bool wide = byte(6) >= 2;  // later versions have four bytes of length
+  const std::uint64_t length =
+      byte(8) | byte(9) << 8 | (wide ? byte(10) << 16 | byte(11) << 24 : 0);
+  const std::uint64_t begin = (wide ? 12 : 10) + length;
+  if (begin > file.size()) throw unreadable(path, "ends within its header");
+  const std::string dictionary = file.text(wide ? 12 : 10, length);
+
+  NpyArray array;
+  std::size_t product = 0;
+  const auto type = parse_type(trim(entry(dictionary, "'descr': '", '\'')));
+  const auto shape = parse_shape(entry(dictionary, "'shape': (", ')'), product);
+  if (!type || !shape || entry(dictionary, "'fortran_order': ", ',') != "False") {
+    throw unreadable(path, "expected little-endian numbers in C order");
+  }
+  if (product > (file.size() - begin) / size_of(*type)) {
+    throw unreadable(path, fmt::format("promises {} numbers, but ends {} bytes after byte {}",
+                                       product, file.size() - begin, begin));
+  }
+  Attribute numbers{"", *type, 1, std::vector<std::byte>(product * size_of(*type))};
+  file.read(begin, numbers.bytes);
+  array.shape = *shape;
+  array.type = *type;
+  array.values.reserve(product);
+  for (std::size_t i = 0; i < product; ++i) array.values.push_back(numbers.value(i));
+  return array;
+}
+
+}  // namespace pcednet::io

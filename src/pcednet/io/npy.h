@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <span>
+#include <vector>
+
+#include "pcednet/cloud/attribute.h"
+#include "pcednet/core/output_file.h"
+
+namespace pcednet::io {
+
+/// Writes one array as NumPy's .npy (version 1.0, C order), part by part.
+class NpyWriter {
+ public:
+  /// `type` must be float32 or float64. Throws like OutputFile.
+  NpyWriter(const std::filesystem::path& path, const std::vector<std::size_t>& shape,
+            ScalarType type, Overwrite overwrite = Overwrite::kNo);
+
+  /// Appends numbers, converted to the array's type.
+  void append(std::span<const float> numbers);
+  void append(std::span<const double> numbers);
+
+  /// Must be called once, last. Throws Error(kFailure) unless the shape is filled exactly.
+  void commit();
+
+ private:
+  template <typename From>
+  void append_as(std::span<const From> numbers);
+
+  OutputFile file_;
+  std::filesystem::path path_;
+  ScalarType type_;
+  std::size_t missing_ = 1;  ///< numbers still to come
+};
+
+/// An array as read from a file, in C order.
+struct NpyArray {
+  std::vector<std::size_t> shape;
+  ScalarType type = ScalarType::kFloat64;  ///< in the file
+  std::vector<double> values;
+};
+
+/// Reads a .npy file with numbers in C order and little-endian. Throws Error(kUnreadable) for any
+/// other, or one whose size does not fit its shape.
+NpyArray read_npy(const std::filesystem::path& path);
+
+}  // namespace pcednet::io

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "pcednet/cloud/point_cloud.h"
+#include "pcednet/io/input_file.h"
+#include "pcednet/io/loaded_cloud.h"
+#include "pcednet/io/write_cloud.h"
+
+namespace pcednet::io {
+
+/// Reads the vertices of a Wavefront OBJ: `v x y z`, with a weight, which is ignored, or colours.
+///
+/// A vertex gets the mean of the unit normals that faces, lines and points give its corners (v//vn,
+/// v/vt/vn); in a file where none does, `vn` number i belongs to `v` number i if there are equally
+/// many. Throws Error(kUnreadable) naming the line of a broken number or an index out of range.
+LoadedCloud read_obj(const InputFile& file);
+
+/// Writes `v` lines, with colours in 0 ... 1 if there are any, and as many `vn` lines if the cloud
+/// has normals.
+void write_obj(const std::filesystem::path& path, const PointCloud& cloud,
+               const WriteOptions& options = {});
+
+/// What write_obj does not keep of `cloud`, one sentence part each.
+std::vector<std::string> obj_losses(const PointCloud& cloud);
+
+}  // namespace pcednet::io

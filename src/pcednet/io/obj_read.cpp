@@ -1,0 +1,188 @@
+#include <fmt/format.h>
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <utility>
+
+#include "pcednet/io/obj.h"
+#include "pcednet/io/promote.h"
+#include "pcednet/io/text_scan.h"
+
+namespace pcednet::io {
+namespace {
+
+/// A vertex and a normal that a face puts together.
+struct Corner {
+  std::size_t vertex = 0;
+  std::size_t normal = 0;
+};
+
+/// The largest index used, and where.
+struct FarthestIndex {
+  std::size_t end = 0;  ///< index + 1
+  std::size_t line = 0;
+};
+
+/// The statements of an OBJ file that concern points.
+struct Statements {
+  std::vector<Vec3> positions;
+  std::vector<Vec3> normals;
+  std::array<std::vector<double>, 3> colours;
+  std::vector<Corner> corners;
+  FarthestIndex farthest_vertex, farthest_normal;
+  std::size_t faces = 0;
+  std::vector<std::string> comments;
+};
+
+class StatementParser {
+ public:
+  explicit StatementParser(const std::filesystem::path& path) : path_(path) {}
+
+  Statements parse(std::string_view text) {
+    Lines lines(text);
+    std::string_view line;
+    while (lines.next(line)) {
+      number_ = lines.number();
+      line = trim(line);
+      if (line.starts_with('#')) {
+        result_.comments.emplace_back(trim(line.substr(1)));
+        continue;
+      }
+      const bool continues = line.ends_with('\\');
+      if (continues) line.remove_suffix(1);
+      split(line, words_);
+      statement_.insert(statement_.end(), words_.begin(), words_.end());
+      if (!continues) take_statement();
+    }
+    take_statement();
+    return std::move(result_);
+  }
+
+ private:
+  Error error(const std::string& what) const { return unreadable(path_, what, number_); }
+
+  void take_statement() {
+    const std::string_view keyword = statement_.empty() ? "" : statement_[0];
+    if (keyword == "v") {
+      take_vertex();
+    } else if (keyword == "vn") {
+      if (statement_.size() != 4) throw error("expected vn x y z");
+      result_.normals.emplace_back(number(1), number(2), number(3));
+    } else if (keyword == "f" || keyword == "l" || keyword == "p") {
+      ++result_.faces;
+      for (std::size_t w = 1; w < statement_.size(); ++w) take_corner(statement_[w]);
+    }
+    statement_.clear();
+  }
+
+  double number(std::size_t word) const {
+    const auto value = parse_double(statement_[word]);
+    if (!value) throw error(fmt::format("expected a number, not {:.40}", statement_[word]));
+    return *value;
+  }
+
+  void take_vertex() {
+    const std::size_t count = statement_.size() - 1;
+    if (count != 3 && count != 4 && count != 6) {
+      throw error(fmt::format("v with {} numbers; expected x y z, x y z w or x y z r g b", count));
+    }
+    result_.positions.emplace_back(number(1), number(2), number(3));
+    if (count == 4) number(4);
+    if (count != 6) return;
+    for (std::size_t c = 0; c < 3; ++c) result_.colours[c].push_back(number(4 + c));
+  }
+
+  void take_corner(std::string_view corner) {
+    const std::size_t first = corner.find('/');
+    const std::size_t vertex =
+        index(corner.substr(0, first), result_.positions.size(), result_.farthest_vertex);
+    if (first == std::string_view::npos) return;
+    const std::size_t second = corner.find('/', first + 1);
+    if (second == std::string_view::npos) return;
+    const std::size_t normal =
+        index(corner.substr(second + 1), result_.normals.size(), result_.farthest_normal);
+    result_.corners.push_back({vertex, normal});
+  }
+
+  /// What an index means: n is the n-th of the file, -n the n-th last of the `so_far` before it.
+  std::size_t index(std::string_view word, std::size_t so_far, FarthestIndex& farthest) const {
+    std::int64_t value = 0;
+    const auto [end, fault] = std::from_chars(word.data(), word.data() + word.size(), value);
+    const bool is_number = fault == std::errc{} && end == word.data() + word.size();
+    const bool is_before = value < 0 && static_cast<std::uint64_t>(-(value + 1)) < so_far;
+    if (!is_number || !(value > 0 || is_before)) {
+      throw error(fmt::format("expected the index of a v or vn, not {:.40}", word));
+    }
+    const std::size_t found =
+        value > 0 ? static_cast<std::size_t>(value - 1) : so_far - static_cast<std::size_t>(-value);
+    if (found >= farthest.end) farthest = {found + 1, number_};
+    return found;
+  }
+
+  const std::filesystem::path& path_;
+  std::size_t number_ = 0;
+  std::vector<std::string_view> words_;
+  std::vector<std::string_view> statement_;  ///< keyword and arguments
+  Statements result_;
+};
+
+void check_indices(const std::filesystem::path& path, const Statements& statements) {
+  const auto check = [&](const FarthestIndex& farthest, std::size_t count, const char* keyword) {
+    if (farthest.end <= count) return;
+    throw unreadable(path, fmt::format("names {} number {} of {}", keyword, farthest.end, count),
+                     farthest.line);
+  };
+  check(statements.farthest_vertex, statements.positions.size(), "v");
+  check(statements.farthest_normal, statements.normals.size(), "vn");
+}
+
+std::vector<Vec3> normals_of_vertices(const Statements& statements,
+                                      std::vector<std::string>& warnings) {
+  const std::size_t points = statements.positions.size();
+  if (!statements.corners.empty()) {
+    std::vector<Vec3> sums(points, Vec3::Zero());
+    for (const Corner& corner : statements.corners) {
+      const Vec3& normal = statements.normals[corner.normal];
+      const double length = normal.stableNorm();
+      if (length > 0.0 && std::isfinite(length)) sums[corner.vertex] += normal / length;
+    }
+    return sums;
+  }
+  if (statements.normals.size() == points) return statements.normals;
+  if (!statements.normals.empty()) {
+    warnings.push_back(
+        fmt::format("{} normals for {} points are not kept", statements.normals.size(), points));
+  }
+  return {};
+}
+
+}  // namespace
+
+LoadedCloud read_obj(const InputFile& file) {
+  const std::string text = file.text();
+  Statements statements = StatementParser(file.path()).parse(text);
+  check_indices(file.path(), statements);
+  LoadedCloud loaded;
+  PointCloud& cloud = loaded.cloud;
+  cloud.normals = normals_of_vertices(statements, loaded.warnings);
+  cloud.positions = std::move(statements.positions);
+  cloud.comments = std::move(statements.comments);
+  const std::size_t coloured = statements.colours[0].size();
+  if (coloured == cloud.size() && coloured > 0) {
+    cloud.attributes = {make_attribute("red", statements.colours[0]),
+                        make_attribute("green", statements.colours[1]),
+                        make_attribute("blue", statements.colours[2])};
+    promote_colours(cloud, loaded.warnings);
+  } else if (coloured > 0) {
+    loaded.warnings.push_back(
+        fmt::format("colours of {} of {} points are not kept", coloured, cloud.size()));
+  }
+  if (statements.faces > 0) {
+    loaded.warnings.push_back(
+        fmt::format("{} faces, lines or points are not kept", statements.faces));
+  }
+  return loaded;
+}
+
+}  // namespace pcednet::io

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "pcednet/cloud/point_cloud.h"
+#include "pcednet/io/input_file.h"
+#include "pcednet/io/loaded_cloud.h"
+#include "pcednet/io/write_cloud.h"
+
+namespace pcednet::io {
+
+/// Reads PLY 1.0: ascii, binary of either byte order, properties in any order and of any type.
+///
+/// Scalar properties of the element `vertex` go to a CloudBuilder; its lists are read past, with a
+/// warning; other elements become foreign elements. Throws Error(kUnreadable) where the file breaks
+/// the format or ends too early, Error(kInsufficient) if it has no vertices with x, y and z.
+LoadedCloud read_ply(const InputFile& file);
+
+/// Writes PLY 1.0, binary little-endian unless options.ascii, in an order that common programs
+/// understand: x y z; float nx ny nz; uchar red green blue; attribute `quality`; attributes
+/// `scalar_*`; other attributes; uchar label. Then the foreign elements.
+void write_ply(const std::filesystem::path& path, const PointCloud& cloud,
+               const WriteOptions& options = {});
+
+/// What write_ply does not keep of `cloud`, one sentence part each.
+std::vector<std::string> ply_losses(const PointCloud& cloud);
+
+}  // namespace pcednet::io

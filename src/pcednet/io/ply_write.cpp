@@ -1,0 +1,102 @@
+#include <fmt/format.h>
+
+#include <string>
+#include <string_view>
+
+#include "pcednet/core/error.h"
+#include "pcednet/io/cloud_columns.h"
+#include "pcednet/io/ply.h"
+#include "pcednet/io/ply_header.h"
+#include "pcednet/io/ply_rows.h"
+#include "pcednet/io/text_scan.h"
+#include "pcednet/io/write_blocks.h"
+
+namespace pcednet::io {
+namespace {
+
+ColumnNames ply_names() {
+  return {.has_int64 = false};
+}
+
+std::string comment_lines(const PointCloud& cloud) {
+  std::string lines;
+  for (const std::string& comment : cloud.comments) {
+    if (comment.empty()) lines += "comment\n";
+    Lines parts(comment);
+    std::string_view part;
+    while (parts.next(part)) {
+      const bool is_info = part.starts_with("obj_info ");
+      lines += fmt::format("{}{}\n", is_info ? "" : "comment ", part);
+    }
+  }
+  return lines;
+}
+
+std::string header_of(const PointCloud& cloud, const std::vector<ColumnView>& columns, bool ascii) {
+  std::string header =
+      fmt::format("ply\nformat {} 1.0\n", ascii ? "ascii" : "binary_little_endian");
+  header += comment_lines(cloud);
+  header += fmt::format("element vertex {}\n", cloud.size());
+  for (const ColumnView& column : columns) {
+    header += fmt::format("property {} {}\n", ply_type_name(column.type), column.name);
+  }
+  for (const ForeignElement& element : cloud.foreign_elements) header += element.header;
+  return header + "end_header\n";
+}
+
+/// The rows of a foreign element as lines of text.
+std::string foreign_text(const std::filesystem::path& path, const ForeignElement& foreign) {
+  const PlyHeader header =
+      parse_ply_header(path, "ply\nformat ascii 1.0\n" + foreign.header + "end_header\n");
+  std::string text;
+  for (const PlyElement& element : header.elements) {
+    std::vector<std::byte> bytes = foreign.bytes;
+    std::byte* row = bytes.data();
+    const std::byte* const end = row + bytes.size();
+    for (std::uint64_t i = 0; i < element.count && !element.properties.empty(); ++i) {
+      const std::size_t start = text.size();
+      row = walk_ply_row(element, row, end, false,
+                         [&](std::size_t, const std::byte* number, ScalarType type, bool) {
+                           if (text.size() > start) text += ' ';
+                           append_number(type, number, text);
+                         });
+      if (!row) {
+        throw Error(ErrorKind::kFailure,
+                    fmt::format("{}: element {} has fewer bytes than its header says",
+                                path.string(), element.name));
+      }
+      text += '\n';
+    }
+  }
+  return text;
+}
+
+}  // namespace
+
+void write_ply(const std::filesystem::path& path, const PointCloud& cloud,
+               const WriteOptions& options) {
+  const std::vector<ColumnView> columns = columns_of(cloud, ply_names());
+  OutputFile file(path, options.overwrite);
+  file.write(header_of(cloud, columns, options.ascii));
+  write_blocks(file, cloud.size(), [&](std::size_t begin, std::size_t end, std::string& out) {
+    if (options.ascii) {
+      append_text(columns, begin, end, ' ', out);
+    } else {
+      append_binary(columns, begin, end, out);
+    }
+  });
+  for (const ForeignElement& element : cloud.foreign_elements) {
+    if (options.ascii) {
+      file.write(foreign_text(path, element));
+    } else {
+      file.write(element.bytes);
+    }
+  }
+  file.commit();
+}
+
+std::vector<std::string> ply_losses(const PointCloud& cloud) {
+  return column_losses(cloud, ply_names());
+}
+
+}  // namespace pcednet::io

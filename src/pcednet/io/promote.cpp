@@ -1,0 +1,174 @@
+#include "pcednet/io/promote.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+
+#include "pcednet/io/text_scan.h"
+
+namespace pcednet::io {
+namespace {
+
+std::optional<std::size_t> find_plain(const PointCloud& cloud, const std::string& name) {
+  for (std::size_t a = 0; a < cloud.attributes.size(); ++a) {
+    const Attribute& attribute = cloud.attributes[a];
+    if (attribute.components == 1 && lower_case(attribute.name) == name) return a;
+  }
+  return std::nullopt;
+}
+
+void remove_attributes(PointCloud& cloud, std::vector<std::size_t> indices) {
+  std::sort(indices.rbegin(), indices.rend());
+  for (const std::size_t a : indices) {
+    cloud.attributes.erase(cloud.attributes.begin() + static_cast<std::ptrdiff_t>(a));
+  }
+}
+
+bool to_labels(const Attribute& attribute, std::vector<std::uint8_t>& labels) {
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    const auto label = to_label(attribute.value(i));
+    if (!label) return false;
+    labels[i] = *label;
+  }
+  return true;
+}
+
+/// How the numbers of colour columns are to be read.
+enum class ColourScale { kNone, kBytes, kUnit, kWords };
+
+ColourScale find_scale(const std::array<const Attribute*, 3>& channels, std::size_t points) {
+  bool whole = true, all_word = true;
+  double largest = 0.0;
+  for (const Attribute* channel : channels) {
+    all_word = all_word && channel->type == ScalarType::kUint16;
+    for (std::size_t i = 0; i < points; ++i) {
+      const double value = channel->value(i);
+      if (!(value >= 0.0 && value <= 65535.0)) return ColourScale::kNone;
+      whole = whole && value == std::floor(value);
+      largest = std::max(largest, value);
+    }
+  }
+  const bool floating =
+      channels[0]->type == ScalarType::kFloat32 || channels[0]->type == ScalarType::kFloat64;
+  if (floating && largest <= 1.0) return ColourScale::kUnit;
+  if (whole && largest <= 255.0) return ColourScale::kBytes;
+  return all_word ? ColourScale::kWords : ColourScale::kNone;
+}
+
+/// What a number is multiplied with to lie in 0 ... 255.
+double factor_of(ColourScale scale) {
+  if (scale == ColourScale::kUnit) return 255.0;
+  return scale == ColourScale::kWords ? 1.0 / 257.0 : 1.0;
+}
+
+/// Takes 0xAARRGGBB apart.
+void unpack_colours(PointCloud& cloud, std::size_t packed_index, bool with_alpha) {
+  const Attribute packed = cloud.attributes[packed_index];
+  std::vector<std::uint8_t> alphas(cloud.size());
+  cloud.colours.resize(cloud.size());
+  bool alpha_matters = false;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    std::uint32_t argb = 0;
+    std::memcpy(&argb, packed.bytes.data() + i * sizeof argb, sizeof argb);
+    const auto byte = [argb](int place) { return static_cast<std::uint8_t>(argb >> (8 * place)); };
+    cloud.colours[i] = {byte(2), byte(1), byte(0)};
+    alphas[i] = byte(3);
+    alpha_matters = alpha_matters || alphas[i] != 255;
+  }
+  remove_attributes(cloud, {packed_index});
+  if (with_alpha && alpha_matters) cloud.attributes.push_back(make_attribute("alpha", alphas));
+}
+
+bool promote_channels(PointCloud& cloud, const std::vector<std::string>& names,
+                      std::vector<std::string>& warnings) {
+  std::array<const Attribute*, 3> channels = {};
+  std::vector<std::size_t> indices;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const auto found = find_plain(cloud, names[c]);
+    if (!found) return false;
+    indices.push_back(*found);
+    channels[c] = &cloud.attributes[*found];
+  }
+  const ColourScale scale = find_scale(channels, cloud.size());
+  if (scale == ColourScale::kNone) {
+    warnings.push_back(names[0] + ", " + names[1] + " and " + names[2] +
+                       " are no colours in 0 ... 255 or 0 ... 1: kept as attributes");
+    return false;
+  }
+  const double factor = factor_of(scale);
+  bool rounded = false;
+  cloud.colours.resize(cloud.size());
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double exact = channels[c]->value(i) * factor;
+      cloud.colours[i][c] = static_cast<std::uint8_t>(std::lround(exact));
+      rounded = rounded || std::abs(exact - cloud.colours[i][c]) > 1e-3;
+    }
+  }
+  if (rounded) warnings.emplace_back("colours were rounded to 8 bits");
+  remove_attributes(cloud, indices);
+  return true;
+}
+
+}  // namespace
+
+const std::vector<std::string>& label_names() {
+  static const std::vector<std::string> names = {"label", "scalar_label"};
+  return names;
+}
+
+const std::vector<std::vector<std::string>>& colour_names() {
+  static const std::vector<std::vector<std::string>> names = {
+      {"red", "green", "blue"}, {"diffuse_red", "diffuse_green", "diffuse_blue"}, {"r", "g", "b"}};
+  return names;
+}
+
+std::optional<std::uint8_t> to_label(double value) {
+  if (std::isnan(value) || value == -1.0) return kUnlabelled;
+  if (!(value >= 0.0 && value <= 255.0 && value == std::floor(value))) return std::nullopt;
+  return static_cast<std::uint8_t>(value);
+}
+
+void promote_labels(PointCloud& cloud) {
+  for (const std::string& name : label_names()) {
+    const auto found = find_plain(cloud, name);
+    std::vector<std::uint8_t> labels(cloud.size());
+    if (!found || !to_labels(cloud.attributes[*found], labels)) continue;
+    cloud.labels = std::move(labels);
+    remove_attributes(cloud, {*found});
+    return;
+  }
+}
+
+void promote_colours(PointCloud& cloud, std::vector<std::string>& warnings) {
+  for (const auto& names : colour_names()) {
+    if (promote_channels(cloud, names, warnings)) return;
+  }
+  for (const char* name : {"rgb", "rgba"}) {
+    const auto found = find_plain(cloud, name);
+    if (!found || size_of(cloud.attributes[*found].type) != 4) continue;
+    unpack_colours(cloud, *found, std::string(name) == "rgba");
+    return;
+  }
+}
+
+LoadedCloud keep_spelled_digits(LoadedCloud declared,
+                                const std::function<LoadedCloud()>& read_wide) {
+  const auto is_far = [](const Vec3& p) { return p.allFinite() && p.cwiseAbs().maxCoeff() >= 1e4; };
+  const std::vector<Vec3>& floats = declared.cloud.positions;
+  if (declared.cloud.position_type != ScalarType::kFloat32 ||
+      std::none_of(floats.begin(), floats.end(), is_far)) {
+    return declared;
+  }
+  LoadedCloud wide = read_wide();
+  const std::vector<Vec3>& doubles = wide.cloud.positions;
+  for (std::size_t i = 0; i < floats.size(); ++i) {
+    if (!is_far(floats[i]) || floats[i] == doubles[i]) continue;
+    wide.warnings.emplace_back("positions are called float but have more digits: kept as double");
+    return wide;
+  }
+  return declared;
+}
+
+}  // namespace pcednet::io

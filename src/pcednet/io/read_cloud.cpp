@@ -1,0 +1,90 @@
+#include "pcednet/io/read_cloud.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "pcednet/io/input_file.h"
+#include "pcednet/io/obj.h"
+#include "pcednet/io/pcd.h"
+#include "pcednet/io/ply.h"
+#include "pcednet/io/text_scan.h"
+#include "pcednet/io/xyz.h"
+
+namespace pcednet::io {
+namespace {
+
+constexpr const char* kAccepted = "accepted: .ply .pcd .obj .xyz .txt .asc .pts .csv";
+
+enum class Format { kPly, kPcd, kObj, kText };
+
+bool is_one_of(std::string_view word, std::initializer_list<std::string_view> words) {
+  return std::find(words.begin(), words.end(), word) != words.end();
+}
+
+Format find_format(const InputFile& file) {
+  const std::string start = file.text(0, 16);
+  const std::string extension = lower_case(file.path().extension().string());
+  const auto begins_with = [&](std::string_view magic) { return start.starts_with(magic); };
+  if (begins_with("ply\n") || begins_with("ply\r") || begins_with("ply ")) return Format::kPly;
+  if (begins_with("# .PCD") || begins_with("VERSION ") || begins_with("FIELDS ")) {
+    return Format::kPcd;
+  }
+  if (begins_with("LASF") || begins_with("ASTM-E57") ||
+      is_one_of(extension, {".las", ".laz", ".e57"})) {
+    throw unreadable(file.path(),
+                     fmt::format("LAS, LAZ and E57 are not supported yet; {}", kAccepted));
+  }
+  if (extension == ".ply") {
+    throw unreadable(file.path(), "not a PLY file: the first line must be ply");
+  }
+  if (extension == ".pcd") {
+    throw unreadable(file.path(), "not a PCD file: no header with VERSION and FIELDS", 1);
+  }
+  if (extension == ".obj") return Format::kObj;
+  if (is_one_of(extension, {".xyz", ".txt", ".asc", ".pts", ".csv"})) return Format::kText;
+  throw unreadable(file.path(), fmt::format("not a format known here; {}", kAccepted));
+}
+
+LoadedCloud read_format(const InputFile& file) {
+  switch (find_format(file)) {
+    case Format::kPly:
+      return read_ply(file);
+    case Format::kPcd:
+      return read_pcd(file);
+    case Format::kObj:
+      return read_obj(file);
+    case Format::kText:
+      break;
+  }
+  return read_xyz(file);
+}
+
+}  // namespace
+
+LoadedCloud read_cloud(const std::filesystem::path& path) {
+  LoadedCloud loaded = read_format(InputFile(path));
+  PointCloud& cloud = loaded.cloud;
+  const std::size_t unusable = make_normals_unit(cloud);
+  if (unusable > 0 && unusable == cloud.size()) {
+    cloud.normals.clear();
+    loaded.warnings.emplace_back("all normals are zero or not finite: taken as absent");
+  } else if (unusable > 0) {
+    loaded.warnings.push_back(
+        fmt::format("{} of {} normals are zero or not finite", unusable, cloud.size()));
+  }
+  const auto not_finite = [](const Vec3& position) { return !position.allFinite(); };
+  const auto lost = std::count_if(cloud.positions.begin(), cloud.positions.end(), not_finite);
+  if (lost > 0) {
+    loaded.warnings.push_back(fmt::format("{} of {} positions are not finite", lost, cloud.size()));
+  }
+  return loaded;
+}
+
+const char* format_name(const std::filesystem::path& path) {
+  static constexpr std::array kNames = {"PLY", "PCD", "OBJ", "text"};
+  return kNames[static_cast<std::size_t>(find_format(InputFile(path)))];
+}
+
+}  // namespace pcednet::io

@@ -1,0 +1,117 @@
+#include "pcednet/io/text_scan.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <type_traits>
+
+namespace pcednet::io {
+namespace {
+
+std::string_view without_plus(std::string_view token) {
+  if (token.size() > 1 && token[0] == '+' && token[1] != '-') token.remove_prefix(1);
+  return token;
+}
+
+/// from_chars over the whole token.
+template <typename T>
+std::errc parse_all(std::string_view token, T& value) {
+  const auto [end, error] = std::from_chars(token.data(), token.data() + token.size(), value);
+  if (error == std::errc{} && end != token.data() + token.size())
+    return std::errc::invalid_argument;
+  return error;
+}
+
+template <typename T>
+bool parse_as(std::string_view token, T& value) {
+  const std::errc error = parse_all(token, value);
+  if (error == std::errc{}) return true;
+  if constexpr (std::is_same_v<T, double>) {
+    // from_chars does not tell too small from too large.
+    const bool is_tiny = error == std::errc::result_out_of_range &&
+                         token.find_first_of("eE") + 1 == token.find('-', 1);
+    if (is_tiny) value = 0.0;
+    return is_tiny;
+  } else {
+    // An integer written as 1.0, or a number too small for a float.
+    double wide = 0.0;
+    if (!parse_as(token, wide)) return false;
+    if constexpr (std::is_same_v<T, float>) {
+      if (std::abs(wide) > std::numeric_limits<float>::max()) return false;
+    } else {
+      constexpr double kEnd = 2.0 * static_cast<double>(std::numeric_limits<T>::max() / 2 + 1);
+      const double low = static_cast<double>(std::numeric_limits<T>::min());
+      if (!(wide >= low && wide < kEnd) || wide != std::floor(wide)) return false;
+    }
+    value = static_cast<T>(wide);
+    return true;
+  }
+}
+
+}  // namespace
+
+Lines::Lines(std::string_view text, std::size_t lines_before)
+    : rest_(text),
+      number_(lines_before),
+      end_(text.find('\n') == std::string_view::npos && text.find('\r') != std::string_view::npos
+               ? '\r'
+               : '\n') {}
+
+bool Lines::next(std::string_view& line) {
+  if (rest_.empty()) return false;
+  const std::size_t end = rest_.find(end_);
+  line = rest_.substr(0, end);
+  rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end + 1);
+  if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+  ++number_;
+  return true;
+}
+
+std::string_view trim(std::string_view text) {
+  const std::size_t begin = text.find_first_not_of(kBlanks);
+  if (begin == std::string_view::npos) return {};
+  return text.substr(begin, text.find_last_not_of(kBlanks) - begin + 1);
+}
+
+void split(std::string_view line, std::vector<std::string_view>& fields,
+           const Separators& separators) {
+  fields.clear();
+  for (std::size_t i = 0; i < line.size();) {
+    while (i < line.size() && separators(line[i])) ++i;
+    const std::size_t begin = i;
+    while (i < line.size() && !separators(line[i])) ++i;
+    if (i > begin) fields.push_back(line.substr(begin, i - begin));
+  }
+}
+
+std::optional<double> parse_double(std::string_view token) {
+  double value = 0.0;
+  if (!parse_as(without_plus(token), value)) return std::nullopt;
+  return value;
+}
+
+std::optional<std::uint64_t> parse_count(std::string_view token) {
+  std::uint64_t value = 0;
+  if (parse_all(token, value) != std::errc{}) return std::nullopt;
+  return value;
+}
+
+bool parse_number(std::string_view token, ScalarType type, std::byte* number) {
+  return visit_scalar(type, [&](auto value) {
+    if (!parse_as(without_plus(token), value)) return false;
+    std::memcpy(number, &value, sizeof value);
+    return true;
+  });
+}
+
+std::string lower_case(std::string_view text) {
+  std::string lower(text);
+  std::transform(lower.begin(), lower.end(), lower.begin(), [](char c) {
+    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  });
+  return lower;
+}
+
+}  // namespace pcednet::io

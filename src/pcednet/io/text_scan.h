@@ -1,0 +1,66 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "pcednet/cloud/attribute.h"
+
+namespace pcednet::io {
+
+/// The lines of a text, ended by \n, \r\n or (in a text without \n) \r; the last may lack its end.
+class Lines {
+ public:
+  explicit Lines(std::string_view text, std::size_t lines_before = 0);
+
+  /// Moves to the next line and puts it, without its end, in `line`; false after the last.
+  bool next(std::string_view& line);
+
+  /// Number of the line that next() gave last, counted from 1 (plus `lines_before`).
+  std::size_t number() const { return number_; }
+
+ private:
+  std::string_view rest_;
+  std::size_t number_;
+  char end_;
+};
+
+inline constexpr std::string_view kBlanks = " \t\r\v\f";
+
+std::string_view trim(std::string_view text);
+
+/// A set of characters, quick to ask.
+class Separators {
+ public:
+  constexpr explicit Separators(std::string_view characters) {
+    for (const char c : characters) is_in_[static_cast<unsigned char>(c)] = true;
+  }
+  constexpr bool operator()(char c) const { return is_in_[static_cast<unsigned char>(c)]; }
+
+ private:
+  std::array<bool, 256> is_in_ = {};
+};
+inline constexpr Separators kBlankSeparators{kBlanks};
+
+/// Replaces `fields` by the parts of `line` between runs of separators.
+void split(std::string_view line, std::vector<std::string_view>& fields,
+           const Separators& separators = kBlankSeparators);
+
+/// The double nearest to what `token` spells; none if that is too large. "nan" and "inf" count.
+std::optional<double> parse_double(std::string_view token);
+
+/// A whole number without sign.
+std::optional<std::uint64_t> parse_count(std::string_view token);
+
+/// Stores the number that `token` spells at `number`, in `type`. False, with nothing stored, if it
+/// spells none or one that the type does not hold.
+bool parse_number(std::string_view token, ScalarType type, std::byte* number);
+
+/// ASCII letters in lower case.
+std::string lower_case(std::string_view text);
+
+}  // namespace pcednet::io

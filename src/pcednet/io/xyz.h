@@ -1,0 +1,32 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "pcednet/cloud/point_cloud.h"
+#include "pcednet/io/input_file.h"
+#include "pcednet/io/loaded_cloud.h"
+#include "pcednet/io/write_cloud.h"
+
+namespace pcednet::io {
+
+/// Reads points from a text, one a line, numbers separated by blanks, tabs, semicolons or commas.
+///
+/// Lines that begin with # or // are comments; a line of names, commented or not, with x, y and z
+/// among them names the columns, which CloudBuilder then reads as of type double. Without names,
+/// columns after the third are taken for normals, colours or labels by what they hold, with a
+/// warning that says so. A first line with one whole number is the count of points. Throws
+/// Error(kUnreadable) naming the line that does not fit the others.
+LoadedCloud read_xyz(const InputFile& file);
+
+/// Writes points as text: comments and names behind #, then one point a line; .csv with commas and
+/// the names alone; .pts with a count first. Positions alone, and positions with normals in .xyz,
+/// are written without comments and names, as programs that know neither expect.
+void write_xyz(const std::filesystem::path& path, const PointCloud& cloud,
+               const WriteOptions& options = {});
+
+/// What write_xyz does not keep of `cloud`, one sentence part each.
+std::vector<std::string> xyz_losses(const std::filesystem::path& path, const PointCloud& cloud);
+
+}  // namespace pcednet::io

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace pcednet::io {
+
+/// Numbers as a text holds them, row after row.
+struct NumberTable {
+  std::vector<double> numbers;
+  std::size_t columns = 0;
+
+  std::size_t rows() const { return columns == 0 ? 0 : numbers.size() / columns; }
+};
+
+/// Names for the columns of a table without names: x y z; then, from the left, three columns of
+/// unit vectors are normals and three of whole numbers in 0 ... 255 colours; a last one that holds
+/// only 0, 1, 2 and 255 is the label; any other column c (from 1) is scalar_c.
+std::vector<std::string> guess_column_names(const NumberTable& table);
+
+}  // namespace pcednet::io
