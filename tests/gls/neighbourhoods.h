@@ -16,8 +16,8 @@ inline LocalNeighbour neighbour(const Vec3& y, const Vec3& n, double gate = 1.0)
 inline Neighbourhood seen_from(const Neighbourhood& neighbours, const Vec3& x, double t) {
   Neighbourhood moved;
   for (const LocalNeighbour& old : neighbours) {
-    const LocalNeighbour fresh = neighbour(old.y - x, old.n, old.gate);
-    if (fresh.sq_distance < t * t) moved.push_back(fresh);
+    const LocalNeighbour fresh = neighbour(old.y() - x, old.n(), old.gate());
+    if (fresh.sq_distance() < t * t) moved.push_back(fresh);
   }
   return moved;
 }

@@ -340,7 +340,7 @@ TEST(ScaleSpace, GateHidesTheFarSideOfAThinWall) {
   const auto targets = test::all_targets(1500);
   const auto alone = test::describe(ExactScaleSpace(front.points(), options), targets);
   const auto gated = test::describe(ExactScaleSpace(wall.points(), options), targets);
-  expect_same_bits(alone, gated);
+  expect_near(alone, gated, 1e-10);  // the same neighbours, summed in another order
   options.side_gate.reset();
   const auto open = test::describe(ExactScaleSpace(wall.points(), options), targets);
   EXPECT_NE(alone.features, open.features);

@@ -53,6 +53,18 @@ TEST(KdTree, FindsWhatBruteForceFinds) {
       for (std::size_t i = 0; i < found.size(); ++i) {
         EXPECT_DOUBLE_EQ(found[i].sq_distance, expected[i]);
       }
+      std::vector<Neighbour> unsorted;
+      tree.within_unsorted(points[q], radius, unsorted);
+      const auto by_index = [](const Neighbour& a, const Neighbour& b) {
+        return a.index < b.index;
+      };
+      std::sort(unsorted.begin(), unsorted.end(), by_index);
+      std::sort(found.begin(), found.end(), by_index);
+      ASSERT_EQ(unsorted.size(), found.size());
+      for (std::size_t i = 0; i < found.size(); ++i) {
+        EXPECT_EQ(unsorted[i].index, found[i].index);
+        EXPECT_EQ(unsorted[i].sq_distance, found[i].sq_distance);
+      }
     }
   }
 }
@@ -69,6 +81,12 @@ TEST(KdTree, AnswersTheSamePositionsForAnyNumbering) {
     for (std::size_t i = 0; i < 7; ++i) {
       EXPECT_EQ(points[from_a[i].index], reversed[from_b[i].index]);
     }
+    a.within_unsorted(query, 1.5, from_a);
+    b.within_unsorted(query, 1.5, from_b);
+    ASSERT_EQ(from_a.size(), from_b.size());
+    for (std::size_t i = 0; i < from_a.size(); ++i) {
+      EXPECT_EQ(points[from_a[i].index], reversed[from_b[i].index]);
+    }
   }
 }
 
@@ -78,6 +96,8 @@ TEST(KdTree, AnswersOnEmptyAndTinySets) {
   empty.nearest(Vec3::Zero(), 5, found);
   EXPECT_TRUE(found.empty());
   empty.within(Vec3::Zero(), 5.0, found);
+  EXPECT_TRUE(found.empty());
+  empty.within_unsorted(Vec3::Zero(), 5.0, found);
   EXPECT_TRUE(found.empty());
   const std::vector<Vec3> one(3, Vec3(1, 2, 3));
   KdTree(one).nearest(Vec3::Zero(), 5, found);

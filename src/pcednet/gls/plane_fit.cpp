@@ -26,20 +26,20 @@ PlaneMomentSet sum_plane_moments(std::span<const LocalNeighbour> neighbours, dou
   const Kernel kernel(t);
   PlaneMomentSet set;
   for (const LocalNeighbour& neighbour : neighbours) {
-    const Vec3& y = neighbour.y;
+    const Vec3 y = neighbour.y();
     const Mat3 yy = y * y.transpose();
     const auto add = [&](PlaneMoments& moments, double weight) {
       moments.w += weight;
       moments.p += weight * y;
       moments.pp += weight * yy;
     };
-    const KernelWeight w = kernel(neighbour.sq_distance);
-    add(set.value, neighbour.gate * w.value);
-    add(set.dt, neighbour.gate * w.dt);
+    const KernelWeight w = kernel(neighbour.sq_distance());
+    add(set.value, neighbour.gate() * w.value);
+    add(set.dt, neighbour.gate() * w.dt);
     for (int k = 0; k < 3; ++k) {
-      add(set.dx[static_cast<std::size_t>(k)], neighbour.gate * w.dx * y[k]);
+      add(set.dx[static_cast<std::size_t>(k)], neighbour.gate() * w.dx * y[k]);
     }
-    set.n += neighbour.gate * w.value * neighbour.n;
+    set.n += neighbour.gate() * w.value * neighbour.n();
   }
   return set;
 }

@@ -76,6 +76,7 @@ struct ExactScaleSpace::Fit {
 /// What a thread needs to describe points, kept from one point to the next.
 struct ExactScaleSpace::Scratch {
   std::vector<spatial::Neighbour> found;
+  std::vector<spatial::Neighbour> unordered;
   Neighbourhood neighbours;  ///< of the point, at the largest scale
   Neighbourhood projected;   ///< of its projection, at one scale
 };
@@ -117,25 +118,23 @@ void ExactScaleSpace::renumber(OrientedPoints points) {
   }
 }
 
-/// The neighbours of the evaluation point `offset` away from the point at `place`, which keeps
-/// lending its normal to the gate. An offset and not a position, so that differences of large
-/// coordinates are taken before anything small is added.
-void ExactScaleSpace::gather(std::uint32_t place, const Vec3& offset, double radius,
-                             std::vector<spatial::Neighbour>& found,
-                             Neighbourhood& neighbours) const {
-  const Vec3& origin = positions_[place];
+/// The points `found` as seen from `offset` away from the point at `place`, which lends its normal
+/// to the gate. An offset and not a position, so that differences of large coordinates are taken
+/// before anything small is added.
+void ExactScaleSpace::localise(std::span<const spatial::Neighbour> found, std::uint32_t place,
+                               const Vec3& offset, double radius, Neighbourhood& neighbours) const {
   const Vec3& own = normals_[place];
   const bool gated = options_.side_gate && !own.isZero(0.0);
-  tree_.within(origin + offset, radius, found);
+  const bool moved = !offset.isZero(0.0);
   neighbours.clear();
   for (const spatial::Neighbour& neighbour : found) {
     const Vec3& n = normals_[neighbour.index];
     if (n.isZero(0.0)) continue;
     const double gate = gated ? side_gate(n, own, *options_.side_gate) : 1.0;
     if (gate == 0.0) continue;
-    const Vec3 y = (positions_[neighbour.index] - origin) - offset;
-    const double sq_distance = y.x() * y.x() + y.y() * y.y() + y.z() * y.z();
-    if (sq_distance < radius * radius) neighbours.push_back({y, n, sq_distance, gate});
+    const Vec3 y = (positions_[neighbour.index] - positions_[place]) - offset;
+    const double sq_distance = moved ? y.squaredNorm() : neighbour.sq_distance;
+    if (sq_distance < radius * radius) neighbours.emplace_back(y, n, sq_distance, gate);
   }
 }
 
@@ -165,7 +164,8 @@ ExactScaleSpace::Fit ExactScaleSpace::project(std::uint32_t place, Fit fit, doub
   for (int step = 0; step < options_.max_projection_steps; ++step) {
     if (fit.status != FitStatus::kStable) break;
     const Vec3 move = projection_move(fit.surface);
-    gather(place, offset + move, t, scratch.found, scratch.projected);
+    tree_.within_unsorted(positions_[place] + (offset + move), t, scratch.found);
+    localise(scratch.found, place, offset + move, t, scratch.projected);
     const Fit next = this->fit(scratch.projected, t);
     if (next.status == FitStatus::kUndefined) break;
     fit = next;
@@ -181,12 +181,14 @@ void ExactScaleSpace::describe_point(std::uint32_t place, Scratch& scratch, std:
                                      std::span<FitStatus> status) const {
   const auto width = static_cast<std::size_t>(feature_count(options_.features));
   std::array<double, 28> features;
-  gather(place, Vec3::Zero(), scales_.back(), scratch.found, scratch.neighbours);
+  tree_.within_unsorted(positions_[place], scales_.back(), scratch.found);
+  order_by_shell(scales_, scratch.found, scratch.unordered);
+  localise(scratch.found, place, Vec3::Zero(), scales_.back(), scratch.neighbours);
   const std::span<const LocalNeighbour> neighbours = scratch.neighbours;
   std::size_t count = 0;
   for (std::size_t s = 0; s < scales_.size(); ++s) {
     const double t = scales_[s];
-    while (count < neighbours.size() && neighbours[count].sq_distance < t * t) ++count;
+    while (count < neighbours.size() && neighbours[count].sq_distance() < t * t) ++count;
     Fit fit = this->fit(neighbours.first(count), t);
     if (projects(options_.reconstruction)) fit = project(place, fit, t, scratch);
     write_features(options_.features, fit.descriptor, t, features);

@@ -64,8 +64,8 @@ class ExactScaleSpace {
   struct Scratch;
 
   void renumber(OrientedPoints points);
-  void gather(std::uint32_t place, const Vec3& offset, double radius,
-              std::vector<spatial::Neighbour>& found, Neighbourhood& neighbours) const;
+  void localise(std::span<const spatial::Neighbour> found, std::uint32_t place, const Vec3& offset,
+                double radius, Neighbourhood& neighbours) const;
   Fit fit(std::span<const LocalNeighbour> neighbours, double t) const;
   Fit project(std::uint32_t place, Fit fit, double t, Scratch& scratch) const;
   template <typename Number>

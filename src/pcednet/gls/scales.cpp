@@ -78,7 +78,8 @@ ScaleRange scale_range(std::span<const Vec3> positions, const spatial::KdTree& t
 }
 
 std::vector<double> sample_scales(const ScaleRange& range, int count) {
-  if (count < 4 || count > 128 || !std::has_single_bit(static_cast<unsigned>(count))) {
+  if (count < kMinScales || count > kMaxScales ||
+      !std::has_single_bit(static_cast<unsigned>(count))) {
     throw Error(ErrorKind::kUsage,
                 fmt::format("{} scales: 4, 8, 16, 32, 64 or 128 are possible", count));
   }

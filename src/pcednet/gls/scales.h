@@ -8,6 +8,8 @@
 
 namespace pcednet::gls {
 
+inline constexpr int kMinScales = 4, kMaxScales = 128;
+
 struct ScaleRange {
   double s_min = 0.0;
   double s_max = 0.0;

@@ -52,7 +52,23 @@ struct KdTree::Impl {
         return std::lexicographical_compare(p.data(), p.data() + 3, q.data(), q.data() + 3);
       return a.index < b.index;
     });
+    renumber(found);
+  }
+
+  void renumber(std::vector<Neighbour>& found) const {
     for (Neighbour& neighbour : found) neighbour.index = points.original[neighbour.index];
+  }
+
+  /// The places in curve order of the points closer than `radius`, as the tree meets them.
+  void search(const Vec3& query, double radius, std::vector<Neighbour>& found) const {
+    thread_local std::vector<std::pair<std::uint32_t, double>> matches;
+    matches.clear();
+    found.clear();
+    if (points.positions.empty()) return;
+    nanoflann::SearchParams parameters;
+    parameters.sorted = false;
+    index.radiusSearch(query.data(), radius * radius, matches, parameters);
+    for (const auto& [place, sq_distance] : matches) found.push_back({place, sq_distance});
   }
 
   OrderedPoints points;
@@ -82,15 +98,14 @@ void KdTree::nearest(const Vec3& query, std::size_t count, std::vector<Neighbour
 }
 
 void KdTree::within(const Vec3& query, double radius, std::vector<Neighbour>& found) const {
-  thread_local std::vector<std::pair<std::uint32_t, double>> matches;
-  matches.clear();
-  found.clear();
-  if (size() == 0) return;
-  nanoflann::SearchParams parameters;
-  parameters.sorted = false;
-  impl_->index.radiusSearch(query.data(), radius * radius, matches, parameters);
-  for (const auto& [index, sq_distance] : matches) found.push_back({index, sq_distance});
+  impl_->search(query, radius, found);
   impl_->finish(found);
+}
+
+void KdTree::within_unsorted(const Vec3& query, double radius,
+                             std::vector<Neighbour>& found) const {
+  impl_->search(query, radius, found);
+  impl_->renumber(found);
 }
 
 }  // namespace pcednet::spatial

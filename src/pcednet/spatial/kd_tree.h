@@ -38,6 +38,10 @@ class KdTree {
   /// Every point closer to `query` than `radius`. Replaces the content of `found`.
   void within(const Vec3& query, double radius, std::vector<Neighbour>& found) const;
 
+  /// The same points without the cost of sorting, in an order that suits the tree. It is the same
+  /// for any numbering too, but for points at exactly the same position.
+  void within_unsorted(const Vec3& query, double radius, std::vector<Neighbour>& found) const;
+
  private:
   struct Impl;
   std::unique_ptr<Impl> impl_;

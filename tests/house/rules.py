@@ -1,0 +1,184 @@
+"""Rules of the house that a compiler does not check.
+
+rules.py RULE ROOT prints each breach as "file:line: what is wrong" and exits with 1 if there is
+one, with 77 (skipped) if the rule cannot be checked here. `rules.py self` checks the rules
+themselves on a small house with one breach of each.
+"""
+
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+SKIPPED = 77
+SOURCES = (".h", ".cpp")
+MAX_LINES = {".h": 150, ".cpp": 400}
+CLANG_FORMAT = "14"  # others lay out some constructs differently
+
+
+class Skip(Exception):
+    """The rule cannot be checked here."""
+
+
+def read(path):
+    return path.read_text(encoding="utf-8")
+
+
+def sources(root, *folders):
+    for folder in folders:
+        for path in sorted((root / folder).rglob("*")):
+            if path.suffix in SOURCES and path.is_file():
+                yield path
+
+
+def arguments(text, function):
+    """The words between the parentheses of every call of a CMake function."""
+    text = re.sub(r"#.*", "", text)
+    return [call.split() for call in re.findall(rf"\b{function}\s*\(([^)]*)\)", text)]
+
+
+def room_order(root):
+    for words in arguments(read(root / "CMakeLists.txt"), "foreach"):
+        if words[0] == "room":
+            return words[1:]
+    raise SystemExit("CMakeLists.txt: no foreach(room ...) lists the rooms")
+
+
+def rooms_used(root, room):
+    listing = root / "src/pcednet" / room / "CMakeLists.txt"
+    (words,) = arguments(read(listing), "pcednet_room")
+    if words[0] != room:
+        raise SystemExit(f"{listing}: names the room {words[0]}")
+    used = []
+    if "USES" in words:
+        for word in words[words.index("USES") + 1:]:
+            if word in ("LINKS", "PRIVATE_LINKS"):
+                break
+            used.append(word)
+    return used
+
+
+def check_rooms(root):
+    """A room uses rooms above it in the list only, and includes what it says it uses."""
+    order = room_order(root)
+    include = re.compile(r'\s*#\s*include\s*[<"]pcednet/([^/">]+)/')
+    for folder in sorted((root / "src/pcednet").iterdir()):
+        room = folder.name
+        if room not in order:
+            yield f"src/pcednet/{room}: not among the rooms of CMakeLists.txt"
+            continue
+        used = rooms_used(root, room)
+        for other in used:
+            if other not in order[:order.index(room)]:
+                yield f"src/pcednet/{room}/CMakeLists.txt: uses {other}, which is not above it"
+        for path in sources(root, f"src/pcednet/{room}"):
+            for number, line in enumerate(read(path).splitlines(), 1):
+                found = include.match(line)
+                if found and found[1] not in [room, *used]:
+                    yield f"{path}:{number}: includes {found[1]}, which {room} does not use"
+
+
+def check_sizes(root):
+    """Headers and sources fit in a head."""
+    for path in sources(root, "src", "apps"):
+        lines = read(path).count("\n")
+        if lines > MAX_LINES[path.suffix]:
+            yield f"{path}:{lines}: more than {MAX_LINES[path.suffix]} lines"
+
+
+def check_silence(root):
+    """The library neither prints nor ends the program."""
+    speech = re.compile(
+        r"std::(cout|cerr|clog)\b|\bfmt::print\b|(?<![\w:])(std::)?(v?printf|puts|putchar)\s*\("
+        r"|\bf(printf|puts|putc)\s*\([^;]*\bstd(out|err)\b"
+        r"|(?<![\w:.>])(std::)?(_?_?[eE]xit|quick_exit|abort|terminate)\s*\(")
+    for path in sources(root, "src"):
+        for number, line in enumerate(read(path).splitlines(), 1):
+            if speech.search(line.split("//")[0]):
+                yield f"{path}:{number}: prints or ends the program: {line.strip()}"
+
+
+def check_version(root):
+    """One version number, that of CMake, wherever another file repeats it."""
+    version = re.search(r"project\(pcednet\s+VERSION\s+([\d.]+)", read(root / "CMakeLists.txt"))[1]
+    places = {"CHANGELOG.md": r"^##\s+\[?v?(\d[\d.]*)", "CITATION.cff": r"^version:\s*[\"']?([^\"'\s]+)"}
+    for name, pattern in places.items():
+        if not (root / name).exists():
+            continue
+        found = re.search(pattern, read(root / name), re.MULTILINE)
+        if not found or found[1] != version:
+            yield f"{name}: says {found[1] if found else 'no version'}, CMakeLists.txt {version}"
+
+
+def check_style(root):
+    """Every source is as clang-format leaves it."""
+    program = shutil.which("clang-format-14") or shutil.which("clang-format")
+    if not program:
+        raise Skip("no clang-format here")
+    version = subprocess.run([program, "--version"], capture_output=True, text=True).stdout
+    if not re.search(rf"version {CLANG_FORMAT}\.", version):
+        raise Skip(f"needs clang-format {CLANG_FORMAT}, here is: {version.strip()}")
+    paths = list(sources(root, "src", "apps", "tests", "bench", "examples", "python"))
+    done = subprocess.run([program, "--dry-run", "-Werror", *map(str, paths)],
+                          capture_output=True, text=True)
+    yield from (line for line in done.stderr.splitlines() if ": error:" in line)
+
+
+RULES = {"rooms": check_rooms, "sizes": check_sizes, "silence": check_silence,
+         "version": check_version, "style": check_style}
+
+
+def check_self():
+    """Every rule finds its breach, and nothing else in the same house without it."""
+    sound = {
+        "CMakeLists.txt": "project(pcednet VERSION 1.2.3)\nforeach(room core gls) # order\n",
+        "src/pcednet/core/CMakeLists.txt": "pcednet_room(core LINKS gls)\n",
+        "src/pcednet/core/a.h": "#pragma once\n",
+        "src/pcednet/gls/CMakeLists.txt": "pcednet_room(gls\n  USES core)\n",
+        "src/pcednet/gls/b.cpp": '#include "pcednet/core/a.h"\nint n = snprintf(b, 2, "x");\n',
+        "CHANGELOG.md": "# Changes\n\n## Unreleased\n\n## 1.2.3\n\n## 1.2.2\n",
+        "CITATION.cff": 'cff-version: 1.2.0\nversion: "1.2.3"\n',
+        ".clang-format": "BasedOnStyle: Google\n",
+    }
+    breaches = {
+        "rooms": [("src/pcednet/core/a.h", '#include "pcednet/gls/b.h"\n'),
+                  ("src/pcednet/gls/CMakeLists.txt", "pcednet_room(gls)\n"),
+                  ("src/pcednet/core/CMakeLists.txt", "pcednet_room(core USES gls)\n"),
+                  ("src/pcednet/new/c.h", "\n")],
+        "sizes": [("src/pcednet/core/a.h", "\n" * 151), ("apps/main.cpp", "\n" * 401)],
+        "silence": [("src/pcednet/gls/b.cpp", text) for text in
+                    ('std::cout << 1;\n', 'printf("x");\n', "  std::exit(1);\n", "exit (1);\n",
+                     'fmt::print(stderr, "x");\n', 'std::fprintf(stderr, "x");\n', "abort();\n")],
+        "version": [("CHANGELOG.md", "## 1.2.2\n"), ("CITATION.cff", "version: 1.2.4\n")],
+        "style": [("src/pcednet/core/a.h", "int  a ;\n")],
+    }
+    for rule, check in RULES.items():
+        for breach in [None, *breaches[rule]]:
+            with tempfile.TemporaryDirectory() as folder:
+                root = pathlib.Path(folder)
+                for name, text in [*sound.items(), *([breach] if breach else [])]:
+                    (root / name).parent.mkdir(parents=True, exist_ok=True)
+                    (root / name).write_text(text, encoding="utf-8")
+                try:
+                    found = list(check(root))
+                except Skip:
+                    continue
+                if bool(found) != bool(breach):
+                    yield f"{rule}: finds {found} where the breach is {breach}"
+
+
+def main():
+    rule = sys.argv[1]
+    try:
+        found = list(check_self() if rule == "self" else RULES[rule](pathlib.Path(sys.argv[2])))
+    except Skip as reason:
+        print(f"skipped: {reason}")
+        return SKIPPED
+    print("\n".join(found) or f"{rule}: kept")
+    return 1 if found else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
