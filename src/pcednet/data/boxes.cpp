@@ -26,9 +26,7 @@ struct CellGrid {
     }
     return filled[index(c)];
   }
-  Vec3 corner(const Cell& c) const {
-    return {planes[0][c[0]], planes[1][c[1]], planes[2][c[2]]};
-  }
+  Vec3 corner(const Cell& c) const { return {planes[0][c[0]], planes[1][c[1]], planes[2][c[2]]}; }
 };
 
 CellGrid make_grid(std::span<const Box> boxes) {

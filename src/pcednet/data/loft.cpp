@@ -73,8 +73,8 @@ void add_end(Shape& shape, const Loft& loft, double u) {
   for (std::size_t k = 0; k < loft.first.size(); ++k) {
     const Vec2 p = corner(loft, k, u);
     outline.emplace_back(side * p.x(), p.y());
-    shape.edges.push_back({Segment{turned(p, u * loft.angle),
-                                   turned(corner(loft, k + 1, u), u * loft.angle)}});
+    shape.edges.push_back(
+        {Segment{turned(p, u * loft.angle), turned(corner(loft, k + 1, u), u * loft.angle)}});
   }
   shape.patches.push_back(polygon(outline, Vec3::Zero(), side * radial, Vec3::UnitZ()));
 }

@@ -6,6 +6,8 @@
 #include <numbers>
 #include <utility>
 
+#include "pcednet/data/patches.h"
+
 namespace pcednet::data {
 namespace {
 
@@ -80,8 +82,8 @@ Shape make_shape(const Polyhedron& solid) {
       const int from = face[i];
       const int to = face[(i + 1) % n];
       if (i >= 2) {
-        shape.patches.push_back(triangle(solid.corners[face[0]], solid.corners[face[i - 1]],
-                                         solid.corners[from]));
+        shape.patches.push_back(
+            triangle(solid.corners[face[0]], solid.corners[face[i - 1]], solid.corners[from]));
       }
       const auto key = std::minmax(from, to);
       const auto found = open.find(key);

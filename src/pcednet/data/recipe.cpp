@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <string_view>
 #include <vector>
 
@@ -99,14 +101,12 @@ std::vector<std::string> comments(const Recipe& recipe, std::uint64_t seed, doub
 
 GeneratedCloud generate(const Recipe& recipe, std::uint64_t seed) {
   Random random(seed, hash_of(recipe.name));
-  const double spacing =
-      std::sqrt(surface_area(recipe.shape) / static_cast<double>(recipe.points));
-  SurfaceSamples samples =
-      sample_surface(recipe.shape,
-                     {.points = recipe.points,
-                      .keep = uneven(recipe.shape, recipe.unevenness, random),
-                      .min_distance = recipe.min_distance * spacing},
-                     random);
+  const double spacing = std::sqrt(surface_area(recipe.shape) / static_cast<double>(recipe.points));
+  SurfaceSamples samples = sample_surface(recipe.shape,
+                                          {.points = recipe.points,
+                                           .keep = uneven(recipe.shape, recipe.unevenness, random),
+                                           .min_distance = recipe.min_distance * spacing},
+                                          random);
   if (recipe.noise > 0.0) add_noise(samples.positions, recipe.noise * spacing, random);
   std::vector<std::size_t> displaced;
   if (recipe.displacement > 0.0) {

@@ -22,8 +22,8 @@ enum class NormalSource {
 
 /// How a labelled cloud is made from a shape. Lengths are in spacings: sqrt(area / points).
 struct Recipe {
-  std::string name;
-  Shape shape;
+  std::string name = {};
+  Shape shape = {};
   std::size_t points = 10000;
   EdgeBands bands = {.sharp = 0.49, .smooth = 1.73};
   double noise = 0.0;         ///< standard deviation on each axis, every point
@@ -38,8 +38,8 @@ struct Recipe {
 /// are then, gives them normals and turns the whole by a random rotation. Comments say how it was
 /// made; positions are rounded to float.
 ///
-/// Estimated normals have the side of the surface normal; of points displaced off the surface, which
-/// has no bearing on them, one in four is turned about.
+/// Estimated normals have the side of the surface normal; of points displaced off the surface,
+/// which has no bearing on them, one in four is turned about.
 ///
 /// The result depends on the recipe and `seed` alone: two recipes of different name draw
 /// independent points.

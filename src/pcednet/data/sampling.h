@@ -12,7 +12,7 @@ namespace pcednet::data {
 struct SampleOptions {
   std::size_t points = 10000;
   /// The chance in [0, 1] that a point at this position is kept; empty: 1 everywhere.
-  std::function<double(const Vec3& position)> keep;
+  std::function<double(const Vec3& position)> keep = {};
   /// If positive, points closer than this to an earlier point are dropped: an even cover. Must be
   /// below 0.75 sqrt(area / points), or there is no room for all points.
   double min_distance = 0.0;

@@ -26,8 +26,8 @@ std::uint8_t label_of(const Vec3& position, std::span<const EdgeCurve> edges,
                       const EdgeBands& bands) {
   std::uint8_t label = kNonEdge;
   for (const EdgeCurve& edge : edges) {
-    const double d = std::visit([&](const auto& curve) { return distance(curve, position); },
-                                edge.curve);
+    const double d =
+        std::visit([&](const auto& curve) { return distance(curve, position); }, edge.curve);
     if (d < bands.sharp && edge.strength == kSharpEdge) return kSharpEdge;
     if (d < bands.smooth) label = kSmoothEdge;
   }
