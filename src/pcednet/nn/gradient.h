@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <vector>
+
+#include "pcednet/nn/evaluator.h"
+#include "pcednet/nn/training_set.h"
+
+namespace pcednet::nn {
+
+/// The loss of a model over some samples and its derivative by the parameters.
+///
+/// The loss is the mean cross-entropy -sum_c target_c log p_c, with target 1 - s + s/n for the
+/// label's class and s/n for the others (s the smoothing, n the classes). With Symmetry::kAverage p
+/// is the softmax of the averaged logits, so what is trained is what is predicted.
+class GradientMachine {
+ public:
+  /// `model` must outlive it; its parameters may change between calls.
+  explicit GradientMachine(const Model& model, double label_smoothing = 0.0,
+                           VectorLevel level = vector_level());
+
+  ~GradientMachine();
+
+  /// Returns the mean loss over the samples `chosen` (indices into `set`, none of them ignored) and
+  /// writes its derivatives to `gradient`. The batch is cut in chunks of fixed size whose gradients
+  /// are added in order: the same bytes for any number of threads.
+  double run(const TrainingSet& set, std::span<const std::uint32_t> chosen,
+             std::span<float> gradient);
+
+ private:
+  struct Workspace;
+
+  std::unique_ptr<Workspace> borrow();
+  void give_back(std::unique_ptr<Workspace> workspace);
+  double run_chunk(Workspace& workspace, const TrainingSet& set,
+                   std::span<const std::uint32_t> chosen, float weight, float* gradient) const;
+
+  Evaluator evaluator_;
+  float label_smoothing_;
+  std::vector<float> chunk_gradients_;
+  std::vector<double> chunk_losses_;
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<Workspace>> idle_;  // one per thread that ever worked at once
+};
+
+}  // namespace pcednet::nn

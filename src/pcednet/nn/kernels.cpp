@@ -1,0 +1,62 @@
+#include "pcednet/nn/kernels.h"
+
+#include <limits>
+
+#include "pcednet/core/error.h"
+
+namespace pcednet::nn {
+namespace {
+
+#define NN_LEVEL baseline
+#define NN_BYTES 16
+#define NN_TARGET
+#include "pcednet/nn/kernels.inc"
+#undef NN_LEVEL
+#undef NN_BYTES
+#undef NN_TARGET
+
+#if defined(__x86_64__)
+#define NN_LEVEL avx2
+#define NN_BYTES 32
+#define NN_TARGET __attribute__((target("arch=x86-64-v3")))
+#include "pcednet/nn/kernels.inc"
+#undef NN_LEVEL
+#undef NN_BYTES
+#undef NN_TARGET
+
+#define NN_LEVEL avx512
+#define NN_BYTES 64
+#define NN_TARGET __attribute__((target("arch=x86-64-v4")))
+#include "pcednet/nn/kernels.inc"
+#undef NN_LEVEL
+#undef NN_BYTES
+#undef NN_TARGET
+#endif
+
+}  // namespace
+
+VectorLevel vector_level() {
+#if defined(__x86_64__)
+  static const VectorLevel level = [] {
+    if (__builtin_cpu_supports("x86-64-v4")) return VectorLevel::kAvx512;
+    if (__builtin_cpu_supports("x86-64-v3")) return VectorLevel::kAvx2;
+    return VectorLevel::kBaseline;
+  }();
+  return level;
+#else
+  return VectorLevel::kBaseline;
+#endif
+}
+
+const Kernels& kernels(VectorLevel level) {
+  if (level > vector_level()) {
+    throw Error(ErrorKind::kFailure, "this processor lacks the vector instructions asked for");
+  }
+#if defined(__x86_64__)
+  if (level == VectorLevel::kAvx512) return avx512::kKernels;
+  if (level == VectorLevel::kAvx2) return avx2::kKernels;
+#endif
+  return baseline::kKernels;
+}
+
+}  // namespace pcednet::nn

@@ -1,0 +1,95 @@
+#include "pcednet/nn/validate.h"
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "pcednet/core/parallel.h"
+
+namespace pcednet::nn {
+namespace {
+
+constexpr std::size_t kPoints = kLaneStep;
+constexpr std::size_t kTask = 64 * kPoints;
+
+struct ClassSums {
+  double loss = 0.0;
+  std::size_t right = 0, count = 0;
+};
+
+std::uint8_t most_probable(LaneTable& table, int first_row, int classes, std::size_t lane) {
+  int best = 0;
+  for (int c = 1; c < classes; ++c) {
+    if (table.row(first_row + c)[lane] > table.row(first_row + best)[lane]) best = c;
+  }
+  return static_cast<std::uint8_t>(best);
+}
+
+/// Adds up the samples of one task, class by class.
+void judge(const Evaluator& evaluator, const TrainingSet& set,
+           std::span<const std::uint32_t> chosen, ClassSums* sums) {
+  LaneTable table = evaluator.make_table(kPoints);
+  const int classes = evaluator.classes();
+  const int logits = evaluator.logits_row();
+  LaneTable deltas(classes, table.lanes());
+  std::array<const float*, kPoints> rows;
+  std::array<std::uint8_t, kPoints> labels;
+  std::array<float, kPoints> weights, losses;
+  weights.fill(1.0f);
+  for (std::size_t begin = 0; begin < chosen.size(); begin += kPoints) {
+    const std::size_t points = std::min(kPoints, chosen.size() - begin);
+    for (std::size_t p = 0; p < kPoints; ++p) {
+      const std::size_t sample = chosen[begin + std::min(p, points - 1)];
+      rows[p] = set.samples.data() + sample * static_cast<std::size_t>(evaluator.inputs());
+      labels[p] = set.labels[sample];
+    }
+    evaluator.run(rows.data(), table);
+    const Kernels& kernels = evaluator.kernels();
+    kernels.cross_entropy(table.row(logits), labels.data(), weights.data(), 0.0f, classes,
+                          table.lanes(), evaluator.paired(), losses.data(), deltas.row(0));
+    kernels.softmax(table.row(logits), classes, table.lanes(), evaluator.paired());
+    for (std::size_t p = 0; p < points; ++p) {
+      ClassSums& sum = sums[labels[p]];
+      sum.loss += losses[p];
+      sum.right += most_probable(table, logits, classes, p) == labels[p];
+      ++sum.count;
+    }
+  }
+}
+
+}  // namespace
+
+Validation validate(const Model& model, const TrainingSet& set,
+                    std::span<const std::uint32_t> chosen) {
+  const Evaluator evaluator(model);
+  const auto classes = static_cast<std::size_t>(evaluator.classes());
+  const std::size_t tasks = (chosen.size() + kTask - 1) / kTask;
+  std::vector<ClassSums> sums(tasks * classes);
+  parallel_blocks(chosen.size(), kTask, [&](std::size_t begin, std::size_t end) {
+    judge(evaluator, set, chosen.subspan(begin, end - begin),
+          sums.data() + begin / kTask * classes);
+  });
+  Validation result;
+  std::size_t seen = 0;
+  for (std::size_t c = 0; c < classes; ++c) {
+    ClassSums total;
+    for (std::size_t t = 0; t < tasks; ++t) {
+      const ClassSums& sum = sums[t * classes + c];
+      total.loss += sum.loss;
+      total.right += sum.right;
+      total.count += sum.count;
+    }
+    if (total.count == 0) continue;
+    const auto count = static_cast<double>(total.count);
+    result.loss += total.loss / count;
+    result.accuracy += static_cast<double>(total.right) / count;
+    ++seen;
+  }
+  if (seen > 0) {
+    result.loss /= static_cast<double>(seen);
+    result.accuracy /= static_cast<double>(seen);
+  }
+  return result;
+}
+
+}  // namespace pcednet::nn

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "pcednet/nn/evaluator.h"
+#include "pcednet/nn/training_set.h"
+
+namespace pcednet::nn {
+
+/// Means over the classes of what is a mean over the samples of each.
+struct Validation {
+  double loss = 0.0;      ///< cross-entropy
+  double accuracy = 0.0;  ///< share of samples whose most probable class is their own
+};
+
+/// Judges a model on the samples `chosen` (indices into `set`, none of them ignored).
+Validation validate(const Model& model, const TrainingSet& set,
+                    std::span<const std::uint32_t> chosen);
+
+}  // namespace pcednet::nn
