@@ -1,0 +1,30 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "pcednet/cloud/point_cloud.h"
+
+namespace pcednet::render {
+
+/// A point drawn as a small disc.
+struct Surfel {
+  Eigen::Vector3f position;
+  Eigen::Vector3f normal;  ///< unit length, of either sign
+  float radius;            ///< closes the surface between the point and its neighbours; may be 0
+  Rgb colour;
+  bool edge;  ///< drawn over its surroundings
+};
+
+/// The finite points of `cloud` as discs: moved and scaled so that the bulk lies in [-1, 1]^3,
+/// without far outliers, in an order that depends on the positions alone.
+///
+/// The radius follows the local density. Normals of the cloud are taken where it has them, fitted
+/// to the neighbours elsewhere. `classes` as in write_preview(). Of more than `max_count` points
+/// every n-th is taken.
+std::vector<Surfel> make_surfels(const PointCloud& cloud, std::span<const std::uint8_t> classes,
+                                 std::size_t max_count);
+
+}  // namespace pcednet::render
