@@ -80,24 +80,33 @@ TEST(SphereFit, CountsThreeNeighboursAsUnstableAndSixAsStable) {
   }
 }
 
+/// Seven neighbours within `spread` of `place`, of two normals.
+void expect_plane_limit(const Vec3& place, double spread) {
+  test::Stream stream(6);
+  Neighbourhood copies;
+  for (int i = 0; i < 7; ++i) {
+    copies.push_back(test::neighbour(place + spread * stream.direction(),
+                                     i % 2 ? Vec3(1, 0, 0) : Vec3(0, 1, 0)));
+  }
+  const Descriptor d = describe(copies, 1.0);
+  const Vec3 mean = Vec3(3, 4, 0) / 7;
+  const double tolerance = 1e-14 + 10 * spread;
+  EXPECT_EQ(fit(copies, 1.0).status, FitStatus::kStable);
+  EXPECT_EQ(d.kappa, 0.0);
+  EXPECT_NEAR((d.eta - mean.normalized()).norm(), 0.0, tolerance);
+  EXPECT_NEAR(d.tau, -mean.normalized().dot(place), tolerance);
+  EXPECT_NEAR(d.phi, 1 - mean.squaredNorm(), tolerance);
+  // One tangent plane, whatever x and t.
+  EXPECT_NEAR(d.k1, 0.0, tolerance);
+  EXPECT_NEAR(d.dtau_dt, 0.0, tolerance);
+  EXPECT_NEAR((d.dtau_dx - d.eta).norm(), 0.0, tolerance);
+  EXPECT_EQ(d.dkappa_dt, 0.0);
+}
+
 TEST(SphereFit, TakesThePlaneLimitWhereNeighboursAreOnePlace) {
-  for (const Vec3& place : {Vec3(0, 0, 0), Vec3(0.1, 0.2, -0.3)}) {
-    Neighbourhood copies;
-    for (int i = 0; i < 7; ++i) {
-      copies.push_back(test::neighbour(place, i % 2 ? Vec3(1, 0, 0) : Vec3(0, 1, 0)));
-    }
-    const Descriptor d = describe(copies, 1.0);
-    const Vec3 mean = Vec3(3, 4, 0) / 7;
-    EXPECT_EQ(fit(copies, 1.0).status, FitStatus::kStable);
-    EXPECT_EQ(d.kappa, 0.0);
-    EXPECT_NEAR((d.eta - mean.normalized()).norm(), 0.0, 1e-15);
-    EXPECT_NEAR(d.tau, -mean.normalized().dot(place), 1e-15);
-    EXPECT_NEAR(d.phi, 1 - mean.squaredNorm(), 1e-15);
-    // One tangent plane, whatever x and t.
-    EXPECT_NEAR(d.k1, 0.0, 1e-14);
-    EXPECT_NEAR(d.dtau_dt, 0.0, 1e-14);
-    EXPECT_NEAR((d.dtau_dx - d.eta).norm(), 0.0, 1e-14);
-    EXPECT_EQ(d.dkappa_dt, 0.0);
+  for (const double spread : {0.0, 1e-8}) {
+    expect_plane_limit({0, 0, 0}, spread);
+    expect_plane_limit({0.1, 0.2, -0.3}, spread);
   }
 }
 
