@@ -10,5 +10,6 @@ namespace pcednet::app {
 // by throwing pcednet::Error. One file per subcommand, in commands/.
 void add_info(CLI::App& app, Common& common);
 void add_convert(CLI::App& app, Common& common);
+void add_generate(CLI::App& app, Common& common);
 
 }  // namespace pcednet::app

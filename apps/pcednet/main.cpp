@@ -28,6 +28,7 @@ int run(int argc, char** argv) {
   // One line per subcommand, in the order of the help.
   add_info(app, common);
   add_convert(app, common);
+  add_generate(app, common);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -112,9 +112,8 @@ Shape cone_on_plate() {
 
 Shape fan_part() {
   // Corner 3 (a chamfer) and corner 6 (a bead) come to lie on the line of their neighbours.
-  const std::vector<Vec2> first = {{1.0, 0.0},   {2.0, 0.0},   {2.0, 0.5},  {1.8, 0.9},
-                                   {1.65, 0.9},  {1.6, 1.25},  {1.45, 1.4}, {1.3, 1.25},
-                                   {1.25, 0.9},  {1.0, 0.9}};
+  const std::vector<Vec2> first = {{1.0, 0.0},  {2.0, 0.0},  {2.0, 0.5},  {1.8, 0.9},  {1.65, 0.9},
+                                   {1.6, 1.25}, {1.45, 1.4}, {1.3, 1.25}, {1.25, 0.9}, {1.0, 0.9}};
   std::vector<Vec2> last = first;
   last[3] = {1.825, 0.7};
   last[6] = {1.45, 1.25};
@@ -122,8 +121,8 @@ Shape fan_part() {
 }
 
 Shape four_cubes() {
-  const std::array<Vec3, 4> lows = {Vec3(0.0, 0.0, 0.0), Vec3(1.0, 0.0, 0.0),
-                                    Vec3(0.0, 1.0, 0.3), Vec3(0.35, -0.3, 1.0)};
+  const std::array<Vec3, 4> lows = {Vec3(0.0, 0.0, 0.0), Vec3(1.0, 0.0, 0.0), Vec3(0.0, 1.0, 0.3),
+                                    Vec3(0.35, -0.3, 1.0)};
   std::vector<Box> boxes;
   for (const Vec3& low : lows) boxes.push_back({low, low + Vec3::Ones()});
   return make_shape(boxes);
@@ -228,7 +227,7 @@ Shape round_solids() {
 }
 
 Shape wall_front(Random& random) {
-  constexpr double kWidth = 4.0;
+  constexpr double kWidth = 3.0;
   constexpr double kHeight = 3.0;
   const double recess = random.uniform(0.1, 0.25);
   const double relief = random.uniform(0.06, 0.15);
@@ -236,10 +235,10 @@ Shape wall_front(Random& random) {
   std::vector<Box> boxes = {{Vec3(0.0, 0.0, 0.0), Vec3(kWidth, 1.0, kHeight)},
                             {Vec3(0.0, -relief, 1.45), Vec3(kWidth, 0.0, 1.55)},
                             {Vec3(0.0, -2.0 * relief, 2.75), Vec3(kWidth, 0.0, kHeight)}};
-  const double width = random.uniform(0.4, 0.6);
+  const double width = random.uniform(0.7, 0.85);
   for (int row = 0; row < 2; ++row) {
-    for (int column = 0; column < 4; ++column) {
-      const double x = 0.25 + column + random.uniform(-0.05, 0.05);
+    for (int column = 0; column < 2; ++column) {
+      const double x = 0.4 + 1.4 * column + random.uniform(-0.05, 0.05);
       const double z = row == 0 ? 0.45 : 1.8;
       const bool door = row == 0 && column == 1;
       boxes.push_back({Vec3(x, 0.0, door ? 0.0 : z), Vec3(x + width, recess, z + 0.75), false});

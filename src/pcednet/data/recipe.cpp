@@ -91,8 +91,8 @@ std::vector<std::string> comments(const Recipe& recipe, std::uint64_t seed, doub
           fmt::format("spacing {:.6g}; in spacings: sharp-edge nearer than {} to a true edge, "
                       "smooth-edge than {}",
                       spacing, recipe.bands.sharp, recipe.bands.smooth),
-          fmt::format("in spacings: noise {}, every tenth point displaced up to {}", recipe.noise,
-                      recipe.displacement),
+          fmt::format("in spacings: noise {:.3g}, every tenth point displaced up to {}",
+                      recipe.noise, recipe.displacement),
           fmt::format("density uneven {} times; normals {}{}", recipe.unevenness,
                       name_of(recipe.normals), recipe.inward ? ", inward" : "")};
 }

@@ -1,0 +1,96 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <system_error>
+
+#include "commands.h"
+#include "pcednet/core/error.h"
+#include "pcednet/data/default_set.h"
+#include "pcednet/io/write_cloud.h"
+
+namespace pcednet::app {
+namespace {
+
+struct DefaultArguments {
+  std::string folder;
+  std::uint64_t seed = 1;
+  bool paper_only = false;
+  std::vector<double> bands;
+};
+
+double percent_of(const PointCloud& cloud, EdgeClass label) {
+  const auto count = std::count(cloud.labels.begin(), cloud.labels.end(), label);
+  return 100.0 * static_cast<double>(count) / static_cast<double>(cloud.size());
+}
+
+void report(const data::Recipe& recipe, const PointCloud& cloud) {
+  std::string faults;
+  if (recipe.noise > 0.0) faults += fmt::format("  noise {:.2g}", recipe.noise);
+  if (recipe.displacement > 0.0) faults += fmt::format("  displaced {}", recipe.displacement);
+  if (recipe.unevenness != 1.0) faults += fmt::format("  uneven {}", recipe.unevenness);
+  if (recipe.inward) faults += "  inward";
+  say(fmt::format("{:<16} {:>7} {:>6.1f} {:>6.1f} {:>6.1f}{}", recipe.name, cloud.size(),
+                  percent_of(cloud, kSharpEdge), percent_of(cloud, kSmoothEdge),
+                  percent_of(cloud, kNonEdge), faults));
+}
+
+void make_folder(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) {
+    throw Error(ErrorKind::kFailure,
+                fmt::format("{}: cannot create the folder: {}", folder.string(), error.message()));
+  }
+}
+
+void run_default(const DefaultArguments& arguments, const Common& common) {
+  data::DefaultSetOptions options{.extras = !arguments.paper_only};
+  if (!arguments.bands.empty()) options.bands = {arguments.bands[0], arguments.bands[1]};
+  make_folder(arguments.folder);
+  const auto recipes = data::default_recipes(arguments.seed, options);
+  const Progress progress = console_progress(common);
+  Stage stage(&progress, "generate", recipes.size());
+  say("cloud             points  sharp smooth    non  faults (in spacings)");
+  std::size_t points = 0;
+  for (const data::Recipe& recipe : recipes) {
+    const PointCloud cloud = data::generate(recipe, arguments.seed).cloud;
+    const auto path = std::filesystem::path(arguments.folder) / (recipe.name + ".ply");
+    io::write_cloud(path, cloud, {.overwrite = common.overwrite()});
+    report(recipe, cloud);
+    points += cloud.size();
+    stage.advance();
+  }
+  say(fmt::format("{} clouds, {} points in {}", recipes.size(), points, arguments.folder));
+}
+
+void add_default(CLI::App& generate, Common& common) {
+  auto arguments = std::make_shared<DefaultArguments>();
+  CLI::App* command = add_command(
+      generate, common, "default",
+      "Labelled clouds for training: the paper's Default training set, made anew, and more",
+      "pcednet generate default clouds/\n"
+      "pcednet generate default clouds/ --paper-only --seed 2");
+  command->add_option("folder", arguments->folder, "Where the PLY files go; created if need be")
+      ->required();
+  command->add_option("--seed", arguments->seed, "Another seed gives other points")
+      ->capture_default_str();
+  command->add_flag("--paper-only", arguments->paper_only,
+                    "Only the paper's nine clouds, without the shapes beyond it (x_...)");
+  command
+      ->add_option("--bands", arguments->bands,
+                   "Widths of the sharp and smooth band in point spacings, for every cloud")
+      ->expected(2)
+      ->check(CLI::PositiveNumber);
+  command->callback([=, &common] { run_default(*arguments, common); });
+}
+
+}  // namespace
+
+void add_generate(CLI::App& app, Common& common) {
+  CLI::App* generate = app.add_subcommand("generate", "Make labelled point clouds");
+  generate->require_subcommand(1);
+  add_default(*generate, common);
+}
+
+}  // namespace pcednet::app
