@@ -45,11 +45,14 @@ void report_on_terminal(const std::string& stage, double fraction) {
 
 }  // namespace
 
-void install_interrupt_handler() {
+void install_signal_handlers() {
   struct sigaction action = {};
   action.sa_handler = on_interrupt;
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
+  action.sa_handler = SIG_IGN;
+  sigaction(SIGXFSZ, &action, nullptr);
+  sigaction(SIGPIPE, &action, nullptr);
 }
 
 CLI::App* add_command(CLI::App& app, Common& common, const std::string& name,
@@ -129,6 +132,18 @@ std::vector<std::filesystem::path> expand_inputs(const std::vector<std::string>&
     inputs.insert(inputs.end(), found.begin(), found.end());
   }
   return inputs;
+}
+
+void with_name_in_errors(const std::filesystem::path& file, const std::function<void()>& work) {
+  try {
+    work();
+  } catch (const Error& error) {
+    const std::string message = error.what();
+    if (error.kind() == ErrorKind::kCancelled || message.find(file.string()) != std::string::npos) {
+      throw;
+    }
+    throw Error(error.kind(), fmt::format("{}: {}", file.string(), message));
+  }
 }
 
 }  // namespace pcednet::app

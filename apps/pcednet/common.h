@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -30,8 +31,9 @@ CLI::App* add_command(CLI::App& app, Common& common, const std::string& name,
 Progress console_progress(const Common& common);
 
 /// Makes Ctrl-C (SIGINT, SIGTERM) a request to stop that console_progress hands on; a second one
-/// ends the program at once.
-void install_interrupt_handler();
+/// ends the program at once. A file that grows beyond its limit, or a reader that goes away, is an error
+/// to report, not a signal to die of.
+void install_signal_handlers();
 
 /// One line on stderr, after whatever progress line is there.
 void say(const std::string& line);
@@ -43,5 +45,8 @@ void warn(const std::string& line);
 /// order. Throws Error(kUnreadable) for a path that does not exist, Error(kInsufficient) for a
 /// folder without point files.
 std::vector<std::filesystem::path> expand_inputs(const std::vector<std::string>& arguments);
+
+/// Runs `work`; an Error from it gets the file's name in front of its message, unless it is there.
+void with_name_in_errors(const std::filesystem::path& file, const std::function<void()>& work);
 
 }  // namespace pcednet::app

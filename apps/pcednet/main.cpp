@@ -24,8 +24,11 @@ int run(int argc, char** argv) {
   app.fallthrough(false);
   Common common;
   app.parse_complete_callback([&] { set_thread_count(common.threads); });
-  install_interrupt_handler();
+  install_signal_handlers();
   // One line per subcommand, in the order of the help.
+  add_train(app, common);
+  add_evaluate(app, common);
+  add_generate(app, common);
   add_info(app, common);
   add_convert(app, common);
   add_generate(app, common);

@@ -12,15 +12,19 @@
 
 namespace pcednet {
 
-OutputFile::OutputFile(std::filesystem::path path, Overwrite overwrite) : path_(std::move(path)) {
+void check_writable(const std::filesystem::path& path, Overwrite overwrite) {
   std::error_code ignored;
-  if (std::filesystem::is_directory(path_, ignored)) {
-    throw Error(ErrorKind::kUsage, fmt::format("{}: is a folder", path_.string()));
+  if (std::filesystem::is_directory(path, ignored)) {
+    throw Error(ErrorKind::kUsage, fmt::format("{}: is a folder", path.string()));
   }
-  if (overwrite == Overwrite::kNo && std::filesystem::exists(path_, ignored)) {
+  if (overwrite == Overwrite::kNo && std::filesystem::exists(path, ignored)) {
     throw Error(ErrorKind::kUsage,
-                fmt::format("{}: exists already; give --overwrite to replace it", path_.string()));
+                fmt::format("{}: exists already; give --overwrite to replace it", path.string()));
   }
+}
+
+OutputFile::OutputFile(std::filesystem::path path, Overwrite overwrite) : path_(std::move(path)) {
+  check_writable(path_, overwrite);
   temporary_ = path_;
   temporary_ += fmt::format(".part-{}", getpid());
   file_ = std::fopen(temporary_.c_str(), "wb");

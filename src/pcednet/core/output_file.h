@@ -39,6 +39,10 @@ class OutputFile {
   std::FILE* file_ = nullptr;
 };
 
+/// Throws what OutputFile would throw because `path` is a folder or exists; for refusing before
+/// long work. An empty path is fine.
+void check_writable(const std::filesystem::path& path, Overwrite overwrite);
+
 /// Writes `text` to `path` as a whole.
 void write_text_file(const std::filesystem::path& path, std::string_view text,
                      Overwrite overwrite = Overwrite::kNo);

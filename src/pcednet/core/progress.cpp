@@ -23,6 +23,10 @@ void Stage::advance(std::size_t steps) {
   progress_->report(name_, static_cast<double>(done) / static_cast<double>(total_));
 }
 
+Progress without_report(const Progress* progress) {
+  return {.report = {}, .cancelled = progress ? progress->cancelled : std::function<bool()>()};
+}
+
 void throw_if_cancelled(const Progress* progress) {
   if (progress && progress->cancelled && progress->cancelled()) {
     throw Error(ErrorKind::kCancelled, "stopped by the user");

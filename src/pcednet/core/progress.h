@@ -33,6 +33,9 @@ class Stage {
   std::mutex mutex_;
 };
 
+/// `progress` (which may be null) without its report: for work that is a part of a stage.
+Progress without_report(const Progress* progress);
+
 /// Throws Error(kCancelled) if `progress` (which may be null) says so.
 void throw_if_cancelled(const Progress* progress);
 

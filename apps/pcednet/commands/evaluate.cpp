@@ -1,0 +1,119 @@
+#include <fmt/format.h>
+
+#include <iostream>
+#include <memory>
+#include <optional>
+
+#include "commands.h"
+#include "models.h"
+#include "pcednet/core/error.h"
+#include "pcednet/detect/classify.h"
+#include "pcednet/eval/report.h"
+#include "pcednet/io/labels.h"
+#include "pcednet/io/read_cloud.h"
+
+namespace pcednet::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Arguments {
+  std::vector<std::string> inputs;
+  std::string model, predictions, json, positive = "sharp";
+  bool exact = false;
+};
+
+/// The file of predictions for `cloud` in `folder`: of the same stem, or empty.
+fs::path prediction_for(const fs::path& cloud, const fs::path& folder) {
+  for (const char* suffix : {"", "_edges"}) {
+    for (const char* extension : {".u8", ".ply", ".txt", ".csv", ".lbl", ".seg", ".pcd", ".xyz"}) {
+      fs::path candidate = folder / (cloud.stem().string() + suffix + extension);
+      std::error_code error;
+      if (fs::is_regular_file(candidate, error)) return candidate;
+    }
+  }
+  return {};
+}
+
+std::vector<std::uint8_t> predict(const fs::path& input, const PointCloud& cloud,
+                                  const detect::EdgeModel& model, const Arguments& arguments,
+                                  const Progress& progress) {
+  const auto prepared = detect::prepare(cloud, &progress);
+  for (const std::string& note : prepared.notes) warn(input.string() + ": " + note);
+  return detect::classify(prepared, model, {.exact = arguments.exact}, &progress).classes;
+}
+
+std::vector<eval::CloudScore> score_all(const Arguments& arguments, const Common& common) {
+  const Progress progress = console_progress(common);
+  const auto positive =
+      arguments.positive == "edge" ? eval::Positive::kEdge : eval::Positive::kSharp;
+  std::optional<detect::EdgeModel> model;
+  if (!arguments.model.empty()) model = detect::load_model(find_model(arguments.model));
+
+  std::vector<eval::CloudScore> scores;
+  for (const fs::path& input : expand_inputs(arguments.inputs)) {
+    const fs::path prediction = model ? fs::path() : prediction_for(input, arguments.predictions);
+    if (!model && prediction.empty()) {
+      warn(fmt::format("{}: no prediction in {}: left out", input.string(), arguments.predictions));
+      continue;
+    }
+    const auto loaded = io::read_cloud(input);
+    if (!loaded.cloud.has_labels()) {
+      throw Error(ErrorKind::kInsufficient,
+                  fmt::format("{}: has no labels to compare with", input.string()));
+    }
+    with_name_in_errors(input, [&] {
+      const auto classes = model ? predict(input, loaded.cloud, *model, arguments, progress)
+                                 : io::read_labels(prediction);
+      scores.push_back(
+          {input.stem().string(), eval::count_confusion(loaded.cloud.labels, classes, positive)});
+    });
+  }
+  if (scores.empty()) {
+    throw Error(ErrorKind::kInsufficient,
+                fmt::format("{}: no prediction for any cloud", arguments.predictions));
+  }
+  return scores;
+}
+
+void evaluate(const Arguments& arguments, const Common& common) {
+  if (arguments.model.empty() == arguments.predictions.empty()) {
+    throw Error(ErrorKind::kUsage, "evaluate: give either --model or --predictions");
+  }
+  const auto scores = score_all(arguments, common);
+  if (arguments.json == "-") {
+    std::cout << eval::to_json(scores);
+    return;
+  }
+  std::cout << eval::to_table(scores);
+  if (!arguments.json.empty()) {
+    write_text_file(arguments.json, eval::to_json(scores), common.overwrite());
+  }
+}
+
+}  // namespace
+
+void add_evaluate(CLI::App& app, Common& common) {
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = add_command(
+      app, common, "evaluate", "Compare predicted classes with the labels in the clouds.",
+      "pcednet evaluate clouds/ --model scan --positive edge\n"
+      "pcednet evaluate clouds/ --predictions other_tool/ --json scores.json\n"
+      "pcednet evaluate a.ply b.ply --model my.safetensors --json -");
+  command->add_option("inputs", arguments->inputs, "Labelled point files, or folders of them")
+      ->required();
+  command->add_option("--model", arguments->model, "A model's name or file to classify with");
+  command->add_option("--predictions", arguments->predictions,
+                      "Folder with one file of classes per cloud, of the same stem: .u8 (a byte a "
+                      "point), .txt (a number a line), .ply, ...");
+  command
+      ->add_option("--positive", arguments->positive,
+                   "Classes that count as positive: sharp, or edge (sharp and smooth)")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"sharp", "edge"}));
+  command->add_option("--json", arguments->json, "Write the scores here; - for standard output");
+  command->add_flag("--exact", arguments->exact, "Descriptors from exact neighbourhoods (slow)");
+  command->callback([arguments, &common] { evaluate(*arguments, common); });
+}
+
+}  // namespace pcednet::app

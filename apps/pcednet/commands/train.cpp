@@ -1,0 +1,145 @@
+#include <fmt/format.h>
+
+#include <map>
+#include <memory>
+#include <optional>
+
+#include "commands.h"
+#include "pcednet/core/error.h"
+#include "pcednet/detect/train.h"
+#include "pcednet/io/read_cloud.h"
+
+namespace pcednet::app {
+namespace {
+
+const std::map<std::string, nn::NetworkKind> kNetworks = {{"pcednet", nn::NetworkKind::kPcednet},
+                                                          {"fc", nn::NetworkKind::kFc},
+                                                          {"cnn", nn::NetworkKind::kCnn}};
+const std::map<std::string, nn::Symmetry> kSymmetries = {{"none", nn::Symmetry::kNone},
+                                                         {"average", nn::Symmetry::kAverage},
+                                                         {"canonical", nn::Symmetry::kCanonical}};
+const std::map<std::string, gls::FeatureSet> kFeatureSets = {{"28", gls::FeatureSet::kAll28},
+                                                             {"7", gls::FeatureSet::kInvariant7},
+                                                             {"6", gls::FeatureSet::kPaper6},
+                                                             {"4", gls::FeatureSet::kSpatial4},
+                                                             {"3", gls::FeatureSet::kRelief3}};
+
+struct Arguments {
+  std::vector<std::string> inputs;
+  std::string output, network = "pcednet", recipe = "adam", symmetry = "average", features = "6",
+                      reconstruction = "sphere";
+  int classes = 3, scales = 16, epochs = 0, width = 0;
+  double gate = 2.0;
+  std::uint64_t seed = 1;
+};
+
+detect::TrainOptions options_of(const Arguments& arguments) {
+  detect::TrainOptions options;
+  options.descriptor.scales = arguments.scales;
+  options.descriptor.features = kFeatureSets.at(arguments.features);
+  const auto names = gls::reconstruction_names();
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (names[i] == arguments.reconstruction) {
+      options.descriptor.reconstruction = static_cast<gls::Reconstruction>(i);
+    }
+  }
+  if (arguments.gate <= 1.0) options.descriptor.side_gate = arguments.gate;
+  options.architecture.kind = kNetworks.at(arguments.network);
+  options.architecture.classes = arguments.classes;
+  options.architecture.width = arguments.width;
+  if (arguments.recipe == "paper") options.training = nn::paper_recipe();
+  if (arguments.epochs > 0) options.training.epochs = arguments.epochs;
+  options.training.seed = arguments.seed;
+  options.training.sign_rule.symmetry = kSymmetries.at(arguments.symmetry);
+  return options;
+}
+
+void print_epoch(const nn::EpochReport& report) {
+  say(fmt::format("epoch {:>3}  loss {:.4f}  validation loss {:.4f}  accuracy {:.4f}", report.epoch,
+                  report.training_loss, report.validation_loss, report.validation_accuracy));
+}
+
+void train(const Arguments& arguments, const Common& common) {
+  check_writable(arguments.output, common.overwrite());
+  const auto options = options_of(arguments);
+  const Progress progress = console_progress(common);
+  const auto inputs = expand_inputs(arguments.inputs);
+  std::vector<io::LoadedCloud> loaded;
+  loaded.reserve(inputs.size());  // the training clouds look into them
+  std::vector<detect::TrainingCloud> clouds;
+  for (const auto& input : inputs) {
+    with_name_in_errors(input, [&] {
+      loaded.push_back(io::read_cloud(input));
+      const PointCloud& cloud = loaded.back().cloud;
+      if (!cloud.empty() && !cloud.has_labels()) {
+        throw Error(ErrorKind::kInsufficient, "has no labels to learn from");
+      }
+      clouds.push_back({input.string(), detect::prepare(cloud, &progress), cloud.labels});
+    });
+    for (const auto& warning : loaded.back().warnings) warn(input.string() + ": " + warning);
+    for (const auto& note : clouds.back().cloud.notes) warn(input.string() + ": " + note);
+  }
+  const auto trained = detect::train(
+      std::filesystem::path(arguments.output).stem().string(), clouds, options,
+      common.progress == "none" ? decltype(&print_epoch)(nullptr) : print_epoch, &progress);
+  detect::save_model(arguments.output, trained.model, common.overwrite());
+  say(fmt::format("{} weights; seconds: describe {:.2f}, train {:.2f}{}\n  -> {}",
+                  trained.model.network.network.parameters.size(), trained.seconds_describe,
+                  trained.seconds_train, trained.cancelled ? " (stopped: the best so far)" : "",
+                  arguments.output));
+}
+
+void add_descriptor_options(CLI::App& command, Arguments& arguments) {
+  const auto names = gls::reconstruction_names();
+  command.add_option("--scales", arguments.scales, "Scales of the description: 4, 8, ... 128")
+      ->capture_default_str();
+  command.add_option("--features", arguments.features, "Numbers per scale: 28, 7, 6, 4 or 3")
+      ->capture_default_str()
+      ->check(CLI::IsMember(kFeatureSets));
+  command
+      .add_option("--reconstruction", arguments.reconstruction,
+                  "The surface that is described at every scale")
+      ->capture_default_str()
+      ->check(CLI::IsMember(std::vector<std::string>(names.begin(), names.end())));
+  command.add_option("--gate", arguments.gate,
+                     "Side-aware neighbourhoods: leave out points whose normal has a cosine below "
+                     "this with the point's own (-1 to 1; default: off)");
+}
+
+}  // namespace
+
+void add_train(CLI::App& app, Common& common) {
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = add_command(
+      app, common, "train", "Train a network on labelled clouds.",
+      "pcednet train painted.ply -o my.safetensors      labels 0, 1, 2; 255 unlabelled\n"
+      "pcednet train clouds/ -o my.safetensors --classes 2 --seed 7\n"
+      "pcednet train clouds/ -o paper.safetensors --recipe paper");
+  command->add_option("inputs", arguments->inputs, "Labelled point files, or folders of them")
+      ->required();
+  command->add_option("-o,--output", arguments->output, "The model file to write")->required();
+  command->add_option("--network", arguments->network, "pcednet, fc or cnn")
+      ->capture_default_str()
+      ->check(CLI::IsMember(kNetworks));
+  command
+      ->add_option("--classes", arguments->classes,
+                   "3: non-edge, smooth-edge, sharp-edge; 2: sharp-edge and the rest")
+      ->capture_default_str()
+      ->check(CLI::IsMember({2, 3}));
+  add_descriptor_options(*command, *arguments);
+  command->add_option("--width", arguments->width, "Neurons per pair of scales (0: as the paper)")
+      ->capture_default_str();
+  command->add_option("--recipe", arguments->recipe, "adam, or paper (plain SGD as published)")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"adam", "paper"}));
+  command
+      ->add_option("--symmetry", arguments->symmetry,
+                   "What makes flipped normals change nothing: average, canonical, none")
+      ->capture_default_str()
+      ->check(CLI::IsMember(kSymmetries));
+  command->add_option("--epochs", arguments->epochs, "Rounds of training (0: the recipe's)");
+  command->add_option("--seed", arguments->seed, "Seed of all randomness")->capture_default_str();
+  command->callback([arguments, &common] { train(*arguments, common); });
+}
+
+}  // namespace pcednet::app

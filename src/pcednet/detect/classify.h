@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "pcednet/detect/model.h"
+#include "pcednet/detect/prepare.h"
+
+namespace pcednet::detect {
+
+struct ClassifyOptions {
+  bool exact = false;  ///< exact neighbourhoods instead of the fast engine
+};
+
+struct ClassCounts {
+  std::size_t non_edge = 0, smooth = 0, sharp = 0, unlabelled = 0;
+};
+
+/// What was found, per point of the cloud in its own order.
+struct Classification {
+  std::vector<std::uint8_t> classes;  ///< EdgeClass; kUnlabelled where the position is not finite
+  std::vector<float> p_sharp;         ///< probability of sharp-edge, 0 where unlabelled
+  std::vector<float> p_smooth;        ///< of smooth-edge; 0 throughout with a two-class model
+  ClassCounts counts;
+  double seconds_prepare = 0, seconds_describe = 0, seconds_network = 0;
+};
+
+/// Describes every point at every scale and lets the network decide: the class of the highest
+/// probability. Works block by block: the scale-space matrix is never held whole.
+/// The result is the same for any number of threads and any order of the points.
+Classification classify(const PreparedCloud& cloud, const EdgeModel& model,
+                        const ClassifyOptions& options = {}, const Progress* progress = nullptr);
+
+}  // namespace pcednet::detect

@@ -1,0 +1,64 @@
+#include "pcednet/detect/result_cloud.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "pcednet/core/version.h"
+
+namespace pcednet::detect {
+namespace {
+
+Rgb colour_of(std::uint8_t edge_class) {
+  switch (edge_class) {
+    case kNonEdge:
+      return {255, 255, 255};
+    case kSmoothEdge:
+      return {255, 196, 93};
+    case kSharpEdge:
+      return {168, 0, 0};
+    default:
+      return {128, 128, 128};
+  }
+}
+
+/// Comments of an earlier classification give way to those of this one.
+void replace_comments(PointCloud& cloud, const EdgeModel& model) {
+  std::erase_if(cloud.comments,
+                [](const std::string& comment) { return comment.starts_with("pcednet "); });
+  cloud.comments.push_back(fmt::format("pcednet {}", kVersion));
+  cloud.comments.push_back(fmt::format("pcednet model {}", model.name));
+  cloud.comments.push_back(fmt::format("pcednet seed {}", model.seed));
+  cloud.comments.push_back("pcednet classes 0 non-edge 1 smooth-edge 2 sharp-edge 255 unlabelled");
+}
+
+}  // namespace
+
+std::vector<std::string> add_result(PointCloud& cloud, const PreparedCloud& prepared,
+                                    const Classification& result, const EdgeModel& model,
+                                    const ResultOptions& options) {
+  std::vector<std::string> notes;
+  const bool classified_before = find_attribute(cloud, "scalar_edge_class") != nullptr;
+  if (cloud.has_labels() && !classified_before) {
+    set_attribute(cloud, make_attribute("scalar_input_label", cloud.labels));
+    notes.push_back("the input's labels are kept as scalar_input_label");
+  }
+  if (!prepared.estimated.empty()) cloud.normals = prepared.estimated;
+  if (cloud.colours.empty() || options.class_colours) {
+    cloud.colours.resize(cloud.size());
+    std::transform(result.classes.begin(), result.classes.end(), cloud.colours.begin(), colour_of);
+  } else {
+    notes.push_back("the input's colours are kept; --class-colours replaces them");
+  }
+  std::vector<float> edge(result.classes.size());
+  for (std::size_t i = 0; i < edge.size(); ++i) edge[i] = result.p_sharp[i] + result.p_smooth[i];
+  set_attribute(cloud, make_attribute("quality", edge));
+  set_attribute(cloud, make_attribute("scalar_edge_class", result.classes));
+  set_attribute(cloud, make_attribute("scalar_p_sharp", result.p_sharp));
+  set_attribute(cloud, make_attribute("scalar_p_smooth", result.p_smooth));
+  cloud.labels = result.classes;
+  replace_comments(cloud, model);
+  return notes;
+}
+
+}  // namespace pcednet::detect

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "pcednet/detect/classify.h"
+
+namespace pcednet::detect {
+
+struct ResultOptions {
+  bool class_colours = false;  ///< colour by class even if the cloud has colours
+};
+
+/// Puts a classification into the cloud it was made of, under the names that viewers understand:
+///
+///     quality             p_sharp + p_smooth, for MeshLab
+///     scalar_edge_class   the class, for CloudCompare
+///     scalar_p_sharp, scalar_p_smooth
+///     label               the class again, for CGAL and others
+///
+/// with the colours of the paper where the cloud has none, normals that were estimated, and
+/// comments on version and model. Labels that the cloud had move to scalar_input_label. Returns
+/// what the user should be told about that.
+std::vector<std::string> add_result(PointCloud& cloud, const PreparedCloud& prepared,
+                                    const Classification& result, const EdgeModel& model,
+                                    const ResultOptions& options = {});
+
+}  // namespace pcednet::detect

@@ -1,0 +1,141 @@
+#include "pcednet/detect/train.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+
+#include "pcednet/core/error.h"
+#include "pcednet/spatial/curve_order.h"
+
+namespace pcednet::detect {
+namespace {
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// The labelled points along the curve, where their order does not depend on how they are numbered.
+std::vector<std::uint32_t> labelled_points(const TrainingCloud& cloud) {
+  if (cloud.labels.size() != cloud.cloud.positions.size()) {
+    throw Error(ErrorKind::kInsufficient,
+                fmt::format("{}: {} labels for {} points", cloud.name, cloud.labels.size(),
+                            cloud.cloud.positions.size()));
+  }
+  std::vector<std::uint32_t> points = spatial::curve_order(cloud.cloud.positions);
+  std::erase_if(points, [&](std::uint32_t i) { return cloud.labels[i] > kSharpEdge; });
+  if (points.empty()) {
+    throw Error(
+        ErrorKind::kInsufficient,
+        fmt::format("{}: no labelled point (0 non-edge, 1 smooth-edge, 2 sharp-edge)", cloud.name));
+  }
+  return points;
+}
+
+std::vector<std::uint8_t> classes_of(const nn::Architecture& architecture) {
+  if (architecture.classes == 2) return {kNonEdge, kSharpEdge};
+  if (architecture.classes == 3) return {kNonEdge, kSmoothEdge, kSharpEdge};
+  throw Error(ErrorKind::kUsage,
+              fmt::format("{} classes: 2 or 3 are possible", architecture.classes));
+}
+
+std::vector<std::string> class_names(const std::vector<std::uint8_t>& classes) {
+  constexpr std::array<const char*, 3> kNames = {"non-edge", "smooth-edge", "sharp-edge"};
+  std::vector<std::string> names;
+  for (const std::uint8_t c : classes) names.emplace_back(kNames[c]);
+  return names;
+}
+
+/// Every feature but phi changes sign with the normals.
+nn::SignRule sign_rule(gls::FeatureSet set, nn::Symmetry symmetry) {
+  nn::SignRule rule{.symmetry = symmetry};
+  const auto names = gls::feature_names(set);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    rule.odd_features.push_back(names[i] == "phi" ? 0 : 1);
+    if (names[i] == "kappa") rule.deciding_feature = static_cast<int>(i);
+  }
+  return rule;
+}
+
+std::map<std::string, std::string> summary_of(const nn::TrainResult& result,
+                                              std::span<const TrainingCloud> clouds,
+                                              std::size_t samples) {
+  std::map<std::string, std::string> summary;
+  std::size_t points = 0;
+  for (const TrainingCloud& cloud : clouds) points += cloud.cloud.positions.size();
+  summary["training_clouds"] = std::to_string(clouds.size());
+  summary["training_points"] = std::to_string(points);
+  summary["training_samples"] = std::to_string(samples);
+  summary["training_epochs"] = std::to_string(result.history.size());
+  if (!result.history.empty()) {
+    const auto best = std::min_element(
+        result.history.begin(), result.history.end(),
+        [](const auto& a, const auto& b) { return a.validation_loss < b.validation_loss; });
+    summary["validation_loss"] = fmt::format("{:.4f}", best->validation_loss);
+    summary["validation_accuracy"] = fmt::format("{:.4f}", best->validation_accuracy);
+  }
+  return summary;
+}
+
+}  // namespace
+
+Samples make_samples(std::span<const TrainingCloud> clouds, const TrainOptions& options,
+                     const Progress* progress) {
+  const auto width = static_cast<std::size_t>(options.descriptor.scales *
+                                              gls::feature_count(options.descriptor.features));
+  const bool two_classes = options.architecture.classes == 2;
+  const Progress cancel_only = without_report(progress);
+  std::size_t points = 0;
+  for (const TrainingCloud& cloud : clouds) points += cloud.cloud.positions.size();
+  Stage stage(progress, "describe", points);
+  Samples samples;
+  std::vector<gls::FitStatus> status;
+  for (const TrainingCloud& cloud : clouds) {
+    const auto targets = labelled_points(cloud);
+    const gls::ExactScaleSpace matrix({cloud.cloud.positions, cloud.cloud.normals},
+                                      options.descriptor, &cancel_only);
+    const std::size_t before = samples.values.size();
+    samples.values.resize(before + targets.size() * width);
+    status.resize(targets.size() * static_cast<std::size_t>(options.descriptor.scales));
+    matrix.describe(targets, std::span(samples.values).subspan(before), status, &cancel_only);
+    for (const std::uint32_t i : targets) {
+      const std::uint8_t label = cloud.labels[i];
+      samples.labels.push_back(two_classes ? (label == kSharpEdge ? 1 : 0) : label);
+    }
+    stage.advance(cloud.cloud.positions.size());
+  }
+  return samples;
+}
+
+TrainedModel train(const std::string& name, std::span<const TrainingCloud> clouds,
+                   const TrainOptions& options,
+                   const std::function<void(const nn::EpochReport&)>& on_epoch,
+                   const Progress* progress) {
+  const auto start = std::chrono::steady_clock::now();
+  TrainedModel trained;
+  EdgeModel& model = trained.model;
+  model.name = name;
+  model.seed = options.training.seed;
+  model.descriptor = options.descriptor;
+  model.classes = classes_of(options.architecture);
+
+  nn::Architecture architecture = options.architecture;
+  architecture.scales = options.descriptor.scales;
+  architecture.features = gls::feature_count(options.descriptor.features);
+  const Samples samples = make_samples(clouds, options, progress);
+  trained.seconds_describe = seconds_since(start);
+
+  nn::TrainOptions training = options.training;
+  training.sign_rule = sign_rule(options.descriptor.features, options.training.sign_rule.symmetry);
+  nn::TrainResult result =
+      nn::train(architecture, {samples.values, samples.labels}, training, on_epoch, progress);
+  trained.cancelled = result.cancelled;
+  trained.seconds_train = seconds_since(start) - trained.seconds_describe;
+  model.network = std::move(result.best);
+  model.network.class_names = class_names(model.classes);
+  model.network.metadata = summary_of(result, clouds, samples.labels.size());
+  return trained;
+}
+
+}  // namespace pcednet::detect

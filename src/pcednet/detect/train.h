@@ -1,0 +1,52 @@
+#pragma once
+
+#include <functional>
+#include <span>
+#include <string>
+
+#include "pcednet/detect/model.h"
+#include "pcednet/detect/prepare.h"
+#include "pcednet/nn/train.h"
+
+namespace pcednet::detect {
+
+/// A cloud to learn from. The spans and the cloud behind them must outlive the training.
+struct TrainingCloud {
+  std::string name;
+  PreparedCloud cloud;
+  std::span<const std::uint8_t> labels;  ///< EdgeClass per point; kUnlabelled is left out
+};
+
+struct TrainOptions {
+  gls::ScaleSpaceOptions descriptor;
+  nn::Architecture architecture;  ///< scales and features are set from `descriptor`
+  nn::TrainOptions training;
+  bool exact = false;  ///< describe with exact neighbourhoods
+};
+
+/// A scale-space matrix row and a label per labelled point of the clouds, cloud after cloud, each
+/// in an order that does not depend on how its points are numbered.
+struct Samples {
+  std::vector<float> values;         ///< samples x scales x features
+  std::vector<std::uint8_t> labels;  ///< the network's output number, 0 to classes - 1
+};
+
+/// Describes every labelled point. With two classes, smooth-edge counts as non-edge.
+/// Throws Error(kInsufficient), naming the cloud, if it has no labelled point.
+Samples make_samples(std::span<const TrainingCloud> clouds, const TrainOptions& options,
+                     const Progress* progress = nullptr);
+
+/// Describes the clouds and trains a network on them. `name` goes into the model. The same clouds,
+/// options and seed give the same bytes, whatever the number of threads. A cancel during the
+/// training proper returns the best model so far; see TrainedModel::cancelled.
+struct TrainedModel {
+  EdgeModel model;
+  bool cancelled = false;
+  double seconds_describe = 0, seconds_train = 0;
+};
+TrainedModel train(const std::string& name, std::span<const TrainingCloud> clouds,
+                   const TrainOptions& options,
+                   const std::function<void(const nn::EpochReport&)>& on_epoch = {},
+                   const Progress* progress = nullptr);
+
+}  // namespace pcednet::detect

@@ -1,0 +1,124 @@
+"""pcednet classify: from a file to a labelled file."""
+import os
+import signal
+import subprocess
+import time
+import unittest
+
+import numpy as np
+
+from support import PROGRAM, CliTest, cube, read_ply, run, write_ply
+
+
+class Classify(CliTest):
+    def classify(self, positions, normals=None, name="cloud.ply", extra=(), **options):
+        source = self.folder / name
+        write_ply(source, positions, normals, **options)
+        out = self.folder / (source.stem + "_out.ply")
+        run("classify", source, "-o", out, "--overwrite", *extra)
+        return read_ply(out)[0]
+
+    def test_finds_the_edges_of_a_cube(self):
+        p, n, label = cube()
+        found = self.classify(p, n)["scalar_edge_class"] > 0
+        true = label > 0
+        tp, fp = np.sum(found & true), np.sum(found & ~true)
+        fn, tn = np.sum(~found & true), np.sum(~found & ~true)
+        mcc = (tp * tn - fp * fn) / np.sqrt(float(tp + fp) * (tp + fn) * (tn + fp) * (tn + fn))
+        self.assertGreater(mcc, 0.75)
+
+    def test_writes_the_fields_that_viewers_expect_in_their_order(self):
+        p, n, _ = cube(500)
+        source = self.folder / "a.ply"
+        write_ply(source, p, n)
+        run("classify", source)
+        rows, header = read_ply(self.folder / "a_edges.ply")
+        self.assertEqual(rows.dtype.names,
+                         ("x", "y", "z", "nx", "ny", "nz", "red", "green", "blue", "quality",
+                          "scalar_edge_class", "scalar_p_sharp", "scalar_p_smooth", "label"))
+        self.assertTrue(any(line.startswith("comment pcednet model") for line in header))
+        np.testing.assert_array_equal(rows["label"], rows["scalar_edge_class"])
+        np.testing.assert_array_equal(rows["x"], p[:, 0].astype("f4"))
+        np.testing.assert_allclose(rows["quality"], rows["scalar_p_sharp"] + rows["scalar_p_smooth"],
+                                   atol=1e-6)
+
+    def test_gives_the_same_labels_for_any_threads_order_orientation_and_origin(self):
+        p, n, _ = cube(3000, noise=0.004)
+        p = np.round(p, 6)
+        reference = self.classify(p, n, position_type="double")
+        for threads in (1, 2, 8):
+            again = self.classify(p, n, extra=("--threads", threads), position_type="double")
+            self.assertEqual(reference.tobytes(), again.tobytes())
+        order = np.random.default_rng(3).permutation(len(p))
+        shuffled = self.classify(p[order], n[order], position_type="double")
+        self.assertEqual(reference[order].tobytes(), shuffled.tobytes())
+        flipped = self.classify(p, -n, position_type="double")
+        for field in ("label", "scalar_p_sharp", "scalar_p_smooth"):
+            np.testing.assert_array_equal(reference[field], flipped[field])
+        moved = self.classify(p + np.array([652000.0, 6862000.0, 35.0]), n, position_type="double")
+        np.testing.assert_array_equal(reference["label"], moved["label"])
+
+    def test_estimates_missing_normals_and_says_so(self):
+        p, _, label = cube()
+        source = self.folder / "bare.ply"
+        write_ply(source, p)
+        done = run("classify", source, "-o", self.folder / "out.ply")
+        self.assertIn("normals", done.stderr)
+        rows, _ = read_ply(self.folder / "out.ply")
+        self.assertIn("nx", rows.dtype.names)
+        self.assertGreater(np.mean((rows["label"] > 0) == (label > 0)), 0.9)
+
+    def test_keeps_points_that_cannot_be_described(self):
+        p, n, _ = cube(800)
+        p[5] = np.nan
+        n[7] = 0
+        rows = self.classify(p, n)
+        self.assertEqual(len(rows), 800)
+        self.assertEqual(rows["label"][5], 255)
+        self.assertIn(rows["label"][7], (0, 1, 2))
+        self.assertTrue(np.all(np.isfinite(rows["scalar_p_sharp"])))
+
+    def test_takes_a_folder(self):
+        for name in ("a.ply", "b.ply"):
+            write_ply(self.folder / name, *cube(400)[:2])
+        run("classify", self.folder, "--out-dir", self.folder / "results")
+        self.assertEqual(sorted(os.listdir(self.folder / "results")),
+                         ["a_edges.ply", "b_edges.ply"])
+
+    def test_goes_on_after_a_bad_file_and_says_so_in_the_end(self):
+        write_ply(self.folder / "b.ply", *cube(400)[:2])
+        (self.folder / "a.ply").write_text("ply\nnonsense\n")
+        done = run("classify", self.folder, "--out-dir", self.folder / "out", expect=3)
+        self.assertIn("a.ply", done.stderr)
+        self.assertEqual(os.listdir(self.folder / "out"), ["b_edges.ply"])
+
+    def test_never_overwrites_unasked(self):
+        write_ply(self.folder / "a.ply", *cube(400)[:2])
+        (self.folder / "a_edges.ply").write_text("precious")
+        done = run("classify", self.folder / "a.ply", expect=2)
+        self.assertIn("--overwrite", done.stderr)
+        self.assertEqual((self.folder / "a_edges.ply").read_text(), "precious")
+
+    def test_draws_a_preview(self):
+        write_ply(self.folder / "a.ply", *cube(2000)[:2])
+        run("classify", self.folder / "a.ply", "--preview", self.folder / "a.png")
+        self.assertEqual((self.folder / "a.png").read_bytes()[:8], b"\x89PNG\r\n\x1a\n")
+
+    def test_stops_on_ctrl_c_and_leaves_nothing(self):
+        write_ply(self.folder / "big.ply", *cube(400_000)[:2])
+        running = subprocess.Popen([PROGRAM, "classify", self.folder / "big.ply", "--exact",
+                                    "--progress", "json"], stderr=subprocess.PIPE, text=True)
+        for line in running.stderr:
+            if '"describe"' in line:
+                break
+        running.send_signal(signal.SIGINT)
+        start = time.monotonic()
+        running.stderr.read()
+        self.assertEqual(running.wait(60), 130)
+        self.assertLess(time.monotonic() - start, 30)
+        running.stderr.close()
+        self.assertEqual(os.listdir(self.folder), ["big.ply"])
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,86 @@
+"""Bad input of every kind: the right exit code, a message that names the file, nothing lost."""
+import os
+import resource
+import unittest
+
+import numpy as np
+
+from support import CliTest, cube, run, write_ply
+
+
+class Errors(CliTest):
+    def fails(self, code, *arguments, naming=None, **options):
+        done = run(*arguments, expect=code, **options)
+        self.assertIn("pcednet", done.stderr)
+        if naming:
+            self.assertIn(str(naming), done.stderr)
+        return done.stderr
+
+    def classify_fails(self, code, name, content):
+        path = self.folder / name
+        path.write_bytes(content)
+        self.fails(code, "classify", path, naming=path)
+        self.assertEqual(os.listdir(self.folder), [name])
+        path.unlink()
+
+    def test_usage(self):
+        run("--help")
+        run("--version")
+        run(expect=2)
+        run("no-such-command", expect=2)
+        run("classify", "--no-such-option", expect=2)
+        run("classify", expect=2)
+        for command in ("classify", "train", "evaluate", "describe", "generate", "normals", "info",
+                        "convert"):
+            self.assertIn("Examples", run(command, "--help").stdout)
+
+    def test_unreadable_input(self):
+        self.fails(3, "classify", self.folder / "none.ply", naming="none.ply")
+        self.classify_fails(3, "empty.ply", b"")
+        self.classify_fails(3, "text.ply", b"this is no PLY\n")
+        self.classify_fails(3, "unknown.xyzzy", b"1 2 3\n")
+        self.classify_fails(3, "bad.xyz", b"1 2 3\n4 five 6\n")
+        write_ply(self.folder / "whole.ply", *cube(100)[:2])
+        whole = (self.folder / "whole.ply").read_bytes()
+        (self.folder / "whole.ply").unlink()
+        self.classify_fails(3, "truncated.ply", whole[:-10])
+        self.classify_fails(3, "absurd.ply", whole.replace(b"vertex 100", b"vertex 99999999999"))
+
+    def test_clouds_that_lack_something(self):
+        nothing = b"ply\nformat ascii 1.0\nelement vertex %d\nproperty float x\n" \
+                  b"property float y\nproperty float z\nend_header\n"
+        self.classify_fails(4, "no_points.ply", nothing % 0)
+        self.classify_fails(4, "one_point.ply", nothing % 1 + b"1 2 3\n")
+        self.classify_fails(4, "nan.ply", nothing % 3 + 3 * b"nan nan nan\n")
+        self.classify_fails(4, "copies.ply", nothing % 50 + 50 * b"1 2 3\n")
+        line = b"".join(b"%d 0 0\n" % i for i in range(100))
+        self.classify_fails(4, "line.ply", nothing % 100 + line)
+        write_ply(self.folder / "plain.ply", *cube(200)[:2])
+        self.fails(4, "train", self.folder / "plain.ply", "-o", self.folder / "m.safetensors",
+                   naming="plain.ply")
+        self.fails(4, "evaluate", self.folder / "plain.ply", "--model", "scan", naming="plain.ply")
+
+    def test_duplicates_and_huge_coordinates_are_fine(self):
+        p, n, _ = cube(600)
+        write_ply(self.folder / "twice.ply", np.vstack([p, p]), np.vstack([n, n]))
+        run("classify", self.folder / "twice.ply")
+        write_ply(self.folder / "far.ply", p + 1e7, n, position_type="double")
+        run("classify", self.folder / "far.ply")
+
+    def test_models(self):
+        write_ply(self.folder / "a.ply", *cube(200)[:2])
+        (self.folder / "m.safetensors").write_bytes(b"\x10\0\0\0\0\0\0\0{}")
+        self.fails(5, "classify", self.folder / "a.ply", "--model", self.folder / "m.safetensors",
+                   naming="m.safetensors")
+        self.fails(2, "classify", self.folder / "a.ply", "--model", "no-such-model",
+                   naming="no-such-model")
+
+    def test_a_full_disk_leaves_nothing_half_written(self):
+        write_ply(self.folder / "a.ply", *cube(20000)[:2])
+        limit = lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (100_000, 100_000))
+        self.fails(1, "classify", self.folder / "a.ply", naming="a_edges.ply", preexec_fn=limit)
+        self.assertEqual(os.listdir(self.folder), ["a.ply"])
+
+
+if __name__ == "__main__":
+    unittest.main()
