@@ -9,11 +9,11 @@ namespace pcednet::app {
 // Each subcommand adds itself to the command line; its callback does the work and reports failure
 // by throwing pcednet::Error. One file per subcommand, in commands/.
 
+void add_classify(CLI::App& app, Common& common);
 void add_train(CLI::App& app, Common& common);
 void add_evaluate(CLI::App& app, Common& common);
 void add_generate(CLI::App& app, Common& common);
 void add_info(CLI::App& app, Common& common);
 void add_convert(CLI::App& app, Common& common);
-void add_generate(CLI::App& app, Common& common);
 
 }  // namespace pcednet::app

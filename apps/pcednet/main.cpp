@@ -26,12 +26,12 @@ int run(int argc, char** argv) {
   app.parse_complete_callback([&] { set_thread_count(common.threads); });
   install_signal_handlers();
   // One line per subcommand, in the order of the help.
+  add_classify(app, common);
   add_train(app, common);
   add_evaluate(app, common);
   add_generate(app, common);
   add_info(app, common);
   add_convert(app, common);
-  add_generate(app, common);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -49,7 +49,8 @@ std::vector<std::string> class_names(const std::vector<std::uint8_t>& classes) {
 
 /// Every feature but phi changes sign with the normals.
 nn::SignRule sign_rule(gls::FeatureSet set, nn::Symmetry symmetry) {
-  nn::SignRule rule{.symmetry = symmetry};
+  nn::SignRule rule;
+  rule.symmetry = symmetry;
   const auto names = gls::feature_names(set);
   for (std::size_t i = 0; i < names.size(); ++i) {
     rule.odd_features.push_back(names[i] == "phi" ? 0 : 1);

@@ -1,0 +1,179 @@
+#include <fmt/format.h>
+
+#include <chrono>
+#include <memory>
+#include <set>
+
+#include "commands.h"
+#include "models.h"
+#include "pcednet/core/error.h"
+#include "pcednet/core/version.h"
+#include "pcednet/detect/classify.h"
+#include "pcednet/detect/result_cloud.h"
+#include "pcednet/io/read_cloud.h"
+#include "pcednet/io/write_cloud.h"
+#include "pcednet/render/preview.h"
+
+namespace pcednet::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Arguments {
+  std::vector<std::string> inputs;
+  std::string output, output_folder, model = "scan", preview;
+  bool exact = false, class_colours = false, ascii = false;
+};
+
+struct Job {
+  fs::path input, output, preview;
+};
+
+/// Seconds since the last call.
+class Stopwatch {
+ public:
+  double lap() {
+    const auto now = std::chrono::steady_clock::now();
+    return std::chrono::duration<double>(now - std::exchange(last_, now)).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+fs::path preview_path(const Arguments& arguments, const fs::path& input, bool several) {
+  if (arguments.preview.empty()) return {};
+  if (!several) return arguments.preview;
+  const fs::path pattern = arguments.preview;
+  return pattern.parent_path() / fmt::format("{}_{}{}", pattern.stem().string(),
+                                             input.stem().string(), pattern.extension().string());
+}
+
+/// What to read and write; refuses before any work what could not be written after it.
+std::vector<Job> plan(const Arguments& arguments, const Common& common) {
+  const auto inputs = expand_inputs(arguments.inputs);
+  if (!arguments.output.empty() && (inputs.size() > 1 || !arguments.output_folder.empty())) {
+    throw Error(ErrorKind::kUsage, "classify: -o is for one input; use --out-dir for several");
+  }
+  std::vector<Job> jobs;
+  std::set<fs::path> taken;
+  for (const fs::path& input : inputs) {
+    const fs::path folder =
+        arguments.output_folder.empty() ? input.parent_path() : fs::path(arguments.output_folder);
+    const fs::path output = arguments.output.empty()
+                                ? folder / (input.stem().string() + "_edges.ply")
+                                : fs::path(arguments.output);
+    if (!taken.insert(output).second) {
+      throw Error(ErrorKind::kUsage,
+                  fmt::format("{}: two inputs would be written here", output.string()));
+    }
+    jobs.push_back({input, output, preview_path(arguments, input, inputs.size() > 1)});
+    for (const fs::path& file : {jobs.back().output, jobs.back().preview}) {
+      check_writable(file, common.overwrite());
+    }
+  }
+  if (!arguments.output_folder.empty()) fs::create_directories(arguments.output_folder);
+  return jobs;
+}
+
+void report(const Job& job, const detect::Classification& result,
+            const std::vector<std::pair<const char*, double>>& times) {
+  const std::size_t points = result.classes.size();
+  const auto share = [&](std::size_t count) {
+    return 100.0 * static_cast<double>(count) /
+           static_cast<double>(std::max<std::size_t>(points, 1));
+  };
+  say(fmt::format(
+      "{}: {} points: {} sharp-edge ({:.1f} %), {} smooth-edge ({:.1f} %), {} non-edge{}",
+      job.input.string(), points, result.counts.sharp, share(result.counts.sharp),
+      result.counts.smooth, share(result.counts.smooth), result.counts.non_edge,
+      result.counts.unlabelled == 0 ? std::string()
+                                    : fmt::format(", {} unlabelled", result.counts.unlabelled)));
+  std::string line = "  seconds:";
+  double total = 0;
+  for (const auto& [stage, seconds] : times) {
+    line += fmt::format(" {} {:.2f},", stage, seconds);
+    total += seconds;
+  }
+  say(line + fmt::format(" total {:.2f}", total));
+  say(fmt::format("  -> {}", job.output.string()));
+}
+
+void classify_file(const Job& job, const Arguments& arguments, const detect::EdgeModel& model,
+                   const Common& common) {
+  const Progress progress = console_progress(common);
+  Stopwatch watch;
+  std::vector<std::pair<const char*, double>> times;
+  auto loaded = io::read_cloud(job.input);
+  for (const std::string& warning : loaded.warnings) {
+    warn(fmt::format("{}: {}", job.input.string(), warning));
+  }
+  times.emplace_back("read", watch.lap());
+  const auto prepared = detect::prepare(loaded.cloud, &progress);
+  for (const std::string& note : prepared.notes) {
+    warn(fmt::format("{}: {}", job.input.string(), note));
+  }
+  times.emplace_back("normals", watch.lap());
+  const auto result = detect::classify(prepared, model, {.exact = arguments.exact}, &progress);
+  times.emplace_back("prepare", result.seconds_prepare);
+  times.emplace_back("describe", result.seconds_describe);
+  times.emplace_back("network", result.seconds_network);
+  watch.lap();
+  auto kept = detect::add_result(loaded.cloud, prepared, result, model,
+                                 {.class_colours = arguments.class_colours});
+  for (const std::string& note : kept) say(fmt::format("  {}", note));
+  io::write_cloud(job.output, loaded.cloud,
+                  {.overwrite = common.overwrite(), .ascii = arguments.ascii});
+  times.emplace_back("write", watch.lap());
+  if (!job.preview.empty()) {
+    render::write_preview(job.preview, loaded.cloud, result.classes,
+                          {.overwrite = common.overwrite()});
+    times.emplace_back("preview", watch.lap());
+  }
+  report(job, result, times);
+}
+
+void classify(const Arguments& arguments, const Common& common) {
+  const auto model = detect::load_model(find_model(arguments.model));
+  const auto jobs = plan(arguments, common);
+  std::optional<Error> first_failure;
+  for (const Job& job : jobs) {
+    try {
+      with_name_in_errors(job.input, [&] { classify_file(job, arguments, model, common); });
+    } catch (const Error& error) {
+      // One bad file does not cost the user the other ninety-nine.
+      if (error.kind() == ErrorKind::kCancelled || jobs.size() == 1) throw;
+      say(fmt::format("pcednet: {}", error.what()));
+      if (!first_failure) first_failure = error;
+    }
+  }
+  if (first_failure) {
+    throw Error(first_failure->kind(), "not every input could be classified: see above");
+  }
+}
+
+}  // namespace
+
+void add_classify(CLI::App& app, Common& common) {
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* command =
+      add_command(app, common, "classify", "Label every point: non-edge, smooth-edge, sharp-edge.",
+                  "pcednet classify scan.ply                       writes scan_edges.ply\n"
+                  "pcednet classify scan.ply -o out.ply --preview out.png\n"
+                  "pcednet classify folder/ --out-dir results/     every point file in a folder\n"
+                  "pcednet classify part.obj --model my.safetensors");
+  command->add_option("inputs", arguments->inputs, "Point files, or folders of them")->required();
+  command->add_option("-o,--output", arguments->output,
+                      "The result (default: <stem>_edges.ply beside the input)");
+  command->add_option("--out-dir", arguments->output_folder, "Folder for the results");
+  command->add_option("--model", arguments->model, "A shipped model's name, or a model file")
+      ->capture_default_str();
+  command->add_option("--preview", arguments->preview, "Also draw the labelled cloud: a PNG file");
+  command->add_flag("--class-colours", arguments->class_colours,
+                    "Colour the points by class even where the input has colours");
+  command->add_flag("--ascii", arguments->ascii, "Write text instead of binary");
+  command->add_flag("--exact", arguments->exact, "Descriptors from exact neighbourhoods (slow)");
+  command->callback([arguments, &common] { classify(*arguments, common); });
+}
+
+}  // namespace pcednet::app
