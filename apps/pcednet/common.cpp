@@ -9,6 +9,7 @@
 #include <csignal>
 #include <cstdio>
 #include <memory>
+#include <sstream>
 
 #include "pcednet/core/error.h"
 
@@ -55,19 +56,20 @@ void install_signal_handlers() {
   sigaction(SIGPIPE, &action, nullptr);
 }
 
+std::string HelpFormatter::make_subcommand(const CLI::App* command) const {
+  const std::string text = command->get_description();
+  std::ostringstream line;
+  CLI::detail::format_help(line, command->get_name(), text.substr(0, text.find('\n')),
+                           column_width_);
+  return line.str();
+}
+
 CLI::App* add_command(CLI::App& app, Common& common, const std::string& name,
                       const std::string& description, const std::string& examples) {
-  CLI::App* command = app.add_subcommand(name, description);
-  command->footer("");
   std::string text = description + "\n\nExamples:\n";
-  std::size_t start = 0;
-  while (start < examples.size()) {
-    const std::size_t end = std::min(examples.find('\n', start), examples.size());
-    text += "  " + examples.substr(start, end - start) + "\n";
-    start = end + 1;
-  }
-  // The list of commands shows the first line alone; `help` of the command shows all of it.
-  command->description(text);
+  std::istringstream lines(examples);
+  for (std::string line; std::getline(lines, line);) text += "  " + line + "\n";
+  CLI::App* command = app.add_subcommand(name, text);
   command->add_option("--threads", common.threads, "Threads to use (0: every core)")
       ->capture_default_str()
       ->check(CLI::Range(0, 4096));

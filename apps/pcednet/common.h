@@ -22,6 +22,11 @@ struct Common {
   Overwrite overwrite() const { return overwrite_files ? Overwrite::kYes : Overwrite::kNo; }
 };
 
+/// Lists a subcommand by the first line of its description alone.
+struct HelpFormatter : CLI::Formatter {
+  std::string make_subcommand(const CLI::App* command) const override;
+};
+
 /// Adds a subcommand whose help shows `examples` (one command a line) before its options, with the
 /// common options. `common` must outlive the parsing.
 CLI::App* add_command(CLI::App& app, Common& common, const std::string& name,
@@ -31,8 +36,8 @@ CLI::App* add_command(CLI::App& app, Common& common, const std::string& name,
 Progress console_progress(const Common& common);
 
 /// Makes Ctrl-C (SIGINT, SIGTERM) a request to stop that console_progress hands on; a second one
-/// ends the program at once. A file that grows beyond its limit, or a reader that goes away, is an error
-/// to report, not a signal to die of.
+/// ends the program at once. A file that grows beyond its limit, or a reader that goes away, is an
+/// error to report, not a signal to die of.
 void install_signal_handlers();
 
 /// One line on stderr, after whatever progress line is there.

@@ -2,6 +2,7 @@
 
 #include <cstdio>
 #include <exception>
+#include <memory>
 #include <new>
 
 #include "commands.h"
@@ -19,6 +20,7 @@ int run(int argc, char** argv) {
       "  pcednet classify scan.ply              labels and confidences in scan_edges.ply\n"
       "  pcednet classify folder/ --out-dir out every point file of a folder\n"
       "  pcednet train painted.ply -o my.safetensors\n"};
+  app.formatter(std::make_shared<HelpFormatter>());
   app.set_version_flag("--version", std::string("pcednet ") + kVersion);
   app.require_subcommand(1);
   app.fallthrough(false);

@@ -41,6 +41,20 @@ void check(const std::filesystem::path& png, const PointCloud& cloud,
   }
 }
 
+/// Leaves out the strays: discs so much larger than most that they stand for no surface that was
+/// sampled, the noise around a photogrammetric cloud above all. They would hide the rest.
+void drop_strays(std::vector<Surfel>& surfels) {
+  constexpr float kStray = 8.0f;  // times the median radius
+  std::vector<float> radii(surfels.size());
+  std::transform(surfels.begin(), surfels.end(), radii.begin(),
+                 [](const Surfel& surfel) { return surfel.radius; });
+  const auto middle = radii.begin() + static_cast<std::ptrdiff_t>(radii.size() / 2);
+  std::nth_element(radii.begin(), middle, radii.end());
+  if (*middle == 0.0f) return;
+  const float largest = kStray * *middle;
+  std::erase_if(surfels, [&](const Surfel& surfel) { return surfel.radius > largest; });
+}
+
 /// About `count` of the surfels, larger, so that they still cover the surface.
 std::vector<Surfel> thinned(const std::vector<Surfel>& surfels, std::size_t count) {
   const std::size_t step = (surfels.size() + count - 1) / count;
@@ -57,11 +71,12 @@ std::vector<Surfel> thinned(const std::vector<Surfel>& surfels, std::size_t coun
 void write_preview(const std::filesystem::path& png, const PointCloud& cloud,
                    std::span<const std::uint8_t> classes, const PreviewOptions& options) {
   check(png, cloud, classes, options);
-  const std::vector<Surfel> surfels = make_surfels(cloud, classes, kMostSurfels);
+  std::vector<Surfel> surfels = make_surfels(cloud, classes, kMostSurfels);
   if (surfels.empty()) {
     throw Error(ErrorKind::kInsufficient,
                 fmt::format("{}: nothing to draw: the cloud has no finite point", png.string()));
   }
+  drop_strays(surfels);
   const Eigen::Vector3f direction =
       options.view_direction
           ? Eigen::Vector3f(options.view_direction->stableNormalized().cast<float>())
