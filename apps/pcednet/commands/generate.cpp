@@ -88,7 +88,10 @@ void add_default(CLI::App& generate, Common& common) {
 }  // namespace
 
 void add_generate(CLI::App& app, Common& common) {
-  CLI::App* generate = app.add_subcommand("generate", "Make labelled point clouds");
+  CLI::App* generate = app.add_subcommand("generate",
+                                          "Make labelled point clouds\n\nExamples:\n"
+                                          "  pcednet generate default clouds/\n"
+                                          "  pcednet generate default clouds/ --seed 2\n");
   generate->require_subcommand(1);
   add_default(*generate, common);
 }
