@@ -1,0 +1,183 @@
+#include "pcednet/detect/train.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <numeric>
+
+#include "pcednet/core/error.h"
+#include "pcednet/core/parallel.h"
+#include "pcednet/core/random.h"
+#include "pcednet/detect/classify.h"
+#include "pcednet/detect/result_cloud.h"
+#include "pcednet/nn/model_file.h"
+
+namespace pcednet::detect {
+namespace {
+
+/// The surface of a unit cube, labelled by the distance to its edges.
+PointCloud cube(std::size_t points, std::uint64_t seed) {
+  Random random(seed);
+  PointCloud cloud;
+  for (std::size_t i = 0; i < points; ++i) {
+    const auto axis = static_cast<Eigen::Index>(random.index(3));
+    const double side = random.index(2) == 0 ? -0.5 : 0.5;
+    Vec3 p(random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5));
+    p[axis] = side;
+    Vec3 away = (0.5 - p.cwiseAbs().array()).matrix();
+    std::sort(away.data(), away.data() + 3);
+    cloud.positions.push_back(p);
+    cloud.normals.push_back(2.0 * side * Vec3::Unit(axis));
+    cloud.labels.push_back(away[1] < 0.025 ? kSharpEdge : away[1] < 0.08 ? kSmoothEdge : kNonEdge);
+  }
+  return cloud;
+}
+
+PointCloud permuted(const PointCloud& cloud) {
+  std::vector<std::size_t> order(cloud.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  Random(9).shuffle(std::span(order));
+  PointCloud result;
+  for (const std::size_t i : order) {
+    result.positions.push_back(cloud.positions[i]);
+    result.normals.push_back(cloud.normals[i]);
+    result.labels.push_back(cloud.labels[i]);
+  }
+  return result;
+}
+
+TrainOptions quick(int classes) {
+  TrainOptions options;
+  options.architecture.classes = classes;
+  options.training.epochs = 8;
+  return options;
+}
+
+TrainedModel train_on(const PointCloud& cloud, const TrainOptions& options) {
+  const TrainingCloud training{"cube", prepare(cloud), cloud.labels};
+  return train("test", {&training, 1}, options);
+}
+
+double accuracy(const PointCloud& cloud, const EdgeModel& model) {
+  const auto found = classify(prepare(cloud), model).classes;
+  std::size_t right = 0;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    right += (found[i] != kNonEdge) == (cloud.labels[i] != kNonEdge);
+  }
+  return static_cast<double>(right) / static_cast<double>(found.size());
+}
+
+TEST(TrainEdges, LearnsTheEdgesOfACubeItHasNotSeen) {
+  const auto trained = train_on(cube(4000, 1), quick(3));
+  EXPECT_GT(accuracy(cube(3000, 2), trained.model), 0.93);
+}
+
+TEST(TrainEdges, GivesTheSameModelForAnyThreadsAndOrder) {
+  const PointCloud cloud = cube(1500, 1);
+  const auto reference = train_on(cloud, quick(3)).model.network.network.parameters;
+  for (const int threads : {1, 2, 8}) {
+    set_thread_count(threads);
+    EXPECT_EQ(train_on(cloud, quick(3)).model.network.network.parameters, reference) << threads;
+  }
+  set_thread_count(0);
+  EXPECT_EQ(train_on(permuted(cloud), quick(3)).model.network.network.parameters, reference);
+}
+
+TEST(TrainEdges, TakesSmoothEdgesForNonEdgesWithTwoClasses) {
+  const PointCloud cloud = cube(1500, 1);
+  const auto model = train_on(cloud, quick(2)).model;
+  const auto result = classify(prepare(cloud), model);
+  EXPECT_EQ(result.counts.smooth, 0u);
+  EXPECT_GT(result.counts.sharp, 0u);
+  EXPECT_EQ(*std::max_element(result.p_smooth.begin(), result.p_smooth.end()), 0.0f);
+}
+
+TEST(TrainEdges, NamesTheCloudWithoutLabels) {
+  PointCloud cloud = cube(100, 1);
+  std::fill(cloud.labels.begin(), cloud.labels.end(), kUnlabelled);
+  try {
+    train_on(cloud, quick(3));
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::kInsufficient);
+    EXPECT_NE(std::string(error.what()).find("cube"), std::string::npos);
+  }
+}
+
+class EdgeModelFile : public testing::Test {
+ protected:
+  void SetUp() override { std::filesystem::remove(path_); }
+  void TearDown() override { std::filesystem::remove(path_); }
+  std::filesystem::path path_ =
+      std::filesystem::temp_directory_path() /
+      (std::string("pcednet_") + testing::UnitTest::GetInstance()->current_test_info()->name() +
+       ".safetensors");
+};
+
+TEST_F(EdgeModelFile, KeepsEverythingThatClassificationNeeds) {
+  auto options = quick(3);
+  options.descriptor.scales = 8;
+  options.descriptor.features = gls::FeatureSet::kInvariant7;
+  options.descriptor.side_gate = -0.25;
+  options.training.seed = 77;
+  const PointCloud cloud = cube(1500, 3);
+  const EdgeModel model = train_on(cloud, options).model;
+  save_model(path_, model, Overwrite::kNo);
+  const EdgeModel loaded = load_model(path_);
+  EXPECT_EQ(loaded.name, "test");
+  EXPECT_EQ(loaded.seed, 77u);
+  EXPECT_EQ(loaded.descriptor.scales, 8);
+  EXPECT_EQ(loaded.descriptor.side_gate, -0.25);
+  EXPECT_EQ(loaded.descriptor.features, gls::FeatureSet::kInvariant7);
+  EXPECT_EQ(classify(prepare(cloud), loaded).p_sharp, classify(prepare(cloud), model).p_sharp);
+}
+
+TEST_F(EdgeModelFile, RefusesANetworkWithoutItsDescriptor) {
+  nn::save_model(path_, train_on(cube(800, 3), quick(3)).model.network);
+  try {
+    load_model(path_);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::kModelMismatch);
+    EXPECT_NE(std::string(error.what()).find(path_.string()), std::string::npos);
+  }
+}
+
+TEST(ClassifyEdges, LeavesWhatHasNoPlaceUnlabelledAndKeepsOldLabels) {
+  PointCloud cloud = cube(1200, 4);
+  const EdgeModel model = train_on(cloud, quick(3)).model;
+  const auto old_labels = cloud.labels;
+  cloud.positions[10] = Vec3::Constant(std::nan(""));
+  const PreparedCloud prepared = prepare(cloud);
+  const auto result = classify(prepared, model);
+  EXPECT_EQ(result.classes[10], kUnlabelled);
+  EXPECT_EQ(result.counts.unlabelled, 1u);
+  add_result(cloud, prepared, result, model);
+  EXPECT_EQ(cloud.labels, result.classes);
+  const Attribute* kept = find_attribute(cloud, "scalar_input_label");
+  ASSERT_NE(kept, nullptr);
+  EXPECT_EQ(kept->value(5), old_labels[5]);
+}
+
+TEST(PrepareCloud, RefusesWhatHasNoSurface) {
+  EXPECT_THROW(prepare(PointCloud{}), Error);
+  PointCloud line;
+  for (int i = 0; i < 50; ++i) line.positions.emplace_back(i, 0, 0);
+  EXPECT_THROW(prepare(line), Error);
+}
+
+TEST(PrepareCloud, EstimatesNormalsOutwardsWhereThereAreNone) {
+  PointCloud cloud = cube(3000, 5);
+  const auto truth = std::exchange(cloud.normals, {});
+  const PreparedCloud prepared = prepare(cloud);
+  ASSERT_EQ(prepared.normals.size(), cloud.size());
+  EXPECT_FALSE(prepared.notes.empty());
+  std::size_t outwards = 0;
+  for (std::size_t i = 0; i < truth.size(); ++i) outwards += prepared.normals[i].dot(truth[i]) > 0;
+  EXPECT_GT(outwards, cloud.size() * 98 / 100);
+}
+
+}  // namespace
+}  // namespace pcednet::detect
