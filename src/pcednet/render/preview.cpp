@@ -44,7 +44,7 @@ void check(const std::filesystem::path& png, const PointCloud& cloud,
 /// Leaves out the strays: discs so much larger than most that they stand for no surface that was
 /// sampled, the noise around a photogrammetric cloud above all. They would hide the rest.
 void drop_strays(std::vector<Surfel>& surfels) {
-  constexpr float kStray = 8.0f;  // times the median radius
+  constexpr float kStray = 3.0f;  // times the median radius
   std::vector<float> radii(surfels.size());
   std::transform(surfels.begin(), surfels.end(), radii.begin(),
                  [](const Surfel& surfel) { return surfel.radius; });
