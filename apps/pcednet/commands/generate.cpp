@@ -6,6 +6,7 @@
 
 #include "commands.h"
 #include "pcednet/core/error.h"
+#include "pcednet/data/building.h"
 #include "pcednet/data/default_set.h"
 #include "pcednet/io/write_cloud.h"
 
@@ -85,6 +86,19 @@ void add_default(CLI::App& generate, Common& common) {
   command->callback([=, &common] { run_default(*arguments, common); });
 }
 
+void add_sample(CLI::App& generate, Common& common) {
+  auto file = std::make_shared<std::string>();
+  auto seed = std::make_shared<std::uint64_t>(1);
+  CLI::App* command = add_command(generate, common, "sample",
+                                  "The labelled building that the demo classifies, as one file",
+                                  "pcednet generate sample building.ply");
+  command->add_option("file", *file, "The file to write")->required();
+  command->add_option("--seed", *seed, "Another seed gives other points")->capture_default_str();
+  command->callback([file, seed, &common] {
+    io::write_cloud(*file, data::building_scan(*seed).cloud, {.overwrite = common.overwrite()});
+  });
+}
+
 }  // namespace
 
 void add_generate(CLI::App& app, Common& common) {
@@ -94,6 +108,7 @@ void add_generate(CLI::App& app, Common& common) {
                                           "  pcednet generate default clouds/ --seed 2\n");
   generate->require_subcommand(1);
   add_default(*generate, common);
+  add_sample(*generate, common);
 }
 
 }  // namespace pcednet::app
