@@ -155,18 +155,23 @@ void promote_colours(PointCloud& cloud, std::vector<std::string>& warnings) {
 
 LoadedCloud keep_spelled_digits(LoadedCloud declared,
                                 const std::function<LoadedCloud()>& read_wide) {
-  const auto is_far = [](const Vec3& p) { return p.allFinite() && p.cwiseAbs().maxCoeff() >= 1e4; };
+  const auto is_far = [](double v) { return std::isfinite(v) && std::abs(v) >= 1e4; };
   const std::vector<Vec3>& floats = declared.cloud.positions;
+  const auto has_far = [&](const Vec3& p) {
+    return is_far(p.x()) || is_far(p.y()) || is_far(p.z());
+  };
   if (declared.cloud.position_type != ScalarType::kFloat32 ||
-      std::none_of(floats.begin(), floats.end(), is_far)) {
+      std::none_of(floats.begin(), floats.end(), has_far)) {
     return declared;
   }
   LoadedCloud wide = read_wide();
-  const std::vector<Vec3>& doubles = wide.cloud.positions;
   for (std::size_t i = 0; i < floats.size(); ++i) {
-    if (!is_far(floats[i]) || floats[i] == doubles[i]) continue;
-    wide.warnings.emplace_back("positions are called float but have more digits: kept as double");
-    return wide;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double spelled = wide.cloud.positions[i][axis];
+      if (!is_far(spelled) || floats[i][axis] == spelled) continue;
+      wide.warnings.emplace_back("positions are called float but have more digits: kept as double");
+      return wide;
+    }
   }
   return declared;
 }

@@ -27,7 +27,9 @@ Format find_format(const InputFile& file) {
   const std::string start = file.text(0, 16);
   const std::string extension = lower_case(file.path().extension().string());
   const auto begins_with = [&](std::string_view magic) { return start.starts_with(magic); };
-  if (begins_with("ply\n") || begins_with("ply\r") || begins_with("ply ")) return Format::kPly;
+  if (begins_with("ply") && start.size() > 3 && (start[3] == '\n' || kBlankSeparators(start[3]))) {
+    return Format::kPly;
+  }
   if (begins_with("# .PCD") || begins_with("VERSION ") || begins_with("FIELDS ")) {
     return Format::kPcd;
   }

@@ -1,0 +1,89 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "pcednet/io/write_cloud.h"
+#include "sample_cloud.h"
+#include "scratch.h"
+
+namespace pcednet::io {
+namespace {
+
+TEST(Obj, AveragesTheNormalsOfAVertexOverItsCorners) {
+  const Scratch scratch;
+  const auto loaded = scratch.read("a.obj",
+                                   "# a roof\nmtllib x.mtl\nv 0 0 0\nv 1 0 0 1.0\nv 0 1 0\n"
+                                   "v 5 5 5\nvn 0 0 2\nvn 0 3 0\nvt 0 0\n"
+                                   "f 1//1 2/1/1 3//1\nf -4//-1 -2/1/-2 \\\n -3//2\n");
+  ASSERT_EQ(loaded.cloud.size(), 4u);
+  const double half = std::sqrt(0.5);
+  EXPECT_LT((loaded.cloud.normals[0] - Vec3(0, half, half)).norm(), 1e-15);
+  EXPECT_LT((loaded.cloud.normals[1] - Vec3(0, half, half)).norm(), 1e-15);
+  EXPECT_EQ(loaded.cloud.normals[2], Vec3(0, 0, 1));
+  EXPECT_EQ(loaded.cloud.normals[3], Vec3(0, 0, 0));
+  EXPECT_EQ(loaded.cloud.comments, std::vector<std::string>{"a roof"});
+  ASSERT_EQ(loaded.warnings.size(), 2u);
+  EXPECT_TRUE(contains(loaded.warnings[0], "2 faces"));
+  EXPECT_TRUE(contains(loaded.warnings[1], "1 of 4 normals"));
+}
+
+TEST(Obj, PairsNormalsWithVerticesWhereNoFaceDoes) {
+  const Scratch scratch;
+  const auto equal = scratch.read("a.obj", "v 0 0 0\nv 1 0 0\nvn 0 0 1\nvn 0 2 0\nf 1 2 1\n");
+  EXPECT_EQ(equal.cloud.normals.at(1), Vec3(0, 1, 0));
+  const auto unequal = scratch.read("b.obj", "v 0 0 0\nv 1 0 0\nvn 0 0 1\n");
+  EXPECT_FALSE(unequal.cloud.has_normals());
+  EXPECT_EQ(unequal.warnings.size(), 1u);
+}
+
+TEST(Obj, ReadsColoursOfBothRanges) {
+  const Scratch scratch;
+  const auto unit = scratch.read("a.obj", "v 0 0 0 1 0 0.2\nv 1 0 0 0 1 0\n");
+  EXPECT_EQ(unit.cloud.colours.at(0), (Rgb{255, 0, 51}));
+  const auto bytes = scratch.read("b.obj", "v 0 0 0 255 0 51\nv 1 0 0 0 1 0\n");
+  EXPECT_EQ(bytes.cloud.colours.at(0), (Rgb{255, 0, 51}));
+  const auto some = scratch.read("c.obj", "v 0 0 0 255 0 51\nv 1 0 0\n");
+  EXPECT_TRUE(some.cloud.colours.empty());
+  EXPECT_EQ(some.warnings.size(), 1u);
+}
+
+TEST(Obj, GivesBackWhatItCanHold) {
+  const Scratch scratch;
+  PointCloud cloud = sample_cloud();
+  cloud.position_type = ScalarType::kFloat64;
+  cloud.positions[0] = Vec3(512049.781, 5403059.52, 0.1);
+  write_cloud(scratch.path("a.obj"), cloud);
+  const PointCloud back = read_cloud(scratch.path("a.obj")).cloud;
+  EXPECT_TRUE(same_bits(back.positions, cloud.positions));
+  EXPECT_EQ(back.colours, cloud.colours);
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    EXPECT_LT((back.normals.at(i) - cloud.normals[i]).norm(), 1.5e-7);  // float and back
+  }
+  const auto lost = losses("a.obj", cloud);
+  EXPECT_EQ(lost, (std::vector<std::string>{"attribute intensity", "attribute scalar_p_sharp",
+                                            "attribute scalar_edge_class", "attribute quality",
+                                            "labels"}));
+}
+
+TEST(Obj, NamesTheLineOfABrokenStatement) {
+  const Scratch scratch;
+  const auto unreadable = [&](const std::string& bytes, const std::string& part) {
+    const std::string message =
+        error_of(ErrorKind::kUnreadable, [&] { scratch.read("a.obj", bytes); });
+    EXPECT_TRUE(contains(message, scratch.path("a.obj").string() + part)) << message;
+  };
+  unreadable("v 1 2\n", ":1: v with 2 numbers");
+  unreadable("v 1 2 3\nv 1 2 z\n", ":2: expected a number");
+  unreadable("vn 1 2\n", ":1: expected vn");
+  unreadable("v 1 2 3\nf 1 2 1\n", ":2: names v number 2 of 1");
+  unreadable("v 1 2 3\nvn 0 0 1\nf 1//2\n", ":3: names vn number 2 of 1");
+  for (const char* bad :
+       {"0", "-2", "x", "1.5", "99999999999999999999", "-9223372036854775808", ""}) {
+    unreadable(std::string("v 1 2 3\nvn 0 0 1\nf 1//") + bad + "\n", ":3: expected the index");
+  }
+  EXPECT_TRUE(scratch.read("b.obj", "# nothing\n").cloud.empty());
+  EXPECT_TRUE(scratch.read("b.obj", "").cloud.empty());
+}
+
+}  // namespace
+}  // namespace pcednet::io

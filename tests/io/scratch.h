@@ -1,0 +1,100 @@
+#pragma once
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "pcednet/cloud/point_cloud.h"
+#include "pcednet/core/error.h"
+#include "pcednet/io/read_cloud.h"
+
+namespace pcednet::io {
+
+/// A folder of a test's own, gone after it.
+class Scratch {
+ public:
+  Scratch() {
+    const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
+    folder_ = std::filesystem::temp_directory_path() /
+              ("pcednet-" + std::string(info->test_suite_name()) + "-" + info->name() + "-" +
+               std::to_string(getpid()));
+    std::filesystem::create_directories(folder_);
+  }
+  ~Scratch() { std::filesystem::remove_all(folder_); }
+  Scratch(const Scratch&) = delete;
+  Scratch& operator=(const Scratch&) = delete;
+
+  std::filesystem::path path(const std::string& name) const { return folder_ / name; }
+
+  std::filesystem::path file(const std::string& name, std::string_view bytes) const {
+    // Truncating an old file makes some file systems wait for the disk.
+    std::filesystem::remove(path(name));
+    std::ofstream(path(name), std::ios::binary) << bytes;
+    return path(name);
+  }
+
+  LoadedCloud read(const std::string& name, std::string_view bytes) const {
+    return read_cloud(file(name, bytes));
+  }
+
+ private:
+  std::filesystem::path folder_;
+};
+
+inline std::string bytes_of(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// The bytes of numbers one after the other, of the types they are given in.
+template <typename... Numbers>
+std::string packed(Numbers... numbers) {
+  std::string bytes;
+  (bytes.append(reinterpret_cast<const char*>(&numbers), sizeof numbers), ...);
+  return bytes;
+}
+
+/// The same with the bytes of each number reversed.
+template <typename... Numbers>
+std::string packed_reversed(Numbers... numbers) {
+  std::string bytes;
+  const auto add = [&](const auto& number) {
+    const std::string one = packed(number);
+    bytes.append(one.rbegin(), one.rend());
+  };
+  (add(numbers), ...);
+  return bytes;
+}
+
+/// The message of the Error that `action` throws; the test fails unless it is of that kind.
+template <typename Action>
+std::string error_of(ErrorKind kind, Action&& action) {
+  try {
+    action();
+  } catch (const Error& error) {
+    EXPECT_EQ(static_cast<int>(error.kind()), static_cast<int>(kind)) << error.what();
+    return error.what();
+  }
+  ADD_FAILURE() << "no Error was thrown";
+  return "";
+}
+
+inline bool contains(std::string_view text, std::string_view part) {
+  return text.find(part) != std::string_view::npos;
+}
+
+/// Whether two vectors have the same bits, NaN included.
+template <typename T>
+bool same_bits(const std::vector<T>& a, const std::vector<T>& b) {
+  return a.size() == b.size() &&
+         (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
+}
+
+}  // namespace pcednet::io

@@ -1,0 +1,164 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "pcednet/io/write_cloud.h"
+#include "pcednet/io/xyz_guess.h"
+#include "sample_cloud.h"
+#include "scratch.h"
+
+namespace pcednet::io {
+namespace {
+
+TEST(Xyz, ReadsAnySeparatorAndSkipsComments) {
+  const Scratch scratch;
+  for (const char* text : {"1 2 3.5\n4 5 6\n", "1,2,3.5\n4,5,6", "1; 2; 3.5\r\n4; 5; 6\r\n",
+                           "# hello\n\n1\t2\t3.5\n// there\n  4 5\t 6  \n"}) {
+    const auto loaded = scratch.read("a.xyz", text);
+    ASSERT_EQ(loaded.cloud.size(), 2u) << text;
+    EXPECT_EQ(loaded.cloud.positions[0], Vec3(1, 2, 3.5));
+    EXPECT_EQ(loaded.cloud.positions[1], Vec3(4, 5, 6));
+    EXPECT_EQ(loaded.cloud.position_type, ScalarType::kFloat64);
+    EXPECT_TRUE(loaded.warnings.empty());
+  }
+}
+
+TEST(Xyz, ReadsColumnsByTheirNames) {
+  const Scratch scratch;
+  const std::string row = "1 2 3 10 20 30 0 0 1 0.5 2\n";
+  for (const std::string names :
+       {"x y z red green blue nx ny nz scalar_p label\n", "X Y Z R G B Nx Ny Nz scalar_p Label\n",
+        "//X Y Z R G B Nx Ny Nz scalar_p scalar_label\n1\n",
+        "1\n# x y z r g b nx ny nz scalar_p label\n"}) {
+    const auto cloud = scratch.read("a.asc", names + row).cloud;
+    ASSERT_EQ(cloud.size(), 1u) << names;
+    EXPECT_EQ(cloud.positions[0], Vec3(1, 2, 3));
+    EXPECT_EQ(cloud.colours.at(0), (Rgb{10, 20, 30}));
+    EXPECT_EQ(cloud.normals.at(0), Vec3(0, 0, 1));
+    EXPECT_EQ(cloud.labels, std::vector<std::uint8_t>{2});
+    ASSERT_EQ(cloud.attributes.size(), 1u);
+    EXPECT_EQ(cloud.attributes[0].name, "scalar_p");
+    EXPECT_EQ(cloud.attributes[0].type, ScalarType::kFloat64);
+  }
+  const auto csv = scratch.read("b.csv", "\xEF\xBB\xBF\"roof angle\",x,y,z,\n7,1,2,3,4\n").cloud;
+  EXPECT_EQ(csv.positions.at(0), Vec3(1, 2, 3));
+  ASSERT_EQ(csv.attributes.size(), 2u);
+  EXPECT_EQ(csv.attributes[0].name, "roof angle");
+  EXPECT_EQ(csv.attributes[1].name, "scalar_5");
+}
+
+TEST(Xyz, TellsProseFromNames) {
+  const Scratch scratch;
+  const auto cloud = scratch.read("a.xyz", "# the x y z of a scan\n1 2 3\n").cloud;
+  EXPECT_EQ(cloud.size(), 1u);
+  EXPECT_EQ(cloud.comments, std::vector<std::string>{"the x y z of a scan"});
+}
+
+std::string guess(std::size_t columns, const std::vector<double>& numbers) {
+  std::string joined;
+  for (const std::string& name : guess_column_names({numbers, columns})) {
+    joined += (joined.empty() ? "" : " ") + name;
+  }
+  return joined;
+}
+
+TEST(Xyz, GuessesColumnsWithoutNames) {
+  EXPECT_EQ(guess(3, {1, 2, 3}), "x y z");
+  EXPECT_EQ(guess(4, {1, 2, 3, 255, 1, 2, 3, 2}), "x y z label");
+  EXPECT_EQ(guess(4, {1, 2, 3, 255, 1, 2, 3, 3}), "x y z scalar_4");
+  EXPECT_EQ(guess(6, {1, 2, 3, 0.6, 0, 0.8}), "x y z nx ny nz");
+  EXPECT_EQ(guess(6, {1, 2, 3, 60, 0, 255}), "x y z red green blue");
+  EXPECT_EQ(guess(6, {1, 2, 3, 60, 0, 256}), "x y z scalar_4 scalar_5 scalar_6");
+  EXPECT_EQ(guess(7, {1, 2, 3, 0, 0, -1, 2}), "x y z nx ny nz label");
+  EXPECT_EQ(guess(7, {1, 2, 3, 0, 0, -1, 0.5}), "x y z nx ny nz scalar_7");
+  EXPECT_EQ(guess(7, {1, 2, 3, 99, 98, 97, 2}), "x y z red green blue label");
+  EXPECT_EQ(guess(7, {1, 2, 3, 99, 98, 97, 96}), "x y z scalar_4 red green blue");
+  EXPECT_EQ(guess(7, {1, 2, 3, -1024, 98, 97, 96}), "x y z scalar_4 red green blue");
+  EXPECT_EQ(guess(9, {1, 2, 3, 0, 1, 0, 98, 97, 96}), "x y z nx ny nz red green blue");
+  EXPECT_EQ(guess(9, {1, 2, 3, 98, 97, 96, 0, 1, 0}), "x y z red green blue nx ny nz");
+  EXPECT_EQ(guess(10, {1, 2, 3, 98, 97, 96, 0, 1, 0, 1}), "x y z red green blue nx ny nz label");
+  EXPECT_EQ(guess(5, {1, 2, 3, 0, 1}), "x y z scalar_4 label");
+}
+
+TEST(Xyz, SaysWhatItGuessed) {
+  const Scratch scratch;
+  const auto loaded = scratch.read("a.txt", "1 2 3 0 0 1\n4 5 6 0 1 0\n");
+  EXPECT_EQ(loaded.cloud.normals.at(1), Vec3(0, 1, 0));
+  ASSERT_EQ(loaded.warnings.size(), 1u);
+  EXPECT_TRUE(contains(loaded.warnings[0], "x y z nx ny nz"));
+}
+
+TEST(Xyz, GivesBackEveryBit) {
+  const Scratch scratch;
+  PointCloud cloud = sample_cloud(10000);
+  cloud.position_type = ScalarType::kFloat64;
+  Random random(2);
+  for (Vec3& p : cloud.positions) p *= std::pow(10.0, random.uniform(-30, 30));
+  for (const std::string name : {"a.xyz", "a.txt", "a.asc", "a.pts", "a.csv"}) {
+    write_cloud(scratch.path(name), cloud);
+    const PointCloud back = read_cloud(scratch.path(name)).cloud;
+    EXPECT_TRUE(same_bits(back.positions, cloud.positions)) << name;
+    EXPECT_EQ(back.colours, cloud.colours);
+    EXPECT_EQ(back.labels, cloud.labels);
+    ASSERT_EQ(back.attributes.size(), 4u);
+    for (const Attribute& attribute : cloud.attributes) {
+      const Attribute* found = find_attribute(back, attribute.name);
+      ASSERT_TRUE(found) << attribute.name;
+      for (std::size_t i = 0; i < cloud.size(); ++i) {
+        // Text spells a float as short as it can be; as a float it is the same again.
+        const double value = found->value(i);
+        EXPECT_EQ(attribute.type == ScalarType::kFloat32 ? static_cast<float>(value) : value,
+                  attribute.value(i));
+      }
+    }
+    if (name != "a.csv") {
+      EXPECT_EQ(back.comments, cloud.comments);
+    }
+  }
+  EXPECT_EQ(losses("a.csv", cloud).size(), 2u);
+  EXPECT_EQ(losses("a.xyz", cloud).size(), 1u);
+}
+
+TEST(Xyz, WritesPlainColumnsPlainly) {
+  const Scratch scratch;
+  PointCloud cloud;
+  cloud.positions = {Vec3(0.1, -2, 512049.781)};
+  cloud.comments = {"lost"};
+  write_cloud(scratch.path("a.txt"), cloud);
+  EXPECT_EQ(bytes_of(scratch.path("a.txt")), "0.1 -2 512049.781\n");
+  EXPECT_EQ(losses("a.txt", cloud), std::vector<std::string>{"comments"});
+  write_cloud(scratch.path("a.csv"), cloud);
+  EXPECT_EQ(bytes_of(scratch.path("a.csv")), "x,y,z\n0.1,-2,512049.781\n");
+  write_cloud(scratch.path("a.pts"), cloud);
+  EXPECT_EQ(bytes_of(scratch.path("a.pts")), "1\n0.1 -2 512049.781\n");
+  cloud.normals = {Vec3(0, 0, 1)};
+  write_cloud(scratch.path("a.xyz"), cloud);
+  EXPECT_EQ(bytes_of(scratch.path("a.xyz")), "0.1 -2 512049.781 0 0 1\n");
+  write_cloud(scratch.path("b.txt"), cloud);
+  EXPECT_EQ(bytes_of(scratch.path("b.txt")), "# lost\n# x y z nx ny nz\n0.1 -2 512049.781 0 0 1\n");
+}
+
+TEST(Xyz, NamesTheLineThatDoesNotFit) {
+  const Scratch scratch;
+  const auto unreadable = [&](const std::string& bytes, const std::string& part) {
+    const std::string message =
+        error_of(ErrorKind::kUnreadable, [&] { scratch.read("a.xyz", bytes); });
+    EXPECT_TRUE(contains(message, scratch.path("a.xyz").string() + part)) << message;
+  };
+  unreadable("1 2\n", ":1: expected at least three numbers");
+  unreadable("1 2 3\n\n4 5\n", ":3: 2 numbers where the lines before have 3");
+  unreadable("1 2 3\n4 5 six\n", ":2: expected a number, not six");
+  unreadable("hello world\n", ":1: expected numbers, or names");
+  unreadable("x y z a\n1 2 3\n", ":2: 3 numbers under 4 names");
+  unreadable("1,5;2,5;3,5\n", ":1: expected numbers");
+  unreadable("1;2;3\n4,5;6;7\n", ":2: expected a number, not 4,5");
+  unreadable("3\n1 2 3\n4 5 6\n", ": promises 3 points but holds 2");
+  unreadable("7\n", ": promises 7 points but holds 0");
+  unreadable("7\n8\n", ":2: expected at least three numbers");
+  for (const char* nothing : {"", "\n\n", "# only\n####\n//\n", "x y z\n", "0\n"}) {
+    EXPECT_TRUE(scratch.read("b.xyz", nothing).cloud.empty()) << nothing;
+  }
+}
+
+}  // namespace
+}  // namespace pcednet::io
