@@ -1,0 +1,163 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <numeric>
+#include <optional>
+#include <string>
+
+#include "commands.h"
+#include "pcednet/core/error.h"
+#include "pcednet/core/version.h"
+#include "pcednet/gls/scale_space.h"
+#include "pcednet/io/npy.h"
+#include "pcednet/io/read_cloud.h"
+
+namespace pcednet::app {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::ordered_json;
+
+constexpr std::size_t kBlock = 4096;  // points described between two looks at Ctrl-C
+
+struct Arguments {
+  std::string input, output;
+  std::string features = "6";
+  std::string reconstruction;
+  gls::ScaleSpaceOptions options;
+  bool exact = false;
+};
+
+using StatusCounts = std::array<std::size_t, 3>;
+
+gls::FeatureSet feature_set(const std::string& count) {
+  using gls::FeatureSet;
+  for (const FeatureSet set : {FeatureSet::kAll28, FeatureSet::kInvariant7, FeatureSet::kPaper6,
+                               FeatureSet::kSpatial4, FeatureSet::kRelief3}) {
+    if (std::to_string(gls::feature_count(set)) == count) return set;
+  }
+  throw Error(ErrorKind::kUsage, fmt::format("there is no set of {} features", count));
+}
+
+gls::Reconstruction reconstruction(const std::string& name) {
+  const auto names = gls::reconstruction_names();
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found == names.end()) {
+    throw Error(ErrorKind::kUsage, fmt::format("there is no reconstruction {}", name));
+  }
+  return static_cast<gls::Reconstruction>(found - names.begin());
+}
+
+/// Describes every point, a block at a time, into `matrix`.
+StatusCounts write_matrix(const gls::ExactScaleSpace& space, std::size_t points,
+                          io::NpyWriter& matrix, const Progress& progress) {
+  const std::size_t scales = space.scales().size();
+  const auto width = static_cast<std::size_t>(gls::feature_count(space.options().features));
+  StatusCounts counts = {};
+  std::vector<std::uint32_t> targets;
+  std::vector<float> features;
+  std::vector<gls::FitStatus> status;
+  Stage stage(&progress, "describe", points);
+  for (std::size_t begin = 0; begin < points; begin += kBlock) {
+    targets.resize(std::min(kBlock, points - begin));
+    std::iota(targets.begin(), targets.end(), static_cast<std::uint32_t>(begin));
+    features.resize(targets.size() * scales * width);
+    status.resize(targets.size() * scales);
+    space.describe(targets, std::span(features), status);
+    matrix.append(features);
+    for (const gls::FitStatus s : status) ++counts[static_cast<std::size_t>(s)];
+    stage.advance(targets.size());
+  }
+  return counts;
+}
+
+ordered_json to_json(const Arguments& arguments, const gls::ExactScaleSpace& space,
+                     std::size_t points, const StatusCounts& counts) {
+  const gls::ScaleSpaceOptions& options = space.options();
+  ordered_json names = ordered_json::array();
+  for (const std::string_view name : gls::feature_names(options.features)) names.push_back(name);
+  ordered_json json = {
+      {"version", kVersion}, {"input", fs::path(arguments.input).filename().string()},
+      {"points", points},    {"scales", space.scales()},
+      {"features", names},   {"reconstruction", arguments.reconstruction},
+      {"gate", nullptr},     {"engine", "exact"}};
+  if (gls::projects(options.reconstruction)) {
+    json["max_projection_steps"] = options.max_projection_steps;
+  }
+  if (options.side_gate) json["gate"] = *options.side_gate;
+  json["status"] = {{"stable", counts[0]}, {"unstable", counts[1]}, {"undefined", counts[2]}};
+  return json;
+}
+
+void describe(const Arguments& arguments, const Common& common) {
+  const fs::path output = arguments.output;
+  if (output.extension() != ".npy") {
+    throw Error(ErrorKind::kUsage, fmt::format("{}: must end in .npy", output.string()));
+  }
+  gls::ScaleSpaceOptions options = arguments.options;
+  options.features = feature_set(arguments.features);
+  options.reconstruction = reconstruction(arguments.reconstruction);
+  // Opened before the work, so that what cannot be written is refused at once.
+  OutputFile settings(fs::path(output).replace_extension(".json"), common.overwrite());
+
+  const io::LoadedCloud loaded = io::read_cloud(arguments.input);
+  for (const std::string& warning : loaded.warnings) {
+    warn(fmt::format("{}: {}", arguments.input, warning));
+  }
+  const PointCloud& cloud = loaded.cloud;
+  if (!cloud.empty() && !cloud.has_normals()) {
+    throw Error(ErrorKind::kInsufficient,
+                fmt::format("{}: has no normals, which the descriptors need", arguments.input));
+  }
+  const Progress progress = console_progress(common);
+  const gls::ExactScaleSpace space({cloud.positions, cloud.normals}, options, &progress);
+  const auto width = static_cast<std::size_t>(gls::feature_count(options.features));
+  io::NpyWriter matrix(output, {cloud.size(), space.scales().size(), width}, ScalarType::kFloat32,
+                       common.overwrite());
+  const StatusCounts counts = write_matrix(space, cloud.size(), matrix, progress);
+  matrix.commit();
+  settings.write(to_json(arguments, space, cloud.size(), counts)
+                     .dump(2, ' ', false, ordered_json::error_handler_t::replace) +
+                 "\n");
+  settings.commit();
+}
+
+}  // namespace
+
+void add_describe(CLI::App& app, Common& common) {
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* command =
+      add_command(app, common, "describe", "Write the scale-space matrix of a cloud for NumPy",
+                  "pcednet describe scan.ply -o scan.npy      and scan.json: scales, columns\n"
+                  "pcednet describe part.ply -o part.npy --features 28 --scales 32\n"
+                  "pcednet describe part.ply -o part.npy --gate -0.2");
+  gls::ScaleSpaceOptions& options = arguments->options;
+  const auto names = gls::reconstruction_names();
+  arguments->reconstruction = names[static_cast<std::size_t>(options.reconstruction)];
+  command->add_option("input", arguments->input, "A point file with normals")->required();
+  command->add_option("-o,--output", arguments->output, "The matrix, a .npy file")->required();
+  command->add_option("--scales", options.scales, "Scales: 4, 8, 16, 32, 64 or 128")
+      ->capture_default_str()
+      ->check(CLI::IsMember({4, 8, 16, 32, 64, 128}));
+  command->add_option("--features", arguments->features, "Numbers per scale: 28, 7, 6, 4 or 3")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"28", "7", "6", "4", "3"}));
+  command->add_option("--reconstruction", arguments->reconstruction, "The surface described")
+      ->capture_default_str()
+      ->check(CLI::IsMember(std::vector<std::string>(names.begin(), names.end())));
+  command->add_option("--gate", options.side_gate,
+                      "Leave out neighbours on the far side of thin walls, whose normals differ by "
+                      "more than this cosine (-1 to 1)");
+  command->add_option("--s-min", options.s_min, "Smallest scale (0: the cloud's spacing)")
+      ->capture_default_str();
+  command
+      ->add_option("--s-max", options.s_max, "Largest scale (0: 10 % of the bounding box diagonal)")
+      ->capture_default_str();
+  command->add_flag("--exact", arguments->exact, "Exact neighbourhoods (as it is always, for now)");
+  command->callback([arguments, &common] { describe(*arguments, common); });
+}
+
+}  // namespace pcednet::app
