@@ -34,6 +34,7 @@ int run(int argc, char** argv) {
   add_generate(app, common);
   add_info(app, common);
   add_convert(app, common);
+  add_normals(app, common);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

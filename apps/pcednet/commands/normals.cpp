@@ -49,7 +49,8 @@ void report(const Request& request, const normals::PreparedNormals& prepared) {
   std::string line =
       fmt::format("{}: {} normals", request.output, prepared.normals.size() - prepared.unusable);
   if (prepared.estimated > 0) {
-    line += fmt::format(", {} of them from {} neighbours", prepared.estimated, prepared.neighbours);
+    line += fmt::format(", {} estimated from {} neighbours each", prepared.estimated,
+                        prepared.neighbours);
   }
   if (orientation.components > 0) {
     line += fmt::format("; {} connected part{}", orientation.components,
