@@ -35,6 +35,7 @@ int run(int argc, char** argv) {
   add_info(app, common);
   add_convert(app, common);
   add_describe(app, common);
+  add_normals(app, common);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

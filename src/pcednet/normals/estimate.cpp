@@ -33,8 +33,12 @@ NeighbourGraph make_estimation_graph(std::span<const Vec3> positions, int neighb
 std::vector<Vec3> estimate_normals(std::span<const Vec3> positions, const EstimateOptions& options,
                                    const Progress* progress) {
   const NeighbourGraph graph = make_estimation_graph(positions, options.neighbours, progress);
-  const std::vector<Vec3> normals = estimate_normals(graph, progress);
-  return spread_to_cloud<Vec3>(graph, normals, Vec3::Zero());
+  const std::vector<Vec3> of_points = estimate_normals(graph, progress);
+  std::vector<Vec3> normals(positions.size(), Vec3::Zero());
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    if (graph.point_of[i] != kNoPoint) normals[i] = of_points[graph.point_of[i]];
+  }
+  return normals;
 }
 
 }  // namespace pcednet::normals

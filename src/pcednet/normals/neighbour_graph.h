@@ -47,16 +47,4 @@ struct Adjacency {
 /// Uses the nearest `count` neighbours of each point at most.
 Adjacency make_adjacency(const NeighbourGraph& graph, std::size_t count);
 
-/// The values of the distinct points handed to every position; `missing` where there is none.
-template <typename T>
-std::vector<T> spread_to_cloud(const NeighbourGraph& graph, std::span<const T> values,
-                               const T& missing) {
-  std::vector<T> spread;
-  spread.reserve(graph.point_of.size());
-  for (const std::uint32_t point : graph.point_of) {
-    spread.push_back(point == kNoPoint ? missing : values[point]);
-  }
-  return spread;
-}
-
 }  // namespace pcednet::normals

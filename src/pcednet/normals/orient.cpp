@@ -31,10 +31,16 @@ bool points_down(const Vec3& v) {
   return false;
 }
 
+/// Turns `normal` about, or not. Either way no zero in it keeps a minus sign, which would tell
+/// where it pointed before.
+void turn(Vec3& normal, bool about) {
+  normal = (about ? Vec3(-normal) : normal) + Vec3::Zero();
+}
+
 void face_viewpoint(std::span<const Vec3> points, std::span<Vec3> normals, const Vec3& viewpoint) {
   for (std::size_t i = 0; i < points.size(); ++i) {
     const double facing = normals[i].dot(viewpoint - points[i]);
-    if (facing < 0.0 || (facing == 0.0 && points_down(normals[i]))) normals[i] = -normals[i];
+    turn(normals[i], facing < 0.0 || (facing == 0.0 && points_down(normals[i])));
   }
 }
 
@@ -42,14 +48,14 @@ void face_viewpoint(std::span<const Vec3> points, std::span<Vec3> normals, const
 bool turn_outwards(std::span<const Vec3> points, std::span<Vec3> normals,
                    std::span<const std::uint32_t> members) {
   const double outward = outwardness(points, normals, members);
-  bool turn = outward < 0.0;
+  bool inward = outward < 0.0;
   const bool decided = std::abs(outward) >= kDecided;
   if (!decided) {
     Vec3 sum = Vec3::Zero();
     for (const std::uint32_t i : members) sum += normals[i];
-    turn = points_down(sum);
+    inward = points_down(sum);
   }
-  if (turn) {
+  if (inward) {
     for (const std::uint32_t i : members) normals[i] = -normals[i];
   }
   return decided;
@@ -75,15 +81,9 @@ Orientation turn_parts_outwards(std::span<const Vec3> points, std::span<Vec3> no
   return orientation;
 }
 
-}  // namespace
-
-Orientation orient_normals(const NeighbourGraph& graph, std::span<Vec3> normals,
-                           const OrientOptions& options, const Progress* progress) {
-  check(options);
-  if (options.viewpoint) {
-    face_viewpoint(graph.points, normals, *options.viewpoint);
-    return {};
-  }
+/// Orients the normals of the points of the graph.
+Orientation orient_points(const NeighbourGraph& graph, std::span<Vec3> normals,
+                          const OrientOptions& options, const Progress* progress) {
   Stage stage(progress, "orientation", 4);
   const Adjacency links = make_adjacency(graph, static_cast<std::size_t>(options.neighbours));
   stage.advance();
@@ -100,29 +100,44 @@ Orientation orient_normals(const NeighbourGraph& graph, std::span<Vec3> normals,
   return orientation;
 }
 
-Orientation orient_normals(std::span<const Vec3> positions, std::span<Vec3> normals,
-                           const OrientOptions& options, const Progress* progress) {
+}  // namespace
+
+void check_size(std::span<const Vec3> positions, std::span<const Vec3> normals) {
+  if (normals.size() == positions.size()) return;
+  throw Error(ErrorKind::kUsage,
+              fmt::format("{} normals for {} positions", normals.size(), positions.size()));
+}
+
+Orientation orient_normals(const NeighbourGraph& graph, std::span<const Vec3> positions,
+                           std::span<Vec3> normals, const OrientOptions& options,
+                           const Progress* progress) {
   check(options);
-  if (normals.size() != positions.size()) {
-    throw Error(ErrorKind::kUsage,
-                fmt::format("{} normals for {} positions", normals.size(), positions.size()));
-  }
+  check_size(positions, normals);
   if (options.viewpoint) {
     face_viewpoint(positions, normals, *options.viewpoint);
     return {};
   }
-  const NeighbourGraph graph =
-      make_neighbour_graph(positions, static_cast<std::size_t>(options.neighbours), progress);
   std::vector<Vec3> of_points(graph.points.size(), Vec3::Zero());
   for (std::size_t i = positions.size(); i-- > 0;) {
-    if (graph.point_of[i] != kNoPoint) of_points[graph.point_of[i]] = normals[i];
+    if (graph.point_of[i] != kNoPoint && !normals[i].isZero(0.0)) {
+      of_points[graph.point_of[i]] = normals[i];
+    }
   }
-  const Orientation orientation = orient_normals(graph, of_points, options, progress);
+  const Orientation orientation = orient_points(graph, of_points, options, progress);
   for (std::size_t i = 0; i < positions.size(); ++i) {
     if (graph.point_of[i] == kNoPoint) continue;
-    if (normals[i].dot(of_points[graph.point_of[i]]) < 0.0) normals[i] = -normals[i];
+    turn(normals[i], normals[i].dot(of_points[graph.point_of[i]]) < 0.0);
   }
   return orientation;
+}
+
+Orientation orient_normals(std::span<const Vec3> positions, std::span<Vec3> normals,
+                           const OrientOptions& options, const Progress* progress) {
+  check(options);
+  check_size(positions, normals);
+  const std::size_t count = options.viewpoint ? 1 : static_cast<std::size_t>(options.neighbours);
+  const NeighbourGraph graph = make_neighbour_graph(positions, count, progress);
+  return orient_normals(graph, positions, normals, options, progress);
 }
 
 }  // namespace pcednet::normals

@@ -49,8 +49,12 @@ struct Orientation {
 Orientation orient_normals(std::span<const Vec3> positions, std::span<Vec3> normals,
                            const OrientOptions& options = {}, const Progress* progress = nullptr);
 
-/// The same for the points of a graph; of options.neighbours it uses as many as the graph has.
-Orientation orient_normals(const NeighbourGraph& graph, std::span<Vec3> normals,
-                           const OrientOptions& options = {}, const Progress* progress = nullptr);
+/// The same on a graph made from the positions; of options.neighbours it uses as many as it has.
+Orientation orient_normals(const NeighbourGraph& graph, std::span<const Vec3> positions,
+                           std::span<Vec3> normals, const OrientOptions& options = {},
+                           const Progress* progress = nullptr);
+
+/// Throws Error(kUsage) unless there is one normal per position.
+void check_size(std::span<const Vec3> positions, std::span<const Vec3> normals);
 
 }  // namespace pcednet::normals

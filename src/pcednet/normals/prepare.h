@@ -18,8 +18,10 @@ struct PrepareOptions {
 };
 
 struct PreparedNormals {
-  std::vector<Vec3> normals;  ///< per position; (0,0,0) where none could be found
-  std::size_t unusable = 0;   ///< how many are (0,0,0)
+  std::vector<Vec3> normals;   ///< per position; (0,0,0) where none could be found
+  std::size_t unusable = 0;    ///< how many are (0,0,0)
+  std::size_t estimated = 0;   ///< how many were estimated and are not (0,0,0)
+  std::size_t neighbours = 0;  ///< of each point: as asked for, or chosen
   Orientation orientation;
 };
 
@@ -27,5 +29,12 @@ struct PreparedNormals {
 PreparedNormals estimate_oriented_normals(std::span<const Vec3> positions,
                                           const PrepareOptions& options = {},
                                           const Progress* progress = nullptr);
+
+/// Orients the `given` normals, one per position and of unit length, after estimating those that
+/// are (0,0,0).
+PreparedNormals complete_and_orient_normals(std::span<const Vec3> positions,
+                                            std::span<const Vec3> given,
+                                            const PrepareOptions& options = {},
+                                            const Progress* progress = nullptr);
 
 }  // namespace pcednet::normals

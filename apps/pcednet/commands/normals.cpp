@@ -1,0 +1,116 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "commands.h"
+#include "pcednet/core/error.h"
+#include "pcednet/io/read_cloud.h"
+#include "pcednet/io/write_cloud.h"
+#include "pcednet/normals/prepare.h"
+
+namespace pcednet::app {
+namespace {
+
+struct Request {
+  std::string input;
+  std::string output;
+  int neighbours = 0;
+  std::vector<double> viewpoint;
+  bool keep = false;
+  bool flip = false;
+
+  std::optional<Vec3> eye() const {
+    if (viewpoint.empty()) return std::nullopt;
+    return Vec3(viewpoint[0], viewpoint[1], viewpoint[2]);
+  }
+};
+
+/// New normals, or those of the cloud with new signs.
+normals::PreparedNormals prepare(const Request& request, const PointCloud& cloud,
+                                 const Progress& progress) {
+  const normals::PrepareOptions options = {request.neighbours, request.eye()};
+  if (!request.keep) {
+    return normals::estimate_oriented_normals(cloud.positions, options, &progress);
+  }
+  if (!cloud.has_normals()) {
+    throw Error(ErrorKind::kInsufficient,
+                fmt::format("{}: has no normals to keep; leave out --keep to estimate them",
+                            request.input));
+  }
+  return normals::complete_and_orient_normals(cloud.positions, cloud.normals, options, &progress);
+}
+
+void report(const Request& request, const normals::PreparedNormals& prepared) {
+  const normals::Orientation& orientation = prepared.orientation;
+  std::string line =
+      fmt::format("{}: {} normals", request.output, prepared.normals.size() - prepared.unusable);
+  if (prepared.estimated > 0) {
+    line += fmt::format(", {} estimated from {} neighbours each", prepared.estimated,
+                        prepared.neighbours);
+  }
+  if (orientation.components > 0) {
+    line += fmt::format("; {} connected part{}", orientation.components,
+                        orientation.components == 1 ? "" : "s");
+    if (orientation.undecided > 0) {
+      line += fmt::format(", {} of them open, turned upwards", orientation.undecided);
+    }
+  }
+  say(line);
+  if (prepared.unusable > 0) {
+    warn(fmt::format("{}: {} points without a normal: not finite, or on a line of points",
+                     request.output, prepared.unusable));
+  }
+}
+
+void run(const Request& request, const Common& common) {
+  // What the output's extension allows is asked before a long read.
+  io::losses(request.output, {});
+  io::LoadedCloud loaded = io::read_cloud(request.input);
+  for (const std::string& warning : loaded.warnings) warn(request.input + ": " + warning);
+  PointCloud& cloud = loaded.cloud;
+  if (cloud.empty()) {
+    throw Error(ErrorKind::kInsufficient, request.input + ": has no points");
+  }
+  normals::PreparedNormals prepared = prepare(request, cloud, console_progress(common));
+  cloud.normals = prepared.normals;
+  if (request.flip) {
+    for (Vec3& normal : cloud.normals) normal = Vec3::Zero() - normal;
+  }
+  for (const std::string& loss : io::losses(request.output, cloud)) {
+    warn(request.output + " does not keep: " + loss);
+  }
+  io::write_cloud(request.output, cloud, {.overwrite = common.overwrite()});
+  report(request, prepared);
+}
+
+}  // namespace
+
+void add_normals(CLI::App& app, Common& common) {
+  CLI::App* command =
+      add_command(app, common, "normals", "Estimates normals and makes their signs agree",
+                  "pcednet normals scan.ply -o with_normals.ply\n"
+                  "pcednet normals scan.ply -o with_normals.ply --viewpoint 0 0 1.7\n"
+                  "pcednet normals inward.ply -o outward.ply --keep");
+  auto request = std::make_shared<Request>();
+  command->add_option("input", request->input, "The point file to read")->required();
+  command->add_option("-o,--output", request->output, "The file to write")->required();
+  command
+      ->add_option("--neighbours", request->neighbours,
+                   "Points around each point (0: 12, more on noisy clouds)")
+      ->capture_default_str()
+      ->check(CLI::Range(0, 1000));
+  command->add_flag("--keep", request->keep,
+                    "Keep the normals of the file up to their signs; estimate missing ones only");
+  command->add_flag("--flip", request->flip, "Turn all normals about in the end: inwards");
+  command
+      ->add_option("--viewpoint", request->viewpoint,
+                   "Turn every normal to face this place (X Y Z) instead of outwards")
+      ->expected(3);
+  command->callback([request, &common] { run(*request, common); });
+}
+
+}  // namespace pcednet::app
