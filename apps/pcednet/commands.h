@@ -12,10 +12,10 @@ namespace pcednet::app {
 void add_classify(CLI::App& app, Common& common);
 void add_train(CLI::App& app, Common& common);
 void add_evaluate(CLI::App& app, Common& common);
+void add_describe(CLI::App& app, Common& common);
 void add_generate(CLI::App& app, Common& common);
+void add_normals(CLI::App& app, Common& common);
 void add_info(CLI::App& app, Common& common);
 void add_convert(CLI::App& app, Common& common);
-void add_describe(CLI::App& app, Common& common);
-void add_normals(CLI::App& app, Common& common);
 
 }  // namespace pcednet::app

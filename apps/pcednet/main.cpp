@@ -31,11 +31,11 @@ int run(int argc, char** argv) {
   add_classify(app, common);
   add_train(app, common);
   add_evaluate(app, common);
+  add_describe(app, common);
   add_generate(app, common);
+  add_normals(app, common);
   add_info(app, common);
   add_convert(app, common);
-  add_describe(app, common);
-  add_normals(app, common);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

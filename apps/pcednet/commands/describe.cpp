@@ -11,6 +11,7 @@
 #include "commands.h"
 #include "pcednet/core/error.h"
 #include "pcednet/core/version.h"
+#include "pcednet/detect/prepare.h"
 #include "pcednet/gls/scale_space.h"
 #include "pcednet/io/npy.h"
 #include "pcednet/io/read_cloud.h"
@@ -108,12 +109,11 @@ void describe(const Arguments& arguments, const Common& common) {
     warn(fmt::format("{}: {}", arguments.input, warning));
   }
   const PointCloud& cloud = loaded.cloud;
-  if (!cloud.empty() && !cloud.has_normals()) {
-    throw Error(ErrorKind::kInsufficient,
-                fmt::format("{}: has no normals, which the descriptors need", arguments.input));
-  }
   const Progress progress = console_progress(common);
-  const gls::ExactScaleSpace space({cloud.positions, cloud.normals}, options, &progress);
+  std::optional<detect::PreparedCloud> prepared;
+  with_name_in_errors(arguments.input, [&] { prepared = detect::prepare(cloud, &progress); });
+  for (const std::string& note : prepared->notes) warn(arguments.input + ": " + note);
+  const gls::ExactScaleSpace space({prepared->positions, prepared->normals}, options, &progress);
   const auto width = static_cast<std::size_t>(gls::feature_count(options.features));
   io::NpyWriter matrix(output, {cloud.size(), space.scales().size(), width}, ScalarType::kFloat32,
                        common.overwrite());
@@ -137,7 +137,7 @@ void add_describe(CLI::App& app, Common& common) {
   gls::ScaleSpaceOptions& options = arguments->options;
   const auto names = gls::reconstruction_names();
   arguments->reconstruction = names[static_cast<std::size_t>(options.reconstruction)];
-  command->add_option("input", arguments->input, "A point file with normals")->required();
+  command->add_option("input", arguments->input, "A point file")->required();
   command->add_option("-o,--output", arguments->output, "The matrix, a .npy file")->required();
   command->add_option("--scales", options.scales, "Scales: 4, 8, 16, 32, 64 or 128")
       ->capture_default_str()
