@@ -28,8 +28,7 @@ void Evaluator::run(const float* const* rows, LaneTable& table) const {
   const float* parameters = model_->network.parameters.data();
   for (const Layer& layer : plan_.layers) {
     for (const AffineMap& map : layer.maps) kernels_->forward(map, parameters, data, lanes);
-    kernels_->activate(layer.activation, table.row(layer.out_row),
-                       static_cast<std::size_t>(layer.out_rows) * static_cast<std::size_t>(lanes));
+    kernels_->activate(layer.activation, table.row(layer.out_row), layer.out_rows, lanes);
   }
 }
 

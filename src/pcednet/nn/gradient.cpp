@@ -72,6 +72,8 @@ double GradientMachine::run_chunk(Workspace& w, const TrainingSet& set,
   for (std::size_t p = 0; p < kChunk; ++p) {
     const std::size_t sample = chosen[std::min(p, chosen.size() - 1)];
     w.rows[p] = set.samples.data() + sample * inputs;
+    // The samples lie anywhere in memory: ask for all of them before the first is needed.
+    for (std::size_t u = 0; u < inputs; u += 16) __builtin_prefetch(w.rows[p] + u);
     w.labels[p] = set.labels[sample];
     w.weights[p] = p < chosen.size() ? weight : 0.0f;
   }
@@ -80,7 +82,7 @@ double GradientMachine::run_chunk(Workspace& w, const TrainingSet& set,
   const Plan& plan = evaluator_.plan();
   const int lanes = w.table.lanes();
   const int logits = evaluator_.logits_row();
-  std::fill(w.deltas.row(0), w.deltas.row(logits), 0.0f);
+  std::fill(w.deltas.row(evaluator_.inputs()), w.deltas.row(logits), 0.0f);
   kernels.cross_entropy(w.table.row(logits), w.labels.data(), w.weights.data(), label_smoothing_,
                         evaluator_.classes(), lanes, evaluator_.paired(), w.losses.data(),
                         w.deltas.row(logits));

@@ -69,7 +69,7 @@ struct Kernels {
   void (*orient)(const SignPattern& signs, float* table, int lanes);
 
   void (*forward)(const AffineMap& map, const float* parameters, float* table, int lanes);
-  void (*activate)(Activation activation, float* values, std::size_t count);
+  void (*activate)(Activation activation, float* rows, int count, int lanes);
 
   /// Replaces the rows (logits) by class probabilities. With `paired`, the logits are first
   /// averaged over the two halves of the row, and only the first half is written.
