@@ -82,11 +82,17 @@ void train(const Arguments& arguments, const Common& common) {
   const auto trained = detect::train(
       std::filesystem::path(arguments.output).stem().string(), clouds, options,
       common.progress == "none" ? decltype(&print_epoch)(nullptr) : print_epoch, &progress);
+  if (trained.epochs == 0)
+    throw Error(ErrorKind::kCancelled, "stopped by the user before an epoch");
   detect::save_model(arguments.output, trained.model, common.overwrite());
-  say(fmt::format("{} weights; seconds: describe {:.2f}, train {:.2f}{}\n  -> {}",
+  say(fmt::format("{} weights; seconds: describe {:.2f}, train {:.2f}\n  -> {}",
                   trained.model.network.network.parameters.size(), trained.seconds_describe,
-                  trained.seconds_train, trained.cancelled ? " (stopped: the best so far)" : "",
-                  arguments.output));
+                  trained.seconds_train, arguments.output));
+  if (trained.cancelled) {
+    throw Error(ErrorKind::kCancelled,
+                fmt::format("stopped by the user: {} holds the best of {} epochs", arguments.output,
+                            trained.epochs));
+  }
 }
 
 void add_descriptor_options(CLI::App& command, Arguments& arguments) {

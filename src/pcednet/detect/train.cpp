@@ -129,12 +129,13 @@ TrainedModel train(const std::string& name, std::span<const TrainingCloud> cloud
 
   nn::TrainOptions training = options.training;
   training.sign_rule = sign_rule(options.descriptor.features, options.training.sign_rule.symmetry);
+  training.class_names = class_names(model.classes);
   nn::TrainResult result =
       nn::train(architecture, {samples.values, samples.labels}, training, on_epoch, progress);
   trained.cancelled = result.cancelled;
+  trained.epochs = static_cast<int>(result.history.size());
   trained.seconds_train = seconds_since(start) - trained.seconds_describe;
   model.network = std::move(result.best);
-  model.network.class_names = class_names(model.classes);
   model.network.metadata = summary_of(result, clouds, samples.labels.size());
   return trained;
 }

@@ -42,6 +42,7 @@ Samples make_samples(std::span<const TrainingCloud> clouds, const TrainOptions& 
 struct TrainedModel {
   EdgeModel model;
   bool cancelled = false;
+  int epochs = 0;  ///< completed; a model of none is not worth keeping
   double seconds_describe = 0, seconds_train = 0;
 };
 TrainedModel train(const std::string& name, std::span<const TrainingCloud> clouds,

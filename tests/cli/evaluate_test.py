@@ -1,0 +1,73 @@
+"""pcednet evaluate: scores as JSON, of a model and of other tools' predictions."""
+import json
+import unittest
+
+import numpy as np
+
+from support import SOURCE, CliTest, cube, run, write_ply
+
+
+class Evaluate(CliTest):
+    def test_scores_predictions_in_every_format(self):
+        p, n, label = cube(1000)
+        write_ply(self.folder / "a.ply", p, n, label)
+        predicted = label.copy()
+        predicted[:100] = 0
+        truth, said = label == 2, predicted == 2
+        expected = {"tp": int(np.sum(truth & said)), "fp": int(np.sum(~truth & said)),
+                    "fn": int(np.sum(truth & ~said)), "tn": int(np.sum(~truth & ~said))}
+        (self.folder / "u8").mkdir()
+        (self.folder / "u8" / "a.u8").write_bytes(predicted.tobytes())
+        (self.folder / "txt").mkdir()
+        (self.folder / "txt" / "a.txt").write_text("\n".join(map(str, predicted)) + "\n")
+        (self.folder / "ply").mkdir()
+        write_ply(self.folder / "ply" / "a.ply", p, n, predicted)
+        for kind in ("u8", "txt", "ply"):
+            done = run("evaluate", self.folder / "a.ply", "--predictions", self.folder / kind,
+                       "--json", "-")
+            report = json.loads(done.stdout)
+            row = report["clouds"][0]
+            self.assertEqual({k: row[k] for k in expected}, expected, kind)
+            self.assertEqual(row["name"], "a")
+            self.assertEqual(row["points"], 1000)
+            self.assertEqual(report["pooled"]["mcc"], report["median"]["mcc"])
+
+    def test_scores_a_model_and_writes_the_file(self):
+        write_ply(self.folder / "a.ply", *cube(3000))
+        run("evaluate", self.folder / "a.ply", "--model", "scan", "--positive", "edge", "--json",
+            self.folder / "scores.json")
+        report = json.loads((self.folder / "scores.json").read_text())
+        self.assertGreater(report["median"]["mcc"], 0.7)
+
+    def test_refuses_predictions_for_another_cloud(self):
+        write_ply(self.folder / "a.ply", *cube(300))
+        (self.folder / "p").mkdir()
+        (self.folder / "p" / "a.u8").write_bytes(bytes(299))
+        done = run("evaluate", self.folder / "a.ply", "--predictions", self.folder / "p", expect=4)
+        self.assertIn("a.ply", done.stderr)
+
+    def test_reproduces_published_scores_where_the_data_are_there(self):
+        data = SOURCE.parent / "shared" / "data"
+        if not data.is_dir():
+            self.skipTest("the authors' clouds are not here")
+        # Rows of the table of published results: set, method, positive, median P, R, MCC.
+        for name, method, positive, scores in (
+                ("default", "pced", "edge", (0.825, 0.966, 0.856)),
+                ("abc", "abc", "sharp", (0.902, 0.993, 0.944)),
+                ("shrec", "CA", "sharp", (0.449, 0.451, 0.461))):
+            done = run("evaluate", data / name, "--predictions",
+                       data / "predictions" / name / method, "--positive", positive, "--json", "-")
+            median = json.loads(done.stdout)["median"]
+            found = (median["precision"], median["recall"], median["mcc"])
+            np.testing.assert_allclose(found, scores, atol=5.1e-4)
+
+    def test_the_shipped_model_holds_its_marks_where_the_data_are_there(self):
+        data = SOURCE.parent / "shared" / "data" / "default"
+        if not data.is_dir():
+            self.skipTest("the authors' clouds are not here")
+        done = run("evaluate", data, "--model", "scan", "--positive", "edge", "--json", "-")
+        self.assertGreaterEqual(json.loads(done.stdout)["median"]["mcc"], 0.80)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,93 @@
+"""pcednet train: from labelled files to a model file, and what can go wrong on the way."""
+import json
+import os
+import signal
+import struct
+import subprocess
+import unittest
+
+import numpy as np
+
+from support import PROGRAM, CliTest, cube, read_ply, run, write_ply
+
+
+def tensors(path):
+    """The header of a safetensors file, and its tensors as numpy arrays."""
+    data = path.read_bytes()
+    size = struct.unpack("<Q", data[:8])[0]
+    header = json.loads(data[8:8 + size])
+    metadata = header.pop("__metadata__")
+    arrays = {name: np.frombuffer(data[8 + size:][slice(*entry["data_offsets"])], "<f4")
+              .reshape(entry["shape"]) for name, entry in header.items()}
+    return metadata, arrays
+
+
+class Train(CliTest):
+    def train(self, name, *extra, points=2500, expect=0):
+        source = self.folder / "clouds"
+        source.mkdir(exist_ok=True)
+        write_ply(source / "a.ply", *cube(points, seed=1))
+        write_ply(source / "b.ply", *cube(points, seed=2, noise=0.003))
+        run("train", source, "-o", self.folder / name, *extra, expect=expect)
+        return self.folder / name
+
+    def test_makes_a_model_that_finds_edges(self):
+        model = self.train("m.safetensors", "--epochs", 15)
+        p, n, label = cube(seed=9)
+        write_ply(self.folder / "c.ply", p, n)
+        run("classify", self.folder / "c.ply", "--model", model)
+        found = read_ply(self.folder / "c_edges.ply")[0]["label"]
+        self.assertGreater(np.mean((found > 0) == (label > 0)), 0.93)
+
+    def test_writes_the_same_bytes_for_the_same_seed(self):
+        one = self.train("one.safetensors", "--epochs", 3, "--threads", 1).read_bytes()
+        two = self.train("two.safetensors", "--epochs", 3, "--threads", 2).read_bytes()
+        # The name of the model is the file's stem, of the same length here.
+        self.assertEqual(one.replace(b'"one"', b'"two"'), two)
+        other = self.train("six.safetensors", "--epochs", 3, "--seed", 6).read_bytes()
+        self.assertNotEqual(other.replace(b'"six"', b'"two"'), two)
+
+    def test_says_in_the_file_what_the_model_is(self):
+        metadata, arrays = tensors(self.train("m.safetensors", "--epochs", 2, "--classes", 2))
+        self.assertEqual(metadata["classes"], "0 2")
+        self.assertEqual(metadata["descriptor_features"], "tau kappa k1 dtau dkappa phi")
+        self.assertEqual(arrays["tree.0.weight"].shape, (8, 6, 12))
+        weights = sum(a.size for name, a in arrays.items() if not name.startswith("standard"))
+        self.assertEqual(weights, 1606)
+
+    def test_trains_the_baselines_and_the_papers_recipe(self):
+        for network, weights in (("fc", 6663), ("cnn", 9723)):
+            _, arrays = tensors(self.train(network + ".safetensors", "--network", network,
+                                           "--epochs", 1, points=800))
+            found = sum(a.size for name, a in arrays.items() if not name.startswith("standard"))
+            self.assertEqual(found, weights)
+        self.train("paper.safetensors", "--recipe", "paper", "--epochs", 1, points=800)
+
+    def test_stops_on_ctrl_c_with_the_best_model_so_far(self):
+        source = self.folder / "a.ply"
+        write_ply(source, *cube(4000))
+        out = self.folder / "m.safetensors"
+        running = subprocess.Popen([PROGRAM, "train", source, "-o", out, "--epochs", "100000"],
+                                   stderr=subprocess.PIPE, text=True)
+        for line in running.stderr:
+            if line.startswith("epoch   3"):
+                break
+        running.send_signal(signal.SIGINT)
+        running.stderr.read()
+        running.stderr.close()
+        self.assertEqual(running.wait(60), 130)
+        self.assertEqual(tensors(out)[0]["name"], "m")
+        self.assertEqual(sorted(os.listdir(self.folder)), ["a.ply", "m.safetensors"])
+
+    def test_refuses_a_class_without_samples(self):
+        p, n, label = cube(1000)
+        label[label == 1] = 0
+        write_ply(self.folder / "a.ply", p, n, label)
+        done = run("train", self.folder / "a.ply", "-o", self.folder / "m.safetensors", expect=4)
+        self.assertIn("smooth-edge", done.stderr)
+        run("train", self.folder / "a.ply", "-o", self.folder / "m.safetensors", "--classes", 2,
+            "--epochs", 1)
+
+
+if __name__ == "__main__":
+    unittest.main()
