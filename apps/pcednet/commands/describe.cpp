@@ -12,7 +12,7 @@
 #include "pcednet/core/error.h"
 #include "pcednet/core/version.h"
 #include "pcednet/detect/prepare.h"
-#include "pcednet/gls/scale_space.h"
+#include "pcednet/gls/engine.h"
 #include "pcednet/io/npy.h"
 #include "pcednet/io/read_cloud.h"
 
@@ -22,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 
-constexpr std::size_t kBlock = 4096;  // points described between two looks at Ctrl-C
+constexpr std::size_t kBlock = std::size_t{1} << 18;  // points described at a time
 
 struct Arguments {
   std::string input, output;
@@ -53,8 +53,8 @@ gls::Reconstruction reconstruction(const std::string& name) {
 }
 
 /// Describes every point, a block at a time, into `matrix`.
-StatusCounts write_matrix(const gls::ExactScaleSpace& space, std::size_t points,
-                          io::NpyWriter& matrix, const Progress& progress) {
+StatusCounts write_matrix(const gls::ScaleSpace& space, std::size_t points, io::NpyWriter& matrix,
+                          const Progress& progress) {
   const std::size_t scales = space.scales().size();
   const auto width = static_cast<std::size_t>(gls::feature_count(space.options().features));
   StatusCounts counts = {};
@@ -75,8 +75,8 @@ StatusCounts write_matrix(const gls::ExactScaleSpace& space, std::size_t points,
   return counts;
 }
 
-ordered_json to_json(const Arguments& arguments, const gls::ExactScaleSpace& space,
-                     std::size_t points, const StatusCounts& counts) {
+ordered_json to_json(const Arguments& arguments, const gls::ScaleSpace& space, std::size_t points,
+                     const StatusCounts& counts) {
   const gls::ScaleSpaceOptions& options = space.options();
   ordered_json names = ordered_json::array();
   for (const std::string_view name : gls::feature_names(options.features)) names.push_back(name);
@@ -84,7 +84,7 @@ ordered_json to_json(const Arguments& arguments, const gls::ExactScaleSpace& spa
       {"version", kVersion}, {"input", fs::path(arguments.input).filename().string()},
       {"points", points},    {"scales", space.scales()},
       {"features", names},   {"reconstruction", arguments.reconstruction},
-      {"gate", nullptr},     {"engine", "exact"}};
+      {"gate", nullptr},     {"engine", options.engine == gls::Engine::kExact ? "exact" : "fast"}};
   if (gls::projects(options.reconstruction)) {
     json["max_projection_steps"] = options.max_projection_steps;
   }
@@ -101,6 +101,7 @@ void describe(const Arguments& arguments, const Common& common) {
   gls::ScaleSpaceOptions options = arguments.options;
   options.features = feature_set(arguments.features);
   options.reconstruction = reconstruction(arguments.reconstruction);
+  if (arguments.exact) options.engine = gls::Engine::kExact;
   // Opened before the work, so that what cannot be written is refused at once.
   OutputFile settings(fs::path(output).replace_extension(".json"), common.overwrite());
 
@@ -113,7 +114,7 @@ void describe(const Arguments& arguments, const Common& common) {
   std::optional<detect::PreparedCloud> prepared;
   with_name_in_errors(arguments.input, [&] { prepared = detect::prepare(cloud, &progress); });
   for (const std::string& note : prepared->notes) warn(arguments.input + ": " + note);
-  const gls::ExactScaleSpace space({prepared->positions, prepared->normals}, options, &progress);
+  const gls::ScaleSpace space({prepared->positions, prepared->normals}, options, &progress);
   const auto width = static_cast<std::size_t>(gls::feature_count(options.features));
   io::NpyWriter matrix(output, {cloud.size(), space.scales().size(), width}, ScalarType::kFloat32,
                        common.overwrite());
@@ -156,7 +157,7 @@ void add_describe(CLI::App& app, Common& common) {
   command
       ->add_option("--s-max", options.s_max, "Largest scale (0: 10 % of the bounding box diagonal)")
       ->capture_default_str();
-  command->add_flag("--exact", arguments->exact, "Exact neighbourhoods (as it is always, for now)");
+  command->add_flag("--exact", arguments->exact, "Exact neighbourhoods (slow)");
   command->callback([arguments, &common] { describe(*arguments, common); });
 }
 

@@ -31,6 +31,7 @@ struct Arguments {
   int classes = 3, scales = 16, epochs = 0, width = 0;
   double gate = 2.0;
   std::uint64_t seed = 1;
+  bool exact = false;
 };
 
 detect::TrainOptions options_of(const Arguments& arguments) {
@@ -43,6 +44,7 @@ detect::TrainOptions options_of(const Arguments& arguments) {
       options.descriptor.reconstruction = static_cast<gls::Reconstruction>(i);
     }
   }
+  if (arguments.exact) options.descriptor.engine = gls::Engine::kExact;
   if (arguments.gate <= 1.0) options.descriptor.side_gate = arguments.gate;
   options.architecture.kind = kNetworks.at(arguments.network);
   options.architecture.classes = arguments.classes;
@@ -107,6 +109,7 @@ void add_descriptor_options(CLI::App& command, Arguments& arguments) {
                   "The surface that is described at every scale")
       ->capture_default_str()
       ->check(CLI::IsMember(std::vector<std::string>(names.begin(), names.end())));
+  command.add_flag("--exact", arguments.exact, "Descriptors from exact neighbourhoods (slow)");
   command.add_option("--gate", arguments.gate,
                      "Side-aware neighbourhoods: leave out points whose normal has a cosine below "
                      "this with the point's own (-1 to 1; default: off)");

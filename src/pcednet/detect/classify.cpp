@@ -4,8 +4,8 @@
 #include <chrono>
 #include <utility>
 
+#include "pcednet/gls/engine.h"
 #include "pcednet/nn/predict.h"
-#include "pcednet/spatial/curve_order.h"
 
 namespace pcednet::detect {
 namespace {
@@ -47,7 +47,7 @@ ClassCounts count_classes(const std::vector<std::uint8_t>& classes) {
 }  // namespace
 
 Classification classify(const PreparedCloud& cloud, const EdgeModel& model,
-                        const ClassifyOptions& /*options*/, const Progress* progress) {
+                        const ClassifyOptions& options, const Progress* progress) {
   const std::size_t points = cloud.positions.size();
   Classification result;
   result.classes.assign(points, kUnlabelled);
@@ -55,9 +55,10 @@ Classification classify(const PreparedCloud& cloud, const EdgeModel& model,
   result.p_smooth.assign(points, 0.0f);
 
   Stopwatch watch;
-  const gls::ExactScaleSpace matrix({cloud.positions, cloud.normals}, model.descriptor, progress);
-  const std::vector<std::uint32_t> curve = spatial::curve_order(cloud.positions);
-  const std::span<const std::uint32_t> order = curve;
+  gls::ScaleSpaceOptions descriptor = model.descriptor;
+  descriptor.engine = options.exact ? gls::Engine::kExact : gls::Engine::kFast;
+  const gls::ScaleSpace matrix({cloud.positions, cloud.normals}, descriptor, progress);
+  const std::span<const std::uint32_t> order = matrix.order();
   result.seconds_prepare = watch.lap();
 
   const auto inputs = static_cast<std::size_t>(model.network.network.architecture.inputs());

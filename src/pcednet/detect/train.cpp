@@ -5,9 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <iterator>
 
 #include "pcednet/core/error.h"
-#include "pcednet/spatial/curve_order.h"
+#include "pcednet/gls/engine.h"
 
 namespace pcednet::detect {
 namespace {
@@ -16,20 +17,26 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// The labelled points along the curve, where their order does not depend on how they are numbered.
-std::vector<std::uint32_t> labelled_points(const TrainingCloud& cloud) {
+void check_labels(const TrainingCloud& cloud) {
   if (cloud.labels.size() != cloud.cloud.positions.size()) {
     throw Error(ErrorKind::kInsufficient,
                 fmt::format("{}: {} labels for {} points", cloud.name, cloud.labels.size(),
                             cloud.cloud.positions.size()));
   }
-  std::vector<std::uint32_t> points = spatial::curve_order(cloud.cloud.positions);
-  std::erase_if(points, [&](std::uint32_t i) { return cloud.labels[i] > kSharpEdge; });
-  if (points.empty()) {
+  if (std::none_of(cloud.labels.begin(), cloud.labels.end(),
+                   [](std::uint8_t label) { return label <= kSharpEdge; })) {
     throw Error(
         ErrorKind::kInsufficient,
         fmt::format("{}: no labelled point (0 non-edge, 1 smooth-edge, 2 sharp-edge)", cloud.name));
   }
+}
+
+/// The labelled points in the engine's order, which does not depend on how they are numbered.
+std::vector<std::uint32_t> labelled_points(const TrainingCloud& cloud,
+                                           std::span<const std::uint32_t> order) {
+  std::vector<std::uint32_t> points;
+  std::copy_if(order.begin(), order.end(), std::back_inserter(points),
+               [&](std::uint32_t i) { return cloud.labels[i] <= kSharpEdge; });
   return points;
 }
 
@@ -93,9 +100,10 @@ Samples make_samples(std::span<const TrainingCloud> clouds, const TrainOptions& 
   Samples samples;
   std::vector<gls::FitStatus> status;
   for (const TrainingCloud& cloud : clouds) {
-    const auto targets = labelled_points(cloud);
-    const gls::ExactScaleSpace matrix({cloud.cloud.positions, cloud.cloud.normals},
-                                      options.descriptor, &cancel_only);
+    check_labels(cloud);
+    const gls::ScaleSpace matrix({cloud.cloud.positions, cloud.cloud.normals}, options.descriptor,
+                                 &cancel_only);
+    const auto targets = labelled_points(cloud, matrix.order());
     const std::size_t before = samples.values.size();
     samples.values.resize(before + targets.size() * width);
     status.resize(targets.size() * static_cast<std::size_t>(options.descriptor.scales));
