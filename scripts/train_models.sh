@@ -7,4 +7,4 @@ folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 
 $pcednet generate default "$folder/default" --seed 1
-$pcednet train "$folder/default" -o models/scan.safetensors --seed 1 --overwrite
+$pcednet train "$folder/default" -o models/scan.safetensors --natural --seed 1 --overwrite

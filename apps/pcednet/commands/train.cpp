@@ -31,7 +31,7 @@ struct Arguments {
   int classes = 3, scales = 16, epochs = 0, width = 0;
   double gate = 2.0;
   std::uint64_t seed = 1;
-  bool exact = false;
+  bool exact = false, natural = false;
 };
 
 detect::TrainOptions options_of(const Arguments& arguments) {
@@ -51,6 +51,7 @@ detect::TrainOptions options_of(const Arguments& arguments) {
   options.architecture.width = arguments.width;
   if (arguments.recipe == "paper") options.training = nn::paper_recipe();
   if (arguments.epochs > 0) options.training.epochs = arguments.epochs;
+  if (arguments.natural) options.training.balanced = false;
   options.training.seed = arguments.seed;
   options.training.sign_rule.symmetry = kSymmetries.at(arguments.symmetry);
   return options;
@@ -146,6 +147,9 @@ void add_train(CLI::App& app, Common& common) {
                    "What makes flipped normals change nothing: average, canonical, none")
       ->capture_default_str()
       ->check(CLI::IsMember(kSymmetries));
+  command->add_flag(
+      "--natural", arguments->natural,
+      "Let every class count as often as it occurs, not all alike: fewer false edges");
   command->add_option("--epochs", arguments->epochs, "Rounds of training (0: the recipe's)");
   command->add_option("--seed", arguments->seed, "Seed of all randomness")->capture_default_str();
   command->callback([arguments, &common] { train(*arguments, common); });
