@@ -1,58 +1,21 @@
 #include "pcednet/gls/scale_space.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <utility>
 
-#include "pcednet/core/error.h"
 #include "pcednet/core/parallel.h"
 #include "pcednet/gls/descriptor.h"
-#include "pcednet/gls/half_space.h"
 #include "pcednet/gls/moments.h"
 #include "pcednet/gls/plane_fit.h"
 #include "pcednet/gls/scales.h"
 #include "pcednet/gls/sphere_fit.h"
-#include "pcednet/spatial/curve_order.h"
 
 namespace pcednet::gls {
 namespace {
 
-constexpr std::uint32_t kNowhere = std::numeric_limits<std::uint32_t>::max();
 constexpr double kSmallestMove = 0.01;  // of t: after a shorter step the projection ends
-
-bool is_usable(const Vec3& normal) {
-  return normal.allFinite() && !normal.isZero(0.0);
-}
-
-/// An order of normals that turning them all leaves alone, but for exactly opposite ones.
-bool is_less(const Vec3& a, const Vec3& b) {
-  const Vec3 p = upward(a), q = upward(b);
-  if (p == q) return points_down(a) && !points_down(b);
-  return std::lexicographical_compare(p.data(), p.data() + 3, q.data(), q.data() + 3);
-}
-
-void check(OrientedPoints points, const ScaleSpaceOptions& options) {
-  const auto refuse = [](const std::string& why) { throw Error(ErrorKind::kUsage, why); };
-  if (points.positions.size() != points.normals.size()) {
-    refuse(fmt::format("{} positions with {} normals", points.positions.size(),
-                       points.normals.size()));
-  }
-  if (points.positions.size() >= kNowhere) refuse("more than 2^32 - 2 points");
-  if (options.max_projection_steps < 0) refuse("max_projection_steps is negative");
-  if (options.side_gate && !(std::abs(*options.side_gate) <= 1.0)) {
-    refuse(fmt::format("the side gate {} is not within -1 to 1", *options.side_gate));
-  }
-  for (std::size_t i = 0; i < points.normals.size(); ++i) {
-    const Vec3& n = points.normals[i];
-    if (is_usable(n) && !(std::abs(n.squaredNorm() - 1.0) <= 2e-3)) {
-      refuse(fmt::format("the normal of point {} has length {}, not 1", i, n.norm()));
-    }
-  }
-}
 
 /// Writes `features` as Numbers; false, with zeros written, if one of them is not finite then.
 template <typename Number>
@@ -86,36 +49,18 @@ ExactScaleSpace::ExactScaleSpace(OrientedPoints points, const ScaleSpaceOptions&
     : options_(options), tree_({}) {
   check(points, options);
   Stage stage(progress, "prepare", 3);
-  renumber(points);
+  order_ = point_order(points);
+  place_ = places_in(order_, points.positions.size());
+  for (const std::uint32_t i : order_) {
+    positions_.push_back(points.positions[i]);
+    normals_.push_back(is_usable(points.normals[i]) ? points.normals[i] : Vec3::Zero());
+  }
   stage.advance();
   tree_ = spatial::KdTree(positions_);
   stage.advance();
   scales_ =
       sample_scales(scale_range(positions_, tree_, {options.s_min, options.s_max}), options.scales);
   stage.advance();
-}
-
-/// Orders the points by place along a curve and, in one place, by normal: whatever is computed from
-/// the ordered arrays cannot depend on the numbering.
-void ExactScaleSpace::renumber(OrientedPoints points) {
-  const auto usable = [&](std::uint32_t i) {
-    return is_usable(points.normals[i]) ? points.normals[i] : Vec3::Zero().eval();
-  };
-  std::vector<std::uint32_t> order = spatial::curve_order(points.positions);
-  for (auto first = order.begin(); first != order.end();) {
-    const auto last = std::find_if(first, order.end(), [&](std::uint32_t i) {
-      return points.positions[i] != points.positions[*first];
-    });
-    std::sort(first, last,
-              [&](std::uint32_t i, std::uint32_t j) { return is_less(usable(i), usable(j)); });
-    first = last;
-  }
-  place_.assign(points.positions.size(), kNowhere);
-  for (const std::uint32_t i : order) {
-    place_[i] = static_cast<std::uint32_t>(positions_.size());
-    positions_.push_back(points.positions[i]);
-    normals_.push_back(usable(i));
-  }
 }
 
 /// The points `found` as seen from `offset` away from the point at `place`, which lends its normal
@@ -202,23 +147,10 @@ template <typename Number>
 void ExactScaleSpace::describe_all(std::span<const std::uint32_t> targets, std::span<Number> out,
                                    std::span<FitStatus> status, const Progress* progress) const {
   const std::size_t scales = scales_.size();
-  const std::size_t row = scales * static_cast<std::size_t>(feature_count(options_.features));
-  if (out.size() != targets.size() * row || status.size() != targets.size() * scales) {
-    throw Error(
-        ErrorKind::kUsage,
-        fmt::format("{} targets need {} features and {} statuses, not {} and {}", targets.size(),
-                    targets.size() * row, targets.size() * scales, out.size(), status.size()));
-  }
-  // Neighbours one after the other, whatever the order of the targets: they share memory.
-  std::vector<std::pair<std::uint32_t, std::size_t>> visits;
-  for (std::size_t i = 0; i < targets.size(); ++i) {
-    if (targets[i] >= place_.size()) {
-      throw Error(ErrorKind::kUsage,
-                  fmt::format("there is no point {} among {}", targets[i], place_.size()));
-    }
-    visits.emplace_back(place_[targets[i]], i);
-  }
-  std::sort(visits.begin(), visits.end());
+  const auto width = static_cast<std::size_t>(feature_count(options_.features));
+  const std::size_t row = scales * width;
+  check_room(targets.size(), scales, width, out.size(), status.size());
+  const std::vector<Visit> visits = plan_visits(targets, place_);
 
   constexpr std::size_t kBlock = 64;
   Stage stage(progress, "describe", visits.size());

@@ -1,35 +1,17 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <vector>
 
 #include "pcednet/core/progress.h"
 #include "pcednet/core/vec3.h"
-#include "pcednet/gls/features.h"
 #include "pcednet/gls/fit_status.h"
 #include "pcednet/gls/neighbourhood.h"
-#include "pcednet/gls/projection.h"
+#include "pcednet/gls/oriented_points.h"
 #include "pcednet/spatial/kd_tree.h"
 
 namespace pcednet::gls {
-
-struct ScaleSpaceOptions {
-  int scales = 16;                  ///< a power of two, 4 to 128
-  double s_min = 0.0, s_max = 0.0;  ///< 0: from the cloud, see scale_range()
-  FeatureSet features = FeatureSet::kPaper6;
-  Reconstruction reconstruction = Reconstruction::kSphere;
-  int max_projection_steps = 5;     ///< for the reconstructions that project
-  std::optional<double> side_gate;  ///< the a of side_gate(), -1 to 1; without one all count alike
-};
-
-/// Points and their normals, which must be of unit length; a normal that is zero or not finite is
-/// unusable.
-struct OrientedPoints {
-  std::span<const Vec3> positions;
-  std::span<const Vec3> normals;
-};
 
 /// The scale-space matrix of a cloud, evaluated from exact neighbourhoods in double precision.
 ///
@@ -39,9 +21,8 @@ struct OrientedPoints {
 /// the points and any number of threads, and never NaN or infinite.
 class ExactScaleSpace {
  public:
-  /// Copies what it needs of `points`. Throws Error(kUsage) for options out of range, for arrays of
-  /// different sizes and for normals that are not of unit length (to 1e-3), Error(kInsufficient)
-  /// for clouds without a range of scales (see scale_range()).
+  /// Copies what it needs of `points`. Throws what check() throws, and Error(kInsufficient) for
+  /// clouds without a range of scales (see scale_range()).
   ExactScaleSpace(OrientedPoints points, const ScaleSpaceOptions& options,
                   const Progress* progress = nullptr);
 
@@ -49,6 +30,10 @@ class ExactScaleSpace {
 
   /// The support radii, smallest first.
   const std::vector<double>& scales() const { return scales_; }
+
+  /// The finite points along a curve: any order of targets will do, but one that follows this is
+  /// kind to the caches.
+  std::span<const std::uint32_t> order() const { return order_; }
 
   /// Describes the points numbered `targets`, on all threads. `out` is targets x scales x
   /// feature_count() numbers, `status` targets x scales. A point that is not finite is undefined at
@@ -63,7 +48,6 @@ class ExactScaleSpace {
   struct Fit;
   struct Scratch;
 
-  void renumber(OrientedPoints points);
   void localise(std::span<const spatial::Neighbour> found, std::uint32_t place, const Vec3& offset,
                 double radius, Neighbourhood& neighbours) const;
   Fit fit(std::span<const LocalNeighbour> neighbours, double t) const;
@@ -76,6 +60,7 @@ class ExactScaleSpace {
                     std::span<FitStatus> status, const Progress* progress) const;
 
   ScaleSpaceOptions options_;
+  std::vector<std::uint32_t> order_;
   std::vector<std::uint32_t> place_;  ///< of each point in the arrays below, or kNowhere
   std::vector<Vec3> positions_;       ///< the finite points, in an order free of their numbering
   std::vector<Vec3> normals_;         ///< (0,0,0) where unusable

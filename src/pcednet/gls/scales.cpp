@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 
@@ -13,17 +14,9 @@
 namespace pcednet::gls {
 namespace {
 
-constexpr std::size_t kNeighbours = 10;
+constexpr std::size_t kSample = 16384;
 constexpr double kPartOfDiagonal = 0.1;
 constexpr double kShortest = 1e-100, kLongest = 1e100;  // their squares and inverses are finite
-
-double mean_neighbour_distance(const Vec3& position, const spatial::KdTree& tree,
-                               std::vector<spatial::Neighbour>& found) {
-  tree.nearest(position, kNeighbours + 1, found);
-  double sum = 0.0;
-  for (std::size_t i = 1; i < found.size(); ++i) sum += std::sqrt(found[i].sq_distance);
-  return sum / static_cast<double>(found.size() - 1);
-}
 
 void check_given(double bound, const char* name) {
   if (bound >= 0.0 && std::isfinite(bound)) return;
@@ -34,40 +27,56 @@ void check_given(double bound, const char* name) {
 
 }  // namespace
 
-double mean_spacing(std::span<const Vec3> positions, const spatial::KdTree& tree) {
-  if (tree.size() < 2) return 0.0;
-  constexpr std::size_t kBlock = 1024;
-  std::vector<double> sums((positions.size() + kBlock - 1) / kBlock);
-  parallel_blocks(positions.size(), kBlock, [&](std::size_t begin, std::size_t end) {
-    std::vector<spatial::Neighbour> found;
-    for (std::size_t i = begin; i < end; ++i) {
-      sums[begin / kBlock] += mean_neighbour_distance(positions[i], tree, found);
-    }
+double mean_distance(std::span<const double> sq_distances) {
+  double sum = 0.0;
+  for (std::size_t i = 1; i < sq_distances.size(); ++i) sum += std::sqrt(sq_distances[i]);
+  return sum / static_cast<double>(sq_distances.size() - 1);
+}
+
+double mean_spacing(std::size_t points, const std::function<double(std::size_t)>& distance) {
+  if (points < 2) return 0.0;
+  constexpr std::size_t kBlock = 256;
+  const std::size_t count = std::min(points, kSample);
+  std::vector<double> sums((count + kBlock - 1) / kBlock);
+  parallel_blocks(count, kBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) sums[begin / kBlock] += distance(i * points / count);
   });
   double sum = 0.0;
   for (const double block : sums) sum += block;
-  return sum / static_cast<double>(positions.size());
+  return sum / static_cast<double>(count);
 }
 
 ScaleRange scale_range(std::span<const Vec3> positions, const spatial::KdTree& tree,
                        const ScaleRange& given) {
+  const auto distance = [&](std::size_t place) {
+    std::vector<spatial::Neighbour> found;
+    std::array<double, kSpacingNeighbours> sq_distances;
+    tree.nearest(positions[place], kSpacingNeighbours, found);
+    for (std::size_t i = 0; i < found.size(); ++i) sq_distances[i] = found[i].sq_distance;
+    return mean_distance(std::span(sq_distances).first(found.size()));
+  };
+  return scale_range(positions.size(), bounding_box(positions).diagonal(), given,
+                     [&] { return mean_spacing(positions.size(), distance); });
+}
+
+ScaleRange scale_range(std::size_t points, double diagonal, const ScaleRange& given,
+                       const std::function<double()>& spacing) {
   check_given(given.s_min, "s_min");
   check_given(given.s_max, "s_max");
   ScaleRange range = given;
-  const double diagonal = bounding_box(positions).diagonal();
   if (range.s_max == 0.0) range.s_max = kPartOfDiagonal * diagonal;
   if (!(range.s_max > kShortest && range.s_max < kLongest)) {
     throw Error(ErrorKind::kInsufficient,
                 fmt::format("no scales for {} finite points with a bounding box of diagonal {}: "
                             "points at two places or more are needed",
-                            tree.size(), diagonal));
+                            points, diagonal));
   }
-  if (range.s_min == 0.0) range.s_min = mean_spacing(positions, tree);
+  if (range.s_min == 0.0) range.s_min = spacing();
   if (!(range.s_min > kShortest)) {
     throw Error(ErrorKind::kInsufficient,
                 fmt::format("the {} finite points are all copies of each other or have ten copies "
                             "each: remove duplicates",
-                            tree.size()));
+                            points));
   }
   if (range.s_min < range.s_max) return range;
   const bool both_given = given.s_min > 0.0 && given.s_max > 0.0;

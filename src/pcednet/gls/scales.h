@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -15,15 +16,27 @@ struct ScaleRange {
   double s_max = 0.0;
 };
 
-/// The mean over `positions` (the finite points of `tree`, in an order that fixes the sum) of the
-/// mean distance to the 10 nearest other points, or to all others if they are fewer.
-double mean_spacing(std::span<const Vec3> positions, const spatial::KdTree& tree);
+/// Mean distances to the 10 nearest other points (to all others if they are fewer), averaged over
+/// the points or, of more than 16384, over so many of them that follow each other at equal steps
+/// along the curve order. `distance(place)` is that of the point at a place of the order.
+double mean_spacing(std::size_t points, const std::function<double(std::size_t)>& distance);
 
-/// s_min = mean_spacing(), s_max = 10 % of the diagonal of the bounding box; what `given` holds
-/// other than 0 is kept. Throws Error(kInsufficient) where the cloud leaves no range: fewer than
-/// two points, all in one place, every point with ten copies, or so few points that their spacing
-/// is not below s_max. Throws Error(kUsage) if a given bound is negative, not finite, or leaves
-/// none.
+/// The mean distance in a row of nearest squared distances, of which the first, to the point
+/// itself, is left out.
+double mean_distance(std::span<const double> sq_distances);
+
+/// How many nearest points, with the point itself, mean_distance() wants.
+inline constexpr std::size_t kSpacingNeighbours = 11;
+
+/// s_min = `spacing()`, s_max = 10 % of `diagonal`, that of the bounding box of the `points` finite
+/// points; what `given` holds other than 0 is kept. Throws Error(kInsufficient) where the cloud
+/// leaves no range: fewer than two points, all in one place, every point with ten copies, or so few
+/// points that their spacing is not below s_max. Throws Error(kUsage) if a given bound is negative,
+/// not finite, or leaves none.
+ScaleRange scale_range(std::size_t points, double diagonal, const ScaleRange& given,
+                       const std::function<double()>& spacing);
+
+/// The same from a tree of `positions`, the finite points in curve order.
 ScaleRange scale_range(std::span<const Vec3> positions, const spatial::KdTree& tree,
                        const ScaleRange& given);
 

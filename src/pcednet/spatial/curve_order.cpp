@@ -2,49 +2,74 @@
 
 #include <algorithm>
 
-#include "pcednet/cloud/bounding_box.h"
+#include "pcednet/core/parallel.h"
+#include "pcednet/spatial/morton.h"
+#include "pcednet/spatial/radix_sort.h"
 
 namespace pcednet::spatial {
 namespace {
 
-struct Keyed {
-  std::uint64_t key;
-  std::uint32_t index;
-};
+constexpr int kBits = 21;
+constexpr double kCells = (1 << kBits) - 1;
+constexpr std::size_t kFew = 64;  // so many are compared instead of being given finer keys
 
-/// Spreads the lowest 21 bits so that two zero bits follow each of them.
-std::uint64_t spread_bits(std::uint64_t v) {
-  v &= 0x1fffff;
-  v = (v | v << 32) & 0x1f00000000ffff;
-  v = (v | v << 16) & 0x1f0000ff0000ff;
-  v = (v | v << 8) & 0x100f00f00f00f00f;
-  v = (v | v << 4) & 0x10c30c30c30c30c3;
-  v = (v | v << 2) & 0x1249249249249249;
-  return v;
+bool is_before(const Vec3& p, const Vec3& q) {
+  return std::lexicographical_compare(p.data(), p.data() + 3, q.data(), q.data() + 3);
+}
+
+/// Half the lower corner and half the longest side of the box (halves do not overflow).
+std::pair<Vec3, double> half_box(std::span<const Vec3> positions, const std::vector<Keyed>& keyed) {
+  Vec3 min = positions[keyed.front().index], max = min;
+  for (const Keyed& k : keyed) {
+    min = min.cwiseMin(positions[k.index]);
+    max = max.cwiseMax(positions[k.index]);
+  }
+  return {0.5 * min, (0.5 * max - 0.5 * min).maxCoeff()};
+}
+
+/// Sorts points, given in the order of their indices, along the curve through their box. Those that
+/// share a cell are sorted along the curve through theirs: points far from all others cost the
+/// others nothing.
+void sort_along_curve(std::span<const Vec3> positions, std::vector<Keyed>& keyed) {
+  if (keyed.size() <= 1) return;
+  if (keyed.size() <= kFew) {
+    std::stable_sort(keyed.begin(), keyed.end(), [&](const Keyed& a, const Keyed& b) {
+      return is_before(positions[a.index], positions[b.index]);
+    });
+    return;
+  }
+  const auto [min, side] = half_box(positions, keyed);
+  if (!(side > 0.0)) return;
+  parallel_blocks(keyed.size(), 1 << 14, [&, min = min, side = side](auto begin, auto end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const Vec3 cell = (0.5 * positions[keyed[i].index] - min) / side * kCells;
+      keyed[i].key =
+          morton_code({static_cast<std::uint32_t>(cell.x()), static_cast<std::uint32_t>(cell.y()),
+                       static_cast<std::uint32_t>(cell.z())});
+    }
+  });
+  sort_by_key(keyed, 3 * kBits);
+  for (auto first = keyed.begin(); first != keyed.end();) {
+    const auto last =
+        std::find_if(first + 1, keyed.end(), [&](const Keyed& k) { return k.key != first->key; });
+    if (last - first > 1) {
+      std::vector<Keyed> cell(first, last);
+      sort_along_curve(positions, cell);
+      std::copy(cell.begin(), cell.end(), first);
+    }
+    first = last;
+  }
 }
 
 }  // namespace
 
 std::vector<std::uint32_t> curve_order(std::span<const Vec3> positions) {
-  const BoundingBox box = bounding_box(positions);
-  const double side = box.empty() ? 0.0 : (box.max - box.min).maxCoeff();
-  const double cells = side > 0.0 ? 2097151.0 / side : 0.0;
-
   std::vector<Keyed> keyed;
   keyed.reserve(positions.size());
   for (std::size_t i = 0; i < positions.size(); ++i) {
-    if (!positions[i].allFinite()) continue;
-    const Vec3 cell = (positions[i] - box.min) * cells;
-    const auto bits = [&](int axis) { return spread_bits(static_cast<std::uint64_t>(cell[axis])); };
-    keyed.push_back({bits(0) << 2 | bits(1) << 1 | bits(2), static_cast<std::uint32_t>(i)});
+    if (positions[i].allFinite()) keyed.push_back({0, static_cast<std::uint32_t>(i)});
   }
-  std::sort(keyed.begin(), keyed.end(), [&](const Keyed& a, const Keyed& b) {
-    if (a.key != b.key) return a.key < b.key;
-    const Vec3 &p = positions[a.index], &q = positions[b.index];
-    if (p != q) return std::lexicographical_compare(p.data(), p.data() + 3, q.data(), q.data() + 3);
-    return a.index < b.index;
-  });
-
+  sort_along_curve(positions, keyed);
   std::vector<std::uint32_t> order(keyed.size());
   std::transform(keyed.begin(), keyed.end(), order.begin(), [](const Keyed& k) { return k.index; });
   return order;

@@ -1,0 +1,298 @@
+#include "pcednet/gls/block_evaluator.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "pcednet/gls/features.h"
+
+namespace pcednet::gls {
+namespace {
+
+constexpr std::size_t kPart = 8 * kLanes;
+constexpr double kWidestBlock = 32.0;  // t: float then gives coordinates to 1e-6
+constexpr float kMargin = 0.25f;       // t: gathered in advance for points that will move
+
+/// The box of the lanes in `targets`, in the frame.
+SourceBox box_of(const LaneTargets& targets, std::size_t count) {
+  SourceBox box;
+  const float* rows[3] = {targets.x, targets.y, targets.z};
+  for (int a = 0; a < 3; ++a) {
+    const auto [min, max] = std::minmax_element(rows[a], rows[a] + count);
+    box.min[a] = *min, box.max[a] = *max;
+  }
+  return box;
+}
+
+SourceBox local_box(const BlockFrame& frame, const TargetBox& box) {
+  const Vec3 min = frame.local(box.min), max = frame.local(box.max);
+  SourceBox local;
+  for (int a = 0; a < 3; ++a) {
+    local.min[a] = static_cast<float>(min[a]), local.max[a] = static_cast<float>(max[a]);
+  }
+  return local;
+}
+
+/// True if whatever is closer than 1 to `box` is closer than 1 + margin to `gathered`.
+bool is_within(const SourceBox& box, const SourceBox& gathered, float margin) {
+  const float slack = margin * 0.57f;  // on each axis: 1 / sqrt(3)
+  for (int a = 0; a < 3; ++a) {
+    if (box.min[a] < gathered.min[a] - slack || box.max[a] > gathered.max[a] + slack) return false;
+  }
+  return true;
+}
+
+void clear(GroupFit& result, std::size_t lane) {
+  result.status[lane] = FitStatus::kUndefined;
+  for (auto& feature : result.fits.features) feature[lane] = 0.0f;
+  result.fits.uc[lane] = result.fits.uq[lane] = 0.0f;
+  result.fits.pratt[lane] = 1.0f;
+}
+
+void copy_lane(const GroupFit& from, std::size_t lane, GroupFit& to) {
+  to.status[lane] = from.status[lane];
+  const LaneFits& f = from.fits;
+  LaneFits& t = to.fits;
+  for (std::size_t k = 0; k < std::size(f.features); ++k) {
+    t.features[k][lane] = f.features[k][lane];
+  }
+  for (std::size_t a = 0; a < 3; ++a) t.ul[a][lane] = f.ul[a][lane];
+  t.uc[lane] = f.uc[lane], t.uq[lane] = f.uq[lane], t.pratt[lane] = f.pratt[lane];
+}
+
+void put(const RecheckedFit& exact, double t, std::size_t lane, GroupFit& result) {
+  std::array<double, 28> features;
+  write_features(FeatureSet::kAll28, exact.descriptor, t, features);
+  bool finite = true;
+  for (std::size_t k = 0; k < features.size(); ++k) {
+    const auto feature = static_cast<float>(features[k]);
+    result.fits.features[k][lane] = feature;
+    finite = finite && std::isfinite(feature);
+  }
+  if (!finite || exact.fit.status == FitStatus::kUndefined) return clear(result, lane);
+  result.status[lane] = exact.fit.status;
+  const AlgebraicSphere& sphere = exact.fit.sphere;
+  result.fits.uc[lane] = static_cast<float>(sphere.uc / t);
+  for (int a = 0; a < 3; ++a) {
+    result.fits.ul[a][lane] = static_cast<float>(sphere.ul[a]);
+  }
+  result.fits.uq[lane] = static_cast<float>(sphere.uq * t);
+  result.fits.pratt[lane] = static_cast<float>(sphere.pratt);
+}
+
+}  // namespace
+
+BlockEvaluator::BlockEvaluator(const VoxelPyramid& pyramid, const BlockOptions& options,
+                               const LaneKernels& kernels)
+    : pyramid_(&pyramid), options_(options), kernels_(&kernels) {
+  if (options.side_gate) {
+    gate_ = {.enabled = true, .threshold = static_cast<float>(*options.side_gate)};
+  }
+}
+
+TargetBox BlockEvaluator::box_of(std::size_t begin, std::size_t end) const {
+  const std::vector<Voxel>& points = pyramid_->levels.front().voxels;
+  TargetBox box = {points[begin].position, points[begin].position};
+  for (std::size_t i = begin + 1; i < end; ++i) {
+    box.min = box.min.cwiseMin(points[i].position);
+    box.max = box.max.cwiseMax(points[i].position);
+  }
+  return box;
+}
+
+void BlockEvaluator::evaluate(std::size_t begin, std::size_t end, std::size_t scale, double t,
+                              const Wanted& wanted, const Emit& emit) {
+  const TargetBox box = box_of(begin, end);
+  if (box.longest_side() > kWidestBlock * t && end - begin > 1) {
+    const std::size_t groups = (end - begin + kLanes - 1) / kLanes;
+    const std::size_t half = begin + (groups > 1 ? groups / 2 * kLanes : (end - begin) / 2);
+    evaluate(begin, half, scale, t, wanted, emit);
+    evaluate(half, end, scale, t, wanted, emit);
+    return;
+  }
+  const float margin = options_.projection_steps > 0 ? kMargin : 0.0f;
+  bool gathered = false;
+  GroupFit result;
+  for (std::size_t part = begin; part < end; part += kPart) {
+    const std::size_t part_end = std::min(part + kPart, end);
+    SourceBox part_box;
+    bool selected = false;
+    for (std::size_t first = part; first < part_end; first += kLanes) {
+      const LaneGroup group = {first, std::min(kLanes, part_end - first)};
+      if (!wanted(group)) continue;
+      if (!gathered) {
+        const VoxelLevel& level = pyramid_->levels[pyramid_->level_of[scale]];
+        block_.gather(level, box, box.centre(), t, 1.0f + margin);
+        gathered = true;
+      }
+      if (!selected) {
+        part_box = local_box(block_, box_of(part, part_end));
+        part_.reserve(block_.candidates().count);
+        kernels_->select(block_.candidates(), part_box, 1.0f + margin, part_.view);
+        selected = true;
+      }
+      evaluate_group(group, block_, part_.view, part_box, t, result);
+      emit(group, result);
+    }
+  }
+}
+
+void BlockEvaluator::load_targets(const LaneGroup& group, const BlockFrame& frame) {
+  const std::vector<Voxel>& points = pyramid_->levels.front().voxels;
+  for (std::size_t lane = 0; lane < kLanes; ++lane) {
+    const Voxel& point = points[group.begin + std::min(lane, group.count - 1)];
+    const Vec3 local = frame.local(point.position);
+    targets_.x[lane] = static_cast<float>(local.x());
+    targets_.y[lane] = static_cast<float>(local.y());
+    targets_.z[lane] = static_cast<float>(local.z());
+    targets_.nx[lane] = point.normal[0];
+    targets_.ny[lane] = point.normal[1];
+    targets_.nz[lane] = point.normal[2];
+  }
+}
+
+void BlockEvaluator::evaluate_group(const LaneGroup& group, const BlockFrame& frame,
+                                    const Candidates& near, const SourceBox& gathered, double t,
+                                    GroupFit& result) {
+  load_targets(group, frame);
+  for (auto& offset : offset_) offset.fill(0.0f);
+  fit_lanes(group, frame, near, t, result);
+  if (options_.projection_steps > 0) project(group, frame, near, gathered, t, result);
+}
+
+/// Fits every lane where targets_ has it; `near` must hold all that is closer than 1 to them.
+void BlockEvaluator::fit_lanes(const LaneGroup& group, const BlockFrame& frame,
+                               const Candidates& near, double t, GroupFit& result) {
+  group_.reserve(near.count);
+  kernels_->select(near, gls::box_of(targets_, group.count), 1.00001f, group_.view);
+  const Candidates& sources = group_.view;
+  kernels_->sum(frame.sources(), sources.index, sources.count, targets_, gate_, sums_);
+  interactions_ += sources.count * group.count;
+  find_status(group, frame, t, result);
+  kernels_->solve(sums_, options_.detail, result.fits);
+  settle(group, frame, t, result);
+}
+
+/// Counts neighbours only where the sum of weights, each at most 1, does not tell that there are
+/// many.
+void BlockEvaluator::find_status(const LaneGroup& group, const BlockFrame& frame, double t,
+                                 GroupFit& result) {
+  result.status.fill(FitStatus::kStable);
+  const auto few = [&](std::size_t lane) { return !(sums_.u[lane] > 6.001f); };
+  bool any = false;
+  for (std::size_t lane = 0; lane < group.count; ++lane) any = any || few(lane);
+  if (!any) return;
+  const Candidates& sources = group_.view;
+  kernels_->count(frame.sources(), sources.index, sources.count, targets_, gate_, counts_);
+  for (std::size_t lane = 0; lane < group.count; ++lane) {
+    if (!few(lane)) continue;
+    const auto status = [](float count) {
+      return status_of_count(static_cast<std::uint32_t>(std::min(count, 1e9f)));
+    };
+    result.status[lane] = status(counts_.surely[lane]);
+    if (status(counts_.maybe[lane]) == result.status[lane]) continue;
+    result.status[lane] =
+        recheck_status(doubtful(group, lane, t), frame.level(), candidate_voxels(frame));
+  }
+}
+
+/// Zeros for what is undefined, double precision for what float could not tell.
+void BlockEvaluator::settle(const LaneGroup& group, const BlockFrame& frame, double t,
+                            GroupFit& result) {
+  for (std::size_t lane = 0; lane < group.count; ++lane) {
+    if (result.status[lane] == FitStatus::kUndefined) {
+      clear(result, lane);
+    } else if (result.fits.sound[lane] == 0.0f) {
+      put(recheck_fit(doubtful(group, lane, t), frame.level(), candidate_voxels(frame)), t, lane,
+          result);
+    }
+  }
+}
+
+DoubtfulTarget BlockEvaluator::doubtful(const LaneGroup& group, std::size_t lane, double t) const {
+  const Voxel& point = pyramid_->levels.front().voxels[group.begin + lane];
+  const auto& offset = offset_[lane];
+  return {point.position, Vec3(offset[0], offset[1], offset[2]) * t,
+          Vec3(point.normal[0], point.normal[1], point.normal[2]), t, options_.side_gate};
+}
+
+std::span<const std::uint32_t> BlockEvaluator::candidate_voxels(const BlockFrame& frame) {
+  voxels_.clear();
+  for (std::size_t i = 0; i < group_.view.count; ++i) {
+    voxels_.push_back(frame.voxel(group_.view.index[i]));
+  }
+  return voxels_;
+}
+
+/// Chooses each moving lane's next step, projection_move(). False if no lane moves.
+bool BlockEvaluator::step(const LaneGroup& group, GroupFit& result) {
+  bool any = false;
+  const LaneFits& f = result.fits;
+  for (std::size_t lane = 0; lane < group.count; ++lane) {
+    moving_[lane] = moving_[lane] && result.status[lane] == FitStatus::kStable;
+    if (!moving_[lane]) continue;
+    any = true;
+    float sq_length = 0.0f;
+    for (std::size_t a = 0; a < 3; ++a) sq_length += f.ul[a][lane] * f.ul[a][lane];
+    const float length = std::sqrt(sq_length);
+    const float factor = -2.0f * f.uc[lane] / (length * (length + f.pratt[lane]));
+    for (std::size_t a = 0; a < 3; ++a) move_[lane][a] = factor * f.ul[a][lane];
+  }
+  return any;
+}
+
+/// As ExactScaleSpace does it: moves the evaluation points onto the surface until they hardly move.
+void BlockEvaluator::project(const LaneGroup& group, const BlockFrame& frame,
+                             const Candidates& near, const SourceBox& gathered, double t,
+                             GroupFit& result) {
+  constexpr float kSmallestMove = 0.01f;
+  moving_.fill(true);
+  for (int i = 0; i < options_.projection_steps && step(group, result); ++i) {
+    const LaneTargets before = targets_;
+    const auto offset_before = offset_;
+    float* rows[3] = {targets_.x, targets_.y, targets_.z};
+    for (std::size_t lane = 0; lane < group.count; ++lane) {
+      for (std::size_t a = 0; moving_[lane] && a < 3; ++a) {
+        rows[a][lane] += move_[lane][a];
+        offset_[lane][a] += move_[lane][a];
+      }
+    }
+    const SourceBox box = gls::box_of(targets_, group.count);
+    if (is_within(box, gathered, kMargin)) {
+      fit_lanes(group, frame, near, t, next_);
+    } else {
+      TargetBox moved;
+      for (int a = 0; a < 3; ++a) {
+        moved.min[a] = frame.origin()[a] + box.min[a] * t;
+        moved.max[a] = frame.origin()[a] + box.max[a] * t;
+      }
+      own_.gather(frame.level(), moved, frame.origin(), t, 1.00001f);
+      fit_lanes(group, own_, own_.candidates(), t, next_);
+    }
+    for (std::size_t lane = 0; lane < group.count; ++lane) {
+      if (!moving_[lane]) continue;
+      const auto& m = move_[lane];
+      if (next_.status[lane] == FitStatus::kUndefined) {
+        moving_[lane] = false;
+        targets_.x[lane] = before.x[lane], targets_.y[lane] = before.y[lane];
+        targets_.z[lane] = before.z[lane];
+        offset_[lane] = offset_before[lane];
+        continue;
+      }
+      copy_lane(next_, lane, result);
+      const float sq_move = m[0] * m[0] + m[1] * m[1] + m[2] * m[2];
+      if (sq_move < kSmallestMove * kSmallestMove) moving_[lane] = false;
+    }
+  }
+  for (std::size_t lane = 0; lane < group.count; ++lane) {
+    if (result.status[lane] == FitStatus::kUndefined) continue;
+    // The distance of the point itself to the last surface.
+    const LaneFits& f = result.fits;
+    float value = f.uc[lane];
+    for (std::size_t a = 0; a < 3; ++a) {
+      value += offset_[lane][a] * (f.uq[lane] * offset_[lane][a] - f.ul[a][lane]);
+    }
+    result.fits.features[0][lane] = value / f.pratt[lane];
+  }
+}
+
+}  // namespace pcednet::gls

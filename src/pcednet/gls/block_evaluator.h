@@ -1,0 +1,84 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "pcednet/gls/block_frame.h"
+#include "pcednet/gls/fit_status.h"
+#include "pcednet/gls/lane_kernels.h"
+#include "pcednet/gls/lane_recheck.h"
+
+namespace pcednet::gls {
+
+struct BlockOptions {
+  LaneDetail detail = LaneDetail::kInvariant;
+  int projection_steps = 0;
+  std::optional<double> side_gate;
+};
+
+/// The points [begin, begin + count) of the pyramid's first level, at most kLanes of them.
+struct LaneGroup {
+  std::size_t begin, count;
+};
+
+/// What is known of a group of points at one scale.
+struct GroupFit {
+  std::array<FitStatus, kLanes> status;
+  LaneFits fits = {};  ///< features are finite, and 0 where undefined
+};
+
+/// Describes the points of a pyramid's first level from the level that serves each scale, a block
+/// at a time. Holds the buffers for that, so that none is allocated per point: one per thread.
+class BlockEvaluator {
+ public:
+  using Wanted = std::function<bool(const LaneGroup&)>;
+  using Emit = std::function<void(const LaneGroup&, const GroupFit&)>;
+
+  BlockEvaluator(const VoxelPyramid& pyramid, const BlockOptions& options,
+                 const LaneKernels& kernels = lane_kernels());
+
+  /// Calls `emit` for the groups of the points [begin, end) that are `wanted`, at the scale with
+  /// this index and support radius. `begin` must be a multiple of kLanes. What a group gets depends
+  /// on begin and end, not on which other groups are wanted.
+  void evaluate(std::size_t begin, std::size_t end, std::size_t scale, double t,
+                const Wanted& wanted, const Emit& emit);
+
+  /// Sources times targets summed so far.
+  std::uint64_t interactions() const { return interactions_; }
+
+ private:
+  TargetBox box_of(std::size_t begin, std::size_t end) const;
+  void evaluate_group(const LaneGroup& group, const BlockFrame& frame, const Candidates& near,
+                      const SourceBox& gathered, double t, GroupFit& result);
+  void load_targets(const LaneGroup& group, const BlockFrame& frame);
+  void fit_lanes(const LaneGroup& group, const BlockFrame& frame, const Candidates& near, double t,
+                 GroupFit& result);
+  void find_status(const LaneGroup& group, const BlockFrame& frame, double t, GroupFit& result);
+  void settle(const LaneGroup& group, const BlockFrame& frame, double t, GroupFit& result);
+  void project(const LaneGroup& group, const BlockFrame& frame, const Candidates& near,
+               const SourceBox& gathered, double t, GroupFit& result);
+  bool step(const LaneGroup& group, GroupFit& result);
+  DoubtfulTarget doubtful(const LaneGroup& group, std::size_t lane, double t) const;
+  std::span<const std::uint32_t> candidate_voxels(const BlockFrame& frame);
+
+  const VoxelPyramid* pyramid_;
+  BlockOptions options_;
+  LaneGate gate_;
+  const LaneKernels* kernels_;
+  BlockFrame block_, own_;      ///< of a block; of a group whose points left what that gathered
+  CandidateList part_, group_;  ///< candidates near a part of the block, near a group
+  std::vector<std::uint32_t> voxels_;
+  LaneTargets targets_;
+  std::array<std::array<float, 3>, kLanes> offset_, move_;  ///< from the point to where it is, in t
+  std::array<bool, kLanes> moving_;
+  LaneSums sums_;
+  LaneCounts counts_;
+  GroupFit next_;
+  std::uint64_t interactions_ = 0;
+};
+
+}  // namespace pcednet::gls

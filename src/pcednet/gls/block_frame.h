@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "pcednet/core/vec3.h"
+#include "pcednet/gls/lane_types.h"
+#include "pcednet/gls/voxel_pyramid.h"
+
+namespace pcednet::gls {
+
+/// Owns the arrays of Candidates, of which the kernels fill as many as they find.
+class CandidateList {
+ public:
+  void reserve(std::size_t count);
+  void set(std::size_t i, const Source& source);
+
+  Candidates view = {};
+
+ private:
+  std::vector<float> x_, y_, z_;
+  std::vector<std::uint32_t> index_;
+};
+
+/// An axis-aligned box of evaluation points.
+struct TargetBox {
+  Vec3 min, max;
+
+  Vec3 centre() const { return 0.5 * (min + max); }
+  double longest_side() const { return (max - min).maxCoeff(); }
+};
+
+/// What evaluation points at scale t may meet: the entries of a level near a box, in single
+/// precision, about an origin in the box and in units of t. Its buffers last from one use to the
+/// next.
+class BlockFrame {
+ public:
+  /// Gathers every voxel of `level` closer than `reach` t to `box`, and some more. `box` must be
+  /// within 16 t of `origin` for coordinates to be good to 1e-6.
+  void gather(const VoxelLevel& level, const TargetBox& box, const Vec3& origin, double t,
+              float reach);
+
+  const Vec3& origin() const { return origin_; }
+  const VoxelLevel& level() const { return *level_; }
+  const Candidates& candidates() const { return candidates_.view; }
+  const Source* sources() const { return sources_.data(); }
+
+  /// The voxel of the level that source `i` is.
+  std::uint32_t voxel(std::uint32_t i) const { return voxels_[i]; }
+
+  /// A position in the frame.
+  Vec3 local(const Vec3& position) const { return (position - origin_) * inverse_t_; }
+
+ private:
+  const VoxelLevel* level_ = nullptr;
+  Vec3 origin_ = Vec3::Zero();
+  double inverse_t_ = 1.0;
+  std::vector<std::uint32_t> runs_;
+  std::vector<Source> sources_;
+  std::vector<std::uint32_t> voxels_;
+  CandidateList candidates_;
+};
+
+}  // namespace pcednet::gls

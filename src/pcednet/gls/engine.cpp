@@ -1,0 +1,41 @@
+#include "pcednet/gls/engine.h"
+
+namespace pcednet::gls {
+namespace {
+
+std::variant<FastScaleSpace, ExactScaleSpace> make_engine(OrientedPoints points,
+                                                          ScaleSpaceOptions options,
+                                                          const Progress* progress) {
+  const bool spheres = options.reconstruction == Reconstruction::kSphere ||
+                       options.reconstruction == Reconstruction::kSphereMls;
+  if (!spheres) options.engine = Engine::kExact;
+  if (options.engine == Engine::kExact) return ExactScaleSpace(points, options, progress);
+  return FastScaleSpace(points, options, progress);
+}
+
+}  // namespace
+
+ScaleSpace::ScaleSpace(OrientedPoints points, const ScaleSpaceOptions& options,
+                       const Progress* progress)
+    : engine_(make_engine(points, options, progress)) {}
+
+const ScaleSpaceOptions& ScaleSpace::options() const {
+  return std::visit(
+      [](const auto& engine) -> const auto& { return engine.options(); }, engine_);
+}
+
+const std::vector<double>& ScaleSpace::scales() const {
+  return std::visit(
+      [](const auto& engine) -> const auto& { return engine.scales(); }, engine_);
+}
+
+std::span<const std::uint32_t> ScaleSpace::order() const {
+  return std::visit([](const auto& engine) { return engine.order(); }, engine_);
+}
+
+void ScaleSpace::describe(std::span<const std::uint32_t> targets, std::span<float> out,
+                          std::span<FitStatus> status, const Progress* progress) const {
+  std::visit([&](const auto& engine) { engine.describe(targets, out, status, progress); }, engine_);
+}
+
+}  // namespace pcednet::gls

@@ -1,0 +1,153 @@
+#include "pcednet/gls/fast_scale_space.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "pcednet/cloud/bounding_box.h"
+#include "pcednet/core/error.h"
+#include "pcednet/core/parallel.h"
+#include "pcednet/gls/block_evaluator.h"
+#include "pcednet/gls/scales.h"
+#include "pcednet/gls/target_groups.h"
+
+namespace pcednet::gls {
+namespace {
+
+/// The rows of LaneFits::features that a set takes, in its order.
+std::vector<std::size_t> rows_of(FeatureSet set) {
+  switch (set) {
+    case FeatureSet::kSpatial4:
+      return {0, 1, 2, 5};
+    case FeatureSet::kRelief3:
+      return {0, 3, 5};
+    default:
+      break;
+  }
+  std::vector<std::size_t> rows(static_cast<std::size_t>(feature_count(set)));
+  for (std::size_t k = 0; k < rows.size(); ++k) rows[k] = k;
+  return rows;
+}
+
+LaneDetail detail_of(FeatureSet set) {
+  if (set == FeatureSet::kRelief3) return LaneDetail::kRelief;
+  return set == FeatureSet::kAll28 ? LaneDetail::kAll : LaneDetail::kInvariant;
+}
+
+/// The power of two that brings the cloud's longest side to between 1/2 and 2, so that squares and
+/// cubes of its lengths fit a float; exact.
+double unit_for(const BoundingBox& box) {
+  if (box.empty()) return 1.0;
+  const double half_side = (0.5 * box.max - 0.5 * box.min).maxCoeff();
+  if (!(half_side > 0.0)) return 1.0;
+  return std::ldexp(1.0, std::clamp(-std::ilogb(half_side), -1000, 1000));
+}
+
+}  // namespace
+
+FastScaleSpace::FastScaleSpace(OrientedPoints points, const ScaleSpaceOptions& options,
+                               const Progress* progress)
+    : FastScaleSpace(points, options, lane_kernels(), progress) {}
+
+FastScaleSpace::FastScaleSpace(OrientedPoints points, const ScaleSpaceOptions& options,
+                               const LaneKernels& kernels, const Progress* progress)
+    : options_(options), kernels_(&kernels) {
+  check(points, options);
+  if (options.reconstruction != Reconstruction::kSphere &&
+      options.reconstruction != Reconstruction::kSphereMls) {
+    throw Error(ErrorKind::kUsage, "the fast engine reconstructs with algebraic spheres only");
+  }
+  Stage stage(progress, "prepare", 3);
+  const std::vector<std::uint32_t> curve = point_order(points);
+  stage.advance();
+  order_ = curve;
+  arrange_in_groups(points.positions, order_);
+  place_ = places_in(order_, points.positions.size());
+  unit_ = unit_for(bounding_box(points.positions));
+  pyramid_ = make_pyramid(points.positions, points.normals, order_, unit_);
+  stage.advance();
+  find_scales(points, curve);
+  stage.advance();
+  std::vector<double> scaled = scales_;
+  for (double& scale : scaled) scale *= unit_;
+  add_levels(pyramid_, scaled, options.eps, progress);
+}
+
+void FastScaleSpace::find_scales(OrientedPoints points, std::span<const std::uint32_t> curve) {
+  const VoxelLevel& level = pyramid_.levels.front();
+  const auto distance = [&](std::size_t place) {
+    std::array<double, kSpacingNeighbours> sq_distances;
+    const std::size_t found =
+        level.boxes.nearest(points.positions[curve[place]] * unit_, sq_distances,
+                            [&](std::size_t i) { return level.voxels[i].position; });
+    return mean_distance(std::span(sq_distances).first(found)) / unit_;
+  };
+  const double diagonal = bounding_box(points.positions).diagonal();
+  scales_ = sample_scales(scale_range(curve.size(), diagonal, {options_.s_min, options_.s_max},
+                                      [&] { return mean_spacing(curve.size(), distance); }),
+                          options_.scales);
+}
+
+void FastScaleSpace::describe(std::span<const std::uint32_t> targets, std::span<float> out,
+                              std::span<FitStatus> status, const Progress* progress) const {
+  const auto width = static_cast<std::size_t>(feature_count(options_.features));
+  check_room(targets.size(), scales_.size(), width, out.size(), status.size());
+  const std::vector<Visit> visits = plan_visits(targets, place_);
+  std::vector<std::size_t> blocks;  // where each begins
+  for (std::size_t i = 0; i < visits.size(); ++i) {
+    if (i == 0 || visits[i].place / kBlock != visits[i - 1].place / kBlock) blocks.push_back(i);
+  }
+  blocks.push_back(visits.size());
+  Stage stage(progress, "describe", visits.size());
+  parallel_blocks(blocks.size() - 1, 1, [&](std::size_t begin, std::size_t) {
+    const std::size_t count = blocks[begin + 1] - blocks[begin];
+    describe_block(std::span(visits).subspan(blocks[begin], count), out, status);
+    stage.advance(count);
+  });
+}
+
+/// Fills the rows of visits to one block.
+void FastScaleSpace::describe_block(std::span<const Visit> visits, std::span<float> out,
+                                    std::span<FitStatus> status) const {
+  const std::vector<std::size_t> rows = rows_of(options_.features);
+  if (visits.front().place == kNowhere) {
+    for (const Visit& visit : visits) {
+      const std::size_t first = visit.row * scales_.size();
+      std::fill_n(&status[first], scales_.size(), FitStatus::kUndefined);
+      std::fill_n(&out[first * rows.size()], scales_.size() * rows.size(), 0.0f);
+    }
+    return;
+  }
+  const auto visits_to = [&](const LaneGroup& group) {
+    const auto at = [&](std::size_t place) {
+      return std::lower_bound(visits.begin(), visits.end(), place,
+                              [](const Visit& v, std::size_t p) { return v.place < p; });
+    };
+    return std::span(at(group.begin), at(group.begin + group.count));
+  };
+  const bool moves = options_.reconstruction == Reconstruction::kSphereMls;
+  BlockEvaluator evaluator(pyramid_,
+                           {.detail = detail_of(options_.features),
+                            .projection_steps = moves ? options_.max_projection_steps : 0,
+                            .side_gate = options_.side_gate},
+                           *kernels_);
+  const std::size_t begin = visits.front().place / kBlock * kBlock;
+  const std::size_t end = std::min(begin + kBlock, order_.size());
+  for (std::size_t s = 0; s < scales_.size(); ++s) {
+    evaluator.evaluate(
+        begin, end, s, scales_[s] * unit_,
+        [&](const LaneGroup& group) { return !visits_to(group).empty(); },
+        [&](const LaneGroup& group, const GroupFit& fit) {
+          for (const Visit& visit : visits_to(group)) {
+            const std::size_t lane = visit.place - group.begin;
+            const std::size_t cell = visit.row * scales_.size() + s;
+            status[cell] = fit.status[lane];
+            for (std::size_t k = 0; k < rows.size(); ++k) {
+              out[cell * rows.size() + k] = fit.fits.features[rows[k]][lane];
+            }
+          }
+        });
+  }
+}
+
+}  // namespace pcednet::gls

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "pcednet/core/progress.h"
+#include "pcednet/gls/fit_status.h"
+#include "pcednet/gls/lane_kernels.h"
+#include "pcednet/gls/oriented_points.h"
+#include "pcednet/gls/voxel_pyramid.h"
+
+namespace pcednet::gls {
+
+/// The scale-space matrix of a cloud at a cost per point that depends neither on the size of the
+/// cloud nor on s_max.
+///
+/// Scale t reads the cloud from voxels of edge at most eps t (see VoxelPyramid), in single
+/// precision, for 16 points at a time. Where nothing is merged yet (the nearest scales) it agrees
+/// with ExactScaleSpace to float rounding, statuses included; docs/engine.md tells how far it does
+/// elsewhere. Fits that float cannot resolve are repeated in double precision.
+///
+/// Reconstructs with algebraic spheres only. All results are the same bits for any numbering of the
+/// points, any number of threads and any choice of targets, and never NaN or infinite; a flip of
+/// all normals negates every feature but phi exactly (unless points with opposite normals
+/// coincide).
+class FastScaleSpace {
+ public:
+  /// Copies what it needs of `points`, about 150 bytes each. Throws what check() throws,
+  /// Error(kUsage) for a reconstruction with planes, and Error(kInsufficient) for clouds without a
+  /// range of scales (see scale_range()).
+  FastScaleSpace(OrientedPoints points, const ScaleSpaceOptions& options,
+                 const Progress* progress = nullptr);
+
+  /// The same with the vector code to use; every choice agrees to float rounding.
+  FastScaleSpace(OrientedPoints points, const ScaleSpaceOptions& options,
+                 const LaneKernels& kernels, const Progress* progress = nullptr);
+
+  const ScaleSpaceOptions& options() const { return options_; }
+
+  /// The support radii, smallest first.
+  const std::vector<double>& scales() const { return scales_; }
+
+  /// The finite points in the order in which it is best to ask for them: along a curve, so that a
+  /// stretch of 1024 that starts at a multiple of 1024 is evaluated together. Fewer than 16 at a
+  /// time cost as much as 16.
+  std::span<const std::uint32_t> order() const { return order_; }
+
+  /// Describes the points numbered `targets`, on all threads. `out` is targets x scales x
+  /// feature_count() numbers, `status` targets x scales. A point that is not finite is undefined at
+  /// every scale. May be called from many threads. Throws Error(kUsage) if a target or a size is
+  /// wrong.
+  void describe(std::span<const std::uint32_t> targets, std::span<float> out,
+                std::span<FitStatus> status, const Progress* progress = nullptr) const;
+
+ private:
+  void find_scales(OrientedPoints points, std::span<const std::uint32_t> curve);
+  void describe_block(std::span<const Visit> visits, std::span<float> out,
+                      std::span<FitStatus> status) const;
+
+  ScaleSpaceOptions options_;
+  const LaneKernels* kernels_;
+  std::vector<std::uint32_t> order_, place_;
+  double unit_ = 1.0;  ///< what the pyramid's coordinates are multiplied by, a power of two
+  VoxelPyramid pyramid_;
+  std::vector<double> scales_;
+};
+
+}  // namespace pcednet::gls

@@ -1,0 +1,94 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace pcednet::gls {
+
+/// Targets that one call of a kernel serves, one per vector lane.
+inline constexpr std::size_t kLanes = 16;
+
+/// One point or voxel of the neighbourhood, in the frame of its block and in units of the support
+/// radius.
+struct Source {
+  float x, y, z;     ///< mean position
+  float nx, ny, nz;  ///< mean normal, not renormalised
+  float count;       ///< points it stands for; 0 for a point whose normal is unusable
+  float qq;          ///< mean |q|^2 of its points about their mean position
+  float qn;          ///< mean q.n likewise
+};
+
+/// A box in the frame of the sources.
+struct SourceBox {
+  float min[3], max[3];
+};
+
+/// Candidate sources: their numbers and, for the test of reach, their positions again.
+struct Candidates {
+  float *x, *y, *z;
+  std::uint32_t* index;
+  std::size_t count;
+};
+
+struct LaneTargets {
+  float x[kLanes], y[kLanes], z[kLanes];     ///< evaluation points, in the sources' frame
+  float nx[kLanes], ny[kLanes], nz[kLanes];  ///< their normals, used by the gate alone
+};
+
+/// The gate of side-aware neighbourhoods, see side_gate().
+struct LaneGate {
+  bool enabled = false;
+  float threshold = 0.0f;
+};
+
+/// The sums of a neighbourhood over u = gate count (1 - r^2) and over w = u (1 - r^2), support
+/// radius 1 and r^2 = |y|^2 + qq, from which the moments of the sphere fit and all their first
+/// derivatives follow:
+///
+///     t dw/dt = 4 (u - w)    t dw/dx = 4 u y    S w = S u - S u r^2    S w y = S u y - S u r^2 y
+///
+/// One row of kLanes targets per sum.
+struct LaneSums {
+  float u[kLanes], uy[3][kLanes], un[3][kLanes], uyn[kLanes], uyy[kLanes];
+  float wn[3][kLanes], wyn[kLanes], wyy[kLanes];
+  float u_y_y[6][kLanes];     ///< S u y y^T: xx xy xz yy yz zz
+  float u_n_y[3][3][kLanes];  ///< S u n y^T
+  float u_yn_y[3][kLanes];    ///< S u (y.n) y
+  float u_yy_y[3][kLanes];    ///< S u r^2 y
+};
+
+/// How many points are neighbours: of those counted in `maybe` but not in `surely`, rounding leaves
+/// open whether they are.
+struct LaneCounts {
+  float surely[kLanes], maybe[kLanes];
+};
+
+/// What is known of each lane's target, in units of the support radius.
+struct LaneFits {
+  float sound[kLanes];  ///< 1, or 0 where float cannot tell the fit: nearly singular or undefined
+  float uc[kLanes], ul[3][kLanes], uq[kLanes], pratt[kLanes];  ///< the sphere
+  float features[28][kLanes];  ///< in the order of FeatureSet::kAll28
+};
+
+/// How many of the features are wanted.
+enum class LaneDetail {
+  kRelief,     ///< tau dtau phi alone
+  kInvariant,  ///< the first seven
+  kAll,
+};
+
+/// The vector code of one instruction set.
+struct LaneKernels {
+  const char* name;
+  /// Writes the candidates of `in` nearer than `reach` to `box` to `out`, which has room for all
+  /// and kLanes more; `in` is readable for kLanes more.
+  void (*select)(const Candidates& in, const SourceBox& box, float reach, Candidates& out);
+  /// Sums over sources[indices[0 .. count)).
+  void (*sum)(const Source* sources, const std::uint32_t* indices, std::size_t count,
+              const LaneTargets& targets, const LaneGate& gate, LaneSums& sums);
+  void (*count)(const Source* sources, const std::uint32_t* indices, std::size_t count,
+                const LaneTargets& targets, const LaneGate& gate, LaneCounts& counts);
+  void (*solve)(const LaneSums& sums, LaneDetail detail, LaneFits& fits);
+};
+
+}  // namespace pcednet::gls

@@ -1,0 +1,104 @@
+#include "pcednet/gls/oriented_points.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "pcednet/core/error.h"
+#include "pcednet/gls/half_space.h"
+#include "pcednet/spatial/curve_order.h"
+
+namespace pcednet::gls {
+namespace {
+
+/// An order of normals that turning them all leaves alone, but for exactly opposite ones.
+bool is_less(const Vec3& a, const Vec3& b) {
+  const Vec3 p = upward(a), q = upward(b);
+  if (p == q) return points_down(a) && !points_down(b);
+  return std::lexicographical_compare(p.data(), p.data() + 3, q.data(), q.data() + 3);
+}
+
+void refuse(const std::string& why) {
+  throw Error(ErrorKind::kUsage, why);
+}
+
+}  // namespace
+
+bool is_usable(const Vec3& normal) {
+  return normal.allFinite() && !normal.isZero(0.0);
+}
+
+void check(OrientedPoints points, const ScaleSpaceOptions& options) {
+  if (points.positions.size() != points.normals.size()) {
+    refuse(fmt::format("{} positions with {} normals", points.positions.size(),
+                       points.normals.size()));
+  }
+  if (points.positions.size() >= kNowhere) refuse("more than 2^32 - 2 points");
+  if (options.max_projection_steps < 0) refuse("max_projection_steps is negative");
+  if (options.side_gate && !(std::abs(*options.side_gate) <= 1.0)) {
+    refuse(fmt::format("the side gate {} is not within -1 to 1", *options.side_gate));
+  }
+  if (!(options.eps >= 0.01 && options.eps <= 1.0)) {
+    refuse(fmt::format("eps {} is not within 0.01 to 1", options.eps));
+  }
+  for (std::size_t i = 0; i < points.normals.size(); ++i) {
+    const Vec3& n = points.normals[i];
+    if (is_usable(n) && !(std::abs(n.squaredNorm() - 1.0) <= 2e-3)) {
+      refuse(fmt::format("the normal of point {} has length {}, not 1", i, n.norm()));
+    }
+  }
+}
+
+std::vector<std::uint32_t> point_order(OrientedPoints points) {
+  const auto usable = [&](std::uint32_t i) {
+    return is_usable(points.normals[i]) ? points.normals[i] : Vec3::Zero().eval();
+  };
+  std::vector<std::uint32_t> order = spatial::curve_order(points.positions);
+  for (auto first = order.begin(); first != order.end();) {
+    const auto last = std::find_if(first + 1, order.end(), [&](std::uint32_t i) {
+      return points.positions[i] != points.positions[*first];
+    });
+    if (last - first > 1) {
+      std::sort(first, last,
+                [&](std::uint32_t i, std::uint32_t j) { return is_less(usable(i), usable(j)); });
+    }
+    first = last;
+  }
+  return order;
+}
+
+std::vector<std::uint32_t> places_in(std::span<const std::uint32_t> order, std::size_t count) {
+  std::vector<std::uint32_t> places(count, kNowhere);
+  for (std::size_t i = 0; i < order.size(); ++i) places[order[i]] = static_cast<std::uint32_t>(i);
+  return places;
+}
+
+std::vector<Visit> plan_visits(std::span<const std::uint32_t> targets,
+                               std::span<const std::uint32_t> places) {
+  std::vector<Visit> visits;
+  visits.reserve(targets.size());
+  for (std::size_t i = 0; i < targets.size(); ++i) {
+    if (targets[i] >= places.size()) {
+      refuse(fmt::format("there is no point {} among {}", targets[i], places.size()));
+    }
+    visits.push_back({places[targets[i]], i});
+  }
+  const auto is_before = [](const Visit& a, const Visit& b) {
+    return a.place != b.place ? a.place < b.place : a.row < b.row;
+  };
+  if (!std::is_sorted(visits.begin(), visits.end(), is_before)) {
+    std::sort(visits.begin(), visits.end(), is_before);
+  }
+  return visits;
+}
+
+void check_room(std::size_t targets, std::size_t scales, std::size_t width, std::size_t features,
+                std::size_t statuses) {
+  if (features == targets * scales * width && statuses == targets * scales) return;
+  refuse(fmt::format("{} targets need {} features and {} statuses, not {} and {}", targets,
+                     targets * scales * width, targets * scales, features, statuses));
+}
+
+}  // namespace pcednet::gls

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "pcednet/core/vec3.h"
+#include "pcednet/gls/scale_space_options.h"
+
+namespace pcednet::gls {
+
+/// Points and their normals, which must be of unit length; a normal that is zero or not finite is
+/// unusable.
+struct OrientedPoints {
+  std::span<const Vec3> positions;
+  std::span<const Vec3> normals;
+};
+
+bool is_usable(const Vec3& normal);
+
+/// Throws Error(kUsage) for options out of range, for arrays of different sizes and for usable
+/// normals that are not of unit length (to 1e-3).
+void check(OrientedPoints points, const ScaleSpaceOptions& options);
+
+/// The finite points by place along a curve and, in one place, by normal: whatever is computed in
+/// this order cannot depend on the numbering.
+std::vector<std::uint32_t> point_order(OrientedPoints points);
+
+/// The place in an order of a point that is not in it.
+inline constexpr std::uint32_t kNowhere = std::numeric_limits<std::uint32_t>::max();
+
+/// The place of each of `count` points in `order`.
+std::vector<std::uint32_t> places_in(std::span<const std::uint32_t> order, std::size_t count);
+
+/// A row of a matrix that is asked for, and the place of the point it describes.
+struct Visit {
+  std::uint32_t place;
+  std::size_t row;
+};
+
+/// The rows to fill for the points numbered `targets`, by place, so that neighbours come one after
+/// the other; points that are nowhere last. Throws Error(kUsage) for a number without a point.
+std::vector<Visit> plan_visits(std::span<const std::uint32_t> targets,
+                               std::span<const std::uint32_t> places);
+
+/// Throws Error(kUsage) unless there is room for exactly `targets` rows of `scales` times `width`
+/// features and `scales` statuses.
+void check_room(std::size_t targets, std::size_t scales, std::size_t width, std::size_t features,
+                std::size_t statuses);
+
+}  // namespace pcednet::gls

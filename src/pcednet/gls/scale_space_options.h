@@ -1,0 +1,27 @@
+#pragma once
+
+#include <optional>
+
+#include "pcednet/gls/features.h"
+#include "pcednet/gls/projection.h"
+
+namespace pcednet::gls {
+
+/// How a scale-space matrix is computed.
+enum class Engine {
+  kFast,   ///< from a voxel pyramid, in single precision: see FastScaleSpace
+  kExact,  ///< from exact neighbourhoods, in double precision: see ExactScaleSpace
+};
+
+struct ScaleSpaceOptions {
+  int scales = 16;                  ///< a power of two, 4 to 128
+  double s_min = 0.0, s_max = 0.0;  ///< 0: from the cloud, see scale_range()
+  FeatureSet features = FeatureSet::kPaper6;
+  Reconstruction reconstruction = Reconstruction::kSphere;
+  int max_projection_steps = 5;     ///< for the reconstructions that project
+  std::optional<double> side_gate;  ///< the a of side_gate(), -1 to 1; without one all count alike
+  Engine engine = Engine::kFast;    ///< what ScaleSpace uses
+  double eps = 0.14;                ///< voxel edge over support radius, 0.01 to 1; fast engine only
+};
+
+}  // namespace pcednet::gls

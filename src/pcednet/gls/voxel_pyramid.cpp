@@ -1,0 +1,66 @@
+#include "pcednet/gls/voxel_pyramid.h"
+
+#include "pcednet/core/parallel.h"
+#include "pcednet/gls/voxel_merge.h"
+
+namespace pcednet::gls {
+namespace {
+
+/// A level is worth its memory when the average point shares its voxel with most of another.
+constexpr double kWorthwhileMerge = 1.7;
+
+void add_boxes(VoxelLevel& level, const Vec3& origin) {
+  level.boxes = spatial::BoxTree(level.voxels.size(), origin,
+                                 [&](std::size_t i) { return level.voxels[i].position; });
+}
+
+}  // namespace
+
+VoxelPyramid make_pyramid(std::span<const Vec3> positions, std::span<const Vec3> normals,
+                          std::span<const std::uint32_t> order, double unit) {
+  VoxelPyramid pyramid;
+  VoxelLevel& points = pyramid.levels.emplace_back();
+  points.voxels.resize(order.size());
+  parallel_blocks(order.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const Vec3& n = normals[order[i]];
+      Voxel& point = points.voxels[i];
+      point.position = positions[order[i]] * unit;
+      point.count = n.allFinite() && !n.isZero(0.0) ? 1.0f : 0.0f;
+      for (std::size_t a = 0; a < 3; ++a) {
+        const auto component = static_cast<float>(n[static_cast<Eigen::Index>(a)]);
+        point.normal[a] = point.count > 0.0f ? component : 0.0f;
+      }
+    }
+  });
+  if (order.empty()) return pyramid;
+  Vec3 min = points.voxels.front().position, max = min;
+  for (const Voxel& point : points.voxels) {
+    min = min.cwiseMin(point.position);
+    max = max.cwiseMax(point.position);
+  }
+  pyramid.origin = min;
+  pyramid.side = (max - min).maxCoeff();
+  add_boxes(points, pyramid.origin);
+  return pyramid;
+}
+
+void add_levels(VoxelPyramid& pyramid, std::span<const double> scales, double eps,
+                const Progress* progress) {
+  Stage stage(progress, "resolutions", scales.size());
+  pyramid.levels.reserve(1 + scales.size());
+  for (const double scale : scales) {
+    const double cell = eps * scale;
+    const std::vector<Voxel>& finer = pyramid.levels.back().voxels;
+    if (mean_merge(finer, pyramid.origin, cell) >= kWorthwhileMerge) {
+      VoxelLevel& level = pyramid.levels.emplace_back();
+      level.cell = cell;
+      level.voxels = merge_voxels(finer, pyramid.origin, pyramid.side, cell);
+      add_boxes(level, pyramid.origin);
+    }
+    pyramid.level_of.push_back(pyramid.levels.size() - 1);
+    stage.advance();
+  }
+}
+
+}  // namespace pcednet::gls

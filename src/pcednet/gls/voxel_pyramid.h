@@ -1,0 +1,58 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "pcednet/core/progress.h"
+#include "pcednet/core/vec3.h"
+#include "pcednet/gls/neighbourhood.h"
+#include "pcednet/spatial/box_tree.h"
+
+namespace pcednet::gls {
+
+/// A voxel that stands for the points in it, or a single point.
+///
+/// Moments add, so a sum over a neighbourhood may take a voxel for its points when the voxel is
+/// small beside the support. `qq` and `qn` remove the second-order bias of doing so: whatever lies
+/// on one sphere is still fitted exactly.
+struct Voxel {
+  Vec3 position;                ///< mean position
+  std::array<float, 3> normal;  ///< mean normal, not renormalised
+  float count = 1.0f;           ///< points; 0 for a point whose normal is unusable
+  float qq = 0.0f;              ///< mean |q|^2, q the position of its points about `position`
+  float qn = 0.0f;              ///< mean q.n likewise
+};
+
+/// The cloud at one resolution, along a space-filling curve.
+struct VoxelLevel {
+  double cell = 0.0;  ///< voxel edge length; 0 for the points themselves
+  std::vector<Voxel> voxels;
+  spatial::BoxTree boxes;
+};
+
+/// The cloud at falling resolutions; the same for any numbering of the points, and under a flip of
+/// all normals the same but for the sign of every mean normal and qn.
+struct VoxelPyramid {
+  Vec3 origin = Vec3::Zero();         ///< the lower corner of the cloud's box
+  double side = 0.0;                  ///< its longest side
+  std::vector<VoxelLevel> levels;     ///< from fine to coarse; the first holds the points
+  std::vector<std::size_t> level_of;  ///< the level that serves each scale
+};
+
+/// The first level: the points numbered `order`, which must be finite, each as a voxel of its own,
+/// in that order. Coordinates are multiplied by `unit`.
+VoxelPyramid make_pyramid(std::span<const Vec3> positions, std::span<const Vec3> normals,
+                          std::span<const std::uint32_t> order, double unit);
+
+/// Adds levels so that scale t reads voxels of edge at most eps t; a level that would merge next to
+/// nothing is left out, and the scale reads the finer level before.
+///
+/// Voxels are keyed by cell and by the dominant axis and sign of the normal, so that none averages
+/// across an edge. `scales` must be positive and rising. Work is linear in the points, and so is
+/// memory: together the levels hold about two and a half voxels per point.
+void add_levels(VoxelPyramid& pyramid, std::span<const double> scales, double eps,
+                const Progress* progress = nullptr);
+
+}  // namespace pcednet::gls

@@ -1,0 +1,142 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "pcednet/core/parallel.h"
+#include "pcednet/core/vec3.h"
+
+namespace pcednet::spatial {
+
+/// A tree of boxes over things that lie along a space-filling curve, so that a run of them is
+/// compact and the tree needs no more than the boxes of runs, and of runs of runs.
+///
+/// Boxes are kept relative to an origin, in float and rounded outwards: a query may find a little
+/// too much and never too little. Coordinates relative to the origin must fit a float.
+class BoxTree {
+ public:
+  static constexpr std::size_t kLeaf = 8;    ///< things per box of the lowest row
+  static constexpr std::size_t kFanOut = 8;  ///< boxes per box of the row above
+
+  BoxTree() = default;
+
+  /// `position_at(i)` is where thing `i` of `count` is.
+  template <typename PositionAt>
+  BoxTree(std::size_t count, const Vec3& origin, PositionAt&& position_at);
+
+  /// Appends the runs (things [kLeaf * run, kLeaf * (run + 1))) whose boxes are closer than
+  /// `distance` to the box from `min` to `max`, in order.
+  void runs_near(const Vec3& min, const Vec3& max, double distance,
+                 std::vector<std::uint32_t>& runs) const;
+
+  /// Replaces `sq_distances`, all of which it fills if there are things enough, by those from
+  /// `query` to the things nearest to it, in order. Returns how many there are.
+  template <typename PositionAt>
+  std::size_t nearest(const Vec3& query, std::span<double> sq_distances,
+                      PositionAt&& position_at) const;
+
+ private:
+  struct Box {
+    std::array<float, 3> min, max;
+
+    Box();
+    void grow(const Box& box);
+    float sq_gap(const Box& box) const;
+  };
+  Box outward(const Vec3& min, const Vec3& max) const;
+  void add_rows();
+
+  std::size_t count_ = 0;
+  Vec3 origin_ = Vec3::Zero();
+  std::vector<std::vector<Box>> rows_;  ///< from the runs up
+};
+
+inline BoxTree::Box::Box() {
+  min.fill(std::numeric_limits<float>::max());
+  max.fill(std::numeric_limits<float>::lowest());
+}
+
+inline void BoxTree::Box::grow(const Box& box) {
+  for (std::size_t a = 0; a < 3; ++a) {
+    min[a] = std::min(min[a], box.min[a]);
+    max[a] = std::max(max[a], box.max[a]);
+  }
+}
+
+inline float BoxTree::Box::sq_gap(const Box& box) const {
+  float sum = 0.0f;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const float gap = std::max({0.0f, min[a] - box.max[a], box.min[a] - max[a]});
+    sum += gap * gap;
+  }
+  return sum;
+}
+
+template <typename PositionAt>
+BoxTree::BoxTree(std::size_t count, const Vec3& origin, PositionAt&& position_at)
+    : count_(count), origin_(origin) {
+  std::vector<Box> row((count + kLeaf - 1) / kLeaf);
+  parallel_blocks(row.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t run = begin; run < end; ++run) {
+      Vec3 min = position_at(kLeaf * run), max = min;
+      for (std::size_t i = kLeaf * run + 1; i < std::min(count, kLeaf * (run + 1)); ++i) {
+        const Vec3 position = position_at(i);
+        min = min.cwiseMin(position);
+        max = max.cwiseMax(position);
+      }
+      row[run] = outward(min, max);
+    }
+  });
+  rows_.push_back(std::move(row));
+  add_rows();
+}
+
+template <typename PositionAt>
+std::size_t BoxTree::nearest(const Vec3& query, std::span<double> sq_distances,
+                             PositionAt&& position_at) const {
+  if (count_ == 0) return 0;
+  constexpr double kSlack = 1.0 - 1e-5;  // the gaps are floats
+  std::fill(sq_distances.begin(), sq_distances.end(), std::numeric_limits<double>::infinity());
+  const Box at = outward(query, query);
+  const auto add_run = [&](std::size_t run) {
+    for (std::size_t i = kLeaf * run; i < std::min(count_, kLeaf * (run + 1)); ++i) {
+      const Vec3 d = position_at(i) - query;
+      const double sq = d.x() * d.x() + d.y() * d.y() + d.z() * d.z();
+      if (!(sq < sq_distances.back())) continue;
+      auto place = sq_distances.end() - 1;
+      for (; place != sq_distances.begin() && *(place - 1) > sq; --place) *place = *(place - 1);
+      *place = sq;
+    }
+  };
+  struct Branch {
+    float sq_gap;
+    std::size_t row, box;
+  };
+  std::vector<Branch> stack;  // the nearest of each family on top
+  const auto push = [&](std::size_t row, std::size_t begin, std::size_t end) {
+    const auto first = static_cast<std::ptrdiff_t>(stack.size());
+    for (std::size_t b = begin; b < std::min(end, rows_[row].size()); ++b) {
+      stack.push_back({rows_[row][b].sq_gap(at), row, b});
+    }
+    std::sort(stack.begin() + first, stack.end(),
+              [](const Branch& a, const Branch& b) { return a.sq_gap > b.sq_gap; });
+  };
+  push(rows_.size() - 1, 0, rows_.back().size());
+  while (!stack.empty()) {
+    const Branch branch = stack.back();
+    stack.pop_back();
+    if (branch.sq_gap * kSlack >= sq_distances.back()) continue;
+    if (branch.row == 0) {
+      add_run(branch.box);
+    } else {
+      push(branch.row - 1, branch.box * kFanOut, (branch.box + 1) * kFanOut);
+    }
+  }
+  return std::min(count_, sq_distances.size());
+}
+
+}  // namespace pcednet::spatial

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+namespace pcednet::spatial {
+
+struct Keyed {
+  std::uint64_t key;
+  std::uint32_t index;
+};
+
+/// Sorts by the lowest `bits` bits of the keys, on all threads; equal keys keep their order. Higher
+/// bits must be 0. Linear in the size; needs as much memory again.
+void sort_by_key(std::vector<Keyed>& keyed, int bits);
+
+}  // namespace pcednet::spatial

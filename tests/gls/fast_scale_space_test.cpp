@@ -1,0 +1,278 @@
+#include "pcednet/gls/fast_scale_space.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "gls/fast_clouds.h"
+#include "pcednet/core/error.h"
+#include "pcednet/core/parallel.h"
+#include "pcednet/gls/engine.h"
+
+namespace pcednet::gls {
+namespace {
+
+struct Variant {
+  const char* name;
+  Reconstruction reconstruction;
+  std::optional<double> gate;
+};
+
+const Variant kVariants[] = {{"Sphere", Reconstruction::kSphere, {}},
+                             {"Gated", Reconstruction::kSphere, 0.1},
+                             {"Projected", Reconstruction::kSphereMls, {}},
+                             {"GatedAndProjected", Reconstruction::kSphereMls, -0.2}};
+
+ScaleSpaceOptions options_of(const Variant& variant, FeatureSet features) {
+  ScaleSpaceOptions options;
+  options.features = features;
+  options.reconstruction = variant.reconstruction;
+  options.side_gate = variant.gate;
+  return options;
+}
+
+void expect_same_bits(const test::Matrix<float>& a, const test::Matrix<float>& b) {
+  ASSERT_EQ(a.features.size(), b.features.size());
+  EXPECT_EQ(std::memcmp(a.features.data(), b.features.data(), a.features.size() * sizeof(float)),
+            0);
+  EXPECT_EQ(a.status, b.status);
+}
+
+/// A noisy cube in which every hundredth point has a twin with another normal, a twin with the same
+/// normal, an unusable normal, or no position.
+test::Cloud awkward_cloud(std::size_t count) {
+  test::Cloud cloud = test::cube(count, 21, 0.005, 0.2);
+  test::Stream stream(22);
+  for (std::size_t i = 0; i + 60 < count; i += 100) {
+    cloud.add(cloud.positions[i], stream.direction());
+    cloud.add(cloud.positions[i + 20], cloud.normals[i + 20]);
+    cloud.normals[i + 40] = Vec3(0, 0, 0);
+    cloud.positions[i + 60].y() = std::numeric_limits<double>::quiet_NaN();
+  }
+  return cloud;
+}
+
+class FastScaleSpaceInvariance : public testing::TestWithParam<Variant> {};
+
+TEST_P(FastScaleSpaceInvariance, SameBitsForAnyNumbering) {
+  const test::Cloud cloud = awkward_cloud(6000);
+  const ScaleSpaceOptions options = options_of(GetParam(), FeatureSet::kAll28);
+  const FastScaleSpace space(cloud.points(), options);
+  const auto expected = test::describe(space, test::all_targets(cloud.positions.size()));
+  auto order = test::all_targets(cloud.positions.size());
+  test::Stream stream(5);
+  for (std::size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[stream.next() % i]);
+  test::Cloud shuffled;
+  for (const std::uint32_t i : order) shuffled.add(cloud.positions[i], cloud.normals[i]);
+  std::vector<std::uint32_t> back(order.size());
+  for (std::uint32_t i = 0; i < order.size(); ++i) back[order[i]] = i;
+  const FastScaleSpace other(shuffled.points(), options);
+  EXPECT_EQ(space.scales(), other.scales());
+  expect_same_bits(expected, test::describe(other, back));
+}
+
+TEST_P(FastScaleSpaceInvariance, SameBitsOnAnyNumberOfThreads) {
+  const test::Cloud cloud = awkward_cloud(6000);
+  const ScaleSpaceOptions options = options_of(GetParam(), FeatureSet::kPaper6);
+  const auto targets = test::all_targets(cloud.positions.size());
+  set_thread_count(1);
+  const auto one = test::describe(FastScaleSpace(cloud.points(), options), targets);
+  set_thread_count(5);
+  const auto five = test::describe(FastScaleSpace(cloud.points(), options), targets);
+  set_thread_count(0);
+  expect_same_bits(one, five);
+}
+
+TEST_P(FastScaleSpaceInvariance, SameBitsForAnyChoiceOfTargets) {
+  const test::Cloud cloud = awkward_cloud(6000);
+  const FastScaleSpace space(cloud.points(), options_of(GetParam(), FeatureSet::kPaper6));
+  const auto all = test::describe(space, test::all_targets(cloud.positions.size()));
+  const std::vector<std::uint32_t> some = {4000, 17, 60, 5999, 17, 2345};
+  const auto few = test::describe(space, some);
+  const std::size_t row = all.scales * all.width;
+  for (std::size_t i = 0; i < some.size(); ++i) {
+    EXPECT_TRUE(std::equal(few.features.begin() + static_cast<std::ptrdiff_t>(i * row),
+                           few.features.begin() + static_cast<std::ptrdiff_t>((i + 1) * row),
+                           all.features.begin() + static_cast<std::ptrdiff_t>(some[i] * row)));
+    EXPECT_EQ(few.status_at(i, 0), all.status_at(some[i], 0));
+  }
+}
+
+TEST_P(FastScaleSpaceInvariance, TurningTheNormalsNegatesAllButPhi) {
+  test::Cloud cloud = awkward_cloud(6000);
+  const ScaleSpaceOptions options = options_of(GetParam(), FeatureSet::kInvariant7);
+  const auto targets = test::all_targets(cloud.positions.size());
+  const auto before = test::describe(FastScaleSpace(cloud.points(), options), targets);
+  for (Vec3& n : cloud.normals) n = -n;
+  const auto after = test::describe(FastScaleSpace(cloud.points(), options), targets);
+  EXPECT_EQ(before.status, after.status);
+  for (std::size_t i = 0; i < before.features.size(); ++i) {
+    const float sign = i % 7 == 5 ? 1.0f : -1.0f;
+    ASSERT_EQ(before.features[i], sign * after.features[i]) << i % 7;
+  }
+}
+
+TEST_P(FastScaleSpaceInvariance, StaysTheSameFarFromTheOrigin) {
+  // Coordinates on a grid of 2^-20 stay exact a million away, so that only the arithmetic can tell.
+  test::Cloud cloud = awkward_cloud(6000);
+  for (Vec3& p : cloud.positions) p = (p * 0x1p20).array().round().matrix() * 0x1p-20;
+  ScaleSpaceOptions options = options_of(GetParam(), FeatureSet::kInvariant7);
+  const auto targets = test::all_targets(cloud.positions.size());
+  const auto before = test::describe(FastScaleSpace(cloud.points(), options), targets);
+  for (Vec3& p : cloud.positions) p += Vec3(0x1p20, -0x1p20, 0x1p19);
+  const auto after = test::describe(FastScaleSpace(cloud.points(), options), targets);
+  EXPECT_EQ(before.status, after.status);
+  std::vector<float> differences;
+  for (std::size_t i = 0; i < before.features.size(); ++i) {
+    differences.push_back(std::abs(before.features[i] - after.features[i]));
+  }
+  // Mean positions are rounded to 2^-33 there; a source at the rim may come or go.
+  std::sort(differences.begin(), differences.end());
+  EXPECT_LE(differences[differences.size() / 2], 1e-6f);
+  EXPECT_LE(differences[differences.size() * 999 / 1000], 1e-4f);
+}
+
+INSTANTIATE_TEST_SUITE_P(Variants, FastScaleSpaceInvariance, testing::ValuesIn(kVariants),
+                         [](const auto& instance) { return std::string(instance.param.name); });
+
+TEST(FastScaleSpace, AgreesBetweenVectorCodes) {
+  const test::Cloud cloud = awkward_cloud(6000);
+  for (const Variant& variant : kVariants) {
+    const ScaleSpaceOptions options = options_of(variant, FeatureSet::kInvariant7);
+    const auto targets = test::all_targets(cloud.positions.size());
+    const auto expected = test::describe(
+        FastScaleSpace(cloud.points(), options, all_lane_kernels().front()), targets);
+    for (const LaneKernels& kernels : all_lane_kernels()) {
+      const auto found = test::describe(FastScaleSpace(cloud.points(), options, kernels), targets);
+      EXPECT_EQ(found.status, expected.status) << kernels.name;
+      std::vector<float> differences;
+      for (std::size_t i = 0; i < found.features.size(); ++i) {
+        const float size = std::max(1.0f, std::abs(expected.features[i]));
+        differences.push_back(std::abs(found.features[i] - expected.features[i]) / size);
+      }
+      std::sort(differences.begin(), differences.end());
+      EXPECT_LE(differences[differences.size() / 2], 1e-6f) << kernels.name;
+      EXPECT_LE(differences[differences.size() * 999 / 1000], 1e-3f) << kernels.name;
+    }
+  }
+}
+
+TEST(FastScaleSpace, GivesTheStatusesOfTheExactEngineOnAGrid) {
+  // Points on a grid lie at exactly the support radius again and again.
+  test::Cloud cloud;
+  for (int i = 0; i < 60; ++i) {
+    for (int j = 0; j < 60; ++j) cloud.add(Vec3(i, j, 0) / 8.0, Vec3::UnitZ());
+  }
+  for (const std::optional<double> gate : {std::optional<double>(), std::optional<double>(0.1)}) {
+    ScaleSpaceOptions options;
+    options.scales = 4;
+    options.side_gate = gate;
+    options.s_min = 0.125, options.s_max = 1.0;  // radii 0.125, 0.25, 0.5, 1
+    const auto targets = test::all_targets(3600);
+    const auto fast = test::describe(FastScaleSpace(cloud.points(), options), targets);
+    const auto exact = test::describe(ExactScaleSpace(cloud.points(), options), targets);
+    EXPECT_EQ(fast.status, exact.status);
+    EXPECT_EQ(fast.status_at(61, 0), FitStatus::kUndefined);  // its 4 neighbours are not closer
+  }
+}
+
+TEST(FastScaleSpace, AgreesWithTheExactEngineOnDegenerateFits) {
+  // Cancelling normals, a line, piles: what float cannot tell must come out as in double.
+  test::Cloud cloud = test::cube(3000, 2);
+  const auto first = static_cast<std::uint32_t>(cloud.positions.size());
+  for (int i = 0; i < 20; ++i) {
+    cloud.add({3, 0, 0}, Vec3::UnitZ());
+    cloud.add({0, 3, 0}, Vec3(0, 0, i % 2 ? 1 : -1));
+    cloud.add({0.002 * i, 0, 3}, Vec3::UnitZ());
+  }
+  for (const Variant& variant : kVariants) {
+    ScaleSpaceOptions options = options_of(variant, FeatureSet::kInvariant7);
+    const FastScaleSpace fast(cloud.points(), options);
+    const ExactScaleSpace exact(cloud.points(), options);
+    std::vector<std::uint32_t> targets;
+    for (std::uint32_t i = first; i < cloud.positions.size(); ++i) targets.push_back(i);
+    const auto f = test::describe(fast, targets);
+    const auto e = test::describe(exact, targets);
+    EXPECT_EQ(f.status, e.status) << variant.name;
+    for (std::size_t i = 0; i < f.features.size(); ++i) {
+      ASSERT_NEAR(f.features[i], e.features[i], 1e-5) << variant.name << " " << i % 7;
+    }
+  }
+}
+
+TEST(FastScaleSpace, CostsNoMoreWhereThousandsOfPointsAreOne) {
+  // Quadratic work would take minutes.
+  test::Cloud cloud = test::cube(30000, 3);
+  for (int i = 0; i < 60000; ++i) cloud.add(Vec3(0.5, 0.1, 0.2), Vec3::UnitX());
+  ScaleSpaceOptions options;
+  options.s_min = 0.01;
+  const FastScaleSpace space(cloud.points(), options);
+  const auto matrix = test::describe(space, test::all_targets(cloud.positions.size()));
+  for (const float f : matrix.features) ASSERT_TRUE(std::isfinite(f));
+  EXPECT_EQ(matrix.status_at(60000, 0), FitStatus::kStable);
+}
+
+TEST(FastScaleSpace, RefusesWhatItCannotDescribe) {
+  const test::Cloud cube = test::cube(1000, 1);
+  const auto kind = [&](const ScaleSpaceOptions& options) {
+    try {
+      FastScaleSpace(cube.points(), options);
+    } catch (const Error& error) {
+      return error.kind();
+    }
+    return ErrorKind::kFailure;
+  };
+  ScaleSpaceOptions options;
+  options.reconstruction = Reconstruction::kPlaneMls;
+  EXPECT_EQ(kind(options), ErrorKind::kUsage);
+  for (const double eps : {0.0, -1.0, 1.5, std::numeric_limits<double>::quiet_NaN()}) {
+    options = {};
+    options.eps = eps;
+    EXPECT_EQ(kind(options), ErrorKind::kUsage);
+  }
+  EXPECT_THROW(FastScaleSpace({}, {}), Error);
+  const FastScaleSpace space(cube.points(), {});
+  std::vector<float> out(16 * 6);
+  std::vector<FitStatus> status(16);
+  const std::vector<std::uint32_t> beyond = {1000}, two = {1, 2};
+  EXPECT_THROW(space.describe(beyond, out, status), Error);
+  EXPECT_THROW(space.describe(two, out, status), Error);
+}
+
+TEST(FastScaleSpace, StopsWhenToldTo) {
+  const test::Cloud cube = test::cube(1000, 1);
+  Progress progress;
+  progress.cancelled = [] { return true; };
+  EXPECT_THROW(FastScaleSpace(cube.points(), {}, &progress), Error);
+  const FastScaleSpace space(cube.points(), {});
+  std::vector<float> out(1000 * 16 * 6);
+  std::vector<FitStatus> status(1000 * 16);
+  EXPECT_THROW(space.describe(test::all_targets(1000), out, status, &progress), Error);
+}
+
+TEST(ScaleSpaceFront, UsesTheEngineThatIsNamed) {
+  const test::Cloud cube = test::cube(2000, 1);
+  const auto targets = test::all_targets(2000);
+  std::vector<float> out(2000 * 16 * 6);
+  std::vector<FitStatus> status(2000 * 16);
+  ScaleSpaceOptions options;
+  ScaleSpace(cube.points(), options).describe(targets, out, status);
+  EXPECT_EQ(out, test::describe(FastScaleSpace(cube.points(), options), targets).features);
+  options.engine = Engine::kExact;
+  const ScaleSpace exact(cube.points(), options);
+  exact.describe(targets, out, status);
+  EXPECT_EQ(out, test::describe<float>(cube, options).features);
+  EXPECT_EQ(exact.order().size(), 2000u);
+  options.engine = Engine::kFast;
+  options.reconstruction = Reconstruction::kCovariancePlane;
+  const ScaleSpace planes(cube.points(), options);
+  EXPECT_EQ(planes.options().engine, Engine::kExact);
+  planes.describe(targets, out, status);
+  EXPECT_EQ(out, test::describe<float>(cube, options).features);
+}
+
+}  // namespace
+}  // namespace pcednet::gls

@@ -1,0 +1,88 @@
+#include "pcednet/spatial/box_tree.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "pcednet/core/random.h"
+#include "pcednet/spatial/curve_order.h"
+
+namespace pcednet::spatial {
+namespace {
+
+/// Points in curve order: a cloud, a dense clump in it, and copies of one place.
+std::vector<Vec3> ordered_points() {
+  Random random(3);
+  std::vector<Vec3> points;
+  const auto place = [&] { return Vec3(random.uniform(), random.uniform(), random.uniform()); };
+  for (int i = 0; i < 3000; ++i) points.push_back(place());
+  for (int i = 0; i < 1000; ++i) points.push_back(Vec3(0.3, 0.2, 0.1) + 1e-4 * place());
+  for (int i = 0; i < 50; ++i) points.push_back(Vec3(0.7, 0.7, 0.7));
+  std::vector<Vec3> ordered;
+  for (const std::uint32_t i : curve_order(points)) ordered.push_back(points[i]);
+  return ordered;
+}
+
+double sq_gap(const Vec3& p, const Vec3& min, const Vec3& max) {
+  return (min - p).cwiseMax(p - max).cwiseMax(0.0).squaredNorm();
+}
+
+TEST(BoxTree, FindsAllNearABox) {
+  const std::vector<Vec3> points = ordered_points();
+  const BoxTree tree(points.size(), points.front(), [&](std::size_t i) { return points[i]; });
+  Random random(4);
+  for (int query = 0; query < 200; ++query) {
+    const Vec3 min(random.uniform(), random.uniform(), random.uniform());
+    const Vec3 max = min + Vec3::Constant(query % 2 ? 0.05 : 0.0);
+    const double distance = query % 3 ? 0.1 : 1e-5;
+    std::vector<std::uint32_t> runs;
+    tree.runs_near(min, max, distance, runs);
+    EXPECT_TRUE(std::is_sorted(runs.begin(), runs.end()));
+    std::size_t within = 0, found = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (sq_gap(points[i], min, max) >= distance * distance) continue;
+      ++within;
+      const auto run = static_cast<std::uint32_t>(i / BoxTree::kLeaf);
+      found += std::binary_search(runs.begin(), runs.end(), run);
+    }
+    EXPECT_EQ(found, within);
+  }
+}
+
+TEST(BoxTree, FindsTheNearestAsASortOfAllDistances) {
+  const std::vector<Vec3> points = ordered_points();
+  const auto position_at = [&](std::size_t i) { return points[i]; };
+  const BoxTree tree(points.size(), points.front(), position_at);
+  Random random(5);
+  for (int query = 0; query < 100; ++query) {
+    const Vec3 q = query % 2 ? points[random.index(points.size())]
+                             : Vec3(random.uniform(), random.uniform(), random.uniform());
+    std::vector<double> expected;
+    for (const Vec3& p : points) {
+      const Vec3 d = p - q;
+      expected.push_back(d.x() * d.x() + d.y() * d.y() + d.z() * d.z());
+    }
+    std::sort(expected.begin(), expected.end());
+    std::array<double, 11> found;
+    ASSERT_EQ(tree.nearest(q, found, position_at), 11u);
+    for (std::size_t i = 0; i < 11; ++i) EXPECT_EQ(found[i], expected[i]);
+  }
+}
+
+TEST(BoxTree, IsContentWithFewOrNoThings) {
+  std::vector<Vec3> points;
+  const auto position_at = [&](std::size_t i) { return points[i]; };
+  std::array<double, 11> found;
+  std::vector<std::uint32_t> runs;
+  const BoxTree none(0, Vec3::Zero(), position_at);
+  EXPECT_EQ(none.nearest(Vec3::Zero(), found, position_at), 0u);
+  none.runs_near(Vec3::Zero(), Vec3::Ones(), 1.0, runs);
+  EXPECT_TRUE(runs.empty());
+  points = {Vec3::Zero(), Vec3::UnitX()};
+  const BoxTree two(2, Vec3::Zero(), position_at);
+  EXPECT_EQ(two.nearest(Vec3::Zero(), found, position_at), 2u);
+  EXPECT_EQ(found[1], 1.0);
+}
+
+}  // namespace
+}  // namespace pcednet::spatial
