@@ -140,7 +140,7 @@ INSTANTIATE_TEST_SUITE_P(
              Reconstruction::kSphere,
              FeatureSet::kInvariant7,
              128}),
-    [](const auto& info) { return std::string(info.param.name); });
+    [](const auto& instance) { return std::string(instance.param.name); });
 
 }  // namespace
 }  // namespace pcednet::gls

@@ -136,7 +136,7 @@ TEST_P(FastScaleSpaceInvariance, StaysTheSameFarFromTheOrigin) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Variants, FastScaleSpaceInvariance, testing::ValuesIn(kVariants),
-                         [](const auto& info) { return std::string(info.param.name); });
+                         [](const auto& instance) { return std::string(instance.param.name); });
 
 TEST(FastScaleSpace, AgreesBetweenVectorCodes) {
   const test::Cloud cloud = awkward_cloud(6000);

@@ -43,9 +43,9 @@ void sort_along_curve(std::span<const Vec3> positions, std::vector<Keyed>& keyed
   parallel_blocks(keyed.size(), 1 << 14, [&, min = min, side = side](auto begin, auto end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Vec3 cell = (0.5 * positions[keyed[i].index] - min) / side * kCells;
-      keyed[i].key = morton_code({static_cast<std::uint32_t>(cell.x()),
-                                  static_cast<std::uint32_t>(cell.y()),
-                                  static_cast<std::uint32_t>(cell.z())});
+      keyed[i].key =
+          morton_code({static_cast<std::uint32_t>(cell.x()), static_cast<std::uint32_t>(cell.y()),
+                       static_cast<std::uint32_t>(cell.z())});
     }
   });
   sort_by_key(keyed, 3 * kBits);
