@@ -170,10 +170,13 @@ Shape open_sheets() {
   Shape flat;
   flat.patches = {parallelogram(Vec3::Zero(), Vec3(2.0, 0.0, 0.0), Vec3(0.3, 1.2, 0.0)),
                   triangle(Vec3(0, 0, 0.6), Vec3(1.5, 0.2, 0.8), Vec3(0.4, 1.3, 0.7)),
-                  revolved_arc({1.5, 0.3}, 0.4, -1.2, 1.0, 0.5 * kPi)};
+                  triangle(Vec3(0, 2.0, 0.0), Vec3(1.5, 2.2, 0.3), Vec3(0.2, 3.3, 0.5))};
+  Shape bent;
+  bent.patches = {revolved_arc({1.5, 0.3}, 0.4, -1.2, 1.0, 0.5 * kPi)};
   Shape shape;
   shape.patches = {graph(waves, Vec2(-1.5, -1.0), Vec2(1.5, 1.0))};
   append(shape, flat, shifted(Vec3(2.2, 0.0, 0.0)));
+  append(shape, bent, shifted(Vec3(-1.0, 1.5, 0.0)));
   return shape;
 }
 
