@@ -21,7 +21,7 @@ Model random_model(const Architecture& architecture, std::uint64_t seed) {
   return model;
 }
 
-/// Two scales of six features would do; here the odd ones are all but the last, as in the paper.
+/// The paper's six features: all but the last change sign with the normals; the second decides.
 SignRule paper_signs(Symmetry symmetry) {
   return {symmetry, {1, 1, 1, 1, 1, 0}, 1};
 }

@@ -113,7 +113,6 @@ TEST(Train, GivesTheSameBytesForAnyNumberOfThreads) {
 TEST(Train, KeepsTheBestEpoch) {
   const Labelled data = rising_features(500, 1);
   TrainOptions options{.learning_rate = 0.3, .anneal = false, .epochs = 12};  // restless
-  std::vector<Model> models;
   const TrainResult result = train(kSmall, data.set(), options);
   ASSERT_GT(result.best_epoch, 0);
   for (const EpochReport& report : result.history) {

@@ -7,6 +7,8 @@
 namespace pcednet::nn {
 namespace {
 
+// Once per level: NN_LEVEL is its namespace, NN_BYTES the size of its vector registers, NN_TARGET
+// the function attribute that selects its instructions.
 #define NN_LEVEL baseline
 #define NN_BYTES 16
 #define NN_TARGET
