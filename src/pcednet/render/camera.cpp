@@ -11,7 +11,7 @@ namespace {
 using Eigen::Vector3f;
 
 constexpr float kHalfFieldOfView = 0.24f;  // radians, of the longer side
-constexpr float kFilled = 0.90f;           // of the picture
+constexpr float kFilled = 0.88f;           // of the picture, by the centres of the discs
 
 Eigen::Matrix3f axes_of(const Vector3f& direction) {
   const Vector3f forward = direction.normalized();
@@ -48,10 +48,10 @@ Camera frame(std::span<const Surfel> surfels, const Vector3f& direction, int wid
   const float half_x = kFilled * 0.5f * static_cast<float>(width) / camera.focal;
   const float half_y = kFilled * 0.5f * static_cast<float>(height) / camera.focal;
 
-  std::vector<float> x(surfels.size()), y(surfels.size()), z(surfels.size());
-  for (std::size_t i = 0; i < surfels.size(); ++i) {
-    const Vector3f p = camera.to_camera(surfels[i].position);
-    x[i] = p.x(), y[i] = p.y(), z[i] = p.z();
+  std::vector<float> x, y, z;
+  for (const Surfel& surfel : surfels) {
+    const Vector3f p = camera.to_camera(surfel.position);
+    x.push_back(p.x()), y.push_back(p.y()), z.push_back(p.z());
   }
   std::vector<float> scratch = z;
   const Range depth = robust_range(scratch);

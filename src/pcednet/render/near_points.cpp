@@ -18,7 +18,10 @@ struct Candidate {
   double sq_distance;
   std::uint32_t index;
   bool operator==(const Candidate&) const = default;
-  auto operator<=>(const Candidate&) const = default;
+  bool operator<(const Candidate& other) const {
+    if (sq_distance != other.sq_distance) return sq_distance < other.sq_distance;
+    return index < other.index;
+  }
 };
 
 /// A curve through the points, turned a little, so that no two curves are cut at the same places.
@@ -34,9 +37,24 @@ struct Curve {
   }
 };
 
-NearPoints nearest(std::span<const Vec3> positions, std::span<const Curve> curves, std::size_t i) {
-  std::array<Candidate, kCurves * 2 * kWindow> found;
+/// The least candidates seen so far, sorted, each once.
+struct Least {
+  std::array<Candidate, NearPoints::kMost> found;
   std::size_t count = 0;
+
+  void offer(const Candidate& candidate) {
+    if (count == found.size() && !(candidate < found.back())) return;
+    std::size_t place = count;
+    while (place > 0 && candidate < found[place - 1]) --place;
+    if (place > 0 && candidate == found[place - 1]) return;
+    count = std::min(count + 1, found.size());
+    for (std::size_t k = count - 1; k > place; --k) found[k] = found[k - 1];
+    found[place] = candidate;
+  }
+};
+
+NearPoints nearest(std::span<const Vec3> positions, std::span<const Curve> curves, std::size_t i) {
+  Least least;
   for (const Curve& curve : curves) {
     const std::size_t rank = curve.rank[i];
     const std::size_t begin = rank > kWindow ? rank - kWindow : 0;
@@ -44,17 +62,14 @@ NearPoints nearest(std::span<const Vec3> positions, std::span<const Curve> curve
     for (std::size_t r = begin; r < end; ++r) {
       const std::uint32_t other = curve.order[r];
       const double sq_distance = (positions[other] - positions[i]).squaredNorm();
-      if (sq_distance > 0.0) found[count++] = {sq_distance, other};
+      if (sq_distance > 0.0) least.offer({sq_distance, other});
     }
   }
-  // Each may have been found three times.
-  const std::size_t sorted = std::min(count, kCurves * NearPoints::kMost);
-  std::partial_sort(found.begin(), found.begin() + sorted, found.begin() + count);
   NearPoints near;
-  for (std::size_t k = 0; k < sorted && near.count < NearPoints::kMost; ++k) {
-    if (k > 0 && found[k].index == found[k - 1].index) continue;
-    near.index[near.count] = found[k].index;
-    near.distance[near.count++] = static_cast<float>(std::sqrt(found[k].sq_distance));
+  near.count = static_cast<std::uint32_t>(least.count);
+  for (std::size_t k = 0; k < least.count; ++k) {
+    near.index[k] = least.found[k].index;
+    near.distance[k] = static_cast<float>(std::sqrt(least.found[k].sq_distance));
   }
   return near;
 }

@@ -8,7 +8,8 @@
 
 #include "pcednet/core/error.h"
 #include "pcednet/render/camera.h"
-#include "pcednet/render/png_file.h"
+#include "pcednet/render/gaps.h"
+#include "pcednet/render/png.h"
 #include "pcednet/render/shade.h"
 #include "pcednet/render/splat.h"
 #include "pcednet/render/surfels.h"
@@ -19,7 +20,7 @@ namespace {
 constexpr int kLargestSide = 8192;
 constexpr int kSupersampling = 2;
 constexpr std::size_t kMostSurfels = 4'000'000;
-constexpr std::size_t kViewpointSurfels = 10'000;
+constexpr std::size_t kViewpointSurfels = 6'000;
 
 void check(const std::filesystem::path& png, const PointCloud& cloud,
            std::span<const std::uint8_t> classes, const PreviewOptions& options) {
@@ -41,20 +42,6 @@ void check(const std::filesystem::path& png, const PointCloud& cloud,
   }
 }
 
-/// Leaves out the strays: discs so much larger than most that they stand for no surface that was
-/// sampled, the noise around a photogrammetric cloud above all. They would hide the rest.
-void drop_strays(std::vector<Surfel>& surfels) {
-  constexpr float kStray = 3.0f;  // times the median radius
-  std::vector<float> radii(surfels.size());
-  std::transform(surfels.begin(), surfels.end(), radii.begin(),
-                 [](const Surfel& surfel) { return surfel.radius; });
-  const auto middle = radii.begin() + static_cast<std::ptrdiff_t>(radii.size() / 2);
-  std::nth_element(radii.begin(), middle, radii.end());
-  if (*middle == 0.0f) return;
-  const float largest = kStray * *middle;
-  std::erase_if(surfels, [&](const Surfel& surfel) { return surfel.radius > largest; });
-}
-
 /// About `count` of the surfels, larger, so that they still cover the surface.
 std::vector<Surfel> thinned(const std::vector<Surfel>& surfels, std::size_t count) {
   const std::size_t step = (surfels.size() + count - 1) / count;
@@ -71,12 +58,12 @@ std::vector<Surfel> thinned(const std::vector<Surfel>& surfels, std::size_t coun
 void write_preview(const std::filesystem::path& png, const PointCloud& cloud,
                    std::span<const std::uint8_t> classes, const PreviewOptions& options) {
   check(png, cloud, classes, options);
-  std::vector<Surfel> surfels = make_surfels(cloud, classes, kMostSurfels);
+  OutputFile file(png, options.overwrite);
+  const std::vector<Surfel> surfels = make_surfels(cloud, classes, kMostSurfels);
   if (surfels.empty()) {
     throw Error(ErrorKind::kInsufficient,
                 fmt::format("{}: nothing to draw: the cloud has no finite point", png.string()));
   }
-  drop_strays(surfels);
   const Eigen::Vector3f direction =
       options.view_direction
           ? Eigen::Vector3f(options.view_direction->stableNormalized().cast<float>())
@@ -86,7 +73,10 @@ void write_preview(const std::filesystem::path& png, const PointCloud& cloud,
   const float area = static_cast<float>(camera.width) * static_cast<float>(camera.height);
   const float min_radius = std::clamp(0.1f * std::sqrt(area / static_cast<float>(surfels.size())),
                                       1.5f, 8.0f * kSupersampling);
-  write_png(png, shade(draw(surfels, camera, min_radius), kSupersampling), options.overwrite);
+  Layer layer = draw(surfels, camera, min_radius);
+  close_gaps(layer, static_cast<int>(1.5f * layer.grain_pixels));
+  file.write(encode_png(shade(layer, kSupersampling)));
+  file.commit();
 }
 
 }  // namespace pcednet::render

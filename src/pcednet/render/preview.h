@@ -24,9 +24,9 @@ struct PreviewOptions {
 ///
 /// `classes` holds one EdgeClass per point, drawn white, yellow and dark red (anything else grey);
 /// if it is empty the cloud's own colours are drawn, or white if it has none. Points that are not
-/// finite are skipped, points far outside of the rest or three times sparser than most are left out
-/// of the picture, and of more than four million points every n-th is drawn. The picture does not
-/// depend on where the cloud lies nor on the number of threads.
+/// finite are skipped. Left out are points far outside of the rest and, where the density is even
+/// but for few points, those few that are much sparser; of more than four million points every n-th
+/// is drawn. The picture does not depend on where the cloud lies nor on the number of threads.
 ///
 /// Throws Error(kInsufficient) if no point is finite, Error(kUsage) on a size out of range, a
 /// direction that is zero or not finite, or an existing file that may not be overwritten, and

@@ -12,8 +12,9 @@ using Eigen::Vector3f;
 
 constexpr int kBandRows = 32;
 constexpr std::size_t kBlock = 4096;
-constexpr float kEdgeShrink = 0.6f;    // of the squared distance to edges: they look a bit larger
-constexpr float kLeastFacing = 0.25f;  // discs are never seen flatter than this
+constexpr float kDot = 0.4f;  // of the squared radius of an edge disc: there it covers all else
+constexpr float kEdgeRadius = 0.65f;   // at edges discs stand out from the surface: smaller there
+constexpr float kLeastFacing = 0.12f;  // discs are never seen flatter than this
 constexpr float kBlend = 1.3f;         // radius of the blended disc, where 1 is the one that hides
 constexpr float kLargestRadius = 0.04f;  // of the longer side of the picture
 
@@ -38,12 +39,14 @@ Splat project(const Surfel& surfel, const Camera& camera, float min_radius) {
   splat.x = 0.5f * static_cast<float>(camera.width) + p.x() / splat.pixel;
   splat.y = 0.5f * static_cast<float>(camera.height) - p.y() / splat.pixel;
   splat.depth = p.z();
-  splat.radius = std::clamp(surfel.radius / splat.pixel, min_radius, kLargestRadius * longer);
+  splat.radius = std::clamp((surfel.edge ? kEdgeRadius : 1.0f) * surfel.radius / splat.pixel,
+                            min_radius, kLargestRadius * longer);
   splat.normal = camera.axes * surfel.normal;
   if (splat.normal.dot(p) > 0.0f) splat.normal = -splat.normal;
   const float facing = std::max(-splat.normal.z(), kLeastFacing);
-  splat.slope_x = splat.normal.x() / facing * splat.pixel;
-  splat.slope_y = -splat.normal.y() / facing * splat.pixel;
+  const float tilt = surfel.edge ? 0.0f : splat.pixel / facing;
+  splat.slope_x = splat.normal.x() * tilt;
+  splat.slope_y = -splat.normal.y() * tilt;
   splat.colour = surfel.colour;
   splat.edge = surfel.edge;
   splat.seen = splat.x + splat.radius > 0 && splat.x - splat.radius < camera.width &&
@@ -74,7 +77,7 @@ void for_each_pixel(const Splat& splat, float radius, int row, int width, Paint&
 float brightness(const Vector3f& normal) {
   const Vector3f key = Vector3f(-0.45f, 0.70f, -0.75f).normalized();
   const Vector3f fill = Vector3f(0.70f, 0.15f, -0.60f).normalized();
-  return 0.56f + 0.32f * std::max(0.0f, normal.dot(key)) + 0.12f * std::max(0.0f, normal.dot(fill));
+  return 0.58f + 0.28f * std::max(0.0f, normal.dot(key)) + 0.10f * std::max(0.0f, normal.dot(fill));
 }
 
 /// What the discs on a pixel add up to.
@@ -94,7 +97,8 @@ void add(Sum& sum, const Splat& splat, float depth, float sq_distance) {
   sum.weight += weight;
   sum.depth += weight * depth;
   sum.normal += weight * splat.normal;
-  const float length = sq_distance * splat.radius * splat.radius;
+  float length = sq_distance * splat.radius * splat.radius;
+  if (splat.edge) length *= sq_distance < kDot ? 0.1f : 0.7f;
   if (!splat.edge) {
     sum.sq_distance = std::min(sum.sq_distance, length);
     sum.plain_weight += weight;
@@ -138,7 +142,7 @@ class Band {
 
   /// Adds the disc where it is not behind another.
   void blend(const Splat& splat) {
-    const float thickness = (splat.edge ? 1.5f : 0.8f) * splat.radius * splat.pixel;
+    const float thickness = (splat.edge ? 2.5f : 1.1f) * splat.radius * splat.pixel;
     const float radius = kBlend * splat.radius;
     for_each_row(splat, radius, [&](int row, std::size_t offset) {
       for_each_pixel(splat, radius, row, layer_.width,
@@ -155,7 +159,7 @@ class Band {
       const Sum& sum = sums_[i];
       if (front_[i] == kNoDepth) continue;
       const std::size_t pixel = static_cast<std::size_t>(first_) * layer_.width + i;
-      const bool edge = kEdgeShrink * sum.edge_sq_distance < sum.sq_distance;
+      const bool edge = sum.edge_sq_distance < sum.sq_distance;
       layer_.depth[pixel] = sum.depth / sum.weight;
       layer_.colour[pixel] = lit_colour(sum, edge, sum.colour / sum.plain_weight);
     }
@@ -197,13 +201,22 @@ std::vector<std::vector<std::uint32_t>> sort_into_bands(const std::vector<Splat>
   return bands;
 }
 
-float median_radius(std::span<const Surfel> surfels) {
-  std::vector<float> radii(surfels.size());
-  std::transform(surfels.begin(), surfels.end(), radii.begin(),
-                 [](const Surfel& surfel) { return surfel.radius; });
-  const auto middle = radii.begin() + static_cast<std::ptrdiff_t>(radii.size() / 2);
-  std::nth_element(radii.begin(), middle, radii.end());
+float median(std::vector<float> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
   return *middle;
+}
+
+void measure_grain(Layer& layer, const std::vector<Splat>& splats) {
+  std::vector<float> lengths, pixels;
+  for (const Splat& splat : splats) {
+    if (!splat.seen) continue;
+    lengths.push_back(splat.radius * splat.pixel);
+    pixels.push_back(splat.radius);
+  }
+  if (pixels.empty()) return;
+  layer.grain = median(std::move(lengths));
+  layer.grain_pixels = median(std::move(pixels));
 }
 
 }  // namespace
@@ -215,7 +228,8 @@ Layer draw(std::span<const Surfel> surfels, const Camera& camera, float min_radi
   });
   const auto bands = sort_into_bands(splats, camera.height);
 
-  Layer layer{camera.width, camera.height, {}, {}, median_radius(surfels)};
+  Layer layer{camera.width, camera.height, {}, {}};
+  measure_grain(layer, splats);
   const std::size_t pixels = static_cast<std::size_t>(camera.width) * camera.height;
   layer.depth.assign(pixels, kNoDepth);
   layer.colour.assign(pixels, Rgb{});

@@ -17,6 +17,8 @@ namespace {
 using Eigen::Vector3f;
 
 constexpr std::uint32_t kReached = 6;  // near points that a disc reaches
+constexpr float kStrayRadius = 2.5f;   // median radii, beyond which a point may be stray
+constexpr double kMostStray = 0.2;     // of all points; where more are thin, the density varies
 constexpr std::size_t kBlock = 4096;
 
 constexpr Rgb kNonEdgeColour = {255, 255, 255};
@@ -109,6 +111,11 @@ Rgb class_colour(std::uint8_t edge_class) {
   }
 }
 
+/// The radius that closes the surface around a point.
+float reach(const NearPoints& near) {
+  return near.count > 0 ? near.distance[std::min(near.count, kReached) - 1] : 0.0f;
+}
+
 Vector3f fitted_normal(std::span<const Vec3> positions, std::size_t i, const NearPoints& near) {
   if (near.count < 2) return Vector3f::UnitZ();
   std::array<Vec3, NearPoints::kMost + 1> local;
@@ -142,13 +149,44 @@ void smooth(std::vector<Surfel>& surfels, const std::vector<NearPoints>& near) {
         const Surfel& other = rough[near[i].index[k]];
         radii[k] = other.radius;
         const float cosine = rough[i].normal.dot(other.normal);
-        normal += cosine * std::pow(std::abs(cosine), 3.0f) * other.normal;
+        normal += cosine * std::abs(cosine * cosine * cosine) * other.normal;
       }
       std::nth_element(radii.begin(), radii.begin() + count / 2, radii.begin() + count + 1);
-      surfels[i].radius = radii[count / 2];
+      surfels[i].radius = std::min(radii[count / 2], 1.5f * rough[i].radius);
       surfels[i].normal = normal.normalized();
     }
   });
+}
+
+/// Drops the points that are much sparser than most, unless these are many.
+void drop_strays(std::vector<Surfel>& surfels, const std::vector<NearPoints>& near) {
+  std::vector<float> radii(near.size());
+  std::transform(near.begin(), near.end(), radii.begin(), reach);
+  const auto at = [&](double share) {
+    const auto rank = static_cast<std::ptrdiff_t>(share * static_cast<double>(radii.size() - 1));
+    std::nth_element(radii.begin(), radii.begin() + rank, radii.end());
+    return radii[static_cast<std::size_t>(rank)];
+  };
+  const float largest = kStrayRadius * at(0.5);
+  if (largest == 0.0f || at(1.0 - kMostStray) > largest) return;
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < surfels.size(); ++i) {
+    if (reach(near[i]) <= largest) surfels[kept++] = surfels[i];
+  }
+  surfels.resize(kept);
+}
+
+/// Moves and scales all, so that they just lie in [-1, 1]^3.
+void fill_unit_box(std::vector<Surfel>& surfels) {
+  std::vector<Vec3> positions;
+  for (const Surfel& surfel : surfels) positions.push_back(surfel.position.cast<double>());
+  const BoundingBox box = bounding_box(positions);
+  const float half = 0.5f * static_cast<float>((box.max - box.min).maxCoeff());
+  const Vector3f centre = box.centre().cast<float>();
+  for (Surfel& surfel : surfels) {
+    surfel.position -= centre;
+    if (half > 0.0f) surfel.position /= half, surfel.radius /= half;
+  }
 }
 
 }  // namespace
@@ -168,8 +206,7 @@ std::vector<Surfel> make_surfels(const PointCloud& cloud, std::span<const std::u
       const std::size_t source = points.sources[i];
       Surfel& surfel = surfels[i];
       surfel.position = points.positions[i].cast<float>();
-      surfel.radius =
-          near[i].count > 0 ? near[i].distance[std::min(near[i].count, kReached) - 1] : 0.0f;
+      surfel.radius = reach(near[i]);
       surfel.normal = cloud.has_normals() && usable(cloud.normals[source])
                           ? Vector3f(cloud.normals[source].normalized().cast<float>())
                           : fitted_normal(points.positions, i, near[i]);
@@ -181,6 +218,8 @@ std::vector<Surfel> make_surfels(const PointCloud& cloud, std::span<const std::u
     }
   });
   smooth(surfels, near);
+  drop_strays(surfels, near);
+  fill_unit_box(surfels);
   return surfels;
 }
 

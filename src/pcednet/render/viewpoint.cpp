@@ -26,7 +26,7 @@ std::vector<Candidate> candidates() {
     float preference;
   };
   std::vector<Candidate> all;
-  for (const Ring ring : {Ring{14, 0.95f}, Ring{30, 1.0f}, Ring{50, 0.92f}}) {
+  for (const Ring ring : {Ring{12, 0.95f}, Ring{27, 1.0f}, Ring{48, 0.88f}}) {
     for (int azimuth = 15; azimuth < 375; azimuth += 30) {
       const double a = azimuth * std::numbers::pi / 180,
                    e = ring.degrees_above * std::numbers::pi / 180;

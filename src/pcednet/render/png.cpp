@@ -1,17 +1,13 @@
-#include "pcednet/render/png_file.h"
+#include "pcednet/render/png.h"
 
 #include <fmt/format.h>
 #include <png.h>
-
-#include <cstddef>
-#include <vector>
 
 #include "pcednet/core/error.h"
 
 namespace pcednet::render {
 
-void write_png(const std::filesystem::path& path, const Image& image, Overwrite overwrite) {
-  OutputFile file(path, overwrite);
+std::vector<std::byte> encode_png(const Image& image) {
   png_image header{};
   header.version = PNG_IMAGE_VERSION;
   header.width = static_cast<png_uint_32>(image.width);
@@ -22,11 +18,10 @@ void write_png(const std::filesystem::path& path, const Image& image, Overwrite 
   std::vector<std::byte> bytes(size);
   if (!png_image_write_to_memory(&header, bytes.data(), &size, 0, image.pixels.data(), 0,
                                  nullptr)) {
-    throw Error(ErrorKind::kFailure,
-                fmt::format("{}: cannot encode the picture: {}", path.string(), header.message));
+    throw Error(ErrorKind::kFailure, fmt::format("cannot encode a picture: {}", header.message));
   }
-  file.write(std::span(bytes).first(size));
-  file.commit();
+  bytes.resize(size);
+  return bytes;
 }
 
 }  // namespace pcednet::render
