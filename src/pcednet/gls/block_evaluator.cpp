@@ -89,18 +89,37 @@ BlockEvaluator::BlockEvaluator(const VoxelPyramid& pyramid, const BlockOptions& 
   }
 }
 
+void BlockEvaluator::find_boxes(std::size_t begin, std::size_t end) {
+  if (begin >= boxes_begin_ && end <= boxes_end_) return;
+  boxes_begin_ = begin, boxes_end_ = end;
+  boxes_.clear();
+  const std::vector<Voxel>& points = pyramid_->levels.front().voxels;
+  for (std::size_t first = begin; first < end; first += kLanes) {
+    TargetBox box = {points[first].position, points[first].position};
+    for (std::size_t i = first + 1; i < std::min(first + kLanes, end); ++i)
+      box.grow(points[i].position);
+    boxes_.push_back(box);
+  }
+}
+
 TargetBox BlockEvaluator::box_of(std::size_t begin, std::size_t end) const {
   const std::vector<Voxel>& points = pyramid_->levels.front().voxels;
   TargetBox box = {points[begin].position, points[begin].position};
-  for (std::size_t i = begin + 1; i < end; ++i) {
-    box.min = box.min.cwiseMin(points[i].position);
-    box.max = box.max.cwiseMax(points[i].position);
+  const bool groups = begin % kLanes == 0 && (end % kLanes == 0 || end == boxes_end_);
+  for (std::size_t i = begin; i < end; i += groups ? kLanes : 1) {
+    if (groups) {
+      const TargetBox& group = boxes_[(i - boxes_begin_) / kLanes];
+      box.grow(group.min), box.grow(group.max);
+    } else {
+      box.grow(points[i].position);
+    }
   }
   return box;
 }
 
 void BlockEvaluator::evaluate(std::size_t begin, std::size_t end, std::size_t scale, double t,
                               const Wanted& wanted, const Emit& emit) {
+  find_boxes(begin, end);
   const TargetBox box = box_of(begin, end);
   if (box.longest_side() > kWidestBlock * t && end - begin > 1) {
     const std::size_t groups = (end - begin + kLanes - 1) / kLanes;
@@ -163,6 +182,7 @@ void BlockEvaluator::evaluate_group(const LaneGroup& group, const BlockFrame& fr
 void BlockEvaluator::fit_lanes(const LaneGroup& group, const BlockFrame& frame,
                                const Candidates& near, double t, GroupFit& result) {
   group_.reserve(near.count);
+  group_.view.x = nullptr;  // the indices are enough
   kernels_->select(near, gls::box_of(targets_, group.count), 1.00001f, group_.view);
   const Candidates& sources = group_.view;
   kernels_->sum(frame.sources(), sources.index, sources.count, targets_, gate_, sums_);

@@ -51,6 +51,7 @@ class BlockEvaluator {
   std::uint64_t interactions() const { return interactions_; }
 
  private:
+  void find_boxes(std::size_t begin, std::size_t end);
   TargetBox box_of(std::size_t begin, std::size_t end) const;
   void evaluate_group(const LaneGroup& group, const BlockFrame& frame, const Candidates& near,
                       const SourceBox& gathered, double t, GroupFit& result);
@@ -69,8 +70,10 @@ class BlockEvaluator {
   BlockOptions options_;
   LaneGate gate_;
   const LaneKernels* kernels_;
-  BlockFrame block_, own_;      ///< of a block; of a group whose points left what that gathered
-  CandidateList part_, group_;  ///< candidates near a part of the block, near a group
+  std::size_t boxes_begin_ = 0, boxes_end_ = 0;
+  std::vector<TargetBox> boxes_;  ///< of the groups of these points, kept from scale to scale
+  BlockFrame block_, own_;        ///< of a block; of a group whose points left what that gathered
+  CandidateList part_, group_;    ///< candidates near a part of the block, near a group
   std::vector<std::uint32_t> voxels_;
   LaneTargets targets_;
   std::array<std::array<float, 3>, kLanes> offset_, move_;  ///< from the point to where it is, in t

@@ -12,11 +12,6 @@ void CandidateList::reserve(std::size_t count) {
   view = {x_.data(), y_.data(), z_.data(), index_.data(), 0};
 }
 
-void CandidateList::set(std::size_t i, const Source& source) {
-  view.x[i] = source.x, view.y[i] = source.y, view.z[i] = source.z;
-  view.index[i] = static_cast<std::uint32_t>(i);
-}
-
 void BlockFrame::gather(const VoxelLevel& level, const TargetBox& box, const Vec3& origin, double t,
                         float reach) {
   level_ = &level;

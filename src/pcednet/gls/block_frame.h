@@ -14,7 +14,10 @@ namespace pcednet::gls {
 class CandidateList {
  public:
   void reserve(std::size_t count);
-  void set(std::size_t i, const Source& source);
+  void set(std::size_t i, const Source& source) {
+    view.x[i] = source.x, view.y[i] = source.y, view.z[i] = source.z;
+    view.index[i] = static_cast<std::uint32_t>(i);
+  }
 
   Candidates view = {};
 
@@ -27,6 +30,10 @@ class CandidateList {
 struct TargetBox {
   Vec3 min, max;
 
+  void grow(const Vec3& position) {
+    min = min.cwiseMin(position);
+    max = max.cwiseMax(position);
+  }
   Vec3 centre() const { return 0.5 * (min + max); }
   double longest_side() const { return (max - min).maxCoeff(); }
 };

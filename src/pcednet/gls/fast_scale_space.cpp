@@ -118,12 +118,16 @@ void FastScaleSpace::describe_block(std::span<const Visit> visits, std::span<flo
     }
     return;
   }
+  const std::size_t begin = visits.front().place / kBlock * kBlock;
+  const std::size_t end = std::min(begin + kBlock, order_.size());
+  std::array<std::uint32_t, kBlock + 1> first_visit;  // to each place of the block, or later
+  for (std::size_t i = 0, v = 0; i <= kBlock; ++i) {
+    while (v < visits.size() && visits[v].place < begin + i) ++v;
+    first_visit[i] = static_cast<std::uint32_t>(v);
+  }
   const auto visits_to = [&](const LaneGroup& group) {
-    const auto at = [&](std::size_t place) {
-      return std::lower_bound(visits.begin(), visits.end(), place,
-                              [](const Visit& v, std::size_t p) { return v.place < p; });
-    };
-    return std::span(at(group.begin), at(group.begin + group.count));
+    const std::size_t first = first_visit[group.begin - begin];
+    return visits.subspan(first, first_visit[group.begin - begin + group.count] - first);
   };
   const bool moves = options_.reconstruction == Reconstruction::kSphereMls;
   BlockEvaluator evaluator(pyramid_,
@@ -131,8 +135,6 @@ void FastScaleSpace::describe_block(std::span<const Visit> visits, std::span<flo
                             .projection_steps = moves ? options_.max_projection_steps : 0,
                             .side_gate = options_.side_gate},
                            *kernels_);
-  const std::size_t begin = visits.front().place / kBlock * kBlock;
-  const std::size_t end = std::min(begin + kBlock, order_.size());
   for (std::size_t s = 0; s < scales_.size(); ++s) {
     evaluator.evaluate(
         begin, end, s, scales_[s] * unit_,

@@ -81,7 +81,7 @@ enum class LaneDetail {
 struct LaneKernels {
   const char* name;
   /// Writes the candidates of `in` nearer than `reach` to `box` to `out`, which has room for all
-  /// and kLanes more; `in` is readable for kLanes more.
+  /// and kLanes more; `in` is readable for kLanes more. Without positions where out.x is null.
   void (*select)(const Candidates& in, const SourceBox& box, float reach, Candidates& out);
   /// Sums over sources[indices[0 .. count)).
   void (*sum)(const Source* sources, const std::uint32_t* indices, std::size_t count,

@@ -1,0 +1,162 @@
+#include <benchmark/benchmark.h>
+
+#include <ctime>
+#include <map>
+#include <vector>
+
+#include "pcednet/core/parallel.h"
+#include "pcednet/core/random.h"
+#include "pcednet/gls/fast_scale_space.h"
+#include "pcednet/gls/scale_space.h"
+
+namespace pcednet::gls {
+namespace {
+
+struct Cloud {
+  std::vector<Vec3> positions, normals;
+
+  OrientedPoints points() const { return {positions, normals}; }
+};
+
+/// The unit cube beside a sphere of radius 0.5, by area.
+const Cloud& scene(std::size_t count) {
+  static std::map<std::size_t, Cloud> clouds;
+  Cloud& cloud = clouds[count];
+  Random random(1);
+  while (cloud.positions.size() < count) {
+    Vec3 n = Vec3::Zero(), p;
+    if (random.uniform(0, 6 + 3.14159265358979) < 6) {
+      const auto face = static_cast<Eigen::Index>(random.index(6));
+      n[face / 2] = face % 2 ? 1 : -1;
+      p = 0.5 * n;
+      p[(face / 2 + 1) % 3] = random.uniform(-0.5, 0.5);
+      p[(face / 2 + 2) % 3] = random.uniform(-0.5, 0.5);
+    } else {
+      do {
+        n = Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+      } while (n.squaredNorm() > 1 || n.squaredNorm() < 0.01);
+      n.normalize();
+      p = Vec3(1.5, 0, 0) + 0.5 * n;
+    }
+    cloud.positions.push_back(p);
+    cloud.normals.push_back(n);
+  }
+  return cloud;
+}
+
+/// Stretches of the order, spread over the cloud: 1/`part` of it.
+template <typename Space>
+std::vector<std::uint32_t> sample(const Space& space, std::size_t stretch, std::size_t part) {
+  std::vector<std::uint32_t> targets;
+  for (std::size_t i = 0; i < space.order().size(); i += stretch * part) {
+    const auto some = space.order().subspan(i, std::min(stretch, space.order().size() - i));
+    targets.insert(targets.end(), some.begin(), some.end());
+  }
+  return targets;
+}
+
+template <typename Space>
+void describe(const Space& space, const std::vector<std::uint32_t>& targets) {
+  const std::size_t cells = targets.size() * space.scales().size();
+  std::vector<float> out(cells * static_cast<std::size_t>(feature_count(space.options().features)));
+  std::vector<FitStatus> status(cells);
+  space.describe(targets, std::span<float>(out), status);
+  benchmark::DoNotOptimize(out.data());
+}
+
+ScaleSpaceOptions options_of(Reconstruction reconstruction) {
+  ScaleSpaceOptions options;
+  options.reconstruction = reconstruction;
+  return options;
+}
+
+double cpu_seconds() {
+  return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+}
+
+/// Seconds of CPU per point of the exact engine, on one thread.
+double exact_cost(std::size_t count) {
+  static std::map<std::size_t, double> costs;
+  if (costs.contains(count)) return costs[count];
+  const ExactScaleSpace space(scene(count).points(), {});
+  const auto targets = sample(space, 64, std::max<std::size_t>(1, count / 1024));
+  const double start = cpu_seconds();
+  describe(space, targets);
+  return costs[count] = (cpu_seconds() - start) / static_cast<double>(targets.size());
+}
+
+/// Everything before the first point is described: order, s_min, pyramid.
+void Build(benchmark::State& state) {
+  set_thread_count(1);
+  const auto count = static_cast<std::size_t>(state.range(0));
+  const Cloud& cloud = scene(count);
+  for (auto _ : state) benchmark::DoNotOptimize(FastScaleSpace(cloud.points(), {}));
+  state.counters["s_per_point"] =
+      benchmark::Counter(static_cast<double>(count), benchmark::Counter::kIsIterationInvariantRate |
+                                                         benchmark::Counter::kInvert);
+}
+
+void Describe(benchmark::State& state, Reconstruction reconstruction) {
+  set_thread_count(1);
+  const auto count = static_cast<std::size_t>(state.range(0));
+  const FastScaleSpace space(scene(count).points(), options_of(reconstruction));
+  const auto targets = sample(space, 1024, std::max<std::size_t>(1, count / 100000));
+  const double start = cpu_seconds();
+  for (auto _ : state) describe(space, targets);
+  const double spent = cpu_seconds() - start;
+  const double points = static_cast<double>(targets.size());
+  state.counters["s_per_point"] = benchmark::Counter(
+      points, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+  if (reconstruction != Reconstruction::kSphere) return;
+  const double each = spent / (points * static_cast<double>(state.iterations()));
+  state.counters["exact_over_fast"] = exact_cost(count) / each;
+}
+
+void DescribeSpheres(benchmark::State& state) {
+  Describe(state, Reconstruction::kSphere);
+}
+
+void DescribeProjected(benchmark::State& state) {
+  Describe(state, Reconstruction::kSphereMls);
+}
+
+/// The innermost sums alone, for each vector code; arithmetic as of lane_sums.inc.
+void Sums(benchmark::State& state) {
+  const auto kernels = all_lane_kernels();
+  const auto which = static_cast<std::size_t>(state.range(0));
+  if (which >= kernels.size()) return state.SkipWithError("not on this processor");
+  constexpr std::size_t kSources = 200;
+  Random random(1);
+  std::vector<Source> sources(kSources);
+  std::vector<std::uint32_t> indices(kSources);
+  const auto number = [&] { return static_cast<float>(random.uniform(-0.5, 0.5)); };
+  for (std::size_t i = 0; i < kSources; ++i) {
+    sources[i] = {number(), number(), number(), number(), number(),
+                  number(), 1.0f,     0.01f,    number()};
+    indices[i] = static_cast<std::uint32_t>((i * 7) % kSources);
+  }
+  LaneTargets targets;
+  for (std::size_t lane = 0; lane < kLanes; ++lane) {
+    targets.x[lane] = number(), targets.y[lane] = number(), targets.z[lane] = number();
+  }
+  LaneSums sums;
+  for (auto _ : state) {
+    kernels[which].sum(sources.data(), indices.data(), kSources, targets, {}, sums);
+    benchmark::DoNotOptimize(sums);
+  }
+  constexpr double kFusedPerInteraction = 43.0;  // multiplications, with or without an addition
+  const double interactions = kSources * kLanes;
+  state.SetLabel(kernels[which].name);
+  state.counters["s_per_interaction"] = benchmark::Counter(
+      interactions, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+  state.counters["fused_per_s"] = benchmark::Counter(interactions * kFusedPerInteraction,
+                                                     benchmark::Counter::kIsIterationInvariantRate);
+}
+
+BENCHMARK(Build)->Arg(100000)->Arg(1000000)->Unit(benchmark::kMillisecond);
+BENCHMARK(DescribeSpheres)->Arg(100000)->Arg(1000000)->Unit(benchmark::kMillisecond);
+BENCHMARK(DescribeProjected)->Arg(100000)->Unit(benchmark::kMillisecond);
+BENCHMARK(Sums)->Arg(0)->Arg(1)->Arg(2)->Unit(benchmark::kMicrosecond);
+
+}  // namespace
+}  // namespace pcednet::gls
