@@ -1,13 +1,12 @@
 #include <fmt/format.h>
 
-#include <chrono>
 #include <memory>
 #include <set>
 
 #include "commands.h"
 #include "models.h"
 #include "pcednet/core/error.h"
-#include "pcednet/core/version.h"
+#include "pcednet/core/stopwatch.h"
 #include "pcednet/detect/classify.h"
 #include "pcednet/detect/result_cloud.h"
 #include "pcednet/io/read_cloud.h"
@@ -27,18 +26,6 @@ struct Arguments {
 
 struct Job {
   fs::path input, output, preview;
-};
-
-/// Seconds since the last call.
-class Stopwatch {
- public:
-  double lap() {
-    const auto now = std::chrono::steady_clock::now();
-    return std::chrono::duration<double>(now - std::exchange(last_, now)).count();
-  }
-
- private:
-  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
 fs::path preview_path(const Arguments& arguments, const fs::path& input, bool several) {

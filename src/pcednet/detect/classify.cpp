@@ -1,9 +1,8 @@
 #include "pcednet/detect/classify.h"
 
 #include <algorithm>
-#include <chrono>
-#include <utility>
 
+#include "pcednet/core/stopwatch.h"
 #include "pcednet/gls/engine.h"
 #include "pcednet/nn/predict.h"
 
@@ -13,17 +12,6 @@ namespace {
 /// Points described and classified at a time: enough to keep every thread busy, few enough for the
 /// matrix to stay in the cache.
 constexpr std::size_t kBlock = 16 * 1024;
-
-class Stopwatch {
- public:
-  double lap() {
-    const auto now = std::chrono::steady_clock::now();
-    return std::chrono::duration<double>(now - std::exchange(last_, now)).count();
-  }
-
- private:
-  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
-};
 
 /// Writes the network's answer for one point.
 void decide(std::span<const float> probabilities, const std::vector<std::uint8_t>& classes,

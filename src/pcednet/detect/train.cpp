@@ -4,18 +4,14 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <iterator>
 
 #include "pcednet/core/error.h"
+#include "pcednet/core/stopwatch.h"
 #include "pcednet/gls/engine.h"
 
 namespace pcednet::detect {
 namespace {
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 void check_labels(const TrainingCloud& cloud) {
   if (cloud.labels.size() != cloud.cloud.positions.size()) {
@@ -121,7 +117,7 @@ TrainedModel train(const std::string& name, std::span<const TrainingCloud> cloud
                    const TrainOptions& options,
                    const std::function<void(const nn::EpochReport&)>& on_epoch,
                    const Progress* progress) {
-  const auto start = std::chrono::steady_clock::now();
+  Stopwatch watch;
   TrainedModel trained;
   EdgeModel& model = trained.model;
   model.name = name;
@@ -133,7 +129,7 @@ TrainedModel train(const std::string& name, std::span<const TrainingCloud> cloud
   architecture.scales = options.descriptor.scales;
   architecture.features = gls::feature_count(options.descriptor.features);
   const Samples samples = make_samples(clouds, options, progress);
-  trained.seconds_describe = seconds_since(start);
+  trained.seconds_describe = watch.lap();
 
   nn::TrainOptions training = options.training;
   training.sign_rule = sign_rule(options.descriptor.features, options.training.sign_rule.symmetry);
@@ -142,7 +138,7 @@ TrainedModel train(const std::string& name, std::span<const TrainingCloud> cloud
       nn::train(architecture, {samples.values, samples.labels}, training, on_epoch, progress);
   trained.cancelled = result.cancelled;
   trained.epochs = static_cast<int>(result.history.size());
-  trained.seconds_train = seconds_since(start) - trained.seconds_describe;
+  trained.seconds_train = watch.lap();
   model.network = std::move(result.best);
   model.network.metadata = summary_of(result, clouds, samples.labels.size());
   return trained;
