@@ -8,6 +8,7 @@
 #include "pcednet/core/random.h"
 #include "pcednet/gls/fast_scale_space.h"
 #include "pcednet/gls/scale_space.h"
+#include "pcednet/gls/target_groups.h"
 
 namespace pcednet::gls {
 namespace {
@@ -100,7 +101,7 @@ void Describe(benchmark::State& state, Reconstruction reconstruction) {
   set_thread_count(1);
   const auto count = static_cast<std::size_t>(state.range(0));
   const FastScaleSpace space(scene(count).points(), options_of(reconstruction));
-  const auto targets = sample(space, 1024, std::max<std::size_t>(1, count / 100000));
+  const auto targets = sample(space, kBlock, std::max<std::size_t>(1, count / 100000));
   const double start = cpu_seconds();
   for (auto _ : state) describe(space, targets);
   const double spent = cpu_seconds() - start;
@@ -141,7 +142,7 @@ void Sums(benchmark::State& state) {
   }
   LaneSums sums;
   for (auto _ : state) {
-    kernels[which].sum(sources.data(), indices.data(), kSources, targets, {}, sums);
+    kernels[which].sum(sources.data(), indices.data(), kSources, targets, {}, false, sums);
     benchmark::DoNotOptimize(sums);
   }
   constexpr double kFusedPerInteraction = 43.0;  // multiplications, with or without an addition

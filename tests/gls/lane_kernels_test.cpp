@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <tuple>
 
 #include "gls/test_clouds.h"
 #include "pcednet/gls/block_frame.h"
@@ -65,6 +66,27 @@ std::vector<double> expected_sums(const Scene& scene, std::size_t lane, const La
   return sums;
 }
 
+void expect_sums(const LaneSums& sums, const Scene& scene, const LaneGate& gate,
+                 const char* kernels) {
+  float rows[35][kLanes];
+  static_assert(sizeof rows == sizeof sums);
+  std::memcpy(rows, &sums, sizeof sums);
+  for (std::size_t lane = 0; lane < kLanes; ++lane) {
+    const auto expected = expected_sums(scene, lane, gate);
+    for (std::size_t k = 0; k < 35; ++k) {
+      // Hundreds of numbers, rounded to 6e-8 of the sum of weights each.
+      EXPECT_NEAR(rows[k][lane], expected[k], 1e-6 * (1.0 + expected[0]))
+          << kernels << " sum " << k << " lane " << lane;
+    }
+  }
+}
+
+float total_count(const Scene& scene) {
+  float count = 0.0f;
+  for (const Source& s : scene.sources) count += s.count;
+  return count;
+}
+
 TEST(LaneKernels, IncludeABaselineAndEndWithTheOneInUse) {
   const auto kernels = all_lane_kernels();
   ASSERT_FALSE(kernels.empty());
@@ -78,19 +100,55 @@ TEST(LaneKernels, SumAsTheDefinitionsSay) {
     for (const LaneGate& gate : kGates) {
       for (const LaneKernels& kernels : all_lane_kernels()) {
         LaneSums sums;
-        kernels.sum(scene.sources.data(), scene.indices.data(), count, scene.targets, gate, sums);
-        float rows[35][kLanes];
-        static_assert(sizeof rows == sizeof sums);
-        std::memcpy(rows, &sums, sizeof sums);
-        for (std::size_t lane = 0; lane < kLanes; ++lane) {
-          const auto expected = expected_sums(scene, lane, gate);
-          for (std::size_t k = 0; k < 35; ++k) {
-            // Hundreds of numbers, rounded to 6e-8 of the sum of weights each.
-            EXPECT_NEAR(rows[k][lane], expected[k], 1e-6 * (1.0 + expected[0]))
-                << kernels.name << " sum " << k << " lane " << lane;
-          }
-        }
+        kernels.sum(scene.sources.data(), scene.indices.data(), count, scene.targets, gate, false,
+                    sums);
+        expect_sums(sums, scene, gate, kernels.name);
       }
+    }
+  }
+}
+
+TEST(LaneKernels, SumSinglePointsAlike) {
+  Scene scene(300);
+  for (Source& s : scene.sources) s.count = 1.0f, s.qq = s.qn = 0.0f;
+  for (const LaneGate& gate : kGates) {
+    for (const LaneKernels& kernels : all_lane_kernels()) {
+      LaneSums sums;
+      kernels.sum(scene.sources.data(), scene.indices.data(), 300, scene.targets, gate, true, sums);
+      expect_sums(sums, scene, gate, kernels.name);
+    }
+  }
+}
+
+TEST(LaneKernels, SumWhatIsInsideEverySupportOnce) {
+  for (const std::size_t count : {1, 15, 64, 65, 300}) {
+    Scene scene(count);
+    for (Source& s : scene.sources) s.x *= 0.4f, s.y *= 0.4f;  // less than 0.96 from any target
+    for (const LaneKernels& kernels : all_lane_kernels()) {
+      InsideSums inside = {.centre = {0.05f, -0.03f, 0.01f}, .moments = {}, .higher = {}};
+      kernels.sum_inside(scene.sources.data(), scene.indices.data(), count, inside);
+      LaneSums sums = {};
+      kernels.add_inside(inside, scene.targets, sums);
+      expect_sums(sums, scene, {}, kernels.name);
+      EXPECT_EQ(inside.moments[0][0], total_count(scene));
+    }
+  }
+}
+
+TEST(LaneKernels, NegateSumsInsideWithTheNormals) {
+  Scene scene(100), flipped = scene;
+  for (Source& s : flipped.sources) s.nx = -s.nx, s.ny = -s.ny, s.nz = -s.nz, s.qn = -s.qn;
+  for (const LaneKernels& kernels : all_lane_kernels()) {
+    InsideSums inside = {}, negated = {};
+    kernels.sum_inside(scene.sources.data(), scene.indices.data(), 100, inside);
+    kernels.sum_inside(flipped.sources.data(), flipped.indices.data(), 100, negated);
+    LaneSums sums = {}, opposite = {};
+    kernels.add_inside(inside, scene.targets, sums);
+    kernels.add_inside(negated, flipped.targets, opposite);
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      EXPECT_EQ(sums.u[lane], opposite.u[lane]);
+      EXPECT_EQ(sums.wyn[lane], -opposite.wyn[lane]);
+      for (int a = 0; a < 3; ++a) EXPECT_EQ(sums.u_yn_y[a][lane], -opposite.u_yn_y[a][lane]);
     }
   }
 }
@@ -149,11 +207,40 @@ TEST(LaneKernels, SelectWhatIsNearTheBox) {
   }
 }
 
+TEST(LaneKernels, SplitOffWhatIsNearAllOfTheBox) {
+  const Scene scene(301);
+  const SourceBox box = {{-0.1f, -0.2f, -0.05f}, {0.1f, 0.3f, 0.05f}};
+  std::vector<std::uint32_t> expected;
+  for (std::uint32_t i = 0; i < 301; ++i) {
+    const Source& s = scene.sources[i];
+    double sq_far = 0.0;
+    for (const auto& [at, min, max] :
+         {std::tuple(s.x, box.min[0], box.max[0]), std::tuple(s.y, box.min[1], box.max[1]),
+          std::tuple(s.z, box.min[2], box.max[2])}) {
+      const double far = std::max(std::abs(at - min), std::abs(at - max));
+      sq_far += far * far;
+    }
+    if (sq_far < 0.95 * 0.95) expected.push_back(i);
+  }
+  ASSERT_GT(expected.size(), 20u);
+  for (const LaneKernels& kernels : all_lane_kernels()) {
+    CandidateList in, near, all, inside;
+    in.reserve(301), near.reserve(301), all.reserve(301), inside.reserve(301);
+    for (std::size_t i = 0; i < 301; ++i) in.set(i, scene.sources[i]);
+    in.view.count = 301;
+    kernels.select(in.view, box, 1.0f, all.view);
+    kernels.split(in.view, box, 1.0f, 0.95f, near.view, inside.view);
+    EXPECT_EQ(std::vector(inside.view.index, inside.view.index + inside.view.count), expected)
+        << kernels.name;
+    EXPECT_EQ(near.view.count + inside.view.count, all.view.count) << kernels.name;
+  }
+}
+
 TEST(LaneKernels, SolveAlike) {
   const Scene scene(300);
   LaneSums sums;
   const LaneKernels& baseline = all_lane_kernels().front();
-  baseline.sum(scene.sources.data(), scene.indices.data(), 300, scene.targets, {}, sums);
+  baseline.sum(scene.sources.data(), scene.indices.data(), 300, scene.targets, {}, false, sums);
   LaneFits expected = {};
   baseline.solve(sums, LaneDetail::kAll, expected);
   for (const LaneKernels& kernels : all_lane_kernels()) {

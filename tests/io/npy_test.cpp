@@ -36,6 +36,17 @@ TEST(Npy, WritesWhatNumpyReads) {
   EXPECT_EQ(bytes.substr(127), "\n" + packed(1.0F, 2.0F, 3.0F, 4.0F, 5.0F, 0.1F));
 }
 
+TEST(Npy, PutsNumbersInAnyOrder) {
+  const Scratch scratch;
+  NpyWriter writer(scratch.path("a.npy"), {3, 2}, ScalarType::kFloat32);
+  writer.put(4, std::vector<float>{5, 6});
+  writer.put(0, std::vector<float>{1, 2});
+  EXPECT_THROW(writer.put(0, std::vector<float>{1, 2, 3, 4}), Error);
+  writer.put(2, std::vector<float>{3, 4});
+  writer.commit();
+  EXPECT_EQ(read_npy(scratch.path("a.npy")).values, (std::vector<double>{1, 2, 3, 4, 5, 6}));
+}
+
 TEST(Npy, ReadsBackEveryShape) {
   const Scratch scratch;
   for (const std::vector<std::size_t>& shape :

@@ -4,7 +4,6 @@
 #include <array>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <numeric>
 #include <optional>
 #include <string>
 
@@ -52,26 +51,45 @@ gls::Reconstruction reconstruction(const std::string& name) {
   return static_cast<gls::Reconstruction>(found - names.begin());
 }
 
-/// Describes every point, a block at a time, into `matrix`.
+/// Describes every point into `matrix`, a stretch of the order at a time: neighbours in space share
+/// their work, wherever their rows are in the file.
 StatusCounts write_matrix(const gls::ScaleSpace& space, std::size_t points, io::NpyWriter& matrix,
                           const Progress& progress) {
   const std::size_t scales = space.scales().size();
-  const auto width = static_cast<std::size_t>(gls::feature_count(space.options().features));
+  const std::size_t row =
+      scales * static_cast<std::size_t>(gls::feature_count(space.options().features));
+  const std::span<const std::uint32_t> order = space.order();
   StatusCounts counts = {};
+  std::vector<char> described(points);
   std::vector<std::uint32_t> targets;
   std::vector<float> features;
   std::vector<gls::FitStatus> status;
   Stage stage(&progress, "describe", points);
-  for (std::size_t begin = 0; begin < points; begin += kBlock) {
-    targets.resize(std::min(kBlock, points - begin));
-    std::iota(targets.begin(), targets.end(), static_cast<std::uint32_t>(begin));
-    features.resize(targets.size() * scales * width);
+  const auto put_rows = [&] {  // runs of rows at once
+    for (std::size_t i = 0, next = 0; i < targets.size(); i = next) {
+      for (next = i + 1; next < targets.size() && targets[next] == targets[next - 1] + 1;) ++next;
+      matrix.put(targets[i] * row, std::span(features).subspan(i * row, (next - i) * row));
+    }
+    stage.advance(targets.size());
+  };
+  for (std::size_t begin = 0; begin < order.size(); begin += kBlock) {
+    const auto some = order.subspan(begin, std::min(kBlock, order.size() - begin));
+    targets.assign(some.begin(), some.end());
+    std::sort(targets.begin(), targets.end());
+    features.resize(targets.size() * row);
     status.resize(targets.size() * scales);
     space.describe(targets, std::span(features), status);
-    matrix.append(features);
     for (const gls::FitStatus s : status) ++counts[static_cast<std::size_t>(s)];
-    stage.advance(targets.size());
+    for (const std::uint32_t point : targets) described[point] = 1;
+    put_rows();
   }
+  targets.clear();  // what has no place has zeros
+  for (std::uint32_t i = 0; i < points; ++i) {
+    if (!described[i]) targets.push_back(i);
+  }
+  features.assign(targets.size() * row, 0.0f);
+  counts[static_cast<std::size_t>(gls::FitStatus::kUndefined)] += targets.size() * scales;
+  put_rows();
   return counts;
 }
 
@@ -89,6 +107,7 @@ ordered_json to_json(const Arguments& arguments, const gls::ScaleSpace& space, s
     json["max_projection_steps"] = options.max_projection_steps;
   }
   if (options.side_gate) json["gate"] = *options.side_gate;
+  if (options.engine == gls::Engine::kFast) json["eps"] = options.eps;
   json["status"] = {{"stable", counts[0]}, {"unstable", counts[1]}, {"undefined", counts[2]}};
   return json;
 }
@@ -156,6 +175,11 @@ void add_describe(CLI::App& app, Common& common) {
       ->capture_default_str();
   command
       ->add_option("--s-max", options.s_max, "Largest scale (0: 10 % of the bounding box diagonal)")
+      ->capture_default_str();
+  command
+      ->add_option("--eps", options.eps,
+                   "Resolution of far neighbourhoods, in scales: finer is slower and more exact")
+      ->check(CLI::Range(0.01, 1.0))
       ->capture_default_str();
   command->add_flag("--exact", arguments->exact, "Exact neighbourhoods (slow)");
   command->callback([arguments, &common] { describe(*arguments, common); });

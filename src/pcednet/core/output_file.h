@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <span>
@@ -27,6 +28,10 @@ class OutputFile {
   /// Throws Error(kFailure), naming the file, when the disk takes no more.
   void write(std::span<const std::byte> bytes);
   void write(std::string_view text);
+
+  /// Writes at a place of the file, which may lie beyond what is written so far; does not move
+  /// where write() goes on. Throws as write() does.
+  void write_at(std::uint64_t offset, std::span<const std::byte> bytes);
 
   /// Flushes to the disk and renames. Must be called once, last.
   void commit();

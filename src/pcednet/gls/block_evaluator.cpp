@@ -8,19 +8,30 @@
 namespace pcednet::gls {
 namespace {
 
-constexpr std::size_t kPart = 8 * kLanes;
-constexpr double kWidestBlock = 32.0;  // t: float then gives coordinates to 1e-6
-constexpr float kMargin = 0.25f;       // t: gathered in advance for points that will move
+/// A block is divided into parts of these many points, those again, and the last into groups.
+constexpr std::array<std::size_t, BlockEvaluator::kDepth> kParts = {64 * kLanes, 8 * kLanes,
+                                                                    2 * kLanes, kLanes};
+constexpr std::size_t kFewestShared = 32;  // below, summing them once is no gain
+constexpr float kWidestShared = 0.7f;      // t: half the diagonal of a part with any inside
+constexpr double kWidestBlock = 64;        // t: float then gives coordinates to 2e-6
+constexpr float kMargin = 0.25f;           // t: gathered in advance for points that will move
 
-/// The box of the lanes in `targets`, in the frame.
-SourceBox box_of(const LaneTargets& targets, std::size_t count) {
-  SourceBox box;
-  const float* rows[3] = {targets.x, targets.y, targets.z};
-  for (int a = 0; a < 3; ++a) {
-    const auto [min, max] = std::minmax_element(rows[a], rows[a] + count);
-    box.min[a] = *min, box.max[a] = *max;
+/// The least (or with `sign` -1 the greatest) of a row of lanes.
+float extreme(const float (&row)[kLanes], float sign) {
+  float least[kLanes];
+  for (std::size_t i = 0; i < kLanes; ++i) least[i] = sign * row[i];
+  for (std::size_t half = kLanes / 2; half > 0; half /= 2) {
+    for (std::size_t i = 0; i < half; ++i) {
+      least[i] = least[i] < least[i + half] ? least[i] : least[i + half];
+    }
   }
-  return box;
+  return sign * least[0];
+}
+
+/// The box of all lanes in `targets`, in the frame.
+SourceBox box_of(const LaneTargets& targets) {
+  return {{extreme(targets.x, 1.0f), extreme(targets.y, 1.0f), extreme(targets.z, 1.0f)},
+          {extreme(targets.x, -1.0f), extreme(targets.y, -1.0f), extreme(targets.z, -1.0f)}};
 }
 
 SourceBox local_box(const BlockFrame& frame, const TargetBox& box) {
@@ -128,31 +139,73 @@ void BlockEvaluator::evaluate(std::size_t begin, std::size_t end, std::size_t sc
     evaluate(half, end, scale, t, wanted, emit);
     return;
   }
-  const float margin = options_.projection_steps > 0 ? kMargin : 0.0f;
-  bool gathered = false;
-  GroupFit result;
-  for (std::size_t part = begin; part < end; part += kPart) {
-    const std::size_t part_end = std::min(part + kPart, end);
-    SourceBox part_box;
-    bool selected = false;
-    for (std::size_t first = part; first < part_end; first += kLanes) {
-      const LaneGroup group = {first, std::min(kLanes, part_end - first)};
-      if (!wanted(group)) continue;
-      if (!gathered) {
-        const VoxelLevel& level = pyramid_->levels[pyramid_->level_of[scale]];
-        block_.gather(level, box, box.centre(), t, 1.0f + margin);
-        gathered = true;
-      }
-      if (!selected) {
-        part_box = local_box(block_, box_of(part, part_end));
-        part_.reserve(block_.candidates().count);
-        kernels_->select(block_.candidates(), part_box, 1.0f + margin, part_.view);
-        selected = true;
-      }
-      evaluate_group(group, block_, part_.view, part_box, t, result);
-      emit(group, result);
+  margin_ = options_.projection_steps > 0 ? kMargin : 0.0f;
+  const Visit visit = {t, wanted, emit};
+  if (!any_wanted(begin, end, wanted)) return;
+  gather_block(begin, end, pyramid_->levels[pyramid_->level_of[scale]], box, t, 1.0f + margin_);
+  visit_parts(0, begin, end, block_.candidates(), {}, visit);
+}
+
+bool BlockEvaluator::any_wanted(std::size_t begin, std::size_t end, const Wanted& wanted) {
+  for (std::size_t first = begin; first < end; first += kLanes) {
+    if (wanted({first, std::min(kLanes, end - first)})) return true;
+  }
+  return false;
+}
+
+/// Describes the points [begin, end) from the sources `near`: all that may reach them but for those
+/// that parts of lesser depth share.
+void BlockEvaluator::visit_parts(std::size_t depth, std::size_t begin, std::size_t end,
+                                 const Candidates& near, const SourceBox& box, const Visit& visit) {
+  const std::size_t size = kParts[depth];
+  for (std::size_t first = begin; first < end; first += size) {
+    const std::size_t last = std::min(first + size, end);
+    if (!any_wanted(first, last, visit.wanted)) continue;
+    if (size == kLanes) {
+      const LaneGroup group = {first, last - first};
+      evaluate_group(group, block_, near, box, visit.t, result_);
+      visit.emit(group, result_);
+    } else {
+      const SourceBox part_box = local_box(block_, box_of(first, last));
+      choose_sources(near, part_box, parts_[depth]);
+      visit_parts(depth + 1, first, last, parts_[depth].near.view, part_box, visit);
+      parts_[depth].inside.view.count = 0;
     }
   }
+}
+
+/// A level that served a larger scale before need not be searched again.
+void BlockEvaluator::gather_block(std::size_t begin, std::size_t end, const VoxelLevel& level,
+                                  const TargetBox& box, double t, float reach) {
+  const bool again = begin == gathered_begin_ && end == gathered_end_ &&
+                     &level == gathered_level_ && reach * t <= block_.reach();
+  if (again) return block_.rescale(t);
+  block_.gather(level, box, box.centre(), t, reach);
+  gathered_begin_ = begin, gathered_end_ = end, gathered_level_ = &level;
+}
+
+/// Chooses the sources near a part, and sums up those inside the support of its every point.
+void BlockEvaluator::choose_sources(const Candidates& all, const SourceBox& box, Part& part) {
+  part.near.reserve(all.count), part.inside.reserve(all.count);
+  part.inside.view.x = nullptr;  // the indices are enough
+  float sq_half = 0.0f;
+  for (int a = 0; a < 3; ++a) {
+    const float half = 0.5f * (box.max[a] - box.min[a]);
+    sq_half += half * half;
+    part.sums.centre[a] = box.min[a] + half;
+  }
+  if (!gate_.enabled && sq_half < kWidestShared * kWidestShared) {
+    // qq is at most the square of half a voxel's diagonal.
+    const double cell = block_.level().cell * block_.inverse_t();
+    const auto inner = static_cast<float>(std::sqrt(1.0 - 0.75 * cell * cell) - 1e-4) - margin_;
+    kernels_->split(all, box, 1.0f + margin_, inner, part.near.view, part.inside.view);
+    const Candidates& inside = part.inside.view;
+    if (inside.count >= kFewestShared) {
+      return kernels_->sum_inside(block_.sources(), inside.index, inside.count, part.sums);
+    }
+  }
+  part.inside.view.count = 0;
+  kernels_->select(all, box, 1.0f + margin_, part.near.view);
 }
 
 void BlockEvaluator::load_targets(const LaneGroup& group, const BlockFrame& frame) {
@@ -183,10 +236,14 @@ void BlockEvaluator::fit_lanes(const LaneGroup& group, const BlockFrame& frame,
                                const Candidates& near, double t, GroupFit& result) {
   group_.reserve(near.count);
   group_.view.x = nullptr;  // the indices are enough
-  kernels_->select(near, gls::box_of(targets_, group.count), 1.00001f, group_.view);
+  kernels_->select(near, gls::box_of(targets_), 1.00001f, group_.view);
   const Candidates& sources = group_.view;
-  kernels_->sum(frame.sources(), sources.index, sources.count, targets_, gate_, sums_);
+  kernels_->sum(frame.sources(), sources.index, sources.count, targets_, gate_,
+                frame.level().cell == 0.0, sums_);
   interactions_ += sources.count * group.count;
+  for (const Part& part : shared(frame)) {
+    if (part.inside.view.count > 0) kernels_->add_inside(part.sums, targets_, sums_);
+  }
   find_status(group, frame, t, result);
   kernels_->solve(sums_, options_.detail, result.fits);
   settle(group, frame, t, result);
@@ -203,10 +260,14 @@ void BlockEvaluator::find_status(const LaneGroup& group, const BlockFrame& frame
   if (!any) return;
   const Candidates& sources = group_.view;
   kernels_->count(frame.sources(), sources.index, sources.count, targets_, gate_, counts_);
+  float inside = 0.0f;
+  for (const Part& part : shared(frame)) {
+    if (part.inside.view.count > 0) inside += part.sums.moments[0][0];
+  }
   for (std::size_t lane = 0; lane < group.count; ++lane) {
     if (!few(lane)) continue;
-    const auto status = [](float count) {
-      return status_of_count(static_cast<std::uint32_t>(std::min(count, 1e9f)));
+    const auto status = [inside](float count) {
+      return status_of_count(static_cast<std::uint32_t>(std::min(count + inside, 1e9f)));
     };
     result.status[lane] = status(counts_.surely[lane]);
     if (status(counts_.maybe[lane]) == result.status[lane]) continue;
@@ -237,9 +298,11 @@ DoubtfulTarget BlockEvaluator::doubtful(const LaneGroup& group, std::size_t lane
 
 std::span<const std::uint32_t> BlockEvaluator::candidate_voxels(const BlockFrame& frame) {
   voxels_.clear();
-  for (std::size_t i = 0; i < group_.view.count; ++i) {
-    voxels_.push_back(frame.voxel(group_.view.index[i]));
-  }
+  const auto add = [&](const Candidates& some) {
+    for (std::size_t i = 0; i < some.count; ++i) voxels_.push_back(frame.voxel(some.index[i]));
+  };
+  add(group_.view);
+  for (const Part& part : shared(frame)) add(part.inside.view);
   return voxels_;
 }
 
@@ -276,7 +339,7 @@ void BlockEvaluator::project(const LaneGroup& group, const BlockFrame& frame,
         offset_[lane][a] += move_[lane][a];
       }
     }
-    const SourceBox box = gls::box_of(targets_, group.count);
+    const SourceBox box = gls::box_of(targets_);
     if (is_within(box, gathered, kMargin)) {
       fit_lanes(group, frame, near, t, next_);
     } else {

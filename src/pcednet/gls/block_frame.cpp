@@ -16,36 +16,43 @@ void BlockFrame::gather(const VoxelLevel& level, const TargetBox& box, const Vec
                         float reach) {
   level_ = &level;
   origin_ = origin;
-  inverse_t_ = 1.0 / t;
+  reach_ = reach * t;
   runs_.clear();
-  level.boxes.runs_near(box.min, box.max, reach * t, runs_);
+  level.boxes.runs_near(box.min, box.max, reach_, runs_);
   const std::size_t most = runs_.size() * spatial::BoxTree::kLeaf;
   candidates_.reserve(most);
-  if (sources_.size() < most) sources_.resize(most), voxels_.resize(most);
+  if (sources_.size() < most) sources_.resize(most), entries_.resize(most);
 
   std::size_t count = 0;
-  const auto inverse_t = static_cast<float>(inverse_t_);
   for (const std::uint32_t run : runs_) {
     const std::size_t begin = run * spatial::BoxTree::kLeaf;
     const std::size_t end = std::min(begin + spatial::BoxTree::kLeaf, level.voxels.size());
-    for (std::size_t i = begin; i < end; ++i, ++count) {
+    for (std::size_t i = begin; i < end; ++i) {
       const Voxel& v = level.voxels[i];
-      const Vec3 p = local(v.position);
+      if (v.count == 0.0f) continue;  // has no normal
+      entries_[count] = {v.position - origin, v.qq, v.qn, static_cast<std::uint32_t>(i)};
       Source& s = sources_[count];
-      s = {static_cast<float>(p.x()),
-           static_cast<float>(p.y()),
-           static_cast<float>(p.z()),
-           v.normal[0],
-           v.normal[1],
-           v.normal[2],
-           v.count,
-           v.qq * inverse_t * inverse_t,
-           v.qn * inverse_t};
-      voxels_[count] = static_cast<std::uint32_t>(i);
-      candidates_.set(count, s);
+      s.nx = v.normal[0], s.ny = v.normal[1], s.nz = v.normal[2];
+      s.count = v.count;
+      ++count;
     }
   }
   candidates_.view.count = count;
+  rescale(t);
+}
+
+void BlockFrame::rescale(double t) {
+  inverse_t_ = 1.0 / t;
+  const auto inverse_t = static_cast<float>(inverse_t_);
+  for (std::size_t i = 0; i < candidates_.view.count; ++i) {
+    const Entry& e = entries_[i];
+    const Vec3 p = e.position * inverse_t_;
+    Source& s = sources_[i];
+    s.x = static_cast<float>(p.x()), s.y = static_cast<float>(p.y());
+    s.z = static_cast<float>(p.z());
+    s.qq = e.qq * inverse_t * inverse_t, s.qn = e.qn * inverse_t;
+    candidates_.set(i, s);
+  }
 }
 
 }  // namespace pcednet::gls

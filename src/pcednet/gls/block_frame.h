@@ -44,28 +44,40 @@ struct TargetBox {
 class BlockFrame {
  public:
   /// Gathers every voxel of `level` closer than `reach` t to `box`, and some more. `box` must be
-  /// within 16 t of `origin` for coordinates to be good to 1e-6.
+  /// within 32 t of `origin` for coordinates to be good to 2e-6.
   void gather(const VoxelLevel& level, const TargetBox& box, const Vec3& origin, double t,
               float reach);
 
+  /// Changes the scale of what was gathered; `reach` t must not grow.
+  void rescale(double t);
+
+  /// How far from the box all is gathered, in the cloud's units.
+  double reach() const { return reach_; }
   const Vec3& origin() const { return origin_; }
   const VoxelLevel& level() const { return *level_; }
+  double inverse_t() const { return inverse_t_; }
   const Candidates& candidates() const { return candidates_.view; }
   const Source* sources() const { return sources_.data(); }
 
   /// The voxel of the level that source `i` is.
-  std::uint32_t voxel(std::uint32_t i) const { return voxels_[i]; }
+  std::uint32_t voxel(std::uint32_t i) const { return entries_[i].voxel; }
 
   /// A position in the frame.
   Vec3 local(const Vec3& position) const { return (position - origin_) * inverse_t_; }
 
  private:
+  struct Entry {
+    Vec3 position;  ///< from the origin
+    float qq, qn;
+    std::uint32_t voxel;
+  };
+
   const VoxelLevel* level_ = nullptr;
   Vec3 origin_ = Vec3::Zero();
-  double inverse_t_ = 1.0;
+  double inverse_t_ = 1.0, reach_ = 0.0;
   std::vector<std::uint32_t> runs_;
   std::vector<Source> sources_;
-  std::vector<std::uint32_t> voxels_;
+  std::vector<Entry> entries_;
   CandidateList candidates_;
 };
 

@@ -135,7 +135,7 @@ void FastScaleSpace::describe_block(std::span<const Visit> visits, std::span<flo
                             .projection_steps = moves ? options_.max_projection_steps : 0,
                             .side_gate = options_.side_gate},
                            *kernels_);
-  for (std::size_t s = 0; s < scales_.size(); ++s) {
+  for (std::size_t s = scales_.size(); s-- > 0;) {  // the largest first: see gather_block()
     evaluator.evaluate(
         begin, end, s, scales_[s] * unit_,
         [&](const LaneGroup& group) { return !visits_to(group).empty(); },

@@ -42,7 +42,7 @@ class FastScaleSpace {
   const std::vector<double>& scales() const { return scales_; }
 
   /// The finite points in the order in which it is best to ask for them: along a curve, so that a
-  /// stretch of 1024 that starts at a multiple of 1024 is evaluated together. Fewer than 16 at a
+  /// stretch of 4096 that starts at a multiple of 4096 is evaluated together. Fewer than 16 at a
   /// time cost as much as 16.
   std::span<const std::uint32_t> order() const { return order_; }
 

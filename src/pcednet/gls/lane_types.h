@@ -13,7 +13,7 @@ inline constexpr std::size_t kLanes = 16;
 struct Source {
   float x, y, z;     ///< mean position
   float nx, ny, nz;  ///< mean normal, not renormalised
-  float count;       ///< points it stands for; 0 for a point whose normal is unusable
+  float count;       ///< points it stands for
   float qq;          ///< mean |q|^2 of its points about their mean position
   float qn;          ///< mean q.n likewise
 };
@@ -57,6 +57,17 @@ struct LaneSums {
   float u_yy_y[3][kLanes];    ///< S u r^2 y
 };
 
+/// The same sums over sources that are inside the support of every target of interest, as
+/// polynomials in the place of the target: sums of products of p, the source's position about a
+/// centre among the targets, rho = |p|^2 + qq, and the weights count {1, n, p.n + qn}.
+struct InsideSums {
+  static constexpr int kWeights = 5;
+  float centre[3];              ///< in the sources' frame
+  float moments[kWeights][15];  ///< 1, p (3), p p^T (6), rho, rho p (3), rho^2
+  float higher[20];  ///< with weight count: rho p p^T (6), p p p (10: xxx xxy xxz xyy xyz xzz yyy
+                     ///< yyz yzz zzz), rho^2 p (3), rho^3
+};
+
 /// How many points are neighbours: of those counted in `maybe` but not in `surely`, rounding leaves
 /// open whether they are.
 struct LaneCounts {
@@ -83,9 +94,17 @@ struct LaneKernels {
   /// Writes the candidates of `in` nearer than `reach` to `box` to `out`, which has room for all
   /// and kLanes more; `in` is readable for kLanes more. Without positions where out.x is null.
   void (*select)(const Candidates& in, const SourceBox& box, float reach, Candidates& out);
-  /// Sums over sources[indices[0 .. count)).
+  /// As select(), but moves those whose every point of `box` is nearer than `inner` to `inside`.
+  void (*split)(const Candidates& in, const SourceBox& box, float reach, float inner,
+                Candidates& out, Candidates& inside);
+  /// Sums over sources[indices[0 .. count)); `points` says that all are single points with normals.
   void (*sum)(const Source* sources, const std::uint32_t* indices, std::size_t count,
-              const LaneTargets& targets, const LaneGate& gate, LaneSums& sums);
+              const LaneTargets& targets, const LaneGate& gate, bool points, LaneSums& sums);
+  /// Sums over sources[indices[0 .. count)) about sums.centre.
+  void (*sum_inside)(const Source* sources, const std::uint32_t* indices, std::size_t count,
+                     InsideSums& sums);
+  /// Adds to `sums` what these sources contribute at the targets, the gate open.
+  void (*add_inside)(const InsideSums& inside, const LaneTargets& targets, LaneSums& sums);
   void (*count)(const Source* sources, const std::uint32_t* indices, std::size_t count,
                 const LaneTargets& targets, const LaneGate& gate, LaneCounts& counts);
   void (*solve)(const LaneSums& sums, LaneDetail detail, LaneFits& fits);

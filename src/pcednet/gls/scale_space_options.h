@@ -21,7 +21,7 @@ struct ScaleSpaceOptions {
   int max_projection_steps = 5;     ///< for the reconstructions that project
   std::optional<double> side_gate;  ///< the a of side_gate(), -1 to 1; without one all count alike
   Engine engine = Engine::kFast;    ///< what ScaleSpace uses
-  double eps = 0.14;                ///< voxel edge over support radius, 0.01 to 1; fast engine only
+  double eps = 0.10;                ///< voxel edge over support radius, 0.01 to 1; fast engine only
 };
 
 }  // namespace pcednet::gls

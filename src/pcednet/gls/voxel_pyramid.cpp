@@ -7,7 +7,7 @@ namespace pcednet::gls {
 namespace {
 
 /// A level is worth its memory when the average point shares its voxel with most of another.
-constexpr double kWorthwhileMerge = 1.7;
+constexpr double kWorthwhileMerge = 1.6;
 
 void add_boxes(VoxelLevel& level, const Vec3& origin) {
   level.boxes = spatial::BoxTree(level.voxels.size(), origin,

@@ -75,16 +75,22 @@ NpyWriter::NpyWriter(const std::filesystem::path& path, const std::vector<std::s
                      ScalarType type, Overwrite overwrite)
     : file_(path, overwrite), path_(path), type_(type) {
   for (const std::size_t size : shape) missing_ *= size;
-  file_.write(header_of(shape, type));
+  const std::string header = header_of(shape, type);
+  header_ = header.size();
+  file_.write(header);
+}
+
+void NpyWriter::take(std::size_t numbers) {
+  if (numbers > missing_) {
+    throw Error(ErrorKind::kFailure,
+                fmt::format("{}: more numbers than its shape holds", path_.string()));
+  }
+  missing_ -= numbers;
 }
 
 template <typename From>
 void NpyWriter::append_as(std::span<const From> numbers) {
-  if (numbers.size() > missing_) {
-    throw Error(ErrorKind::kFailure,
-                fmt::format("{}: more numbers than its shape holds", path_.string()));
-  }
-  missing_ -= numbers.size();
+  take(numbers.size());
   if (scalar_type_of<From>() == type_) {
     file_.write(std::as_bytes(numbers));
   } else if (type_ == ScalarType::kFloat32) {
@@ -102,6 +108,14 @@ void NpyWriter::append(std::span<const float> numbers) {
 
 void NpyWriter::append(std::span<const double> numbers) {
   append_as(numbers);
+}
+
+void NpyWriter::put(std::size_t first, std::span<const float> numbers) {
+  if (type_ != ScalarType::kFloat32) {
+    throw Error(ErrorKind::kFailure, fmt::format("{}: not an array of float32", path_.string()));
+  }
+  take(numbers.size());
+  file_.write_at(header_ + first * sizeof(float), std::as_bytes(numbers));
 }
 
 void NpyWriter::commit() {

@@ -10,7 +10,8 @@
 
 namespace pcednet::io {
 
-/// Writes one array as NumPy's .npy (version 1.0, C order), part by part.
+/// Writes one array as NumPy's .npy (version 1.0, C order), part by part: by append() in order, or
+/// by put() in any order, not by both.
 class NpyWriter {
  public:
   /// `type` must be float32 or float64. Throws like OutputFile.
@@ -21,16 +22,22 @@ class NpyWriter {
   void append(std::span<const float> numbers);
   void append(std::span<const double> numbers);
 
+  /// Writes the numbers from number `first` of the array on, which are of the array's type; each
+  /// must be put once.
+  void put(std::size_t first, std::span<const float> numbers);
+
   /// Must be called once, last. Throws Error(kFailure) unless the shape is filled exactly.
   void commit();
 
  private:
   template <typename From>
   void append_as(std::span<const From> numbers);
+  void take(std::size_t numbers);
 
   OutputFile file_;
   std::filesystem::path path_;
   ScalarType type_;
+  std::size_t header_ = 0;   ///< bytes
   std::size_t missing_ = 1;  ///< numbers still to come
 };
 

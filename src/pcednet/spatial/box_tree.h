@@ -48,6 +48,7 @@ class BoxTree {
     float sq_gap(const Box& box) const;
   };
   Box outward(const Vec3& min, const Vec3& max) const;
+  static constexpr std::size_t kMostRows = 21;  ///< 8^21 things
   void add_rows();
 
   std::size_t count_ = 0;
@@ -116,19 +117,23 @@ std::size_t BoxTree::nearest(const Vec3& query, std::span<double> sq_distances,
     float sq_gap;
     std::size_t row, box;
   };
-  std::vector<Branch> stack;  // the nearest of each family on top
+  std::array<Branch, kFanOut * kMostRows> stack;  // the nearest of each family on top
+  std::size_t depth = 0;
   const auto push = [&](std::size_t row, std::size_t begin, std::size_t end) {
-    const auto first = static_cast<std::ptrdiff_t>(stack.size());
+    const std::size_t first = depth;
     for (std::size_t b = begin; b < std::min(end, rows_[row].size()); ++b) {
-      stack.push_back({rows_[row][b].sq_gap(at), row, b});
+      const float sq_gap = rows_[row][b].sq_gap(at);
+      if (sq_gap * kSlack >= sq_distances.back()) continue;
+      std::size_t place = depth++;
+      for (; place > first && stack[place - 1].sq_gap < sq_gap; --place) {
+        stack[place] = stack[place - 1];
+      }
+      stack[place] = {sq_gap, row, b};
     }
-    std::sort(stack.begin() + first, stack.end(),
-              [](const Branch& a, const Branch& b) { return a.sq_gap > b.sq_gap; });
   };
   push(rows_.size() - 1, 0, rows_.back().size());
-  while (!stack.empty()) {
-    const Branch branch = stack.back();
-    stack.pop_back();
+  while (depth > 0) {
+    const Branch branch = stack[--depth];
     if (branch.sq_gap * kSlack >= sq_distances.back()) continue;
     if (branch.row == 0) {
       add_run(branch.box);
