@@ -14,6 +14,7 @@ constexpr std::array<std::size_t, BlockEvaluator::kDepth> kParts = {64 * kLanes,
 constexpr std::size_t kFewestShared = 32;  // below, summing them once is no gain
 constexpr float kWidestShared = 0.7f;      // t: half the diagonal of a part with any inside
 constexpr double kWidestBlock = 64;        // t: float then gives coordinates to 2e-6
+constexpr float kReach = 1.00001f;         // t: the support, and what rounding may add
 constexpr float kMargin = 0.25f;           // t: gathered in advance for points that will move
 
 /// The least (or with `sign` -1 the greatest) of a row of lanes.
@@ -142,7 +143,7 @@ void BlockEvaluator::evaluate(std::size_t begin, std::size_t end, std::size_t sc
   margin_ = options_.projection_steps > 0 ? kMargin : 0.0f;
   const Visit visit = {t, wanted, emit};
   if (!any_wanted(begin, end, wanted)) return;
-  gather_block(begin, end, pyramid_->levels[pyramid_->level_of[scale]], box, t, 1.0f + margin_);
+  gather_block(begin, end, pyramid_->levels[pyramid_->level_of[scale]], box, t, kReach + margin_);
   visit_parts(0, begin, end, block_.candidates(), {}, visit);
 }
 
@@ -198,14 +199,14 @@ void BlockEvaluator::choose_sources(const Candidates& all, const SourceBox& box,
     // qq is at most the square of half a voxel's diagonal.
     const double cell = block_.level().cell * block_.inverse_t();
     const auto inner = static_cast<float>(std::sqrt(1.0 - 0.75 * cell * cell) - 1e-4) - margin_;
-    kernels_->split(all, box, 1.0f + margin_, inner, part.near.view, part.inside.view);
+    kernels_->split(all, box, kReach + margin_, inner, part.near.view, part.inside.view);
     const Candidates& inside = part.inside.view;
     if (inside.count >= kFewestShared) {
       return kernels_->sum_inside(block_.sources(), inside.index, inside.count, part.sums);
     }
   }
   part.inside.view.count = 0;
-  kernels_->select(all, box, 1.0f + margin_, part.near.view);
+  kernels_->select(all, box, kReach + margin_, part.near.view);
 }
 
 void BlockEvaluator::load_targets(const LaneGroup& group, const BlockFrame& frame) {
@@ -236,7 +237,7 @@ void BlockEvaluator::fit_lanes(const LaneGroup& group, const BlockFrame& frame,
                                const Candidates& near, double t, GroupFit& result) {
   group_.reserve(near.count);
   group_.view.x = nullptr;  // the indices are enough
-  kernels_->select(near, gls::box_of(targets_), 1.00001f, group_.view);
+  kernels_->select(near, gls::box_of(targets_), kReach, group_.view);
   const Candidates& sources = group_.view;
   kernels_->sum(frame.sources(), sources.index, sources.count, targets_, gate_,
                 frame.level().cell == 0.0, sums_);
@@ -348,7 +349,7 @@ void BlockEvaluator::project(const LaneGroup& group, const BlockFrame& frame,
         moved.min[a] = frame.origin()[a] + box.min[a] * t;
         moved.max[a] = frame.origin()[a] + box.max[a] * t;
       }
-      own_.gather(frame.level(), moved, frame.origin(), t, 1.00001f);
+      own_.gather(frame.level(), moved, frame.origin(), t, kReach);
       fit_lanes(group, own_, own_.candidates(), t, next_);
     }
     for (std::size_t lane = 0; lane < group.count; ++lane) {

@@ -4,6 +4,8 @@
 
 namespace pcednet::gls {
 
+constexpr std::size_t kAhead = 3;
+
 void CandidateList::reserve(std::size_t count) {
   if (x_.size() < count + kLanes) {
     const std::size_t room = count + count / 2 + kLanes;
@@ -24,8 +26,14 @@ void BlockFrame::gather(const VoxelLevel& level, const TargetBox& box, const Vec
   if (sources_.size() < most) sources_.resize(most), entries_.resize(most);
 
   std::size_t count = 0;
-  for (const std::uint32_t run : runs_) {
-    const std::size_t begin = run * spatial::BoxTree::kLeaf;
+  for (std::size_t r = 0; r < runs_.size(); ++r) {
+    const std::size_t begin = runs_[r] * spatial::BoxTree::kLeaf;
+    if (r + kAhead < runs_.size()) {
+      const std::size_t later = runs_[r + kAhead] * spatial::BoxTree::kLeaf;
+      for (std::size_t i = 0; i < spatial::BoxTree::kLeaf; ++i) {
+        __builtin_prefetch(level.voxels.data() + later + i);
+      }
+    }
     const std::size_t end = std::min(begin + spatial::BoxTree::kLeaf, level.voxels.size());
     for (std::size_t i = begin; i < end; ++i) {
       const Voxel& v = level.voxels[i];

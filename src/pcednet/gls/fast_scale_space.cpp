@@ -143,6 +143,10 @@ void FastScaleSpace::describe_block(std::span<const Visit> visits, std::span<flo
           for (const Visit& visit : visits_to(group)) {
             const std::size_t lane = visit.place - group.begin;
             const std::size_t cell = visit.row * scales_.size() + s;
+            if (&visit + kLanes < visits.data() + visits.size()) {  // soon written, too
+              __builtin_prefetch(&out[((&visit)[kLanes].row * scales_.size() + s) * rows.size()],
+                                 1);
+            }
             status[cell] = fit.status[lane];
             for (std::size_t k = 0; k < rows.size(); ++k) {
               out[cell * rows.size() + k] = fit.fits.features[rows[k]][lane];
