@@ -1,0 +1,65 @@
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "commands.h"
+#include "pcednet/core/error.h"
+#include "pcednet/report/merge.h"
+#include "report_page.h"
+
+namespace pcednet::app {
+namespace {
+
+struct ReportArguments {
+  std::string folder, output = "report.html", json;
+  report::MergeOptions merge = {};
+};
+
+void make_report(const ReportArguments& arguments, const Common& common) {
+  const std::string_view page = report_page();
+  if (page.empty()) {
+    throw Error(ErrorKind::kFailure,
+                "report: this pcednet was built without the page; run scripts/build_web.sh and "
+                "build again");
+  }
+  check_writable(arguments.output, common.overwrite());
+  check_writable(arguments.json, common.overwrite());
+  const Progress progress = console_progress(common);
+  const auto merged = report::merge_studies(arguments.folder, arguments.merge, &progress);
+  for (const std::string& warning : merged.warnings) warn(warning);
+  const std::string filled = report::fill_page(page, merged.json);
+  write_text_file(arguments.output, filled, common.overwrite());
+  if (!arguments.json.empty()) {
+    write_text_file(arguments.json, merged.json + "\n", common.overwrite());
+  }
+  say(fmt::format("{}: {} studies, {} clouds to look at, {:.1f} MB", arguments.output,
+                  merged.studies, merged.scenes, static_cast<double>(filled.size()) / 1e6));
+}
+
+}  // namespace
+
+void add_report(CLI::App& app, Common& common) {
+  auto arguments = std::make_shared<ReportArguments>();
+  CLI::App* command =
+      add_command(app, common, "report", "Make one web page of the studies in a folder",
+                  "pcednet report study/ -o report.html\n"
+                  "pcednet report study/ --clouds-per-set 9 --points 100000 --overwrite");
+  command->add_option("folder", arguments->folder, "A folder that `pcednet study` has written")
+      ->required();
+  command->add_option("-o,--output", arguments->output, "The page; it needs no other file")
+      ->capture_default_str();
+  command
+      ->add_option("--clouds-per-set", arguments->merge.clouds_per_set,
+                   "How many clouds of each set to show in 3D (0: none)")
+      ->capture_default_str()
+      ->check(CLI::Range(0, 10000));
+  command
+      ->add_option("--points", arguments->merge.points_per_cloud,
+                   "Points to show of a cloud; of a larger one, a sample")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 10000000));
+  command->add_option("--json", arguments->json, "Write the page's data to this file as well");
+  command->callback([arguments, &common] { make_report(*arguments, common); });
+}
+
+}  // namespace pcednet::app

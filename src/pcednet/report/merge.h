@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "pcednet/core/progress.h"
+
+namespace pcednet::report {
+
+struct MergeOptions {
+  std::size_t clouds_per_set = 4;        ///< the first so many of each set are shown; 0: none
+  std::size_t points_per_cloud = 30000;  ///< of a larger cloud, a sample
+};
+
+/// What a page shows.
+struct MergedStudies {
+  std::string json;  ///< one line: {"schema":"pcednet-report-1","studies":[...],"scenes":[...]}
+  std::size_t studies = 0, scenes = 0;
+  std::vector<std::string> warnings = {};
+};
+
+/// Reads the studies in `folder`: its *.json files, in name order, whose "schema" is
+/// "pcednet-study-1" (others are left out with a warning), unchanged into "studies". A result whose
+/// "median" and "pooled" are null has times alone.
+///
+/// "scenes" holds the clouds to look at,
+/// {"set","cloud","file","points","shown","min","size","view",
+/// "positions","normals","truth","predictions":[{"study","variant","seed","classes"}]}, where
+/// "shown" counts points and "study" counts from 0: a cloud file with the predictions that any
+/// study keeps for it, the first seed of each variant. See Scene and pack_classes() for their
+/// encoding.
+///
+/// A cloud's file is looked for from the working folder, then from `folder`; predictions are
+/// <folder>/<predictions>/<cloud>.u8. Throws Error(kUnreadable) for a file that is missing or is
+/// not what a study says, Error(kInsufficient) if there is no study, or predictions or labels are
+/// not as many as the points.
+MergedStudies merge_studies(const std::filesystem::path& folder, const MergeOptions& options = {},
+                            const Progress* progress = nullptr);
+
+/// The web page `page` with `json` in the place of its data. Nothing in `json` can end the script
+/// element that holds it. Throws Error(kFailure) if the page has no such place.
+std::string fill_page(std::string_view page, std::string_view json);
+
+}  // namespace pcednet::report

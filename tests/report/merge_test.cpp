@@ -1,0 +1,180 @@
+#include "pcednet/report/merge.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <fstream>
+#include <functional>
+#include <nlohmann/json.hpp>
+
+#include "pcednet/core/error.h"
+#include "pcednet/io/write_cloud.h"
+
+namespace pcednet::report {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+/// A folder with one study of one cloud of five points, and predictions of one variant, two seeds.
+class Merge : public ::testing::Test {
+ protected:
+  Merge() {
+    fs::create_directories(folder_ / "predictions");
+    PointCloud cloud;
+    for (int i = 0; i < 5; ++i) cloud.positions.emplace_back(i, i % 2, 0.25 * i);
+    cloud.normals.assign(5, Vec3::UnitZ());
+    cloud.labels = {0, 1, 2, 255, 0};
+    io::write_cloud(folder_ / "cloud.ply", cloud);
+    write("predictions/cloud.u8", std::string("\0\1\2\2\0", 5));
+    study_ = Json::parse(R"({"schema": "pcednet-study-1", "experiment": "methods",
+      "title": "A </script> in a name",
+      "sets": [{"name": "s", "clouds": [{"name": "cloud", "file": "cloud.ply"}]}],
+      "variants": [{"id": "v", "title": "V"}],
+      "results": [{"variant": "v", "set": "s", "seed": 1, "clouds": [], "predictions": "predictions"}]})");
+    Json scores = Json::parse(R"({"precision":1,"recall":1,"mcc":1,"f1":1,"accuracy":1,"iou":1})");
+    Json& result = study_["results"][0];
+    result["median"] = result["pooled"] = scores;
+    scores["name"] = "cloud";
+    result["clouds"].push_back(scores);
+    study_["results"].push_back(Json(result));
+    study_["results"][1]["seed"] = 2;
+  }
+  ~Merge() override { fs::remove_all(folder_); }
+
+  void write(const std::string& name, const std::string& bytes) const {
+    std::ofstream(folder_ / name, std::ios::binary) << bytes;
+  }
+
+  Json merged(const MergeOptions& options = {}) const {
+    write("methods.json", study_.dump());
+    return Json::parse(merge_studies(folder_, options).json);
+  }
+
+  ErrorKind kind_of_failure() const {
+    try {
+      merged();
+    } catch (const Error& error) {
+      return error.kind();
+    }
+    return ErrorKind::kFailure;
+  }
+
+  fs::path folder_ = fs::temp_directory_path() / fmt_name();
+  Json study_;
+
+ private:
+  static std::string fmt_name() {
+    return "pcednet_merge_" + std::to_string(::getpid()) + "_" +
+           ::testing::UnitTest::GetInstance()->current_test_info()->name();
+  }
+};
+
+TEST_F(Merge, KeepsStudiesUnchangedAndPacksTheirClouds) {
+  const Json page = merged();
+  EXPECT_EQ(page["schema"], "pcednet-report-1");
+  ASSERT_EQ(page["studies"].size(), 1u);
+  EXPECT_EQ(page["studies"][0], study_);
+  ASSERT_EQ(page["scenes"].size(), 1u);
+  const Json& scene = page["scenes"][0];
+  EXPECT_EQ(scene["set"], "s");
+  EXPECT_EQ(scene["cloud"], "cloud");
+  EXPECT_EQ(scene["points"], 5);
+  EXPECT_EQ(scene["shown"], 5);
+  EXPECT_EQ(scene["size"], 4.0);
+  EXPECT_EQ(scene["positions"].get<std::string>().size(), 40u);  // 30 bytes
+  EXPECT_EQ(scene["truth"].get<std::string>().size(), 4u);       // 2 bytes, padded
+  ASSERT_EQ(scene["predictions"].size(), 1u) << "the first seed alone";
+  EXPECT_EQ(scene["predictions"][0]["variant"], "v");
+  EXPECT_EQ(scene["predictions"][0]["seed"], 1);
+}
+
+TEST_F(Merge, LeavesCloudsOutOnDemand) {
+  fs::remove(folder_ / "cloud.ply");
+  EXPECT_EQ(merged({.clouds_per_set = 0})["scenes"].size(), 0u);
+}
+
+TEST_F(Merge, SamplesLargeClouds) {
+  EXPECT_EQ(merged({.points_per_cloud = 3})["scenes"][0]["shown"], 3);
+}
+
+TEST_F(Merge, SharesACloudBetweenStudies) {
+  study_["title"] = "Another";
+  write("other.json", study_.dump());
+  const Json page = merged();
+  EXPECT_EQ(page["studies"].size(), 2u);
+  ASSERT_EQ(page["scenes"].size(), 1u);
+  EXPECT_EQ(page["scenes"][0]["predictions"].size(), 2u);
+}
+
+TEST_F(Merge, RefusesAFolderWithoutStudies) {
+  EXPECT_THROW(merge_studies(folder_ / "nowhere"), Error);
+  write("other.json", "{\"schema\":\"something else\"}");
+  try {
+    merge_studies(folder_);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::kInsufficient);
+  }
+}
+
+TEST_F(Merge, WarnsOfForeignJson) {
+  write("other.json", "[1]");
+  write("methods.json", study_.dump());
+  const auto result = merge_studies(folder_);
+  ASSERT_EQ(result.warnings.size(), 1u);
+  EXPECT_NE(result.warnings[0].find("other.json"), std::string::npos);
+}
+
+TEST_F(Merge, RefusesWhatIsNoJsonOrEndsEarly) {
+  const std::string whole = study_.dump();
+  for (const std::size_t length : {std::size_t{0}, std::size_t{1}, whole.size() / 2}) {
+    write("methods.json", whole.substr(0, length));
+    try {
+      merge_studies(folder_);
+      ADD_FAILURE() << length;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::kUnreadable);
+      EXPECT_NE(std::string(error.what()).find("methods.json"), std::string::npos);
+    }
+  }
+}
+
+TEST_F(Merge, RefusesStudiesThatLackWhatThePageNeeds) {
+  const std::vector<std::function<void(Json&)>> breaches = {
+      [](Json& s) { s.erase("title"); },
+      [](Json& s) { s["sets"] = "none"; },
+      [](Json& s) { s["sets"][0].erase("clouds"); },
+      [](Json& s) { s["sets"][0]["clouds"][0]["file"] = 7; },
+      [](Json& s) { s["variants"][0].erase("id"); },
+      [](Json& s) { s["results"][0]["variant"] = "unheard of"; },
+      [](Json& s) { s["results"][0]["set"] = "unheard of"; },
+      [](Json& s) { s["results"][0]["median"].erase("mcc"); },
+      [](Json& s) { s["results"][1]["clouds"][0]["iou"] = nullptr; },
+      [](Json& s) { s["results"][0] = 3; },
+      [](Json& s) { s["sets"][0]["clouds"][0]["file"] = "missing.ply"; },
+      [](Json& s) { s["results"][0]["predictions"] = "missing"; },
+  };
+  const Json sound = study_;
+  for (std::size_t i = 0; i < breaches.size(); ++i) {
+    study_ = sound;
+    breaches[i](study_);
+    EXPECT_EQ(kind_of_failure(), ErrorKind::kUnreadable) << "breach " << i;
+  }
+}
+
+TEST_F(Merge, RefusesPredictionsForAnotherNumberOfPoints) {
+  write("predictions/cloud.u8", "four");
+  EXPECT_EQ(kind_of_failure(), ErrorKind::kInsufficient);
+}
+
+TEST(FillPage, PutsDataWhereItBelongsAndKeepsItsScriptElementWhole) {
+  const std::string page = "<script>\"PCEDNET-REPORT-DATA\"</script><p>";
+  const std::string filled = fill_page(page, R"({"a":"</script><!--"})");
+  EXPECT_EQ(filled, R"(<script>{"a":"\u003c/script>\u003c!--"}</script><p>)");
+  EXPECT_THROW(fill_page("<p>", "{}"), Error);
+}
+
+}  // namespace
+}  // namespace pcednet::report
