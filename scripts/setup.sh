@@ -1,11 +1,13 @@
 #!/bin/sh
-# Installs what pcednet needs from Debian 12: scripts/setup.sh [test] [clients]
+# Installs what pcednet needs from Debian 12: scripts/setup.sh [test] [web] [clients]
 # Does nothing (and needs no root) when everything is there already.
 set -eu
 list="$(dirname "$0")/packages.txt"
 
 missing=""
 for section in build "$@"; do
+  # Node.js and npm of another source do, and would conflict with those of Debian.
+  [ "$section" = web ] && command -v npm >/dev/null && continue
   wanted=$(sed -n "/^\[$section\]\$/,/^\[/p" "$list" | grep -v '^\[\|^#\|^$') || {
     echo "setup.sh: no section [$section] in $list" >&2
     exit 2

@@ -2,7 +2,10 @@
 # Installs what is missing, builds, and runs the whole test suite.
 set -eu
 cd "$(dirname "$0")/.."
-scripts/setup.sh test
+scripts/setup.sh test web
+
+echo "== web pages"
+scripts/build_web.sh
 
 echo "== release build and its tests"
 cmake --preset release -DPCEDNET_TESTS=ON

@@ -1,0 +1,71 @@
+// What methods cost: seconds and joules, a row a method, on a logarithmic scale.
+
+import { h, svg } from "../shared/dom";
+import { plainTable } from "./scores_table";
+import { costOf, formatCost, titleOf, type Group } from "./study";
+
+const WIDTH = 460;
+const NAME = 150;
+const ROW = 26;
+
+export const STAGES = ["normals", "describe", "train", "classify"];
+
+const SHAPES: Record<string, (x: number, y: number) => string> = {
+  normals: (x, y) => `M${x - 4} ${y - 4}h8v8h-8z`,
+  describe: (x, y) => `M${x} ${y - 5.5}l5.5 5.5l-5.5 5.5l-5.5 -5.5z`,
+  train: (x, y) => `M${x} ${y - 5}l5.5 9.5h-11z`,
+  classify: (x, y) => `M${x - 4.5} ${y}a4.5 4.5 0 1 0 9 0a4.5 4.5 0 1 0 -9 0z`,
+  joules: (x, y) => `M${x - 4.5} ${y}a4.5 4.5 0 1 0 9 0a4.5 4.5 0 1 0 -9 0z`,
+};
+
+/** Powers of ten that embrace the positive `values`. */
+function decades(values: number[]): [number, number] {
+  const logs = values.map(Math.log10);
+  const low = Math.floor(Math.min(...logs));
+  return [low, Math.max(low + 1, Math.ceil(Math.max(...logs)))];
+}
+
+/** A dot for each stage that took time; null if none did. */
+export function costPlot(groups: Group[], names: string[], unit: string): HTMLElement | null {
+  const rows = groups
+    .map((group) => ({ group, costs: names.map((name) => ({ name, spread: costOf(group, name) })) }))
+    .filter(({ costs }) => costs.some(({ spread }) => spread && spread.mean > 0));
+  const values = rows.flatMap(({ costs }) => costs.map(({ spread }) => spread?.mean ?? 0)).filter((v) => v > 0);
+  if (values.length === 0) return null;
+  const used = names.filter((name) => rows.some(({ group }) => (costOf(group, name)?.mean ?? 0) > 0));
+  const [low, high] = decades(values);
+  const x = (v: number): number => NAME + ((Math.log10(v) - low) / (high - low)) * (WIDTH - NAME - 20);
+  const height = rows.length * ROW + 30;
+  const ticks = Array.from({ length: high - low + 1 }, (_, k) => low + k);
+  const plot = svg("svg", { viewBox: `0 0 ${WIDTH} ${height}`, role: "img", "aria-label": `${unit}, logarithmic` },
+    ...ticks.flatMap((t) => [
+      svg("line", { x1: x(10 ** t), x2: x(10 ** t), y1: 2, y2: height - 26, class: "rule" }),
+      svg("text", { x: x(10 ** t), y: height - 12, "text-anchor": "middle", class: "tick" },
+        Math.abs(t) < 4 ? String(Number((10 ** t).toPrecision(1))) : `1e${t}`),
+    ]),
+    ...rows.map(({ group, costs }, row) => {
+      const y = row * ROW + ROW / 2 + 2;
+      const known = costs.filter(({ spread }) => spread && spread.mean > 0);
+      const places = known.map(({ spread }) => x(spread!.mean));
+      return svg("g", {},
+        svg("text", { x: NAME - 10, y: y + 4, "text-anchor": "end", class: "row-name" }, titleOf(group.variant)),
+        svg("line", { x1: Math.min(...places), x2: Math.max(...places), y1: y, y2: y, class: "base" }),
+        ...known.map(({ name, spread }) =>
+          svg("path", { d: SHAPES[name](x(spread!.mean), y), class: `stage ${name}` },
+            svg("title", {}, `${titleOf(group.variant)}, ${name}: ${formatCost(spread!.mean)} ${unit}`))));
+    }));
+  const key = used.length > 1 && h("figcaption", { class: "key" }, ...used.map((name) =>
+    h("span", {}, svg("svg", { viewBox: "0 0 14 14", width: 14, height: 14, "aria-hidden": "true" },
+      svg("path", { d: SHAPES[name](7, 7), class: `stage ${name}` })), name)));
+  return h("figure", { class: "wide" }, key, plot);
+}
+
+/** The same in numbers. */
+export function costTable(caption: string, groups: Group[]): HTMLElement {
+  const names = [...STAGES, "joules"].filter((name) => groups.some((g) => costOf(g, name) !== null));
+  return plainTable(caption, ["Method", ...names.map((n) => (n === "joules" ? "joules" : `${n}, s`))],
+    groups.map((group) => [titleOf(group.variant), ...names.map((name) => {
+      const spread = costOf(group, name);
+      return spread ? formatCost(spread.mean) : "–";
+    })]));
+}

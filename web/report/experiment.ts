@@ -1,0 +1,105 @@
+// One section of the page: an experiment with its tables and charts.
+
+import { dropdown, h, segmented } from "../shared/dom";
+import { STAGES, costPlot, costTable } from "./costs";
+import { learningCurves } from "./curves";
+import { histograms, scatterPanels } from "./distributions";
+import { overviewTable, setTable } from "./scores_table";
+import {
+  METRICS, METRIC_NAMES, groupsOf, positiveName, type Group, type Metric, type Statistic, type Study,
+} from "./study";
+import { sweep } from "./sweep";
+
+const STATISTICS: { value: Statistic; label: string }[] = [
+  { value: "median", label: "median" },
+  { value: "pooled", label: "pooled" },
+];
+
+/** The command that made the study, to copy. */
+function commandLine(command: string): HTMLElement {
+  const button = h("button", {
+    type: "button", class: "copy",
+    onclick: () => {
+      void navigator.clipboard?.writeText(command).then(() => (button.textContent = "copied"));
+    },
+  }, "copy");
+  return h("div", { class: "command" }, h("code", { tabindex: 0 }, command), button);
+}
+
+function seedsNote(groups: Group[]): string {
+  const most = Math.max(...groups.map((g) => g.results.length));
+  return most > 1 ? ` Several seeds: the mean ± the standard deviation over up to ${most}.` : "";
+}
+
+function part(title: string, note: string, ...children: (HTMLElement | null)[]): HTMLElement {
+  return h("section", { class: "part" }, h("h3", {}, title), h("p", { class: "note" }, note), ...children);
+}
+
+/** Everything about one set, for the chosen statistic. */
+function onSet(study: Study, groups: Group[], set: string, statistic: Statistic): (HTMLElement | null)[] {
+  const own = groups.filter((g) => g.set === set);
+  const scored = own.filter((g) => g.results.some((r) => r.clouds.length > 0));
+  const mixed = new Set(own.map((g) => g.positive)).size > 1;
+  const size = study.sets.find((s) => s.name === set)?.clouds.length ?? 0;
+  const sweeps = typeof study.x_label === "string";
+  const seconds = costPlot(own, STAGES, "seconds");
+  const joules = costPlot(own, ["joules"], "joules");
+  const counts = mixed ? "" : ` Counts as edge: ${positiveName(own[0]?.positive ?? "sharp")}.`;
+  return [
+    own.some((g) => g.results.some((r) => r[statistic]))
+      ? part("Scores", `${size} clouds; ${statistic === "median" ? "the median over them of each score" :
+          "the scores of their summed counts"}.${counts} The best of each column is marked. Open a row to ` +
+          `see its clouds.${seedsNote(own)}`, setTable(study, groups, set, statistic)) : null,
+    scored.length > 0 && !sweeps
+      ? part("Precision and recall", "Precision to the right, recall upwards, a dot for each cloud, their " +
+          "density behind, curves of equal F1.", scatterPanels(scored, mixed)) : null,
+    scored.length > 0 && !sweeps
+      ? part("MCC over the clouds", "How many clouds got which score; the stroke is the median.",
+          histograms(scored, "mcc", mixed)) : null,
+    !sweeps && seconds
+      ? part("Seconds", "For all clouds of the set together, on a logarithmic scale.", seconds, joules,
+          h("details", {}, h("summary", {}, "The numbers"), costTable(`${study.title}: costs on ${set}`, own))) : null,
+  ];
+}
+
+export function experimentSection(study: Study, id: string): HTMLElement {
+  const groups = groupsOf(study);
+  const sets = study.sets.map((s) => s.name).filter((name) => groups.some((g) => g.set === name));
+  const scored = groups.some((g) => g.results.some((r) => r.median || r.pooled));
+  let statistic: Statistic = "median";
+  let metric: Metric = "mcc";
+  let set = sets[0];
+  const overview = h("div");
+  const detail = h("div");
+  const curve = typeof study.x_label === "string" && groups.some((g) => typeof g.variant.x === "number")
+    ? sweep(study, groups, () => statistic) : null;
+  const drawOverview = (): void => {
+    if (sets.length > 1 && scored) overview.replaceChildren(overviewTable(study, groups, statistic, metric));
+  };
+  const drawDetail = (): void => {
+    if (set) detail.replaceChildren(...onSet(study, groups, set, statistic).filter((c) => c !== null));
+  };
+  const draw = (): void => {
+    drawOverview();
+    drawDetail();
+    curve?.draw();
+  };
+  draw();
+  const statistics = segmented("Over the clouds", STATISTICS, statistic, (s) => { statistic = s; draw(); });
+  const metrics = dropdown("Score", METRICS.map((m) => ({ value: m, label: METRIC_NAMES[m] })), metric,
+    (m) => { metric = m; drawOverview(); });
+  const setSwitch = segmented("Set", sets.map((s) => ({ value: s, label: s })), set,
+    (s) => { set = s; drawDetail(); });
+  const curves = learningCurves(study);
+  return h("section", { class: "experiment", id, "aria-labelledby": `${id}-title` },
+    h("h2", { id: `${id}-title` }, study.title),
+    study.question && h("p", { class: "question" }, study.question),
+    study.command && commandLine(study.command),
+    scored && h("div", { class: "controls" }, statistics, sets.length > 1 && metrics),
+    curve && curve.element,
+    sets.length > 1 && scored && overview,
+    sets.length > 1 && h("div", { class: "controls set-switch" }, setSwitch),
+    detail,
+    curves.length > 0 && part("Learning", "The mean over the seeds, bars of one standard deviation. A click " +
+      "on a name hides its line.", h("div", { class: "pair" }, ...curves)));
+}

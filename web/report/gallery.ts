@@ -1,0 +1,198 @@
+// The clouds: truth and methods side by side, turned together.
+
+import { CLASS_PALETTES, ERROR_PALETTE, type Meaning } from "../shared/colours";
+import { bytesOf, classesOf, positionsOf } from "../shared/decode";
+import { dropdown, h, segmented } from "../shared/dom";
+import { PointViewer, type Place } from "../shared/viewer";
+import {
+  formatCount, formatScore, positiveName, titleOf, type PackedScene, type Report, type Result, type Study,
+} from "./study";
+
+type Mode = "classes" | "errors";
+type Palette = "paper" | "safe";
+
+interface Exhibit {
+  scene: PackedScene;
+  truth: Uint8Array;
+  predictions: { title: string; result: Result | undefined; positive: string; classes: Uint8Array }[];
+}
+
+const GAP = 2;
+const MOST_PANELS = 12;
+
+/** What ERROR_PALETTE colours: 0 true negative, 1 true positive, 2 false positive, 3 false negative. */
+export function agreement(truth: Uint8Array, said: Uint8Array, positive: string): Uint8Array {
+  const isEdge = (label: number): boolean => label === 2 || (positive === "edge" && label === 1);
+  return truth.map((label, i) => {
+    if (label === 3) return 4;
+    const wanted = isEdge(label);
+    return isEdge(said[i]) ? (wanted ? 1 : 2) : wanted ? 3 : 0;
+  });
+}
+
+function exhibitOf(scene: PackedScene, studies: Study[], study: number): Exhibit {
+  const { sets, variants, results } = studies[study];
+  return {
+    scene,
+    truth: classesOf(scene.truth, scene.shown),
+    predictions: scene.predictions.filter((p) => p.study === study).map((p) => {
+      const result = results.find((r) =>
+        r.variant === p.variant && r.set === scene.set && (r.seed ?? null) === p.seed);
+      return {
+        title: titleOf(variants.find((v) => v.id === p.variant)!),
+        result,
+        positive: result?.positive ?? sets.find((s) => s.name === scene.set)?.positive ?? "sharp",
+        classes: classesOf(p.classes, scene.shown),
+      };
+    }),
+  };
+}
+
+class Gallery {
+  readonly element = h("section", { class: "gallery", id: "clouds", "aria-labelledby": "clouds-title" });
+  private readonly canvas = h("canvas", {
+    tabindex: 0, "aria-label": "The cloud in 3D. Arrow keys turn it, plus and minus zoom, 0 shows all.",
+  });
+  private readonly labels = h("div", { class: "labels" });
+  private readonly stage = h("div", { class: "stage" }, this.canvas, this.labels);
+  private readonly bar = h("div", { class: "controls" });
+  private readonly chips = h("fieldset", { class: "chips" });
+  private readonly key = h("p", { class: "key" });
+  private readonly note = h("p", { class: "note" });
+  private readonly viewer: PointViewer;
+  private study: number;
+  private scene: PackedScene;
+  private exhibit!: Exhibit;
+  private chosen = new Set<string>();
+  private mode: Mode = "classes";
+  private palette: Palette = "paper";
+  private size = 1;
+
+  constructor(private readonly report: Report) {
+    this.viewer = new PointViewer(this.canvas);
+    this.viewer.setBackground("#59616c");
+    this.scene = report.scenes[0];
+    this.study = this.scene.predictions[0].study;
+    this.element.append(
+      h("h2", { id: "clouds-title" }, "The clouds"),
+      h("p", { class: "question" }, "What the labels say and what the methods say, point by point. Drag to " +
+        "turn all of them; the wheel zooms once a cloud has been clicked."),
+      this.bar, this.chips, this.stage, this.key, this.note);
+    this.open(this.scene, true);
+    new ResizeObserver(() => this.layOut()).observe(this.stage);
+  }
+
+  private open(scene: PackedScene, afresh: boolean): void {
+    this.scene = scene;
+    if (!scene.predictions.some((p) => p.study === this.study)) this.study = scene.predictions[0].study;
+    this.exhibit = exhibitOf(scene, this.report.studies, this.study);
+    const titles = this.exhibit.predictions.map((p) => p.title);
+    const kept = titles.filter((title) => this.chosen.has(title));
+    this.chosen = new Set(kept.length > 0 && !afresh ? kept : titles.slice(0, 2));
+    this.viewer.setCloud({
+      positions: positionsOf(scene.positions), normals: bytesOf(scene.normals), view: scene.view,
+    });
+    this.viewer.setPointSize(this.size);
+    this.drawControls();
+    this.drawPanels();
+  }
+
+  private drawControls(): void {
+    const { scenes, studies } = this.report;
+    const sets = [...new Set(scenes.map((s) => s.set))];
+    const clouds = scenes.filter((s) => s.set === this.scene.set);
+    const owners = [...new Set(this.scene.predictions.map((p) => p.study))];
+    this.bar.replaceChildren(
+      dropdown("Set", sets.map((s) => ({ value: s, label: s })), this.scene.set,
+        (set) => this.open(scenes.find((s) => s.set === set)!, false)),
+      dropdown("Cloud", clouds.map((s) => ({ value: s, label: s.cloud })), this.scene, (s) => this.open(s, false)),
+      ...(owners.length < 2 ? [] : [dropdown("Experiment",
+        owners.map((i) => ({ value: i, label: studies[i].title })), this.study,
+        (i) => { this.study = i; this.open(this.scene, true); })]),
+      segmented("Show", [{ value: "classes", label: "classes" }, { value: "errors", label: "errors" }] as const as
+        { value: Mode; label: string }[], this.mode, (mode) => { this.mode = mode; this.drawPanels(); }),
+      segmented("Colours", [{ value: "paper", label: "of the paper" }, { value: "safe", label: "colour-blind safe" }] as
+        { value: Palette; label: string }[], this.palette, (p) => { this.palette = p; this.drawPanels(); }),
+      h("label", { class: "slider" }, h("span", {}, "Point size"),
+        h("input", { type: "range", min: 0.3, max: 3, step: 0.05, value: this.size, oninput: (e: InputEvent) => {
+          this.size = Number((e.target as HTMLInputElement).value);
+          this.viewer.setPointSize(this.size);
+        } })),
+      h("button", { type: "button", class: "plain", onclick: () => this.viewer.reset() }, "Reset view"));
+    this.chips.replaceChildren(h("legend", {}, "Beside the truth"), ...this.exhibit.predictions.map(({ title }) =>
+      h("label", {},
+        h("input", { type: "checkbox", checked: this.chosen.has(title), onchange: (e: Event) => {
+          const box = e.target as HTMLInputElement;
+          if (box.checked && this.chosen.size >= MOST_PANELS) box.checked = false;
+          else if (box.checked) this.chosen.add(title);
+          else this.chosen.delete(title);
+          this.drawPanels();
+        } }), h("span", {}, title))));
+  }
+
+  private drawPanels(): void {
+    const { truth, predictions, scene } = this.exhibit;
+    const shown = predictions.filter((p) => this.chosen.has(p.title));
+    const errors = this.mode === "errors";
+    const positive = (shown[0] ?? predictions[0]).positive;
+    this.viewer.setPalette(errors ? ERROR_PALETTE : CLASS_PALETTES[this.palette]);
+    this.viewer.setPanels([
+      errors ? agreement(truth, truth, positive) : truth,
+      ...shown.map((p) => (errors ? agreement(truth, p.classes, p.positive) : p.classes)),
+    ]);
+    this.labels.replaceChildren(
+      h("div", { class: "label" }, h("b", {}, "Truth")),
+      ...shown.map(({ title, result }) => {
+        const mcc = result?.clouds.find((c) => c.name === scene.cloud)?.mcc;
+        return h("div", { class: "label" }, h("b", {}, title),
+          mcc !== undefined && h("span", {}, ` MCC ${formatScore(mcc)}`));
+      }));
+    this.drawKey(errors ? ERROR_PALETTE : CLASS_PALETTES[this.palette], positive);
+    this.layOut();
+  }
+
+  private drawKey(meanings: Meaning[], positive: string): void {
+    const { scene, truth } = this.exhibit;
+    const unlabelled = truth.includes(3);
+    this.key.replaceChildren(...meanings.filter((m) => unlabelled || m.name !== "no label").map((m) =>
+      h("span", {}, h("span", { class: "swatch", style: `background:${m.colour}` }), m.name)));
+    const sampled = scene.shown < scene.points
+      ? `${formatCount(scene.shown)} of its ${formatCount(scene.points)} points, an even sample`
+      : `all ${formatCount(scene.points)} points`;
+    const counts = this.mode === "errors" ? ` Counts as edge: ${positiveName(positive)}.` : "";
+    this.note.textContent = `${scene.file}: ${sampled}. Scores count every point.${counts}`;
+  }
+
+  /** Panels of one size in as many columns as leave them wide enough. */
+  private layOut(): void {
+    const count = this.labels.children.length;
+    const width = this.stage.clientWidth;
+    if (width === 0) return;
+    const most = Math.max(width < 480 ? 2 : 1, Math.floor(width / 290));
+    const rows = Math.ceil(count / most);
+    const columns = Math.ceil(count / rows);
+    const across = (width - GAP * (columns - 1)) / columns;
+    const down = Math.round(Math.min(Math.max(across * 0.9, 150), count === 1 ? 520 : 440));
+    const places: Place[] = Array.from({ length: count }, (_, i) => ({
+      x: (i % columns) * (across + GAP), y: Math.floor(i / columns) * (down + GAP), width: across, height: down,
+    }));
+    const height = rows * down + GAP * (rows - 1);
+    this.stage.style.height = `${height}px`;
+    [...this.labels.children].forEach((label, i) => {
+      const { x, y } = places[i];
+      (label as HTMLElement).style.cssText = `left:${x}px;top:${y}px;width:${across}px;height:${down}px`;
+    });
+    this.viewer.setLayout(width, height, places);
+  }
+}
+
+/** The section, or a word on why there is none. */
+export function gallery(report: Report): HTMLElement | null {
+  if (report.scenes.length === 0) return null;
+  try {
+    return new Gallery(report).element;
+  } catch {
+    return h("section", { class: "gallery", id: "clouds" }, h("h2", {}, "The clouds"),
+      h("p", { class: "note" }, "This browser offers no WebGL, which drawing the clouds needs."));
+  }
+}

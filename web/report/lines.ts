@@ -1,0 +1,125 @@
+// Line plots with error bars (uPlot): scores over a swept number, learning curves.
+
+import uPlot from "uplot";
+import "uplot/dist/uPlot.min.css";
+import { h } from "../shared/dom";
+
+export interface Line {
+  name: string;
+  colour: string;
+  /** One y for each x of the plot. */
+  y: (number | null)[];
+  /** Half the length of the error bar at each x. */
+  error?: (number | null)[];
+  dashed?: boolean;
+  faint?: boolean;
+}
+
+export interface LinePlot {
+  x: number[];
+  lines: Line[];
+  xLabel: string;
+  yLabel: string;
+  logX?: boolean;
+  logY?: boolean;
+  points?: boolean;
+  height?: number;
+}
+
+const css = (name: string): string => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+
+function drawErrors(lines: Line[]): uPlot.Plugin {
+  return {
+    hooks: {
+      draw: (u: uPlot) => {
+        const { ctx } = u;
+        lines.forEach((line, k) => {
+          if (!line.error || !u.series[k + 1].show) return;
+          ctx.save();
+          ctx.strokeStyle = line.colour;
+          ctx.lineWidth = devicePixelRatio * 1.2;
+          ctx.beginPath();
+          line.y.forEach((y, i) => {
+            const error = line.error![i];
+            if (y === null || !error) return;
+            const x = u.valToPos(u.data[0][i], "x", true);
+            const cap = 3 * devicePixelRatio;
+            const [top, bottom] = [u.valToPos(y + error, "y", true), u.valToPos(y - error, "y", true)];
+            if (!Number.isFinite(top) || !Number.isFinite(bottom)) return;
+            ctx.moveTo(x, top);
+            ctx.lineTo(x, bottom);
+            ctx.moveTo(x - cap, top);
+            ctx.lineTo(x + cap, top);
+            ctx.moveTo(x - cap, bottom);
+            ctx.lineTo(x + cap, bottom);
+          });
+          ctx.stroke();
+          ctx.restore();
+        });
+      },
+    },
+  };
+}
+
+const compact = (v: number): string =>
+  Math.abs(v) >= 1e6 ? `${v / 1e6}M` : Math.abs(v) >= 1e4 ? `${v / 1e3}k` : String(Number(v.toPrecision(6)));
+
+function axis(label: string, size: number): uPlot.Axis {
+  return {
+    label, labelSize: 20, labelFont: `12px ${css("--sans")}`, font: `11px ${css("--sans")}`, size,
+    stroke: css("--ink-2"), grid: { stroke: css("--line"), width: 1 }, ticks: { show: false },
+    values: (_, splits) => splits.map((v) => (v === null ? "" : compact(v))),
+  };
+}
+
+function options(plot: LinePlot, width: number): uPlot.Options {
+  const xAxis = axis(plot.xLabel, 30);
+  if (plot.logX) {
+    // Ticks where there are data, unless they crowd.
+    xAxis.splits = () => plot.x;
+    xAxis.filter = (_, splits) => splits;
+  }
+  return {
+    width,
+    height: plot.height ?? 260,
+    scales: {
+      x: { time: false, distr: plot.logX ? 3 : 1, range: (_, min, max) => plot.logX
+        ? [min / (max / min) ** 0.04, max * (max / min) ** 0.04]
+        : [min - 0.03 * (max - min || 1), max + 0.03 * (max - min || 1)] },
+      y: { distr: plot.logY ? 3 : 1 },
+    },
+    axes: [xAxis, axis(plot.yLabel, 46)],
+    series: [
+      { label: plot.xLabel, value: (_, v) => (v === null ? "" : compact(v)) },
+      ...plot.lines.map((line): uPlot.Series => ({
+        label: line.name, stroke: line.colour, width: line.faint ? 1 : 2,
+        dash: line.dashed ? [5, 4] : undefined, spanGaps: true,
+        points: { show: plot.points ?? false, size: 6, fill: line.colour },
+        value: (_, v) => (v === null || v === undefined ? "–" : Number(v.toPrecision(3)).toString()),
+      })),
+    ],
+    cursor: { drag: { x: false, y: false } },
+    plugins: [drawErrors(plot.lines)],
+  };
+}
+
+/** A plot as wide as its place, drawn anew for another width or another theme. */
+export function linePlot(plot: LinePlot): HTMLElement {
+  const place = h("div", { class: "plot", role: "img", "aria-label": `${plot.yLabel} over ${plot.xLabel}` });
+  let drawn: uPlot | undefined;
+  let width = 0;
+  const draw = (): void => {
+    drawn?.destroy();
+    const data: uPlot.AlignedData = [plot.x, ...plot.lines.map((line) => line.y)];
+    drawn = new uPlot(options(plot, width), data, place);
+  };
+  new ResizeObserver(([entry]) => {
+    const now = Math.floor(entry.contentRect.width);
+    if (now === 0 || now === width) return;
+    width = now;
+    if (drawn) drawn.setSize({ width, height: plot.height ?? 260 });
+    else draw();
+  }).observe(place);
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => place.isConnected && drawn && draw());
+  return place;
+}

@@ -1,0 +1,38 @@
+import "../shared/theme.css";
+import "./style.css";
+import { h } from "../shared/dom";
+import { experimentSection } from "./experiment";
+import { gallery } from "./gallery";
+import type { Report } from "./study";
+
+function masthead(report: Report): HTMLElement {
+  const { studies } = report;
+  const facts = [
+    [...new Set(studies.map((s) => s.version).filter(Boolean))].map((v) => `pcednet ${v}`).join(", "),
+    [...new Set(studies.map((s) => s.machine).filter(Boolean))].join("; "),
+  ].filter(Boolean);
+  return h("header", { class: "masthead" },
+    h("h1", {}, studies.length === 1 ? studies[0].title : "A study of edges in point clouds"),
+    h("p", {}, facts.join(" · ")));
+}
+
+function show(report: Report): void {
+  const page = document.getElementById("page")!;
+  const clouds = gallery(report);
+  const sections = report.studies.map((study, i) => experimentSection(study, `experiment-${i}`));
+  const link = (section: HTMLElement, name: string): HTMLElement =>
+    h("li", {}, h("a", { href: `#${section.id}` }, name));
+  page.replaceChildren(
+    h("nav", { "aria-label": "Experiments" }, h("ul", {},
+      clouds && link(clouds, "Clouds"),
+      ...sections.map((section, i) => link(section, report.studies[i].title)))),
+    h("main", {}, masthead(report), clouds, ...sections,
+      h("footer", {}, "Made by pcednet report. This page holds all its data and loads nothing.")));
+}
+
+const data: unknown = JSON.parse(document.getElementById("data")!.textContent!);
+if (data !== null && typeof data === "object" && (data as Report).schema === "pcednet-report-1") {
+  show(data as Report);
+} else {
+  document.getElementById("page")!.textContent = "No data: pcednet report fills this page.";
+}

@@ -1,0 +1,190 @@
+// Tables: the scores of an experiment on one set, and one score on all sets.
+
+import { h } from "../shared/dom";
+import {
+  METRICS, METRIC_NAMES, cloudsOf, expectedOf, formatCount, formatScore, positiveName, scoreOf,
+  titleOf, type Group, type Metric, type Scores, type Spread, type Statistic, type Study,
+} from "./study";
+import { swatch } from "./marks";
+
+interface Column<Row> {
+  name: string;
+  title?: string;
+  /** By what the column sorts; null goes last. */
+  key: (row: Row) => number | string | null;
+  cell: (row: Row) => HTMLTableCellElement;
+  /** Whether large comes first. */
+  descending?: boolean;
+}
+
+/** A table whose column heads sort it. `details` are further rows behind a row's first cell. */
+function sortableTable<Row>(
+  caption: string, columns: Column<Row>[], rows: Row[], after: (row: Row) => HTMLTableRowElement[] = () => []
+): HTMLTableElement {
+  const body = h("tbody");
+  const lines = new Map(rows.map((row) => [
+    row, [h("tr", {}, ...columns.map((column) => column.cell(row))), ...after(row)],
+  ]));
+  const heads = columns.map((column) =>
+    h("th", { scope: "col", title: column.title },
+      h("button", { type: "button", onclick: () => sortBy(column) }, column.name)));
+  function sortBy(column: Column<Row>): void {
+    const head = heads[columns.indexOf(column)];
+    const first = column.descending ? "descending" : "ascending";
+    const second = column.descending ? "ascending" : "descending";
+    const direction = head.getAttribute("aria-sort") === first ? second : first;
+    for (const other of heads) other.removeAttribute("aria-sort");
+    head.setAttribute("aria-sort", direction);
+    const sign = direction === "ascending" ? 1 : -1;
+    const sorted = [...rows].sort((a, b) => {
+      const [x, y] = [column.key(a), column.key(b)];
+      if (x === null || y === null) return Number(x === null) - Number(y === null);
+      return sign * (typeof x === "number" && typeof y === "number" ? x - y : String(x).localeCompare(String(y)));
+    });
+    body.append(...sorted.flatMap((row) => lines.get(row)!));
+  }
+  body.append(...rows.flatMap((row) => lines.get(row)!));
+  return h("table", {}, h("caption", {}, caption), h("thead", {}, h("tr", {}, ...heads)), body);
+}
+
+const scroller = (table: HTMLTableElement): HTMLElement =>
+  h("div", { class: "scroller", tabindex: 0, role: "region", "aria-label": table.caption?.textContent ?? "" }, table);
+
+function scoreCell(spread: Spread | null, best: boolean): HTMLTableCellElement {
+  if (!spread) return h("td", { class: "number none" }, "–");
+  return h("td", { class: best ? "number best" : "number", "data-value": spread.mean },
+    h("span", { class: "value" }, formatScore(spread.mean)),
+    spread.deviation !== null && h("span", { class: "deviation" }, `±${formatScore(spread.deviation)}`));
+}
+
+/** The largest mean among groups that are comparable: of the same positive class. */
+function isBest(groups: Group[], group: Group, statistic: Statistic, metric: Metric): boolean {
+  const rivals = groups.filter((g) => g.set === group.set && g.positive === group.positive);
+  if (rivals.length < 2) return false;
+  const shown = (g: Group): string => formatScore(scoreOf(g, statistic, metric)?.mean ?? -2);
+  const largest = Math.max(...rivals.map((g) => Number(shown(g))));
+  return Number(shown(group)) === largest;
+}
+
+function cloudLines(group: Group, extra: number, owner: string): HTMLTableRowElement[] {
+  return cloudsOf(group).map((cloud) =>
+    h("tr", { class: "cloud", hidden: true, "data-of": owner },
+      h("th", { scope: "row" }, cloud.name),
+      ...Array.from({ length: extra }, (_, i) =>
+        h("td", { class: "number" }, i === extra - 1 ? `${formatCount(cloud.points)} pts` : "")),
+      ...METRICS.map((m) => h("td", { class: "number" }, formatScore(cloud[m])))));
+}
+
+function publishedLine(scores: Partial<Scores>, source: string | undefined, extra: number): HTMLTableRowElement {
+  return h("tr", { class: "published", title: source },
+    h("th", { scope: "row" }, "published"),
+    ...Array.from({ length: extra }, () => h("td")),
+    ...METRICS.map((m) => {
+      const value = scores[m];
+      return h("td", { class: "number" }, value === undefined ? "" : formatScore(value));
+    }));
+}
+
+/** All scores of every variant on `set`; a row opens into its clouds. */
+export function setTable(study: Study, groups: Group[], set: string, statistic: Statistic): HTMLElement {
+  const rows = groups.filter((g) => g.set === set && g.results.some((r) => r[statistic]));
+  const mixed = new Set(rows.map((g) => g.positive)).size > 1;
+  const counted = rows.some((g) => typeof g.variant.parameters === "number");
+  const extra = Number(mixed) + Number(counted);
+  const after = new Map<Group, HTMLTableRowElement[]>();
+  rows.forEach((group, i) => {
+    const published = expectedOf(study, group);
+    const scores = published?.published[statistic];
+    after.set(group, [
+      ...(scores ? [publishedLine(scores, published.source, extra)] : []),
+      ...cloudLines(group, extra, String(i)),
+    ]);
+  });
+  const columns: Column<Group>[] = [{
+    name: "Method",
+    key: (g) => titleOf(g.variant),
+    cell: (g) => {
+      const clouds = after.get(g)!.filter((row) => row.className === "cloud");
+      const toggle = h("button", {
+        type: "button", class: "open", "aria-expanded": "false", title: g.variant.note,
+        onclick: () => {
+          const open = toggle.getAttribute("aria-expanded") === "false";
+          toggle.setAttribute("aria-expanded", String(open));
+          for (const row of clouds) row.hidden = !open;
+        },
+      }, swatch(g.index), titleOf(g.variant));
+      return h("th", { scope: "row" }, toggle);
+    },
+  }];
+  if (mixed) {
+    columns.push({
+      name: "Counts as edge", key: (g) => g.positive,
+      cell: (g) => h("td", { class: "words" }, positiveName(g.positive)),
+    });
+  }
+  if (counted) {
+    columns.push({
+      name: "Weights", key: (g) => g.variant.parameters ?? null,
+      cell: (g) => h("td", { class: "number quiet" },
+        typeof g.variant.parameters === "number" ? formatCount(g.variant.parameters) : "–"),
+    });
+  }
+  for (const metric of METRICS) {
+    columns.push({
+      name: METRIC_NAMES[metric], descending: true,
+      key: (g) => scoreOf(g, statistic, metric)?.mean ?? null,
+      cell: (g) => scoreCell(scoreOf(g, statistic, metric), isBest(rows, g, statistic, metric)),
+    });
+  }
+  return scroller(sortableTable(`${study.title}: ${set}, ${statistic}`, columns, rows, (g) => after.get(g)!));
+}
+
+/** One score of every variant on every set. */
+export function overviewTable(study: Study, groups: Group[], statistic: Statistic, metric: Metric): HTMLElement {
+  interface Row { group: Group; label: string; bySet: Map<string, Group> }
+  const rows: Row[] = [];
+  for (const variant of study.variants) {
+    const own = groups.filter((g) => g.variant === variant);
+    const split = study.sets.some((s) => own.filter((g) => g.set === s.name).length > 1);
+    for (const positive of split ? [...new Set(own.map((g) => g.positive))] : [null]) {
+      const members = own.filter((g) => positive === null || g.positive === positive);
+      if (members.length === 0) continue;
+      const label = titleOf(variant) + (positive === null ? "" : `, ${positiveName(positive)}`);
+      rows.push({ group: members[0], label, bySet: new Map(members.map((g) => [g.set, g])) });
+    }
+  }
+  const columns: Column<Row>[] = [{
+    name: "Method", key: (row) => row.label,
+    cell: (row) => h("th", { scope: "row" }, swatch(row.group.index), row.label),
+  }];
+  for (const set of study.sets) {
+    if (!groups.some((g) => g.set === set.name)) continue;
+    columns.push({
+      name: set.name, descending: true,
+      title: `${set.clouds.length} clouds; counts as edge: ${positiveName(set.positive ?? "sharp")}`,
+      key: (row) => {
+        const group = row.bySet.get(set.name);
+        return group ? (scoreOf(group, statistic, metric)?.mean ?? null) : null;
+      },
+      cell: (row) => {
+        const group = row.bySet.get(set.name);
+        if (!group) return scoreCell(null, false);
+        const cell = scoreCell(scoreOf(group, statistic, metric), isBest(groups, group, statistic, metric));
+        const published = expectedOf(study, group)?.published[statistic]?.[metric];
+        if (published !== undefined) {
+          cell.append(h("span", { class: "beside", title: "published" }, `(${formatScore(published)})`));
+        }
+        return cell;
+      },
+    });
+  }
+  return scroller(sortableTable(`${study.title}: ${METRIC_NAMES[metric]} on every set`, columns, rows));
+}
+
+/** A plain table of texts. */
+export function plainTable(caption: string, heads: string[], rows: string[][]): HTMLElement {
+  return scroller(h("table", {}, h("caption", {}, caption),
+    h("thead", {}, h("tr", {}, ...heads.map((name) => h("th", { scope: "col" }, name)))),
+    h("tbody", {}, ...rows.map(([name, ...cells]) =>
+      h("tr", {}, h("th", { scope: "row" }, name), ...cells.map((cell) => h("td", { class: "number" }, cell)))))));
+}
