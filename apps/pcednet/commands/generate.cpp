@@ -7,6 +7,7 @@
 #include "commands.h"
 #include "pcednet/core/error.h"
 #include "pcednet/data/building.h"
+#include "pcednet/data/cad_set.h"
 #include "pcednet/data/default_set.h"
 #include "pcednet/io/write_cloud.h"
 
@@ -86,6 +87,62 @@ void add_default(CLI::App& generate, Common& common) {
   command->callback([=, &common] { run_default(*arguments, common); });
 }
 
+struct CadArguments {
+  bool worn = false;
+  std::string folder;
+  std::uint64_t seed = 1;
+};
+
+void run_cad(const CadArguments& arguments, const Common& common) {
+  make_folder(arguments.folder);
+  const auto recipes =
+      arguments.worn ? data::worn_recipes(arguments.seed) : data::cad_recipes(arguments.seed);
+  const Progress progress = console_progress(common);
+  Stage stage(&progress, "generate", recipes.size());
+  say("cloud             points  sharp  kind");
+  std::size_t points = 0;
+  for (const data::CadRecipe& recipe : recipes) {
+    const PointCloud cloud = data::generate(recipe, arguments.seed).cloud;
+    const auto path = std::filesystem::path(arguments.folder) / (recipe.name + ".ply");
+    io::write_cloud(path, cloud, {.overwrite = common.overwrite()});
+    say(fmt::format("{:<16} {:>7} {:>6.1f}  {}{}{}", recipe.name, cloud.size(),
+                    percent_of(cloud, kSharpEdge), recipe.mesh ? "vertices" : "drawn",
+                    recipe.estimated ? ", normals estimated" : "",
+                    recipe.noise > 0.0 ? fmt::format(", noise {:.2g}", recipe.noise) : ""));
+    points += cloud.size();
+    stage.advance();
+  }
+  say(fmt::format("{} clouds, {} points in {}", recipes.size(), points, arguments.folder));
+}
+
+void add_cad(CLI::App& generate, Common& common) {
+  auto arguments = std::make_shared<CadArguments>();
+  CLI::App* command = add_command(
+      generate, common, "cad",
+      "Labelled clouds for training: CAD parts as vertices of meshes and as surface points",
+      "pcednet generate cad parts/\n"
+      "pcednet generate cad parts/ --seed 2");
+  command->add_option("folder", arguments->folder, "Where the PLY files go; created if need be")
+      ->required();
+  command->add_option("--seed", arguments->seed, "Another seed gives other parts")
+      ->capture_default_str();
+  command->callback([=, &common] { run_cad(*arguments, common); });
+}
+
+void add_worn(CLI::App& generate, Common& common) {
+  auto arguments = std::make_shared<CadArguments>();
+  arguments->worn = true;
+  CLI::App* command = add_command(
+      generate, common, "worn",
+      "Labelled clouds for training: parts with rounded edges and uneven surfaces, ridges labelled",
+      "pcednet generate worn parts/");
+  command->add_option("folder", arguments->folder, "Where the PLY files go; created if need be")
+      ->required();
+  command->add_option("--seed", arguments->seed, "Another seed gives other parts")
+      ->capture_default_str();
+  command->callback([=, &common] { run_cad(*arguments, common); });
+}
+
 void add_sample(CLI::App& generate, Common& common) {
   auto file = std::make_shared<std::string>();
   auto seed = std::make_shared<std::uint64_t>(1);
@@ -108,6 +165,8 @@ void add_generate(CLI::App& app, Common& common) {
                                           "  pcednet generate default clouds/ --seed 2\n");
   generate->require_subcommand(1);
   add_default(*generate, common);
+  add_cad(*generate, common);
+  add_worn(*generate, common);
   add_sample(*generate, common);
 }
 

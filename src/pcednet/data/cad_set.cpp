@@ -1,0 +1,186 @@
+#include "pcednet/data/cad_set.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "pcednet/cloud/bounding_box.h"
+#include "pcednet/core/parallel.h"
+#include "pcednet/core/random.h"
+#include "pcednet/data/cad_parts.h"
+#include "pcednet/normals/prepare.h"
+#include "pcednet/spatial/kd_tree.h"
+
+namespace pcednet::data {
+namespace {
+
+constexpr std::size_t kSamplesPerPoint = 12;
+
+MeshVertices drawn_points(const SolidSamples& samples, std::span<const BorderPoint> borders,
+                          const CadRecipe& recipe) {
+  std::vector<Vec3> edges;
+  for (const BorderPoint& border : borders) {
+    if (border.turn() >= kSharpTurn) edges.push_back(border.position);
+  }
+  const spatial::KdTree tree(edges);
+  const std::size_t count = std::min(recipe.style.points, samples.points.size());
+  const double spacing = std::sqrt(samples.area / static_cast<double>(count));
+  MeshVertices drawn;
+  std::vector<spatial::Neighbour> nearest;
+  for (std::size_t i = 0; i < count; ++i) {
+    const FacePoint& point = samples.points[i];
+    drawn.positions.push_back(point.position);
+    drawn.normals.push_back(point.normal);
+    tree.nearest(point.position, 1, nearest);
+    const bool sharp =
+        !nearest.empty() && std::sqrt(nearest.front().sq_distance) < recipe.band * spacing;
+    drawn.labels.push_back(sharp ? kSharpEdge : kNonEdge);
+  }
+  return drawn;
+}
+
+/// Labels by distance to the edges, then rounds them off: every vertex and its normal become the
+/// Gaussian mean of the surface around, which then gets shallow waves.
+void wear_off(MeshVertices& vertices, const SolidSamples& samples,
+              std::span<const BorderPoint> borders, const CadRecipe& recipe, Random& random) {
+  std::vector<Vec3> edges, surface;
+  for (const BorderPoint& border : borders) {
+    if (border.turn() >= kSharpTurn) edges.push_back(border.position);
+  }
+  for (const FacePoint& point : samples.points) surface.push_back(point.position);
+  const spatial::KdTree edge_tree(edges), tree(surface);
+  const double spacing = std::sqrt(samples.area / static_cast<double>(vertices.positions.size()));
+  const double sigma = recipe.wear * spacing, height = 0.3 * recipe.wear * spacing;
+  std::array<Vec3, 3> waves;
+  for (Vec3& wave : waves) {
+    wave = random.uniform(5.0, 25.0) * Vec3(random.normal(), random.normal(), random.normal());
+  }
+  parallel_blocks(vertices.positions.size(), 256, [&](std::size_t begin, std::size_t end) {
+    std::vector<spatial::Neighbour> near;
+    for (std::size_t i = begin; i < end; ++i) {
+      Vec3& position = vertices.positions[i];
+      Vec3& normal = vertices.normals[i];
+      edge_tree.nearest(position, 1, near);
+      const bool sharp =
+          !near.empty() && std::sqrt(near.front().sq_distance) < recipe.band * spacing;
+      vertices.labels[i] = sharp ? kSharpEdge : kNonEdge;
+      tree.within(position, 2.5 * sigma, near);
+      double weights = 1e-6;
+      Vec3 mean = 1e-6 * position, mean_normal = 1e-6 * normal;
+      for (const spatial::Neighbour& neighbour : near) {
+        const FacePoint& point = samples.points[neighbour.index];
+        if (point.normal.dot(normal) < -0.3) continue;
+        const double weight = std::exp(-0.5 * neighbour.sq_distance / (sigma * sigma));
+        weights += weight;
+        mean += weight * point.position;
+        mean_normal += weight * point.normal;
+      }
+      position = mean / weights;
+      normal = mean_normal.normalized();
+      double wave = 0.0;
+      for (const Vec3& k : waves) wave += std::sin(k.dot(position)) / 3.0;
+      position += height * wave * normal;
+    }
+  });
+  for (Vec3& position : vertices.positions) {
+    for (int a = 0; a < 3; ++a) position[a] += recipe.scatter * spacing * random.normal();
+  }
+}
+
+Mat3 random_rotation(Random& random) {
+  const Vec3 x = Vec3(random.normal(), random.normal(), random.normal()).normalized();
+  const Vec3 y = x.cross(Vec3(random.normal(), random.normal(), random.normal())).normalized();
+  Mat3 rotation;
+  rotation << x, y, x.cross(y);
+  return rotation;
+}
+
+}  // namespace
+
+std::vector<CadRecipe> cad_recipes(std::uint64_t seed) {
+  constexpr int kPartsPerFamily = 7;
+  std::vector<CadRecipe> recipes;
+  for (int part = 0; part < kPartsPerFamily; ++part) {
+    for (int family = 0; family < kPartFamilies; ++family) {
+      CadRecipe recipe;
+      recipe.name = fmt::format("{}_{}", part_family_name(family), part);
+      recipe.family = family;
+      recipe.part = static_cast<std::uint64_t>(part);
+      Random random(seed, 9000 + recipes.size());
+      recipe.style.points = static_cast<std::size_t>(1500.0 * std::pow(12.0, random.uniform()));
+      recipe.style.plane_growth = random.uniform(0.0, 0.6);
+      recipe.style.plane_limit = random.uniform(1.0, 6.0);
+      recipe.style.curved_spacing = random.uniform(0.6, 1.4);
+      recipe.style.smooth_borders = random.index(3) != 0;
+      recipe.estimated = part % 2 == 1;
+      recipe.inward = random.index(2) == 1;
+      if (part == 5) recipe.mesh = false;
+      if (part == 6) recipe.noise = random.uniform(0.001, 0.006);
+      recipes.push_back(recipe);
+    }
+  }
+  return recipes;
+}
+
+std::vector<CadRecipe> worn_recipes(std::uint64_t seed) {
+  std::vector<CadRecipe> recipes = cad_recipes(seed + 1000);
+  for (std::size_t i = 0; i < recipes.size(); ++i) {
+    CadRecipe& recipe = recipes[i];
+    Random random(seed, 19000 + i);
+    recipe.name = "worn_" + recipe.name;
+    recipe.mesh = random.index(4) != 0;
+    recipe.style.points = static_cast<std::size_t>(4000.0 * std::pow(6.0, random.uniform()));
+    recipe.style.plane_limit = random.index(2) ? 1.0 : random.uniform(1.0, 3.0);
+    recipe.style.curved_spacing = 1.0;
+    recipe.style.smooth_borders = false;
+    recipe.noise = 0.0;
+    recipe.wear = random.uniform(0.2, 3.0);
+    recipe.band = 0.5 + random.uniform(0.2, 0.6) * recipe.wear;
+    recipe.scatter = random.index(2) ? 0.0 : random.uniform(0.0, 0.15);
+    recipe.estimated = random.index(3) == 0;
+  }
+  return recipes;
+}
+
+GeneratedCloud generate(const CadRecipe& recipe, std::uint64_t seed) {
+  Random shapes(seed, 100 * static_cast<std::uint64_t>(recipe.family) + recipe.part);
+  const Solid solid = random_part(recipe.family, shapes);
+  Random random(seed, 50000 + 100 * static_cast<std::uint64_t>(recipe.family) + recipe.part);
+  const SolidSamples samples =
+      sample_solid(solid, kSamplesPerPoint * recipe.style.points, random.next());
+  const std::vector<BorderPoint> borders = find_borders(solid, samples);
+  MeshVertices vertices = recipe.mesh
+                              ? mesh_vertices(samples, borders, solid, recipe.style, random.next())
+                              : drawn_points(samples, borders, recipe);
+  if (recipe.wear > 0.0) wear_off(vertices, samples, borders, recipe, random);
+  if (recipe.noise > 0.0) {
+    const double sigma = recipe.noise * bounding_box(vertices.positions).diagonal();
+    for (std::size_t i = 0; i < vertices.positions.size(); ++i) {
+      vertices.positions[i] += sigma * random.normal() * vertices.normals[i];
+    }
+  }
+  const Mat3 rotation = random_rotation(random);
+  PointCloud cloud;
+  for (std::size_t i = 0; i < vertices.positions.size(); ++i) {
+    cloud.positions.push_back((rotation * vertices.positions[i]).cast<float>().cast<double>());
+    cloud.normals.push_back(rotation * vertices.normals[i]);
+  }
+  if (recipe.estimated) {
+    cloud.normals = normals::estimate_oriented_normals(cloud.positions).normals;
+  }
+  if (recipe.inward) {
+    for (Vec3& normal : cloud.normals) normal = -normal;
+  }
+  cloud.labels = std::move(vertices.labels);
+  cloud.position_type = ScalarType::kFloat32;
+  cloud.comments = {
+      fmt::format("generated by pcednet: {}, seed {}", recipe.name, seed),
+      fmt::format("{}; noise {:.2g} of the diagonal along normals, which are {}{}",
+                  recipe.mesh ? "vertices as of a mesh" : "points drawn by area", recipe.noise,
+                  recipe.estimated ? "estimated" : "of the part", recipe.inward ? ", inward" : "")};
+  return {recipe.name, std::move(cloud)};
+}
+
+}  // namespace pcednet::data
