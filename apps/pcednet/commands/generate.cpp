@@ -9,6 +9,7 @@
 #include "pcednet/data/building.h"
 #include "pcednet/data/cad_set.h"
 #include "pcednet/data/default_set.h"
+#include "pcednet/data/scan_set.h"
 #include "pcednet/io/write_cloud.h"
 
 namespace pcednet::app {
@@ -143,6 +144,39 @@ void add_worn(CLI::App& generate, Common& common) {
   command->callback([=, &common] { run_cad(*arguments, common); });
 }
 
+void run_scan(const CadArguments& arguments, const Common& common) {
+  make_folder(arguments.folder);
+  const auto recipes = data::scan_recipes(arguments.seed);
+  const Progress progress = console_progress(common);
+  Stage stage(&progress, "generate", recipes.size());
+  say("cloud             points  sharp smooth    non");
+  std::size_t points = 0;
+  for (const data::ScanRecipe& recipe : recipes) {
+    const PointCloud cloud = data::generate(recipe, arguments.seed).cloud;
+    const auto path = std::filesystem::path(arguments.folder) / (recipe.name + ".ply");
+    io::write_cloud(path, cloud, {.overwrite = common.overwrite()});
+    say(fmt::format("{:<16} {:>7} {:>6.1f} {:>6.1f} {:>6.1f}  noise {:.2g}", recipe.name,
+                    cloud.size(), percent_of(cloud, kSharpEdge), percent_of(cloud, kSmoothEdge),
+                    percent_of(cloud, kNonEdge), recipe.scanner.range_noise));
+    points += cloud.size();
+    stage.advance();
+  }
+  say(fmt::format("{} clouds, {} points in {}", recipes.size(), points, arguments.folder));
+}
+
+void add_scan(CLI::App& generate, Common& common) {
+  auto arguments = std::make_shared<CadArguments>();
+  CLI::App* command = add_command(
+      generate, common, "scan",
+      "Labelled clouds for training: laser scans of facades, yards, rooms and monuments",
+      "pcednet generate scan scans/");
+  command->add_option("folder", arguments->folder, "Where the PLY files go; created if need be")
+      ->required();
+  command->add_option("--seed", arguments->seed, "Another seed gives other scenes")
+      ->capture_default_str();
+  command->callback([=, &common] { run_scan(*arguments, common); });
+}
+
 void add_sample(CLI::App& generate, Common& common) {
   auto file = std::make_shared<std::string>();
   auto seed = std::make_shared<std::uint64_t>(1);
@@ -167,6 +201,7 @@ void add_generate(CLI::App& app, Common& common) {
   add_default(*generate, common);
   add_cad(*generate, common);
   add_worn(*generate, common);
+  add_scan(*generate, common);
   add_sample(*generate, common);
 }
 

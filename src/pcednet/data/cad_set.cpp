@@ -52,7 +52,7 @@ void wear_off(MeshVertices& vertices, const SolidSamples& samples,
   for (const FacePoint& point : samples.points) surface.push_back(point.position);
   const spatial::KdTree edge_tree(edges), tree(surface);
   const double spacing = std::sqrt(samples.area / static_cast<double>(vertices.positions.size()));
-  const double sigma = recipe.wear * spacing, height = 0.3 * recipe.wear * spacing;
+  const double sigma = recipe.wear * spacing, height = random.uniform(0.0, 0.5) * spacing;
   std::array<Vec3, 3> waves;
   for (Vec3& wave : waves) {
     wave = random.uniform(5.0, 25.0) * Vec3(random.normal(), random.normal(), random.normal());
@@ -131,13 +131,13 @@ std::vector<CadRecipe> worn_recipes(std::uint64_t seed) {
     Random random(seed, 19000 + i);
     recipe.name = "worn_" + recipe.name;
     recipe.mesh = random.index(4) != 0;
-    recipe.style.points = static_cast<std::size_t>(4000.0 * std::pow(6.0, random.uniform()));
+    recipe.style.points = static_cast<std::size_t>(3000.0 * std::pow(4.0, random.uniform()));
     recipe.style.plane_limit = random.index(2) ? 1.0 : random.uniform(1.0, 3.0);
     recipe.style.curved_spacing = 1.0;
     recipe.style.smooth_borders = false;
     recipe.noise = 0.0;
-    recipe.wear = random.uniform(0.2, 3.0);
-    recipe.band = 0.5 + random.uniform(0.2, 0.6) * recipe.wear;
+    recipe.wear = std::max(0.05, random.uniform(-0.5, 3.0));
+    recipe.band = 0.5 + 0.4 * recipe.wear;
     recipe.scatter = random.index(2) ? 0.0 : random.uniform(0.0, 0.15);
     recipe.estimated = random.index(3) == 0;
   }

@@ -42,9 +42,11 @@ Solid::Value value_of(const Volume& volume, const Vec3& local) {
   return {cap, {0, 0, top ? Face::Part::kTop : Face::Part::kBottom}};
 }
 
-void grow(BoundingBox& box, const Volume& volume) {
+/// The box of a volume where its frame puts it.
+BoundingBox box_of(const Volume& volume) {
   const Vec2 low = volume.profile.low(), high = volume.profile.high();
   const bool turned = volume.kind == Volume::Kind::kRevolution;
+  BoundingBox box;
   for (int corner = 0; corner < 8; ++corner) {
     const bool x = corner & 1, y = corner & 2, z = corner & 4;
     const Vec3 local =
@@ -54,6 +56,7 @@ void grow(BoundingBox& box, const Volume& volume) {
     const Vec3 position = volume.frame * local;
     box.min = box.min.cwiseMin(position), box.max = box.max.cwiseMax(position);
   }
+  return box;
 }
 
 }  // namespace
@@ -61,20 +64,21 @@ void grow(BoundingBox& box, const Volume& volume) {
 Solid::Value Solid::value(const Vec3& p) const {
   Value result = {std::numeric_limits<double>::infinity(), {}};
   for (std::size_t i = 0; i < volumes_.size(); ++i) {
-    const auto& [volume, to_local, filled] = volumes_[i];
-    Value value = value_of(volume, to_local * p);
+    const Feature& feature = volumes_[i];
+    const double away = (p - feature.centre).norm() - feature.reach;  // at most
+    if (feature.filled ? away >= result.distance : -away <= result.distance) continue;
+    Value value = value_of(feature.volume, feature.to_local * p);
     value.face.volume = static_cast<std::uint32_t>(i);
-    if (filled) {
-      if (value.distance < result.distance) result = value;
-    } else if (-value.distance > result.distance) {
-      result = {-value.distance, value.face};
+    if (!feature.filled) value.distance = -value.distance;
+    if (feature.filled ? value.distance < result.distance : value.distance > result.distance) {
+      result = value;
     }
   }
   return result;
 }
 
 double Solid::distance_to(const Face& face, const Vec3& p) const {
-  const auto& [volume, to_local, filled] = volumes_[face.volume];
+  const auto& [volume, to_local, centre, reach, filled] = volumes_[face.volume];
   const Vec3 local = to_local * p;
   const double cap = (face.part == Face::Part::kTop || face.part == Face::Part::kTopRim)
                          ? local.z() - volume.half_height
@@ -108,9 +112,12 @@ bool Solid::is_curved(const Face& face) const {
 }
 
 void Solid::put(Volume volume, bool filled) {
-  if (filled) grow(box_, volume);
+  const BoundingBox box = box_of(volume);
+  if (filled) {
+    box_.min = box_.min.cwiseMin(box.min), box_.max = box_.max.cwiseMax(box.max);
+  }
   const Eigen::Isometry3d to_local = volume.frame.inverse();
-  volumes_.push_back({std::move(volume), to_local, filled});
+  volumes_.push_back({std::move(volume), to_local, box.centre(), 0.5 * box.diagonal(), filled});
 }
 
 }  // namespace pcednet::data

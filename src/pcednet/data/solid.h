@@ -60,6 +60,8 @@ class Solid {
   struct Feature {
     Volume volume;
     Eigen::Isometry3d to_local;
+    Vec3 centre;   ///< of a ball that holds the volume
+    double reach;  ///< its radius
     bool filled;
   };
 

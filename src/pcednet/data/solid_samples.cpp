@@ -137,23 +137,25 @@ std::optional<BorderPoint> border_between(const Solid& solid, FacePoint a, FaceP
 
 }  // namespace
 
-std::vector<BorderPoint> find_borders(const Solid& solid, const SolidSamples& samples) {
-  std::vector<Vec3> positions;
-  for (const FacePoint& point : samples.points) positions.push_back(point.position);
-  const spatial::KdTree tree(positions);
-  const double reach = 1.5 * samples.spacing();
-  std::vector<std::optional<BorderPoint>> found(positions.size());
-  parallel_blocks(positions.size(), 256, [&](std::size_t begin, std::size_t end) {
+namespace {
+
+/// A border point per sample that has a neighbour on another face; `find` gives the neighbours,
+/// nearest first.
+template <typename Find>
+std::vector<BorderPoint> borders_by(const Solid& solid, std::span<const FacePoint> samples,
+                                    const Find& find) {
+  std::vector<std::optional<BorderPoint>> found(samples.size());
+  parallel_blocks(samples.size(), 256, [&](std::size_t begin, std::size_t end) {
     std::vector<spatial::Neighbour> near;
     for (std::size_t i = begin; i < end; ++i) {
-      const FacePoint& point = samples.points[i];
-      tree.within(point.position, reach, near);
+      const FacePoint& point = samples[i];
+      find(point.position, near);
       const auto other = std::find_if(near.begin(), near.end(), [&](const auto& neighbour) {
-        const FacePoint& there = samples.points[neighbour.index];
+        const FacePoint& there = samples[neighbour.index];
         return there.face != point.face && there.normal.dot(point.normal) > -0.9;
       });
       if (other == near.end()) continue;
-      found[i] = border_between(solid, point, samples.points[other->index]);
+      found[i] = border_between(solid, point, samples[other->index]);
     }
   });
   std::vector<BorderPoint> borders;
@@ -161,6 +163,35 @@ std::vector<BorderPoint> find_borders(const Solid& solid, const SolidSamples& sa
     if (border) borders.push_back(*border);
   }
   return borders;
+}
+
+std::vector<Vec3> positions_of(std::span<const FacePoint> points) {
+  std::vector<Vec3> positions;
+  for (const FacePoint& point : points) positions.push_back(point.position);
+  return positions;
+}
+
+}  // namespace
+
+std::vector<BorderPoint> find_borders(const Solid& solid, const SolidSamples& samples) {
+  const spatial::KdTree tree(positions_of(samples.points));
+  const double reach = 1.5 * samples.spacing();
+  return borders_by(solid, samples.points,
+                    [&](const Vec3& position, auto& near) { tree.within(position, reach, near); });
+}
+
+std::vector<BorderPoint> borders_among(const Solid& solid, std::span<const Vec3> positions) {
+  std::vector<std::optional<FacePoint>> moved(positions.size());
+  parallel_blocks(positions.size(), 256, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) moved[i] = onto_surface(solid, positions[i]);
+  });
+  std::vector<FacePoint> points;
+  for (const auto& point : moved) {
+    if (point) points.push_back(*point);
+  }
+  const spatial::KdTree tree(positions_of(points));
+  return borders_by(solid, points,
+                    [&](const Vec3& position, auto& near) { tree.nearest(position, 13, near); });
 }
 
 }  // namespace pcednet::data

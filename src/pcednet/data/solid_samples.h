@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "pcednet/core/progress.h"
@@ -40,5 +41,9 @@ struct BorderPoint {
 
 /// Points of the borders between faces, exact to 1e-9, as many as there are samples near borders.
 std::vector<BorderPoint> find_borders(const Solid& solid, const SolidSamples& samples);
+
+/// The same from points near the boundary, which are first moved onto it; between each and the
+/// nearest of its 12 neighbours that lies on another face.
+std::vector<BorderPoint> borders_among(const Solid& solid, std::span<const Vec3> positions);
 
 }  // namespace pcednet::data
