@@ -3,6 +3,7 @@
 import { seriesColour } from "../shared/colours";
 import { h, svg } from "../shared/dom";
 import { densityOf, filledAbove } from "./density";
+import { gallery } from "./look";
 import {
   METRIC_NAMES, cloudsOf, formatScore, positiveName, titleOf, type CloudRow, type Group, type Metric,
 } from "./study";
@@ -71,7 +72,12 @@ export function scatterPanels(groups: Group[], mixed: boolean): HTMLElement {
         ...frame(),
         svg("g", { "clip-path": `url(#${clip})` }, density(clouds, colour)),
         ...clouds.map((cloud) =>
-          svg("circle", { cx: xOf(cloud.precision), cy: yOf(cloud.recall), r: 3, fill: colour, class: "dot" },
+          svg("circle", {
+            cx: xOf(cloud.precision), cy: yOf(cloud.recall), r: 3.2, fill: colour,
+            class: gallery.has(group.set, cloud.name) ? "dot look" : "dot",
+            onclick: () => gallery.has(group.set, cloud.name) &&
+              gallery.show(group.set, cloud.name, group.study, group.variant.id),
+          },
             svg("title", {}, `${cloud.name}: precision ${formatScore(cloud.precision)}, ` +
               `recall ${formatScore(cloud.recall)}, MCC ${formatScore(cloud.mcc)}`)))));
   }));
@@ -115,7 +121,7 @@ export function histograms(groups: Group[], metric: Metric, mixed: boolean): HTM
     svg("svg", { viewBox: `0 0 ${WIDTH} ${height}`, role: "img", "aria-label": `${METRIC_NAMES[metric]} over the clouds` },
       ...ticks.flatMap((t) => [
         svg("line", { x1: x(t), x2: x(t), y1: 4, y2: height - 22, class: "rule" }),
-        svg("text", { x: x(t), y: height - 8, "text-anchor": "middle", class: "tick" }, t.toFixed(1).replace(/^(-?)0\./, "$1.")),
+        svg("text", { x: x(t), y: height - 8, "text-anchor": "middle", class: "tick" }, String(Number(t.toFixed(1))).replace("0.", ".")),
       ]),
       ...lines));
 }

@@ -6,7 +6,7 @@ import { learningCurves } from "./curves";
 import { histograms, scatterPanels } from "./distributions";
 import { overviewTable, setTable } from "./scores_table";
 import {
-  METRICS, METRIC_NAMES, groupsOf, positiveName, type Group, type Metric, type Statistic, type Study,
+  METRICS, METRIC_NAMES, groupsOf, positiveName, sourcesOf, type Group, type Metric, type Statistic, type Study,
 } from "./study";
 import { sweep } from "./sweep";
 
@@ -49,27 +49,31 @@ function onSet(study: Study, groups: Group[], set: string, statistic: Statistic)
     own.some((g) => g.results.some((r) => r[statistic]))
       ? part("Scores", `${size} clouds; ${statistic === "median" ? "the median over them of each score" :
           "the scores of their summed counts"}.${counts} The best of each column is marked. Open a row to ` +
-          `see its clouds.${seedsNote(own)}`, setTable(study, groups, set, statistic)) : null,
+          `see its clouds.${seedsNote(own)}${sourcesOf(study)}`, setTable(study, groups, set, statistic)) : null,
     scored.length > 0 && !sweeps
       ? part("Precision and recall", "Precision to the right, recall upwards, a dot for each cloud, their " +
           "density behind, curves of equal F1.", scatterPanels(scored, mixed)) : null,
-    scored.length > 0 && !sweeps
-      ? part("MCC over the clouds", "How many clouds got which score; the stroke is the median.",
-          histograms(scored, "mcc", mixed)) : null,
-    !sweeps && seconds
-      ? part("Seconds", "For all clouds of the set together, on a logarithmic scale.", seconds, joules,
-          h("details", {}, h("summary", {}, "The numbers"), costTable(`${study.title}: costs on ${set}`, own))) : null,
+    !sweeps && (scored.length > 0 || seconds)
+      ? h("div", { class: "pair" },
+          scored.length > 0 && part("MCC over the clouds", "How many clouds got which score; the stroke is " +
+            "the median.", histograms(scored, "mcc", mixed)),
+          seconds && part("Seconds", "All clouds of the set together; logarithmic.", seconds),
+          joules && part("Joules", "All clouds of the set together; logarithmic.", joules)) : null,
+    seconds || joules
+      ? h("details", {}, h("summary", {}, "Seconds and joules in numbers"),
+          costTable(`${study.title}: costs on ${set}`, own)) : null,
   ];
 }
 
-export function experimentSection(study: Study, id: string): HTMLElement {
-  const groups = groupsOf(study);
+export function experimentSection(study: Study, number: number): HTMLElement {
+  const id = `experiment-${number}`;
+  const groups = groupsOf(study, number);
   const sets = study.sets.map((s) => s.name).filter((name) => groups.some((g) => g.set === name));
   const scored = groups.some((g) => g.results.some((r) => r.median || r.pooled));
   let statistic: Statistic = "median";
   let metric: Metric = "mcc";
   let set = sets[0];
-  const overview = h("div");
+  const overview = h("div", { class: "overview" });
   const detail = h("div");
   const curve = typeof study.x_label === "string" && groups.some((g) => typeof g.variant.x === "number")
     ? sweep(study, groups, () => statistic) : null;

@@ -4,6 +4,7 @@ import { CLASS_PALETTES, ERROR_PALETTE, type Meaning } from "../shared/colours";
 import { bytesOf, classesOf, positionsOf } from "../shared/decode";
 import { dropdown, h, segmented } from "../shared/dom";
 import { PointViewer, type Place } from "../shared/viewer";
+import { gallery as door } from "./look";
 import {
   formatCount, formatScore, positiveName, titleOf, type PackedScene, type Report, type Result, type Study,
 } from "./study";
@@ -79,6 +80,17 @@ class Gallery {
         "turn all of them; the wheel zooms once a cloud has been clicked."),
       this.bar, this.chips, this.stage, this.key, this.note);
     this.open(this.scene, true);
+    const find = (set: string, cloud: string): PackedScene | undefined =>
+      report.scenes.find((s) => s.set === set && s.cloud === cloud);
+    door.has = (set, cloud) => find(set, cloud) !== undefined;
+    door.show = (set, cloud, study, variant) => {
+      this.study = study;
+      const title = report.studies[study].variants.find((v) => v.id === variant);
+      if (title) this.chosen.add(titleOf(title));
+      this.open(find(set, cloud)!, false);
+      this.element.scrollIntoView();
+      this.canvas.focus({ preventScroll: true });
+    };
     new ResizeObserver(() => this.layOut()).observe(this.stage);
   }
 
@@ -88,7 +100,7 @@ class Gallery {
     this.exhibit = exhibitOf(scene, this.report.studies, this.study);
     const titles = this.exhibit.predictions.map((p) => p.title);
     const kept = titles.filter((title) => this.chosen.has(title));
-    this.chosen = new Set(kept.length > 0 && !afresh ? kept : titles.slice(0, 2));
+    this.chosen = new Set(kept.length > 0 && !afresh ? kept : titles.slice(0, matchMedia("(max-width: 640px)").matches ? 3 : 2));
     this.viewer.setCloud({
       positions: positionsOf(scene.positions), normals: bytesOf(scene.normals), view: scene.view,
     });
@@ -172,7 +184,7 @@ class Gallery {
     const rows = Math.ceil(count / most);
     const columns = Math.ceil(count / rows);
     const across = (width - GAP * (columns - 1)) / columns;
-    const down = Math.round(Math.min(Math.max(across * 0.9, 150), count === 1 ? 520 : 440));
+    const down = Math.round(Math.min(Math.max(across, 150), 480));
     const places: Place[] = Array.from({ length: count }, (_, i) => ({
       x: (i % columns) * (across + GAP), y: Math.floor(i / columns) * (down + GAP), width: across, height: down,
     }));

@@ -95,7 +95,7 @@ function options(plot: LinePlot, width: number): uPlot.Options {
         label: line.name, stroke: line.colour, width: line.faint ? 1 : 2,
         dash: line.dashed ? [5, 4] : undefined, spanGaps: true,
         points: { show: plot.points ?? false, size: 6, fill: line.colour },
-        value: (_, v) => (v === null || v === undefined ? "–" : Number(v.toPrecision(3)).toString()),
+        value: (_, v) => (v === null || v === undefined ? "" : Number(v.toPrecision(3)).toString()),
       })),
     ],
     cursor: { drag: { x: false, y: false } },

@@ -19,7 +19,7 @@ function masthead(report: Report): HTMLElement {
 function show(report: Report): void {
   const page = document.getElementById("page")!;
   const clouds = gallery(report);
-  const sections = report.studies.map((study, i) => experimentSection(study, `experiment-${i}`));
+  const sections = report.studies.map((study, i) => experimentSection(study, i));
   const link = (section: HTMLElement, name: string): HTMLElement =>
     h("li", {}, h("a", { href: `#${section.id}` }, name));
   page.replaceChildren(

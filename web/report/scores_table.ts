@@ -5,6 +5,7 @@ import {
   METRICS, METRIC_NAMES, cloudsOf, expectedOf, formatCount, formatScore, positiveName, scoreOf,
   titleOf, type Group, type Metric, type Scores, type Spread, type Statistic, type Study,
 } from "./study";
+import { gallery } from "./look";
 import { swatch } from "./marks";
 
 interface Column<Row> {
@@ -50,11 +51,15 @@ function sortableTable<Row>(
 const scroller = (table: HTMLTableElement): HTMLElement =>
   h("div", { class: "scroller", tabindex: 0, role: "region", "aria-label": table.caption?.textContent ?? "" }, table);
 
-function scoreCell(spread: Spread | null, best: boolean): HTMLTableCellElement {
-  if (!spread) return h("td", { class: "number none" }, "–");
+/** Whether any group has several seeds: then every cell keeps room for a deviation. */
+const haveSpread = (groups: Group[]): boolean => groups.some((g) => g.results.length > 1);
+
+function scoreCell(spread: Spread | null, best: boolean, room: boolean): HTMLTableCellElement {
+  const deviation = spread && spread.deviation !== null ? `±${formatScore(spread.deviation)}` : "";
+  const after = room && h("span", { class: "deviation" }, deviation);
+  if (!spread) return h("td", { class: "number none" }, "–", after);
   return h("td", { class: best ? "number best" : "number", "data-value": spread.mean },
-    h("span", { class: "value" }, formatScore(spread.mean)),
-    spread.deviation !== null && h("span", { class: "deviation" }, `±${formatScore(spread.deviation)}`));
+    h("span", { class: "value" }, formatScore(spread.mean)), after);
 }
 
 /** The largest mean among groups that are comparable: of the same positive class. */
@@ -66,22 +71,29 @@ function isBest(groups: Group[], group: Group, statistic: Statistic, metric: Met
   return Number(shown(group)) === largest;
 }
 
-function cloudLines(group: Group, extra: number, owner: string): HTMLTableRowElement[] {
+const plainCell = (text: string, room: boolean): HTMLTableCellElement =>
+  h("td", { class: "number" }, text, room && h("span", { class: "deviation" }));
+
+function cloudLines(group: Group, extra: number, room: boolean): HTMLTableRowElement[] {
   return cloudsOf(group).map((cloud) =>
-    h("tr", { class: "cloud", hidden: true, "data-of": owner },
-      h("th", { scope: "row" }, cloud.name),
+    h("tr", { class: "cloud", hidden: true },
+      h("th", { scope: "row" }, !gallery.has(group.set, cloud.name) ? cloud.name
+        : h("button", {
+          type: "button", class: "look", title: "look at it",
+          onclick: () => gallery.show(group.set, cloud.name, group.study, group.variant.id),
+        }, cloud.name)),
       ...Array.from({ length: extra }, (_, i) =>
         h("td", { class: "number" }, i === extra - 1 ? `${formatCount(cloud.points)} pts` : "")),
-      ...METRICS.map((m) => h("td", { class: "number" }, formatScore(cloud[m])))));
+      ...METRICS.map((m) => plainCell(formatScore(cloud[m]), room))));
 }
 
-function publishedLine(scores: Partial<Scores>, source: string | undefined, extra: number): HTMLTableRowElement {
+function publishedLine(scores: Partial<Scores>, source: string | undefined, extra: number, room: boolean): HTMLTableRowElement {
   return h("tr", { class: "published", title: source },
     h("th", { scope: "row" }, "published"),
     ...Array.from({ length: extra }, () => h("td")),
     ...METRICS.map((m) => {
       const value = scores[m];
-      return h("td", { class: "number" }, value === undefined ? "" : formatScore(value));
+      return plainCell(value === undefined ? "" : formatScore(value), room);
     }));
 }
 
@@ -90,14 +102,15 @@ export function setTable(study: Study, groups: Group[], set: string, statistic: 
   const rows = groups.filter((g) => g.set === set && g.results.some((r) => r[statistic]));
   const mixed = new Set(rows.map((g) => g.positive)).size > 1;
   const counted = rows.some((g) => typeof g.variant.parameters === "number");
+  const room = haveSpread(rows);
   const extra = Number(mixed) + Number(counted);
   const after = new Map<Group, HTMLTableRowElement[]>();
-  rows.forEach((group, i) => {
+  rows.forEach((group) => {
     const published = expectedOf(study, group);
     const scores = published?.published[statistic];
     after.set(group, [
-      ...(scores ? [publishedLine(scores, published.source, extra)] : []),
-      ...cloudLines(group, extra, String(i)),
+      ...(scores ? [publishedLine(scores, published.source, extra, room)] : []),
+      ...cloudLines(group, extra, room),
     ]);
   });
   const columns: Column<Group>[] = [{
@@ -112,7 +125,7 @@ export function setTable(study: Study, groups: Group[], set: string, statistic: 
           toggle.setAttribute("aria-expanded", String(open));
           for (const row of clouds) row.hidden = !open;
         },
-      }, swatch(g.index), titleOf(g.variant));
+      }, h("span", { class: "named" }, swatch(g.index), titleOf(g.variant)));
       return h("th", { scope: "row" }, toggle);
     },
   }];
@@ -133,7 +146,7 @@ export function setTable(study: Study, groups: Group[], set: string, statistic: 
     columns.push({
       name: METRIC_NAMES[metric], descending: true,
       key: (g) => scoreOf(g, statistic, metric)?.mean ?? null,
-      cell: (g) => scoreCell(scoreOf(g, statistic, metric), isBest(rows, g, statistic, metric)),
+      cell: (g) => scoreCell(scoreOf(g, statistic, metric), isBest(rows, g, statistic, metric), room),
     });
   }
   return scroller(sortableTable(`${study.title}: ${set}, ${statistic}`, columns, rows, (g) => after.get(g)!));
@@ -153,9 +166,10 @@ export function overviewTable(study: Study, groups: Group[], statistic: Statisti
       rows.push({ group: members[0], label, bySet: new Map(members.map((g) => [g.set, g])) });
     }
   }
+  const room = haveSpread(groups);
   const columns: Column<Row>[] = [{
     name: "Method", key: (row) => row.label,
-    cell: (row) => h("th", { scope: "row" }, swatch(row.group.index), row.label),
+    cell: (row) => h("th", { scope: "row" }, h("span", { class: "named" }, swatch(row.group.index), row.label)),
   }];
   for (const set of study.sets) {
     if (!groups.some((g) => g.set === set.name)) continue;
@@ -168,11 +182,13 @@ export function overviewTable(study: Study, groups: Group[], statistic: Statisti
       },
       cell: (row) => {
         const group = row.bySet.get(set.name);
-        if (!group) return scoreCell(null, false);
-        const cell = scoreCell(scoreOf(group, statistic, metric), isBest(groups, group, statistic, metric));
+        if (!group) return scoreCell(null, false, room);
+        const best = isBest(groups, group, statistic, metric);
+        const cell = scoreCell(scoreOf(group, statistic, metric), best, room);
         const published = expectedOf(study, group)?.published[statistic]?.[metric];
         if (published !== undefined) {
-          cell.append(h("span", { class: "beside", title: "published" }, `(${formatScore(published)})`));
+          const source = `published: ${expectedOf(study, group)?.source ?? ""}`;
+          cell.prepend(h("span", { class: "beside", title: source }, `(${formatScore(published)})`));
         }
         return cell;
       },

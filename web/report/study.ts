@@ -101,6 +101,8 @@ export function spreadOf(values: (number | null | undefined)[]): Spread | null {
 
 /** The results of one variant on one set with one positive class: one for each seed. */
 export interface Group {
+  /** Its place in the report. */
+  study: number;
   variant: Variant;
   index: number;
   set: string;
@@ -113,7 +115,7 @@ export const positiveName = (positive: string): string =>
 
 export const titleOf = (variant: Variant): string => variant.title ?? variant.id;
 
-export function groupsOf(study: Study): Group[] {
+export function groupsOf(study: Study, number: number): Group[] {
   const groups = new Map<string, Group>();
   for (const result of study.results) {
     const index = study.variants.findIndex((v) => v.id === result.variant);
@@ -121,7 +123,7 @@ export function groupsOf(study: Study): Group[] {
       result.positive ?? study.sets.find((s) => s.name === result.set)?.positive ?? "sharp";
     const key = JSON.stringify([index, result.set, positive]);
     const group = groups.get(key) ??
-      { variant: study.variants[index], index, set: result.set, positive, results: [] };
+      { study: number, variant: study.variants[index], index, set: result.set, positive, results: [] };
     group.results.push(result);
     groups.set(key, group);
   }
@@ -146,6 +148,12 @@ export function cloudsOf(group: Group): CloudRow[] {
     for (const metric of METRICS) row[metric] = spreadOf(seeds.map((s) => s[metric]))!.mean;
     return row;
   });
+}
+
+/** Where the published figures of a study come from, in words; empty if it has none. */
+export function sourcesOf(study: Study): string {
+  const sources = [...new Set((study.expected ?? []).map((e) => e.source).filter(Boolean))];
+  return sources.length > 0 ? ` Published: ${sources.join("; ")}.` : "";
 }
 
 export const expectedOf = (study: Study, group: Group): Expected | undefined =>

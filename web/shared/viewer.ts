@@ -113,7 +113,7 @@ export class PointViewer {
     // Points that tile the faces of the box: near enough for surfaces.
     const area = 2 * (extent.x * extent.y + extent.y * extent.z + extent.z * extent.x);
     this.spacing = Math.sqrt(Math.max(area, 1e-3) / count);
-    const distance = (0.54 * Math.max(extent.length(), 0.1)) / Math.tan((FIELD_OF_VIEW * Math.PI) / 360);
+    const distance = (0.5 * Math.max(extent.length(), 0.1)) / Math.tan((FIELD_OF_VIEW * Math.PI) / 360);
     this.home = new Vector3(...cloud.view).normalize().multiplyScalar(-distance).add(this.centre);
     this.shared = {
       position: new BufferAttribute(cloud.positions, 3, true),

@@ -1,0 +1,254 @@
+// `pcednet report` from a study's folder to the page in a browser (headless Chromium, WebGL in software).
+// Environment: PCEDNET the program, PCEDNET_SOURCE_DIR the repository, CHROMIUM the browser.
+import assert from "node:assert/strict";
+import { spawnSync } from "node:child_process";
+import fs from "node:fs";
+import { createRequire } from "node:module";
+import os from "node:os";
+import path from "node:path";
+import { after, before, test } from "node:test";
+import { pathToFileURL } from "node:url";
+
+import { writeStudy } from "./fixture.mjs";
+
+const require = createRequire(path.join(process.env.PCEDNET_SOURCE_DIR, "web/package.json"));
+const { chromium } = require("playwright-core");
+
+const KEYS = ["precision", "recall", "mcc", "f1", "accuracy", "iou"];
+const folder = fs.mkdtempSync(path.join(os.tmpdir(), "pcednet-report-"));
+const report = path.join(folder, "report.html");
+const complaints = [];
+let browser, page, methods, scales;
+
+function pcednet(...words) {
+  const done = spawnSync(process.env.PCEDNET, ["report", ...words], { encoding: "utf8" });
+  return { code: done.status, words: done.stderr };
+}
+
+async function open(options) {
+  const opened = await browser.newPage({ viewport: { width: 1280, height: 800 }, ...options });
+  opened.setDefaultTimeout(120_000); // for busy machines
+  opened.on("console", (m) => ["error", "warning"].includes(m.type()) && !/GPU stall|GL Driver Message/.test(m.text()) &&
+    complaints.push(m.text()));
+  opened.on("pageerror", (e) => complaints.push(e.message));
+  opened.on("request", (r) => r.url() !== pathToFileURL(report).href && !r.url().startsWith("data:") &&
+    complaints.push(`asks for ${r.url()}`));
+  await opened.goto(pathToFileURL(report).href);
+  await opened.waitForSelector(".experiment canvas");
+  await frames(opened);
+  return opened;
+}
+
+/** Sets a switch, as a keyboard or a screen reader would find it. */
+const choose = (where, name) => page.locator(where).getByRole("radio", { name, exact: true }).check();
+
+const frames = (of) => of.evaluate(() => new Promise((done) =>
+  requestAnimationFrame(() => requestAnimationFrame(() => requestAnimationFrame(done)))));
+
+/** What the panel with that number shows: the shares of its pixels of some colours, and all of it. */
+async function seen(of, panel) {
+  await frames(of);
+  const png = await of.locator(".label").nth(panel).screenshot();
+  return of.evaluate(async (base64) => {
+    const image = new Image();
+    image.src = `data:image/png;base64,${base64}`;
+    await image.decode();
+    const context = new OffscreenCanvas(image.width, image.height).getContext("2d");
+    context.drawImage(image, 0, 0);
+    const { data } = context.getImageData(0, 0, image.width, image.height);
+    const shares = { red: 0, yellow: 0, pale: 0, blue: 0, picture: 0 };
+    for (let i = 0; i < data.length; i += 4) {
+      const [r, g, b] = [data[i], data[i + 1], data[i + 2]];
+      const each = 4 / data.length;
+      if (r > 90 && g < 40 && b < 40) shares.red += each;
+      if (r > 150 && g > 110 && b < 130 && r - b > 80) shares.yellow += each;
+      if (Math.min(r, g, b) > 130 && Math.max(r, g, b) - Math.min(r, g, b) < 6) shares.pale += each;
+      if (b > 120 && b - r > 70) shares.blue += each;
+      shares.picture = (Math.imul(shares.picture, 31) + ((r << 16) | (g << 8) | b)) | 0;
+    }
+    return shares;
+  }, png.toString("base64"));
+}
+
+const format = (v) => v.toFixed(3).replace(/^(-?)0\./, "$1.");
+const mean = (values) => values.reduce((a, b) => a + b, 0) / values.length;
+const resultsOf = (study, variant, set) => study.results.filter((r) => r.variant === variant && r.set === set);
+
+/** Name -> texts of its number cells, of the table at `selector`. */
+const rowsOf = (of, selector) => of.locator(selector).first().evaluate((table) =>
+  [...table.querySelectorAll("tbody tr:not(.cloud):not(.published)")].map((row) => [
+    row.querySelector("th").textContent,
+    [...row.querySelectorAll("td.number:not(.quiet)")].map((cell) => cell.querySelector(".value")?.textContent ?? "none"),
+  ]));
+
+before(async () => {
+  ({ methods, scales } = writeStudy(folder));
+  const made = pcednet(folder, "-o", report, "--clouds-per-set", "2", "--points", "950");
+  assert.equal(made.code, 0, made.words);
+  browser = await chromium.launch({
+    executablePath: process.env.CHROMIUM,
+    args: ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
+  });
+  page = await open();
+});
+
+after(async () => {
+  await browser?.close();
+  fs.rmSync(folder, { recursive: true, force: true });
+});
+
+test("says what is wrong with a folder", () => {
+  const other = fs.mkdtempSync(path.join(folder, "other-"));
+  const to = path.join(other, "page.html");
+  assert.equal(pcednet(path.join(other, "none"), "-o", to).code, 3);
+  assert.equal(pcednet(other, "-o", to).code, 4);
+  fs.writeFileSync(path.join(other, "methods.json"), "{");
+  const broken = pcednet(other, "-o", to);
+  assert.equal(broken.code, 3);
+  assert.match(broken.words, /methods\.json/);
+  assert.ok(!fs.existsSync(to));
+  const again = pcednet(folder, "-o", report);
+  assert.equal(again.code, 2);
+  assert.match(again.words, /--overwrite/);
+});
+
+test("shows every score of a set, of both statistics, as the study has them", async () => {
+  const section = "#experiment-0";
+  for (const statistic of ["median", "pooled"]) {
+    await choose(section, statistic);
+    for (const set of ["default", "cad"]) {
+      await choose(section, set);
+      const rows = await rowsOf(page, `${section} .part table`);
+      assert.deepEqual(rows, methods.variants.map(({ id, title }) => [
+        title, KEYS.map((k) => format(mean(resultsOf(methods, id, set).map((r) => r[statistic][k])))),
+      ]));
+    }
+  }
+  await choose(section, "median");
+  await choose(section, "default");
+});
+
+test("shows one score on all sets, with published figures beside", async () => {
+  const rows = await rowsOf(page, "#experiment-0 .overview table");
+  assert.deepEqual(rows, methods.variants.map(({ id, title }) => [
+    title, ["default", "cad"].map((set) => format(mean(resultsOf(methods, id, set).map((r) => r.median.mcc)))),
+  ]));
+  assert.equal(await page.locator("#experiment-0 .overview .beside").textContent(), "(.856)");
+  assert.match(await page.locator("#experiment-0 tr.published").first().textContent(), /published\.856/);
+});
+
+test("gives the deviation over the seeds", async () => {
+  const values = resultsOf(methods, "pcednet", "default").map((r) => r.median.mcc);
+  const deviation = Math.sqrt(values.reduce((s, v) => s + (v - mean(values)) ** 2, 0) / 2);
+  const cell = page.locator("#experiment-0 .overview tbody tr").nth(1).locator("td").first();
+  assert.equal(await cell.locator(".deviation").textContent(), `±${format(deviation)}`);
+});
+
+test("marks the best and sorts by any column", async () => {
+  const table = page.locator("#experiment-0 .part table").first();
+  const best = await table.locator("td.best").first().locator("xpath=..").locator("th").textContent();
+  assert.equal(best, "PCEDNet");
+  const names = () => table.locator("tbody tr:not(.cloud):not(.published) th").allTextContents();
+  await table.getByRole("button", { name: "MCC" }).click();
+  assert.deepEqual(await names(), ["PCEDNet", "CNN", "Covariance analysis"]);
+  await table.getByRole("button", { name: "MCC" }).click();
+  assert.deepEqual(await names(), ["Covariance analysis", "CNN", "PCEDNet"]);
+  await table.getByRole("button", { name: "Method" }).click();
+  assert.deepEqual(await names(), ["CNN", "Covariance analysis", "PCEDNet"]);
+});
+
+test("opens a method into its clouds, and a cloud into its picture", async () => {
+  const table = page.locator("#experiment-0 .part table").first();
+  assert.equal(await table.locator("tr.cloud:visible").count(), 0);
+  await table.getByRole("button", { name: "Covariance analysis" }).press("Enter");
+  const shown = table.locator("tr.cloud:visible");
+  assert.equal(await shown.count(), 3);
+  const [{ clouds }] = resultsOf(methods, "ca", "default");
+  for (const [i, cloud] of clouds.entries()) {
+    const text = await shown.nth(i).locator("td").allTextContents();
+    assert.deepEqual(text.slice(-6), KEYS.map((k) => format(cloud[k])));
+  }
+  assert.equal(await shown.locator("button").count(), 2, "two of the three clouds are in the page");
+  await shown.nth(1).locator("button").click();
+  assert.match(await page.locator(".gallery .note").textContent(), /^cube1\.ply: 950 of its 1.000 points/);
+});
+
+test("draws charts for each method and the sweep", async () => {
+  assert.equal(await page.locator("#experiment-0 .panels figure").count(), 3);
+  assert.equal(await page.locator("#experiment-0 .panels circle").count(), 9);
+  const [{ clouds: [first] }] = resultsOf(methods, "ca", "default");
+  const dot = page.locator("#experiment-0 .panels circle").first();
+  const [x, y] = [Number(await dot.getAttribute("cx")), Number(await dot.getAttribute("cy"))];
+  assert.ok(Math.abs(x - (26 + first.precision * 156)) < 0.01);
+  assert.ok(Math.abs(y - (8 + (1 - first.recall) * 158)) < 3);
+  assert.equal(await page.locator("#experiment-1 .uplot").count(), 1);
+  assert.equal(await page.locator("#experiment-1 .uplot .u-series").count(), 3, "the x and two sets");
+  const picture = await page.locator("#experiment-1 .uplot canvas").evaluate((canvas) =>
+    canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data.filter((v, i) => i % 4 === 3 && v > 0).length);
+  assert.ok(picture > 1000);
+  assert.equal(await page.locator("#experiment-0 .uplot").count(), 2, "loss and score of the curves");
+});
+
+test("shows names as text, and the command", async () => {
+  assert.equal(await page.locator("#experiment-0 h2").textContent(), methods.title);
+  assert.equal(await page.locator("#experiment-1 code").textContent(), scales.command);
+});
+
+test("draws the clouds in the colours of their classes", async () => {
+  assert.ok((await page.locator(".label").count()) >= 3);
+  for (const panel of [0, 1, 2]) {
+    const shares = await seen(page, panel);
+    for (const colour of ["red", "yellow", "pale"]) assert.ok(shares[colour] > 0.004, `panel ${panel}: ${colour}`);
+  }
+  await choose(".gallery", "colour-blind safe");
+  const safe = await seen(page, 0);
+  assert.ok(safe.red < 0.001 && safe.blue > 0.004, JSON.stringify(safe));
+  await choose(".gallery", "of the paper");
+});
+
+test("shows errors: none of the truth, some of a method", async () => {
+  await choose(".gallery", "errors");
+  assert.ok((await seen(page, 0)).blue < 0.0005);
+  assert.ok((await seen(page, 1)).blue > 0.002);
+  await choose(".gallery", "classes");
+});
+
+test("turns all clouds together, by mouse and by keys", async () => {
+  const pictures = async () => [(await seen(page, 0)).picture, (await seen(page, 1)).picture];
+  await page.getByRole("button", { name: "Reset view" }).click();
+  const start = await pictures();
+  const box = await page.locator(".label").nth(1).boundingBox();
+  await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+  await page.mouse.down();
+  await page.mouse.move(box.x + box.width / 2 + 60, box.y + box.height / 2 + 20, { steps: 4 });
+  await page.mouse.up();
+  const dragged = await pictures();
+  assert.notEqual(dragged[0], start[0], "the panel beside turns too");
+  assert.notEqual(dragged[1], start[1]);
+  await page.keyboard.press("ArrowLeft");
+  assert.notEqual((await pictures())[0], dragged[0]);
+});
+
+test("adds and removes panels", async () => {
+  const chip = page.locator(".chips label").last();
+  const before = await page.locator(".label").count();
+  const on = await chip.locator("input").isChecked();
+  await chip.locator("input").click();
+  assert.equal(await page.locator(".label").count(), before + (on ? -1 : 1));
+});
+
+for (const [name, options] of [["a phone", { viewport: { width: 390, height: 844 } }], ["the dark", { colorScheme: "dark" }]]) {
+  test(`fits ${name}`, async () => {
+    const other = await open(options);
+    const [wide, background] = await other.evaluate(() =>
+      [document.documentElement.scrollWidth - window.innerWidth, getComputedStyle(document.body).backgroundColor]);
+    assert.ok(wide <= 0, `${wide} pixels too wide`);
+    if (name === "the dark") assert.match(background, /rgb\((\d|[1-5]\d), /);
+    assert.ok((await seen(other, 0)).pale > 0.004);
+    await other.close();
+  });
+}
+
+test("asked for nothing and complained of nothing", () => {
+  assert.deepEqual(complaints, []);
+});
