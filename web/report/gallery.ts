@@ -60,6 +60,7 @@ class Gallery {
   private readonly chips = h("fieldset", { class: "chips" });
   private readonly key = h("p", { class: "key" });
   private readonly note = h("p", { class: "note" });
+  private colours!: HTMLElement;
   private readonly viewer: PointViewer;
   private study: number;
   private scene: PackedScene;
@@ -114,6 +115,13 @@ class Gallery {
     const sets = [...new Set(scenes.map((s) => s.set))];
     const clouds = scenes.filter((s) => s.set === this.scene.set);
     const owners = [...new Set(this.scene.predictions.map((p) => p.study))];
+    const palettes: { value: Palette; label: string }[] = [
+      { value: "paper", label: "of the paper" }, { value: "safe", label: "colour-blind safe" },
+    ];
+    const modes: { value: Mode; label: string }[] = [
+      { value: "classes", label: "classes" }, { value: "errors", label: "errors" },
+    ];
+    this.colours = segmented("Colours", palettes, this.palette, (p) => { this.palette = p; this.drawPanels(); });
     this.bar.replaceChildren(
       dropdown("Set", sets.map((s) => ({ value: s, label: s })), this.scene.set,
         (set) => this.open(scenes.find((s) => s.set === set)!, false)),
@@ -121,10 +129,8 @@ class Gallery {
       ...(owners.length < 2 ? [] : [dropdown("Experiment",
         owners.map((i) => ({ value: i, label: studies[i].title })), this.study,
         (i) => { this.study = i; this.open(this.scene, true); })]),
-      segmented("Show", [{ value: "classes", label: "classes" }, { value: "errors", label: "errors" }] as const as
-        { value: Mode; label: string }[], this.mode, (mode) => { this.mode = mode; this.drawPanels(); }),
-      segmented("Colours", [{ value: "paper", label: "of the paper" }, { value: "safe", label: "colour-blind safe" }] as
-        { value: Palette; label: string }[], this.palette, (p) => { this.palette = p; this.drawPanels(); }),
+      segmented("Show", modes, this.mode, (mode) => { this.mode = mode; this.drawPanels(); }),
+      this.colours,
       h("label", { class: "slider" }, h("span", {}, "Point size"),
         h("input", { type: "range", min: 0.3, max: 3, step: 0.05, value: this.size, oninput: (e: InputEvent) => {
           this.size = Number((e.target as HTMLInputElement).value);
@@ -147,6 +153,7 @@ class Gallery {
     const shown = predictions.filter((p) => this.chosen.has(p.title));
     const errors = this.mode === "errors";
     const positive = (shown[0] ?? predictions[0]).positive;
+    this.colours.hidden = errors; // errors have colours of their own, safe anyway
     this.viewer.setPalette(errors ? ERROR_PALETTE : CLASS_PALETTES[this.palette]);
     this.viewer.setPanels([
       errors ? agreement(truth, truth, positive) : truth,
