@@ -8,6 +8,7 @@
 #include "pcednet/core/error.h"
 #include "pcednet/core/stopwatch.h"
 #include "pcednet/detect/classify.h"
+#include "pcednet/detect/clean_up.h"
 #include "pcednet/detect/result_cloud.h"
 #include "pcednet/io/read_cloud.h"
 #include "pcednet/io/write_cloud.h"
@@ -21,7 +22,7 @@ namespace fs = std::filesystem;
 struct Arguments {
   std::vector<std::string> inputs;
   std::string output, output_folder, model = "scan", preview;
-  bool exact = false, class_colours = false, ascii = false;
+  bool exact = false, clean_up = false, class_colours = false, ascii = false;
 };
 
 struct Job {
@@ -101,7 +102,8 @@ void classify_file(const Job& job, const Arguments& arguments, const detect::Edg
     warn(fmt::format("{}: {}", job.input.string(), note));
   }
   times.emplace_back("normals", watch.lap());
-  const auto result = detect::classify(prepared, model, {.exact = arguments.exact}, &progress);
+  auto result = detect::classify(prepared, model, {.exact = arguments.exact}, &progress);
+  if (arguments.clean_up) detect::clean_up(prepared.positions, result, {}, &progress);
   times.emplace_back("prepare", result.seconds_prepare);
   times.emplace_back("describe", result.seconds_describe);
   times.emplace_back("network", result.seconds_network);
@@ -160,6 +162,8 @@ void add_classify(CLI::App& app, Common& common) {
                     "Colour the points by class even where the input has colours");
   command->add_flag("--ascii", arguments->ascii, "Write text instead of binary");
   command->add_flag("--exact", arguments->exact, "Descriptors from exact neighbourhoods (slow)");
+  command->add_flag("--clean-up", arguments->clean_up,
+                    "Let the nearest points vote: fewer lone false edges, thin lines fade");
   command->callback([arguments, &common] { classify(*arguments, common); });
 }
 

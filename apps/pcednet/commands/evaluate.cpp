@@ -8,6 +8,7 @@
 #include "models.h"
 #include "pcednet/core/error.h"
 #include "pcednet/detect/classify.h"
+#include "pcednet/detect/clean_up.h"
 #include "pcednet/eval/report.h"
 #include "pcednet/io/labels.h"
 #include "pcednet/io/read_cloud.h"
@@ -20,7 +21,7 @@ namespace fs = std::filesystem;
 struct Arguments {
   std::vector<std::string> inputs;
   std::string model, predictions, json, positive = "sharp";
-  bool exact = false;
+  bool exact = false, clean_up = false;
 };
 
 /// The file of predictions for `cloud` in `folder`: of the same stem, or empty.
@@ -40,7 +41,9 @@ std::vector<std::uint8_t> predict(const fs::path& input, const PointCloud& cloud
                                   const Progress& progress) {
   const auto prepared = detect::prepare(cloud, &progress);
   for (const std::string& note : prepared.notes) warn(input.string() + ": " + note);
-  return detect::classify(prepared, model, {.exact = arguments.exact}, &progress).classes;
+  auto result = detect::classify(prepared, model, {.exact = arguments.exact}, &progress);
+  if (arguments.clean_up) detect::clean_up(prepared.positions, result, {}, &progress);
+  return std::move(result.classes);
 }
 
 std::vector<eval::CloudScore> score_all(const Arguments& arguments, const Common& common) {
@@ -112,6 +115,7 @@ void add_evaluate(CLI::App& app, Common& common) {
       ->capture_default_str()
       ->check(CLI::IsMember({"sharp", "edge"}));
   command->add_option("--json", arguments->json, "Write the scores here; - for standard output");
+  command->add_flag("--clean-up", arguments->clean_up, "Let the nearest points vote, as classify");
   command->add_flag("--exact", arguments->exact, "Descriptors from exact neighbourhoods (slow)");
   command->callback([arguments, &common] { evaluate(*arguments, common); });
 }
