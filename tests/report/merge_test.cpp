@@ -95,6 +95,24 @@ TEST_F(Merge, LeavesCloudsOutOnDemand) {
   EXPECT_EQ(merged({.clouds_per_set = 0})["scenes"].size(), 0u);
 }
 
+TEST_F(Merge, NeedsNoCloudThatNobodyKeepsPredictionsFor) {
+  fs::remove(folder_ / "cloud.ply");
+  const Json sound = study_;
+  for (Json& result : study_["results"]) result["clouds"].clear();
+  EXPECT_EQ(merged()["scenes"].size(), 0u);
+  study_ = sound;
+  for (Json& result : study_["results"]) result["predictions"] = nullptr;
+  EXPECT_EQ(merged()["scenes"].size(), 0u);
+}
+
+TEST_F(Merge, TakesResultsWithTimesAlone) {
+  for (Json& result : study_["results"]) {
+    result["clouds"].clear();
+    result["median"] = result["pooled"] = result["predictions"] = nullptr;
+  }
+  EXPECT_EQ(merged()["studies"][0], study_);
+}
+
 TEST_F(Merge, SamplesLargeClouds) {
   EXPECT_EQ(merged({.points_per_cloud = 3})["scenes"][0]["shown"], 3);
 }

@@ -8,11 +8,18 @@ const WIDTH = 460;
 const NAME = 150;
 const ROW = 26;
 
-export const STAGES = ["normals", "describe", "train", "classify"];
+export const STAGES = ["normals", "describe", "describe_training", "train", "classify"];
+
+/** A cost's name for people. */
+export function costName(name: string): string {
+  if (name === "joules") return "joules per 1000 points";
+  return name === "describe_training" ? "describe, for training" : name;
+}
 
 const SHAPES: Record<string, (x: number, y: number) => string> = {
   normals: (x, y) => `M${x - 4} ${y - 4}h8v8h-8z`,
   describe: (x, y) => `M${x} ${y - 5.5}l5.5 5.5l-5.5 5.5l-5.5 -5.5z`,
+  describe_training: (x, y) => `M${x} ${y - 5.5}l5.5 5.5l-5.5 5.5l-5.5 -5.5z`,
   train: (x, y) => `M${x} ${y - 5}l5.5 9.5h-11z`,
   classify: (x, y) => `M${x - 4.5} ${y}a4.5 4.5 0 1 0 9 0a4.5 4.5 0 1 0 -9 0z`,
   joules: (x, y) => `M${x - 4.5} ${y}a4.5 4.5 0 1 0 9 0a4.5 4.5 0 1 0 -9 0z`,
@@ -52,18 +59,18 @@ export function costPlot(groups: Group[], names: string[], unit: string): HTMLEl
         svg("line", { x1: Math.min(...places), x2: Math.max(...places), y1: y, y2: y, class: "base" }),
         ...known.map(({ name, spread }) =>
           svg("path", { d: SHAPES[name](x(spread!.mean), y), class: `stage ${name}` },
-            svg("title", {}, `${titleOf(group.variant)}, ${name}: ${formatCost(spread!.mean)} ${unit}`))));
+            svg("title", {}, `${titleOf(group.variant)}, ${costName(name)}: ${formatCost(spread!.mean)} ${unit}`))));
     }));
   const key = used.length > 1 && h("figcaption", { class: "key" }, ...used.map((name) =>
     h("span", {}, svg("svg", { viewBox: "0 0 14 14", width: 14, height: 14, "aria-hidden": "true" },
-      svg("path", { d: SHAPES[name](7, 7), class: `stage ${name}` })), name)));
+      svg("path", { d: SHAPES[name](7, 7), class: `stage ${name}` })), costName(name))));
   return h("figure", { class: "wide" }, key, plot);
 }
 
 /** The same in numbers. */
 export function costTable(caption: string, groups: Group[]): HTMLElement {
   const names = [...STAGES, "joules"].filter((name) => groups.some((g) => costOf(g, name) !== null));
-  return plainTable(caption, ["Method", ...names.map((n) => (n === "joules" ? "joules" : `${n}, s`))],
+  return plainTable(caption, ["Method", ...names.map((n) => costName(n) + (n === "joules" ? "" : ", s"))],
     groups.map((group) => [titleOf(group.variant), ...names.map((name) => {
       const spread = costOf(group, name);
       return spread ? formatCost(spread.mean) : "–";

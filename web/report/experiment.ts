@@ -43,7 +43,7 @@ function onSet(study: Study, groups: Group[], set: string, statistic: Statistic)
   const size = study.sets.find((s) => s.name === set)?.clouds.length ?? 0;
   const sweeps = typeof study.x_label === "string";
   const seconds = costPlot(own, STAGES, "seconds");
-  const joules = costPlot(own, ["joules"], "joules");
+  const joules = costPlot(own, ["joules"], "joules per 1000 points");
   const counts = mixed ? "" : ` Counts as edge: ${positiveName(own[0]?.positive ?? "sharp")}.`;
   return [
     own.some((g) => g.results.some((r) => r[statistic]))
@@ -58,7 +58,7 @@ function onSet(study: Study, groups: Group[], set: string, statistic: Statistic)
           scored.length > 0 && part("MCC over the clouds", "How many clouds got which score; the stroke is " +
             "the median.", histograms(scored, "mcc", mixed)),
           seconds && part("Seconds", "All clouds of the set together; logarithmic.", seconds),
-          joules && part("Joules", "All clouds of the set together; logarithmic.", joules)) : null,
+          joules && part("Joules per 1000 points", "Logarithmic.", joules)) : null,
     seconds || joules
       ? h("details", {}, h("summary", {}, "Seconds and joules in numbers"),
           costTable(`${study.title}: costs on ${set}`, own)) : null,

@@ -4,10 +4,10 @@ import { seriesColour } from "../shared/colours";
 import { dropdown, h } from "../shared/dom";
 import { linePlot, type Line } from "./lines";
 import {
-  METRICS, METRIC_NAMES, costOf, scoreOf, titleOf, type Group, type Metric, type Spread,
+  METRICS, METRIC_NAMES, costOf, positiveName, scoreOf, titleOf, type Group, type Metric, type Spread,
   type Statistic, type Study, type Variant,
 } from "./study";
-import { STAGES } from "./costs";
+import { STAGES, costName } from "./costs";
 
 type Measure = Metric | string;
 
@@ -16,13 +16,20 @@ export function seriesOf(variant: Variant): string {
   return variant.id.replace(/[^A-Za-z0-9]*-?[0-9]+(\.[0-9]+)?(e[-+]?[0-9]+)?%?$/i, "") || variant.id;
 }
 
+/** What the titles of its variants begin with, without the number and what belongs to it. */
+function lineName(series: string, titles: string[]): string {
+  let common = titles[0];
+  for (const title of titles) while (!title.startsWith(common)) common = common.slice(0, -1);
+  return titles.length > 1 ? common.replace(/[\s,:(]*[\d.]*$/, "") || series : titles[0];
+}
+
 const measured = (group: Group, statistic: Statistic, measure: Measure): Spread | null =>
   (METRICS as readonly string[]).includes(measure)
     ? scoreOf(group, statistic, measure as Metric)
     : costOf(group, measure);
 
 const nameOf = (measure: Measure): string =>
-  METRIC_NAMES[measure as Metric] ?? (measure === "joules" ? "joules" : `${measure}, s`);
+  METRIC_NAMES[measure as Metric] ?? costName(measure) + (measure === "joules" ? "" : ", s");
 
 /** Whether the numbers spread over so much that a logarithmic axis shows them better. */
 const spreads = (values: number[]): boolean =>
@@ -41,10 +48,10 @@ function plotOf(study: Study, groups: Group[], statistic: Statistic, measure: Me
       return group ? measured(group, statistic, measure) : null;
     });
     const both = groups.some((g) => g.set === set && seriesOf(g.variant) === own && g.positive !== positive);
-    const parts = [series.length > 1 && own, sets.length > 1 && set, both && positive].filter(Boolean);
+    const parts = [series.length > 1 && lineName(own, members.map((g) => titleOf(g.variant))), sets.length > 1 && set, both && positiveName(positive)].filter(Boolean);
     const many = series.length > 1;
     return {
-      name: parts.join(", ") || titleOf(members[0].variant),
+      name: parts.join(", ") || nameOf(measure),
       colour: seriesColour(many ? series.indexOf(own) : sets.indexOf(set)),
       dashed: both ? positive === "sharp" : many && sets.indexOf(set) % 2 === 1,
       y: spreadsAt.map((s) => s?.mean ?? null),

@@ -172,38 +172,56 @@ fs::path find_cloud(const std::string& name, const fs::path& folder, const fs::p
       fmt::format("its cloud {} is not there (--clouds-per-set 0 does without clouds)", name));
 }
 
-/// The first results of each variant for `set` that keep predictions, as sources of `exhibit`.
-void add_sources(Exhibit& exhibit, const Json& study, std::size_t number, const fs::path& folder) {
+bool lists_cloud(const Json& result, const std::string& cloud) {
+  return std::any_of(result["clouds"].begin(), result["clouds"].end(),
+                     [&](const Json& row) { return row["name"] == cloud; });
+}
+
+/// The first result of each variant that keeps predictions for this cloud.
+std::vector<Exhibit::Source> sources_in(const Json& study, std::size_t number,
+                                        const std::string& set, const std::string& cloud,
+                                        const fs::path& folder) {
+  std::vector<Exhibit::Source> sources;
   for (const Json& result : study["results"]) {
     const auto kept = result.find("predictions");
-    if (result["set"] != exhibit.set || kept == result.end() || !kept->is_string()) continue;
+    if (kept == result.end() || !kept->is_string()) continue;
+    if (result["set"] != set || !lists_cloud(result, cloud)) continue;
     const auto variant = result["variant"].get<std::string>();
-    const auto same = [&](const auto& s) { return s.study == number && s.variant == variant; };
-    if (std::any_of(exhibit.sources.begin(), exhibit.sources.end(), same)) continue;
-    exhibit.sources.push_back({number, variant, result.value("seed", Json()),
-                               folder / kept->get<std::string>() / (exhibit.cloud + ".u8")});
+    const auto same = [&](const auto& source) { return source.variant == variant; };
+    if (std::any_of(sources.begin(), sources.end(), same)) continue;
+    sources.push_back({number, variant, result.value("seed", Json()),
+                       folder / kept->get<std::string>() / (cloud + ".u8")});
   }
+  return sources;
 }
 
 std::vector<Exhibit> choose_exhibits(const Studies& studies, const fs::path& folder,
                                      std::size_t clouds_per_set) {
   std::vector<Exhibit> exhibits;
+  const auto exhibit_of = [&](const std::string& set, const std::string& cloud,
+                              const fs::path& file) -> Exhibit& {
+    for (Exhibit& e : exhibits) {
+      if (e.set == set && e.cloud == cloud && e.file == file) return e;
+    }
+    return exhibits.emplace_back(Exhibit{set, cloud, file});
+  };
   for (std::size_t number = 0; number < studies.texts.size(); ++number) {
     const Json& study = studies.texts[number];
     for (const Json& set : study["sets"]) {
-      for (std::size_t c = 0; c < std::min(clouds_per_set, set["clouds"].size()); ++c) {
-        Exhibit exhibit{
-            set["name"].get<std::string>(), set["clouds"][c]["name"].get<std::string>(),
-            find_cloud(set["clouds"][c]["file"].get<std::string>(), folder, studies.files[number])};
-        auto place = std::find_if(exhibits.begin(), exhibits.end(), [&](const Exhibit& e) {
-          return e.set == exhibit.set && e.cloud == exhibit.cloud && e.file == exhibit.file;
-        });
-        if (place == exhibits.end()) place = exhibits.insert(place, std::move(exhibit));
-        add_sources(*place, study, number, folder);
+      const auto set_name = set["name"].get<std::string>();
+      std::size_t shown = 0;
+      for (const Json& cloud : set["clouds"]) {
+        const auto name = cloud["name"].get<std::string>();
+        auto sources = sources_in(study, number, set_name, name, folder);
+        if (sources.empty() || shown == clouds_per_set) continue;
+        ++shown;
+        const auto file =
+            find_cloud(cloud["file"].get<std::string>(), folder, studies.files[number]);
+        auto& all = exhibit_of(set_name, name, file).sources;
+        all.insert(all.end(), sources.begin(), sources.end());
       }
     }
   }
-  std::erase_if(exhibits, [](const Exhibit& exhibit) { return exhibit.sources.empty(); });
   return exhibits;
 }
 
