@@ -215,7 +215,7 @@ test("shows errors: none of the truth, some of a method", async () => {
 
 test("turns all clouds together, by mouse and by keys", async () => {
   const pictures = async () => [(await seen(page, 0)).picture, (await seen(page, 1)).picture];
-  await page.getByRole("button", { name: "Reset view" }).click();
+  await page.getByRole("button", { name: "Reset" }).click();
   const start = await pictures();
   const box = await page.locator(".label").nth(1).boundingBox();
   await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);

@@ -139,7 +139,7 @@ class Gallery {
           this.size = Number((e.target as HTMLInputElement).value);
           this.viewer.setPointSize(this.size);
         } })),
-      h("button", { type: "button", class: "plain", onclick: () => this.viewer.reset() }, "Reset view"));
+      h("button", { type: "button", class: "plain", title: "show all of the cloud, as at first", onclick: () => this.viewer.reset() }, "Reset"));
     this.chips.replaceChildren(h("legend", {}, "Beside the truth"), ...this.exhibit.predictions.map(({ title }) =>
       h("label", {},
         h("input", { type: "checkbox", checked: this.chosen.has(title), onchange: (e: Event) => {
