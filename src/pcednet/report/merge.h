@@ -11,7 +11,8 @@
 namespace pcednet::report {
 
 struct MergeOptions {
-  std::size_t clouds_per_set = 4;        ///< the first so many of each set, of those with predictions; 0: none
+  std::size_t clouds_per_set =
+      4;  ///< the first so many of each set, of those with predictions; 0: none
   std::size_t points_per_cloud = 30000;  ///< of a larger cloud, a sample
 };
 
