@@ -4,6 +4,7 @@
 #include <set>
 
 #include "commands.h"
+#include "methods.h"
 #include "models.h"
 #include "pcednet/core/error.h"
 #include "pcednet/core/stopwatch.h"
@@ -22,6 +23,7 @@ namespace fs = std::filesystem;
 struct Arguments {
   std::vector<std::string> inputs;
   std::string output, output_folder, model = "scan", preview;
+  MethodArguments method;
   bool exact = false, clean_up = false, class_colours = false, ascii = false;
 };
 
@@ -97,13 +99,17 @@ void classify_file(const Job& job, const Arguments& arguments, const detect::Edg
     warn(fmt::format("{}: {}", job.input.string(), warning));
   }
   times.emplace_back("read", watch.lap());
-  const auto prepared = detect::prepare(loaded.cloud, &progress);
+  const bool by_method = !arguments.method.name.empty();
+  const auto prepared =
+      by_method ? detect::PreparedCloud{} : detect::prepare(loaded.cloud, &progress);
   for (const std::string& note : prepared.notes) {
     warn(fmt::format("{}: {}", job.input.string(), note));
   }
   times.emplace_back("normals", watch.lap());
-  auto result = detect::classify(prepared, model, {.exact = arguments.exact}, &progress);
-  if (arguments.clean_up) detect::clean_up(prepared.positions, result, {}, &progress);
+  auto result = by_method
+                    ? classify_by_method(loaded.cloud, arguments.method, &progress)
+                    : detect::classify(prepared, model, {.exact = arguments.exact}, &progress);
+  if (arguments.clean_up) detect::clean_up(loaded.cloud.positions, result, {}, &progress);
   times.emplace_back("prepare", result.seconds_prepare);
   times.emplace_back("describe", result.seconds_describe);
   times.emplace_back("network", result.seconds_network);
@@ -123,7 +129,12 @@ void classify_file(const Job& job, const Arguments& arguments, const detect::Edg
 }
 
 void classify(const Arguments& arguments, const Common& common) {
-  const auto model = detect::load_model(find_model(arguments.model));
+  detect::EdgeModel model;
+  if (arguments.method.name.empty()) {
+    model = detect::load_model(find_model(arguments.model));
+  } else {
+    model.name = "none, method " + arguments.method.name;
+  }
   const auto jobs = plan(arguments, common);
   std::optional<Error> first_failure;
   for (const Job& job : jobs) {
@@ -162,6 +173,7 @@ void add_classify(CLI::App& app, Common& common) {
                     "Colour the points by class even where the input has colours");
   command->add_flag("--ascii", arguments->ascii, "Write text instead of binary");
   command->add_flag("--exact", arguments->exact, "Descriptors from exact neighbourhoods (slow)");
+  add_method_options(*command, arguments->method);
   command->add_flag("--clean-up", arguments->clean_up,
                     "Let the nearest points vote: fewer lone false edges, thin lines fade");
   command->callback([arguments, &common] { classify(*arguments, common); });

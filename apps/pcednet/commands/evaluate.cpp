@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "commands.h"
+#include "methods.h"
 #include "models.h"
 #include "pcednet/core/error.h"
 #include "pcednet/detect/classify.h"
@@ -21,6 +22,7 @@ namespace fs = std::filesystem;
 struct Arguments {
   std::vector<std::string> inputs;
   std::string model, predictions, json, positive = "sharp";
+  MethodArguments method;
   bool exact = false, clean_up = false;
 };
 
@@ -37,11 +39,14 @@ fs::path prediction_for(const fs::path& cloud, const fs::path& folder) {
 }
 
 std::vector<std::uint8_t> predict(const fs::path& input, const PointCloud& cloud,
-                                  const detect::EdgeModel& model, const Arguments& arguments,
+                                  const detect::EdgeModel* model, const Arguments& arguments,
                                   const Progress& progress) {
+  if (!arguments.method.name.empty()) {
+    return classify_by_method(cloud, arguments.method, &progress).classes;
+  }
   const auto prepared = detect::prepare(cloud, &progress);
   for (const std::string& note : prepared.notes) warn(input.string() + ": " + note);
-  auto result = detect::classify(prepared, model, {.exact = arguments.exact}, &progress);
+  auto result = detect::classify(prepared, *model, {.exact = arguments.exact}, &progress);
   if (arguments.clean_up) detect::clean_up(prepared.positions, result, {}, &progress);
   return std::move(result.classes);
 }
@@ -55,8 +60,9 @@ std::vector<eval::CloudScore> score_all(const Arguments& arguments, const Common
 
   std::vector<eval::CloudScore> scores;
   for (const fs::path& input : expand_inputs(arguments.inputs)) {
-    const fs::path prediction = model ? fs::path() : prediction_for(input, arguments.predictions);
-    if (!model && prediction.empty()) {
+    const bool given = !arguments.predictions.empty();
+    const fs::path prediction = given ? prediction_for(input, arguments.predictions) : fs::path();
+    if (given && prediction.empty()) {
       warn(fmt::format("{}: no prediction in {}: left out", input.string(), arguments.predictions));
       continue;
     }
@@ -66,8 +72,9 @@ std::vector<eval::CloudScore> score_all(const Arguments& arguments, const Common
                   fmt::format("{}: has no labels to compare with", input.string()));
     }
     with_name_in_errors(input, [&] {
-      const auto classes = model ? predict(input, loaded.cloud, *model, arguments, progress)
-                                 : io::read_labels(prediction);
+      const auto classes =
+          given ? io::read_labels(prediction)
+                : predict(input, loaded.cloud, model ? &*model : nullptr, arguments, progress);
       scores.push_back(
           {input.stem().string(), eval::count_confusion(loaded.cloud.labels, classes, positive)});
     });
@@ -80,8 +87,10 @@ std::vector<eval::CloudScore> score_all(const Arguments& arguments, const Common
 }
 
 void evaluate(const Arguments& arguments, const Common& common) {
-  if (arguments.model.empty() == arguments.predictions.empty()) {
-    throw Error(ErrorKind::kUsage, "evaluate: give either --model or --predictions");
+  const int ways =
+      !arguments.model.empty() + !arguments.predictions.empty() + !arguments.method.name.empty();
+  if (ways != 1) {
+    throw Error(ErrorKind::kUsage, "evaluate: give one of --model, --predictions and --method");
   }
   const auto scores = score_all(arguments, common);
   if (arguments.json == "-") {
@@ -102,6 +111,7 @@ void add_evaluate(CLI::App& app, Common& common) {
       app, common, "evaluate", "Compare predicted classes with the labels in the clouds.",
       "pcednet evaluate clouds/ --model scan --positive edge\n"
       "pcednet evaluate clouds/ --predictions other_tool/ --json scores.json\n"
+      "pcednet evaluate clouds/ --method ca\n"
       "pcednet evaluate a.ply b.ply --model my.safetensors --json -");
   command->add_option("inputs", arguments->inputs, "Labelled point files, or folders of them")
       ->required();
@@ -109,6 +119,7 @@ void add_evaluate(CLI::App& app, Common& common) {
   command->add_option("--predictions", arguments->predictions,
                       "Folder with one file of classes per cloud, of the same stem: .u8 (a byte a "
                       "point), .txt (a number a line), .ply, ...");
+  add_method_options(*command, arguments->method);
   command
       ->add_option("--positive", arguments->positive,
                    "Classes that count as positive: sharp, or edge (sharp and smooth)")
