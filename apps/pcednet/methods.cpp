@@ -41,7 +41,7 @@ void add_method_options(CLI::App& command, MethodArguments& arguments) {
       ->check(CLI::IsMember({"ca", "multi-scale", "fee"}));
   command.add_option("--neighbours", arguments.neighbours, "Of --method ca (default 10)");
   command.add_option("--threshold", arguments.threshold,
-                     "Of --method: ca 0.65, in twice the standard deviation; multi-scale 0.045");
+                     "Of --method: ca 0.65, in twice the standard deviation; multi-scale 0.06");
 }
 
 detect::Classification classify_by_method(const PointCloud& cloud, const MethodArguments& arguments,

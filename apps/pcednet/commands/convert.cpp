@@ -5,6 +5,7 @@
 #include <string>
 
 #include "commands.h"
+#include "pcednet/data/perturb.h"
 #include "pcednet/io/read_cloud.h"
 #include "pcednet/io/write_cloud.h"
 
@@ -15,13 +16,27 @@ struct Request {
   std::string input;
   std::string output;
   bool ascii = false;
+  double noise = 0.0, fraction = 1.0;
+  bool along_normal = false;
+  std::uint64_t seed = 1;
 };
+
+void perturb(const Request& request, PointCloud& cloud) {
+  if (request.noise > 0.0) {
+    with_name_in_errors(request.input, [&] {
+      cloud = data::add_gaussian_noise(std::move(cloud),
+                                       {request.noise, request.along_normal, request.seed});
+    });
+  }
+  if (request.fraction < 1.0) cloud = data::subsample(cloud, {request.fraction, request.seed});
+}
 
 void convert(const Request& request, const Common& common) {
   // What the output's extension allows is asked before a long read.
   io::losses(request.output, {});
-  const io::LoadedCloud loaded = io::read_cloud(request.input);
+  io::LoadedCloud loaded = io::read_cloud(request.input);
   for (const std::string& warning : loaded.warnings) warn(request.input + ": " + warning);
+  perturb(request, loaded.cloud);
   for (const std::string& loss : io::losses(request.output, loaded.cloud)) {
     warn(request.output + " does not keep: " + loss);
   }
@@ -36,7 +51,8 @@ void add_convert(CLI::App& app, Common& common) {
   CLI::App* command = add_command(app, common, "convert", "Writes a point file in another format",
                                   "pcednet convert scan.xyz -o scan.ply\n"
                                   "pcednet convert scan.ply -o scan.pcd\n"
-                                  "pcednet convert scan.ply -o readable.ply --ascii");
+                                  "pcednet convert scan.ply -o readable.ply --ascii\n"
+                                  "pcednet convert scan.ply -o worse.ply --noise 0.004 --seed 7");
   auto request = std::make_shared<Request>();
   command->add_option("input", request->input, "The point file to read")->required();
   command
@@ -44,6 +60,20 @@ void add_convert(CLI::App& app, Common& common) {
                    "The file to write: .ply .pcd .obj .xyz .txt .asc .pts or .csv")
       ->required();
   command->add_flag("--ascii", request->ascii, "Numbers as text in .ply and .pcd");
+  CLI::Option* noise =
+      command
+          ->add_option(
+              "--noise", request->noise,
+              "Move the points by Gaussian noise of this many diagonals of the bounding box")
+          ->check(CLI::NonNegativeNumber);
+  command
+      ->add_flag("--noise-along-normal", request->along_normal,
+                 "Move them along their normals only")
+      ->needs(noise);
+  command->add_option("--subsample", request->fraction, "Keep this share of the points, at random")
+      ->check(CLI::Range(0.0, 1.0));
+  command->add_option("--seed", request->seed, "Another seed gives other noise and other points")
+      ->capture_default_str();
   command->callback([request, &common] { convert(*request, common); });
 }
 
