@@ -17,6 +17,7 @@ void add_generate(CLI::App& app, Common& common);
 void add_normals(CLI::App& app, Common& common);
 void add_info(CLI::App& app, Common& common);
 void add_convert(CLI::App& app, Common& common);
+void add_study(CLI::App& app, Common& common);
 void add_report(CLI::App& app, Common& common);
 
 }  // namespace pcednet::app

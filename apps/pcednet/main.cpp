@@ -36,6 +36,7 @@ int run(int argc, char** argv) {
   add_normals(app, common);
   add_info(app, common);
   add_convert(app, common);
+  add_study(app, common);
   add_report(app, common);
   try {
     app.parse(argc, argv);

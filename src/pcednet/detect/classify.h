@@ -31,4 +31,20 @@ struct Classification {
 Classification classify(const PreparedCloud& cloud, const EdgeModel& model,
                         const ClassifyOptions& options = {}, const Progress* progress = nullptr);
 
+/// The scale-space matrix of a cloud as a whole, for several networks to classify.
+struct DescribedCloud {
+  std::size_t points = 0;                 ///< of the cloud
+  std::vector<std::uint32_t> order = {};  ///< the point that each row describes
+  std::vector<float> values = {};         ///< rows x scales x features
+  double seconds = 0;
+};
+
+/// Describes every point that has a position.
+DescribedCloud describe(const PreparedCloud& cloud, const gls::ScaleSpaceOptions& descriptor,
+                        const Progress* progress = nullptr);
+
+/// What classify() finds for a cloud that has been described as the model wants it. Throws
+/// Error(kModelMismatch) if the rows are not of the model's size.
+Classification classify(const DescribedCloud& cloud, const EdgeModel& model);
+
 }  // namespace pcednet::detect

@@ -63,14 +63,11 @@ nn::SignRule sign_rule(gls::FeatureSet set, nn::Symmetry symmetry) {
 }
 
 std::map<std::string, std::string> summary_of(const nn::TrainResult& result,
-                                              std::span<const TrainingCloud> clouds,
-                                              std::size_t samples) {
+                                              const Samples& samples) {
   std::map<std::string, std::string> summary;
-  std::size_t points = 0;
-  for (const TrainingCloud& cloud : clouds) points += cloud.cloud.positions.size();
-  summary["training_clouds"] = std::to_string(clouds.size());
-  summary["training_points"] = std::to_string(points);
-  summary["training_samples"] = std::to_string(samples);
+  summary["training_clouds"] = std::to_string(samples.clouds);
+  summary["training_points"] = std::to_string(samples.points);
+  summary["training_samples"] = std::to_string(samples.labels.size());
   summary["training_epochs"] = std::to_string(result.history.size());
   if (!result.history.empty()) {
     const auto best = std::min_element(
@@ -82,32 +79,37 @@ std::map<std::string, std::string> summary_of(const nn::TrainResult& result,
   return summary;
 }
 
+/// The number of the network's output for every label.
+std::vector<std::uint8_t> outputs_of(const std::vector<std::uint8_t>& labels,
+                                     const std::vector<std::uint8_t>& classes) {
+  std::vector<std::uint8_t> outputs = labels;
+  if (classes.size() == 2) {
+    for (std::uint8_t& output : outputs) output = output == kSharpEdge ? 1 : 0;
+  }
+  return outputs;
+}
+
 }  // namespace
 
-Samples make_samples(std::span<const TrainingCloud> clouds, const TrainOptions& options,
-                     const Progress* progress) {
-  const auto width = static_cast<std::size_t>(options.descriptor.scales *
-                                              gls::feature_count(options.descriptor.features));
-  const bool two_classes = options.architecture.classes == 2;
+Samples make_samples(std::span<const TrainingCloud> clouds,
+                     const gls::ScaleSpaceOptions& descriptor, const Progress* progress) {
+  const auto scales = static_cast<std::size_t>(descriptor.scales);
+  const auto width = scales * static_cast<std::size_t>(gls::feature_count(descriptor.features));
   const Progress cancel_only = without_report(progress);
-  std::size_t points = 0;
-  for (const TrainingCloud& cloud : clouds) points += cloud.cloud.positions.size();
-  Stage stage(progress, "describe", points);
-  Samples samples;
+  Samples samples{.descriptor = descriptor, .clouds = clouds.size()};
+  for (const TrainingCloud& cloud : clouds) samples.points += cloud.cloud.positions.size();
+  Stage stage(progress, "describe", samples.points);
   std::vector<gls::FitStatus> status;
   for (const TrainingCloud& cloud : clouds) {
     check_labels(cloud);
-    const gls::ScaleSpace matrix({cloud.cloud.positions, cloud.cloud.normals}, options.descriptor,
+    const gls::ScaleSpace matrix({cloud.cloud.positions, cloud.cloud.normals}, descriptor,
                                  &cancel_only);
     const auto targets = labelled_points(cloud, matrix.order());
     const std::size_t before = samples.values.size();
     samples.values.resize(before + targets.size() * width);
-    status.resize(targets.size() * static_cast<std::size_t>(options.descriptor.scales));
+    status.resize(targets.size() * scales);
     matrix.describe(targets, std::span(samples.values).subspan(before), status, &cancel_only);
-    for (const std::uint32_t i : targets) {
-      const std::uint8_t label = cloud.labels[i];
-      samples.labels.push_back(two_classes ? (label == kSharpEdge ? 1 : 0) : label);
-    }
+    for (const std::uint32_t i : targets) samples.labels.push_back(cloud.labels[i]);
     stage.advance(cloud.cloud.positions.size());
   }
   return samples;
@@ -118,29 +120,39 @@ TrainedModel train(const std::string& name, std::span<const TrainingCloud> cloud
                    const std::function<void(const nn::EpochReport&)>& on_epoch,
                    const Progress* progress) {
   Stopwatch watch;
+  const Samples samples = make_samples(clouds, options.descriptor, progress);
+  const double seconds_describe = watch.lap();
+  TrainedModel trained = train(name, samples, options, on_epoch, progress);
+  trained.seconds_describe = seconds_describe;
+  return trained;
+}
+
+TrainedModel train(const std::string& name, const Samples& samples, const TrainOptions& options,
+                   const std::function<void(const nn::EpochReport&)>& on_epoch,
+                   const Progress* progress) {
+  Stopwatch watch;
   TrainedModel trained;
   EdgeModel& model = trained.model;
   model.name = name;
   model.seed = options.training.seed;
-  model.descriptor = options.descriptor;
+  model.descriptor = samples.descriptor;
   model.classes = classes_of(options.architecture);
 
   nn::Architecture architecture = options.architecture;
-  architecture.scales = options.descriptor.scales;
-  architecture.features = gls::feature_count(options.descriptor.features);
-  const Samples samples = make_samples(clouds, options, progress);
-  trained.seconds_describe = watch.lap();
+  architecture.scales = model.descriptor.scales;
+  architecture.features = gls::feature_count(model.descriptor.features);
 
   nn::TrainOptions training = options.training;
-  training.sign_rule = sign_rule(options.descriptor.features, options.training.sign_rule.symmetry);
+  training.sign_rule = sign_rule(model.descriptor.features, options.training.sign_rule.symmetry);
   training.class_names = class_names(model.classes);
+  const auto outputs = outputs_of(samples.labels, model.classes);
   nn::TrainResult result =
-      nn::train(architecture, {samples.values, samples.labels}, training, on_epoch, progress);
+      nn::train(architecture, {samples.values, outputs}, training, on_epoch, progress);
   trained.cancelled = result.cancelled;
   trained.epochs = static_cast<int>(result.history.size());
   trained.seconds_train = watch.lap();
   model.network = std::move(result.best);
-  model.network.metadata = summary_of(result, clouds, samples.labels.size());
+  model.network.metadata = summary_of(result, samples);
   return trained;
 }
 

@@ -27,18 +27,21 @@ struct TrainOptions {
 /// A scale-space matrix row and a label per labelled point of the clouds, cloud after cloud, each
 /// in an order that does not depend on how its points are numbered.
 struct Samples {
-  std::vector<float> values;         ///< samples x scales x features
-  std::vector<std::uint8_t> labels;  ///< the network's output number, 0 to classes - 1
+  gls::ScaleSpaceOptions descriptor = {};
+  std::vector<float> values = {};         ///< samples x scales x features
+  std::vector<std::uint8_t> labels = {};  ///< EdgeClass
+  std::size_t clouds = 0, points = 0;     ///< that they are of
 };
 
-/// Describes every labelled point. With two classes, smooth-edge counts as non-edge.
+/// Describes every labelled point.
 /// Throws Error(kInsufficient), naming the cloud, if it has no labelled point.
-Samples make_samples(std::span<const TrainingCloud> clouds, const TrainOptions& options,
-                     const Progress* progress = nullptr);
+Samples make_samples(std::span<const TrainingCloud> clouds,
+                     const gls::ScaleSpaceOptions& descriptor, const Progress* progress = nullptr);
 
 /// Describes the clouds and trains a network on them. `name` goes into the model. The same clouds,
-/// options and seed give the same bytes, whatever the number of threads. A cancel during the
-/// training proper returns the best model so far; see TrainedModel::cancelled.
+/// options and seed give the same bytes, whatever the number of threads. With two classes,
+/// smooth-edge counts as non-edge. A cancel during the training proper returns the best model so
+/// far; see TrainedModel::cancelled.
 struct TrainedModel {
   EdgeModel model;
   bool cancelled = false;
@@ -47,6 +50,12 @@ struct TrainedModel {
 };
 TrainedModel train(const std::string& name, std::span<const TrainingCloud> clouds,
                    const TrainOptions& options,
+                   const std::function<void(const nn::EpochReport&)>& on_epoch = {},
+                   const Progress* progress = nullptr);
+
+/// The same with the descriptions made before, for training several networks on them; their
+/// descriptor takes the place of that in `options`.
+TrainedModel train(const std::string& name, const Samples& samples, const TrainOptions& options,
                    const std::function<void(const nn::EpochReport&)>& on_epoch = {},
                    const Progress* progress = nullptr);
 

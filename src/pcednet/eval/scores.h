@@ -12,6 +12,7 @@ struct ConfusionCounts {
 
   std::size_t total() const { return tp + fp + tn + fn; }
   ConfusionCounts& operator+=(const ConfusionCounts& other);
+  bool operator==(const ConfusionCounts&) const = default;
 };
 
 /// Which classes count as positive, in the truth and in the prediction alike.

@@ -83,9 +83,10 @@ void FastScaleSpace::find_scales(OrientedPoints points, std::span<const std::uin
     return mean_distance(std::span(sq_distances).first(found)) / unit_;
   };
   const double diagonal = bounding_box(points.positions).diagonal();
-  scales_ = sample_scales(scale_range(curve.size(), diagonal, {options_.s_min, options_.s_max},
-                                      [&] { return mean_spacing(curve.size(), distance); }),
-                          options_.scales);
+  scales_ = sample_scales(
+      scale_range(curve.size(), diagonal, {options_.s_min, options_.s_max, options_.s_max_fraction},
+                  [&] { return mean_spacing(curve.size(), distance); }),
+      options_.scales);
 }
 
 void FastScaleSpace::describe(std::span<const std::uint32_t> targets, std::span<float> out,

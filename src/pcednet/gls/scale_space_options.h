@@ -4,6 +4,7 @@
 
 #include "pcednet/gls/features.h"
 #include "pcednet/gls/projection.h"
+#include "pcednet/gls/scales.h"
 
 namespace pcednet::gls {
 
@@ -14,8 +15,9 @@ enum class Engine {
 };
 
 struct ScaleSpaceOptions {
-  int scales = 16;                  ///< a power of two, 4 to 128
-  double s_min = 0.0, s_max = 0.0;  ///< 0: from the cloud, see scale_range()
+  int scales = 16;                          ///< a power of two, 4 to 128
+  double s_min = 0.0, s_max = 0.0;          ///< 0: from the cloud, see scale_range()
+  double s_max_fraction = kPartOfDiagonal;  ///< of the diagonal, where s_max is 0
   FeatureSet features = FeatureSet::kPaper6;
   Reconstruction reconstruction = Reconstruction::kSphere;
   int max_projection_steps = 5;     ///< for the reconstructions that project

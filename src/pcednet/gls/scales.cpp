@@ -15,7 +15,6 @@ namespace pcednet::gls {
 namespace {
 
 constexpr std::size_t kSample = 16384;
-constexpr double kPartOfDiagonal = 0.1;
 constexpr double kShortest = 1e-100, kLongest = 1e100;  // their squares and inverses are finite
 
 void check_given(double bound, const char* name) {
@@ -63,8 +62,9 @@ ScaleRange scale_range(std::size_t points, double diagonal, const ScaleRange& gi
                        const std::function<double()>& spacing) {
   check_given(given.s_min, "s_min");
   check_given(given.s_max, "s_max");
+  check_given(given.s_max_fraction, "s_max_fraction");
   ScaleRange range = given;
-  if (range.s_max == 0.0) range.s_max = kPartOfDiagonal * diagonal;
+  if (range.s_max == 0.0) range.s_max = given.s_max_fraction * diagonal;
   if (!(range.s_max > kShortest && range.s_max < kLongest)) {
     throw Error(ErrorKind::kInsufficient,
                 fmt::format("no scales for {} finite points with a bounding box of diagonal {}: "

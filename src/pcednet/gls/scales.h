@@ -11,9 +11,12 @@ namespace pcednet::gls {
 
 inline constexpr int kMinScales = 4, kMaxScales = 128;
 
+inline constexpr double kPartOfDiagonal = 0.1;
+
 struct ScaleRange {
   double s_min = 0.0;
   double s_max = 0.0;
+  double s_max_fraction = kPartOfDiagonal;  ///< of the diagonal: s_max where it is not given
 };
 
 /// Mean distances to the 10 nearest other points (to all others if they are fewer), averaged over
@@ -28,11 +31,11 @@ double mean_distance(std::span<const double> sq_distances);
 /// How many nearest points, with the point itself, mean_distance() wants.
 inline constexpr std::size_t kSpacingNeighbours = 11;
 
-/// s_min = `spacing()`, s_max = 10 % of `diagonal`, that of the bounding box of the `points` finite
-/// points; what `given` holds other than 0 is kept. Throws Error(kInsufficient) where the cloud
-/// leaves no range: fewer than two points, all in one place, every point with ten copies, or so few
-/// points that their spacing is not below s_max. Throws Error(kUsage) if a given bound is negative,
-/// not finite, or leaves none.
+/// s_min = `spacing()`, s_max = s_max_fraction (10 %) of `diagonal`, that of the bounding box of
+/// the `points` finite points; what `given` holds other than 0 is kept. Throws Error(kInsufficient)
+/// where the cloud leaves no range: fewer than two points, all in one place, every point with ten
+/// copies, or so few points that their spacing is not below s_max. Throws Error(kUsage) if a given
+/// bound is negative, not finite, or leaves none.
 ScaleRange scale_range(std::size_t points, double diagonal, const ScaleRange& given,
                        const std::function<double()>& spacing);
 

@@ -209,11 +209,12 @@ TrainResult train(const Architecture& architecture, const TrainingSet& set,
   Stage stage(&report_only, "train", trainer.steps());
   double best_loss = std::numeric_limits<double>::infinity();
   for (int epoch = 1; epoch <= options.epochs; ++epoch) {
-    EpochReport report{epoch, 0.0, 0.0, 0.0};
+    EpochReport report{.epoch = epoch};
     result.cancelled = !trainer.run_epoch(stage, progress, report.training_loss);
     if (result.cancelled) break;
     if (!validation.empty()) {
-      const Validation found = validate(trainer.model(), judges, validation);
+      Validation found = validate(trainer.model(), judges, validation);
+      report.validation_confusion = std::move(found.confusion);
       report.validation_loss = found.loss;
       report.validation_accuracy = found.accuracy;
     }

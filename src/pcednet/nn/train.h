@@ -52,6 +52,8 @@ struct EpochReport {
   double training_loss = 0.0;
   double validation_loss = 0.0;
   double validation_accuracy = 0.0;
+  /// How often a true class (row) was taken for one (column); empty without validation.
+  std::vector<std::size_t> validation_confusion = {};
 };
 
 struct TrainResult {

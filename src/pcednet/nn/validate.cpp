@@ -27,7 +27,7 @@ std::uint8_t most_probable(LaneTable& table, int first_row, int classes, std::si
 
 /// Adds up the samples of one task, class by class.
 void judge(const Evaluator& evaluator, const TrainingSet& set,
-           std::span<const std::uint32_t> chosen, ClassSums* sums) {
+           std::span<const std::uint32_t> chosen, ClassSums* sums, std::size_t* confusion) {
   LaneTable table = evaluator.make_table(kPoints);
   const int classes = evaluator.classes();
   const int logits = evaluator.logits_row();
@@ -51,7 +51,9 @@ void judge(const Evaluator& evaluator, const TrainingSet& set,
     for (std::size_t p = 0; p < points; ++p) {
       ClassSums& sum = sums[labels[p]];
       sum.loss += losses[p];
-      sum.right += most_probable(table, logits, classes, p) == labels[p];
+      const std::uint8_t found = most_probable(table, logits, classes, p);
+      sum.right += found == labels[p];
+      ++confusion[static_cast<std::size_t>(labels[p] * classes + found)];
       ++sum.count;
     }
   }
@@ -65,11 +67,16 @@ Validation validate(const Model& model, const TrainingSet& set,
   const auto classes = static_cast<std::size_t>(evaluator.classes());
   const std::size_t tasks = (chosen.size() + kTask - 1) / kTask;
   std::vector<ClassSums> sums(tasks * classes);
+  std::vector<std::size_t> confusion(tasks * classes * classes);
   parallel_blocks(chosen.size(), kTask, [&](std::size_t begin, std::size_t end) {
-    judge(evaluator, set, chosen.subspan(begin, end - begin),
-          sums.data() + begin / kTask * classes);
+    judge(evaluator, set, chosen.subspan(begin, end - begin), sums.data() + begin / kTask * classes,
+          confusion.data() + begin / kTask * classes * classes);
   });
   Validation result;
+  result.confusion.resize(classes * classes);
+  for (std::size_t i = 0; i < confusion.size(); ++i) {
+    result.confusion[i % result.confusion.size()] += confusion[i];
+  }
   std::size_t seen = 0;
   for (std::size_t c = 0; c < classes; ++c) {
     ClassSums total;

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "pcednet/nn/evaluator.h"
 #include "pcednet/nn/training_set.h"
@@ -12,6 +13,8 @@ namespace pcednet::nn {
 struct Validation {
   double loss = 0.0;      ///< cross-entropy
   double accuracy = 0.0;  ///< share of samples whose most probable class is their own
+  /// How often a true class (row) was taken for one (column); classes x classes.
+  std::vector<std::size_t> confusion = {};
 };
 
 /// Judges a model on the samples `chosen` (indices into `set`, none of them ignored).

@@ -1,0 +1,258 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <iostream>
+#include <map>
+#include <memory>
+#include <set>
+
+#include "commands.h"
+#include "models.h"
+#include "pcednet/core/error.h"
+#include "pcednet/data/default_set.h"
+#include "pcednet/io/read_cloud.h"
+#include "pcednet/study/study_file.h"
+
+namespace pcednet::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Arguments {
+  std::vector<std::string> names, training, tests, positives, models, predictions, methods;
+  std::string folder;
+  std::vector<std::uint64_t> seeds;
+  int classes = 3, epochs = 0;
+  double core_watts = study::RunOptions().watts_per_core;
+  bool quick = false, exact = false, natural = false;
+};
+
+/// NAME=VALUE. The name will be that of folders and columns.
+std::pair<std::string, std::string> named(const std::string& argument, const char* option) {
+  const std::size_t equals = argument.find('=');
+  const std::string name = argument.substr(0, equals);
+  const bool good =
+      !name.empty() && name[0] != '.' && std::all_of(name.begin(), name.end(), [](unsigned char c) {
+        return std::isalnum(c) || c == '-' || c == '_' || c == '.';
+      });
+  if (equals == std::string::npos || !good || equals + 1 == argument.size()) {
+    throw Error(ErrorKind::kUsage,
+                fmt::format("{} {}: give NAME=VALUE, the name of letters, digits, - and _", option,
+                            argument));
+  }
+  return {name, argument.substr(equals + 1)};
+}
+
+study::CloudSet read_set(const std::string& name, const std::vector<std::string>& inputs) {
+  study::CloudSet set{.name = name};
+  std::set<std::string> names;
+  for (const fs::path& file : expand_inputs(inputs)) {
+    auto loaded = io::read_cloud(file);
+    for (const std::string& warning : loaded.warnings) warn(file.string() + ": " + warning);
+    const std::string stem = file.stem().string();
+    if (!names.insert(stem).second) {
+      throw Error(ErrorKind::kUsage,
+                  fmt::format("{}: the set {} has a cloud {} already", file.string(), name, stem));
+    }
+    set.clouds.push_back(study::make_study_cloud(stem, file.string(), std::move(loaded.cloud)));
+  }
+  set.positive = study::positive_of(set.clouds);
+  return set;
+}
+
+study::CloudSet generated_set() {
+  study::CloudSet set{.name = "default"};
+  for (data::GeneratedCloud& cloud : data::generate_default(1)) {
+    set.clouds.push_back(study::make_study_cloud(cloud.name, "", std::move(cloud.cloud)));
+  }
+  return set;
+}
+
+study::StudyData read_data(const Arguments& arguments) {
+  study::StudyData data;
+  std::vector<std::string> order;
+  std::map<std::string, std::vector<std::string>> inputs;
+  for (const std::string& test : arguments.tests) {
+    const auto [name, input] = named(test, "--test");
+    if (!inputs.contains(name)) order.push_back(name);
+    inputs[name].push_back(input);
+  }
+  std::map<std::string, eval::Positive> positives;
+  for (const std::string& positive : arguments.positives) {
+    const auto [name, value] = named(positive, "--positive");
+    if (!inputs.contains(name) || (value != "sharp" && value != "edge")) {
+      throw Error(ErrorKind::kUsage,
+                  fmt::format("--positive {}: give SET=sharp or SET=edge", positive));
+    }
+    positives[name] = value == "edge" ? eval::Positive::kEdge : eval::Positive::kSharp;
+  }
+  for (const std::string& name : order) {
+    auto set = read_set(name, inputs[name]);
+    if (positives.contains(name)) set.positive = positives[name];
+    data.tests.push_back(std::make_shared<const study::CloudSet>(std::move(set)));
+  }
+  data.training = std::make_shared<const study::CloudSet>(
+      arguments.training.empty() ? generated_set() : read_set("training", arguments.training));
+  return data;
+}
+
+study::PlanOptions plan_of(const Arguments& arguments) {
+  study::PlanOptions plan{.quick = arguments.quick};
+  detect::TrainOptions& training = plan.training;
+  training.training.sign_rule.symmetry = nn::Symmetry::kAverage;
+  training.training.balanced = !arguments.natural;
+  training.architecture.classes = arguments.classes;
+  if (arguments.epochs > 0) training.training.epochs = arguments.epochs;
+  if (arguments.exact) training.descriptor.engine = gls::Engine::kExact;
+  for (const std::string& name : arguments.models) {
+    plan.models.emplace_back(fs::path(name).stem().string(), find_model(name));
+  }
+  for (const std::string& prediction : arguments.predictions) {
+    plan.predictions.push_back(named(prediction, "--predictions"));
+  }
+  return plan;
+}
+
+/// The command line as it was given, but for what changes no result.
+std::string command_line() {
+  std::ifstream file("/proc/self/cmdline", std::ios::binary);
+  std::string line = "pcednet";
+  std::string word;
+  std::getline(file, word, '\0');
+  while (std::getline(file, word, '\0')) {
+    if (word == "--overwrite") continue;
+    const bool plain = !word.empty() && std::all_of(word.begin(), word.end(), [](unsigned char c) {
+      return std::isalnum(c) ||
+             std::string_view("-_./=,+:@%{}").find(static_cast<char>(c)) != std::string_view::npos;
+    });
+    line += plain ? " " + word : fmt::format(" '{}'", word);
+  }
+  return line;
+}
+
+/// Keeps the variants that the user named. Throws Error(kUsage) for a name that there is not.
+void choose_methods(study::Experiment& experiment, const std::vector<std::string>& wanted) {
+  if (wanted.empty()) return;
+  std::string known;
+  for (const auto& variant : experiment.variants) known += " " + variant.id;
+  for (const std::string& id : wanted) {
+    const auto& all = experiment.variants;
+    if (std::none_of(all.begin(), all.end(), [&](const auto& v) { return v.id == id; })) {
+      throw Error(ErrorKind::kUsage,
+                  fmt::format("{} has no method {}; there are{}", experiment.name, id, known));
+    }
+  }
+  std::erase_if(experiment.variants, [&](const study::Variant& variant) {
+    return std::find(wanted.begin(), wanted.end(), variant.id) == wanted.end();
+  });
+}
+
+void list_experiments() {
+  for (const auto& entry : study::experiments()) {
+    std::cout << fmt::format("{:<16} {}\n", entry.name, entry.summary);
+  }
+}
+
+void run_studies(const Arguments& arguments, const Common& common) {
+  const auto plan = plan_of(arguments);
+  study::FileOptions file{
+      .command = command_line(),
+      .energy_is_measured = study::EnergyMeter(arguments.core_watts).has_counters(),
+      .watts_per_core = arguments.core_watts};
+  std::vector<study::Experiment> experiments;
+  for (const std::string& name : arguments.names) {
+    experiments.push_back(study::make_experiment(name, plan));
+    choose_methods(experiments.back(), arguments.methods);
+    study::check_study_file(arguments.folder, name, file.command, common.overwrite());
+  }
+  const auto needs_data = [](const study::Variant& variant) { return !variant.test; };
+  const bool tests_needed = std::any_of(experiments.begin(), experiments.end(), [&](const auto& e) {
+    return std::any_of(e.variants.begin(), e.variants.end(), needs_data);
+  });
+  if (tests_needed && arguments.tests.empty()) {
+    throw Error(ErrorKind::kUsage, "study: give labelled clouds to test on: --test NAME=IN");
+  }
+  const auto data = read_data(arguments);
+  const study::Cache cache(fs::path(arguments.folder) / "cache");
+  study::RunOptions run{.watts_per_core = arguments.core_watts};
+  run.seeds = !arguments.seeds.empty() ? arguments.seeds
+              : arguments.quick        ? std::vector<std::uint64_t>{1}
+                                       : std::vector<std::uint64_t>{1, 2, 3};
+  if (common.progress != "none") run.on_job = [](const std::string& job) { say(job); };
+  const Progress progress = console_progress(common);
+  for (const study::Experiment& experiment : experiments) {
+    const auto result = study::run(experiment, data, cache, run, &progress);
+    for (const std::string& note : result.notes) warn(note);
+    study::write_study(arguments.folder, result, file, common.overwrite());
+    std::cout << study::to_table(result) << std::flush;
+    say(fmt::format("{}: {} networks trained, {} clouds classified; the rest was known\n  -> {}",
+                    experiment.name, result.trained, result.classified,
+                    (fs::path(arguments.folder) / (experiment.name + ".json")).string()));
+  }
+}
+
+void study_command(const Arguments& arguments, const Common& common) {
+  if (arguments.names == std::vector<std::string>{"list"}) return list_experiments();
+  if (arguments.folder.empty()) throw Error(ErrorKind::kUsage, "study: give a folder with -o");
+  try {
+    run_studies(arguments, common);
+  } catch (const Error& error) {
+    if (error.kind() != ErrorKind::kCancelled) throw;
+    throw Error(
+        ErrorKind::kCancelled,
+        fmt::format("stopped by the user; what is done is kept in {}: the same command goes "
+                    "on from there",
+                    (fs::path(arguments.folder) / "cache").string()));
+  }
+}
+
+}  // namespace
+
+void add_study(CLI::App& app, Common& common) {
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = add_command(
+      app, common, "study", "Run the experiments of the paper on your clouds",
+      "pcednet study list                                        what there is\n"
+      "pcednet study methods --test mine=clouds/ -o study/       on the generated training set\n"
+      "pcednet study scales noise --train a/ --test b=b/ --test c=c/ -o study/ --quick\n"
+      "pcednet study methods --test c=c/ --predictions other='out/{set}/' -o study/");
+  command->add_option("names", arguments->names, "Experiments, or list")->required();
+  command->add_option("-o,--output", arguments->folder,
+                      "The folder of the study; what is known there is not done again");
+  command->add_option("--train", arguments->training,
+                      "Labelled clouds to learn from (default: the generated set)");
+  command->add_option("--test", arguments->tests,
+                      "NAME=IN: labelled clouds to test on; of one name together");
+  command->add_option("--positive", arguments->positives,
+                      "NAME=sharp or NAME=edge: what counts as an edge in a set (default: edge, "
+                      "sharp and smooth, if it has smooth edges)");
+  command->add_option("--seeds", arguments->seeds, "Trainings of every network (default: 1,2,3)")
+      ->delimiter(',');
+  command->add_flag("--quick", arguments->quick,
+                    "One seed, fewer epochs and samples: a first look");
+  command->add_option("--methods", arguments->methods, "Only these rows of an experiment")
+      ->delimiter(',');
+  command->add_option("--models", arguments->models, "Trained models to compare: names or files")
+      ->delimiter(',');
+  command->add_option(
+      "--predictions", arguments->predictions,
+      "NAME=DIR: classes that another program found; {set} in DIR is the set's name");
+  command
+      ->add_option("--classes", arguments->classes,
+                   "Classes of the networks, where the experiment does not vary them")
+      ->capture_default_str()
+      ->check(CLI::IsMember({2, 3}));
+  command->add_option("--epochs", arguments->epochs, "Rounds of training (0: the recipe's)");
+  command->add_flag("--natural", arguments->natural,
+                    "Let every class count as often as it occurs, not all alike");
+  command->add_flag("--exact", arguments->exact, "Descriptors from exact neighbourhoods (slow)");
+  command
+      ->add_option("--core-watts", arguments->core_watts,
+                   "Design power of a processor core, where energy cannot be read")
+      ->capture_default_str()
+      ->check(CLI::PositiveNumber);
+  command->callback([arguments, &common] { study_command(*arguments, common); });
+}
+
+}  // namespace pcednet::app

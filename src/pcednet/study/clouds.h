@@ -1,0 +1,39 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "pcednet/cloud/point_cloud.h"
+#include "pcednet/eval/scores.h"
+
+namespace pcednet::study {
+
+/// A labelled cloud, and what tells it apart.
+struct StudyCloud {
+  std::string name;
+  std::string file;  ///< where it came from; empty if it was made in memory
+  PointCloud cloud;
+  std::string digest;  ///< of positions, normals and labels, in their order
+  std::string places;  ///< of the positions, in whatever order
+};
+
+/// Throws Error(kInsufficient), naming it, if `cloud` has no points or no labels.
+StudyCloud make_study_cloud(const std::string& name, const std::string& file, PointCloud cloud);
+
+struct CloudSet {
+  std::string name;
+  eval::Positive positive = eval::Positive::kSharp;  ///< what counts as an edge in it
+  std::vector<StudyCloud> clouds = {};
+};
+
+/// kEdge if a cloud has a point of the smooth-edge class, otherwise kSharp.
+eval::Positive positive_of(const std::vector<StudyCloud>& clouds);
+
+/// What the experiments work on.
+struct StudyData {
+  std::shared_ptr<const CloudSet> training;
+  std::vector<std::shared_ptr<const CloudSet>> tests = {};
+};
+
+}  // namespace pcednet::study
