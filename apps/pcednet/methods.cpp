@@ -1,8 +1,11 @@
 #include "methods.h"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <cmath>
 
+#include "fee.h"
 #include "pcednet/classic/edge_measure.h"
 #include "pcednet/core/error.h"
 #include "pcednet/core/stopwatch.h"
@@ -10,24 +13,39 @@
 namespace pcednet::app {
 namespace {
 
+void check_options(const MethodArguments& arguments) {
+  const auto refuse = [&](bool given, const char* option, std::string_view method) {
+    if (!given || arguments.name == method) return;
+    throw Error(ErrorKind::kUsage, fmt::format("{} is for --method {}", option, method));
+  };
+  refuse(arguments.neighbours != 0, "--neighbours", "ca");
+  refuse(arguments.offset_radius != 0.0, "--offset-radius", "fee");
+  refuse(arguments.convolution_radius != 0.0, "--convolution-radius", "fee");
+}
+
 classic::EdgeMeasure measure(const PointCloud& cloud, const MethodArguments& arguments,
                              const Progress* progress) {
+  check_options(arguments);
+  const auto set_threshold = [&](auto& options) {
+    if (arguments.threshold >= 0.0) options.threshold = arguments.threshold;
+  };
   if (arguments.name == "fee") {
-    throw Error(ErrorKind::kInsufficient,
-                "method fee needs CGAL and is not in this build; its output from elsewhere can be "
-                "scored with --predictions");
+    FeeOptions options;
+    set_threshold(options);
+    if (arguments.offset_radius != 0.0) options.offset_radius = arguments.offset_radius;
+    if (arguments.convolution_radius != 0.0) {
+      options.convolution_radius = arguments.convolution_radius;
+    }
+    return feature_edge_estimation(cloud, options, progress);
   }
   if (arguments.name == "ca") {
     classic::CovarianceAnalysisOptions options;
-    if (arguments.neighbours > 0) options.neighbours = arguments.neighbours;
-    if (arguments.threshold >= 0.0) options.threshold = arguments.threshold;
+    if (arguments.neighbours != 0) options.neighbours = arguments.neighbours;
+    set_threshold(options);
     return classic::covariance_analysis(cloud.positions, options, progress);
   }
   classic::MultiScaleOptions options;
-  if (arguments.neighbours > 0) {
-    throw Error(ErrorKind::kUsage, "--neighbours is for --method ca; multi-scale has several");
-  }
-  if (arguments.threshold >= 0.0) options.threshold = arguments.threshold;
+  set_threshold(options);
   return classic::multi_scale_variation(cloud.positions, options, progress);
 }
 
@@ -37,11 +55,16 @@ void add_method_options(CLI::App& command, MethodArguments& arguments) {
   command
       .add_option("--method", arguments.name,
                   "Without a model: ca (covariance analysis), multi-scale (surface variation over "
-                  "several neighbourhoods), fee (where it is built)")
+                  "several neighbourhoods), fee (feature edge estimation, where it is built)")
       ->check(CLI::IsMember({"ca", "multi-scale", "fee"}));
   command.add_option("--neighbours", arguments.neighbours, "Of --method ca (default 10)");
-  command.add_option("--threshold", arguments.threshold,
-                     "Of --method: ca 0.65, in twice the standard deviation; multi-scale 0.06");
+  command.add_option(
+      "--threshold", arguments.threshold,
+      "Of --method: ca 0.65, in twice the standard deviation; multi-scale 0.06, fee 0.16");
+  command.add_option("--offset-radius", arguments.offset_radius,
+                     "Of --method fee, in the cloud's unit (default: 0.05 of the diagonal)");
+  command.add_option("--convolution-radius", arguments.convolution_radius,
+                     "Of --method fee, in the cloud's unit (default: half the offset radius)");
 }
 
 detect::Classification classify_by_method(const PointCloud& cloud, const MethodArguments& arguments,

@@ -18,9 +18,10 @@ struct MethodArguments {
   std::string name;
   int neighbours = 0;
   double threshold = -1.0;
+  double offset_radius = 0.0, convolution_radius = 0.0;
 };
 
-/// Adds --method, --neighbours and --threshold.
+/// Adds --method, --neighbours, --threshold, --offset-radius and --convolution-radius.
 void add_method_options(CLI::App& command, MethodArguments& arguments);
 
 /// Classes by the method: sharp-edge or non-edge. p_sharp is v / (v + threshold) for its value v,

@@ -34,6 +34,7 @@ class Scratch {
   std::filesystem::path path(const std::string& name) const { return folder_ / name; }
 
   std::filesystem::path file(const std::string& name, std::string_view bytes) const {
+    std::filesystem::create_directories(path(name).parent_path());
     // Truncating an old file makes some file systems wait for the disk.
     std::filesystem::remove(path(name));
     std::ofstream(path(name), std::ios::binary) << bytes;

@@ -10,9 +10,9 @@
 #include "pcednet/core/error.h"
 #include "pcednet/detect/classify.h"
 #include "pcednet/detect/clean_up.h"
+#include "pcednet/eval/predictions.h"
 #include "pcednet/eval/report.h"
-#include "pcednet/io/labels.h"
-#include "pcednet/io/read_cloud.h"
+#include "pcednet/io/read_labelled.h"
 
 namespace pcednet::app {
 namespace {
@@ -25,18 +25,6 @@ struct Arguments {
   MethodArguments method;
   bool exact = false, clean_up = false;
 };
-
-/// The file of predictions for `cloud` in `folder`: of the same stem, or empty.
-fs::path prediction_for(const fs::path& cloud, const fs::path& folder) {
-  for (const char* suffix : {"", "_edges"}) {
-    for (const char* extension : {".u8", ".ply", ".txt", ".csv", ".lbl", ".seg", ".pcd", ".xyz"}) {
-      fs::path candidate = folder / (cloud.stem().string() + suffix + extension);
-      std::error_code error;
-      if (fs::is_regular_file(candidate, error)) return candidate;
-    }
-  }
-  return {};
-}
 
 std::vector<std::uint8_t> predict(const fs::path& input, const PointCloud& cloud,
                                   const detect::EdgeModel* model, const Arguments& arguments,
@@ -51,6 +39,12 @@ std::vector<std::uint8_t> predict(const fs::path& input, const PointCloud& cloud
   return std::move(result.classes);
 }
 
+std::vector<std::uint8_t> read_predictions(const fs::path& file, const PointCloud& cloud) {
+  auto predictions = eval::read_predictions(file, cloud.positions);
+  if (!predictions.note.empty()) warn(file.string() + ": " + predictions.note);
+  return std::move(predictions.classes);
+}
+
 std::vector<eval::CloudScore> score_all(const Arguments& arguments, const Common& common) {
   const Progress progress = console_progress(common);
   const auto positive =
@@ -61,19 +55,17 @@ std::vector<eval::CloudScore> score_all(const Arguments& arguments, const Common
   std::vector<eval::CloudScore> scores;
   for (const fs::path& input : expand_inputs(arguments.inputs)) {
     const bool given = !arguments.predictions.empty();
-    const fs::path prediction = given ? prediction_for(input, arguments.predictions) : fs::path();
+    const fs::path prediction =
+        given ? eval::find_predictions(arguments.predictions, input.stem().string()) : fs::path();
     if (given && prediction.empty()) {
       warn(fmt::format("{}: no prediction in {}: left out", input.string(), arguments.predictions));
       continue;
     }
-    const auto loaded = io::read_cloud(input);
-    if (!loaded.cloud.has_labels()) {
-      throw Error(ErrorKind::kInsufficient,
-                  fmt::format("{}: has no labels to compare with", input.string()));
-    }
+    const auto loaded = io::read_labelled(input);
+    for (const std::string& warning : loaded.warnings) warn(input.string() + ": " + warning);
     with_name_in_errors(input, [&] {
       const auto classes =
-          given ? io::read_labels(prediction)
+          given ? read_predictions(prediction, loaded.cloud)
                 : predict(input, loaded.cloud, model ? &*model : nullptr, arguments, progress);
       scores.push_back(
           {input.stem().string(), eval::count_confusion(loaded.cloud.labels, classes, positive)});
@@ -117,8 +109,8 @@ void add_evaluate(CLI::App& app, Common& common) {
       ->required();
   command->add_option("--model", arguments->model, "A model's name or file to classify with");
   command->add_option("--predictions", arguments->predictions,
-                      "Folder with one file of classes per cloud, of the same stem: .u8 (a byte a "
-                      "point), .txt (a number a line), .ply, ...");
+                      "Folder with what another program found, a file per cloud of the same stem: "
+                      ".u8 (a byte a point), .txt (a number a line), .npy, .ply, ...");
   add_method_options(*command, arguments->method);
   command
       ->add_option("--positive", arguments->positive,

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <fstream>
 #include <iostream>
 #include <map>
@@ -8,10 +9,12 @@
 #include <set>
 
 #include "commands.h"
+#include "fee.h"
+#include "methods.h"
 #include "models.h"
 #include "pcednet/core/error.h"
 #include "pcednet/data/default_set.h"
-#include "pcednet/io/read_cloud.h"
+#include "pcednet/io/read_labelled.h"
 #include "pcednet/study/study_file.h"
 
 namespace pcednet::app {
@@ -20,7 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Arguments {
-  std::vector<std::string> names, training, tests, positives, models, predictions, methods;
+  std::vector<std::string> names, training, tests, positives, models, predictions, methods, fee;
   std::string folder;
   std::vector<std::uint64_t> seeds;
   int classes = 3, epochs = 0;
@@ -48,7 +51,7 @@ study::CloudSet read_set(const std::string& name, const std::vector<std::string>
   study::CloudSet set{.name = name};
   std::set<std::string> names;
   for (const fs::path& file : expand_inputs(inputs)) {
-    auto loaded = io::read_cloud(file);
+    auto loaded = io::read_labelled(file);
     for (const std::string& warning : loaded.warnings) warn(file.string() + ": " + warning);
     const std::string stem = file.stem().string();
     if (!names.insert(stem).second) {
@@ -97,6 +100,44 @@ study::StudyData read_data(const Arguments& arguments) {
   return data;
 }
 
+/// R, r and the threshold of --fee SET=R,r,THRESHOLD, for every set that has one.
+std::map<std::string, MethodArguments> fee_settings(const std::vector<std::string>& given) {
+  std::map<std::string, MethodArguments> settings;
+  for (const std::string& argument : given) {
+    const auto [set, value] = named(argument, "--fee");
+    MethodArguments& fee = settings[set];
+    fee.name = "fee";
+    const int read = std::sscanf(value.c_str(), "%lf,%lf,%lf", &fee.offset_radius,
+                                 &fee.convolution_radius, &fee.threshold);
+    if (read < 2) {
+      throw Error(ErrorKind::kUsage,
+                  fmt::format("--fee {}: give SET=R,r or SET=R,r,THRESHOLD", argument));
+    }
+  }
+  return settings;
+}
+
+study::NamedMethod classic_method(const std::string& id, const std::string& title,
+                                  std::map<std::string, MethodArguments> settings = {}) {
+  study::NamedMethod method;
+  method.id = id;
+  method.title = title;
+  method.method.settings = settings.empty() ? "its own settings" : "";
+  for (const auto& [set, s] : settings) {
+    method.method.settings +=
+        fmt::format("{} R {} r {}; ", set, s.offset_radius, s.convolution_radius);
+  }
+  method.method.classes = [id, settings = std::move(settings)](const PointCloud& cloud,
+                                                               const std::string& set,
+                                                               const Progress* progress) {
+    MethodArguments arguments;
+    if (const auto found = settings.find(set); found != settings.end()) arguments = found->second;
+    arguments.name = id;
+    return classify_by_method(cloud, arguments, progress).classes;
+  };
+  return method;
+}
+
 study::PlanOptions plan_of(const Arguments& arguments) {
   study::PlanOptions plan{.quick = arguments.quick};
   detect::TrainOptions& training = plan.training;
@@ -107,6 +148,14 @@ study::PlanOptions plan_of(const Arguments& arguments) {
   if (arguments.exact) training.descriptor.engine = gls::Engine::kExact;
   for (const std::string& name : arguments.models) {
     plan.models.emplace_back(fs::path(name).stem().string(), find_model(name));
+  }
+  plan.classic = {classic_method("ca", "covariance analysis"),
+                  classic_method("multi-scale", "multi-scale surface variation")};
+  if (!find_fee().empty()) {
+    plan.classic.push_back(
+        classic_method("fee", "feature edge estimation", fee_settings(arguments.fee)));
+  } else if (!arguments.fee.empty()) {
+    throw Error(ErrorKind::kInsufficient, "--fee: the program pcednet-fee was not built");
   }
   for (const std::string& prediction : arguments.predictions) {
     plan.predictions.push_back(named(prediction, "--predictions"));
@@ -238,6 +287,8 @@ void add_study(CLI::App& app, Common& common) {
   command->add_option(
       "--predictions", arguments->predictions,
       "NAME=DIR: classes that another program found; {set} in DIR is the set's name");
+  command->add_option("--fee", arguments->fee,
+                      "SET=R,r[,THRESHOLD]: radii of feature edge estimation in a set's unit");
   command
       ->add_option("--classes", arguments->classes,
                    "Classes of the networks, where the experiment does not vary them")

@@ -7,7 +7,7 @@
 #include "commands.h"
 #include "pcednet/core/error.h"
 #include "pcednet/detect/train.h"
-#include "pcednet/io/read_cloud.h"
+#include "pcednet/io/read_labelled.h"
 
 namespace pcednet::app {
 namespace {
@@ -72,11 +72,8 @@ void train(const Arguments& arguments, const Common& common) {
   std::vector<detect::TrainingCloud> clouds;
   for (const auto& input : inputs) {
     with_name_in_errors(input, [&] {
-      loaded.push_back(io::read_cloud(input));
+      loaded.push_back(io::read_labelled(input));
       const PointCloud& cloud = loaded.back().cloud;
-      if (!cloud.empty() && !cloud.has_labels()) {
-        throw Error(ErrorKind::kInsufficient, "has no labels to learn from");
-      }
       clouds.push_back({input.string(), detect::prepare(cloud, &progress), cloud.labels});
     });
     for (const auto& warning : loaded.back().warnings) warn(input.string() + ": " + warning);

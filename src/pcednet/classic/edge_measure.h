@@ -32,7 +32,7 @@ EdgeMeasure covariance_analysis(std::span<const Vec3> positions,
 struct MultiScaleOptions {
   std::vector<int> neighbours = {12, 24, 48,
                                  96};  ///< rising; those the cloud is too small for are left out
-  double threshold = 0.06;            ///< of surface variation
+  double threshold = 0.06;             ///< of surface variation
 };
 
 /// Multi-scale surface variation (after Pauly, Keiser, Gross 2003): the median over several

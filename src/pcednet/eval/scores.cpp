@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "pcednet/cloud/point_cloud.h"
@@ -47,11 +48,12 @@ ConfusionCounts count_confusion(std::span<const std::uint8_t> truth,
 Scores scores_of(const ConfusionCounts& counts) {
   const auto tp = static_cast<double>(counts.tp), fp = static_cast<double>(counts.fp);
   const auto tn = static_cast<double>(counts.tn), fn = static_cast<double>(counts.fn);
+  const double norm =
+      std::sqrt(tp + fp) * std::sqrt(tp + fn) * std::sqrt(tn + fp) * std::sqrt(tn + fn);
   return {
       .precision = ratio(tp, tp + fp),
       .recall = ratio(tp, tp + fn),
-      .mcc = ratio(tp * tn - fp * fn, std::sqrt(tp + fp) * std::sqrt(tp + fn) * std::sqrt(tn + fp) *
-                                          std::sqrt(tn + fn)),
+      .mcc = std::clamp(ratio(tp * tn - fp * fn, norm), -1.0, 1.0),
       .f1 = ratio(2 * tp, 2 * tp + fp + fn),
       .accuracy = ratio(tp + tn, tp + tn + fp + fn),
       .iou = ratio(tp, tp + fp + fn),

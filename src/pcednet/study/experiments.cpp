@@ -45,6 +45,12 @@ void add_outside_methods(Experiment& experiment, const PlanOptions& options) {
                                    .method = ModelMethod{file, options.training.descriptor.engine},
                                    .note = "as it comes, trained on clouds of its own"});
   }
+  for (const NamedMethod& classic : options.classic) {
+    experiment.variants.push_back({.id = classic.id,
+                                   .title = classic.title,
+                                   .method = classic.method,
+                                   .note = "no training: " + classic.method.settings});
+  }
   for (const auto& [id, folder] : options.predictions) {
     experiment.variants.push_back(
         {.id = id, .title = id, .method = ExternalMethod{folder}, .note = "classes from files"});

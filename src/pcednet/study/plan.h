@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -8,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include "pcednet/core/progress.h"
 #include "pcednet/detect/train.h"
 #include "pcednet/study/clouds.h"
 
@@ -33,7 +36,15 @@ struct ExternalMethod {
   std::string folder;
 };
 
-using Method = std::variant<NetworkMethod, ModelMethod, ExternalMethod>;
+/// A method without training.
+struct ClassicMethod {
+  std::string settings;  ///< decides, with the cloud, what it finds
+  std::function<std::vector<std::uint8_t>(const PointCloud& cloud, const std::string& set,
+                                          const Progress*)>
+      classes;
+};
+
+using Method = std::variant<NetworkMethod, ModelMethod, ExternalMethod, ClassicMethod>;
 
 /// What is done to the test clouds before they are classified.
 struct Treatment {
@@ -70,12 +81,18 @@ struct Experiment {
   bool timed = false;           ///< seconds and joules are the result: not those of another machine
 };
 
+struct NamedMethod {
+  std::string id, title;
+  ClassicMethod method;
+};
+
 /// What the user may choose.
 struct PlanOptions {
   detect::TrainOptions training = {};  ///< what an experiment does not vary
   bool quick = false;                  ///< fewer epochs, samples, sizes: for a first look
   std::vector<std::pair<std::string, std::filesystem::path>> models = {};  ///< id, file
   std::vector<std::pair<std::string, std::string>> predictions = {};       ///< id, folder
+  std::vector<NamedMethod> classic = {};
 };
 
 /// The experiments there are: name and a line on what it shows, in the order of the paper.

@@ -91,6 +91,7 @@ class Runner {
   void collect(std::size_t variant, const CloudSet& set, const Classifier& classifier,
                bool keep_classes);
   void collect_external(std::size_t variant, const CloudSet& set, const ExternalMethod& method);
+  void collect_classic(std::size_t variant, const CloudSet& set, const ClassicMethod& method);
   void score(Result result, const CloudSet& set, const std::vector<Scored>& clouds,
              bool keep_classes);
 
@@ -246,6 +247,9 @@ void Runner::collect() {
       if (const auto* external = std::get_if<ExternalMethod>(&variants()[v].method)) {
         collect_external(v, *set, *external);
       }
+      if (const auto* classic = std::get_if<ClassicMethod>(&variants()[v].method)) {
+        collect_classic(v, *set, *classic);
+      }
     }
     if (!study_.experiment.curves) continue;
     for (const Classifier& classifier : classifiers_[v]) {
@@ -289,7 +293,9 @@ void Runner::collect(std::size_t v, const CloudSet& set, const Classifier& class
 void Runner::collect_external(std::size_t v, const CloudSet& set, const ExternalMethod& method) {
   std::vector<Scored> clouds;
   for (const StudyCloud& cloud : set.clouds) {
-    StoredClasses found{.classes = external_classes(method, set.name, cloud)};
+    auto predictions = external_classes(method, set.name, cloud);
+    if (!predictions.note.empty()) note(predictions.note);
+    StoredClasses found{.classes = std::move(predictions.classes)};
     if (found.classes.empty()) {
       note(fmt::format("{} of {} has no classes by {}", cloud.name, set.name, variants()[v].id));
       continue;
@@ -297,11 +303,38 @@ void Runner::collect_external(std::size_t v, const CloudSet& set, const External
     count_agreement(cloud.cloud.labels, found);
     clouds.push_back({&cloud, std::move(found)});
   }
-  if (!clouds.empty()) score({.variant = v, .set = set.name}, set, clouds, true);
+  score({.variant = v, .set = set.name}, set, clouds, true);
+}
+
+void Runner::collect_classic(std::size_t v, const CloudSet& set, const ClassicMethod& method) {
+  const Variant& variant = variants()[v];
+  tell(fmt::format("{}: {} on {}", study_.experiment.name, variant.id, set.name));
+  Result result{.variant = v, .set = set.name};
+  std::vector<Scored> clouds;
+  for (const StudyCloud& cloud : set.clouds) {
+    const std::string key = fmt::format("classic {} {} {}: {}, {}", variant.id, method.settings,
+                                        set.name, cloud.digest, text_of(variant.treatment));
+    auto found = cache_.find_classes(key);
+    if (!found) {
+      found = classify_classic(cloud, set.name, variant.treatment, method, options_.watts_per_core,
+                               progress_);
+      cache_.keep(key, *found);
+      ++study_.classified;
+    }
+    if (!found->failure.empty()) {
+      note(fmt::format("{} of {} is not scored with {}: {}", cloud.name, set.name, variant.id,
+                       found->failure));
+      continue;
+    }
+    result.costs += found->costs;
+    clouds.push_back({&cloud, *std::move(found)});
+  }
+  score(std::move(result), set, clouds, variant.treatment == Treatment());
 }
 
 void Runner::score(Result result, const CloudSet& set, const std::vector<Scored>& clouds,
                    bool keep_classes) {
+  if (clouds.empty()) return;  // a note says why
   std::vector<eval::CloudScore> edge, sharp;
   for (const auto& [cloud, found] : clouds) {
     edge.push_back({cloud->name, found.edge});

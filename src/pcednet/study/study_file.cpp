@@ -36,6 +36,7 @@ Json sets_of(const Study& study) {
 
 const char* family_of(const Method& method) {
   if (std::holds_alternative<ExternalMethod>(method)) return "external";
+  if (std::holds_alternative<ClassicMethod>(method)) return "classic";
   return "network";
 }
 

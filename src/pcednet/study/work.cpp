@@ -119,4 +119,21 @@ StoredClasses CloudWork::classify(const detect::EdgeModel& model) const {
   return stored;
 }
 
+StoredClasses classify_classic(const StudyCloud& cloud, const std::string& set,
+                               const Treatment& treatment, const ClassicMethod& method,
+                               double watts_per_core, const Progress* progress) {
+  StoredClasses stored;
+  try {
+    const PointCloud treated = treat(cloud.cloud, treatment);
+    EnergyMeter meter(watts_per_core);
+    stored.classes = method.classes(treated, set, progress);
+    stored.costs.describe = meter.lap();
+    count_agreement(treated.labels, stored);
+  } catch (const Error& error) {
+    if (error.kind() != ErrorKind::kInsufficient) throw;
+    stored.failure = error.what();
+  }
+  return stored;
+}
+
 }  // namespace pcednet::study

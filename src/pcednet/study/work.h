@@ -65,4 +65,9 @@ class CloudWork {
   detect::DescribedCloud described_ = {};
 };
 
+/// What a method without training finds in the treated cloud of the set.
+StoredClasses classify_classic(const StudyCloud& cloud, const std::string& set,
+                               const Treatment& treatment, const ClassicMethod& method,
+                               double watts_per_core, const Progress* progress);
+
 }  // namespace pcednet::study

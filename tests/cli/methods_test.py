@@ -1,0 +1,64 @@
+"""Methods without a model: covariance analysis, multi-scale surface variation, FEE."""
+import json
+import pathlib
+import shutil
+import unittest
+
+import numpy as np
+
+from support import PROGRAM, CliTest, cube, run, write_ply
+
+HAS_FEE = (pathlib.Path(PROGRAM).parent / "pcednet-fee").exists() or shutil.which("pcednet-fee")
+
+
+class Methods(CliTest):
+    def setUp(self):
+        super().setUp()
+        self.position, normal, label = cube(4000)
+        write_ply(self.folder / "a.ply", self.position, normal, label)
+
+    def scores(self, *arguments):
+        done = run("evaluate", self.folder / "a.ply", *arguments, "--json", "-")
+        return json.loads(done.stdout)["pooled"]
+
+    def test_find_the_edges_of_a_cube(self):
+        for method, least in (("ca", 0.3), ("multi-scale", 0.3)):
+            self.assertGreater(self.scores("--method", method, "--positive", "edge")["mcc"], least)
+
+    def test_thresholds_work_one_way(self):
+        found = [self.scores("--method", "ca", "--threshold", t) for t in ("0.1", "1", "1000")]
+        marked = [f["tp"] + f["fp"] for f in found]
+        self.assertGreater(marked[0], marked[1])
+        self.assertGreater(marked[1], marked[2])
+        self.assertEqual(marked[2], 0)
+
+    def test_refuse_options_of_others(self):
+        for arguments in (("--method", "multi-scale", "--neighbours", "5"),
+                          ("--method", "ca", "--offset-radius", "1"),
+                          ("--method", "ca", "--neighbours", "3"),
+                          ("--method", "ca", "--model", "scan"), ()):
+            run("evaluate", self.folder / "a.ply", *arguments, expect=2)
+
+    def test_classify_without_a_model(self):
+        run("classify", self.folder / "a.ply", "--method", "ca", "-o", self.folder / "b.ply")
+        again = json.loads(run("evaluate", self.folder / "a.ply", "--predictions", self.folder,
+                               "--json", "-").stdout)
+        self.assertEqual(again["clouds"][0]["points"], 4000)
+
+    @unittest.skipUnless(HAS_FEE, "pcednet-fee was not built")
+    def test_fee_agrees_with_its_definition_far_from_edges(self):
+        size = np.ptp(self.position, axis=0).max()
+        radii = ("--offset-radius", size * 0.1, "--convolution-radius", size * 0.05)
+        found = self.scores("--method", "fee", *map(str, radii), "--positive", "edge")
+        self.assertGreater(found["mcc"], 0.3)
+        nothing = self.scores("--method", "fee", *map(str, radii), "--threshold", "0.5")
+        self.assertEqual(nothing["tp"] + nothing["fp"], 0)
+
+    @unittest.skipIf(HAS_FEE, "pcednet-fee was built")
+    def test_fee_says_what_is_missing(self):
+        done = run("evaluate", self.folder / "a.ply", "--method", "fee", expect=4)
+        self.assertIn("CGAL", done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()

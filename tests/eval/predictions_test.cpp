@@ -1,0 +1,84 @@
+#include "pcednet/eval/predictions.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "pcednet/core/error.h"
+#include "pcednet/io/npy.h"
+
+namespace pcednet::eval {
+namespace {
+
+namespace fs = std::filesystem;
+using Classes = std::vector<std::uint8_t>;
+
+class Predicted : public testing::Test {
+ protected:
+  void SetUp() override {
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  fs::path write(const std::string& name, const std::string& text) const {
+    std::ofstream(folder_ / name, std::ios::binary) << text;
+    return folder_ / name;
+  }
+
+  fs::path folder_ =
+      fs::temp_directory_path() / (std::string("pcednet_predictions_") +
+                                   testing::UnitTest::GetInstance()->current_test_info()->name());
+  std::vector<Vec3> positions_ = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}};
+};
+
+TEST_F(Predicted, AClassPerPointInTheOrderOfTheCloud) {
+  EXPECT_EQ(read_predictions(write("a.txt", "0\n1\n2\n-1\n"), positions_).classes,
+            (Classes{0, 1, 2, 255}));
+  EXPECT_EQ(read_predictions(write("a.u8", std::string("\2\0\1\0", 4)), positions_).classes,
+            (Classes{2, 0, 1, 0}));
+  EXPECT_THROW(read_predictions(write("b.u8", "\2"), positions_), Error);
+}
+
+TEST_F(Predicted, ArraysOfClassesOrOfScores) {
+  const auto npy = [&](const std::vector<std::size_t>& shape, const std::vector<float>& values) {
+    io::NpyWriter writer(folder_ / "a.npy", shape, ScalarType::kFloat32, Overwrite::kYes);
+    writer.append(std::span(values));
+    writer.commit();
+    return read_predictions(folder_ / "a.npy", positions_).classes;
+  };
+  EXPECT_EQ(npy({4}, {0, 2, 1, -1}), (Classes{0, 2, 1, 255}));
+  EXPECT_EQ(npy({4, 3}, {.1f, .2f, .7f, 5, 4, 3, 0, 9, 0, 1, 1, 1}), (Classes{2, 0, 1, 0}));
+  EXPECT_EQ(npy({4, 2}, {.9f, .1f, .1f, .9f, 0, 1, 1, 0}), (Classes{0, 2, 2, 0}));
+  EXPECT_THROW(npy({3}, {0, 0, 0}), Error);
+  EXPECT_THROW(npy({4}, {0, .5f, 0, 0}), Error);
+}
+
+TEST_F(Predicted, AnotherSamplingGivesTheLabelOfItsNearestPoint) {
+  const auto file = write("a.ply",
+                          "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\n"
+                          "property float y\nproperty float z\nproperty uchar label\nend_header\n"
+                          "0.1 0 0 2\n-4 0 0 1\n1.2 0 0 0\n2 0.1 0 1\n3 0 0.3 2\n");
+  const Predictions found = read_predictions(file, positions_);
+  EXPECT_EQ(found.classes, (Classes{2, 0, 1, 2}));
+  EXPECT_FALSE(found.note.empty());
+}
+
+TEST_F(Predicted, PointsWithoutLabelsAreOnEdges) {
+  const Predictions found =
+      read_predictions(write("a.xyz", "0.9 0 0\n1.1 0 0\n3.1 0 0\n"), positions_);
+  EXPECT_EQ(found.classes, (Classes{0, 2, 0, 2}));
+  EXPECT_NE(found.note.find("edges"), std::string::npos);
+}
+
+TEST_F(Predicted, AreFoundByTheStemOfTheCloud) {
+  EXPECT_TRUE(find_predictions(folder_, "a").empty());
+  write("a_output.xyz", "");
+  EXPECT_EQ(find_predictions(folder_, "a"), folder_ / "a_output.xyz");
+  write("a.npy", "");
+  EXPECT_EQ(find_predictions(folder_, "a"), folder_ / "a.npy");
+}
+
+}  // namespace
+}  // namespace pcednet::eval
