@@ -2,7 +2,7 @@
 
 import { seriesColour } from "../shared/colours";
 import { h } from "../shared/dom";
-import { linePlot, type Line } from "./lines";
+import { linePlot, type Line } from "../shared/lines";
 import { spreadOf, titleOf, type Epoch, type Study } from "./study";
 
 type Quantity = "loss" | "held_out_loss" | "held_out_mcc";

@@ -1,4 +1,5 @@
 import "../shared/theme.css";
+import "../shared/controls.css";
 import "./style.css";
 import { h } from "../shared/dom";
 import { experimentSection } from "./experiment";

@@ -2,7 +2,7 @@
 
 import { seriesColour } from "../shared/colours";
 import { dropdown, h } from "../shared/dom";
-import { linePlot, type Line } from "./lines";
+import { linePlot, type Line } from "../shared/lines";
 import {
   METRICS, METRIC_NAMES, costOf, positiveName, scoreOf, titleOf, type Group, type Metric, type Spread,
   type Statistic, type Study, type Variant,

@@ -2,7 +2,8 @@
 
 import uPlot from "uplot";
 import "uplot/dist/uPlot.min.css";
-import { h } from "../shared/dom";
+import "./lines.css";
+import { h } from "./dom";
 
 export interface Line {
   name: string;
@@ -64,9 +65,10 @@ function drawErrors(lines: Line[]): uPlot.Plugin {
 const compact = (v: number): string =>
   Math.abs(v) >= 1e6 ? `${v / 1e6}M` : Math.abs(v) >= 1e4 ? `${v / 1e3}k` : String(Number(v.toPrecision(6)));
 
+/** A label of no letters takes no room. */
 function axis(label: string, size: number): uPlot.Axis {
   return {
-    label, labelSize: 20, labelFont: `12px ${css("--sans")}`, font: `11px ${css("--sans")}`, size,
+    label: label || undefined, labelSize: label ? 20 : 0, labelFont: `12px ${css("--sans")}`, font: `11px ${css("--sans")}`, size,
     stroke: css("--ink-2"), grid: { stroke: css("--line"), width: 1 }, ticks: { show: false },
     values: (_, splits) => splits.map((v) => (v === null ? "" : compact(v))),
   };
@@ -88,7 +90,7 @@ function options(plot: LinePlot, width: number): uPlot.Options {
         : [min - 0.03 * (max - min || 1), max + 0.03 * (max - min || 1)] },
       y: { distr: plot.logY ? 3 : 1 },
     },
-    axes: [xAxis, axis(plot.yLabel, 46)],
+    axes: [xAxis, axis(plot.yLabel, plot.yLabel ? 46 : 30)],
     series: [
       { label: plot.xLabel, value: (_, v) => (v === null ? "" : compact(v)) },
       ...plot.lines.map((line): uPlot.Series => ({
@@ -105,7 +107,7 @@ function options(plot: LinePlot, width: number): uPlot.Options {
 
 /** A plot as wide as its place, drawn anew for another width or another theme. */
 export function linePlot(plot: LinePlot): HTMLElement {
-  const place = h("div", { class: "plot", role: "img", "aria-label": `${plot.yLabel} over ${plot.xLabel}` });
+  const place = h("div", { class: "plot", role: "img", "aria-label": plot.yLabel && plot.xLabel ? `${plot.yLabel} over ${plot.xLabel}` : plot.lines.map((line) => line.name).join(", ") });
   let drawn: uPlot | undefined;
   let width = 0;
   const draw = (): void => {

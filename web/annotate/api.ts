@@ -1,0 +1,62 @@
+// Requests to the server that opened this page.
+
+export class ApiError extends Error {
+  constructor(readonly status: number, message: string) {
+    super(message);
+  }
+}
+
+/** The body of an error answer, or the status if it is not one of ours. */
+async function failure(answer: Response): Promise<ApiError> {
+  const text = await answer.text();
+  try {
+    return new ApiError(answer.status, String(JSON.parse(text).error));
+  } catch {
+    return new ApiError(answer.status, `the server answered ${answer.status}`);
+  }
+}
+
+export class Api {
+  /** This window's name at the server; what changes anything needs it. */
+  window = "";
+
+  constructor(private readonly token: string) {}
+
+  private async ask(path: string, options: RequestInit = {}): Promise<Response> {
+    const headers: Record<string, string> = { "X-Pcednet-Token": this.token };
+    if (this.window) headers["X-Window"] = this.window;
+    if (options.body) headers["Content-Type"] = "application/json";
+    const answer = await fetch(path, { ...options, headers, cache: "no-store" });
+    if (!answer.ok) throw await failure(answer);
+    return answer;
+  }
+
+  async get<T>(path: string): Promise<T> {
+    return (await this.ask(path)).json() as Promise<T>;
+  }
+
+  async post<T>(path: string, body: unknown = {}): Promise<T> {
+    return (await this.ask(path, { method: "POST", body: JSON.stringify(body) })).json() as Promise<T>;
+  }
+
+  async bytes(path: string): Promise<ArrayBuffer> {
+    return (await this.ask(path)).arrayBuffer();
+  }
+
+  /** An address that a link or an event source can open. */
+  address(path: string): string {
+    return `${path}${path.includes("?") ? "&" : "?"}token=${encodeURIComponent(this.token)}`;
+  }
+
+  /** Calls `on[name]` for each event; reconnects by itself and then calls `on.open`. */
+  events(on: Record<string, (data: any) => void>): EventSource {
+    const source = new EventSource(this.address("/api/events"));
+    for (const [name, handle] of Object.entries(on)) {
+      source.addEventListener(name, (event) => {
+        const text = (event as MessageEvent).data;
+        handle(text ? JSON.parse(text) : {});
+      });
+    }
+    return source;
+  }
+}

@@ -1,0 +1,115 @@
+// What frames the view: the bar above, the tools beside, words over it.
+
+import { h } from "../shared/dom";
+import type { Client, Saved } from "./client";
+import { isRamp, paletteOf, rampEnds, rampStops, FEATURE_NAMES } from "./colouring";
+import { MODES, type Command } from "./commands";
+import { count, length, share } from "./format";
+import { icon, type IconName } from "./icons";
+import { button } from "./panel";
+import type { AppStore, Tool } from "./store";
+
+const TOOLS: { tool: Tool; icon: IconName; name: string; key: string }[] = [
+  { tool: "brush", icon: "brush", name: "Brush", key: "B" },
+  { tool: "lasso", icon: "lasso", name: "Lasso", key: "L" },
+  { tool: "polygon", icon: "polygon", name: "Polygon", key: "G" },
+  { tool: "navigate", icon: "navigate", name: "Move the view", key: "V" },
+];
+
+/** Runs the command that has a key. */
+export type Press = (key: string) => void;
+
+export const presser = (commands: Command[]): Press => (key) => commands.find((c) => c.keys.includes(key))?.run();
+
+function iconButton(name: IconName, label: string, key: string, press: Press): HTMLButtonElement {
+  return h("button", { type: "button", class: "tool", title: `${label} (${key})`, "aria-label": label, "aria-keyshortcuts": key.replace("Ctrl", "Control"),
+    onclick: () => press(key) }, icon(name));
+}
+
+export function toolbar(store: AppStore, press: Press): HTMLElement {
+  const tools = TOOLS.map((tool) => ({ ...tool, button: iconButton(tool.icon, tool.name, tool.key, press) }));
+  const undo = iconButton("undo", "Undo", "Ctrl+Z", press);
+  const redo = iconButton("redo", "Redo", "Ctrl+Shift+Z", press);
+  const clip = iconButton("box", "Clipping box", "C", press);
+  store.watch(["tool"], () => tools.forEach(({ tool, button: b }) => b.setAttribute("aria-pressed", String(tool === store.now.tool))));
+  store.watch(["clip"], () => clip.setAttribute("aria-pressed", String(store.now.clip?.on ?? false)));
+  store.watch(["undo", "redo", "writer"], () => {
+    undo.disabled = store.now.undo === 0 || !store.now.writer;
+    redo.disabled = store.now.redo === 0 || !store.now.writer;
+  });
+  return h("div", { class: "toolbar", role: "toolbar", "aria-label": "Tools", "aria-orientation": "vertical" },
+    ...tools.map((tool) => tool.button), h("hr", {}), undo, redo, h("hr", {}),
+    iconButton("fit", "Show all", "F", press), clip, iconButton("camera", "Screenshot", "Shift+S", press),
+    iconButton("help", "Keys", "?", press));
+}
+
+export function header(store: AppStore, save: (what: Saved) => void, client: Client): HTMLElement {
+  const name = h("h1", {}, "pcednet");
+  const facts = h("p", { class: "facts" });
+  store.watch(["session"], () => {
+    const { session } = store.now;
+    if (!session) return;
+    document.title = `${session.name} · pcednet`;
+    name.textContent = session.name;
+    name.title = session.file;
+    facts.textContent = `${count(session.points)} points${session.normals === "estimated" ? " · normals estimated" : ""}`;
+  });
+  const saves = (["project", "model", "cloud"] as Saved[]).map((what) => button(`Save ${what}`, () => save(what)));
+  const links = (["project", "model", "cloud"] as Saved[]).map((what) => h("a", { href: "#", onclick: (e: Event) => {
+    (e.currentTarget as HTMLAnchorElement).href = client.downloadAddress(what); // now: it holds the token
+  }, download: "" }, what));
+  store.watch(["saving", "writer", "progress", "runs"], () => saves.forEach((b, i) => {
+    b.disabled = store.now.saving || !store.now.writer || store.now.progress !== null || (i === 1 && store.now.runs.length === 0);
+  }));
+  return h("header", {}, h("div", { class: "file" }, name, facts),
+    h("div", { class: "saves" }, ...saves,
+      h("details", { class: "more" }, h("summary", {}, "Download"), h("div", {}, ...links))));
+}
+
+/** What the colours mean. */
+export function legend(store: AppStore): HTMLElement {
+  const element = h("div", { class: "legend" });
+  store.watch(["mode", "feature", "scale", "safePalette", "session", "paintOnTop"], () => {
+    const { mode, session, feature, scale } = store.now;
+    let title = MODES.find((m) => m.mode === mode)!.name;
+    if (mode === "feature" && session) {
+      const name = session.features[feature];
+      title = `${FEATURE_NAMES[name] ?? name}, radius ${length(session.scales[scale] ?? 0)}`;
+    }
+    element.replaceChildren(h("b", {}, title));
+    if (isRamp(mode)) {
+      const bar = h("span", { class: "ramp" });
+      bar.style.background = `linear-gradient(to right, ${rampStops(store.now).join(", ")})`;
+      const [low, high] = rampEnds(store.now);
+      element.append(h("span", { class: "scale" }, low, bar, high));
+    } else if (mode === "labels" || mode === "prediction") {
+      element.append(...paletteOf(store.now).map(({ name, colour }) => {
+        const swatch = h("span", { class: "swatch" });
+        swatch.style.background = colour;
+        return h("span", { class: "entry" }, swatch, name);
+      }));
+    }
+  });
+  return element;
+}
+
+/** Loading, another window, a lost connection. */
+export function curtain(store: AppStore, client: Client): HTMLElement {
+  const bar = h("progress", { max: 1 });
+  const stage = h("p", {});
+  const loading = h("div", { class: "loading", role: "status" }, stage, bar);
+  const other = h("div", { class: "banner" }, h("span", {}, "Another window paints this cloud; here you can look. "),
+    button("Take over", () => client.takeOver()));
+  const lost = h("div", { class: "banner", role: "alert" }, "The connection to pcednet is lost. Trying again; is it still running?");
+  store.watch(["progress", "writer", "connected"], () => {
+    const { progress, writer, connected } = store.now;
+    loading.hidden = progress === null;
+    other.hidden = writer || progress !== null || !connected;
+    lost.hidden = connected;
+    if (progress) {
+      stage.textContent = `${progress.stage} ${progress.fraction > 0 ? share(progress.fraction) : ""}`;
+      bar.value = progress.fraction;
+    }
+  });
+  return h("div", { class: "curtain" }, loading, other, lost);
+}

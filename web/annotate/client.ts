@@ -1,0 +1,208 @@
+// Keeps the page's state in step with the server's.
+
+import { ApiError, type Api } from "./api";
+import { boxDiagonal } from "./geometry";
+import type { Stage } from "./stage";
+import type { AppStore } from "./store";
+import type { Painted, PredictionEvent, Run, Session, Settings, Stroke, TrainingEvent, Uncertain } from "./types";
+import { WorkQueue } from "./work";
+
+export type Saved = "cloud" | "model" | "project";
+
+export interface Words {
+  say(text: string): void;
+  warn(text: string): void;
+}
+
+export class Client {
+  private readonly queue: WorkQueue;
+  private events: EventSource | null = null;
+  private opened = false;
+  stage!: Stage;
+
+  constructor(private readonly api: Api, private readonly store: AppStore, private readonly words: Words) {
+    this.queue = new WorkQueue(api, {
+      painted: (answer) => this.takePainted(answer),
+      failed: (error) => {
+        this.words.warn(`The stroke was not applied: ${error.message}`);
+        this.stage.loader.refresh("labels");
+      },
+      idle: () => this.stage.loader.resume(),
+    });
+  }
+
+  get isBusy(): boolean {
+    return this.queue.isBusy;
+  }
+
+  /** Opens this window at the server; reports what goes wrong. */
+  async start(): Promise<void> {
+    const { window: name, writer } = await this.api.post<{ window: string; writer: boolean }>("/api/window");
+    this.api.window = name;
+    this.store.set({ writer });
+    this.listen();
+    await this.refresh();
+  }
+
+  private listen(): void {
+    const { store } = this;
+    this.events = this.api.events({
+      progress: ({ stage, fraction }) => { if (!this.opened) store.set({ progress: { stage, fraction } }); },
+      ready: () => this.attempt(this.refresh()),
+      labels: (answer: Painted) => this.takePainted(answer),
+      training: (event: TrainingEvent) => this.takeTraining(event),
+      prediction: (event: PredictionEvent) => this.attempt(this.takePrediction(event)),
+      writer: ({ window: name }) => store.set({ writer: name === this.api.window }),
+      problem: ({ message }) => {
+        if (store.now.training?.active) store.set({ training: { ...store.now.training, active: false } });
+        this.words.warn(message);
+      },
+    });
+    this.events.addEventListener("error", () => store.set({ connected: false }));
+    this.events.addEventListener("open", () => {
+      if (store.now.connected) return;
+      store.set({ connected: true });
+      this.attempt(this.refresh());
+      this.stage.loader.refresh("labels");
+      if (store.now.runs.length > 0) this.stage.loader.refresh("prediction");
+    });
+  }
+
+  /** The session as it is now; the first time that it is ready, the cloud too. */
+  private async refresh(): Promise<void> {
+    const session = await this.api.get<Session>("/api/session");
+    const { store } = this;
+    store.set({
+      session, settings: session.settings, undo: session.undo, redo: session.redo,
+      counts: [0, 1, 2].map((id) => session.classes.find((c) => c.id === id)?.count ?? 0) as [number, number, number],
+    });
+    if (session.state !== "ready") return;
+    const runs = await this.api.get<Run[]>("/api/runs");
+    store.set({ runs, progress: null });
+    if (this.opened) return;
+    this.opened = true;
+    const predicted = session.prediction_version > 0 && session.run !== null;
+    store.set({
+      radius: Math.max(session.spacing * 6, boxDiagonal(session.bounds) * 0.008),
+      mode: predicted ? "prediction" : session.has_colours ? "rgb" : "labels",
+      scale: Math.floor(session.scales.length / 2),
+    });
+    this.stage.open(session, predicted);
+  }
+
+  private attempt(work: Promise<unknown>): void {
+    work.catch((error: Error) => this.words.warn(error.message));
+  }
+
+  private takePainted(answer: Painted): void {
+    this.store.set({ counts: answer.counts, undo: answer.undo, redo: answer.redo });
+    this.stage.loader.refresh("labels", answer.nodes);
+  }
+
+  private takeTraining(event: TrainingEvent): void {
+    const old = this.store.now.training;
+    const same = old !== null && old.active && old.run === event.run && event.epoch > (old.epoch.at(-1) ?? 0);
+    const before = same ? old : { epoch: [], loss: [], accuracy: [] };
+    this.store.set({ training: {
+      run: event.run, active: true, epochs: event.epochs,
+      epoch: [...before.epoch, event.epoch],
+      loss: [...before.loss, event.loss],
+      accuracy: [...before.accuracy, event.held_out_accuracy],
+    } });
+  }
+
+  private async takePrediction(event: PredictionEvent): Promise<void> {
+    const { store } = this;
+    const first = store.now.predicted === null && store.now.runs.length === 0;
+    if (store.now.training) store.set({ training: { ...store.now.training, active: false } });
+    store.set({ predicted: event.counts, uncertain: null });
+    this.stage.loader.refresh("prediction");
+    if (["confidence", "p_sharp"].includes(store.now.mode)) this.stage.loader.refresh("values");
+    if (first && ["labels", "rgb"].includes(store.now.mode)) store.set({ mode: "prediction" });
+    store.set({ runs: await this.api.get<Run[]>("/api/runs") });
+  }
+
+  paint(stroke: Stroke): void {
+    this.queue.stroke(stroke);
+  }
+
+  undo(): void {
+    if (this.store.now.undo > 0 || this.isBusy) this.queue.undo();
+  }
+
+  redo(): void {
+    if (this.store.now.redo > 0 || this.isBusy) this.queue.redo();
+  }
+
+  setSettings(changes: Partial<Settings>): void {
+    const before = this.store.now.settings;
+    const wanted = { ...before, ...changes };
+    this.store.set({ settings: wanted });
+    this.attempt(this.api.post<Settings>("/api/settings", wanted)
+      .then((settings) => this.store.set({ settings }))
+      .catch((error: Error) => {
+        this.store.set({ settings: before });
+        throw error;
+      }));
+  }
+
+  train(): void {
+    this.attempt(this.api.post("/api/train"));
+  }
+
+  cancel(): void {
+    const { training } = this.store.now;
+    if (training) this.store.set({ training: { ...training, active: false } });
+    this.attempt(this.api.post("/api/cancel"));
+  }
+
+  restore(run: number): void {
+    this.attempt(this.api.post(`/api/runs/${run}/restore`).then(async () => {
+      this.store.set({ runs: await this.api.get<Run[]>("/api/runs") });
+    }));
+  }
+
+  takeOver(): void {
+    this.attempt(this.api.post(`/api/window/${this.api.window}/take`).then(() => this.store.set({ writer: true })));
+  }
+
+  /** The next place where the network is unsure, round to the first after the last. */
+  async nextUncertain(): Promise<Uncertain | null> {
+    const last = this.store.now.uncertain;
+    const after = last && last.rank < last.of ? last.rank : 0;
+    try {
+      const place = await this.api.get<Uncertain>(`/api/uncertain?after=${after}`);
+      this.store.set({ uncertain: place });
+      return place;
+    } catch (error) {
+      this.words.warn((error as Error).message);
+      return null;
+    }
+  }
+
+  /** The path it went to; null if refused. `confirm` is asked before an older file of ours is replaced. */
+  async save(what: Saved, confirm: (words: string) => Promise<boolean>): Promise<string | null> {
+    this.store.set({ saving: true });
+    try {
+      return (await this.api.post<{ path: string }>("/api/save", { what })).path;
+    } catch (error) {
+      const taken = error instanceof ApiError && error.status === 409 && this.store.now.writer;
+      if (!taken || !(await confirm((error as Error).message))) {
+        if (!taken) this.words.warn((error as Error).message);
+        return null;
+      }
+      return await this.api.post<{ path: string }>("/api/save", { what, overwrite: true }).then(
+        ({ path }) => path,
+        (problem: Error) => {
+          this.words.warn(problem.message);
+          return null;
+        });
+    } finally {
+      this.store.set({ saving: false });
+    }
+  }
+
+  downloadAddress(what: Saved): string {
+    return this.api.address(`/api/download/${what}`);
+  }
+}

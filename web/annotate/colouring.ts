@@ -1,0 +1,52 @@
+// From what the page is set to show to what the points look like.
+
+import { CLASS_PALETTES, type Meaning } from "../shared/colours";
+import type { Appearance } from "./painter";
+import { rampBytes, STOPS, type RampName } from "./ramp";
+import { activeClip, type ColourMode, type State } from "./store";
+import { NO_CLASS } from "./types";
+
+export const paletteOf = (state: Pick<State, "safePalette">): Meaning[] => CLASS_PALETTES[state.safePalette ? "safe" : "paper"];
+
+/** The colour a tool paints with; the eraser's is that of no label. */
+export const paintColour = (state: Pick<State, "safePalette" | "paintClass">): string =>
+  paletteOf(state)[state.paintClass === NO_CLASS ? 3 : state.paintClass].colour;
+
+/** What a feature of the method is called. */
+export const FEATURE_NAMES: Record<string, string> = {
+  tau: "τ, local relief", kappa: "κ, mean curvature", phi: "φ, fitness of the sphere",
+  dtau: "∂τ, change of relief with scale", dkappa: "∂κ, change of curvature with scale", dphi: "∂φ, change of fitness with scale",
+};
+
+export const isRamp = (mode: ColourMode): boolean => ["confidence", "p_sharp", "feature"].includes(mode);
+
+export function rampOf({ mode, safePalette }: State): RampName {
+  if (mode === "feature") return "signed";
+  if (mode === "confidence") return "sure";
+  return safePalette ? "likely-safe" : "likely";
+}
+
+/** The server's values that a mode needs, as a query. */
+export function valuesQuery({ mode, feature, scale }: State): string | null {
+  if (mode === "feature") return `of=feature&feature=${feature}&scale=${scale}`;
+  return isRamp(mode) ? `of=${mode}` : null;
+}
+
+export function appearanceOf(state: State, background: string): Appearance {
+  const { mode } = state;
+  return {
+    mode: mode === "confidence" || mode === "p_sharp" || mode === "feature" ? "ramp" : mode,
+    paintOnTop: state.paintOnTop, palette: paletteOf(state).map((meaning) => meaning.colour),
+    ramp: rampBytes(rampOf(state)), hidden: state.hidden, clip: activeClip(state),
+    pointSize: state.pointSize, background,
+  };
+}
+
+/** What the ends of the present ramp mean. */
+export function rampEnds({ mode }: State): [string, string] {
+  if (mode === "confidence") return ["unsure", "sure"];
+  if (mode === "p_sharp") return ["0", "1"];
+  return ["low", "high"];
+}
+
+export const rampStops = (state: State): string[] => STOPS[rampOf(state)];

@@ -1,0 +1,182 @@
+// Everything the page can do, each with a name and keys; the help is made of this list.
+
+import type { Brush } from "./brush";
+import type { Client } from "./client";
+import type { Outline } from "./outline";
+import type { Pointer } from "./pointer";
+import type { Stage } from "./stage";
+import { NO_CLASS } from "./types";
+import type { AppStore, ColourMode, Tool } from "./store";
+
+export interface Command {
+  /** As `Ctrl+Shift+Z`; the first is shown on buttons. */
+  keys: string[];
+  name: string;
+  group: "Tools" | "Classes" | "View" | "Colours" | "Training" | "File";
+  run(): void;
+}
+
+/** What commands act on. */
+export interface Hands {
+  store: AppStore;
+  stage: Stage;
+  client: Client;
+  brush: Brush;
+  outline: Outline;
+  pointer: Pointer;
+  toggleClip(): void;
+  nextUncertain(): void;
+  save(): void;
+  screenshot(): void;
+  help(): void;
+}
+
+export const MODES: { mode: ColourMode; name: string }[] = [
+  { mode: "rgb", name: "its own colours" },
+  { mode: "normals", name: "normals" },
+  { mode: "labels", name: "painted labels" },
+  { mode: "prediction", name: "prediction" },
+  { mode: "confidence", name: "confidence" },
+  { mode: "p_sharp", name: "probability of sharp" },
+  { mode: "feature", name: "feature" },
+];
+
+/** The modes that this cloud has. */
+export function modesOf({ now }: AppStore): ColourMode[] {
+  return MODES.map(({ mode }) => mode).filter((mode) => mode !== "rgb" || now.session?.has_colours);
+}
+
+export function toggled(set: ReadonlySet<number>, item: number): Set<number> {
+  const copy = new Set(set);
+  if (!copy.delete(item)) copy.add(item);
+  return copy;
+}
+
+const TURN = 0.12;
+const SLIDE = 60;
+
+function viewCommands({ stage: { camera }, toggleClip }: Hands): Command[] {
+  const command = (keys: string[], name: string, run: () => void): Command => ({ keys, name, group: "View", run });
+  return [
+    command(["F", "Home"], "show all of the cloud", () => camera.fit(true)),
+    command(["ArrowLeft"], "turn left", () => camera.turn(-TURN, 0, camera.target)),
+    command(["ArrowRight"], "turn right", () => camera.turn(TURN, 0, camera.target)),
+    command(["ArrowUp"], "turn up", () => camera.turn(0, -TURN, camera.target)),
+    command(["ArrowDown"], "turn down", () => camera.turn(0, TURN, camera.target)),
+    command(["Shift+ArrowLeft"], "slide left", () => camera.slide(-SLIDE, 0, camera.target)),
+    command(["Shift+ArrowRight"], "slide right", () => camera.slide(SLIDE, 0, camera.target)),
+    command(["Shift+ArrowUp"], "slide up", () => camera.slide(0, -SLIDE, camera.target)),
+    command(["Shift+ArrowDown"], "slide down", () => camera.slide(0, SLIDE, camera.target)),
+    command(["+", "="], "come nearer", () => camera.approach(1 / 1.2, camera.target)),
+    command(["-"], "go back", () => camera.approach(1.2, camera.target)),
+    command(["R"], "roll", () => camera.roll(Math.PI / 12)),
+    command(["C"], "clipping box", toggleClip),
+  ];
+}
+
+function toolCommands({ store, brush, outline, pointer, client }: Hands): Command[] {
+  const command = (keys: string[], name: string, run: () => void): Command => ({ keys, name, group: "Tools", run });
+  const tool = (key: string, name: string, wanted: Tool): Command =>
+    command([key], name, () => {
+      outline.cancel();
+      store.set({ tool: wanted });
+    });
+  return [
+    tool("B", "brush", "brush"),
+    tool("L", "lasso", "lasso"),
+    tool("G", "polygon: a click a corner, Enter ends it", "polygon"),
+    tool("V", "turn the view with the left button", "navigate"),
+    command(["["], "smaller brush", () => brush.grow(1 / 1.2)),
+    command(["]"], "larger brush", () => brush.grow(1.2)),
+    command(["Enter"], "paint at the middle of the view; close the polygon", () =>
+      outline.isOpen ? outline.close() : pointer.dab()),
+    command(["Backspace"], "take the polygon's last corner back", () => outline.shorten()),
+    command(["P"], "protect what is painted", () => store.set({ protect: !store.now.protect })),
+    command(["X"], "lasso and polygon: front only", () => store.set({ frontOnly: !store.now.frontOnly })),
+    command(["Ctrl+Z"], "undo the last stroke", () => client.undo()),
+    command(["Ctrl+Shift+Z", "Ctrl+Y"], "redo", () => client.redo()),
+  ];
+}
+
+function classCommands({ store }: Hands): Command[] {
+  const command = (keys: string[], name: string, run: () => void): Command => ({ keys, name, group: "Classes", run });
+  const paint = (id: number) => (): void => {
+    if (id !== 1 || store.now.settings.classes === 3) store.set({ paintClass: id });
+  };
+  const hide = (id: number) => (): void => store.set({ hidden: toggled(store.now.hidden, id) });
+  return [
+    command(["1"], "paint non-edge", paint(0)),
+    command(["2"], "paint smooth edge", paint(1)),
+    command(["3"], "paint sharp edge", paint(2)),
+    command(["E", "0"], "erase", paint(NO_CLASS)),
+    command(["Shift+1"], "hide or show non-edge", hide(0)),
+    command(["Shift+2"], "hide or show smooth edge", hide(1)),
+    command(["Shift+3"], "hide or show sharp edge", hide(2)),
+  ];
+}
+
+function colourCommands({ store }: Hands): Command[] {
+  const command = (keys: string[], name: string, run: () => void): Command => ({ keys, name, group: "Colours", run });
+  const step = (by: number): void => {
+    const modes = modesOf(store);
+    store.set({ mode: modes[(modes.indexOf(store.now.mode) + by + modes.length) % modes.length] });
+  };
+  const scale = (by: number): void => {
+    const count = store.now.session?.scales.length ?? 1;
+    store.set({ scale: Math.min(Math.max(store.now.scale + by, 0), count - 1) });
+  };
+  const size = (factor: number): void =>
+    store.set({ pointSize: Math.min(Math.max(store.now.pointSize * factor, 0.3), 6) });
+  return [
+    command(["M"], "next colouring", () => step(1)),
+    command(["Shift+M"], "previous colouring", () => step(-1)),
+    command([","], "feature at a smaller scale", () => scale(-1)),
+    command(["."], "feature at a larger scale", () => scale(1)),
+    command(["O"], "painted points on top or not", () => store.set({ paintOnTop: !store.now.paintOnTop })),
+    command(["{"], "smaller points", () => size(1 / 1.15)),
+    command(["}"], "larger points", () => size(1.15)),
+  ];
+}
+
+export function commandsOf(hands: Hands): Command[] {
+  const { client, outline, store } = hands;
+  const command = (keys: string[], name: string, group: Command["group"], run: () => void): Command => ({ keys, name, group, run });
+  return [
+    ...toolCommands(hands), ...classCommands(hands), ...viewCommands(hands), ...colourCommands(hands),
+    command(["N"], "go to the next uncertain place", "Training", hands.nextUncertain),
+    command(["T"], "train now", "Training", () => client.train()),
+    command(["Escape"], "cancel an outline or the training", "Training", () => {
+      if (outline.isOpen) outline.cancel();
+      else if (store.now.training?.active) client.cancel();
+    }),
+    command(["Ctrl+S"], "save the project", "File", hands.save),
+    command(["Shift+S"], "screenshot", "File", hands.screenshot),
+    command(["?"], "this list", "File", hands.help),
+  ];
+}
+
+/** The name of a key event as the commands spell it. */
+export function spell(event: { key: string; code: string; ctrlKey: boolean; metaKey: boolean; shiftKey: boolean }): string {
+  const { key, code, ctrlKey, metaKey, shiftKey } = event;
+  const digit = /^Digit(\d)$/.exec(code); // Shift+1 is `!` on one keyboard, 1 on another
+  const word = shiftKey && digit ? digit[1] : key.length === 1 ? key.toUpperCase() : key;
+  const shifts = shiftKey && (/^[A-Z0-9]$/.test(word) || key.length > 1);
+  return `${ctrlKey || metaKey ? "Ctrl+" : ""}${shifts ? "Shift+" : ""}${word}`;
+}
+
+/** Runs commands by keys, except where keys belong to a control. */
+export function bindKeys(commands: Command[], isBlocked: () => boolean): void {
+  const byKey = new Map(commands.flatMap((command) => command.keys.map((key) => [key, command] as const)));
+  addEventListener("keydown", (event) => {
+    const at = event.target as HTMLElement;
+    const name = spell(event);
+    const command = byKey.get(name);
+    if (!command || isBlocked() || event.altKey) return;
+    if (at.matches("select, input[type=text], input[type=number]") && !name.startsWith("Ctrl+")) return;
+    if (at.matches("input") && name.includes("Arrow")) return;
+    if (at.matches("input[type=range]") && name === "Home") return;
+    if (at.matches("button, summary, a, input") && ["Enter", "Backspace"].includes(name)) return;
+    event.preventDefault();
+    command.run();
+  });
+}

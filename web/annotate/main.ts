@@ -1,0 +1,121 @@
+import "../shared/theme.css";
+import "../shared/controls.css";
+import "./style.css";
+import { h } from "../shared/dom";
+import { Api } from "./api";
+import { Brush } from "./brush";
+import { curtain, header, legend, presser, toolbar } from "./chrome";
+import { Client, type Saved } from "./client";
+import { appearanceOf, paintColour, valuesQuery } from "./colouring";
+import { bindKeys, commandsOf } from "./commands";
+import { Outline } from "./outline";
+import { Overlay } from "./overlay";
+import { classesPanel } from "./panel_classes";
+import { runsPanel, trainingPanel, uncertainPanel } from "./panel_training";
+import { boxAround, clipPanel, toggledClip, viewPanel } from "./panel_view";
+import { Pointer } from "./pointer";
+import { Stage } from "./stage";
+import { activeClip, initialState, Store, type State } from "./store";
+import { ask, helpDialog, Notices } from "./words";
+
+const css = (name: string): string => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+
+function open(page: HTMLElement): void {
+  const store = new Store<State>(initialState);
+  const api = new Api(new URLSearchParams(location.search).get("token") ?? "");
+  const notices = new Notices();
+  const client = new Client(api, store, notices);
+  const canvas = h("canvas", { tabindex: 0, role: "application",
+    "aria-label": "The cloud. Arrow keys turn it, Shift and arrow keys slide it, Enter paints at its middle; question mark lists all keys." });
+  const place = h("main", { class: "stage" }, canvas);
+  const stage: Stage = new Stage(canvas, api, {
+    moved: () => {
+      overlay.follow();
+      pointer.hoverSoon();
+    },
+    failed: (error) => notices.warn(error.message),
+    isPainting: () => brush.isDown || client.isBusy,
+  });
+  client.stage = stage;
+  const overlay: Overlay = new Overlay(stage);
+  const brush: Brush = new Brush(stage, store, client);
+  const outline = new Outline(stage, store, client, overlay);
+  const pointer: Pointer = new Pointer(stage, store, brush, outline, overlay, {
+    refused: () => notices.warn("Another window paints this cloud. Take over to paint here."),
+    colour: () => paintColour(store.now),
+  });
+
+  const save = async (what: Saved): Promise<void> => {
+    const path = await client.save(what, (problem) => ask(`${problem}. Replace the file?`, "Replace"));
+    if (path) notices.say(`Saved ${path}`);
+  };
+  const screenshot = async (): Promise<void> => {
+    const blob = await stage.picture();
+    if (!blob) return;
+    const address = URL.createObjectURL(blob);
+    h("a", { href: address, download: `${store.now.session?.name ?? "cloud"}.png` }).click();
+    window.setTimeout(() => URL.revokeObjectURL(address), 10_000);
+  };
+  const nextUncertain = async (): Promise<void> => {
+    const place = await client.nextUncertain();
+    const { session } = store.now;
+    if (!place || !session) return;
+    stage.camera.visit(place.position, place.normal, Math.max(session.scales.at(-1)! * 6, session.spacing * 40));
+    overlay.setMark(place.position);
+  };
+  const commands = commandsOf({
+    store, stage, client, brush, outline, pointer,
+    toggleClip: () => store.set({ clip: toggledClip(store.now) }),
+    nextUncertain: () => void nextUncertain(),
+    save: () => void save("project"),
+    screenshot: () => void screenshot(),
+    help: () => help.showModal(),
+  });
+  const help = helpDialog(commands);
+  const press = presser(commands);
+  bindKeys(commands, () => document.querySelector("dialog[open]") !== null || store.now.progress !== null);
+  bindSpace(pointer);
+
+  place.append(overlay.element, legend(store), curtain(store, client), notices.element);
+  page.replaceChildren(
+    header(store, (what) => void save(what), client),
+    toolbar(store, press),
+    place,
+    h("aside", { "aria-label": "Settings" },
+      classesPanel(store, brush), viewPanel(store), trainingPanel(store, client),
+      uncertainPanel(store, () => void nextUncertain()), clipPanel(store, () => store.now.session && boxAround(stage.camera.target, store.now.session.bounds)),
+      runsPanel(store, client)),
+    help);
+
+  store.watch(["mode", "paintOnTop", "safePalette", "hidden", "clip", "pointSize"], () =>
+    stage.setAppearance(appearanceOf(store.now, css("--stage"))));
+  store.watch(["mode", "feature", "scale"], () => stage.loader.setValues(valuesQuery(store.now)));
+  store.watch(["clip"], () => overlay.setClip(activeClip(store.now)));
+  store.watch(["uncertain"], () => { if (!store.now.uncertain) overlay.setMark(null); });
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () =>
+    stage.setAppearance(appearanceOf(store.now, css("--stage"))));
+  client.start().catch((error: Error) => {
+    store.set({ progress: { stage: `Cannot open the cloud: ${error.message}.`, fraction: 0 } });
+  });
+  Object.assign(window, { annotator: { store, stage, client } }); // for tests and the curious
+}
+
+/** The space bar, held, lets the left button turn the view. */
+function bindSpace(pointer: Pointer): void {
+  const set = (held: boolean) => (event: KeyboardEvent): void => {
+    if (event.code !== "Space" || (event.target as HTMLElement).matches("button, input, select, summary, a")) return;
+    event.preventDefault();
+    pointer.spaceHeld = held;
+    pointer.hoverSoon();
+  };
+  addEventListener("keydown", set(true));
+  addEventListener("keyup", set(false));
+}
+
+const page = document.getElementById("page")!;
+try {
+  open(page);
+} catch (error) {
+  console.error(error);
+  page.textContent = "The cloud cannot be drawn: this browser offers no WebGL 2.";
+}

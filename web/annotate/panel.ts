@@ -1,0 +1,39 @@
+// Parts of the side panel.
+
+import { h, type Child } from "../shared/dom";
+
+/** A section with a heading, which folds. */
+export function section(title: string, open: boolean, ...children: Child[]): HTMLElement {
+  return h("details", { class: "section", open }, h("summary", {}, h("h2", {}, title)), ...children);
+}
+
+/** A labelled check box that follows the state. */
+export function checkbox(label: string, key: string, onChange: (on: boolean) => void): { element: HTMLElement; set(on: boolean): void } {
+  const box = h("input", { type: "checkbox", onchange: () => onChange(box.checked) });
+  return {
+    element: h("label", { class: "check" }, box, h("span", {}, label), key && h("kbd", {}, key)),
+    set: (on) => { box.checked = on; },
+  };
+}
+
+export interface Slider {
+  element: HTMLElement;
+  set(value: number, text: string): void;
+}
+
+/** A labelled slider with its value in words beside it. */
+export function slider(label: string, min: number, max: number, step: number, onInput: (value: number) => void): Slider {
+  const input = h("input", { type: "range", min, max, step, oninput: () => onInput(Number(input.value)) });
+  const words = h("output", {});
+  return {
+    element: h("label", { class: "range" }, h("span", {}, label), input, words),
+    set: (value, text) => {
+      input.value = String(value);
+      input.setAttribute("aria-valuetext", text);
+      words.textContent = text;
+    },
+  };
+}
+
+export const button = (label: string, onClick: () => void, key = "", kind = "plain"): HTMLButtonElement =>
+  h("button", { type: "button", class: kind, onclick: onClick }, label, key && h("kbd", {}, key));

@@ -1,0 +1,113 @@
+// Training: what it begins from, how it goes, what it was before.
+
+import { dropdown, h, segmented } from "../shared/dom";
+import { linePlot } from "../shared/lines";
+import type { Client } from "./client";
+import { count, percent, seconds } from "./format";
+import { button, checkbox, section } from "./panel";
+import type { AppStore } from "./store";
+import type { Run, Start } from "./types";
+
+const STARTS: { value: Start; label: string }[] = [
+  { value: "random", label: "nothing" },
+  { value: "scan", label: "model scan" },
+  { value: "cad", label: "model cad" },
+  { value: "worn", label: "model worn" },
+];
+
+/** Loss and accuracy by epoch. */
+function curves(store: AppStore): HTMLElement {
+  const place = h("div", { class: "curves" });
+  let drawn = 0;
+  const draw = (): void => {
+    drawn = 0;
+    const { training } = store.now;
+    place.hidden = !training || training.epoch.length < 2;
+    if (place.hidden || !training) return;
+    place.replaceChildren(linePlot({
+      x: training.epoch, height: 104, xLabel: "", yLabel: "", lines: [
+        { name: "loss", colour: "#8b8f97", y: training.loss, dashed: true },
+        { name: "held-out accuracy", colour: "#b5342b", y: training.accuracy },
+      ],
+    }));
+  };
+  store.watch(["training"], () => {
+    if (!drawn) drawn = window.setTimeout(draw, 100);
+  });
+  return place;
+}
+
+/** How the training stands, in one line. */
+function summary(store: AppStore): string {
+  const { training, runs, counts, settings } = store.now;
+  const last = runs.find((run) => run.current);
+  if (training?.active) return `Run ${training.run}: epoch ${training.epoch.at(-1)} of ${training.epochs}`;
+  if (last) {
+    const held = last.held_out_accuracy === null ? "" : `, ${percent(last.held_out_accuracy)} of held-out points right`;
+    return `Run ${last.run}${held}; ${seconds(last.seconds_train + last.seconds_classify)}`;
+  }
+  const lacking = counts.filter((n, id) => n > 0 && (id !== 1 || settings.classes === 3)).length < 2;
+  return lacking ? "Paint at least two classes; training starts by itself." : "Not trained yet.";
+}
+
+export function trainingPanel(store: AppStore, client: Client): HTMLElement {
+  const words = h("p", { class: "summary", role: "status" });
+  const bar = h("progress", { max: 1, "aria-label": "Training" });
+  const train = button("Train now", () => client.train(), "T");
+  const cancel = button("Cancel", () => client.cancel(), "Esc");
+  const auto = checkbox("Train after each stroke", "", (on) => client.setSettings({ auto: on }));
+  const classes = h("div", { class: "row" });
+  const start = h("div", { class: "row" });
+  store.watch(["training", "runs", "counts", "settings"], () => {
+    const { training } = store.now;
+    const active = training?.active ?? false;
+    words.textContent = summary(store);
+    bar.hidden = cancel.hidden = !active;
+    train.hidden = active;
+    if (training) bar.value = (training.epoch.at(-1) ?? 0) / Math.max(training.epochs, 1);
+  });
+  store.watch(["settings"], () => {
+    const { settings } = store.now;
+    auto.set(settings.auto);
+    classes.replaceChildren(segmented("Classes", [{ value: 2, label: "sharp or not" }, { value: 3, label: "smooth too" }],
+      settings.classes, (chosen) => client.setSettings({ classes: chosen as 2 | 3 })));
+    start.replaceChildren(dropdown("Begin with", STARTS, settings.start, (chosen) => client.setSettings({ start: chosen })));
+  });
+  return section("Training", true, words, bar, curves(store), h("div", { class: "buttons" }, train, cancel),
+    auto.element, classes, start);
+}
+
+export function uncertainPanel(store: AppStore, next: () => void): HTMLElement {
+  const words = h("p", { class: "summary", role: "status" });
+  store.watch(["uncertain", "runs"], () => {
+    const { uncertain: place, runs } = store.now;
+    words.textContent = place
+      ? `Place ${count(place.rank)} of ${count(place.of)}: ${percent(place.confidence)} sure. Paint here what it is.`
+      : runs.length > 0 ? "Goes where the network knows least: paint there." : "After the first training: where to paint next.";
+  });
+  return section("Uncertain places", true, words, h("div", { class: "buttons" }, button("Next place", next, "N")));
+}
+
+function runRow(run: Run, client: Client): HTMLElement {
+  const held = run.held_out_accuracy === null ? "–" : percent(run.held_out_accuracy);
+  return h("tr", { class: run.current && "current" },
+    h("th", { scope: "row" }, String(run.run)), h("td", {}, held),
+    h("td", {}, run.loss === null ? "–" : run.loss.toFixed(3)), h("td", {}, count(run.painted)),
+    h("td", {}, run.current ? "in use" : h("button", {
+      type: "button", class: "link", "aria-label": `Restore run ${run.run}`, onclick: () => client.restore(run.run),
+    }, "restore")));
+}
+
+export function runsPanel(store: AppStore, client: Client): HTMLElement {
+  const body = h("tbody", {});
+  const table = h("table", {},
+    h("thead", {}, h("tr", {}, ...["Run", "Held out", "Loss", "Painted", ""].map((name) => h("th", { scope: "col" }, name)))), body);
+  const none = h("p", { class: "summary" }, "None yet.");
+  store.watch(["runs"], () => {
+    const { runs } = store.now;
+    table.hidden = runs.length === 0;
+    none.hidden = runs.length > 0;
+    body.replaceChildren(...[...runs].reverse().map((run) => runRow(run, client)));
+  });
+  return section("Runs", false, none, table);
+}

@@ -1,0 +1,87 @@
+// How the cloud is coloured, and the clipping box.
+
+import { dropdown, h, segmented } from "../shared/dom";
+import { FEATURE_NAMES } from "./colouring";
+import { MODES, modesOf } from "./commands";
+import { boxDiagonal } from "./geometry";
+import { length } from "./format";
+import { button, checkbox, section, slider } from "./panel";
+import type { AppStore, Clip } from "./store";
+import type { Box } from "./types";
+
+export function viewPanel(store: AppStore): HTMLElement {
+  const colours = h("div", { class: "row" });
+  const features = h("div", { class: "row" });
+  const scale = slider("Scale", 0, 15, 1, (value) => store.set({ scale: value }));
+  const size = slider("Points", 0.3, 6, 0.05, (value) => store.set({ pointSize: value }));
+  const onTop = checkbox("Painted points on top", "O", (on) => store.set({ paintOnTop: on }));
+  store.watch(["mode", "session"], () => {
+    const choices = MODES.filter(({ mode }) => modesOf(store).includes(mode));
+    colours.replaceChildren(dropdown("Colour by", choices.map(({ mode, name }) => ({ value: mode, label: name })),
+      store.now.mode, (mode) => store.set({ mode })));
+  });
+  store.watch(["mode", "feature", "scale", "session"], () => {
+    const { session, mode, feature } = store.now;
+    features.hidden = scale.element.hidden = mode !== "feature";
+    if (!session) return;
+    features.replaceChildren(dropdown("Feature",
+      session.features.map((name, i) => ({ value: i, label: FEATURE_NAMES[name] ?? name })), feature,
+      (chosen) => store.set({ feature: chosen })));
+    scale.element.querySelector("input")!.max = String(session.scales.length - 1);
+    scale.set(store.now.scale, length(session.scales[store.now.scale] ?? 0));
+  });
+  store.watch(["pointSize", "paintOnTop"], () => {
+    size.set(store.now.pointSize, `×${store.now.pointSize.toFixed(1)}`);
+    onTop.set(store.now.paintOnTop);
+  });
+  return section("View", true, colours, features, scale.element, size.element, onTop.element,
+    segmented("Palette", [{ value: false, label: "paper" }, { value: true, label: "colour-blind safe" }],
+      store.now.safePalette, (safePalette) => store.set({ safePalette })));
+}
+
+/** A box that is in use: all of the cloud at first. */
+export function toggledClip({ clip, session }: { clip: Clip | null; session: { bounds: Box } | null }): Clip | null {
+  if (clip) return { ...clip, on: !clip.on };
+  return session ? { on: true, box: structuredClone(session.bounds) } : null;
+}
+
+export function clipPanel(store: AppStore, around: () => Box | null): HTMLElement {
+  const use = checkbox("Show only what is in the box", "C", () => store.set({ clip: toggledClip(store.now) }));
+  const change = (side: "min" | "max", axis: number) => (at: number): void => {
+    const { session, clip } = store.now;
+    if (!session) return;
+    const { min, max } = session.bounds;
+    const box = structuredClone(clip?.box ?? session.bounds);
+    box[side][axis] = min[axis] + at * (max[axis] - min[axis]);
+    if (side === "min") box.max[axis] = Math.max(box.max[axis], box.min[axis]);
+    else box.min[axis] = Math.min(box.min[axis], box.max[axis]);
+    store.set({ clip: { on: true, box } });
+  };
+  const sides = ["x", "y", "z"].flatMap((name, axis) => (["min", "max"] as const).map((side) => ({
+    axis, side, slider: slider(`${name} ${side === "min" ? "from" : "to"}`, 0, 1, 0.001, change(side, axis)),
+  })));
+  store.watch(["clip", "session"], () => {
+    const { clip, session } = store.now;
+    use.set(clip?.on ?? false);
+    if (!session) return;
+    for (const { axis, side, slider: control } of sides) {
+      const { min, max } = session.bounds;
+      const value = (clip?.box ?? session.bounds)[side][axis];
+      control.set((value - min[axis]) / Math.max(max[axis] - min[axis], 1e-12), length(value + session.origin[axis]));
+    }
+  });
+  return section("Clipping box", false, use.element, ...sides.map((side) => side.slider.element),
+    h("div", { class: "buttons" },
+      button("Round the middle of the view", () => {
+        const box = around();
+        if (box) store.set({ clip: { on: true, box } });
+      }),
+      button("All", () => store.set({ clip: null }))));
+}
+
+/** A cube about a place, a sixth of the cloud wide. */
+export function boxAround(place: number[], bounds: Box): Box {
+  const half = boxDiagonal(bounds) / 12;
+  const side = (sign: number): [number, number, number] => [place[0] + sign * half, place[1] + sign * half, place[2] + sign * half];
+  return { min: side(-1), max: side(1) };
+}

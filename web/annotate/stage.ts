@@ -1,0 +1,191 @@
+// The view: chooses what to draw, draws it over several frames, picks in it.
+
+import type { Api } from "./api";
+import { Budget } from "./budget";
+import { Camera } from "./camera";
+import { pick, type Chunk, type Picked, type Visibility } from "./chunk";
+import { drawnSpacings, selectNodes, withSpacings, type Take } from "./detail";
+import { Loader } from "./loader";
+import { Painter, type Appearance, type Layer } from "./painter";
+import type { Box, Session } from "./types";
+
+const SETTLE_MS = 120;
+
+export interface StageEvents {
+  /** The view has changed: what lies over it must follow. */
+  moved(): void;
+  failed(error: Error): void;
+  isPainting(): boolean;
+}
+
+export class Stage {
+  readonly camera: Camera;
+  readonly loader: Loader;
+  readonly budget = new Budget();
+  private readonly painter: Painter;
+  private look!: Appearance;
+  private bounds: Box | null = null;
+  private takes: Take[] = [];
+  private next = 0;
+  private stale = true;
+  private readonly touched = new Set<number>();
+  private frame = 0;
+  private settle = 0;
+  width = 1;
+  height = 1;
+
+  constructor(readonly canvas: HTMLCanvasElement, api: Api, on: StageEvents) {
+    this.painter = new Painter(canvas);
+    this.camera = new Camera(() => {
+      this.redraw();
+      on.moved();
+    });
+    this.loader = new Loader(api, {
+      arrived: ({ info }) => {
+        this.touched.add(info.id);
+        this.redrawSoon();
+        this.schedule();
+      },
+      dropped: (id) => this.painter.forget(id),
+      changed: (ids, layer) => {
+        ids.forEach((id) => this.painter.refresh(id, layer));
+        this.redraw();
+      },
+      failed: (error) => on.failed(error),
+      isPainting: () => on.isPainting(),
+    });
+    new ResizeObserver(() => this.resize()).observe(canvas.parentElement!);
+    canvas.addEventListener("webglcontextrestored", () => this.redraw());
+  }
+
+  open({ nodes, spacing, bounds, has_colours: hasColours }: Session, hasPrediction: boolean): void {
+    this.loader.setNodes(withSpacings(nodes, spacing), hasColours, hasPrediction);
+    this.bounds = bounds;
+    this.camera.setBounds(bounds);
+    this.resize();
+    this.camera.fit(true);
+  }
+
+  setAppearance(look: Appearance): void {
+    this.look = look;
+    this.painter.setAppearance(look);
+    this.redraw();
+  }
+
+  private resize(): void {
+    const { clientWidth: width, clientHeight: height } = this.canvas.parentElement!;
+    if (width === 0 || height === 0) return;
+    [this.width, this.height] = [width, height];
+    this.painter.resize(width, height);
+    this.camera.resize(width, height);
+  }
+
+  /** Draws all anew from the next frame on. */
+  redraw(): void {
+    this.stale = true;
+    this.schedule();
+  }
+
+  /** Labels of a chunk were painted here: draws it again over itself. */
+  touch(id: number, layer: Layer): void {
+    this.painter.refresh(id, layer);
+    this.touched.add(id);
+    this.schedule();
+  }
+
+  private redrawSoon(): void {
+    window.clearTimeout(this.settle);
+    this.settle = window.setTimeout(() => this.redraw(), SETTLE_MS);
+  }
+
+  private schedule(): void {
+    if (this.frame === 0) this.frame = requestAnimationFrame(() => this.drawFrame());
+  }
+
+  /** Is everything drawn that is to be drawn? */
+  get isSettled(): boolean {
+    return this.frame === 0 && !this.loader.isLoading && this.bounds !== null;
+  }
+
+  private drawFrame(): void {
+    this.frame = 0;
+    if (!this.look || !this.bounds) return;
+    if (this.stale) this.begin();
+    const todo = this.nextTakes();
+    const milliseconds = this.painter.draw(todo, this.camera.three, this.camera.pixels);
+    if (milliseconds !== null) this.budget.learn(todo.reduce((sum, take) => sum + take.points, 0), milliseconds);
+    if (this.next < this.takes.length || this.touched.size > 0) this.schedule();
+  }
+
+  private begin(): void {
+    this.stale = false;
+    this.next = 0;
+    this.touched.clear();
+    const all = selectNodes(this.loader.nodes, this.camera.view, { budget: this.budget.still, clip: this.look.clip });
+    this.loader.want(all.map((take) => take.id));
+    this.takes = all.filter((take) => this.loader.chunks.has(take.id));
+    this.painter.setSpacings(drawnSpacings(this.loader.nodes, this.takes));
+    this.painter.clear();
+  }
+
+  /** As much as one frame has time for. */
+  private nextTakes(): { chunk: Chunk; points: number }[] {
+    const most = this.budget.moving;
+    const todo: { chunk: Chunk; points: number }[] = [];
+    let points = 0;
+    while (this.next < this.takes.length && points < most) {
+      const { id, points: all } = this.takes[this.next++];
+      const chunk = this.loader.chunks.get(id);
+      if (!chunk) continue;
+      // A prefix of a coarse node is better than no picture; the rest follows with the next frame.
+      const some = points === 0 && this.next === 1 ? Math.min(all, most) : all;
+      if (some < all) this.touched.add(id);
+      todo.push({ chunk, points: some });
+      points += some;
+    }
+    for (const id of this.touched) {
+      if (points >= most) break;
+      const chunk = this.loader.chunks.get(id);
+      this.touched.delete(id);
+      if (!chunk || todo.some((take) => take.chunk === chunk)) continue;
+      const points0 = this.takes.find((take) => take.id === id)?.points ?? chunk.info.points;
+      todo.push({ chunk, points: points0 });
+      points += points0;
+    }
+    return todo;
+  }
+
+  /** The chunks that the view shows. */
+  get drawn(): { chunk: Chunk; points: number }[] {
+    return this.takes.flatMap(({ id, points }) => {
+      const chunk = this.loader.chunks.get(id);
+      return chunk ? [{ chunk, points }] : [];
+    });
+  }
+
+  get chunks(): Chunk[] {
+    return [...this.loader.chunks.values()];
+  }
+
+  get visibility(): Visibility {
+    return { hidden: this.look.hidden, clip: this.look.clip };
+  }
+
+  /** Pixels of the canvas to clip space. */
+  toClip(x: number, y: number): [number, number] {
+    return [(2 * x) / this.width - 1, 1 - (2 * y) / this.height];
+  }
+
+  /** The surface point at a pixel of the canvas. */
+  pick(x: number, y: number, reach = 8): Picked | null {
+    const [cx, cy] = this.toClip(x, y);
+    return pick(this.drawn, {
+      ...this.visibility, matrix: this.camera.view.matrix, x: cx, y: cy, reach,
+      halfWidth: this.width / 2, halfHeight: this.height / 2, pixels: this.camera.pixels,
+    });
+  }
+
+  picture(): Promise<Blob | null> {
+    return this.painter.picture();
+  }
+}

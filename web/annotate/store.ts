@@ -1,0 +1,86 @@
+// What the page shows, in one place; those who show it watch it.
+
+import type { Box, Run, Session, Settings, Uncertain, Vec3 } from "./types";
+
+export type Tool = "navigate" | "brush" | "lasso" | "polygon";
+export type ColourMode = "rgb" | "normals" | "labels" | "prediction" | "confidence" | "p_sharp" | "feature";
+
+/** The curves of the run that is under way or was last. */
+export interface Training {
+  run: number;
+  active: boolean;
+  epochs: number;
+  epoch: number[];
+  loss: (number | null)[];
+  accuracy: (number | null)[];
+}
+
+export interface Clip {
+  on: boolean;
+  box: Box;
+}
+
+export interface State {
+  session: Session | null;
+  progress: { stage: string; fraction: number } | null;
+  connected: boolean;
+  writer: boolean;
+  tool: Tool;
+  /** 0, 1, 2, or 255: the eraser. */
+  paintClass: number;
+  /** Of the brush, in units of the cloud. */
+  radius: number;
+  protect: boolean;
+  frontOnly: boolean;
+  hidden: ReadonlySet<number>;
+  clip: Clip | null;
+  mode: ColourMode;
+  feature: number;
+  scale: number;
+  paintOnTop: boolean;
+  safePalette: boolean;
+  pointSize: number;
+  counts: Vec3;
+  undo: number;
+  redo: number;
+  saving: boolean;
+  settings: Settings;
+  runs: Run[];
+  training: Training | null;
+  /** Shares of the classes in the prediction. */
+  predicted: Vec3 | null;
+  uncertain: Uncertain | null;
+}
+
+export const initialState: State = {
+  session: null, progress: { stage: "Connecting", fraction: 0 }, connected: true, writer: false,
+  tool: "brush", paintClass: 2, radius: 1, protect: false, frontOnly: true, hidden: new Set(), clip: null,
+  mode: "labels", feature: 0, scale: 8, paintOnTop: true, safePalette: false, pointSize: 2,
+  counts: [0, 0, 0], undo: 0, redo: 0, saving: false,
+  settings: { classes: 3, auto: true, start: "random", seed: 1 }, runs: [], training: null, predicted: null,
+  uncertain: null,
+};
+
+export class Store<T extends object> {
+  private readonly watchers: { keys: (keyof T)[]; tell: () => void }[] = [];
+
+  constructor(public now: Readonly<T>) {}
+
+  set(changes: Partial<T>): void {
+    const changed = (Object.keys(changes) as (keyof T)[]).filter((key) => this.now[key] !== changes[key]);
+    if (changed.length === 0) return;
+    this.now = { ...this.now, ...changes };
+    for (const { keys, tell } of this.watchers) if (keys.some((key) => changed.includes(key))) tell();
+  }
+
+  /** Calls `tell` now and whenever one of the keys has changed. */
+  watch(keys: (keyof T)[], tell: () => void): void {
+    this.watchers.push({ keys, tell });
+    tell();
+  }
+}
+
+export type AppStore = Store<State>;
+
+/** The clip box if it is in use. */
+export const activeClip = ({ clip }: State): Box | null => (clip?.on ? clip.box : null);

@@ -1,0 +1,137 @@
+// What the server says: the shapes of its answers.
+
+export type Vec3 = [number, number, number];
+
+export interface Box {
+  min: Vec3;
+  max: Vec3;
+}
+
+/** A cube of the octree; its points add to those of its ancestors. */
+export interface NodeInfo {
+  id: number;
+  centre: Vec3;
+  half: number;
+  points: number;
+  children: number[];
+  spacing: number;
+}
+
+export interface ClassInfo {
+  id: number;
+  name: string;
+  colour: Vec3;
+  count: number;
+}
+
+export type Start = "random" | "scan" | "cad" | "worn";
+
+export interface Settings {
+  classes: 2 | 3;
+  auto: boolean;
+  start: Start;
+  seed: number;
+}
+
+export interface Run {
+  run: number;
+  seconds_train: number;
+  seconds_classify: number;
+  loss: number | null;
+  held_out_accuracy: number | null;
+  painted: number;
+  start: Start;
+  classes: number;
+  current: boolean;
+  time: string;
+}
+
+export interface Session {
+  name: string;
+  file: string;
+  points: number;
+  origin: Vec3;
+  bounds: Box;
+  spacing: number;
+  has_colours: boolean;
+  normals: "file" | "estimated";
+  state: "loading" | "ready";
+  stage: string;
+  features: string[];
+  scales: number[];
+  classes: ClassInfo[];
+  settings: Settings;
+  nodes: NodeInfo[];
+  strokes: number;
+  undo: number;
+  redo: number;
+  run: Run | number | null;
+  writer: boolean;
+  prediction_version: number;
+  labels_version: number;
+}
+
+/** The answer to a stroke, an undo, a redo. */
+export interface Painted {
+  changed?: number;
+  counts: Vec3;
+  labels_version: number;
+  nodes: number[];
+  undo: number;
+  redo: number;
+}
+
+export interface Uncertain {
+  rank: number;
+  position: Vec3;
+  normal: Vec3;
+  confidence: number;
+  of: number;
+}
+
+export interface TrainingEvent {
+  run: number;
+  epoch: number;
+  epochs: number;
+  loss: number;
+  held_out_accuracy: number | null;
+}
+
+export interface PredictionEvent {
+  prediction_version: number;
+  run: number;
+  counts: Vec3;
+  seconds_train: number;
+  seconds_classify: number;
+  held_out_accuracy: number | null;
+}
+
+interface StrokeCommon {
+  id: string;
+  /** 255 erases. */
+  class: number;
+  protect: boolean;
+  hidden: number[];
+  clip: Box | null;
+}
+
+export interface BrushStroke extends StrokeCommon {
+  tool: "brush";
+  centres: Vec3[];
+  radius: number;
+}
+
+export interface PolygonStroke extends StrokeCommon {
+  tool: "polygon";
+  /** In clip space, -1..1. */
+  polygon: [number, number][];
+  /** Local to clip, column-major. */
+  matrix: number[];
+  front_only: boolean;
+  point_size: number;
+  viewport: [number, number];
+}
+
+export type Stroke = BrushStroke | PolygonStroke;
+
+export const NO_CLASS = 255;

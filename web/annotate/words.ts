@@ -1,0 +1,67 @@
+// Messages that come and go, questions, and the list of keys.
+
+import { h } from "../shared/dom";
+import type { Command } from "./commands";
+
+const SAY_MS = 6000;
+const WARN_MS = 12000;
+
+export class Notices {
+  readonly element = h("div", { class: "notices", "aria-live": "polite" });
+
+  say(text: string): void {
+    this.add(text, "notice", SAY_MS);
+  }
+
+  warn(text: string): void {
+    this.add(text, "notice warning", WARN_MS);
+  }
+
+  private add(text: string, kind: string, milliseconds: number): void {
+    for (const old of [...this.element.children]) if (old.firstChild?.textContent === text) old.remove();
+    const notice = h("p", { class: kind }, h("span", {}, text),
+      h("button", { type: "button", "aria-label": "Close", onclick: () => notice.remove() }, "×"));
+    this.element.append(notice);
+    window.setTimeout(() => notice.remove(), milliseconds);
+  }
+}
+
+/** Asks in a dialogue; false if it is dismissed. */
+export function ask(question: string, yes: string): Promise<boolean> {
+  return new Promise((done) => {
+    const dialog = h("dialog", { class: "question", "aria-label": yes },
+      h("form", { method: "dialog" }, h("p", {}, question),
+        h("div", { class: "buttons" }, h("button", { class: "plain", value: "" }, "Leave it"),
+          h("button", { class: "plain strong", value: "yes" }, yes))));
+    dialog.addEventListener("close", () => {
+      dialog.remove();
+      done(dialog.returnValue === "yes");
+    });
+    document.body.append(dialog);
+    dialog.showModal();
+  });
+}
+
+const MOUSE: [string, string][] = [
+  ["left", "paints with the tool"],
+  ["right, or left with space held", "turns about the point under the pointer"],
+  ["middle, or right with Shift", "slides"],
+  ["wheel", "comes nearer to the point under the pointer"],
+  ["wheel with Alt", "size of the brush"],
+];
+
+const list = (title: string, rows: [string[], string][]): HTMLElement =>
+  h("section", {}, h("h3", {}, title), h("dl", {}, ...rows.flatMap(([keys, name]) => [
+    h("dt", {}, ...keys.map((key) => h("kbd", {}, key.replace("Arrow", "")))), h("dd", {}, name)])));
+
+/** The help: what each key and button does. */
+export function helpDialog(commands: Command[]): HTMLDialogElement {
+  const groups = [...new Set(commands.map((command) => command.group))];
+  const dialog = h("dialog", { class: "help", "aria-labelledby": "help-title" },
+    h("form", { method: "dialog" }, h("h2", { id: "help-title" }, "Keys"), h("button", { class: "plain" }, "Close", h("kbd", {}, "Esc"))),
+    h("div", { class: "columns" },
+      ...groups.map((group) => list(group, commands.filter((c) => c.group === group).map((c) => [c.keys, c.name]))),
+      list("Mouse", MOUSE.map(([key, name]) => [[key], name]))));
+  dialog.addEventListener("click", (event) => { if (event.target === dialog) dialog.close(); });
+  return dialog;
+}
