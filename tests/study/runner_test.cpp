@@ -192,7 +192,7 @@ TEST_F(StudyRun, TakesDamagedCacheFilesForMissing) {
 
 TEST_F(StudyRun, DoesNotTakeOtherOptionsOrCloudsForTheSame) {
   run("classes", "cache");
-  plan_.training.training.balanced = false;
+  plan_.training.training.balance = 0.0;
   EXPECT_EQ(run("classes", "cache").trained, 2u);
   data_.training = set_of("training", {9});
   EXPECT_EQ(run("classes", "cache").trained, 2u);

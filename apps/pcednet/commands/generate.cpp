@@ -9,6 +9,7 @@
 #include "pcednet/data/building.h"
 #include "pcednet/data/cad_set.h"
 #include "pcednet/data/default_set.h"
+#include "pcednet/data/relief_set.h"
 #include "pcednet/data/scan_set.h"
 #include "pcednet/io/write_cloud.h"
 
@@ -27,15 +28,28 @@ double percent_of(const PointCloud& cloud, EdgeClass label) {
   return 100.0 * static_cast<double>(count) / static_cast<double>(cloud.size());
 }
 
-void report(const data::Recipe& recipe, const PointCloud& cloud) {
+std::string details(const data::Recipe& recipe) {
   std::string faults;
   if (recipe.noise > 0.0) faults += fmt::format("  noise {:.2g}", recipe.noise);
   if (recipe.displacement > 0.0) faults += fmt::format("  displaced {}", recipe.displacement);
   if (recipe.unevenness != 1.0) faults += fmt::format("  uneven {}", recipe.unevenness);
   if (recipe.inward) faults += "  inward";
-  say(fmt::format("{:<16} {:>7} {:>6.1f} {:>6.1f} {:>6.1f}{}", recipe.name, cloud.size(),
-                  percent_of(cloud, kSharpEdge), percent_of(cloud, kSmoothEdge),
-                  percent_of(cloud, kNonEdge), faults));
+  return faults;
+}
+
+std::string details(const data::CadRecipe& recipe) {
+  return fmt::format("  {}{}{}", recipe.mesh ? "vertices" : "drawn",
+                     recipe.estimated ? ", normals estimated" : "",
+                     recipe.noise > 0.0 ? fmt::format(", noise {:.2g}", recipe.noise) : "");
+}
+
+std::string details(const data::ReliefRecipe& recipe) {
+  return fmt::format("  {}{}", recipe.even ? "even" : "drawn",
+                     recipe.estimated ? ", normals estimated" : "");
+}
+
+std::string details(const data::ScanRecipe& recipe) {
+  return fmt::format("  noise {:.2g}", recipe.scanner.range_noise);
 }
 
 void make_folder(const std::filesystem::path& folder) {
@@ -47,24 +61,34 @@ void make_folder(const std::filesystem::path& folder) {
   }
 }
 
+/// Makes the clouds of the recipes, of all lists one after another.
+template <typename... Recipes>
+void run(const std::string& folder, std::uint64_t seed, const Common& common,
+         const std::vector<Recipes>&... lists) {
+  make_folder(folder);
+  const Progress progress = console_progress(common);
+  const std::size_t clouds = (lists.size() + ...);
+  Stage stage(&progress, "generate", clouds);
+  say("cloud             points  sharp smooth    non");
+  std::size_t points = 0;
+  const auto make = [&](const auto& recipe) {
+    const PointCloud cloud = data::generate(recipe, seed).cloud;
+    const auto path = std::filesystem::path(folder) / (recipe.name + ".ply");
+    io::write_cloud(path, cloud, {.overwrite = common.overwrite()});
+    say(fmt::format("{:<16} {:>7} {:>6.1f} {:>6.1f} {:>6.1f}{}", recipe.name, cloud.size(),
+                    percent_of(cloud, kSharpEdge), percent_of(cloud, kSmoothEdge),
+                    percent_of(cloud, kNonEdge), details(recipe)));
+    points += cloud.size();
+    stage.advance();
+  };
+  (std::for_each(lists.begin(), lists.end(), make), ...);
+  say(fmt::format("{} clouds, {} points in {}", clouds, points, folder));
+}
+
 void run_default(const DefaultArguments& arguments, const Common& common) {
   data::DefaultSetOptions options{.extras = !arguments.paper_only};
   if (!arguments.bands.empty()) options.bands = {arguments.bands[0], arguments.bands[1]};
-  make_folder(arguments.folder);
-  const auto recipes = data::default_recipes(arguments.seed, options);
-  const Progress progress = console_progress(common);
-  Stage stage(&progress, "generate", recipes.size());
-  say("cloud             points  sharp smooth    non  faults (in spacings)");
-  std::size_t points = 0;
-  for (const data::Recipe& recipe : recipes) {
-    const PointCloud cloud = data::generate(recipe, arguments.seed).cloud;
-    const auto path = std::filesystem::path(arguments.folder) / (recipe.name + ".ply");
-    io::write_cloud(path, cloud, {.overwrite = common.overwrite()});
-    report(recipe, cloud);
-    points += cloud.size();
-    stage.advance();
-  }
-  say(fmt::format("{} clouds, {} points in {}", recipes.size(), points, arguments.folder));
+  run(arguments.folder, arguments.seed, common, data::default_recipes(arguments.seed, options));
 }
 
 void add_default(CLI::App& generate, Common& common) {
@@ -88,36 +112,13 @@ void add_default(CLI::App& generate, Common& common) {
   command->callback([=, &common] { run_default(*arguments, common); });
 }
 
-struct CadArguments {
-  bool worn = false;
+struct SetArguments {
   std::string folder;
   std::uint64_t seed = 1;
 };
 
-void run_cad(const CadArguments& arguments, const Common& common) {
-  make_folder(arguments.folder);
-  const auto recipes =
-      arguments.worn ? data::worn_recipes(arguments.seed) : data::cad_recipes(arguments.seed);
-  const Progress progress = console_progress(common);
-  Stage stage(&progress, "generate", recipes.size());
-  say("cloud             points  sharp  kind");
-  std::size_t points = 0;
-  for (const data::CadRecipe& recipe : recipes) {
-    const PointCloud cloud = data::generate(recipe, arguments.seed).cloud;
-    const auto path = std::filesystem::path(arguments.folder) / (recipe.name + ".ply");
-    io::write_cloud(path, cloud, {.overwrite = common.overwrite()});
-    say(fmt::format("{:<16} {:>7} {:>6.1f}  {}{}{}", recipe.name, cloud.size(),
-                    percent_of(cloud, kSharpEdge), recipe.mesh ? "vertices" : "drawn",
-                    recipe.estimated ? ", normals estimated" : "",
-                    recipe.noise > 0.0 ? fmt::format(", noise {:.2g}", recipe.noise) : ""));
-    points += cloud.size();
-    stage.advance();
-  }
-  say(fmt::format("{} clouds, {} points in {}", recipes.size(), points, arguments.folder));
-}
-
 void add_cad(CLI::App& generate, Common& common) {
-  auto arguments = std::make_shared<CadArguments>();
+  auto arguments = std::make_shared<SetArguments>();
   CLI::App* command = add_command(
       generate, common, "cad",
       "Labelled clouds for training: CAD parts as vertices of meshes and as surface points",
@@ -127,45 +128,29 @@ void add_cad(CLI::App& generate, Common& common) {
       ->required();
   command->add_option("--seed", arguments->seed, "Another seed gives other parts")
       ->capture_default_str();
-  command->callback([=, &common] { run_cad(*arguments, common); });
+  command->callback([=, &common] {
+    run(arguments->folder, arguments->seed, common, data::cad_recipes(arguments->seed));
+  });
 }
 
 void add_worn(CLI::App& generate, Common& common) {
-  auto arguments = std::make_shared<CadArguments>();
-  arguments->worn = true;
+  auto arguments = std::make_shared<SetArguments>();
   CLI::App* command = add_command(
       generate, common, "worn",
-      "Labelled clouds for training: parts with rounded edges and uneven surfaces, ridges labelled",
+      "Labelled clouds for training: worn parts and reliefs, their ridge lines labelled",
       "pcednet generate worn parts/");
   command->add_option("folder", arguments->folder, "Where the PLY files go; created if need be")
       ->required();
   command->add_option("--seed", arguments->seed, "Another seed gives other parts")
       ->capture_default_str();
-  command->callback([=, &common] { run_cad(*arguments, common); });
-}
-
-void run_scan(const CadArguments& arguments, const Common& common) {
-  make_folder(arguments.folder);
-  const auto recipes = data::scan_recipes(arguments.seed);
-  const Progress progress = console_progress(common);
-  Stage stage(&progress, "generate", recipes.size());
-  say("cloud             points  sharp smooth    non");
-  std::size_t points = 0;
-  for (const data::ScanRecipe& recipe : recipes) {
-    const PointCloud cloud = data::generate(recipe, arguments.seed).cloud;
-    const auto path = std::filesystem::path(arguments.folder) / (recipe.name + ".ply");
-    io::write_cloud(path, cloud, {.overwrite = common.overwrite()});
-    say(fmt::format("{:<16} {:>7} {:>6.1f} {:>6.1f} {:>6.1f}  noise {:.2g}", recipe.name,
-                    cloud.size(), percent_of(cloud, kSharpEdge), percent_of(cloud, kSmoothEdge),
-                    percent_of(cloud, kNonEdge), recipe.scanner.range_noise));
-    points += cloud.size();
-    stage.advance();
-  }
-  say(fmt::format("{} clouds, {} points in {}", recipes.size(), points, arguments.folder));
+  command->callback([=, &common] {
+    run(arguments->folder, arguments->seed, common, data::worn_recipes(arguments->seed),
+        data::relief_recipes(arguments->seed));
+  });
 }
 
 void add_scan(CLI::App& generate, Common& common) {
-  auto arguments = std::make_shared<CadArguments>();
+  auto arguments = std::make_shared<SetArguments>();
   CLI::App* command = add_command(
       generate, common, "scan",
       "Labelled clouds for training: laser scans of facades, yards, rooms and monuments",
@@ -174,7 +159,9 @@ void add_scan(CLI::App& generate, Common& common) {
       ->required();
   command->add_option("--seed", arguments->seed, "Another seed gives other scenes")
       ->capture_default_str();
-  command->callback([=, &common] { run_scan(*arguments, common); });
+  command->callback([=, &common] {
+    run(arguments->folder, arguments->seed, common, data::scan_recipes(arguments->seed));
+  });
 }
 
 void add_sample(CLI::App& generate, Common& common) {

@@ -142,7 +142,7 @@ study::PlanOptions plan_of(const Arguments& arguments) {
   study::PlanOptions plan{.quick = arguments.quick};
   detect::TrainOptions& training = plan.training;
   training.training.sign_rule.symmetry = nn::Symmetry::kAverage;
-  training.training.balanced = !arguments.natural;
+  if (arguments.natural) training.training.balance = 0.0;
   training.architecture.classes = arguments.classes;
   if (arguments.epochs > 0) training.training.epochs = arguments.epochs;
   if (arguments.exact) training.descriptor.engine = gls::Engine::kExact;

@@ -29,7 +29,7 @@ struct Arguments {
   std::string output, network = "pcednet", recipe = "adam", symmetry = "average", features = "6",
                       reconstruction = "sphere";
   int classes = 3, scales = 16, epochs = 0, width = 0;
-  double gate = 2.0;
+  double gate = 2.0, balance = 1.0;
   std::uint64_t seed = 1;
   bool exact = false, natural = false;
 };
@@ -51,7 +51,7 @@ detect::TrainOptions options_of(const Arguments& arguments) {
   options.architecture.width = arguments.width;
   if (arguments.recipe == "paper") options.training = nn::paper_recipe();
   if (arguments.epochs > 0) options.training.epochs = arguments.epochs;
-  if (arguments.natural) options.training.balanced = false;
+  options.training.balance = arguments.natural ? 0.0 : arguments.balance;
   options.training.seed = arguments.seed;
   options.training.sign_rule.symmetry = kSymmetries.at(arguments.symmetry);
   return options;
@@ -147,6 +147,12 @@ void add_train(CLI::App& app, Common& common) {
   command->add_flag(
       "--natural", arguments->natural,
       "Let every class count as often as it occurs, not all alike: fewer false edges");
+  command
+      ->add_option("--balance", arguments->balance,
+                   "1: all classes count alike; 0: as --natural; or between")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 1.0))
+      ->excludes("--natural");
   command->add_option("--epochs", arguments->epochs, "Rounds of training (0: the recipe's)");
   command->add_option("--seed", arguments->seed, "Seed of all randomness")->capture_default_str();
   command->callback([arguments, &common] { train(*arguments, common); });

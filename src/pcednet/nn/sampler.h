@@ -10,13 +10,14 @@ namespace pcednet::nn {
 
 /// An endless stream of sample indices in random order.
 ///
-/// Balanced: the classes take turns, and each runs through its samples again and again, which is
-/// the same as replicating the samples of the small ones. Otherwise all samples come once before
-/// any comes again.
+/// `balance` 1: the classes take turns, and each runs through its samples again and again, which is
+/// the same as replicating the samples of the small ones. 0: all samples come once before any comes
+/// again. Between: the classes come in shares proportional to their number of samples to the power
+/// of 1 - balance, again and again.
 class Sampler {
  public:
   /// `samples_by_class` must hold at least one sample; empty classes are passed over.
-  Sampler(std::vector<std::vector<std::uint32_t>> samples_by_class, bool balanced, Random random);
+  Sampler(std::vector<std::vector<std::uint32_t>> samples_by_class, double balance, Random random);
 
   void next(std::span<std::uint32_t> batch);
 
@@ -27,10 +28,13 @@ class Sampler {
   struct Deck {
     std::vector<std::uint32_t> cards;
     std::size_t next = 0;
+    double share = 1.0;  ///< of the samples that are given
+    double credit = 0.0;
   };
 
+  Deck& deck_in_turn();
+
   std::vector<Deck> decks_;
-  std::size_t turn_ = 0;
   Random random_;
 };
 

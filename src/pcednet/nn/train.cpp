@@ -125,7 +125,7 @@ class Trainer {
         set_(set),
         model_(std::move(model)),
         machine_(model_, options.label_smoothing),
-        sampler_(std::move(samples), options.balanced, Random(options.seed, kSampleStream)),
+        sampler_(std::move(samples), options.balance, Random(options.seed, kSampleStream)),
         optimiser_(options.optimiser, model_.network.parameters.size(), options.momentum,
                    options.weight_decay),
         gradient_(model_.network.parameters.size()),

@@ -22,7 +22,8 @@ struct TrainOptions {
   double label_smoothing = 0.0;
   int epochs = 40;
   std::size_t batch = 512;
-  bool balanced = true;  ///< every class comes equally often, by replication
+  /// 1: every class comes equally often, by replication; 0: as often as it occurs; see Sampler
+  double balance = 1.0;
   /// An epoch is one round through the largest class with all others replicated, but at least and
   /// at most so many samples.
   std::size_t least_per_epoch = 1 << 14, most_per_epoch = 1 << 20;

@@ -174,7 +174,7 @@ Experiment learning(const PlanOptions& options) {
          .method = network(options, name.kind, options.training.architecture.classes)});
   }
   NetworkMethod natural = network(options);
-  natural.options.training.balanced = false;
+  natural.options.training.balance = 0.0;
   experiment.variants.push_back({.id = "natural",
                                  .title = "PCEDNet, natural shares",
                                  .method = natural,

@@ -25,7 +25,7 @@ std::string text_of(const nn::Architecture& architecture) {
 
 std::string text_of(const nn::TrainOptions& options) {
   const auto& [optimiser, learning_rate, anneal, momentum, weight_decay, label_smoothing, epochs,
-               batch, balanced, least_per_epoch, most_per_epoch, standardise, standardisation,
+               batch, balance, least_per_epoch, most_per_epoch, standardise, standardisation,
                sign_rule, class_names, validation, validation_share, patience, start, seed] =
       options;
   // The runner has neither validation samples of its own nor a model to start from; the names of
@@ -34,10 +34,10 @@ std::string text_of(const nn::TrainOptions& options) {
   const auto& [bound, squash, tail, most_samples] = standardisation;
   return fmt::format(
       "optimiser {} rate {} anneal {} momentum {} decay {} smoothing {} epochs {} batch {} "
-      "balanced {} least {} most {} standardise {} bound {} squash {} tail {} of {} symmetry {} "
+      "balance {} least {} most {} standardise {} bound {} squash {} tail {} of {} symmetry {} "
       "validation {} patience {} seed {}",
       static_cast<int>(optimiser), learning_rate, anneal, momentum, weight_decay, label_smoothing,
-      epochs, batch, balanced, least_per_epoch, most_per_epoch, standardise, bound,
+      epochs, batch, balance, least_per_epoch, most_per_epoch, standardise, bound,
       static_cast<int>(squash), tail, most_samples, static_cast<int>(sign_rule.symmetry),
       validation_share, patience, seed);
 }
