@@ -1,6 +1,7 @@
 // How many points to draw, from how long drawing takes.
 
 const MOVING_MS = 30;
+const RESTING_MS = 120;
 const STILL_MS = 1500;
 const clamp = (value: number, low: number, high: number): number => Math.min(Math.max(value, low), high);
 
@@ -20,6 +21,11 @@ export class Budget {
   /** For one frame while the view moves. */
   get moving(): number {
     return Math.round(clamp(this.rate * MOVING_MS, 30_000, 4_000_000));
+  }
+
+  /** For one frame of a view at rest: less often interrupted, so less is seen to fill in. */
+  get resting(): number {
+    return Math.round(clamp(this.rate * RESTING_MS, 60_000, 6_000_000));
   }
 
   /** For a view at rest, filled in frame by frame. */

@@ -59,7 +59,7 @@ export class Camera {
     const away = radius / Math.sin((FIELD_OF_VIEW * Math.PI) / 360) / narrow;
     const back = afresh ? HOME.clone() : this.forward().negate();
     const up = afresh ? new Vector3(0, 0, 1) : new Vector3(0, 1, 0).applyQuaternion(this.three.quaternion);
-    this.fly(centre.clone().addScaledVector(back, away * 0.82), centre, up, afresh);
+    this.fly(centre.clone().addScaledVector(back, away * 0.93), centre, up, afresh);
   }
 
   /** To a place on the surface, from outside along its normal. */

@@ -10,6 +10,7 @@ import { Painter, type Appearance, type Layer } from "./painter";
 import type { Box, Session } from "./types";
 
 const SETTLE_MS = 120;
+const REST_MS = 200;
 
 export interface StageEvents {
   /** The view has changed: what lies over it must follow. */
@@ -31,12 +32,15 @@ export class Stage {
   private readonly touched = new Set<number>();
   private frame = 0;
   private settle = 0;
+  private lastMove = 0;
+  private atRest = false;
   width = 1;
   height = 1;
 
   constructor(readonly canvas: HTMLCanvasElement, api: Api, on: StageEvents) {
     this.painter = new Painter(canvas);
     this.camera = new Camera(() => {
+      this.lastMove = performance.now();
       this.redraw();
       on.moved();
     });
@@ -49,7 +53,8 @@ export class Stage {
       dropped: (id) => this.painter.forget(id),
       changed: (ids, layer) => {
         ids.forEach((id) => this.painter.refresh(id, layer));
-        this.redraw();
+        if (layer === "labels" || this.look.hidden.size > 0) this.redraw();
+        else this.recolour();
       },
       failed: (error) => on.failed(error),
       isPainting: () => on.isPainting(),
@@ -67,9 +72,12 @@ export class Stage {
   }
 
   setAppearance(look: Appearance): void {
+    const old = this.look;
     this.look = look;
     this.painter.setAppearance(look);
-    this.redraw();
+    const same = (["paintOnTop", "hidden", "clip", "pointSize", "background"] as const).every((key) => old?.[key] === look[key]);
+    if (same && old.mode !== "labels" && look.mode !== "labels") this.recolour();
+    else this.redraw();
   }
 
   private resize(): void {
@@ -86,6 +94,12 @@ export class Stage {
     this.schedule();
   }
 
+  /** Draws the same points over themselves: their places and sizes are as they were. */
+  private recolour(): void {
+    this.next = 0;
+    this.schedule();
+  }
+
   /** Labels of a chunk were painted here: draws it again over itself. */
   touch(id: number, layer: Layer): void {
     this.painter.refresh(id, layer);
@@ -95,7 +109,10 @@ export class Stage {
 
   private redrawSoon(): void {
     window.clearTimeout(this.settle);
-    this.settle = window.setTimeout(() => this.redraw(), SETTLE_MS);
+    this.settle = window.setTimeout(() => {
+      this.settle = 0;
+      this.redraw();
+    }, SETTLE_MS);
   }
 
   private schedule(): void {
@@ -104,7 +121,7 @@ export class Stage {
 
   /** Is everything drawn that is to be drawn? */
   get isSettled(): boolean {
-    return this.frame === 0 && !this.loader.isLoading && this.bounds !== null;
+    return this.frame === 0 && this.settle === 0 && !this.loader.isLoading && this.bounds !== null;
   }
 
   private drawFrame(): void {
@@ -118,6 +135,7 @@ export class Stage {
   }
 
   private begin(): void {
+    this.atRest = performance.now() - this.lastMove > REST_MS;
     this.stale = false;
     this.next = 0;
     this.touched.clear();
@@ -130,7 +148,7 @@ export class Stage {
 
   /** As much as one frame has time for. */
   private nextTakes(): { chunk: Chunk; points: number }[] {
-    const most = this.budget.moving;
+    const most = this.atRest ? this.budget.resting : this.budget.moving;
     const todo: { chunk: Chunk; points: number }[] = [];
     let points = 0;
     while (this.next < this.takes.length && points < most) {

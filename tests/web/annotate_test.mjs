@@ -1,0 +1,229 @@
+// The annotator end to end: a real server, headless Chromium, a mouse that paints; then the same on the command line.
+// Environment: PCEDNET the program, PCEDNET_SOURCE_DIR the repository, CHROMIUM the browser;
+// SCREENSHOT, if set, is where a picture of the page goes.
+import assert from "node:assert/strict";
+import { spawn, spawnSync } from "node:child_process";
+import { once } from "node:events";
+import fs from "node:fs";
+import { createRequire } from "node:module";
+import os from "node:os";
+import path from "node:path";
+import { after, before, test } from "node:test";
+
+import { painted, readPly, roof, writeRoof } from "./annotate_cloud.mjs";
+
+const require = createRequire(path.join(process.env.PCEDNET_SOURCE_DIR, "web/package.json"));
+const { chromium } = require("playwright-core");
+
+const LEAST_MCC = 0.6; // of the prediction from a few strokes, against the true labels
+const folder = fs.mkdtempSync(path.join(os.tmpdir(), "pcednet-annotate-"));
+const input = path.join(folder, "roof.ply");
+const complaints = [];
+let browser, page, server, saved;
+
+function pcednet(...words) {
+  const done = spawnSync(process.env.PCEDNET, words, { encoding: "utf8" });
+  assert.equal(done.status, 0, `pcednet ${words.join(" ")}: ${done.stderr}`);
+}
+
+/** Starts the server; its process and the address that it prints. */
+function serve(...words) {
+  return new Promise((done, fail) => {
+    const process_ = spawn(process.env.PCEDNET, ["annotate", input, "--no-browser", ...words]);
+    let text = "", errors = "";
+    process_.stdout.on("data", (data) => {
+      text += data;
+      const address = /http:\/\/127\.0\.0\.1:\d+\/\?token=\S+/.exec(text);
+      if (address) done({ process: process_, address: address[0] });
+    });
+    process_.stderr.on("data", (data) => (errors += data));
+    process_.on("exit", (code) => fail(new Error(`pcednet annotate ended with ${code}: ${errors}`)));
+  });
+}
+
+async function stop() {
+  const ended = once(server.process, "exit");
+  server.process.kill("SIGINT");
+  await ended;
+}
+
+async function open() {
+  const opened = await browser.newPage({ viewport: { width: 1280, height: 720 } });
+  opened.setDefaultTimeout(60_000);
+  opened.on("console", (m) => ["error", "warning"].includes(m.type()) && !/GPU stall|GL Driver Message/.test(m.text()) &&
+    complaints.push(m.text()));
+  opened.on("pageerror", (e) => complaints.push(e.message));
+  opened.on("request", (r) => !r.url().startsWith(new URL(server.address).origin) && !/^(data|blob):/.test(r.url()) &&
+    complaints.push(`asks for ${r.url()}`));
+  await opened.goto(server.address);
+  await settled(opened);
+  return opened;
+}
+
+const settled = (of) => of.waitForFunction(() =>
+  annotator.store.now.progress === null && annotator.stage.isSettled && !annotator.client.isBusy);
+
+const state = (name) => page.evaluate((key) => annotator.store.now[key], name);
+
+/** Pixels of the window where a place of the cloud is seen with nothing before it; null for those that are not. */
+const pixelsOf = (places) => page.evaluate((all) => {
+  const { stage } = annotator;
+  const { left, top } = stage.canvas.getBoundingClientRect();
+  const { matrix: m } = stage.camera.view;
+  const spacing = annotator.store.now.session.spacing;
+  const origin = annotator.store.now.session.origin;
+  return all.map((place) => {
+    const p = place.map((c, i) => c - origin[i]);
+    const at = (r) => m[r] * p[0] + m[4 + r] * p[1] + m[8 + r] * p[2] + m[12 + r];
+    const [x, y] = [(at(0) / at(3) + 1) * 0.5 * stage.width, (1 - at(1) / at(3)) * 0.5 * stage.height];
+    if (!(x > 5 && y > 5 && x < stage.width - 5 && y < stage.height - 60)) return null;
+    const picked = stage.pick(x, y);
+    if (!picked || Math.hypot(...picked.position.map((c, i) => c - p[i])) > 6 * spacing) return null;
+    return [x + left, y + top];
+  });
+}, places);
+
+/** A stroke of the brush from place to place; waits for the server's answer. */
+async function stroke(key, places) {
+  const pixels = (await pixelsOf(places)).filter(Boolean);
+  assert.ok(pixels.length >= 2, `the stroke ${JSON.stringify(places[0])} can be seen`);
+  await page.keyboard.press(key);
+  await page.mouse.move(...pixels[0]);
+  await page.mouse.down();
+  for (const pixel of pixels.slice(1)) await page.mouse.move(...pixel, { steps: 3 });
+  await page.mouse.up();
+  await settled(page);
+}
+
+before(async () => {
+  writeRoof(input, roof());
+  server = await serve();
+  browser = await chromium.launch({
+    executablePath: process.env.CHROMIUM,
+    args: ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
+  });
+  page = await open();
+});
+
+after(async () => {
+  await browser?.close();
+  server?.process.kill("SIGKILL");
+  fs.rmSync(folder, { recursive: true, force: true });
+});
+
+test("paints with the mouse, counts, trains by itself and shows a prediction", async () => {
+  await page.evaluate(() => annotator.store.set({ radius: 1.5 * annotator.store.now.session.spacing }));
+  for (const line of painted.sharp) await stroke("3", line);
+  await page.evaluate(() => annotator.store.set({ radius: 3 * annotator.store.now.session.spacing }));
+  for (const line of painted.flat) await stroke("1", line);
+  const counts = await state("counts");
+  assert.ok(counts[0] > 100 && counts[1] === 0 && counts[2] > 50, `${counts}`);
+  assert.equal(await state("undo"), painted.sharp.length + painted.flat.length);
+  await page.waitForFunction(() => annotator.store.now.runs.some((run) => run.current) && !annotator.store.now.training?.active);
+  await page.waitForFunction((n) => annotator.store.now.runs.find((run) => run.current).painted === n, counts[0] + counts[2]);
+  await settled(page);
+  assert.equal(await state("mode"), "prediction");
+  // What was painted is in the page as the server has it, and the prediction agrees with it.
+  const [labelled, agreeing] = await page.evaluate(() => annotator.stage.chunks.reduce(([all, same], chunk) => {
+    chunk.labels.forEach((label, i) => {
+      if (label === 255) return;
+      all += 1;
+      same += Number(chunk.prediction[i] === label);
+    });
+    return [all, same];
+  }, [0, 0]));
+  assert.equal(labelled, counts[0] + counts[2]);
+  assert.ok(agreeing > 0.9 * labelled, `${agreeing} of ${labelled}`);
+  if (process.env.SCREENSHOT) await page.screenshot({ path: process.env.SCREENSHOT });
+});
+
+test("undoes and redoes a stroke", async () => {
+  const counts = await state("counts");
+  await page.keyboard.press("Control+z");
+  await settled(page);
+  const undone = await state("counts");
+  assert.ok(undone[0] < counts[0] && undone[2] === counts[2], `${undone}`);
+  await page.keyboard.press("Control+Shift+z");
+  await settled(page);
+  assert.deepEqual(await state("counts"), counts);
+});
+
+test("hides a class", async () => {
+  const seen = () => page.evaluate(() => {
+    const { stage } = annotator;
+    const at = (x, y) => stage.pick(x * stage.width, y * stage.height) !== null;
+    let hits = 0;
+    for (let i = 1; i < 20; ++i) for (let j = 1; j < 20; ++j) hits += Number(at(i / 20, j / 20));
+    return hits;
+  });
+  const all = await seen();
+  await page.keyboard.press("Shift+Digit1");
+  const hidden = await seen();
+  await page.keyboard.press("Shift+Digit1");
+  assert.ok(hidden < 0.75 * all, `${hidden} of ${all}`);
+  assert.equal(await seen(), all);
+});
+
+test("tells a second window that it may look, until it takes over", async () => {
+  const second = await open();
+  await second.getByText("Another window paints this cloud; here you can look.").waitFor();
+  await second.getByRole("button", { name: "Take over" }).click();
+  await page.getByText("Another window paints this cloud; here you can look.").waitFor();
+  assert.equal(await second.evaluate(() => annotator.store.now.writer), true);
+  await second.close();
+  await page.getByRole("button", { name: "Take over" }).click();
+  await page.waitForFunction(() => annotator.store.now.writer);
+});
+
+test("goes to an uncertain place", async () => {
+  await page.keyboard.press("n");
+  await page.waitForFunction(() => annotator.store.now.uncertain?.rank === 1);
+  await page.keyboard.press("n");
+  await page.waitForFunction(() => annotator.store.now.uncertain?.rank === 2);
+});
+
+test("saves beside the input and says where", async () => {
+  // Training after the redo may be under way: what is saved must be what is shown.
+  await page.waitForFunction(() => !annotator.store.now.training?.active);
+  saved = {};
+  for (const what of ["project", "model", "cloud"]) {
+    await page.getByRole("button", { name: `Save ${what}` }).click();
+    const notice = page.locator(".notice", { hasText: `Saved ${folder}` }).last();
+    await notice.waitFor();
+    saved[what] = /Saved (.*)×$/.exec(await notice.textContent())[1];
+    await notice.getByRole("button", { name: "Close" }).click();
+    assert.ok(fs.statSync(saved[what]).size > 0);
+  }
+});
+
+test("predicts the true edges from those few strokes", () => {
+  const truth = roof();
+  const said = readPly(saved.cloud).column("scalar_edge_class");
+  assert.equal(said.length, truth.length);
+  const n = { tp: 0, fp: 0, tn: 0, fn: 0 };
+  truth.forEach(({ sharp }, i) => { n[said[i] === 2 ? (sharp ? "tp" : "fp") : sharp ? "fn" : "tn"] += 1; });
+  const mcc = (n.tp * n.tn - n.fp * n.fn) / Math.sqrt((n.tp + n.fp) * (n.tp + n.fn) * (n.tn + n.fp) * (n.tn + n.fn));
+  console.log(`MCC ${mcc.toFixed(3)}`);
+  assert.ok(mcc > LEAST_MCC, `MCC ${mcc} ${JSON.stringify(n)}`);
+});
+
+test("gives the same on the command line: model, classes", () => {
+  const model = path.join(folder, "again.safetensors");
+  pcednet("train", "--project", saved.project, "-o", model);
+  assert.ok(fs.readFileSync(model).equals(fs.readFileSync(saved.model)), "the model has the same bytes");
+  const classified = path.join(folder, "again.ply");
+  pcednet("classify", input, "--model", model, "-o", classified);
+  assert.deepEqual(readPly(classified).column("scalar_edge_class"), readPly(saved.cloud).column("scalar_edge_class"));
+});
+
+test("opens the project as it was left", async () => {
+  const counts = await state("counts");
+  await page.close();
+  await stop();
+  server = await serve("--project", saved.project);
+  page = await open();
+  assert.deepEqual(await state("counts"), counts);
+  assert.ok((await state("undo")) > 0);
+});
+
+test("complained of nothing and asked for nothing else", () => assert.deepEqual(complaints, []));
