@@ -49,7 +49,7 @@ async function stop() {
 
 async function open() {
   const opened = await browser.newPage({ viewport: { width: 1280, height: 720 } });
-  opened.setDefaultTimeout(60_000);
+  opened.setDefaultTimeout(120_000);
   opened.on("console", (m) => ["error", "warning"].includes(m.type()) && !/GPU stall|GL Driver Message/.test(m.text()) &&
     complaints.push(m.text()));
   opened.on("pageerror", (e) => complaints.push(e.message));
@@ -146,6 +146,75 @@ test("undoes and redoes a stroke", async () => {
   await page.keyboard.press("Control+Shift+z");
   await settled(page);
   assert.deepEqual(await state("counts"), counts);
+});
+
+test("erases within a lasso and paints within a polygon, by one stroke each", async () => {
+  const counts = await state("counts");
+  const [a, b] = await pixelsOf([painted.flat[0][1], painted.flat[0].at(-2)]);
+  const round = [[a[0] - 12, a[1] - 25], [b[0] + 12, b[1] - 25], [b[0] + 12, b[1] + 25], [a[0] - 12, a[1] + 25]];
+  await page.keyboard.press("e");
+  await page.keyboard.press("l");
+  await page.mouse.move(...round[0]);
+  await page.mouse.down();
+  for (const corner of [...round.slice(1), round[0]]) await page.mouse.move(...corner, { steps: 5 });
+  await page.mouse.up();
+  await settled(page);
+  const erased = await state("counts");
+  assert.ok(erased[0] < counts[0] && erased[2] <= counts[2], `${erased}`);
+  await page.keyboard.press("1");
+  await page.keyboard.press("g");
+  for (const corner of round) await page.mouse.click(...corner);
+  await page.keyboard.press("Enter");
+  await settled(page);
+  assert.ok((await state("counts"))[0] > counts[0]);
+  for (let k = 0; k < 2; ++k) await page.keyboard.press("Control+z");
+  await settled(page);
+  assert.deepEqual(await state("counts"), counts);
+  await page.keyboard.press("b");
+});
+
+test("paints without a mouse", async () => {
+  const counts = await state("counts");
+  await page.locator("canvas").first().focus();
+  await page.keyboard.press("ArrowLeft");
+  await settled(page);
+  await page.keyboard.press("3");
+  await page.keyboard.press("Enter");
+  await settled(page);
+  assert.ok((await state("counts"))[2] > counts[2]);
+  await page.keyboard.press("Control+z");
+  await settled(page);
+  assert.deepEqual(await state("counts"), counts);
+});
+
+test("shows the features at any scale, and only what is in the box", async () => {
+  const colours = page.getByRole("combobox", { name: "Colour by" });
+  await colours.selectOption({ label: "feature" });
+  await page.getByRole("combobox", { name: "Feature" }).selectOption({ index: 1 });
+  await settled(page);
+  const values = () => page.evaluate(() => annotator.stage.chunks.reduce((sum, c) => sum + c.values.reduce((a, b) => a + b, 0), 0));
+  const before = await values();
+  await page.keyboard.press(".");
+  await page.waitForTimeout(300);
+  await settled(page);
+  assert.notEqual(await values(), before);
+  const seen = () => page.evaluate(() => {
+    const { stage } = annotator;
+    return stage.pick(stage.width / 2, stage.height / 2) !== null;
+  });
+  await page.keyboard.press("f");
+  await settled(page);
+  assert.ok(await seen());
+  await page.locator("summary", { hasText: "Clipping box" }).click();
+  const bottom = page.getByRole("slider", { name: "z to" });
+  await bottom.focus();
+  await bottom.press("Home"); // nothing but the lowest points
+  await settled(page);
+  assert.ok(!(await seen()));
+  await page.getByRole("button", { name: "All", exact: true }).click();
+  await settled(page);
+  assert.ok(await seen());
+  await colours.selectOption({ label: "prediction" });
 });
 
 test("hides a class", async () => {

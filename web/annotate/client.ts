@@ -60,6 +60,7 @@ export class Client {
     });
     this.events.addEventListener("error", () => store.set({ connected: false }));
     this.events.addEventListener("open", () => {
+      if (!this.opened) this.attempt(this.refresh()); // what happened before this was not heard
       if (store.now.connected) return;
       store.set({ connected: true });
       this.attempt(this.refresh());
@@ -76,7 +77,10 @@ export class Client {
       session, settings: session.settings, undo: session.undo, redo: session.redo,
       counts: [0, 1, 2].map((id) => session.classes.find((c) => c.id === id)?.count ?? 0) as [number, number, number],
     });
-    if (session.state !== "ready") return;
+    if (session.state !== "ready") {
+      if (!store.now.progress?.fraction) store.set({ progress: { stage: session.stage, fraction: 0 } });
+      return;
+    }
     const runs = await this.api.get<Run[]>("/api/runs");
     store.set({ runs, progress: null });
     if (this.opened) return;

@@ -8,6 +8,7 @@ import { curtain, header, legend, presser, toolbar } from "./chrome";
 import { Client, type Saved } from "./client";
 import { appearanceOf, paintColour, valuesQuery } from "./colouring";
 import { bindKeys, commandsOf } from "./commands";
+import { boxDiagonal } from "./geometry";
 import { Outline } from "./outline";
 import { Overlay } from "./overlay";
 import { classesPanel } from "./panel_classes";
@@ -60,7 +61,7 @@ function open(page: HTMLElement): void {
     const place = await client.nextUncertain();
     const { session } = store.now;
     if (!place || !session) return;
-    stage.camera.visit(place.position, place.normal, Math.max(session.scales.at(-1)! * 6, session.spacing * 40));
+    stage.camera.visit(place.position, place.normal, Math.max(session.spacing * 80, boxDiagonal(session.bounds) * 0.05));
     overlay.setMark(place.position);
   };
   const commands = commandsOf({

@@ -1,6 +1,6 @@
 // Parts of the side panel.
 
-import { h, type Child } from "../shared/dom";
+import { dropdown, h, segmented, type Child, type Choice } from "../shared/dom";
 
 /** A section with a heading, which folds. */
 export function section(title: string, open: boolean, ...children: Child[]): HTMLElement {
@@ -37,3 +37,22 @@ export function slider(label: string, min: number, max: number, step: number, on
 
 export const button = (label: string, onClick: () => void, key = "", kind = "plain"): HTMLButtonElement =>
   h("button", { type: "button", class: kind, onclick: onClick }, label, key && h("kbd", {}, key));
+
+export interface Picker<T> {
+  element: HTMLElement;
+  set(value: T): void;
+}
+
+/** One of many, which follows the state and keeps the focus. */
+export function list<T>(label: string, choices: Choice<T>[], onChange: (value: T) => void): Picker<T> {
+  const element = h("div", { class: "row" }, dropdown(label, choices, choices[0]?.value, onChange));
+  const select = element.querySelector("select")!;
+  return { element, set: (value) => { select.selectedIndex = choices.findIndex((choice) => choice.value === value); } };
+}
+
+/** One of a few, which follows the state and keeps the focus. */
+export function buttons<T>(label: string, choices: Choice<T>[], onChange: (value: T) => void): Picker<T> {
+  const element = segmented(label, choices, undefined as T, onChange);
+  const inputs = element.querySelectorAll("input");
+  return { element, set: (value) => choices.forEach((choice, i) => { inputs[i].checked = choice.value === value; }) };
+}

@@ -1,10 +1,10 @@
 // Training: what it begins from, how it goes, what it was before.
 
-import { dropdown, h, segmented } from "../shared/dom";
+import { h } from "../shared/dom";
 import { linePlot } from "../shared/lines";
 import type { Client } from "./client";
 import { count, percent, seconds } from "./format";
-import { button, checkbox, section } from "./panel";
+import { button, buttons, checkbox, list, section } from "./panel";
 import type { AppStore } from "./store";
 import type { Run, Start } from "./types";
 
@@ -56,8 +56,9 @@ export function trainingPanel(store: AppStore, client: Client): HTMLElement {
   const train = button("Train now", () => client.train(), "T");
   const cancel = button("Cancel", () => client.cancel(), "Esc");
   const auto = checkbox("Train after each stroke", "", (on) => client.setSettings({ auto: on }));
-  const classes = h("div", { class: "row" });
-  const start = h("div", { class: "row" });
+  const classes = buttons<2 | 3>("Classes", [{ value: 2, label: "sharp or not" }, { value: 3, label: "smooth too" }],
+    (chosen) => client.setSettings({ classes: chosen }));
+  const start = list("Begin with", STARTS, (chosen) => client.setSettings({ start: chosen }));
   store.watch(["training", "runs", "counts", "settings"], () => {
     const { training } = store.now;
     const active = training?.active ?? false;
@@ -69,12 +70,11 @@ export function trainingPanel(store: AppStore, client: Client): HTMLElement {
   store.watch(["settings"], () => {
     const { settings } = store.now;
     auto.set(settings.auto);
-    classes.replaceChildren(segmented("Classes", [{ value: 2, label: "sharp or not" }, { value: 3, label: "smooth too" }],
-      settings.classes, (chosen) => client.setSettings({ classes: chosen as 2 | 3 })));
-    start.replaceChildren(dropdown("Begin with", STARTS, settings.start, (chosen) => client.setSettings({ start: chosen })));
+    classes.set(settings.classes);
+    start.set(settings.start);
   });
   return section("Training", true, words, bar, curves(store), h("div", { class: "buttons" }, train, cancel),
-    auto.element, classes, start);
+    auto.element, classes.element, start.element);
 }
 
 export function uncertainPanel(store: AppStore, next: () => void): HTMLElement {

@@ -1,42 +1,45 @@
 // How the cloud is coloured, and the clipping box.
 
-import { dropdown, h, segmented } from "../shared/dom";
+import { h } from "../shared/dom";
 import { FEATURE_NAMES } from "./colouring";
 import { MODES, modesOf } from "./commands";
 import { boxDiagonal } from "./geometry";
 import { length } from "./format";
-import { button, checkbox, section, slider } from "./panel";
-import type { AppStore, Clip } from "./store";
+import { button, buttons, checkbox, list, section, slider, type Picker } from "./panel";
+import type { AppStore, Clip, ColourMode } from "./store";
 import type { Box } from "./types";
 
 export function viewPanel(store: AppStore): HTMLElement {
-  const colours = h("div", { class: "row" });
-  const features = h("div", { class: "row" });
+  const lists = h("div", {}); // what this cloud offers
   const scale = slider("Scale", 0, 15, 1, (value) => store.set({ scale: value }));
   const size = slider("Points", 0.3, 6, 0.05, (value) => store.set({ pointSize: value }));
   const onTop = checkbox("Painted points on top", "O", (on) => store.set({ paintOnTop: on }));
-  store.watch(["mode", "session"], () => {
-    const choices = MODES.filter(({ mode }) => modesOf(store).includes(mode));
-    colours.replaceChildren(dropdown("Colour by", choices.map(({ mode, name }) => ({ value: mode, label: name })),
-      store.now.mode, (mode) => store.set({ mode })));
+  const palette = buttons("Palette", [{ value: false, label: "paper" }, { value: true, label: "colour-blind safe" }],
+    (safePalette) => store.set({ safePalette }));
+  let colours: Picker<ColourMode>;
+  let features: Picker<number>;
+  store.watch(["session"], () => {
+    const names = store.now.session?.features ?? [];
+    colours = list("Colour by", MODES.filter(({ mode }) => modesOf(store).includes(mode))
+      .map(({ mode, name }) => ({ value: mode, label: name })), (mode) => store.set({ mode }));
+    features = list("Feature", names.map((name, i) => ({ value: i, label: FEATURE_NAMES[name] ?? name })),
+      (feature) => store.set({ feature }));
+    scale.element.querySelector("input")!.max = String((store.now.session?.scales.length ?? 1) - 1);
+    lists.replaceChildren(colours.element, features.element);
   });
   store.watch(["mode", "feature", "scale", "session"], () => {
     const { session, mode, feature } = store.now;
-    features.hidden = scale.element.hidden = mode !== "feature";
-    if (!session) return;
-    features.replaceChildren(dropdown("Feature",
-      session.features.map((name, i) => ({ value: i, label: FEATURE_NAMES[name] ?? name })), feature,
-      (chosen) => store.set({ feature: chosen })));
-    scale.element.querySelector("input")!.max = String(session.scales.length - 1);
-    scale.set(store.now.scale, length(session.scales[store.now.scale] ?? 0));
+    features.element.hidden = scale.element.hidden = mode !== "feature";
+    colours.set(mode);
+    features.set(feature);
+    scale.set(store.now.scale, length(session?.scales[store.now.scale] ?? 0));
   });
-  store.watch(["pointSize", "paintOnTop"], () => {
+  store.watch(["pointSize", "paintOnTop", "safePalette"], () => {
     size.set(store.now.pointSize, `×${store.now.pointSize.toFixed(1)}`);
     onTop.set(store.now.paintOnTop);
+    palette.set(store.now.safePalette);
   });
-  return section("View", true, colours, features, scale.element, size.element, onTop.element,
-    segmented("Palette", [{ value: false, label: "paper" }, { value: true, label: "colour-blind safe" }],
-      store.now.safePalette, (safePalette) => store.set({ safePalette })));
+  return section("View", true, lists, scale.element, size.element, onTop.element, palette.element);
 }
 
 /** A box that is in use: all of the cloud at first. */
