@@ -16,13 +16,6 @@
 namespace pcednet::app {
 namespace {
 
-struct DefaultArguments {
-  std::string folder;
-  std::uint64_t seed = 1;
-  bool paper_only = false;
-  std::vector<double> bands;
-};
-
 double percent_of(const PointCloud& cloud, EdgeClass label) {
   const auto count = std::count(cloud.labels.begin(), cloud.labels.end(), label);
   return 100.0 * static_cast<double>(count) / static_cast<double>(cloud.size());
@@ -85,23 +78,34 @@ void run(const std::string& folder, std::uint64_t seed, const Common& common,
   say(fmt::format("{} clouds, {} points in {}", clouds, points, folder));
 }
 
-void run_default(const DefaultArguments& arguments, const Common& common) {
-  data::DefaultSetOptions options{.extras = !arguments.paper_only};
-  if (!arguments.bands.empty()) options.bands = {arguments.bands[0], arguments.bands[1]};
-  run(arguments.folder, arguments.seed, common, data::default_recipes(arguments.seed, options));
+struct SetArguments {
+  std::string folder;
+  std::uint64_t seed = 1;
+};
+
+/// A command that writes a folder of clouds.
+CLI::App* add_set(CLI::App& generate, Common& common, SetArguments& arguments,
+                  const std::string& name, const std::string& description,
+                  const std::string& examples) {
+  CLI::App* command = add_command(generate, common, name, description, examples);
+  command->add_option("folder", arguments.folder, "Where the PLY files go; created if need be")
+      ->required();
+  command->add_option("--seed", arguments.seed, "Another seed gives other clouds")
+      ->capture_default_str();
+  return command;
 }
 
 void add_default(CLI::App& generate, Common& common) {
-  auto arguments = std::make_shared<DefaultArguments>();
-  CLI::App* command = add_command(
-      generate, common, "default",
-      "Labelled clouds for training: the paper's Default training set, made anew, and more",
-      "pcednet generate default clouds/\n"
-      "pcednet generate default clouds/ --paper-only --seed 2");
-  command->add_option("folder", arguments->folder, "Where the PLY files go; created if need be")
-      ->required();
-  command->add_option("--seed", arguments->seed, "Another seed gives other points")
-      ->capture_default_str();
+  struct Arguments : SetArguments {
+    bool paper_only = false;
+    std::vector<double> bands;
+  };
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* command =
+      add_set(generate, common, *arguments, "default",
+              "Labelled clouds for training: the paper's Default training set, made anew, and more",
+              "pcednet generate default clouds/\n"
+              "pcednet generate default clouds/ --paper-only --seed 2");
   command->add_flag("--paper-only", arguments->paper_only,
                     "Only the paper's nine clouds, without the shapes beyond it (x_...)");
   command
@@ -109,59 +113,42 @@ void add_default(CLI::App& generate, Common& common) {
                    "Widths of the sharp and smooth band in point spacings, for every cloud")
       ->expected(2)
       ->check(CLI::PositiveNumber);
-  command->callback([=, &common] { run_default(*arguments, common); });
+  command->callback([arguments, &common] {
+    const auto& [folder, seed] = static_cast<const SetArguments&>(*arguments);
+    data::DefaultSetOptions options{.extras = !arguments->paper_only};
+    if (!arguments->bands.empty()) options.bands = {arguments->bands[0], arguments->bands[1]};
+    run(folder, seed, common, data::default_recipes(seed, options));
+  });
 }
 
-struct SetArguments {
-  std::string folder;
-  std::uint64_t seed = 1;
-};
-
 void add_cad(CLI::App& generate, Common& common) {
-  auto arguments = std::make_shared<SetArguments>();
-  CLI::App* command = add_command(
-      generate, common, "cad",
-      "Labelled clouds for training: CAD parts as vertices of meshes and as surface points",
-      "pcednet generate cad parts/\n"
-      "pcednet generate cad parts/ --seed 2");
-  command->add_option("folder", arguments->folder, "Where the PLY files go; created if need be")
-      ->required();
-  command->add_option("--seed", arguments->seed, "Another seed gives other parts")
-      ->capture_default_str();
-  command->callback([=, &common] {
-    run(arguments->folder, arguments->seed, common, data::cad_recipes(arguments->seed));
-  });
+  auto set = std::make_shared<SetArguments>();
+  add_set(generate, common, *set, "cad",
+          "Labelled clouds for training: CAD parts as vertices of meshes and as surface points",
+          "pcednet generate cad parts/\n"
+          "pcednet generate cad parts/ --seed 2")
+      ->callback(
+          [set, &common] { run(set->folder, set->seed, common, data::cad_recipes(set->seed)); });
 }
 
 void add_worn(CLI::App& generate, Common& common) {
-  auto arguments = std::make_shared<SetArguments>();
-  CLI::App* command = add_command(
-      generate, common, "worn",
-      "Labelled clouds for training: worn parts and reliefs, their ridge lines labelled",
-      "pcednet generate worn parts/");
-  command->add_option("folder", arguments->folder, "Where the PLY files go; created if need be")
-      ->required();
-  command->add_option("--seed", arguments->seed, "Another seed gives other parts")
-      ->capture_default_str();
-  command->callback([=, &common] {
-    run(arguments->folder, arguments->seed, common, data::worn_recipes(arguments->seed),
-        data::relief_recipes(arguments->seed));
-  });
+  auto set = std::make_shared<SetArguments>();
+  add_set(generate, common, *set, "worn",
+          "Labelled clouds for training: worn parts and reliefs, their ridge lines labelled",
+          "pcednet generate worn parts/")
+      ->callback([set, &common] {
+        run(set->folder, set->seed, common, data::worn_recipes(set->seed),
+            data::relief_recipes(set->seed));
+      });
 }
 
 void add_scan(CLI::App& generate, Common& common) {
-  auto arguments = std::make_shared<SetArguments>();
-  CLI::App* command = add_command(
-      generate, common, "scan",
-      "Labelled clouds for training: laser scans of facades, yards, rooms and monuments",
-      "pcednet generate scan scans/");
-  command->add_option("folder", arguments->folder, "Where the PLY files go; created if need be")
-      ->required();
-  command->add_option("--seed", arguments->seed, "Another seed gives other scenes")
-      ->capture_default_str();
-  command->callback([=, &common] {
-    run(arguments->folder, arguments->seed, common, data::scan_recipes(arguments->seed));
-  });
+  auto set = std::make_shared<SetArguments>();
+  add_set(generate, common, *set, "scan",
+          "Labelled clouds for training: laser scans of facades, yards, rooms and monuments",
+          "pcednet generate scan scans/")
+      ->callback(
+          [set, &common] { run(set->folder, set->seed, common, data::scan_recipes(set->seed)); });
 }
 
 void add_sample(CLI::App& generate, Common& common) {

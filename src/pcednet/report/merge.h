@@ -18,7 +18,8 @@ struct MergeOptions {
 
 /// What a page shows.
 struct MergedStudies {
-  std::string json;  ///< one line: {"schema":"pcednet-report-1","studies":[...],"scenes":[...]}
+  std::string json =
+      {};  ///< one line: {"schema":"pcednet-report-1","studies":[...],"scenes":[...]}
   std::size_t studies = 0, scenes = 0;
   std::vector<std::string> warnings = {};
 };
