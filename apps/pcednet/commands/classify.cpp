@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <cctype>
 #include <memory>
 #include <set>
 
@@ -22,7 +23,7 @@ namespace fs = std::filesystem;
 
 struct Arguments {
   std::vector<std::string> inputs;
-  std::string output, output_folder, model = "scan", preview;
+  std::string output, output_folder, model = "scan", preview, las_classification;
   MethodArguments method;
   bool exact = false, clean_up = false, class_colours = false, ascii = false;
 };
@@ -39,6 +40,14 @@ fs::path preview_path(const Arguments& arguments, const fs::path& input, bool se
                                              input.stem().string(), pattern.extension().string());
 }
 
+/// The file for a result unless the user names one: LAS for LAS, PLY for all else.
+std::string output_name(const fs::path& input) {
+  std::string extension = input.extension().string();
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  const bool is_las = extension == ".las" || extension == ".laz";
+  return input.stem().string() + (is_las ? "_edges.las" : "_edges.ply");
+}
+
 /// What to read and write; refuses before any work what could not be written after it.
 std::vector<Job> plan(const Arguments& arguments, const Common& common) {
   const auto inputs = expand_inputs(arguments.inputs);
@@ -50,9 +59,8 @@ std::vector<Job> plan(const Arguments& arguments, const Common& common) {
   for (const fs::path& input : inputs) {
     const fs::path folder =
         arguments.output_folder.empty() ? input.parent_path() : fs::path(arguments.output_folder);
-    const fs::path output = arguments.output.empty()
-                                ? folder / (input.stem().string() + "_edges.ply")
-                                : fs::path(arguments.output);
+    const fs::path output =
+        arguments.output.empty() ? folder / output_name(input) : fs::path(arguments.output);
     if (!taken.insert(output).second) {
       throw Error(ErrorKind::kUsage,
                   fmt::format("{}: two inputs would be written here", output.string()));
@@ -64,6 +72,34 @@ std::vector<Job> plan(const Arguments& arguments, const Common& common) {
   }
   if (!arguments.output_folder.empty()) fs::create_directories(arguments.output_folder);
   return jobs;
+}
+
+/// Applies --las-classification, pairs class=code with commas between, to the field Classification.
+void set_las_classification(const std::string& pairs, const std::vector<std::uint8_t>& classes,
+                            PointCloud& cloud) {
+  const Attribute* present = find_attribute(cloud, "Classification");
+  std::vector<std::uint8_t> codes(cloud.size());
+  if (present && present->type == ScalarType::kUint8 && present->components == 1) {
+    for (std::size_t i = 0; i < codes.size(); ++i) {
+      codes[i] = static_cast<std::uint8_t>(present->bytes[i]);
+    }
+  }
+  for (const std::string& pair : CLI::detail::split(pairs, ',')) {
+    int edge_class = -1, code = -1, used = 0;
+    const bool sound = std::sscanf(pair.c_str(), "%d=%d%n", &edge_class, &code, &used) == 2 &&
+                       static_cast<std::size_t>(used) == pair.size() && edge_class >= 0 &&
+                       edge_class <= 2 && code >= 0 && code <= 255;
+    if (!sound) {
+      throw Error(ErrorKind::kUsage,
+                  fmt::format("--las-classification: \"{}\" is not class=code, class 0 to 2, code "
+                              "0 to 255",
+                              pair));
+    }
+    for (std::size_t i = 0; i < codes.size(); ++i) {
+      if (classes[i] == edge_class) codes[i] = static_cast<std::uint8_t>(code);
+    }
+  }
+  set_attribute(cloud, make_attribute("Classification", codes));
 }
 
 void report(const Job& job, const detect::Classification& result,
@@ -117,8 +153,13 @@ void classify_file(const Job& job, const Arguments& arguments, const detect::Edg
   auto kept = detect::add_result(loaded.cloud, prepared, result, model,
                                  {.class_colours = arguments.class_colours});
   for (const std::string& note : kept) say(fmt::format("  {}", note));
+  if (!arguments.las_classification.empty()) {
+    set_las_classification(arguments.las_classification, result.classes, loaded.cloud);
+  }
   io::write_cloud(job.output, loaded.cloud,
-                  {.overwrite = common.overwrite(), .ascii = arguments.ascii});
+                  {.overwrite = common.overwrite(),
+                   .ascii = arguments.ascii,
+                   .new_normals = prepared.estimated.empty()});
   times.emplace_back("write", watch.lap());
   if (!job.preview.empty()) {
     render::write_preview(job.preview, loaded.cloud, result.classes,
@@ -129,6 +170,10 @@ void classify_file(const Job& job, const Arguments& arguments, const detect::Edg
 }
 
 void classify(const Arguments& arguments, const Common& common) {
+  PointCloud nothing;
+  if (!arguments.las_classification.empty()) {
+    set_las_classification(arguments.las_classification, {}, nothing);  // refuses before the work
+  }
   detect::EdgeModel model;
   if (arguments.method.name.empty()) {
     model = detect::load_model(find_model(arguments.model));
@@ -164,7 +209,11 @@ void add_classify(CLI::App& app, Common& common) {
                   "pcednet classify part.obj --model my.safetensors");
   command->add_option("inputs", arguments->inputs, "Point files, or folders of them")->required();
   command->add_option("-o,--output", arguments->output,
-                      "The result (default: <stem>_edges.ply beside the input)");
+                      "The result (default: <stem>_edges.ply beside the input, .las for LAS "
+                      "and LAZ)");
+  command->add_option("--las-classification", arguments->las_classification,
+                      "Classes that set the LAS field Classification, as class=code,...; 2=64 "
+                      "makes sharp edges 64");
   command->add_option("--out-dir", arguments->output_folder, "Folder for the results");
   command->add_option("--model", arguments->model, "A shipped model's name, or a model file")
       ->capture_default_str();

@@ -6,6 +6,7 @@
 #include <array>
 
 #include "pcednet/io/input_file.h"
+#include "pcednet/io/las.h"
 #include "pcednet/io/obj.h"
 #include "pcednet/io/pcd.h"
 #include "pcednet/io/ply.h"
@@ -15,9 +16,9 @@
 namespace pcednet::io {
 namespace {
 
-constexpr const char* kAccepted = "accepted: .ply .pcd .obj .xyz .txt .asc .pts .csv";
+constexpr const char* kAccepted = "accepted: .ply .pcd .las .laz .obj .xyz .txt .asc .pts .csv";
 
-enum class Format { kPly, kPcd, kObj, kText };
+enum class Format { kPly, kPcd, kObj, kText, kLas };
 
 bool is_one_of(std::string_view word, std::initializer_list<std::string_view> words) {
   return std::find(words.begin(), words.end(), word) != words.end();
@@ -33,10 +34,12 @@ Format find_format(const InputFile& file) {
   if (begins_with("# .PCD") || begins_with("VERSION ") || begins_with("FIELDS ")) {
     return Format::kPcd;
   }
-  if (begins_with("LASF") || begins_with("ASTM-E57") ||
-      is_one_of(extension, {".las", ".laz", ".e57"})) {
-    throw unreadable(file.path(),
-                     fmt::format("LAS, LAZ and E57 are not supported yet; {}", kAccepted));
+  if (begins_with("LASF")) return Format::kLas;
+  if (is_one_of(extension, {".las", ".laz"})) {
+    throw unreadable(file.path(), "not a LAS file: it must begin with LASF");
+  }
+  if (begins_with("ASTM-E57") || extension == ".e57") {
+    throw unreadable(file.path(), fmt::format("E57 is not supported yet; {}", kAccepted));
   }
   if (extension == ".ply") {
     throw unreadable(file.path(), "not a PLY file: the first line must be ply");
@@ -57,6 +60,8 @@ LoadedCloud read_format(const InputFile& file) {
       return read_pcd(file);
     case Format::kObj:
       return read_obj(file);
+    case Format::kLas:
+      return read_las(file);
     case Format::kText:
       break;
   }
@@ -85,7 +90,7 @@ LoadedCloud read_cloud(const std::filesystem::path& path) {
 }
 
 const char* format_name(const std::filesystem::path& path) {
-  static constexpr std::array kNames = {"PLY", "PCD", "OBJ", "text"};
+  static constexpr std::array kNames = {"PLY", "PCD", "OBJ", "text", "LAS"};
   return kNames[static_cast<std::size_t>(find_format(InputFile(path)))];
 }
 

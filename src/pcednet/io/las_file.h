@@ -1,0 +1,98 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include "pcednet/cloud/point_cloud.h"
+#include "pcednet/io/input_file.h"
+
+namespace pcednet::io {
+
+/// One field of a point record: a whole number of bytes, or some bits of one byte.
+struct LasField {
+  std::string name;
+  ScalarType type = ScalarType::kUint8;
+  std::size_t offset = 0;      ///< bytes into the record
+  std::size_t components = 1;  ///< numbers one after the other
+  unsigned shift = 0;
+  unsigned bits = 0;  ///< 0: the whole number
+};
+
+/// A variable length record, or an extended one.
+struct LasRecord {
+  std::string user_id;
+  std::uint16_t record_id = 0;
+  std::string description;
+  std::string data = {};
+
+  bool is(std::string_view user, std::uint16_t id) const {
+    return user_id == user && record_id == id;
+  }
+};
+
+/// The number of type T at `offset` of little-endian bytes (the only order LAS has).
+template <typename T>
+T number_at(std::string_view bytes, std::size_t offset) {
+  T value = {};
+  if (offset + sizeof value <= bytes.size()) {
+    std::memcpy(&value, bytes.data() + offset, sizeof value);
+  }
+  return value;
+}
+
+template <typename T>
+void put_number(std::string& bytes, std::size_t offset, T value) {
+  if (offset + sizeof value <= bytes.size()) {
+    std::memcpy(bytes.data() + offset, &value, sizeof value);
+  }
+}
+
+/// What stands in a LAS file around its points. The public header block is kept as it is in the
+/// file; the accessors read it.
+struct LasFile {
+  std::string header;
+  std::vector<LasRecord> records, extended_records;
+
+  unsigned minor_version() const { return number_at<std::uint8_t>(header, 25); }
+  unsigned point_format() const { return number_at<std::uint8_t>(header, 104) & 0x3FU; }
+  bool compressed() const { return (number_at<std::uint8_t>(header, 104) & 0xC0U) != 0; }
+  std::size_t record_length() const { return number_at<std::uint16_t>(header, 105); }
+  std::uint64_t points_offset() const { return number_at<std::uint32_t>(header, 96); }
+  std::uint64_t point_count() const;
+  double scale(std::size_t axis) const { return number_at<double>(header, 131 + 8 * axis); }
+  double offset(std::size_t axis) const { return number_at<double>(header, 155 + 8 * axis); }
+};
+
+constexpr unsigned kLasFormats = 11;
+
+/// Bytes of a record of a point format of 0 ... 10, without extra bytes.
+std::size_t las_format_bytes(unsigned format);
+
+/// The fields of a point format, X, Y and Z first.
+std::vector<LasField> las_standard_fields(unsigned format);
+
+/// The extra bytes of the file's records, as its record LASF_Spec 4 describes them: unique names
+/// (edge_class, p_sharp and p_smooth as scalar_...); what it does not describe is ExtraBytes.
+std::vector<LasField> las_extra_fields(const LasFile& file, std::vector<std::string>& warnings);
+
+/// The 192 bytes that describe an extra field.
+std::string las_extra_descriptor(const LasField& field);
+
+/// Reads all but the points; what is wrong but harmless becomes a warning. Throws
+/// Error(kUnreadable), naming the byte, for what cannot be trusted.
+LasFile read_las_file(const InputFile& file, std::vector<std::string>& warnings);
+
+/// The records as bytes of a file.
+std::string las_record_bytes(const std::vector<LasRecord>& records, bool extended);
+
+/// Keeps header and records with a cloud, as elements that PLY files carry too; and takes them out
+/// again: a file with an empty header if the cloud has none that make sense.
+void attach_las_file(PointCloud& cloud, const LasFile& file);
+LasFile attached_las_file(const PointCloud& cloud);
+bool is_las_element(const ForeignElement& element);
+
+}  // namespace pcednet::io
