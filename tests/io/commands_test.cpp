@@ -127,7 +127,7 @@ TEST(ConvertCommand, ReturnsTheCodeOfItsFailure) {
   const std::string bad = scratch.file("b.xyz", "1 2\n").string();
   const std::string out = scratch.path("o.ply").string();
   EXPECT_EQ(run(scratch, "convert " + good).code, 2);
-  EXPECT_EQ(run(scratch, "convert " + good + " -o " + scratch.path("o.las").string()).code, 2);
+  EXPECT_EQ(run(scratch, "convert " + good + " -o " + scratch.path("o.e57").string()).code, 2);
   const Outcome broken = run(scratch, "convert " + bad + " -o " + out);
   EXPECT_EQ(broken.code, 3);
   EXPECT_TRUE(contains(broken.err, "b.xyz:1:"));

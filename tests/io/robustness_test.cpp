@@ -166,8 +166,8 @@ TEST(ReadCloud, SaysWhatItWouldAccept) {
   const auto message = [&](const std::string& name, const std::string& bytes) {
     return error_of(ErrorKind::kUnreadable, [&] { scratch.read(name, bytes); });
   };
-  EXPECT_TRUE(contains(message("a.las", "LASF"), "not supported yet; accepted: .ply"));
-  EXPECT_TRUE(contains(message("a.laz", ""), "not supported yet"));
+  EXPECT_TRUE(contains(message("a.las", "LASF"), "ends within the LAS header"));
+  EXPECT_TRUE(contains(message("a.laz", ""), "must begin with LASF"));
   EXPECT_TRUE(contains(message("a.e57", "ASTM-E57"), "not supported yet"));
   EXPECT_TRUE(contains(message("a.stl", "solid"), "accepted: .ply"));
   EXPECT_TRUE(contains(message("a", "solid"), "accepted: .ply"));
@@ -179,7 +179,7 @@ TEST(ReadCloud, SaysWhatItWouldAccept) {
 TEST(WriteCloud, RefusesWhatItCannotDo) {
   const Scratch scratch;
   PointCloud cloud = sample_cloud(3);
-  error_of(ErrorKind::kUsage, [&] { write_cloud(scratch.path("a.las"), cloud); });
+  error_of(ErrorKind::kUsage, [&] { write_cloud(scratch.path("a.e57"), cloud); });
   error_of(ErrorKind::kUsage, [&] { losses(scratch.path("a"), cloud); });
   scratch.file("a.ply", "mine");
   error_of(ErrorKind::kUsage, [&] { write_cloud(scratch.path("a.ply"), cloud); });
