@@ -2,6 +2,7 @@
 import fs from "node:fs";
 
 const POINTS = 40_000;
+const BAND = 2.5; // spacings from an edge that count as it
 
 /** Faces: corner, two sides, outward normal. Ground, a box on it, a gable on the box. */
 function faces() {
@@ -35,7 +36,7 @@ function distance(p, [a, b]) {
 
 const cross = (a, b) => Math.hypot(a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]);
 
-/** Points drawn by area: position, normal, sharp or not. The same every time. */
+/** Points drawn by area, 0.012 apart: position, normal, sharp or not. The same every time. */
 export function roof() {
   let state = 7;
   const next = () => (state = (Math.imul(state, 1664525) + 1013904223) >>> 0) / 2 ** 32;
@@ -51,7 +52,7 @@ export function roof() {
       const p = at.map((c, i) => c + s * u[i] + t * v[i]);
       // Below the upper box there is no roof.
       if (f === 4 && p[0] > 0.4 && p[0] < 1.2 && p[1] > 0.3 && p[1] < 1.1) continue;
-      points.push({ p, n, sharp: lines.some((line) => distance(p, line) < 1.2 * spacing) });
+      points.push({ p, n, sharp: lines.some((line) => distance(p, line) < BAND * spacing) });
     }
   });
   return points;
@@ -74,6 +75,10 @@ export const painted = {
     between([0.5, 0.3, 0.6], [1.1, 0.3, 0.6], 8),
   ],
   flat: [
+    // Right beside the edges, so that these become no wider than they are.
+    between([0.3, 0, 0.52], [1.7, 0, 0.52], 12),
+    between([0.5, 0.3, 1.02], [1.1, 0.3, 1.02], 8),
+    between([0.3, 0.08, 0.6], [1.7, 0.08, 0.6], 12),
     between([0.3, 0, 0.3], [1.7, 0, 0.3], 6),
     between([1.4, 0.12, 0.6], [1.8, 0.5, 0.6], 5),
     between([0.55, 0.45, 1.1], [1.05, 0.6, 1.1], 5),

@@ -70,7 +70,6 @@ const pixelsOf = (places) => page.evaluate((all) => {
   const { stage } = annotator;
   const { left, top } = stage.canvas.getBoundingClientRect();
   const { matrix: m } = stage.camera.view;
-  const spacing = annotator.store.now.session.spacing;
   const origin = annotator.store.now.session.origin;
   return all.map((place) => {
     const p = place.map((c, i) => c - origin[i]);
@@ -78,7 +77,7 @@ const pixelsOf = (places) => page.evaluate((all) => {
     const [x, y] = [(at(0) / at(3) + 1) * 0.5 * stage.width, (1 - at(1) / at(3)) * 0.5 * stage.height];
     if (!(x > 5 && y > 5 && x < stage.width - 5 && y < stage.height - 60)) return null;
     const picked = stage.pick(x, y);
-    if (!picked || Math.hypot(...picked.position.map((c, i) => c - p[i])) > 6 * spacing) return null;
+    if (!picked || Math.hypot(...picked.position.map((c, i) => c - p[i])) > 0.08) return null;
     return [x + left, y + top];
   });
 }, places);
@@ -112,9 +111,9 @@ after(async () => {
 });
 
 test("paints with the mouse, counts, trains by itself and shows a prediction", async () => {
-  await page.evaluate(() => annotator.store.set({ radius: 1.5 * annotator.store.now.session.spacing }));
+  await page.evaluate(() => annotator.store.set({ radius: 0.016 }));
   for (const line of painted.sharp) await stroke("3", line);
-  await page.evaluate(() => annotator.store.set({ radius: 3 * annotator.store.now.session.spacing }));
+  await page.evaluate(() => annotator.store.set({ radius: 0.035 }));
   for (const line of painted.flat) await stroke("1", line);
   const counts = await state("counts");
   assert.ok(counts[0] > 100 && counts[1] === 0 && counts[2] > 50, `${counts}`);
