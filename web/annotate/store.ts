@@ -55,7 +55,7 @@ export interface State {
 export const initialState: State = {
   session: null, progress: { stage: "Connecting", fraction: 0 }, connected: true, writer: false,
   tool: "brush", paintClass: 2, radius: 1, protect: false, frontOnly: true, hidden: new Set(), clip: null,
-  mode: "labels", feature: 0, scale: 8, paintOnTop: true, safePalette: false, pointSize: 2,
+  mode: "labels", feature: 0, scale: 8, paintOnTop: true, safePalette: false, pointSize: 1.7,
   counts: [0, 0, 0], undo: 0, redo: 0, saving: false,
   settings: { classes: 3, auto: true, start: "random", seed: 1 }, runs: [], training: null, predicted: null,
   uncertain: null,
