@@ -7,6 +7,9 @@ scripts/setup.sh test web
 echo "== web pages"
 scripts/build_web.sh
 
+echo "== other readers, from npm"
+(cd tests/clients && npm ci --no-audit --no-fund --silent) || echo "not installed: their tests are skipped"
+
 echo "== release build and its tests"
 cmake --preset release -DPCEDNET_TESTS=ON
 cmake --build --preset release

@@ -26,8 +26,8 @@ void on_interrupt(int signal) {
 bool progress_line_open = false;
 
 bool is_point_file(const std::filesystem::path& path) {
-  static constexpr std::array kExtensions = {".ply", ".obj", ".xyz", ".txt", ".csv",
-                                             ".asc", ".pts", ".pcd", ".las", ".laz"};
+  static constexpr std::array kExtensions = {".ply", ".obj", ".xyz", ".txt", ".csv", ".asc",
+                                             ".pts", ".pcd", ".las", ".laz", ".e57"};
   std::string extension = path.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });

@@ -4,6 +4,7 @@
 
 #include <csignal>
 
+#include "e57_writer.h"
 #include "pcednet/io/write_cloud.h"
 #include "sample_cloud.h"
 #include "scratch.h"
@@ -36,6 +37,13 @@ std::string big_endian_body() {
   return body + packed_reversed(U8{3}, 0, 1, 2, U8{3}, 2, 1, 0);
 }
 
+std::string e57_example() {
+  return e57_file({{"<name>a</name>",
+                    {e57_double("cartesianX", {1, 2, 3}), e57_single("cartesianY", {1, 2, 3}),
+                     e57_integer("cartesianZ", -1, 5, {1, 2, 3})},
+                    3}});
+}
+
 /// A small file of every format and encoding.
 std::vector<Example> examples(const Scratch& scratch) {
   const PointCloud cloud = sample_cloud(5);
@@ -65,6 +73,7 @@ std::vector<Example> examples(const Scratch& scratch) {
       {"a.xyz", written("a.xyz", false), false},
       {"a.csv", written("a.csv", false), false},
       {"a.pts", written("a.pts", false), false},
+      {"a.e57", e57_example(), true},
   };
 }
 
@@ -168,7 +177,7 @@ TEST(ReadCloud, SaysWhatItWouldAccept) {
   };
   EXPECT_TRUE(contains(message("a.las", "LASF"), "ends within the LAS header"));
   EXPECT_TRUE(contains(message("a.laz", ""), "must begin with LASF"));
-  EXPECT_TRUE(contains(message("a.e57", "ASTM-E57"), "not supported yet"));
+  EXPECT_TRUE(contains(message("a.e57", "ASTM-E57"), "ends at byte"));
   EXPECT_TRUE(contains(message("a.stl", "solid"), "accepted: .ply"));
   EXPECT_TRUE(contains(message("a", "solid"), "accepted: .ply"));
   error_of(ErrorKind::kUnreadable, [&] { read_cloud(scratch.path("missing.ply")); });

@@ -12,7 +12,9 @@
 #include <string>
 
 #include "commands.h"
+#include "e57_facts.h"
 #include "pcednet/cloud/bounding_box.h"
+#include "pcednet/core/error.h"
 #include "pcednet/core/output_file.h"
 #include "pcednet/core/random.h"
 #include "pcednet/io/read_cloud.h"
@@ -49,9 +51,13 @@ std::string name_of_class(std::uint8_t label) {
   }
 }
 
-/// The mean distance from points to their ten nearest others, over at most 2000 points drawn with a
-/// fixed seed.
-std::optional<double> mean_spacing(const PointCloud& cloud) {
+struct Spacing {
+  double mean = 0.0;    ///< distance to the ten nearest others
+  double median = 0.0;  ///< of the distances to the nearest other
+};
+
+/// Over at most 2000 points drawn with a fixed seed; none unless there are eleven points.
+std::optional<Spacing> find_spacing(const PointCloud& cloud) {
   constexpr std::size_t kNeighbours = 10, kSample = 2000;
   std::vector<std::size_t> finite;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
@@ -62,14 +68,47 @@ std::optional<double> mean_spacing(const PointCloud& cloud) {
   Random random(1);
   const std::size_t sample = std::min(finite.size(), kSample);
   double sum = 0.0;
+  std::vector<double> nearest;
   std::vector<spatial::Neighbour> found;
   for (std::size_t s = 0; s < sample; ++s) {
     const std::size_t i = finite[sample == finite.size() ? s : random.index(finite.size())];
     // The nearest of all is the point itself.
     tree.nearest(cloud.positions[i], kNeighbours + 1, found);
     for (const spatial::Neighbour& neighbour : found) sum += std::sqrt(neighbour.sq_distance);
+    nearest.push_back(std::sqrt(found[1].sq_distance));
   }
-  return sum / static_cast<double>(sample * kNeighbours);
+  std::nth_element(nearest.begin(), nearest.begin() + sample / 2, nearest.end());
+  return Spacing{sum / static_cast<double>(sample * kNeighbours), nearest[sample / 2]};
+}
+
+/// What may surprise, one sentence each.
+std::vector<std::string> find_problems(const io::LoadedCloud& loaded, const Defects& defects,
+                                       const BoundingBox& box,
+                                       const std::optional<Spacing>& spacing) {
+  const PointCloud& cloud = loaded.cloud;
+  std::vector<std::string> problems;
+  const auto add = [&](std::size_t count, const char* what) {
+    if (count > 0) problems.push_back(fmt::format("{} of {} {}", count, cloud.size(), what));
+  };
+  if (cloud.empty()) problems.emplace_back("no points");
+  add(defects.positions, "points have no finite position: kept, not labelled");
+  add(defects.duplicates, "points lie exactly on another one");
+  if (!cloud.empty() && !cloud.has_normals()) {
+    problems.emplace_back("no normals: they will be estimated");
+  }
+  add(defects.normals, "normals are zero or not finite");
+  add(loaded.rescaled_normals, "normals are not of unit length: made so");
+  if (!box.empty() && spacing) {
+    const double largest = std::max(box.min.cwiseAbs().maxCoeff(), box.max.cwiseAbs().maxCoeff());
+    const double step = std::ldexp(1.0, std::ilogb(std::max(largest, 1e-30)) - 23);
+    if (step > 0.1 * spacing->median) {
+      problems.push_back(
+          fmt::format("coordinates up to {:.0f}: as float they would be rounded to "
+                      "{:.2g}, the points are {:.2g} apart",
+                      largest, step, spacing->median));
+    }
+  }
+  return problems;
 }
 
 ordered_json describe_labels(const PointCloud& cloud) {
@@ -114,7 +153,11 @@ ordered_json describe(const std::filesystem::path& path) {
                        {"position_type", name_of(cloud.position_type)}};
   const BoundingBox box = bounding_box(cloud.positions);
   if (!box.empty()) file["bounds"] = {{"min", to_json(box.min)}, {"max", to_json(box.max)}};
-  if (const auto spacing = mean_spacing(cloud)) file["mean_spacing"] = *spacing;
+  const auto spacing = find_spacing(cloud);
+  if (spacing) {
+    file["mean_spacing"] = spacing->mean;
+    file["median_spacing"] = spacing->median;
+  }
   file["normals"] = cloud.has_normals();
   file["colours"] = !cloud.colours.empty();
   if (cloud.has_labels()) file["labels"] = describe_labels(cloud);
@@ -130,6 +173,8 @@ ordered_json describe(const std::filesystem::path& path) {
   file["defects"] = {{"positions_not_finite", defects.positions},
                      {"normals_unusable", defects.normals},
                      {"duplicate_positions", defects.duplicates}};
+  file["problems"] = find_problems(loaded, defects, box, spacing);
+  if (file["format"] == "E57") file["e57"] = e57_facts(path);
   file["warnings"] = loaded.warnings;
   return file;
 }
@@ -190,6 +235,7 @@ void print(const ordered_json& file) {
   }
   if (file.contains("mean_spacing")) {
     print_line("mean spacing", fmt::format("{:.6g}", file["mean_spacing"].get<double>()));
+    print_line("median spacing", fmt::format("{:.6g}", file["median_spacing"].get<double>()));
   }
   const auto unusable = file["defects"]["normals_unusable"].get<std::size_t>();
   print_line("normals", !file["normals"].get<bool>() ? "no"
@@ -201,15 +247,12 @@ void print(const ordered_json& file) {
   for (const auto& element : file["elements"]) print_line("also", element.get<std::string>());
   for (const auto& comment : file["comments"]) print_line("comment", comment.get<std::string>());
   print_defects(file["defects"]);
+  for (const auto& problem : file["problems"]) print_line("problem", problem.get<std::string>());
+  if (file.contains("e57")) print_e57_facts(file["e57"]);
   for (const auto& warning : file["warnings"]) print_line("warning", warning.get<std::string>());
 }
 
-void info(const Request& request, const Common& common) {
-  ordered_json files = ordered_json::array();
-  for (const std::filesystem::path& path : expand_inputs(request.inputs)) {
-    files.push_back(describe(path));
-    if (request.json != "-") print(files.back());
-  }
+void write_json(const Request& request, const ordered_json& files, const Common& common) {
   if (request.json.empty()) return;
   // Names and comments of foreign files need not be UTF-8.
   const std::string text = files.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
@@ -217,6 +260,29 @@ void info(const Request& request, const Common& common) {
     fmt::print("{}", text);
   } else {
     write_text_file(request.json, text, common.overwrite());
+  }
+}
+
+void info(const Request& request, const Common& common) {
+  ordered_json files = ordered_json::array();
+  std::vector<Error> errors;
+  const auto paths = expand_inputs(request.inputs);
+  for (const std::filesystem::path& path : paths) {
+    try {
+      files.push_back(describe(path));
+    } catch (const Error& error) {
+      if (paths.size() == 1) throw;
+      errors.push_back(error);
+      say(fmt::format("pcednet: {}", error.what()));
+      files.push_back({{"file", path.string()}, {"error", error.what()}});
+      continue;
+    }
+    if (request.json != "-") print(files.back());
+  }
+  write_json(request, files, common);
+  if (!errors.empty()) {
+    throw Error(ErrorKind::kUnreadable,
+                fmt::format("{} of {} files could not be read", errors.size(), paths.size()));
   }
 }
 

@@ -76,6 +76,11 @@ void run(const Request& request, const Common& common) {
     throw Error(ErrorKind::kInsufficient, request.input + ": has no points");
   }
   normals::PreparedNormals prepared = prepare(request, cloud, console_progress(common));
+  if (const auto scanners = scanner_of_points(cloud);
+      !request.keep && !request.eye() && !scanners.empty()) {
+    const std::size_t faced = normals::face_viewpoints(cloud.positions, prepared.normals, scanners);
+    say(fmt::format("{}: {} points turned towards their scanner", request.input, faced));
+  }
   cloud.normals = prepared.normals;
   if (request.flip) {
     for (Vec3& normal : cloud.normals) normal = Vec3::Zero() - normal;

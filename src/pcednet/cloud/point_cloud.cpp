@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "pcednet/core/error.h"
@@ -46,6 +47,22 @@ std::size_t make_normals_unit(PointCloud& cloud) {
     }
   }
   return unusable;
+}
+
+std::vector<Vec3> scanner_of_points(const PointCloud& cloud) {
+  const auto& scanners = cloud.scanners;
+  const auto known = [](const Vec3& place) { return place.allFinite(); };
+  if (std::none_of(scanners.begin(), scanners.end(), known)) return {};
+  const Attribute* scan = find_attribute(cloud, "scan");
+  if (scan == nullptr && scanners.size() > 1) return {};
+  std::vector<Vec3> places(cloud.size(), Vec3::Constant(NAN));
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const double s = scan == nullptr ? 0.0 : scan->value(i);
+    if (s >= 0.0 && s < static_cast<double>(scanners.size())) {
+      places[i] = scanners[static_cast<std::size_t>(s)];
+    }
+  }
+  return std::any_of(places.begin(), places.end(), known) ? places : std::vector<Vec3>{};
 }
 
 Defects find_defects(const PointCloud& cloud) {

@@ -35,6 +35,7 @@ struct PointCloud {
   ScalarType position_type = ScalarType::kFloat64;  ///< what the file holds, and output gets back
   std::vector<std::string> comments;
   std::vector<ForeignElement> foreign_elements;
+  std::vector<Vec3> scanners;  ///< where each scan was taken from; NaN where that is unknown
 
   std::size_t size() const { return positions.size(); }
   bool empty() const { return positions.empty(); }
@@ -51,6 +52,11 @@ void set_attribute(PointCloud& cloud, Attribute attribute);
 /// Scales every normal to unit length; a normal that is zero or not finite becomes (0,0,0).
 /// Returns how many of these there are.
 std::size_t make_normals_unit(PointCloud& cloud);
+
+/// Where each point was seen from: cloud.scanners[s] for the s that the attribute `scan` names, or
+/// for all points if there is one scanner and no such attribute; NaN where unknown. Empty if it is
+/// known of no point.
+std::vector<Vec3> scanner_of_points(const PointCloud& cloud);
 
 /// What a cloud holds that cannot be computed with.
 struct Defects {

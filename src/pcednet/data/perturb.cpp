@@ -95,6 +95,7 @@ PointCloud subsample(const PointCloud& cloud, const SubsampleOptions& options) {
   std::sort(points.begin(), points.end());
 
   PointCloud kept;
+  kept.scanners = cloud.scanners;
   kept.positions = chosen(cloud.positions, points);
   kept.normals = chosen(cloud.normals, points);
   kept.colours = chosen(cloud.colours, points);

@@ -14,14 +14,36 @@ bool is_usable(const Vec3& normal) {
   return normal.allFinite() && !normal.isZero(0.0);
 }
 
-void estimate(PreparedCloud& prepared, const char* why, const Progress* progress) {
-  auto found = normals::estimate_oriented_normals(prepared.positions, {}, progress);
-  prepared.notes.push_back(
-      fmt::format("{}: estimated from the 12 nearest points and oriented ({} connected part{}{})",
-                  why, found.orientation.components, found.orientation.components == 1 ? "" : "s",
-                  found.orientation.undecided == 0
-                      ? std::string(", outwards")
-                      : fmt::format(", {} of them open: upwards", found.orientation.undecided)));
+std::string describe(const normals::Orientation& orientation) {
+  const std::string open = orientation.undecided == 0
+                               ? ", outwards"
+                               : fmt::format(", {} of them open: upwards", orientation.undecided);
+  return fmt::format("oriented ({} connected part{}{})", orientation.components,
+                     orientation.components == 1 ? "" : "s", open);
+}
+
+void estimate(PreparedCloud& prepared, const PointCloud& cloud, const char* why,
+              const Progress* progress) {
+  const std::vector<Vec3> scanners = scanner_of_points(cloud);
+  const auto is_known = [](const Vec3& place) { return place.allFinite(); };
+  normals::PrepareOptions options;
+  // Where every point has a scanner the costly search for consistent signs is not needed.
+  if (!scanners.empty() && std::all_of(scanners.begin(), scanners.end(), is_known)) {
+    options.viewpoint = scanners.front();
+  }
+  auto found = normals::estimate_oriented_normals(prepared.positions, options, progress);
+  std::size_t faced = 0;
+  if (!scanners.empty()) {
+    faced = normals::face_viewpoints(prepared.positions, found.normals, scanners);
+  }
+  std::string note = fmt::format("{}: estimated from the 12 nearest points and ", why);
+  if (faced == cloud.size()) {
+    note += "turned towards the scanner";
+  } else {
+    note += describe(found.orientation);
+    if (faced > 0) note += fmt::format("; {} of them turned towards their scanner", faced);
+  }
+  prepared.notes.push_back(note);
   prepared.estimated = std::move(found.normals);
   prepared.normals = prepared.estimated;
 }
@@ -49,8 +71,8 @@ PreparedCloud prepare(const PointCloud& cloud, const Progress* progress) {
   };
   std::size_t usable = count_usable();
   if (usable == 0) {
-    estimate(prepared, cloud.has_normals() ? "no normal is usable" : "no normals in the file",
-             progress);
+    estimate(prepared, cloud,
+             cloud.has_normals() ? "no normal is usable" : "no normals in the file", progress);
     usable = count_usable();
     if (usable == 0) {
       throw Error(ErrorKind::kInsufficient,

@@ -18,7 +18,8 @@ struct PreparedCloud {
 };
 
 /// Makes `cloud` ready for description; it must outlive the result. Normals are estimated from the
-/// positions and oriented when the cloud has none, or none that is usable.
+/// positions and oriented, by the scanners' places if the cloud has them, when it has none or none
+/// that is usable.
 /// Throws Error(kInsufficient) for a cloud without a finite point, or without any normal that could
 /// be used or found.
 PreparedCloud prepare(const PointCloud& cloud, const Progress* progress = nullptr);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,7 @@ namespace pcednet::io {
 struct LoadedCloud {
   PointCloud cloud;
   std::vector<std::string> warnings;
+  std::size_t rescaled_normals = 0;  ///< usable ones whose length in the file was not 1 +- 0.001
 };
 
 }  // namespace pcednet::io

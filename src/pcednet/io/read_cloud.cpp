@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
+#include "pcednet/io/e57.h"
 #include "pcednet/io/input_file.h"
 #include "pcednet/io/las.h"
 #include "pcednet/io/obj.h"
@@ -16,9 +18,10 @@
 namespace pcednet::io {
 namespace {
 
-constexpr const char* kAccepted = "accepted: .ply .pcd .las .laz .obj .xyz .txt .asc .pts .csv";
+constexpr const char* kAccepted =
+    "accepted: .ply .pcd .las .laz .e57 .obj .xyz .txt .asc .pts .csv";
 
-enum class Format { kPly, kPcd, kObj, kText, kLas };
+enum class Format { kPly, kPcd, kObj, kText, kLas, kE57 };
 
 bool is_one_of(std::string_view word, std::initializer_list<std::string_view> words) {
   return std::find(words.begin(), words.end(), word) != words.end();
@@ -38,9 +41,7 @@ Format find_format(const InputFile& file) {
   if (is_one_of(extension, {".las", ".laz"})) {
     throw unreadable(file.path(), "not a LAS file: it must begin with LASF");
   }
-  if (begins_with("ASTM-E57") || extension == ".e57") {
-    throw unreadable(file.path(), fmt::format("E57 is not supported yet; {}", kAccepted));
-  }
+  if (begins_with("ASTM-E57") || extension == ".e57") return Format::kE57;
   if (extension == ".ply") {
     throw unreadable(file.path(), "not a PLY file: the first line must be ply");
   }
@@ -62,6 +63,8 @@ LoadedCloud read_format(const InputFile& file) {
       return read_obj(file);
     case Format::kLas:
       return read_las(file);
+    case Format::kE57:
+      return read_e57(file);
     case Format::kText:
       break;
   }
@@ -73,6 +76,12 @@ LoadedCloud read_format(const InputFile& file) {
 LoadedCloud read_cloud(const std::filesystem::path& path) {
   LoadedCloud loaded = read_format(InputFile(path));
   PointCloud& cloud = loaded.cloud;
+  if (cloud.scanners.empty()) cloud.scanners = scanners_of_comments(cloud.comments);
+  loaded.rescaled_normals = static_cast<std::size_t>(
+      std::count_if(cloud.normals.begin(), cloud.normals.end(), [](const Vec3& normal) {
+        const double length = normal.norm();
+        return std::isfinite(length) && length > 0.0 && std::abs(length - 1.0) > 1e-3;
+      }));
   const std::size_t unusable = make_normals_unit(cloud);
   if (unusable > 0 && unusable == cloud.size()) {
     cloud.normals.clear();
@@ -90,7 +99,7 @@ LoadedCloud read_cloud(const std::filesystem::path& path) {
 }
 
 const char* format_name(const std::filesystem::path& path) {
-  static constexpr std::array kNames = {"PLY", "PCD", "OBJ", "text", "LAS"};
+  static constexpr std::array kNames = {"PLY", "PCD", "OBJ", "text", "LAS", "E57"};
   return kNames[static_cast<std::size_t>(find_format(InputFile(path)))];
 }
 

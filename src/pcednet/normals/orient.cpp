@@ -37,11 +37,9 @@ void turn(Vec3& normal, bool about) {
   normal = (about ? Vec3(-normal) : normal) + Vec3::Zero();
 }
 
-void face_viewpoint(std::span<const Vec3> points, std::span<Vec3> normals, const Vec3& viewpoint) {
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const double facing = normals[i].dot(viewpoint - points[i]);
-    turn(normals[i], facing < 0.0 || (facing == 0.0 && points_down(normals[i])));
-  }
+void face(const Vec3& point, Vec3& normal, const Vec3& viewpoint) {
+  const double facing = normal.dot(viewpoint - point);
+  turn(normal, facing < 0.0 || (facing == 0.0 && points_down(normal)));
 }
 
 /// Turns one connected surface outwards, or upwards; returns whether outwards could be decided.
@@ -108,13 +106,28 @@ void check_size(std::span<const Vec3> positions, std::span<const Vec3> normals) 
               fmt::format("{} normals for {} positions", normals.size(), positions.size()));
 }
 
+std::size_t face_viewpoints(std::span<const Vec3> positions, std::span<Vec3> normals,
+                            std::span<const Vec3> viewpoints) {
+  check_size(positions, normals);
+  check_size(positions, viewpoints);
+  std::size_t faced = 0;
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    if (!viewpoints[i].allFinite()) continue;
+    face(positions[i], normals[i], viewpoints[i]);
+    ++faced;
+  }
+  return faced;
+}
+
 Orientation orient_normals(const NeighbourGraph& graph, std::span<const Vec3> positions,
                            std::span<Vec3> normals, const OrientOptions& options,
                            const Progress* progress) {
   check(options);
   check_size(positions, normals);
   if (options.viewpoint) {
-    face_viewpoint(positions, normals, *options.viewpoint);
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+      face(positions[i], normals[i], *options.viewpoint);
+    }
     return {};
   }
   std::vector<Vec3> of_points(graph.points.size(), Vec3::Zero());

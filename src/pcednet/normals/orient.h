@@ -54,6 +54,11 @@ Orientation orient_normals(const NeighbourGraph& graph, std::span<const Vec3> po
                            std::span<Vec3> normals, const OrientOptions& options = {},
                            const Progress* progress = nullptr);
 
+/// Turns every normal to face the viewpoint of its position, as in OrientOptions; those whose
+/// viewpoint is not finite stay. Returns how many points have one. One viewpoint per position.
+std::size_t face_viewpoints(std::span<const Vec3> positions, std::span<Vec3> normals,
+                            std::span<const Vec3> viewpoints);
+
 /// Throws Error(kUsage) unless there is one normal per position.
 void check_size(std::span<const Vec3> positions, std::span<const Vec3> normals);
 

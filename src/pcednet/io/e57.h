@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "pcednet/io/input_file.h"
+#include "pcednet/io/loaded_cloud.h"
+
+namespace pcednet::io {
+
+/// Reads all scans of an E57 file (ASTM E2807) into one cloud, each moved by its pose.
+///
+/// Points that the file calls invalid are left out, with a warning. Colours are scaled to 8 bits by
+/// the file's colour limits. Several scans give the attribute `scan`, their index from 0. Other
+/// fields become attributes of their own name and type; those that a scan lacks are NaN in it.
+/// `scanners` is set where the file tells (see E57Scan::knows_scanner).
+/// Throws as read_cloud().
+LoadedCloud read_e57(const InputFile& file);
+
+/// The places that comments of the form "scanner INDEX: X Y Z" name; what read_e57 keeps in
+/// comments, so that it survives in another format. Those not named are NaN.
+std::vector<Vec3> scanners_of_comments(const std::vector<std::string>& comments);
+
+}  // namespace pcednet::io
