@@ -1,0 +1,46 @@
+"""`pcednet info`: spacing, problems, folders with files that cannot be read."""
+import json
+import unittest
+
+import numpy as np
+
+from support import CliTest, cube, run, write_ply
+
+
+class Info(CliTest):
+    def info(self, *paths, expect=0):
+        return json.loads(run("info", *paths, "--json", "-", expect=expect).stdout)
+
+    def test_median_spacing_is_that_of_a_grid(self):
+        grid = np.stack(np.meshgrid(*[np.arange(9.0)] * 3), -1).reshape(-1, 3) * 0.25
+        write_ply(self.folder / "grid.ply", grid)
+        self.assertEqual(self.info(self.folder / "grid.ply")[0]["median_spacing"], 0.25)
+
+    def test_problems_are_named(self):
+        p, n, _ = cube(500)
+        p[1] = p[0]
+        p[2, 0] = np.nan
+        n[3] *= 2
+        write_ply(self.folder / "a.ply", p + [2_600_000, 1_200_000, 0], n, position_type="double")
+        problems = " ".join(self.info(self.folder / "a.ply")[0]["problems"])
+        for part in ("1 of 500 points have no finite position", "1 of 500 points lie exactly",
+                     "1 of 500 normals are not of unit length", "as float they would be rounded"):
+            self.assertIn(part, problems)
+        self.assertNotIn("no normals", problems)
+
+    def test_a_good_cloud_has_no_problems(self):
+        p, n, _ = cube(500)
+        write_ply(self.folder / "a.ply", p, n)
+        self.assertEqual(self.info(self.folder / "a.ply")[0]["problems"], [])
+
+    def test_an_unreadable_file_does_not_stop_the_others(self):
+        p, n, _ = cube(100)
+        write_ply(self.folder / "c.ply", p, n)
+        (self.folder / "b.ply").write_bytes(b"ply\nformat nonsense\n")
+        files = self.info(self.folder, expect=3)
+        self.assertIn("b.ply", files[0]["error"])
+        self.assertEqual(files[1]["points"], 100)
+
+
+if __name__ == "__main__":
+    unittest.main()
