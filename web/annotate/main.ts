@@ -61,7 +61,7 @@ function open(page: HTMLElement): void {
     const place = await client.nextUncertain();
     const { session } = store.now;
     if (!place || !session) return;
-    stage.camera.visit(place.position, place.normal, Math.max(session.spacing * 80, boxDiagonal(session.bounds) * 0.05));
+    stage.camera.visit(place.position, place.normal, Math.max(session.spacing * 150, boxDiagonal(session.bounds) * 0.05));
     overlay.setMark(place.position);
   };
   const commands = commandsOf({
