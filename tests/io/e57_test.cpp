@@ -167,6 +167,24 @@ TEST(E57, FillsFieldsThatAScanLacks) {
   EXPECT_EQ(count->value(3), 4.0);
 }
 
+TEST(E57, ReadsPastStrings) {
+  const Scratch scratch;
+  E57TestScan first = two_points(), second = two_points();
+  first.fields.push_back(e57_integer("returnCount", 0, 7, {3, 4}));
+  second.fields.push_back({"<returnCount type=\"String\"/>", 8, {'a', 'b'}});
+  second.fields.push_back({"<cartesianInvalidState type=\"String\"/>", 8, {'a', 'b'}});
+  const PointCloud cloud = scratch.read("a.e57", e57_file({first, second})).cloud;
+  ASSERT_EQ(cloud.size(), 4u);
+  EXPECT_EQ(find_attribute(cloud, "returnCount")->value(1), 4.0);
+  EXPECT_TRUE(std::isnan(find_attribute(cloud, "returnCount")->value(2)));
+  for (E57TestField& field : second.fields)
+    field.xml = "<" + field.xml.substr(1, 10) + " type=\"String\"/>";
+  second.fields.resize(3);
+  EXPECT_TRUE(contains(
+      error_of(ErrorKind::kInsufficient, [&] { scratch.read("a.e57", e57_file({second})); }),
+      "points need x, y and z"));
+}
+
 TEST(E57, NamesThePageWithAWrongChecksum) {
   const Scratch scratch;
   E57TestScan scan{"", {}, 500};

@@ -189,8 +189,9 @@ std::string_view local_name(std::string_view name) {
 }
 
 const E57Field* find_field(const E57Scan& scan, std::string_view name) {
-  const auto found = std::find_if(scan.fields.begin(), scan.fields.end(),
-                                  [&](const E57Field& f) { return local_name(f.name) == name; });
+  const auto found = std::find_if(scan.fields.begin(), scan.fields.end(), [&](const E57Field& f) {
+    return f.is_number() && local_name(f.name) == name;
+  });
   return found == scan.fields.end() ? nullptr : &*found;
 }
 

@@ -26,6 +26,7 @@ struct E57Field {
   std::optional<double> lower = {};  ///< of floats, if the file says so
   std::optional<double> upper = {};
 
+  bool is_number() const { return kind != Kind::kString; }
   bool is_integer() const { return kind == Kind::kInteger || kind == Kind::kScaledInteger; }
   unsigned bits() const;    ///< per point in the file: 0 if every value is `least`; of strings too
   ScalarType type() const;  ///< the narrowest that holds the values
@@ -65,7 +66,7 @@ struct E57Document {
 /// Throws Error(kUnreadable) where the XML is damaged or contradicts itself.
 E57Document read_e57_document(const E57Pages& pages);
 
-/// The field of that name (an extension's prefix is no part of it), or null.
+/// The field of that name (an extension's prefix is no part of it) if it holds numbers, or null.
 const E57Field* find_field(const E57Scan& scan, std::string_view name);
 
 /// The name without the prefix of an extension.

@@ -119,9 +119,8 @@ bool is_attribute(const E57Field& field) {
   const auto is_one_of = [&](const auto& names) {
     return std::find(names.begin(), names.end(), local_name(field.name)) != names.end();
   };
-  return field.kind != E57Field::Kind::kString && !is_one_of(kCartesian) &&
-         !is_one_of(kSpherical) && !is_one_of(kColours) && !is_one_of(kNormals) &&
-         !is_one_of(kStates);
+  return field.is_number() && !is_one_of(kCartesian) && !is_one_of(kSpherical) &&
+         !is_one_of(kColours) && !is_one_of(kNormals) && !is_one_of(kStates);
 }
 
 /// A type for the numbers of both.
@@ -148,8 +147,9 @@ std::vector<Attribute> plan_attributes(const std::vector<E57Scan>& scans) {
   }
   for (Attribute& attribute : plan) {
     const auto lacks = [&](const E57Scan& scan) {
-      return std::none_of(scan.fields.begin(), scan.fields.end(),
-                          [&](const E57Field& f) { return f.name == attribute.name; });
+      return std::none_of(scan.fields.begin(), scan.fields.end(), [&](const E57Field& f) {
+        return f.is_number() && f.name == attribute.name;
+      });
     };
     const bool is_float = attribute.type >= ScalarType::kFloat32;
     // Only a float can say that there is no number.
@@ -162,8 +162,10 @@ std::vector<Attribute> plan_attributes(const std::vector<E57Scan>& scans) {
 
 void append_attribute(const ScanPoints& points, Attribute& attribute) {
   const auto& fields = points.fields;
-  const auto field = std::find_if(fields.begin(), fields.end(),
-                                  [&](const Attribute& f) { return f.name == attribute.name; });
+  // Strings have been left empty: as good as absent.
+  const auto field = std::find_if(fields.begin(), fields.end(), [&](const Attribute& f) {
+    return !f.bytes.empty() && f.name == attribute.name;
+  });
   const std::size_t begin = attribute.bytes.size(), stride = attribute.stride();
   attribute.bytes.resize(begin + points.valid.size() * stride);
   std::byte* out = attribute.bytes.data() + begin;
