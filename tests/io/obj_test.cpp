@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "pcednet/io/faces.h"
 #include "pcednet/io/write_cloud.h"
 #include "sample_cloud.h"
 #include "scratch.h"
@@ -22,9 +23,26 @@ TEST(Obj, AveragesTheNormalsOfAVertexOverItsCorners) {
   EXPECT_EQ(loaded.cloud.normals[2], Vec3(0, 0, 1));
   EXPECT_EQ(loaded.cloud.normals[3], Vec3(0, 0, 0));
   EXPECT_EQ(loaded.cloud.comments, std::vector<std::string>{"a roof"});
-  ASSERT_EQ(loaded.warnings.size(), 2u);
-  EXPECT_TRUE(contains(loaded.warnings[0], "2 faces"));
-  EXPECT_TRUE(contains(loaded.warnings[1], "1 of 4 normals"));
+  ASSERT_EQ(loaded.warnings.size(), 1u);
+  EXPECT_TRUE(contains(loaded.warnings[0], "1 of 4 normals"));
+}
+
+TEST(Obj, KeepsFacesAsPlyHasThem) {
+  const Scratch scratch;
+  const auto loaded =
+      scratch.read("a.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\nf -1 -2 -4\nl 1 2\n");
+  EXPECT_EQ(triangles_of(loaded.cloud), (std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}, {3, 2, 0}}));
+  ASSERT_EQ(loaded.warnings.size(), 1u);
+  EXPECT_TRUE(contains(loaded.warnings[0], "1 lines or points"));
+  write_cloud(scratch.path("a.ply"), loaded.cloud);
+  EXPECT_EQ(triangles_of(read_cloud(scratch.path("a.ply")).cloud), triangles_of(loaded.cloud));
+}
+
+TEST(Obj, RefusesFacesOfOtherVertices) {
+  PointCloud cloud;
+  cloud.positions.resize(3);
+  cloud.foreign_elements = {make_face_element({3}, {0, 1, 3})};
+  EXPECT_TRUE(contains(error_of(ErrorKind::kUnreadable, [&] { triangles_of(cloud); }), "vertex 3"));
 }
 
 TEST(Obj, PairsNormalsWithVerticesWhereNoFaceDoes) {

@@ -5,7 +5,10 @@
 #include <string>
 
 #include "commands.h"
+#include "pcednet/core/error.h"
+#include "pcednet/data/mesh_samples.h"
 #include "pcednet/data/perturb.h"
+#include "pcednet/io/faces.h"
 #include "pcednet/io/read_cloud.h"
 #include "pcednet/io/write_cloud.h"
 
@@ -19,7 +22,18 @@ struct Request {
   double noise = 0.0, fraction = 1.0;
   bool along_normal = false;
   std::uint64_t seed = 1;
+  std::size_t samples = 0;
+  bool vertex_normals = false;
 };
+
+void sample(const Request& request, PointCloud& cloud) {
+  const auto triangles = io::triangles_of(cloud);
+  if (triangles.empty()) {
+    throw Error(ErrorKind::kInsufficient, "has no faces to sample; .obj and .ply may have");
+  }
+  cloud =
+      data::sample_mesh(cloud, triangles, {request.samples, request.vertex_normals, request.seed});
+}
 
 void perturb(const Request& request, PointCloud& cloud) {
   if (request.noise > 0.0) {
@@ -36,6 +50,9 @@ void convert(const Request& request, const Common& common) {
   io::losses(request.output, {});
   io::LoadedCloud loaded = io::read_cloud(request.input);
   for (const std::string& warning : loaded.warnings) warn(request.input + ": " + warning);
+  if (request.samples > 0) {
+    with_name_in_errors(request.input, [&] { sample(request, loaded.cloud); });
+  }
   perturb(request, loaded.cloud);
   for (const std::string& loss : io::losses(request.output, loaded.cloud)) {
     warn(request.output + " does not keep: " + loss);
@@ -52,6 +69,7 @@ void add_convert(CLI::App& app, Common& common) {
                                   "pcednet convert scan.xyz -o scan.ply\n"
                                   "pcednet convert scan.ply -o scan.pcd\n"
                                   "pcednet convert scan.ply -o readable.ply --ascii\n"
+                                  "pcednet convert part.obj -o part.ply --sample 100000\n"
                                   "pcednet convert scan.ply -o worse.ply --noise 0.004 --seed 7");
   auto request = std::make_shared<Request>();
   command->add_option("input", request->input, "The point file to read")->required();
@@ -72,6 +90,13 @@ void add_convert(CLI::App& app, Common& common) {
       ->needs(noise);
   command->add_option("--subsample", request->fraction, "Keep this share of the points, at random")
       ->check(CLI::Range(0.0, 1.0));
+  CLI::Option* samples =
+      command->add_option("--sample", request->samples,
+                          "Instead of the vertices of a mesh, this many points on its faces");
+  command
+      ->add_flag("--vertex-normals", request->vertex_normals,
+                 "Give them normals between those of the vertices, not those of the faces")
+      ->needs(samples);
   command->add_option("--seed", request->seed, "Another seed gives other noise and other points")
       ->capture_default_str();
   command->callback([request, &common] { convert(*request, common); });

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "pcednet/io/faces.h"
 #include "pcednet/io/obj.h"
 #include "pcednet/io/promote.h"
 #include "pcednet/io/text_scan.h"
@@ -31,7 +32,8 @@ struct Statements {
   std::array<std::vector<double>, 3> colours;
   std::vector<Corner> corners;
   FarthestIndex farthest_vertex, farthest_normal;
-  std::size_t faces = 0;
+  std::vector<std::uint32_t> face_sizes, face_corners;
+  std::size_t others = 0;  ///< lines and points
   std::vector<std::string> comments;
 };
 
@@ -70,8 +72,7 @@ class StatementParser {
       if (statement_.size() != 4) throw error("expected vn x y z");
       result_.normals.emplace_back(number(1), number(2), number(3));
     } else if (keyword == "f" || keyword == "l" || keyword == "p") {
-      ++result_.faces;
-      for (std::size_t w = 1; w < statement_.size(); ++w) take_corner(statement_[w]);
+      take_face(keyword == "f");
     }
     statement_.clear();
   }
@@ -93,16 +94,30 @@ class StatementParser {
     for (std::size_t c = 0; c < 3; ++c) result_.colours[c].push_back(number(4 + c));
   }
 
-  void take_corner(std::string_view corner) {
+  void take_face(bool keep) {
+    for (std::size_t w = 1; w < statement_.size(); ++w) {
+      const std::size_t vertex = take_corner(statement_[w]);
+      if (keep) result_.face_corners.push_back(static_cast<std::uint32_t>(vertex));
+    }
+    if (keep) {
+      result_.face_sizes.push_back(static_cast<std::uint32_t>(statement_.size() - 1));
+    } else {
+      ++result_.others;
+    }
+  }
+
+  /// Returns the index of the corner's vertex.
+  std::size_t take_corner(std::string_view corner) {
     const std::size_t first = corner.find('/');
     const std::size_t vertex =
         index(corner.substr(0, first), result_.positions.size(), result_.farthest_vertex);
-    if (first == std::string_view::npos) return;
+    if (first == std::string_view::npos) return vertex;
     const std::size_t second = corner.find('/', first + 1);
-    if (second == std::string_view::npos) return;
+    if (second == std::string_view::npos) return vertex;
     const std::size_t normal =
         index(corner.substr(second + 1), result_.normals.size(), result_.farthest_normal);
     result_.corners.push_back({vertex, normal});
+    return vertex;
   }
 
   /// What an index means: n is the n-th of the file, -n the n-th last of the `so_far` before it.
@@ -178,9 +193,11 @@ LoadedCloud read_obj(const InputFile& file) {
     loaded.warnings.push_back(
         fmt::format("colours of {} of {} points are not kept", coloured, cloud.size()));
   }
-  if (statements.faces > 0) {
-    loaded.warnings.push_back(
-        fmt::format("{} faces, lines or points are not kept", statements.faces));
+  if (!statements.face_sizes.empty()) {
+    cloud.foreign_elements = {make_face_element(statements.face_sizes, statements.face_corners)};
+  }
+  if (statements.others > 0) {
+    loaded.warnings.push_back(fmt::format("{} lines or points are not kept", statements.others));
   }
   return loaded;
 }

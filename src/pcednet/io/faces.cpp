@@ -1,0 +1,94 @@
+#include "pcednet/io/faces.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+
+#include "pcednet/core/error.h"
+#include "pcednet/io/ply_header.h"
+
+namespace pcednet::io {
+namespace {
+
+/// The rows of a foreign element, read from first to last.
+class Rows {
+ public:
+  explicit Rows(const std::vector<std::byte>& bytes) : bytes_(bytes) {}
+
+  double number(ScalarType type) {
+    return visit_scalar(type, [&](auto value) {
+      if (bytes_.size() - at_ < sizeof value) {
+        throw Error(ErrorKind::kUnreadable, "the faces end before the last of them");
+      }
+      std::memcpy(&value, bytes_.data() + at_, sizeof value);
+      at_ += sizeof value;
+      return static_cast<double>(value);
+    });
+  }
+
+ private:
+  const std::vector<std::byte>& bytes_;
+  std::size_t at_ = 0;
+};
+
+void append_fan(const std::vector<double>& corners, std::size_t points,
+                std::vector<Triangle>& triangles) {
+  for (const double corner : corners) {
+    if (corner >= 0.0 && corner < static_cast<double>(points)) continue;
+    throw Error(ErrorKind::kUnreadable,
+                fmt::format("a face names vertex {} of {}", corner, points));
+  }
+  const auto index = [&](std::size_t c) { return static_cast<std::uint32_t>(corners[c]); };
+  for (std::size_t c = 2; c < corners.size(); ++c) {
+    triangles.push_back({index(0), index(c - 1), index(c)});
+  }
+}
+
+bool names_corners(const PlyProperty& property) {
+  return property.length_type &&
+         (property.name == "vertex_indices" || property.name == "vertex_index");
+}
+
+}  // namespace
+
+ForeignElement make_face_element(const std::vector<std::uint32_t>& sizes,
+                                 const std::vector<std::uint32_t>& corners) {
+  const bool small = std::all_of(sizes.begin(), sizes.end(), [](auto n) { return n < 256; });
+  ForeignElement element;
+  element.header = fmt::format("element face {}\nproperty list {} int vertex_indices\n",
+                               sizes.size(), small ? "uchar" : "uint");
+  auto corner = corners.begin();
+  const auto append = [&](std::uint32_t number, std::size_t bytes) {
+    const auto* first = reinterpret_cast<const std::byte*>(&number);  // little-endian
+    element.bytes.insert(element.bytes.end(), first, first + bytes);
+  };
+  for (const std::uint32_t size : sizes) {
+    append(size, small ? 1 : 4);
+    for (std::uint32_t c = 0; c < size; ++c) append(*corner++, 4);
+  }
+  return element;
+}
+
+std::vector<Triangle> triangles_of(const PointCloud& cloud) {
+  std::vector<Triangle> triangles;
+  std::vector<double> corners;
+  for (const ForeignElement& foreign : cloud.foreign_elements) {
+    if (!foreign.header.starts_with("element face ")) continue;
+    const PlyHeader header = parse_ply_header(
+        "faces", "ply\nformat binary_little_endian 1.0\n" + foreign.header + "end_header\n");
+    const PlyElement& face = header.elements.front();
+    Rows rows(foreign.bytes);
+    for (std::uint64_t f = 0; f < face.count; ++f) {
+      for (const PlyProperty& property : face.properties) {
+        const double count = property.length_type ? rows.number(*property.length_type) : 1.0;
+        corners.clear();
+        for (double c = 0.0; c < count; ++c) corners.push_back(rows.number(property.type));
+        if (names_corners(property)) append_fan(corners, cloud.size(), triangles);
+      }
+    }
+  }
+  return triangles;
+}
+
+}  // namespace pcednet::io
