@@ -164,6 +164,7 @@ void CloudBuilder::fill(std::size_t column, const std::byte* first, std::size_t 
 }
 
 void CloudBuilder::fill_rows(const std::byte* rows, std::size_t begin, std::size_t end) {
+  if (begin >= end) return;  // `rows` may be null then
   std::size_t offset = 0;
   for (std::size_t c = 0; c < columns_.size(); ++c) {
     fill(c, rows + offset, row_bytes_, begin, end);
