@@ -75,7 +75,7 @@ void add_convert(CLI::App& app, Common& common) {
   command->add_option("input", request->input, "The point file to read")->required();
   command
       ->add_option("-o,--output", request->output,
-                   "The file to write: .ply .pcd .las .obj .xyz .txt .asc .pts or .csv")
+                   "The file to write: .ply .pcd .las .laz .obj .xyz .txt .asc .pts or .csv")
       ->required();
   command->add_flag("--ascii", request->ascii, "Numbers as text in .ply and .pcd");
   CLI::Option* noise =

@@ -7,6 +7,7 @@
 #include "pcednet/core/parallel.h"
 #include "pcednet/io/las.h"
 #include "pcednet/io/las_file.h"
+#include "pcednet/io/laz.h"
 
 namespace pcednet::io {
 namespace {
@@ -96,6 +97,21 @@ void read_plain(const InputFile& file, const LasFile& las, std::vector<std::stri
   cloud = sink.finish();
 }
 
+void read_compressed(const InputFile& file, LasFile& las, std::vector<std::string>& warnings,
+                     PointCloud& cloud) {
+  const LazReader reader(file, las);
+  RecordSink sink(las, warnings);
+  parallel_blocks(reader.chunk_count(), 1, [&](std::size_t chunk, std::size_t) {
+    const std::vector<std::byte> rows = reader.decode(chunk);
+    const std::size_t begin = reader.chunk_begin(chunk);
+    sink.take(rows.data(), begin, begin + rows.size() / las.record_length());
+  });
+  cloud = sink.finish();
+  std::erase_if(las.records, [](const LasRecord& r) { return r.is("laszip encoded", 22204); });
+  auto format = static_cast<std::uint8_t>(las.point_format());
+  put_number(las.header, 104, format);
+}
+
 /// Moves NormalX, NormalY and NormalZ to the normals.
 void promote_normals(PointCloud& cloud) {
   std::array<const Attribute*, 3> axes = {find_attribute(cloud, "NormalX"),
@@ -159,9 +175,10 @@ LoadedCloud read_las(const InputFile& file) {
   LoadedCloud loaded;
   LasFile las = read_las_file(file, loaded.warnings);
   if (las.compressed()) {
-    throw unreadable(file.path(), "compressed (LAZ), which is not supported yet");
+    read_compressed(file, las, loaded.warnings, loaded.cloud);
+  } else {
+    read_plain(file, las, loaded.warnings, loaded.cloud);
   }
-  read_plain(file, las, loaded.warnings, loaded.cloud);
   loaded.cloud.colours = las_colours(loaded.cloud);
   promote_normals(loaded.cloud);
   promote_label(loaded.cloud);

@@ -9,6 +9,8 @@
 #include "pcednet/core/output_file.h"
 #include "pcednet/io/las.h"
 #include "pcednet/io/las_layout.h"
+#include "pcednet/io/laz.h"
+#include "pcednet/io/text_scan.h"
 #include "pcednet/io/write_blocks.h"
 
 namespace pcednet::io {
@@ -110,17 +112,24 @@ void write_las(const std::filesystem::path& path, const PointCloud& cloud,
   check_consistent(cloud);
   LasLayout layout = las_layout(cloud, options);
   LasFile& file = layout.file;
+  const bool compress = lower_case(path.extension().string()) == ".laz";
+  if (compress) add_laz_record(file);
   const std::string records = las_record_bytes(file.records, false);
   const std::uint64_t points_offset = file.header.size() + records.size();
   update_header(file, cloud, points_offset);
   OutputFile out(path, options.overwrite);
   std::string header = file.header;
+  if (compress) put_number(header, 104, static_cast<std::uint8_t>(file.point_format() | 0x80U));
   out.write(header + records);
   const auto encode_points = [&](std::size_t begin, std::size_t end, std::string& bytes) {
     encode(path, cloud, layout, begin, end, bytes);
   };
-  const std::uint64_t end = points_offset + cloud.size() * file.record_length();
-  write_blocks(out, cloud.size(), encode_points);
+  std::uint64_t end = points_offset + cloud.size() * file.record_length();
+  if (compress) {
+    end = points_offset + write_laz_points(out, file, cloud.size(), points_offset, encode_points);
+  } else {
+    write_blocks(out, cloud.size(), encode_points);
+  }
   if (header.size() >= kHeader14 && file.minor_version() >= 4) {
     const bool any = !file.extended_records.empty();
     put_number<std::uint64_t>(header, 235, any ? end : 0);

@@ -21,13 +21,14 @@ Format format_of(const std::filesystem::path& path) {
   if (extension == ".ply") return Format::kPly;
   if (extension == ".pcd") return Format::kPcd;
   if (extension == ".obj") return Format::kObj;
-  if (extension == ".las") return Format::kLas;
+  if (extension == ".las" || extension == ".laz") return Format::kLas;
   for (const char* text : {".xyz", ".txt", ".asc", ".pts", ".csv"}) {
     if (extension == text) return Format::kText;
   }
-  throw Error(ErrorKind::kUsage,
-              fmt::format("{}: points are written as .ply .pcd .las .obj .xyz .txt .asc .pts .csv",
-                          path.string()));
+  throw Error(
+      ErrorKind::kUsage,
+      fmt::format("{}: points are written as .ply .pcd .las .laz .obj .xyz .txt .asc .pts .csv",
+                  path.string()));
 }
 
 }  // namespace

@@ -15,8 +15,8 @@ struct WriteOptions {
   bool new_normals = true;  ///< LAS: normals become extra bytes even where the input had none
 };
 
-/// Writes `cloud` in the format that the extension names: .ply, .pcd, .las, .obj, or text (.xyz,
-/// .txt, .asc, .pts, .csv). The file appears under its name only when it is complete.
+/// Writes `cloud` in the format that the extension names: .ply, .pcd, .las, .laz, .obj, or text
+/// (.xyz, .txt, .asc, .pts, .csv). The file appears under its name only when it is complete.
 ///
 /// Throws Error(kUsage) for another extension or an existing file, Error(kFailure) when the disk
 /// takes no more or the cloud's vectors differ in length.

@@ -1,0 +1,204 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <memory>
+#include <vector>
+
+#include "pcednet/io/laz_coder.h"
+
+namespace pcednet::io::laz {
+
+// The models of LASzip's items, after its specification. `code` decodes an item into `item`, or
+// encodes it from there; which of the two is the coder's matter.
+
+template <typename T>
+T get(const std::byte* from) {
+  T value = {};
+  std::memcpy(&value, from, sizeof value);
+  return value;
+}
+
+template <typename T>
+void put(std::byte* to, T value) {
+  std::memcpy(to, &value, sizeof value);
+}
+
+/// The low bit of a context number cleared, bounded.
+inline unsigned even_bits(unsigned bits, unsigned most) {
+  return bits < most ? bits & ~1U : most;
+}
+
+/// Symbol models made when first asked for.
+class LazyModels {
+ public:
+  LazyModels(std::size_t count, unsigned symbols) : symbols_(symbols), models_(count) {}
+  SymbolModel& operator[](std::size_t index) {
+    if (!models_[index]) models_[index] = std::make_unique<SymbolModel>(symbols_);
+    return *models_[index];
+  }
+
+ private:
+  unsigned symbols_;
+  std::vector<std::unique_ptr<SymbolModel>> models_;
+};
+
+/// POINT10: the 20 bytes that formats 0 to 5 share.
+class Point10 {
+ public:
+  explicit Point10(const std::byte* first);
+  template <typename Coder>
+  void code(Coder& coder, std::byte* item);
+
+ private:
+  template <typename Coder>
+  void code_position(Coder& coder, std::byte* item, unsigned m, unsigned l, bool single);
+
+  std::array<std::byte, 20> last_ = {};
+  std::array<Median5, 16> x_ = {}, y_ = {};
+  std::array<std::int32_t, 16> intensity_ = {};
+  std::array<std::int32_t, 8> height_ = {};
+  SymbolModel changed_{64};
+  LazyModels flags_{256, 256}, classification_{256, 256}, user_data_{256, 256};
+  LazyModels scan_angle_{2, 256};
+  IntegerModel dx_{32, 2}, dy_{32, 22}, z_{32, 20}, intensities_{16, 4}, source_{16};
+};
+
+/// POINT10 of LASzip 1.
+class Point10Old {
+ public:
+  explicit Point10Old(const std::byte* first);
+  void code(Decoder& coder, std::byte* item);
+
+ private:
+  std::array<std::byte, 20> last_ = {};
+  std::array<std::array<std::int32_t, 3>, 2> diffs_ = {};
+  std::size_t turn_ = 0;
+  SymbolModel changed_{64};
+  LazyModels flags_{256, 256}, classification_{256, 256}, user_data_{256, 256};
+  IntegerModel dx_{32}, dy_{32, 20}, z_{32, 20}, intensity_{16}, scan_angle_{8, 2}, source_{16};
+};
+
+/// Times as multiples of earlier differences, of up to four sequences. POINT14 knows by other means
+/// that a time has not changed, and has no symbols for that.
+class GpsTime {
+ public:
+  GpsTime(std::int64_t first, bool says_unchanged);
+  template <typename Coder>
+  void code(Coder& coder, std::byte* item);
+
+ private:
+  template <typename Coder>
+  void code_near(Coder& coder, std::int64_t& time);
+  unsigned choose(std::int64_t time, bool no_difference) const;
+  template <typename Coder>
+  void code_full(Coder& coder, std::int64_t& time);
+  void count_extreme(std::int32_t difference);
+
+  bool says_unchanged_;
+  std::size_t last_ = 0, next_ = 0;
+  std::array<std::int64_t, 4> times_ = {};
+  std::array<std::int32_t, 4> differences_ = {};
+  std::array<unsigned, 4> extremes_ = {};
+  SymbolModel multiple_, first_;
+  IntegerModel numbers_{32, 9};
+};
+
+/// GPSTIME11 of LASzip 1.
+class GpsTimeOld {
+ public:
+  explicit GpsTimeOld(std::int64_t first) : last_(first) {}
+  void code(Decoder& coder, std::byte* item);
+
+ private:
+  std::int64_t last_;
+  std::int32_t difference_ = 0;
+  unsigned extremes_ = 0;
+  SymbolModel multiple_{512}, first_{3};
+  IntegerModel numbers_{32, 6};
+};
+
+/// RGB12 and RGB14.
+class Colour {
+ public:
+  explicit Colour(const std::byte* first) { last = get<Words>(first); }
+  template <typename Coder>
+  void code(Coder& coder, std::byte* item);
+
+  using Words = std::array<std::uint16_t, 3>;
+  Words last;
+
+ private:
+  SymbolModel used_{128};
+  LazyModels differences_{6, 256};
+};
+
+/// RGB12 of LASzip 1.
+class ColourOld {
+ public:
+  explicit ColourOld(const std::byte* first) { std::memcpy(last_.data(), first, 6); }
+  void code(Decoder& coder, std::byte* item);
+
+ private:
+  std::array<std::uint8_t, 6> last_;
+  SymbolModel used_{64};
+  IntegerModel bytes_{8, 6};
+};
+
+/// The infrared of RGBNIR14.
+class Infrared {
+ public:
+  explicit Infrared(const std::byte* first) : last(get<std::uint16_t>(first)) {}
+  template <typename Coder>
+  void code(Coder& coder, std::byte* item);
+
+  std::uint16_t last;
+
+ private:
+  SymbolModel used_{4};
+  LazyModels differences_{2, 256};
+};
+
+/// WAVEPACKET13 and WAVEPACKET14: 29 bytes.
+class WavePacket {
+ public:
+  explicit WavePacket(const std::byte* first) { std::memcpy(last.data(), first, last.size()); }
+  template <typename Coder>
+  void code(Coder& coder, std::byte* item);
+
+  std::array<std::byte, 29> last;
+
+ private:
+  std::int32_t difference_ = 0;
+  unsigned offset_kind_ = 0;
+  SymbolModel index_{256};
+  LazyModels offset_kinds_{4, 4};
+  IntegerModel offset_{32}, size_{32}, location_{32}, vector_{32, 3};
+};
+
+/// One extra byte.
+class ExtraByte {
+ public:
+  explicit ExtraByte(const std::byte* first) : last(*first) {}
+  template <typename Coder>
+  void code(Coder& coder, std::byte* item);
+
+  std::byte last;
+
+ private:
+  SymbolModel model_{256};
+};
+
+/// One extra byte of LASzip 1.
+class ExtraByteOld {
+ public:
+  explicit ExtraByteOld(const std::byte* first) : last_(std::to_integer<int>(*first)) {}
+  void code(Decoder& coder, IntegerModel& shared, unsigned context, std::byte* item);
+
+ private:
+  int last_;
+};
+
+}  // namespace pcednet::io::laz

@@ -1,0 +1,99 @@
+#include <algorithm>
+
+#include "pcednet/core/parallel.h"
+#include "pcednet/io/laz.h"
+#include "pcednet/io/laz_coder.h"
+
+namespace pcednet::io {
+namespace {
+
+constexpr std::size_t kChunk = 50000;
+
+std::vector<LazItem> items_of(const LasFile& file) {
+  const unsigned format = file.point_format();
+  std::vector<LazItem> items;
+  const auto add = [&](unsigned type, std::size_t size, unsigned version) {
+    const std::size_t offset = items.empty() ? 0 : items.back().offset + items.back().size;
+    items.push_back({type, size, version, offset});
+  };
+  if (format < 6) {
+    add(6, 20, 2);
+    if (format != 0 && format != 2) add(7, 8, 2);
+    if (format == 2 || format == 3 || format == 5) add(8, 6, 2);
+    if (format > 3) add(9, 29, 1);
+  } else {
+    add(10, 30, 3);
+    if (format == 7) add(11, 6, 3);
+    if (format == 8 || format == 10) add(12, 8, 3);
+    if (format > 8) add(13, 29, 3);
+  }
+  const std::size_t extra = file.record_length() - las_format_bytes(format);
+  if (extra > 0) add(format < 6 ? 0 : 14, extra, format < 6 ? 2 : 3);
+  return items;
+}
+
+std::string chunk_table(const std::vector<std::string::size_type>& sizes) {
+  std::string table(8, '\0');
+  put_number(table, 4, static_cast<std::uint32_t>(sizes.size()));
+  laz::Encoder encoder;
+  laz::IntegerModel numbers(32, 2);
+  std::int32_t last = 0;
+  for (const std::size_t size : sizes) {
+    last = numbers.code(encoder, last, 1, static_cast<std::int32_t>(size));
+  }
+  return table + encoder.finish();
+}
+
+}  // namespace
+
+void add_laz_record(LasFile& file) {
+  const auto items = items_of(file);
+  std::string data(34 + 6 * items.size(), '\0');
+  put_number<std::uint16_t>(data, 0, file.point_format() < 6 ? 2 : 3);
+  put_number<std::uint8_t>(data, 4, 3);  // the version of LASzip whose format this is
+  put_number<std::uint8_t>(data, 5, 4);
+  put_number<std::uint32_t>(data, 12, kChunk);
+  put_number<std::int64_t>(data, 16, -1);
+  put_number<std::int64_t>(data, 24, -1);
+  put_number(data, 32, static_cast<std::uint16_t>(items.size()));
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    put_number(data, 34 + 6 * i, static_cast<std::uint16_t>(items[i].type));
+    put_number(data, 36 + 6 * i, static_cast<std::uint16_t>(items[i].size));
+    put_number(data, 38 + 6 * i, static_cast<std::uint16_t>(items[i].version));
+  }
+  file.records.push_back({"laszip encoded", 22204, "", std::move(data)});
+}
+
+std::uint64_t write_laz_points(
+    OutputFile& out, const LasFile& file, std::size_t count, std::uint64_t offset,
+    const std::function<void(std::size_t, std::size_t, std::string&)>& encode) {
+  constexpr std::size_t kChunksAtOnce = 8;
+  const auto items = items_of(file);
+  const std::size_t stride = file.record_length();
+  const auto compress = file.point_format() < 6 ? laz::encode_pointwise : laz::encode_layered;
+  std::string table_place(8, '\0');
+  out.write(table_place);
+  std::uint64_t bytes = table_place.size();
+  std::vector<std::size_t> sizes;
+  for (std::size_t start = 0; start < count; start += kChunk * kChunksAtOnce) {
+    const std::size_t points = std::min(count - start, kChunk * kChunksAtOnce);
+    std::vector<std::string> chunks((points + kChunk - 1) / kChunk);
+    parallel_blocks(points, kChunk, [&](std::size_t begin, std::size_t end) {
+      std::string rows;
+      encode(start + begin, start + end, rows);
+      chunks[begin / kChunk] = compress(items, std::as_writable_bytes(std::span(rows)), stride);
+    });
+    for (const std::string& chunk : chunks) {
+      out.write(chunk);
+      bytes += chunk.size();
+      sizes.push_back(chunk.size());
+    }
+  }
+  const std::string table = chunk_table(sizes);
+  put_number(table_place, 0, static_cast<std::int64_t>(offset + bytes));
+  out.write_at(offset, std::as_bytes(std::span(table_place)));
+  out.write(table);
+  return bytes + table.size();
+}
+
+}  // namespace pcednet::io
