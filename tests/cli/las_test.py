@@ -1,4 +1,4 @@
-"""LAS files: read, converted, classified, with nothing lost; damaged ones refused or warned about."""
+"""LAS and LAZ files: read, converted, classified, with nothing lost; damaged ones refused or warned about."""
 import pathlib
 import struct
 import unittest
@@ -242,6 +242,56 @@ class Las(CliTest):
                                   (155, "<d", float("inf"))):
             done = run("convert", changed(at, layout, value), "-o", ply, "--overwrite", expect=3)
             self.assertIn("odd.las", done.stderr)
+
+    def test_gives_every_format_back_through_laz(self):
+        for number, dtype in enumerate(FORMATS):
+            for extra in ([], [("code", "<u2"), ("triple", "u1", 3)]):
+                for steady in (False, True):
+                    with self.subTest(format=number, extra=bool(extra), steady=steady):
+                        rows = random_rows(dtype + extra, 2000, extreme=not steady)
+                        if steady:  # layers that never change, and a constant time step
+                            for name in set(rows.dtype.names) - {"X", "Y", "Intensity"}:
+                                rows[name] = rows[name][0]
+                            if "GpsTime" in rows.dtype.names:
+                                rows["GpsTime"] = np.arange(2000) * 0.25
+                        source = self.write("in.las", las(number, rows))
+                        packed = self.convert(source, "a.laz")
+                        back = self.convert(packed, "b.las").read_bytes()
+                        self.assertEqual(points_of(back)[0], rows.tobytes())
+                        self.assertEqual(back, self.convert(source, "c.las").read_bytes())
+                        if steady:
+                            self.assertLess(packed.stat().st_size, 0.6 * len(back))
+
+    def test_writes_the_same_laz_with_any_threads(self):
+        rows = random_rows(FORMATS[3], 120000)
+        source = self.write("in.las", las(3, rows))
+        packed = []
+        for threads in (1, 2, 8):
+            path = self.folder / f"{threads}.laz"
+            run("convert", source, "-o", path, "--threads", threads)
+            run("convert", path, "-o", self.folder / "b.las", "--threads", threads, "--overwrite")
+            self.assertEqual(points_of((self.folder / "b.las").read_bytes())[0], rows.tobytes())
+            packed.append(path.read_bytes())
+        self.assertEqual(packed[0], packed[1])
+        self.assertEqual(packed[0], packed[2])
+
+    def test_refuses_truncated_laz_and_survives_changed_bytes(self):
+        random = np.random.default_rng(5)
+        for number in (3, 7):
+            source = self.write("in.las", las(number, random_rows(FORMATS[number], 40)))
+            whole = self.convert(source, "a.laz").read_bytes()
+            for length in range(0, len(whole) - 12, 29):
+                path = self.write("cut.laz", whole[:length])
+                run("convert", path, "-o", self.folder / "cut.ply", "--overwrite", expect=3)
+            for _ in range(60):
+                data = bytearray(whole)
+                for at in random.integers(96, len(data), 4):
+                    data[at] = random.integers(256)
+                try:
+                    run("convert", self.write("odd.laz", bytes(data)), "-o",
+                        self.folder / "odd.ply", "--overwrite", expect=3)
+                except AssertionError as error:
+                    self.assertIn("exit 0 ", str(error))
 
     def test_says_what_it_does_not_keep_of_an_empty_file(self):
         source = self.write("none.las", las(2, random_rows(FORMATS[2], 0)))

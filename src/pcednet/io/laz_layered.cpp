@@ -21,36 +21,34 @@ class ChannelItem {
   virtual void code(Coder* coder, unsigned channel, std::byte* item) = 0;
 };
 
-/// Until version 4 LASzip goes on with the values of the channel that it last made models for.
+/// Until version 4 LASzip takes the first value after a return to a channel for one of the channel
+/// before.
 template <typename Model, typename Coder>
 class ChannelModels : public ChannelItem<Coder> {
  public:
   ChannelModels(const std::byte* first, unsigned channel, bool follows)
       : follows_(follows), channel_(channel) {
     models_[channel].emplace(first);
-    last_ = &models_[channel]->last;
   }
 
   void code(Coder* coder, unsigned channel, std::byte* item) override {
+    auto* last = &models_[channel_]->last;
     if (channel != channel_) {
       channel_ = channel;
-      if (!models_[channel]) {
-        models_[channel].emplace(reinterpret_cast<const std::byte*>(last_));
-        last_ = &models_[channel]->last;
-      } else if (follows_) {
-        last_ = &models_[channel]->last;
-      }
+      const bool is_new = !models_[channel];
+      if (is_new) models_[channel].emplace(reinterpret_cast<const std::byte*>(last));
+      if (is_new || follows_) last = &models_[channel]->last;
     }
     if (coder == nullptr) {
-      std::memcpy(item, last_, sizeof *last_);
+      std::memcpy(item, last, sizeof *last);
       return;
     }
     Model& model = *models_[channel];
-    auto own = model.last;
-    model.last = *last_;
+    const auto own = model.last;
+    model.last = *last;
     model.code(*coder, item);
-    if (&model.last == last_) return;
-    *last_ = model.last;
+    if (&model.last == last) return;
+    *last = model.last;
     model.last = own;
   }
 
@@ -58,7 +56,6 @@ class ChannelModels : public ChannelItem<Coder> {
   bool follows_;
   unsigned channel_;
   std::array<std::optional<Model>, 4> models_ = {};
-  decltype(Model::last)* last_ = nullptr;
 };
 
 /// A layer's place in the record.
