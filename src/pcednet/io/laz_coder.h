@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -31,6 +32,20 @@ class SymbolModel {
   std::vector<std::uint16_t> table_;  ///< where to begin looking, by the high bits of a place
   unsigned table_shift_ = 0;
   std::uint32_t total_ = 0, cycle_ = 0, until_update_ = 0;
+};
+
+/// Symbol models made when first asked for.
+class LazyModels {
+ public:
+  LazyModels(std::size_t count, unsigned symbols) : symbols_(symbols), models_(count) {}
+  SymbolModel& operator[](std::size_t index) {
+    if (!models_[index]) models_[index] = std::make_unique<SymbolModel>(symbols_);
+    return *models_[index];
+  }
+
+ private:
+  unsigned symbols_;
+  std::vector<std::unique_ptr<SymbolModel>> models_;
 };
 
 /// The adaptive probability of a bit.

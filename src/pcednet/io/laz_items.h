@@ -4,8 +4,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
-#include <memory>
-#include <vector>
 
 #include "pcednet/io/laz_coder.h"
 
@@ -31,20 +29,6 @@ inline unsigned even_bits(unsigned bits, unsigned most) {
   return bits < most ? bits & ~1U : most;
 }
 
-/// Symbol models made when first asked for.
-class LazyModels {
- public:
-  LazyModels(std::size_t count, unsigned symbols) : symbols_(symbols), models_(count) {}
-  SymbolModel& operator[](std::size_t index) {
-    if (!models_[index]) models_[index] = std::make_unique<SymbolModel>(symbols_);
-    return *models_[index];
-  }
-
- private:
-  unsigned symbols_;
-  std::vector<std::unique_ptr<SymbolModel>> models_;
-};
-
 /// POINT10: the 20 bytes that formats 0 to 5 share.
 class Point10 {
  public:
@@ -64,21 +48,6 @@ class Point10 {
   LazyModels flags_{256, 256}, classification_{256, 256}, user_data_{256, 256};
   LazyModels scan_angle_{2, 256};
   IntegerModel dx_{32, 2}, dy_{32, 22}, z_{32, 20}, intensities_{16, 4}, source_{16};
-};
-
-/// POINT10 of LASzip 1.
-class Point10Old {
- public:
-  explicit Point10Old(const std::byte* first);
-  void code(Decoder& coder, std::byte* item);
-
- private:
-  std::array<std::byte, 20> last_ = {};
-  std::array<std::array<std::int32_t, 3>, 2> diffs_ = {};
-  std::size_t turn_ = 0;
-  SymbolModel changed_{64};
-  LazyModels flags_{256, 256}, classification_{256, 256}, user_data_{256, 256};
-  IntegerModel dx_{32}, dy_{32, 20}, z_{32, 20}, intensity_{16}, scan_angle_{8, 2}, source_{16};
 };
 
 /// Times as multiples of earlier differences, of up to four sequences. POINT14 knows by other means
@@ -106,20 +75,6 @@ class GpsTime {
   IntegerModel numbers_{32, 9};
 };
 
-/// GPSTIME11 of LASzip 1.
-class GpsTimeOld {
- public:
-  explicit GpsTimeOld(std::int64_t first) : last_(first) {}
-  void code(Decoder& coder, std::byte* item);
-
- private:
-  std::int64_t last_;
-  std::int32_t difference_ = 0;
-  unsigned extremes_ = 0;
-  SymbolModel multiple_{512}, first_{3};
-  IntegerModel numbers_{32, 6};
-};
-
 /// RGB12 and RGB14.
 class Colour {
  public:
@@ -133,18 +88,6 @@ class Colour {
  private:
   SymbolModel used_{128};
   LazyModels differences_{6, 256};
-};
-
-/// RGB12 of LASzip 1.
-class ColourOld {
- public:
-  explicit ColourOld(const std::byte* first) { std::memcpy(last_.data(), first, 6); }
-  void code(Decoder& coder, std::byte* item);
-
- private:
-  std::array<std::uint8_t, 6> last_;
-  SymbolModel used_{64};
-  IntegerModel bytes_{8, 6};
 };
 
 /// The infrared of RGBNIR14.
@@ -189,16 +132,6 @@ class ExtraByte {
 
  private:
   SymbolModel model_{256};
-};
-
-/// One extra byte of LASzip 1.
-class ExtraByteOld {
- public:
-  explicit ExtraByteOld(const std::byte* first) : last_(std::to_integer<int>(*first)) {}
-  void code(Decoder& coder, IntegerModel& shared, unsigned context, std::byte* item);
-
- private:
-  int last_;
 };
 
 }  // namespace pcednet::io::laz

@@ -1,6 +1,6 @@
-#include <algorithm>
+#include "pcednet/io/laz_items_old.h"
 
-#include "pcednet/io/laz_items.h"
+#include <algorithm>
 
 namespace pcednet::io::laz {
 namespace {

@@ -1,6 +1,6 @@
 #include <algorithm>
 #include <deque>
-#include <functional>
+#include <memory>
 #include <optional>
 
 #include "pcednet/io/laz.h"

@@ -1,9 +1,11 @@
 #include <algorithm>
 #include <deque>
 #include <functional>
+#include <memory>
 
 #include "pcednet/io/laz.h"
 #include "pcednet/io/laz_items.h"
+#include "pcednet/io/laz_items_old.h"
 
 namespace pcednet::io::laz {
 namespace {
