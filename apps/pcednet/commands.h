@@ -19,5 +19,6 @@ void add_info(CLI::App& app, Common& common);
 void add_convert(CLI::App& app, Common& common);
 void add_study(CLI::App& app, Common& common);
 void add_report(CLI::App& app, Common& common);
+void add_annotate(CLI::App& app, Common& common);
 
 }  // namespace pcednet::app

@@ -38,6 +38,7 @@ int run(int argc, char** argv) {
   add_convert(app, common);
   add_study(app, common);
   add_report(app, common);
+  add_annotate(app, common);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -5,6 +5,8 @@
 #include <optional>
 
 #include "commands.h"
+#include "models.h"
+#include "pcednet/annotate/learn.h"
 #include "pcednet/core/error.h"
 #include "pcednet/detect/train.h"
 #include "pcednet/io/read_labelled.h"
@@ -26,8 +28,8 @@ const std::map<std::string, gls::FeatureSet> kFeatureSets = {{"28", gls::Feature
 
 struct Arguments {
   std::vector<std::string> inputs;
-  std::string output, network = "pcednet", recipe = "adam", symmetry = "average", features = "6",
-                      reconstruction = "sphere";
+  std::string project, output, network = "pcednet", recipe = "adam", symmetry = "average",
+                               features = "6", reconstruction = "sphere";
   int classes = 3, scales = 16, epochs = 0, width = 0;
   double gate = 2.0, balance = 1.0;
   std::uint64_t seed = 1;
@@ -62,10 +64,25 @@ void print_epoch(const nn::EpochReport& report) {
                   report.training_loss, report.validation_loss, report.validation_accuracy));
 }
 
-void train(const Arguments& arguments, const Common& common) {
-  check_writable(arguments.output, common.overwrite());
+/// The model that the annotator saves for a project.
+detect::TrainedModel train_project(const Arguments& arguments, const Common& common,
+                                   const Progress& progress) {
+  const std::filesystem::path file = arguments.project;
+  const annotate::Project project = annotate::read_project(file);
+  if (arguments.inputs.size() > 1) {
+    throw Error(ErrorKind::kUsage, "train: a project is about one input");
+  }
+  const std::filesystem::path input = arguments.inputs.empty()
+                                          ? file.parent_path() / project.input.name
+                                          : std::filesystem::path(arguments.inputs.front());
+  return annotate::learn_project(
+      project, input, [](const std::string& name) { return detect::load_model(find_model(name)); },
+      common.progress == "none" ? decltype(&print_epoch)(nullptr) : print_epoch, &progress);
+}
+
+detect::TrainedModel train_clouds(const Arguments& arguments, const Common& common,
+                                  const Progress& progress) {
   const auto options = options_of(arguments);
-  const Progress progress = console_progress(common);
   const auto inputs = expand_inputs(arguments.inputs);
   std::vector<io::LoadedCloud> loaded;
   loaded.reserve(inputs.size());  // the training clouds look into them
@@ -79,9 +96,19 @@ void train(const Arguments& arguments, const Common& common) {
     for (const auto& warning : loaded.back().warnings) warn(input.string() + ": " + warning);
     for (const auto& note : clouds.back().cloud.notes) warn(input.string() + ": " + note);
   }
-  const auto trained = detect::train(
-      std::filesystem::path(arguments.output).stem().string(), clouds, options,
-      common.progress == "none" ? decltype(&print_epoch)(nullptr) : print_epoch, &progress);
+  return detect::train(std::filesystem::path(arguments.output).stem().string(), clouds, options,
+                       common.progress == "none" ? decltype(&print_epoch)(nullptr) : print_epoch,
+                       &progress);
+}
+
+void train(const Arguments& arguments, const Common& common) {
+  check_writable(arguments.output, common.overwrite());
+  if (arguments.inputs.empty() && arguments.project.empty()) {
+    throw Error(ErrorKind::kUsage, "train: labelled point files, or --project");
+  }
+  const Progress progress = console_progress(common);
+  const auto trained = arguments.project.empty() ? train_clouds(arguments, common, progress)
+                                                 : train_project(arguments, common, progress);
   if (trained.epochs == 0)
     throw Error(ErrorKind::kCancelled, "stopped by the user before an epoch");
   detect::save_model(arguments.output, trained.model, common.overwrite());
@@ -121,9 +148,12 @@ void add_train(CLI::App& app, Common& common) {
       app, common, "train", "Train a network on labelled clouds.",
       "pcednet train painted.ply -o my.safetensors      labels 0, 1, 2; 255 unlabelled\n"
       "pcednet train clouds/ -o my.safetensors --classes 2 --seed 7\n"
-      "pcednet train clouds/ -o paper.safetensors --recipe paper");
-  command->add_option("inputs", arguments->inputs, "Labelled point files, or folders of them")
-      ->required();
+      "pcednet train clouds/ -o paper.safetensors --recipe paper\n"
+      "pcednet train --project scan_annotation.json -o my.safetensors    as painted in annotate");
+  command->add_option("inputs", arguments->inputs, "Labelled point files, or folders of them");
+  command->add_option("--project", arguments->project,
+                      "Train as the annotator did, on a project that it saved; its input is looked "
+                      "for beside it, or given");
   command->add_option("-o,--output", arguments->output, "The model file to write")->required();
   command->add_option("--network", arguments->network, "pcednet, fc or cnn")
       ->capture_default_str()

@@ -1,0 +1,126 @@
+#include <fmt/format.h>
+#include <spawn.h>
+#include <sys/wait.h>
+
+#include <chrono>
+#include <cstdio>
+#include <fstream>
+#include <memory>
+#include <thread>
+
+#include "annotate_page.h"
+#include "commands.h"
+#include "http_server.h"
+#include "models.h"
+#include "pcednet/annotate/api.h"
+#include "pcednet/core/error.h"
+
+extern char** environ;
+
+namespace pcednet::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct AnnotateArguments {
+  std::string input, project, model;
+  int port = 0;
+  bool no_browser = false;
+};
+
+/// 128 bits that nobody can guess.
+std::string make_token() {
+  std::ifstream source("/dev/urandom", std::ios::binary);
+  unsigned char bytes[16];
+  if (!source.read(reinterpret_cast<char*>(bytes), sizeof bytes)) {
+    throw Error(ErrorKind::kFailure, "/dev/urandom: cannot be read");
+  }
+  std::string token;
+  for (const unsigned char byte : bytes) token += fmt::format("{:02x}", byte);
+  return token;
+}
+
+/// Leaves the page to the desktop; where there is none, the URL is on the screen.
+void open_browser(const std::string& url) {
+  std::string program = "xdg-open", argument = url;
+  char* const arguments[] = {program.data(), argument.data(), nullptr};
+  pid_t child = 0;
+  if (posix_spawnp(&child, "xdg-open", nullptr, nullptr, arguments, environ) != 0) return;
+  std::thread([child] { waitpid(child, nullptr, 0); }).detach();
+}
+
+annotate::SessionOptions session_options(const AnnotateArguments& arguments, const Common& common,
+                                         annotate::Events& events) {
+  const fs::path input = fs::absolute(arguments.input);
+  if (!fs::is_regular_file(input)) {
+    throw Error(ErrorKind::kUnreadable, arguments.input + ": no such file");
+  }
+  annotate::SessionOptions options;
+  options.input = input;
+  if (!arguments.project.empty()) options.project = fs::absolute(arguments.project);
+  options.cache_folder = input.parent_path() / ".pcednet";
+  options.model = arguments.model;
+  options.overwrite = common.overwrite_files;
+  options.load_model = [](const std::string& name) { return detect::load_model(find_model(name)); };
+  options.emit = [&events](const std::string& name, const std::string& json) {
+    events.add(name, json);
+  };
+  if (!options.model.empty()) options.load_model(options.model);  // refuse before any work
+  return options;
+}
+
+void annotate_cloud(const AnnotateArguments& arguments, const Common& common) {
+  std::string_view page = annotate_page();
+  if (page.empty()) {
+    page =
+        "<!doctype html><p>This pcednet was built without the page: run scripts/build_web.sh "
+        "and build again.";
+    warn("built without the page; run scripts/build_web.sh and build again");
+  }
+  annotate::Events events;
+  const auto options = session_options(arguments, common, events);
+  auto bound = std::make_unique<HttpServer>(arguments.port);
+  const std::string token = make_token();
+  annotate::Session session(options);
+  annotate::Api api(session, events, token, bound->port());
+  const auto server = std::move(bound);  // goes before what it asks for answers
+  server->start(api, events, page);
+  const std::string url = fmt::format("http://127.0.0.1:{}/?token={}", server->port(), token);
+  fmt::print("{}\n", url);
+  std::fflush(stdout);
+  if (!arguments.no_browser) open_browser(url);
+  const auto cancelled = console_progress(common).cancelled;
+  bool was_ready = false;
+  while (!cancelled()) {
+    if (session.is_ready() && !was_ready) {
+      was_ready = true;
+      say("ready; Ctrl-C ends, and nothing painted is lost");
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
+}
+
+}  // namespace
+
+void add_annotate(CLI::App& app, Common& common) {
+  auto arguments = std::make_shared<AnnotateArguments>();
+  CLI::App* command = add_command(
+      app, common, "annotate", "Paint edges in the browser and train on them as you paint.",
+      "pcednet annotate scan.ply                       opens the browser\n"
+      "pcednet annotate scan.ply --no-browser --port 8080\n"
+      "pcednet annotate scan.ply --model scan          begins with a model's answer\n"
+      "pcednet train --project scan_annotation.json -o my.safetensors   the same model again");
+  command->add_option("input", arguments->input, "A point file")->required();
+  command->add_option("--project", arguments->project,
+                      "Where the painting is kept (default: <stem>_annotation.json beside the "
+                      "input); its journal beside it");
+  command->add_option("--model", arguments->model,
+                      "A shipped model's name, or a model file, whose answer is shown first");
+  command->add_option("--port", arguments->port, "Of 127.0.0.1 (0: any free one)")
+      ->capture_default_str()
+      ->check(CLI::Range(0, 65535));
+  command->add_flag("--no-browser", arguments->no_browser, "Print the address only");
+  command->callback([arguments, &common] { annotate_cloud(*arguments, common); });
+}
+
+}  // namespace pcednet::app

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "pcednet/annotate/api.h"
+
+namespace pcednet::app {
+
+/// Takes requests on 127.0.0.1 alone and hands them to an Api.
+class HttpServer {
+ public:
+  /// `port` 0 is any free one. Throws Error(kFailure) if it is taken.
+  explicit HttpServer(int port);
+  ~HttpServer();
+  HttpServer(const HttpServer&) = delete;
+  HttpServer& operator=(const HttpServer&) = delete;
+
+  int port() const;
+
+  /// Answers, on threads of its own, until destroyed. `page` is what / shows. All must outlive it.
+  void start(annotate::Api& api, annotate::Events& events, std::string_view page);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace pcednet::app

@@ -1,0 +1,245 @@
+#include "pcednet/annotate/project.h"
+
+#include <fmt/format.h>
+
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "pcednet/core/digest.h"
+#include "pcednet/core/error.h"
+#include "pcednet/core/version.h"
+
+namespace pcednet::annotate {
+namespace {
+
+using Json = nlohmann::json;
+using Kind = Record::Kind;
+
+constexpr const char* kFormat = "pcednet-annotation-1";
+
+[[noreturn]] void refuse(const std::string& why) {
+  throw Error(ErrorKind::kUnreadable, why);
+}
+
+Json json_of(const Settings& s) {
+  return {{"classes", s.classes}, {"auto", s.automatic}, {"start", s.start}, {"seed", s.seed}};
+}
+
+Settings settings_of(const Json& json, Settings settings) {
+  if (const auto found = json.find("classes"); found != json.end()) {
+    settings.classes = found->is_number_integer() ? found->get<int>() : 0;
+  }
+  if (json.contains("auto")) settings.automatic = json.at("auto").get<bool>();
+  if (json.contains("start")) settings.start = json.at("start").get<std::string>();
+  if (const auto found = json.find("seed"); found != json.end()) {
+    if (!found->is_number_unsigned())
+      throw Error(ErrorKind::kUsage, "seed: a whole number, not negative");
+    settings.seed = found->get<std::uint64_t>();
+  }
+  if (settings.classes != 2 && settings.classes != 3) {
+    throw Error(ErrorKind::kUsage, "classes: 2 or 3");
+  }
+  return settings;
+}
+
+/// Ascending numbers as the steps between them, which are short to write.
+Json steps_of(const std::vector<std::uint32_t>& points) {
+  Json steps = Json::array();
+  std::uint32_t last = 0;
+  for (const std::uint32_t point : points) {
+    steps.push_back(point - last);
+    last = point;
+  }
+  return steps;
+}
+
+std::vector<std::uint32_t> points_of(const Json& steps, std::size_t points) {
+  std::vector<std::uint32_t> result;
+  std::uint64_t last = 0;
+  for (const Json& step : steps) {
+    if (!step.is_number_unsigned()) refuse("a stroke's point is no number");
+    const auto by = step.get<std::uint64_t>();
+    if (by >= points || (by == 0 && !result.empty())) refuse("a stroke's points do not ascend");
+    last += by;
+    if (last >= points) refuse(fmt::format("point {} of a stroke: the input has {}", last, points));
+    result.push_back(static_cast<std::uint32_t>(last));
+  }
+  return result;
+}
+
+Json json_of(const Record& record) {
+  switch (record.kind) {
+    case Kind::kStroke:
+      return {
+          {"stroke", record.id}, {"class", record.edge_class}, {"points", steps_of(record.points)}};
+    case Kind::kUndo:
+      return {{"undo", true}};
+    case Kind::kRedo:
+      return {{"redo", true}};
+    case Kind::kSettings:
+      return {{"settings", json_of(record.settings)}};
+    case Kind::kRun:
+      return {{"run", record.run.number},
+              {"records", record.run.records},
+              {"settings", json_of(record.run.settings)}};
+    case Kind::kRestore:
+      break;
+  }
+  return {{"restore", record.run.number}};
+}
+
+Record record_of(const Json& json, std::size_t points) {
+  if (json.contains("stroke")) {
+    const int edge_class = json.at("class").get<int>();
+    if ((edge_class < 0 || edge_class > 2) && edge_class != 255) refuse("a stroke of no class");
+    return {.id = json.at("stroke").get<std::string>(),
+            .edge_class = static_cast<std::uint8_t>(edge_class),
+            .points = points_of(json.at("points"), points)};
+  }
+  if (json.contains("undo")) return {.kind = Kind::kUndo};
+  if (json.contains("redo")) return {.kind = Kind::kRedo};
+  if (json.contains("run")) {
+    return {.kind = Kind::kRun,
+            .run = {.number = json.at("run").get<int>(),
+                    .records = json.at("records").get<std::size_t>(),
+                    .settings = settings_of(json.at("settings"), {})}};
+  }
+  if (json.contains("restore")) {
+    return {.kind = Kind::kRestore, .run = {.number = json.at("restore").get<int>()}};
+  }
+  return {.kind = Kind::kSettings, .settings = settings_of(json.at("settings"), {})};
+}
+
+Json json_of(const InputIdentity& input) {
+  return {{"name", input.name}, {"digest", input.digest}, {"points", input.points}};
+}
+
+InputIdentity input_of(const Json& json) {
+  InputIdentity input{.name = json.at("name").get<std::string>(),
+                      .digest = json.at("digest").get<std::string>(),
+                      .points = json.at("points").get<std::size_t>()};
+  if (input.points > 0xffffffffu) refuse("more points than 32 bits can count");
+  return input;
+}
+
+/// Runs `read`; whatever it throws becomes Error(kUnreadable).
+template <typename Read>
+auto strictly(Read&& read) {
+  try {
+    return read();
+  } catch (const Error& error) {
+    refuse(error.what());
+  } catch (const Json::exception& error) {
+    refuse(error.what());
+  }
+}
+
+}  // namespace
+
+std::string digest_of_file(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) refuse(fmt::format("{}: cannot be read", path.string()));
+  std::vector<char> part(std::size_t{1} << 20);
+  Digest digest;
+  while (file.read(part.data(), static_cast<std::streamsize>(part.size())), file.gcount() > 0) {
+    digest.add(std::string_view(part.data(), static_cast<std::size_t>(file.gcount())));
+  }
+  return digest.hex();
+}
+
+std::string to_line(const Record& record) {
+  return json_of(record).dump();
+}
+
+std::string to_line(const InputIdentity& input) {
+  return Json{{"format", kFormat}, {"input", json_of(input)}}.dump();
+}
+
+Record parse_record(std::string_view line, std::size_t points) {
+  return strictly([&] { return record_of(Json::parse(line), points); });
+}
+
+InputIdentity parse_input(std::string_view line) {
+  return strictly([&] {
+    const Json json = Json::parse(line);
+    if (json.at("format") != kFormat) refuse(fmt::format("not of the format {}", kFormat));
+    return input_of(json.at("input"));
+  });
+}
+
+std::string to_json(const Settings& settings) {
+  return json_of(settings).dump();
+}
+
+Settings parse_settings(std::string_view text, const Settings& now) {
+  try {
+    return settings_of(Json::parse(text), now);
+  } catch (const Json::exception& error) {
+    throw Error(ErrorKind::kUsage, fmt::format("settings: {}", error.what()));
+  }
+}
+
+Project read_project(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) refuse(fmt::format("{}: cannot be read", path.string()));
+  const std::string text(std::istreambuf_iterator<char>(file), {});
+  try {
+    return strictly([&] {
+      const Json json = Json::parse(text);
+      Project project{.input = parse_input(text), .records = {}};
+      for (const Json& record : json.at("records")) {
+        project.records.push_back(record_of(record, project.input.points));
+      }
+      return project;
+    });
+  } catch (const Error& error) {
+    refuse(fmt::format("{}: no project: {}", path.string(), error.what()));
+  }
+}
+
+void write_project(const std::filesystem::path& path, const Project& project, Overwrite overwrite) {
+  const Replayed end = replay(project.records, project.input.points);
+  std::string text = fmt::format(
+      "{{\"format\":\"{}\",\"version\":\"{}\",\n\"input\":{},\n\"settings\":{},\n\"run\":{},\n"
+      "\"records\":[",
+      kFormat, kVersion, json_of(project.input).dump(), json_of(end.settings).dump(),
+      end.run ? std::to_string(end.run->number) : "null");
+  for (std::size_t i = 0; i < project.records.size(); ++i) {
+    text += (i == 0 ? "\n" : ",\n") + to_line(project.records[i]);
+  }
+  write_text_file(path, text + "]}\n", overwrite);
+}
+
+Replayed replay(std::span<const Record> records, std::size_t points) {
+  Replayed now{.labels = Labels(points)};
+  std::map<int, RunRecord> runs;
+  for (const Record& record : records) {
+    switch (record.kind) {
+      case Kind::kStroke:
+        now.labels.paint(record.edge_class, record.points);
+        break;
+      case Kind::kUndo:
+        now.labels.undo();
+        break;
+      case Kind::kRedo:
+        now.labels.redo();
+        break;
+      case Kind::kSettings:
+        now.settings = record.settings;
+        break;
+      case Kind::kRun:
+        now.run = runs[record.run.number] = record.run;
+        break;
+      case Kind::kRestore:
+        if (const auto found = runs.find(record.run.number); found != runs.end()) {
+          now.run = found->second;
+        }
+        break;
+    }
+  }
+  return now;
+}
+
+}  // namespace pcednet::annotate

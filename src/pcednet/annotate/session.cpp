@@ -1,0 +1,237 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "pcednet/annotate/learn.h"
+#include "pcednet/annotate/session_state.h"
+#include "pcednet/core/error.h"
+#include "pcednet/detect/result_cloud.h"
+#include "pcednet/io/write_cloud.h"
+
+namespace pcednet::annotate {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+using Lock = std::unique_lock<std::mutex>;
+
+fs::path default_project(const fs::path& input) {
+  return input.parent_path() / (input.stem().string() + "_annotation.json");
+}
+
+Session::Session(SessionOptions options) : state_(std::make_unique<State>(std::move(options))) {
+  if (state_->options.project.empty()) {
+    state_->options.project = default_project(state_->options.input);
+  }
+  state_->worker = std::thread([state = state_.get()] { state->work(); });
+}
+
+Session::~Session() {
+  {
+    const Lock lock(state_->mutex);
+    state_->stopping = true;
+    ++state_->generation;
+  }
+  state_->changed.notify_all();
+  state_->worker.join();
+}
+
+const SessionOptions& Session::options() const {
+  return state_->options;
+}
+
+bool Session::is_ready() const {
+  const Lock lock(state_->mutex);
+  if (state_->failure) std::rethrow_exception(state_->failure);
+  return state_->ready;
+}
+
+void Session::wait_until_ready() const {
+  Lock lock(state_->mutex);
+  state_->changed.wait(lock, [&] { return state_->ready || state_->failure; });
+  if (state_->failure) std::rethrow_exception(state_->failure);
+}
+
+void Session::State::check_ready() const {
+  if (failure) std::rethrow_exception(failure);
+  if (!ready) throw Error(ErrorKind::kInsufficient, "the cloud is still being loaded");
+}
+
+const Prediction* Session::State::prediction() const {
+  return current_run < 0 ? nullptr : runs[static_cast<std::size_t>(current_run)].prediction.get();
+}
+
+/// Writes the record before it counts: what the user is told has happened is in the journal.
+void Session::State::keep(Record record) {
+  journal->append(record);
+  records.push_back(std::move(record));
+}
+
+void Session::State::schedule() {
+  ++generation;
+  due.reset();
+  if (settings.automatic) due = std::chrono::steady_clock::now() + std::chrono::milliseconds(500);
+  changed.notify_all();
+}
+
+std::string Session::State::painted(std::span<const std::uint32_t> points) {
+  std::set<std::uint32_t> nodes;
+  std::uint32_t last = kNoNode;
+  for (const std::uint32_t point : points) {
+    const std::uint32_t node = scene->layout.node_of[point];
+    if (node != last && node != kNoNode) nodes.insert(last = node);
+  }
+  if (!points.empty()) {
+    ++labels_version;
+    schedule();
+  }
+  const Json answer = {{"stroke", labels->undo_steps()},
+                       {"changed", points.size()},
+                       {"counts", labels->counts()},
+                       {"labels_version", labels_version},
+                       {"nodes", nodes},
+                       {"undo", labels->undo_steps()},
+                       {"redo", labels->redo_steps()}};
+  if (!points.empty()) emit("labels", answer);
+  return answer.dump();
+}
+
+std::string Session::paint(const Stroke& stroke) {
+  const Lock lock(state_->mutex);
+  State& s = *state_;
+  s.check_ready();
+  if (const auto found = s.answers.find(stroke.id); found != s.answers.end()) return found->second;
+  const Prediction* prediction = s.prediction();
+  auto points =
+      points_to_change(s.scene->selector->select(stroke), stroke, s.labels->classes(),
+                       prediction ? std::span<const std::uint8_t>(prediction->result.classes)
+                                  : std::span<const std::uint8_t>());
+  if (!points.empty()) {
+    s.keep({.id = stroke.id, .edge_class = stroke.edge_class, .points = points});
+    s.labels->paint(stroke.edge_class, points);
+  }
+  return s.answers[stroke.id] = s.painted(points);
+}
+
+std::string Session::undo() {
+  const Lock lock(state_->mutex);
+  state_->check_ready();
+  if (state_->labels->undo_steps() > 0) state_->keep({.kind = Record::Kind::kUndo});
+  return state_->painted(state_->labels->undo());
+}
+
+std::string Session::redo() {
+  const Lock lock(state_->mutex);
+  state_->check_ready();
+  if (state_->labels->redo_steps() > 0) state_->keep({.kind = Record::Kind::kRedo});
+  return state_->painted(state_->labels->redo());
+}
+
+std::string Session::change_settings(std::string_view json) {
+  const Lock lock(state_->mutex);
+  State& s = *state_;
+  s.check_ready();
+  const Settings wanted = parse_settings(json, s.settings);
+  if (wanted.start != "random") s.options.load_model(wanted.start);
+  if (wanted != s.settings) {
+    s.keep({.kind = Record::Kind::kSettings, .settings = wanted});
+    s.settings = wanted;
+    s.schedule();
+  }
+  return to_json(wanted);
+}
+
+void Session::train_now() {
+  const Lock lock(state_->mutex);
+  state_->check_ready();
+  classes_to_learn(state_->labels->classes(), state_->settings);
+  ++state_->generation;
+  state_->due = std::chrono::steady_clock::now();
+  state_->asked_for = true;
+  state_->changed.notify_all();
+}
+
+void Session::cancel() {
+  const Lock lock(state_->mutex);
+  ++state_->generation;
+  state_->due.reset();
+  state_->changed.notify_all();
+}
+
+void Session::restore(int run) {
+  const Lock lock(state_->mutex);
+  State& s = *state_;
+  s.check_ready();
+  if (std::none_of(s.runs.begin(), s.runs.end(),
+                   [&](const Run& r) { return r.record.number == run; })) {
+    throw Error(ErrorKind::kUnreadable, fmt::format("there is no run {}", run));
+  }
+  ++s.generation;
+  s.due.reset();
+  s.restore = run;
+  s.changed.notify_all();
+}
+
+fs::path Session::target(Saved what, const std::string& name) const {
+  const fs::path& input = state_->options.input;
+  if (name.empty()) {
+    if (what == Saved::kProject) return state_->options.project;
+    return input.parent_path() /
+           (input.stem().string() + (what == Saved::kCloud ? "_annotated.ply" : ".safetensors"));
+  }
+  const fs::path file(name);
+  const bool plain = file.filename() == file && name[0] != '.' &&
+                     name.find_first_of("/\\") == std::string::npos && name.size() <= 200;
+  const std::string extension = file.extension().string();
+  const bool fits = what == Saved::kCloud
+                        ? extension == ".ply" || extension == ".pcd" || extension == ".obj" ||
+                              extension == ".xyz" || extension == ".csv"
+                    : what == Saved::kModel ? extension == ".safetensors"
+                                            : extension == ".json";
+  if (!plain || !fits) {
+    throw Error(ErrorKind::kUsage,
+                "name: a file name without folder, ending in .ply, .pcd, .obj, .xyz or .csv for a "
+                "cloud, .safetensors for a model, .json for a project");
+  }
+  const fs::path path = input.parent_path() / file;
+  std::error_code error;
+  if (fs::equivalent(path, input, error)) {
+    throw Error(ErrorKind::kUsage, "name: the input itself is never overwritten");
+  }
+  return path;
+}
+
+std::uintmax_t Session::save(Saved what, const fs::path& path, Overwrite overwrite) const {
+  Lock lock(state_->mutex);
+  const State& s = *state_;
+  s.check_ready();
+  const auto scene = s.scene;
+  std::shared_ptr<const Prediction> prediction;
+  if (s.current_run >= 0) prediction = s.runs[static_cast<std::size_t>(s.current_run)].prediction;
+  const auto labels = s.labels->classes();
+  const Project project{.input = scene->input,
+                        .records = what == Saved::kProject ? s.records : std::vector<Record>()};
+  lock.unlock();  // writing takes its time
+  if (what == Saved::kProject) {
+    write_project(path, project, overwrite);
+  } else if (what == Saved::kModel) {
+    if (!prediction)
+      throw Error(ErrorKind::kInsufficient, "there is no model yet: paint and train");
+    detect::save_model(path, prediction->model, overwrite);
+  } else {
+    check_writable(path, overwrite);
+    PointCloud cloud = scene->cloud;
+    if (prediction) {
+      detect::add_result(cloud, scene->prepared, prediction->result, prediction->model);
+    } else {
+      if (cloud.has_labels())
+        set_attribute(cloud, make_attribute("scalar_input_label", cloud.labels));
+      cloud.labels = labels;
+    }
+    set_attribute(cloud, make_attribute("scalar_painted_label", labels));
+    io::write_cloud(path, cloud, {.overwrite = overwrite});
+  }
+  return fs::file_size(path);
+}
+
+}  // namespace pcednet::annotate
