@@ -1,0 +1,217 @@
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "pcednet/annotate/journal.h"
+#include "pcednet/annotate/places.h"
+#include "pcednet/annotate/select.h"
+#include "pcednet/core/error.h"
+#include "pcednet/core/random.h"
+
+namespace pcednet::annotate {
+namespace {
+
+/// Two parallel sheets that face away from each other, 0.02 apart, about `origin`.
+struct Sheets {
+  std::vector<Vec3> positions = {}, normals = {};
+  explicit Sheets(const Vec3& origin = Vec3::Zero()) {
+    for (int i = 0; i < 100; ++i) {
+      for (int j = 0; j < 100; ++j) {
+        for (const double side : {1.0, -1.0}) {
+          positions.push_back(origin + Vec3(0.01 * i - 0.495, 0.01 * j - 0.495, 0.01 * side));
+          normals.push_back(Vec3(0, 0, side));
+        }
+      }
+    }
+  }
+};
+
+TEST(Select, TheBrushPaintsTheSideItTouchesOnly) {
+  const Vec3 origin(1e6, -2e6, 50);
+  const Sheets sheets(origin);
+  const Selector selector(sheets.positions, sheets.normals, origin, 0.01);
+  Stroke stroke;
+  stroke.centres = {Vec3(0, 0, 0.012), Vec3(0.1, 0, 0.012)};
+  stroke.radius = 0.1;
+  const auto found = selector.select(stroke);
+  std::vector<std::uint32_t> expected;
+  for (std::uint32_t i = 0; i < sheets.positions.size(); ++i) {
+    const Vec3 p = sheets.positions[i] - origin;
+    const bool near = (p - stroke.centres[0]).norm() < 0.1 || (p - stroke.centres[1]).norm() < 0.1;
+    if (near && sheets.normals[i].z() > 0) expected.push_back(i);
+  }
+  EXPECT_FALSE(expected.empty());
+  EXPECT_EQ(found, expected);
+}
+
+/// A view along -z, orthographic or in perspective from z = 2.
+std::array<double, 16> view_matrix(bool perspective) {
+  if (!perspective) return {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1};
+  // near 0.1, far 10, 90 degrees; then moved by -2 along z.
+  const double a = -10.1 / 9.9, b = -2.0 / 9.9;
+  return {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, a, -1, 0, 0, -2 * a + b, 2};
+}
+
+TEST(Select, APolygonPaintsWhatIsWithinItAndInFront) {
+  // The sheets are half a unit apart here: the far one is hidden by the near one.
+  Sheets sheets;
+  for (Vec3& p : sheets.positions) p.z() *= 25;
+  const Selector selector(sheets.positions, sheets.normals, Vec3::Zero(), 0.012);
+  for (const bool perspective : {false, true}) {
+    Stroke stroke;
+    stroke.tool = Tool::kPolygon;
+    stroke.polygon = {{-0.1, -0.1}, {0.1, -0.1}, {0.1, 0.1}, {-0.1, 0.1}};
+    stroke.matrix = view_matrix(perspective);
+    stroke.viewport = {800, 800};
+    const auto all = selector.select(stroke);
+    const auto is_front = [&](std::uint32_t i) { return sheets.normals[i].z() > 0; };
+    std::vector<std::uint32_t> front;
+    std::copy_if(all.begin(), all.end(), std::back_inserter(front), is_front);
+    EXPECT_GT(front.size(), 300u);
+    EXPECT_GT(all.size(), front.size() + 300);
+    stroke.front_only = true;
+    EXPECT_EQ(selector.select(stroke), front) << perspective;
+    stroke.clip = BoundingBox{.min = Vec3(0, -9, -9), .max = Vec3(9, 9, 9)};
+    for (const std::uint32_t i : selector.select(stroke)) EXPECT_GE(sheets.positions[i].x(), 0);
+  }
+}
+
+TEST(Labels, UndoAndRedoLeadBackAndForth) {
+  Random random(3);
+  Labels labels(50);
+  std::vector<std::vector<std::uint8_t>> states = {labels.classes()};
+  for (int step = 0; step < 20; ++step) {
+    std::vector<std::uint32_t> points;
+    for (std::uint32_t i = 0; i < 50; ++i) {
+      if (random.uniform() < 0.3) points.push_back(i);
+    }
+    const std::size_t c = random.index(4);
+    labels.paint(c == 3 ? std::uint8_t{255} : static_cast<std::uint8_t>(c), points);
+    states.push_back(labels.classes());
+  }
+  for (std::size_t i = 20; i-- > 0;) {
+    labels.undo();
+    EXPECT_EQ(labels.classes(), states[i]);
+  }
+  EXPECT_EQ(labels.counts(), (std::array<std::size_t, 3>{}));
+  EXPECT_TRUE(labels.undo().empty());
+  for (std::size_t i = 1; i <= 20; ++i) {
+    labels.redo();
+    EXPECT_EQ(labels.classes(), states[i]);
+  }
+  labels.undo();
+  labels.paint(1, {0});
+  EXPECT_EQ(labels.redo_steps(), 0u);
+}
+
+TEST(Labels, ProtectedAndHiddenPointsKeepWhatTheyHave) {
+  const std::vector<std::uint8_t> labels = {255, 0, 1, 2, 255};
+  const std::vector<std::uint8_t> prediction = {0, 0, 0, 0, 1};
+  Stroke stroke;
+  stroke.edge_class = 2;
+  EXPECT_EQ(points_to_change({0, 1, 2, 3, 4}, stroke, labels, {}),
+            (std::vector<std::uint32_t>{0, 1, 2, 4}));
+  stroke.hidden = {1};
+  EXPECT_EQ(points_to_change({0, 1, 2, 3, 4}, stroke, labels, prediction),
+            (std::vector<std::uint32_t>{0, 1}));
+  stroke.protect = true;
+  EXPECT_EQ(points_to_change({0, 1, 2, 3, 4}, stroke, labels, prediction),
+            (std::vector<std::uint32_t>{0}));
+}
+
+class JournalTest : public testing::Test {
+ protected:
+  void SetUp() override { std::filesystem::remove(path_); }
+  void TearDown() override { std::filesystem::remove(path_); }
+
+  static std::vector<std::string> lines(const std::vector<Record>& records) {
+    std::vector<std::string> result;
+    for (const Record& record : records) result.push_back(to_line(record));
+    return result;
+  }
+
+  const std::filesystem::path path_ = std::filesystem::path(testing::TempDir()) / "pcednet.journal";
+  const InputIdentity input_ = {.name = "a.ply", .digest = "d", .points = 100};
+  std::vector<Record> records_ = {
+      {.kind = Record::Kind::kStroke, .id = "s\"1", .edge_class = 2, .points = {0, 7, 99}},
+      {.kind = Record::Kind::kUndo},
+      {.kind = Record::Kind::kRedo},
+      {.kind = Record::Kind::kSettings, .settings = {.classes = 2, .start = "cad", .seed = 9}},
+      {.kind = Record::Kind::kRun, .run = {.number = 3, .records = 1, .settings = {.seed = 9}}},
+      {.kind = Record::Kind::kRestore, .run = {.number = 3}}};
+};
+
+TEST_F(JournalTest, KeepsEveryWholeLineWhereverItsEndIsLost) {
+  {
+    std::vector<Record> none;
+    Journal journal(path_, input_, none);
+    for (const Record& record : records_) journal.append(record);
+  }
+  std::ifstream file(path_, std::ios::binary);
+  const std::string text(std::istreambuf_iterator<char>(file), {});
+  for (std::size_t size = 0; size <= text.size(); ++size) {
+    std::ofstream(path_, std::ios::binary) << text.substr(0, size);
+    std::vector<Record> found;
+    Journal(path_, input_, found).append(records_[1]);
+    const auto whole =
+        std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(size), '\n');
+    auto expected = lines(records_);
+    expected.resize(static_cast<std::size_t>(std::max<std::ptrdiff_t>(whole - 1, 0)));
+    EXPECT_EQ(lines(found), expected) << size;
+    std::vector<Record> again;
+    const Journal reopened(path_, input_, again);
+    expected.push_back(to_line(records_[1]));
+    EXPECT_EQ(lines(again), expected) << size;
+  }
+}
+
+TEST_F(JournalTest, RefusesWhatIsDamagedOrOfAnotherInput) {
+  {
+    std::vector<Record> known = records_;
+    const Journal journal(path_, input_, known);
+    std::vector<Record> second;
+    EXPECT_THROW(Journal(path_, input_, second), Error);  // one annotator at a time
+  }
+  std::vector<Record> found;
+  EXPECT_THROW(Journal(path_, {.name = "b", .digest = "e", .points = 100}, found), Error);
+  EXPECT_THROW(Journal(path_, {.name = "a", .digest = "d", .points = 99}, found), Error);
+  for (const char* line :
+       {R"({"stroke":"x","class":3,"points":[]})", R"([1])", "{}", "",
+        R"({"stroke":"x","class":1,"points":[5,0]})", R"({"stroke":"x","class":1,"points":[-1]})",
+        R"({"stroke":"x","class":1,"points":[18446744073709551615,2]})"}) {
+    EXPECT_THROW(parse_record(line, 100), Error) << line;
+  }
+}
+
+TEST(Places, AreTheLeastCertainAndApart) {
+  Random random(5);
+  std::vector<Vec3> points(2000);
+  std::vector<float> confidence;
+  for (Vec3& p : points) {
+    p = Vec3(random.uniform(), random.uniform(), random.uniform());
+    confidence.push_back(static_cast<float>(random.uniform()));
+  }
+  const auto places = rank_uncertain(points, spatial::KdTree(points), confidence, 0.2, 10);
+  ASSERT_EQ(places.size(), 10u);
+  EXPECT_EQ(places[0], std::min_element(confidence.begin(), confidence.end()) - confidence.begin());
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      EXPECT_GE((points[places[i]] - points[places[j]]).norm(), 0.2);
+      EXPECT_LE(confidence[places[j]], confidence[places[i]]);
+    }
+  }
+}
+
+TEST(Places, PickTakesTheFirstPointAlongTheRay) {
+  const std::vector<Vec3> points = {{0, 0, -1}, {0.05, 0, 3}, {0, 0, 5}, {1, 0, 2}};
+  const auto found = pick(points, Vec3::Zero(), Vec3(0, 0, 9), 0.1);
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->point, 1u);
+  EXPECT_DOUBLE_EQ(found->distance, 3.0);
+  EXPECT_FALSE(pick(points, Vec3::Zero(), Vec3(0, 1, 0), 0.01));
+}
+
+}  // namespace
+}  // namespace pcednet::annotate
