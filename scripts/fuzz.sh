@@ -1,0 +1,55 @@
+#!/bin/sh
+# Fuzzes every reader for SECONDS each: scripts/fuzz.sh SECONDS [READER...]
+# Readers: ply pcd obj xyz las e57 npy. Inputs found are kept in build/fuzz/corpus, and what
+# breaks a reader in build/fuzz/findings. Exits with 1 if something does.
+# PCEDNET names the program that makes the first inputs (default: build/release/bin/pcednet).
+set -eu
+cd "$(dirname "$0")/.."
+seconds=${1:?usage: scripts/fuzz.sh SECONDS [READER...]}
+shift
+[ $# -gt 0 ] || set -- ply pcd obj xyz las e57 npy
+command -v clang++ >/dev/null || { echo "fuzz.sh: no clang++; scripts/setup.sh test" >&2; exit 77; }
+pcednet=$(realpath "${PCEDNET:-build/release/bin/pcednet}")
+
+cmake --preset fuzz >build/fuzz-configure.log
+targets=$(printf 'fuzz_%s ' "$@")
+# shellcheck disable=SC2086
+cmake --build --preset fuzz -j 2 --target $targets e57_seed >build/fuzz-build.log ||
+  { tail -n 40 build/fuzz-build.log; exit 1; }
+
+corpus=build/fuzz/corpus
+findings=build/fuzz/findings
+for reader in ply pcd obj xyz las e57 npy; do mkdir -p "$corpus/$reader"; done
+mkdir -p "$findings"
+printf '%s\n' '# x y z nx ny nz red green blue label' '0 0.5 1 0 0 1 255 0 7 0' \
+  '1 0 0.25 0 1 0 1 2 3 1' '0 1 3 1 0 0 9 9 9 2' >"$corpus/xyz/seed.xyz"
+convert() { "$pcednet" convert "$corpus/xyz/seed.xyz" --overwrite -o "$@" 2>/dev/null; }
+convert "$corpus/ply/binary.ply"
+convert "$corpus/ply/ascii.ply" --ascii
+convert "$corpus/pcd/binary.pcd"
+convert "$corpus/pcd/ascii.pcd" --ascii
+convert "$corpus/obj/seed.obj"
+convert "$corpus/las/seed.las"
+convert "$corpus/las/seed.laz" || rm -f "$corpus/las/seed.laz"
+convert "$corpus/xyz/seed.csv"
+convert "$corpus/xyz/seed.pts"
+# Ours are too large to begin with: six numbers, whose header has 0166 (118) bytes.
+printf '\223NUMPY\001\000\166\000%-117s\n%48s' \
+  "{'descr': '<f8', 'fortran_order': False, 'shape': (2, 3), }" '' >"$corpus/npy/seed.npy"
+build/fuzz/bin/e57_seed >"$corpus/e57/seed.e57"
+
+failed=0
+for reader in "$@"; do
+  log=$findings/$reader.log
+  if "build/fuzz/bin/fuzz_$reader" -max_total_time="$seconds" -max_len=20000 -timeout=10 \
+    -rss_limit_mb=2048 -print_final_stats=1 -artifact_prefix="$findings/$reader-" \
+    "$corpus/$reader" >"$log" 2>&1; then
+    awk -v r="$reader" '/ cov: / { for (i = 1; i < NF; ++i) if ($i == "cov:") cov = $(i + 1) }
+      /number_of_executed_units/ { n = $2 }
+      END { print r ": " n " executions, " cov " edges, nothing found" }' "$log"
+  else
+    echo "$reader: FOUND something, see $log"
+    failed=1
+  fi
+done
+exit $failed
