@@ -132,7 +132,10 @@ class JournalTest : public testing::Test {
     return result;
   }
 
-  const std::filesystem::path path_ = std::filesystem::path(testing::TempDir()) / "pcednet.journal";
+  const std::filesystem::path path_ =
+      std::filesystem::path(testing::TempDir()) /
+      ("pcednet_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()) +
+       ".journal");
   const InputIdentity input_ = {.name = "a.ply", .digest = "d", .points = 100};
   std::vector<Record> records_ = {
       {.kind = Record::Kind::kStroke, .id = "s\"1", .edge_class = 2, .points = {0, 7, 99}},
