@@ -1,4 +1,5 @@
 """LAS and LAZ files: read, converted, classified, with nothing lost; damaged ones refused or warned about."""
+import json
 import pathlib
 import struct
 import unittest
@@ -169,6 +170,20 @@ class Las(CliTest):
                 run("classify", self.folder / "scan_edges.las", "-o", self.folder / "again.las",
                     "--overwrite")
                 self.assertEqual((self.folder / "again.las").read_bytes(), data)
+
+    def test_info_tells_what_the_header_and_the_records_say(self):
+        rows = self.scan(3)
+        source = self.write("scan.las", las(3, rows))
+        run("classify", source, "--overwrite")
+        done = run("info", self.folder / "scan_edges.las", "--json", "-")
+        facts = json.loads(done.stdout)[0]["las"]
+        self.assertEqual(facts["point_format"], 3)
+        self.assertFalse(facts["compressed"])
+        self.assertEqual(len(facts["extra_bytes"]), 3)
+        self.assertEqual(sum(facts["points_by_class"].values()), len(rows))
+        self.assertEqual(sum(facts["points_by_return"].values()), len(rows))
+        self.assertIn(4, [record["record_id"] for record in facts["records"]])
+        self.assertIn("point format 3", run("info", source).stdout)
 
     def test_labels_in_utm_are_those_of_the_shifted_copy(self):
         rows = self.scan()

@@ -13,6 +13,7 @@
 
 #include "commands.h"
 #include "e57_facts.h"
+#include "las_facts.h"
 #include "pcednet/cloud/bounding_box.h"
 #include "pcednet/core/error.h"
 #include "pcednet/core/output_file.h"
@@ -175,6 +176,7 @@ ordered_json describe(const std::filesystem::path& path) {
                      {"duplicate_positions", defects.duplicates}};
   file["problems"] = find_problems(loaded, defects, box, spacing);
   if (file["format"] == "E57") file["e57"] = e57_facts(path);
+  if (file["format"] == "LAS" || file["format"] == "LAZ") file["las"] = las_facts(path, cloud);
   file["warnings"] = loaded.warnings;
   return file;
 }
@@ -249,6 +251,7 @@ void print(const ordered_json& file) {
   print_defects(file["defects"]);
   for (const auto& problem : file["problems"]) print_line("problem", problem.get<std::string>());
   if (file.contains("e57")) print_e57_facts(file["e57"]);
+  if (file.contains("las")) print_las_facts(file["las"]);
   for (const auto& warning : file["warnings"]) print_line("warning", warning.get<std::string>());
 }
 
