@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <numeric>
 
+#include "labelled_cube.h"
 #include "pcednet/core/error.h"
 #include "pcednet/core/parallel.h"
 #include "pcednet/core/random.h"
@@ -16,24 +17,6 @@
 
 namespace pcednet::detect {
 namespace {
-
-/// The surface of a unit cube, labelled by the distance to its edges.
-PointCloud cube(std::size_t points, std::uint64_t seed) {
-  Random random(seed);
-  PointCloud cloud;
-  for (std::size_t i = 0; i < points; ++i) {
-    const auto axis = static_cast<Eigen::Index>(random.index(3));
-    const double side = random.index(2) == 0 ? -0.5 : 0.5;
-    Vec3 p(random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5));
-    p[axis] = side;
-    Vec3 away = (0.5 - p.cwiseAbs().array()).matrix();
-    std::sort(away.data(), away.data() + 3);
-    cloud.positions.push_back(p);
-    cloud.normals.push_back(2.0 * side * Vec3::Unit(axis));
-    cloud.labels.push_back(away[1] < 0.025 ? kSharpEdge : away[1] < 0.08 ? kSmoothEdge : kNonEdge);
-  }
-  return cloud;
-}
 
 PointCloud permuted(const PointCloud& cloud) {
   std::vector<std::size_t> order(cloud.size());

@@ -7,9 +7,9 @@
 #include <filesystem>
 #include <fstream>
 
+#include "detect/labelled_cube.h"
 #include "pcednet/core/error.h"
 #include "pcednet/core/parallel.h"
-#include "pcednet/core/random.h"
 #include "pcednet/detect/classify.h"
 #include "pcednet/study/keys.h"
 #include "pcednet/study/study_file.h"
@@ -18,24 +18,6 @@ namespace pcednet::study {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// The surface of a unit cube, labelled by the distance to its edges.
-PointCloud cube(std::size_t points, std::uint64_t seed) {
-  Random random(seed);
-  PointCloud cloud;
-  for (std::size_t i = 0; i < points; ++i) {
-    const auto axis = static_cast<Eigen::Index>(random.index(3));
-    const double side = random.index(2) == 0 ? -0.5 : 0.5;
-    Vec3 p(random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5));
-    p[axis] = side;
-    Vec3 away = (0.5 - p.cwiseAbs().array()).matrix();
-    std::sort(away.data(), away.data() + 3);
-    cloud.positions.push_back(p);
-    cloud.normals.push_back(2.0 * side * Vec3::Unit(axis));
-    cloud.labels.push_back(away[1] < 0.025 ? kSharpEdge : away[1] < 0.08 ? kSmoothEdge : kNonEdge);
-  }
-  return cloud;
-}
 
 std::shared_ptr<const CloudSet> set_of(const std::string& name,
                                        const std::vector<std::uint64_t>& seeds) {

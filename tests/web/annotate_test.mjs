@@ -5,15 +5,12 @@ import assert from "node:assert/strict";
 import { spawn, spawnSync } from "node:child_process";
 import { once } from "node:events";
 import fs from "node:fs";
-import { createRequire } from "node:module";
 import os from "node:os";
 import path from "node:path";
 import { after, before, test } from "node:test";
 
 import { painted, readPly, roof, writeRoof } from "./annotate_cloud.mjs";
-
-const require = createRequire(path.join(process.env.PCEDNET_SOURCE_DIR, "web/package.json"));
-const { chromium } = require("playwright-core");
+import { launch } from "./browser.mjs";
 
 const LEAST_MCC = 0.6; // of the prediction from a few strokes, against the true labels
 const folder = fs.mkdtempSync(path.join(os.tmpdir(), "pcednet-annotate-"));
@@ -97,10 +94,7 @@ async function stroke(key, places) {
 before(async () => {
   writeRoof(input, roof());
   server = await serve();
-  browser = await chromium.launch({
-    executablePath: process.env.CHROMIUM,
-    args: ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
-  });
+  browser = await launch();
   page = await open();
 });
 

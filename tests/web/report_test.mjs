@@ -3,16 +3,13 @@
 import assert from "node:assert/strict";
 import { spawnSync } from "node:child_process";
 import fs from "node:fs";
-import { createRequire } from "node:module";
 import os from "node:os";
 import path from "node:path";
 import { after, before, test } from "node:test";
 import { pathToFileURL } from "node:url";
 
+import { launch } from "./browser.mjs";
 import { writeStudy } from "./fixture.mjs";
-
-const require = createRequire(path.join(process.env.PCEDNET_SOURCE_DIR, "web/package.json"));
-const { chromium } = require("playwright-core");
 
 const KEYS = ["precision", "recall", "mcc", "f1", "accuracy", "iou"];
 const folder = fs.mkdtempSync(path.join(os.tmpdir(), "pcednet-report-"));
@@ -85,10 +82,7 @@ before(async () => {
   ({ methods, scales } = writeStudy(folder));
   const made = pcednet(folder, "-o", report, "--clouds-per-set", "2", "--points", "950");
   assert.equal(made.code, 0, made.words);
-  browser = await chromium.launch({
-    executablePath: process.env.CHROMIUM,
-    args: ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
-  });
+  browser = await launch();
   page = await open();
 });
 

@@ -1,5 +1,7 @@
 // How points look: discs lit from a little above the eye.
 
+import { UNFOLD } from "../shared/unfold";
+
 export const VERTEX = `
 attribute vec2 oct;
 attribute vec3 rgb;
@@ -20,12 +22,7 @@ uniform float size;       // of a point, in spacings
 uniform float least;      // of a point, in pixels
 varying vec3 colour;
 
-vec3 unfold(vec2 e) {
-  vec3 n = vec3(e, 1.0 - abs(e.x) - abs(e.y));
-  if (n.z < 0.0) n.xy = (1.0 - abs(n.yx)) * vec2(n.x < 0.0 ? -1.0 : 1.0, n.y < 0.0 ? -1.0 : 1.0);
-  return normalize(n);
-}
-
+${UNFOLD}
 bool isHidden(float c) {
   return (c < 0.5 && hidden.x > 0.5) || (abs(c - 1.0) < 0.5 && hidden.y > 0.5) || (abs(c - 2.0) < 0.5 && hidden.z > 0.5);
 }

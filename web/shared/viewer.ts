@@ -6,6 +6,7 @@ import {
 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { rgbOf, type Meaning } from "./colours";
+import { UNFOLD } from "./unfold";
 
 const MAX_CODES = 8;
 const FIELD_OF_VIEW = 30;
@@ -18,12 +19,7 @@ uniform float pixels;   // height of one unit at distance one
 uniform float size;     // of a point, in units
 varying vec3 colour;
 
-vec3 unfold(vec2 e) {
-  vec3 n = vec3(e, 1.0 - abs(e.x) - abs(e.y));
-  if (n.z < 0.0) n.xy = (1.0 - abs(n.yx)) * vec2(n.x < 0.0 ? -1.0 : 1.0, n.y < 0.0 ? -1.0 : 1.0);
-  return normalize(n);
-}
-
+${UNFOLD}
 void main() {
   vec4 seen = modelViewMatrix * vec4(position, 1.0);
   vec3 n = normalMatrix * unfold(oct * 2.0 - 1.0);

@@ -8,12 +8,12 @@
 #include <memory>
 #include <thread>
 
-#include "annotate_page.h"
 #include "commands.h"
 #include "http_server.h"
 #include "models.h"
 #include "pcednet/annotate/api.h"
 #include "pcednet/core/error.h"
+#include "web_pages.h"
 
 extern char** environ;
 

@@ -176,7 +176,7 @@ ordered_json describe(const std::filesystem::path& path) {
                      {"duplicate_positions", defects.duplicates}};
   file["problems"] = find_problems(loaded, defects, box, spacing);
   if (file["format"] == "E57") file["e57"] = e57_facts(path);
-  if (file["format"] == "LAS" || file["format"] == "LAZ") file["las"] = las_facts(path, cloud);
+  if (file["format"] == "LAS") file["las"] = las_facts(path, cloud);
   file["warnings"] = loaded.warnings;
   return file;
 }

@@ -5,7 +5,7 @@
 #include "commands.h"
 #include "pcednet/core/error.h"
 #include "pcednet/report/merge.h"
-#include "report_page.h"
+#include "web_pages.h"
 
 namespace pcednet::app {
 namespace {

@@ -25,17 +25,14 @@ struct Header {
 
 /// All that decides the description.
 std::array<std::uint64_t, 2> key_of(const detect::PreparedCloud& cloud,
-                                    const gls::ScaleSpaceOptions& d) {
+                                    const gls::ScaleSpaceOptions& descriptor) {
   const auto coordinates = [](std::span<const Vec3> values) {
     return std::span(values.empty() ? nullptr : values.front().data(), 3 * values.size());
   };
   return Digest()
       .add_values(coordinates(cloud.positions))
       .add_values(coordinates(cloud.normals))
-      .add(fmt::format("{} {} {} {} {} {} {} {} {} {} {}", kVersion, d.scales, d.s_min, d.s_max,
-                       d.s_max_fraction, static_cast<int>(d.features),
-                       static_cast<int>(d.reconstruction), d.max_projection_steps,
-                       d.side_gate.value_or(2.0), static_cast<int>(d.engine), d.eps))
+      .add(fmt::format("{} {}", kVersion, gls::text_of(descriptor)))
       .lanes();
 }
 

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "pcednet/cloud/bounding_box.h"
+#include "pcednet/cloud/octahedral.h"
 #include "pcednet/spatial/morton.h"
 #include "pcednet/spatial/radix_sort.h"
 
@@ -115,19 +116,6 @@ std::int8_t signed_byte(double value) {
   return static_cast<std::int8_t>(std::lround(std::clamp(value, -1.0, 1.0) * 127.0));
 }
 
-/// The octahedral map: |x| + |y| + |z| = 1 unfolded onto a square.
-std::array<std::int8_t, 2> octahedral(const Vec3& normal) {
-  const double sum = normal.cwiseAbs().sum();
-  if (!(sum > 0)) return {0, 0};
-  const Vec3 n = normal / sum;
-  double u = n.x(), v = n.y();
-  if (n.z() < 0) {
-    u = (1 - std::abs(n.y())) * (n.x() >= 0 ? 1 : -1);
-    v = (1 - std::abs(n.x())) * (n.y() >= 0 ? 1 : -1);
-  }
-  return {signed_byte(u), signed_byte(v)};
-}
-
 }  // namespace
 
 Layout make_layout(std::span<const Vec3> positions, double spacing) {
@@ -154,7 +142,9 @@ std::vector<std::byte> encode_points(const Layout& layout, const Node& node,
       place[static_cast<std::size_t>(k)] =
           static_cast<std::uint16_t>(std::lround(std::clamp(share, 0.0, 1.0) * 65535));
     }
-    const auto normal = octahedral(normals[point]);
+    const Eigen::Vector2d unfolded = octahedral(normals[point]);
+    const std::array<std::int8_t, 2> normal = {signed_byte(unfolded.x()),
+                                               signed_byte(unfolded.y())};
     std::memcpy(bytes.data() + 6 * i, place.data(), 6);
     std::memcpy(bytes.data() + 6 * node.points + 2 * i, normal.data(), 2);
     if (!colours.empty()) {

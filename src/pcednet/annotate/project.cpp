@@ -116,7 +116,10 @@ Json json_of(const InputIdentity& input) {
   return {{"name", input.name}, {"digest", input.digest}, {"points", input.points}};
 }
 
-InputIdentity input_of(const Json& json) {
+/// Of a project or of the first line of a journal.
+InputIdentity input_of(const Json& file) {
+  if (file.at("format") != kFormat) refuse(fmt::format("not of the format {}", kFormat));
+  const Json& json = file.at("input");
   InputIdentity input{.name = json.at("name").get<std::string>(),
                       .digest = json.at("digest").get<std::string>(),
                       .points = json.at("points").get<std::size_t>()};
@@ -162,11 +165,7 @@ Record parse_record(std::string_view line, std::size_t points) {
 }
 
 InputIdentity parse_input(std::string_view line) {
-  return strictly([&] {
-    const Json json = Json::parse(line);
-    if (json.at("format") != kFormat) refuse(fmt::format("not of the format {}", kFormat));
-    return input_of(json.at("input"));
-  });
+  return strictly([&] { return input_of(Json::parse(line)); });
 }
 
 std::string to_json(const Settings& settings) {
@@ -188,7 +187,7 @@ Project read_project(const std::filesystem::path& path) {
   try {
     return strictly([&] {
       const Json json = Json::parse(text);
-      Project project{.input = parse_input(text), .records = {}};
+      Project project{.input = input_of(json), .records = {}};
       for (const Json& record : json.at("records")) {
         project.records.push_back(record_of(record, project.input.points));
       }

@@ -74,6 +74,16 @@ void Session::State::schedule() {
   changed.notify_all();
 }
 
+Json Session::State::answer(std::size_t stroke, std::size_t changed, Json nodes) const {
+  return {{"stroke", stroke},
+          {"changed", changed},
+          {"counts", labels->counts()},
+          {"labels_version", labels_version},
+          {"nodes", std::move(nodes)},
+          {"undo", labels->undo_steps()},
+          {"redo", labels->redo_steps()}};
+}
+
 std::string Session::State::painted(std::span<const std::uint32_t> points) {
   std::set<std::uint32_t> nodes;
   std::uint32_t last = kNoNode;
@@ -85,15 +95,9 @@ std::string Session::State::painted(std::span<const std::uint32_t> points) {
     ++labels_version;
     schedule();
   }
-  const Json answer = {{"stroke", labels->undo_steps()},
-                       {"changed", points.size()},
-                       {"counts", labels->counts()},
-                       {"labels_version", labels_version},
-                       {"nodes", nodes},
-                       {"undo", labels->undo_steps()},
-                       {"redo", labels->redo_steps()}};
-  if (!points.empty()) emit("labels", answer);
-  return answer.dump();
+  const Json done = answer(labels->undo_steps(), points.size(), nodes);
+  if (!points.empty()) emit("labels", done);
+  return done.dump();
 }
 
 std::string Session::paint(const Stroke& stroke) {

@@ -80,6 +80,7 @@ struct Session::State {
   void check_ready() const;
   void publish(Run run);
   std::string painted(std::span<const std::uint32_t> points);
+  nlohmann::json answer(std::size_t stroke, std::size_t changed, nlohmann::json nodes) const;
   void keep(Record record);
   void schedule();
   nlohmann::json run_json(std::size_t run) const;

@@ -139,14 +139,7 @@ void Session::State::open_project() {
   settings = end.settings;
   for (const Record& record : known) {
     if (record.kind == Record::Kind::kStroke) {
-      answers[record.id] = Json{{"stroke", 0},
-                                {"changed", record.points.size()},
-                                {"counts", labels->counts()},
-                                {"labels_version", labels_version},
-                                {"nodes", Json::array()},
-                                {"undo", labels->undo_steps()},
-                                {"redo", labels->redo_steps()}}
-                               .dump();
+      answers[record.id] = answer(0, record.points.size(), Json::array()).dump();
     }
     if (record.kind == Record::Kind::kRun) next_run = std::max(next_run, record.run.number + 1);
   }
@@ -163,12 +156,7 @@ std::shared_ptr<const Described> Session::State::description(
     const Lock lock(mutex);
     known = described;
   }
-  const auto& d = known->descriptor;
-  if (d.side_gate == descriptor.side_gate && d.scales == descriptor.scales &&
-      d.features == descriptor.features && d.reconstruction == descriptor.reconstruction &&
-      d.s_max_fraction == descriptor.s_max_fraction) {
-    return known;
-  }
+  if (known->descriptor == descriptor) return known;
   const Progress reporter = progress(of_generation);
   auto other = describe_once(scene->prepared, descriptor, options.cache_folder, &reporter);
   const Lock lock(mutex);

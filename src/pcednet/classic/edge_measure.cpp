@@ -7,6 +7,7 @@
 
 #include "pcednet/classic/surface_variation.h"
 #include "pcednet/core/error.h"
+#include "pcednet/core/median.h"
 
 namespace pcednet::classic {
 namespace {
@@ -24,12 +25,6 @@ double standard_deviation(std::vector<double> values) {
   for (const double v : values) mean += v / static_cast<double>(values.size());
   for (const double v : values) sum += (v - mean) * (v - mean);
   return std::sqrt(sum / static_cast<double>(values.size()));
-}
-
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const std::size_t n = values.size();
-  return n % 2 ? values[n / 2] : 0.5 * (values[n / 2 - 1] + values[n / 2]);
 }
 
 }  // namespace

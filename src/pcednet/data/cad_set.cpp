@@ -16,12 +16,17 @@ namespace {
 
 constexpr std::size_t kSamplesPerPoint = 12;
 
-MeshVertices drawn_points(const SolidSamples& samples, std::span<const BorderPoint> borders,
-                          const CadRecipe& recipe) {
+std::vector<Vec3> sharp_edges(std::span<const BorderPoint> borders) {
   std::vector<Vec3> edges;
   for (const BorderPoint& border : borders) {
     if (border.turn() >= kSharpTurn) edges.push_back(border.position);
   }
+  return edges;
+}
+
+MeshVertices drawn_points(const SolidSamples& samples, std::span<const BorderPoint> borders,
+                          const CadRecipe& recipe) {
+  const std::vector<Vec3> edges = sharp_edges(borders);
   const spatial::KdTree tree(edges);
   const std::size_t count = std::min(recipe.style.points, samples.points.size());
   const double spacing = std::sqrt(samples.area / static_cast<double>(count));
@@ -47,10 +52,7 @@ void wear_off(MeshVertices& vertices, const SolidSamples& samples,
     surface.positions.push_back(point.position);
     surface.normals.push_back(point.normal);
   }
-  std::vector<Vec3> edges;
-  for (const BorderPoint& border : borders) {
-    if (border.turn() >= kSharpTurn) edges.push_back(border.position);
-  }
+  const std::vector<Vec3> edges = sharp_edges(borders);
   const double spacing = std::sqrt(samples.area / static_cast<double>(vertices.positions.size()));
   wear_off(vertices, surface, edges,
            {recipe.wear * spacing, recipe.band * spacing, recipe.scatter * spacing,

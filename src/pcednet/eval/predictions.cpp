@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 
 #include "pcednet/cloud/point_cloud.h"
 #include "pcednet/core/error.h"
@@ -81,15 +82,22 @@ std::vector<std::uint8_t> nearest_to_edge_points(std::span<const Vec3> positions
   return classes;
 }
 
-bool has_label_per_line(const fs::path& path, std::size_t points) {
+/// The classes of a file that holds nothing else; none if it may hold points.
+std::optional<std::vector<std::uint8_t>> read_bare_classes(const fs::path& path,
+                                                           std::size_t points) {
   const std::string extension = io::lower_case(path.extension().string());
-  if (extension == ".u8" || extension == ".lbl" || extension == ".seg") return true;
-  if (extension != ".txt" && extension != ".csv") return false;
-  try {
-    return io::read_labels(path).size() == points;
-  } catch (const Error&) {
-    return false;  // a text of points
+  if (extension == ".u8" || extension == ".lbl" || extension == ".seg") {
+    auto classes = io::read_labels(path);
+    if (classes.size() == points) return classes;
+    throw misfit(path, fmt::format("{} classes", classes.size()), points);
   }
+  if (extension != ".txt" && extension != ".csv") return std::nullopt;
+  try {
+    auto classes = io::read_labels(path);
+    if (classes.size() == points) return classes;
+  } catch (const Error&) {  // a text of points
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -109,11 +117,7 @@ Predictions read_predictions(const fs::path& path, std::span<const Vec3> positio
   if (io::lower_case(path.extension().string()) == ".npy") {
     return {classes_of_array(path, io::read_npy(path), positions.size()), {}};
   }
-  if (has_label_per_line(path, positions.size())) {
-    Predictions found = {io::read_labels(path), {}};
-    if (found.classes.size() == positions.size()) return found;
-    throw misfit(path, fmt::format("{} classes", found.classes.size()), positions.size());
-  }
+  if (auto classes = read_bare_classes(path, positions.size())) return {*std::move(classes), {}};
   const PointCloud others = io::read_cloud(path).cloud;
   auto labels = io::labels_of(others, path);
   if (labels.empty()) {

@@ -2,20 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <nlohmann/json.hpp>
+
+#include "pcednet/core/median.h"
 
 namespace pcednet::eval {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-double median_of(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  std::sort(values.begin(), values.end());
-  const std::size_t middle = values.size() / 2;
-  return values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
-}
 
 void put(Json& row, const ConfusionCounts& counts) {
   row["points"] = counts.total();
@@ -42,13 +36,14 @@ std::string table_row(const std::string& name, const std::string& points, const 
 }  // namespace
 
 Scores median_scores(const std::vector<CloudScore>& clouds) {
-  const auto median = [&](double Scores::*score) {
+  const auto over_clouds = [&](double Scores::*score) {
     std::vector<double> values;
     for (const CloudScore& cloud : clouds) values.push_back(scores_of(cloud.counts).*score);
-    return median_of(std::move(values));
+    return median(std::move(values));
   };
-  return {median(&Scores::precision), median(&Scores::recall),   median(&Scores::mcc),
-          median(&Scores::f1),        median(&Scores::accuracy), median(&Scores::iou)};
+  return {over_clouds(&Scores::precision), over_clouds(&Scores::recall),
+          over_clouds(&Scores::mcc),       over_clouds(&Scores::f1),
+          over_clouds(&Scores::accuracy),  over_clouds(&Scores::iou)};
 }
 
 ConfusionCounts pooled_counts(const std::vector<CloudScore>& clouds) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "pcednet/gls/features.h"
 #include "pcednet/gls/projection.h"
@@ -24,6 +25,11 @@ struct ScaleSpaceOptions {
   std::optional<double> side_gate;  ///< the a of side_gate(), -1 to 1; without one all count alike
   Engine engine = Engine::kFast;    ///< what ScaleSpace uses
   double eps = 0.10;                ///< voxel edge over support radius, 0.01 to 1; fast engine only
+
+  bool operator==(const ScaleSpaceOptions&) const = default;
 };
+
+/// All that decides a description of a given cloud, as text: for keys of results that are kept.
+std::string text_of(const ScaleSpaceOptions& options);
 
 }  // namespace pcednet::gls

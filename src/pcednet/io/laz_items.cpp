@@ -88,16 +88,8 @@ template <typename Coder>
 void Point10::code_position(Coder& coder, std::byte* item, unsigned m, unsigned l, bool single) {
   std::byte* last = last_.data();
   const unsigned one = single ? 1 : 0;
-  const auto code_axis = [&](IntegerModel& model, Median5& median, unsigned context,
-                             std::size_t at) {
-    const auto before = get<std::uint32_t>(last + at);
-    const auto wanted = static_cast<std::int32_t>(get<std::uint32_t>(item + at) - before);
-    const std::int32_t difference = model.code(coder, median.get(), context, wanted);
-    median.add(difference);
-    put(last + at, before + static_cast<std::uint32_t>(difference));
-  };
-  code_axis(dx_, x_[m], one, 0);
-  code_axis(dy_, y_[m], one + even_bits(dx_.last_bits(), 20), 4);
+  code_axis(coder, dx_, x_[m], one, last, item);
+  code_axis(coder, dy_, y_[m], one + even_bits(dx_.last_bits(), 20), last + 4, item + 4);
   const unsigned bits = (dx_.last_bits() + dy_.last_bits()) / 2;
   height_[l] = z_.code(coder, height_[l], one + even_bits(bits, 18), get<std::int32_t>(item + 8));
   put(last + 8, height_[l]);

@@ -29,6 +29,17 @@ inline unsigned even_bits(unsigned bits, unsigned most) {
   return bits < most ? bits & ~1U : most;
 }
 
+/// A coordinate, by the median of its last differences; `last` becomes what `item` holds.
+template <typename Coder>
+void code_axis(Coder& coder, IntegerModel& model, Median5& median, unsigned context,
+               std::byte* last, const std::byte* item) {
+  const auto before = get<std::uint32_t>(last);
+  const auto wanted = static_cast<std::int32_t>(get<std::uint32_t>(item) - before);
+  const std::int32_t difference = model.code(coder, median.get(), context, wanted);
+  median.add(difference);
+  put(last, before + static_cast<std::uint32_t>(difference));
+}
+
 /// POINT10: the 20 bytes that formats 0 to 5 share.
 class Point10 {
  public:

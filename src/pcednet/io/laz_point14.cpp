@@ -135,16 +135,9 @@ void Point14::code_position(Coder& coder, Coder* z_coder, const std::byte* item,
   const unsigned n = returns_of(last), r = return_of(last), single = n == 1 ? 1 : 0;
   const std::size_t m = std::size_t{kReturnContext[n][r]} << 1 | (time_changes ? 1U : 0U);
   const unsigned l = std::min(n > r ? n - r : r - n, 7U);
-  const auto code_axis = [&](IntegerModel& model, Median5& median, unsigned context,
-                             std::size_t at) {
-    const auto before = get<std::uint32_t>(last + at);
-    const auto wanted = static_cast<std::int32_t>(get<std::uint32_t>(item + at) - before);
-    const std::int32_t difference = model.code(coder, median.get(), context, wanted);
-    median.add(difference);
-    put(last + at, before + static_cast<std::uint32_t>(difference));
-  };
-  code_axis(channel.dx, channel.x[m], single, 0);
-  code_axis(channel.dy, channel.y[m], single + even_bits(channel.dx.last_bits(), 20), 4);
+  code_axis(coder, channel.dx, channel.x[m], single, last, item);
+  code_axis(coder, channel.dy, channel.y[m], single + even_bits(channel.dx.last_bits(), 20),
+            last + 4, item + 4);
   if (z_coder == nullptr) return;
   const unsigned bits = (channel.dx.last_bits() + channel.dy.last_bits()) / 2;
   channel.height[l] = channel.z.code(*z_coder, channel.height[l], single + even_bits(bits, 18),

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "pcednet/cloud/bounding_box.h"
+#include "pcednet/cloud/octahedral.h"
 #include "pcednet/core/error.h"
 #include "pcednet/core/random.h"
 #include "pcednet/normals/estimate.h"
@@ -62,9 +63,9 @@ void put_positions(Scene& scene, std::span<const Vec3> positions) {
 void put_normals(Scene& scene, std::span<const Vec3> normals) {
   std::vector<std::uint8_t> bytes;
   for (const std::size_t i : scene.shown) {
-    const auto [u, v] = octahedral(normals[i]);
-    bytes.push_back(u);
-    bytes.push_back(v);
+    for (const double u : octahedral(normals[i])) {
+      bytes.push_back(static_cast<std::uint8_t>(std::lround((u + 1) / 2 * 255)));
+    }
   }
   scene.normals = encode_base64(bytes);
 }
@@ -100,21 +101,6 @@ std::string pack_classes(std::span<const std::uint8_t> classes,
     bytes[k / 4] |= static_cast<std::uint8_t>(code << 2 * (k % 4));
   }
   return encode_base64(bytes);
-}
-
-std::pair<std::uint8_t, std::uint8_t> octahedral(const Vec3& normal) {
-  const double sum = normal.cwiseAbs().sum();
-  if (sum == 0) return octahedral(Vec3::UnitZ());
-  double u = normal.x() / sum, v = normal.y() / sum;
-  if (normal.z() < 0) {
-    const double folded = std::copysign(1 - std::abs(v), u);
-    v = std::copysign(1 - std::abs(u), v);
-    u = folded;
-  }
-  const auto byte = [](double x) {
-    return static_cast<std::uint8_t>(std::lround((x + 1) / 2 * 255));
-  };
-  return {byte(u), byte(v)};
 }
 
 }  // namespace pcednet::report

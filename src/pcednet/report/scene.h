@@ -17,8 +17,8 @@ struct Scene {
   double min[3] = {0, 0, 0};       ///< the least corner of their box ...
   double size = 0;                 ///< ... and the longest side of it
   std::string positions;           ///< 3 uint16 a point: (p - min) / size * 65535, rounded
-  std::string normals;             ///< 2 uint8 a point, see octahedral(); unit, of either sign
-  float view[3] = {0, 0, -1};      ///< a direction to look along that shows much, unit length
+  std::string normals;         ///< 2 uint8 a point: octahedral(), 0 for -1; unit, of either sign
+  float view[3] = {0, 0, -1};  ///< a direction to look along that shows much, unit length
 };
 
 /// The finite points of `cloud`, at most `count`: those with the smallest hash of their position,
@@ -30,9 +30,5 @@ Scene make_scene(const PointCloud& cloud, std::size_t count, const Progress* pro
 /// The classes of the `shown` points, 2 bits a point, the first in the lowest bits of a byte; 3 is
 /// unlabelled. Base64.
 std::string pack_classes(std::span<const std::uint8_t> classes, std::span<const std::size_t> shown);
-
-/// A direction as a point of the unfolded octahedron (Cigolle et al. 2014), each coordinate of
-/// [-1, 1] in a byte. A zero vector becomes that of +z.
-std::pair<std::uint8_t, std::uint8_t> octahedral(const Vec3& normal);
 
 }  // namespace pcednet::report

@@ -74,21 +74,10 @@ void try_networks(const detect::PreparedCloud& cloud, const PointCloud& labelled
 
 }  // namespace
 
-std::string text_of(const gls::ScaleSpaceOptions& options) {
-  const auto& [scales, s_min, s_max, s_max_fraction, features, reconstruction, steps, side_gate,
-               engine, eps] = options;
-  return fmt::format(
-      "scales {} s_min {} s_max {} fraction {} features {} reconstruction {} steps {} gate {} "
-      "engine {} eps {}",
-      scales, s_min, s_max, s_max_fraction, static_cast<int>(features),
-      static_cast<int>(reconstruction), steps, side_gate ? fmt::format("{}", *side_gate) : "none",
-      static_cast<int>(engine), eps);
-}
-
 std::string text_of(const detect::TrainOptions& options) {
   const auto& [descriptor, architecture, training, exact] = options;
   static_cast<void>(exact);  // the descriptor's engine says it
-  return text_of(descriptor) + ", " + text_of(architecture) + ", " + text_of(training);
+  return gls::text_of(descriptor) + ", " + text_of(architecture) + ", " + text_of(training);
 }
 
 std::string text_of(const Treatment& treatment) {

@@ -8,7 +8,6 @@ namespace pcednet::study {
 
 // What decides a result, as text: results of equal text are equal.
 
-std::string text_of(const gls::ScaleSpaceOptions& options);
 std::string text_of(const detect::TrainOptions& options);
 std::string text_of(const Treatment& treatment);
 
