@@ -48,6 +48,7 @@ struct HttpServer::Impl {
   httplib::Server server = {};
   int port = 0;
   std::thread thread = {};
+  std::atomic<bool> ended = false;
   std::atomic<int> streams = 0;
   annotate::Events* events = nullptr;
 
@@ -144,7 +145,14 @@ void HttpServer::start(annotate::Api& api, annotate::Events& events, std::string
   };
   server.Get("/api/.*", answer);
   server.Post("/api/.*", answer);
-  impl_->thread = std::thread([impl = impl_.get()] { impl->server.listen_after_bind(); });
+  impl_->thread = std::thread([impl = impl_.get()] {
+    impl->server.listen_after_bind();
+    impl->ended = true;
+  });
+  // Told to stop before it runs, the library would not hear it.
+  while (!server.is_running() && !impl_->ended) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
 }
 
 }  // namespace pcednet::app

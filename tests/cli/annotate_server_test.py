@@ -345,7 +345,8 @@ class AnnotateServer(CliTest):
     def test_says_what_is_wrong_and_ends(self):
         self.assertIn("no such file", run("annotate", self.folder / "none.ply", expect=3).stderr)
         (self.folder / "bad.ply").write_text("ply\nrubbish\n")
-        run("annotate", self.folder / "bad.ply", "--no-browser", expect=3)
+        for _ in range(20):  # told to stop while its server is still starting
+            run("annotate", self.folder / "bad.ply", "--no-browser", expect=3)
         run("train", "-o", self.folder / "m.safetensors", expect=2)
         server = self.serve()
         run("annotate", self.cloud, "--no-browser", "--port", server.port, expect=1)
