@@ -119,6 +119,11 @@ TEST(Perturb, SubsampleKeepsAllThatBelongsToAPoint) {
     EXPECT_EQ(kept.colours[i], cloud.colours[point]);
   }
   EXPECT_TRUE(kept.foreign_elements.empty());
+  PointCloud surveyed = cloud;
+  surveyed.foreign_elements.push_back({"element las_vlrs 1\n", {std::byte{7}}});
+  const auto elements = subsample(surveyed, {.fraction = 0.25}).foreign_elements;
+  ASSERT_EQ(elements.size(), 1u);
+  EXPECT_EQ(elements[0].bytes, surveyed.foreign_elements[1].bytes);
 }
 
 TEST(Perturb, SubsamplesAreUniformAndNested) {

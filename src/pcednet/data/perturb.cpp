@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 #include <span>
 #include <utility>
@@ -12,6 +13,7 @@
 #include "pcednet/cloud/bounding_box.h"
 #include "pcednet/core/error.h"
 #include "pcednet/core/random.h"
+#include "pcednet/io/las_file.h"
 
 namespace pcednet::data {
 namespace {
@@ -103,6 +105,8 @@ PointCloud subsample(const PointCloud& cloud, const SubsampleOptions& options) {
   for (const Attribute& attribute : cloud.attributes) {
     kept.attributes.push_back(chosen(attribute, points));
   }
+  std::copy_if(cloud.foreign_elements.begin(), cloud.foreign_elements.end(),
+               std::back_inserter(kept.foreign_elements), io::is_las_element);
   kept.position_type = cloud.position_type;
   kept.comments = cloud.comments;
   kept.comments.push_back(

@@ -28,7 +28,8 @@ struct SubsampleOptions {
 };
 
 /// round(fraction x points) points of `cloud` drawn at random, in their order, with all that
-/// belongs to them; foreign elements (faces, which would name points that are gone) are left out.
+/// belongs to them. Of the foreign elements a LAS file's header and records stay; others (faces,
+/// which would name points that are gone) are left out.
 /// With the same seed a smaller fraction keeps a subset of what a larger one keeps. Throws
 /// Error(kUsage) for a fraction outside [0, 1].
 PointCloud subsample(const PointCloud& cloud, const SubsampleOptions& options = {});
