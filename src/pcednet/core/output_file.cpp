@@ -53,6 +53,8 @@ void OutputFile::write(std::string_view text) {
 }
 
 void OutputFile::write_at(std::uint64_t offset, std::span<const std::byte> bytes) {
+  // What write() still holds would replace these bytes later.
+  if (std::fflush(file_) != 0) fail("cannot write");
   while (!bytes.empty()) {
     const ssize_t written =
         pwrite(fileno(file_), bytes.data(), bytes.size(), static_cast<off_t>(offset));
