@@ -9,6 +9,7 @@
 #include "pcednet/data/mesh_samples.h"
 #include "pcednet/data/perturb.h"
 #include "pcednet/io/faces.h"
+#include "pcednet/io/parts.h"
 #include "pcednet/io/read_cloud.h"
 #include "pcednet/io/write_cloud.h"
 
@@ -45,18 +46,74 @@ void perturb(const Request& request, PointCloud& cloud) {
   if (request.fraction < 1.0) cloud = data::subsample(cloud, {request.fraction, request.seed});
 }
 
+void warn_of(const std::string& file, const std::vector<std::string>& warnings) {
+  for (const std::string& warning : warnings) warn(file + ": " + warning);
+}
+
+void warn_of_losses(const std::string& output, const std::vector<std::string>& losses) {
+  for (const std::string& loss : losses) warn(output + " does not keep: " + loss);
+}
+
+/// The parts of a file, one after the other, beginning with one that is known.
+io::EachPart each_part_of(const io::PartReader& reader, const PointCloud& first,
+                          const Progress& progress) {
+  return [&](const auto& visit) {
+    bool more = visit(first);
+    for (std::size_t p = 1; p < reader.parts() && more; ++p) {
+      throw_if_cancelled(&progress);
+      PointCloud part = reader.read(p);
+      io::PartTally known;
+      io::finish_part(part, known);
+      more = visit(part);
+    }
+  };
+}
+
+/// Converts in memory that does not grow with the file; false if one of the formats, or what else
+/// is asked for, takes the whole cloud.
+bool convert_in_parts(const Request& request, const Common& common) {
+  if (request.samples > 0 || request.noise > 0.0 || request.fraction < 1.0) return false;
+  const auto reader = io::open_parts(request.input);
+  if (!reader) return false;
+  const Progress progress = console_progress(common);
+  io::PartTally tally;
+  PointCloud first = reader->read(0);
+  io::finish_part(first, tally);
+  const io::PartOutline outline{.points = reader->points(),
+                                .first = &first,
+                                .each_part = each_part_of(*reader, first, progress),
+                                .is_las = reader->is_las()};
+  const auto writer = io::create_parts(request.output, outline,
+                                       {.overwrite = common.overwrite(), .ascii = request.ascii});
+  if (!writer) return false;
+  Stage stage(&progress, "convert", reader->points());
+  writer->append(first);
+  stage.advance(first.size());
+  for (std::size_t p = 1; p < reader->parts(); ++p) {
+    PointCloud part = reader->read(p);
+    io::finish_part(part, tally);
+    writer->append(part);
+    stage.advance(part.size());
+  }
+  writer->commit();
+  warn_of(request.input, reader->warnings);
+  warn_of(request.input, io::warnings_of(tally));
+  warn_of_losses(request.output, writer->losses);
+  say(fmt::format("{}: {} points", request.output, tally.points));
+  return true;
+}
+
 void convert(const Request& request, const Common& common) {
   // What the output's extension allows is asked before a long read.
   io::losses(request.output, {});
+  if (convert_in_parts(request, common)) return;
   io::LoadedCloud loaded = io::read_cloud(request.input);
-  for (const std::string& warning : loaded.warnings) warn(request.input + ": " + warning);
+  warn_of(request.input, loaded.warnings);
   if (request.samples > 0) {
     with_name_in_errors(request.input, [&] { sample(request, loaded.cloud); });
   }
   perturb(request, loaded.cloud);
-  for (const std::string& loss : io::losses(request.output, loaded.cloud)) {
-    warn(request.output + " does not keep: " + loss);
-  }
+  warn_of_losses(request.output, io::losses(request.output, loaded.cloud));
   io::write_cloud(request.output, loaded.cloud,
                   {.overwrite = common.overwrite(), .ascii = request.ascii});
   say(fmt::format("{}: {} points", request.output, loaded.cloud.size()));

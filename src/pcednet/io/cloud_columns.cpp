@@ -11,6 +11,8 @@
 #include <limits>
 #include <set>
 
+#include "pcednet/core/error.h"
+
 namespace pcednet::io {
 namespace {
 
@@ -183,6 +185,17 @@ std::vector<ColumnView> columns_of(const PointCloud& cloud, const ColumnNames& n
   }
   make_names_unique(columns, cloud.has_labels(), names.has_counts);
   return columns;
+}
+
+void check_same_columns(const std::filesystem::path& path, const std::vector<ColumnView>& columns,
+                        const std::vector<ColumnView>& others) {
+  const auto same = [](const ColumnView& a, const ColumnView& b) {
+    return a.name == b.name && a.type == b.type;
+  };
+  if (!std::equal(columns.begin(), columns.end(), others.begin(), others.end(), same)) {
+    throw Error(ErrorKind::kFailure,
+                path.string() + ": the parts to write have different attributes");
+  }
 }
 
 std::vector<std::string> column_losses(const PointCloud& cloud, const ColumnNames& names) {

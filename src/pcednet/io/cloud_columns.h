@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -28,12 +29,16 @@ struct ColumnNames {
   bool has_counts = false;  ///< columns of several numbers; otherwise name_0, name_1, ...
 };
 
-/// The columns of `cloud`, in the order of write_ply. Names are unique, have no blanks, commas or
-/// semicolons. An attribute of several components gives that many columns side by side.
+/// The columns of `cloud`, in the order of create_ply_parts. Names are unique, have no blanks,
+/// commas or semicolons. An attribute of several components gives that many columns side by side.
 ///
 /// Positions get the cloud's position_type if every one of them survives in it, otherwise double.
 /// The views point into `cloud`. Throws Error(kFailure) unless check_consistent(cloud) holds.
 std::vector<ColumnView> columns_of(const PointCloud& cloud, const ColumnNames& names);
+
+/// Throws Error(kFailure) unless both have the same names and types.
+void check_same_columns(const std::filesystem::path& path, const std::vector<ColumnView>& columns,
+                        const std::vector<ColumnView>& others);
 
 /// `name` without characters that end a word in some format; never empty.
 std::string plain_name(std::string_view name);

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "pcednet/io/input_file.h"
 #include "pcednet/io/loaded_cloud.h"
+#include "pcednet/io/parts.h"
 #include "pcednet/io/write_cloud.h"
 
 namespace pcednet::io {
@@ -18,21 +20,19 @@ namespace pcednet::io {
 /// Header and records travel with the cloud for write_las. Throws as read_cloud.
 LoadedCloud read_las(const InputFile& file);
 
+/// For open_parts().
+std::unique_ptr<PartReader> open_las_parts(std::unique_ptr<InputFile> file, std::size_t most);
+
 /// Writes LAS, or LAZ if `path` ends in .laz.
 ///
 /// A cloud that was read from LAS gets back version, point format, scale, offset, records and
 /// fields, its integers bit for bit; another becomes LAS 1.4, point format 6, or 7 with colours, in
 /// steps of a power of ten of at most 0.1 mm. Further attributes become extra bytes:
 /// scalar_edge_class, scalar_p_sharp and scalar_p_smooth as edge_class, p_sharp and p_smooth.
-/// Throws Error(kInsufficient) for positions that are not finite, Error(kFailure) for a number that
-/// its field cannot hold; both name the point.
-void write_las(const std::filesystem::path& path, const PointCloud& cloud,
-               const WriteOptions& options);
-
-/// What write_las loses; see losses().
-std::vector<std::string> las_losses(const PointCloud& cloud);
-
-/// 8-bit colours of the 16-bit attributes Red, Green and Blue; empty if there are none.
-std::vector<Rgb> las_colours(const PointCloud& cloud);
+/// append() throws Error(kInsufficient) for positions that are not finite, Error(kFailure) for a
+/// number that its field cannot hold; both name the point.
+std::unique_ptr<PartWriter> create_las_parts(const std::filesystem::path& path,
+                                             const PartOutline& outline,
+                                             const WriteOptions& options);
 
 }  // namespace pcednet::io

@@ -10,54 +10,92 @@
 #include "pcednet/cloud/bounding_box.h"
 #include "pcednet/core/error.h"
 #include "pcednet/io/las.h"
+#include "pcednet/io/las_records.h"
 
 namespace pcednet::io {
 namespace {
 
 constexpr std::size_t kDescriptorBytes = 192;
 
-bool all_fit(const PointCloud& cloud, const LasFile& file, bool exactly) {
+constexpr int kLeastDigits = 4, kMostDigits = 9;
+
+bool is_exact(const PointCloud& cloud, const LasFile& file) {
   for (const Vec3& p : cloud.positions) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const double value = p[static_cast<int>(axis)];
-      if (!std::isfinite(value)) continue;
       const double step = las_step(file, axis, value);
-      if (!std::isfinite(step)) return false;
-      if (exactly && step * file.scale(axis) + file.offset(axis) != value) return false;
+      if (std::isfinite(value) && step * file.scale(axis) + file.offset(axis) != value) {
+        return false;
+      }
     }
   }
   return true;
 }
 
+bool all_exact(const PartOutline& outline, const LasFile& file) {
+  bool exact = true;
+  outline.each_part([&](const PointCloud& part) { return exact = exact && is_exact(part, file); });
+  return exact;
+}
+
+bool fits(const BoundingBox& box, const LasFile& file) {
+  if (box.empty()) return true;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (const double end : {box.min[static_cast<int>(axis)], box.max[static_cast<int>(axis)]}) {
+      if (!std::isfinite(las_step(file, axis, end))) return false;
+    }
+  }
+  return true;
+}
+
+BoundingBox box_of(const PartOutline& outline) {
+  BoundingBox box;
+  outline.each_part([&](const PointCloud& part) {
+    const BoundingBox more = bounding_box(part.positions);
+    box.min = box.min.cwiseMin(more.min);
+    box.max = box.max.cwiseMax(more.max);
+    return true;
+  });
+  return box;
+}
+
+LasFile with_digits(LasFile file, int digits) {
+  const double scale = digits < 0 ? std::pow(10.0, -digits) : 1.0 / std::pow(10.0, digits);
+  for (std::size_t axis = 0; axis < 3; ++axis) put_number(file.header, 131 + 8 * axis, scale);
+  return file;
+}
+
 /// Offsets at whole numbers, and the coarsest step of at most 0.1 mm that keeps every coordinate as
 /// it is; if none does, the finest that 32 bits reach with. Coarser only where they reach no
 /// further.
-void choose_scale(const PointCloud& cloud, LasFile& file) {
-  const BoundingBox box = bounding_box(cloud.positions);
+bool choose_scale(const PartOutline& outline, const BoundingBox& box, LasFile& file) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const int a = static_cast<int>(axis);
     const double middle = box.empty() ? 0.0 : std::round((box.min[a] + box.max[a]) / 2);
     put_number(file.header, 155 + 8 * axis, middle);
   }
-  const auto set = [&](int digits) {
-    const double scale = digits < 0 ? std::pow(10.0, -digits) : 1.0 / std::pow(10.0, digits);
-    for (std::size_t axis = 0; axis < 3; ++axis) put_number(file.header, 131 + 8 * axis, scale);
-  };
-  int finest = -300;
-  for (int digits = 4; digits <= 9; ++digits) {
-    set(digits);
-    if (!all_fit(cloud, file, false)) break;
-    finest = digits;
-    if (all_fit(cloud, file, true)) return;
+  std::vector<LasFile> candidates;
+  for (int digits = kLeastDigits; digits <= kMostDigits; ++digits) {
+    LasFile candidate = with_digits({.header = file.header}, digits);
+    if (!fits(box, candidate)) break;
+    candidates.push_back(std::move(candidate));
   }
-  for (int digits = 3; finest == -300 && digits > -300; --digits) {
-    set(digits);
-    if (all_fit(cloud, file, false)) return;
+  if (candidates.empty()) {
+    int digits = kLeastDigits - 1;
+    while (digits > -300 && !fits(box, with_digits({.header = file.header}, digits))) --digits;
+    file = with_digits(std::move(file), digits);
+    return all_exact(outline, file);
   }
-  set(finest);
+  const std::string finest = candidates.back().header;
+  outline.each_part([&](const PointCloud& part) {
+    std::erase_if(candidates, [&](const LasFile& c) { return !is_exact(part, c); });
+    return !candidates.empty();
+  });
+  file.header = candidates.empty() ? finest : candidates.front().header;
+  return !candidates.empty();
 }
 
-LasFile new_file(const PointCloud& cloud) {
+LasFile new_file(bool with_colours) {
   LasFile file;
   file.header.assign(375, '\0');
   file.header.replace(0, 4, "LASF");
@@ -66,9 +104,34 @@ LasFile new_file(const PointCloud& cloud) {
   put_number<std::uint8_t>(file.header, 25, 4);
   file.header.replace(26, 7, "pcednet");
   file.header.replace(58, 7, "pcednet");
-  put_number<std::uint8_t>(file.header, 104, cloud.colours.empty() ? 6 : 7);
-  choose_scale(cloud, file);
+  put_number<std::uint8_t>(file.header, 104, with_colours ? 7 : 6);
   return file;
+}
+
+/// Whether the colours are more than what Red, Green and Blue, if there are, say.
+bool colours_are_new(const PartOutline& outline) {
+  if (outline.first->colours.empty()) return false;
+  if (las_colours(*outline.first, true).empty()) return true;
+  bool narrow = true, same = true;
+  outline.each_part(
+      [&](const PointCloud& part) { return narrow = narrow && has_narrow_colours(part); });
+  outline.each_part([&](const PointCloud& part) {
+    return same = same && las_colours(part, narrow) == part.colours;
+  });
+  return !same;
+}
+
+bool labels_are_classes(const PartOutline& outline) {
+  bool same = outline.first->has_labels();
+  const auto is_class = [](const PointCloud& part) {
+    const Attribute* edge_class = find_attribute(part, "scalar_edge_class");
+    return edge_class && edge_class->type == ScalarType::kUint8 &&
+           edge_class->bytes.size() == part.labels.size() &&
+           std::memcmp(edge_class->bytes.data(), part.labels.data(), part.labels.size()) == 0;
+  };
+  if (!same || !is_class(*outline.first)) return false;
+  outline.each_part([&](const PointCloud& part) { return same = same && is_class(part); });
+  return same;
 }
 
 /// Removes the record LASF_Spec 4 and returns its descriptors.
@@ -87,11 +150,9 @@ std::string take_descriptors(LasFile& file) {
 /// Builds the columns: those of the file's own fields first, then extra bytes for what is left.
 class LayoutBuilder {
  public:
-  LayoutBuilder(const PointCloud& cloud, const WriteOptions& options)
-      : cloud_(cloud), options_(options), file_(layout_.file) {
-    file_ = attached_las_file(cloud);
-    if (file_.header.empty()) file_ = new_file(cloud);
-    if (!all_fit(cloud, file_, false)) choose_scale(cloud, file_);
+  LayoutBuilder(const PointCloud& part, const WriteOptions& options, const LasChoices& choices)
+      : cloud_(part), options_(options), choices_(choices), file_(layout_.file) {
+    file_ = choices.file;
   }
 
   LasLayout build() {
@@ -122,13 +183,9 @@ class LayoutBuilder {
     return file_.record_length() > las_format_bytes(file_.point_format());
   }
 
-  bool colours_are_new() const {
-    return !cloud_.colours.empty() && las_colours(cloud_) != cloud_.colours;
-  }
-
   void add_known(const LasField& field) {
     const auto channel = std::find(std::begin(kChannels), std::end(kChannels), field.name);
-    if (channel != std::end(kChannels) && colours_are_new()) {
+    if (channel != std::end(kChannels) && choices_.new_colours) {
       const auto c = static_cast<std::size_t>(channel - std::begin(kChannels));
       if (!cloud_.empty()) {
         layout_.columns.push_back({field, reinterpret_cast<const std::byte*>(&cloud_.colours[0][c]),
@@ -169,14 +226,6 @@ class LayoutBuilder {
     return true;
   }
 
-  /// Whether the labels say nothing that scalar_edge_class does not.
-  bool label_is_class() const {
-    const Attribute* edge_class = find_attribute(cloud_, "scalar_edge_class");
-    return edge_class && edge_class->type == ScalarType::kUint8 &&
-           edge_class->bytes.size() == cloud_.labels.size() &&
-           std::memcmp(edge_class->bytes.data(), cloud_.labels.data(), cloud_.labels.size()) == 0;
-  }
-
   void add_new() {
     if (cloud_.has_normals() && !has_normals_ && options_.new_normals) {
       for (const char* name : kAxes) add_normal(new_field(name, ScalarType::kFloat32));
@@ -196,7 +245,7 @@ class LayoutBuilder {
                                    attribute.stride()});
       }
     }
-    if (cloud_.has_labels() && !has_label_ && !label_is_class()) {
+    if (cloud_.has_labels() && !has_label_ && !choices_.label_is_class) {
       add_label(new_field("label", ScalarType::kUint8));
     }
   }
@@ -245,6 +294,7 @@ class LayoutBuilder {
 
   const PointCloud& cloud_;
   const WriteOptions& options_;
+  const LasChoices& choices_;
   LasLayout layout_;
   LasFile& file_;
   std::string descriptors_;
@@ -275,23 +325,40 @@ void write_scaled(const LasColumn& column, const std::byte* from, char* to) {
   std::memcpy(to, &narrow, sizeof narrow);
 }
 
-LasLayout las_layout(const PointCloud& cloud, const WriteOptions& options) {
-  return LayoutBuilder(cloud, options).build();
+LasChoices las_choices(const PartOutline& outline) {
+  LasChoices choices{.file = attached_las_file(*outline.first),
+                     .new_colours = !outline.is_las && colours_are_new(outline),
+                     .label_is_class = labels_are_classes(outline)};
+  const bool is_new = choices.file.header.empty();
+  if (!is_new && outline.is_las) return choices;
+  if (is_new) choices.file = new_file(!outline.first->colours.empty());
+  const BoundingBox box = box_of(outline);
+  if (is_new || !fits(box, choices.file)) {
+    choices.exact = choose_scale(outline, box, choices.file);
+  } else {
+    choices.exact = all_exact(outline, choices.file);
+  }
+  return choices;
 }
 
-std::vector<std::string> las_losses(const PointCloud& cloud) {
+LasLayout las_layout(const PointCloud& part, const WriteOptions& options,
+                     const LasChoices& choices) {
+  return LayoutBuilder(part, options, choices).build();
+}
+
+std::vector<std::string> las_losses(const PointCloud& first, const LasChoices& choices) {
+  const LasFile& file = choices.file;
   std::vector<std::string> losses;
-  if (!cloud.comments.empty()) losses.emplace_back("comments");
-  const LasLayout layout = las_layout(cloud, {});
-  if (!all_fit(cloud, layout.file, true)) {
-    losses.push_back(fmt::format("digits of positions beyond steps of {}", layout.file.scale(0)));
+  if (!first.comments.empty()) losses.emplace_back("comments");
+  if (!choices.exact) {
+    losses.push_back(fmt::format("digits of positions beyond steps of {}", file.scale(0)));
   }
-  const auto standard = las_standard_fields(layout.file.point_format());
+  const auto standard = las_standard_fields(file.point_format());
   const bool has_colours = std::any_of(standard.begin(), standard.end(),
                                        [](const LasField& f) { return f.name == "Red"; });
-  if (!cloud.colours.empty() && !has_colours) {
+  if (!first.colours.empty() && !has_colours) {
     losses.push_back(
-        fmt::format("colours: the input's point format {} has none", layout.file.point_format()));
+        fmt::format("colours: the input's point format {} has none", file.point_format()));
   }
   return losses;
 }

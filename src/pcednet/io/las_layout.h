@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "pcednet/io/las_file.h"
-#include "pcednet/io/write_cloud.h"
+#include "pcednet/io/parts.h"
 
 namespace pcednet::io {
 
@@ -17,13 +17,26 @@ struct LasColumn {
   Scale scale = Scale::kNone;        ///< bytes times 257, or double to the field's float
 };
 
-/// How a cloud is laid out as LAS: the header as far as the points do not decide on it, the records
-/// about the file, the columns. Points into the cloud.
+/// What all points together decide.
+struct LasChoices {
+  LasFile file = {};            ///< version, point format, scale, offset; all records
+  bool new_colours = false;     ///< the colours are not those of Red, Green and Blue
+  bool label_is_class = false;  ///< the labels say nothing that scalar_edge_class does not
+  bool exact = true;            ///< every coordinate comes back as it is
+};
+LasChoices las_choices(const PartOutline& outline);
+
+/// What LAS loses of the cloud; see losses().
+std::vector<std::string> las_losses(const PointCloud& first, const LasChoices& choices);
+
+/// How a part is laid out as LAS: the header as far as the points do not decide on it, the records
+/// about the file, the columns. Points into the part.
 struct LasLayout {
   LasFile file = {};
   std::vector<LasColumn> columns;  ///< all but X, Y and Z
 };
-LasLayout las_layout(const PointCloud& cloud, const WriteOptions& options);
+LasLayout las_layout(const PointCloud& part, const WriteOptions& options,
+                     const LasChoices& choices);
 
 /// The number of scale steps, whole, that stands for a coordinate; NaN if 32 bits cannot hold it.
 double las_step(const LasFile& file, std::size_t axis, double coordinate);

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <optional>
 
+#include "pcednet/cloud/bounding_box.h"
 #include "pcednet/core/error.h"
 #include "pcednet/core/output_file.h"
 #include "pcednet/io/las.h"
@@ -23,16 +24,18 @@ constexpr std::size_t kHeader14 = 375;
   throw Error(kind, fmt::format("{}: point {}: {}", path.string(), point, what));
 }
 
-/// Puts the points [begin, end) behind `out` as records.
+/// Puts the points [begin, end) of a part behind `out` as records. `before`: points of earlier
+/// parts.
 void encode(const std::filesystem::path& path, const PointCloud& cloud, const LasLayout& layout,
-            std::size_t begin, std::size_t end, std::string& out) {
+            std::size_t before, std::size_t begin, std::size_t end, std::string& out) {
   const std::size_t stride = layout.file.record_length(), start = out.size();
   out.resize(start + (end - begin) * stride);
   for (std::size_t i = begin; i < end; ++i) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const double step = las_step(layout.file, axis, cloud.positions[i][static_cast<int>(axis)]);
       if (!std::isfinite(step)) {
-        refuse(path, ErrorKind::kInsufficient, i, "LAS has no positions that are not finite");
+        refuse(path, ErrorKind::kInsufficient, before + i,
+               "LAS has no positions that are not finite");
       }
       const auto whole = static_cast<std::int32_t>(step);
       std::memcpy(&out[start + (i - begin) * stride + 4 * axis], &whole, 4);
@@ -47,7 +50,7 @@ void encode(const std::filesystem::path& path, const PointCloud& cloud, const La
       if (field.bits > 0) {
         const auto value = std::to_integer<unsigned>(*from);
         if (value >> field.bits != 0) {
-          refuse(path, ErrorKind::kFailure, i,
+          refuse(path, ErrorKind::kFailure, before + i,
                  fmt::format("{} {} does not fit point format {}, which has {} bits for it",
                              field.name, value, layout.file.point_format(), field.bits));
         }
@@ -64,30 +67,28 @@ void encode(const std::filesystem::path& path, const PointCloud& cloud, const La
 /// Counts by return number (index 0 for return 1), and the bounds.
 struct Summary {
   std::array<std::uint64_t, 15> by_return = {};
-  std::array<double, 3> least = {}, largest = {};
-};
+  BoundingBox bounds = {};
 
-Summary summarise(const PointCloud& cloud, const LasFile& file) {
-  Summary summary;
-  const Attribute* returns = find_attribute(cloud, "ReturnNumber");
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    const auto number = returns ? static_cast<std::size_t>(returns->value(i)) : 1;
-    if (number >= 1 && number <= 15) ++summary.by_return[number - 1];
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const double step = las_step(file, axis, cloud.positions[i][static_cast<int>(axis)]);
-      const double value = step * file.scale(axis) + file.offset(axis);
-      summary.least[axis] = i == 0 ? value : std::min(summary.least[axis], value);
-      summary.largest[axis] = i == 0 ? value : std::max(summary.largest[axis], value);
+  void add(const PointCloud& part, const LasFile& file) {
+    const Attribute* returns = find_attribute(part, "ReturnNumber");
+    for (std::size_t i = 0; i < part.size(); ++i) {
+      const auto number = returns ? static_cast<std::size_t>(returns->value(i)) : 1;
+      if (number >= 1 && number <= 15) ++by_return[number - 1];
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const int a = static_cast<int>(axis);
+        const double step = las_step(file, axis, part.positions[i][a]);
+        const double value = step * file.scale(axis) + file.offset(axis);
+        bounds.min[a] = std::min(bounds.min[a], value);
+        bounds.max[a] = std::max(bounds.max[a], value);
+      }
     }
   }
-  return summary;
-}
+};
 
-/// Makes the header say what is written. `extended_offset`: where the extended records begin.
-void update_header(LasFile& file, const PointCloud& cloud, std::uint64_t points_offset) {
+/// Makes the header say what is written.
+void update_header(LasFile& file, const Summary& summary, std::uint64_t count,
+                   std::uint64_t points_offset) {
   std::string& header = file.header;
-  const Summary summary = summarise(cloud, file);
-  const std::uint64_t count = cloud.size();
   const bool narrow = file.point_format() < 6 && count <= UINT32_MAX;
   put_number(header, 94, static_cast<std::uint16_t>(header.size()));
   put_number(header, 96, static_cast<std::uint32_t>(points_offset));
@@ -97,47 +98,89 @@ void update_header(LasFile& file, const PointCloud& cloud, std::uint64_t points_
     put_number(header, 111 + 4 * r, static_cast<std::uint32_t>(narrow ? summary.by_return[r] : 0));
   }
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    put_number(header, 179 + 16 * axis, summary.largest[axis]);
-    put_number(header, 187 + 16 * axis, summary.least[axis]);
+    const int a = static_cast<int>(axis);
+    put_number(header, 179 + 16 * axis, count == 0 ? 0.0 : summary.bounds.max[a]);
+    put_number(header, 187 + 16 * axis, count == 0 ? 0.0 : summary.bounds.min[a]);
   }
   if (file.minor_version() < 4 || header.size() < kHeader14) return;
   put_number(header, 247, count);
   for (std::size_t r = 0; r < 15; ++r) put_number(header, 255 + 8 * r, summary.by_return[r]);
 }
 
+class LasPartWriter : public PartWriter {
+ public:
+  LasPartWriter(const std::filesystem::path& path, const PartOutline& outline,
+                const WriteOptions& options)
+      : path_(path), options_(options), choices_(las_choices(outline)) {
+    losses = las_losses(*outline.first, choices_);
+    file_ = las_layout(*outline.first, options, choices_).file;
+    const bool compress = lower_case(path.extension().string()) == ".laz";
+    if (compress) add_laz_record(file_);
+    const std::string records = las_record_bytes(file_.records, false);
+    points_offset_ = file_.header.size() + records.size();
+    out_.emplace(path, options.overwrite);
+    out_->write(file_.header + records);  // the header is written again at the end
+    if (compress) compressed_.emplace(*out_, file_, points_offset_);
+    // What each part is laid out by needs no other records.
+    std::erase_if(choices_.file.records, [](const auto& r) { return !r.is("LASF_Spec", 4); });
+    choices_.file.extended_records.clear();
+  }
+
+  void append(const PointCloud& part) override {
+    check_consistent(part);
+    const LasLayout layout = las_layout(part, options_, choices_);
+    if (layout.file.record_length() != file_.record_length()) {
+      throw Error(ErrorKind::kFailure,
+                  path_.string() + ": the parts to write have different attributes");
+    }
+    const auto encode_points = [&](std::size_t begin, std::size_t end, std::string& bytes) {
+      encode(path_, part, layout, count_, begin, end, bytes);
+    };
+    if (compressed_) {
+      compressed_->append(part.size(), encode_points);
+    } else {
+      write_blocks(*out_, part.size(), encode_points);
+    }
+    summary_.add(part, file_);
+    count_ += part.size();
+  }
+
+  void commit() override {
+    std::uint64_t end = points_offset_ + count_ * file_.record_length();
+    if (compressed_) end = points_offset_ + compressed_->finish();
+    update_header(file_, summary_, count_, points_offset_);
+    std::string& header = file_.header;
+    if (compressed_) {
+      put_number(header, 104, static_cast<std::uint8_t>(file_.point_format() | 0x80U));
+    }
+    if (header.size() >= kHeader14 && file_.minor_version() >= 4) {
+      const bool any = !file_.extended_records.empty();
+      put_number<std::uint64_t>(header, 235, any ? end : 0);
+      put_number(header, 243, static_cast<std::uint32_t>(file_.extended_records.size()));
+      out_->write(las_record_bytes(file_.extended_records, true));
+    }
+    out_->write_at(0, std::as_bytes(std::span(header)));
+    out_->commit();
+  }
+
+ private:
+  std::filesystem::path path_;
+  WriteOptions options_;
+  LasChoices choices_;
+  LasFile file_ = {};
+  std::uint64_t points_offset_ = 0, count_ = 0;
+  Summary summary_ = {};
+  std::optional<OutputFile> out_ = {};
+  std::optional<LazPointWriter> compressed_ = {};
+};
+
 }  // namespace
 
-void write_las(const std::filesystem::path& path, const PointCloud& cloud,
-               const WriteOptions& options) {
-  check_consistent(cloud);
-  LasLayout layout = las_layout(cloud, options);
-  LasFile& file = layout.file;
-  const bool compress = lower_case(path.extension().string()) == ".laz";
-  if (compress) add_laz_record(file);
-  const std::string records = las_record_bytes(file.records, false);
-  const std::uint64_t points_offset = file.header.size() + records.size();
-  update_header(file, cloud, points_offset);
-  OutputFile out(path, options.overwrite);
-  std::string header = file.header;
-  if (compress) put_number(header, 104, static_cast<std::uint8_t>(file.point_format() | 0x80U));
-  out.write(header + records);
-  const auto encode_points = [&](std::size_t begin, std::size_t end, std::string& bytes) {
-    encode(path, cloud, layout, begin, end, bytes);
-  };
-  std::uint64_t end = points_offset + cloud.size() * file.record_length();
-  if (compress) {
-    end = points_offset + write_laz_points(out, file, cloud.size(), points_offset, encode_points);
-  } else {
-    write_blocks(out, cloud.size(), encode_points);
-  }
-  if (header.size() >= kHeader14 && file.minor_version() >= 4) {
-    const bool any = !file.extended_records.empty();
-    put_number<std::uint64_t>(header, 235, any ? end : 0);
-    put_number(header, 243, static_cast<std::uint32_t>(file.extended_records.size()));
-    out.write_at(0, std::as_bytes(std::span(header)));
-    out.write(las_record_bytes(file.extended_records, true));
-  }
-  out.commit();
+std::unique_ptr<PartWriter> create_las_parts(const std::filesystem::path& path,
+                                             const PartOutline& outline,
+                                             const WriteOptions& options) {
+  check_consistent(*outline.first);
+  return std::make_unique<LasPartWriter>(path, outline, options);
 }
 
 }  // namespace pcednet::io

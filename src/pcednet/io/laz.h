@@ -55,11 +55,31 @@ class LazReader {
 /// Adds the record that says how the points will be compressed.
 void add_laz_record(LasFile& file);
 
-/// Writes the compressed points with their chunk table, returns their bytes. They must begin at
-/// `offset` of the file, where `out` must stand; `encode` appends the records of a range.
-std::uint64_t write_laz_points(
-    OutputFile& out, const LasFile& file, std::size_t count, std::uint64_t offset,
-    const std::function<void(std::size_t, std::size_t, std::string&)>& encode);
+/// Writes the compressed points with their chunk table.
+class LazPointWriter {
+ public:
+  /// The points begin at `offset` of the file, where `out` must stand; `out` must outlive it.
+  LazPointWriter(OutputFile& out, const LasFile& file, std::uint64_t offset);
+
+  /// Takes `count` more points; `encode` appends the records of a range of them.
+  void append(std::size_t count,
+              const std::function<void(std::size_t, std::size_t, std::string&)>& encode);
+
+  /// Returns the bytes that points and table take.
+  std::uint64_t finish();
+
+ private:
+  void write_chunk(const std::string& chunk);
+  std::string compress(std::string& rows) const;
+
+  OutputFile& out_;
+  std::vector<LazItem> items_;
+  bool layered_;
+  std::size_t stride_;
+  std::uint64_t offset_, bytes_ = 0;
+  std::string waiting_ = {};  ///< records of a chunk that is not full
+  std::vector<std::size_t> sizes_ = {};
+};
 
 namespace laz {
 

@@ -64,36 +64,57 @@ void add_laz_record(LasFile& file) {
   file.records.push_back({"laszip encoded", 22204, "", std::move(data)});
 }
 
-std::uint64_t write_laz_points(
-    OutputFile& out, const LasFile& file, std::size_t count, std::uint64_t offset,
-    const std::function<void(std::size_t, std::size_t, std::string&)>& encode) {
+LazPointWriter::LazPointWriter(OutputFile& out, const LasFile& file, std::uint64_t offset)
+    : out_(out),
+      items_(items_of(file)),
+      layered_(file.point_format() >= 6),
+      stride_(file.record_length()),
+      offset_(offset) {
+  const std::string table_place(8, '\0');
+  out_.write(table_place);
+  bytes_ = table_place.size();
+}
+
+std::string LazPointWriter::compress(std::string& rows) const {
+  const auto encode = layered_ ? laz::encode_layered : laz::encode_pointwise;
+  return encode(items_, std::as_writable_bytes(std::span(rows)), stride_);
+}
+
+void LazPointWriter::write_chunk(const std::string& chunk) {
+  out_.write(chunk);
+  bytes_ += chunk.size();
+  sizes_.push_back(chunk.size());
+}
+
+void LazPointWriter::append(
+    std::size_t count, const std::function<void(std::size_t, std::size_t, std::string&)>& encode) {
   constexpr std::size_t kChunksAtOnce = 8;
-  const auto items = items_of(file);
-  const std::size_t stride = file.record_length();
-  const auto compress = file.point_format() < 6 ? laz::encode_pointwise : laz::encode_layered;
-  std::string table_place(8, '\0');
-  out.write(table_place);
-  std::uint64_t bytes = table_place.size();
-  std::vector<std::size_t> sizes;
-  for (std::size_t start = 0; start < count; start += kChunk * kChunksAtOnce) {
-    const std::size_t points = std::min(count - start, kChunk * kChunksAtOnce);
-    std::vector<std::string> chunks((points + kChunk - 1) / kChunk);
-    parallel_blocks(points, kChunk, [&](std::size_t begin, std::size_t end) {
-      std::string rows;
-      encode(start + begin, start + end, rows);
-      chunks[begin / kChunk] = compress(items, std::as_writable_bytes(std::span(rows)), stride);
+  const std::size_t before = waiting_.size() / stride_;
+  const std::size_t full = (before + count) / kChunk;
+  // Where, among the points to append, a chunk begins; the first began with those that wait.
+  const auto begin_of = [&](std::size_t chunk) { return chunk == 0 ? 0 : chunk * kChunk - before; };
+  for (std::size_t start = 0; start < full; start += kChunksAtOnce) {
+    std::vector<std::string> chunks(std::min(full - start, kChunksAtOnce));
+    parallel_blocks(chunks.size(), 1, [&](std::size_t c, std::size_t) {
+      const std::size_t chunk = start + c;
+      std::string rows = chunk == 0 ? waiting_ : "";
+      encode(begin_of(chunk), begin_of(chunk + 1), rows);
+      chunks[c] = compress(rows);
     });
-    for (const std::string& chunk : chunks) {
-      out.write(chunk);
-      bytes += chunk.size();
-      sizes.push_back(chunk.size());
-    }
+    for (const std::string& chunk : chunks) write_chunk(chunk);
   }
-  const std::string table = chunk_table(sizes);
-  put_number(table_place, 0, static_cast<std::int64_t>(offset + bytes));
-  out.write_at(offset, std::as_bytes(std::span(table_place)));
-  out.write(table);
-  return bytes + table.size();
+  if (full > 0) waiting_.clear();
+  encode(begin_of(full), count, waiting_);
+}
+
+std::uint64_t LazPointWriter::finish() {
+  if (!waiting_.empty()) write_chunk(compress(waiting_));
+  std::string table_place(8, '\0');
+  put_number(table_place, 0, static_cast<std::int64_t>(offset_ + bytes_));
+  out_.write_at(offset_, std::as_bytes(std::span(table_place)));
+  const std::string table = chunk_table(sizes_);
+  out_.write(table);
+  return bytes_ + table.size();
 }
 
 }  // namespace pcednet::io

@@ -1,12 +1,14 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "pcednet/cloud/point_cloud.h"
 #include "pcednet/io/input_file.h"
 #include "pcednet/io/loaded_cloud.h"
+#include "pcednet/io/parts.h"
 #include "pcednet/io/write_cloud.h"
 
 namespace pcednet::io {
@@ -18,13 +20,18 @@ namespace pcednet::io {
 /// the format or ends too early, Error(kInsufficient) if it has no vertices with x, y and z.
 LoadedCloud read_ply(const InputFile& file);
 
+/// For open_parts(): null unless the file is binary, and points are nearly all that it holds.
+std::unique_ptr<PartReader> open_ply_parts(std::unique_ptr<InputFile> file, std::size_t most);
+
 /// Writes PLY 1.0, binary little-endian unless options.ascii, in an order that common programs
 /// understand: x y z; float nx ny nz; uchar red green blue; attribute `quality`; attributes
-/// `scalar_*`; other attributes; uchar label. Then the foreign elements.
-void write_ply(const std::filesystem::path& path, const PointCloud& cloud,
-               const WriteOptions& options = {});
+/// `scalar_*`; other attributes; uchar label. Then the foreign elements of the first part, which
+/// must outlive the writer.
+std::unique_ptr<PartWriter> create_ply_parts(const std::filesystem::path& path,
+                                             const PartOutline& outline,
+                                             const WriteOptions& options);
 
-/// What write_ply does not keep of `cloud`, one sentence part each.
+/// What PLY does not keep of `cloud`, one sentence part each.
 std::vector<std::string> ply_losses(const PointCloud& cloud);
 
 }  // namespace pcednet::io

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <memory>
 #include <string>
 #include <string_view>
 
@@ -32,11 +33,12 @@ std::string comment_lines(const PointCloud& cloud) {
   return lines;
 }
 
-std::string header_of(const PointCloud& cloud, const std::vector<ColumnView>& columns, bool ascii) {
+std::string header_of(const PointCloud& cloud, std::size_t points,
+                      const std::vector<ColumnView>& columns, bool ascii) {
   std::string header =
       fmt::format("ply\nformat {} 1.0\n", ascii ? "ascii" : "binary_little_endian");
   header += comment_lines(cloud);
-  header += fmt::format("element vertex {}\n", cloud.size());
+  header += fmt::format("element vertex {}\n", points);
   for (const ColumnView& column : columns) {
     header += fmt::format("property {} {}\n", ply_type_name(column.type), column.name);
   }
@@ -71,28 +73,56 @@ std::string foreign_text(const std::filesystem::path& path, const ForeignElement
   return text;
 }
 
+class PlyPartWriter : public PartWriter {
+ public:
+  PlyPartWriter(const std::filesystem::path& path, const PartOutline& outline,
+                const WriteOptions& options)
+      : path_(path),
+        ascii_(options.ascii),
+        foreign_(outline.first->foreign_elements),
+        columns_(columns_of(*outline.first, ply_names())),
+        file_(path, options.overwrite) {
+    losses = ply_losses(*outline.first);
+    file_.write(header_of(*outline.first, outline.points, columns_, ascii_));
+  }
+
+  void append(const PointCloud& part) override {
+    const auto columns = columns_of(part, ply_names());
+    check_same_columns(path_, columns_, columns);
+    write_blocks(file_, part.size(), [&](std::size_t begin, std::size_t end, std::string& out) {
+      if (ascii_) {
+        append_text(columns, begin, end, ' ', out);
+      } else {
+        append_binary(columns, begin, end, out);
+      }
+    });
+  }
+
+  void commit() override {
+    for (const ForeignElement& element : foreign_) {
+      if (ascii_) {
+        file_.write(foreign_text(path_, element));
+      } else {
+        file_.write(element.bytes);
+      }
+    }
+    file_.commit();
+  }
+
+ private:
+  std::filesystem::path path_;
+  bool ascii_;
+  const std::vector<ForeignElement>& foreign_;
+  std::vector<ColumnView> columns_;
+  OutputFile file_;
+};
+
 }  // namespace
 
-void write_ply(const std::filesystem::path& path, const PointCloud& cloud,
-               const WriteOptions& options) {
-  const std::vector<ColumnView> columns = columns_of(cloud, ply_names());
-  OutputFile file(path, options.overwrite);
-  file.write(header_of(cloud, columns, options.ascii));
-  write_blocks(file, cloud.size(), [&](std::size_t begin, std::size_t end, std::string& out) {
-    if (options.ascii) {
-      append_text(columns, begin, end, ' ', out);
-    } else {
-      append_binary(columns, begin, end, out);
-    }
-  });
-  for (const ForeignElement& element : cloud.foreign_elements) {
-    if (options.ascii) {
-      file.write(foreign_text(path, element));
-    } else {
-      file.write(element.bytes);
-    }
-  }
-  file.commit();
+std::unique_ptr<PartWriter> create_ply_parts(const std::filesystem::path& path,
+                                             const PartOutline& outline,
+                                             const WriteOptions& options) {
+  return std::make_unique<PlyPartWriter>(path, outline, options);
 }
 
 std::vector<std::string> ply_losses(const PointCloud& cloud) {

@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 #include "pcednet/io/e57.h"
 #include "pcednet/io/input_file.h"
 #include "pcednet/io/las.h"
 #include "pcednet/io/obj.h"
+#include "pcednet/io/parts.h"
 #include "pcednet/io/pcd.h"
 #include "pcednet/io/ply.h"
 #include "pcednet/io/text_scan.h"
@@ -71,31 +71,40 @@ LoadedCloud read_format(const InputFile& file) {
   return read_xyz(file);
 }
 
+/// Then they are taken as absent, which a part cannot know by itself.
+bool all_normals_unusable(const PartReader& reader) {
+  for (std::size_t part = 0; part < reader.parts(); ++part) {
+    PartTally tally;
+    PointCloud points = reader.read(part);
+    if (!points.has_normals()) return false;
+    finish_part(points, tally);
+    if (tally.unusable_normals < tally.points) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 LoadedCloud read_cloud(const std::filesystem::path& path) {
   LoadedCloud loaded = read_format(InputFile(path));
   PointCloud& cloud = loaded.cloud;
   if (cloud.scanners.empty()) cloud.scanners = scanners_of_comments(cloud.comments);
-  loaded.rescaled_normals = static_cast<std::size_t>(
-      std::count_if(cloud.normals.begin(), cloud.normals.end(), [](const Vec3& normal) {
-        const double length = normal.norm();
-        return std::isfinite(length) && length > 0.0 && std::abs(length - 1.0) > 1e-3;
-      }));
-  const std::size_t unusable = make_normals_unit(cloud);
-  if (unusable > 0 && unusable == cloud.size()) {
-    cloud.normals.clear();
-    loaded.warnings.emplace_back("all normals are zero or not finite: taken as absent");
-  } else if (unusable > 0) {
-    loaded.warnings.push_back(
-        fmt::format("{} of {} normals are zero or not finite", unusable, cloud.size()));
-  }
-  const auto not_finite = [](const Vec3& position) { return !position.allFinite(); };
-  const auto lost = std::count_if(cloud.positions.begin(), cloud.positions.end(), not_finite);
-  if (lost > 0) {
-    loaded.warnings.push_back(fmt::format("{} of {} positions are not finite", lost, cloud.size()));
-  }
+  PartTally tally;
+  finish_part(cloud, tally);
+  if (tally.unusable_normals == tally.points) cloud.normals.clear();
+  loaded.rescaled_normals = tally.rescaled_normals;
+  for (std::string& warning : warnings_of(tally)) loaded.warnings.push_back(std::move(warning));
   return loaded;
+}
+
+std::unique_ptr<PartReader> open_parts(const std::filesystem::path& path, std::size_t most) {
+  auto file = std::make_unique<InputFile>(path);
+  std::unique_ptr<PartReader> reader;
+  const Format format = find_format(*file);
+  if (format == Format::kPly) reader = open_ply_parts(std::move(file), most);
+  if (format == Format::kLas) reader = open_las_parts(std::move(file), most);
+  if (!reader || reader->parts() == 0 || all_normals_unusable(*reader)) return nullptr;
+  return reader;
 }
 
 const char* format_name(const std::filesystem::path& path) {

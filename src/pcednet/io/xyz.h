@@ -1,12 +1,14 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "pcednet/cloud/point_cloud.h"
 #include "pcednet/io/input_file.h"
 #include "pcednet/io/loaded_cloud.h"
+#include "pcednet/io/parts.h"
 #include "pcednet/io/write_cloud.h"
 
 namespace pcednet::io {
@@ -23,10 +25,11 @@ LoadedCloud read_xyz(const InputFile& file);
 /// Writes points as text: comments and names behind #, then one point a line; .csv with commas and
 /// the names alone; .pts with a count first. Positions alone, and positions with normals in .xyz,
 /// are written without comments and names, as programs that know neither expect.
-void write_xyz(const std::filesystem::path& path, const PointCloud& cloud,
-               const WriteOptions& options = {});
+std::unique_ptr<PartWriter> create_xyz_parts(const std::filesystem::path& path,
+                                             const PartOutline& outline,
+                                             const WriteOptions& options);
 
-/// What write_xyz does not keep of `cloud`, one sentence part each.
-std::vector<std::string> xyz_losses(const std::filesystem::path& path, const PointCloud& cloud);
+/// What text does not keep, one sentence part each.
+std::vector<std::string> xyz_losses(const std::filesystem::path& path, const PartOutline& outline);
 
 }  // namespace pcednet::io

@@ -10,14 +10,19 @@
 namespace pcednet::io {
 namespace {
 
-/// Whether the columns speak for themselves: see write_xyz.
-bool is_plain(const std::string& extension, const PointCloud& cloud) {
+/// Whether the columns speak for themselves: see create_xyz_parts.
+bool is_plain(const std::string& extension, const PartOutline& outline) {
+  const PointCloud& cloud = *outline.first;
   const bool more = !cloud.colours.empty() || cloud.has_labels() || !cloud.attributes.empty();
   if (extension == ".csv" || more || cloud.empty()) return false;
+  if (!cloud.has_normals()) return true;
+  bool all_usable = extension == ".xyz";
   const auto is_usable = [](const Vec3& normal) { return !normal.isZero(0.0); };
-  return !cloud.has_normals() ||
-         (extension == ".xyz" &&
-          std::all_of(cloud.normals.begin(), cloud.normals.end(), is_usable));
+  outline.each_part([&](const PointCloud& part) {
+    const auto& normals = part.normals;
+    return all_usable = all_usable && std::all_of(normals.begin(), normals.end(), is_usable);
+  });
+  return all_usable;
 }
 
 std::string extension_of(const std::filesystem::path& path) {
@@ -42,30 +47,59 @@ std::string header_of(const std::string& extension, const PointCloud& cloud,
   return header + "# " + names + "\n";
 }
 
-}  // namespace
-
-void write_xyz(const std::filesystem::path& path, const PointCloud& cloud,
-               const WriteOptions& options) {
-  const std::string extension = extension_of(path);
-  const std::vector<ColumnView> columns = columns_of(cloud, {});
-  OutputFile file(path, options.overwrite);
-  if (!is_plain(extension, cloud)) file.write(header_of(extension, cloud, columns));
-  if (extension == ".pts") file.write(fmt::format("{}\n", cloud.size()));
-  const char separator = extension == ".csv" ? ',' : ' ';
-  write_blocks(file, cloud.size(), [&](std::size_t begin, std::size_t end, std::string& out) {
-    append_text(columns, begin, end, separator, out);
-  });
-  file.commit();
+std::vector<std::string> losses_of(const std::string& extension, const PointCloud& cloud,
+                                   bool plain) {
+  std::vector<std::string> losses = column_losses(cloud, {});
+  if (!cloud.attributes.empty()) losses.emplace_back("number types of attributes");
+  if (!cloud.comments.empty() && (extension == ".csv" || plain)) losses.emplace_back("comments");
+  return losses;
 }
 
-std::vector<std::string> xyz_losses(const std::filesystem::path& path, const PointCloud& cloud) {
-  std::vector<std::string> losses = column_losses(cloud, {});
-  const std::string extension = extension_of(path);
-  if (!cloud.attributes.empty()) losses.emplace_back("number types of attributes");
-  if (!cloud.comments.empty() && (extension == ".csv" || is_plain(extension, cloud))) {
-    losses.emplace_back("comments");
+class XyzPartWriter : public PartWriter {
+ public:
+  XyzPartWriter(const std::filesystem::path& path, const PartOutline& outline,
+                const WriteOptions& options)
+      : path_(path),
+        separator_(extension_of(path) == ".csv" ? ',' : ' '),
+        columns_(columns_of(*outline.first, {})),
+        file_(path, options.overwrite) {
+    const std::string extension = extension_of(path);
+    const bool plain = is_plain(extension, outline);
+    losses = losses_of(extension, *outline.first, plain);
+    if (!plain) {
+      file_.write(header_of(extension, *outline.first, columns_));
+    }
+    if (extension == ".pts") file_.write(fmt::format("{}\n", outline.points));
   }
-  return losses;
+
+  void append(const PointCloud& part) override {
+    const auto columns = columns_of(part, {});
+    check_same_columns(path_, columns_, columns);
+    write_blocks(file_, part.size(), [&](std::size_t begin, std::size_t end, std::string& out) {
+      append_text(columns, begin, end, separator_, out);
+    });
+  }
+
+  void commit() override { file_.commit(); }
+
+ private:
+  std::filesystem::path path_;
+  char separator_;
+  std::vector<ColumnView> columns_;
+  OutputFile file_;
+};
+
+}  // namespace
+
+std::unique_ptr<PartWriter> create_xyz_parts(const std::filesystem::path& path,
+                                             const PartOutline& outline,
+                                             const WriteOptions& options) {
+  return std::make_unique<XyzPartWriter>(path, outline, options);
+}
+
+std::vector<std::string> xyz_losses(const std::filesystem::path& path, const PartOutline& outline) {
+  const std::string extension = extension_of(path);
+  return losses_of(extension, *outline.first, is_plain(extension, outline));
 }
 
 }  // namespace pcednet::io
