@@ -64,6 +64,7 @@ annotate::SessionOptions session_options(const AnnotateArguments& arguments, con
   options.load_model = [](const std::string& name) { return detect::load_model(find_model(name)); };
   options.emit = [&events](const std::string& name, const std::string& json) {
     events.add(name, json);
+    if (name == "ready") say("ready; Ctrl-C ends, and nothing painted is lost");
   };
   if (!options.model.empty()) options.load_model(options.model);  // refuse before any work
   return options;
@@ -90,12 +91,8 @@ void annotate_cloud(const AnnotateArguments& arguments, const Common& common) {
   std::fflush(stdout);
   if (!arguments.no_browser) open_browser(url);
   const auto cancelled = console_progress(common).cancelled;
-  bool was_ready = false;
   while (!cancelled()) {
-    if (session.is_ready() && !was_ready) {
-      was_ready = true;
-      say("ready; Ctrl-C ends, and nothing painted is lost");
-    }
+    session.is_ready();  // throws what went wrong with loading
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
   }
 }
