@@ -70,12 +70,21 @@ inline unsigned las_test_return(const LasTestFile& file, std::size_t point) {
   return static_cast<std::uint8_t>(file.rows[point * stride + 14]) & (file.format < 6 ? 7U : 15U);
 }
 
+/// Where the record of the waveforms begins; 0 if there is none.
+inline std::uint64_t las_test_waves(const LasTestFile& file, std::uint64_t at) {
+  for (const LasTestRecord& record : file.extended) {
+    if (record.user == "LASF_Spec" && record.id == 65535) return at;
+    at += 60 + record.data.size();
+  }
+  return 0;
+}
+
 /// The header, as the standard has it.
 inline std::string las_test_header_bytes(const LasTestFile& file, std::size_t records_size) {
   const std::size_t size = las_test_header(file.minor);
   const std::size_t stride = las_test_stride(file.format, file.extra);
   const std::size_t points = file.rows.size() / stride;
-  const bool narrow = file.format < 6;
+  const bool narrow = file.format < 6 || file.minor < 4;
   std::string header = "LASF" + packed(std::uint16_t{7}, std::uint16_t{0}) + "16 bytes of GUID";
   header += packed(std::uint8_t{1}, static_cast<std::uint8_t>(file.minor));
   header += "a scanner of some kind" + std::string(10, '\0');
@@ -103,9 +112,9 @@ inline std::string las_test_header_bytes(const LasTestFile& file, std::size_t re
   for (const double scale : file.scale) header += packed(scale);
   for (const double offset : file.offset) header += packed(offset);
   for (std::size_t a = 0; a < 3; ++a) header += packed(largest[a], least[a]);
-  if (file.minor >= 3) header += packed(std::uint64_t{0});
-  if (file.minor < 4) return header;
   const std::uint64_t end = size + records_size + file.rows.size();
+  if (file.minor >= 3) header += packed(las_test_waves(file, end));
+  if (file.minor < 4) return header;
   header += packed(file.extended.empty() ? 0 : end,
                    static_cast<std::uint32_t>(file.extended.size()), std::uint64_t{points});
   for (const std::uint64_t count : returns) header += packed(count);

@@ -8,7 +8,7 @@
 namespace pcednet::io {
 namespace {
 
-constexpr std::size_t kLeastHeader = 227;
+constexpr std::size_t kLeastHeader = 227, kHeader13 = 235, kHeader14 = 375;
 constexpr const char* kElements[] = {"las_header", "las_vlrs", "las_evlrs"};
 
 std::size_t header_bytes_of(bool extended) {
@@ -72,6 +72,24 @@ void check_header(const InputFile& file, LasFile& las) {
   }
 }
 
+/// The extended records: as many as LAS 1.4 counts, or only that of the waveforms (LAS 1.3).
+void read_extended(const InputFile& file, LasFile& las, std::vector<std::string>& warnings) {
+  if (las.minor_version() < 3) return;
+  auto begin = number_at<std::uint64_t>(las.header, 227);
+  std::uint32_t count = begin > 0 ? 1 : 0;
+  if (las.counts_wide() && number_at<std::uint32_t>(las.header, 243) > 0) {
+    begin = number_at<std::uint64_t>(las.header, 235);
+    count = number_at<std::uint32_t>(las.header, 243);
+  }
+  if (count == 0) return;
+  if (begin < las.points_offset()) {
+    warnings.push_back(fmt::format(
+        "extended variable length records at byte {}, before the points: left out", begin));
+    return;
+  }
+  las.extended_records = read_records(file, begin, file.size(), count, true, warnings);
+}
+
 std::string fixed(std::string_view text, std::size_t size) {
   std::string bytes(size, '\0');
   text.copy(bytes.data(), size);
@@ -110,8 +128,12 @@ std::string element_bytes(const PointCloud& cloud, const std::string& name) {
 
 }  // namespace
 
+bool LasFile::counts_wide() const {
+  return minor_version() >= 4 && header.size() >= kHeader14;
+}
+
 std::uint64_t LasFile::point_count() const {
-  const std::uint64_t wide = minor_version() >= 4 ? number_at<std::uint64_t>(header, 247) : 0;
+  const std::uint64_t wide = counts_wide() ? number_at<std::uint64_t>(header, 247) : 0;
   return wide > 0 ? wide : number_at<std::uint32_t>(header, 107);
 }
 
@@ -119,13 +141,18 @@ LasFile read_las_file(const InputFile& file, std::vector<std::string>& warnings)
   LasFile las;
   las.header = file.text(0, kLeastHeader);
   const std::size_t promised = number_at<std::uint16_t>(las.header, 94);
-  const std::size_t needed = las.minor_version() >= 4 ? 375 : kLeastHeader;
+  const std::size_t needed = las.minor_version() >= 4 ? kHeader14 : kLeastHeader;
   if (las.header.size() == kLeastHeader && promised < needed) {
     warnings.push_back(fmt::format("the header calls itself {} bytes, version 1.{} has {}",
                                    promised, las.minor_version(), needed));
   }
   las.header = file.text(0, std::max(promised, kLeastHeader));
   check_header(file, las);
+  const auto narrow = number_at<std::uint32_t>(las.header, 107);
+  if (narrow > 0 && narrow != las.point_count()) {
+    warnings.push_back(fmt::format("the header counts {} points and, in 64 bits, {}: these hold",
+                                   narrow, las.point_count()));
+  }
   const std::uint64_t end = las.points_offset();
   if (end < las.header.size() || end > file.size()) {
     throw unreadable(file.path(),
@@ -133,15 +160,27 @@ LasFile read_las_file(const InputFile& file, std::vector<std::string>& warnings)
   }
   las.records = read_records(file, las.header.size(), end,
                              number_at<std::uint32_t>(las.header, 100), false, warnings);
-  if (las.minor_version() >= 4) {
-    const auto begin = number_at<std::uint64_t>(las.header, 235);
-    const auto count = number_at<std::uint32_t>(las.header, 243);
-    if (count > 0) {
-      las.extended_records =
-          read_records(file, std::max(begin, end), file.size(), count, true, warnings);
-    }
+  read_extended(file, las, warnings);
+  if (las.compressed()) {
+    const auto is_copc = [](const LasRecord& record) { return record.user_id == "copc"; };
+    std::erase_if(las.records, is_copc);
+    std::erase_if(las.extended_records, is_copc);
   }
   return las;
+}
+
+bool place_extended_records(LasFile& file, std::uint64_t begin) {
+  if (file.minor_version() < 3 || file.header.size() < kHeader13) return false;
+  std::uint64_t waves = 0, at = begin;
+  for (const LasRecord& record : file.extended_records) {
+    if (record.is("LASF_Spec", 65535)) waves = at;
+    at += header_bytes_of(true) + record.data.size();
+  }
+  put_number(file.header, 227, waves);
+  if (!file.counts_wide()) return true;
+  put_number<std::uint64_t>(file.header, 235, file.extended_records.empty() ? 0 : begin);
+  put_number(file.header, 243, static_cast<std::uint32_t>(file.extended_records.size()));
+  return true;
 }
 
 std::string las_record_bytes(const std::vector<LasRecord>& records, bool extended) {
@@ -176,8 +215,8 @@ void attach_las_file(PointCloud& cloud, const LasFile& file) {
 LasFile attached_las_file(const PointCloud& cloud) {
   LasFile file;
   file.header = element_bytes(cloud, kElements[0]);
-  const bool sound = file.header.size() >= kLeastHeader && file.minor_version() <= 4 &&
-                     file.point_format() < kLasFormats &&
+  const bool sound = file.header.size() >= kLeastHeader && file.header.size() <= UINT16_MAX &&
+                     file.minor_version() <= 4 && file.point_format() < kLasFormats &&
                      file.record_length() >= las_format_bytes(file.point_format());
   if (!sound) return {};
   for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -62,6 +62,8 @@ struct LasFile {
   bool compressed() const { return (number_at<std::uint8_t>(header, 104) & 0xC0U) != 0; }
   std::size_t record_length() const { return number_at<std::uint16_t>(header, 105); }
   std::uint64_t points_offset() const { return number_at<std::uint32_t>(header, 96); }
+  /// Whether the header has the 64-bit counts of LAS 1.4.
+  bool counts_wide() const;
   std::uint64_t point_count() const;
   double scale(std::size_t axis) const { return number_at<double>(header, 131 + 8 * axis); }
   double offset(std::size_t axis) const { return number_at<double>(header, 155 + 8 * axis); }
@@ -82,9 +84,14 @@ std::vector<LasField> las_extra_fields(const LasFile& file, std::vector<std::str
 /// The 192 bytes that describe an extra field.
 std::string las_extra_descriptor(const LasField& field);
 
-/// Reads all but the points; what is wrong but harmless becomes a warning. Throws
-/// Error(kUnreadable), naming the byte, for what cannot be trusted.
+/// Reads all but the points; what is wrong but harmless becomes a warning. Records of COPC, which
+/// index the compressed points, are left out. Throws Error(kUnreadable), naming the byte, for what
+/// cannot be trusted.
 LasFile read_las_file(const InputFile& file, std::vector<std::string>& warnings);
+
+/// Makes the header say that the extended records begin at `begin`; false if it has no place for
+/// that.
+bool place_extended_records(LasFile& file, std::uint64_t begin);
 
 /// The records as bytes of a file.
 std::string las_record_bytes(const std::vector<LasRecord>& records, bool extended);

@@ -172,6 +172,7 @@ class LayoutBuilder {
       add_known(field);
     }
     add_new();
+    if (descriptors_.size() > UINT16_MAX) too_many();
     if (!descriptors_.empty()) {
       file_.records.push_back({"LASF_Spec", 4, "extra bytes", std::move(descriptors_)});
     }
@@ -258,17 +259,24 @@ class LayoutBuilder {
   LasField new_field(const std::string& name, ScalarType type) {
     LasField field{name, type, file_.record_length()};
     const std::size_t length = file_.record_length() + size_of(type);
-    if (length > UINT16_MAX) {
-      throw Error(ErrorKind::kFailure, "the points have more attributes than LAS can hold");
-    }
+    if (length > UINT16_MAX) too_many();
     describe_undocumented();
     put_number(file_.header, 105, static_cast<std::uint16_t>(length));
     descriptors_ += las_extra_descriptor(field);
     return field;
   }
 
+  [[noreturn]] static void too_many() {
+    throw Error(ErrorKind::kFailure, "the points have more attributes than LAS can hold");
+  }
+
   /// New extra bytes come after what the file has, which must be described for that.
   void describe_undocumented() {
+    for (std::size_t at = descriptors_.size(); at > 0;) {
+      at -= kDescriptorBytes;
+      const bool no_bytes = descriptors_[at + 2] == 0 && descriptors_[at + 3] == 0;
+      if (no_bytes) descriptors_.erase(at, kDescriptorBytes);
+    }
     LasFile described = file_;
     described.records = {{"LASF_Spec", 4, "", descriptors_}};
     std::vector<std::string> warnings;

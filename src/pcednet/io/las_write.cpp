@@ -17,8 +17,6 @@
 namespace pcednet::io {
 namespace {
 
-constexpr std::size_t kHeader14 = 375;
-
 [[noreturn]] void refuse(const std::filesystem::path& path, ErrorKind kind, std::size_t point,
                          const std::string& what) {
   throw Error(kind, fmt::format("{}: point {}: {}", path.string(), point, what));
@@ -89,7 +87,12 @@ struct Summary {
 void update_header(LasFile& file, const Summary& summary, std::uint64_t count,
                    std::uint64_t points_offset) {
   std::string& header = file.header;
-  const bool narrow = file.point_format() < 6 && count <= UINT32_MAX;
+  const bool wide = file.counts_wide();
+  const bool narrow = (file.point_format() < 6 || !wide) && count <= UINT32_MAX;
+  if (!narrow && !wide) {
+    throw Error(ErrorKind::kFailure,
+                fmt::format("LAS 1.{} cannot count {} points", file.minor_version(), count));
+  }
   put_number(header, 94, static_cast<std::uint16_t>(header.size()));
   put_number(header, 96, static_cast<std::uint32_t>(points_offset));
   put_number(header, 100, static_cast<std::uint32_t>(file.records.size()));
@@ -102,7 +105,7 @@ void update_header(LasFile& file, const Summary& summary, std::uint64_t count,
     put_number(header, 179 + 16 * axis, count == 0 ? 0.0 : summary.bounds.max[a]);
     put_number(header, 187 + 16 * axis, count == 0 ? 0.0 : summary.bounds.min[a]);
   }
-  if (file.minor_version() < 4 || header.size() < kHeader14) return;
+  if (!wide) return;
   put_number(header, 247, count);
   for (std::size_t r = 0; r < 15; ++r) put_number(header, 255 + 8 * r, summary.by_return[r]);
 }
@@ -153,10 +156,7 @@ class LasPartWriter : public PartWriter {
     if (compressed_) {
       put_number(header, 104, static_cast<std::uint8_t>(file_.point_format() | 0x80U));
     }
-    if (header.size() >= kHeader14 && file_.minor_version() >= 4) {
-      const bool any = !file_.extended_records.empty();
-      put_number<std::uint64_t>(header, 235, any ? end : 0);
-      put_number(header, 243, static_cast<std::uint32_t>(file_.extended_records.size()));
+    if (place_extended_records(file_, end)) {
       out_->write(las_record_bytes(file_.extended_records, true));
     }
     out_->write_at(0, std::as_bytes(std::span(header)));

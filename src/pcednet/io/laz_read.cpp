@@ -68,7 +68,8 @@ void LazReader::read_items(const std::string& record) {
 void LazReader::read_chunk_table(const LasFile& las) {
   const std::uint64_t begin = las.points_offset(), points = las.point_count();
   if (points / kPointsPerByte > file_.size()) {
-    fail(107, fmt::format("{} points in a file of {} bytes", points, file_.size()));
+    fail(las.counts_wide() ? 247 : 107,
+         fmt::format("{} points in a file of {} bytes", points, file_.size()));
   }
   if (compressor_ == kUnchunked) {
     chunks_ = {{0, points, begin, file_.size() - begin}};
