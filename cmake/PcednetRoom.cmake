@@ -27,6 +27,6 @@ endfunction()
 # Warnings, and no contraction of a*b+c: the same source gives the same bits on every processor.
 function(pcednet_compile_options target)
   # -Wno-restrict: GCC 12 warns of std::string's own code (GCC bug 105329).
-  target_compile_options(${target} PRIVATE -Wall -Wextra -Wshadow -Wnon-virtual-dtor -Wno-restrict
-    -ffp-contract=off $<$<BOOL:${PCEDNET_WARNINGS_AS_ERRORS}>:-Werror>)
+  target_compile_options(${target} PRIVATE -Wall -Wextra -Wshadow -Wnon-virtual-dtor
+    $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict> -ffp-contract=off $<$<BOOL:${PCEDNET_WARNINGS_AS_ERRORS}>:-Werror>)
 endfunction()

@@ -1,13 +1,15 @@
 #!/bin/sh
 # Fuzzes every reader for SECONDS each: scripts/fuzz.sh SECONDS [READER...]
-# Readers: ply pcd obj xyz las e57 npy. Inputs found are kept in build/fuzz/corpus, and what
+# Readers: ply pcd obj xyz las e57 parts npy features model project. Inputs found are kept in build/fuzz/corpus, and what
 # breaks a reader in build/fuzz/findings. Exits with 1 if something does.
 # PCEDNET names the program that makes the first inputs (default: build/release/bin/pcednet).
 set -eu
 cd "$(dirname "$0")/.."
 seconds=${1:?usage: scripts/fuzz.sh SECONDS [READER...]}
 shift
-[ $# -gt 0 ] || set -- ply pcd obj xyz las e57 npy
+all="ply pcd obj xyz las e57 parts npy features model project"
+# shellcheck disable=SC2086
+[ $# -gt 0 ] || set -- $all
 command -v clang++ >/dev/null || { echo "fuzz.sh: no clang++; scripts/setup.sh test" >&2; exit 77; }
 pcednet=$(realpath "${PCEDNET:-build/release/bin/pcednet}")
 
@@ -19,7 +21,7 @@ cmake --build --preset fuzz -j 2 --target $targets e57_seed >build/fuzz-build.lo
 
 corpus=build/fuzz/corpus
 findings=build/fuzz/findings
-for reader in ply pcd obj xyz las e57 npy; do mkdir -p "$corpus/$reader"; done
+for reader in $all; do mkdir -p "$corpus/$reader"; done
 mkdir -p "$findings"
 printf '%s\n' '# x y z nx ny nz red green blue label' '0 0.5 1 0 0 1 255 0 7 0' \
   '1 0 0.25 0 1 0 1 2 3 1' '0 1 3 1 0 0 9 9 9 2' >"$corpus/xyz/seed.xyz"
@@ -30,12 +32,27 @@ convert "$corpus/pcd/binary.pcd"
 convert "$corpus/pcd/ascii.pcd" --ascii
 convert "$corpus/obj/seed.obj"
 convert "$corpus/las/seed.las"
-convert "$corpus/las/seed.laz" || rm -f "$corpus/las/seed.laz"
+convert "$corpus/las/seed.laz"
 convert "$corpus/xyz/seed.csv"
 convert "$corpus/xyz/seed.pts"
 # Ours are too large to begin with: six numbers, whose header has 0166 (118) bytes.
 printf '\223NUMPY\001\000\166\000%-117s\n%48s' \
   "{'descr': '<f8', 'fortran_order': False, 'shape': (2, 3), }" '' >"$corpus/npy/seed.npy"
+cp "$corpus/ply/binary.ply" "$corpus/las/seed.las" "$corpus/las/seed.laz" "$corpus/parts"
+cp models/*.safetensors "$corpus/model"
+printf '%s\n' 'curves:' '- sharp: true' '  type: Line' '  vert_indices: [0, 1, 2]' \
+  >"$corpus/features/seed.yml"
+stroke='{"stroke":"a","class":1,"points":[0,1]}'
+settings='{"classes":3,"auto":true,"start":"random","seed":1}'
+printf '%s' '{"format":"pcednet-annotation-1","input":{"name":"a.ply","digest":"0","points":9},"records":[' \
+  "$stroke" ',{"undo":true},{"redo":true},{"settings":' "$settings" '},{"run":1,"records":4,"settings":' \
+  "$settings" '},{"restore":1}]}' >"$corpus/project/project.json"
+printf '%s' "$stroke" >"$corpus/project/record.json"
+printf '%s' '{"id":"a","tool":"brush","class":1,"centres":[[0,0,0]],"radius":1,"protect":true,' \
+  '"hidden":[0],"clip":{"min":[0,0,0],"max":[1,1,1]}}' >"$corpus/project/brush.json"
+printf '%s' '{"id":"a","tool":"polygon","class":2,"polygon":[[0,0],[1,0],[0,1]],"matrix":' \
+  '[1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1],"front_only":true,"point_size":2,"viewport":[9,9],' \
+  '"protect":false,"hidden":[],"clip":null}' >"$corpus/project/polygon.json"
 build/fuzz/bin/e57_seed >"$corpus/e57/seed.e57"
 
 failed=0

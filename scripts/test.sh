@@ -10,7 +10,12 @@ scripts/build_web.sh
 echo "== other readers, from npm"
 (cd tests/clients && npm ci --no-audit --no-fund --silent) || echo "not installed: their tests are skipped"
 
-echo "== release build and its tests"
+echo "== release build"
 cmake --preset release -DPCEDNET_TESTS=ON
 cmake --build --preset release
+
+echo "== a few seconds of fuzzing"
+scripts/fuzz.sh 5 las e57 ply parts || [ $? -eq 77 ]
+
+echo "== tests"
 ctest --preset release -j "$(nproc)"

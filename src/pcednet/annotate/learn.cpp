@@ -59,7 +59,7 @@ detect::EdgeModel with_classes(const detect::EdgeModel& model, int classes) {
   network.architecture.classes = 2;
   const auto& names = model.network.class_names;
   if (names.size() == 3) fewer.network.class_names = {names[0], names[2]};
-  const nn::Layer& last = nn::make_plan(model.network.network.architecture).layers.back();
+  const nn::Layer last = nn::make_plan(model.network.network.architecture).layers.back();
   auto& parameters = network.parameters;
   const auto at = [&](std::size_t i) {
     return parameters.begin() + static_cast<std::ptrdiff_t>(i);

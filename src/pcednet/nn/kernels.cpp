@@ -39,10 +39,16 @@ namespace {
 
 VectorLevel vector_level() {
 #if defined(__x86_64__)
+  // Instruction by instruction, since older compilers do not know the levels by name; what else
+  // belongs to a level every such processor has.
   static const VectorLevel level = [] {
-    if (__builtin_cpu_supports("x86-64-v4")) return VectorLevel::kAvx512;
-    if (__builtin_cpu_supports("x86-64-v3")) return VectorLevel::kAvx2;
-    return VectorLevel::kBaseline;
+    const bool avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") &&
+                      __builtin_cpu_supports("bmi") && __builtin_cpu_supports("bmi2");
+    const bool avx512 = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
+                        __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("avx512dq") &&
+                        __builtin_cpu_supports("avx512vl");
+    if (avx2 && avx512) return VectorLevel::kAvx512;
+    return avx2 ? VectorLevel::kAvx2 : VectorLevel::kBaseline;
   }();
   return level;
 #else

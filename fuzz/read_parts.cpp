@@ -1,0 +1,26 @@
+#include <cstdlib>
+
+#include "in_memory.h"
+#include "pcednet/io/parts.h"
+#include "pcednet/io/read_cloud.h"
+
+namespace {
+
+/// What can be read in parts is read as a whole too, and says the same.
+void read_both_ways(const std::filesystem::path& path) {
+  const auto reader = pcednet::io::open_parts(path, 5);
+  if (!reader) return;
+  std::size_t points = 0;
+  for (std::size_t p = 0; p < reader->parts(); ++p) {
+    const auto part = reader->read(p);
+    check_consistent(part);
+    points += part.size();
+  }
+  if (points != pcednet::io::read_cloud(path).cloud.size()) std::abort();
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  return pcednet::fuzz::read_or_refuse({data, size}, read_both_ways);
+}

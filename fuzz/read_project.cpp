@@ -1,0 +1,34 @@
+#include <string_view>
+
+#include "in_memory.h"
+#include "pcednet/annotate/project.h"
+#include "pcednet/annotate/stroke.h"
+
+namespace {
+
+constexpr std::size_t kMostPoints = 100'000;
+
+void read_project(const std::filesystem::path& path) {
+  const auto project = pcednet::annotate::read_project(path);
+  if (project.input.points > kMostPoints) return;  // a program compares them with the cloud first
+  pcednet::annotate::replay(project.records, project.input.points);
+}
+
+}  // namespace
+
+/// Project files, and what the annotator takes from a browser and from its journal.
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace pcednet;
+  const std::string_view text(reinterpret_cast<const char*>(data), size);
+  const auto try_to = [](const auto& read) {
+    try {
+      read();
+    } catch (const Error&) {
+    }
+  };
+  try_to([&] { annotate::parse_stroke(text); });
+  try_to([&] { annotate::parse_settings(text, {}); });
+  try_to([&] { annotate::parse_record(text, kMostPoints); });
+  try_to([&] { annotate::parse_input(text); });
+  return fuzz::read_or_refuse({data, size}, read_project);
+}
