@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "e57_writer.h"
 #include "sample_cloud.h"
 #include "scratch.h"
 
@@ -148,6 +149,35 @@ TEST(PartChoices, WhatOnlyTheWholeDecidesIsReadAsAWhole) {
   EXPECT_FALSE(open_parts(scratch.path("none.las"), 10));
   write_cloud(scratch.path("a.pcd"), cloud);
   EXPECT_FALSE(open_parts(scratch.path("a.pcd"), 10));
+}
+
+TEST(PartChoices, ScansOfE57AreParts) {
+  const Scratch scratch;
+  const auto scan = [](std::size_t points, const std::vector<std::int64_t>& states) {
+    std::vector<double> x;
+    for (std::size_t i = 0; i < points; ++i) x.push_back(static_cast<double>(i) + 0.25);
+    return E57TestScan{
+        "",
+        {e57_double("cartesianX", x), e57_double("cartesianY", x), e57_double("cartesianZ", x),
+         e57_integer("cartesianInvalidState", 0, 2, states)},
+        points};
+  };
+  E57TestScan last = scan(2, {0, 0});
+  last.fields.push_back(e57_integer("isIntensityInvalid", 0, 1, {0, 1}));
+  const auto file = scratch.file(
+      "a.e57", e57_file({scan(3, {0, 2, 0}), scan(0, {}), scan(1, {2}), scan(3, {0, 0, 0}), last}));
+  const LoadedCloud whole = read_cloud(file);
+  const auto reader = open_parts(file);
+  ASSERT_TRUE(reader);
+  EXPECT_EQ(reader->points(), 7U);
+  EXPECT_EQ(reader->parts(), 3U);
+  EXPECT_EQ(reader->warnings, whole.warnings);
+  for (const char* name : {"o.ply", "o.las", "o.csv"}) {
+    copy(*reader, scratch.path(name));
+    const auto expected = scratch.path(std::string("whole_") + name);
+    write_cloud(expected, whole.cloud);
+    EXPECT_EQ(bytes_of(scratch.path(name)), bytes_of(expected)) << name;
+  }
 }
 
 TEST(PartChoices, WarningsCountAllParts) {

@@ -1,10 +1,12 @@
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "pcednet/io/input_file.h"
 #include "pcednet/io/loaded_cloud.h"
+#include "pcednet/io/parts.h"
 
 namespace pcednet::io {
 
@@ -16,6 +18,9 @@ namespace pcednet::io {
 /// `scanners` is set where the file tells (see E57Scan::knows_scanner).
 /// Throws as read_cloud().
 LoadedCloud read_e57(const InputFile& file);
+
+/// For open_parts(): a part is a scan.
+std::unique_ptr<PartReader> open_e57_parts(std::unique_ptr<InputFile> file);
 
 /// The places that comments of the form "scanner INDEX: X Y Z" name; what read_e57 keeps in
 /// comments, so that it survives in another format. Those not named are NaN.

@@ -33,8 +33,8 @@ class PartReader {
 };
 
 /// Opens LAS, LAZ and binary PLY for reading in parts of about `most` points (LAZ: in whole
-/// chunks). Null for what is read only as a whole: other formats, no points, PLY with lists in its
-/// vertices, much besides them, or colours or labels of other types than uint8.
+/// chunks), E57 scan by scan. Null for what is read only as a whole: other formats, no points, PLY
+/// with lists in its vertices, much besides them, or colours or labels of other types than uint8.
 /// Throws as read_cloud.
 std::unique_ptr<PartReader> open_parts(const std::filesystem::path& path,
                                        std::size_t most = std::size_t{1} << 19);

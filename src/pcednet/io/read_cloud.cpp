@@ -102,6 +102,7 @@ std::unique_ptr<PartReader> open_parts(const std::filesystem::path& path, std::s
   std::unique_ptr<PartReader> reader;
   const Format format = find_format(*file);
   if (format == Format::kPly) reader = open_ply_parts(std::move(file), most);
+  if (format == Format::kE57) reader = open_e57_parts(std::move(file));
   if (format == Format::kLas) reader = open_las_parts(std::move(file), most);
   if (!reader || reader->parts() == 0 || all_normals_unusable(*reader)) return nullptr;
   return reader;
