@@ -10,6 +10,9 @@
 namespace pcednet::detect {
 namespace {
 
+/// One missing normal in so many is estimated; fewer are hardly missed.
+constexpr std::size_t kShareToEstimate = 100;
+
 bool is_usable(const Vec3& normal) {
   return normal.allFinite() && !normal.isZero(0.0);
 }
@@ -22,7 +25,8 @@ std::string describe(const normals::Orientation& orientation) {
                      orientation.components == 1 ? "" : "s", open);
 }
 
-void estimate(PreparedCloud& prepared, const PointCloud& cloud, const char* why,
+/// Estimates the normals that are missing and orients all.
+void estimate(PreparedCloud& prepared, const PointCloud& cloud, const std::string& why,
               const Progress* progress) {
   const std::vector<Vec3> scanners = scanner_of_points(cloud);
   const auto is_known = [](const Vec3& place) { return place.allFinite(); };
@@ -31,7 +35,9 @@ void estimate(PreparedCloud& prepared, const PointCloud& cloud, const char* why,
   if (!scanners.empty() && std::all_of(scanners.begin(), scanners.end(), is_known)) {
     options.viewpoint = scanners.front();
   }
-  auto found = normals::estimate_oriented_normals(prepared.positions, options, progress);
+  const std::vector<Vec3> given =
+      cloud.has_normals() ? cloud.normals : std::vector<Vec3>(cloud.size(), Vec3::Zero());
+  auto found = normals::complete_and_orient_normals(prepared.positions, given, options, progress);
   std::size_t faced = 0;
   if (!scanners.empty()) {
     faced = normals::face_viewpoints(prepared.positions, found.normals, scanners);
@@ -70,9 +76,13 @@ PreparedCloud prepare(const PointCloud& cloud, const Progress* progress) {
         std::count_if(prepared.normals.begin(), prepared.normals.end(), is_usable));
   };
   std::size_t usable = count_usable();
-  if (usable == 0) {
+  if (usable < finite && finite - usable >= finite / kShareToEstimate) {
     estimate(prepared, cloud,
-             cloud.has_normals() ? "no normal is usable" : "no normals in the file", progress);
+             !cloud.has_normals() ? "no normals in the file"
+             : usable == 0        ? "no normal is usable"
+                           : fmt::format("{} of {} points have no usable normal", finite - usable,
+                                         cloud.size()),
+             progress);
     usable = count_usable();
     if (usable == 0) {
       throw Error(ErrorKind::kInsufficient,

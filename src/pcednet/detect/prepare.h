@@ -17,9 +17,9 @@ struct PreparedCloud {
   std::vector<std::string> notes;   ///< what the user should be told, one sentence each
 };
 
-/// Makes `cloud` ready for description; it must outlive the result. Normals are estimated from the
-/// positions and oriented, by the scanners' places if the cloud has them, when it has none or none
-/// that is usable.
+/// Makes `cloud` ready for description; it must outlive the result. Where one point in a hundred or
+/// more has no usable normal, those missing are estimated from the positions, and all are oriented:
+/// by the scanners' places if the cloud has them.
 /// Throws Error(kInsufficient) for a cloud without a finite point, or without any normal that could
 /// be used or found.
 PreparedCloud prepare(const PointCloud& cloud, const Progress* progress = nullptr);
