@@ -54,8 +54,8 @@ void put_number(std::string& bytes, std::size_t offset, T value) {
 /// What stands in a LAS file around its points. The public header block is kept as it is in the
 /// file; the accessors read it.
 struct LasFile {
-  std::string header;
-  std::vector<LasRecord> records, extended_records;
+  std::string header = {};
+  std::vector<LasRecord> records = {}, extended_records = {};
 
   unsigned minor_version() const { return number_at<std::uint8_t>(header, 25); }
   unsigned point_format() const { return number_at<std::uint8_t>(header, 104) & 0x3FU; }

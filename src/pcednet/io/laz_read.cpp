@@ -100,7 +100,8 @@ void LazReader::read_chunk_table(const LasFile& las) {
     last_bytes = numbers.code(decoder, last_bytes, 1);
     const auto size = static_cast<std::uint32_t>(last_bytes);
     here = std::min(here, points - first);
-    if (size > place - at || (here > 0 && here / kPointsPerByte > size)) {
+    const std::uint64_t least = here > 0 ? std::max(record_length_, here / kPointsPerByte) : 0;
+    if (size > place - at || size < least) {
       fail(place, fmt::format("chunk {} of {} points has {} bytes", c, here, size));
     }
     if (here > 0) chunks_.push_back({first, here, at, size});
