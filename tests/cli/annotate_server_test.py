@@ -312,6 +312,41 @@ class AnnotateServer(CliTest):
         self.assertEqual(server.request("/api/download/model")[2], first)
         server.post("/api/runs/9/restore", expect=404)
 
+    def test_restores_a_run_of_an_earlier_start_after_being_killed(self):
+        server = self.quiet()
+        server.post("/api/stroke", brush("edge", 2, EDGE, radius=0.05))
+        server.post("/api/stroke", brush("face", 0, FACE, radius=0.15))
+        server.post("/api/train")
+        server.until("/api/runs", lambda r: len(r) == 1)
+        first = server.request("/api/download/model")[2]
+        server.post("/api/settings", {"start": "cad", "seed": 5})
+        server.post("/api/stroke", brush("more", 0, [(0.5, 0.4, 0.4)], radius=0.1))
+        server.post("/api/train")
+        runs = server.until("/api/runs", lambda r: len(r) == 2)
+        second = server.request("/api/download/model")[2]
+        server.kill()
+        server = self.serve()
+        server.open()
+        self.assertEqual(server.get("/api/runs"), runs)
+        self.assertEqual([r["current"] for r in runs], [False, True])
+        server.until("/api/session", lambda s: s["prediction_version"] == 1)
+        self.assertEqual(server.request("/api/download/model")[2], second)
+        server.post("/api/runs/1/restore")
+        server.until("/api/runs", lambda r: r[0]["current"])
+        self.assertEqual(server.request("/api/download/model")[2], first)
+        self.assertEqual(server.get("/api/runs")[0], {**runs[0], "current": True})
+        # The journal says so too: the next start shows it, the command line trains it.
+        server.post("/api/save", {"what": "project"})
+        run("train", "--project", self.folder / "cube_annotation.json", "-o",
+            self.folder / "again.safetensors")
+        server.kill()
+        self.assertEqual((self.folder / "again.safetensors").read_bytes(), first)
+        server = self.serve()
+        server.open()
+        self.assertTrue(server.get("/api/runs")[0]["current"])
+        server.until("/api/session", lambda s: s["prediction_version"] == 1)
+        self.assertEqual(server.request("/api/download/model")[2], first)
+
     def test_tells_of_what_happens(self):
         server = self.quiet()
         stream = http.client.HTTPConnection("127.0.0.1", server.port, timeout=20)

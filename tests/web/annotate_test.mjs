@@ -288,4 +288,26 @@ test("opens the project as it was left", async () => {
   assert.ok((await state("undo")) > 0);
 });
 
+test("restores a run of before the restart", async () => {
+  const model = async () => {
+    const address = new URL(await page.evaluate(() => annotator.client.downloadAddress("model")), server.address).href;
+    for (;;) { // refused as long as the run is being trained again
+      const answer = await page.request.get(address);
+      if (answer.ok()) return answer.body();
+      assert.equal(answer.status(), 409);
+      await page.waitForTimeout(50);
+    }
+  };
+  // The one that was shown comes back by itself.
+  assert.ok((await model()).equals(fs.readFileSync(saved.model)), "the model that was saved");
+  const now = (await state("runs")).find((run) => run.current).run;
+  assert.ok(now > 1, "there was a run before");
+  await page.locator("summary", { hasText: "Runs" }).click();
+  for (const run of [1, now]) {
+    await page.getByRole("button", { name: `Restore run ${run}`, exact: true }).click();
+    await page.getByRole("button", { name: `Restore run ${run}`, exact: true }).waitFor({ state: "detached" });
+    assert.equal((await model()).equals(fs.readFileSync(saved.model)), run === now);
+  }
+});
+
 test("complained of nothing and asked for nothing else", () => assert.deepEqual(complaints, []));

@@ -18,6 +18,8 @@ export class Client {
   private readonly queue: WorkQueue;
   private events: EventSource | null = null;
   private opened = false;
+  /** A prediction was shown before. */
+  private predicted = false;
   stage!: Stage;
 
   constructor(private readonly api: Api, private readonly store: AppStore, private readonly words: Words) {
@@ -54,8 +56,9 @@ export class Client {
       prediction: (event: PredictionEvent) => this.attempt(this.takePrediction(event)),
       writer: ({ window: name }) => store.set({ writer: name === this.api.window }),
       problem: ({ message }) => {
-        if (store.now.training?.active) store.set({ training: { ...store.now.training, active: false } });
+        this.endTraining();
         this.words.warn(message);
+        if (this.opened) this.attempt(this.refreshRuns());
       },
     });
     this.events.addEventListener("error", () => store.set({ connected: false }));
@@ -85,13 +88,22 @@ export class Client {
     store.set({ runs, progress: null });
     if (this.opened) return;
     this.opened = true;
-    const predicted = session.prediction_version > 0 && session.run !== null;
+    const predicted = this.predicted = session.prediction_version > 0 && session.run !== null;
     store.set({
       radius: Math.max(session.spacing * 6, boxDiagonal(session.bounds) * 0.008),
       mode: predicted ? "prediction" : session.has_colours ? "rgb" : "labels",
       scale: Math.floor(session.scales.length / 2),
     });
     this.stage.open(session, predicted);
+  }
+
+  private async refreshRuns(): Promise<void> {
+    this.store.set({ runs: await this.api.get<Run[]>("/api/runs") });
+  }
+
+  private endTraining(): void {
+    const { training } = this.store.now;
+    if (training?.active) this.store.set({ training: { ...training, active: false } });
   }
 
   private attempt(work: Promise<unknown>): void {
@@ -117,13 +129,14 @@ export class Client {
 
   private async takePrediction(event: PredictionEvent): Promise<void> {
     const { store } = this;
-    const first = store.now.predicted === null && store.now.runs.length === 0;
-    if (store.now.training) store.set({ training: { ...store.now.training, active: false } });
+    const first = !this.predicted;
+    this.predicted = true;
+    this.endTraining();
     store.set({ predicted: event.counts, uncertain: null });
     this.stage.loader.refresh("prediction");
     if (["confidence", "p_sharp"].includes(store.now.mode)) this.stage.loader.refresh("values");
     if (first && ["labels", "rgb"].includes(store.now.mode)) store.set({ mode: "prediction" });
-    store.set({ runs: await this.api.get<Run[]>("/api/runs") });
+    await this.refreshRuns();
   }
 
   paint(stroke: Stroke): void {
@@ -155,15 +168,12 @@ export class Client {
   }
 
   cancel(): void {
-    const { training } = this.store.now;
-    if (training) this.store.set({ training: { ...training, active: false } });
-    this.attempt(this.api.post("/api/cancel"));
+    this.endTraining();
+    this.attempt(this.api.post("/api/cancel").then(() => this.refreshRuns()));
   }
 
   restore(run: number): void {
-    this.attempt(this.api.post(`/api/runs/${run}/restore`).then(async () => {
-      this.store.set({ runs: await this.api.get<Run[]>("/api/runs") });
-    }));
+    this.attempt(this.api.post(`/api/runs/${run}/restore`).then(() => this.refreshRuns()));
   }
 
   takeOver(): void {
@@ -190,7 +200,7 @@ export class Client {
     try {
       return (await this.api.post<{ path: string }>("/api/save", { what })).path;
     } catch (error) {
-      const taken = error instanceof ApiError && error.status === 409 && this.store.now.writer;
+      const taken = error instanceof ApiError && error.status === 409 && error.message.endsWith(" exists");
       if (!taken || !(await confirm((error as Error).message))) {
         if (!taken) this.words.warn((error as Error).message);
         return null;

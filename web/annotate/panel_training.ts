@@ -44,7 +44,8 @@ function summary(store: AppStore): string {
   if (training?.active) return `Run ${training.run}: epoch ${training.epoch.at(-1)} of ${training.epochs}`;
   if (last) {
     const held = last.held_out_accuracy === null ? "" : `, ${percent(last.held_out_accuracy)} of held-out points right`;
-    return `Run ${last.run}${held}; ${seconds(last.seconds_train + last.seconds_classify)}`;
+    const took = last.seconds_train === null ? "" : `; ${seconds(last.seconds_train + (last.seconds_classify ?? 0))}`;
+    return `Run ${last.run}${held}${took}`;
   }
   const lacking = counts.filter((n, id) => n > 0 && (id !== 1 || settings.classes === 3)).length < 2;
   return lacking ? "Paint at least two classes; training starts by itself." : "Not trained yet.";
@@ -91,8 +92,8 @@ export function uncertainPanel(store: AppStore, next: () => void): HTMLElement {
 function runRow(run: Run, client: Client): HTMLElement {
   const held = run.held_out_accuracy === null ? "–" : percent(run.held_out_accuracy);
   return h("tr", { class: run.current && "current" },
-    h("th", { scope: "row" }, String(run.run)), h("td", {}, held),
-    h("td", {}, run.loss === null ? "–" : run.loss.toFixed(3)), h("td", {}, count(run.painted)),
+    h("th", { scope: "row", title: run.time && new Date(run.time).toLocaleString() }, String(run.run)), h("td", {}, held),
+    h("td", {}, run.loss === null ? "–" : run.loss.toFixed(3)), h("td", {}, run.painted === null ? "–" : count(run.painted)),
     h("td", {}, run.current ? "in use" : h("button", {
       type: "button", class: "link", "aria-label": `Restore run ${run.run}`, onclick: () => client.restore(run.run),
     }, "restore")));

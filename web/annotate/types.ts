@@ -35,13 +35,13 @@ export interface Settings {
 
 export interface Run {
   run: number;
-  seconds_train: number;
-  seconds_classify: number;
+  seconds_train: number | null;
+  seconds_classify: number | null;
   loss: number | null;
   held_out_accuracy: number | null;
-  painted: number;
+  painted: number | null;
   start: Start;
-  classes: number;
+  classes: number | null;
   current: boolean;
   time: string;
 }
@@ -101,8 +101,8 @@ export interface PredictionEvent {
   prediction_version: number;
   run: number;
   counts: Vec3;
-  seconds_train: number;
-  seconds_classify: number;
+  seconds_train: number | null;
+  seconds_classify: number | null;
   held_out_accuracy: number | null;
 }
 

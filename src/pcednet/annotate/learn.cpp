@@ -114,8 +114,7 @@ detect::TrainedModel learn_project(
   Settings settings = end.settings;
   if (end.run) {
     settings = end.run->settings;
-    const std::size_t count = std::min(end.run->records, project.records.size());
-    end = replay(std::span(project.records).first(count), project.input.points);
+    end.labels = labels_of(*end.run, project.records, project.input.points);
   }
   std::optional<detect::EdgeModel> start;
   if (settings.start != "random") start = load_start(settings.start);

@@ -36,7 +36,7 @@ detect::TrainedModel learn(const std::string& name, const Described& described,
 
 /// The model of a project's chosen run, or if it has none of its last labels, as the annotator
 /// saves it. `load_start` gives the model of a name. Throws Error(kInsufficient) if `input` is not
-/// the project's.
+/// the project's, and as labels_of().
 detect::TrainedModel learn_project(
     const Project& project, const std::filesystem::path& input,
     const std::function<detect::EdgeModel(const std::string& name)>& load_start,

@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <fstream>
 #include <iterator>
-#include <map>
 #include <nlohmann/json.hpp>
 
 #include "pcednet/core/digest.h"
@@ -18,6 +18,7 @@ using Json = nlohmann::json;
 using Kind = Record::Kind;
 
 constexpr const char* kFormat = "pcednet-annotation-1";
+constexpr int kMostRuns = 1'000'000'000;
 
 [[noreturn]] void refuse(const std::string& why) {
   throw Error(ErrorKind::kUnreadable, why);
@@ -69,6 +70,43 @@ std::vector<std::uint32_t> points_of(const Json& steps, std::size_t points) {
   return result;
 }
 
+Json json_of(const RunRecord& run) {
+  const RunFacts& facts = run.facts;
+  Json json = {{"run", run.number}, {"records", run.records}, {"settings", json_of(run.settings)}};
+  const auto tell = [&](const char* name, const auto& fact) {
+    if (fact) json[name] = *fact;
+  };
+  tell("painted", facts.painted);
+  tell("classes", facts.classes);
+  tell("loss", facts.loss);
+  tell("held_out_accuracy", facts.held_out_accuracy);
+  tell("seconds_train", facts.seconds_train);
+  tell("seconds_classify", facts.seconds_classify);
+  if (!facts.time.empty()) json["time"] = facts.time;
+  return json;
+}
+
+RunRecord run_of(const Json& json) {
+  RunRecord run{.number = json.at("run").get<int>(),
+                .records = json.at("records").get<std::size_t>(),
+                .settings = settings_of(json.at("settings"), {})};
+  if (run.number < 1 || run.number > kMostRuns) refuse("a run of no number");
+  const auto learn = [&]<typename Fact>(const char* name, std::optional<Fact>& fact) {
+    // A number that is not finite was written as null.
+    if (const auto found = json.find(name); found != json.end() && !found->is_null()) {
+      fact = found->get<Fact>();
+    }
+  };
+  learn("painted", run.facts.painted);
+  learn("classes", run.facts.classes);
+  learn("loss", run.facts.loss);
+  learn("held_out_accuracy", run.facts.held_out_accuracy);
+  learn("seconds_train", run.facts.seconds_train);
+  learn("seconds_classify", run.facts.seconds_classify);
+  if (json.contains("time")) run.facts.time = json.at("time").get<std::string>();
+  return run;
+}
+
 Json json_of(const Record& record) {
   switch (record.kind) {
     case Kind::kStroke:
@@ -81,9 +119,7 @@ Json json_of(const Record& record) {
     case Kind::kSettings:
       return {{"settings", json_of(record.settings)}};
     case Kind::kRun:
-      return {{"run", record.run.number},
-              {"records", record.run.records},
-              {"settings", json_of(record.run.settings)}};
+      return json_of(record.run);
     case Kind::kRestore:
       break;
   }
@@ -100,12 +136,7 @@ Record record_of(const Json& json, std::size_t points) {
   }
   if (json.contains("undo")) return {.kind = Kind::kUndo};
   if (json.contains("redo")) return {.kind = Kind::kRedo};
-  if (json.contains("run")) {
-    return {.kind = Kind::kRun,
-            .run = {.number = json.at("run").get<int>(),
-                    .records = json.at("records").get<std::size_t>(),
-                    .settings = settings_of(json.at("settings"), {})}};
-  }
+  if (json.contains("run")) return {.kind = Kind::kRun, .run = run_of(json)};
   if (json.contains("restore")) {
     return {.kind = Kind::kRestore, .run = {.number = json.at("restore").get<int>()}};
   }
@@ -213,7 +244,6 @@ void write_project(const std::filesystem::path& path, const Project& project, Ov
 
 Replayed replay(std::span<const Record> records, std::size_t points) {
   Replayed now{.labels = Labels(points)};
-  std::map<int, RunRecord> runs;
   for (const Record& record : records) {
     switch (record.kind) {
       case Kind::kStroke:
@@ -229,16 +259,35 @@ Replayed replay(std::span<const Record> records, std::size_t points) {
         now.settings = record.settings;
         break;
       case Kind::kRun:
-        now.run = runs[record.run.number] = record.run;
+        now.run = now.runs[record.run.number] = record.run;
         break;
       case Kind::kRestore:
-        if (const auto found = runs.find(record.run.number); found != runs.end()) {
+        if (const auto found = now.runs.find(record.run.number); found != now.runs.end()) {
           now.run = found->second;
         }
         break;
     }
   }
   return now;
+}
+
+Labels labels_of(const RunRecord& run, std::span<const Record> records, std::size_t points) {
+  const auto own = std::find_if(records.begin(), records.end(), [&](const Record& record) {
+    return record.kind == Kind::kRun && record.run.number == run.number;
+  });
+  const auto before = static_cast<std::size_t>(own - records.begin());
+  if (run.records > before) {
+    refuse(fmt::format("run {} was trained on {} records, but only {} are before it", run.number,
+                       run.records, before));
+  }
+  Labels labels = replay(records.first(run.records), points).labels;
+  const auto counts = labels.counts();
+  const std::size_t painted = counts[0] + counts[1] + counts[2];
+  if (run.facts.painted && *run.facts.painted != painted) {
+    refuse(fmt::format("run {} was trained on {} painted points, but its records paint {}",
+                       run.number, *run.facts.painted, painted));
+  }
+  return labels;
 }
 
 }  // namespace pcednet::annotate

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -20,11 +21,21 @@ struct Settings {
   bool operator==(const Settings&) const = default;
 };
 
+/// What is told of a run without training it again; records of the first version tell nothing.
+struct RunFacts {
+  std::optional<std::size_t> painted = {};  ///< points
+  std::optional<int> classes = {};
+  std::optional<double> loss = {}, held_out_accuracy = {}, seconds_train = {},
+                        seconds_classify = {};
+  std::string time = {};  ///< ISO 8601, UTC
+};
+
 /// What a run was trained on: the labels after so many records, under these settings.
 struct RunRecord {
   int number = 0;
   std::size_t records = 0;
   Settings settings = {};
+  RunFacts facts = {};
 };
 
 /// One thing that happened. A stroke is kept as the points that it changed, so that replaying it
@@ -76,8 +87,13 @@ void write_project(const std::filesystem::path& path, const Project& project, Ov
 struct Replayed {
   Labels labels;
   Settings settings = {};
-  std::optional<RunRecord> run = {};  ///< the one that was shown last
+  std::map<int, RunRecord> runs = {};  ///< all, by their numbers
+  std::optional<RunRecord> run = {};   ///< the one that was shown last
 };
 Replayed replay(std::span<const Record> records, std::size_t points);
+
+/// The labels that a run of `records` was trained on. Throws Error(kUnreadable) if the records
+/// before it are too few or paint another number of points than the run had.
+Labels labels_of(const RunRecord& run, std::span<const Record> records, std::size_t points);
 
 }  // namespace pcednet::annotate

@@ -67,11 +67,35 @@ void Session::State::keep(Record record) {
   records.push_back(std::move(record));
 }
 
-void Session::State::schedule() {
+/// Ends what the worker does and forgets what it was asked to do.
+void Session::State::interrupt() {
   ++generation;
   due.reset();
-  if (settings.automatic) due = std::chrono::steady_clock::now() + std::chrono::milliseconds(500);
+  restore.reset();
+  asked_for = false;
+  if (!prediction()) current_run = -1;  // it was being made again
   changed.notify_all();
+}
+
+/// After a change of what is to be learnt.
+void Session::State::schedule() {
+  if (settings.automatic) {
+    interrupt();
+    due = std::chrono::steady_clock::now() + std::chrono::milliseconds(500);
+  } else if (!asked_for) {
+    due.reset();
+  }
+}
+
+/// That of the current run; null if there is none.
+std::shared_ptr<const Prediction> Session::State::settled_prediction() const {
+  if (current_run < 0) return {};
+  const Run& run = runs[static_cast<std::size_t>(current_run)];
+  if (!run.prediction) {
+    throw Error(ErrorKind::kInsufficient,
+                fmt::format("run {} is being trained again: wait for it", run.record.number));
+  }
+  return run.prediction;
 }
 
 Json Session::State::answer(std::size_t stroke, std::size_t changed, Json nodes) const {
@@ -149,31 +173,25 @@ void Session::train_now() {
   const Lock lock(state_->mutex);
   state_->check_ready();
   classes_to_learn(state_->labels->classes(), state_->settings);
-  ++state_->generation;
+  state_->interrupt();
   state_->due = std::chrono::steady_clock::now();
   state_->asked_for = true;
-  state_->changed.notify_all();
 }
 
 void Session::cancel() {
   const Lock lock(state_->mutex);
-  ++state_->generation;
-  state_->due.reset();
-  state_->changed.notify_all();
+  state_->interrupt();
 }
 
 void Session::restore(int run) {
   const Lock lock(state_->mutex);
   State& s = *state_;
   s.check_ready();
-  if (std::none_of(s.runs.begin(), s.runs.end(),
-                   [&](const Run& r) { return r.record.number == run; })) {
+  if (s.find_run(run) == s.runs.end()) {
     throw Error(ErrorKind::kUnreadable, fmt::format("there is no run {}", run));
   }
-  ++s.generation;
-  s.due.reset();
+  s.interrupt();
   s.restore = run;
-  s.changed.notify_all();
 }
 
 fs::path Session::target(Saved what, const std::string& name) const {
@@ -210,8 +228,7 @@ std::uintmax_t Session::save(Saved what, const fs::path& path, Overwrite overwri
   const State& s = *state_;
   s.check_ready();
   const auto scene = s.scene;
-  std::shared_ptr<const Prediction> prediction;
-  if (s.current_run >= 0) prediction = s.runs[static_cast<std::size_t>(s.current_run)].prediction;
+  const auto prediction = what == Saved::kProject ? nullptr : s.settled_prediction();
   const auto labels = s.labels->classes();
   const Project project{.input = scene->input,
                         .records = what == Saved::kProject ? s.records : std::vector<Record>()};

@@ -18,12 +18,14 @@ namespace pcednet::annotate {
 struct Run {
   RunRecord record = {};
   std::shared_ptr<const Prediction> prediction = {};  ///< null once others have followed
-  detect::EdgeModel model = {};
-  double seconds_train = 0, seconds_classify = 0;
-  std::optional<double> loss = {}, held_out_accuracy = {};
-  std::size_t painted = 0;
-  std::string time = {};
+  std::optional<detect::EdgeModel> model = {};        ///< none as long as an earlier start made it
 };
+
+/// The number, or null.
+template <typename Number>
+nlohmann::json optional_number(const std::optional<Number>& value) {
+  return value ? nlohmann::json(*value) : nlohmann::json();
+}
 
 struct Session::State {
   explicit State(SessionOptions given) : options(std::move(given)) {}
@@ -49,8 +51,9 @@ struct Session::State {
   int labels_version = 0;
 
   // Training.
-  std::vector<Run> runs = {};
-  int current_run = -1;  ///< in `runs`
+  std::vector<Run> runs = {};  ///< by ascending number
+  int current_run = -1;        ///< in `runs`; without a prediction while it is being made again
+  int recorded_run = 0;        ///< the number of the one that the records say is current
   int next_run = 1;
   int prediction_version = 0;
   std::optional<std::chrono::steady_clock::time_point> due = {};
@@ -70,8 +73,12 @@ struct Session::State {
   void work();
   void load();
   void open_project();
-  void train_once();
-  void restore_once(int run);
+  void remember_runs(const Replayed& end);
+  void train_once(std::uint64_t mine);
+  void restore_once(int number, std::uint64_t mine);
+  bool train(Run& run, std::span<const std::uint8_t> painted_classes, std::uint64_t mine);
+  bool train_again(Run& run, std::uint64_t mine);
+  void classify(Run& run, std::uint64_t mine);
   void show_model(const std::string& name);
   std::shared_ptr<const Described> description(const gls::ScaleSpaceOptions& descriptor,
                                                std::uint64_t of_generation);
@@ -82,8 +89,11 @@ struct Session::State {
   std::string painted(std::span<const std::uint32_t> points);
   nlohmann::json answer(std::size_t stroke, std::size_t changed, nlohmann::json nodes) const;
   void keep(Record record);
+  void interrupt();
   void schedule();
+  std::shared_ptr<const Prediction> settled_prediction() const;
   nlohmann::json run_json(std::size_t run) const;
+  std::vector<Run>::iterator find_run(int number);
   const Prediction* prediction() const;
 };
 

@@ -17,10 +17,6 @@ Json json_of(const Vec3& v) {
   return {v.x(), v.y(), v.z()};
 }
 
-Json optional_number(const std::optional<double>& value) {
-  return value ? Json(*value) : Json();
-}
-
 Json classes_of(const Labels* labels) {
   const auto counts = labels ? labels->counts() : std::array<std::size_t, 3>{};
   return Json::array(
@@ -62,17 +58,18 @@ std::uint8_t byte_of(float share) {
 }  // namespace
 
 Json Session::State::run_json(std::size_t index) const {
-  const Run& run = runs[index];
-  return {{"run", run.record.number},
-          {"seconds_train", run.seconds_train},
-          {"seconds_classify", run.seconds_classify},
-          {"loss", optional_number(run.loss)},
-          {"held_out_accuracy", optional_number(run.held_out_accuracy)},
-          {"painted", run.painted},
-          {"start", run.record.settings.start},
-          {"classes", run.model.classes.size()},
+  const RunRecord& run = runs[index].record;
+  const RunFacts& facts = run.facts;
+  return {{"run", run.number},
+          {"seconds_train", optional_number(facts.seconds_train)},
+          {"seconds_classify", optional_number(facts.seconds_classify)},
+          {"loss", optional_number(facts.loss)},
+          {"held_out_accuracy", optional_number(facts.held_out_accuracy)},
+          {"painted", optional_number(facts.painted)},
+          {"start", run.settings.start},
+          {"classes", optional_number(facts.classes)},
           {"current", static_cast<int>(index) == current_run},
-          {"time", run.time}};
+          {"time", facts.time}};
 }
 
 std::string Session::summary(bool writer) const {
