@@ -5,6 +5,7 @@
 #include <csignal>
 
 #include "e57_writer.h"
+#include "las_writer.h"
 #include "pcednet/io/write_cloud.h"
 #include "sample_cloud.h"
 #include "scratch.h"
@@ -74,6 +75,7 @@ std::vector<Example> examples(const Scratch& scratch) {
       {"a.csv", written("a.csv", false), false},
       {"a.pts", written("a.pts", false), false},
       {"a.e57", e57_example(), true},
+      {"a.las", las_bytes({3, 2, las_test_rows(3, 5)}), true},
   };
 }
 
@@ -203,13 +205,14 @@ TEST(WriteCloud, RefusesWhatItCannotDo) {
 
 TEST(WriteCloud, LeavesNothingBehindWhenTheDiskTakesNoMore) {
   const Scratch scratch;
-  const PointCloud cloud = sample_cloud(20000);
+  PointCloud cloud = sample_cloud(20000);
+  cloud.positions[2].y() = 0.0;  // LAS has no NaN
   const auto old_handler = std::signal(SIGXFSZ, SIG_IGN);
   rlimit old_limit = {};
   ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &old_limit), 0);
   const rlimit small = {100000, old_limit.rlim_max};
   ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
-  for (const char* name : {"a.ply", "a.pcd", "a.obj", "a.csv"}) {
+  for (const char* name : {"a.ply", "a.pcd", "a.obj", "a.csv", "a.las", "a.laz"}) {
     const auto path = scratch.path(name);
     const std::string message = error_of(ErrorKind::kFailure, [&] { write_cloud(path, cloud); });
     EXPECT_TRUE(contains(message, path.string())) << message;

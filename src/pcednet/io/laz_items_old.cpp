@@ -38,8 +38,8 @@ void Point10Old::code(Decoder& coder, std::byte* item) {
     if (!(changed & flag)) return;
     put(last + at, static_cast<std::uint16_t>(model.code(coder, get<std::uint16_t>(last + at), 0)));
   };
-  code_symbol(32, flags_, 14);
-  code_word(16, intensity_, 12);
+  code_word(32, intensity_, 12);
+  code_symbol(16, flags_, 14);
   code_symbol(8, classification_, 15);
   if (changed & 4) {
     const int angle = std::to_integer<int>(last[16]);
