@@ -78,7 +78,11 @@ for (const [format, minor] of [[0, 2], [1, 4], [2, 2], [3, 2], [6, 4], [7, 4], [
     assert.equal(now.header.pointDataRecordLength, before.header.pointDataRecordLength + 9);
     const spec = now.contents.filter(([user, id]) => user === "LASF_Spec" && id === 4);
     assert.equal(spec.length, 1);
-    assert.deepEqual(now.contents.filter((record) => record !== spec[0]), before.contents);
+    const said = now.contents.filter(([user, id]) => user === "pcednet" && id === 1);
+    assert.equal(said.length, 1);
+    assert.match(Buffer.from(said[0][3], "hex").toString(), /^pcednet [0-9.]+\npcednet model scan\n/);
+    const others = now.contents.filter((record) => record !== spec[0] && record !== said[0]);
+    assert.deepEqual(others, before.contents);
     assert.deepEqual(
       now.extra.map(({ name, type, length }) => [name, type, length]),
       [["edge_class", "unsigned", 1], ["p_sharp", "float", 4], ["p_smooth", "float", 4]],

@@ -119,6 +119,24 @@ TEST(PartChoices, AreMadeByAllPoints) {
   EXPECT_NEAR(back.positions[99].x(), cloud.positions[99].x(), 1e-7);
 }
 
+TEST(PartChoices, CommentsComeWithTheFirstPart) {
+  const Scratch scratch;
+  PointCloud cloud = grid_cloud(20);
+  cloud.comments = {"scanner 0: 1 2 3", "it\twas\nwindy"};
+  write_cloud(scratch.path("a.laz"), cloud);
+  const auto before = losses(scratch.path("a.laz"), cloud);
+  const std::vector<std::string> kept = {"scanner 0: 1 2 3", "it was", "windy"};
+  EXPECT_EQ(read_cloud(scratch.path("a.laz")).cloud.comments, kept);
+  const auto reader = open_parts(scratch.path("a.laz"), 10);
+  ASSERT_TRUE(reader);
+  EXPECT_EQ(reader->read(0).comments, kept);
+  EXPECT_EQ(reader->read(0).scanners, std::vector<Vec3>{Vec3(1, 2, 3)});
+  copy(*reader, scratch.path("b.laz"));
+  EXPECT_EQ(read_cloud(scratch.path("b.laz")).cloud.comments, kept);
+  cloud.comments = {std::string(70'000, 'a')};
+  EXPECT_EQ(losses(scratch.path("a.laz"), cloud).size(), before.size() + 1);
+}
+
 TEST(PartChoices, ColoursOfLasAreWideIfOneIs) {
   const Scratch scratch;
   PointCloud cloud = grid_cloud(30);

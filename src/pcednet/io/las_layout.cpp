@@ -10,6 +10,7 @@
 #include "pcednet/cloud/bounding_box.h"
 #include "pcednet/core/error.h"
 #include "pcednet/io/las.h"
+#include "pcednet/io/las_comments.h"
 #include "pcednet/io/las_records.h"
 
 namespace pcednet::io {
@@ -175,6 +176,9 @@ class LayoutBuilder {
     if (descriptors_.size() > UINT16_MAX) too_many();
     if (!descriptors_.empty()) {
       file_.records.push_back({"LASF_Spec", 4, "extra bytes", std::move(descriptors_)});
+    }
+    if (auto comments = las_comment_record(cloud_.comments)) {
+      file_.records.push_back(std::move(*comments));
     }
     return std::move(layout_);
   }
@@ -357,7 +361,9 @@ LasLayout las_layout(const PointCloud& part, const WriteOptions& options,
 std::vector<std::string> las_losses(const PointCloud& first, const LasChoices& choices) {
   const LasFile& file = choices.file;
   std::vector<std::string> losses;
-  if (!first.comments.empty()) losses.emplace_back("comments");
+  if (!first.comments.empty() && !las_comment_record(first.comments)) {
+    losses.emplace_back("comments of more than 64 KiB");
+  }
   if (!choices.exact) {
     losses.push_back(fmt::format("digits of positions beyond steps of {}", file.scale(0)));
   }

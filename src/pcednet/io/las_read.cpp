@@ -3,7 +3,9 @@
 #include <utility>
 
 #include "pcednet/core/parallel.h"
+#include "pcednet/io/e57.h"
 #include "pcednet/io/las.h"
+#include "pcednet/io/las_comments.h"
 #include "pcednet/io/las_file.h"
 #include "pcednet/io/las_records.h"
 #include "pcednet/io/laz.h"
@@ -22,10 +24,12 @@ class LasSource {
     } else {
       check_las_points(file, las_);
     }
+    comments_ = take_las_comments(las_);
     LasRecordSink(las_, 0, warnings);  // says what is wrong with the extra bytes
   }
 
   const LasFile& las() const { return las_; }
+  const std::vector<std::string>& comments() const { return comments_; }
 
   /// Where to cut for parts of about `most` points: the end of each.
   std::vector<std::size_t> cuts(std::size_t most) const {
@@ -81,7 +85,15 @@ class LasSource {
   const InputFile& file_;
   LasFile las_;
   std::optional<LazReader> compressed_ = {};
+  std::vector<std::string> comments_ = {};
 };
+
+/// What the file says beside its points.
+void describe(const LasSource& source, PointCloud& cloud) {
+  attach_las_file(cloud, source.las());
+  cloud.comments = source.comments();
+  cloud.scanners = scanners_of_comments(cloud.comments);
+}
 
 class LasPartReader : public PartReader {
  public:
@@ -101,7 +113,7 @@ class LasPartReader : public PartReader {
   PointCloud read(std::size_t part) const override {
     PointCloud cloud = records(part);
     cloud.colours = las_colours(cloud, narrow_);
-    if (part == 0) attach_las_file(cloud, source_.las());
+    if (part == 0) describe(source_, cloud);
     return cloud;
   }
 
@@ -123,7 +135,7 @@ LoadedCloud read_las(const InputFile& file) {
   const LasSource source(file, loaded.warnings);
   loaded.cloud = source.read(0, source.las().point_count());
   loaded.cloud.colours = las_colours(loaded.cloud, has_narrow_colours(loaded.cloud));
-  attach_las_file(loaded.cloud, source.las());
+  describe(source, loaded.cloud);
   return loaded;
 }
 
