@@ -180,6 +180,69 @@ test("paints without a mouse", async () => {
   assert.deepEqual(await state("counts"), counts);
 });
 
+test("one finger paints or turns, two move the view and come nearer", async () => {
+  const counts = await state("counts");
+  const devtools = await page.context().newCDPSession(page);
+  await devtools.send("Emulation.setTouchEmulationEnabled", { enabled: true, maxTouchPoints: 2 });
+  const touch = (type, ...places) => devtools.send("Input.dispatchTouchEvent", {
+    type, touchPoints: places.map(([x, y], id) => ({ x, y, id })),
+  });
+  /** Fingers that go from places to places; the second follows the first. */
+  const gesture = async (...tracks) => {
+    await touch("touchStart", tracks[0][0]);
+    if (tracks.length > 1) await touch("touchStart", ...tracks.map(([from]) => from));
+    for (let k = 1; k <= 5; ++k) {
+      await touch("touchMove", ...tracks.map(([from, to]) => from.map((c, i) => c + ((to[i] - c) * k) / 5)));
+    }
+    await touch("touchEnd");
+    await settled(page);
+  };
+  const camera = () => page.evaluate(() => {
+    const { stage } = annotator;
+    return { matrix: [...stage.camera.view.matrix], eye: stage.camera.view.eye, target: stage.camera.target };
+  });
+  const [a, b] = (await pixelsOf([painted.flat[0][1], painted.flat[0].at(-2)]));
+  const middle = a.map((c, i) => (c + b[i]) / 2);
+  const near = ([x, y], dx, dy = 0) => [x + dx, y + dy];
+  await page.keyboard.press("3");
+  await page.keyboard.press("b");
+  const before = await camera();
+  await gesture([a, b]);
+  const drawn = await state("counts");
+  assert.ok(drawn[2] > counts[2], "one finger paints");
+  assert.deepEqual(await camera(), before, "and leaves the view");
+  const steps = await state("undo");
+  await gesture([near(middle, -30), near(middle, -90)], [near(middle, 30), near(middle, 90)]);
+  assert.deepEqual(await state("counts"), drawn, "two do not paint");
+  assert.equal(await state("undo"), steps);
+  assert.equal(await page.evaluate(() => annotator.stage.chunks.reduce(
+    (sum, chunk) => sum + chunk.labels.reduce((n, label) => n + Number(label !== 255), 0), 0)),
+  drawn.reduce((x, y) => x + y), "what the first finger showed is gone");
+  const nearer = await camera();
+  const place = painted.flat[0][1];
+  const away = ({ eye }) => Math.hypot(...eye.map((c, i) => c - place[i]));
+  assert.ok(away(nearer) < 0.6 * away(before), `${away(nearer)} of ${away(before)}`);
+  await gesture([near(middle, -90), near(middle, -30)], [near(middle, 90), near(middle, 30)]);
+  const back = await camera();
+  assert.ok(Math.abs(away(back) / away(before) - 1) < 0.05, "together again: back again");
+  await gesture([near(middle, -30), near(middle, 10)], [near(middle, 30), near(middle, 70)]);
+  const slid = await camera();
+  const forward = (m) => [m[3], m[7], m[11]];
+  forward(slid.matrix).forEach((c, i) => assert.ok(Math.abs(c - forward(back.matrix)[i]) < 1e-9, "sliding turns nothing"));
+  assert.notDeepEqual(slid.eye, back.eye);
+  await page.keyboard.press("v");
+  await gesture([middle, near(middle, 80, 40)]);
+  const turned = await camera();
+  assert.ok(forward(turned.matrix).some((c, i) => Math.abs(c - forward(slid.matrix)[i]) > 0.05), "one finger turns");
+  assert.deepEqual(await state("counts"), drawn);
+  await devtools.send("Emulation.setTouchEmulationEnabled", { enabled: false });
+  await page.keyboard.press("b");
+  await page.keyboard.press("f");
+  await page.keyboard.press("Control+z");
+  await settled(page);
+  assert.deepEqual(await state("counts"), counts);
+});
+
 test("shows the features at any scale, and only what is in the box", async () => {
   const colours = page.getByRole("combobox", { name: "Colour by" });
   await colours.selectOption({ label: "feature" });

@@ -11,12 +11,12 @@ const { build } = createRequire(path.join(web, "package.json"))("esbuild");
 const { outputFiles } = await build({
   stdin: {
     resolveDir: path.join(web, "annotate"),
-    contents: ["geometry", "detail", "chunk", "paint", "ramp", "budget", "commands"]
+    contents: ["geometry", "detail", "chunk", "paint", "ramp", "budget", "commands", "fingers"]
       .map((name) => `export * as ${name} from "./${name}";`).join(""),
   },
   bundle: true, write: false, format: "esm", platform: "node",
 });
-const { geometry, detail, chunk, paint, ramp, budget, commands } =
+const { geometry, detail, chunk, paint, ramp, budget, commands, fingers } =
   await import(`data:text/javascript;base64,${Buffer.from(outputFiles[0].contents).toString("base64")}`);
 
 /** Numbers in 0..1 by a linear congruential generator. */
@@ -274,4 +274,17 @@ test("keys are spelt alike on any keyboard", () => {
   assert.equal(key("{", "BracketLeft", { shiftKey: true }), "{");
   assert.equal(key("ArrowUp", "ArrowUp", { shiftKey: true }), "Shift+ArrowUp");
   assert.equal(key("b", "KeyB"), "B");
+});
+
+test("two fingers slide by their middle and zoom by their distance", () => {
+  const two = new fingers.Fingers();
+  two.down(5, [100, 100]);
+  two.down(9, [200, 100]);
+  assert.deepEqual(two.middle, [150, 100]);
+  assert.deepEqual(two.move(9, [300, 100]), { by: [50, 0], factor: 2 });
+  assert.deepEqual(two.move(5, [200, 140]), { by: [50, 20], factor: Math.hypot(100, 40) / 200 });
+  two.up(5);
+  assert.equal(two.count, 1);
+  assert.deepEqual(two.move(9, [310, 100]).by, [10, 0]);
+  assert.ok(two.has(9) && !two.has(5));
 });

@@ -11,6 +11,7 @@ import type { Vec3 } from "./types";
 export class Brush {
   private centres: Vec3[] | null = null;
   private last: [number, number] = [0, 0];
+  private readonly shown = new Set<number>();
 
   constructor(private readonly stage: Stage, private readonly store: AppStore, private readonly client: Client) {}
 
@@ -21,6 +22,7 @@ export class Brush {
   /** Starts a stroke at a pixel. */
   press(x: number, y: number): void {
     this.centres = [];
+    this.shown.clear();
     this.dab(x, y);
   }
 
@@ -42,12 +44,19 @@ export class Brush {
   release(): void {
     const { centres } = this;
     this.centres = null;
-    if (!centres || centres.length === 0) return;
+    if (!centres) return;
+    if (centres.length === 0) return this.stage.loader.resume();
     const state = this.store.now;
     this.client.paint({
       id: crypto.randomUUID(), tool: "brush", class: state.paintClass, centres, radius: state.radius,
       protect: state.protect, hidden: [...state.hidden], clip: activeClip(state),
     });
+  }
+
+  /** Ends the stroke without painting: what was shown of it goes. */
+  cancel(): void {
+    this.centres = null;
+    this.stage.loader.refresh("labels", this.shown);
   }
 
   private dab(x: number, y: number): void {
@@ -62,7 +71,10 @@ export class Brush {
     const state = this.store.now;
     const options = { class: state.paintClass, protect: state.protect, ...this.stage.visibility };
     for (const chunk of this.stage.chunks) {
-      if (paintBall(chunk, position, normal, state.radius, options)) this.stage.touch(chunk.info.id, "labels");
+      if (paintBall(chunk, position, normal, state.radius, options)) {
+        this.stage.touch(chunk.info.id, "labels");
+        this.shown.add(chunk.info.id);
+      }
     }
   }
 

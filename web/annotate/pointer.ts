@@ -1,13 +1,14 @@
 // Mouse, pen, touch: which of them paint and which move the view.
 
 import type { Brush } from "./brush";
+import { Fingers } from "./fingers";
 import type { Outline } from "./outline";
 import type { Overlay } from "./overlay";
 import type { Stage } from "./stage";
 import type { AppStore } from "./store";
 import type { Vec3 } from "./types";
 
-type Drag = "turn" | "slide" | "paint" | null;
+type Drag = "turn" | "slide" | "paint" | "pinch" | null;
 
 const WHEEL_PAUSE_MS = 250;
 
@@ -19,6 +20,9 @@ export interface PointerEvents {
 
 export class Pointer {
   private drag: Drag = null;
+  /** The one that drags; of two fingers the second. */
+  private pointer = -1;
+  private readonly fingers = new Fingers();
   private last: [number, number] = [0, 0];
   private pivot: Vec3 = [0, 0, 0];
   private wheelAt = -Infinity;
@@ -67,8 +71,13 @@ export class Pointer {
   }
 
   private press(event: PointerEvent): void {
-    if (this.drag || !this.store.now.session) return;
+    if (!this.store.now.session) return;
     const [x, y] = this.at(event);
+    if (event.pointerType === "touch") {
+      this.fingers.down(event.pointerId, [x, y]);
+      if (this.fingers.count > 1) return this.pressSecond(event);
+    }
+    if (this.drag) return;
     this.setByKeys(false);
     this.last = [x, y];
     this.drag = this.dragOf(event);
@@ -77,11 +86,31 @@ export class Pointer {
       this.on.refused();
     }
     if (!this.drag) return;
+    this.pointer = event.pointerId;
     this.stage.canvas.setPointerCapture(event.pointerId);
     if (this.drag !== "paint") this.pivot = this.pivotAt(x, y);
     else if (this.store.now.tool === "brush") this.brush.press(x, y);
     else this.outline.press(x, y, this.store.now.tool === "lasso");
     this.hoverSoon();
+  }
+
+  /** A second finger moves the view: what the first one had begun to paint is not meant. */
+  private pressSecond(event: PointerEvent): void {
+    if (this.fingers.count > 2 || (this.drag && !this.fingers.has(this.pointer))) return;
+    if (this.drag === "paint") this.abandon();
+    this.drag = null;
+    if (this.outline.isOpen) return; // its corners are pixels of this view
+    this.drag = "pinch";
+    this.pointer = event.pointerId;
+    this.stage.canvas.setPointerCapture(event.pointerId);
+    this.pivot = this.pivotAt(...this.fingers.middle);
+    this.hoverSoon();
+  }
+
+  private abandon(): void {
+    if (this.brush.isDown) this.brush.cancel();
+    else if (this.store.now.tool === "lasso") this.outline.cancel();
+    else this.outline.shorten();
   }
 
   private dragOf({ button, shiftKey }: PointerEvent): Drag {
@@ -91,6 +120,15 @@ export class Pointer {
   }
 
   private move(event: PointerEvent): void {
+    if (this.fingers.has(event.pointerId)) {
+      const { by, factor } = this.fingers.move(event.pointerId, this.at(event));
+      if (this.drag === "pinch") {
+        this.stage.camera.slide(...by, this.pivot);
+        this.stage.camera.approach(1 / factor, this.pivot);
+        return;
+      }
+    }
+    if (this.drag && event.pointerId !== this.pointer) return;
     this.inside = true;
     const [x, y] = this.at(event);
     const [dx, dy] = [x - this.last[0], y - this.last[1]];
@@ -109,9 +147,12 @@ export class Pointer {
   }
 
   private release(event: PointerEvent): void {
+    const pinched = this.drag === "pinch" && this.fingers.has(event.pointerId);
+    this.fingers.up(event.pointerId);
+    if (this.drag && event.pointerId !== this.pointer && !pinched) return;
     if (this.drag === "paint") {
-      if (this.brush.isDown) this.brush.release();
-      else if (event.type === "pointercancel") this.outline.cancel();
+      if (event.type === "pointercancel") this.abandon();
+      else if (this.brush.isDown) this.brush.release();
       else this.outline.release();
     }
     this.drag = null;
@@ -152,7 +193,7 @@ export class Pointer {
     const navigates = tool === "navigate" || this.spaceHeld;
     this.stage.canvas.dataset.cursor =
       this.drag === "turn" || this.drag === "slide" ? "grabbing" : navigates ? "grab" : tool === "brush" ? "brush" : "cross";
-    const shown = session && !progress && tool === "brush" && !this.spaceHeld && this.drag !== "turn" && this.drag !== "slide";
+    const shown = session && !progress && tool === "brush" && !this.spaceHeld && (this.drag === null || this.drag === "paint");
     if (!shown || !(this.inside || this.byKeys)) return this.overlay.setRing(null, 0, "");
     const [x, y] = this.byKeys ? [this.stage.width / 2, this.stage.height / 2] : this.last;
     const picked = this.stage.pick(x, y);

@@ -48,6 +48,8 @@ const MOUSE: [string, string][] = [
   ["middle, or right with Shift", "slides"],
   ["wheel", "comes nearer to the point under the pointer"],
   ["wheel with Alt", "size of the brush"],
+  ["one finger", "paints with the tool, or turns with the tool that moves"],
+  ["two fingers", "slide, and part to come nearer"],
 ];
 
 const list = (title: string, rows: [string[], string][]): HTMLElement =>
@@ -61,7 +63,7 @@ export function helpDialog(commands: Command[]): HTMLDialogElement {
     h("form", { method: "dialog" }, h("h2", { id: "help-title" }, "Keys"), h("button", { class: "plain" }, "Close", h("kbd", {}, "Esc"))),
     h("div", { class: "columns" },
       ...groups.map((group) => list(group, commands.filter((c) => c.group === group).map((c) => [c.keys, c.name]))),
-      list("Mouse", MOUSE.map(([key, name]) => [[key], name]))));
+      list("Mouse and fingers", MOUSE.map(([key, name]) => [[key], name]))));
   dialog.addEventListener("click", (event) => { if (event.target === dialog) dialog.close(); });
   return dialog;
 }
