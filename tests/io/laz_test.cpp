@@ -283,6 +283,21 @@ TEST(Laz, RefusesADamagedChunkTable) {
   }
 }
 
+TEST(Laz, TakesNoMemoryForPointsThatCannotBeThere) {
+  const Scratch scratch;
+  const std::string good = laz_bytes({0, 4, las_test_rows(0, 1, 60000), 60000}, {.chunks = {1}});
+  const std::size_t points = get_number<std::uint32_t>(good, 96);
+  const auto table = get_number<std::uint64_t>(good, points);
+  const std::size_t body = table - points - 8;
+  for (const std::size_t many : {2000UL, 50000000UL}) {
+    const LazTestLayout layout{.chunks = {many}};
+    std::string bytes = good.substr(0, table) + test_chunk_table(layout, {body});
+    bytes = with(with(bytes, 247, std::uint64_t{many}), 107, 0U);
+    const std::string what = "chunk 0 of " + std::to_string(many) + " points has ";
+    EXPECT_TRUE(contains(message_of(scratch, bytes), what));
+  }
+}
+
 TEST(Laz, RefusesItemsThatDoNotMakeAPoint) {
   const Scratch scratch;
   const LasTestFile file{3, 2, las_test_rows(3, 10)};

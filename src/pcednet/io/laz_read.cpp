@@ -91,6 +91,9 @@ void LazReader::read_chunk_table(const LasFile& las) {
   laz::IntegerModel numbers(32, 2);
   std::uint64_t at = begin + 8, first = 0;
   std::int32_t last_points = 0, last_bytes = 0;
+  // Each extra byte of each point has a symbol of its own in version 2.
+  const LazItem& last = items_.back();
+  const std::size_t extra = last.type == 0 && last.version == 2 ? last.size : 0;
   for (std::size_t c = 0; c < count; ++c) {
     std::uint64_t here = chunk_size_;
     if (chunk_size_ == kVariable) {
@@ -100,7 +103,9 @@ void LazReader::read_chunk_table(const LasFile& las) {
     last_bytes = numbers.code(decoder, last_bytes, 1);
     const auto size = static_cast<std::uint32_t>(last_bytes);
     here = std::min(here, points - first);
-    const std::uint64_t least = here > 0 ? std::max(record_length_, here / kPointsPerByte) : 0;
+    const std::uint64_t symbols = here * std::max<std::uint64_t>(1, extra);
+    const std::uint64_t least =
+        here > 0 ? std::max<std::uint64_t>(record_length_, symbols / kPointsPerByte) : 0;
     if (size > place - at || size < least) {
       fail(place, fmt::format("chunk {} of {} points has {} bytes", c, here, size));
     }
