@@ -54,7 +54,7 @@ class LasSource {
   /// The points [begin, end), which cuts() named. Colours are left to the caller.
   PointCloud read(std::size_t begin, std::size_t end) const {
     std::vector<std::string> said;
-    LasRecordSink sink(las_, end - begin, said);
+    LasRecordSink sink(las_, compressed_ ? 0 : end - begin, said);
     compressed_ ? read_compressed(begin, end, sink) : read_plain(begin, end, sink);
     return sink.finish();
   }
@@ -69,18 +69,29 @@ class LasSource {
     });
   }
 
+  /// Points that the file's bytes hardly stand for get room only once those before are decoded.
   void read_compressed(std::size_t first, std::size_t last, LasRecordSink& sink) const {
     std::vector<std::size_t> chunks;
     for (std::size_t c = 0; c < compressed_->chunk_count(); ++c) {
       const std::size_t begin = compressed_->chunk_begin(c);
       if (begin >= first && begin < last) chunks.push_back(c);
     }
-    parallel_blocks(chunks.size(), 1, [&](std::size_t c, std::size_t) {
-      const std::vector<std::byte> rows = compressed_->decode(chunks[c]);
-      const std::size_t begin = compressed_->chunk_begin(chunks[c]) - first;
-      sink.take(rows.data(), begin, begin + rows.size() / las_.record_length());
-    });
+    const bool usual = last - first <= kUsualPointsPerByte * file_.size();
+    const std::size_t at_once = usual ? std::max<std::size_t>(chunks.size(), 1) : kChunksAtOnce;
+    for (std::size_t start = 0; start < chunks.size(); start += at_once) {
+      const std::size_t end = std::min(start + at_once, chunks.size());
+      sink.grow((end < chunks.size() ? compressed_->chunk_begin(chunks[end]) : last) - first);
+      parallel_blocks(end - start, 1, [&](std::size_t c, std::size_t) {
+        const std::size_t chunk = chunks[start + c];
+        const std::vector<std::byte> rows = compressed_->decode(chunk);
+        const std::size_t begin = compressed_->chunk_begin(chunk) - first;
+        sink.take(rows.data(), begin, begin + rows.size() / las_.record_length());
+      });
+    }
   }
+
+  static constexpr std::uint64_t kUsualPointsPerByte = 4;
+  static constexpr std::size_t kChunksAtOnce = 16;
 
   const InputFile& file_;
   LasFile las_;

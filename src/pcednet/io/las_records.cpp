@@ -92,11 +92,16 @@ LasRecordSink::LasRecordSink(const LasFile& file, std::size_t points,
   fields_.assign(standard.begin() + 3, standard.end());
   const auto extra = las_extra_fields(file, warnings);
   fields_.insert(fields_.end(), extra.begin(), extra.end());
-  cloud_.positions.resize(points);
   for (const LasField& field : fields_) {
-    Attribute attribute{field.name, field.type, field.components, {}};
+    cloud_.attributes.push_back({field.name, field.type, field.components, {}});
+  }
+  grow(points);
+}
+
+void LasRecordSink::grow(std::size_t points) {
+  cloud_.positions.resize(points);
+  for (Attribute& attribute : cloud_.attributes) {
     attribute.bytes.resize(points * attribute.stride());
-    cloud_.attributes.push_back(std::move(attribute));
   }
 }
 

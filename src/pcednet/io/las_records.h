@@ -16,6 +16,9 @@ class LasRecordSink {
   /// Allocates for `points` points: the caller has checked that number against the file's size.
   LasRecordSink(const LasFile& file, std::size_t points, std::vector<std::string>& warnings);
 
+  /// Makes room for `points` in all.
+  void grow(std::size_t points);
+
   /// Takes the points [begin, end) of the cloud; disjoint ranges from several threads.
   void take(const std::byte* rows, std::size_t begin, std::size_t end);
 

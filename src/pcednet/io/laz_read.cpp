@@ -10,8 +10,14 @@ namespace {
 
 constexpr unsigned kUnchunked = 1, kChunked = 2, kLayered = 3;
 constexpr std::uint64_t kVariable = UINT32_MAX;
-/// Points that a byte can stand for at most: the adaptive models do not get cheaper than this.
-constexpr std::uint64_t kPointsPerByte = 1024;
+constexpr std::uint64_t kSymbolsPerByte = 1024;
+
+/// Whether so many bytes of a chunk may stand for so many symbols: the adaptive models do not get
+/// cheaper than 1024 a byte, and where they would take much memory 64 are believed.
+bool may_hold(std::uint64_t bytes, std::uint64_t symbols) {
+  constexpr std::uint64_t kMany = std::uint64_t{1} << 20;
+  return symbols / (symbols > kMany ? 64 : kSymbolsPerByte) <= bytes;
+}
 
 }  // namespace
 
@@ -67,7 +73,9 @@ void LazReader::read_items(const std::string& record) {
 
 void LazReader::read_chunk_table(const LasFile& las) {
   const std::uint64_t begin = las.points_offset(), points = las.point_count();
-  if (points / kPointsPerByte > file_.size()) {
+  const bool holds_all = compressor_ == kUnchunked ? may_hold(file_.size() - begin, points)
+                                                   : points / kSymbolsPerByte <= file_.size();
+  if (!holds_all) {
     fail(las.counts_wide() ? 247 : 107,
          fmt::format("{} points in a file of {} bytes", points, file_.size()));
   }
@@ -104,9 +112,8 @@ void LazReader::read_chunk_table(const LasFile& las) {
     const auto size = static_cast<std::uint32_t>(last_bytes);
     here = std::min(here, points - first);
     const std::uint64_t symbols = here * std::max<std::uint64_t>(1, extra);
-    const std::uint64_t least =
-        here > 0 ? std::max<std::uint64_t>(record_length_, symbols / kPointsPerByte) : 0;
-    if (size > place - at || size < least) {
+    const bool holds = here == 0 || (size >= record_length_ && may_hold(size, symbols));
+    if (size > place - at || !holds) {
       fail(place, fmt::format("chunk {} of {} points has {} bytes", c, here, size));
     }
     if (here > 0) chunks_.push_back({first, here, at, size});
