@@ -130,10 +130,25 @@ tell("stroke: lifted to answered, mean, slowest", `${mean(strokes.answered).toFi
 tell("painted points", await page.evaluate(() => annotator.store.now.counts.join(", ")));
 await state("painting");
 
+tell("a pick", `${(await page.evaluate(() => {
+  const { stage } = annotator;
+  const start = performance.now();
+  for (let k = 0; k < 50; ++k) stage.pick(stage.width * (0.2 + 0.012 * k), stage.height * 0.5);
+  return (performance.now() - start) / 50;
+})).toFixed(1)} ms`);
+
+// The middle of the first row of pixels that shows the ground.
+const [x, y] = await page.evaluate(() => {
+  const { stage } = annotator;
+  const { left, top } = stage.canvas.getBoundingClientRect();
+  for (let down = stage.height - 100;; down -= 10) {
+    if (stage.pick(stage.width / 2, down)) return [left + stage.width / 2, top + down - 20];
+  }
+});
 await page.keyboard.press("1");
-await page.mouse.move(700, 560);
+await page.mouse.move(x, y);
 await page.mouse.down();
-await page.mouse.move(760, 560, { steps: 5 });
+await page.mouse.move(x + 60, y, { steps: 5 });
 const trained = performance.now();
 await page.mouse.up();
 await page.waitForFunction(() => annotator.store.now.runs.some((run) => run.current));

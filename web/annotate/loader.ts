@@ -6,7 +6,6 @@ import type { Layer } from "./painter";
 import type { NodeInfo } from "./types";
 
 const AT_ONCE = 4;
-const MOST_POINTS = 16_000_000;
 const BATCH_POINTS = 2_000_000;
 
 export interface LoaderEvents {
@@ -30,6 +29,8 @@ export class Loader {
   private readonly stale: Record<Layer, Set<number>> = { labels: new Set(), prediction: new Set(), values: new Set() };
   private readonly refreshing: Record<Layer, boolean> = { labels: false, prediction: false, values: false };
   private kept = 0;
+  /** So many points are kept: what is looked at, and some of what was. */
+  mostPoints = 4_000_000;
 
   constructor(private readonly api: Api, private readonly on: LoaderEvents) {}
 
@@ -94,7 +95,7 @@ export class Loader {
   private evict(): void {
     const wanted = new Set(this.wanted);
     for (const [id, chunk] of this.chunks) {
-      if (this.kept <= MOST_POINTS) return;
+      if (this.kept <= this.mostPoints) return;
       if (id === 0 || wanted.has(id)) continue;
       this.chunks.delete(id);
       this.kept -= chunk.info.points;

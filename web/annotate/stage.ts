@@ -140,6 +140,7 @@ export class Stage {
     this.next = 0;
     this.touched.clear();
     const all = selectNodes(this.loader.nodes, this.camera.view, { budget: this.budget.still, clip: this.look.clip });
+    this.loader.mostPoints = 2 * this.budget.still;
     this.loader.want(all.map((take) => take.id));
     this.takes = all.filter((take) => this.loader.chunks.has(take.id));
     this.painter.setSpacings(drawnSpacings(this.loader.nodes, this.takes));
