@@ -31,7 +31,7 @@ for model in ${*:-scan cad worn}; do
     generate cad 1
     generate cad 2
     $pcednet train "$folder/worn1" "$folder/worn2" "$folder/cad1" "$folder/cad2" \
-      -o models/worn.safetensors --classes 2 --balance 0.5 --seed 1 --overwrite
+      -o models/worn.safetensors --classes 2 --balance 0.5 --gate -0.5 --seed 1 --overwrite
     ;;
   *)
     echo "train_models.sh: no model $model" >&2

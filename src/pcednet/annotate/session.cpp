@@ -98,9 +98,9 @@ std::shared_ptr<const Prediction> Session::State::settled_prediction() const {
   return run.prediction;
 }
 
-Json Session::State::answer(std::size_t stroke, std::size_t changed, Json nodes) const {
+Json Session::State::answer(std::size_t stroke, std::size_t points, Json nodes) const {
   return {{"stroke", stroke},
-          {"changed", changed},
+          {"changed", points},
           {"counts", labels->counts()},
           {"labels_version", labels_version},
           {"nodes", std::move(nodes)},

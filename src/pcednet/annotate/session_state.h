@@ -87,7 +87,7 @@ struct Session::State {
   void check_ready() const;
   void publish(Run run);
   std::string painted(std::span<const std::uint32_t> points);
-  nlohmann::json answer(std::size_t stroke, std::size_t changed, nlohmann::json nodes) const;
+  nlohmann::json answer(std::size_t stroke, std::size_t points, nlohmann::json nodes) const;
   void keep(Record record);
   void interrupt();
   void schedule();
