@@ -149,6 +149,7 @@ void classify_file(const Job& job, const Arguments& arguments, const detect::Edg
   times.emplace_back("prepare", result.seconds_prepare);
   times.emplace_back("describe", result.seconds_describe);
   times.emplace_back("network", result.seconds_network);
+  if (model.context) times.emplace_back("context", result.seconds_context);
   watch.lap();
   auto kept = detect::add_result(loaded.cloud, prepared, result, model,
                                  {.class_colours = arguments.class_colours});

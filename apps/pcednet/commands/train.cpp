@@ -33,7 +33,7 @@ struct Arguments {
   int classes = 3, scales = 16, epochs = 0, width = 0;
   double gate = 2.0, balance = 1.0;
   std::uint64_t seed = 1;
-  bool exact = false, natural = false;
+  bool exact = false, natural = false, context = false;
 };
 
 detect::TrainOptions options_of(const Arguments& arguments) {
@@ -54,6 +54,7 @@ detect::TrainOptions options_of(const Arguments& arguments) {
   if (arguments.recipe == "paper") options.training = nn::paper_recipe();
   if (arguments.epochs > 0) options.training.epochs = arguments.epochs;
   options.training.balance = arguments.natural ? 0.0 : arguments.balance;
+  options.context = arguments.context;
   options.training.seed = arguments.seed;
   options.training.sign_rule.symmetry = kSymmetries.at(arguments.symmetry);
   return options;
@@ -112,9 +113,13 @@ void train(const Arguments& arguments, const Common& common) {
   if (trained.epochs == 0)
     throw Error(ErrorKind::kCancelled, "stopped by the user before an epoch");
   detect::save_model(arguments.output, trained.model, common.overwrite());
-  say(fmt::format("{} weights; seconds: describe {:.2f}, train {:.2f}\n  -> {}",
-                  trained.model.network.network.parameters.size(), trained.seconds_describe,
-                  trained.seconds_train, arguments.output));
+  const auto& context = trained.model.context;
+  say(fmt::format("{} weights{}; seconds: describe {:.2f}, train {:.2f}{}\n  -> {}",
+                  trained.model.network.network.parameters.size(),
+                  context ? fmt::format(" and {}", context->network.parameters.size()) : "",
+                  trained.seconds_describe, trained.seconds_train,
+                  context ? fmt::format(", context {:.2f}", trained.seconds_context) : "",
+                  arguments.output));
   if (trained.cancelled) {
     throw Error(ErrorKind::kCancelled,
                 fmt::format("stopped by the user: {} holds the best of {} epochs", arguments.output,
@@ -183,6 +188,10 @@ void add_train(CLI::App& app, Common& common) {
       ->capture_default_str()
       ->check(CLI::Range(0.0, 1.0))
       ->excludes("--natural");
+  command->add_flag("--context", arguments->context,
+                    "Also train a network that looks at the answers around each point and decides "
+                    "in the end")
+      ->excludes("--project");
   command->add_option("--epochs", arguments->epochs, "Rounds of training (0: the recipe's)");
   command->add_option("--seed", arguments->seed, "Seed of all randomness")->capture_default_str();
   command->callback([arguments, &common] { train(*arguments, common); });

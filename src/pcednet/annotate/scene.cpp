@@ -39,9 +39,10 @@ std::shared_ptr<const Scene> load_scene(const std::filesystem::path& input,
   return scene;
 }
 
-std::shared_ptr<const Prediction> predict(const Described& described, detect::EdgeModel model) {
+std::shared_ptr<const Prediction> predict(const Scene& scene, const Described& described,
+                                          detect::EdgeModel model) {
   auto prediction = std::make_shared<Prediction>();
-  prediction->result = detect::classify(described.cloud, model);
+  prediction->result = detect::classify(described.cloud, scene.cloud.positions, model);
   prediction->model = std::move(model);
   const auto& result = prediction->result;
   prediction->confidence.resize(result.classes.size());

@@ -40,7 +40,8 @@ struct Prediction {
   std::vector<float> confidence =
       {};  ///< the probability of the chosen class; 0 where there is none
 };
-std::shared_ptr<const Prediction> predict(const Described& described, detect::EdgeModel model);
+std::shared_ptr<const Prediction> predict(const Scene& scene, const Described& described,
+                                          detect::EdgeModel model);
 
 /// A byte per point of a node, for colouring: feature `feature` at scale `scale` of a description.
 /// phi is mapped from 0 ... 1 to 0 ... 255, any other value x by (1 + x / (1 + |x|)) / 2; 0 where

@@ -215,7 +215,7 @@ bool Session::State::train(Run& run, std::span<const std::uint8_t> painted_class
 void Session::State::classify(Run& run, std::uint64_t mine) {
   const auto rows = description(run.model->descriptor, mine);
   Stopwatch watch;
-  run.prediction = predict(*rows, *run.model);
+  run.prediction = predict(*scene, *rows, *run.model);
   run.record.facts.seconds_classify = watch.lap();
 }
 

@@ -6,8 +6,9 @@
 
 #include "pcednet/core/error.h"
 #include "pcednet/core/stopwatch.h"
+#include "pcednet/detect/context.h"
+#include "pcednet/detect/decide.h"
 #include "pcednet/gls/engine.h"
-#include "pcednet/nn/predict.h"
 
 namespace pcednet::detect {
 namespace {
@@ -15,25 +16,6 @@ namespace {
 /// Points described and classified at a time: enough to keep every thread busy, few enough for the
 /// matrix to stay in the cache.
 constexpr std::size_t kBlock = 16 * 1024;
-
-/// Writes the network's answer for one point.
-void decide(std::span<const float> probabilities, const std::vector<std::uint8_t>& classes,
-            std::size_t point, Classification& result) {
-  std::size_t best = 0;
-  for (std::size_t c = 0; c < classes.size(); ++c) {
-    if (probabilities[c] > probabilities[best]) best = c;
-    if (classes[c] == kSharpEdge) result.p_sharp[point] = probabilities[c];
-    if (classes[c] == kSmoothEdge) result.p_smooth[point] = probabilities[c];
-  }
-  result.classes[point] = classes[best];
-}
-
-ClassCounts count_classes(const std::vector<std::uint8_t>& classes) {
-  const auto count = [&](std::uint8_t wanted) {
-    return static_cast<std::size_t>(std::count(classes.begin(), classes.end(), wanted));
-  };
-  return {count(kNonEdge), count(kSmoothEdge), count(kSharpEdge), count(kUnlabelled)};
-}
 
 Classification nothing_found(std::size_t points) {
   Classification result;
@@ -43,23 +25,10 @@ Classification nothing_found(std::size_t points) {
   return result;
 }
 
-/// Lets the network answer for `targets`, whose descriptions are `rows`.
-void decide_all(std::span<const float> rows, std::span<const std::uint32_t> targets,
-                const EdgeModel& model, std::vector<float>& probabilities, Classification& result) {
-  const std::size_t classes = model.classes.size();
-  probabilities.resize(targets.size() * classes);
-  nn::predict_into(model.network, rows, probabilities);
-  for (std::size_t i = 0; i < targets.size(); ++i) {
-    decide(std::span(probabilities).subspan(i * classes, classes), model.classes, targets[i],
-           result);
-  }
-}
-
-}  // namespace
-
-Classification classify(const PreparedCloud& cloud, const EdgeModel& model,
-                        const ClassifyOptions& options, const Progress* progress) {
-  Classification result = nothing_found(cloud.positions.size());
+/// Describes the points block by block and lets the model's network decide.
+void describe_and_decide(const PreparedCloud& cloud, const EdgeModel& model,
+                         const ClassifyOptions& options, const Progress* progress,
+                         Classification& result) {
   Stopwatch watch;
   gls::ScaleSpaceOptions descriptor = model.descriptor;
   descriptor.engine = options.exact ? gls::Engine::kExact : gls::Engine::kFast;
@@ -79,11 +48,28 @@ Classification classify(const PreparedCloud& cloud, const EdgeModel& model,
     const auto rows = std::span(samples).first(targets.size() * inputs);
     matrix.describe(targets, rows, std::span(status).first(targets.size() * scales), &cancel_only);
     result.seconds_describe += watch.lap();
-    decide_all(rows, targets, model, probabilities, result);
+    decide(model.network, model.classes, rows, targets, probabilities, result);
     result.seconds_network += watch.lap();
     stage.advance(targets.size());
   }
+}
+
+/// What follows the first network's answers.
+void finish(std::span<const Vec3> positions, const EdgeModel& model, const Progress* progress,
+            Classification& result) {
+  Stopwatch watch;
+  if (model.context) apply_context(*model.context, model.classes, positions, result, progress);
+  result.seconds_context = watch.lap();
   result.counts = count_classes(result.classes);
+}
+
+}  // namespace
+
+Classification classify(const PreparedCloud& cloud, const EdgeModel& model,
+                        const ClassifyOptions& options, const Progress* progress) {
+  Classification result = nothing_found(cloud.positions.size());
+  describe_and_decide(cloud, model, options, progress, result);
+  finish(cloud.positions, model, progress, result);
   return result;
 }
 
@@ -103,12 +89,13 @@ DescribedCloud describe(const PreparedCloud& cloud, const gls::ScaleSpaceOptions
   return described;
 }
 
-Classification classify(const DescribedCloud& cloud, const EdgeModel& model) {
+Classification classify(const DescribedCloud& cloud, std::span<const Vec3> positions,
+                        const EdgeModel& model) {
   const auto inputs = static_cast<std::size_t>(model.network.network.architecture.inputs());
-  if (cloud.values.size() != cloud.order.size() * inputs) {
+  if (cloud.values.size() != cloud.order.size() * inputs || positions.size() != cloud.points) {
     throw Error(ErrorKind::kModelMismatch,
-                fmt::format("{} numbers describe {} points; the model wants {} for each",
-                            cloud.values.size(), cloud.order.size(), inputs));
+                fmt::format("{} numbers describe {} of {} points; the model wants {} for each",
+                            cloud.values.size(), cloud.points, positions.size(), inputs));
   }
   Classification result = nothing_found(cloud.points);
   result.seconds_describe = cloud.seconds;
@@ -116,11 +103,12 @@ Classification classify(const DescribedCloud& cloud, const EdgeModel& model) {
   std::vector<float> probabilities;
   for (std::size_t first = 0; first < cloud.order.size(); first += kBlock) {
     const std::size_t count = std::min(kBlock, cloud.order.size() - first);
-    decide_all(std::span(cloud.values).subspan(first * inputs, count * inputs),
-               std::span(cloud.order).subspan(first, count), model, probabilities, result);
+    decide(model.network, model.classes,
+           std::span(cloud.values).subspan(first * inputs, count * inputs),
+           std::span(cloud.order).subspan(first, count), probabilities, result);
   }
   result.seconds_network = watch.lap();
-  result.counts = count_classes(result.classes);
+  finish(positions, model, nullptr, result);
   return result;
 }
 

@@ -22,11 +22,12 @@ struct Classification {
   std::vector<float> p_sharp;         ///< probability of sharp-edge, 0 where unlabelled
   std::vector<float> p_smooth;        ///< of smooth-edge; 0 throughout with a two-class model
   ClassCounts counts;
-  double seconds_prepare = 0, seconds_describe = 0, seconds_network = 0;
+  double seconds_prepare = 0, seconds_describe = 0, seconds_network = 0, seconds_context = 0;
 };
 
 /// Describes every point at every scale and lets the network decide: the class of the highest
-/// probability. Works block by block: the scale-space matrix is never held whole.
+/// probability. Works block by block: the scale-space matrix is never held whole. If the model has
+/// a context network it decides in the end, on what was found around each point.
 /// The result is the same for any number of threads and any order of the points.
 Classification classify(const PreparedCloud& cloud, const EdgeModel& model,
                         const ClassifyOptions& options = {}, const Progress* progress = nullptr);
@@ -44,7 +45,8 @@ DescribedCloud describe(const PreparedCloud& cloud, const gls::ScaleSpaceOptions
                         const Progress* progress = nullptr);
 
 /// What classify() finds for a cloud that has been described as the model wants it. Throws
-/// Error(kModelMismatch) if the rows are not of the model's size.
-Classification classify(const DescribedCloud& cloud, const EdgeModel& model);
+/// Error(kModelMismatch) if the rows are not of the model's size, or the positions not the cloud's.
+Classification classify(const DescribedCloud& cloud, std::span<const Vec3> positions,
+                        const EdgeModel& model);
 
 }  // namespace pcednet::detect

@@ -7,6 +7,7 @@
 #include "pcednet/cloud/point_cloud.h"
 #include "pcednet/core/error.h"
 #include "pcednet/core/parallel.h"
+#include "pcednet/detect/decide.h"
 #include "pcednet/spatial/kd_tree.h"
 
 namespace pcednet::detect {
@@ -43,11 +44,7 @@ void clean_up(std::span<const Vec3> positions, Classification& result,
     }
     stage.advance(end - begin);
   });
-  const auto count = [&](std::uint8_t wanted) {
-    return static_cast<std::size_t>(
-        std::count(result.classes.begin(), result.classes.end(), wanted));
-  };
-  result.counts = {count(kNonEdge), count(kSmoothEdge), count(kSharpEdge), count(kUnlabelled)};
+  result.counts = count_classes(result.classes);
 }
 
 }  // namespace pcednet::detect

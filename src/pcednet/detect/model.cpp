@@ -11,6 +11,7 @@
 #include "pcednet/cloud/point_cloud.h"
 #include "pcednet/core/error.h"
 #include "pcednet/core/version.h"
+#include "pcednet/detect/context.h"
 #include "pcednet/nn/model_file.h"
 
 namespace pcednet::detect {
@@ -20,6 +21,8 @@ constexpr std::array kFeatureSets = {gls::FeatureSet::kAll28, gls::FeatureSet::k
                                      gls::FeatureSet::kPaper6, gls::FeatureSet::kSpatial4,
                                      gls::FeatureSet::kRelief3};
 constexpr const char* kFormat = "pcednet-edge-model-1";
+constexpr const char* kContextFormat = "pcednet-edge-model-2";  // with a context network
+constexpr std::string_view kContext = "context.";
 
 /// The metadata of a model file, with errors that name it.
 class Metadata {
@@ -72,14 +75,51 @@ std::vector<std::uint8_t> classes_of(const std::string& text, const Metadata& me
   metadata.refuse(fmt::format("unknown classes: {}", text));
 }
 
+/// Takes what is named with kContext before it out of `all`, and out of its names.
+template <typename Value>
+std::map<std::string, Value> take_context(std::map<std::string, Value>& all) {
+  std::map<std::string, Value> context;
+  for (auto entry = all.begin(); entry != all.end();) {
+    if (entry->first.starts_with(kContext)) {
+      context.emplace(entry->first.substr(kContext.size()), std::move(entry->second));
+      entry = all.erase(entry);
+    } else {
+      ++entry;
+    }
+  }
+  return context;
+}
+
+/// Puts `part` into `all`, with kContext before the names.
+template <typename Value>
+void add_context(const std::map<std::string, Value>& part, std::map<std::string, Value>& all) {
+  for (const auto& [name, value] : part) all[std::string(kContext) + name] = value;
+}
+
+nn::Model read_context(const std::filesystem::path& path, const nn::Safetensors& content,
+                       std::size_t classes) {
+  nn::Model context = nn::from_safetensors(content, path.string() + ": context network");
+  const nn::Architecture& a = context.network.architecture;
+  if (a.scales != static_cast<int>(kContextSizes.size()) ||
+      a.features != kContextFeatures * (static_cast<int>(classes) - 1) ||
+      a.classes != static_cast<int>(classes)) {
+    throw Error(ErrorKind::kModelMismatch,
+                fmt::format("{}: the context network does not fit the classes", path.string()));
+  }
+  return context;
+}
+
 }  // namespace
 
 EdgeModel load_model(const std::filesystem::path& path) {
   EdgeModel model;
-  model.network = nn::load_model(path);
+  nn::Safetensors content = nn::read_safetensors(path);
+  const nn::Safetensors context = {take_context(content.tensors), take_context(content.metadata)};
+  model.network = nn::from_safetensors(content, path.string());
   Metadata metadata(path, model.network.metadata);
-  if (const std::string format = metadata.take("format"); format != kFormat) {
-    metadata.refuse(fmt::format("format {} where {} is read", format, kFormat));
+  const std::string wanted = context.tensors.empty() ? kFormat : kContextFormat;
+  if (const std::string format = metadata.take("format"); format != wanted) {
+    metadata.refuse(fmt::format("format {} where {} is read", format, wanted));
   }
   metadata.take("version");
   if (metadata.take("undefined") != "zero") metadata.refuse("another policy for bad fits");
@@ -104,6 +144,7 @@ EdgeModel load_model(const std::filesystem::path& path) {
       network.classes != static_cast<int>(model.classes.size())) {
     metadata.refuse("the network does not fit its descriptor and classes");
   }
+  if (!context.tensors.empty()) model.context = read_context(path, context, model.classes.size());
   return model;
 }
 
@@ -111,7 +152,7 @@ void save_model(const std::filesystem::path& path, const EdgeModel& model, Overw
   nn::Model network = model.network;
   auto& metadata = network.metadata;
   const gls::ScaleSpaceOptions& descriptor = model.descriptor;
-  metadata["format"] = kFormat;
+  metadata["format"] = model.context ? kContextFormat : kFormat;
   metadata["version"] = kVersion;
   metadata["undefined"] = "zero";
   metadata["name"] = model.name;
@@ -129,7 +170,13 @@ void save_model(const std::filesystem::path& path, const EdgeModel& model, Overw
     metadata["descriptor_s_max_fraction"] = fmt::format("{}", descriptor.s_max_fraction);
   }
   metadata["classes"] = fmt::format("{}", fmt::join(model.classes, " "));
-  nn::save_model(path, network, overwrite);
+  nn::Safetensors content = nn::to_safetensors(network);
+  if (model.context) {
+    const nn::Safetensors context = nn::to_safetensors(*model.context);
+    add_context(context.tensors, content.tensors);
+    add_context(context.metadata, content.metadata);
+  }
+  nn::write_safetensors(path, content, overwrite);
 }
 
 }  // namespace pcednet::detect

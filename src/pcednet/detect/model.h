@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,7 @@ struct EdgeModel {
   gls::ScaleSpaceOptions descriptor;  ///< s_min and s_max are each cloud's own
   std::vector<std::uint8_t> classes;  ///< EdgeClass of every output: {0, 1, 2} or {0, 2}
   nn::Model network;                  ///< its metadata holds the summary of the training
+  std::optional<nn::Model> context = {};  ///< decides in the end, on a ContextMatrix
 };
 
 /// Reads a model file. Throws Error(kUnreadable) if there is none, Error(kModelMismatch), naming
@@ -26,7 +28,8 @@ struct EdgeModel {
 /// version's.
 EdgeModel load_model(const std::filesystem::path& path);
 
-/// Writes a safetensors file; the same model gives the same bytes.
+/// Writes a safetensors file; the same model gives the same bytes. The context network's tensors and
+/// metadata are named as the network's own, with "context." before them.
 void save_model(const std::filesystem::path& path, const EdgeModel& model, Overwrite overwrite);
 
 }  // namespace pcednet::detect

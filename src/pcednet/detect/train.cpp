@@ -8,6 +8,8 @@
 
 #include "pcednet/core/error.h"
 #include "pcednet/core/stopwatch.h"
+#include "pcednet/detect/outputs.h"
+#include "pcednet/detect/train_context.h"
 #include "pcednet/gls/engine.h"
 
 namespace pcednet::detect {
@@ -79,16 +81,6 @@ std::map<std::string, std::string> summary_of(const nn::TrainResult& result,
   return summary;
 }
 
-/// The number of the network's output for every label.
-std::vector<std::uint8_t> outputs_of(const std::vector<std::uint8_t>& labels,
-                                     const std::vector<std::uint8_t>& classes) {
-  std::vector<std::uint8_t> outputs = labels;
-  if (classes.size() == 2) {
-    for (std::uint8_t& output : outputs) output = output == kSharpEdge ? 1 : 0;
-  }
-  return outputs;
-}
-
 }  // namespace
 
 Samples make_samples(std::span<const TrainingCloud> clouds,
@@ -124,6 +116,12 @@ TrainedModel train(const std::string& name, std::span<const TrainingCloud> cloud
   const double seconds_describe = watch.lap();
   TrainedModel trained = train(name, samples, options, on_epoch, progress);
   trained.seconds_describe = seconds_describe;
+  if (!options.context || trained.cancelled) return trained;
+  watch.lap();
+  nn::TrainResult context = train_context(trained.model, clouds, options, on_epoch, progress);
+  trained.cancelled = context.cancelled;
+  trained.seconds_context = watch.lap();
+  if (context.best_epoch > 0) trained.model.context = std::move(context.best);
   return trained;
 }
 
@@ -145,7 +143,10 @@ TrainedModel train(const std::string& name, const Samples& samples, const TrainO
   nn::TrainOptions training = options.training;
   training.sign_rule = sign_rule(model.descriptor.features, options.training.sign_rule.symmetry);
   training.class_names = class_names(model.classes);
-  const auto outputs = outputs_of(samples.labels, model.classes);
+  std::vector<std::uint8_t> outputs;
+  for (const std::uint8_t label : samples.labels) {
+    outputs.push_back(output_of(label, model.classes));
+  }
   nn::TrainResult result =
       nn::train(architecture, {samples.values, outputs}, training, on_epoch, progress);
   trained.cancelled = result.cancelled;

@@ -21,7 +21,7 @@ struct TrainOptions {
   gls::ScaleSpaceOptions descriptor;
   nn::Architecture architecture;  ///< scales and features are set from `descriptor`
   nn::TrainOptions training;
-  bool exact = false;  ///< describe with exact neighbourhoods
+  bool context = false;  ///< train a context network too, where clouds are given
 };
 
 /// A scale-space matrix row and a label per labelled point of the clouds, cloud after cloud, each
@@ -46,7 +46,7 @@ struct TrainedModel {
   EdgeModel model;
   bool cancelled = false;
   int epochs = 0;  ///< completed; a model of none is not worth keeping
-  double seconds_describe = 0, seconds_train = 0;
+  double seconds_describe = 0, seconds_train = 0, seconds_context = 0;
 };
 TrainedModel train(const std::string& name, std::span<const TrainingCloud> clouds,
                    const TrainOptions& options,

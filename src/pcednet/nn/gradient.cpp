@@ -16,7 +16,8 @@ constexpr int kChunk = 128;
 struct GradientMachine::Workspace {
   LaneTable table, deltas;
   std::array<const float*, kChunk> rows;
-  std::array<std::uint8_t, kChunk> labels;
+  std::vector<float> blanked;  // samples of which some scales are not seen
+  LaneTable targets;
   alignas(64) std::array<float, kChunk> weights;
   alignas(64) std::array<float, kChunk> losses;
 };
@@ -30,7 +31,13 @@ std::unique_ptr<GradientMachine::Workspace> GradientMachine::borrow() {
   const std::lock_guard lock(mutex_);
   if (idle_.empty()) {
     return std::make_unique<Workspace>(
-        Workspace{evaluator_.make_table(kChunk), evaluator_.make_table(kChunk), {}, {}, {}, {}});
+        Workspace{evaluator_.make_table(kChunk),
+                  evaluator_.make_table(kChunk),
+                  {},
+                  {},
+                  {evaluator_.classes(), kChunk},
+                  {},
+                  {}});
   }
   std::unique_ptr<Workspace> workspace = std::move(idle_.back());
   idle_.pop_back();
@@ -43,7 +50,7 @@ void GradientMachine::give_back(std::unique_ptr<Workspace> workspace) {
 }
 
 double GradientMachine::run(const TrainingSet& set, std::span<const std::uint32_t> chosen,
-                            std::span<float> gradient) {
+                            std::span<float> gradient, std::span<const ScaleRange> kept) {
   const std::size_t chunks = (chosen.size() + kChunk - 1) / kChunk;
   chunk_gradients_.assign(chunks * gradient.size(), 0.0f);
   chunk_losses_.assign(chunks, 0.0);
@@ -51,7 +58,8 @@ double GradientMachine::run(const TrainingSet& set, std::span<const std::uint32_
   parallel_blocks(chosen.size(), kChunk, [&](std::size_t begin, std::size_t end) {
     const std::size_t chunk = begin / kChunk;
     std::unique_ptr<Workspace> workspace = borrow();
-    chunk_losses_[chunk] = run_chunk(*workspace, set, chosen.subspan(begin, end - begin), weight,
+    chunk_losses_[chunk] = run_chunk(*workspace, set, chosen.subspan(begin, end - begin),
+                                     kept.empty() ? kept : kept.subspan(begin, end - begin), weight,
                                      chunk_gradients_.data() + chunk * gradient.size());
     give_back(std::move(workspace));
   });
@@ -65,8 +73,26 @@ double GradientMachine::run(const TrainingSet& set, std::span<const std::uint32_
   return loss;
 }
 
+void GradientMachine::fill_targets(Workspace& w, const TrainingSet& set,
+                                   std::span<const std::uint32_t> chosen) const {
+  const int classes = evaluator_.classes();
+  const float other = label_smoothing_ / static_cast<float>(classes);
+  for (std::size_t p = 0; p < kChunk; ++p) {
+    const std::size_t sample = chosen[std::min(p, chosen.size() - 1)];
+    for (int c = 0; c < classes; ++c) {
+      const float wanted =
+          set.targets.empty()
+              ? static_cast<float>(set.labels[sample] == c)
+              : set.targets[sample * static_cast<std::size_t>(classes) +
+                            static_cast<std::size_t>(c)];
+      w.targets.row(c)[p] = (1.0f - label_smoothing_) * wanted + other;
+    }
+  }
+}
+
 double GradientMachine::run_chunk(Workspace& w, const TrainingSet& set,
-                                  std::span<const std::uint32_t> chosen, float weight,
+                                  std::span<const std::uint32_t> chosen,
+                                  std::span<const ScaleRange> kept, float weight,
                                   float* gradient) const {
   const auto inputs = static_cast<std::size_t>(evaluator_.inputs());
   for (std::size_t p = 0; p < kChunk; ++p) {
@@ -74,8 +100,19 @@ double GradientMachine::run_chunk(Workspace& w, const TrainingSet& set,
     w.rows[p] = set.samples.data() + sample * inputs;
     // The samples lie anywhere in memory: ask for all of them before the first is needed.
     for (std::size_t u = 0; u < inputs; u += 16) __builtin_prefetch(w.rows[p] + u);
-    w.labels[p] = set.labels[sample];
     w.weights[p] = p < chosen.size() ? weight : 0.0f;
+  }
+  fill_targets(w, set, chosen);
+  if (!kept.empty()) {
+    const auto features = static_cast<std::size_t>(evaluator_.model().network.architecture.features);
+    w.blanked.assign(kChunk * inputs, 0.0f);
+    for (std::size_t p = 0; p < chosen.size(); ++p) {
+      float* const row = w.blanked.data() + p * inputs;
+      const auto first = static_cast<std::size_t>(kept[p].first) * features;
+      const auto last = static_cast<std::size_t>(kept[p].last) * features;
+      std::copy(w.rows[p] + first, w.rows[p] + last, row + first);
+      w.rows[p] = row;
+    }
   }
   evaluator_.run(w.rows.data(), w.table);
   const Kernels& kernels = evaluator_.kernels();
@@ -83,8 +120,7 @@ double GradientMachine::run_chunk(Workspace& w, const TrainingSet& set,
   const int lanes = w.table.lanes();
   const int logits = evaluator_.logits_row();
   std::fill(w.deltas.row(evaluator_.inputs()), w.deltas.row(logits), 0.0f);
-  kernels.cross_entropy(w.table.row(logits), w.labels.data(), w.weights.data(), label_smoothing_,
-                        evaluator_.classes(), lanes, evaluator_.paired(), w.losses.data(),
+  kernels.cross_entropy(w.table.row(logits), w.targets.row(0), w.weights.data(), evaluator_.classes(), lanes, evaluator_.paired(), w.losses.data(),
                         w.deltas.row(logits));
   const float* parameters = evaluator_.model().network.parameters.data();
   for (auto layer = plan.layers.rbegin(); layer != plan.layers.rend(); ++layer) {

@@ -11,6 +11,11 @@
 
 namespace pcednet::nn {
 
+/// The scales from `first` to before `last`.
+struct ScaleRange {
+  int first = 0, last = 0;
+};
+
 /// The loss of a model over some samples and its derivative by the parameters.
 ///
 /// The loss is the mean cross-entropy -sum_c target_c log p_c, with target 1 - s + s/n for the
@@ -27,8 +32,10 @@ class GradientMachine {
   /// Returns the mean loss over the samples `chosen` (indices into `set`, none of them ignored) and
   /// writes its derivatives to `gradient`. The batch is cut in chunks of fixed size whose gradients
   /// are added in order: the same bytes for any number of threads.
+  ///
+  /// Of sample i only the scales `kept[i]` are seen, the others count as undefined; empty: all.
   double run(const TrainingSet& set, std::span<const std::uint32_t> chosen,
-             std::span<float> gradient);
+             std::span<float> gradient, std::span<const ScaleRange> kept = {});
 
  private:
   struct Workspace;
@@ -36,7 +43,10 @@ class GradientMachine {
   std::unique_ptr<Workspace> borrow();
   void give_back(std::unique_ptr<Workspace> workspace);
   double run_chunk(Workspace& workspace, const TrainingSet& set,
-                   std::span<const std::uint32_t> chosen, float weight, float* gradient) const;
+                   std::span<const std::uint32_t> chosen, std::span<const ScaleRange> kept,
+                   float weight, float* gradient) const;
+  void fill_targets(Workspace& workspace, const TrainingSet& set,
+                    std::span<const std::uint32_t> chosen) const;
 
   Evaluator evaluator_;
   float label_smoothing_;

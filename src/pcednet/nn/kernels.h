@@ -76,11 +76,10 @@ struct Kernels {
   void (*softmax)(float* rows, int classes, int lanes, bool paired);
 
   /// From logits (left as they are) to the cross-entropy of each lane and its derivative by the
-  /// logits, both times the lane's `weight`. The target of class c is 1 - smoothing + smoothing/n
-  /// for the label, smoothing/n for the others. `paired` as in softmax.
-  void (*cross_entropy)(const float* logits, const std::uint8_t* labels, const float* weights,
-                        float smoothing, int classes, int lanes, bool paired, float* losses,
-                        float* deltas);
+  /// logits, both times the point's `weight`. `targets` has a row per class of the probabilities
+  /// wanted, one for each point: half as long as the logits' with `paired`, which is as in softmax.
+  void (*cross_entropy)(const float* logits, const float* targets, const float* weights,
+                        int classes, int lanes, bool paired, float* losses, float* deltas);
 
   /// Turns derivatives by a layer's outputs into derivatives by its sums, given the outputs.
   void (*activate_backward)(Activation activation, const float* outputs, float* deltas,

@@ -19,7 +19,7 @@ namespace {
 using SamplesByClass = std::vector<std::vector<std::uint32_t>>;
 
 // Independent streams of the caller's seed.
-enum Stream : std::uint64_t { kSplitStream = 1, kSampleStream = 2 };
+enum Stream : std::uint64_t { kSplitStream = 1, kSampleStream = 2, kScaleStream = 3 };
 
 constexpr std::size_t kFewestToSplit = 20;      // samples of a class
 constexpr std::size_t kMostToValidate = 50000;  // of a class: judging stays cheap beside learning
@@ -129,7 +129,8 @@ class Trainer {
         optimiser_(options.optimiser, model_.network.parameters.size(), options.momentum,
                    options.weight_decay),
         gradient_(model_.network.parameters.size()),
-        batch_(options.batch) {
+        batch_(options.batch),
+        random_(options.seed, kScaleStream) {
     const std::size_t samples_per_epoch =
         std::clamp(sampler_.round(), options.least_per_epoch, options.most_per_epoch);
     steps_per_epoch_ = (samples_per_epoch + options.batch - 1) / options.batch;
@@ -144,7 +145,7 @@ class Trainer {
     for (std::size_t i = 0; i < steps_per_epoch_; ++i) {
       if (progress && progress->cancelled && progress->cancelled()) return false;
       sampler_.next(batch_);
-      sum += machine_.run(set_, batch_, gradient_);
+      sum += machine_.run(set_, batch_, gradient_, ranges_to_keep());
       const double share = options_.anneal ? learning_rate_share(step_, steps()) : 1.0;
       optimiser_.step(gradient_, options_.learning_rate * share, model_.network.parameters);
       ++step_;
@@ -155,6 +156,20 @@ class Trainer {
   }
 
  private:
+  /// Some samples lose up to a quarter of the scales at one end.
+  std::span<const ScaleRange> ranges_to_keep() {
+    if (options_.missing_scales == 0.0) return {};
+    const int scales = model_.network.architecture.scales;
+    kept_.assign(batch_.size(), {0, scales});
+    for (ScaleRange& range : kept_) {
+      if (random_.uniform() >= options_.missing_scales) continue;
+      const int lost = 1 + static_cast<int>(random_.index(static_cast<std::size_t>(scales / 4)));
+      if (random_.uniform() < 0.5) range.first = lost;
+      else range.last = scales - lost;
+    }
+    return kept_;
+  }
+
   const TrainOptions& options_;
   const TrainingSet& set_;
   Model model_;
@@ -163,6 +178,8 @@ class Trainer {
   Optimiser optimiser_;
   std::vector<float> gradient_;
   std::vector<std::uint32_t> batch_;
+  std::vector<ScaleRange> kept_;
+  Random random_;  // for the scales that samples lose
   std::size_t steps_per_epoch_ = 0;
   std::size_t step_ = 0;
 };

@@ -20,6 +20,7 @@ struct TrainOptions {
   double momentum = 0.9;
   double weight_decay = 0.0;
   double label_smoothing = 0.0;
+  double missing_scales = 0.0;  ///< the share of samples that lose some scales at either end
   int epochs = 40;
   std::size_t batch = 512;
   /// 1: every class comes equally often, by replication; 0: as often as it occurs; see Sampler

@@ -34,6 +34,7 @@ void judge(const Evaluator& evaluator, const TrainingSet& set,
   LaneTable deltas(classes, table.lanes());
   std::array<const float*, kPoints> rows;
   std::array<std::uint8_t, kPoints> labels;
+  LaneTable targets(classes, kPoints);
   std::array<float, kPoints> weights, losses;
   weights.fill(1.0f);
   for (std::size_t begin = 0; begin < chosen.size(); begin += kPoints) {
@@ -43,9 +44,14 @@ void judge(const Evaluator& evaluator, const TrainingSet& set,
       rows[p] = set.samples.data() + sample * static_cast<std::size_t>(evaluator.inputs());
       labels[p] = set.labels[sample];
     }
+    for (int c = 0; c < classes; ++c) {
+      for (std::size_t p = 0; p < kPoints; ++p) {
+        targets.row(c)[p] = static_cast<float>(labels[p] == c);
+      }
+    }
     evaluator.run(rows.data(), table);
     const Kernels& kernels = evaluator.kernels();
-    kernels.cross_entropy(table.row(logits), labels.data(), weights.data(), 0.0f, classes,
+    kernels.cross_entropy(table.row(logits), targets.row(0), weights.data(), classes,
                           table.lanes(), evaluator.paired(), losses.data(), deltas.row(0));
     kernels.softmax(table.row(logits), classes, table.lanes(), evaluator.paired());
     for (std::size_t p = 0; p < points; ++p) {

@@ -24,7 +24,8 @@ std::string text_of(const nn::Architecture& architecture) {
 }
 
 std::string text_of(const nn::TrainOptions& options) {
-  const auto& [optimiser, learning_rate, anneal, momentum, weight_decay, label_smoothing, epochs,
+  const auto& [optimiser, learning_rate, anneal, momentum, weight_decay, label_smoothing,
+               missing_scales, epochs,
                batch, balance, least_per_epoch, most_per_epoch, standardise, standardisation,
                sign_rule, class_names, validation, validation_share, patience, start, seed] =
       options;
@@ -33,11 +34,11 @@ std::string text_of(const nn::TrainOptions& options) {
   static_cast<void>(validation), static_cast<void>(start), static_cast<void>(class_names);
   const auto& [bound, squash, tail, most_samples] = standardisation;
   return fmt::format(
-      "optimiser {} rate {} anneal {} momentum {} decay {} smoothing {} epochs {} batch {} "
+      "optimiser {} rate {} anneal {} momentum {} decay {} smoothing {} missing {} epochs {} batch {} "
       "balance {} least {} most {} standardise {} bound {} squash {} tail {} of {} symmetry {} "
       "validation {} patience {} seed {}",
       static_cast<int>(optimiser), learning_rate, anneal, momentum, weight_decay, label_smoothing,
-      epochs, batch, balance, least_per_epoch, most_per_epoch, standardise, bound,
+      missing_scales, epochs, batch, balance, least_per_epoch, most_per_epoch, standardise, bound,
       static_cast<int>(squash), tail, most_samples, static_cast<int>(sign_rule.symmetry),
       validation_share, patience, seed);
 }
@@ -68,15 +69,15 @@ void try_networks(const detect::PreparedCloud& cloud, const PointCloud& labelled
     options.training.least_per_epoch = 1;
     const auto trained = detect::train("probe", samples, options);
     digest.add_values(std::span(std::as_const(trained.model.network.network.parameters)));
-    digest.add_values(std::span<const float>(detect::classify(described, trained.model).p_sharp));
+    digest.add_values(std::span<const float>(detect::classify(described, cloud.positions, trained.model).p_sharp));
   }
 }
 
 }  // namespace
 
 std::string text_of(const detect::TrainOptions& options) {
-  const auto& [descriptor, architecture, training, exact] = options;
-  static_cast<void>(exact);  // the descriptor's engine says it
+  const auto& [descriptor, architecture, training, context] = options;
+  static_cast<void>(context);  // the runner trains on samples, which have none
   return gls::text_of(descriptor) + ", " + text_of(architecture) + ", " + text_of(training);
 }
 

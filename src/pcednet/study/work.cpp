@@ -96,13 +96,14 @@ CloudWork::CloudWork(const StudyCloud& cloud, const Treatment& treatment,
                      const Progress* progress)
     : watts_per_core_(watts_per_core) {
   try {
-    const PointCloud treated = treat(cloud.cloud, treatment);
+    PointCloud treated = treat(cloud.cloud, treatment);
     truth_ = treated.labels;
     EnergyMeter meter(watts_per_core_);
     const auto prepared = detect::prepare(treated, progress);
     costs_.normals = meter.lap();
     described_ = detect::describe(prepared, descriptor, progress);
     costs_.describe = meter.lap();
+    positions_ = std::move(treated.positions);
   } catch (const Error& error) {
     if (error.kind() != ErrorKind::kInsufficient) throw;
     failure_ = error.what();
@@ -113,7 +114,7 @@ StoredClasses CloudWork::classify(const detect::EdgeModel& model) const {
   StoredClasses stored{.failure = failure_, .costs = costs_};
   if (!failure_.empty()) return stored;
   EnergyMeter meter(watts_per_core_);
-  stored.classes = detect::classify(described_, model).classes;
+  stored.classes = detect::classify(described_, positions_, model).classes;
   stored.costs.classify = meter.lap();
   count_agreement(truth_, stored);
   return stored;

@@ -62,6 +62,7 @@ class CloudWork {
   std::string failure_ = {};  ///< why there is no description
   Costs costs_ = {};
   std::vector<std::uint8_t> truth_ = {};
+  std::vector<Vec3> positions_ = {};
   detect::DescribedCloud described_ = {};
 };
 

@@ -1,0 +1,155 @@
+#include "pcednet/detect/context.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include "pcednet/cloud/point_cloud.h"
+#include "pcednet/core/parallel.h"
+#include "pcednet/detect/decide.h"
+#include "pcednet/spatial/curve_order.h"
+
+namespace pcednet::detect {
+namespace {
+
+constexpr double kReach = 1.2;      // the weight falls to nothing at so many r^2
+constexpr double kLittle = 1e-3;    // added to sums of probabilities, that they can be divided by
+constexpr double kSurest = 1e-6;    // probabilities nearer to 0 or 1 say no more
+constexpr std::size_t kBlock = 16 * 1024;
+
+/// The points that have a class, along a curve. Of points at one place the surer ones come first,
+/// whatever their numbers, so that it is the same for any numbering which of them are nearest.
+std::vector<std::uint32_t> order_of(std::span<const Vec3> positions, const Classification& found) {
+  auto order = spatial::curve_order(positions);
+  std::erase_if(order, [&](std::uint32_t i) { return found.classes[i] == kUnlabelled; });
+  const auto surer = [&](std::uint32_t a, std::uint32_t b) {
+    return std::tie(found.p_sharp[a], found.p_smooth[a]) >
+           std::tie(found.p_sharp[b], found.p_smooth[b]);
+  };
+  for (auto first = order.begin(); first != order.end();) {
+    const auto last = std::find_if(first + 1, order.end(), [&](std::uint32_t i) {
+      return positions[i] != positions[*first];
+    });
+    if (last - first > 1) std::stable_sort(first, last, surer);
+    first = last;
+  }
+  return order;
+}
+
+/// Sums over the nearest points, of which every size of neighbourhood takes some more. y is a
+/// position as seen from the point, d its square.
+struct Sums {
+  double count = 0, d = 0, most = 0;
+  // Of p, p y and p y y^T, and of the same times d.
+  double p = 0, pd = 0;
+  Vec3 py = Vec3::Zero(), pyd = Vec3::Zero();
+  Mat3 pyy = Mat3::Zero(), pyyd = Mat3::Zero();
+
+  void add(const Vec3& y, double sq_distance, double probability) {
+    const Vec3 py_here = probability * y;
+    const Mat3 pyy_here = py_here * y.transpose();
+    count += 1, d += sq_distance, most = std::max(most, probability);
+    p += probability, pd += probability * sq_distance;
+    py += py_here, pyd += sq_distance * py_here;
+    pyy += pyy_here, pyyd += sq_distance * pyy_here;
+  }
+};
+
+void write_features(const Sums& sums, double own, double sq_r, float* out) {
+  // Weights and lengths in units of r; a neighbourhood of copies of the point has none.
+  const double falloff = sq_r > 0 ? 1.0 / (kReach * sq_r) : 0.0;
+  const double scale = sq_r > 0 ? 1.0 / std::sqrt(sq_r) : 0.0;
+  const double weight = sums.count - falloff * sums.d;
+  const double p = sums.p - falloff * sums.pd;
+  const double total = 1.0 / (p + kLittle);
+  const Vec3 centre = scale * total * (sums.py - falloff * sums.pyd);
+  const Mat3 covariance = scale * scale * total * (sums.pyy - falloff * sums.pyyd) -
+                          centre * centre.transpose();
+  const Eigen::SelfAdjointEigenSolver<Mat3> axes(covariance);
+  const double l1 = std::max(0.0, axes.eigenvalues()[2]);
+  const double l2 = std::max(0.0, axes.eigenvalues()[1]);
+  const Vec3 along = axes.eigenvectors().col(2);
+  const double clamped = std::clamp(own, kSurest, 1.0 - kSurest);
+  const std::array<double, kContextFeatures> features = {
+      std::log(clamped / (1.0 - clamped)),
+      p / weight,
+      sums.most,
+      centre.norm(),
+      std::sqrt(std::max(0.0, covariance.trace())),
+      (centre - along * along.dot(centre)).norm(),
+      std::sqrt(l1),
+      std::sqrt(l2 / (l1 + kSurest))};
+  std::transform(features.begin(), features.end(), out,
+                 [](double feature) { return static_cast<float>(feature); });
+}
+
+}  // namespace
+
+ContextMatrix::ContextMatrix(std::span<const Vec3> positions, const Classification& found,
+                             int classes)
+    : kinds_(classes - 1), tree_(std::span<const Vec3>()) {
+  for (const std::uint32_t i : order_of(positions, found)) {
+    const float edge = found.p_sharp[i] + found.p_smooth[i];
+    if (edge >= kLeastEdge) {
+      points_.push_back(i);
+      places_.push_back(static_cast<std::uint32_t>(positions_.size()));
+    }
+    positions_.push_back(positions[i]);
+    probabilities_.push_back({found.p_sharp[i], edge});
+  }
+  tree_ = spatial::KdTree(positions_);
+}
+
+void ContextMatrix::describe(std::size_t begin, std::size_t end, std::span<float> rows) const {
+  parallel_blocks(end - begin, 1024, [&](std::size_t first, std::size_t last) {
+    std::vector<spatial::Neighbour> near;
+    for (std::size_t i = first; i < last; ++i) {
+      const std::uint32_t place = places_[begin + i];
+      tree_.nearest(positions_[place], kContextSizes.back() + 1, near);
+      describe_point(place, near, rows.data() + i * width());
+    }
+  });
+}
+
+void ContextMatrix::describe_point(std::size_t place, const std::vector<spatial::Neighbour>& near,
+                                   float* row) const {
+  for (std::size_t kind = 0; kind < static_cast<std::size_t>(kinds_); ++kind) {
+    Sums sums;
+    double sq_r = 0.0;
+    auto neighbour = near.begin();
+    for (std::size_t size = 0; size < kContextSizes.size(); ++size) {
+      for (; neighbour != near.end() && sums.count < kContextSizes[size]; ++neighbour) {
+        if (neighbour->index == place) continue;
+        sq_r = neighbour->sq_distance;
+        sums.add(positions_[neighbour->index] - positions_[place], sq_r,
+                 static_cast<double>(probabilities_[neighbour->index][kind]));
+      }
+      float* const out =
+          row + size * features() + kind * static_cast<std::size_t>(kContextFeatures);
+      if (sums.count > 0) {
+        write_features(sums, static_cast<double>(probabilities_[place][kind]), sq_r, out);
+      } else {
+        std::fill_n(out, kContextFeatures, 0.0f);
+      }
+    }
+  }
+}
+
+void apply_context(const nn::Model& network, const std::vector<std::uint8_t>& classes,
+                   std::span<const Vec3> positions, Classification& result,
+                   const Progress* progress) {
+  const ContextMatrix matrix(positions, result, static_cast<int>(classes.size()));
+  const auto points = matrix.points();
+  std::vector<float> rows(std::min(kBlock, points.size()) * matrix.width()), probabilities;
+  Stage stage(progress, "context", points.size());
+  for (std::size_t first = 0; first < points.size(); first += kBlock) {
+    const auto targets = points.subspan(first, std::min(kBlock, points.size() - first));
+    const auto some = std::span(rows).first(targets.size() * matrix.width());
+    matrix.describe(first, first + targets.size(), some);
+    decide(network, classes, some, targets, probabilities, result);
+    stage.advance(targets.size());
+  }
+}
+
+}  // namespace pcednet::detect

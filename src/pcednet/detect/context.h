@@ -1,0 +1,73 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "pcednet/core/progress.h"
+#include "pcednet/core/vec3.h"
+#include "pcednet/detect/classify.h"
+#include "pcednet/spatial/kd_tree.h"
+
+namespace pcednet::detect {
+
+/// How many of the nearest points the context of a point is made of, size by size.
+constexpr std::array<int, 4> kContextSizes = {4, 8, 16, 32};
+
+/// A point that is so sure to be no edge stays so: most points do, which saves most of the time.
+constexpr float kLeastEdge = 0.01f;
+
+/// Numbers per size and kind of edge, see ContextMatrix.
+constexpr int kContextFeatures = 8;
+
+/// What a network found around each point, for a second network to decide with: edges are lines and
+/// bands, which the description of one point does not show.
+///
+/// Like the scale-space matrix it is a row per point of sizes x features, smallest size first. The
+/// kinds of edge are sharp-edge and, with three classes, any edge; for each, with p_j its
+/// probability at the k nearest points, y_j where they are as seen from the point, r the distance
+/// of the last, w_j = 1 - |y_j|^2 / (1.2 r^2), C the covariance of the y_j / r weighted with w_j
+/// p_j, c their mean and l1 >= l2 >= l3 its eigenvalues, the features are
+///
+///     log(p / (1 - p)) of the point itself    S w p / S w    max p    |c|    sqrt(l1 + l2 + l3)
+///     distance of the point from the line through c along C's first axis    sqrt(l1)
+///     sqrt(l2 / l1)
+///
+/// None depends on the cloud's units, place or orientation.
+class ContextMatrix {
+ public:
+  /// Points that `found` leaves unlabelled have no context and are none.
+  ContextMatrix(std::span<const Vec3> positions, const Classification& found, int classes);
+
+  /// The points to describe, edges of a probability of kLeastEdge or more, in an order that is free
+  /// of their numbering and kind to the caches.
+  std::span<const std::uint32_t> points() const { return points_; }
+
+  /// Numbers per row.
+  std::size_t width() const { return kContextSizes.size() * features(); }
+  std::size_t features() const {
+    return static_cast<std::size_t>(kContextFeatures) * static_cast<std::size_t>(kinds_);
+  }
+
+  /// Describes the points points()[begin] to points()[end]: rows one after the other.
+  void describe(std::size_t begin, std::size_t end, std::span<float> rows) const;
+
+ private:
+  void describe_point(std::size_t place, const std::vector<spatial::Neighbour>& near,
+                      float* row) const;
+
+  int kinds_;
+  std::vector<Vec3> positions_;                      ///< of all that have a class, along a curve
+  std::vector<std::array<float, 2>> probabilities_;  ///< theirs, of sharp-edge and of any edge
+  std::vector<std::uint32_t> points_, places_;       ///< to describe; where they are in these lists
+  spatial::KdTree tree_;
+};
+
+/// Lets the second network decide, in place of what was found. `positions` are those that were
+/// classified. The result does not depend on threads or on the order of the points.
+void apply_context(const nn::Model& network, const std::vector<std::uint8_t>& classes,
+                   std::span<const Vec3> positions, Classification& result,
+                   const Progress* progress = nullptr);
+
+}  // namespace pcednet::detect

@@ -1,0 +1,59 @@
+#include "pcednet/detect/train_context.h"
+
+#include "pcednet/detect/classify.h"
+#include "pcednet/detect/context.h"
+#include "pcednet/detect/outputs.h"
+
+namespace pcednet::detect {
+namespace {
+
+/// Rows of the context matrices of all clouds, with the outputs wanted.
+struct ContextSamples {
+  std::vector<float> values = {};
+  std::vector<std::uint8_t> outputs = {};
+};
+
+ContextSamples make_samples(const EdgeModel& model, std::span<const TrainingCloud> clouds,
+                            bool exact, const Progress* progress) {
+  std::size_t points = 0;
+  for (const TrainingCloud& cloud : clouds) points += cloud.labels.size();
+  const Progress cancel_only = without_report(progress);
+  Stage stage(progress, "look around", points);
+  ContextSamples samples;
+  for (const TrainingCloud& cloud : clouds) {
+    const auto found = classify(cloud.cloud, model, {.exact = exact}, &cancel_only);
+    const ContextMatrix matrix(cloud.cloud.positions, found,
+                               static_cast<int>(model.classes.size()));
+    const std::size_t count = matrix.points().size();
+    const std::size_t before = samples.values.size();
+    samples.values.resize(before + count * matrix.width());
+    matrix.describe(0, count, std::span(samples.values).subspan(before));
+    for (const std::uint32_t i : matrix.points()) {
+      samples.outputs.push_back(output_of(cloud.labels[i], model.classes));
+    }
+    stage.advance(cloud.labels.size());
+  }
+  return samples;
+}
+
+}  // namespace
+
+nn::TrainResult train_context(const EdgeModel& model, std::span<const TrainingCloud> clouds,
+                              const TrainOptions& options,
+                              const std::function<void(const nn::EpochReport&)>& on_epoch,
+                              const Progress* progress) {
+  const bool exact = options.descriptor.engine == gls::Engine::kExact;
+  const ContextSamples samples = make_samples(model, clouds, exact, progress);
+  const auto classes = static_cast<int>(model.classes.size());
+  const nn::Architecture architecture = {.scales = static_cast<int>(kContextSizes.size()),
+                                         .features = kContextFeatures * (classes - 1),
+                                         .classes = classes};
+  nn::TrainOptions training = options.training;
+  training.missing_scales = 0.0;
+  training.sign_rule = {};
+  training.class_names = model.network.class_names;
+  training.start = nullptr;
+  return nn::train(architecture, {samples.values, samples.outputs}, training, on_epoch, progress);
+}
+
+}  // namespace pcednet::detect
