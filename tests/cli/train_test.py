@@ -55,6 +55,23 @@ class Train(CliTest):
         weights = sum(a.size for name, a in arrays.items() if not name.startswith("standard"))
         self.assertEqual(weights, 1606)
 
+    def test_trains_a_second_network_on_the_context(self):
+        model = self.train("m.safetensors", "--context", "--epochs", 15, "--classes", 2)
+        metadata, arrays = tensors(model)
+        self.assertEqual(metadata["format"], "pcednet-edge-model-2")
+        self.assertEqual(arrays["context.tree.0.weight"].shape, (2, 8, 16))
+        p, n, _ = cube(seed=9)
+        write_ply(self.folder / "c.ply", p, n)
+        found = {}
+        for name, extra in (("with", []), ("without", ["--no-context"])):
+            out = self.folder / (name + ".ply")
+            run("classify", self.folder / "c.ply", "-o", out, "--model", model, *extra)
+            found[name] = read_ply(out)[0]["scalar_p_sharp"]
+        changed = found["with"] != found["without"]
+        self.assertTrue(changed.any())
+        # What is sure to be no edge stays as it is.
+        self.assertTrue((found["without"][changed] >= 0.01).all())
+
     def test_trains_the_baselines_and_the_papers_recipe(self):
         for network, weights in (("fc", 6663), ("cnn", 9723)):
             _, arrays = tensors(self.train(network + ".safetensors", "--network", network,

@@ -31,6 +31,15 @@ PointCloud permuted(const PointCloud& cloud) {
   return result;
 }
 
+/// Normals that make every answer of its own doubtful.
+PointCloud noisy(PointCloud cloud) {
+  Random random(8);
+  for (Vec3& n : cloud.normals) {
+    n = (n + 0.3 * Vec3(random.normal(), random.normal(), random.normal())).normalized();
+  }
+  return cloud;
+}
+
 TrainOptions quick(int classes) {
   TrainOptions options;
   options.architecture.classes = classes;
@@ -89,6 +98,27 @@ TEST(TrainEdges, NamesTheCloudWithoutLabels) {
   }
 }
 
+TEST(TrainEdges, LearnsFromTheAnswersAroundAPoint) {
+  TrainOptions options;
+  options.context = true;
+  const auto trained = train_on(noisy(cube(4000, 1)), options);
+  ASSERT_TRUE(trained.model.context.has_value());
+  EdgeModel without = trained.model;
+  without.context.reset();
+  const PointCloud unseen = noisy(cube(3000, 2));
+  EXPECT_GT(accuracy(unseen, trained.model), accuracy(unseen, without) + 0.003);
+}
+
+TEST(TrainEdges, GivesTheSameContextNetworkForAnyThreadsAndOrder) {
+  auto options = quick(2);
+  options.context = true;
+  const PointCloud cloud = cube(1500, 1);
+  const auto reference = train_on(cloud, options).model.context->network.parameters;
+  set_thread_count(8);
+  EXPECT_EQ(train_on(permuted(cloud), options).model.context->network.parameters, reference);
+  set_thread_count(0);
+}
+
 class EdgeModelFile : public testing::Test {
  protected:
   void SetUp() override { std::filesystem::remove(path_); }
@@ -115,6 +145,52 @@ TEST_F(EdgeModelFile, KeepsEverythingThatClassificationNeeds) {
   EXPECT_EQ(loaded.descriptor.side_gate, -0.25);
   EXPECT_EQ(loaded.descriptor.features, gls::FeatureSet::kInvariant7);
   EXPECT_EQ(classify(prepare(cloud), loaded).p_sharp, classify(prepare(cloud), model).p_sharp);
+}
+
+TEST_F(EdgeModelFile, KeepsADescriptionWithTwoGates) {
+  auto options = quick(2);
+  options.descriptor.side_gate = 0.4;
+  options.descriptor.second_gate = -0.3;
+  options.training.sign_rule.symmetry = nn::Symmetry::kAverage;
+  const PointCloud cloud = cube(1500, 3);
+  const EdgeModel model = train_on(cloud, options).model;
+  EXPECT_EQ(model.network.network.parameters.size(), 2182u);
+  save_model(path_, model, Overwrite::kNo);
+  const EdgeModel loaded = load_model(path_);
+  EXPECT_EQ(loaded.descriptor, model.descriptor);
+  EXPECT_EQ(classify(prepare(cloud), loaded).p_sharp, classify(prepare(cloud), model).p_sharp);
+  // Turned normals change nothing.
+  PointCloud turned = cloud;
+  for (Vec3& normal : turned.normals) normal = -normal;
+  EXPECT_EQ(classify(prepare(turned), loaded).p_sharp, classify(prepare(cloud), loaded).p_sharp);
+}
+
+TEST_F(EdgeModelFile, KeepsTheContextNetwork) {
+  auto options = quick(3);
+  options.context = true;
+  const PointCloud cloud = cube(1500, 3);
+  const EdgeModel model = train_on(cloud, options).model;
+  save_model(path_, model, Overwrite::kNo);
+  const EdgeModel loaded = load_model(path_);
+  ASSERT_TRUE(loaded.context.has_value());
+  EXPECT_EQ(loaded.context->network.parameters, model.context->network.parameters);
+  EXPECT_EQ(classify(prepare(cloud), loaded).p_sharp, classify(prepare(cloud), model).p_sharp);
+}
+
+TEST_F(EdgeModelFile, RefusesAContextNetworkForOtherClasses) {
+  auto options = quick(3);
+  options.context = true;
+  EdgeModel model = train_on(cube(800, 3), options).model;
+  options.architecture.classes = 2;
+  model.context = train_on(cube(800, 3), options).model.context;
+  save_model(path_, model, Overwrite::kNo);
+  try {
+    load_model(path_);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::kModelMismatch);
+    EXPECT_NE(std::string(error.what()).find("context"), std::string::npos);
+  }
 }
 
 TEST_F(EdgeModelFile, RefusesANetworkWithoutItsDescriptor) {

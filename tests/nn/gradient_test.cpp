@@ -102,6 +102,52 @@ TEST(Gradient, IsRightWithSmoothedLabels) {
   expect_right_gradient(make_problem({}, 7), 0.1, false);
 }
 
+TEST(Gradient, IsRightWithSoftTargets) {
+  Problem problem = make_problem({}, 7);
+  // A mixture of hard labels has the mixture of their losses, and of their gradients.
+  const std::size_t classes = 3, count = problem.labels.size();
+  std::vector<float> targets(count * classes);
+  const std::vector<float> shares = {0.5f, 0.3f, 0.2f};
+  for (std::size_t i = 0; i < targets.size(); ++i) targets[i] = shares[i % classes];
+  const std::size_t n = problem.model.network.parameters.size();
+  std::vector<float> found(n), part(n);
+  std::vector<double> wanted(n, 0.0);
+  GradientMachine machine(problem.model);
+  double wanted_loss = 0.0;
+  TrainingSet set = problem.set();
+  for (std::uint8_t c = 0; c < classes; ++c) {
+    const std::vector<std::uint8_t> all(count, c);
+    set.labels = all;
+    wanted_loss += static_cast<double>(shares[c]) * machine.run(set, problem.chosen, part);
+    for (std::size_t k = 0; k < n; ++k) wanted[k] += static_cast<double>(shares[c] * part[k]);
+  }
+  set = problem.set();
+  set.targets = targets;
+  EXPECT_NEAR(machine.run(set, problem.chosen, found), wanted_loss, 1e-6);
+  for (std::size_t k = 0; k < n; ++k) EXPECT_NEAR(found[k], wanted[k], 1e-6);
+}
+
+TEST(Gradient, TakesScalesThatAreNotKeptForUndefined) {
+  Problem problem = make_problem({}, 150);
+  const std::size_t n = problem.model.network.parameters.size();
+  std::vector<ScaleRange> kept;
+  Problem blanked = problem;
+  for (std::size_t i = 0; i < problem.labels.size(); ++i) {
+    kept.push_back(i % 2 ? ScaleRange{3, 16} : ScaleRange{0, 14});
+    for (int scale = 0; scale < 16; ++scale) {
+      if (scale >= kept[i].first && scale < kept[i].last) continue;
+      for (int f = 0; f < 6; ++f) {
+        blanked.samples[i * 96 + static_cast<std::size_t>(scale * 6 + f)] = 0.0f;
+      }
+    }
+  }
+  std::vector<float> wanted(n), found(n);
+  const double loss =
+      GradientMachine(problem.model).run(blanked.set(), problem.chosen, wanted);
+  EXPECT_EQ(GradientMachine(problem.model).run(problem.set(), problem.chosen, found, kept), loss);
+  EXPECT_EQ(found, wanted);
+}
+
 TEST(Gradient, IsThatOfTheAveragedLogits) {
   Problem problem = make_problem({}, 7);
   problem.model.sign_rule = {Symmetry::kAverage, {1, 1, 1, 1, 1, 0}, 1};

@@ -76,10 +76,11 @@ TEST(Kernels, ComputeTheCrossEntropy) {
   const int lanes = static_cast<int>(x.size());
   LaneTable logits(2, lanes), deltas(2, lanes);
   std::copy(x.begin(), x.end(), logits.row(0));
-  const std::vector<std::uint8_t> labels(x.size(), 0);
+  LaneTable targets(2, lanes);
+  std::fill_n(targets.row(0), lanes, 1.0f);
   const std::vector<float> weights(x.size(), 1.0f);
   std::vector<float> losses(x.size());
-  kernels().cross_entropy(logits.row(0), labels.data(), weights.data(), 0.0f, 2, lanes, false,
+  kernels().cross_entropy(logits.row(0), targets.row(0), weights.data(), 2, lanes, false,
                           losses.data(), deltas.row(0));
   for (std::size_t i = 0; i < x.size(); ++i) {
     const double wanted = std::log1p(std::exp(-static_cast<double>(x[i])));

@@ -7,6 +7,7 @@
 
 #include "pcednet/core/error.h"
 #include "pcednet/core/parallel.h"
+#include "pcednet/nn/distil.h"
 #include "pcednet/nn/predict.h"
 #include "reference.h"
 
@@ -48,6 +49,37 @@ double share_right(const Model& model, const Labelled& data) {
     right += std::max_element(row, row + 3) - row == data.labels[i];
   }
   return static_cast<double>(right) / static_cast<double>(data.labels.size());
+}
+
+/// Classes 0 and 1 that overlap: no network can be sure.
+Labelled doubtful(std::size_t count, std::uint64_t seed) {
+  Random random(seed);
+  Labelled data;
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto label = static_cast<std::uint8_t>(random.index(2));
+    for (int u = 0; u < 12; ++u) {
+      data.samples.push_back(static_cast<float>(0.3 * label + random.normal()));
+    }
+    data.labels.push_back(label);
+  }
+  return data;
+}
+
+double mean_difference(const std::vector<float>& a, const std::vector<float>& b) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += static_cast<double>(std::abs(a[i] - b[i]));
+  return sum / static_cast<double>(a.size());
+}
+
+TEST(Distil, EvensOutWhatNetworksFindByChance) {
+  const Architecture architecture = {.scales = 4, .features = 3, .classes = 2};
+  const Labelled data = doubtful(300, 1), unseen = doubtful(2000, 2);
+  const auto answer = [&](std::uint64_t seed, int teachers) {
+    const TrainOptions options = {.epochs = 6, .seed = seed};
+    return predict(distil(architecture, data.set(), options, teachers).best, unseen.samples);
+  };
+  EXPECT_LT(mean_difference(answer(1, 6), answer(2, 6)),
+            0.8 * mean_difference(answer(1, 0), answer(2, 0)));
 }
 
 TEST(Train, LearnsASeparableProblemWithRareClasses) {

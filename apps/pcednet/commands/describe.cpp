@@ -57,7 +57,7 @@ StatusCounts write_matrix(const gls::ScaleSpace& space, std::size_t points, io::
                           const Progress& progress) {
   const std::size_t scales = space.scales().size();
   const std::size_t row =
-      scales * static_cast<std::size_t>(gls::feature_count(space.options().features));
+      scales * static_cast<std::size_t>(gls::column_count(space.options()));
   const std::span<const std::uint32_t> order = space.order();
   StatusCounts counts = {};
   std::vector<char> described(points);
@@ -96,17 +96,16 @@ StatusCounts write_matrix(const gls::ScaleSpace& space, std::size_t points, io::
 ordered_json to_json(const Arguments& arguments, const gls::ScaleSpace& space, std::size_t points,
                      const StatusCounts& counts) {
   const gls::ScaleSpaceOptions& options = space.options();
-  ordered_json names = ordered_json::array();
-  for (const std::string_view name : gls::feature_names(options.features)) names.push_back(name);
   ordered_json json = {
       {"version", kVersion}, {"input", fs::path(arguments.input).filename().string()},
       {"points", points},    {"scales", space.scales()},
-      {"features", names},   {"reconstruction", arguments.reconstruction},
+      {"features", gls::column_names(options)},   {"reconstruction", arguments.reconstruction},
       {"gate", nullptr},     {"engine", options.engine == gls::Engine::kExact ? "exact" : "fast"}};
   if (gls::projects(options.reconstruction)) {
     json["max_projection_steps"] = options.max_projection_steps;
   }
   if (options.side_gate) json["gate"] = *options.side_gate;
+  if (options.second_gate) json["second_gate"] = *options.second_gate;
   if (options.engine == gls::Engine::kFast) json["eps"] = options.eps;
   json["status"] = {{"stable", counts[0]}, {"unstable", counts[1]}, {"undefined", counts[2]}};
   return json;
@@ -134,7 +133,7 @@ void describe(const Arguments& arguments, const Common& common) {
   with_name_in_errors(arguments.input, [&] { prepared = detect::prepare(cloud, &progress); });
   for (const std::string& note : prepared->notes) warn(arguments.input + ": " + note);
   const gls::ScaleSpace space({prepared->positions, prepared->normals}, options, &progress);
-  const auto width = static_cast<std::size_t>(gls::feature_count(options.features));
+  const auto width = static_cast<std::size_t>(gls::column_count(options));
   io::NpyWriter matrix(output, {cloud.size(), space.scales().size(), width}, ScalarType::kFloat32,
                        common.overwrite());
   const StatusCounts counts = write_matrix(space, cloud.size(), matrix, progress);
@@ -171,6 +170,8 @@ void add_describe(CLI::App& app, Common& common) {
   command->add_option("--gate", options.side_gate,
                       "Leave out neighbours on the far side of thin walls, whose normals differ by "
                       "more than this cosine (-1 to 1)");
+  command->add_option("--second-gate", options.second_gate,
+                      "Describe with another gate too: twice as many numbers per scale");
   command->add_option("--s-min", options.s_min, "Smallest scale (0: the cloud's spacing)")
       ->capture_default_str();
   command

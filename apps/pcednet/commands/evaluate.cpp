@@ -23,7 +23,7 @@ struct Arguments {
   std::vector<std::string> inputs;
   std::string model, predictions, json, positive = "sharp";
   MethodArguments method;
-  bool exact = false, clean_up = false;
+  bool exact = false, no_context = false, clean_up = false;
 };
 
 std::vector<std::uint8_t> predict(const fs::path& input, const PointCloud& cloud,
@@ -50,7 +50,10 @@ std::vector<eval::CloudScore> score_all(const Arguments& arguments, const Common
   const auto positive =
       arguments.positive == "edge" ? eval::Positive::kEdge : eval::Positive::kSharp;
   std::optional<detect::EdgeModel> model;
-  if (!arguments.model.empty()) model = detect::load_model(find_model(arguments.model));
+  if (!arguments.model.empty()) {
+    model = detect::load_model(find_model(arguments.model));
+    if (arguments.no_context) model->context.reset();
+  }
 
   std::vector<eval::CloudScore> scores;
   for (const fs::path& input : expand_inputs(arguments.inputs)) {
@@ -118,6 +121,8 @@ void add_evaluate(CLI::App& app, Common& common) {
       ->capture_default_str()
       ->check(CLI::IsMember({"sharp", "edge"}));
   command->add_option("--json", arguments->json, "Write the scores here; - for standard output");
+  command->add_flag("--no-context", arguments->no_context,
+                    "Do not look at the answers around each point, as classify");
   command->add_flag("--clean-up", arguments->clean_up, "Let the nearest points vote, as classify");
   command->add_flag("--exact", arguments->exact, "Descriptors from exact neighbourhoods (slow)");
   command->callback([arguments, &common] { evaluate(*arguments, common); });

@@ -30,8 +30,8 @@ struct Arguments {
   std::vector<std::string> inputs;
   std::string project, output, network = "pcednet", recipe = "adam", symmetry = "average",
                                features = "6", reconstruction = "sphere";
-  int classes = 3, scales = 16, epochs = 0, width = 0;
-  double gate = 2.0, balance = 1.0;
+  int classes = 3, scales = 16, epochs = 0, width = 0, teachers = 0;
+  double gate = 2.0, second_gate = 2.0, balance = 1.0, smoothing = 0.0, missing_scales = 0.0, jitter = 0.0;
   std::uint64_t seed = 1;
   bool exact = false, natural = false, context = false;
 };
@@ -48,12 +48,17 @@ detect::TrainOptions options_of(const Arguments& arguments) {
   }
   if (arguments.exact) options.descriptor.engine = gls::Engine::kExact;
   if (arguments.gate <= 1.0) options.descriptor.side_gate = arguments.gate;
+  if (arguments.second_gate <= 1.0) options.descriptor.second_gate = arguments.second_gate;
   options.architecture.kind = kNetworks.at(arguments.network);
   options.architecture.classes = arguments.classes;
   options.architecture.width = arguments.width;
   if (arguments.recipe == "paper") options.training = nn::paper_recipe();
   if (arguments.epochs > 0) options.training.epochs = arguments.epochs;
   options.training.balance = arguments.natural ? 0.0 : arguments.balance;
+  options.training.label_smoothing = arguments.smoothing;
+  options.training.missing_scales = arguments.missing_scales;
+  options.jitter = arguments.jitter;
+  options.teachers = arguments.teachers;
   options.context = arguments.context;
   options.training.seed = arguments.seed;
   options.training.sign_rule.symmetry = kSymmetries.at(arguments.symmetry);
@@ -143,6 +148,8 @@ void add_descriptor_options(CLI::App& command, Arguments& arguments) {
   command.add_option("--gate", arguments.gate,
                      "Side-aware neighbourhoods: leave out points whose normal has a cosine below "
                      "this with the point's own (-1 to 1; default: off)");
+  command.add_option("--second-gate", arguments.second_gate,
+                     "Describe with another gate too: twice as many numbers per scale");
 }
 
 }  // namespace
@@ -192,6 +199,22 @@ void add_train(CLI::App& app, Common& common) {
                     "Also train a network that looks at the answers around each point and decides "
                     "in the end")
       ->excludes("--project");
+  command
+      ->add_option("--distil", arguments->teachers,
+                   "Train so many networks first and learn from their mean opinion")
+      ->check(CLI::Range(0, 100));
+  command
+      ->add_option("--smoothing", arguments->smoothing,
+                   "Label smoothing: the share of every label that goes to all classes alike")
+      ->check(CLI::Range(0.0, 0.9));
+  command
+      ->add_option("--jitter", arguments->jitter,
+                   "Multiply each cloud's scales by a factor between e^-X and e^X")
+      ->check(CLI::Range(0.0, 2.0));
+  command
+      ->add_option("--missing-scales", arguments->missing_scales,
+                   "The share of samples that lose up to a quarter of the scales at one end")
+      ->check(CLI::Range(0.0, 1.0));
   command->add_option("--epochs", arguments->epochs, "Rounds of training (0: the recipe's)");
   command->add_option("--seed", arguments->seed, "Seed of all randomness")->capture_default_str();
   command->callback([arguments, &common] { train(*arguments, common); });

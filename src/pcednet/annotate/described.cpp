@@ -90,7 +90,7 @@ std::shared_ptr<const Described> describe_once(const detect::PreparedCloud& clou
   header.key = key_of(cloud, descriptor);
   header.points = cloud.positions.size();
   header.width = static_cast<std::uint64_t>(descriptor.scales) *
-                 static_cast<std::uint64_t>(gls::feature_count(descriptor.features));
+                 static_cast<std::uint64_t>(gls::column_count(descriptor));
   const fs::path file = folder / fmt::format("{:016x}.description", header.key[0]);
   described->from_cache = !folder.empty() && read_cache(file, header, described->cloud);
   if (!described->from_cache) {

@@ -61,12 +61,12 @@ std::shared_ptr<const Prediction> predict(const Scene& scene, const Described& d
 std::vector<std::uint8_t> feature_bytes(const Described& described,
                                         std::span<const std::uint32_t> points, int feature,
                                         int scale) {
-  const auto names = gls::feature_names(described.descriptor.features);
+  const auto names = gls::column_names(described.descriptor);
   const int features = static_cast<int>(names.size());
   if (feature < 0 || feature >= features || scale < 0 || scale >= described.descriptor.scales) {
     throw Error(ErrorKind::kUnreadable, fmt::format("no feature {} at scale {}", feature, scale));
   }
-  const bool is_share = names[static_cast<std::size_t>(feature)] == "phi";
+  const bool is_share = names[static_cast<std::size_t>(feature)].ends_with("phi");
   const auto width = static_cast<std::size_t>(described.descriptor.scales * features);
   const auto column = static_cast<std::size_t>(scale * features + feature);
   std::vector<std::uint8_t> bytes;

@@ -80,7 +80,7 @@ DescribedCloud describe(const PreparedCloud& cloud, const gls::ScaleSpaceOptions
   const gls::ScaleSpace matrix({cloud.positions, cloud.normals}, descriptor, &cancel_only);
   const std::span<const std::uint32_t> order = matrix.order();
   const auto scales = static_cast<std::size_t>(descriptor.scales);
-  const auto width = scales * static_cast<std::size_t>(gls::feature_count(descriptor.features));
+  const auto width = scales * static_cast<std::size_t>(gls::column_count(descriptor));
   DescribedCloud described{.points = cloud.positions.size(), .order = {order.begin(), order.end()}};
   described.values.resize(order.size() * width);
   std::vector<gls::FitStatus> status(order.size() * scales);

@@ -134,13 +134,16 @@ EdgeModel load_model(const std::filesystem::path& path) {
   if (model.network.metadata.contains("descriptor_side_gate")) {
     descriptor.side_gate = metadata.take_number<double>("descriptor_side_gate");
   }
+  if (model.network.metadata.contains("descriptor_second_gate")) {
+    descriptor.second_gate = metadata.take_number<double>("descriptor_second_gate");
+  }
   if (model.network.metadata.contains("descriptor_s_max_fraction")) {
     descriptor.s_max_fraction = metadata.take_number<double>("descriptor_s_max_fraction");
   }
   model.classes = classes_of(metadata.take("classes"), metadata);
   const nn::Architecture& network = model.network.network.architecture;
   if (network.scales != descriptor.scales ||
-      network.features != gls::feature_count(descriptor.features) ||
+      network.features != gls::column_count(descriptor) ||
       network.classes != static_cast<int>(model.classes.size())) {
     metadata.refuse("the network does not fit its descriptor and classes");
   }
@@ -165,6 +168,9 @@ void save_model(const std::filesystem::path& path, const EdgeModel& model, Overw
   metadata["descriptor_projection_steps"] = std::to_string(descriptor.max_projection_steps);
   if (descriptor.side_gate) {
     metadata["descriptor_side_gate"] = fmt::format("{}", *descriptor.side_gate);
+  }
+  if (descriptor.second_gate) {
+    metadata["descriptor_second_gate"] = fmt::format("{}", *descriptor.second_gate);
   }
   if (descriptor.s_max_fraction != gls::kPartOfDiagonal) {
     metadata["descriptor_s_max_fraction"] = fmt::format("{}", descriptor.s_max_fraction);

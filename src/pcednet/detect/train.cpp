@@ -4,16 +4,21 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <iterator>
 
 #include "pcednet/core/error.h"
+#include "pcednet/core/random.h"
 #include "pcednet/core/stopwatch.h"
 #include "pcednet/detect/outputs.h"
 #include "pcednet/detect/train_context.h"
 #include "pcednet/gls/engine.h"
+#include "pcednet/nn/distil.h"
 
 namespace pcednet::detect {
 namespace {
+
+constexpr std::uint64_t kJitterStream = 5;  // of the training's seed
 
 void check_labels(const TrainingCloud& cloud) {
   if (cloud.labels.size() != cloud.cloud.positions.size()) {
@@ -53,12 +58,12 @@ std::vector<std::string> class_names(const std::vector<std::uint8_t>& classes) {
 }
 
 /// Every feature but phi changes sign with the normals.
-nn::SignRule sign_rule(gls::FeatureSet set, nn::Symmetry symmetry) {
+nn::SignRule sign_rule(const gls::ScaleSpaceOptions& descriptor, nn::Symmetry symmetry) {
   nn::SignRule rule;
   rule.symmetry = symmetry;
-  const auto names = gls::feature_names(set);
+  const auto names = gls::column_names(descriptor);
   for (std::size_t i = 0; i < names.size(); ++i) {
-    rule.odd_features.push_back(names[i] == "phi" ? 0 : 1);
+    rule.odd_features.push_back(names[i].ends_with("phi") ? 0 : 1);
     if (names[i] == "kappa") rule.deciding_feature = static_cast<int>(i);
   }
   return rule;
@@ -84,9 +89,11 @@ std::map<std::string, std::string> summary_of(const nn::TrainResult& result,
 }  // namespace
 
 Samples make_samples(std::span<const TrainingCloud> clouds,
-                     const gls::ScaleSpaceOptions& descriptor, const Progress* progress) {
+                     const gls::ScaleSpaceOptions& descriptor, const Progress* progress,
+                     const Augmentation& augmentation) {
+  Random random(augmentation.seed, kJitterStream);
   const auto scales = static_cast<std::size_t>(descriptor.scales);
-  const auto width = scales * static_cast<std::size_t>(gls::feature_count(descriptor.features));
+  const auto width = scales * static_cast<std::size_t>(gls::column_count(descriptor));
   const Progress cancel_only = without_report(progress);
   Samples samples{.descriptor = descriptor, .clouds = clouds.size()};
   for (const TrainingCloud& cloud : clouds) samples.points += cloud.cloud.positions.size();
@@ -94,8 +101,15 @@ Samples make_samples(std::span<const TrainingCloud> clouds,
   std::vector<gls::FitStatus> status;
   for (const TrainingCloud& cloud : clouds) {
     check_labels(cloud);
-    const gls::ScaleSpace matrix({cloud.cloud.positions, cloud.cloud.normals}, descriptor,
-                                 &cancel_only);
+    const gls::OrientedPoints points{cloud.cloud.positions, cloud.cloud.normals};
+    gls::ScaleSpace matrix(points, descriptor, &cancel_only);
+    if (augmentation.jitter > 0.0) {
+      gls::ScaleSpaceOptions moved = descriptor;
+      const double factor = std::exp(random.uniform(-augmentation.jitter, augmentation.jitter));
+      moved.s_min = factor * matrix.scales().front();
+      moved.s_max = factor * matrix.scales().back();
+      matrix = gls::ScaleSpace(points, moved, &cancel_only);
+    }
     const auto targets = labelled_points(cloud, matrix.order());
     const std::size_t before = samples.values.size();
     samples.values.resize(before + targets.size() * width);
@@ -112,7 +126,8 @@ TrainedModel train(const std::string& name, std::span<const TrainingCloud> cloud
                    const std::function<void(const nn::EpochReport&)>& on_epoch,
                    const Progress* progress) {
   Stopwatch watch;
-  const Samples samples = make_samples(clouds, options.descriptor, progress);
+  const Samples samples = make_samples(clouds, options.descriptor, progress,
+                                       {options.jitter, options.training.seed});
   const double seconds_describe = watch.lap();
   TrainedModel trained = train(name, samples, options, on_epoch, progress);
   trained.seconds_describe = seconds_describe;
@@ -138,17 +153,22 @@ TrainedModel train(const std::string& name, const Samples& samples, const TrainO
 
   nn::Architecture architecture = options.architecture;
   architecture.scales = model.descriptor.scales;
-  architecture.features = gls::feature_count(model.descriptor.features);
+  architecture.features = gls::column_count(model.descriptor);
+  // Twice as many numbers are no reason for twice as many neurons.
+  if (model.descriptor.second_gate && architecture.width == 0) {
+    architecture.width = gls::feature_count(model.descriptor.features);
+  }
 
   nn::TrainOptions training = options.training;
-  training.sign_rule = sign_rule(model.descriptor.features, options.training.sign_rule.symmetry);
+  training.sign_rule = sign_rule(model.descriptor, options.training.sign_rule.symmetry);
   training.class_names = class_names(model.classes);
   std::vector<std::uint8_t> outputs;
   for (const std::uint8_t label : samples.labels) {
     outputs.push_back(output_of(label, model.classes));
   }
   nn::TrainResult result =
-      nn::train(architecture, {samples.values, outputs}, training, on_epoch, progress);
+      nn::distil(architecture, {samples.values, outputs}, training, options.teachers, on_epoch,
+                 progress);
   trained.cancelled = result.cancelled;
   trained.epochs = static_cast<int>(result.history.size());
   trained.seconds_train = watch.lap();

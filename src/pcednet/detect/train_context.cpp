@@ -3,6 +3,7 @@
 #include "pcednet/detect/classify.h"
 #include "pcednet/detect/context.h"
 #include "pcednet/detect/outputs.h"
+#include "pcednet/nn/distil.h"
 
 namespace pcednet::detect {
 namespace {
@@ -53,7 +54,8 @@ nn::TrainResult train_context(const EdgeModel& model, std::span<const TrainingCl
   training.sign_rule = {};
   training.class_names = model.network.class_names;
   training.start = nullptr;
-  return nn::train(architecture, {samples.values, samples.outputs}, training, on_epoch, progress);
+  return nn::distil(architecture, {samples.values, samples.outputs}, training, options.teachers,
+                    on_epoch, progress);
 }
 
 }  // namespace pcednet::detect

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <variant>
 #include <vector>
@@ -19,16 +20,21 @@ class ScaleSpace {
              const Progress* progress = nullptr);
 
   /// As given, but for `engine`, which is the one in use.
-  const ScaleSpaceOptions& options() const;
+  const ScaleSpaceOptions& options() const { return options_; }
   const std::vector<double>& scales() const;
   std::span<const std::uint32_t> order() const;
 
-  /// As the engines do it.
+  /// As the engines do it, with column_count() numbers per scale. With two gates a status is the
+  /// worse of both.
   void describe(std::span<const std::uint32_t> targets, std::span<float> out,
                 std::span<FitStatus> status, const Progress* progress = nullptr) const;
 
  private:
-  std::variant<FastScaleSpace, ExactScaleSpace> engine_;
+  using AnyEngine = std::variant<FastScaleSpace, ExactScaleSpace>;
+
+  ScaleSpaceOptions options_;
+  AnyEngine engine_;
+  std::optional<AnyEngine> second_;
 };
 
 }  // namespace pcednet::gls

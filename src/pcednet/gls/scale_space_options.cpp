@@ -4,16 +4,30 @@
 
 namespace pcednet::gls {
 
+std::vector<std::string> column_names(const ScaleSpaceOptions& options) {
+  std::vector<std::string> names;
+  for (const std::string_view name : feature_names(options.features)) names.emplace_back(name);
+  if (!options.second_gate) return names;
+  for (const std::string_view name : feature_names(options.features)) {
+    names.push_back(fmt::format("second_{}", name));
+  }
+  return names;
+}
+
+int column_count(const ScaleSpaceOptions& options) {
+  return (options.second_gate ? 2 : 1) * feature_count(options.features);
+}
+
 std::string text_of(const ScaleSpaceOptions& options) {
   // Names every member, so that a new one does not compile before it has its place in the text.
   const auto& [scales, s_min, s_max, s_max_fraction, features, reconstruction, steps, side_gate,
-               engine, eps] = options;
+               second_gate, engine, eps] = options;
   return fmt::format(
-      "scales {} s_min {} s_max {} fraction {} features {} reconstruction {} steps {} gate {} "
+      "scales {} s_min {} s_max {} fraction {} features {} reconstruction {} steps {} gate {}{} "
       "engine {} eps {}",
       scales, s_min, s_max, s_max_fraction, static_cast<int>(features),
       static_cast<int>(reconstruction), steps, side_gate ? fmt::format("{}", *side_gate) : "none",
-      static_cast<int>(engine), eps);
+      second_gate ? fmt::format(" and {}", *second_gate) : "", static_cast<int>(engine), eps);
 }
 
 }  // namespace pcednet::gls

@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "pcednet/gls/features.h"
 #include "pcednet/gls/projection.h"
@@ -23,11 +24,19 @@ struct ScaleSpaceOptions {
   Reconstruction reconstruction = Reconstruction::kSphere;
   int max_projection_steps = 5;     ///< for the reconstructions that project
   std::optional<double> side_gate;  ///< the a of side_gate(), -1 to 1; without one all count alike
+  std::optional<double> second_gate;  ///< ScaleSpace: features with this gate follow those with the first
   Engine engine = Engine::kFast;    ///< what ScaleSpace uses
   double eps = 0.10;                ///< voxel edge over support radius, 0.01 to 1; fast engine only
 
   bool operator==(const ScaleSpaceOptions&) const = default;
 };
+
+/// The names of a matrix's columns, those of one scale; those of the second gate begin with
+/// "second_".
+std::vector<std::string> column_names(const ScaleSpaceOptions& options);
+
+/// How many they are.
+int column_count(const ScaleSpaceOptions& options);
 
 /// All that decides a description of a given cloud, as text: for keys of results that are kept.
 std::string text_of(const ScaleSpaceOptions& options);

@@ -76,9 +76,11 @@ void try_networks(const detect::PreparedCloud& cloud, const PointCloud& labelled
 }  // namespace
 
 std::string text_of(const detect::TrainOptions& options) {
-  const auto& [descriptor, architecture, training, context] = options;
-  static_cast<void>(context);  // the runner trains on samples, which have none
-  return gls::text_of(descriptor) + ", " + text_of(architecture) + ", " + text_of(training);
+  const auto& [descriptor, architecture, training, jitter, teachers, context] = options;
+  // The runner trains on samples, which know nothing of these.
+  static_cast<void>(jitter), static_cast<void>(context);
+  return fmt::format("{}, {}, {}, teachers {}", gls::text_of(descriptor), text_of(architecture),
+                     text_of(training), teachers);
 }
 
 std::string text_of(const Treatment& treatment) {
