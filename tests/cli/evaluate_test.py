@@ -32,6 +32,15 @@ class Evaluate(CliTest):
             self.assertEqual(row["points"], 1000)
             self.assertEqual(report["pooled"]["mcc"], report["median"]["mcc"])
 
+    def test_tells_whether_probabilities_are_right(self):
+        write_ply(self.folder / "a.ply", *cube(3000))
+        done = run("evaluate", self.folder / "a.ply", "--model", "scan", "--positive", "edge",
+                   "--calibration", "--json", "-")
+        calibration = json.loads(done.stdout)["calibration"]
+        self.assertEqual(sum(b["points"] for b in calibration["bins"]), 3000)
+        self.assertLess(calibration["error"], 0.1)
+        run("evaluate", self.folder / "a.ply", "--method", "ca", "--calibration", expect=2)
+
     def test_scores_a_model_and_writes_the_file(self):
         write_ply(self.folder / "a.ply", *cube(3000))
         run("evaluate", self.folder / "a.ply", "--model", "scan", "--positive", "edge", "--json",

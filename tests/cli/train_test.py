@@ -72,6 +72,22 @@ class Train(CliTest):
         # What is sure to be no edge stays as it is.
         self.assertTrue((found["without"][changed] >= 0.01).all())
 
+    def test_takes_what_is_there_to_be_tried(self):
+        options = ["--gate", 0.4, "--second-gate", -0.3, "--distil", 2, "--smoothing", 0.05,
+                   "--jitter", 0.2, "--missing-scales", 0.25, "--epochs", 2]
+        model = self.train("one.safetensors", *options, "--threads", 1)
+        metadata, arrays = tensors(model)
+        self.assertEqual(metadata["descriptor_second_gate"], "-0.3")
+        self.assertEqual(arrays["tree.0.weight"].shape, (8, 6, 24))
+        again = self.train("two.safetensors", *options, "--threads", 2).read_bytes()
+        self.assertEqual(model.read_bytes().replace(b'"one"', b'"two"'), again)
+        for option in options[4:10:2]:  # each of them changes something
+            i = options.index(option)
+            other = self.train("six.safetensors", *options[:i], *options[i + 2:],
+                               "--overwrite").read_bytes()
+            self.assertNotEqual(other.replace(b'"six"', b'"two"'), again, option)
+        self.train("bad.safetensors", "--second-gate", 0.1, expect=2)
+
     def test_trains_the_baselines_and_the_papers_recipe(self):
         for network, weights in (("fc", 6663), ("cnn", 9723)):
             _, arrays = tensors(self.train(network + ".safetensors", "--network", network,

@@ -98,8 +98,8 @@ TEST(Context, IsWhatTheHeaderSays) {
     ASSERT_EQ(rows[point].size(), 64u);
     for (std::size_t size = 0; size < kContextSizes.size(); ++size) {
       for (const bool any_edge : {false, true}) {
-        const auto wanted = reference(answered, point,
-                                      static_cast<std::size_t>(kContextSizes[size]), any_edge);
+        const auto wanted =
+            reference(answered, point, static_cast<std::size_t>(kContextSizes[size]), any_edge);
         for (std::size_t f = 0; f < wanted.size(); ++f) {
           EXPECT_NEAR(rows[point][size * 16 + (any_edge ? 8 : 0) + f], wanted[f], 1e-5)
               << "size " << size << " feature " << f;

@@ -69,5 +69,21 @@ TEST(EvaluationReport, GivesMedianAndPooledAsJson) {
   }
 }
 
+TEST(Calibration, IsTheMeanDifferenceInTheBins) {
+  // Two bins: 0.25 said of four points, one of which is positive; 0.9 said of two, one of which is.
+  const std::vector<std::uint8_t> truth = {2, 0, 0, 0, 2, 1, 255};
+  const std::vector<float> p = {0.25f, 0.25f, 0.25f, 0.25f, 0.9f, 0.9f, 1.0f};
+  Calibration calibration = {};
+  add_calibration(truth, p, Positive::kSharp, calibration);
+  EXPECT_EQ(calibration[2].points, 4u);
+  EXPECT_EQ(calibration[9].points + calibration[8].points, 2u);
+  EXPECT_NEAR(calibration_error(calibration), (0.0 * 4 + 0.4 * 2) / 6, 1e-6);
+  Calibration edges = {};
+  add_calibration(truth, p, Positive::kEdge, edges);
+  EXPECT_NEAR(calibration_error(edges), (0.0 * 4 + 0.1 * 2) / 6, 1e-6);
+  EXPECT_EQ(calibration_error({}), 0.0);
+  EXPECT_THROW(add_calibration(truth, {p.data(), 3}, Positive::kEdge, edges), Error);
+}
+
 }  // namespace
 }  // namespace pcednet::eval

@@ -142,8 +142,7 @@ TEST(Gradient, TakesScalesThatAreNotKeptForUndefined) {
     }
   }
   std::vector<float> wanted(n), found(n);
-  const double loss =
-      GradientMachine(problem.model).run(blanked.set(), problem.chosen, wanted);
+  const double loss = GradientMachine(problem.model).run(blanked.set(), problem.chosen, wanted);
   EXPECT_EQ(GradientMachine(problem.model).run(problem.set(), problem.chosen, found, kept), loss);
   EXPECT_EQ(found, wanted);
 }

@@ -56,8 +56,7 @@ gls::Reconstruction reconstruction(const std::string& name) {
 StatusCounts write_matrix(const gls::ScaleSpace& space, std::size_t points, io::NpyWriter& matrix,
                           const Progress& progress) {
   const std::size_t scales = space.scales().size();
-  const std::size_t row =
-      scales * static_cast<std::size_t>(gls::column_count(space.options()));
+  const std::size_t row = scales * static_cast<std::size_t>(gls::column_count(space.options()));
   const std::span<const std::uint32_t> order = space.order();
   StatusCounts counts = {};
   std::vector<char> described(points);
@@ -96,11 +95,14 @@ StatusCounts write_matrix(const gls::ScaleSpace& space, std::size_t points, io::
 ordered_json to_json(const Arguments& arguments, const gls::ScaleSpace& space, std::size_t points,
                      const StatusCounts& counts) {
   const gls::ScaleSpaceOptions& options = space.options();
-  ordered_json json = {
-      {"version", kVersion}, {"input", fs::path(arguments.input).filename().string()},
-      {"points", points},    {"scales", space.scales()},
-      {"features", gls::column_names(options)},   {"reconstruction", arguments.reconstruction},
-      {"gate", nullptr},     {"engine", options.engine == gls::Engine::kExact ? "exact" : "fast"}};
+  ordered_json json = {{"version", kVersion},
+                       {"input", fs::path(arguments.input).filename().string()},
+                       {"points", points},
+                       {"scales", space.scales()},
+                       {"features", gls::column_names(options)},
+                       {"reconstruction", arguments.reconstruction},
+                       {"gate", nullptr},
+                       {"engine", options.engine == gls::Engine::kExact ? "exact" : "fast"}};
   if (gls::projects(options.reconstruction)) {
     json["max_projection_steps"] = options.max_projection_steps;
   }

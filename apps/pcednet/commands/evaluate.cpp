@@ -23,20 +23,25 @@ struct Arguments {
   std::vector<std::string> inputs;
   std::string model, predictions, json, positive = "sharp";
   MethodArguments method;
-  bool exact = false, no_context = false, clean_up = false;
+  bool exact = false, no_context = false, clean_up = false, calibration = false;
 };
 
-std::vector<std::uint8_t> predict(const fs::path& input, const PointCloud& cloud,
-                                  const detect::EdgeModel* model, const Arguments& arguments,
-                                  const Progress& progress) {
+struct Results {
+  std::vector<eval::CloudScore> scores;
+  eval::Calibration calibration;
+};
+
+detect::Classification predict(const fs::path& input, const PointCloud& cloud,
+                               const detect::EdgeModel* model, const Arguments& arguments,
+                               const Progress& progress) {
   if (!arguments.method.name.empty()) {
-    return classify_by_method(cloud, arguments.method, &progress).classes;
+    return classify_by_method(cloud, arguments.method, &progress);
   }
   const auto prepared = detect::prepare(cloud, &progress);
   for (const std::string& note : prepared.notes) warn(input.string() + ": " + note);
   auto result = detect::classify(prepared, *model, {.exact = arguments.exact}, &progress);
   if (arguments.clean_up) detect::clean_up(prepared.positions, result, {}, &progress);
-  return std::move(result.classes);
+  return result;
 }
 
 std::vector<std::uint8_t> read_predictions(const fs::path& file, const PointCloud& cloud) {
@@ -45,7 +50,16 @@ std::vector<std::uint8_t> read_predictions(const fs::path& file, const PointClou
   return std::move(predictions.classes);
 }
 
-std::vector<eval::CloudScore> score_all(const Arguments& arguments, const Common& common) {
+/// What was given to the positive classes.
+std::vector<float> probabilities(const detect::Classification& found, eval::Positive positive) {
+  std::vector<float> p = found.p_sharp;
+  if (positive == eval::Positive::kEdge) {
+    for (std::size_t i = 0; i < p.size(); ++i) p[i] += found.p_smooth[i];
+  }
+  return p;
+}
+
+Results score_all(const Arguments& arguments, const Common& common) {
   const Progress progress = console_progress(common);
   const auto positive =
       arguments.positive == "edge" ? eval::Positive::kEdge : eval::Positive::kSharp;
@@ -55,7 +69,7 @@ std::vector<eval::CloudScore> score_all(const Arguments& arguments, const Common
     if (arguments.no_context) model->context.reset();
   }
 
-  std::vector<eval::CloudScore> scores;
+  Results results;
   for (const fs::path& input : expand_inputs(arguments.inputs)) {
     const bool given = !arguments.predictions.empty();
     const fs::path prediction =
@@ -67,18 +81,25 @@ std::vector<eval::CloudScore> score_all(const Arguments& arguments, const Common
     const auto loaded = io::read_labelled(input);
     for (const std::string& warning : loaded.warnings) warn(input.string() + ": " + warning);
     with_name_in_errors(input, [&] {
-      const auto classes =
-          given ? read_predictions(prediction, loaded.cloud)
-                : predict(input, loaded.cloud, model ? &*model : nullptr, arguments, progress);
-      scores.push_back(
-          {input.stem().string(), eval::count_confusion(loaded.cloud.labels, classes, positive)});
+      const auto& truth = loaded.cloud.labels;
+      detect::Classification found;
+      if (given) {
+        found.classes = read_predictions(prediction, loaded.cloud);
+      } else {
+        found = predict(input, loaded.cloud, model ? &*model : nullptr, arguments, progress);
+      }
+      results.scores.push_back(
+          {input.stem().string(), eval::count_confusion(truth, found.classes, positive)});
+      if (arguments.calibration) {
+        eval::add_calibration(truth, probabilities(found, positive), positive, results.calibration);
+      }
     });
   }
-  if (scores.empty()) {
+  if (results.scores.empty()) {
     throw Error(ErrorKind::kInsufficient,
                 fmt::format("{}: no prediction for any cloud", arguments.predictions));
   }
-  return scores;
+  return results;
 }
 
 void evaluate(const Arguments& arguments, const Common& common) {
@@ -87,15 +108,20 @@ void evaluate(const Arguments& arguments, const Common& common) {
   if (ways != 1) {
     throw Error(ErrorKind::kUsage, "evaluate: give one of --model, --predictions and --method");
   }
-  const auto scores = score_all(arguments, common);
+  if (arguments.calibration && arguments.model.empty()) {
+    throw Error(ErrorKind::kUsage,
+                "evaluate: --calibration is about the probabilities of a --model");
+  }
+  const Results results = score_all(arguments, common);
+  const auto json =
+      eval::to_json(results.scores, arguments.calibration ? &results.calibration : nullptr);
   if (arguments.json == "-") {
-    std::cout << eval::to_json(scores);
+    std::cout << json;
     return;
   }
-  std::cout << eval::to_table(scores);
-  if (!arguments.json.empty()) {
-    write_text_file(arguments.json, eval::to_json(scores), common.overwrite());
-  }
+  std::cout << eval::to_table(results.scores);
+  if (arguments.calibration) std::cout << "\n" << eval::to_table(results.calibration);
+  if (!arguments.json.empty()) write_text_file(arguments.json, json, common.overwrite());
 }
 
 }  // namespace
@@ -121,6 +147,8 @@ void add_evaluate(CLI::App& app, Common& common) {
       ->capture_default_str()
       ->check(CLI::IsMember({"sharp", "edge"}));
   command->add_option("--json", arguments->json, "Write the scores here; - for standard output");
+  command->add_flag("--calibration", arguments->calibration,
+                    "Also tell how often a probability is right");
   command->add_flag("--no-context", arguments->no_context,
                     "Do not look at the answers around each point, as classify");
   command->add_flag("--clean-up", arguments->clean_up, "Let the nearest points vote, as classify");

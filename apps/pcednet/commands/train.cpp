@@ -31,7 +31,8 @@ struct Arguments {
   std::string project, output, network = "pcednet", recipe = "adam", symmetry = "average",
                                features = "6", reconstruction = "sphere";
   int classes = 3, scales = 16, epochs = 0, width = 0, teachers = 0;
-  double gate = 2.0, second_gate = 2.0, balance = 1.0, smoothing = 0.0, missing_scales = 0.0, jitter = 0.0;
+  double gate = 2.0, second_gate = 2.0, balance = 1.0, smoothing = 0.0, missing_scales = 0.0,
+         jitter = 0.0;
   std::uint64_t seed = 1;
   bool exact = false, natural = false, context = false;
 };
@@ -195,9 +196,10 @@ void add_train(CLI::App& app, Common& common) {
       ->capture_default_str()
       ->check(CLI::Range(0.0, 1.0))
       ->excludes("--natural");
-  command->add_flag("--context", arguments->context,
-                    "Also train a network that looks at the answers around each point and decides "
-                    "in the end")
+  command
+      ->add_flag("--context", arguments->context,
+                 "Also train a network that looks at the answers around each point and decides "
+                 "in the end")
       ->excludes("--project");
   command
       ->add_option("--distil", arguments->teachers,

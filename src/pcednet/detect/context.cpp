@@ -13,9 +13,9 @@
 namespace pcednet::detect {
 namespace {
 
-constexpr double kReach = 1.2;      // the weight falls to nothing at so many r^2
-constexpr double kLittle = 1e-3;    // added to sums of probabilities, that they can be divided by
-constexpr double kSurest = 1e-6;    // probabilities nearer to 0 or 1 say no more
+constexpr double kReach = 1.2;    // the weight falls to nothing at so many r^2
+constexpr double kLittle = 1e-3;  // added to sums of probabilities, that they can be divided by
+constexpr double kSurest = 1e-6;  // probabilities nearer to 0 or 1 say no more
 constexpr std::size_t kBlock = 16 * 1024;
 
 /// The points that have a class, along a curve. Of points at one place the surer ones come first,
@@ -28,9 +28,8 @@ std::vector<std::uint32_t> order_of(std::span<const Vec3> positions, const Class
            std::tie(found.p_sharp[b], found.p_smooth[b]);
   };
   for (auto first = order.begin(); first != order.end();) {
-    const auto last = std::find_if(first + 1, order.end(), [&](std::uint32_t i) {
-      return positions[i] != positions[*first];
-    });
+    const auto last = std::find_if(
+        first + 1, order.end(), [&](std::uint32_t i) { return positions[i] != positions[*first]; });
     if (last - first > 1) std::stable_sort(first, last, surer);
     first = last;
   }
@@ -64,8 +63,8 @@ void write_features(const Sums& sums, double own, double sq_r, float* out) {
   const double p = sums.p - falloff * sums.pd;
   const double total = 1.0 / (p + kLittle);
   const Vec3 centre = scale * total * (sums.py - falloff * sums.pyd);
-  const Mat3 covariance = scale * scale * total * (sums.pyy - falloff * sums.pyyd) -
-                          centre * centre.transpose();
+  const Mat3 covariance =
+      scale * scale * total * (sums.pyy - falloff * sums.pyyd) - centre * centre.transpose();
   const Eigen::SelfAdjointEigenSolver<Mat3> axes(covariance);
   const double l1 = std::max(0.0, axes.eigenvalues()[2]);
   const double l2 = std::max(0.0, axes.eigenvalues()[1]);

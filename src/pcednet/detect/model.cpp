@@ -142,8 +142,7 @@ EdgeModel load_model(const std::filesystem::path& path) {
   }
   model.classes = classes_of(metadata.take("classes"), metadata);
   const nn::Architecture& network = model.network.network.architecture;
-  if (network.scales != descriptor.scales ||
-      network.features != gls::column_count(descriptor) ||
+  if (network.scales != descriptor.scales || network.features != gls::column_count(descriptor) ||
       network.classes != static_cast<int>(model.classes.size())) {
     metadata.refuse("the network does not fit its descriptor and classes");
   }

@@ -17,9 +17,9 @@ namespace pcednet::detect {
 struct EdgeModel {
   std::string name;
   std::uint64_t seed = 0;
-  gls::ScaleSpaceOptions descriptor;  ///< s_min and s_max are each cloud's own
-  std::vector<std::uint8_t> classes;  ///< EdgeClass of every output: {0, 1, 2} or {0, 2}
-  nn::Model network;                  ///< its metadata holds the summary of the training
+  gls::ScaleSpaceOptions descriptor;      ///< s_min and s_max are each cloud's own
+  std::vector<std::uint8_t> classes;      ///< EdgeClass of every output: {0, 1, 2} or {0, 2}
+  nn::Model network;                      ///< its metadata holds the summary of the training
   std::optional<nn::Model> context = {};  ///< decides in the end, on a ContextMatrix
 };
 
@@ -28,8 +28,8 @@ struct EdgeModel {
 /// version's.
 EdgeModel load_model(const std::filesystem::path& path);
 
-/// Writes a safetensors file; the same model gives the same bytes. The context network's tensors and
-/// metadata are named as the network's own, with "context." before them.
+/// Writes a safetensors file; the same model gives the same bytes. The context network's tensors
+/// and metadata are named as the network's own, with "context." before them.
 void save_model(const std::filesystem::path& path, const EdgeModel& model, Overwrite overwrite);
 
 }  // namespace pcednet::detect

@@ -126,8 +126,8 @@ TrainedModel train(const std::string& name, std::span<const TrainingCloud> cloud
                    const std::function<void(const nn::EpochReport&)>& on_epoch,
                    const Progress* progress) {
   Stopwatch watch;
-  const Samples samples = make_samples(clouds, options.descriptor, progress,
-                                       {options.jitter, options.training.seed});
+  const Samples samples =
+      make_samples(clouds, options.descriptor, progress, {options.jitter, options.training.seed});
   const double seconds_describe = watch.lap();
   TrainedModel trained = train(name, samples, options, on_epoch, progress);
   trained.seconds_describe = seconds_describe;
@@ -166,9 +166,8 @@ TrainedModel train(const std::string& name, const Samples& samples, const TrainO
   for (const std::uint8_t label : samples.labels) {
     outputs.push_back(output_of(label, model.classes));
   }
-  nn::TrainResult result =
-      nn::distil(architecture, {samples.values, outputs}, training, options.teachers, on_epoch,
-                 progress);
+  nn::TrainResult result = nn::distil(architecture, {samples.values, outputs}, training,
+                                      options.teachers, on_epoch, progress);
   trained.cancelled = result.cancelled;
   trained.epochs = static_cast<int>(result.history.size());
   trained.seconds_train = watch.lap();

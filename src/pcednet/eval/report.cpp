@@ -33,6 +33,16 @@ std::string table_row(const std::string& name, const std::string& points, const 
                      points, s.precision, s.recall, s.mcc, s.f1, s.accuracy, s.iou);
 }
 
+struct BinMeans {
+  double probability = 0.0, positive = 0.0;
+};
+
+BinMeans means_of(const CalibrationBin& bin) {
+  if (bin.points == 0) return {};
+  const auto points = static_cast<double>(bin.points);
+  return {bin.sum_probability / points, static_cast<double>(bin.positive) / points};
+}
+
 }  // namespace
 
 Scores median_scores(const std::vector<CloudScore>& clouds) {
@@ -52,7 +62,7 @@ ConfusionCounts pooled_counts(const std::vector<CloudScore>& clouds) {
   return pooled;
 }
 
-std::string to_json(const std::vector<CloudScore>& clouds) {
+std::string to_json(const std::vector<CloudScore>& clouds, const Calibration* calibration) {
   Json report;
   report["clouds"] = Json::array();
   for (const CloudScore& cloud : clouds) {
@@ -66,6 +76,16 @@ std::string to_json(const std::vector<CloudScore>& clouds) {
   const ConfusionCounts pooled = pooled_counts(clouds);
   put(report["pooled"] = Json::object(), pooled);
   put(report["pooled"], scores_of(pooled));
+  if (calibration) {
+    Json& json = report["calibration"];
+    json["error"] = calibration_error(*calibration);
+    json["bins"] = Json::array();
+    for (const CalibrationBin& bin : *calibration) {
+      const auto [probability, positive] = means_of(bin);
+      json["bins"].push_back(
+          {{"points", bin.points}, {"probability", probability}, {"positive", positive}});
+    }
+  }
   return report.dump(2) + "\n";
 }
 
@@ -79,6 +99,16 @@ std::string to_table(const std::vector<CloudScore>& clouds) {
   table += table_row("median", "", median_scores(clouds));
   table += table_row("pooled", std::to_string(pooled.total()), scores_of(pooled));
   return table;
+}
+
+std::string to_table(const Calibration& calibration) {
+  std::string table = fmt::format("{:>11} {:>10} {:>8}\n", "probability", "points", "positive");
+  for (const CalibrationBin& bin : calibration) {
+    if (bin.points == 0) continue;
+    const auto [probability, positive] = means_of(bin);
+    table += fmt::format("{:>11.3f} {:>10} {:>8.3f}\n", probability, bin.points, positive);
+  }
+  return table + fmt::format("calibration error {:.4f}\n", calibration_error(calibration));
 }
 
 }  // namespace pcednet::eval

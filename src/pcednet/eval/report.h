@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "pcednet/eval/calibration.h"
 #include "pcednet/eval/scores.h"
 
 namespace pcednet::eval {
@@ -21,10 +22,15 @@ Scores median_scores(const std::vector<CloudScore>& clouds);
 ConfusionCounts pooled_counts(const std::vector<CloudScore>& clouds);
 
 /// {"clouds":[{"name","points","tp",...,"iou"}],"median":{...},"pooled":{...}}, indented, with a
-/// final newline.
-std::string to_json(const std::vector<CloudScore>& clouds);
+/// final newline; with `calibration` also {"calibration":{"error","bins":[{"points","probability",
+/// "positive"}]}}, of which the last two are means.
+std::string to_json(const std::vector<CloudScore>& clouds,
+                    const Calibration* calibration = nullptr);
 
 /// A table for people: a row per cloud, then median and pooled.
 std::string to_table(const std::vector<CloudScore>& clouds);
+
+/// A table for people: a row per bin that has points, then the error.
+std::string to_table(const Calibration& calibration);
 
 }  // namespace pcednet::eval

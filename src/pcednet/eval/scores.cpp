@@ -11,15 +11,15 @@
 namespace pcednet::eval {
 namespace {
 
-bool is_positive(std::uint8_t label, Positive positive) {
-  return label == kSharpEdge || (positive == Positive::kEdge && label == kSmoothEdge);
-}
-
 double ratio(double numerator, double denominator) {
   return denominator == 0.0 ? 0.0 : numerator / denominator;
 }
 
 }  // namespace
+
+bool is_positive(std::uint8_t label, Positive positive) {
+  return label == kSharpEdge || (positive == Positive::kEdge && label == kSmoothEdge);
+}
 
 ConfusionCounts& ConfusionCounts::operator+=(const ConfusionCounts& other) {
   tp += other.tp;

@@ -21,6 +21,8 @@ enum class Positive {
   kEdge,   ///< sharp-edge and smooth-edge
 };
 
+bool is_positive(std::uint8_t label, Positive positive);
+
 /// Compares the classes of every point; both spans have one class per point. A point whose truth is
 /// kUnlabelled is left out; a prediction that is no edge class counts as negative.
 /// Throws Error(kInsufficient) if the sizes differ.

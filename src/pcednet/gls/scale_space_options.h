@@ -24,9 +24,10 @@ struct ScaleSpaceOptions {
   Reconstruction reconstruction = Reconstruction::kSphere;
   int max_projection_steps = 5;     ///< for the reconstructions that project
   std::optional<double> side_gate;  ///< the a of side_gate(), -1 to 1; without one all count alike
-  std::optional<double> second_gate;  ///< ScaleSpace: features with this gate follow those with the first
-  Engine engine = Engine::kFast;    ///< what ScaleSpace uses
-  double eps = 0.10;                ///< voxel edge over support radius, 0.01 to 1; fast engine only
+  std::optional<double>
+      second_gate;  ///< ScaleSpace: features with this gate follow those with the first
+  Engine engine = Engine::kFast;  ///< what ScaleSpace uses
+  double eps = 0.10;              ///< voxel edge over support radius, 0.01 to 1; fast engine only
 
   bool operator==(const ScaleSpaceOptions&) const = default;
 };

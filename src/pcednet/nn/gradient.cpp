@@ -30,14 +30,13 @@ GradientMachine::~GradientMachine() = default;
 std::unique_ptr<GradientMachine::Workspace> GradientMachine::borrow() {
   const std::lock_guard lock(mutex_);
   if (idle_.empty()) {
-    return std::make_unique<Workspace>(
-        Workspace{evaluator_.make_table(kChunk),
-                  evaluator_.make_table(kChunk),
-                  {},
-                  {},
-                  {evaluator_.classes(), kChunk},
-                  {},
-                  {}});
+    return std::make_unique<Workspace>(Workspace{evaluator_.make_table(kChunk),
+                                                 evaluator_.make_table(kChunk),
+                                                 {},
+                                                 {},
+                                                 {evaluator_.classes(), kChunk},
+                                                 {},
+                                                 {}});
   }
   std::unique_ptr<Workspace> workspace = std::move(idle_.back());
   idle_.pop_back();
@@ -80,11 +79,10 @@ void GradientMachine::fill_targets(Workspace& w, const TrainingSet& set,
   for (std::size_t p = 0; p < kChunk; ++p) {
     const std::size_t sample = chosen[std::min(p, chosen.size() - 1)];
     for (int c = 0; c < classes; ++c) {
-      const float wanted =
-          set.targets.empty()
-              ? static_cast<float>(set.labels[sample] == c)
-              : set.targets[sample * static_cast<std::size_t>(classes) +
-                            static_cast<std::size_t>(c)];
+      const float wanted = set.targets.empty()
+                               ? static_cast<float>(set.labels[sample] == c)
+                               : set.targets[sample * static_cast<std::size_t>(classes) +
+                                             static_cast<std::size_t>(c)];
       w.targets.row(c)[p] = (1.0f - label_smoothing_) * wanted + other;
     }
   }
@@ -104,7 +102,8 @@ double GradientMachine::run_chunk(Workspace& w, const TrainingSet& set,
   }
   fill_targets(w, set, chosen);
   if (!kept.empty()) {
-    const auto features = static_cast<std::size_t>(evaluator_.model().network.architecture.features);
+    const auto features =
+        static_cast<std::size_t>(evaluator_.model().network.architecture.features);
     w.blanked.assign(kChunk * inputs, 0.0f);
     for (std::size_t p = 0; p < chosen.size(); ++p) {
       float* const row = w.blanked.data() + p * inputs;
@@ -120,7 +119,8 @@ double GradientMachine::run_chunk(Workspace& w, const TrainingSet& set,
   const int lanes = w.table.lanes();
   const int logits = evaluator_.logits_row();
   std::fill(w.deltas.row(evaluator_.inputs()), w.deltas.row(logits), 0.0f);
-  kernels.cross_entropy(w.table.row(logits), w.targets.row(0), w.weights.data(), evaluator_.classes(), lanes, evaluator_.paired(), w.losses.data(),
+  kernels.cross_entropy(w.table.row(logits), w.targets.row(0), w.weights.data(),
+                        evaluator_.classes(), lanes, evaluator_.paired(), w.losses.data(),
                         w.deltas.row(logits));
   const float* parameters = evaluator_.model().network.parameters.data();
   for (auto layer = plan.layers.rbegin(); layer != plan.layers.rend(); ++layer) {

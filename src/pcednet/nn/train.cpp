@@ -164,8 +164,10 @@ class Trainer {
     for (ScaleRange& range : kept_) {
       if (random_.uniform() >= options_.missing_scales) continue;
       const int lost = 1 + static_cast<int>(random_.index(static_cast<std::size_t>(scales / 4)));
-      if (random_.uniform() < 0.5) range.first = lost;
-      else range.last = scales - lost;
+      if (random_.uniform() < 0.5)
+        range.first = lost;
+      else
+        range.last = scales - lost;
     }
     return kept_;
   }

@@ -51,8 +51,8 @@ void judge(const Evaluator& evaluator, const TrainingSet& set,
     }
     evaluator.run(rows.data(), table);
     const Kernels& kernels = evaluator.kernels();
-    kernels.cross_entropy(table.row(logits), targets.row(0), weights.data(), classes,
-                          table.lanes(), evaluator.paired(), losses.data(), deltas.row(0));
+    kernels.cross_entropy(table.row(logits), targets.row(0), weights.data(), classes, table.lanes(),
+                          evaluator.paired(), losses.data(), deltas.row(0));
     kernels.softmax(table.row(logits), classes, table.lanes(), evaluator.paired());
     for (std::size_t p = 0; p < points; ++p) {
       ClassSums& sum = sums[labels[p]];

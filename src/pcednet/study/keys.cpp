@@ -25,16 +25,16 @@ std::string text_of(const nn::Architecture& architecture) {
 
 std::string text_of(const nn::TrainOptions& options) {
   const auto& [optimiser, learning_rate, anneal, momentum, weight_decay, label_smoothing,
-               missing_scales, epochs,
-               batch, balance, least_per_epoch, most_per_epoch, standardise, standardisation,
-               sign_rule, class_names, validation, validation_share, patience, start, seed] =
-      options;
+               missing_scales, epochs, batch, balance, least_per_epoch, most_per_epoch, standardise,
+               standardisation, sign_rule, class_names, validation, validation_share, patience,
+               start, seed] = options;
   // The runner has neither validation samples of its own nor a model to start from; the names of
   // the classes and the odd features follow from the rest.
   static_cast<void>(validation), static_cast<void>(start), static_cast<void>(class_names);
   const auto& [bound, squash, tail, most_samples] = standardisation;
   return fmt::format(
-      "optimiser {} rate {} anneal {} momentum {} decay {} smoothing {} missing {} epochs {} batch {} "
+      "optimiser {} rate {} anneal {} momentum {} decay {} smoothing {} missing {} epochs {} batch "
+      "{} "
       "balance {} least {} most {} standardise {} bound {} squash {} tail {} of {} symmetry {} "
       "validation {} patience {} seed {}",
       static_cast<int>(optimiser), learning_rate, anneal, momentum, weight_decay, label_smoothing,
@@ -69,7 +69,8 @@ void try_networks(const detect::PreparedCloud& cloud, const PointCloud& labelled
     options.training.least_per_epoch = 1;
     const auto trained = detect::train("probe", samples, options);
     digest.add_values(std::span(std::as_const(trained.model.network.network.parameters)));
-    digest.add_values(std::span<const float>(detect::classify(described, cloud.positions, trained.model).p_sharp));
+    digest.add_values(std::span<const float>(
+        detect::classify(described, cloud.positions, trained.model).p_sharp));
   }
 }
 
