@@ -16,14 +16,16 @@ for model in ${*:-scan cad worn}; do
   scan)
     generate default 1
     generate default 2
-    $pcednet train "$folder/default1" "$folder/default2" -o models/scan.safetensors \
-      --natural --seed 1 --overwrite
+    generate default 3
+    generate scan 1
+    $pcednet train "$folder/default1" "$folder/default2" "$folder/default3" "$folder/scan1" \
+      -o models/scan.safetensors --natural --distil 3 --context --seed 1 --overwrite
     ;;
   cad)
     generate cad 1
     generate cad 2
     $pcednet train "$folder/cad1" "$folder/cad2" -o models/cad.safetensors \
-      --classes 2 --natural --gate 0.1 --seed 1 --overwrite
+      --classes 2 --natural --gate 0.4 --second-gate -0.3 --distil 3 --seed 1 --overwrite
     ;;
   worn)
     generate worn 1
@@ -31,7 +33,8 @@ for model in ${*:-scan cad worn}; do
     generate cad 1
     generate cad 2
     $pcednet train "$folder/worn1" "$folder/worn2" "$folder/cad1" "$folder/cad2" \
-      -o models/worn.safetensors --classes 2 --balance 0.5 --gate -0.5 --seed 1 --overwrite
+      -o models/worn.safetensors --classes 2 --balance 0.5 --gate -0.5 --distil 3 --context \
+      --seed 1 --overwrite
     ;;
   *)
     echo "train_models.sh: no model $model" >&2

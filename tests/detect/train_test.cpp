@@ -109,6 +109,22 @@ TEST(TrainEdges, LearnsFromTheAnswersAroundAPoint) {
   EXPECT_GT(accuracy(unseen, trained.model), accuracy(unseen, without) + 0.003);
 }
 
+TEST(TrainEdges, KeepsTheNetworkWhereThereIsNothingToLookAtTwice) {
+  // A class of one point: too sure of the others to find any of them doubtful.
+  PointCloud cloud = cube(400, 1);
+  for (std::uint8_t& label : cloud.labels) label = label == kSharpEdge ? kSharpEdge : kUnlabelled;
+  cloud.labels[std::find(cloud.labels.begin(), cloud.labels.end(), kUnlabelled) -
+               cloud.labels.begin()] = kNonEdge;
+  TrainOptions options;
+  options.architecture.classes = 2;
+  options.context = true;
+  options.training.epochs = 200;
+  const auto trained = train_on(cloud, options);
+  EXPECT_FALSE(trained.model.context.has_value());
+  EXPECT_FALSE(trained.no_context.empty());
+  EXPECT_GT(trained.epochs, 0);
+}
+
 TEST(TrainEdges, GivesTheSameContextNetworkForAnyThreadsAndOrder) {
   auto options = quick(2);
   options.context = true;

@@ -119,6 +119,9 @@ void train(const Arguments& arguments, const Common& common) {
   if (trained.epochs == 0)
     throw Error(ErrorKind::kCancelled, "stopped by the user before an epoch");
   detect::save_model(arguments.output, trained.model, common.overwrite());
+  if (!trained.no_context.empty()) {
+    warn(fmt::format("no context network, every point is too sure: {}", trained.no_context));
+  }
   const auto& context = trained.model.context;
   say(fmt::format("{} weights{}; seconds: describe {:.2f}, train {:.2f}{}\n  -> {}",
                   trained.model.network.network.parameters.size(),

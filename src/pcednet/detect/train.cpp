@@ -133,10 +133,15 @@ TrainedModel train(const std::string& name, std::span<const TrainingCloud> cloud
   trained.seconds_describe = seconds_describe;
   if (!options.context || trained.cancelled) return trained;
   watch.lap();
-  nn::TrainResult context = train_context(trained.model, clouds, options, on_epoch, progress);
-  trained.cancelled = context.cancelled;
+  try {
+    nn::TrainResult context = train_context(trained.model, clouds, options, on_epoch, progress);
+    trained.cancelled = context.cancelled;
+    if (context.best_epoch > 0) trained.model.context = std::move(context.best);
+  } catch (const Error& error) {
+    if (error.kind() != ErrorKind::kInsufficient) throw;
+    trained.no_context = error.what();  // the network itself is good
+  }
   trained.seconds_context = watch.lap();
-  if (context.best_epoch > 0) trained.model.context = std::move(context.best);
   return trained;
 }
 

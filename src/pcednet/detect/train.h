@@ -56,6 +56,7 @@ struct TrainedModel {
   EdgeModel model;
   bool cancelled = false;
   int epochs = 0;  ///< completed; a model of none is not worth keeping
+  std::string no_context = {};  ///< why there is no context network though one was wanted
   double seconds_describe = 0, seconds_train = 0, seconds_context = 0;
 };
 TrainedModel train(const std::string& name, std::span<const TrainingCloud> clouds,
