@@ -55,7 +55,7 @@ Samples make_samples(std::span<const TrainingCloud> clouds,
 struct TrainedModel {
   EdgeModel model;
   bool cancelled = false;
-  int epochs = 0;  ///< completed; a model of none is not worth keeping
+  int epochs = 0;               ///< completed; a model of none is not worth keeping
   std::string no_context = {};  ///< why there is no context network though one was wanted
   double seconds_describe = 0, seconds_train = 0, seconds_context = 0;
 };
