@@ -98,7 +98,7 @@ for (const [format, minor] of [[0, 2], [1, 4], [2, 2], [3, 2], [6, 4], [7, 4], [
       const wanted = ours[`scalar_${name}`].map(name === "edge_class" ? Number : Math.fround);
       assert.deepEqual(column(now.view, name), wanted, name);
     }
-    assert.ok(ours.scalar_edge_class.some((value) => value > 0), "no edge was found");
+    assert.ok(ours.scalar_p_sharp.some((value) => value > 0), "only zeros are compared");
     for (const axis of ["x", "y", "z"]) assert.deepEqual(column(now.view, axis.toUpperCase()), ours[axis], axis);
   });
 }
