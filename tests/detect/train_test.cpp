@@ -125,6 +125,23 @@ TEST(TrainEdges, KeepsTheNetworkWhereThereIsNothingToLookAtTwice) {
   EXPECT_GT(trained.epochs, 0);
 }
 
+TEST(TrainEdges, KeepsTheNetworkWhenStoppedBeforeItsContext) {
+  const PointCloud cloud = cube(1500, 1);
+  const TrainingCloud training{"cube", prepare(cloud), cloud.labels};
+  auto options = quick(2);
+  options.context = true;
+  bool stop = false;
+  const Progress progress = {
+      .report = [&](const std::string& stage, double) { stop = stop || stage == "look around"; },
+      .cancelled = [&] { return stop; }};
+  // A cloud more, so that there is a next one to stop before.
+  const std::vector<TrainingCloud> clouds = {training, training};
+  const auto trained = train("test", clouds, options, {}, &progress);
+  EXPECT_TRUE(trained.cancelled);
+  EXPECT_FALSE(trained.model.context.has_value());
+  EXPECT_EQ(trained.epochs, 8);
+}
+
 TEST(TrainEdges, GivesTheSameContextNetworkForAnyThreadsAndOrder) {
   auto options = quick(2);
   options.context = true;

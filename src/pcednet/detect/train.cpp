@@ -138,8 +138,14 @@ TrainedModel train(const std::string& name, std::span<const TrainingCloud> cloud
     trained.cancelled = context.cancelled;
     if (context.best_epoch > 0) trained.model.context = std::move(context.best);
   } catch (const Error& error) {
-    if (error.kind() != ErrorKind::kInsufficient) throw;
-    trained.no_context = error.what();  // the network itself is good
+    // The network itself is good.
+    if (error.kind() == ErrorKind::kCancelled) {
+      trained.cancelled = true;
+    } else if (error.kind() == ErrorKind::kInsufficient) {
+      trained.no_context = error.what();
+    } else {
+      throw;
+    }
   }
   trained.seconds_context = watch.lap();
   return trained;
