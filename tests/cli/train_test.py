@@ -87,6 +87,7 @@ class Train(CliTest):
                                "--overwrite").read_bytes()
             self.assertNotEqual(other.replace(b'"six"', b'"two"'), again, option)
         self.train("bad.safetensors", "--second-gate", 0.1, expect=2)
+        self.train("bad.safetensors", "--gate", 2, expect=2)
 
     def test_trains_the_baselines_and_the_papers_recipe(self):
         for network, weights in (("fc", 6663), ("cnn", 9723)):

@@ -31,8 +31,8 @@ struct Arguments {
   std::string project, output, network = "pcednet", recipe = "adam", symmetry = "average",
                                features = "6", reconstruction = "sphere";
   int classes = 3, scales = 16, epochs = 0, width = 0, teachers = 0;
-  double gate = 2.0, second_gate = 2.0, balance = 1.0, smoothing = 0.0, missing_scales = 0.0,
-         jitter = 0.0;
+  std::optional<double> gate, second_gate;
+  double balance = 1.0, smoothing = 0.0, missing_scales = 0.0, jitter = 0.0;
   std::uint64_t seed = 1;
   bool exact = false, natural = false, context = false;
 };
@@ -48,8 +48,8 @@ detect::TrainOptions options_of(const Arguments& arguments) {
     }
   }
   if (arguments.exact) options.descriptor.engine = gls::Engine::kExact;
-  if (arguments.gate <= 1.0) options.descriptor.side_gate = arguments.gate;
-  if (arguments.second_gate <= 1.0) options.descriptor.second_gate = arguments.second_gate;
+  options.descriptor.side_gate = arguments.gate;
+  options.descriptor.second_gate = arguments.second_gate;
   options.architecture.kind = kNetworks.at(arguments.network);
   options.architecture.classes = arguments.classes;
   options.architecture.width = arguments.width;

@@ -85,6 +85,12 @@ void write_features(const Sums& sums, double own, double sq_r, float* out) {
 
 }  // namespace
 
+nn::Architecture context_architecture(int classes) {
+  return {.scales = static_cast<int>(kContextSizes.size()),
+          .features = kContextFeatures * (classes - 1),
+          .classes = classes};
+}
+
 ContextMatrix::ContextMatrix(std::span<const Vec3> positions, const Classification& found,
                              int classes)
     : kinds_(classes - 1), tree_(std::span<const Vec3>()) {

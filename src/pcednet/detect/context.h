@@ -15,6 +15,9 @@ namespace pcednet::detect {
 /// How many of the nearest points the context of a point is made of, size by size.
 constexpr std::array<int, 4> kContextSizes = {4, 8, 16, 32};
 
+/// The shape of the second network of a model with so many classes.
+nn::Architecture context_architecture(int classes);
+
 /// A point that is so sure to be no edge stays so: most points do, which saves most of the time.
 constexpr float kLeastEdge = 0.01f;
 

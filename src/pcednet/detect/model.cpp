@@ -99,10 +99,10 @@ void add_context(const std::map<std::string, Value>& part, std::map<std::string,
 nn::Model read_context(const std::filesystem::path& path, const nn::Safetensors& content,
                        std::size_t classes) {
   nn::Model context = nn::from_safetensors(content, path.string() + ": context network");
-  const nn::Architecture& a = context.network.architecture;
-  if (a.scales != static_cast<int>(kContextSizes.size()) ||
-      a.features != kContextFeatures * (static_cast<int>(classes) - 1) ||
-      a.classes != static_cast<int>(classes)) {
+  const nn::Architecture& its = context.network.architecture;
+  const nn::Architecture wanted = context_architecture(static_cast<int>(classes));
+  if (its.scales != wanted.scales || its.features != wanted.features ||
+      its.classes != wanted.classes) {
     throw Error(ErrorKind::kModelMismatch,
                 fmt::format("{}: the context network does not fit the classes", path.string()));
   }

@@ -45,10 +45,7 @@ nn::TrainResult train_context(const EdgeModel& model, std::span<const TrainingCl
                               const Progress* progress) {
   const bool exact = options.descriptor.engine == gls::Engine::kExact;
   const ContextSamples samples = make_samples(model, clouds, exact, progress);
-  const auto classes = static_cast<int>(model.classes.size());
-  const nn::Architecture architecture = {.scales = static_cast<int>(kContextSizes.size()),
-                                         .features = kContextFeatures * (classes - 1),
-                                         .classes = classes};
+  const auto architecture = context_architecture(static_cast<int>(model.classes.size()));
   nn::TrainOptions training = options.training;
   training.missing_scales = 0.0;
   training.sign_rule = {};

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "pcednet/core/error.h"
-
 namespace pcednet::gls {
 namespace {
 
@@ -24,7 +22,6 @@ ScaleSpace::ScaleSpace(OrientedPoints points, const ScaleSpaceOptions& options,
     : options_(options), engine_(make_engine(points, options, progress)) {
   options_.engine = std::visit([](const auto& engine) { return engine.options().engine; }, engine_);
   if (!options.second_gate) return;
-  if (!options.side_gate) throw Error(ErrorKind::kUsage, "a second gate without a first");
   ScaleSpaceOptions second = options;
   second.side_gate = options.second_gate;
   second_ = make_engine(points, second, progress);

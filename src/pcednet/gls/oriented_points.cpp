@@ -37,9 +37,12 @@ void check(OrientedPoints points, const ScaleSpaceOptions& options) {
   }
   if (points.positions.size() >= kNowhere) refuse("more than 2^32 - 2 points");
   if (options.max_projection_steps < 0) refuse("max_projection_steps is negative");
-  if (options.side_gate && !(std::abs(*options.side_gate) <= 1.0)) {
-    refuse(fmt::format("the side gate {} is not within -1 to 1", *options.side_gate));
+  for (const auto& gate : {options.side_gate, options.second_gate}) {
+    if (gate && !(std::abs(*gate) <= 1.0)) {
+      refuse(fmt::format("the side gate {} is not within -1 to 1", *gate));
+    }
   }
+  if (options.second_gate && !options.side_gate) refuse("a second gate without a first");
   if (!(options.eps >= 0.01 && options.eps <= 1.0)) {
     refuse(fmt::format("eps {} is not within 0.01 to 1", options.eps));
   }

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "pcednet/core/parallel.h"
+#include "pcednet/nn/targets.h"
 
 namespace pcednet::nn {
 namespace {
@@ -72,22 +73,6 @@ double GradientMachine::run(const TrainingSet& set, std::span<const std::uint32_
   return loss;
 }
 
-void GradientMachine::fill_targets(Workspace& w, const TrainingSet& set,
-                                   std::span<const std::uint32_t> chosen) const {
-  const int classes = evaluator_.classes();
-  const float other = label_smoothing_ / static_cast<float>(classes);
-  for (std::size_t p = 0; p < kChunk; ++p) {
-    const std::size_t sample = chosen[std::min(p, chosen.size() - 1)];
-    for (int c = 0; c < classes; ++c) {
-      const float wanted = set.targets.empty()
-                               ? static_cast<float>(set.labels[sample] == c)
-                               : set.targets[sample * static_cast<std::size_t>(classes) +
-                                             static_cast<std::size_t>(c)];
-      w.targets.row(c)[p] = (1.0f - label_smoothing_) * wanted + other;
-    }
-  }
-}
-
 double GradientMachine::run_chunk(Workspace& w, const TrainingSet& set,
                                   std::span<const std::uint32_t> chosen,
                                   std::span<const ScaleRange> kept, float weight,
@@ -100,7 +85,7 @@ double GradientMachine::run_chunk(Workspace& w, const TrainingSet& set,
     for (std::size_t u = 0; u < inputs; u += 16) __builtin_prefetch(w.rows[p] + u);
     w.weights[p] = p < chosen.size() ? weight : 0.0f;
   }
-  fill_targets(w, set, chosen);
+  fill_targets(set, chosen, label_smoothing_, evaluator_.classes(), w.targets);
   if (!kept.empty()) {
     const auto features =
         static_cast<std::size_t>(evaluator_.model().network.architecture.features);

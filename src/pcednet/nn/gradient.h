@@ -45,8 +45,6 @@ class GradientMachine {
   double run_chunk(Workspace& workspace, const TrainingSet& set,
                    std::span<const std::uint32_t> chosen, std::span<const ScaleRange> kept,
                    float weight, float* gradient) const;
-  void fill_targets(Workspace& workspace, const TrainingSet& set,
-                    std::span<const std::uint32_t> chosen) const;
 
   Evaluator evaluator_;
   float label_smoothing_;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "pcednet/core/parallel.h"
+#include "pcednet/nn/targets.h"
 
 namespace pcednet::nn {
 namespace {
@@ -44,11 +45,8 @@ void judge(const Evaluator& evaluator, const TrainingSet& set,
       rows[p] = set.samples.data() + sample * static_cast<std::size_t>(evaluator.inputs());
       labels[p] = set.labels[sample];
     }
-    for (int c = 0; c < classes; ++c) {
-      for (std::size_t p = 0; p < kPoints; ++p) {
-        targets.row(c)[p] = static_cast<float>(labels[p] == c);
-      }
-    }
+    // The labels are what it is judged by, whatever it learnt from.
+    fill_targets({set.samples, set.labels}, chosen.subspan(begin, points), 0.0f, classes, targets);
     evaluator.run(rows.data(), table);
     const Kernels& kernels = evaluator.kernels();
     kernels.cross_entropy(table.row(logits), targets.row(0), weights.data(), classes, table.lanes(),

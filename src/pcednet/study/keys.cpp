@@ -33,9 +33,9 @@ std::string text_of(const nn::TrainOptions& options) {
   static_cast<void>(validation), static_cast<void>(start), static_cast<void>(class_names);
   const auto& [bound, squash, tail, most_samples] = standardisation;
   return fmt::format(
-      "optimiser {} rate {} anneal {} momentum {} decay {} smoothing {} missing {} epochs {} batch "
-      "{} "
-      "balance {} least {} most {} standardise {} bound {} squash {} tail {} of {} symmetry {} "
+      "optimiser {} rate {} anneal {} momentum {} decay {} smoothing {} missing {} epochs {} "
+      "batch {} balance {} least {} most {} standardise {} bound {} squash {} tail {} of {} "
+      "symmetry {} "
       "validation {} patience {} seed {}",
       static_cast<int>(optimiser), learning_rate, anneal, momentum, weight_decay, label_smoothing,
       missing_scales, epochs, batch, balance, least_per_epoch, most_per_epoch, standardise, bound,
