@@ -2,7 +2,11 @@
 
 #include <ctime>
 #include <map>
+#include <string>
+#include <utility>
 #include <vector>
+
+#include "clouds.h"
 
 #include "pcednet/core/parallel.h"
 #include "pcednet/core/random.h"
@@ -13,36 +17,15 @@
 namespace pcednet::gls {
 namespace {
 
-struct Cloud {
-  std::vector<Vec3> positions, normals;
+OrientedPoints points_of(const bench::Cloud& cloud) {
+  return {cloud.positions, cloud.normals};
+}
 
-  OrientedPoints points() const { return {positions, normals}; }
-};
-
-/// The unit cube beside a sphere of radius 0.5, by area.
-const Cloud& scene(std::size_t count) {
-  static std::map<std::size_t, Cloud> clouds;
-  Cloud& cloud = clouds[count];
-  Random random(1);
-  while (cloud.positions.size() < count) {
-    Vec3 n = Vec3::Zero(), p;
-    if (random.uniform(0, 6 + 3.14159265358979) < 6) {
-      const auto face = static_cast<Eigen::Index>(random.index(6));
-      n[face / 2] = face % 2 ? 1 : -1;
-      p = 0.5 * n;
-      p[(face / 2 + 1) % 3] = random.uniform(-0.5, 0.5);
-      p[(face / 2 + 2) % 3] = random.uniform(-0.5, 0.5);
-    } else {
-      do {
-        n = Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
-      } while (n.squaredNorm() > 1 || n.squaredNorm() < 0.01);
-      n.normalize();
-      p = Vec3(1.5, 0, 0) + 0.5 * n;
-    }
-    cloud.positions.push_back(p);
-    cloud.normals.push_back(n);
-  }
-  return cloud;
+const bench::Cloud& cloud_of(const std::string& name, std::size_t count) {
+  static std::map<std::pair<std::string, std::size_t>, bench::Cloud> clouds;
+  const auto [at, is_new] = clouds.try_emplace({name, count});
+  if (is_new) at->second = bench::make_cloud(name, count);
+  return at->second;
 }
 
 /// Stretches of the order, spread over the cloud: 1/`part` of it.
@@ -76,31 +59,33 @@ double cpu_seconds() {
 }
 
 /// Seconds of CPU per point of the exact engine, on one thread.
-double exact_cost(std::size_t count) {
-  static std::map<std::size_t, double> costs;
-  if (costs.contains(count)) return costs[count];
-  const ExactScaleSpace space(scene(count).points(), {});
+double exact_cost(const std::string& name, std::size_t count) {
+  static std::map<std::pair<std::string, std::size_t>, double> costs;
+  const auto [at, is_new] = costs.try_emplace({name, count});
+  if (!is_new) return at->second;
+  const ExactScaleSpace space(points_of(cloud_of(name, count)), {});
   const auto targets = sample(space, 64, std::max<std::size_t>(1, count / 1024));
   const double start = cpu_seconds();
   describe(space, targets);
-  return costs[count] = (cpu_seconds() - start) / static_cast<double>(targets.size());
+  return at->second = (cpu_seconds() - start) / static_cast<double>(targets.size());
 }
 
 /// Everything before the first point is described: order, s_min, pyramid.
-void Build(benchmark::State& state) {
+void build(benchmark::State& state, const std::string& name) {
   set_thread_count(1);
   const auto count = static_cast<std::size_t>(state.range(0));
-  const Cloud& cloud = scene(count);
-  for (auto _ : state) benchmark::DoNotOptimize(FastScaleSpace(cloud.points(), {}));
+  const bench::Cloud& cloud = cloud_of(name, count);
+  for (auto _ : state) benchmark::DoNotOptimize(FastScaleSpace(points_of(cloud), {}));
   state.counters["s_per_point"] =
       benchmark::Counter(static_cast<double>(count), benchmark::Counter::kIsIterationInvariantRate |
                                                          benchmark::Counter::kInvert);
 }
 
-void Describe(benchmark::State& state, Reconstruction reconstruction) {
+void describe_cloud(benchmark::State& state, const std::string& name,
+                    Reconstruction reconstruction) {
   set_thread_count(1);
   const auto count = static_cast<std::size_t>(state.range(0));
-  const FastScaleSpace space(scene(count).points(), options_of(reconstruction));
+  const FastScaleSpace space(points_of(cloud_of(name, count)), options_of(reconstruction));
   const auto targets = sample(space, kBlock, std::max<std::size_t>(1, count / 100000));
   const double start = cpu_seconds();
   for (auto _ : state) describe(space, targets);
@@ -110,15 +95,7 @@ void Describe(benchmark::State& state, Reconstruction reconstruction) {
       points, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
   if (reconstruction != Reconstruction::kSphere) return;
   const double each = spent / (points * static_cast<double>(state.iterations()));
-  state.counters["exact_over_fast"] = exact_cost(count) / each;
-}
-
-void DescribeSpheres(benchmark::State& state) {
-  Describe(state, Reconstruction::kSphere);
-}
-
-void DescribeProjected(benchmark::State& state) {
-  Describe(state, Reconstruction::kSphereMls);
+  state.counters["exact_over_fast"] = exact_cost(name, count) / each;
 }
 
 /// The innermost sums alone, for each vector code; arithmetic as of lane_sums.inc.
@@ -154,10 +131,28 @@ void Sums(benchmark::State& state) {
                                                      benchmark::Counter::kIsIterationInvariantRate);
 }
 
-BENCHMARK(Build)->Arg(100000)->Arg(1000000)->Unit(benchmark::kMillisecond);
-BENCHMARK(DescribeSpheres)->Arg(100000)->Arg(1000000)->Unit(benchmark::kMillisecond);
-BENCHMARK(DescribeProjected)->Arg(100000)->Unit(benchmark::kMillisecond);
 BENCHMARK(Sums)->Arg(0)->Arg(1)->Arg(2)->Unit(benchmark::kMicrosecond);
+
+/// Every kind of cloud: Build/NAME/POINTS and Describe/NAME/POINTS.
+const bool registered = [] {
+  for (const bench::CloudKind& kind : bench::cloud_kinds()) {
+    const std::string name = kind.name;
+    for (const std::int64_t count : {100'000, 1'000'000}) {
+      benchmark::RegisterBenchmark(("Build/" + name).c_str(), build, name)
+          ->Arg(count)
+          ->Unit(benchmark::kMillisecond);
+      benchmark::RegisterBenchmark(("Describe/" + name).c_str(), describe_cloud, name,
+                                   Reconstruction::kSphere)
+          ->Arg(count)
+          ->Unit(benchmark::kMillisecond);
+    }
+  }
+  benchmark::RegisterBenchmark("DescribeProjected/scene", describe_cloud, "scene",
+                               Reconstruction::kSphereMls)
+      ->Arg(100'000)
+      ->Unit(benchmark::kMillisecond);
+  return true;
+}();
 
 }  // namespace
 }  // namespace pcednet::gls

@@ -74,6 +74,25 @@ TEST_P(FastScaleSpaceInvariance, SameBitsForAnyNumbering) {
   expect_same_bits(expected, test::describe(other, back));
 }
 
+TEST_P(FastScaleSpaceInvariance, SameBitsForPointsThatAreEqual) {
+  // A pile that fills groups and blocks, and twins that end up in different ones.
+  test::Cloud cloud = test::cube(6000, 23, 0.005, 0.2);
+  for (std::size_t i = 0; i < 6000; i += 3) cloud.add(cloud.positions[i], cloud.normals[i]);
+  for (int i = 0; i < 5000; ++i) cloud.add(cloud.positions[1], cloud.normals[1]);
+  ScaleSpaceOptions options = options_of(GetParam(), FeatureSet::kInvariant7);
+  options.s_min = 0.02;
+  const auto matrix = test::describe(FastScaleSpace(cloud.points(), options),
+                                     test::all_targets(cloud.positions.size()));
+  const std::size_t row = matrix.scales * matrix.width;
+  const auto expect_same = [&](std::size_t i, std::size_t j) {
+    EXPECT_EQ(
+        std::memcmp(&matrix.features[i * row], &matrix.features[j * row], row * sizeof(float)), 0)
+        << i << " and " << j;
+  };
+  for (std::size_t i = 0; i < 2000; ++i) expect_same(3 * i, 6000 + i);
+  for (std::size_t i = 8000; i < 13000; ++i) expect_same(1, i);
+}
+
 TEST_P(FastScaleSpaceInvariance, SameBitsOnAnyNumberOfThreads) {
   const test::Cloud cloud = awkward_cloud(6000);
   const ScaleSpaceOptions options = options_of(GetParam(), FeatureSet::kPaper6);

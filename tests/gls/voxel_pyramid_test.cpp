@@ -32,7 +32,7 @@ VoxelPyramid pyramid_of(const test::Cloud& cloud, const std::vector<double>& sca
                         double eps = 0.2) {
   const auto order = point_order(cloud.points());
   VoxelPyramid pyramid = make_pyramid(cloud.positions, cloud.normals, order, 1.0);
-  add_levels(pyramid, scales, eps);
+  add_levels(pyramid, scales, {.eps = eps});
   return pyramid;
 }
 

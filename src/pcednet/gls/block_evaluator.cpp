@@ -14,6 +14,7 @@ constexpr std::array<std::size_t, BlockEvaluator::kDepth> kParts = {64 * kLanes,
 constexpr std::size_t kFewestShared = 32;  // below, summing them once is no gain
 constexpr float kWidestShared = 0.7f;      // t: half the diagonal of a part with any inside
 constexpr double kWidestBlock = 64;        // t: float then gives coordinates to 2e-6
+constexpr float kRounding = 0x1p-24f;      // of a float
 constexpr float kReach = 1.00001f;         // t: the support, and what rounding may add
 constexpr float kMargin = 0.25f;           // t: gathered in advance for points that will move
 
@@ -51,6 +52,16 @@ bool is_within(const SourceBox& box, const SourceBox& gathered, float margin) {
     if (box.min[a] < gathered.min[a] - slack || box.max[a] > gathered.max[a] + slack) return false;
   }
   return true;
+}
+
+/// How far rounding may move the sums at these targets: by a few steps of a float for the sums
+/// themselves, and for each coordinate by half a step of its size.
+float rounding_at(const SourceBox& box) {
+  float farthest = 0.0f;
+  for (int a = 0; a < 3; ++a) {
+    farthest = std::max({farthest, std::abs(box.min[a]), std::abs(box.max[a])});
+  }
+  return kRounding * (8.0f + 4.0f * farthest);
 }
 
 void clear(GroupFit& result, std::size_t lane) {
@@ -196,9 +207,9 @@ void BlockEvaluator::choose_sources(const Candidates& all, const SourceBox& box,
     part.sums.centre[a] = box.min[a] + half;
   }
   if (!gate_.enabled && sq_half < kWidestShared * kWidestShared) {
-    // qq is at most the square of half a voxel's diagonal.
-    const double cell = block_.level().cell * block_.inverse_t();
-    const auto inner = static_cast<float>(std::sqrt(1.0 - 0.75 * cell * cell) - 1e-4) - margin_;
+    const double sq_inverse_t = block_.inverse_t() * block_.inverse_t();
+    const double sq_inner = std::max(0.0, 1.0 - block_.level().most_qq * sq_inverse_t);
+    const auto inner = static_cast<float>(std::sqrt(sq_inner) - 1e-4) - margin_;
     kernels_->split(all, box, kReach + margin_, inner, part.near.view, part.inside.view);
     const Candidates& inside = part.inside.view;
     if (inside.count >= kFewestShared) {
@@ -237,7 +248,8 @@ void BlockEvaluator::fit_lanes(const LaneGroup& group, const BlockFrame& frame,
                                const Candidates& near, double t, GroupFit& result) {
   group_.reserve(near.count);
   group_.view.x = nullptr;  // the indices are enough
-  kernels_->select(near, gls::box_of(targets_), kReach, group_.view);
+  const SourceBox box = gls::box_of(targets_);
+  kernels_->select(near, box, kReach, group_.view);
   const Candidates& sources = group_.view;
   kernels_->sum(frame.sources(), sources.index, sources.count, targets_, gate_,
                 frame.level().cell == 0.0, sums_);
@@ -246,7 +258,7 @@ void BlockEvaluator::fit_lanes(const LaneGroup& group, const BlockFrame& frame,
     if (part.inside.view.count > 0) kernels_->add_inside(part.sums, targets_, sums_);
   }
   find_status(group, frame, t, result);
-  kernels_->solve(sums_, options_.detail, result.fits);
+  kernels_->solve(sums_, options_.detail, rounding_at(box), result.fits);
   settle(group, frame, t, result);
 }
 
@@ -281,9 +293,10 @@ void BlockEvaluator::find_status(const LaneGroup& group, const BlockFrame& frame
 void BlockEvaluator::settle(const LaneGroup& group, const BlockFrame& frame, double t,
                             GroupFit& result) {
   for (std::size_t lane = 0; lane < group.count; ++lane) {
-    if (result.status[lane] == FitStatus::kUndefined) {
+    const float verdict = result.fits.verdict[lane];
+    if (result.status[lane] == FitStatus::kUndefined || verdict == kVoid) {
       clear(result, lane);
-    } else if (result.fits.sound[lane] == 0.0f) {
+    } else if (verdict == kDoubtful) {
       put(recheck_fit(doubtful(group, lane, t), frame.level(), candidate_voxels(frame)), t, lane,
           result);
     }

@@ -63,6 +63,7 @@ FastScaleSpace::FastScaleSpace(OrientedPoints points, const ScaleSpaceOptions& o
   order_ = curve;
   arrange_in_groups(points.positions, order_);
   place_ = places_in(order_, points.positions.size());
+  share_places(points, curve, place_);
   unit_ = unit_for(bounding_box(points.positions));
   pyramid_ = make_pyramid(points.positions, points.normals, order_, unit_);
   stage.advance();
@@ -70,7 +71,8 @@ FastScaleSpace::FastScaleSpace(OrientedPoints points, const ScaleSpaceOptions& o
   stage.advance();
   std::vector<double> scaled = scales_;
   for (double& scale : scaled) scale *= unit_;
-  add_levels(pyramid_, scaled, options.eps, progress);
+  add_levels(pyramid_, scaled, {.eps = options.eps, .gated = options.side_gate.has_value()},
+             progress);
 }
 
 void FastScaleSpace::find_scales(OrientedPoints points, std::span<const std::uint32_t> curve) {

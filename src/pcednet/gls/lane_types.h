@@ -74,9 +74,14 @@ struct LaneCounts {
   float surely[kLanes], maybe[kLanes];
 };
 
+/// What single precision can tell of a fit.
+inline constexpr float kSound = 1.0f;
+inline constexpr float kDoubtful = 0.0f;  ///< rounding may have spoilt it
+inline constexpr float kVoid = -1.0f;     ///< its normals cancel beyond doubt: it is undefined
+
 /// What is known of each lane's target, in units of the support radius.
 struct LaneFits {
-  float sound[kLanes];  ///< 1, or 0 where float cannot tell the fit: nearly singular or undefined
+  float verdict[kLanes];                                       ///< kSound, kDoubtful or kVoid
   float uc[kLanes], ul[3][kLanes], uq[kLanes], pratt[kLanes];  ///< the sphere
   float features[28][kLanes];  ///< in the order of FeatureSet::kAll28
 };
@@ -107,7 +112,9 @@ struct LaneKernels {
   void (*add_inside)(const InsideSums& inside, const LaneTargets& targets, LaneSums& sums);
   void (*count)(const Source* sources, const std::uint32_t* indices, std::size_t count,
                 const LaneTargets& targets, const LaneGate& gate, LaneCounts& counts);
-  void (*solve)(const LaneSums& sums, LaneDetail detail, LaneFits& fits);
+  /// Fits the spheres; `rounding` is how far rounding may have moved each sum, relative to the sum
+  /// of the sizes of its terms.
+  void (*solve)(const LaneSums& sums, LaneDetail detail, float rounding, LaneFits& fits);
 };
 
 }  // namespace pcednet::gls

@@ -78,6 +78,23 @@ std::vector<std::uint32_t> places_in(std::span<const std::uint32_t> order, std::
   return places;
 }
 
+void share_places(OrientedPoints points, std::span<const std::uint32_t> order,
+                  std::span<std::uint32_t> places) {
+  const auto are_equal = [&](std::uint32_t i, std::uint32_t j) {
+    if (points.positions[i] != points.positions[j]) return false;
+    const Vec3 &n = points.normals[i], &m = points.normals[j];
+    return is_usable(n) ? n == m : !is_usable(m);
+  };
+  for (auto first = order.begin(); first != order.end();) {
+    std::uint32_t place = places[*first];
+    auto last = first + 1;
+    for (; last != order.end() && are_equal(*first, *last); ++last) {
+      place = std::min(place, places[*last]);
+    }
+    for (; first != last; ++first) places[*first] = place;
+  }
+}
+
 std::vector<Visit> plan_visits(std::span<const std::uint32_t> targets,
                                std::span<const std::uint32_t> places) {
   std::vector<Visit> visits;

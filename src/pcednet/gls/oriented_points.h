@@ -33,6 +33,11 @@ inline constexpr std::uint32_t kNowhere = std::numeric_limits<std::uint32_t>::ma
 /// The place of each of `count` points in `order`.
 std::vector<std::uint32_t> places_in(std::span<const std::uint32_t> order, std::size_t count);
 
+/// Gives points that are equal, in position and normal, the first of their places, so that it does
+/// not matter which of them stands where. `order` is that of point_order().
+void share_places(OrientedPoints points, std::span<const std::uint32_t> order,
+                  std::span<std::uint32_t> places);
+
 /// A row of a matrix that is asked for, and the place of the point it describes.
 struct Visit {
   std::uint32_t place;

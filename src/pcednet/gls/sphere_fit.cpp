@@ -2,13 +2,9 @@
 
 #include <cmath>
 
+#include "pcednet/gls/fit_limits.h"
+
 namespace pcednet::gls {
-namespace {
-
-constexpr double kSmallestSqSpread = 1e-12;  // of t^2: below, the neighbours are one place
-constexpr double kSmallestLength = 1e-6;     // of ul and pratt: below, the normals cancel
-
-}  // namespace
 
 SphereFit fit_sphere(const Moments& m, std::uint32_t count, double t) {
   SphereFit fit;

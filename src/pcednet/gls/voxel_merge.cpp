@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 
 #include "pcednet/core/parallel.h"
+#include "pcednet/gls/normal_spread.h"
 #include "pcednet/spatial/morton.h"
 #include "pcednet/spatial/radix_sort.h"
 
@@ -12,6 +14,18 @@ namespace pcednet::gls {
 namespace {
 
 using spatial::Keyed;
+
+// Bits of a key below the place of a cell, and of cubes of 2, 4 and 8 cells a side.
+constexpr int kAxisBits = 2, kCubeBits = kAxisBits + 3, kGatedBits = kAxisBits + 6,
+              kBlockBits = kAxisBits + 9;
+// filling() from which a block is merged further: 18 cells with normals of every direction.
+constexpr double kFillsSpace = 4.0;
+constexpr std::size_t kFewestToFill = 18;
+constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+
+Vec3 normal_of(const Voxel& voxel) {
+  return {voxel.normal[0], voxel.normal[1], voxel.normal[2]};
+}
 
 /// Sums of the points of one voxel, about a fixed place near them.
 struct VoxelSums {
@@ -21,8 +35,7 @@ struct VoxelSums {
 
   void add(const Voxel& voxel) {
     if (count == 0) place = voxel.position;
-    const Vec3 offset = voxel.position - place;
-    const Vec3 normal(voxel.normal[0], voxel.normal[1], voxel.normal[2]);
+    const Vec3 offset = voxel.position - place, normal = normal_of(voxel);
     const double c = voxel.count;
     count += c;
     q += c * offset;
@@ -51,30 +64,41 @@ std::size_t dominant_axis(const std::array<float, 3>& n) {
 /// from all others), equal keys are followed by a look at the cells themselves.
 class Grid {
  public:
-  Grid(const std::vector<Voxel>& voxels, const Vec3& origin, double cell)
-      : voxels_(&voxels), origin_(origin), inverse_cell_(1.0 / cell) {}
+  Grid(const std::vector<Voxel>& voxels, const MergeCells& cells)
+      : voxels_(&voxels),
+        origin_(cells.origin),
+        inverse_edge_(1.0 / cells.edge),
+        cells_along_(cells.side * inverse_edge_ + 1.0) {}
 
   /// The cell's place on the curve, then the axis of the normal.
   std::uint64_t key(std::size_t i) const {
     const std::array<std::uint64_t, 3> cell = cell_of(i);
     const auto wrapped = [&](std::size_t a) { return static_cast<std::uint32_t>(cell[a] & kMost); };
     const std::uint64_t place = spatial::morton_code({wrapped(0), wrapped(1), wrapped(2)});
-    return place << 2 | dominant_axis((*voxels_)[i].normal);
+    return place << kAxisBits | dominant_axis((*voxels_)[i].normal);
   }
 
-  /// The bits of a key, for coordinates within `side` of the origin.
-  int key_bits(double side) const {
-    return 2 + 3 * std::bit_width(static_cast<std::uint64_t>(
-                       std::min(side * inverse_cell_ + 1.0, static_cast<double>(kMost))));
+  int key_bits() const {
+    return kAxisBits + 3 * std::bit_width(static_cast<std::uint64_t>(
+                               std::min(cells_along_, static_cast<double>(kMost))));
   }
 
-  bool is_same_cell(std::size_t i, std::size_t j) const { return cell_of(i) == cell_of(j); }
+  /// True if the keys of two voxels differ in their lowest `bits` bits only, and their cells
+  /// accordingly.
+  bool are_together(const Keyed& i, const Keyed& j, int bits) const {
+    if (i.key >> bits != j.key >> bits) return false;
+    if (cells_along_ < static_cast<double>(kMost)) return true;
+    const std::array<std::uint64_t, 3> a = cell_of(i.index), b = cell_of(j.index);
+    const int shift = (bits - kAxisBits) / 3;
+    return a[0] >> shift == b[0] >> shift && a[1] >> shift == b[1] >> shift &&
+           a[2] >> shift == b[2] >> shift;
+  }
 
  private:
   static constexpr std::uint64_t kMost = (1 << 20) - 1;
 
   std::array<std::uint64_t, 3> cell_of(std::size_t i) const {
-    const Vec3 place = ((*voxels_)[i].position - origin_) * inverse_cell_;
+    const Vec3 place = ((*voxels_)[i].position - origin_) * inverse_edge_;
     std::array<std::uint64_t, 3> cell;
     for (std::size_t a = 0; a < 3; ++a) {
       const double c = place[static_cast<Eigen::Index>(a)];
@@ -85,64 +109,152 @@ class Grid {
 
   const std::vector<Voxel>* voxels_;
   Vec3 origin_;
-  double inverse_cell_;
+  double inverse_edge_, cells_along_;
 };
 
-/// Appends the voxels of one cell and axis, given its members in order: one per sign of the
-/// normal's dominant component, the sign of the first member first, so that a flip of all normals
-/// changes nothing but the signs. Members without a normal count for nothing.
-void append_voxels(std::span<const Keyed> members, const std::vector<Voxel>& from,
-                   std::vector<Voxel>& to) {
-  VoxelSums same, opposite;
-  const std::size_t axis = members.front().key & 3;
-  bool first_sign = false;
-  for (const Keyed& member : members) {
-    const Voxel& voxel = from[member.index];
-    if (voxel.count == 0.0f) continue;
-    const bool sign = voxel.normal[axis] < 0.0f;
-    if (same.count == 0) first_sign = sign;
-    (sign == first_sign ? same : opposite).add(voxel);
-  }
-  if (same.count > 0) to.push_back(same.voxel());
-  if (opposite.count > 0) to.push_back(opposite.voxel());
-}
+/// Which voxel each member of a block goes into, numbered along the curve. Of two signs in one
+/// place that of the first member comes first, so that a flip of all normals changes nothing but
+/// the signs. Members without a normal count for nothing and go nowhere.
+class BlockPlan {
+ public:
+  BlockPlan(const std::vector<Voxel>& from, const Grid& grid, Crowd crowd)
+      : from_(&from), grid_(&grid), crowd_(crowd) {}
 
-/// The voxels of the cells that begin within [begin, end).
-std::vector<Voxel> merge_stretch(const std::vector<Voxel>& from, const Grid& grid,
-                                 std::span<const Keyed> keyed, std::size_t begin, std::size_t end) {
+  /// The voxel of each of `members`, sorted by key.
+  std::span<const std::uint32_t> plan(std::span<const Keyed> members) {
+    members_ = members;
+    voxel_of_.resize(members.size());
+    filling_ = members.size() < kFewestToFill ? 0.0 : find_filling();
+    if (crowd_ == Crowd::kKeep || filling_ < kFillsSpace) {
+      number_by_axis(kAxisBits);
+    } else if (crowd_ == Crowd::kMergeByAxis) {
+      number_by_axis(kGatedBits);
+    } else {
+      number_by_place(kCubeBits);
+    }
+    return voxel_of_;
+  }
+
+  /// How many voxels there are in the block last planned.
+  std::size_t count() const { return count_; }
+
+  /// How far that block is from a surface: MergeForecast::filling.
+  double filling() const { return filling_; }
+
+ private:
+  const Voxel& voxel(std::size_t i) const { return (*from_)[members_[i].index]; }
+
+  /// Calls `use(begin, end)` for the members of every cell, or cube of cells.
+  template <typename Use>
+  void for_cells(int bits, Use&& use) const {
+    for (std::size_t begin = 0, end; begin < members_.size(); begin = end) {
+      end = begin + 1;
+      while (end < members_.size() && grid_->are_together(members_[end - 1], members_[end], bits)) {
+        ++end;
+      }
+      use(begin, end);
+    }
+  }
+
+  /// One voxel per cell, axis and sign.
+  void number_by_axis(int bits) {
+    count_ = 0;
+    for_cells(bits, [&](std::size_t begin, std::size_t end) {
+      std::uint32_t number[3][2] = {{kNone, kNone}, {kNone, kNone}, {kNone, kNone}};
+      for (std::size_t i = begin; i < end; ++i) {
+        voxel_of_[i] = kNone;
+        if (voxel(i).count == 0.0f) continue;
+        const std::size_t axis = members_[i].key & 3;
+        std::uint32_t& mine = number[axis][voxel(i).normal[axis] < 0.0f];
+        if (mine == kNone) mine = count_++;
+        voxel_of_[i] = mine;
+      }
+    });
+  }
+
+  /// One voxel per cell.
+  void number_by_place(int bits) {
+    count_ = 0;
+    for_cells(bits, [&](std::size_t begin, std::size_t end) {
+      std::uint32_t number = kNone;
+      for (std::size_t i = begin; i < end; ++i) {
+        if (voxel(i).count > 0.0f && number == kNone) number = count_++;
+        voxel_of_[i] = voxel(i).count > 0.0f ? number : kNone;
+      }
+    });
+  }
+
+  double find_filling() {
+    NormalSpread spread;
+    for (std::size_t i = 0; i < members_.size(); ++i) {
+      spread.add(normal_of(voxel(i)), voxel(i).count);
+    }
+    number_by_place(kAxisBits);
+    return static_cast<double>(count_) * spread.mean_sq_volume();
+  }
+
+  const std::vector<Voxel>* from_;
+  const Grid* grid_;
+  Crowd crowd_;
+  std::span<const Keyed> members_;
+  std::vector<std::uint32_t> voxel_of_;
+  std::uint32_t count_ = 0;
+  double filling_ = 0.0;
+};
+
+/// Calls `use(members, voxel_of, plan)` for every block that begins within [begin, end).
+template <typename Use>
+void for_blocks(const std::vector<Voxel>& from, const Grid& grid, Crowd crowd,
+                std::span<const Keyed> keyed, std::size_t begin, std::size_t end, Use&& use) {
   const auto continues = [&](std::size_t i) {
-    return keyed[i].key == keyed[i - 1].key &&
-           grid.is_same_cell(keyed[i].index, keyed[i - 1].index);
+    return grid.are_together(keyed[i - 1], keyed[i], kBlockBits);
   };
-  std::vector<Voxel> to;
-  to.reserve((end - begin) / 2);
+  BlockPlan plan(from, grid, crowd);
   while (begin > 0 && begin < end && continues(begin)) ++begin;
   while (begin < end) {
     std::size_t last = begin + 1;
     while (last < keyed.size() && continues(last)) ++last;
-    append_voxels(keyed.subspan(begin, last - begin), from, to);
+    const auto members = keyed.subspan(begin, last - begin);
+    const std::span<const std::uint32_t> voxel_of = plan.plan(members);
+    use(members, voxel_of, plan);
     begin = last;
   }
+}
+
+/// The voxels of the blocks that begin within [begin, end).
+std::vector<Voxel> merge_stretch(const std::vector<Voxel>& from, const Grid& grid, Crowd crowd,
+                                 std::span<const Keyed> keyed, std::size_t begin, std::size_t end) {
+  std::vector<Voxel> to;
+  to.reserve((end - begin) / 2);
+  std::vector<VoxelSums> sums;
+  for_blocks(from, grid, crowd, keyed, begin, end,
+             [&](std::span<const Keyed> members, std::span<const std::uint32_t> voxel_of,
+                 const BlockPlan& plan) {
+               sums.assign(plan.count(), {});
+               for (std::size_t i = 0; i < members.size(); ++i) {
+                 if (voxel_of[i] != kNone) sums[voxel_of[i]].add(from[members[i].index]);
+               }
+               for (const VoxelSums& sum : sums) to.push_back(sum.voxel());
+             });
   return to;
 }
 
 }  // namespace
 
-std::vector<Voxel> merge_voxels(const std::vector<Voxel>& from, const Vec3& origin, double side,
-                                double cell) {
+std::vector<Voxel> merge_voxels(const std::vector<Voxel>& from, const MergeCells& cells) {
   constexpr std::size_t kStretch = 1 << 14;
-  const Grid grid(from, origin, cell);
+  const Grid grid(from, cells);
   std::vector<Keyed> keyed(from.size());
   parallel_blocks(from.size(), kStretch, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       keyed[i] = {grid.key(i), static_cast<std::uint32_t>(i)};
     }
   });
-  spatial::sort_by_key(keyed, grid.key_bits(side));
+  spatial::sort_by_key(keyed, grid.key_bits());
 
   std::vector<std::vector<Voxel>> stretches((keyed.size() + kStretch - 1) / kStretch);
   parallel_blocks(keyed.size(), kStretch, [&](std::size_t begin, std::size_t end) {
-    stretches[begin / kStretch] = merge_stretch(from, grid, keyed, begin, end);
+    stretches[begin / kStretch] = merge_stretch(from, grid, cells.crowd, keyed, begin, end);
   });
   keyed = {};
   std::size_t count = 0;
@@ -156,29 +268,38 @@ std::vector<Voxel> merge_voxels(const std::vector<Voxel>& from, const Vec3& orig
   return to;
 }
 
-double mean_merge(const std::vector<Voxel>& from, const Vec3& origin, double cell) {
-  constexpr std::size_t kStretch = 1024, kStep = 16 * kStretch;
-  const Grid grid(from, origin, cell);
-  double points = 0, squares = 0;
-  std::vector<std::pair<std::uint64_t, float>> members;
+MergeForecast forecast_merge(const std::vector<Voxel>& from, const MergeCells& cells) {
+  constexpr std::size_t kStretch = 1 << 14, kStep = 16 * kStretch;
+  const Grid grid(from, cells);
+  double points = 0, merged_sum = 0, filling_sum = 0;
+  std::vector<Keyed> keyed;
+  std::vector<double> merged, count;
   for (std::size_t begin = 0; begin < from.size(); begin += kStep) {
-    members.clear();
+    keyed.clear();
     for (std::size_t i = begin; i < std::min(from.size(), begin + kStretch); ++i) {
-      members.emplace_back(grid.key(i), from[i].count);
+      keyed.push_back({grid.key(i), static_cast<std::uint32_t>(i)});
     }
-    std::sort(members.begin(), members.end());
-    for (std::size_t i = 0; i < members.size();) {
-      std::size_t last = i;
-      double count = 0;
-      for (; last < members.size() && members[last].first == members[i].first; ++last) {
-        count += members[last].second;
-      }
-      points += count;
-      squares += count * static_cast<double>(last - i);
-      i = last;
-    }
+    std::sort(keyed.begin(), keyed.end(), [](const Keyed& a, const Keyed& b) {
+      return a.key != b.key ? a.key < b.key : a.index < b.index;
+    });
+    for_blocks(from, grid, cells.crowd, keyed, 0, keyed.size(),
+               [&](std::span<const Keyed> members, std::span<const std::uint32_t> voxel_of,
+                   const BlockPlan& plan) {
+                 merged.assign(plan.count(), 0.0), count.assign(plan.count(), 0.0);
+                 for (std::size_t i = 0; i < members.size(); ++i) {
+                   if (voxel_of[i] == kNone) continue;
+                   merged[voxel_of[i]] += 1.0;
+                   count[voxel_of[i]] += from[members[i].index].count;
+                 }
+                 for (std::size_t v = 0; v < plan.count(); ++v) {
+                   points += count[v];
+                   merged_sum += count[v] * merged[v];
+                   filling_sum += count[v] * plan.filling();
+                 }
+               });
   }
-  return points > 0 ? squares / points : 1.0;
+  if (points == 0) return {};
+  return {.merged = merged_sum / points, .filling = filling_sum / points};
 }
 
 }  // namespace pcednet::gls

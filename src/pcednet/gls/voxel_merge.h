@@ -6,14 +6,34 @@
 
 namespace pcednet::gls {
 
-/// The voxels of `from` merged into cells of edge `cell` that start at `origin`, along the curve
-/// through the cells; one voxel per cell, dominant axis of the normal and sign. Coordinates are at
-/// least those of `origin` and at most `side` more.
-std::vector<Voxel> merge_voxels(const std::vector<Voxel>& from, const Vec3& origin, double side,
-                                double cell);
+/// What becomes of blocks of 8 x 8 x 8 cells that are filled with normals of every direction
+/// (leaves, noise), of which a neighbourhood holds ten times as many voxels as of a surface.
+enum class Crowd {
+  kKeep,         ///< nothing: they are voxels as elsewhere
+  kMerge,        ///< one voxel per 2 x 2 x 2 cells
+  kMergeByAxis,  ///< one per 4 x 4 x 4 cells, axis and sign: for a gate, which looks at directions
+};
 
-/// How many voxels of `from` would go into the same voxel as the average point's: 1 where nothing
-/// would merge. Estimated from every sixteenth stretch of the curve.
-double mean_merge(const std::vector<Voxel>& from, const Vec3& origin, double cell);
+/// The cells that voxels are merged into. Coordinates are at least those of `origin` and at most
+/// `side` more.
+struct MergeCells {
+  Vec3 origin;
+  double side;
+  double edge;
+  Crowd crowd;
+};
+
+/// The voxels of `from` merged, along the curve through the cells: one voxel per cell, dominant
+/// axis of the normal and sign, so that none averages across an edge; but see Crowd.
+std::vector<Voxel> merge_voxels(const std::vector<Voxel>& from, const MergeCells& cells);
+
+/// What the average point would meet in merge_voxels(), estimated from every sixteenth stretch of
+/// the curve.
+struct MergeForecast {
+  double merged = 1.0;   ///< voxels of `from` that go into its voxel; 1 where nothing would merge
+  double filling = 0.0;  ///< of its block: occupied cells times NormalSpread::mean_sq_volume(), at
+                         ///< most 6 on scans of surfaces, 20 and more on noise
+};
+MergeForecast forecast_merge(const std::vector<Voxel>& from, const MergeCells& cells);
 
 }  // namespace pcednet::gls

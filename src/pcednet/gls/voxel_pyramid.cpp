@@ -1,5 +1,7 @@
 #include "pcednet/gls/voxel_pyramid.h"
 
+#include <algorithm>
+
 #include "pcednet/core/parallel.h"
 #include "pcednet/gls/voxel_merge.h"
 
@@ -8,6 +10,10 @@ namespace {
 
 /// A level is worth its memory when the average point shares its voxel with most of another.
 constexpr double kWorthwhileMerge = 1.6;
+
+/// MergeForecast::filling from which a level costs far more than one of a surface. As with merging,
+/// what the average point meets decides, so that a tree on a wall does not coarsen anything.
+constexpr double kCrowded = 8.0;
 
 void add_boxes(VoxelLevel& level, const Vec3& origin) {
   level.boxes = spatial::BoxTree(level.voxels.size(), origin,
@@ -45,17 +51,26 @@ VoxelPyramid make_pyramid(std::span<const Vec3> positions, std::span<const Vec3>
   return pyramid;
 }
 
-void add_levels(VoxelPyramid& pyramid, std::span<const double> scales, double eps,
+void add_levels(VoxelPyramid& pyramid, std::span<const double> scales, const LevelOptions& options,
                 const Progress* progress) {
   Stage stage(progress, "resolutions", scales.size());
   pyramid.levels.reserve(1 + scales.size());
   for (const double scale : scales) {
-    const double cell = eps * scale;
+    MergeCells cells = {.origin = pyramid.origin,
+                        .side = pyramid.side,
+                        .edge = options.eps * scale,
+                        .crowd = Crowd::kKeep};
     const std::vector<Voxel>& finer = pyramid.levels.back().voxels;
-    if (mean_merge(finer, pyramid.origin, cell) >= kWorthwhileMerge) {
+    MergeForecast forecast = forecast_merge(finer, cells);
+    if (forecast.filling > kCrowded) {
+      cells.crowd = options.gated ? Crowd::kMergeByAxis : Crowd::kMerge;
+      forecast = forecast_merge(finer, cells);
+    }
+    if (forecast.merged >= kWorthwhileMerge) {
       VoxelLevel& level = pyramid.levels.emplace_back();
-      level.cell = cell;
-      level.voxels = merge_voxels(finer, pyramid.origin, pyramid.side, cell);
+      level.cell = cells.edge;
+      level.voxels = merge_voxels(finer, cells);
+      for (const Voxel& voxel : level.voxels) level.most_qq = std::max(level.most_qq, voxel.qq);
       add_boxes(level, pyramid.origin);
     }
     pyramid.level_of.push_back(pyramid.levels.size() - 1);

@@ -27,7 +27,8 @@ struct Voxel {
 
 /// The cloud at one resolution, along a space-filling curve.
 struct VoxelLevel {
-  double cell = 0.0;  ///< voxel edge length; 0 for the points themselves
+  double cell = 0.0;     ///< edge of the cells that were merged; 0 for the points themselves
+  float most_qq = 0.0f;  ///< the largest qq of its voxels
   std::vector<Voxel> voxels;
   spatial::BoxTree boxes;
 };
@@ -46,13 +47,19 @@ struct VoxelPyramid {
 VoxelPyramid make_pyramid(std::span<const Vec3> positions, std::span<const Vec3> normals,
                           std::span<const std::uint32_t> order, double unit);
 
-/// Adds levels so that scale t reads voxels of edge at most eps t; a level that would merge next to
-/// nothing is left out, and the scale reads the finer level before.
+struct LevelOptions {
+  double eps = 0.1;
+  bool gated = false;  ///< the sums will look at the direction of each normal
+};
+
+/// Adds levels so that scale t reads voxels of cells of edge at most eps t; a level that would
+/// merge next to nothing is left out, and the scale reads the finer level before.
 ///
-/// Voxels are keyed by cell and by the dominant axis and sign of the normal, so that none averages
-/// across an edge. `scales` must be positive and rising. Work is linear in the points, and so is
+/// See merge_voxels() for what is merged. Where the average neighbourhood is filled with leaves or
+/// noise rather than crossed by surfaces, these are merged further, so that it costs about as much
+/// as elsewhere. `scales` must be positive and rising. Work is linear in the points, and so is
 /// memory: together the levels hold about two and a half voxels per point.
-void add_levels(VoxelPyramid& pyramid, std::span<const double> scales, double eps,
+void add_levels(VoxelPyramid& pyramid, std::span<const double> scales, const LevelOptions& options,
                 const Progress* progress = nullptr);
 
 }  // namespace pcednet::gls
