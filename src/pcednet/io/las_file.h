@@ -56,6 +56,7 @@ void put_number(std::string& bytes, std::size_t offset, T value) {
 struct LasFile {
   std::string header = {};
   std::vector<LasRecord> records = {}, extended_records = {};
+  std::string before_points = {};  ///< bytes behind the records that belong to none of them
 
   unsigned minor_version() const { return number_at<std::uint8_t>(header, 25); }
   unsigned point_format() const { return number_at<std::uint8_t>(header, 104) & 0x3FU; }
@@ -64,7 +65,10 @@ struct LasFile {
   std::uint64_t points_offset() const { return number_at<std::uint32_t>(header, 96); }
   /// Whether the header has the 64-bit counts of LAS 1.4.
   bool counts_wide() const;
+  /// Whether it has the range of the times (LAS 1.5).
+  bool has_time_range() const;
   std::uint64_t point_count() const;
+  void set_point_count(std::uint64_t count);
   double scale(std::size_t axis) const { return number_at<double>(header, 131 + 8 * axis); }
   double offset(std::size_t axis) const { return number_at<double>(header, 155 + 8 * axis); }
 };
@@ -88,6 +92,9 @@ std::string las_extra_descriptor(const LasField& field);
 /// index the compressed points, are left out. Throws Error(kUnreadable), naming the byte, for what
 /// cannot be trusted.
 LasFile read_las_file(const InputFile& file, std::vector<std::string>& warnings);
+
+/// Where the points must end at the latest: at the records behind them, or with the file.
+std::uint64_t las_points_limit(const InputFile& file, const LasFile& las);
 
 /// Makes the header say that the extended records begin at `begin`; false if it has no place for
 /// that.
