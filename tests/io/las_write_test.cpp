@@ -84,6 +84,34 @@ TEST(LasWrite, KeepsTheBytesBetweenTheRecordsAndThePoints) {
   EXPECT_TRUE(scratch.read("again.las", more).cloud.comments == cloud.comments);
 }
 
+TEST(LasWrite, KeepsTheHeadsOfRecordsByteForByte) {
+  const Scratch scratch;
+  LasTestFile file{7, 4, las_test_rows(7, 5)};
+  const std::string after_zero("name\0rubbish", 12);
+  file.records = {{after_zero, 7, "data", after_zero, 0xAABB}};
+  file.extended = {{after_zero, 8, "data", after_zero, 0xCCDD}};
+  const std::string bytes = las_bytes(file);
+  EXPECT_TRUE(read_and_written(scratch, bytes) == bytes);
+}
+
+TEST(LasWrite, LeavesTheRecordOfExtraBytesInItsPlace) {
+  const Scratch scratch;
+  LasTestFile file{7, 4, las_test_rows(7, 5, 2), 2};
+  file.records = {{"somebody", 7, "data"},
+                  {"LASF_Spec", 4, las_test_extra("height", 3) + "odd end", "of a scanner"},
+                  {"somebody", 8, "data"}};
+  const std::string bytes = las_bytes(file);
+  EXPECT_TRUE(read_and_written(scratch, bytes) == bytes);
+  PointCloud cloud = scratch.read("in.las", bytes).cloud;
+  cloud.attributes.push_back({"more", ScalarType::kUint8, 1, std::vector<std::byte>(5)});
+  const std::string more = written(scratch, cloud);
+  file.records[1].data = las_test_extra("height", 3) + las_test_extra("more", 1);
+  const std::string records = las_test_record(file.records[0], false) +
+                              las_test_record(file.records[1], false) +
+                              las_test_record(file.records[2], false);
+  EXPECT_TRUE(more.substr(375, records.size()) == records);
+}
+
 TEST(LasWrite, CountsTheTimesOfLas15Anew) {
   const Scratch scratch;
   const LasTestFile file{7, 5, las_test_rows(7, 200)};

@@ -14,6 +14,7 @@ struct LasTestRecord {
   std::string user;
   unsigned id = 0;
   std::string data = {}, description = {};
+  unsigned reserved = 0;
 };
 
 /// A LAS file to write, from the tables of the standard. What is not given is worked out.
@@ -52,7 +53,8 @@ inline std::string las_test_record(const LasTestRecord& record, bool extended) {
   std::string user = record.user, description = record.description;
   user.resize(16);
   description.resize(32);
-  return packed(std::uint16_t{0}) + user + packed(static_cast<std::uint16_t>(record.id)) +
+  return packed(static_cast<std::uint16_t>(record.reserved)) + user +
+         packed(static_cast<std::uint16_t>(record.id)) +
          (extended ? packed(std::uint64_t{record.data.size()})
                    : packed(static_cast<std::uint16_t>(record.data.size()))) +
          description + record.data;

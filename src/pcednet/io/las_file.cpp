@@ -40,7 +40,8 @@ std::vector<LasRecord> read_records(const InputFile& file, std::uint64_t& begin,
     }
     const std::string_view view = bytes;
     records.push_back({until_zero(view.substr(2, 16)), number_at<std::uint16_t>(view, 18),
-                       until_zero(view.substr(head - 32, 32)), file.text(begin + head, length)});
+                       until_zero(view.substr(head - 32, 32)), file.text(begin + head, length),
+                       bytes});
     begin += head + length;
   }
   return records;
@@ -115,7 +116,8 @@ std::vector<LasRecord> parse_records(std::string_view bytes, bool extended) {
     if (length > bytes.size() - head) break;
     records.push_back({until_zero(bytes.substr(2, 16)), number_at<std::uint16_t>(bytes, 18),
                        until_zero(bytes.substr(head - 32, 32)),
-                       std::string(bytes.substr(head, length))});
+                       std::string(bytes.substr(head, length)),
+                       std::string(bytes.substr(0, head))});
     bytes.remove_prefix(head + length);
   }
   return records;
@@ -212,15 +214,18 @@ bool place_extended_records(LasFile& file, std::uint64_t begin) {
 std::string las_record_bytes(const std::vector<LasRecord>& records, bool extended) {
   std::string bytes;
   for (const LasRecord& record : records) {
-    std::string head(header_bytes_of(extended), '\0');
-    head.replace(2, 16, fixed(record.user_id, 16));
-    put_number(head, 18, record.record_id);
+    std::string head = record.head;
+    if (head.size() != header_bytes_of(extended)) {
+      head.assign(header_bytes_of(extended), '\0');
+      head.replace(2, 16, fixed(record.user_id, 16));
+      put_number(head, 18, record.record_id);
+      head.replace(head.size() - 32, 32, fixed(record.description, 32));
+    }
     if (extended) {
       put_number<std::uint64_t>(head, 20, record.data.size());
     } else {
       put_number(head, 20, static_cast<std::uint16_t>(record.data.size()));
     }
-    head.replace(head.size() - 32, 32, fixed(record.description, 32));
     bytes += head + record.data;
   }
   return bytes;

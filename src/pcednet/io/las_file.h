@@ -28,6 +28,7 @@ struct LasRecord {
   std::uint16_t record_id = 0;
   std::string description;
   std::string data = {};
+  std::string head = {};  ///< all before the data, as the file has it; empty: a new record
 
   bool is(std::string_view user, std::uint16_t id) const {
     return user_id == user && record_id == id;
