@@ -50,6 +50,7 @@ class LazReader {
   void read_items(const std::string& record);
   std::optional<std::uint64_t> table_place() const;
   std::vector<Entry> read_table(std::uint64_t place) const;
+  std::uint64_t points_behind(std::uint64_t counted, const Entry& chunk, std::uint64_t at) const;
   void find_chunks(std::uint64_t points, std::vector<std::string>& warnings);
   void recover(LasFile& las, std::vector<std::string>& warnings);
   std::vector<Entry> walk_layered(std::uint64_t end) const;

@@ -124,6 +124,19 @@ bool LazReader::may_hold(const Entry& chunk) const {
          (chunk.bytes >= record_length_ && may_stand_for(chunk.bytes, chunk.points * extra));
 }
 
+/// Points of the chunk at byte `at` behind the first `counted`, as far as can be known without
+/// decoding: pointwise, the last of chunks of equal size does not say how many it has.
+std::uint64_t LazReader::points_behind(std::uint64_t counted, const Entry& chunk,
+                                       std::uint64_t at) const {
+  std::uint64_t held = chunk.points;
+  if (chunk_size_ != kVariable && compressor_ == kLayered) {
+    held = number_at<std::uint32_t>(file_.text(at + record_length_, 4), 0);
+  } else if (chunk_size_ != kVariable && counted > 0) {
+    held = counted;
+  }
+  return held - std::min(held, counted);
+}
+
 /// The chunks of the table, as far as `points` are counted.
 void LazReader::find_chunks(std::uint64_t points, std::vector<std::string>& warnings) {
   const auto place = table_place();
@@ -141,15 +154,16 @@ void LazReader::find_chunks(std::uint64_t points, std::vector<std::string>& warn
       fail(*place, fmt::format("chunk {} of {} points has {} bytes", c, here, table[c].bytes));
     }
     if (here > 0) chunks_.push_back({first, here, at, table[c].bytes});
-    if (here == 0 || chunk_size_ == kVariable) left_out += table[c].points - here;
+    if (here < table[c].points) left_out += points_behind(here, table[c], at);
     at += table[c].bytes;
     first += here;
   }
   if (first < points) fail(*place, fmt::format("chunks for {} of {} points", first, points));
   if (left_out == 0) return;
+  const bool known = chunk_size_ == kVariable || compressor_ == kLayered;
   warnings.push_back(
-      fmt::format("the header counts {} points and the chunk table {} {} more: these are left out",
-                  points, chunk_size_ == kVariable ? "has" : "room for", left_out));
+      fmt::format("the header counts {} points and the chunks {} {} more: these are left out",
+                  points, known ? "hold" : "have room for", left_out));
 }
 
 /// Layered chunks from the beginning of the points on, each of which tells its own size.
