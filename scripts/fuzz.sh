@@ -33,6 +33,10 @@ convert "$corpus/pcd/ascii.pcd" --ascii
 convert "$corpus/obj/seed.obj"
 convert "$corpus/las/seed.las"
 convert "$corpus/las/seed.laz"
+for kind in las laz; do  # and with a header that counts no points
+  cp "$corpus/las/seed.$kind" "$corpus/las/unfinished.$kind"
+  head -c 8 /dev/zero | dd of="$corpus/las/unfinished.$kind" bs=1 seek=247 conv=notrunc 2>/dev/null
+done
 convert "$corpus/xyz/seed.csv"
 convert "$corpus/xyz/seed.pts"
 # Ours are too large to begin with: six numbers, whose header has 0166 (118) bytes.

@@ -1,16 +1,16 @@
-// las_sample FORMAT MINOR POINTS EXTRA writes LAS 1.MINOR to stdout: points of FORMAT with
-// EXTRA bytes beyond it.
+// las_sample FORMAT MINOR POINTS EXTRA CHANNELS writes LAS 1.MINOR to stdout: points of FORMAT with
+// EXTRA bytes beyond it, from CHANNELS scanner channels in turn (formats 6 to 10).
 #include <iostream>
 
 #include "io/las_writer.h"
 
 int main(int count, char** words) {
   using namespace pcednet::io;
-  if (count != 5) return 2;
-  std::array<unsigned, 4> numbers = {};
-  for (int i = 0; i < 4; ++i) numbers[static_cast<std::size_t>(i)] = std::stoul(words[i + 1]);
-  const auto [format, minor, points, extra] = numbers;
-  LasTestFile file{format, minor, las_test_rows(format, points, extra), extra};
+  if (count != 6) return 2;
+  std::array<unsigned, 5> numbers = {};
+  for (int i = 0; i < 5; ++i) numbers[static_cast<std::size_t>(i)] = std::stoul(words[i + 1]);
+  const auto [format, minor, points, extra, channels] = numbers;
+  LasTestFile file{format, minor, las_test_rows(format, points, extra, channels), extra};
   file.records = {{"somebody", 7, "kept as it is", "of mine"},
                   {"LASF_Projection", 34735, std::string("\1\0\1\0\0\0\0\0", 8)}};
   if (extra > 0) {

@@ -30,9 +30,9 @@ function made(command, input, extension) {
 const OURS = ["edge_class", "p_sharp", "p_smooth"];
 
 // LAS from tables of the standard, not from our code.
-function makeSample({ format, minor = 4, points = 1000, extra = 0 }) {
+function makeSample({ format, minor = 4, points = 1000, extra = 0, channels = 1 }) {
   const path = fresh("las");
-  const numbers = [format, minor, points, extra].map(String);
+  const numbers = [format, minor, points, extra, channels].map(String);
   writeFileSync(path, execFileSync(sample, numbers, { maxBuffer: 1 << 28 }));
   return path;
 }
@@ -143,7 +143,7 @@ function decompress(file) {
 
 for (const format of [0, 1, 2, 3, 6, 7, 8]) {
   const minor = format < 6 ? 2 : 4;
-  // Chunks hold 50,000 points. One scanner channel: of several, laz-perf predicts otherwise than LASzip.
+  // Chunks hold 50,000 points.
   const sizes = [[1, 0], [2, 3], [50001, 5]].concat(format === 3 || format === 7 ? [[50000, 0], [100001, 2]] : []);
   for (const [points, extra] of sizes) {
     test(`laz-perf decompresses ${points} points of format ${format}, ${extra} extra bytes`, () => {
@@ -155,8 +155,33 @@ for (const format of [0, 1, 2, 3, 6, 7, 8]) {
   }
 }
 
-test("laz-perf decompresses what we classified", () => {
-  const source = makeSample({ format: 7, points: 3000 });
-  const packed = made("classify", made("convert", source, "laz"), "laz");
-  assert.ok(decompress(packed).equals(pointBytes(made("classify", source, "las"))));
-});
+// Scanner channels that differ from point to point, or are all the same but not 0.
+for (const format of [6, 7, 8]) {
+  for (const channels of [2, 3, 4]) {
+    test(`laz-perf decompresses ${channels} scanner channels of format ${format}`, () => {
+      const source = makeSample({ format, points: 50500, extra: 4, channels });
+      const [rows, wanted] = [decompress(made("convert", source, "laz")), pointBytes(source)];
+      const seen = new Set();
+      for (let at = 15; at < wanted.length; at += wanted.length / 50500) seen.add((wanted[at] >> 4) & 3);
+      assert.equal(seen.size, channels, "the sample has fewer channels");
+      assert.ok(rows.equals(wanted), `byte ${rows.findIndex((byte, i) => byte !== wanted[i])} differs`);
+    });
+  }
+
+  test(`laz-perf decompresses points of format ${format} that are all of channel 2`, () => {
+    const source = makeSample({ format, points: 3000, extra: 4 });
+    const bytes = readFileSync(source);
+    const { pointDataOffset, pointDataRecordLength } = Las.Header.parse(bytes);
+    for (let i = 0; i < 3000; ++i) bytes[pointDataOffset + i * pointDataRecordLength + 15] |= 0x20;
+    writeFileSync(source, bytes);
+    assert.ok(decompress(made("convert", source, "laz")).equals(pointBytes(source)));
+  });
+}
+
+for (const [format, channels] of [[7, 1], [6, 2], [7, 4], [8, 3]]) {
+  test(`laz-perf decompresses what we classified, ${channels} channels of format ${format}`, () => {
+    const source = makeSample({ format, points: 3000, channels });
+    const packed = made("classify", made("convert", source, "laz"), "laz");
+    assert.ok(decompress(packed).equals(pointBytes(made("classify", source, "las"))));
+  });
+}

@@ -192,6 +192,53 @@ TEST(LasRead, WarnsOfWhatIsSlightlyWrong) {
   expect(las_bytes(file), "\"absent\" are described but not in the points' 36 bytes");
   std::string short_header = las_bytes({3, 3, las_test_rows(3, 20)});
   expect(with(short_header, 25, std::uint8_t{4}), "calls itself 235 bytes, version 1.4 has 375");
+  const std::string newer = with(las_bytes({6, 4, las_test_rows(6, 20)}), 25, std::uint8_t{5});
+  expect(newer, "calls itself 375 bytes, version 1.5 has 393");
+}
+
+TEST(LasRead, WarnsOfPointsBehindThoseThatTheHeaderCounts) {
+  const Scratch scratch;
+  for (const unsigned minor : {0U, 2U, 3U, 4U, 5U}) {
+    const unsigned format = minor < 4 ? 1 : 6;
+    LasTestFile file{format, minor, las_test_rows(format, 20)};
+    const std::size_t count_at = minor < 4 ? 107 : 247;
+    const std::string fewer = with(las_bytes(file), count_at, 15U);
+    const std::string half = std::string(las_test_stride(format) - 1, 'x');
+    for (const std::string& bytes : {fewer, fewer + half}) {
+      EXPECT_EQ(warning_of(scratch, bytes, 15),
+                "the header counts 15 points and the file has room for 5 more behind them: these "
+                "are left out");
+    }
+    EXPECT_TRUE(scratch.read("a.las", las_bytes(file) + half).warnings.empty());
+    // Records behind the points are none.
+    if (minor < 3) continue;
+    file.extended = {{"LASF_Spec", 65535, std::string(500, 'w')}};
+    EXPECT_TRUE(scratch.read("a.las", las_bytes(file)).warnings.empty());
+    const std::string warning = warning_of(scratch, with(las_bytes(file), count_at, 15U), 15);
+    EXPECT_TRUE(contains(warning, "room for 5 more")) << warning;
+  }
+}
+
+TEST(LasRead, ReadsThePointsOfAFileWhoseHeaderWasNeverFinished) {
+  const Scratch scratch;
+  for (const unsigned minor : {2U, 4U}) {
+    const unsigned format = minor < 4 ? 3 : 7;
+    const LasTestFile file{format, minor, las_test_rows(format, 20)};
+    const std::string bytes = las_bytes(file);
+    const std::string none = with(bytes, minor < 4 ? 107 : 247, 0U);
+    EXPECT_EQ(warning_of(scratch, none, 20),
+              "the header counts no points, as where writing was interrupted: the 20 that are "
+              "there are read");
+    EXPECT_TRUE(contains(warning_of(scratch, none.substr(0, none.size() - 1), 19), "the 19 that"));
+    write_cloud(scratch.path("whole.las"), scratch.read("none.las", none).cloud,
+                {.overwrite = Overwrite::kYes});
+    EXPECT_TRUE(bytes_of(scratch.path("whole.las")) == bytes);
+  }
+  LasTestFile empty{6, 4};
+  empty.extended = {{"somebody", 8, std::string(500, 'x')}};
+  const LoadedCloud loaded = scratch.read("empty.las", las_bytes(empty));
+  EXPECT_EQ(loaded.cloud.size(), 0u);
+  EXPECT_TRUE(loaded.warnings.empty());
 }
 
 TEST(LasRead, TakesTheCountThatIsThere) {
@@ -225,7 +272,7 @@ TEST(LasRead, NamesTheByteThatCannotBeTrusted) {
   }
   expect(with(good, 94, std::uint16_t{65535}), "byte 96");
   expect(with(good, 24, std::uint8_t{2}), "byte 24: LAS 2.4");
-  expect(with(good, 25, std::uint8_t{5}), "byte 24: LAS 1.5");
+  expect(with(good, 25, std::uint8_t{6}), "byte 24: LAS 1.6");
   expect(with(good, 104, std::uint8_t{11}), "byte 104: point format 11");
   expect(with(good, 104, std::uint8_t{63}), "byte 104: point format 63");
   expect(with(good, 104, std::uint8_t{0x83}), "byte 104: compressed, but no record");
@@ -272,7 +319,6 @@ TEST(LasRead, ReadsRecordsUpToTheirFullLength) {
   file.extended[100].data.assign(200000, 'y');
   const LoadedCloud loaded = scratch.read("a.las", las_bytes(file));
   EXPECT_TRUE(loaded.warnings.empty());
-  file.before_points.clear();
   write_cloud(scratch.path("b.las"), loaded.cloud);
   EXPECT_TRUE(bytes_of(scratch.path("b.las")) == las_bytes(file));
 }

@@ -30,7 +30,7 @@ LasTestFile rich_file(unsigned format, unsigned minor) {
        las_test_extra("height", 9) + las_test_extra("code", 8) + las_test_extra("three bytes", 21),
        "extra bytes"}};
   if (minor == 3) file.extended = {{"LASF_Spec", 65535, std::string(100, 'w'), "waves"}};
-  if (minor == 4) {
+  if (minor >= 4) {
     file.extended = {{"somebody", 8, std::string(70000, 'x'), "a long one"},
                      {"LASF_Spec", 65535, std::string(100, 'w'), "waves"}};
   }
@@ -39,10 +39,11 @@ LasTestFile rich_file(unsigned format, unsigned minor) {
 
 TEST(LasWrite, GivesEveryFormatBackInEveryVersionByteForByte) {
   const Scratch scratch;
-  for (unsigned minor = 0; minor <= 4; ++minor) {
+  for (unsigned minor = 0; minor <= 5; ++minor) {
     for (unsigned format = 0; format <= 10; ++format) {
       LasTestFile file = rich_file(format, minor);
       file.records[1].user.resize(16);
+      if (format % 2 == 1) file.before_points = "\xDD\xCC";  // as LAS 1.0 begins its points
       const std::string bytes = las_bytes(file);
       EXPECT_TRUE(read_and_written(scratch, bytes) == bytes) << "1." << minor << ", " << format;
     }
@@ -60,6 +61,74 @@ TEST(LasWrite, GivesAFileBackThroughPly) {
                 {.overwrite = Overwrite::kYes});
     EXPECT_TRUE(written(scratch, read_cloud(scratch.path("a.ply")).cloud) == bytes) << format;
   }
+}
+
+TEST(LasWrite, KeepsTheBytesBetweenTheRecordsAndThePoints) {
+  const Scratch scratch;
+  LasTestFile file{6, 4, las_test_rows(6, 30)};
+  file.records = {{"somebody", 7, "kept as it is"}};
+  file.before_points = std::string(1000, '?') + std::string(3, '\0');
+  const std::string bytes = las_bytes(file);
+  EXPECT_TRUE(read_and_written(scratch, bytes) == bytes);
+  for (const char* name : {"a.ply", "a.laz"}) {
+    write_cloud(scratch.path(name), scratch.read("in.las", bytes).cloud);
+    EXPECT_TRUE(written(scratch, read_cloud(scratch.path(name)).cloud) == bytes) << name;
+  }
+  // They stay next to the points when records are added.
+  PointCloud cloud = scratch.read("in.las", bytes).cloud;
+  cloud.comments = {"a comment"};
+  const std::string more = written(scratch, cloud);
+  const auto points = get_number<std::uint32_t>(more, 96);
+  EXPECT_TRUE(more.substr(points - 1003, 1003) == file.before_points);
+  EXPECT_EQ(get_number<std::uint32_t>(more, 100), 2u);
+  EXPECT_TRUE(scratch.read("again.las", more).cloud.comments == cloud.comments);
+}
+
+TEST(LasWrite, KeepsTheHeadsOfRecordsByteForByte) {
+  const Scratch scratch;
+  LasTestFile file{7, 4, las_test_rows(7, 5)};
+  const std::string after_zero("name\0rubbish", 12);
+  file.records = {{after_zero, 7, "data", after_zero, 0xAABB}};
+  file.extended = {{after_zero, 8, "data", after_zero, 0xCCDD}};
+  const std::string bytes = las_bytes(file);
+  EXPECT_TRUE(read_and_written(scratch, bytes) == bytes);
+}
+
+TEST(LasWrite, LeavesTheRecordOfExtraBytesInItsPlace) {
+  const Scratch scratch;
+  LasTestFile file{7, 4, las_test_rows(7, 5, 2), 2};
+  file.records = {{"somebody", 7, "data"},
+                  {"LASF_Spec", 4, las_test_extra("height", 3) + "odd end", "of a scanner"},
+                  {"somebody", 8, "data"}};
+  const std::string bytes = las_bytes(file);
+  EXPECT_TRUE(read_and_written(scratch, bytes) == bytes);
+  PointCloud cloud = scratch.read("in.las", bytes).cloud;
+  cloud.attributes.push_back({"more", ScalarType::kUint8, 1, std::vector<std::byte>(5)});
+  const std::string more = written(scratch, cloud);
+  file.records[1].data = las_test_extra("height", 3) + las_test_extra("more", 1);
+  const std::string records = las_test_record(file.records[0], false) +
+                              las_test_record(file.records[1], false) +
+                              las_test_record(file.records[2], false);
+  EXPECT_TRUE(more.substr(375, records.size()) == records);
+}
+
+TEST(LasWrite, CountsTheTimesOfLas15Anew) {
+  const Scratch scratch;
+  const LasTestFile file{7, 5, las_test_rows(7, 200)};
+  std::string bytes = las_bytes(file);
+  EXPECT_GT(get_number<double>(bytes, 375), get_number<double>(bytes, 383));
+  std::string wrong = bytes;
+  set_number(wrong, 375, 1.0);
+  set_number(wrong, 383, 2.0);
+  EXPECT_TRUE(read_and_written(scratch, wrong) == bytes);
+  EXPECT_EQ(get_number<std::uint16_t>(bytes, 391), 1000);
+  const std::string none = las_bytes({7, 5});
+  EXPECT_TRUE(read_and_written(scratch, none) == none);
+  // What others added behind the header of the standard stays.
+  bytes.insert(393, "more");
+  set_number(bytes, 94, std::uint16_t{397});
+  set_number(bytes, 96, 397U);
+  EXPECT_TRUE(read_and_written(scratch, bytes) == bytes);
 }
 
 TEST(LasWrite, GivesTheFarthestIntegersBack) {

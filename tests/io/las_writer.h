@@ -14,6 +14,7 @@ struct LasTestRecord {
   std::string user;
   unsigned id = 0;
   std::string data = {}, description = {};
+  unsigned reserved = 0;
 };
 
 /// A LAS file to write, from the tables of the standard. What is not given is worked out.
@@ -23,6 +24,7 @@ struct LasTestFile {
   std::size_t extra = 0;  ///< bytes of a point beyond those of the format
   std::vector<LasTestRecord> records = {}, extended = {};
   std::string before_points = {};  ///< bytes that belong to no record
+  unsigned time_offset = 1000;     ///< of LAS 1.5
   std::array<double, 3> scale = {0.001, 0.001, 0.0005}, offset = {652000.0, 6862000.0, -20.0};
 };
 
@@ -32,7 +34,7 @@ inline std::size_t las_test_stride(unsigned format, std::size_t extra = 0) {
 }
 
 inline std::size_t las_test_header(unsigned minor) {
-  return minor < 3 ? 227 : minor == 3 ? 235 : 375;
+  return minor < 3 ? 227 : minor == 3 ? 235 : minor == 4 ? 375 : 393;
 }
 
 template <typename T>
@@ -51,7 +53,8 @@ inline std::string las_test_record(const LasTestRecord& record, bool extended) {
   std::string user = record.user, description = record.description;
   user.resize(16);
   description.resize(32);
-  return packed(std::uint16_t{0}) + user + packed(static_cast<std::uint16_t>(record.id)) +
+  return packed(static_cast<std::uint16_t>(record.reserved)) + user +
+         packed(static_cast<std::uint16_t>(record.id)) +
          (extended ? packed(std::uint64_t{record.data.size()})
                    : packed(static_cast<std::uint16_t>(record.data.size()))) +
          description + record.data;
@@ -77,6 +80,19 @@ inline std::uint64_t las_test_waves(const LasTestFile& file, std::uint64_t at) {
     at += 60 + record.data.size();
   }
   return 0;
+}
+
+/// What LAS 1.5 adds to the header: the largest and the least time, and the offset of all.
+inline std::string las_test_times(const LasTestFile& file, std::size_t points) {
+  const std::size_t stride = las_test_stride(file.format, file.extra);
+  const bool timed = file.format != 0 && file.format != 2;
+  double least = 0.0, largest = 0.0;
+  for (std::size_t i = 0; timed && i < points; ++i) {
+    const auto time = get_number<double>(file.rows, i * stride + (file.format < 6 ? 20 : 22));
+    least = i == 0 ? time : std::min(least, time);
+    largest = i == 0 ? time : std::max(largest, time);
+  }
+  return packed(largest, least, static_cast<std::uint16_t>(file.time_offset));
 }
 
 /// The header, as the standard has it.
@@ -118,6 +134,7 @@ inline std::string las_test_header_bytes(const LasTestFile& file, std::size_t re
   header += packed(file.extended.empty() ? 0 : end,
                    static_cast<std::uint32_t>(file.extended.size()), std::uint64_t{points});
   for (const std::uint64_t count : returns) header += packed(count);
+  if (file.minor >= 5) header += las_test_times(file, points);
   return header;
 }
 

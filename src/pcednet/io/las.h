@@ -12,7 +12,7 @@
 
 namespace pcednet::io {
 
-/// Reads LAS 1.0 to 1.4 (ASPRS), point formats 0 to 10, and their LASzip compressed form.
+/// Reads LAS 1.0 to 1.5 (ASPRS), point formats 0 to 10, and their LASzip compressed form.
 ///
 /// Every field becomes an attribute in its own type: Intensity, ReturnNumber, ..., GpsTime, Red,
 /// Green, Blue; extra bytes under their own names, not scaled. Red, Green and Blue also give the

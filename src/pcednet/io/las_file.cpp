@@ -8,8 +8,9 @@
 namespace pcednet::io {
 namespace {
 
-constexpr std::size_t kLeastHeader = 227, kHeader13 = 235, kHeader14 = 375;
-constexpr const char* kElements[] = {"las_header", "las_vlrs", "las_evlrs"};
+constexpr std::size_t kLeastHeader = 227, kHeader13 = 235, kHeader14 = 375, kHeader15 = 393;
+constexpr unsigned kMostMinor = 5;
+constexpr const char* kElements[] = {"las_header", "las_vlrs", "las_evlrs", "las_before_points"};
 
 std::size_t header_bytes_of(bool extended) {
   return extended ? 60 : 54;
@@ -19,8 +20,9 @@ std::string until_zero(std::string_view text) {
   return std::string(text.substr(0, text.find('\0')));
 }
 
-/// The records from `begin` on; those that leave [begin, end) are left out with a warning.
-std::vector<LasRecord> read_records(const InputFile& file, std::uint64_t begin, std::uint64_t end,
+/// The records from `begin` on, which moves behind them; those that leave [begin, end) are left out
+/// with a warning.
+std::vector<LasRecord> read_records(const InputFile& file, std::uint64_t& begin, std::uint64_t end,
                                     std::uint64_t count, bool extended,
                                     std::vector<std::string>& warnings) {
   const std::size_t head = header_bytes_of(extended);
@@ -38,7 +40,8 @@ std::vector<LasRecord> read_records(const InputFile& file, std::uint64_t begin, 
     }
     const std::string_view view = bytes;
     records.push_back({until_zero(view.substr(2, 16)), number_at<std::uint16_t>(view, 18),
-                       until_zero(view.substr(head - 32, 32)), file.text(begin + head, length)});
+                       until_zero(view.substr(head - 32, 32)), file.text(begin + head, length),
+                       bytes});
     begin += head + length;
   }
   return records;
@@ -51,8 +54,9 @@ void check_header(const InputFile& file, LasFile& las) {
   const std::string& header = las.header;
   if (header.size() < kLeastHeader) fail(header.size(), "ends within the LAS header");
   const unsigned major = number_at<std::uint8_t>(header, 24);
-  if (major != 1 || las.minor_version() > 4) {
-    fail(24, fmt::format("LAS {}.{}; 1.0 to 1.4 are read", major, las.minor_version()));
+  if (major != 1 || las.minor_version() > kMostMinor) {
+    fail(24,
+         fmt::format("LAS {}.{}; 1.0 to 1.{} are read", major, las.minor_version(), kMostMinor));
   }
   if (las.point_format() >= kLasFormats) {
     fail(104, fmt::format("point format {}; 0 to 10 are read", las.point_format()));
@@ -112,7 +116,8 @@ std::vector<LasRecord> parse_records(std::string_view bytes, bool extended) {
     if (length > bytes.size() - head) break;
     records.push_back({until_zero(bytes.substr(2, 16)), number_at<std::uint16_t>(bytes, 18),
                        until_zero(bytes.substr(head - 32, 32)),
-                       std::string(bytes.substr(head, length))});
+                       std::string(bytes.substr(head, length)),
+                       std::string(bytes.substr(0, head))});
     bytes.remove_prefix(head + length);
   }
   return records;
@@ -132,19 +137,30 @@ bool LasFile::counts_wide() const {
   return minor_version() >= 4 && header.size() >= kHeader14;
 }
 
+bool LasFile::has_time_range() const {
+  return minor_version() >= 5 && header.size() >= kHeader15;
+}
+
 std::uint64_t LasFile::point_count() const {
   const std::uint64_t wide = counts_wide() ? number_at<std::uint64_t>(header, 247) : 0;
   return wide > 0 ? wide : number_at<std::uint32_t>(header, 107);
+}
+
+void LasFile::set_point_count(std::uint64_t count) {
+  const bool narrow = (point_format() < 6 || !counts_wide()) && count <= UINT32_MAX;
+  put_number(header, 107, static_cast<std::uint32_t>(narrow ? count : 0));
+  if (counts_wide()) put_number(header, 247, count);
 }
 
 LasFile read_las_file(const InputFile& file, std::vector<std::string>& warnings) {
   LasFile las;
   las.header = file.text(0, kLeastHeader);
   const std::size_t promised = number_at<std::uint16_t>(las.header, 94);
-  const std::size_t needed = las.minor_version() >= 4 ? kHeader14 : kLeastHeader;
+  const unsigned minor = las.minor_version();
+  const std::size_t needed = minor >= 5 ? kHeader15 : minor == 4 ? kHeader14 : kLeastHeader;
   if (las.header.size() == kLeastHeader && promised < needed) {
     warnings.push_back(fmt::format("the header calls itself {} bytes, version 1.{} has {}",
-                                   promised, las.minor_version(), needed));
+                                   promised, minor, needed));
   }
   las.header = file.text(0, std::max(promised, kLeastHeader));
   check_header(file, las);
@@ -158,8 +174,10 @@ LasFile read_las_file(const InputFile& file, std::vector<std::string>& warnings)
     throw unreadable(file.path(),
                      fmt::format("byte 96: points from byte {} on, of {}", end, file.size()));
   }
-  las.records = read_records(file, las.header.size(), end,
-                             number_at<std::uint32_t>(las.header, 100), false, warnings);
+  std::uint64_t at = las.header.size();
+  las.records =
+      read_records(file, at, end, number_at<std::uint32_t>(las.header, 100), false, warnings);
+  las.before_points = file.text(at, end - at);
   read_extended(file, las, warnings);
   if (las.compressed()) {
     const auto is_copc = [](const LasRecord& record) { return record.user_id == "copc"; };
@@ -167,6 +185,16 @@ LasFile read_las_file(const InputFile& file, std::vector<std::string>& warnings)
     std::erase_if(las.extended_records, is_copc);
   }
   return las;
+}
+
+std::uint64_t las_points_limit(const InputFile& file, const LasFile& las) {
+  std::uint64_t limit = file.size();
+  const auto stop_at = [&](std::uint64_t begin) {
+    if (begin >= las.points_offset()) limit = std::min(limit, begin);
+  };
+  if (las.minor_version() >= 3) stop_at(number_at<std::uint64_t>(las.header, 227));
+  if (las.counts_wide()) stop_at(number_at<std::uint64_t>(las.header, 235));
+  return limit;
 }
 
 bool place_extended_records(LasFile& file, std::uint64_t begin) {
@@ -186,15 +214,18 @@ bool place_extended_records(LasFile& file, std::uint64_t begin) {
 std::string las_record_bytes(const std::vector<LasRecord>& records, bool extended) {
   std::string bytes;
   for (const LasRecord& record : records) {
-    std::string head(header_bytes_of(extended), '\0');
-    head.replace(2, 16, fixed(record.user_id, 16));
-    put_number(head, 18, record.record_id);
+    std::string head = record.head;
+    if (head.size() != header_bytes_of(extended)) {
+      head.assign(header_bytes_of(extended), '\0');
+      head.replace(2, 16, fixed(record.user_id, 16));
+      put_number(head, 18, record.record_id);
+      head.replace(head.size() - 32, 32, fixed(record.description, 32));
+    }
     if (extended) {
       put_number<std::uint64_t>(head, 20, record.data.size());
     } else {
       put_number(head, 20, static_cast<std::uint16_t>(record.data.size()));
     }
-    head.replace(head.size() - 32, 32, fixed(record.description, 32));
     bytes += head + record.data;
   }
   return bytes;
@@ -210,13 +241,16 @@ void attach_las_file(PointCloud& cloud, const LasFile& file) {
   if (!file.extended_records.empty()) {
     elements.push_back(to_element(kElements[2], las_record_bytes(file.extended_records, true)));
   }
+  if (!file.before_points.empty()) {
+    elements.push_back(to_element(kElements[3], file.before_points));
+  }
 }
 
 LasFile attached_las_file(const PointCloud& cloud) {
   LasFile file;
   file.header = element_bytes(cloud, kElements[0]);
   const bool sound = file.header.size() >= kLeastHeader && file.header.size() <= UINT16_MAX &&
-                     file.minor_version() <= 4 && file.point_format() < kLasFormats &&
+                     file.minor_version() <= kMostMinor && file.point_format() < kLasFormats &&
                      file.record_length() >= las_format_bytes(file.point_format());
   if (!sound) return {};
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -225,6 +259,7 @@ LasFile attached_las_file(const PointCloud& cloud) {
   }
   file.records = parse_records(element_bytes(cloud, kElements[1]), false);
   file.extended_records = parse_records(element_bytes(cloud, kElements[2]), true);
+  file.before_points = element_bytes(cloud, kElements[3]);
   return file;
 }
 

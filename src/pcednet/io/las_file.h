@@ -28,6 +28,7 @@ struct LasRecord {
   std::uint16_t record_id = 0;
   std::string description;
   std::string data = {};
+  std::string head = {};  ///< all before the data, as the file has it; empty: a new record
 
   bool is(std::string_view user, std::uint16_t id) const {
     return user_id == user && record_id == id;
@@ -56,6 +57,7 @@ void put_number(std::string& bytes, std::size_t offset, T value) {
 struct LasFile {
   std::string header = {};
   std::vector<LasRecord> records = {}, extended_records = {};
+  std::string before_points = {};  ///< bytes behind the records that belong to none of them
 
   unsigned minor_version() const { return number_at<std::uint8_t>(header, 25); }
   unsigned point_format() const { return number_at<std::uint8_t>(header, 104) & 0x3FU; }
@@ -64,7 +66,10 @@ struct LasFile {
   std::uint64_t points_offset() const { return number_at<std::uint32_t>(header, 96); }
   /// Whether the header has the 64-bit counts of LAS 1.4.
   bool counts_wide() const;
+  /// Whether it has the range of the times (LAS 1.5).
+  bool has_time_range() const;
   std::uint64_t point_count() const;
+  void set_point_count(std::uint64_t count);
   double scale(std::size_t axis) const { return number_at<double>(header, 131 + 8 * axis); }
   double offset(std::size_t axis) const { return number_at<double>(header, 155 + 8 * axis); }
 };
@@ -88,6 +93,9 @@ std::string las_extra_descriptor(const LasField& field);
 /// index the compressed points, are left out. Throws Error(kUnreadable), naming the byte, for what
 /// cannot be trusted.
 LasFile read_las_file(const InputFile& file, std::vector<std::string>& warnings);
+
+/// Where the points must end at the latest: at the records behind them, or with the file.
+std::uint64_t las_points_limit(const InputFile& file, const LasFile& las);
 
 /// Makes the header say that the extended records begin at `begin`; false if it has no place for
 /// that.

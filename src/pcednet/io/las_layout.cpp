@@ -135,17 +135,18 @@ bool labels_are_classes(const PartOutline& outline) {
   return same;
 }
 
-/// Removes the record LASF_Spec 4 and returns its descriptors.
-std::string take_descriptors(LasFile& file) {
-  std::string descriptors;
-  for (auto record = file.records.begin(); record != file.records.end(); ++record) {
-    if (!record->is("LASF_Spec", 4)) continue;
-    descriptors = record->data;
-    file.records.erase(record);
-    break;
-  }
-  descriptors.resize(descriptors.size() / kDescriptorBytes * kDescriptorBytes);
-  return descriptors;
+/// The record that describes the extra bytes; null if there is none.
+LasRecord* descriptor_record(LasFile& file) {
+  const auto found = std::find_if(file.records.begin(), file.records.end(),
+                                  [](const LasRecord& r) { return r.is("LASF_Spec", 4); });
+  return found == file.records.end() ? nullptr : &*found;
+}
+
+/// Its descriptors, whole ones.
+std::string descriptors_of(LasFile& file) {
+  const LasRecord* record = descriptor_record(file);
+  if (record == nullptr) return {};
+  return record->data.substr(0, record->data.size() / kDescriptorBytes * kDescriptorBytes);
 }
 
 /// Builds the columns: those of the file's own fields first, then extra bytes for what is left.
@@ -167,16 +168,13 @@ class LayoutBuilder {
       put_number(file_.header, 105,
                  static_cast<std::uint16_t>(las_format_bytes(file_.point_format())));
     }
-    descriptors_ = take_descriptors(file_);
+    descriptors_ = descriptors_of(file_);
     for (const LasField& field : fields) {
       taken_.insert(field.name);
       add_known(field);
     }
     add_new();
-    if (descriptors_.size() > UINT16_MAX) too_many();
-    if (!descriptors_.empty()) {
-      file_.records.push_back({"LASF_Spec", 4, "extra bytes", std::move(descriptors_)});
-    }
+    put_descriptors();
     if (auto comments = las_comment_record(cloud_.comments)) {
       file_.records.push_back(std::move(*comments));
     }
@@ -186,6 +184,17 @@ class LayoutBuilder {
  private:
   bool has_template_extras() const {
     return file_.record_length() > las_format_bytes(file_.point_format());
+  }
+
+  /// In the place of the file's own record, which stays as it is if nothing was added.
+  void put_descriptors() {
+    if (descriptors_.size() > UINT16_MAX) too_many();
+    if (descriptors_ == descriptors_of(file_)) return;
+    if (LasRecord* record = descriptor_record(file_)) {
+      record->data = std::move(descriptors_);
+    } else {
+      file_.records.push_back({"LASF_Spec", 4, "extra bytes", std::move(descriptors_)});
+    }
   }
 
   void add_known(const LasField& field) {

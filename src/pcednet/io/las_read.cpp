@@ -19,10 +19,10 @@ class LasSource {
   LasSource(const InputFile& file, std::vector<std::string>& warnings)
       : file_(file), las_(read_las_file(file, warnings)) {
     if (las_.compressed()) {
-      compressed_.emplace(file, las_);
+      compressed_.emplace(file, las_, warnings);
       forget_compression(las_);
     } else {
-      check_las_points(file, las_);
+      check_las_points(file, las_, warnings);
     }
     comments_ = take_las_comments(las_);
     LasRecordSink(las_, 0, warnings);  // says what is wrong with the extra bytes

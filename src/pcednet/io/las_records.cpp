@@ -126,13 +126,31 @@ PointCloud LasRecordSink::finish() {
   return std::move(cloud_);
 }
 
-void check_las_points(const InputFile& file, const LasFile& las) {
-  const std::uint64_t count = las.point_count();
-  const std::uint64_t room = (file.size() - las.points_offset()) / las.record_length();
-  if (count > room) {
+void check_las_points(const InputFile& file, LasFile& las, std::vector<std::string>& warnings) {
+  const std::uint64_t count = las.point_count(), begin = las.points_offset();
+  const std::uint64_t most = (file.size() - begin) / las.record_length();
+  if (count > most) {
     throw unreadable(file.path(),
-                     fmt::format("byte {}: ends after point {} of {}", file.size(), room, count));
+                     fmt::format("byte {}: ends after point {} of {}", file.size(), most, count));
   }
+  std::uint64_t room = (las_points_limit(file, las) - begin) / las.record_length();
+  if (!las.counts_wide()) room = std::min<std::uint64_t>(room, UINT32_MAX);
+  // Extended records whose place the header does not tell may be what stands behind the points.
+  const bool all_found = !las.counts_wide() ||
+                         las.extended_records.size() == number_at<std::uint32_t>(las.header, 243);
+  if (room <= count || !all_found) return;
+  if (count > 0) {
+    warnings.push_back(
+        fmt::format("the header counts {} points and the file has room for {} more behind them: "
+                    "these are left out",
+                    count, room - count));
+    return;
+  }
+  las.set_point_count(room);
+  warnings.push_back(fmt::format(
+      "the header counts no points, as where writing was interrupted: the {} that are there are "
+      "read",
+      room));
 }
 
 void forget_compression(LasFile& las) {

@@ -32,8 +32,10 @@ class LasRecordSink {
   PointCloud cloud_ = {};
 };
 
-/// Throws Error(kUnreadable) if an uncompressed file ends before its points do.
-void check_las_points(const InputFile& file, const LasFile& las);
+/// Holds the points that an uncompressed file counts against those it has room for. More than it
+/// counts become a warning; where it counts none, as one whose writing was interrupted, they are
+/// its points from here on. Throws Error(kUnreadable) if the file ends before its points do.
+void check_las_points(const InputFile& file, LasFile& las, std::vector<std::string>& warnings);
 
 /// Makes a file that was compressed say that it is not.
 void forget_compression(LasFile& las);

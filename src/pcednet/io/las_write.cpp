@@ -62,12 +62,18 @@ void encode(const std::filesystem::path& path, const PointCloud& cloud, const La
   }
 }
 
-/// Counts by return number (index 0 for return 1), and the bounds.
+/// Counts by return number (index 0 for return 1), the bounds, and those of the times.
 struct Summary {
   std::array<std::uint64_t, 15> by_return = {};
   BoundingBox bounds = {};
+  double least_time = INFINITY, most_time = -INFINITY;
 
   void add(const PointCloud& part, const LasFile& file) {
+    const Attribute* times = file.has_time_range() ? find_attribute(part, "GpsTime") : nullptr;
+    for (std::size_t i = 0; times && i < part.size(); ++i) {
+      least_time = std::min(least_time, times->value(i));
+      most_time = std::max(most_time, times->value(i));
+    }
     const Attribute* returns = find_attribute(part, "ReturnNumber");
     for (std::size_t i = 0; i < part.size(); ++i) {
       const auto number = returns ? static_cast<std::size_t>(returns->value(i)) : 1;
@@ -88,15 +94,15 @@ void update_header(LasFile& file, const Summary& summary, std::uint64_t count,
                    std::uint64_t points_offset) {
   std::string& header = file.header;
   const bool wide = file.counts_wide();
-  const bool narrow = (file.point_format() < 6 || !wide) && count <= UINT32_MAX;
-  if (!narrow && !wide) {
+  file.set_point_count(count);
+  if (file.point_count() != count) {
     throw Error(ErrorKind::kFailure,
                 fmt::format("LAS 1.{} cannot count {} points", file.minor_version(), count));
   }
   put_number(header, 94, static_cast<std::uint16_t>(header.size()));
   put_number(header, 96, static_cast<std::uint32_t>(points_offset));
   put_number(header, 100, static_cast<std::uint32_t>(file.records.size()));
-  put_number(header, 107, static_cast<std::uint32_t>(narrow ? count : 0));
+  const bool narrow = number_at<std::uint32_t>(header, 107) == count;
   for (std::size_t r = 0; r < 5; ++r) {
     put_number(header, 111 + 4 * r, static_cast<std::uint32_t>(narrow ? summary.by_return[r] : 0));
   }
@@ -106,8 +112,11 @@ void update_header(LasFile& file, const Summary& summary, std::uint64_t count,
     put_number(header, 187 + 16 * axis, count == 0 ? 0.0 : summary.bounds.min[a]);
   }
   if (!wide) return;
-  put_number(header, 247, count);
   for (std::size_t r = 0; r < 15; ++r) put_number(header, 255 + 8 * r, summary.by_return[r]);
+  if (!file.has_time_range()) return;
+  const bool timed = summary.least_time <= summary.most_time;
+  put_number(header, 375, timed ? summary.most_time : 0.0);
+  put_number(header, 383, timed ? summary.least_time : 0.0);
 }
 
 class LasPartWriter : public PartWriter {
@@ -119,14 +128,19 @@ class LasPartWriter : public PartWriter {
     file_ = las_layout(*outline.first, options, choices_).file;
     const bool compress = lower_case(path.extension().string()) == ".laz";
     if (compress) add_laz_record(file_);
-    const std::string records = las_record_bytes(file_.records, false);
+    const std::string records = las_record_bytes(file_.records, false) + file_.before_points;
     points_offset_ = file_.header.size() + records.size();
+    if (points_offset_ > UINT32_MAX) {
+      throw Error(ErrorKind::kFailure,
+                  path.string() + ": more than 4 GiB before the points; LAS has no place for them");
+    }
     out_.emplace(path, options.overwrite);
     out_->write(file_.header + records);  // the header is written again at the end
     if (compress) compressed_.emplace(*out_, file_, points_offset_);
     // What each part is laid out by needs no other records.
     std::erase_if(choices_.file.records, [](const auto& r) { return !r.is("LASF_Spec", 4); });
     choices_.file.extended_records.clear();
+    choices_.file.before_points.clear();
   }
 
   void append(const PointCloud& part) override {

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,9 +25,11 @@ struct LazItem {
 /// unchunked, chunked and layered; chunks of fixed and of variable size.
 class LazReader {
  public:
-  /// Reads the chunk table. Throws Error(kUnreadable), naming the byte, for what is not LASzip or
-  /// does not fit the file. `file` must outlive the reader.
-  LazReader(const InputFile& file, const LasFile& las);
+  /// Finds the chunks. Where the header counts no points, as in a file whose writing was
+  /// interrupted, those of the chunks that are there are its points from here on, with a warning;
+  /// chunks behind those counted are left out with one. Throws Error(kUnreadable), naming the byte,
+  /// for what is not LASzip or does not fit the file. `file` must outlive the reader.
+  LazReader(const InputFile& file, LasFile& las, std::vector<std::string>& warnings);
 
   std::size_t chunk_count() const { return chunks_.size(); }
   /// The first point of a chunk.
@@ -40,15 +43,26 @@ class LazReader {
     std::size_t first_point = 0, points = 0;
     std::uint64_t begin = 0, bytes = 0;
   };
+  /// What the chunk table says of a chunk.
+  struct Entry {
+    std::uint64_t points = 0, bytes = 0;
+  };
   void read_items(const std::string& record);
-  void read_chunk_table(const LasFile& las);
+  std::optional<std::uint64_t> table_place() const;
+  std::vector<Entry> read_table(std::uint64_t place) const;
+  std::uint64_t points_behind(std::uint64_t counted, const Entry& chunk, std::uint64_t at) const;
+  void find_chunks(std::uint64_t points, std::vector<std::string>& warnings);
+  void recover(LasFile& las, std::vector<std::string>& warnings);
+  std::vector<Entry> walk_layered(std::uint64_t end) const;
+  bool may_hold(const Entry& chunk) const;
   [[noreturn]] void fail(std::uint64_t byte, const std::string& what) const;
 
   const InputFile& file_;
   std::vector<LazItem> items_;
   std::vector<Chunk> chunks_;
   unsigned compressor_ = 0;
-  std::uint64_t chunk_size_ = 0;
+  std::uint64_t chunk_size_ = 0;  ///< points of each; kVariable: the table tells
+  std::uint64_t begin_ = 0;       ///< of the points
   std::size_t record_length_ = 0;
 };
 
@@ -93,6 +107,10 @@ std::string encode_layered(const std::vector<LazItem>& items, std::span<std::byt
                            std::size_t stride);
 bool decode_layered(const std::vector<LazItem>& items, std::span<const std::byte> bytes,
                     std::span<std::byte> rows, std::size_t stride);
+
+/// How many layers a chunk of such items has. It begins with a record, the number of its records
+/// and the sizes of the layers, all in 32 bits.
+std::size_t layer_count(const std::vector<LazItem>& items);
 
 }  // namespace laz
 }  // namespace pcednet::io

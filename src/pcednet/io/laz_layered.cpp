@@ -13,37 +13,41 @@ namespace {
 enum ItemType : unsigned { kRgb14 = 11, kRgbNir14 = 12, kWave14 = 13, kByte14 = 14 };
 constexpr std::size_t kPointLayers = 9;
 
-/// One layer with models of its own for each of the four scanner channels.
+unsigned channel_of(const std::byte* record) {
+  return std::to_integer<unsigned>(record[15]) >> 4 & 3;
+}
+
+/// One layer with models of its own for each of four contexts.
 template <typename Coder>
-class ChannelItem {
+class ContextItem {
  public:
-  virtual ~ChannelItem() = default;
-  virtual void code(Coder* coder, unsigned channel, std::byte* item) = 0;
+  virtual ~ContextItem() = default;
+  virtual void code(Coder* coder, unsigned context, std::byte* item) = 0;
 };
 
-/// Until version 4 LASzip takes the first value after a return to a channel for one of the channel
-/// before.
+/// Until version 4 LASzip predicts the first value after a return to a context from the value
+/// before it, of the other context, and keeps it there.
 template <typename Model, typename Coder>
-class ChannelModels : public ChannelItem<Coder> {
+class ContextModels : public ContextItem<Coder> {
  public:
-  ChannelModels(const std::byte* first, unsigned channel, bool follows)
-      : follows_(follows), channel_(channel) {
-    models_[channel].emplace(first);
+  ContextModels(const std::byte* first, unsigned context, bool follows)
+      : follows_(follows), context_(context) {
+    models_[context].emplace(first);
   }
 
-  void code(Coder* coder, unsigned channel, std::byte* item) override {
-    auto* last = &models_[channel_]->last;
-    if (channel != channel_) {
-      channel_ = channel;
-      const bool is_new = !models_[channel];
-      if (is_new) models_[channel].emplace(reinterpret_cast<const std::byte*>(last));
-      if (is_new || follows_) last = &models_[channel]->last;
+  void code(Coder* coder, unsigned context, std::byte* item) override {
+    auto* last = &models_[context_]->last;
+    if (context != context_) {
+      context_ = context;
+      const bool is_new = !models_[context];
+      if (is_new) models_[context].emplace(reinterpret_cast<const std::byte*>(last));
+      if (is_new || follows_) last = &models_[context]->last;
     }
     if (coder == nullptr) {
       std::memcpy(item, last, sizeof *last);
       return;
     }
-    Model& model = *models_[channel];
+    Model& model = *models_[context];
     const auto own = model.last;
     model.last = *last;
     model.code(*coder, item);
@@ -54,27 +58,27 @@ class ChannelModels : public ChannelItem<Coder> {
 
  private:
   bool follows_;
-  unsigned channel_;
+  unsigned context_;
   std::array<std::optional<Model>, 4> models_ = {};
 };
 
 /// A layer's place in the record.
 template <typename Coder>
 struct Layer {
-  std::unique_ptr<ChannelItem<Coder>> item;
+  std::unique_ptr<ContextItem<Coder>> item;
   std::size_t offset = 0, bytes = 0;
 };
 
 template <typename Coder>
 std::vector<Layer<Coder>> layers_of(const std::vector<LazItem>& items, const std::byte* first) {
   std::vector<Layer<Coder>> layers;
-  const unsigned channel = std::to_integer<unsigned>(first[15]) >> 4 & 3;
+  const unsigned context = channel_of(first);
   for (const LazItem& item : items) {
     const bool follows = item.version > 3;
     const auto add = [&](auto* type, std::size_t at, std::size_t bytes) {
       using Model = std::remove_pointer_t<decltype(type)>;
       layers.push_back(
-          {std::make_unique<ChannelModels<Model, Coder>>(first + at, channel, follows), at, bytes});
+          {std::make_unique<ContextModels<Model, Coder>>(first + at, context, follows), at, bytes});
     };
     const std::size_t at = item.offset;
     if (item.type == kRgb14 || item.type == kRgbNir14) add(static_cast<Colour*>(nullptr), at, 6);
@@ -95,12 +99,18 @@ void code_records(const std::vector<LazItem>& items, std::deque<Coder>& coders,
   }
   Point14 points(rows.data());
   const auto layers = layers_of<Coder>(items, rows.data());
+  // The scanner channel is the context of the other items. Until version 4 LASzip tells them only
+  // where it changes: context 0 stands for a point that stays in its channel, whichever that is.
+  const bool always_told = items[0].version > 3;
+  unsigned before = channel_of(rows.data());
   for (std::size_t at = stride; at < rows.size(); at += stride) {
     std::byte* record = rows.data() + at;
     const unsigned channel = points.code(point_coders, record);
+    const unsigned context = always_told || channel != before ? channel : 0;
+    before = channel;
     for (std::size_t l = 0; l < layers.size(); ++l) {
       Coder* coder = present[kPointLayers + l] ? &coders[kPointLayers + l] : nullptr;
-      layers[l].item->code(coder, channel, record + layers[l].offset);
+      layers[l].item->code(coder, context, record + layers[l].offset);
     }
   }
 }
@@ -134,6 +144,16 @@ std::vector<bool> changing_layers(const std::vector<LazItem>& items, std::span<s
 
 }  // namespace
 
+std::size_t layer_count(const std::vector<LazItem>& items) {
+  std::size_t count = kPointLayers;
+  for (const LazItem& item : items) {
+    if (item.type == kRgb14 || item.type == kWave14) count += 1;
+    if (item.type == kRgbNir14) count += 2;
+    if (item.type == kByte14) count += item.size;
+  }
+  return count;
+}
+
 std::string encode_layered(const std::vector<LazItem>& items, std::span<std::byte> rows,
                            std::size_t stride) {
   const std::vector<bool> present = changing_layers(items, rows, stride);
@@ -157,7 +177,7 @@ bool decode_layered(const std::vector<LazItem>& items, std::span<const std::byte
                     std::span<std::byte> rows, std::size_t stride) {
   if (bytes.size() < stride) return false;
   std::copy_n(bytes.begin(), stride, rows.begin());
-  const std::size_t count = kPointLayers + layers_of<Decoder>(items, rows.data()).size();
+  const std::size_t count = layer_count(items);
   std::size_t at = stride + 4, data = at + 4 * count;
   if (bytes.size() < data || get<std::uint32_t>(&bytes[stride]) < rows.size() / stride) {
     return false;
