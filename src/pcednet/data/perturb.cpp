@@ -100,6 +100,9 @@ PointCloud subsample(const PointCloud& cloud, const SubsampleOptions& options) {
   kept.scanners = cloud.scanners;
   kept.positions = chosen(cloud.positions, points);
   kept.normals = chosen(cloud.normals, points);
+  for (const Attribute& axis : cloud.stored_normals) {
+    kept.stored_normals.push_back(chosen(axis, points));
+  }
   kept.colours = chosen(cloud.colours, points);
   kept.labels = chosen(cloud.labels, points);
   for (const Attribute& attribute : cloud.attributes) {

@@ -31,7 +31,4 @@ std::unique_ptr<PartWriter> create_ply_parts(const std::filesystem::path& path,
                                              const PartOutline& outline,
                                              const WriteOptions& options);
 
-/// What PLY does not keep of `cloud`, one sentence part each.
-std::vector<std::string> ply_losses(const PointCloud& cloud);
-
 }  // namespace pcednet::io
