@@ -41,6 +41,23 @@ TEST(LasThroughPly, GivesNamesBackThatPlyCannotHold) {
   }
 }
 
+TEST(LasThroughPly, GivesFieldsBackThatAreColoursOrNormalsOrLabelsInPly) {
+  const Scratch scratch;
+  const auto fields = [](std::initializer_list<const char*> names, unsigned type) {
+    std::string descriptors;
+    for (const char* name : names) descriptors += las_test_extra(name, type);
+    return descriptors;
+  };
+  for (const LasTestFile& file :
+       {with_extra(6, fields({"red", "green", "blue"}, 1), 3),
+        with_extra(7, fields({"Red_", "g", "b", "r"}, 1), 4),
+        with_extra(6, fields({"label", "scalar_label"}, 1), 2),
+        with_extra(6, fields({"nx", "ny", "nz"}, 9), 12), with_extra(6, fields({"rgba"}, 5), 4)}) {
+    const std::string bytes = las_bytes(file);
+    EXPECT_TRUE(through("a.ply", scratch, bytes) == bytes) << file.records[0].data.substr(4, 32);
+  }
+}
+
 TEST(LasThroughPly, KeepsNamesApartThatLookTheSameThere) {
   const Scratch scratch;
   const std::string fields = las_test_extra("Pulse width", 3) + las_test_extra("Pulse_width", 3) +

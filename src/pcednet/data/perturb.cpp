@@ -63,6 +63,7 @@ PointCloud add_gaussian_noise(PointCloud cloud, const NoiseOptions& options) {
   if (options.along_normal && !cloud.has_normals() && !cloud.empty()) {
     throw Error(ErrorKind::kInsufficient, "noise along the normals, and there are no normals");
   }
+  check_extent(cloud.positions);
   const double sigma = options.sigma * bounding_box(cloud.positions).diagonal();
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     Vec3& position = cloud.positions[i];

@@ -13,6 +13,8 @@
 
 #include "pcednet/core/error.h"
 #include "pcednet/io/column_names.h"
+#include "pcednet/io/promote.h"
+#include "pcednet/io/text_scan.h"
 
 namespace pcednet::io {
 namespace {
@@ -84,6 +86,16 @@ void add_normals(std::vector<ColumnView>& columns, const PointCloud& cloud,
   }
 }
 
+/// Whether a reader would make colours or labels of the attribute.
+bool is_mistakable(const Attribute& attribute) {
+  const auto has_it = [&](const std::vector<std::string>& names) {
+    return std::find(names.begin(), names.end(), lower_case(attribute.name)) != names.end();
+  };
+  const bool is_named_so =
+      has_it(label_names()) || std::any_of(colour_names().begin(), colour_names().end(), has_it);
+  return attribute.type == ScalarType::kUint8 && attribute.components == 1 && is_named_so;
+}
+
 void add_attribute(std::vector<ColumnView>& columns, const Attribute& attribute,
                    const ColumnNames& names) {
   const bool halve = is_int64(attribute.type) && !names.has_int64;
@@ -92,8 +104,9 @@ void add_attribute(std::vector<ColumnView>& columns, const Attribute& attribute,
     const std::string name = numbered ? fmt::format("{}_{}", attribute.name, c) : attribute.name;
     const std::byte* first = attribute.bytes.data() + c * size_of(attribute.type);
     const auto add = [&](std::string_view ending, ScalarType type, const std::byte* numbers) {
-      columns.push_back(
-          {column_name(name).append(ending), type, numbers, attribute.stride(), type, c});
+      std::string column = column_name(name).append(ending);
+      if (is_mistakable(attribute)) column = hidden(std::move(column));
+      columns.push_back({std::move(column), type, numbers, attribute.stride(), type, c});
     };
     if (!halve) {
       add("", attribute.type, first);
@@ -108,7 +121,7 @@ void add_attribute(std::vector<ColumnView>& columns, const Attribute& attribute,
 /// Hides names that stand further left already. The label column keeps its name and its place at
 /// the end.
 void make_names_unique(std::vector<ColumnView>& columns, bool has_label, bool has_counts) {
-  std::set<std::string> taken = {"rgb"};  // what write_pcd adds
+  std::set<std::string> taken = {"rgb", "rgba"};  // what write_pcd adds, what readers take apart
   if (has_label) taken.insert(columns.back().name);
   const std::size_t count = columns.size() - (has_label ? 1 : 0);
   for (std::size_t c = 0; c < count; ++c) {

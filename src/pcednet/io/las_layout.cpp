@@ -69,7 +69,7 @@ LasFile with_digits(LasFile file, int digits) {
 bool choose_scale(const PartOutline& outline, const BoundingBox& box, LasFile& file) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const int a = static_cast<int>(axis);
-    const double middle = box.empty() ? 0.0 : std::round((box.min[a] + box.max[a]) / 2);
+    const double middle = box.empty() ? 0.0 : std::round(box.min[a] / 2 + box.max[a] / 2);
     put_number(file.header, 155 + 8 * axis, middle);
   }
   std::vector<LasFile> candidates;
