@@ -122,6 +122,7 @@ TEST(Obj, NamesTheLineOfABrokenStatement) {
   };
   unreadable("v 1 2\n", ":1: v with 2 numbers");
   unreadable("v 1 2 3\nv 1 2 z\n", ":2: expected a number");
+  unreadable("v 1 2 1e999\n", ":1: 1e999 is beyond the largest double");
   unreadable("vn 1 2\n", ":1: expected vn");
   unreadable("v 1 2 3\nf 1 2 1\n", ":2: names v number 2 of 1");
   for (const char* bad :

@@ -201,6 +201,7 @@ TEST(Xyz, NamesTheLineThatDoesNotFit) {
   unreadable("1 2\n", ":1: expected at least three numbers");
   unreadable("1 2 3\n\n4 5\n", ":3: 2 numbers where the lines before have 3");
   unreadable("1 2 3\n4 5 six\n", ":2: expected a number, not six");
+  unreadable("1 2 3\n4 5 -1.8e308\n", ":2: -1.8e308 is beyond the largest double");
   unreadable("hello world\n", ":1: expected numbers, or names");
   unreadable("x y z a\n1 2 3\n", ":2: 3 numbers under 4 names");
   unreadable("3\n1 2 3\n4 5 6\n", ": promises 3 points but holds 2");

@@ -91,7 +91,7 @@ class StatementParser {
 
   double number(std::size_t word) const {
     const auto value = parse_double(statement_[word]);
-    if (!value) throw error(fmt::format("expected a number, not {:.40}", statement_[word]));
+    if (!value) throw error(number_fault(statement_[word]));
     return *value;
   }
 

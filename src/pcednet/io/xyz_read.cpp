@@ -170,7 +170,7 @@ class TableReader {
     }
     for (const std::string_view word : words_) {
       const auto number = number_of(word);
-      if (!number) throw error(fmt::format("expected a number, not {:.40}", word));
+      if (!number) throw error(number_fault(word));
       table_.numbers.push_back(*number);
     }
   }
