@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <set>
@@ -103,7 +104,12 @@ TEST(Perturb, KeepsThePositionTypeAndPointsThatCannotMove) {
 }
 
 TEST(Perturb, SubsampleKeepsAllThatBelongsToAPoint) {
-  const PointCloud cloud = box_of_points(200);
+  PointCloud cloud = box_of_points(200);
+  std::array<std::vector<double>, 3> axes;  // the normals three times as long
+  for (const Vec3& normal : cloud.normals) {
+    for (std::size_t axis = 0; axis < 3; ++axis) axes[axis].push_back(3 * normal.data()[axis]);
+  }
+  for (const auto& axis : axes) cloud.stored_normals.push_back(make_attribute("n", axis));
   const PointCloud kept = subsample(cloud, {.fraction = 0.25});
   ASSERT_EQ(kept.size(), 50u);
   check_consistent(kept);
@@ -115,6 +121,7 @@ TEST(Perturb, SubsampleKeepsAllThatBelongsToAPoint) {
     const auto point = static_cast<std::size_t>(number);
     EXPECT_EQ(kept.positions[i], cloud.positions[point]);
     EXPECT_EQ(kept.normals[i], cloud.normals[point]);
+    EXPECT_EQ(stored_normal(kept, i), stored_normal(cloud, point));
     EXPECT_EQ(kept.labels[i], cloud.labels[point]);
     EXPECT_EQ(kept.colours[i], cloud.colours[point]);
   }

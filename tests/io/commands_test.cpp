@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
@@ -119,6 +120,35 @@ TEST(ConvertCommand, KeepsWhatItCanAndSaysWhatItCannot) {
   EXPECT_FALSE(contains(whole.err, "does not keep"));
   EXPECT_TRUE(contains(bytes_of(back), "format ascii"));
   EXPECT_TRUE(same_bits(read_cloud(back).cloud.positions, cloud.positions));
+}
+
+TEST(ConvertCommand, WritesCoordinatesNearTheLargestDoubleAsLas) {
+  const Scratch scratch;
+  std::string text;
+  for (int i = 0; i < 5; ++i) text += fmt::format("1.7e308 {} {}\n", i, 2 * i);
+  const std::string in = scratch.file("a.xyz", text).string(), out = scratch.path("a.las").string();
+  const Outcome outcome = run(scratch, "convert " + in + " -o " + out);
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(read_cloud(out).cloud.positions, read_cloud(in).cloud.positions);
+}
+
+TEST(ConvertCommand, NamesThePointThatIsTooFarToComputeWith) {
+  const Scratch scratch;
+  std::string text;
+  for (int i = 0; i < 60; ++i) text += fmt::format("{} {} {}\n", i % 7, i % 5, i % 3);
+  text += "1 nan 2\n2 -1.7e308 1\n";
+  const std::string in = scratch.file("a.xyz", text).string();
+  const std::string out = " -o " + scratch.path("b.ply").string();
+  for (const std::string& command :
+       {"classify " + in + out, "normals " + in + out, "convert " + in + " --noise 0.1" + out,
+        "describe " + in + " -o " + scratch.path("b.npy").string()}) {
+    const Outcome outcome = run(scratch, command);
+    EXPECT_EQ(outcome.code, 4) << command;
+    EXPECT_TRUE(contains(outcome.err,
+                         "a.xyz: coordinates too large to compute with: 1.7e+308 at "
+                         "point 61; at most 1e+150"))
+        << command << ": " << outcome.err;
+  }
 }
 
 TEST(ConvertCommand, ReturnsTheCodeOfItsFailure) {

@@ -45,6 +45,36 @@ TEST(Obj, RefusesFacesOfOtherVertices) {
   EXPECT_TRUE(contains(error_of(ErrorKind::kUnreadable, [&] { triangles_of(cloud); }), "vertex 3"));
 }
 
+TEST(Obj, ReadsFacesWhoseNormalsAreMissing) {
+  const Scratch scratch;
+  const std::string vertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\n";
+  const std::vector<Triangle> one = {{0, 1, 2}};
+  for (const char* face : {"f 1// 2// 3//", "f 1/1/ 2/1/ 3/1/", "f 1/ 2/ 3/", "f 1 2 3"}) {
+    const auto loaded = scratch.read("a.obj", vertices + face + "\nf 3//1 2 1\n");
+    EXPECT_EQ(triangles_of(loaded.cloud).at(0), one[0]) << face;
+    ASSERT_EQ(loaded.cloud.normals.size(), 3u);
+    EXPECT_EQ(loaded.cloud.normals[2], Vec3(0, 0, 1));
+    EXPECT_TRUE(loaded.cloud.normals[0].isZero(0.0));
+    ASSERT_EQ(loaded.warnings.size(), 1u);
+    EXPECT_TRUE(contains(loaded.warnings[0], "2 of 3 normals"));
+  }
+  for (const char* bad :
+       {"0", "2", "-2", "x", "1.5", "99999999999999999999", "-9223372036854775808", "1/"}) {
+    const auto loaded =
+        scratch.read("a.obj", vertices + "f 1//1 2//1 3//1\nf 1 2//" + bad + " 3/1/" + bad + "\n");
+    EXPECT_EQ(triangles_of(loaded.cloud), (std::vector<Triangle>{{0, 1, 2}, {0, 1, 2}})) << bad;
+    EXPECT_EQ(loaded.cloud.normals, std::vector<Vec3>(3, Vec3(0, 0, 1)));
+    ASSERT_EQ(loaded.warnings.size(), 1u) << bad;
+    EXPECT_EQ(loaded.warnings[0],
+              "2 corners of faces name none of the 1 normals, the first in line 7: read without "
+              "normal");
+  }
+  const auto none = scratch.read("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1//1 2//2 3//3\n");
+  EXPECT_FALSE(none.cloud.has_normals());
+  EXPECT_EQ(triangles_of(none.cloud), one);
+  EXPECT_EQ(none.warnings.size(), 1u);
+}
+
 TEST(Obj, PairsNormalsWithVerticesWhereNoFaceDoes) {
   const Scratch scratch;
   const auto equal = scratch.read("a.obj", "v 0 0 0\nv 1 0 0\nvn 0 0 1\nvn 0 2 0\nf 1 2 1\n");
@@ -92,12 +122,13 @@ TEST(Obj, NamesTheLineOfABrokenStatement) {
   };
   unreadable("v 1 2\n", ":1: v with 2 numbers");
   unreadable("v 1 2 3\nv 1 2 z\n", ":2: expected a number");
+  unreadable("v 1 2 1e999\n", ":1: 1e999 is beyond the largest double");
   unreadable("vn 1 2\n", ":1: expected vn");
   unreadable("v 1 2 3\nf 1 2 1\n", ":2: names v number 2 of 1");
-  unreadable("v 1 2 3\nvn 0 0 1\nf 1//2\n", ":3: names vn number 2 of 1");
   for (const char* bad :
-       {"0", "-2", "x", "1.5", "99999999999999999999", "-9223372036854775808", ""}) {
-    unreadable(std::string("v 1 2 3\nvn 0 0 1\nf 1//") + bad + "\n", ":3: expected the index");
+       {"0", "-2", "x", "1.5", "99999999999999999999", "-9223372036854775808", "/1", "//1"}) {
+    unreadable(std::string("v 1 2 3\nvn 0 0 1\nf 1 ") + bad + "\n",
+               ":3: expected the index of a v, not");
   }
   EXPECT_TRUE(scratch.read("b.obj", "# nothing\n").cloud.empty());
   EXPECT_TRUE(scratch.read("b.obj", "").cloud.empty());

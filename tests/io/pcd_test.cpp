@@ -90,6 +90,35 @@ TEST(Lzf, RefusesWhatDoesNotFit) {
   EXPECT_FALSE(unpack(std::string("\xE0\x00", 2), out));
 }
 
+TEST(Pcd, SaysHowMuchItDoesNotReadBehindTheLastPoint) {
+  const Scratch scratch;
+  const auto head = [](const std::string& data, std::size_t points) {
+    return header("x y z", "4 4 4", "F F F", "1 1 1", points, data);
+  };
+  const auto warnings = [&](const std::string& bytes) {
+    const auto loaded = scratch.read("a.pcd", bytes);
+    EXPECT_LE(loaded.cloud.size(), 2u);
+    return loaded.warnings;
+  };
+  const std::string row = packed(1.0F, 2.0F, 3.0F), plain = packed(1.0F, 2.0F, 3.0F),
+                    lzf = packed_lzf(plain);
+  const auto size = [](const std::string& text) { return static_cast<std::uint32_t>(text.size()); };
+  const std::string compressed =
+      head("binary_compressed", 1) + packed(size(lzf), size(plain)) + lzf;
+  const auto unread = [](const std::string& figures) {
+    return std::vector<std::string>{figures + " of the header were not read"};
+  };
+  EXPECT_EQ(warnings(head("ascii", 2) + "1 2 3\n4 5 6\n\n7 8 9\n1 1 1"),
+            unread("11 bytes after the 2 points"));
+  EXPECT_EQ(warnings(head("ascii", 0) + "1 2 3\n"), unread("6 bytes after the 0 points"));
+  EXPECT_EQ(warnings(head("binary", 2) + row + row + row), unread("12 bytes after the 2 points"));
+  EXPECT_EQ(warnings(compressed + row), unread("12 bytes after the 1 points"));
+  for (const std::string& exact :
+       {head("ascii", 2) + "1 2 3\n4 5 6\n\n \n", head("binary", 2) + row + row, compressed}) {
+    EXPECT_TRUE(warnings(exact).empty());
+  }
+}
+
 TEST(Pcd, ReadsEveryEncoding) {
   const Scratch scratch;
   using U8 = std::uint8_t;

@@ -23,6 +23,59 @@ TEST(Xyz, ReadsAnySeparatorAndSkipsComments) {
   }
 }
 
+TEST(Xyz, ReadsDecimalCommas) {
+  const Scratch scratch;
+  for (const char* text :
+       {"1,5 2,25 3,125\n4 -5,5e1 6\n", "1,5\t2,25\t3,125\n4\t-55\t6\n",
+        "1,5;2,25;3,125\n4;-55;6\n", "1,5; 2,25; 3,125\n4,0 ; -55 ; 6",
+        "x y z\n1,5 2,25 3,125\n4 -55 6", "x;y;z\r\n1,5;2,25;3,125\r\n4;-55;6\r\n",
+        "2\n# a, b c, d\n1,5 2,25 3,125\n4 -55 6"}) {
+    const auto loaded = scratch.read("a.txt", text);
+    EXPECT_EQ(loaded.cloud.positions, (std::vector<Vec3>{{1.5, 2.25, 3.125}, {4, -55, 6}})) << text;
+    EXPECT_TRUE(loaded.warnings.empty()) << text;
+    EXPECT_TRUE(loaded.cloud.attributes.empty());
+  }
+  // The first line with a comma decides, be it the last of the file.
+  const auto late = scratch.read("a.txt", "1 2 3\n# 4, 5\n4 5 6\n7 8,5 9\n");
+  EXPECT_EQ(late.cloud.positions, (std::vector<Vec3>{{1, 2, 3}, {4, 5, 6}, {7, 8.5, 9}}));
+}
+
+TEST(Xyz, ReadsCommasBetweenNumbersWithOrWithoutBlanks) {
+  const Scratch scratch;
+  for (const char* text :
+       {"1,2,3\n4,5,6\n", "1, 2, 3\n4, 5, 6\n", "1 ,2 ,3\n4 ,5 ,6\n", "1 , 2 , 3\n4 ,5, 6\n",
+        "1,\t2,\t3\n4,\t5,\t6\n", "  1,  2,  3\n4,5,6\n", "1,2,3,\n4,5,6,\n", "1, 2,3\n4,5, 6\n",
+        "1 2 3\n4, 5, 6\n", "x,y,z\n1, 2, 3\n4,5,6\n", "1.0,2, 3\n4,5.0, 6\n"}) {
+    const auto loaded = scratch.read("a.csv", text);
+    EXPECT_EQ(loaded.cloud.positions, (std::vector<Vec3>{{1, 2, 3}, {4, 5, 6}})) << text;
+    EXPECT_TRUE(loaded.cloud.attributes.empty()) << text;
+  }
+  for (const char* text : {"1,2,3 300\n", "1.5,2.5, 3.5,4.5\n", "1,2, 3,4\n5,6,7,8\n"}) {
+    const auto loaded = scratch.read("a.csv", text);
+    EXPECT_EQ(loaded.cloud.attributes.size(), 1u) << text;
+  }
+}
+
+TEST(Xyz, RefusesCommasThatReadEitherWay) {
+  const Scratch scratch;
+  const auto refuses = [&](const std::string& bytes, const std::string& part) {
+    const std::string message =
+        error_of(ErrorKind::kUnreadable, [&] { scratch.read("a.txt", bytes); });
+    EXPECT_TRUE(contains(message, scratch.path("a.txt").string() + part)) << message;
+  };
+  for (const char* line : {"1,5, 2,5, 3,5", "1,5 2", "1.234,5 1.000,0 2.000,0", "1,5 2.5 3,5"}) {
+    refuses(std::string("1 2 3\n") + line + "\n4 5 6\n", ":2: these commas may be decimal");
+  }
+  refuses("1,5 2,5 3,5\n1.5 2 3\n", ":2: no decimal commas as in line 1");
+  refuses("1.5 2 3\n\n1,5 2,5 3,5\n", ":1: no decimal commas as in line 3");
+  refuses("1,5 2,5 3,5\n1, 2, 3\n", ":2: no decimal commas as in line 1");
+  refuses("1,5;2,5;3,5\n1,2,3\n", ":2: no decimal commas as in line 1");
+  refuses("1,2,3,4,5,6\n1,5 2,5 3,5\n", ":2: decimal commas, where those of line 1");
+  refuses("1,2,3\n1,5;2,5;3,5\n", ":2: decimal commas, where those of line 1");
+  refuses("1,5;2,5;3,5,5\n", ":1: expected a number, not 3,5,5");
+  refuses("1,5 2,5 3,5\n1,5 2,5\n", ":2: 2 numbers where the lines before have 3");
+}
+
 TEST(Xyz, ReadsColumnsByTheirNames) {
   const Scratch scratch;
   const std::string row = "1 2 3 10 20 30 0 0 1 0.5 2\n";
@@ -148,10 +201,9 @@ TEST(Xyz, NamesTheLineThatDoesNotFit) {
   unreadable("1 2\n", ":1: expected at least three numbers");
   unreadable("1 2 3\n\n4 5\n", ":3: 2 numbers where the lines before have 3");
   unreadable("1 2 3\n4 5 six\n", ":2: expected a number, not six");
+  unreadable("1 2 3\n4 5 -1.8e308\n", ":2: -1.8e308 is beyond the largest double");
   unreadable("hello world\n", ":1: expected numbers, or names");
   unreadable("x y z a\n1 2 3\n", ":2: 3 numbers under 4 names");
-  unreadable("1,5;2,5;3,5\n", ":1: expected numbers");
-  unreadable("1;2;3\n4,5;6;7\n", ":2: expected a number, not 4,5");
   unreadable("3\n1 2 3\n4 5 6\n", ": promises 3 points but holds 2");
   unreadable("7\n", ": promises 7 points but holds 0");
   unreadable("7\n8\n", ":2: expected at least three numbers");

@@ -103,10 +103,11 @@ std::vector<std::string> find_problems(const io::LoadedCloud& loaded, const Defe
     const double largest = std::max(box.min.cwiseAbs().maxCoeff(), box.max.cwiseAbs().maxCoeff());
     const double step = std::ldexp(1.0, std::ilogb(std::max(largest, 1e-30)) - 23);
     if (step > 0.1 * spacing->median) {
-      problems.push_back(
-          fmt::format("coordinates up to {:.0f}: as float they would be rounded to "
-                      "{:.2g}, the points are {:.2g} apart",
-                      largest, step, spacing->median));
+      problems.push_back(fmt::format(
+          "coordinates up to {}: as float they would be rounded to "
+          "{:.2g}, the points are {:.2g} apart",
+          largest < 1e15 ? fmt::format("{:.0f}", largest) : fmt::format("{:g}", largest), step,
+          spacing->median));
     }
   }
   return problems;

@@ -33,15 +33,19 @@ struct Request {
 normals::PreparedNormals prepare(const Request& request, const PointCloud& cloud,
                                  const Progress& progress) {
   const normals::PrepareOptions options = {request.neighbours, request.eye()};
-  if (!request.keep) {
-    return normals::estimate_oriented_normals(cloud.positions, options, &progress);
-  }
-  if (!cloud.has_normals()) {
+  if (request.keep && !cloud.has_normals()) {
     throw Error(ErrorKind::kInsufficient,
                 fmt::format("{}: has no normals to keep; leave out --keep to estimate them",
                             request.input));
   }
-  return normals::complete_and_orient_normals(cloud.positions, cloud.normals, options, &progress);
+  normals::PreparedNormals prepared;
+  with_name_in_errors(request.input, [&] {
+    prepared = request.keep
+                   ? normals::complete_and_orient_normals(cloud.positions, cloud.normals, options,
+                                                          &progress)
+                   : normals::estimate_oriented_normals(cloud.positions, options, &progress);
+  });
+  return prepared;
 }
 
 void report(const Request& request, const normals::PreparedNormals& prepared) {

@@ -15,6 +15,15 @@ bool lexicographically_less(const Vec3& a, const Vec3& b) {
   return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3);
 }
 
+/// (0,0,0) for a vector that is zero or not finite.
+Vec3 unit(const Vec3& vector) {
+  // The largest component first, so that neither huge nor tiny vectors overflow the square.
+  const double largest = vector.cwiseAbs().maxCoeff();
+  if (!vector.allFinite() || largest == 0.0) return Vec3::Zero();
+  const Vec3 scaled = vector / largest;
+  return scaled / scaled.norm();
+}
+
 }  // namespace
 
 const Attribute* find_attribute(const PointCloud& cloud, std::string_view name) {
@@ -36,17 +45,27 @@ void set_attribute(PointCloud& cloud, Attribute attribute) {
 std::size_t make_normals_unit(PointCloud& cloud) {
   std::size_t unusable = 0;
   for (Vec3& normal : cloud.normals) {
-    // The largest component first, so that neither huge nor tiny normals overflow the square.
-    const double largest = normal.cwiseAbs().maxCoeff();
-    if (!normal.allFinite() || largest == 0.0) {
-      normal.setZero();
-      ++unusable;
-    } else {
-      normal /= largest;
-      normal /= normal.norm();
-    }
+    normal = unit(normal);
+    if (normal.isZero(0.0)) ++unusable;
   }
   return unusable;
+}
+
+Vec3 stored_normal(const PointCloud& cloud, std::size_t point) {
+  const auto& stored = cloud.stored_normals;
+  return {stored[0].value(point), stored[1].value(point), stored[2].value(point)};
+}
+
+bool normals_are_stored(const PointCloud& cloud) {
+  const auto& stored = cloud.stored_normals;
+  if (!cloud.has_normals() || stored.size() != 3) return false;
+  for (const Attribute& axis : stored) {
+    if (axis.bytes.size() != cloud.size() * size_of(axis.type)) return false;
+  }
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    if (unit(stored_normal(cloud, i)) != cloud.normals[i]) return false;
+  }
+  return true;
 }
 
 std::vector<Vec3> scanner_of_points(const PointCloud& cloud) {

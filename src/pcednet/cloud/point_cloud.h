@@ -29,6 +29,9 @@ struct ForeignElement {
 struct PointCloud {
   std::vector<Vec3> positions;
   std::vector<Vec3> normals;  ///< unit length, or (0,0,0) where the file's normal was unusable
+  /// The normals as their file has them, of any length: x, y and z, or nothing. Writers give them
+  /// back while normals_are_stored().
+  std::vector<Attribute> stored_normals;
   std::vector<Rgb> colours;
   std::vector<std::uint8_t> labels;  ///< EdgeClass values
   std::vector<Attribute> attributes;
@@ -52,6 +55,12 @@ void set_attribute(PointCloud& cloud, Attribute attribute);
 /// Scales every normal to unit length; a normal that is zero or not finite becomes (0,0,0).
 /// Returns how many of these there are.
 std::size_t make_normals_unit(PointCloud& cloud);
+
+/// The normal of `point` as the file has it; there must be some.
+Vec3 stored_normal(const PointCloud& cloud, std::size_t point);
+
+/// Whether the normals are `stored_normals` made unit, that is, nobody changed them since.
+bool normals_are_stored(const PointCloud& cloud);
 
 /// Where each point was seen from: cloud.scanners[s] for the s that the attribute `scan` names, or
 /// for all points if there is one scanner and no such attribute; NaN where unknown. Empty if it is

@@ -63,6 +63,7 @@ PointCloud add_gaussian_noise(PointCloud cloud, const NoiseOptions& options) {
   if (options.along_normal && !cloud.has_normals() && !cloud.empty()) {
     throw Error(ErrorKind::kInsufficient, "noise along the normals, and there are no normals");
   }
+  check_extent(cloud.positions);
   const double sigma = options.sigma * bounding_box(cloud.positions).diagonal();
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     Vec3& position = cloud.positions[i];
@@ -100,6 +101,9 @@ PointCloud subsample(const PointCloud& cloud, const SubsampleOptions& options) {
   kept.scanners = cloud.scanners;
   kept.positions = chosen(cloud.positions, points);
   kept.normals = chosen(cloud.normals, points);
+  for (const Attribute& axis : cloud.stored_normals) {
+    kept.stored_normals.push_back(chosen(axis, points));
+  }
   kept.colours = chosen(cloud.colours, points);
   kept.labels = chosen(cloud.labels, points);
   for (const Attribute& attribute : cloud.attributes) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "pcednet/cloud/bounding_box.h"
 #include "pcednet/core/error.h"
 #include "pcednet/normals/prepare.h"
 
@@ -62,6 +63,7 @@ PreparedCloud prepare(const PointCloud& cloud, const Progress* progress) {
   const auto finite = static_cast<std::size_t>(std::count_if(
       cloud.positions.begin(), cloud.positions.end(), [](const Vec3& p) { return p.allFinite(); }));
   if (finite == 0) throw Error(ErrorKind::kInsufficient, "no point has a finite position");
+  check_extent(cloud.positions);
 
   PreparedCloud prepared;
   prepared.positions = cloud.positions;

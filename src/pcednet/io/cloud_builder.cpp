@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "pcednet/core/error.h"
+#include "pcednet/io/column_names.h"
 #include "pcednet/io/promote.h"
 #include "pcednet/io/text_scan.h"
 
@@ -35,20 +36,23 @@ void copy_strided(std::byte* dst, std::size_t dst_stride, const std::byte* src,
   }
 }
 
-void copy_numbers(std::byte* dst, std::size_t dst_stride, const std::byte* src,
-                  std::size_t src_stride, std::size_t bytes, std::size_t count) {
+/// Takes the numbers of the points [begin, end).
+void copy_to(Attribute& attribute, const std::byte* src, std::size_t src_stride, std::size_t begin,
+             std::size_t end) {
+  const std::size_t bytes = attribute.stride(), count = end - begin;
+  std::byte* dst = attribute.bytes.data() + begin * bytes;
   switch (bytes) {
     case 1:
-      return copy_strided<1>(dst, dst_stride, src, src_stride, count);
+      return copy_strided<1>(dst, bytes, src, src_stride, count);
     case 2:
-      return copy_strided<2>(dst, dst_stride, src, src_stride, count);
+      return copy_strided<2>(dst, bytes, src, src_stride, count);
     case 4:
-      return copy_strided<4>(dst, dst_stride, src, src_stride, count);
+      return copy_strided<4>(dst, bytes, src, src_stride, count);
     case 8:
-      return copy_strided<8>(dst, dst_stride, src, src_stride, count);
+      return copy_strided<8>(dst, bytes, src, src_stride, count);
     default:
       for (std::size_t i = 0; i < count; ++i) {
-        std::memcpy(dst + i * dst_stride, src + i * src_stride, bytes);
+        std::memcpy(dst + i * bytes, src + i * src_stride, bytes);
       }
   }
 }
@@ -78,6 +82,7 @@ CloudBuilder::CloudBuilder(const std::filesystem::path& path, std::vector<Column
   for (const Names& names : kNormalNames) {
     if (!take(names, Role::kNormal, false)) continue;
     cloud_.normals.resize(points);
+    store_normals();
     break;
   }
   for (const Names& names : colour_names()) {
@@ -98,9 +103,21 @@ CloudBuilder::CloudBuilder(const std::filesystem::path& path, std::vector<Column
       continue;
     }
     targets_[c].index = cloud_.attributes.size();
-    Attribute attribute{column.name, column.type, column.count, {}};
-    attribute.bytes.resize(points * attribute.stride());
-    cloud_.attributes.push_back(std::move(attribute));
+    cloud_.attributes.push_back(new_attribute(column));
+  }
+}
+
+Attribute CloudBuilder::new_attribute(const Column& column) const {
+  Attribute attribute{column.name, column.type, column.count, {}};
+  attribute.bytes.resize(size() * attribute.stride());
+  return attribute;
+}
+
+void CloudBuilder::store_normals() {
+  cloud_.stored_normals.resize(3);
+  for (std::size_t c = 0; c < columns_.size(); ++c) {
+    if (targets_[c].role != Role::kNormal) continue;
+    cloud_.stored_normals[targets_[c].index] = new_attribute(columns_[c]);
   }
 }
 
@@ -143,6 +160,7 @@ void CloudBuilder::fill(std::size_t column, const std::byte* first, std::size_t 
     case Role::kPosition:
       return decode_axis(cloud_.positions, target.index, type, first, stride, begin, end);
     case Role::kNormal:
+      copy_to(cloud_.stored_normals[target.index], first, stride, begin, end);
       return decode_axis(cloud_.normals, target.index, type, first, stride, begin, end);
     case Role::kColour:
       for (std::size_t i = begin; i < end; ++i, first += stride) {
@@ -154,12 +172,8 @@ void CloudBuilder::fill(std::size_t column, const std::byte* first, std::size_t 
         cloud_.labels[i] = static_cast<std::uint8_t>(*first);
       }
       return;
-    case Role::kAttribute: {
-      Attribute& attribute = cloud_.attributes[target.index];
-      const std::size_t bytes = attribute.stride();
-      copy_numbers(attribute.bytes.data() + begin * bytes, bytes, first, stride, bytes,
-                   end - begin);
-    }
+    case Role::kAttribute:
+      return copy_to(cloud_.attributes[target.index], first, stride, begin, end);
   }
 }
 
@@ -177,6 +191,7 @@ LoadedCloud CloudBuilder::finish() {
   loaded.cloud = std::move(cloud_);
   if (loaded.cloud.labels.empty()) promote_labels(loaded.cloud);
   if (loaded.cloud.colours.empty()) promote_colours(loaded.cloud, loaded.warnings);
+  restore_attributes(loaded.cloud);
   return loaded;
 }
 

@@ -24,7 +24,8 @@ struct Column {
 /// x y z are positions; nx ny nz (or normal_x ...) normals; red green blue (or diffuse_red ..., or
 /// r g b) and the packed rgb or rgba of PCD colours; label or scalar_label labels, -1 and NaN
 /// standing for unlabelled. Case does not matter. Colours and labels must hold values that are
-/// such; columns that do not, and all others, become attributes in their own type and name.
+/// such; columns that do not, and all others, become attributes in their own type, under the names
+/// that restore_attributes() finds.
 class CloudBuilder {
  public:
   /// Allocates for `points` points: the caller has checked that number against the file's size.
@@ -53,6 +54,8 @@ class CloudBuilder {
     std::size_t index = 0;  ///< which axis, channel or attribute
   };
 
+  Attribute new_attribute(const Column& column) const;
+  void store_normals();
   bool take(const std::vector<std::string>& names, Role role, bool bytes_only);
   ScalarType common_position_type() const;
 

@@ -12,6 +12,9 @@
 #include <set>
 
 #include "pcednet/core/error.h"
+#include "pcednet/io/column_names.h"
+#include "pcednet/io/promote.h"
+#include "pcednet/io/text_scan.h"
 
 namespace pcednet::io {
 namespace {
@@ -62,28 +65,63 @@ const std::byte* bytes_of(const void* pointer) {
 
 void add_vectors(std::vector<ColumnView>& columns, const std::vector<Vec3>& vectors,
                  const std::vector<std::string>& names, ScalarType type) {
-  if (vectors.empty()) return;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     columns.push_back({names[axis], type, bytes_of(vectors[0].data() + axis), sizeof(Vec3)});
   }
 }
 
-void add_attribute(std::vector<ColumnView>& columns, const Attribute& attribute,
-                   const ColumnNames& names) {
-  const bool widen = is_int64(attribute.type) && !names.has_int64;
-  for (std::size_t c = 0; c < attribute.components; ++c) {
-    std::string name = plain_name(attribute.name);
-    if (attribute.components > 1 && !names.has_counts) name += fmt::format("_{}", c);
-    columns.push_back({std::move(name), widen ? ScalarType::kFloat64 : attribute.type,
-                       attribute.bytes.data() + c * size_of(attribute.type), attribute.stride(),
-                       attribute.type, c});
+void add_normals(std::vector<ColumnView>& columns, const PointCloud& cloud,
+                 const std::vector<std::string>& names) {
+  const auto is_float = [](const Attribute& axis) {
+    return axis.type == ScalarType::kFloat32 || axis.type == ScalarType::kFloat64;
+  };
+  const auto& stored = cloud.stored_normals;
+  if (!cloud.has_normals()) return;
+  if (!std::all_of(stored.begin(), stored.end(), is_float) || !normals_are_stored(cloud)) {
+    return add_vectors(columns, cloud.normals, names, ScalarType::kFloat32);
+  }
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    columns.push_back({names[axis], stored[axis].type, stored[axis].bytes.data(),
+                       stored[axis].stride(), stored[axis].type});
   }
 }
 
-/// Appends underscores to names that stand further left already. The label column is never
-/// renamed, and keeps its place at the end.
+/// Whether a reader would make colours or labels of the attribute.
+bool is_mistakable(const Attribute& attribute) {
+  const auto has_it = [&](const std::vector<std::string>& names) {
+    return std::find(names.begin(), names.end(), lower_case(attribute.name)) != names.end();
+  };
+  const bool is_named_so =
+      has_it(label_names()) || std::any_of(colour_names().begin(), colour_names().end(), has_it);
+  return attribute.type == ScalarType::kUint8 && attribute.components == 1 && is_named_so;
+}
+
+void add_attribute(std::vector<ColumnView>& columns, const Attribute& attribute,
+                   const ColumnNames& names) {
+  const bool halve = is_int64(attribute.type) && !names.has_int64;
+  for (std::size_t c = 0; c < attribute.components; ++c) {
+    const bool numbered = attribute.components > 1 && !names.has_counts;
+    const std::string name = numbered ? fmt::format("{}_{}", attribute.name, c) : attribute.name;
+    const std::byte* first = attribute.bytes.data() + c * size_of(attribute.type);
+    const auto add = [&](std::string_view ending, ScalarType type, const std::byte* numbers) {
+      std::string column = column_name(name).append(ending);
+      if (is_mistakable(attribute)) column = hidden(std::move(column));
+      columns.push_back({std::move(column), type, numbers, attribute.stride(), type, c});
+    };
+    if (!halve) {
+      add("", attribute.type, first);
+      continue;
+    }
+    const bool is_signed = attribute.type == ScalarType::kInt64;
+    add(kLowHalf, ScalarType::kUint32, first);  // little-endian
+    add(kHighHalf, is_signed ? ScalarType::kInt32 : ScalarType::kUint32, first + 4);
+  }
+}
+
+/// Hides names that stand further left already. The label column keeps its name and its place at
+/// the end.
 void make_names_unique(std::vector<ColumnView>& columns, bool has_label, bool has_counts) {
-  std::set<std::string> taken = {"rgb"};  // what write_pcd adds
+  std::set<std::string> taken = {"rgb", "rgba"};  // what write_pcd adds, what readers take apart
   if (has_label) taken.insert(columns.back().name);
   const std::size_t count = columns.size() - (has_label ? 1 : 0);
   for (std::size_t c = 0; c < count; ++c) {
@@ -91,7 +129,7 @@ void make_names_unique(std::vector<ColumnView>& columns, bool has_label, bool ha
       columns[c].name = columns[c - 1].name;
       continue;
     }
-    while (!taken.insert(columns[c].name).second) columns[c].name += '_';
+    while (!taken.insert(columns[c].name).second) columns[c].name = hidden(columns[c].name);
   }
 }
 
@@ -152,15 +190,6 @@ void append_shortest(T value, std::string& out) {
 
 }  // namespace
 
-std::string plain_name(std::string_view name) {
-  std::string plain;
-  for (const char c : name) {
-    const auto code = static_cast<unsigned char>(c);
-    plain += code <= ' ' || code == 127 || c == ',' || c == ';' || c == '"' ? '_' : c;
-  }
-  return plain.empty() ? "unnamed" : plain;
-}
-
 std::vector<ColumnView> columns_of(const PointCloud& cloud, const ColumnNames& names) {
   check_consistent(cloud);
   std::vector<ColumnView> columns;
@@ -169,7 +198,7 @@ std::vector<ColumnView> columns_of(const PointCloud& cloud, const ColumnNames& n
     return columns;
   }
   add_vectors(columns, cloud.positions, {"x", "y", "z"}, position_type(cloud, names));
-  add_vectors(columns, cloud.normals, names.normals, ScalarType::kFloat32);
+  add_normals(columns, cloud, names.normals);
   if (!cloud.colours.empty()) {
     for (std::size_t c = 0; c < names.colours.size(); ++c) {
       columns.push_back({names.colours[c], ScalarType::kUint8,
@@ -196,20 +225,6 @@ void check_same_columns(const std::filesystem::path& path, const std::vector<Col
     throw Error(ErrorKind::kFailure,
                 path.string() + ": the parts to write have different attributes");
   }
-}
-
-std::vector<std::string> column_losses(const PointCloud& cloud, const ColumnNames& names) {
-  std::vector<std::string> losses;
-  for (const Attribute& attribute : cloud.attributes) {
-    if (is_int64(attribute.type) && !names.has_int64) {
-      losses.push_back(fmt::format("attribute {}: 64-bit integers become double", attribute.name));
-    }
-    if (plain_name(attribute.name) != attribute.name) {
-      losses.push_back(fmt::format("attribute \"{}\" is renamed to {}", attribute.name,
-                                   plain_name(attribute.name)));
-    }
-  }
-  return losses;
 }
 
 std::size_t row_bytes(const std::vector<ColumnView>& columns) {

@@ -25,27 +25,21 @@ struct ColumnNames {
   std::vector<std::string> normals = {"nx", "ny", "nz"};
   std::vector<std::string> colours = {"red", "green", "blue"};  ///< empty: colours are left out
   ScalarType label_type = ScalarType::kUint8;
-  bool has_int64 = true;    ///< otherwise 64-bit integers are written as double
+  bool has_int64 = true;    ///< otherwise two columns: kLowHalf and kHighHalf
   bool has_counts = false;  ///< columns of several numbers; otherwise name_0, name_1, ...
 };
 
-/// The columns of `cloud`, in the order of create_ply_parts. Names are unique, have no blanks,
-/// commas or semicolons. An attribute of several components gives that many columns side by side.
+/// The columns of `cloud`, in the order of create_ply_parts, under unique names made by
+/// column_name(). An attribute of several components gives that many columns side by side.
 ///
-/// Positions get the cloud's position_type if every one of them survives in it, otherwise double.
+/// Positions get the cloud's position_type if every one of them survives in it, otherwise double;
+/// normals are those of the file, or float.
 /// The views point into `cloud`. Throws Error(kFailure) unless check_consistent(cloud) holds.
 std::vector<ColumnView> columns_of(const PointCloud& cloud, const ColumnNames& names);
 
 /// Throws Error(kFailure) unless both have the same names and types.
 void check_same_columns(const std::filesystem::path& path, const std::vector<ColumnView>& columns,
                         const std::vector<ColumnView>& others);
-
-/// `name` without characters that end a word in some format; never empty.
-std::string plain_name(std::string_view name);
-
-/// Attributes of `cloud` (or its positions) that lose something as columns named by `names`, one
-/// sentence part each.
-std::vector<std::string> column_losses(const PointCloud& cloud, const ColumnNames& names);
 
 /// Bytes of a row of packed columns.
 std::size_t row_bytes(const std::vector<ColumnView>& columns);

@@ -26,11 +26,11 @@ std::unique_ptr<PartReader> open_las_parts(std::unique_ptr<InputFile> file, std:
 /// Writes LAS, or LAZ if `path` ends in .laz.
 ///
 /// A cloud that was read from LAS gets back version, point format, scale, offset, records and
-/// fields, its integers bit for bit; another becomes LAS 1.4, point format 6, or 7 with colours, in
-/// steps of a power of ten of at most 0.1 mm. Further attributes become extra bytes:
-/// scalar_edge_class, scalar_p_sharp and scalar_p_smooth as edge_class, p_sharp and p_smooth.
-/// append() throws Error(kInsufficient) for positions that are not finite, Error(kFailure) for a
-/// number that its field cannot hold; both name the point.
+/// fields, its integers bit for bit, without the extra bytes that it lost on its way; another
+/// becomes LAS 1.4, point format 6, or 7 with colours, in steps of a power of ten of at most 0.1
+/// mm. Further attributes become extra bytes: scalar_edge_class, scalar_p_sharp and scalar_p_smooth
+/// as edge_class, p_sharp and p_smooth. append() throws Error(kInsufficient) for positions that are
+/// not finite, Error(kFailure) for a number that its field cannot hold; both name the point.
 std::unique_ptr<PartWriter> create_las_parts(const std::filesystem::path& path,
                                              const PartOutline& outline,
                                              const WriteOptions& options);

@@ -159,6 +159,7 @@ std::vector<LasField> las_extra_fields(const LasFile& file, std::vector<std::str
             "extra bytes \"{}\" are described but not in the points' {} bytes", field.name, end));
         break;
       }
+      field.descriptor = at;
       add(std::move(field));
     }
     break;

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,7 +20,8 @@ struct LasField {
   std::size_t offset = 0;      ///< bytes into the record
   std::size_t components = 1;  ///< numbers one after the other
   unsigned shift = 0;
-  unsigned bits = 0;  ///< 0: the whole number
+  unsigned bits = 0;                           ///< 0: the whole number
+  std::optional<std::size_t> descriptor = {};  ///< where the record LASF_Spec 4 describes it
 };
 
 /// A variable length record, or an extended one.

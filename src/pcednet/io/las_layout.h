@@ -14,7 +14,7 @@ struct LasColumn {
   LasField field = {};
   const std::byte* first = nullptr;  ///< what point 0 gets
   std::size_t stride = 0;            ///< bytes from point to point; 0: all get the same
-  Scale scale = Scale::kNone;        ///< bytes times 257, or double to the field's float
+  Scale scale = Scale::kNone;        ///< bytes times 257, or unit normals
 };
 
 /// What all points together decide.

@@ -44,6 +44,7 @@ void promote_normals(PointCloud& cloud) {
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     cloud.normals[i] = Vec3(axes[0]->value(i), axes[1]->value(i), axes[2]->value(i));
   }
+  cloud.stored_normals = {*axes[0], *axes[1], *axes[2]};
   std::erase_if(cloud.attributes, [](const Attribute& a) {
     return a.name == "NormalX" || a.name == "NormalY" || a.name == "NormalZ";
   });

@@ -30,10 +30,14 @@ void encode(const std::filesystem::path& path, const PointCloud& cloud, const La
   out.resize(start + (end - begin) * stride);
   for (std::size_t i = begin; i < end; ++i) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const double step = las_step(layout.file, axis, cloud.positions[i][static_cast<int>(axis)]);
+      const double coordinate = cloud.positions[i][static_cast<int>(axis)];
+      const double step = las_step(layout.file, axis, coordinate);
       if (!std::isfinite(step)) {
         refuse(path, ErrorKind::kInsufficient, before + i,
-               "LAS has no positions that are not finite");
+               std::isfinite(coordinate)
+                   ? fmt::format("{} is out of reach of 32 bits in steps of {}", coordinate,
+                                 layout.file.scale(axis))
+                   : "LAS has no positions that are not finite");
       }
       const auto whole = static_cast<std::int32_t>(step);
       std::memcpy(&out[start + (i - begin) * stride + 4 * axis], &whole, 4);

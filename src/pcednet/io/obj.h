@@ -15,7 +15,8 @@ namespace pcednet::io {
 ///
 /// A vertex gets the mean of the unit normals that faces, lines and points give its corners (v//vn,
 /// v/vt/vn); in a file where none does, `vn` number i belongs to `v` number i if there are equally
-/// many. Throws Error(kUnreadable) naming the line of a broken number or an index out of range.
+/// many. A corner whose normal does not exist is read without, with a warning. Throws
+/// Error(kUnreadable) naming the line of a broken number or an index of a vertex out of range.
 LoadedCloud read_obj(const InputFile& file);
 
 /// Writes `v` lines, with colours in 0 ... 1 if there are any, and as many `vn` lines if the cloud

@@ -1,8 +1,10 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "pcednet/io/faces.h"
@@ -17,6 +19,7 @@ namespace {
 struct Corner {
   std::size_t vertex = 0;
   std::size_t normal = 0;
+  std::size_t line = 0;
 };
 
 /// The largest index used, and where.
@@ -25,13 +28,22 @@ struct FarthestIndex {
   std::size_t line = 0;
 };
 
+/// How many there are, and where the first is.
+struct Ignored {
+  std::size_t count = 0;
+  std::size_t line = 0;
+
+  void add(std::size_t at) { line = count++ == 0 ? at : std::min(line, at); }
+};
+
 /// The statements of an OBJ file that concern points.
 struct Statements {
   std::vector<Vec3> positions;
   std::vector<Vec3> normals;
   std::array<std::vector<double>, 3> colours;
   std::vector<Corner> corners;
-  FarthestIndex farthest_vertex, farthest_normal;
+  FarthestIndex farthest_vertex;
+  Ignored corners_without_normal;  ///< whose index of a normal is none
   std::vector<std::uint32_t> face_sizes, face_corners;
   std::size_t others = 0;  ///< lines and points
   std::vector<std::string> comments;
@@ -79,7 +91,7 @@ class StatementParser {
 
   double number(std::size_t word) const {
     const auto value = parse_double(statement_[word]);
-    if (!value) throw error(fmt::format("expected a number, not {:.40}", statement_[word]));
+    if (!value) throw error(number_fault(statement_[word]));
     return *value;
   }
 
@@ -109,30 +121,35 @@ class StatementParser {
   /// Returns the index of the corner's vertex.
   std::size_t take_corner(std::string_view corner) {
     const std::size_t first = corner.find('/');
-    const std::size_t vertex =
-        index(corner.substr(0, first), result_.positions.size(), result_.farthest_vertex);
+    const std::size_t vertex = vertex_index(corner.substr(0, first));
     if (first == std::string_view::npos) return vertex;
     const std::size_t second = corner.find('/', first + 1);
-    if (second == std::string_view::npos) return vertex;
-    const std::size_t normal =
-        index(corner.substr(second + 1), result_.normals.size(), result_.farthest_normal);
-    result_.corners.push_back({vertex, normal});
+    if (second == std::string_view::npos || second + 1 == corner.size()) return vertex;
+    if (const auto normal = index(corner.substr(second + 1), result_.normals.size())) {
+      result_.corners.push_back({vertex, *normal, number_});
+    } else {
+      result_.corners_without_normal.add(number_);
+    }
     return vertex;
   }
 
+  std::size_t vertex_index(std::string_view word) {
+    const auto found = index(word, result_.positions.size());
+    if (!found) throw error(fmt::format("expected the index of a v, not {:.40}", word));
+    FarthestIndex& farthest = result_.farthest_vertex;
+    if (*found >= farthest.end) farthest = {*found + 1, number_};
+    return *found;
+  }
+
   /// What an index means: n is the n-th of the file, -n the n-th last of the `so_far` before it.
-  std::size_t index(std::string_view word, std::size_t so_far, FarthestIndex& farthest) const {
+  static std::optional<std::size_t> index(std::string_view word, std::size_t so_far) {
     std::int64_t value = 0;
     const auto [end, fault] = std::from_chars(word.data(), word.data() + word.size(), value);
     const bool is_number = fault == std::errc{} && end == word.data() + word.size();
     const bool is_before = value < 0 && static_cast<std::uint64_t>(-(value + 1)) < so_far;
-    if (!is_number || !(value > 0 || is_before)) {
-      throw error(fmt::format("expected the index of a v or vn, not {:.40}", word));
-    }
-    const std::size_t found =
-        value > 0 ? static_cast<std::size_t>(value - 1) : so_far - static_cast<std::size_t>(-value);
-    if (found >= farthest.end) farthest = {found + 1, number_};
-    return found;
+    if (!is_number || !(value > 0 || is_before)) return std::nullopt;
+    return value > 0 ? static_cast<std::size_t>(value - 1)
+                     : so_far - static_cast<std::size_t>(-value);
   }
 
   const std::filesystem::path& path_;
@@ -142,14 +159,26 @@ class StatementParser {
   Statements result_;
 };
 
-void check_indices(const std::filesystem::path& path, const Statements& statements) {
-  const auto check = [&](const FarthestIndex& farthest, std::size_t count, const char* keyword) {
-    if (farthest.end <= count) return;
-    throw unreadable(path, fmt::format("names {} number {} of {}", keyword, farthest.end, count),
-                     farthest.line);
-  };
-  check(statements.farthest_vertex, statements.positions.size(), "v");
-  check(statements.farthest_normal, statements.normals.size(), "vn");
+void check_vertices(const std::filesystem::path& path, const Statements& statements) {
+  const FarthestIndex& farthest = statements.farthest_vertex;
+  const std::size_t count = statements.positions.size();
+  if (farthest.end <= count) return;
+  throw unreadable(path, fmt::format("names v number {} of {}", farthest.end, count),
+                   farthest.line);
+}
+
+/// A corner may name a normal that the file has not.
+void drop_corners_without_normal(Statements& statements, std::vector<std::string>& warnings) {
+  Ignored& ignored = statements.corners_without_normal;
+  std::erase_if(statements.corners, [&](const Corner& corner) {
+    const bool exists = corner.normal < statements.normals.size();
+    if (!exists) ignored.add(corner.line);
+    return !exists;
+  });
+  if (ignored.count == 0) return;
+  warnings.push_back(fmt::format(
+      "{} corners of faces name none of the {} normals, the first in line {}: read without normal",
+      ignored.count, statements.normals.size(), ignored.line));
 }
 
 std::vector<Vec3> normals_of_vertices(const Statements& statements,
@@ -177,8 +206,9 @@ std::vector<Vec3> normals_of_vertices(const Statements& statements,
 LoadedCloud read_obj(const InputFile& file) {
   const std::string text = file.text();
   Statements statements = StatementParser(file.path()).parse(text);
-  check_indices(file.path(), statements);
+  check_vertices(file.path(), statements);
   LoadedCloud loaded;
+  drop_corners_without_normal(statements, loaded.warnings);
   PointCloud& cloud = loaded.cloud;
   cloud.normals = normals_of_vertices(statements, loaded.warnings);
   cloud.positions = std::move(statements.positions);

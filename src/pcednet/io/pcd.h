@@ -23,7 +23,4 @@ LoadedCloud read_pcd(const InputFile& file);
 void write_pcd(const std::filesystem::path& path, const PointCloud& cloud,
                const WriteOptions& options = {});
 
-/// What write_pcd does not keep of `cloud`, one sentence part each.
-std::vector<std::string> pcd_losses(const PointCloud& cloud);
-
 }  // namespace pcednet::io

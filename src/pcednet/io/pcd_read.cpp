@@ -21,7 +21,8 @@ namespace {
 /// No byte of LZF gives more bytes than this: three make at most 264.
 constexpr std::uint64_t kMostLzfGain = 88;
 
-void read_ascii(const InputFile& file, const PcdHeader& header, CloudBuilder& builder) {
+/// Returns the bytes after the last point.
+std::uint64_t read_ascii(const InputFile& file, const PcdHeader& header, CloudBuilder& builder) {
   const std::string text = file.text(header.bytes);
   Lines lines(text, header.lines);
   RowFeeder feeder(builder);
@@ -53,6 +54,12 @@ void read_ascii(const InputFile& file, const PcdHeader& header, CloudBuilder& bu
     }
   }
   feeder.flush();
+  std::string_view line;
+  while (lines.next(line)) {
+    if (!trim(line).empty())
+      return text.size() - static_cast<std::size_t>(line.data() - text.data());
+  }
+  return 0;
 }
 
 void read_binary(const InputFile& file, const PcdHeader& header, CloudBuilder& builder) {
@@ -66,7 +73,12 @@ void read_binary(const InputFile& file, const PcdHeader& header, CloudBuilder& b
   });
 }
 
-std::vector<std::byte> read_compressed(const InputFile& file, const PcdHeader& header) {
+struct Unpacked {
+  std::vector<std::byte> bytes = {};
+  std::uint64_t unread = 0;  ///< bytes of the file after those packed
+};
+
+Unpacked read_compressed(const InputFile& file, const PcdHeader& header) {
   std::array<std::uint32_t, 2> sizes = {};  // compressed, plain
   file.read(header.bytes, std::as_writable_bytes(std::span(sizes)));
   const std::uint64_t begin = header.bytes + sizeof sizes;
@@ -86,7 +98,7 @@ std::vector<std::byte> read_compressed(const InputFile& file, const PcdHeader& h
   if (!unpack_lzf(packed, plain)) {
     throw unreadable(file.path(), fmt::format("byte {}: the packed data are damaged", begin));
   }
-  return plain;
+  return {std::move(plain), file.size() - begin - packed.size()};
 }
 
 /// Fills a builder from fields that lie one after the other, each for all points.
@@ -113,28 +125,37 @@ void check_fits(const InputFile& file, const PcdHeader& header) {
   }
 }
 
+void warn_of_unread(std::uint64_t bytes, const PcdHeader& header,
+                    std::vector<std::string>& warnings) {
+  if (bytes == 0) return;
+  warnings.push_back(fmt::format("{} bytes after the {} points of the header were not read", bytes,
+                                 header.points));
+}
+
 LoadedCloud read_body(const InputFile& file, const PcdHeader& header) {
-  std::vector<std::byte> plain;
+  Unpacked unpacked;
   if (header.encoding != PcdEncoding::kCompressed) {
     check_fits(file, header);
   } else if (header.points > 0) {
-    plain = read_compressed(file, header);
+    unpacked = read_compressed(file, header);
   }
   CloudBuilder builder(file.path(), header.fields, header.points);
-  if (header.points > 0) {
-    switch (header.encoding) {
-      case PcdEncoding::kAscii:
-        read_ascii(file, header, builder);
-        break;
-      case PcdEncoding::kBinary:
-        read_binary(file, header, builder);
-        break;
-      case PcdEncoding::kCompressed:
-        fill_fields(plain, header, builder);
-        break;
-    }
+  std::uint64_t unread = 0;
+  switch (header.encoding) {
+    case PcdEncoding::kAscii:
+      unread = read_ascii(file, header, builder);
+      break;
+    case PcdEncoding::kBinary:
+      read_binary(file, header, builder);
+      unread = file.size() - header.bytes - header.points * header.row_bytes();
+      break;
+    case PcdEncoding::kCompressed:
+      if (header.points > 0) fill_fields(unpacked.bytes, header, builder);
+      unread = unpacked.unread;
+      break;
   }
   LoadedCloud loaded = builder.finish();
+  warn_of_unread(unread, header, loaded.warnings);
   loaded.cloud.comments = header.comments;
   return loaded;
 }

@@ -117,8 +117,4 @@ void write_pcd(const std::filesystem::path& path, const PointCloud& cloud,
   file.commit();
 }
 
-std::vector<std::string> pcd_losses(const PointCloud& cloud) {
-  return column_losses(cloud, pcd_names());
-}
-
 }  // namespace pcednet::io

@@ -24,14 +24,11 @@ LoadedCloud read_ply(const InputFile& file);
 std::unique_ptr<PartReader> open_ply_parts(std::unique_ptr<InputFile> file, std::size_t most);
 
 /// Writes PLY 1.0, binary little-endian unless options.ascii, in an order that common programs
-/// understand: x y z; float nx ny nz; uchar red green blue; attribute `quality`; attributes
+/// understand: x y z; nx ny nz; uchar red green blue; attribute `quality`; attributes
 /// `scalar_*`; other attributes; uchar label. Then the foreign elements of the first part, which
 /// must outlive the writer.
 std::unique_ptr<PartWriter> create_ply_parts(const std::filesystem::path& path,
                                              const PartOutline& outline,
                                              const WriteOptions& options);
-
-/// What PLY does not keep of `cloud`, one sentence part each.
-std::vector<std::string> ply_losses(const PointCloud& cloud);
 
 }  // namespace pcednet::io

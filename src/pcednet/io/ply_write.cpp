@@ -82,7 +82,6 @@ class PlyPartWriter : public PartWriter {
         foreign_(outline.first->foreign_elements),
         columns_(columns_of(*outline.first, ply_names())),
         file_(path, options.overwrite) {
-    losses = ply_losses(*outline.first);
     file_.write(header_of(*outline.first, outline.points, columns_, ascii_));
   }
 
@@ -123,10 +122,6 @@ std::unique_ptr<PartWriter> create_ply_parts(const std::filesystem::path& path,
                                              const PartOutline& outline,
                                              const WriteOptions& options) {
   return std::make_unique<PlyPartWriter>(path, outline, options);
-}
-
-std::vector<std::string> ply_losses(const PointCloud& cloud) {
-  return column_losses(cloud, ply_names());
 }
 
 }  // namespace pcednet::io

@@ -1,5 +1,7 @@
 #include "pcednet/io/text_scan.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -90,6 +92,14 @@ std::optional<double> parse_double(std::string_view token) {
   double value = 0.0;
   if (!parse_as(without_plus(token), value)) return std::nullopt;
   return value;
+}
+
+std::string number_fault(std::string_view token) {
+  double value = 0.0;
+  if (parse_all(without_plus(token), value) == std::errc::result_out_of_range) {
+    return fmt::format("{:.40} is beyond the largest double", token);
+  }
+  return fmt::format("expected a number, not {:.40}", token);
 }
 
 std::optional<std::uint64_t> parse_count(std::string_view token) {

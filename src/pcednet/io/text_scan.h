@@ -53,6 +53,9 @@ void split(std::string_view line, std::vector<std::string_view>& fields,
 /// The double nearest to what `token` spells; none if that is too large. "nan" and "inf" count.
 std::optional<double> parse_double(std::string_view token);
 
+/// Says why parse_double gives none.
+std::string number_fault(std::string_view token);
+
 /// A whole number without sign.
 std::optional<std::uint64_t> parse_count(std::string_view token);
 

@@ -50,9 +50,8 @@ void add_lost_elements(const PointCloud& cloud, Format format, std::vector<std::
 std::vector<std::string> format_losses(const std::filesystem::path& path, const PointCloud& cloud) {
   switch (format_of(path)) {
     case Format::kPly:
-      return ply_losses(cloud);
     case Format::kPcd:
-      return pcd_losses(cloud);
+      return {};  // they have a column for everything
     case Format::kObj:
       return obj_losses(cloud);
     case Format::kLas:

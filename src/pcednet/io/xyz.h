@@ -13,7 +13,8 @@
 
 namespace pcednet::io {
 
-/// Reads points from a text, one a line, numbers separated by blanks, tabs, semicolons or commas.
+/// Reads points from a text, one a line, numbers separated by blanks, tabs, semicolons or commas;
+/// or with decimal commas, if a line shows that they are: see commas_of().
 ///
 /// Lines that begin with # or // are comments; a line of names, commented or not, with x, y and z
 /// among them names the columns, which CloudBuilder then reads as of type double. Without names,

@@ -19,9 +19,7 @@ bool in_all_rows(const NumberTable& table, Predicate&& holds) {
 bool are_normals(const NumberTable& table, std::size_t first) {
   std::size_t unit = 0;
   for (std::size_t r = 0; r < table.rows(); ++r) {
-    const double* n = table.numbers.data() + r * table.columns + first;
-    const double length = std::hypot(n[0], n[1], n[2]);
-    if (length > 0.9 && length < 1.1) ++unit;
+    if (looks_like_normal(table.numbers.data() + r * table.columns + first)) ++unit;
   }
   return unit > 0 && 10 * unit >= 9 * table.rows();
 }
@@ -43,6 +41,11 @@ bool is_label(const NumberTable& table, std::size_t column) {
 }
 
 }  // namespace
+
+bool looks_like_normal(const double* n) {
+  const double length = std::hypot(n[0], n[1], n[2]);
+  return length > 0.9 && length < 1.1;
+}
 
 std::vector<std::string> guess_column_names(const NumberTable& table) {
   std::vector<std::string> names = {"x", "y", "z"};

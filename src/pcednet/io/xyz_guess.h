@@ -14,6 +14,9 @@ struct NumberTable {
   std::size_t rows() const { return columns == 0 ? 0 : numbers.size() / columns; }
 };
 
+/// Whether the vector at `n` is of about unit length.
+bool looks_like_normal(const double* n);
+
 /// Names for the columns of a table without names: x y z; then, from the left, three columns of
 /// unit vectors are normals and three of whole numbers in 0 ... 255 colours; a last one that holds
 /// only 0, 1, 2 and 255 is the label; any other column c (from 1) is scalar_c.

@@ -7,14 +7,14 @@
 #include "pcednet/io/cloud_builder.h"
 #include "pcednet/io/text_scan.h"
 #include "pcednet/io/xyz.h"
+#include "pcednet/io/xyz_commas.h"
 #include "pcednet/io/xyz_guess.h"
 
 namespace pcednet::io {
 namespace {
 
 constexpr Separators kAllSeparators{" \t\r\v\f,;"};
-// Beside semicolons a comma could only be a decimal one, which is then reported.
-constexpr Separators kSemicolonSeparators{" \t\r\v\f;"};
+constexpr Separators kBesideDecimalCommas{" \t\r\v\f;"};
 
 /// The names in a line of names; those of a .csv may hold blanks.
 std::vector<std::string> split_names(std::string_view line) {
@@ -55,12 +55,12 @@ class TableReader {
       line = trim(line);
       if (line.empty()) continue;
       number_ = lines.number();
-      if (line.starts_with('#') || line.starts_with("//")) {
+      if (is_comment(line)) {
         take_comment(trim(line.substr(std::min(line.find_first_not_of("#/"), line.size()))));
       } else if (table_.columns > 0) {
         take_row(line);
       } else {
-        take_first(line);
+        take_first(line, lines);
       }
     }
     if (promised_ && *promised_ != table_.rows()) {
@@ -83,11 +83,13 @@ class TableReader {
     }
   }
 
-  /// A line before the first point: a count, names, or the first point.
-  void take_first(std::string_view line) {
-    separators_ =
-        line.find(';') == std::string_view::npos ? &kAllSeparators : &kSemicolonSeparators;
-    split(line, words_, *separators_);
+  static bool is_comment(std::string_view line) {
+    return line.starts_with('#') || line.starts_with("//");
+  }
+
+  /// A line before the first point: a count, names, or the first point; `after`: the lines behind.
+  void take_first(std::string_view line, const Lines& after) {
+    split(line, words_, kAllSeparators);
     if (words_.size() == 1 && !promised_ && parse_count(words_[0])) {
       promised_ = parse_count(words_[0]);
       return;
@@ -98,6 +100,8 @@ class TableReader {
       if (names_positions(names_)) return;
       throw error("expected numbers, or names of columns with x, y and z among them");
     }
+    decide_on_commas(line, after);
+    split(line, words_, separators());
     if (words_.size() < 3) throw error("expected at least three numbers");
     if (!naming_comment_.empty() && names_.size() != words_.size()) {
       comments_.push_back(naming_comment_);  // prose that happens to hold x, y and z
@@ -110,15 +114,63 @@ class TableReader {
     take_row(line);
   }
 
+  /// The first line that leaves no doubt decides for the file.
+  void decide_on_commas(std::string_view line, Lines after) {
+    std::size_t number = number_, unclear = 0;
+    do {
+      line = trim(line);
+      const Commas found = is_comment(line) ? Commas::kNone : commas_of(line);
+      if (found == Commas::kUnclear && unclear == 0) unclear = number;
+      if (found == Commas::kDecimals || found == Commas::kSeparators) {
+        commas_ = found;
+        deciding_line_ = number;
+        return;
+      }
+    } while (after.next(line) && (number = after.number()) > 0);
+    if (unclear == 0) return;
+    number_ = unclear;
+    throw error(
+        "these commas may be decimal or stand between numbers: separate the numbers by semicolons, "
+        "or write decimal points");
+  }
+
+  const Separators& separators() const {
+    return commas_ == Commas::kDecimals ? kBesideDecimalCommas : kAllSeparators;
+  }
+
+  void check_commas(std::string_view line) const {
+    const bool in_doubt = commas_ == Commas::kDecimals
+                              ? line.find_first_of(",.") != std::string_view::npos
+                              : line.find_first_of(" \t;") != std::string_view::npos;
+    if (commas_ == Commas::kNone || !in_doubt) return;
+    const Commas here = commas_of(line);
+    if (commas_ == Commas::kDecimals &&
+        (here == Commas::kSeparators || line.find('.') != std::string_view::npos)) {
+      throw error(fmt::format("no decimal commas as in line {}", deciding_line_));
+    }
+    if (commas_ == Commas::kSeparators && here == Commas::kDecimals) {
+      throw error(
+          fmt::format("decimal commas, where those of line {} separate numbers", deciding_line_));
+    }
+  }
+
+  std::optional<double> number_of(std::string_view word) const {
+    if (commas_ != Commas::kDecimals) return parse_double(word);
+    std::string with_point(word);
+    std::replace(with_point.begin(), with_point.end(), ',', '.');
+    return parse_double(with_point);
+  }
+
   void take_row(std::string_view line) {
-    split(line, words_, *separators_);
+    check_commas(line);
+    split(line, words_, separators());
     if (words_.size() != table_.columns) {
       throw error(
           fmt::format("{} numbers where the lines before have {}", words_.size(), table_.columns));
     }
     for (const std::string_view word : words_) {
-      const auto number = parse_double(word);
-      if (!number) throw error(fmt::format("expected a number, not {:.40}", word));
+      const auto number = number_of(word);
+      if (!number) throw error(number_fault(word));
       table_.numbers.push_back(*number);
     }
   }
@@ -149,7 +201,8 @@ class TableReader {
   std::vector<std::string> comments_;
   std::vector<std::string_view> words_;
   std::optional<std::uint64_t> promised_;
-  const Separators* separators_ = &kAllSeparators;
+  Commas commas_ = Commas::kNone;  ///< those of all lines
+  std::size_t deciding_line_ = 0;
   NumberTable table_;
 };
 

@@ -6,9 +6,20 @@
 #include "pcednet/io/text_scan.h"
 #include "pcednet/io/write_blocks.h"
 #include "pcednet/io/xyz.h"
+#include "pcednet/io/xyz_guess.h"
 
 namespace pcednet::io {
 namespace {
+
+/// Whether the normals to write look like normals.
+bool normals_show(const PointCloud& part) {
+  const bool as_stored = normals_are_stored(part);
+  for (std::size_t i = 0; i < part.size(); ++i) {
+    const Vec3 normal = as_stored ? stored_normal(part, i) : part.normals[i];
+    if (!looks_like_normal(normal.data())) return false;
+  }
+  return true;
+}
 
 /// Whether the columns speak for themselves: see create_xyz_parts.
 bool is_plain(const std::string& extension, const PartOutline& outline) {
@@ -16,13 +27,10 @@ bool is_plain(const std::string& extension, const PartOutline& outline) {
   const bool more = !cloud.colours.empty() || cloud.has_labels() || !cloud.attributes.empty();
   if (extension == ".csv" || more || cloud.empty()) return false;
   if (!cloud.has_normals()) return true;
-  bool all_usable = extension == ".xyz";
-  const auto is_usable = [](const Vec3& normal) { return !normal.isZero(0.0); };
-  outline.each_part([&](const PointCloud& part) {
-    const auto& normals = part.normals;
-    return all_usable = all_usable && std::all_of(normals.begin(), normals.end(), is_usable);
-  });
-  return all_usable;
+  bool all_show = extension == ".xyz";
+  outline.each_part(
+      [&](const PointCloud& part) { return all_show = all_show && normals_show(part); });
+  return all_show;
 }
 
 std::string extension_of(const std::filesystem::path& path) {
@@ -49,7 +57,7 @@ std::string header_of(const std::string& extension, const PointCloud& cloud,
 
 std::vector<std::string> losses_of(const std::string& extension, const PointCloud& cloud,
                                    bool plain) {
-  std::vector<std::string> losses = column_losses(cloud, {});
+  std::vector<std::string> losses;
   if (!cloud.attributes.empty()) losses.emplace_back("number types of attributes");
   if (!cloud.comments.empty() && (extension == ".csv" || plain)) losses.emplace_back("comments");
   return losses;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "pcednet/cloud/bounding_box.h"
+
 namespace pcednet::normals {
 
 PreparedNormals estimate_oriented_normals(std::span<const Vec3> positions,
@@ -16,6 +18,7 @@ PreparedNormals complete_and_orient_normals(std::span<const Vec3> positions,
                                             const Progress* progress) {
   const auto is_missing = [](const Vec3& normal) { return normal.isZero(0.0); };
   check_size(positions, given);
+  check_extent(positions);
   const NeighbourGraph graph = make_estimation_graph(positions, options.neighbours, progress);
   PreparedNormals prepared;
   prepared.neighbours = graph.degree;
