@@ -152,6 +152,7 @@ TEST_F(OutputFileTest, RefusesBeforeTheWorkWhatCannotBeWrittenAfterIt) {
   EXPECT_EQ(kind("", Overwrite::kYes), ErrorKind::kUsage);  // the folder itself
   EXPECT_EQ(kind("none/new", Overwrite::kNo), ErrorKind::kFailure);
   EXPECT_EQ(kind("file/new", Overwrite::kYes), ErrorKind::kFailure);
+  EXPECT_EQ(kind(std::string(255, 'n'), Overwrite::kNo), ErrorKind::kFailure);  // and .part
   EXPECT_EQ(kind_of([] { check_writable("/dev/full", Overwrite::kYes); }), ErrorKind::kUsage);
   EXPECT_EQ(kind_of([] { OutputFile(""); }), ErrorKind::kUsage);
 }

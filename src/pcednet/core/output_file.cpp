@@ -12,7 +12,6 @@
 #include "pcednet/core/error.h"
 
 namespace pcednet {
-
 namespace {
 
 namespace fs = std::filesystem;
@@ -32,6 +31,11 @@ bool rename_without_replacing(const fs::path& from, const fs::path& to) {
   return true;
 }
 
+/// Where the bytes of `path` go until they are complete.
+std::string part_name(const fs::path& path) {
+  return fmt::format("{}.part-{}", path.string(), getpid());
+}
+
 /// Throws unless a file can be created beside `path`.
 void check_folder_of(const fs::path& path) {
   const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
@@ -49,6 +53,8 @@ void check_folder_of(const fs::path& path) {
   if (access(folder.c_str(), W_OK | X_OK) != 0) {
     refuse(fmt::format("folder {}: {}", folder.string(), std::strerror(errno)));
   }
+  fs::symlink_status(part_name(path), error);
+  if (error == std::errc::filename_too_long) refuse(error.message());
 }
 
 }  // namespace
@@ -85,7 +91,7 @@ OutputFile::OutputFile(fs::path path, Overwrite overwrite)
     : path_(std::move(path)), overwrite_(overwrite) {
   if (path_.empty()) throw Error(ErrorKind::kUsage, "the name of a file to write is empty");
   check_writable(path_, overwrite);
-  const std::string name = fmt::format("{}.part-{}", path_.string(), getpid());
+  const std::string name = part_name(path_);
   temporary_ = name;
   // Another machine may share the folder, and another thread the process.
   for (int i = 1; !(file_ = std::fopen(temporary_.c_str(), "wbxe")) && errno == EEXIST; ++i) {
