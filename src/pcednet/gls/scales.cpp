@@ -79,10 +79,11 @@ ScaleRange scale_range(std::span<const Vec3> positions, const ScaleRange& given,
   const bool both_given = given.s_min > 0.0 && given.s_max > 0.0;
   const double diagonal = bounding_box(positions).diagonal();
   if (!both_given && !(diagonal > kShortest && diagonal < kLongest)) {
-    throw Error(ErrorKind::kInsufficient,
-                fmt::format("no scales for {} points with a bounding box of diagonal {}: finite "
-                            "points at two places or more are needed",
-                            positions.size(), diagonal));
+    throw Error(
+        ErrorKind::kInsufficient,
+        fmt::format("no scales: the bounding box of the points has a diagonal of {}; finite "
+                    "points at two places or more are needed",
+                    diagonal));
   }
   ScaleRange range = given;
   if (range.s_min == 0.0) range.s_min = spacing();
