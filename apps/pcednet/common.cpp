@@ -79,7 +79,7 @@ void add_scale_range_options(CLI::App& command, gls::ScaleSpaceOptions& options)
       .add_option(
           "--s-max", options.s_max,
           "Largest scale, in the unit of the cloud (0: 10 % of the diagonal of its bounding "
-          "box, or twice the smallest scale where that is above it)")
+          "box, twice the smallest scale for sparse clouds)")
       ->capture_default_str();
 }
 

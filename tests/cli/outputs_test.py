@@ -42,8 +42,8 @@ class Outputs(CliTest):
         self.assertEqual(sorted(os.listdir(self.folder)), ["a.ply", "out.ply"])
         self.assertEqual(len(read_ply(out)[0]), 600_000)
 
-    def stop(self, number, expect, preexec_fn=None, times=1):
-        """Sends a signal to a conversion in its midst."""
+    def stop(self, *signals, expect=130, preexec_fn=None):
+        """Sends signals to a conversion in its midst; returns the names of the files then."""
         write_ply(self.cloud, *cube(4_000_000)[:2])
         running = self.start("convert", self.cloud, "-o", self.folder / "out.ply",
                              preexec_fn=preexec_fn)
@@ -51,20 +51,21 @@ class Outputs(CliTest):
             if '"convert"' in line:
                 break
         self.assertTrue(any(".part" in name for name in os.listdir(self.folder)))
-        for _ in range(times):
+        for number in signals:
             running.send_signal(number)
         self.end(running, expect)
         return sorted(os.listdir(self.folder))
 
     def test_a_terminal_that_closes_leaves_no_part_of_a_file(self):
-        self.assertEqual(self.stop(signal.SIGHUP, 130), ["a.ply"])
+        self.assertEqual(self.stop(signal.SIGHUP), ["a.ply"])
 
-    def test_signals_that_come_twice_leave_no_part_of_a_file(self):
-        self.assertEqual(self.stop(signal.SIGTERM, 130, times=2), ["a.ply"])
+    def test_two_signals_at_once_leave_no_part_of_a_file(self):
+        self.assertEqual(self.stop(signal.SIGHUP, signal.SIGTERM), ["a.ply"])
 
     def test_nohup_goes_on_when_the_terminal_closes(self):
         ignore = lambda: signal.signal(signal.SIGHUP, signal.SIG_IGN)
-        self.assertEqual(self.stop(signal.SIGHUP, 0, preexec_fn=ignore), ["a.ply", "out.ply"])
+        self.assertEqual(self.stop(signal.SIGHUP, expect=0, preexec_fn=ignore),
+                         ["a.ply", "out.ply"])
 
     def test_a_missing_folder_is_found_before_the_work(self):
         # The inputs cannot be read: who reads them first fails with 3.
