@@ -3,36 +3,23 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <array>
-#include <cctype>
 #include <csignal>
 #include <cstdio>
 #include <memory>
 #include <sstream>
-
-#include "pcednet/core/error.h"
 
 namespace pcednet::app {
 namespace {
 
 volatile std::sig_atomic_t interrupted = 0;
 
-void on_interrupt(int signal) {
-  if (interrupted) std::_Exit(128 + signal);
+void on_signal(int signal) {
+  // The others come twice by themselves: from a terminal that closes and its shell, from timeout.
+  if (interrupted && signal == SIGINT) std::_Exit(128 + signal);
   interrupted = 1;
 }
 
 bool progress_line_open = false;
-
-bool is_point_file(const std::filesystem::path& path) {
-  static constexpr std::array kExtensions = {".ply", ".obj", ".xyz", ".txt", ".csv", ".asc",
-                                             ".pts", ".pcd", ".las", ".laz", ".e57"};
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return std::find(kExtensions.begin(), kExtensions.end(), extension) != kExtensions.end();
-}
 
 void report_on_terminal(const std::string& stage, double fraction) {
   constexpr int kWidth = 30;
@@ -48,9 +35,12 @@ void report_on_terminal(const std::string& stage, double fraction) {
 
 void install_signal_handlers() {
   struct sigaction action = {};
-  action.sa_handler = on_interrupt;
+  action.sa_handler = on_signal;
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
+  struct sigaction inherited = {};
+  sigaction(SIGHUP, nullptr, &inherited);
+  if (inherited.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, nullptr);  // ignored under nohup
   action.sa_handler = SIG_IGN;
   sigaction(SIGXFSZ, &action, nullptr);
   sigaction(SIGPIPE, &action, nullptr);
@@ -78,6 +68,19 @@ CLI::App* add_command(CLI::App& app, Common& common, const std::string& name,
       ->check(CLI::IsMember({"auto", "plain", "json", "none"}));
   command->add_flag("--overwrite", common.overwrite_files, "Replace output files that exist");
   return command;
+}
+
+void add_scale_range_options(CLI::App& command, gls::ScaleSpaceOptions& options) {
+  command
+      .add_option("--s-min", options.s_min,
+                  "Smallest scale, in the unit of the cloud (0: its mean point spacing)")
+      ->capture_default_str();
+  command
+      .add_option(
+          "--s-max", options.s_max,
+          "Largest scale, in the unit of the cloud (0: 10 % of the diagonal of its bounding "
+          "box, twice the smallest scale for sparse clouds)")
+      ->capture_default_str();
 }
 
 Progress console_progress(const Common& common) {
@@ -109,43 +112,6 @@ void say(const std::string& line) {
 
 void warn(const std::string& line) {
   say("pcednet: warning: " + line);
-}
-
-std::vector<std::filesystem::path> expand_inputs(const std::vector<std::string>& arguments) {
-  namespace fs = std::filesystem;
-  std::vector<fs::path> inputs;
-  for (const std::string& argument : arguments) {
-    std::error_code error;
-    if (!fs::is_directory(argument, error)) {
-      if (!fs::exists(argument, error)) {
-        throw Error(ErrorKind::kUnreadable, fmt::format("{}: no such file", argument));
-      }
-      inputs.emplace_back(argument);
-      continue;
-    }
-    std::vector<fs::path> found;
-    for (const fs::directory_entry& entry : fs::directory_iterator(argument)) {
-      if (entry.is_regular_file() && is_point_file(entry.path())) found.push_back(entry.path());
-    }
-    if (found.empty()) {
-      throw Error(ErrorKind::kInsufficient, fmt::format("{}: no point files in it", argument));
-    }
-    std::sort(found.begin(), found.end());
-    inputs.insert(inputs.end(), found.begin(), found.end());
-  }
-  return inputs;
-}
-
-void with_name_in_errors(const std::filesystem::path& file, const std::function<void()>& work) {
-  try {
-    work();
-  } catch (const Error& error) {
-    const std::string message = error.what();
-    if (error.kind() == ErrorKind::kCancelled || message.find(file.string()) != std::string::npos) {
-      throw;
-    }
-    throw Error(error.kind(), fmt::format("{}: {}", file.string(), message));
-  }
 }
 
 }  // namespace pcednet::app

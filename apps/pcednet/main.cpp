@@ -2,6 +2,7 @@
 
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <memory>
 #include <new>
 
@@ -40,6 +41,9 @@ int run(int argc, char** argv) {
   add_report(app, common);
   add_annotate(app, common);
   try {
+    for (int i = 1; i < argc; ++i) {
+      if (*argv[i] == '\0') throw CLI::ValidationError("an argument is empty");
+    }
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     const bool asked_for_help = error.get_exit_code() == 0;
@@ -60,6 +64,9 @@ int main(int argc, char** argv) {
     return static_cast<int>(error.kind());
   } catch (const std::bad_alloc&) {
     pcednet::app::say("pcednet: not enough memory");
+  } catch (const std::filesystem::filesystem_error& error) {
+    pcednet::app::say(
+        fmt::format("pcednet: {}: {}", error.path1().string(), error.code().message()));
   } catch (const std::exception& error) {
     pcednet::app::say(fmt::format("pcednet: {}", error.what()));
   }

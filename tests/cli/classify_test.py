@@ -92,6 +92,77 @@ class Classify(CliTest):
         self.assertIn("a.ply", done.stderr)
         self.assertEqual(os.listdir(self.folder / "out"), ["b_edges.ply"])
 
+    def test_goes_on_after_a_missing_file_and_an_empty_folder(self):
+        write_ply(self.folder / "b.ply", *cube(400)[:2])
+        (self.folder / "empty").mkdir()
+        missing = self.folder / "missing.ply"
+        done = run("classify", missing, self.folder / "b.ply", self.folder / "empty", expect=3)
+        self.assertIn(f"{missing}: no such file", done.stderr)
+        self.assertIn("1 classified, 0 skipped because their results exist, 2 failed", done.stderr)
+        self.assertIn(f"2 of 3 inputs failed, for the reasons above:\n  {missing}\n"
+                      f"  {self.folder / 'empty'}\n", done.stderr)
+        self.assertTrue((self.folder / "b_edges.ply").exists())
+        run("classify", self.folder / "empty", missing, expect=4)  # the first failure's kind
+
+    def test_skips_inputs_whose_result_is_there(self):
+        for name in ("a.ply", "b.ply"):
+            write_ply(self.folder / name, *cube(400)[:2])
+        (self.folder / "a_edges.ply").write_text("precious")
+        done = run("classify", self.folder, "--skip-existing")
+        self.assertIn("1 classified, 1 skipped because their results exist, 0 failed", done.stderr)
+        self.assertEqual((self.folder / "a_edges.ply").read_text(), "precious")
+        again = run("classify", self.folder, "--skip-existing")
+        self.assertIn("0 classified, 2 skipped", again.stderr)
+        self.assertEqual(sorted(os.listdir(self.folder)),  # no results of results
+                         ["a.ply", "a_edges.ply", "b.ply", "b_edges.ply"])
+        run("classify", self.folder, "--skip-existing", "--overwrite", expect=2)
+
+    def test_names_every_existing_result_before_any_work(self):
+        for name in ("a.ply", "b.ply", "c.ply"):
+            write_ply(self.folder / name, *cube(400)[:2])
+        for name in ("b_edges.ply", "c_edges.ply"):
+            (self.folder / name).write_text("precious")
+        done = run("classify", self.folder, expect=2)
+        for name in ("b_edges.ply", "c_edges.ply"):
+            self.assertIn(f"{self.folder / name}: exists already", done.stderr)
+        self.assertIn("--skip-existing", done.stderr)
+        self.assertFalse((self.folder / "a_edges.ply").exists())
+
+    def test_classifies_sparse_clouds_and_says_with_which_scales(self):
+        p, n, _ = cube(100)
+        write_ply(self.folder / "a.ply", p, n)
+        for engine in ((), ("--exact",)):
+            done = run("classify", self.folder / "a.ply", "--overwrite", *engine)
+            self.assertIn("warning", done.stderr)
+            self.assertIn("too few points for scales up to", done.stderr)
+        rows, _ = read_ply(self.folder / "a_edges.ply")
+        self.assertTrue(np.all(rows["label"] <= 2))
+
+    def test_takes_the_scales_that_are_given(self):
+        p, n, _ = cube(3000)
+        spacing = np.mean([np.sort(np.linalg.norm(p - q, axis=1))[1:11].mean() for q in p])
+        diagonal = np.linalg.norm(p.max(0) - p.min(0))
+        own = self.classify(p, n, position_type="double")
+        same = self.classify(p, n, position_type="double",
+                             extra=("--s-min", repr(spacing), "--s-max", repr(0.1 * diagonal)))
+        other = self.classify(p, n, position_type="double", extra=("--s-max", 0.5))
+        np.testing.assert_allclose(own["scalar_p_sharp"], same["scalar_p_sharp"], atol=1e-4)
+        self.assertGreater(np.max(np.abs(own["scalar_p_sharp"] - other["scalar_p_sharp"])), 0.1)
+        write_ply(self.folder / "b.ply", p, n)
+        for wrong in (("--s-min", 0.5, "--s-max", 0.1), ("--s-max", -1), ("--s-min", "nan"),
+                      ("--s-max", 1e-5), ("--method", "ca", "--s-max", 0.1)):
+            run("classify", self.folder / "b.ply", *wrong, expect=2)
+
+    def test_gives_ten_copies_of_every_point_the_labels_of_one(self):
+        p, n, _ = cube(2000)
+        extra = ("--no-context", "--exact")  # the context asks the nearest points: all copies
+        one = self.classify(p, n, position_type="double", extra=extra)
+        many = self.classify(np.repeat(p, 12, 0), np.repeat(n, 12, 0), position_type="double",
+                             extra=extra)
+        # Not so where a single copy has too few neighbours for a fit.
+        off = np.abs(np.repeat(one["scalar_p_sharp"], 12) - many["scalar_p_sharp"]) > 1e-3
+        self.assertLess(np.mean(off), 0.01)
+
     def test_never_overwrites_unasked(self):
         write_ply(self.folder / "a.ply", *cube(400)[:2])
         (self.folder / "a_edges.ply").write_text("precious")

@@ -48,6 +48,20 @@ class Evaluate(CliTest):
         report = json.loads((self.folder / "scores.json").read_text())
         self.assertGreater(report["median"]["mcc"], 0.7)
 
+    def test_cleans_up_after_any_method_and_refuses_what_has_no_meaning(self):
+        write_ply(self.folder / "a.ply", *cube(3000, noise=0.01))
+        scores = [json.loads(run("evaluate", self.folder / "a.ply", "--method", "ca", "--json", "-",
+                                 *extra).stdout)["clouds"] for extra in ((), ("--clean-up",))]
+        self.assertNotEqual(*scores)
+        for extra in (("--clean-up",), ("--exact",), ("--s-max", "1")):
+            run("evaluate", self.folder / "a.ply", "--predictions", self.folder, *extra, expect=2)
+
+    def test_takes_the_scales_that_are_given(self):
+        write_ply(self.folder / "a.ply", *cube(3000))
+        scores = [json.loads(run("evaluate", self.folder / "a.ply", "--model", "scan", "--json", "-",
+                                 *extra).stdout)["clouds"] for extra in ((), ("--s-max", "0.5"))]
+        self.assertNotEqual(*scores)
+
     def test_refuses_predictions_for_another_cloud(self):
         write_ply(self.folder / "a.ply", *cube(300))
         (self.folder / "p").mkdir()

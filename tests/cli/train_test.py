@@ -47,6 +47,15 @@ class Train(CliTest):
         other = self.train("six.safetensors", "--epochs", 3, "--seed", 6).read_bytes()
         self.assertNotEqual(other.replace(b'"six"', b'"two"'), two)
 
+    def test_takes_the_scales_that_are_given_and_does_not_store_them(self):
+        own, own_arrays = tensors(self.train("own.safetensors", "--epochs", 1))
+        given, arrays = tensors(self.train("one.safetensors", "--epochs", 1, "--s-max", 0.5))
+        self.assertEqual(own.keys(), given.keys())
+        self.assertTrue(any(np.any(arrays[name] != own_arrays[name]) for name in arrays))
+        (self.folder / "p.json").write_text("{}")
+        run("train", "--project", self.folder / "p.json", "-o", self.folder / "p.safetensors",
+            "--s-max", 0.5, expect=2)
+
     def test_says_in_the_file_what_the_model_is(self):
         metadata, arrays = tensors(self.train("m.safetensors", "--epochs", 2, "--classes", 2))
         self.assertEqual(metadata["classes"], "0 2")

@@ -1,31 +1,179 @@
 #include "pcednet/core/output_file.h"
 
 #include <gtest/gtest.h>
+#include <linux/filter.h>
+#include <linux/seccomp.h>
+#include <sys/prctl.h>
+#include <sys/stat.h>
+#include <sys/syscall.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <fstream>
+#include <functional>
 #include <iterator>
+#include <set>
+
+#include "pcednet/core/error.h"
 
 namespace pcednet {
 namespace {
 
-TEST(OutputFile, WritesBackIntoWhatItWroteBefore) {
-  const auto path =
-      std::filesystem::temp_directory_path() / ("pcednet-output-file-" + std::to_string(getpid()));
+namespace fs = std::filesystem;
+
+class OutputFileTest : public testing::Test {
+ protected:
+  OutputFileTest() { fs::create_directories(folder_); }
+  ~OutputFileTest() override { fs::remove_all(folder_); }
+
+  fs::path path(const std::string& name) const { return folder_ / name; }
+
+  std::string content(const std::string& name) const {
+    std::ifstream file(path(name), std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
+
+  std::set<std::string> names() const {
+    std::set<std::string> names;
+    for (const auto& entry : fs::directory_iterator(folder_)) names.insert(entry.path().filename());
+    return names;
+  }
+
+  fs::path folder_ =
+      fs::temp_directory_path() / ("pcednet-output-file-" + std::to_string(getpid()));
+};
+
+ErrorKind kind_of(const std::function<void()>& work) {
+  try {
+    work();
+  } catch (const Error& error) {
+    return error.kind();
+  }
+  return ErrorKind(0);
+}
+
+/// The exit status of a process of its own that does `work`.
+int in_process(const std::function<void()>& work) {
+  const pid_t child = fork();
+  if (child == 0) _exit(static_cast<int>(kind_of(work)));
+  int status = -1;
+  waitpid(child, &status, 0);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+/// As on a file system that knows no rename without replacing: the kernel answers EINVAL.
+void refuse_renameat2() {
+  sock_filter rules[] = {
+      BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, nr)),
+      BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, SYS_renameat2, 0, 1),
+      BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ERRNO | EINVAL),
+      BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ALLOW),
+  };
+  const sock_fprog program = {std::size(rules), rules};
+  if (prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0 ||
+      prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &program) != 0) {
+    _exit(77);
+  }
+}
+
+TEST_F(OutputFileTest, WritesBackIntoWhatItWroteBefore) {
   for (const std::size_t size : {100, 5000, 3000000}) {
     const std::string mark = "mark";
     std::string wanted(size, 'a');
-    OutputFile out(path, Overwrite::kYes);
+    OutputFile out(path("a"), Overwrite::kYes);
     out.write(wanted);
     out.write_at(50, std::as_bytes(std::span(mark)));
     out.write("the end");
     out.commit();
     wanted.replace(50, mark.size(), mark);
-    std::ifstream file(path, std::ios::binary);
-    const std::string got{std::istreambuf_iterator<char>(file), {}};
-    EXPECT_TRUE(got == wanted + "the end") << size << " bytes";
+    EXPECT_TRUE(content("a") == wanted + "the end") << size << " bytes";
   }
-  std::filesystem::remove(path);
+}
+
+TEST_F(OutputFileTest, LeavesNothingWithoutACommit) {
+  { OutputFile(path("a")).write("half"); }
+  EXPECT_EQ(names(), std::set<std::string>());
+}
+
+TEST_F(OutputFileTest, NeverReplacesAFileThatAppearedWhileItWasWritten) {
+  OutputFile first(path("a")), second(path("a"));
+  first.write("first");
+  second.write("second");
+  first.commit();
+  EXPECT_EQ(kind_of([&] { second.commit(); }), ErrorKind::kUsage);
+  EXPECT_EQ(content("a"), "first");
+}
+
+TEST_F(OutputFileTest, LeavesNoPartWhereTheNameWasTakenMeanwhile) {
+  {
+    OutputFile out(path("a"));
+    std::ofstream(path("a")) << "precious";
+    EXPECT_EQ(kind_of([&] { out.commit(); }), ErrorKind::kUsage);
+  }
+  EXPECT_EQ(names(), std::set<std::string>{"a"});
+  EXPECT_EQ(content("a"), "precious");
+}
+
+TEST_F(OutputFileTest, NeverReplacesWhereTheFileSystemHasNoSuchRename) {
+  EXPECT_EQ(in_process([&] {
+              refuse_renameat2();
+              OutputFile first(path("a")), second(path("a"));
+              first.write("first");
+              first.commit();
+              if (kind_of([&] { second.commit(); }) != ErrorKind::kUsage) _exit(99);
+            }),
+            0);
+  EXPECT_EQ(content("a"), "first");
+  EXPECT_EQ(fs::hard_link_count(path("a")), 1u);
+  EXPECT_EQ(names(), std::set<std::string>{"a"});
+}
+
+TEST_F(OutputFileTest, ReplacesAFileThatAppearedWhereItMay) {
+  OutputFile out(path("a"), Overwrite::kYes);
+  out.write("new");
+  std::ofstream(path("a")) << "old";
+  out.commit();
+  EXPECT_EQ(content("a"), "new");
+}
+
+TEST_F(OutputFileTest, RefusesBeforeTheWorkWhatCannotBeWrittenAfterIt) {
+  std::ofstream(path("file")) << "x";
+  fs::create_symlink("nothing", path("link"));
+  ASSERT_EQ(mkfifo(path("pipe").c_str(), 0600), 0);
+  const auto kind = [&](const std::string& name, Overwrite overwrite) {
+    return kind_of([&] { check_writable(path(name), overwrite); });
+  };
+  EXPECT_EQ(kind("new", Overwrite::kNo), ErrorKind(0));
+  EXPECT_EQ(kind("file", Overwrite::kYes), ErrorKind(0));
+  EXPECT_EQ(kind("file", Overwrite::kNo), ErrorKind::kUsage);
+  EXPECT_EQ(kind("link", Overwrite::kNo), ErrorKind::kUsage);
+  EXPECT_EQ(kind("pipe", Overwrite::kYes), ErrorKind::kUsage);
+  EXPECT_EQ(kind("", Overwrite::kYes), ErrorKind::kUsage);  // the folder itself
+  EXPECT_EQ(kind("none/new", Overwrite::kNo), ErrorKind::kFailure);
+  EXPECT_EQ(kind("file/new", Overwrite::kYes), ErrorKind::kFailure);
+  EXPECT_EQ(kind(std::string(255, 'n'), Overwrite::kNo), ErrorKind::kFailure);  // and .part
+  EXPECT_EQ(kind_of([] { check_writable("/dev/full", Overwrite::kYes); }), ErrorKind::kUsage);
+  EXPECT_EQ(kind_of([] { OutputFile(""); }), ErrorKind::kUsage);
+}
+
+TEST_F(OutputFileTest, RefusesAFolderThatOthersOwn) {
+  fs::permissions(folder_, fs::perms::owner_read | fs::perms::owner_exec);
+  EXPECT_EQ(in_process([&] {
+              if (getuid() == 0 && setuid(65534) != 0) _exit(77);  // root writes everywhere
+              check_writable(path("new"), Overwrite::kNo);
+            }),
+            static_cast<int>(ErrorKind::kFailure));
+  fs::permissions(folder_, fs::perms::owner_all);
+}
+
+TEST_F(OutputFileTest, MakesFoldersAndRefusesFilesInTheirPlace) {
+  make_folder(path("a/b/c"));
+  make_folder(path("a/b/c/"));
+  EXPECT_TRUE(fs::is_directory(path("a/b/c")));
+  std::ofstream(path("file")) << "x";
+  EXPECT_EQ(kind_of([&] { make_folder(path("file")); }), ErrorKind::kUsage);
+  EXPECT_EQ(kind_of([&] { make_folder(path("file/b")); }), ErrorKind::kFailure);
 }
 
 }  // namespace

@@ -7,6 +7,8 @@
 
 #include "gls/test_clouds.h"
 #include "pcednet/core/error.h"
+#include "pcednet/gls/fast_scale_space.h"
+#include "pcednet/gls/scale_space.h"
 
 namespace pcednet::gls {
 namespace {
@@ -57,15 +59,72 @@ TEST(Scales, RefuseCountsThatAreNotPowersOfTwo) {
   EXPECT_THROW(sample_scales({0.0, 1.0}, 16), Error);
 }
 
-TEST(Scales, RefuseCloudsWithoutARange) {
+TEST(Scales, RefuseCloudsInOnePlace) {
   const Vec3 p(1, 2, 3);
   EXPECT_EQ(kind_of_error({}), ErrorKind::kInsufficient);
   EXPECT_EQ(kind_of_error({p}), ErrorKind::kInsufficient);
   EXPECT_EQ(kind_of_error(std::vector<Vec3>(50, p)), ErrorKind::kInsufficient);
-  EXPECT_EQ(kind_of_error({p, 2 * p}), ErrorKind::kInsufficient);  // spacing > 10 % of the diagonal
-  std::vector<Vec3> copies(20, p);
-  copies.insert(copies.end(), 20, 2 * p);
-  EXPECT_EQ(kind_of_error(copies), ErrorKind::kInsufficient);
+  EXPECT_EQ(kind_of_error({p}, {0.1, 0.0}), ErrorKind::kInsufficient);
+}
+
+TEST(Scales, ReachTwiceTheSpacingOfSparseClouds) {
+  const std::vector<Vec3> two = {Vec3(1, 2, 3), Vec3(1, 2, 5)};
+  const auto range = scale_range(two, spatial::KdTree(two), {});
+  EXPECT_EQ(range.s_min, 2.0);
+  EXPECT_EQ(range.s_max, 4.0);
+  const auto cloud = test::cube(1000, 1);
+  const auto given = scale_range(cloud.positions, spatial::KdTree(cloud.positions), {0.5, 0.0});
+  EXPECT_EQ(given.s_min, 0.5);
+  EXPECT_EQ(given.s_max, 1.0);
+}
+
+TEST(Scales, AreThePapersWhereverItHasSome) {
+  // At the border between the two rules: the paper's s_max just above and just below s_min.
+  const auto cloud = test::cube(1000, 1);
+  const spatial::KdTree tree(cloud.positions);
+  const double s_min = scale_range(cloud.positions, tree, {}).s_min;
+  const double diagonal = scale_range(cloud.positions, tree, {0.0, 0.0, 1.0}).s_max;
+  const double border = s_min / diagonal;
+  EXPECT_NEAR(scale_range(cloud.positions, tree, {0.0, 0.0, 1.01 * border}).s_max, 1.01 * s_min,
+              1e-12);
+  EXPECT_EQ(scale_range(cloud.positions, tree, {0.0, 0.0, 0.99 * border}).s_max, 2.0 * s_min);
+}
+
+TEST(Scales, OfPointsWithManyCopiesAreThoseOfOneEach) {
+  const auto cloud = test::cube(1000, 1);
+  std::vector<Vec3> copies;
+  for (int copy = 0; copy < 11; ++copy) {
+    copies.insert(copies.end(), cloud.positions.begin(), cloud.positions.end());
+  }
+  const auto one = scale_range(cloud.positions, spatial::KdTree(cloud.positions), {});
+  const auto many = scale_range(copies, spatial::KdTree(copies), {});
+  EXPECT_NEAR(many.s_min / one.s_min, 1.0, 1e-13);
+  EXPECT_EQ(many.s_max, one.s_max);
+}
+
+TEST(Scales, AreTheSameFromBothEngines) {
+  const auto sparse = test::cube(60, 2);
+  test::Cloud copies;
+  for (int copy = 0; copy < 12; ++copy) {
+    for (std::size_t i = 0; i < sparse.positions.size(); ++i) {
+      copies.positions.push_back(sparse.positions[i]);
+      copies.normals.push_back(sparse.normals[i]);
+    }
+  }
+  for (const auto& cloud : {sparse, copies}) {
+    const OrientedPoints points{cloud.positions, cloud.normals};
+    const ExactScaleSpace exact(points, {});
+    const FastScaleSpace fast(points, {});
+    EXPECT_NEAR(exact.scales().back() / exact.scales().front(), 2.0, 1e-12);
+    for (std::size_t s = 0; s < exact.scales().size(); ++s) {
+      EXPECT_NEAR(fast.scales()[s] / exact.scales()[s], 1.0, 1e-6);
+    }
+    EXPECT_NE(note_on({}, fast.scales(), cloud.positions), "");
+    EXPECT_EQ(note_on({.s_max = 1.0}, fast.scales(), cloud.positions), "");
+  }
+  const auto dense = test::cube(2000, 2);
+  const FastScaleSpace fast({dense.positions, dense.normals}, {});
+  EXPECT_EQ(note_on({}, fast.scales(), dense.positions), "");
 }
 
 TEST(Scales, KeepGivenBoundsAndRefuseImpossibleOnes) {
@@ -80,7 +139,7 @@ TEST(Scales, KeepGivenBoundsAndRefuseImpossibleOnes) {
                                 ScaleRange{0, 1 / 0.0}, ScaleRange{0.5, 0.5}, ScaleRange{2, 1}}) {
     EXPECT_EQ(kind_of_error(cloud.positions, bad), ErrorKind::kUsage);
   }
-  EXPECT_EQ(kind_of_error(cloud.positions, {0.5, 0}), ErrorKind::kInsufficient);
+  EXPECT_EQ(kind_of_error(cloud.positions, {0, 1e-5}), ErrorKind::kUsage);
 }
 
 }  // namespace

@@ -203,7 +203,9 @@ TEST_F(StudyRun, DoesNotScoreCloudsThatWereLearntFrom) {
 
 TEST_F(StudyRun, LeavesOutCloudsThatCannotBeDescribed) {
   CloudSet set{.name = "few", .clouds = {data_.tests[0]->clouds[0]}};
-  set.clouds.push_back(make_study_cloud("tiny", "", cube(12, 3)));
+  PointCloud one_place = cube(12, 3);
+  std::fill(one_place.positions.begin(), one_place.positions.end(), Vec3(1, 2, 3));
+  set.clouds.push_back(make_study_cloud("tiny", "", one_place));
   data_.tests = {std::make_shared<const CloudSet>(std::move(set))};
   for (int time = 0; time < 2; ++time) {  // the second time from the cache
     const Study study = run("density", "cache");

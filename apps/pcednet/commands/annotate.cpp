@@ -52,9 +52,14 @@ void open_browser(const std::string& url) {
 annotate::SessionOptions session_options(const AnnotateArguments& arguments, const Common& common,
                                          annotate::Events& events) {
   const fs::path input = fs::absolute(arguments.input);
-  if (!fs::is_regular_file(input)) {
-    throw Error(ErrorKind::kUnreadable, arguments.input + ": no such file");
+  std::error_code ignored;
+  if (!fs::is_regular_file(input, ignored)) {
+    throw Error(ErrorKind::kUnreadable,
+                fmt::format("{}: {}", arguments.input,
+                            fs::is_directory(input, ignored) ? "is a folder; give one point file"
+                                                             : "no such file"));
   }
+  check_writable(arguments.project, Overwrite::kYes);
   annotate::SessionOptions options;
   options.input = input;
   if (!arguments.project.empty()) options.project = fs::absolute(arguments.project);

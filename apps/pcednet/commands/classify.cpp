@@ -4,6 +4,7 @@
 #include <memory>
 #include <set>
 
+#include "batch.h"
 #include "commands.h"
 #include "methods.h"
 #include "models.h"
@@ -25,11 +26,19 @@ struct Arguments {
   std::vector<std::string> inputs;
   std::string output, output_folder, model = "scan", preview, las_classification;
   MethodArguments method;
-  bool exact = false, no_context = false, clean_up = false, class_colours = false, ascii = false;
+  gls::ScaleSpaceOptions scales;  ///< its s_min and s_max
+  bool exact = false, no_context = false, clean_up = false, class_colours = false, ascii = false,
+       skip_existing = false;
 };
 
 struct Job {
   fs::path input, output, preview;
+};
+
+/// What to read and write, and how many inputs have their result already.
+struct Plan {
+  std::vector<Job> jobs;
+  std::size_t skipped = 0;
 };
 
 fs::path preview_path(const Arguments& arguments, const fs::path& input, bool several) {
@@ -48,30 +57,76 @@ std::string output_name(const fs::path& input) {
   return input.stem().string() + (is_las ? "_edges.las" : "_edges.ply");
 }
 
-/// What to read and write; refuses before any work what could not be written after it.
-std::vector<Job> plan(const Arguments& arguments, const Common& common) {
-  const auto inputs = expand_inputs(arguments.inputs);
-  if (!arguments.output.empty() && (inputs.size() > 1 || !arguments.output_folder.empty())) {
-    throw Error(ErrorKind::kUsage, "classify: -o is for one input; use --out-dir for several");
-  }
+std::vector<Job> jobs_for(const std::vector<fs::path>& inputs, const Arguments& arguments) {
   std::vector<Job> jobs;
-  std::set<fs::path> taken;
   for (const fs::path& input : inputs) {
     const fs::path folder =
         arguments.output_folder.empty() ? input.parent_path() : fs::path(arguments.output_folder);
     const fs::path output =
         arguments.output.empty() ? folder / output_name(input) : fs::path(arguments.output);
-    if (!taken.insert(output).second) {
-      throw Error(ErrorKind::kUsage,
-                  fmt::format("{}: two inputs would be written here", output.string()));
-    }
     jobs.push_back({input, output, preview_path(arguments, input, inputs.size() > 1)});
-    for (const fs::path& file : {jobs.back().output, jobs.back().preview}) {
-      check_writable(file, common.overwrite());
+  }
+  return jobs;
+}
+
+bool is_there(const fs::path& file) {
+  std::error_code ignored;
+  return !file.empty() && fs::exists(fs::symlink_status(file, ignored));
+}
+
+/// Refuses if one of several results exists, and says which.
+void refuse_existing(const std::vector<Job>& jobs) {
+  std::size_t existing = 0;
+  for (const Job& job : jobs) {
+    for (const fs::path& file : {job.output, job.preview}) {
+      if (!is_there(file)) continue;
+      say(fmt::format("pcednet: {}: exists already", file.string()));
+      ++existing;
     }
   }
-  if (!arguments.output_folder.empty()) fs::create_directories(arguments.output_folder);
-  return jobs;
+  if (existing == 0) return;
+  throw Error(ErrorKind::kUsage,
+              fmt::format("{} of the results exist already: give --skip-existing to leave them or "
+                          "--overwrite to replace them; nothing is done",
+                          existing));
+}
+
+/// Refuses before any work what could not be written after it.
+void check_outputs(const std::vector<Job>& jobs, const Common& common) {
+  if (jobs.size() > 1 && !common.overwrite_files) refuse_existing(jobs);
+  std::set<fs::path> taken;
+  for (const Job& job : jobs) {
+    for (const fs::path& file : {job.output, job.preview}) {
+      check_writable(file, common.overwrite());
+      if (file.empty() || taken.insert(file.lexically_normal()).second) continue;
+      throw Error(ErrorKind::kUsage,
+                  fmt::format("{}: two results would be written here", file.string()));
+    }
+  }
+}
+
+/// Leaves out inputs that are the results of others: those of an earlier run on the same folder.
+void drop_results(std::vector<Job>& jobs) {
+  std::set<fs::path> results;
+  for (const Job& job : jobs) results.insert(job.output.lexically_normal());
+  const std::size_t dropped = std::erase_if(jobs, [&](const Job& job) {
+    return jobs.size() > 1 && results.contains(job.input.lexically_normal());
+  });
+  if (dropped > 0) say(fmt::format("{} files left out: they are results for others", dropped));
+}
+
+Plan plan(const Inputs& inputs, const Arguments& arguments, const Common& common) {
+  if (!arguments.output.empty() && (inputs.count() > 1 || !arguments.output_folder.empty())) {
+    throw Error(ErrorKind::kUsage, "classify: -o is for one input; use --out-dir for several");
+  }
+  Plan plan{.jobs = jobs_for(inputs.files, arguments)};
+  drop_results(plan.jobs);
+  if (arguments.skip_existing) {
+    plan.skipped = std::erase_if(plan.jobs, [](const Job& job) { return is_there(job.output); });
+  }
+  if (!arguments.output_folder.empty()) make_folder(arguments.output_folder);
+  check_outputs(plan.jobs, common);
+  return plan;
 }
 
 /// Applies --las-classification, pairs class=code with commas between, to the field Classification.
@@ -134,6 +189,7 @@ void classify_file(const Job& job, const Arguments& arguments, const detect::Edg
   for (const std::string& warning : loaded.warnings) {
     warn(fmt::format("{}: {}", job.input.string(), warning));
   }
+  throw_if_cancelled(&progress);
   times.emplace_back("read", watch.lap());
   const bool by_method = !arguments.method.name.empty();
   const auto prepared =
@@ -145,12 +201,16 @@ void classify_file(const Job& job, const Arguments& arguments, const detect::Edg
   auto result = by_method
                     ? classify_by_method(loaded.cloud, arguments.method, &progress)
                     : detect::classify(prepared, model, {.exact = arguments.exact}, &progress);
-  if (arguments.clean_up) detect::clean_up(loaded.cloud.positions, result, {}, &progress);
+  if (!result.note.empty()) warn(fmt::format("{}: {}", job.input.string(), result.note));
   times.emplace_back("prepare", result.seconds_prepare);
   times.emplace_back("describe", result.seconds_describe);
   times.emplace_back("network", result.seconds_network);
   if (model.context) times.emplace_back("context", result.seconds_context);
   watch.lap();
+  if (arguments.clean_up) {
+    detect::clean_up(loaded.cloud.positions, result, {}, &progress);
+    times.emplace_back("clean-up", watch.lap());
+  }
   auto kept = detect::add_result(loaded.cloud, prepared, result, model,
                                  {.class_colours = arguments.class_colours});
   for (const std::string& note : kept) say(fmt::format("  {}", note));
@@ -179,24 +239,23 @@ void classify(const Arguments& arguments, const Common& common) {
   if (arguments.method.name.empty()) {
     model = detect::load_model(find_model(arguments.model));
     if (arguments.no_context) model.context.reset();
+    model.descriptor.s_min = arguments.scales.s_min;
+    model.descriptor.s_max = arguments.scales.s_max;
   } else {
     model.name = "none, method " + arguments.method.name;
   }
-  const auto jobs = plan(arguments, common);
-  std::optional<Error> first_failure;
+  const Inputs inputs = find_inputs(arguments.inputs);
+  Batch batch(inputs);
+  const auto [jobs, skipped] = plan(inputs, arguments, common);
+  std::size_t done = 0;
   for (const Job& job : jobs) {
-    try {
-      with_name_in_errors(job.input, [&] { classify_file(job, arguments, model, common); });
-    } catch (const Error& error) {
-      // One bad file does not cost the user the other ninety-nine.
-      if (error.kind() == ErrorKind::kCancelled || jobs.size() == 1) throw;
-      say(fmt::format("pcednet: {}", error.what()));
-      if (!first_failure) first_failure = error;
-    }
+    done += batch.run(job.input, [&] { classify_file(job, arguments, model, common); }) ? 1 : 0;
   }
-  if (first_failure) {
-    throw Error(first_failure->kind(), "not every input could be classified: see above");
+  if (inputs.count() > 1 || skipped > 0) {
+    say(fmt::format("{} classified, {} skipped because their results exist, {} failed", done,
+                    skipped, batch.failures().size()));
   }
+  batch.finish();
 }
 
 }  // namespace
@@ -208,6 +267,8 @@ void add_classify(CLI::App& app, Common& common) {
                   "pcednet classify scan.ply                       writes scan_edges.ply\n"
                   "pcednet classify scan.ply -o out.ply --preview out.png\n"
                   "pcednet classify folder/ --out-dir results/     every point file in a folder\n"
+                  "pcednet classify folder/ --out-dir results/ --skip-existing    and go on later\n"
+                  "pcednet classify small.ply --s-min 0.02 --s-max 0.2     scales in its own unit\n"
                   "pcednet classify part.obj --model my.safetensors");
   command->add_option("inputs", arguments->inputs, "Point files, or folders of them")->required();
   command->add_option("-o,--output", arguments->output,
@@ -216,7 +277,13 @@ void add_classify(CLI::App& app, Common& common) {
   command->add_option("--las-classification", arguments->las_classification,
                       "Classes that set the LAS field Classification, as class=code,...; 2=64 "
                       "makes sharp edges 64");
-  command->add_option("--out-dir", arguments->output_folder, "Folder for the results");
+  command->add_option("--out-dir", arguments->output_folder,
+                      "Folder for the results; created if it is missing");
+  CLI::Option* overwrite = command->get_option("--overwrite");
+  command
+      ->add_flag("--skip-existing", arguments->skip_existing,
+                 "Leave out inputs whose result is there already, as after a stop")
+      ->excludes(overwrite);
   command->add_option("--model", arguments->model, "A shipped model's name, or a model file")
       ->capture_default_str();
   command->add_option("--preview", arguments->preview, "Also draw the labelled cloud: a PNG file");
@@ -226,7 +293,11 @@ void add_classify(CLI::App& app, Common& common) {
   command->add_flag("--exact", arguments->exact, "Descriptors from exact neighbourhoods (slow)");
   command->add_flag("--no-context", arguments->no_context,
                     "Do not look at the answers around each point: a little faster, less accurate");
+  add_scale_range_options(*command, arguments->scales);
   add_method_options(*command, arguments->method);
+  for (const char* of_a_model : {"--model", "--no-context", "--exact", "--s-min", "--s-max"}) {
+    command->get_option(of_a_model)->excludes("--method");
+  }
   command->add_flag("--clean-up", arguments->clean_up,
                     "Let the nearest points vote: fewer lone false edges, thin lines fade");
   command->callback([arguments, &common] { classify(*arguments, common); });

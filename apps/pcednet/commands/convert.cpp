@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 
+#include "batch.h"
 #include "commands.h"
 #include "pcednet/core/error.h"
 #include "pcednet/data/mesh_samples.h"
@@ -104,15 +105,19 @@ bool convert_in_parts(const Request& request, const Common& common) {
 }
 
 void convert(const Request& request, const Common& common) {
-  // What the output's extension allows is asked before a long read.
+  // What cannot be written is refused before a long read.
   io::losses(request.output, {});
+  check_writable(request.output, common.overwrite());
   if (convert_in_parts(request, common)) return;
+  const Progress progress = console_progress(common);
   io::LoadedCloud loaded = io::read_cloud(request.input);
+  throw_if_cancelled(&progress);
   warn_of(request.input, loaded.warnings);
   if (request.samples > 0) {
     with_name_in_errors(request.input, [&] { sample(request, loaded.cloud); });
   }
   perturb(request, loaded.cloud);
+  throw_if_cancelled(&progress);
   warn_of_losses(request.output, io::losses(request.output, loaded.cloud));
   io::write_cloud(request.output, loaded.cloud,
                   {.overwrite = common.overwrite(), .ascii = request.ascii});

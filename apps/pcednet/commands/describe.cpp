@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "batch.h"
 #include "commands.h"
 #include "pcednet/core/error.h"
 #include "pcednet/core/version.h"
@@ -122,7 +123,8 @@ void describe(const Arguments& arguments, const Common& common) {
   options.features = feature_set(arguments.features);
   options.reconstruction = reconstruction(arguments.reconstruction);
   if (arguments.exact) options.engine = gls::Engine::kExact;
-  // Opened before the work, so that what cannot be written is refused at once.
+  // What cannot be written is refused before the work.
+  check_writable(output, common.overwrite());
   OutputFile settings(fs::path(output).replace_extension(".json"), common.overwrite());
 
   const io::LoadedCloud loaded = io::read_cloud(arguments.input);
@@ -134,7 +136,14 @@ void describe(const Arguments& arguments, const Common& common) {
   std::optional<detect::PreparedCloud> prepared;
   with_name_in_errors(arguments.input, [&] { prepared = detect::prepare(cloud, &progress); });
   for (const std::string& note : prepared->notes) warn(arguments.input + ": " + note);
-  const gls::ScaleSpace space({prepared->positions, prepared->normals}, options, &progress);
+  std::optional<gls::ScaleSpace> made;
+  with_name_in_errors(arguments.input, [&] {
+    made.emplace(gls::OrientedPoints{prepared->positions, prepared->normals}, options, &progress);
+  });
+  const gls::ScaleSpace& space = *made;
+  if (const auto note = gls::note_on(options, space.scales(), cloud.positions); !note.empty()) {
+    warn(fmt::format("{}: {}", arguments.input, note));
+  }
   const auto width = static_cast<std::size_t>(gls::column_count(options));
   io::NpyWriter matrix(output, {cloud.size(), space.scales().size(), width}, ScalarType::kFloat32,
                        common.overwrite());
@@ -174,11 +183,7 @@ void add_describe(CLI::App& app, Common& common) {
                       "more than this cosine (-1 to 1)");
   command->add_option("--second-gate", options.second_gate,
                       "Describe with another gate too: twice as many numbers per scale");
-  command->add_option("--s-min", options.s_min, "Smallest scale (0: the cloud's spacing)")
-      ->capture_default_str();
-  command
-      ->add_option("--s-max", options.s_max, "Largest scale (0: 10 % of the bounding box diagonal)")
-      ->capture_default_str();
+  add_scale_range_options(*command, options);
   command
       ->add_option("--eps", options.eps,
                    "Resolution of far neighbourhoods, in scales: finer is slower and more exact")

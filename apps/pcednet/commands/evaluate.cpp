@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 
+#include "batch.h"
 #include "commands.h"
 #include "methods.h"
 #include "models.h"
@@ -23,6 +24,7 @@ struct Arguments {
   std::vector<std::string> inputs;
   std::string model, predictions, json, positive = "sharp";
   MethodArguments method;
+  gls::ScaleSpaceOptions scales;  ///< its s_min and s_max
   bool exact = false, no_context = false, clean_up = false, calibration = false;
 };
 
@@ -34,13 +36,16 @@ struct Results {
 detect::Classification predict(const fs::path& input, const PointCloud& cloud,
                                const detect::EdgeModel* model, const Arguments& arguments,
                                const Progress& progress) {
-  if (!arguments.method.name.empty()) {
-    return classify_by_method(cloud, arguments.method, &progress);
+  detect::Classification result;
+  if (model) {
+    const auto prepared = detect::prepare(cloud, &progress);
+    for (const std::string& note : prepared.notes) warn(input.string() + ": " + note);
+    result = detect::classify(prepared, *model, {.exact = arguments.exact}, &progress);
+    if (!result.note.empty()) warn(input.string() + ": " + result.note);
+  } else {
+    result = classify_by_method(cloud, arguments.method, &progress);
   }
-  const auto prepared = detect::prepare(cloud, &progress);
-  for (const std::string& note : prepared.notes) warn(input.string() + ": " + note);
-  auto result = detect::classify(prepared, *model, {.exact = arguments.exact}, &progress);
-  if (arguments.clean_up) detect::clean_up(prepared.positions, result, {}, &progress);
+  if (arguments.clean_up) detect::clean_up(cloud.positions, result, {}, &progress);
   return result;
 }
 
@@ -67,6 +72,8 @@ Results score_all(const Arguments& arguments, const Common& common) {
   if (!arguments.model.empty()) {
     model = detect::load_model(find_model(arguments.model));
     if (arguments.no_context) model->context.reset();
+    model->descriptor.s_min = arguments.scales.s_min;
+    model->descriptor.s_max = arguments.scales.s_max;
   }
 
   Results results;
@@ -79,6 +86,7 @@ Results score_all(const Arguments& arguments, const Common& common) {
       continue;
     }
     const auto loaded = io::read_labelled(input);
+    throw_if_cancelled(&progress);
     for (const std::string& warning : loaded.warnings) warn(input.string() + ": " + warning);
     with_name_in_errors(input, [&] {
       const auto& truth = loaded.cloud.labels;
@@ -112,6 +120,7 @@ void evaluate(const Arguments& arguments, const Common& common) {
     throw Error(ErrorKind::kUsage,
                 "evaluate: --calibration is about the probabilities of a --model");
   }
+  if (arguments.json != "-") check_writable(arguments.json, common.overwrite());
   const Results results = score_all(arguments, common);
   const auto json =
       eval::to_json(results.scores, arguments.calibration ? &results.calibration : nullptr);
@@ -151,8 +160,13 @@ void add_evaluate(CLI::App& app, Common& common) {
                     "Also tell how often a probability is right");
   command->add_flag("--no-context", arguments->no_context,
                     "Do not look at the answers around each point, as classify");
-  command->add_flag("--clean-up", arguments->clean_up, "Let the nearest points vote, as classify");
   command->add_flag("--exact", arguments->exact, "Descriptors from exact neighbourhoods (slow)");
+  add_scale_range_options(*command, arguments->scales);
+  for (const char* of_a_model : {"--no-context", "--exact", "--s-min", "--s-max"}) {
+    command->get_option(of_a_model)->needs("--model");
+  }
+  command->add_flag("--clean-up", arguments->clean_up, "Let the nearest points vote, as classify")
+      ->excludes("--predictions");
   command->callback([arguments, &common] { evaluate(*arguments, common); });
 }
 

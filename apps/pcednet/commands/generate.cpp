@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <memory>
-#include <system_error>
 
 #include "commands.h"
 #include "pcednet/core/error.h"
@@ -45,20 +44,18 @@ std::string details(const data::ScanRecipe& recipe) {
   return fmt::format("  noise {:.2g}", recipe.scanner.range_noise);
 }
 
-void make_folder(const std::filesystem::path& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) {
-    throw Error(ErrorKind::kFailure,
-                fmt::format("{}: cannot create the folder: {}", folder.string(), error.message()));
-  }
-}
-
 /// Makes the clouds of the recipes, of all lists one after another.
 template <typename... Recipes>
 void run(const std::string& folder, std::uint64_t seed, const Common& common,
          const std::vector<Recipes>&... lists) {
   make_folder(folder);
+  const auto path_of = [&](const auto& recipe) {
+    return std::filesystem::path(folder) / (recipe.name + ".ply");
+  };
+  const auto check = [&](const auto& recipe) {
+    check_writable(path_of(recipe), common.overwrite());
+  };
+  (std::for_each(lists.begin(), lists.end(), check), ...);
   const Progress progress = console_progress(common);
   const std::size_t clouds = (lists.size() + ...);
   Stage stage(&progress, "generate", clouds);
@@ -66,8 +63,7 @@ void run(const std::string& folder, std::uint64_t seed, const Common& common,
   std::size_t points = 0;
   const auto make = [&](const auto& recipe) {
     const PointCloud cloud = data::generate(recipe, seed).cloud;
-    const auto path = std::filesystem::path(folder) / (recipe.name + ".ply");
-    io::write_cloud(path, cloud, {.overwrite = common.overwrite()});
+    io::write_cloud(path_of(recipe), cloud, {.overwrite = common.overwrite()});
     say(fmt::format("{:<16} {:>7} {:>6.1f} {:>6.1f} {:>6.1f}{}", recipe.name, cloud.size(),
                     percent_of(cloud, kSharpEdge), percent_of(cloud, kSmoothEdge),
                     percent_of(cloud, kNonEdge), details(recipe)));
@@ -160,6 +156,7 @@ void add_sample(CLI::App& generate, Common& common) {
   command->add_option("file", *file, "The file to write")->required();
   command->add_option("--seed", *seed, "Another seed gives other points")->capture_default_str();
   command->callback([file, seed, &common] {
+    check_writable(*file, common.overwrite());
     io::write_cloud(*file, data::building_scan(*seed).cloud, {.overwrite = common.overwrite()});
   });
 }

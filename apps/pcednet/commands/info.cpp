@@ -11,6 +11,7 @@
 #include <optional>
 #include <string>
 
+#include "batch.h"
 #include "commands.h"
 #include "e57_facts.h"
 #include "las_facts.h"
@@ -268,26 +269,25 @@ void write_json(const Request& request, const ordered_json& files, const Common&
 }
 
 void info(const Request& request, const Common& common) {
+  if (request.json != "-") check_writable(request.json, common.overwrite());
+  const Progress progress = console_progress(common);
+  const Inputs inputs = find_inputs(request.inputs);
+  Batch batch(inputs);
   ordered_json files = ordered_json::array();
-  std::vector<Error> errors;
-  const auto paths = expand_inputs(request.inputs);
-  for (const std::filesystem::path& path : paths) {
-    try {
-      files.push_back(describe(path));
-    } catch (const Error& error) {
-      if (paths.size() == 1) throw;
-      errors.push_back(error);
-      say(fmt::format("pcednet: {}", error.what()));
-      files.push_back({{"file", path.string()}, {"error", error.what()}});
-      continue;
+  const auto add_failure = [&](const Failure& failure) {
+    files.push_back({{"file", failure.input}, {"error", failure.error.what()}});
+  };
+  std::for_each(batch.failures().begin(), batch.failures().end(), add_failure);
+  for (const std::filesystem::path& path : inputs.files) {
+    throw_if_cancelled(&progress);
+    if (!batch.run(path, [&] { files.push_back(describe(path)); })) {
+      add_failure(batch.failures().back());
+    } else if (request.json != "-") {
+      print(files.back());
     }
-    if (request.json != "-") print(files.back());
   }
   write_json(request, files, common);
-  if (!errors.empty()) {
-    throw Error(ErrorKind::kUnreadable,
-                fmt::format("{} of {} files could not be read", errors.size(), paths.size()));
-  }
+  batch.finish();
 }
 
 }  // namespace

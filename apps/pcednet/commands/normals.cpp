@@ -71,8 +71,9 @@ void report(const Request& request, const normals::PreparedNormals& prepared) {
 }
 
 void run(const Request& request, const Common& common) {
-  // What the output's extension allows is asked before a long read.
+  // What cannot be written is refused before a long read.
   io::losses(request.output, {});
+  check_writable(request.output, common.overwrite());
   io::LoadedCloud loaded = io::read_cloud(request.input);
   for (const std::string& warning : loaded.warnings) warn(request.input + ": " + warning);
   PointCloud& cloud = loaded.cloud;

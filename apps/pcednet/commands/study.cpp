@@ -8,6 +8,7 @@
 #include <memory>
 #include <set>
 
+#include "batch.h"
 #include "commands.h"
 #include "fee.h"
 #include "methods.h"
@@ -213,6 +214,7 @@ void run_studies(const Arguments& arguments, const Common& common) {
   for (const std::string& name : arguments.names) {
     experiments.push_back(study::make_experiment(name, plan));
     choose_methods(experiments.back(), arguments.methods);
+    make_folder(arguments.folder);
     study::check_study_file(arguments.folder, name, file.command, common.overwrite());
   }
   const auto needs_data = [](const study::Variant& variant) { return !variant.test; };

@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 
+#include "batch.h"
 #include "commands.h"
 #include "models.h"
 #include "pcednet/annotate/learn.h"
@@ -31,6 +32,7 @@ struct Arguments {
   std::string project, output, network = "pcednet", recipe = "adam", symmetry = "average",
                                features = "6", reconstruction = "sphere";
   int classes = 3, scales = 16, epochs = 0, width = 0, teachers = 0;
+  gls::ScaleSpaceOptions descriptor;  ///< its s_min and s_max
   std::optional<double> gate, second_gate;
   double balance = 1.0, smoothing = 0.0, missing_scales = 0.0, jitter = 0.0;
   std::uint64_t seed = 1;
@@ -39,6 +41,7 @@ struct Arguments {
 
 detect::TrainOptions options_of(const Arguments& arguments) {
   detect::TrainOptions options;
+  options.descriptor = arguments.descriptor;
   options.descriptor.scales = arguments.scales;
   options.descriptor.features = kFeatureSets.at(arguments.features);
   const auto names = gls::reconstruction_names();
@@ -97,6 +100,7 @@ detect::TrainedModel train_clouds(const Arguments& arguments, const Common& comm
   for (const auto& input : inputs) {
     with_name_in_errors(input, [&] {
       loaded.push_back(io::read_labelled(input));
+      throw_if_cancelled(&progress);
       const PointCloud& cloud = loaded.back().cloud;
       clouds.push_back({input.string(), detect::prepare(cloud, &progress), cloud.labels});
     });
@@ -119,6 +123,7 @@ void train(const Arguments& arguments, const Common& common) {
   if (trained.epochs == 0)
     throw Error(ErrorKind::kCancelled, "stopped by the user before an epoch");
   detect::save_model(arguments.output, trained.model, common.overwrite());
+  for (const std::string& note : trained.notes) warn(note);
   if (!trained.no_context.empty()) {
     warn(fmt::format("no context network, every point is too sure: {}", trained.no_context));
   }
@@ -149,6 +154,7 @@ void add_descriptor_options(CLI::App& command, Arguments& arguments) {
       ->capture_default_str()
       ->check(CLI::IsMember(std::vector<std::string>(names.begin(), names.end())));
   command.add_flag("--exact", arguments.exact, "Descriptors from exact neighbourhoods (slow)");
+  add_scale_range_options(command, arguments.descriptor);
   command.add_option("--gate", arguments.gate,
                      "Side-aware neighbourhoods: leave out points whose normal has a cosine below "
                      "this with the point's own (-1 to 1; default: off)");
@@ -180,6 +186,9 @@ void add_train(CLI::App& app, Common& common) {
       ->capture_default_str()
       ->check(CLI::IsMember({2, 3}));
   add_descriptor_options(*command, *arguments);
+  for (const char* of_clouds : {"--s-min", "--s-max"}) {
+    command->get_option(of_clouds)->excludes("--project");
+  }
   command->add_option("--width", arguments->width, "Neurons per pair of scales (0: as the paper)")
       ->capture_default_str();
   command->add_option("--recipe", arguments->recipe, "adam, or paper (plain SGD as published)")

@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "pcednet/core/digest.h"
 #include "pcednet/core/error.h"
 #include "pcednet/core/version.h"
+#include "pcednet/io/input_file.h"
 
 namespace pcednet::annotate {
 namespace {
@@ -212,9 +212,7 @@ Settings parse_settings(std::string_view text, const Settings& now) {
 }
 
 Project read_project(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) refuse(fmt::format("{}: cannot be read", path.string()));
-  const std::string text(std::istreambuf_iterator<char>(file), {});
+  const std::string text = io::InputFile(path).text();
   try {
     return strictly([&] {
       const Json json = Json::parse(text);

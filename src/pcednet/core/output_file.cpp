@@ -1,5 +1,6 @@
 #include "pcednet/core/output_file.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -11,31 +12,97 @@
 #include "pcednet/core/error.h"
 
 namespace pcednet {
+namespace {
 
-void check_writable(const std::filesystem::path& path, Overwrite overwrite) {
-  std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored)) {
-    throw Error(ErrorKind::kUsage, fmt::format("{}: is a folder", path.string()));
-  }
-  if (overwrite == Overwrite::kNo && std::filesystem::exists(path, ignored)) {
-    throw Error(ErrorKind::kUsage,
-                fmt::format("{}: exists already; give --overwrite to replace it", path.string()));
-  }
+namespace fs = std::filesystem;
+
+Error exists_already(const fs::path& path) {
+  return {ErrorKind::kUsage,
+          fmt::format("{}: exists already; give --overwrite to replace it", path.string())};
 }
 
-OutputFile::OutputFile(std::filesystem::path path, Overwrite overwrite) : path_(std::move(path)) {
+/// Renames unless something has the name `to`. Where it cannot, errno tells why.
+bool rename_without_replacing(const fs::path& from, const fs::path& to) {
+  if (renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0) return true;
+  // Not every file system can (NFS cannot); a hard link never replaces either.
+  if (errno != EINVAL && errno != ENOSYS) return false;
+  if (link(from.c_str(), to.c_str()) != 0) return false;
+  unlink(from.c_str());
+  return true;
+}
+
+/// Where the bytes of `path` go until they are complete.
+std::string part_name(const fs::path& path) {
+  return fmt::format("{}.part-{}", path.string(), getpid());
+}
+
+/// Throws unless a file can be created beside `path`.
+void check_folder_of(const fs::path& path) {
+  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  std::error_code error;
+  const fs::file_status status = fs::status(folder, error);
+  const auto refuse = [&](const std::string& why) {
+    throw Error(ErrorKind::kFailure, fmt::format("{}: cannot be written: {}", path.string(), why));
+  };
+  if (status.type() == fs::file_type::not_found) {
+    refuse(fmt::format("there is no folder {}", folder.string()));
+  }
+  if (fs::exists(status) && !fs::is_directory(status)) {
+    refuse(fmt::format("{} is not a folder", folder.string()));
+  }
+  if (access(folder.c_str(), W_OK | X_OK) != 0) {
+    refuse(fmt::format("folder {}: {}", folder.string(), std::strerror(errno)));
+  }
+  fs::symlink_status(part_name(path), error);
+  if (error == std::errc::filename_too_long) refuse(error.message());
+}
+
+}  // namespace
+
+void check_writable(const fs::path& path, Overwrite overwrite) {
+  if (path.empty()) return;
+  std::error_code ignored;
+  const fs::file_status status = fs::status(path, ignored);
+  if (fs::is_directory(status)) {
+    throw Error(ErrorKind::kUsage, fmt::format("{}: is a folder", path.string()));
+  }
+  if (fs::exists(status) && !fs::is_regular_file(status)) {
+    throw Error(ErrorKind::kUsage,
+                fmt::format("{}: is a device, a pipe or a socket, not a file", path.string()));
+  }
+  if (overwrite == Overwrite::kNo && fs::exists(fs::symlink_status(path, ignored))) {
+    throw exists_already(path);
+  }
+  check_folder_of(path);
+}
+
+void make_folder(const fs::path& folder) {
+  std::error_code error, ignored;
+  if (fs::exists(folder, ignored) && !fs::is_directory(folder, ignored)) {
+    throw Error(ErrorKind::kUsage, fmt::format("{}: is a file, not a folder", folder.string()));
+  }
+  fs::create_directories(folder, error);
+  if (!error) return;
+  throw Error(ErrorKind::kFailure,
+              fmt::format("{}: cannot create the folder: {}", folder.string(), error.message()));
+}
+
+OutputFile::OutputFile(fs::path path, Overwrite overwrite)
+    : path_(std::move(path)), overwrite_(overwrite) {
+  if (path_.empty()) throw Error(ErrorKind::kUsage, "the name of a file to write is empty");
   check_writable(path_, overwrite);
-  temporary_ = path_;
-  temporary_ += fmt::format(".part-{}", getpid());
-  file_ = std::fopen(temporary_.c_str(), "wb");
+  const std::string name = part_name(path_);
+  temporary_ = name;
+  // Another machine may share the folder, and another thread the process.
+  for (int i = 1; !(file_ = std::fopen(temporary_.c_str(), "wbxe")) && errno == EEXIST; ++i) {
+    temporary_ = fmt::format("{}-{}", name, i);
+  }
   if (!file_) fail("cannot create");
 }
 
 OutputFile::~OutputFile() {
-  if (!file_) return;
-  std::fclose(file_);
-  std::error_code ignored;
-  std::filesystem::remove(temporary_, ignored);
+  if (file_) std::fclose(file_);
+  if (!temporary_.empty()) unlink(temporary_.c_str());
 }
 
 void OutputFile::fail(const std::string& action) const {
@@ -68,14 +135,12 @@ void OutputFile::write_at(std::uint64_t offset, std::span<const std::byte> bytes
 void OutputFile::commit() {
   if (std::fflush(file_) != 0 || fsync(fileno(file_)) != 0) fail("cannot write");
   if (std::fclose(std::exchange(file_, nullptr)) != 0) fail("cannot write");
-  std::error_code error;
-  std::filesystem::rename(temporary_, path_, error);
-  if (error) {
-    std::error_code ignored;
-    std::filesystem::remove(temporary_, ignored);
-    throw Error(ErrorKind::kFailure,
-                fmt::format("{}: cannot rename into place: {}", path_.string(), error.message()));
-  }
+  const bool renamed = overwrite_ == Overwrite::kYes
+                           ? std::rename(temporary_.c_str(), path_.c_str()) == 0
+                           : rename_without_replacing(temporary_, path_);
+  if (!renamed && errno == EEXIST) throw exists_already(path_);
+  if (!renamed) fail("cannot rename into place");
+  temporary_.clear();
 }
 
 void write_text_file(const std::filesystem::path& path, std::string_view text,

@@ -14,12 +14,14 @@ enum class Overwrite { kNo, kYes };
 
 /// A file that appears under its name only when it is complete.
 ///
-/// Bytes go to a file beside the target; commit() renames it. Without commit (an exception, a
-/// cancel) nothing stays behind and an existing target is untouched.
+/// Bytes go to a file beside the target, `<name>.part-<process>`; commit() renames it. Without
+/// commit (an exception, a cancel) nothing stays behind and an existing target is untouched. With
+/// kNo the rename itself refuses a target that has appeared since: one of several writers wins, in
+/// this process or another. With kYes a symbolic link is replaced, not the file it points to.
 class OutputFile {
  public:
-  /// Throws Error(kUsage) if `path` exists and `overwrite` is kNo, Error(kFailure) if nothing can
-  /// be written there.
+  /// Throws what check_writable() throws, Error(kUsage) for an empty path, and Error(kFailure) if
+  /// the file cannot be created.
   explicit OutputFile(std::filesystem::path path, Overwrite overwrite = Overwrite::kNo);
   ~OutputFile();
   OutputFile(const OutputFile&) = delete;
@@ -33,20 +35,27 @@ class OutputFile {
   /// where write() goes on. Throws as write() does.
   void write_at(std::uint64_t offset, std::span<const std::byte> bytes);
 
-  /// Flushes to the disk and renames. Must be called once, last.
+  /// Flushes to the disk and renames. Must be called once, last. Throws Error(kUsage) if the target
+  /// exists by now and must not be replaced, Error(kFailure) when the disk takes no more.
   void commit();
 
  private:
   [[noreturn]] void fail(const std::string& action) const;
 
   std::filesystem::path path_;
-  std::filesystem::path temporary_;
+  std::filesystem::path temporary_;  ///< empty once it has its name
+  Overwrite overwrite_;
   std::FILE* file_ = nullptr;
 };
 
-/// Throws what OutputFile would throw because `path` is a folder or exists; for refusing before
-/// long work. An empty path is fine.
+/// Refuses before long work what OutputFile would refuse after it. Throws Error(kUsage) if `path`
+/// is a folder or a device, or exists (as a link to nothing, too) and `overwrite` is kNo;
+/// Error(kFailure) if its folder is missing, not a folder, or not writable. An empty path is fine.
 void check_writable(const std::filesystem::path& path, Overwrite overwrite);
+
+/// Creates the folder and those above it that are missing. Throws Error(kUsage) if it is a file,
+/// Error(kFailure) if it cannot be created.
+void make_folder(const std::filesystem::path& folder);
 
 /// Writes `text` to `path` as a whole.
 void write_text_file(const std::filesystem::path& path, std::string_view text,

@@ -35,6 +35,7 @@ void describe_and_decide(const PreparedCloud& cloud, const EdgeModel& model,
   const gls::ScaleSpace matrix({cloud.positions, cloud.normals}, descriptor, progress);
   const std::span<const std::uint32_t> order = matrix.order();
   result.seconds_prepare = watch.lap();
+  result.note = gls::note_on(descriptor, matrix.scales(), cloud.positions);
 
   const auto inputs = static_cast<std::size_t>(model.network.network.architecture.inputs());
   const auto scales = static_cast<std::size_t>(model.descriptor.scales);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "pcednet/detect/model.h"
@@ -22,6 +23,7 @@ struct Classification {
   std::vector<float> p_sharp;         ///< probability of sharp-edge, 0 where unlabelled
   std::vector<float> p_smooth;        ///< of smooth-edge; 0 throughout with a two-class model
   ClassCounts counts;
+  std::string note;  ///< what the user should be told, or empty
   double seconds_prepare = 0, seconds_describe = 0, seconds_network = 0, seconds_context = 0;
 };
 

@@ -103,6 +103,10 @@ Samples make_samples(std::span<const TrainingCloud> clouds,
     check_labels(cloud);
     const gls::OrientedPoints points{cloud.cloud.positions, cloud.cloud.normals};
     gls::ScaleSpace matrix(points, descriptor, &cancel_only);
+    if (const auto note = gls::note_on(descriptor, matrix.scales(), points.positions);
+        !note.empty()) {
+      samples.notes.push_back(fmt::format("{}: {}", cloud.name, note));
+    }
     if (augmentation.jitter > 0.0) {
       gls::ScaleSpaceOptions moved = descriptor;
       const double factor = std::exp(random.uniform(-augmentation.jitter, augmentation.jitter));
@@ -130,6 +134,7 @@ TrainedModel train(const std::string& name, std::span<const TrainingCloud> cloud
       make_samples(clouds, options.descriptor, progress, {options.jitter, options.training.seed});
   const double seconds_describe = watch.lap();
   TrainedModel trained = train(name, samples, options, on_epoch, progress);
+  trained.notes = samples.notes;
   trained.seconds_describe = seconds_describe;
   if (!options.context || trained.cancelled) return trained;
   watch.lap();

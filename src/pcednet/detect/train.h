@@ -33,6 +33,7 @@ struct Samples {
   std::vector<float> values = {};         ///< samples x scales x features
   std::vector<std::uint8_t> labels = {};  ///< EdgeClass
   std::size_t clouds = 0, points = 0;     ///< that they are of
+  std::vector<std::string> notes = {};    ///< what the user should be told, one sentence each
 };
 
 /// How training clouds are made to differ.
@@ -55,8 +56,9 @@ Samples make_samples(std::span<const TrainingCloud> clouds,
 struct TrainedModel {
   EdgeModel model;
   bool cancelled = false;
-  int epochs = 0;               ///< completed; a model of none is not worth keeping
-  std::string no_context = {};  ///< why there is no context network though one was wanted
+  int epochs = 0;                       ///< completed; a model of none is not worth keeping
+  std::vector<std::string> notes = {};  ///< what the user should be told, one sentence each
+  std::string no_context = {};          ///< why there is no context network though one was wanted
   double seconds_describe = 0, seconds_train = 0, seconds_context = 0;
 };
 TrainedModel train(const std::string& name, std::span<const TrainingCloud> clouds,

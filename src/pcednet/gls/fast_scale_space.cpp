@@ -84,9 +84,8 @@ void FastScaleSpace::find_scales(OrientedPoints points, std::span<const std::uin
                             [&](std::size_t i) { return level.voxels[i].position; });
     return mean_distance(std::span(sq_distances).first(found)) / unit_;
   };
-  const double diagonal = bounding_box(points.positions).diagonal();
   scales_ = sample_scales(
-      scale_range(curve.size(), diagonal, {options_.s_min, options_.s_max, options_.s_max_fraction},
+      scale_range(points.positions, {options_.s_min, options_.s_max, options_.s_max_fraction},
                   [&] { return mean_spacing(curve.size(), distance); }),
       options_.scales);
 }

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "pcednet/cloud/bounding_box.h"
+
 namespace pcednet::gls {
 
 std::vector<std::string> column_names(const ScaleSpaceOptions& options) {
@@ -16,6 +18,16 @@ std::vector<std::string> column_names(const ScaleSpaceOptions& options) {
 
 int column_count(const ScaleSpaceOptions& options) {
   return (options.second_gate ? 2 : 1) * feature_count(options.features);
+}
+
+std::string note_on(const ScaleSpaceOptions& options, std::span<const double> scales,
+                    std::span<const Vec3> positions) {
+  const double usual = options.s_max_fraction * bounding_box(positions).diagonal();
+  if (options.s_max > 0.0 || scales.front() < usual) return {};
+  return fmt::format(
+      "too few points for scales up to {:.4g}, {:g} % of the diagonal: scales from {:.4g} to "
+      "{:.4g}; expect false edges",
+      usual, 100.0 * options.s_max_fraction, scales.front(), scales.back());
 }
 
 std::string text_of(const ScaleSpaceOptions& options) {

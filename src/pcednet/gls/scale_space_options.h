@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -38,6 +39,11 @@ std::vector<std::string> column_names(const ScaleSpaceOptions& options);
 
 /// How many they are.
 int column_count(const ScaleSpaceOptions& options);
+
+/// A sentence for the user if the `scales` of the cloud are those that scale_range() gives to
+/// sparse clouds, else nothing.
+std::string note_on(const ScaleSpaceOptions& options, std::span<const double> scales,
+                    std::span<const Vec3> positions);
 
 /// All that decides a description of a given cloud, as text: for keys of results that are kept.
 std::string text_of(const ScaleSpaceOptions& options);

@@ -10,6 +10,7 @@
 #include "pcednet/cloud/bounding_box.h"
 #include "pcednet/core/error.h"
 #include "pcednet/core/parallel.h"
+#include "pcednet/spatial/curve_order.h"
 
 namespace pcednet::gls {
 namespace {
@@ -22,6 +23,26 @@ void check_given(double bound, const char* name) {
   throw Error(
       ErrorKind::kUsage,
       fmt::format("{} is {}: a positive length is needed, or 0 for the cloud's own", name, bound));
+}
+
+/// The spacing of points in curve order, from a tree of them.
+double spacing_in(std::span<const Vec3> positions, const spatial::KdTree& tree) {
+  return mean_spacing(positions.size(), [&](std::size_t place) {
+    std::vector<spatial::Neighbour> found;
+    std::array<double, kSpacingNeighbours> sq_distances;
+    tree.nearest(positions[place], kSpacingNeighbours, found);
+    for (std::size_t i = 0; i < found.size(); ++i) sq_distances[i] = found[i].sq_distance;
+    return mean_distance(std::span(sq_distances).first(found.size()));
+  });
+}
+
+/// The spacing of the finite points with all their copies left out.
+double spacing_of_distinct(std::span<const Vec3> positions) {
+  std::vector<Vec3> distinct;
+  for (const std::uint32_t i : spatial::curve_order(positions)) {
+    if (distinct.empty() || positions[i] != distinct.back()) distinct.push_back(positions[i]);
+  }
+  return spacing_in(distinct, spatial::KdTree(distinct));
 }
 
 }  // namespace
@@ -47,43 +68,37 @@ double mean_spacing(std::size_t points, const std::function<double(std::size_t)>
 
 ScaleRange scale_range(std::span<const Vec3> positions, const spatial::KdTree& tree,
                        const ScaleRange& given) {
-  const auto distance = [&](std::size_t place) {
-    std::vector<spatial::Neighbour> found;
-    std::array<double, kSpacingNeighbours> sq_distances;
-    tree.nearest(positions[place], kSpacingNeighbours, found);
-    for (std::size_t i = 0; i < found.size(); ++i) sq_distances[i] = found[i].sq_distance;
-    return mean_distance(std::span(sq_distances).first(found.size()));
-  };
-  return scale_range(positions.size(), bounding_box(positions).diagonal(), given,
-                     [&] { return mean_spacing(positions.size(), distance); });
+  return scale_range(positions, given, [&] { return spacing_in(positions, tree); });
 }
 
-ScaleRange scale_range(std::size_t points, double diagonal, const ScaleRange& given,
+ScaleRange scale_range(std::span<const Vec3> positions, const ScaleRange& given,
                        const std::function<double()>& spacing) {
   check_given(given.s_min, "s_min");
   check_given(given.s_max, "s_max");
   check_given(given.s_max_fraction, "s_max_fraction");
-  ScaleRange range = given;
-  if (range.s_max == 0.0) range.s_max = given.s_max_fraction * diagonal;
-  if (!(range.s_max > kShortest && range.s_max < kLongest)) {
-    throw Error(ErrorKind::kInsufficient,
-                fmt::format("no scales for {} finite points with a bounding box of diagonal {}: "
-                            "points at two places or more are needed",
-                            points, diagonal));
-  }
-  if (range.s_min == 0.0) range.s_min = spacing();
-  if (!(range.s_min > kShortest)) {
-    throw Error(ErrorKind::kInsufficient,
-                fmt::format("the {} finite points are all copies of each other or have ten copies "
-                            "each: remove duplicates",
-                            points));
-  }
-  if (range.s_min < range.s_max) return range;
   const bool both_given = given.s_min > 0.0 && given.s_max > 0.0;
+  const double diagonal = bounding_box(positions).diagonal();
+  if (!both_given && !(diagonal > kShortest && diagonal < kLongest)) {
+    throw Error(
+        ErrorKind::kInsufficient,
+        fmt::format("no scales: the bounding box of the points has a diagonal of {}; finite "
+                    "points at two places or more are needed",
+                    diagonal));
+  }
+  ScaleRange range = given;
+  if (range.s_min == 0.0) range.s_min = spacing();
+  if (range.s_min == 0.0) range.s_min = spacing_of_distinct(positions);
+  if (range.s_max == 0.0) {
+    range.s_max = given.s_max_fraction * diagonal;
+    if (!(range.s_min < range.s_max)) range.s_max = kSparseRange * range.s_min;
+  }
+  if (kShortest < range.s_min && range.s_min < range.s_max && range.s_max < kLongest) return range;
   throw Error(
-      both_given ? ErrorKind::kUsage : ErrorKind::kInsufficient,
-      fmt::format("the smallest scale {} is not below the largest {}{}", range.s_min, range.s_max,
-                  both_given ? "" : ": too few points for their extent; give s_min and s_max"));
+      ErrorKind::kUsage,
+      fmt::format("no scales from {} to {}: the largest, s_max, must be above the smallest, "
+                  "s_min, which is {}",
+                  range.s_min, range.s_max,
+                  given.s_min > 0.0 ? "given" : "the spacing of the points if not given"));
 }
 
 std::vector<double> sample_scales(const ScaleRange& range, int count) {

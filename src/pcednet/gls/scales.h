@@ -13,6 +13,9 @@ inline constexpr int kMinScales = 4, kMaxScales = 128;
 
 inline constexpr double kPartOfDiagonal = 0.1;
 
+/// The largest scale over the smallest, for clouds too sparse for the paper's range.
+inline constexpr double kSparseRange = 2.0;
+
 struct ScaleRange {
   double s_min = 0.0;
   double s_max = 0.0;
@@ -31,12 +34,19 @@ double mean_distance(std::span<const double> sq_distances);
 /// How many nearest points, with the point itself, mean_distance() wants.
 inline constexpr std::size_t kSpacingNeighbours = 11;
 
-/// s_min = `spacing()`, s_max = s_max_fraction (10 %) of `diagonal`, that of the bounding box of
-/// the `points` finite points; what `given` holds other than 0 is kept. Throws Error(kInsufficient)
-/// where the cloud leaves no range: fewer than two points, all in one place, every point with ten
-/// copies, or so few points that their spacing is not below s_max. Throws Error(kUsage) if a given
-/// bound is negative, not finite, or leaves none.
-ScaleRange scale_range(std::size_t points, double diagonal, const ScaleRange& given,
+/// The paper's range wherever there is one: s_min = `spacing()`, s_max = s_max_fraction (10 %) of
+/// the diagonal of the bounding box of the finite `positions`. Bounds other than 0 in `given` are
+/// kept.
+///
+/// Two rules go beyond the paper, for clouds to which its own gives no range:
+/// - A spacing of 0 (every point has ten copies) becomes the spacing of the distinct positions.
+/// - An s_max that is not above s_min (a sparse cloud: fewer than some 330 points on a cube) and
+/// not given
+///   becomes kSparseRange times s_min; see note_on().
+///
+/// Throws Error(kInsufficient) for fewer than two places unless both bounds are given,
+/// Error(kUsage) if a given bound is negative, not finite, or leaves no range.
+ScaleRange scale_range(std::span<const Vec3> positions, const ScaleRange& given,
                        const std::function<double()>& spacing);
 
 /// The same from a tree of `positions`, the finite points in curve order.

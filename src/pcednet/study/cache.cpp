@@ -81,12 +81,7 @@ auto unless_damaged(const Work& work) -> decltype(work()) {
 }  // namespace
 
 Cache::Cache(fs::path folder) : folder_(std::move(folder)) {
-  std::error_code error;
-  fs::create_directories(folder_, error);
-  if (error) {
-    throw Error(ErrorKind::kFailure,
-                fmt::format("{}: cannot create the folder: {}", folder_.string(), error.message()));
-  }
+  make_folder(folder_);
 }
 
 fs::path Cache::file(const std::string& kind, const std::string& key,

@@ -205,12 +205,7 @@ void write_study(const fs::path& folder, const Study& study, const FileOptions& 
   for (const Result& result : study.results) {
     if (result.classes.empty()) continue;
     const fs::path place = folder / prediction_folder(study, result);
-    std::error_code error;
-    fs::create_directories(place, error);
-    if (error) {
-      throw Error(ErrorKind::kFailure,
-                  fmt::format("{}: cannot create the folder: {}", place.string(), error.message()));
-    }
+    make_folder(place);
     for (std::size_t i = 0; i < result.classes.size(); ++i) {
       const auto& classes = result.classes[i];
       write_text_file(place / (result.scores[i].name + ".u8"),

@@ -1,0 +1,124 @@
+#include "batch.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <new>
+
+#include "common.h"
+
+namespace pcednet::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_point_file(const fs::path& path) {
+  static constexpr std::array kExtensions = {".ply", ".obj", ".xyz", ".txt", ".csv", ".asc",
+                                             ".pts", ".pcd", ".las", ".laz", ".e57"};
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return std::find(kExtensions.begin(), kExtensions.end(), extension) != kExtensions.end();
+}
+
+std::vector<fs::path> files_in(const fs::path& folder) {
+  std::vector<fs::path> files;
+  std::error_code error, ignored;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
+       entry.increment(error)) {
+    if (is_point_file(entry->path()) && !entry->is_directory(ignored)) {
+      files.push_back(entry->path());
+    }
+  }
+  if (error) {
+    throw Error(ErrorKind::kUnreadable,
+                fmt::format("{}: cannot read the folder: {}", folder.string(), error.message()));
+  }
+  if (files.empty()) {
+    throw Error(ErrorKind::kInsufficient, fmt::format("{}: no point files in it", folder.string()));
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+std::vector<fs::path> files_of(const std::string& argument) {
+  std::error_code error;
+  const fs::file_status status = fs::status(argument, error);
+  if (fs::is_directory(status)) return files_in(argument);
+  if (status.type() == fs::file_type::not_found) {
+    throw Error(ErrorKind::kUnreadable, fmt::format("{}: no such file", argument));
+  }
+  return {argument};
+}
+
+}  // namespace
+
+Inputs find_inputs(const std::vector<std::string>& arguments) {
+  Inputs inputs;
+  for (const std::string& argument : arguments) {
+    try {
+      const auto files = files_of(argument);
+      inputs.files.insert(inputs.files.end(), files.begin(), files.end());
+    } catch (const Error& error) {
+      inputs.failures.push_back({argument, error});
+    }
+  }
+  return inputs;
+}
+
+std::vector<fs::path> expand_inputs(const std::vector<std::string>& arguments) {
+  Inputs inputs = find_inputs(arguments);
+  if (!inputs.failures.empty()) throw inputs.failures.front().error;
+  return std::move(inputs.files);
+}
+
+Batch::Batch(const Inputs& inputs) : inputs_(inputs.count()) {
+  for (const Failure& failure : inputs.failures) add(failure);
+}
+
+void Batch::add(const Failure& failure) {
+  if (inputs_ == 1) throw failure.error;
+  say(fmt::format("pcednet: {}", failure.error.what()));
+  failures_.push_back(failure);
+}
+
+bool Batch::run(const fs::path& file, const std::function<void()>& work) {
+  try {
+    with_name_in_errors(file, work);
+    return true;
+  } catch (const Error& error) {
+    if (error.kind() == ErrorKind::kCancelled) throw;
+    add({file.string(), error});
+    return false;
+  }
+}
+
+void Batch::finish() const {
+  if (failures_.empty()) return;
+  std::string names;
+  for (const Failure& failure : failures_) names += "\n  " + failure.input;
+  throw Error(failures_.front().error.kind(),
+              fmt::format("{} of {} inputs failed, for the reasons above:{}", failures_.size(),
+                          inputs_, names));
+}
+
+void with_name_in_errors(const fs::path& file, const std::function<void()>& work) {
+  const auto named = [&](ErrorKind kind, const std::string& message) {
+    return Error(kind, fmt::format("{}: {}", file.string(), message));
+  };
+  try {
+    work();
+  } catch (const Error& error) {
+    const std::string message = error.what();
+    if (error.kind() == ErrorKind::kCancelled || message.find(file.string()) != std::string::npos) {
+      throw;
+    }
+    throw named(error.kind(), message);
+  } catch (const std::bad_alloc&) {
+    throw named(ErrorKind::kFailure, "not enough memory");
+  }
+}
+
+}  // namespace pcednet::app

@@ -1,0 +1,166 @@
+"""Files that commands write: never half of one, never over another, refused before the work."""
+import os
+import signal
+import stat
+import subprocess
+import unittest
+
+from support import PROGRAM, CliTest, cube, read_ply, run, write_ply
+
+
+class Outputs(CliTest):
+    def setUp(self):
+        super().setUp()
+        self.cloud = self.folder / "a.ply"
+        write_ply(self.cloud, *cube(2000))
+
+    def start(self, *arguments, **options):
+        """A running pcednet that reports its progress, a line each."""
+        return subprocess.Popen([PROGRAM, *map(str, arguments), "--progress", "json"],
+                                stderr=subprocess.PIPE, text=True, **options)
+
+    def end(self, running, expect):
+        said = running.stderr.read()
+        running.stderr.close()
+        self.assertEqual(running.wait(60), expect, said)
+        return said
+
+    def test_one_of_three_runs_at_once_wins(self):
+        write_ply(self.cloud, *cube(600_000)[:2])
+        out = self.folder / "out.ply"
+        running = [self.start("convert", self.cloud, "-o", out) for _ in range(3)]
+        # None of them has its result before all of them have begun to write.
+        for process in running:
+            while not any(".part" in name and f"-{process.pid}" in name
+                          for name in os.listdir(self.folder)):
+                self.assertIsNone(process.poll(), "ended before the others began")
+        said = [process.stderr.read() for process in running]
+        for process in running:
+            process.stderr.close()
+        self.assertEqual(sorted(process.wait(60) for process in running), [0, 2, 2])
+        self.assertEqual(sum("out.ply: exists already" in text for text in said), 2)
+        self.assertEqual(sorted(os.listdir(self.folder)), ["a.ply", "out.ply"])
+        self.assertEqual(len(read_ply(out)[0]), 600_000)
+
+    def stop(self, *signals, expect=130, preexec_fn=None):
+        """Sends signals to a conversion in its midst; returns the names of the files then."""
+        write_ply(self.cloud, *cube(4_000_000)[:2])
+        running = self.start("convert", self.cloud, "-o", self.folder / "out.ply",
+                             preexec_fn=preexec_fn)
+        for line in running.stderr:
+            if '"convert"' in line:
+                break
+        self.assertTrue(any(".part" in name for name in os.listdir(self.folder)))
+        for number in signals:
+            running.send_signal(number)
+        self.end(running, expect)
+        return sorted(os.listdir(self.folder))
+
+    def test_a_terminal_that_closes_leaves_no_part_of_a_file(self):
+        self.assertEqual(self.stop(signal.SIGHUP), ["a.ply"])
+
+    def test_two_signals_at_once_leave_no_part_of_a_file(self):
+        self.assertEqual(self.stop(signal.SIGHUP, signal.SIGTERM), ["a.ply"])
+
+    def test_nohup_goes_on_when_the_terminal_closes(self):
+        ignore = lambda: signal.signal(signal.SIGHUP, signal.SIG_IGN)
+        self.assertEqual(self.stop(signal.SIGHUP, expect=0, preexec_fn=ignore),
+                         ["a.ply", "out.ply"])
+
+    def test_a_missing_folder_is_found_before_the_work(self):
+        # The inputs cannot be read: who reads them first fails with 3.
+        broken = self.folder / "broken.ply"
+        broken.write_text("ply\nnonsense\n")
+        nowhere = self.folder / "nowhere"
+        for arguments in (("classify", broken, "-o", nowhere / "x.ply"),
+                          ("classify", broken, "--preview", nowhere / "x.png"),
+                          ("convert", broken, "-o", nowhere / "x.ply"),
+                          ("normals", broken, "-o", nowhere / "x.ply"),
+                          ("describe", broken, "-o", nowhere / "x.npy"),
+                          ("train", broken, "-o", nowhere / "x.safetensors"),
+                          ("evaluate", broken, "--model", "scan", "--json", nowhere / "x.json"),
+                          ("info", broken, "--json", nowhere / "x.json"),
+                          ("generate", "sample", nowhere / "x.ply")):
+            done = run(*arguments, expect=1)
+            self.assertIn(f"there is no folder {nowhere}", done.stderr, arguments)
+        self.assertEqual(sorted(os.listdir(self.folder)), ["a.ply", "broken.ply"])
+
+    def test_existing_results_are_found_before_the_work(self):
+        broken = self.folder / "broken.ply"
+        broken.write_text("ply\nnonsense\n")
+        for command, name in (("convert", "x.ply"), ("normals", "x.ply"), ("describe", "x.npy"),
+                              ("train", "x.safetensors")):
+            there = self.folder / name
+            there.write_text("precious")
+            done = run(command, broken, "-o", there, expect=2)
+            self.assertIn(f"{there}: exists already", done.stderr, command)
+            self.assertEqual(there.read_text(), "precious")
+
+    def test_an_existing_cloud_of_a_set_is_found_before_the_others_are_made(self):
+        run("generate", "default", self.folder / "set", "--paper-only")
+        last = sorted(os.listdir(self.folder / "set"))[-1]
+        (self.folder / "again").mkdir()
+        (self.folder / "again" / last).write_text("precious")
+        done = run("generate", "default", self.folder / "again", "--paper-only", expect=2)
+        self.assertIn(f"{last}: exists already", done.stderr)
+        self.assertEqual(os.listdir(self.folder / "again"), [last])
+
+    def test_files_and_folders_that_stand_in_for_each_other(self):
+        file, folder = self.cloud, self.folder / "folder"
+        folder.mkdir()
+        (self.folder / "nothing.ply").symlink_to("gone")
+        (self.folder / "device").symlink_to("/dev/full")
+        for code, message, *arguments in (
+                (2, f"{file}: is a file, not a folder", "classify", file, "--out-dir", file),
+                (1, "Not a directory", "classify", file, "--out-dir", file / "x"),
+                (2, f"{file}: is a file, not a folder", "generate", "default", file),
+                (2, f"{file}: is a file, not a folder", "study", "methods", "--test",
+                 f"a={file}", "-o", file),
+                (2, f"{folder}: is a folder", "evaluate", file, "--model", "scan", "--json", folder),
+                (1, f"{file} is not a folder", "convert", file, "-o", file / "x.ply"),
+                (3, f"{folder}: is a folder", "convert", folder, "-o", self.folder / "x.ply"),
+                (3, f"{folder}: is a folder", "annotate", folder, "--no-browser"),
+                (2, f"{folder}: is a folder", "annotate", file, "--no-browser", "--project",
+                 folder),
+                (1, "there is no folder", "annotate", file, "--no-browser", "--project",
+                 self.folder / "none" / "x.json"),
+                (3, f"{folder}: is a folder", "train", "--project", folder, "-o",
+                 self.folder / "m.safetensors"),
+                (3, "nothing.ply: no such file", "info", self.folder / "nothing.ply"),
+                (2, "nothing.ply: exists already", "convert", file, "-o",
+                 self.folder / "nothing.ply"),
+                (2, "an argument is empty", "convert", file, "-o", ""),
+                (2, "device: is a device", "info", file, "--json", self.folder / "device",
+                 "--overwrite"),
+                (2, "device: is a device", "evaluate", file, "--model", "scan", "--json",
+                 self.folder / "device", "--overwrite")):
+            done = run(*arguments, expect=code)
+            self.assertIn(message, done.stderr)
+            self.assertNotIn("filesystem error", done.stderr)
+            for raw in ("std::", "basic_", "_M_"):  # the standard library's own words
+                self.assertNotIn(raw, done.stderr)
+        self.assertTrue(stat.S_ISCHR(os.stat(self.folder / "device").st_mode))
+        self.assertEqual(sorted(os.listdir(self.folder)),
+                         ["a.ply", "device", "folder", "nothing.ply"])
+
+    @unittest.skipIf(os.getuid() != 0, "needs root to become somebody else")
+    def test_what_somebody_else_may_not_read_or_write(self):
+        os.chmod(self.folder, 0o755)
+        locked, secret = self.folder / "locked", self.folder / "secret.ply"
+        locked.mkdir(mode=0o700)
+        write_ply(secret, *cube(100)[:2])
+        secret.chmod(0o600)
+        somebody = lambda: os.setuid(65534)
+        for code, message, *arguments in (
+                (3, "secret.ply: Permission denied", "info", secret),
+                (3, "locked: cannot read the folder: Permission denied", "info", locked),
+                (1, f"folder {self.folder}: Permission denied", "convert", self.cloud, "-o",
+                 self.folder / "x.ply"),
+                (1, "cannot create the folder: Permission denied", "classify", self.cloud,
+                 "--out-dir", locked / "x"),
+                (1, "Permission denied", "classify", self.cloud, "--out-dir", locked)):
+            self.assertIn(message, run(*arguments, expect=code, preexec_fn=somebody).stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
