@@ -47,9 +47,8 @@ using Parser = http::request_parser<http::string_body>;
 constexpr std::size_t kWorkers = 8;          // threads that compute answers
 constexpr std::size_t kMostStrangers = 100;  // connections that have not shown the token
 constexpr std::uint32_t kMostHeadBytes = 16 << 10;
-constexpr seconds kStrangerTime{
-    5};  // for a request without the token and its answer, waiting included
-constexpr seconds kRequestTime{60};  // for a request with the token, waiting for it included
+constexpr seconds kStrangerTime{5};  // for a request without the token and its answer
+constexpr seconds kRequestTime{60};  // for a request with the token, idle time included
 constexpr seconds kEventTime{10};    // for a window to take its news
 constexpr seconds kQuietTime{5};     // between signs that the stream of events is there
 
