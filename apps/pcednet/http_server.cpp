@@ -1,12 +1,33 @@
-// Eigen must come before httplib.h, which includes <resolv.h> and with it a macro named _res.
 #include "http_server.h"
 
-#include <httplib.h>
+#include <utility>
+
+// Boost 1.74 leaves <utility> to its users.
+#include <boost/asio/awaitable.hpp>
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/detached.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/post.hpp>
+#include <boost/asio/redirect_error.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/asio/thread_pool.hpp>
+#include <boost/asio/use_awaitable.hpp>
+#include <boost/asio/write.hpp>
+#include <boost/beast/core/flat_buffer.hpp>
+#include <boost/beast/core/tcp_stream.hpp>
+#include <boost/beast/http.hpp>
 
 #include <algorithm>
-#include <atomic>
+#include <array>
 #include <cctype>
+#include <charconv>
 #include <chrono>
+#include <limits>
+#include <list>
+#include <memory>
+#include <optional>
+#include <set>
 #include <string>
 #include <thread>
 
@@ -15,143 +36,262 @@
 namespace pcednet::app {
 namespace {
 
-constexpr std::size_t kThreads = 32;
-constexpr int kMostStreams = 12;  // windows that listen: the other threads stay free for requests
+namespace asio = boost::asio;
+namespace beast = boost::beast;
+namespace http = beast::http;
+using asio::use_awaitable;
+using std::chrono::seconds;
+using tcp = asio::ip::tcp;
+using Parser = http::request_parser<http::string_body>;
 
-annotate::Request request_of(const httplib::Request& request) {
-  annotate::Request result{.method = request.method, .path = request.path, .body = request.body};
-  for (const auto& [name, value] : request.params) result.query.emplace(name, value);
-  for (const auto& [name, value] : request.headers) {
-    std::string lower = name;
-    std::transform(lower.begin(), lower.end(), lower.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    result.headers.emplace(lower, value);
+constexpr std::size_t kWorkers = 8;          // threads that compute answers
+constexpr std::size_t kMostStrangers = 100;  // connections that have not shown the token
+constexpr std::uint32_t kMostHeadBytes = 16 << 10;
+constexpr seconds kStrangerTime{5};  // for a request without the token and its answer
+constexpr seconds kRequestTime{60};  // for a request with the token, idle time included
+constexpr seconds kEventTime{10};    // for a window to take its news
+constexpr seconds kQuietTime{5};     // between signs that the stream of events is there
+
+/// Resolves %41 and +, which stands for a space.
+std::string decoded(std::string_view text) {
+  std::string result;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    unsigned char byte = 0;
+    if (const char* digits = text.data() + i + 1;
+        text[i] == '%' && i + 2 < text.size() &&
+        std::from_chars(digits, digits + 2, byte, 16).ptr == digits + 2) {
+      result += static_cast<char>(byte);
+      i += 2;
+    } else {
+      result += text[i] == '+' ? ' ' : text[i];
+    }
   }
   return result;
 }
 
-void fill(httplib::Response& response, annotate::Response answer) {
-  response.status = answer.status;
-  for (const auto& [name, value] : answer.headers) response.set_header(name, value);
-  response.set_content(std::move(answer.body), answer.type);
+std::string_view view_of(beast::string_view text) {
+  return {text.data(), text.size()};
 }
 
-/// A body must say its length, so that too long a one is refused before it is read.
-bool says_its_length(const httplib::Request& request) {
-  return request.method == "GET" ||
-         (request.has_header("Content-Length") && !request.has_header("Transfer-Encoding"));
+annotate::Request request_of(const Parser::value_type& head) {
+  std::string_view target = view_of(head.target());
+  const std::size_t question = std::min(target.find('?'), target.size());
+  annotate::Request request{.method = std::string(view_of(head.method_string())),
+                            .path = std::string(target.substr(0, question))};
+  for (target.remove_prefix(question); !target.empty();) {
+    target.remove_prefix(1);  // ? or &
+    const std::string_view pair = target.substr(0, target.find('&'));
+    const std::size_t equals = std::min(pair.find('='), pair.size());
+    request.query.emplace(decoded(pair.substr(0, equals)),
+                          decoded(pair.substr(std::min(equals + 1, pair.size()))));
+    target.remove_prefix(pair.size());
+  }
+  for (const auto& field : head) {
+    std::string lower(view_of(field.name_string()));
+    std::transform(lower.begin(), lower.end(), lower.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    request.headers.emplace(lower, view_of(field.value()));
+  }
+  return request;
+}
+
+template <typename Body>
+http::response<Body> head_of(const annotate::Response& answer) {
+  http::response<Body> head(http::int_to_status(static_cast<unsigned>(answer.status)), 11);
+  head.set(http::field::content_type, answer.type);
+  head.set(http::field::cache_control, "no-store");
+  head.set("X-Content-Type-Options", "nosniff");
+  head.set("X-Frame-Options", "DENY");
+  head.set("Referrer-Policy", "no-referrer");
+  for (const auto& [name, value] : answer.headers) head.set(name, value);
+  return head;
+}
+
+asio::awaitable<void> send(beast::tcp_stream& stream, const annotate::Response& answer,
+                           bool keep_alive) {
+  auto message = head_of<http::span_body<const char>>(answer);
+  message.body() = {answer.body.data(), answer.body.size()};
+  message.keep_alive(keep_alive);
+  message.prepare_payload();
+  co_await http::async_write(stream, message, use_awaitable);
+}
+
+/// Sends an answer to a request whose body is not wanted. Closing with bytes unread would reset the
+/// connection and take the answer with it: they are read, as long as the time of the request lasts.
+asio::awaitable<void> turn_away(beast::tcp_stream& stream, const annotate::Response& answer) {
+  co_await send(stream, answer, false);
+  stream.socket().shutdown(tcp::socket::shutdown_send);
+  std::array<char, 4096> rest;
+  while (true) co_await stream.async_read_some(asio::buffer(rest), use_awaitable);
+}
+
+/// Runs `leave` at the end of a scope.
+template <typename Leave>
+std::shared_ptr<void> at_end(Leave leave) {
+  return {nullptr, [leave](void*) { leave(); }};
 }
 
 }  // namespace
 
+/// One thread serves all connections, so that a slow one keeps nobody waiting; whoever has shown
+/// the token gets answers from the workers. A connection is a coroutine that ends by an exception:
+/// of its end, of its time limit, or of being closed.
 struct HttpServer::Impl {
-  httplib::Server server = {};
-  int port = 0;
-  std::thread thread = {};
-  std::atomic<bool> ended = false;
-  std::atomic<int> streams = 0;
+  annotate::Api* api = nullptr;
   annotate::Events* events = nullptr;
+  annotate::Response page = {.type = "text/html; charset=utf-8"};
 
-  void stream_events(httplib::Response& response);
+  // Of the thread alone. They must outlive the coroutines, which the contexts own.
+  std::list<beast::tcp_stream*> strangers = {};  ///< have not shown the token; the oldest first
+  std::set<asio::steady_timer*> listeners = {};  ///< expire when there is news
+
+  asio::io_context io{1};
+  tcp::acceptor acceptor{io};
+  asio::thread_pool workers{kWorkers};
+  std::thread thread = {};
+
+  asio::awaitable<void> accept();
+  asio::awaitable<void> converse(beast::tcp_stream stream);
+  asio::awaitable<annotate::Response> answer(const annotate::Request& request);
+  asio::awaitable<void> stream_events(beast::tcp_stream& stream);
+  std::optional<annotate::Response> refusal(const Parser& parser,
+                                            const annotate::Request& request) const;
 };
 
 HttpServer::HttpServer(int port) : impl_(std::make_unique<Impl>()) {
-  httplib::Server& server = impl_->server;
-  server.new_task_queue = [] { return new httplib::ThreadPool(kThreads); };
-  server.set_payload_max_length(annotate::kMostBodyBytes);
-  server.set_read_timeout(5);
-  server.set_write_timeout(10);
-  server.set_keep_alive_timeout(3);
-  server.set_keep_alive_max_count(1000);
-  server.set_tcp_nodelay(true);
-  // The library's own choice, SO_REUSEPORT, would let two programs share a port.
-  server.set_socket_options([](socket_t socket) {
-    const int yes = 1;
-    setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
-  });
-  if (port == 0) {
-    impl_->port = server.bind_to_any_port("127.0.0.1");
-  } else if (server.bind_to_port("127.0.0.1", port)) {
-    impl_->port = port;
-  }
-  if (impl_->port <= 0) {
-    throw Error(ErrorKind::kFailure, "port " + std::to_string(port) + " of 127.0.0.1 is taken");
+  const tcp::endpoint here(asio::ip::address_v4::loopback(), static_cast<unsigned short>(port));
+  try {
+    impl_->acceptor.open(here.protocol());
+    impl_->acceptor.set_option(tcp::acceptor::reuse_address(true));
+    impl_->acceptor.bind(here);
+    impl_->acceptor.listen();
+  } catch (const boost::system::system_error& error) {
+    throw Error(ErrorKind::kFailure,
+                "port " + std::to_string(port) + " of 127.0.0.1: " + error.code().message());
   }
 }
 
 HttpServer::~HttpServer() {
-  if (impl_->events) impl_->events->close();
-  impl_->server.stop();
+  if (impl_->events) impl_->events->notify({});
+  impl_->io.stop();
   if (impl_->thread.joinable()) impl_->thread.join();
+  impl_->workers.stop();
+  impl_->workers.join();
 }
 
 int HttpServer::port() const {
-  return impl_->port;
-}
-
-void HttpServer::Impl::stream_events(httplib::Response& response) {
-  if (++streams > kMostStreams) {
-    --streams;
-    fill(response, annotate::error_response(409, "too many windows are open"));
-    return;
-  }
-  response.set_chunked_content_provider(
-      "text/event-stream",
-      [this, next = events->end(), quiet = 0](std::size_t, httplib::DataSink& sink) mutable {
-        std::string text = next == 0 && quiet == 0 ? ": welcome\n\n" : "";
-        std::string news;
-        if (!events->take(next, std::chrono::milliseconds(500), news)) return false;
-        text += news;
-        // A line now and then shows whether the window is still there.
-        quiet = text.empty() ? quiet + 1 : 1;
-        if (quiet % 10 == 0) text = ": still here\n\n";
-        return text.empty() || sink.write(text.data(), text.size());
-      },
-      [this](bool) { --streams; });
+  return impl_->acceptor.local_endpoint().port();
 }
 
 void HttpServer::start(annotate::Api& api, annotate::Events& events, std::string_view page) {
-  impl_->events = &events;
-  httplib::Server& server = impl_->server;
-  server.set_default_headers({{"Cache-Control", "no-store"},
-                              {"X-Content-Type-Options", "nosniff"},
-                              {"X-Frame-Options", "DENY"},
-                              {"Referrer-Policy", "no-referrer"}});
-  server.set_pre_routing_handler([&api](const auto& request, auto& response) {
-    auto refused = api.refuse(request_of(request));
-    if (!refused && !says_its_length(request)) {
-      refused = annotate::error_response(400, "Content-Length is missing");
+  Impl& impl = *impl_;
+  impl.api = &api;
+  impl.events = &events;
+  impl.page.body = page;
+  events.notify([&impl] {
+    asio::post(impl.io, [&impl] {
+      for (asio::steady_timer* listener : impl.listeners) listener->cancel();
+    });
+  });
+  asio::co_spawn(impl.io, impl.accept(), asio::detached);
+  impl.thread = std::thread([&impl] { impl.io.run(); });
+}
+
+asio::awaitable<void> HttpServer::Impl::accept() {
+  asio::steady_timer pause(io);
+  while (true) {
+    boost::system::error_code error;
+    auto socket = co_await acceptor.async_accept(asio::redirect_error(use_awaitable, error));
+    if (!error) {
+      asio::co_spawn(io, converse(beast::tcp_stream(std::move(socket))), asio::detached);
+      continue;
     }
-    if (!refused) return httplib::Server::HandlerResponse::Unhandled;
-    // What is left of its body must not be taken for the next request.
-    response.set_header("Connection", "close");
-    fill(response, std::move(*refused));
-    return httplib::Server::HandlerResponse::Handled;
-  });
-  server.set_error_handler([](const auto&, auto& response) {
-    if (!response.body.empty()) return;
-    const int status = response.status;
-    fill(response, annotate::error_response(status, status == 413 ? "at most 8 MiB are taken"
-                                                                  : "this cannot be answered"));
-  });
-  const auto show_page = [page](const auto&, auto& response) {
-    response.set_content(page.data(), page.size(), "text/html; charset=utf-8");
+    pause.expires_after(std::chrono::milliseconds(100));  // no descriptor is free at the moment
+    co_await pause.async_wait(use_awaitable);
+  }
+}
+
+asio::awaitable<void> HttpServer::Impl::converse(beast::tcp_stream stream) {
+  stream.socket().set_option(tcp::no_delay(true));
+  strangers.push_back(&stream);
+  const auto leaving = at_end([&] { strangers.remove(&stream); });
+  if (strangers.size() > kMostStrangers) {
+    strangers.front()->close();
+    strangers.pop_front();
+  }
+  beast::flat_buffer buffer;
+  bool is_known = false, keep_alive = true;
+  while (keep_alive) {
+    Parser parser;
+    parser.header_limit(kMostHeadBytes);
+    parser.body_limit(std::numeric_limits<std::uint64_t>::max());  // refusal() has a better answer
+    stream.expires_after(is_known ? kRequestTime : kStrangerTime);
+    co_await http::async_read_header(stream, buffer, parser, use_awaitable);
+    annotate::Request request = request_of(parser.get());
+    if (const auto refused = refusal(parser, request)) co_await turn_away(stream, *refused);
+    if (request.path.starts_with("/api") && !is_known) {
+      is_known = true;
+      strangers.remove(&stream);
+      stream.expires_after(kRequestTime);
+    }
+    co_await http::async_read(stream, buffer, parser, use_awaitable);
+    request.body = std::move(parser.get().body());
+    if (request.path == "/api/events") co_await stream_events(stream);
+    keep_alive = parser.keep_alive();
+    if (request.path == "/") {
+      co_await send(stream, page, keep_alive);
+      continue;
+    }
+    const annotate::Response answered = co_await answer(request);
+    stream.expires_never();  // a large download takes its time
+    co_await send(stream, answered, keep_alive);
+  }
+}
+
+/// What a request gets whose body is not read.
+std::optional<annotate::Response> HttpServer::Impl::refusal(
+    const Parser& parser, const annotate::Request& request) const {
+  if (auto refused = api->refuse(request)) return refused;
+  if (request.method != "GET" && request.method != "POST") {
+    return annotate::error_response(404, "GET or POST");
+  }
+  if (!request.path.starts_with("/api") && (request.path != "/" || request.method != "GET")) {
+    return annotate::error_response(404, "nothing is there");
+  }
+  if (parser.chunked()) return annotate::error_response(400, "Content-Length is missing");
+  if (parser.content_length().value_or(0) > annotate::kMostBodyBytes) {
+    return annotate::error_response(413, "at most 8 MiB are taken");
+  }
+  return {};
+}
+
+/// On a worker's thread.
+asio::awaitable<annotate::Response> HttpServer::Impl::answer(const annotate::Request& request) {
+  const auto work = [this, &request]() -> asio::awaitable<annotate::Response> {
+    co_return api->handle(request);
   };
-  server.Get("/", show_page);
-  server.Get("/api/events",
-             [impl = impl_.get()](const auto&, auto& response) { impl->stream_events(response); });
-  const auto answer = [&api](const auto& request, auto& response) {
-    fill(response, api.handle(request_of(request)));
-  };
-  server.Get("/api/.*", answer);
-  server.Post("/api/.*", answer);
-  impl_->thread = std::thread([impl = impl_.get()] {
-    impl->server.listen_after_bind();
-    impl->ended = true;
-  });
-  // Told to stop before it runs, the library would not hear it.
-  while (!server.is_running() && !impl_->ended) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  co_return co_await asio::co_spawn(workers, work, use_awaitable);
+}
+
+asio::awaitable<void> HttpServer::Impl::stream_events(beast::tcp_stream& stream) {
+  asio::steady_timer news(io);
+  listeners.insert(&news);
+  const auto leaving = at_end([&] { listeners.erase(&news); });
+  std::uint64_t next = events->end();
+  auto head = head_of<http::empty_body>({.type = "text/event-stream"});
+  head.keep_alive(false);
+  http::response_serializer<http::empty_body> writer(head);
+  stream.expires_after(kEventTime);
+  co_await http::async_write_header(stream, writer, use_awaitable);
+  for (std::string text = ": welcome\n\n"; true; text = events->take(next)) {
+    if (text.empty()) {
+      boost::system::error_code cancelled;
+      news.expires_after(kQuietTime);
+      co_await news.async_wait(asio::redirect_error(use_awaitable, cancelled));
+      text = cancelled ? events->take(next) : ": still here\n\n";
+    }
+    stream.expires_after(kEventTime);
+    co_await asio::async_write(stream, asio::buffer(text), use_awaitable);
   }
 }
 

@@ -1,18 +1,18 @@
 #pragma once
 
-#include <functional>
 #include <memory>
-#include <string>
 #include <string_view>
 
 #include "pcednet/annotate/api.h"
 
 namespace pcednet::app {
 
-/// Takes requests on 127.0.0.1 alone and hands them to an Api.
+/// Takes requests on 127.0.0.1 alone and hands those with the token to an Api. Connections that do
+/// not show it can neither fill its threads nor its memory: they are at most 100, of which the
+/// oldest makes room for a new one, and have five seconds for a request and its answer.
 class HttpServer {
  public:
-  /// `port` 0 is any free one. Throws Error(kFailure) if it is taken.
+  /// `port` 0 is any free one. Throws Error(kFailure) if it cannot be had.
   explicit HttpServer(int port);
   ~HttpServer();
   HttpServer(const HttpServer&) = delete;

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
+#include <ranges>
 #include <vector>
 
 #include "pcednet/core/error.h"
@@ -23,21 +23,30 @@ std::vector<fs::path> model_folders() {
 
 }  // namespace
 
+std::map<std::string, fs::path> shipped_models() {
+  std::map<std::string, fs::path> models;
+  std::error_code error;
+  for (const fs::path& folder : model_folders()) {
+    for (const auto& entry : fs::directory_iterator(folder, error)) {
+      if (entry.path().extension() == ".safetensors") {
+        models.emplace(entry.path().stem().string(), entry.path());
+      }
+    }
+  }
+  return models;
+}
+
 fs::path find_model(const std::string& name_or_file) {
   std::error_code error;
   if (fs::is_regular_file(name_or_file, error)) return name_or_file;
-  std::vector<std::string> known;
-  for (const fs::path& folder : model_folders()) {
-    const fs::path model = folder / (name_or_file + ".safetensors");
-    if (fs::is_regular_file(model, error)) return model;
-    for (const auto& entry : fs::directory_iterator(folder, error)) {
-      if (entry.path().extension() == ".safetensors") known.push_back(entry.path().stem().string());
-    }
-  }
-  std::sort(known.begin(), known.end());
-  known.erase(std::unique(known.begin(), known.end()), known.end());
+  const auto models = shipped_models();
+  if (const auto found = models.find(name_or_file); found != models.end()) return found->second;
   throw Error(ErrorKind::kUsage, fmt::format("{}: neither a file nor a shipped model ({})",
-                                             name_or_file, fmt::join(known, ", ")));
+                                             name_or_file, names_of(models)));
+}
+
+std::string names_of(const std::map<std::string, fs::path>& models) {
+  return fmt::format("{}", fmt::join(std::views::keys(models), ", "));
 }
 
 }  // namespace pcednet::app

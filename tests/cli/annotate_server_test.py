@@ -1,11 +1,14 @@
 """The annotator's server on the loopback: who is answered, what is painted, what survives."""
 import http.client
+import itertools
 import json
+import os
 import pathlib
 import re
 import signal
 import socket
 import subprocess
+import sys
 import threading
 import time
 import unittest
@@ -21,10 +24,11 @@ from support import CliTest, read_ply, run, write_ply
 class Server:
     """A running `pcednet annotate`."""
 
-    def __init__(self, cloud, *options):
+    def __init__(self, cloud, *options, environment=None):
+        browser = [] if environment else ["--no-browser"]
         self.process = subprocess.Popen(
-            [support.PROGRAM, "annotate", str(cloud), "--no-browser", "--progress", "none", *options],
-            stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+            [support.PROGRAM, "annotate", str(cloud), *browser, "--progress", "none", *options],
+            stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment)
         line = self.process.stdout.readline()
         found = re.fullmatch(r"http://127\.0\.0\.1:(\d+)/\?token=([0-9a-f]{32})\n", line)
         if not found:
@@ -85,6 +89,11 @@ class Server:
                 self.request(f"/api/node/{node['id']}/values?of=labels")[2], np.uint8))
         return np.concatenate(places), np.concatenate(labels)
 
+    def memory(self):
+        """Bytes in use."""
+        status = pathlib.Path(f"/proc/{self.process.pid}/status").read_text()
+        return 1024 * int(re.search(r"VmRSS:\s+(\d+)", status)[1])
+
     def end(self):
         self.process.send_signal(signal.SIGINT)
         _, errors = self.process.communicate(timeout=60)
@@ -93,6 +102,36 @@ class Server:
     def kill(self):
         self.process.kill()
         self.process.communicate()
+
+
+class Drip:
+    """Connections that send the head of a request byte by byte and never come to its end."""
+
+    def __init__(self, server, count):
+        self.head = itertools.cycle(f"GET /api/session HTTP/1.1\r\nHost: 127.0.0.1:{server.port}\r\n"
+                                    f"X-Drip: ".encode() + b"x" * 100)
+        self.open = [socket.create_connection(("127.0.0.1", server.port)) for _ in range(count)]
+        for s in self.open:
+            s.setblocking(False)
+
+    def step(self):
+        """One more byte each; leaves out those that the server has closed."""
+        byte = bytes([next(self.head)])
+        for s in list(self.open):
+            try:
+                s.send(byte)
+                if s.recv(1000) != b"":
+                    continue
+            except BlockingIOError:
+                continue
+            except OSError:
+                pass
+            self.open.remove(s)
+            s.close()
+
+    def close(self):
+        for s in self.open:
+            s.close()
 
 
 def brush(name, edge_class, centres, radius=0.1, **more):
@@ -118,8 +157,8 @@ class AnnotateServer(CliTest):
                 server.kill()
         super().tearDown()
 
-    def serve(self, *options):
-        self.servers.append(Server(self.cloud, *options))
+    def serve(self, *options, environment=None):
+        self.servers.append(Server(self.cloud, *options, environment=environment))
         return self.servers[-1]
 
     def quiet(self):
@@ -184,6 +223,131 @@ class AnnotateServer(CliTest):
         self.assertLess(time.monotonic() - start, 4)
         for s in sockets:
             s.close()
+
+    def test_is_not_held_up_by_connections_that_drip_without_the_token(self):
+        server = self.quiet()
+        server.post("/api/stroke", brush("a", 2, EDGE))
+        for count in (50, 100, 300):  # 50 leave room for others: the time limit alone ends them
+            memory = server.memory()
+            drip = Drip(server, count)
+            self.addCleanup(drip.close)
+            start = time.monotonic()
+            slowest = 0
+            while drip.open and time.monotonic() < start + 10:
+                drip.step()
+                if slowest > 0:  # an answer shows that all were accepted; the oldest have made room
+                    self.assertLessEqual(len(drip.open), 101)
+                asked = time.monotonic()
+                server.get("/api/runs")
+                self.assertEqual(server.request("/")[0], 200)
+                slowest = max(slowest, time.monotonic() - asked)
+                self.assertLess(server.memory(), memory + (16 << 20))
+                time.sleep(0.1)
+            self.assertLess(slowest, 1)
+            self.assertEqual(len(drip.open), 0, "they are still connected after ten seconds")
+
+    def test_reads_no_head_without_an_end(self):
+        server = self.serve()
+        with socket.create_connection(("127.0.0.1", server.port), timeout=4) as endless:
+            with self.assertRaises(OSError):
+                endless.sendall(b"GET /api/session HTTP/1.1\r\nX-Long: " + b"x" * (64 << 20))
+
+    def test_takes_only_bodies_that_say_their_length(self):
+        server = self.quiet()
+        body = iter([b"{}"])  # urllib sends it in chunks
+        self.assertEqual(server.request("/api/undo", body)[0], 400)
+
+    def test_hands_the_token_to_the_browser_where_nobody_else_can_read_it(self):
+        programs, runtime, given = (self.folder / name for name in ("bin", "run", "given.json"))
+        programs.mkdir()
+        runtime.mkdir()
+        opener = programs / "xdg-open"
+        opener.write_text(f"""#!{sys.executable}
+import json, os, pathlib, sys
+file = pathlib.Path(sys.argv[1])
+modes = [path.stat().st_mode & 0o777 for path in (file, file.parent)]
+told = dict(words=sys.argv[1:], environment=dict(os.environ), modes=modes, text=file.read_text())
+half = pathlib.Path({str(given)!r} + ".part")
+half.write_text(json.dumps(told))
+half.rename({str(given)!r})
+""")
+        opener.chmod(0o755)
+        environment = {**os.environ, "PATH": f"{programs}:{os.environ['PATH']}",
+                       "XDG_RUNTIME_DIR": str(runtime)}
+        for ask in (True, False):
+            given.unlink(missing_ok=True)
+            server = self.serve(environment=environment)
+            end = time.monotonic() + 30
+            while not given.exists() and time.monotonic() < end:
+                time.sleep(0.01)
+            told = json.loads(given.read_text())
+            self.assertNotIn(server.token, json.dumps([told["words"], told["environment"]]))
+            self.assertEqual(told["modes"], [0o600, 0o700])
+            self.assertIn(f"url=http://127.0.0.1:{server.port}/?token={server.token}\"", told["text"])
+            self.assertTrue(pathlib.Path(told["words"][0]).is_relative_to(runtime))
+            if ask:  # once a page has come, or at the end, nothing is left of it
+                server.open()
+                while list(runtime.iterdir()) and time.monotonic() < end:
+                    time.sleep(0.01)
+                self.assertEqual(list(runtime.iterdir()), [])
+            self.assertEqual(server.end()[0], 0)
+            self.assertEqual(list(runtime.iterdir()), [])
+
+    def test_saves_under_plain_names_only(self):
+        server = self.quiet()
+        server.post("/api/stroke", brush("a", 2, EDGE))
+        before = {path: path.read_bytes() for path in self.folder.rglob("*") if path.is_file()}
+        journal = "cube_annotation.json.journal"
+        self.assertIn(self.folder / journal, before)
+        for what, name in (("cloud", f"{journal}\0.ply"), ("cloud", "cube.ply\0.ply"), ("cloud", "a\n.ply"),
+                           ("cloud", "a\x7f.ply"), ("cloud", "../a.ply"), ("cloud", "/tmp/a.ply"),
+                           ("cloud", "a/../a.ply"), ("cloud", ".pcednet/a.ply"), ("cloud", ".a.ply"),
+                           ("cloud", "..\\a.ply"), ("cloud", "a" * 250 + ".ply"), ("cloud", "cube.ply"),
+                           ("cloud", journal), ("project", journal), ("project", f"{journal}\0.json"),
+                           ("model", "cube.ply"), ("cloud", "a"), ("cloud", 7), ("cloud", None)):
+            wanted = {"what": what, "name": name, "overwrite": True}
+            self.assertIn("error", server.post("/api/save", wanted, expect=400), name)
+        raw = b'{"what": "cloud", "name": "\xff\xfe.ply"}'
+        self.assertEqual(server.request("/api/save", raw)[0], 400)
+        os.link(self.folder / journal, self.folder / "other.ply")
+        server.post("/api/save", {"what": "cloud", "name": "other.ply", "overwrite": True}, expect=400)
+        (self.folder / "other.ply").unlink()
+        self.assertEqual({path: path.read_bytes() for path in self.folder.rglob("*") if path.is_file()},
+                         before)
+        saved = server.post("/api/save", {"what": "cloud", "name": "K\u00e4se \u26f0.ply"})["path"]
+        self.assertEqual(len(read_ply(saved)[0]), 20000)
+        self.assertEqual(server.end()[0], 0)
+        # A project with an unusual name is not taken for a cloud that may be replaced.
+        server = self.serve("--project", str(self.folder / "strokes.ply"))
+        server.open()
+        server.post("/api/stroke", brush("a", 2, EDGE))
+        server.post("/api/save", {"what": "project"})
+        server.post("/api/save", {"what": "cloud", "name": "strokes.ply", "overwrite": True}, expect=400)
+
+    def test_begins_with_shipped_models_and_the_one_that_the_user_named_only(self):
+        server = self.quiet()
+        server.post("/api/stroke", brush("edge", 2, EDGE, radius=0.05))
+        server.post("/api/stroke", brush("face", 0, FACE, radius=0.15))
+        server.post("/api/train")
+        server.until("/api/runs", lambda r: len(r) == 1)
+        mine = server.post("/api/save", {"what": "model", "name": "mine.safetensors"})["path"]
+        secret = self.folder / "secret.txt"
+        secret.write_text("open sesame")
+        scan = str(support.SOURCE / "models/scan.safetensors")
+        for start in (str(secret), mine, scan, "secret.txt", "../models/scan", "scan\0", "", "/etc/passwd",
+                      "/dev/zero", 7):
+            told = server.post("/api/settings", {"start": start}, expect=400)["error"]
+            self.assertNotIn("sesame", told)
+            if start and start != 7:
+                self.assertNotIn(start, told)
+                self.assertIn("cad, scan, worn", told)
+        for start in ("scan", "cad", "worn", "random"):
+            self.assertEqual(server.post("/api/settings", {"start": start})["start"], start)
+        server.end()
+        server = self.serve("--model", mine)
+        server.open()
+        self.assertEqual(server.post("/api/settings", {"start": mine})["start"], mine)
+        server.post("/api/settings", {"start": str(secret)}, expect=400)
 
     def test_paints_the_points_of_the_brush_and_takes_them_back(self):
         server = self.quiet()
@@ -360,6 +524,12 @@ class AnnotateServer(CliTest):
             lines.append(answer.fp.readline())
             lines.append(answer.fp.readline())
         self.assertTrue(any(line == b"event: labels\n" for line in lines), lines)
+        # A window that listens, and whoever drips, does not keep the program from ending.
+        drip = Drip(server, 20)
+        self.addCleanup(drip.close)
+        start = time.monotonic()
+        self.assertEqual(server.end()[0], 0)
+        self.assertLess(time.monotonic() - start, 4)
         stream.close()
 
     def test_takes_no_cache_that_is_damaged(self):

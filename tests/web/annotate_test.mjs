@@ -8,6 +8,7 @@ import fs from "node:fs";
 import os from "node:os";
 import path from "node:path";
 import { after, before, test } from "node:test";
+import { pathToFileURL } from "node:url";
 
 import { painted, readPly, roof, writeRoof } from "./annotate_cloud.mjs";
 import { launch } from "./browser.mjs";
@@ -23,10 +24,12 @@ function pcednet(...words) {
   assert.equal(done.status, 0, `pcednet ${words.join(" ")}: ${done.stderr}`);
 }
 
-/** Starts the server; its process and the address that it prints. */
-function serve(...words) {
+/** Starts the server; its process and the address that it prints. `environment`: that opens a browser. */
+function serve(words = [], environment) {
   return new Promise((done, fail) => {
-    const process_ = spawn(process.env.PCEDNET, ["annotate", input, "--no-browser", ...words]);
+    const browser = environment ? [] : ["--no-browser"];
+    const process_ = spawn(process.env.PCEDNET, ["annotate", input, ...browser, ...words],
+      { env: { ...process.env, ...environment } });
     let text = "", errors = "";
     process_.stdout.on("data", (data) => {
       text += data;
@@ -44,15 +47,16 @@ async function stop() {
   await ended;
 }
 
-async function open() {
+async function open(address = server.address) {
   const opened = await browser.newPage({ viewport: { width: 1280, height: 720 } });
   opened.setDefaultTimeout(120_000);
   opened.on("console", (m) => ["error", "warning"].includes(m.type()) && !/GPU stall|GL Driver Message/.test(m.text()) &&
     complaints.push(m.text()));
   opened.on("pageerror", (e) => complaints.push(e.message));
-  opened.on("request", (r) => !r.url().startsWith(new URL(server.address).origin) && !/^(data|blob):/.test(r.url()) &&
+  opened.on("request", (r) => !r.url().startsWith(new URL(server.address).origin) && !/^(data|blob):/.test(r.url()) && r.url() !== address &&
     complaints.push(`asks for ${r.url()}`));
-  await opened.goto(server.address);
+  await opened.goto(address);
+  await opened.waitForURL(server.address);
   await settled(opened);
   return opened;
 }
@@ -341,12 +345,20 @@ test("gives the same on the command line: model, classes", () => {
   assert.deepEqual(readPly(classified).column("scalar_edge_class"), readPly(saved.cloud).column("scalar_edge_class"));
 });
 
-test("opens the project as it was left", async () => {
+test("opens the project as it was left, in a browser that the desktop starts", async () => {
   const counts = await state("counts");
   await page.close();
   await stop();
-  server = await serve("--project", saved.project);
-  page = await open();
+  const programs = path.join(folder, "bin");
+  fs.mkdirSync(programs);
+  fs.writeFileSync(path.join(programs, "xdg-open"), `#!/bin/sh\nprintf %s "$1" > ${folder}/given\n`, { mode: 0o755 });
+  server = await serve(["--project", saved.project],
+    { PATH: `${programs}:${process.env.PATH}`, XDG_RUNTIME_DIR: folder });
+  const given = path.join(folder, "given");
+  for (let i = 0; i < 500 && !(fs.existsSync(given) && fs.statSync(given).size > 0); ++i) {
+    await new Promise((done) => setTimeout(done, 20));
+  }
+  page = await open(pathToFileURL(fs.readFileSync(given, "utf8")).href);
   assert.deepEqual(await state("counts"), counts);
   assert.ok((await state("undo")) > 0);
 });

@@ -1,21 +1,17 @@
 #include <fmt/format.h>
-#include <spawn.h>
-#include <sys/wait.h>
-
 #include <chrono>
 #include <cstdio>
 #include <fstream>
 #include <memory>
 #include <thread>
 
+#include "browser.h"
 #include "commands.h"
 #include "http_server.h"
 #include "models.h"
 #include "pcednet/annotate/api.h"
 #include "pcednet/core/error.h"
 #include "web_pages.h"
-
-extern char** environ;
 
 namespace pcednet::app {
 namespace {
@@ -40,13 +36,23 @@ std::string make_token() {
   return token;
 }
 
-/// Leaves the page to the desktop; where there is none, the URL is on the screen.
-void open_browser(const std::string& url) {
-  std::string program = "xdg-open", argument = url;
-  char* const arguments[] = {program.data(), argument.data(), nullptr};
-  pid_t child = 0;
-  if (posix_spawnp(&child, "xdg-open", nullptr, nullptr, arguments, environ) != 0) return;
-  std::thread([child] { waitpid(child, nullptr, 0); }).detach();
+/// Without a browser the user still has the address on the screen.
+std::unique_ptr<BrowserTab> open_browser(const std::string& url) {
+  try {
+    return std::make_unique<BrowserTab>(url);
+  } catch (const Error& error) {
+    warn(std::string("no browser is opened: ") + error.what());
+    return {};
+  }
+}
+
+/// A page may ask for a shipped model, and for no other file of the machine.
+fs::path find_shipped(const std::string& name) {
+  const auto models = shipped_models();
+  if (const auto found = models.find(name); found != models.end()) return found->second;
+  throw Error(ErrorKind::kUsage, fmt::format("start: random, the model that --model names, or one "
+                                             "of {}",
+                                             names_of(models)));
 }
 
 annotate::SessionOptions session_options(const AnnotateArguments& arguments, const Common& common,
@@ -66,7 +72,9 @@ annotate::SessionOptions session_options(const AnnotateArguments& arguments, con
   options.cache_folder = input.parent_path() / ".pcednet";
   options.model = arguments.model;
   options.overwrite = common.overwrite_files;
-  options.load_model = [](const std::string& name) { return detect::load_model(find_model(name)); };
+  options.load_model = [given = arguments.model](const std::string& name) {
+    return detect::load_model(name == given ? find_model(given) : find_shipped(name));
+  };
   options.emit = [&events](const std::string& name, const std::string& json) {
     events.add(name, json);
     if (name == "ready") say("ready; Ctrl-C ends, and nothing painted is lost");
@@ -94,9 +102,10 @@ void annotate_cloud(const AnnotateArguments& arguments, const Common& common) {
   const std::string url = fmt::format("http://127.0.0.1:{}/?token={}", server->port(), token);
   fmt::print("{}\n", url);
   std::fflush(stdout);
-  if (!arguments.no_browser) open_browser(url);
+  auto tab = arguments.no_browser ? nullptr : open_browser(url);
   const auto cancelled = console_progress(common).cancelled;
   while (!cancelled()) {
+    if (api.was_opened()) tab.reset();
     session.is_ready();  // throws what went wrong with loading
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
   }

@@ -3,12 +3,14 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "pcednet/annotate/not_found.h"
 #include "pcednet/core/error.h"
 
 namespace pcednet::annotate {
@@ -63,8 +65,6 @@ int status_of(ErrorKind kind) {
   switch (kind) {
     case ErrorKind::kUsage:
       return 400;
-    case ErrorKind::kUnreadable:
-      return 404;
     case ErrorKind::kInsufficient:
     case ErrorKind::kModelMismatch:
       return 409;
@@ -80,6 +80,15 @@ Saved saved_of(const std::string& what) {
   throw Error(ErrorKind::kUsage, "what: cloud, model or project");
 }
 
+Shown shown_of(const std::string& of) {
+  if (of == "labels") return Shown::kLabels;
+  if (of == "prediction") return Shown::kPrediction;
+  if (of == "confidence") return Shown::kConfidence;
+  if (of == "p_sharp") return Shown::kPSharp;
+  if (of == "feature") return Shown::kFeature;
+  throw Error(ErrorKind::kUsage, "of: labels, prediction, confidence, p_sharp or feature");
+}
+
 /// What is between `before` and `after` in `path`, if it has this form and that is a name.
 std::optional<std::string> between(const std::string& path, std::string_view before,
                                    std::string_view after) {
@@ -90,6 +99,13 @@ std::optional<std::string> between(const std::string& path, std::string_view bef
   std::string name = path.substr(before.size(), path.size() - before.size() - after.size());
   if (name.find('/') != std::string::npos) return {};
   return name;
+}
+
+/// A header that offers a file. The input's name, of which `name` is made, may hold any bytes.
+std::string attachment(std::string name) {
+  const auto breaks = [](unsigned char c) { return c < ' ' || c == 127 || c == '"' || c == '\\'; };
+  std::replace_if(name.begin(), name.end(), breaks, '_');
+  return "attachment; filename=\"" + name + "\"";
 }
 
 Response json_response(std::string json) {
@@ -131,6 +147,8 @@ Response Api::handle(const Request& request) {
     if (request.method == "GET") return get(request);
     if (request.method == "POST") return post(request);
     return error_response(404, "GET or POST");
+  } catch (const NotFound& error) {
+    return error_response(404, error.what());
   } catch (const Error& error) {
     return error_response(status_of(error.kind()), error.what());
   } catch (const Json::exception& error) {
@@ -195,6 +213,11 @@ Response Api::post(const Request& request) {
   return error_response(404, path + ": nothing is there");
 }
 
+bool Api::was_opened() const {
+  const std::lock_guard lock(mutex_);
+  return windows_ > 0;
+}
+
 Response Api::open_window() {
   const std::lock_guard lock(mutex_);
   const std::string window = fmt::format("w{}", ++windows_);
@@ -217,8 +240,8 @@ Response Api::values(const Request& request, const std::vector<std::size_t>& nod
     const std::string text = value_of(request.query, name);
     return text.empty() ? 0 : number_of<int>(text, name);
   };
-  const auto values =
-      session_.values(value_of(request.query, "of"), nodes, number("feature"), number("scale"));
+  const auto values = session_.values(shown_of(value_of(request.query, "of")), nodes,
+                                      number("feature"), number("scale"));
   return {.type = "application/octet-stream",
           .body = std::string(values.bytes.begin(), values.bytes.end()),
           .headers = {{"X-Version", std::to_string(values.version)}}};
@@ -265,8 +288,7 @@ Response Api::download(const std::string& name) const {
   std::ifstream stream(file, std::ios::binary);
   return {.type = "application/octet-stream",
           .body = std::string(std::istreambuf_iterator<char>(stream), {}),
-          .headers = {{"Content-Disposition",
-                       fmt::format("attachment; filename=\"{}\"", target.filename().string())}}};
+          .headers = {{"Content-Disposition", attachment(target.filename().string())}}};
 }
 
 }  // namespace pcednet::annotate

@@ -43,6 +43,9 @@ class Api {
   /// The answer to any request under /api but /api/events.
   Response handle(const Request& request);
 
+  /// Whether a page has come so far as to ask for a window's name.
+  bool was_opened() const;
+
  private:
   Response get(const Request& request);
   Response post(const Request& request);

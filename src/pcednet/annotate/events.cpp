@@ -10,21 +10,16 @@ constexpr std::size_t kMostKept = 1000;
 }  // namespace
 
 void Events::add(const std::string& name, const std::string& json) {
-  {
-    const std::lock_guard lock(mutex_);
-    recent_.push_back("event: " + name + "\ndata: " + json + "\n\n");
-    ++end_;
-    if (recent_.size() > kMostKept) recent_.pop_front();
-  }
-  changed_.notify_all();
+  const std::lock_guard lock(mutex_);
+  recent_.push_back("event: " + name + "\ndata: " + json + "\n\n");
+  ++end_;
+  if (recent_.size() > kMostKept) recent_.pop_front();
+  if (on_news_) on_news_();
 }
 
-void Events::close() {
-  {
-    const std::lock_guard lock(mutex_);
-    closed_ = true;
-  }
-  changed_.notify_all();
+void Events::notify(std::function<void()> on_news) {
+  const std::lock_guard lock(mutex_);
+  on_news_ = std::move(on_news);
 }
 
 std::uint64_t Events::end() const {
@@ -32,13 +27,12 @@ std::uint64_t Events::end() const {
   return end_;
 }
 
-bool Events::take(std::uint64_t& next, std::chrono::milliseconds patience, std::string& text) {
-  std::unique_lock lock(mutex_);
-  changed_.wait_for(lock, patience, [&] { return closed_ || next < end_; });
-  text.clear();
+std::string Events::take(std::uint64_t& next) const {
+  const std::lock_guard lock(mutex_);
+  std::string text;
   next = std::max(next, end_ - recent_.size());
   for (; next < end_; ++next) text += recent_[recent_.size() - (end_ - next)];
-  return !closed_;
+  return text;
 }
 
 }  // namespace pcednet::annotate

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pcednet/annotate/not_found.h"
 #include "pcednet/core/error.h"
 #include "pcednet/gls/scales.h"
 #include "pcednet/io/read_cloud.h"
@@ -67,7 +68,7 @@ std::vector<std::uint8_t> feature_bytes(const Described& described,
   const auto names = gls::column_names(described.descriptor);
   const int features = static_cast<int>(names.size());
   if (feature < 0 || feature >= features || scale < 0 || scale >= described.descriptor.scales) {
-    throw Error(ErrorKind::kUnreadable, fmt::format("no feature {} at scale {}", feature, scale));
+    throw NotFound(fmt::format("no feature {} at scale {}", feature, scale));
   }
   const bool is_share = names[static_cast<std::size_t>(feature)].ends_with("phi");
   const auto width = static_cast<std::size_t>(described.descriptor.scales * features);

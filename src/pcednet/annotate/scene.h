@@ -45,7 +45,7 @@ std::shared_ptr<const Prediction> predict(const Scene& scene, const Described& d
 
 /// A byte per point of a node, for colouring: feature `feature` at scale `scale` of a description.
 /// phi is mapped from 0 ... 1 to 0 ... 255, any other value x by (1 + x / (1 + |x|)) / 2; 0 where
-/// there is no description. Throws Error(kUnreadable) if there is no such feature or scale.
+/// there is no description. Throws NotFound if there is no such feature or scale.
 std::vector<std::uint8_t> feature_bytes(const Described& described,
                                         std::span<const std::uint32_t> points, int feature,
                                         int scale);

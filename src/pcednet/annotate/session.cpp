@@ -4,6 +4,7 @@
 #include <set>
 
 #include "pcednet/annotate/learn.h"
+#include "pcednet/annotate/not_found.h"
 #include "pcednet/annotate/session_state.h"
 #include "pcednet/core/error.h"
 #include "pcednet/detect/result_cloud.h"
@@ -15,8 +16,31 @@ namespace fs = std::filesystem;
 using Json = nlohmann::json;
 using Lock = std::unique_lock<std::mutex>;
 
+namespace {
+
+/// Whether `name` is that of a file, not of a folder or of a hidden file, to every function that
+/// takes it: one ends it at a NUL byte, another at a slash. JSON has seen to it that it is UTF-8.
+bool is_plain(const std::string& name) {
+  const auto is_odd = [](unsigned char c) { return c < ' ' || c == 127 || c == '/' || c == '\\'; };
+  return !name.empty() && name.size() <= 200 && name[0] != '.' &&
+         std::none_of(name.begin(), name.end(), is_odd);
+}
+
+bool fits(Saved what, const std::string& extension) {
+  if (what == Saved::kModel) return extension == ".safetensors";
+  if (what == Saved::kProject) return extension == ".json";
+  return extension == ".ply" || extension == ".pcd" || extension == ".obj" || extension == ".xyz" ||
+         extension == ".csv";
+}
+
+}  // namespace
+
 fs::path default_project(const fs::path& input) {
   return input.parent_path() / (input.stem().string() + "_annotation.json");
+}
+
+fs::path journal_of(fs::path project) {
+  return project += ".journal";
 }
 
 Session::Session(SessionOptions options) : state_(std::make_unique<State>(std::move(options))) {
@@ -77,7 +101,7 @@ void Session::State::interrupt() {
   changed.notify_all();
 }
 
-/// After a change of what is to be learnt.
+/// After a change of what is to be learnt: training waits half a second for the next stroke.
 void Session::State::schedule() {
   if (settings.automatic) {
     interrupt();
@@ -188,7 +212,7 @@ void Session::restore(int run) {
   State& s = *state_;
   s.check_ready();
   if (s.find_run(run) == s.runs.end()) {
-    throw Error(ErrorKind::kUnreadable, fmt::format("there is no run {}", run));
+    throw NotFound(fmt::format("there is no run {}", run));
   }
   s.interrupt();
   s.restore = run;
@@ -196,29 +220,23 @@ void Session::restore(int run) {
 
 fs::path Session::target(Saved what, const std::string& name) const {
   const fs::path& input = state_->options.input;
-  if (name.empty()) {
-    if (what == Saved::kProject) return state_->options.project;
-    return input.parent_path() /
-           (input.stem().string() + (what == Saved::kCloud ? "_annotated.ply" : ".safetensors"));
-  }
-  const fs::path file(name);
-  const bool plain = file.filename() == file && name[0] != '.' &&
-                     name.find_first_of("/\\") == std::string::npos && name.size() <= 200;
-  const std::string extension = file.extension().string();
-  const bool fits = what == Saved::kCloud
-                        ? extension == ".ply" || extension == ".pcd" || extension == ".obj" ||
-                              extension == ".xyz" || extension == ".csv"
-                    : what == Saved::kModel ? extension == ".safetensors"
-                                            : extension == ".json";
-  if (!plain || !fits) {
+  const fs::path& project = state_->options.project;
+  if (!name.empty() && !(is_plain(name) && fits(what, fs::path(name).extension().string()))) {
     throw Error(ErrorKind::kUsage,
                 "name: a file name without folder, ending in .ply, .pcd, .obj, .xyz or .csv for a "
                 "cloud, .safetensors for a model, .json for a project");
   }
-  const fs::path path = input.parent_path() / file;
-  std::error_code error;
-  if (fs::equivalent(path, input, error)) {
-    throw Error(ErrorKind::kUsage, "name: the input itself is never overwritten");
+  fs::path path = input.parent_path() / name;
+  if (name.empty()) {
+    if (what == Saved::kProject) return project;
+    path /= input.stem().string() + (what == Saved::kCloud ? "_annotated.ply" : ".safetensors");
+  }
+  for (const fs::path& kept : {input, journal_of(project), project}) {
+    std::error_code error;
+    if ((what != Saved::kProject || kept != project) && fs::equivalent(path, kept, error)) {
+      throw Error(ErrorKind::kUsage,
+                  fmt::format("name: {} itself is never overwritten", kept.filename().string()));
+    }
   }
   return path;
 }

@@ -19,7 +19,8 @@ struct SessionOptions {
   std::filesystem::path cache_folder = {};  ///< empty: descriptions are not kept
   std::string model = {};                   ///< to classify with at once; empty: none
   bool overwrite = false;                   ///< saving replaces files without being asked to
-  /// The model behind a name of Settings::start or `model`; throws for one that is not known.
+  /// The model behind `model` or a name of Settings::start, which the page gives: throws, and opens
+  /// no file, for any that it may not have.
   std::function<detect::EdgeModel(const std::string& name)> load_model = {};
   /// Is told of every event with its JSON, from any thread; must not call the session.
   std::function<void(const std::string& name, const std::string& json)> emit = {};
@@ -28,14 +29,18 @@ struct SessionOptions {
 /// `<stem>_annotation.json` beside the input.
 std::filesystem::path default_project(const std::filesystem::path& input);
 
+/// `<project>.journal`.
+std::filesystem::path journal_of(std::filesystem::path project);
+
 enum class Saved { kCloud, kModel, kProject };
+enum class Shown { kLabels, kPrediction, kConfidence, kPSharp, kFeature };
 
 /// An annotation of one cloud while it lasts: loading, painting, training, saving. Loading and
 /// training run on a thread of its own; every function may be called from any thread. The journal
 /// is beside the project: what a stroke's answer reports survives the end of the program.
 ///
 /// Answers are JSON as docs/annotate.md describes. Errors: kUsage for a request that makes no
-/// sense, kUnreadable for what is not there, kInsufficient for what is not possible now.
+/// sense, NotFound for what is not there, kInsufficient for what is not possible now.
 class Session {
  public:
   explicit Session(SessionOptions options);
@@ -56,9 +61,8 @@ class Session {
     std::vector<std::uint8_t> bytes = {};
     int version = 0;
   };
-  /// A byte per point of the nodes; `of` is labels, prediction, confidence, p_sharp or feature.
-  Values values(const std::string& of, const std::vector<std::size_t>& nodes, int feature,
-                int scale) const;
+  /// A byte per point of the nodes; `feature` and `scale` choose a Shown::kFeature.
+  Values values(Shown what, const std::vector<std::size_t>& nodes, int feature, int scale) const;
 
   std::string paint(const Stroke& stroke);
   std::string undo();
@@ -72,7 +76,9 @@ class Session {
   std::string uncertain(std::size_t after) const;
   std::string pick(const Vec3& local_origin, const Vec3& direction, double radius) const;
 
-  /// Where `what` goes: `name` (a file name) or the usual one, beside the input.
+  /// Where `what` goes: `name` or the usual one, beside the input. Throws Error(kUsage) unless
+  /// `name` is a plain file name of `what` that is neither the input, its journal nor another's
+  /// project.
   std::filesystem::path target(Saved what, const std::string& name) const;
 
   /// Writes `what` to `path` and returns the bytes written.

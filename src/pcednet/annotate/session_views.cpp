@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pcednet/annotate/not_found.h"
 #include "pcednet/annotate/places.h"
 #include "pcednet/annotate/session_state.h"
 #include "pcednet/core/error.h"
@@ -120,49 +121,39 @@ std::vector<std::byte> Session::node_points(std::size_t node) const {
     scene = state_->scene;
   }
   if (node >= scene->layout.nodes.size()) {
-    throw Error(ErrorKind::kUnreadable, fmt::format("there is no node {}", node));
+    throw NotFound(fmt::format("there is no node {}", node));
   }
   return encode_points(scene->layout, scene->layout.nodes[node], scene->cloud.positions,
                        scene->prepared.normals, scene->cloud.colours);
 }
 
-Session::Values Session::values(const std::string& of, const std::vector<std::size_t>& nodes,
-                                int feature, int scale) const {
+Session::Values Session::values(Shown what, const std::vector<std::size_t>& nodes, int feature,
+                                int scale) const {
   const Lock lock(state_->mutex);
   const State& s = *state_;
   s.check_ready();
   std::vector<std::uint32_t> points;
   for (const std::size_t id : nodes) {
     if (id >= s.scene->layout.nodes.size() || points.size() > 2 * s.scene->layout.order.size()) {
-      throw Error(ErrorKind::kUnreadable, fmt::format("there is no node {}", id));
+      throw NotFound(fmt::format("there is no node {}", id));
     }
     const Node& node = s.scene->layout.nodes[id];
     const auto first = s.scene->layout.order.begin() + static_cast<std::ptrdiff_t>(node.first);
     points.insert(points.end(), first, first + static_cast<std::ptrdiff_t>(node.points));
   }
-  if (of == "feature") return {feature_bytes(*s.described, points, feature, scale), 0};
+  if (what == Shown::kFeature) return {feature_bytes(*s.described, points, feature, scale), 0};
   const Prediction* prediction = s.prediction();
-  const auto gather = [&](int version, auto&& value) {
-    Values values{.bytes = std::vector<std::uint8_t>(points.size()), .version = version};
-    std::transform(points.begin(), points.end(), values.bytes.begin(), value);
-    return values;
+  const auto value = [&](std::uint32_t i) -> std::uint8_t {
+    if (what == Shown::kLabels) return s.labels->classes()[i];
+    if (what == Shown::kPrediction) return prediction ? prediction->result.classes[i] : 255;
+    if (!prediction) return 0;
+    return byte_of(what == Shown::kPSharp ? prediction->result.p_sharp[i]
+                                          : prediction->confidence[i]);
   };
-  if (of == "labels") {
-    return gather(s.labels_version, [&](std::uint32_t i) { return s.labels->classes()[i]; });
-  }
-  if (of == "prediction") {
-    return gather(s.prediction_version, [&](std::uint32_t i) {
-      return prediction ? prediction->result.classes[i] : std::uint8_t{255};
-    });
-  }
-  if (of == "confidence" || of == "p_sharp") {
-    return gather(s.prediction_version, [&](std::uint32_t i) {
-      if (!prediction) return std::uint8_t{0};
-      return byte_of(of == "p_sharp" ? prediction->result.p_sharp[i] : prediction->confidence[i]);
-    });
-  }
-  throw Error(ErrorKind::kUsage,
-              "of: labels, prediction, confidence, p_sharp or feature are there to see");
+  Values values{.bytes = std::vector<std::uint8_t>(points.size()),
+                .version = what == Shown::kLabels ? s.labels_version : s.prediction_version};
+  std::transform(points.begin(), points.end(), values.bytes.begin(), value);
+  return values;
 }
 
 std::string Session::uncertain(std::size_t after) const {
@@ -181,7 +172,7 @@ std::string Session::uncertain(std::size_t after) const {
     s.uncertain_version = s.prediction_version;
   }
   if (after >= s.uncertain.size()) {
-    throw Error(ErrorKind::kUnreadable, fmt::format("there are {} places", s.uncertain.size()));
+    throw NotFound(fmt::format("there are {} places", s.uncertain.size()));
   }
   const std::uint32_t point = s.uncertain[after];
   return Json{{"rank", after + 1},
@@ -199,7 +190,7 @@ std::string Session::pick(const Vec3& local_origin, const Vec3& direction, doubl
   const Scene& scene = *s.scene;
   const auto found =
       annotate::pick(scene.cloud.positions, local_origin + scene.origin, direction, radius);
-  if (!found) throw Error(ErrorKind::kUnreadable, "no point is near that ray");
+  if (!found) throw NotFound("no point is near that ray");
   const Prediction* prediction = s.prediction();
   Json json = {{"point", found->point},
                {"position", json_of(scene.cloud.positions[found->point] - scene.origin)},

@@ -120,8 +120,8 @@ void Session::State::open_project() {
     saved = std::move(project.records);
   }
   std::vector<Record> known = saved;
-  std::filesystem::path path = options.project;
-  auto opened = std::make_unique<Journal>(path += ".journal", scene->input, known);
+  const std::filesystem::path path = journal_of(options.project);
+  auto opened = std::make_unique<Journal>(path, scene->input, known);
   for (std::size_t i = 0; i < std::min(saved.size(), known.size()); ++i) {
     if (to_line(saved[i]) != to_line(known[i])) {
       throw Error(ErrorKind::kInsufficient,
