@@ -1,11 +1,12 @@
 #include "pcednet/normals/neighbour_graph.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include "pcednet/core/parallel.h"
 #include "pcednet/normals/neighbour_count.h"
 #include "pcednet/spatial/curve_order.h"
-#include "pcednet/spatial/kd_tree.h"
+#include "pcednet/spatial/neighbour_search.h"
 
 namespace pcednet::normals {
 namespace {
@@ -31,19 +32,16 @@ NeighbourGraph make_neighbour_graph(std::span<const Vec3> positions, std::size_t
   const std::size_t points = graph.points.size();
   if (points == 0) return graph;
   Stage stage(progress, "neighbours", points);
-  const spatial::KdTree tree(graph.points);
-  if (count == 0) count = choose_neighbour_count(graph.points, tree);
-  graph.degree = std::min(count, points - 1);
+  const spatial::NeighbourSearch search(graph.points);
+  graph.degree = search.available(count > 0 ? count : choose_neighbour_count(graph.points, search));
   graph.neighbours.resize(points * graph.degree);
   parallel_blocks(points, kBlock, [&](std::size_t begin, std::size_t end) {
-    std::vector<spatial::Neighbour> found;
-    for (std::size_t i = begin; i < end; ++i) {
-      tree.nearest(graph.points[i], graph.degree + 1, found);
-      // The points are distinct, so the first found is the point itself.
-      for (std::size_t j = 0; j < graph.degree; ++j) {
-        graph.neighbours[i * graph.degree + j] = found[j + 1].index;
-      }
-    }
+    std::vector<std::uint32_t> some(end - begin);
+    std::iota(some.begin(), some.end(), static_cast<std::uint32_t>(begin));
+    std::vector<spatial::Neighbour> found(some.size() * graph.degree);
+    search.nearest_others(some, graph.degree, found);
+    std::transform(found.begin(), found.end(), graph.neighbours.data() + begin * graph.degree,
+                   [](const spatial::Neighbour& neighbour) { return neighbour.index; });
     stage.advance(end - begin);
   });
   return graph;
