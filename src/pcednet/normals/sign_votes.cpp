@@ -82,7 +82,7 @@ struct PartRows {
   }
 };
 
-/// For every row the target of its strongest link (the first of equals) and whether the two should
+/// For every row the target of its strongest link (the smallest of equals) and whether the two should
 /// have the same sign; itself if it has no link.
 template <typename Rows>
 std::vector<std::pair<std::uint32_t, bool>> strongest_links(const Rows& rows) {
@@ -92,7 +92,7 @@ std::vector<std::pair<std::uint32_t, bool>> strongest_links(const Rows& rows) {
       std::int64_t best = -1;
       strongest[i] = {static_cast<std::uint32_t>(i), true};
       rows.visit(i, [&](std::uint32_t target, std::int64_t vote) {
-        if (std::abs(vote) <= best) return;
+        if (std::abs(vote) < best || (std::abs(vote) == best && target > strongest[i].first)) return;
         best = std::abs(vote);
         strongest[i] = {target, vote >= 0};
       });
@@ -190,7 +190,8 @@ std::int64_t SignVotes::vote(std::size_t i, std::size_t j) const {
   constexpr double kReflection = 1.8;
   const Vec3 edge = points[j] - points[i];
   const double crossing = edge.dot(normals[i]) * edge.dot(normals[j]) / edge.squaredNorm();
-  return std::llround(kUnanimous * (normals[i].dot(normals[j]) - kReflection * crossing));
+  const double vote = kUnanimous * (normals[i].dot(normals[j]) - kReflection * crossing);
+  return static_cast<std::int32_t>(vote + std::copysign(0.5, vote));
 }
 
 Signs contract(const SignVotes& votes) {

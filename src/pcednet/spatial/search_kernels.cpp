@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "pcednet/spatial/vector_clones.h"
+#include "pcednet/core/vector_clones.h"
 
 namespace pcednet::spatial {
 namespace {
