@@ -15,6 +15,7 @@
 #include "pcednet/io/read_cloud.h"
 #include "pcednet/io/write_cloud.h"
 #include "pcednet/render/preview.h"
+#include "prepare.h"
 
 namespace pcednet::app {
 namespace {
@@ -25,6 +26,7 @@ struct Arguments {
   std::vector<std::string> inputs;
   std::string output, output_folder, model = "scan", preview, las_classification;
   MethodArguments method;
+  detect::PrepareOptions preparation;
   bool exact = false, no_context = false, clean_up = false, class_colours = false, ascii = false;
 };
 
@@ -136,11 +138,9 @@ void classify_file(const Job& job, const Arguments& arguments, const detect::Edg
   }
   times.emplace_back("read", watch.lap());
   const bool by_method = !arguments.method.name.empty();
-  const auto prepared =
-      by_method ? detect::PreparedCloud{} : detect::prepare(loaded.cloud, &progress);
-  for (const std::string& note : prepared.notes) {
-    warn(fmt::format("{}: {}", job.input.string(), note));
-  }
+  const auto prepared = by_method
+                            ? detect::PreparedCloud{}
+                            : prepare(job.input, loaded.cloud, arguments.preparation, progress);
   times.emplace_back("normals", watch.lap());
   auto result = by_method
                     ? classify_by_method(loaded.cloud, arguments.method, &progress)
@@ -160,7 +160,7 @@ void classify_file(const Job& job, const Arguments& arguments, const detect::Edg
   io::write_cloud(job.output, loaded.cloud,
                   {.overwrite = common.overwrite(),
                    .ascii = arguments.ascii,
-                   .new_normals = prepared.estimated.empty()});
+                   .new_normals = prepared.made.empty()});
   times.emplace_back("write", watch.lap());
   if (!job.preview.empty()) {
     render::write_preview(job.preview, loaded.cloud, result.classes,
@@ -227,6 +227,7 @@ void add_classify(CLI::App& app, Common& common) {
   command->add_flag("--no-context", arguments->no_context,
                     "Do not look at the answers around each point: a little faster, less accurate");
   add_method_options(*command, arguments->method);
+  add_prepare_options(*command, arguments->preparation);
   command->add_flag("--clean-up", arguments->clean_up,
                     "Let the nearest points vote: fewer lone false edges, thin lines fade");
   command->callback([arguments, &common] { classify(*arguments, common); });

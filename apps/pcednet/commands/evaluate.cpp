@@ -13,6 +13,7 @@
 #include "pcednet/eval/predictions.h"
 #include "pcednet/eval/report.h"
 #include "pcednet/io/read_labelled.h"
+#include "prepare.h"
 
 namespace pcednet::app {
 namespace {
@@ -23,6 +24,7 @@ struct Arguments {
   std::vector<std::string> inputs;
   std::string model, predictions, json, positive = "sharp";
   MethodArguments method;
+  detect::PrepareOptions preparation;
   bool exact = false, no_context = false, clean_up = false, calibration = false;
 };
 
@@ -37,8 +39,7 @@ detect::Classification predict(const fs::path& input, const PointCloud& cloud,
   if (!arguments.method.name.empty()) {
     return classify_by_method(cloud, arguments.method, &progress);
   }
-  const auto prepared = detect::prepare(cloud, &progress);
-  for (const std::string& note : prepared.notes) warn(input.string() + ": " + note);
+  const auto prepared = prepare(input, cloud, arguments.preparation, progress);
   auto result = detect::classify(prepared, *model, {.exact = arguments.exact}, &progress);
   if (arguments.clean_up) detect::clean_up(prepared.positions, result, {}, &progress);
   return result;
@@ -152,6 +153,7 @@ void add_evaluate(CLI::App& app, Common& common) {
   command->add_flag("--no-context", arguments->no_context,
                     "Do not look at the answers around each point, as classify");
   command->add_flag("--clean-up", arguments->clean_up, "Let the nearest points vote, as classify");
+  add_prepare_options(*command, arguments->preparation);
   command->add_flag("--exact", arguments->exact, "Descriptors from exact neighbourhoods (slow)");
   command->callback([arguments, &common] { evaluate(*arguments, common); });
 }

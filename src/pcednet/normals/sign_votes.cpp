@@ -82,8 +82,8 @@ struct PartRows {
   }
 };
 
-/// For every row the target of its strongest link (the smallest of equals) and whether the two should
-/// have the same sign; itself if it has no link.
+/// For every row the target of its strongest link (the smallest of equals) and whether the two
+/// should have the same sign; itself if it has no link.
 template <typename Rows>
 std::vector<std::pair<std::uint32_t, bool>> strongest_links(const Rows& rows) {
   std::vector<std::pair<std::uint32_t, bool>> strongest(rows.size());
@@ -92,7 +92,8 @@ std::vector<std::pair<std::uint32_t, bool>> strongest_links(const Rows& rows) {
       std::int64_t best = -1;
       strongest[i] = {static_cast<std::uint32_t>(i), true};
       rows.visit(i, [&](std::uint32_t target, std::int64_t vote) {
-        if (std::abs(vote) < best || (std::abs(vote) == best && target > strongest[i].first)) return;
+        if (std::abs(vote) < best || (std::abs(vote) == best && target > strongest[i].first))
+          return;
         best = std::abs(vote);
         strongest[i] = {target, vote >= 0};
       });

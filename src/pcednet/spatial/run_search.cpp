@@ -81,8 +81,8 @@ bool RunSearch::gather(std::size_t run) {
   }
   near_->scale = 1.0 / (most + radius);
   for (int a = 0; a < 3; ++a) {
-    near_->half[a] = static_cast<float>((box.max[a] - near_->centre[a]) * near_->scale) +
-                     Candidates::kError;
+    near_->half[a] =
+        static_cast<float>((box.max[a] - near_->centre[a]) * near_->scale) + Candidates::kError;
   }
   const float local_radius = static_cast<float>(radius * near_->scale) + Candidates::kError;
   near_->sq_radius = local_radius * local_radius;
@@ -186,8 +186,7 @@ void RunSearch::descend(const Query& query) {
   }
 }
 
-void RunSearch::push_branches(std::size_t row, std::size_t node, const double at[3],
-                              double bound) {
+void RunSearch::push_branches(std::size_t row, std::size_t node, const double at[3], double bound) {
   const EightBoxes& boxes = tree_.rows[row][node];
   double gaps[kFanOut];
   sq_gaps(boxes, at, at, gaps);

@@ -51,7 +51,7 @@ class RunSearch {
   std::size_t count_;
   double sq_radius_ = 0.0;  ///< of the candidates about the box of the run
   double sq_needed_ = 0.0;  ///< the largest distance to a last neighbour
-  float sq_guess_ = 0.0f;   ///< what the last point's distance to it lets expect, in the local frame
+  float sq_guess_ = 0.0f;  ///< what the last point's distance to it lets expect, in the local frame
   std::unique_ptr<Candidates> near_;
   std::array<std::pair<std::uint32_t, std::uint32_t>, RunTree::kFanOut * RunTree::kMostRows> stack_;
   std::size_t depth_ = 0;

@@ -14,9 +14,9 @@ namespace pcednet::spatial {
 /// Distinct points in compact runs along a space-filling curve, and the boxes of the runs, of eight
 /// runs, of eight times eight and so on.
 struct RunTree {
-  static constexpr std::size_t kFanOut = 8;                 ///< boxes per node
-  static constexpr std::size_t kRun = Candidates::kStep;    ///< points per run at most
-  static constexpr std::size_t kMostRows = 12;              ///< for 2^32 runs
+  static constexpr std::size_t kFanOut = 8;               ///< boxes per node
+  static constexpr std::size_t kRun = Candidates::kStep;  ///< points per run at most
+  static constexpr std::size_t kMostRows = 12;            ///< for 2^32 runs
 
   RunTree() = default;
   /// `points` must be finite; in curve_order() the runs are compact.

@@ -96,8 +96,8 @@ std::size_t pick_nearest(Candidates& candidates, const float q[3], std::size_t w
 }
 
 PCEDNET_VECTOR_CLONES
-void sq_distances(const double* const positions[3], std::uint32_t query,
-                  const std::uint32_t* index, std::size_t count, double* out) {
+void sq_distances(const double* const positions[3], std::uint32_t query, const std::uint32_t* index,
+                  std::size_t count, double* out) {
   const double *x = positions[0], *y = positions[1], *z = positions[2];
   const double qx = x[query], qy = y[query], qz = z[query];
   for (std::size_t i = 0; i < count; ++i) {

@@ -38,16 +38,16 @@ struct Candidates {
 void add_near(const double* const positions[3], std::size_t begin, std::size_t count,
               Candidates& candidates);
 
-/// Finds at least `wanted` candidates, all that are within some radius of q: a little more than that
-/// of `sq_guess` if there are enough. Writes their indices, ascending if the candidates' are, and
-/// returns how many there are; 0 if fewer than wanted are within the candidates' radius.
+/// Finds at least `wanted` candidates, all that are within some radius of q: a little more than
+/// that of `sq_guess` if there are enough. Writes their indices, ascending if the candidates' are,
+/// and returns how many there are; 0 if fewer than wanted are within the candidates' radius.
 std::size_t pick_nearest(Candidates& candidates, const float q[3], std::size_t wanted,
                          float sq_guess, std::uint32_t* picked);
 
 /// Squared distances (dx^2 + dy^2) + dz^2 of the positions at `index` to that at `query`. Room for
 /// kStep values must follow; they are set to infinity.
-void sq_distances(const double* const positions[3], std::uint32_t query,
-                  const std::uint32_t* index, std::size_t count, double* out);
+void sq_distances(const double* const positions[3], std::uint32_t query, const std::uint32_t* index,
+                  std::size_t count, double* out);
 
 /// The rank of each of `count` values followed by kStep infinite ones: how many are smaller.
 void rank(const double* __restrict values, std::size_t count, std::int64_t* __restrict ranks);
