@@ -35,7 +35,7 @@ TEST(CompactRuns, EndWhereTheCurveJumps) {
 
 TEST(CompactRuns, CutPointsAtOnePlaceToo) {
   EXPECT_EQ(cut_compact_runs({}, 16), std::vector<std::uint32_t>{0});
-  const auto first = cut_compact_runs(std::vector<Vec3>(5000), 16);
+  const auto first = cut_compact_runs(std::vector<Vec3>(5000, Vec3::Zero()), 16);
   EXPECT_EQ(first.back(), 5000u);
   for (std::size_t run = 0; run + 1 < first.size(); ++run) {
     EXPECT_LE(first[run + 1] - first[run], 16u);

@@ -74,7 +74,8 @@ std::map<std::string, std::vector<Vec3>> distributions() {
       {"copies", [&](int i) { return i % 3 ? Vec3(Vec3::Ones()) : Vec3(i % 7, i % 11, 0); }},
       {"national coordinates", [&](int) { return Vec3(Vec3(4.5e6, 5.4e6, 100) + place()); }},
       {"very small", [&](int) { return Vec3(1e-150 * place()); }},
-      {"very large", [&](int) { return Vec3(1e150 * place()); }}};
+      {"very large", [&](int) { return Vec3(1e150 * place()); }},
+      {"too large to be squared", [&](int) { return Vec3(1e200 * place()); }}};
   std::map<std::string, std::vector<Vec3>> all;
   for (const auto& [name, make] : kinds) {
     for (int i = 0; i < 1500; ++i) all[name].push_back(make(i));
@@ -95,7 +96,7 @@ TEST(NeighbourSearch, GivesAllOthersWhereThereAreFew) {
   EXPECT_EQ(NeighbourSearch({}).available(5), 0u);
   NeighbourSearch({}).nearest_others({}, 5, {});
   for (const std::size_t size : {1u, 2u, 17u}) {
-    std::vector<Vec3> points(size);
+    std::vector<Vec3> points(size, Vec3::Zero());
     expect_exact(points, 40, 1);  // copies of one point
     for (std::size_t i = 0; i < size; ++i) points[i].x() = static_cast<double>(i);
     expect_exact(points, 40, 1);

@@ -46,8 +46,9 @@ void RunSearch::find(std::size_t run, std::span<const std::uint32_t> points, Nei
   for (std::size_t i = 0; i < points.size(); ++i) open_.push_back({points[i], found + i * count_});
   sq_radius_ = guess(run);
   sq_needed_ = 0.0;
-  for (int attempt = 0; attempt < kAttempts && sq_radius_ > 0.0 && !open_.empty(); ++attempt) {
-    if (!gather(run)) break;
+  for (int attempt = 0; attempt < kAttempts && !open_.empty(); ++attempt) {
+    const bool can_be = sq_radius_ > 0.0 && sq_radius_ < kInfinity;
+    if (!can_be || !gather(run)) break;
     std::erase_if(open_, [&](const Query& query) { return select(query); });
     sq_radius_ = std::max(4.0 * sq_radius_, sq_needed_);
   }
