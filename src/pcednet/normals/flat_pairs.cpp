@@ -26,8 +26,9 @@ FlatPairs::FlatPairs(std::span<const Vec3> positions, std::span<const Vec3> norm
   std::vector<std::uint32_t> order = spatial::curve_order(positions);
   std::erase_if(order, [&](std::uint32_t i) { return !is_usable(normals[i]); });
   std::vector<Vec3> points(order.size());
-  std::transform(order.begin(), order.end(), points.begin(),
-                 [&](std::uint32_t i) { return positions[i]; });
+  parallel_blocks(points.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) points[i] = positions[order[i]];
+  });
   const spatial::NeighbourSearch search(points);
   const std::size_t count = search.available(kNeighbours);
   const std::size_t samples = std::min(points.size(), kSample);

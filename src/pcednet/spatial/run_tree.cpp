@@ -64,9 +64,11 @@ std::vector<EightBoxes> boxes_of_nodes(const std::vector<EightBoxes>& finer) {
 RunTree::RunTree(std::span<const Vec3> points) {
   if (points.empty()) return;
   for (std::vector<double>* const axis : {&x, &y, &z}) axis->resize(points.size() + kRun);
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    x[i] = points[i].x(), y[i] = points[i].y(), z[i] = points[i].z();
-  }
+  parallel_blocks(points.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      x[i] = points[i].x(), y[i] = points[i].y(), z[i] = points[i].z();
+    }
+  });
   first = cut_compact_runs(points, kRun);
   rows.push_back(boxes_of_runs(points, first));
   while (rows.back().size() > 1) rows.push_back(boxes_of_nodes(rows.back()));
