@@ -68,6 +68,18 @@ class Classify(CliTest):
         self.assertIn("nx", rows.dtype.names)
         self.assertGreater(np.mean((rows["label"] > 0) == (label > 0)), 0.9)
 
+    def test_mends_normals_of_mixed_signs_unless_told_not_to(self):
+        p, n, _ = cube(4000)
+        mixed = np.where(np.random.default_rng(2).random(len(p))[:, None] < 0.1, -n, n)
+        expected = self.classify(p, n)["label"]
+        np.testing.assert_array_equal(self.classify(p, mixed)["label"], expected)
+        kept = self.classify(p, mixed, extra=("--keep-orientation",))
+        self.assertLess(np.mean(kept["label"] == expected), 0.99)
+        np.testing.assert_allclose(kept["nx"], mixed[:, 0], atol=1e-6)
+        said = run("classify", self.folder / "cloud.ply", "-o", self.folder / "b.ply").stderr
+        self.assertRegex(said, "(9|10|11) % of the normals oppose the rest of their surface")
+        self.assertIn("--keep-orientation", said)
+
     def test_keeps_points_that_cannot_be_described(self):
         p, n, _ = cube(800)
         p[5] = np.nan

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
+
 #include "pcednet/core/random.h"
 
 namespace pcednet::detect {
@@ -34,10 +36,82 @@ TEST(Prepare, EstimatesWhatIsMissingOfTheNormals) {
 TEST(Prepare, LeavesTheFilesNormalsAloneIfFewAreMissing) {
   const PointCloud cloud = sphere(4000, 200);
   const PreparedCloud prepared = prepare(cloud);
-  EXPECT_TRUE(prepared.estimated.empty());
+  EXPECT_TRUE(prepared.made.empty());
   EXPECT_EQ(prepared.normals.data(), cloud.normals.data());
   ASSERT_EQ(prepared.notes.size(), 1U);
   EXPECT_NE(prepared.notes[0].find("20 of 4000"), std::string::npos);
+}
+
+/// Three solids, the second inside out, whose normals `flip(point)` turns about.
+template <typename Flip>
+PointCloud solids(const Flip& flip) {
+  PointCloud cloud = sphere(30000, 40000);
+  cloud.normals[0] = cloud.positions[0];
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    cloud.positions[i].x() += static_cast<double>(i % 3) * 3;
+    if (i % 3 == 1) cloud.normals[i] = -cloud.normals[i];
+    if (flip(i)) cloud.normals[i] = -cloud.normals[i];
+  }
+  return cloud;
+}
+
+TEST(Prepare, OrientsNormalsOfMixedSigns) {
+  const PointCloud clean = solids([](std::size_t) { return false; });
+  Random random(5);
+  const auto tenth = [&](std::size_t) { return random.uniform() < 0.1; };
+  const auto half = [&](std::size_t) { return random.uniform() < 0.5; };
+  const auto patch = [&](std::size_t i) { return clean.positions[i].z() > 0.4; };
+  const auto expect_oriented = [&](const PointCloud& cloud, const std::string& share) {
+    const PreparedCloud prepared = prepare(cloud);
+    EXPECT_TRUE(prepared.reoriented);
+    ASSERT_EQ(prepared.notes.size(), 1U);
+    EXPECT_EQ(prepared.notes[0],
+              share +
+                  " % of the normals oppose the rest of their surface: oriented consistently "
+                  "(3 connected parts, outwards)");
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+      ASSERT_EQ(prepared.normals[i], i % 3 == 1 ? Vec3(-clean.normals[i]) : clean.normals[i]);
+    }
+    const PreparedCloud kept = prepare(cloud, {.keep_orientation = true});
+    EXPECT_TRUE(kept.notes.empty());
+    EXPECT_EQ(kept.normals.data(), cloud.normals.data());
+  };
+  expect_oriented(solids(tenth), "10");
+  expect_oriented(solids(half), "50");
+  expect_oriented(solids(patch), "30");
+}
+
+TEST(Prepare, LeavesCleanAndInwardNormalsAlone) {
+  for (const bool inward : {false, true}) {
+    const PointCloud cloud = solids([&](std::size_t) { return inward; });
+    const PreparedCloud prepared = prepare(cloud);
+    EXPECT_FALSE(prepared.reoriented);
+    EXPECT_TRUE(prepared.notes.empty());
+    EXPECT_EQ(prepared.normals.data(), cloud.normals.data());
+  }
+}
+
+TEST(Prepare, LeavesNormalsAloneThatNoOrientationMakesAgree) {
+  // Foliage: places in a ball with normals that point anywhere, on the whole upwards.
+  Random random(8);
+  PointCloud cloud;
+  for (int i = 0; i < 20000; ++i) {
+    cloud.positions.emplace_back(random.uniform(), random.uniform(), random.uniform());
+    Vec3 normal = Vec3(random.normal(), random.normal(), random.normal()).normalized();
+    cloud.normals.push_back(normal.z() > 0 ? normal : Vec3(-normal));
+  }
+  EXPECT_TRUE(prepare(cloud).notes.empty());
+}
+
+TEST(Prepare, SaysFromHowManyPointsItEstimates) {
+  PointCloud cloud = sphere(4000, 1);
+  cloud.normals.clear();
+  EXPECT_NE(prepare(cloud).notes.at(0).find("estimated from the 12 nearest points"),
+            std::string::npos);
+  Random random(8);
+  for (Vec3& p : cloud.positions) p *= 1.0 + 0.015 * random.normal();
+  EXPECT_NE(prepare(cloud).notes.at(0).find("estimated from the 48 nearest points"),
+            std::string::npos);
 }
 
 }  // namespace

@@ -51,6 +51,7 @@ TEST(SignVotes, LinksAreTheNeighboursOfBothSides) {
   for (std::uint32_t i = 0; i < scene.links.size(); ++i) {
     for (const std::uint32_t j : scene.links.of(i)) links.emplace_back(i, j);
   }
+  std::sort(links.begin(), links.end());
   EXPECT_EQ(links, std::vector(expected.begin(), expected.end()));
 }
 

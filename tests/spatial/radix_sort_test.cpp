@@ -16,7 +16,10 @@ TEST(RadixSort, SortsAsTheStableSortOfTheStandardLibrary) {
       Random random(1, static_cast<std::uint64_t>(bits));
       std::vector<Keyed> keyed(count);
       for (std::size_t i = 0; i < count; ++i) {
-        keyed[i] = {random.next() >> (64 - bits), static_cast<std::uint32_t>(i)};
+        std::uint64_t key = random.next() >> (64 - bits);
+        if (i % 3 == 1) key &= 0xffff;                          // many with the same high bits
+        if (i % 3 == 2) key = key >> (bits / 2) << (bits / 2);  // and the same low bits
+        keyed[i] = {key, static_cast<std::uint32_t>(i)};
       }
       std::vector<Keyed> expected = keyed;
       std::stable_sort(expected.begin(), expected.end(),

@@ -16,6 +16,7 @@
 #include "pcednet/io/read_cloud.h"
 #include "pcednet/io/write_cloud.h"
 #include "pcednet/render/preview.h"
+#include "prepare.h"
 
 namespace pcednet::app {
 namespace {
@@ -27,6 +28,7 @@ struct Arguments {
   std::string output, output_folder, model = "scan", preview, las_classification;
   MethodArguments method;
   gls::ScaleSpaceOptions scales;  ///< its s_min and s_max
+  detect::PrepareOptions preparation;
   bool exact = false, no_context = false, clean_up = false, class_colours = false, ascii = false,
        skip_existing = false;
 };
@@ -192,11 +194,9 @@ void classify_file(const Job& job, const Arguments& arguments, const detect::Edg
   throw_if_cancelled(&progress);
   times.emplace_back("read", watch.lap());
   const bool by_method = !arguments.method.name.empty();
-  const auto prepared =
-      by_method ? detect::PreparedCloud{} : detect::prepare(loaded.cloud, &progress);
-  for (const std::string& note : prepared.notes) {
-    warn(fmt::format("{}: {}", job.input.string(), note));
-  }
+  const auto prepared = by_method
+                            ? detect::PreparedCloud{}
+                            : prepare(job.input, loaded.cloud, arguments.preparation, progress);
   times.emplace_back("normals", watch.lap());
   auto result = by_method
                     ? classify_by_method(loaded.cloud, arguments.method, &progress)
@@ -220,7 +220,7 @@ void classify_file(const Job& job, const Arguments& arguments, const detect::Edg
   io::write_cloud(job.output, loaded.cloud,
                   {.overwrite = common.overwrite(),
                    .ascii = arguments.ascii,
-                   .new_normals = prepared.estimated.empty()});
+                   .new_normals = prepared.made.empty()});
   times.emplace_back("write", watch.lap());
   if (!job.preview.empty()) {
     render::write_preview(job.preview, loaded.cloud, result.classes,
@@ -295,7 +295,9 @@ void add_classify(CLI::App& app, Common& common) {
                     "Do not look at the answers around each point: a little faster, less accurate");
   add_scale_range_options(*command, arguments->scales);
   add_method_options(*command, arguments->method);
-  for (const char* of_a_model : {"--model", "--no-context", "--exact", "--s-min", "--s-max"}) {
+  add_prepare_options(*command, arguments->preparation);
+  for (const char* of_a_model :
+       {"--model", "--no-context", "--exact", "--s-min", "--s-max", "--keep-orientation"}) {
     command->get_option(of_a_model)->excludes("--method");
   }
   command->add_flag("--clean-up", arguments->clean_up,

@@ -11,10 +11,10 @@
 #include "commands.h"
 #include "pcednet/core/error.h"
 #include "pcednet/core/version.h"
-#include "pcednet/detect/prepare.h"
 #include "pcednet/gls/engine.h"
 #include "pcednet/io/npy.h"
 #include "pcednet/io/read_cloud.h"
+#include "prepare.h"
 
 namespace pcednet::app {
 namespace {
@@ -29,6 +29,7 @@ struct Arguments {
   std::string features = "6";
   std::string reconstruction;
   gls::ScaleSpaceOptions options;
+  detect::PrepareOptions preparation;
   bool exact = false;
 };
 
@@ -133,12 +134,10 @@ void describe(const Arguments& arguments, const Common& common) {
   }
   const PointCloud& cloud = loaded.cloud;
   const Progress progress = console_progress(common);
-  std::optional<detect::PreparedCloud> prepared;
-  with_name_in_errors(arguments.input, [&] { prepared = detect::prepare(cloud, &progress); });
-  for (const std::string& note : prepared->notes) warn(arguments.input + ": " + note);
+  const auto prepared = prepare(arguments.input, cloud, arguments.preparation, progress);
   std::optional<gls::ScaleSpace> made;
   with_name_in_errors(arguments.input, [&] {
-    made.emplace(gls::OrientedPoints{prepared->positions, prepared->normals}, options, &progress);
+    made.emplace(gls::OrientedPoints{prepared.positions, prepared.normals}, options, &progress);
   });
   const gls::ScaleSpace& space = *made;
   if (const auto note = gls::note_on(options, space.scales(), cloud.positions); !note.empty()) {
@@ -189,6 +188,7 @@ void add_describe(CLI::App& app, Common& common) {
                    "Resolution of far neighbourhoods, in scales: finer is slower and more exact")
       ->check(CLI::Range(0.01, 1.0))
       ->capture_default_str();
+  add_prepare_options(*command, arguments->preparation);
   command->add_flag("--exact", arguments->exact, "Exact neighbourhoods (slow)");
   command->callback([arguments, &common] { describe(*arguments, common); });
 }

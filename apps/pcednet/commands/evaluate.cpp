@@ -14,6 +14,7 @@
 #include "pcednet/eval/predictions.h"
 #include "pcednet/eval/report.h"
 #include "pcednet/io/read_labelled.h"
+#include "prepare.h"
 
 namespace pcednet::app {
 namespace {
@@ -25,6 +26,7 @@ struct Arguments {
   std::string model, predictions, json, positive = "sharp";
   MethodArguments method;
   gls::ScaleSpaceOptions scales;  ///< its s_min and s_max
+  detect::PrepareOptions preparation;
   bool exact = false, no_context = false, clean_up = false, calibration = false;
 };
 
@@ -38,8 +40,7 @@ detect::Classification predict(const fs::path& input, const PointCloud& cloud,
                                const Progress& progress) {
   detect::Classification result;
   if (model) {
-    const auto prepared = detect::prepare(cloud, &progress);
-    for (const std::string& note : prepared.notes) warn(input.string() + ": " + note);
+    const auto prepared = prepare(input, cloud, arguments.preparation, progress);
     result = detect::classify(prepared, *model, {.exact = arguments.exact}, &progress);
     if (!result.note.empty()) warn(input.string() + ": " + result.note);
   } else {
@@ -160,9 +161,11 @@ void add_evaluate(CLI::App& app, Common& common) {
                     "Also tell how often a probability is right");
   command->add_flag("--no-context", arguments->no_context,
                     "Do not look at the answers around each point, as classify");
+  add_prepare_options(*command, arguments->preparation);
   command->add_flag("--exact", arguments->exact, "Descriptors from exact neighbourhoods (slow)");
   add_scale_range_options(*command, arguments->scales);
-  for (const char* of_a_model : {"--no-context", "--exact", "--s-min", "--s-max"}) {
+  for (const char* of_a_model :
+       {"--no-context", "--exact", "--s-min", "--s-max", "--keep-orientation"}) {
     command->get_option(of_a_model)->needs("--model");
   }
   command->add_flag("--clean-up", arguments->clean_up, "Let the nearest points vote, as classify")

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "batch.h"
 #include "commands.h"
 #include "pcednet/core/error.h"
 #include "pcednet/io/read_cloud.h"

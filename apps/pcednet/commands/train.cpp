@@ -11,6 +11,7 @@
 #include "pcednet/core/error.h"
 #include "pcednet/detect/train.h"
 #include "pcednet/io/read_labelled.h"
+#include "prepare.h"
 
 namespace pcednet::app {
 namespace {
@@ -36,6 +37,7 @@ struct Arguments {
   std::optional<double> gate, second_gate;
   double balance = 1.0, smoothing = 0.0, missing_scales = 0.0, jitter = 0.0;
   std::uint64_t seed = 1;
+  detect::PrepareOptions preparation;
   bool exact = false, natural = false, context = false;
 };
 
@@ -101,11 +103,11 @@ detect::TrainedModel train_clouds(const Arguments& arguments, const Common& comm
     with_name_in_errors(input, [&] {
       loaded.push_back(io::read_labelled(input));
       throw_if_cancelled(&progress);
-      const PointCloud& cloud = loaded.back().cloud;
-      clouds.push_back({input.string(), detect::prepare(cloud, &progress), cloud.labels});
     });
     for (const auto& warning : loaded.back().warnings) warn(input.string() + ": " + warning);
-    for (const auto& note : clouds.back().cloud.notes) warn(input.string() + ": " + note);
+    const PointCloud& cloud = loaded.back().cloud;
+    clouds.push_back(
+        {input.string(), prepare(input, cloud, arguments.preparation, progress), cloud.labels});
   }
   return detect::train(std::filesystem::path(arguments.output).stem().string(), clouds, options,
                        common.progress == "none" ? decltype(&print_epoch)(nullptr) : print_epoch,
@@ -229,6 +231,7 @@ void add_train(CLI::App& app, Common& common) {
       ->add_option("--missing-scales", arguments->missing_scales,
                    "The share of samples that lose up to a quarter of the scales at one end")
       ->check(CLI::Range(0.0, 1.0));
+  add_prepare_options(*command, arguments->preparation);
   command->add_option("--epochs", arguments->epochs, "Rounds of training (0: the recipe's)");
   command->add_option("--seed", arguments->seed, "Seed of all randomness")->capture_default_str();
   command->callback([arguments, &common] { train(*arguments, common); });

@@ -118,7 +118,7 @@ detect::TrainedModel learn_project(
   }
   std::optional<detect::EdgeModel> start;
   if (settings.start != "random") start = load_start(settings.start);
-  const detect::PreparedCloud prepared = detect::prepare(loaded.cloud, progress);
+  const detect::PreparedCloud prepared = detect::prepare(loaded.cloud, {}, progress);
   const auto described =
       describe_once(prepared, descriptor_of(start ? &*start : nullptr), {}, progress);
   return learn(input.stem().string(), *described, end.labels.classes(), settings,

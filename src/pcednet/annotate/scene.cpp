@@ -22,7 +22,7 @@ std::shared_ptr<const Scene> load_scene(const std::filesystem::path& input,
   scene->cloud = std::move(loaded.cloud);
   scene->warnings = std::move(loaded.warnings);
   scene->input = {input.filename().string(), digest_of_file(input), scene->cloud.size()};
-  scene->prepared = detect::prepare(scene->cloud, progress);
+  scene->prepared = detect::prepare(scene->cloud, {}, progress);
   scene->bounds = bounding_box(scene->cloud.positions);
   scene->origin = scene->bounds.centre();
   stage.advance();

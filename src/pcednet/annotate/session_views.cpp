@@ -47,7 +47,7 @@ void describe_scene(const Scene& scene, Json& json) {
                     {"max", json_of(scene.bounds.max - scene.origin)}};
   json["spacing"] = scene.spacing();
   json["has_colours"] = !scene.cloud.colours.empty();
-  json["normals"] = scene.prepared.estimated.empty() ? "file" : "estimated";
+  json["normals"] = scene.prepared.made.empty() ? "file" : "estimated";
   json["scales"] = scene.scales;
   json["nodes"] = nodes_of(scene);
 }

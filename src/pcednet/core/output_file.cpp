@@ -53,7 +53,7 @@ void check_folder_of(const fs::path& path) {
   if (access(folder.c_str(), W_OK | X_OK) != 0) {
     refuse(fmt::format("folder {}: {}", folder.string(), std::strerror(errno)));
   }
-  fs::symlink_status(part_name(path), error);
+  static_cast<void>(fs::symlink_status(part_name(path), error));
   if (error == std::errc::filename_too_long) refuse(error.message());
 }
 

@@ -93,7 +93,7 @@ nn::Architecture context_architecture(int classes) {
 
 ContextMatrix::ContextMatrix(std::span<const Vec3> positions, const Classification& found,
                              int classes)
-    : kinds_(classes - 1), tree_(std::span<const Vec3>()) {
+    : kinds_(classes - 1) {
   for (const std::uint32_t i : order_of(positions, found)) {
     const float edge = found.p_sharp[i] + found.p_smooth[i];
     if (edge >= kLeastEdge) {
@@ -103,21 +103,23 @@ ContextMatrix::ContextMatrix(std::span<const Vec3> positions, const Classificati
     positions_.push_back(positions[i]);
     probabilities_.push_back({found.p_sharp[i], edge});
   }
-  tree_ = spatial::KdTree(positions_);
+  search_.emplace(positions_);
 }
 
 void ContextMatrix::describe(std::size_t begin, std::size_t end, std::span<float> rows) const {
+  const std::size_t count = search_->available(kContextSizes.back());
   parallel_blocks(end - begin, 1024, [&](std::size_t first, std::size_t last) {
-    std::vector<spatial::Neighbour> near;
-    for (std::size_t i = first; i < last; ++i) {
-      const std::uint32_t place = places_[begin + i];
-      tree_.nearest(positions_[place], kContextSizes.back() + 1, near);
-      describe_point(place, near, rows.data() + i * width());
+    const auto places = std::span(places_).subspan(begin + first, last - first);
+    std::vector<spatial::Neighbour> near(places.size() * count);
+    search_->nearest_others(places, count, near);
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      describe_point(places[i], std::span(near).subspan(i * count, count),
+                     rows.data() + (first + i) * width());
     }
   });
 }
 
-void ContextMatrix::describe_point(std::size_t place, const std::vector<spatial::Neighbour>& near,
+void ContextMatrix::describe_point(std::size_t place, std::span<const spatial::Neighbour> near,
                                    float* row) const {
   for (std::size_t kind = 0; kind < static_cast<std::size_t>(kinds_); ++kind) {
     Sums sums;
@@ -125,7 +127,6 @@ void ContextMatrix::describe_point(std::size_t place, const std::vector<spatial:
     auto neighbour = near.begin();
     for (std::size_t size = 0; size < kContextSizes.size(); ++size) {
       for (; neighbour != near.end() && sums.count < kContextSizes[size]; ++neighbour) {
-        if (neighbour->index == place) continue;
         sq_r = neighbour->sq_distance;
         sums.add(positions_[neighbour->index] - positions_[place], sq_r,
                  static_cast<double>(probabilities_[neighbour->index][kind]));

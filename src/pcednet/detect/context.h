@@ -2,13 +2,14 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "pcednet/core/progress.h"
 #include "pcednet/core/vec3.h"
 #include "pcednet/detect/classify.h"
-#include "pcednet/spatial/kd_tree.h"
+#include "pcednet/spatial/neighbour_search.h"
 
 namespace pcednet::detect {
 
@@ -57,14 +58,14 @@ class ContextMatrix {
   void describe(std::size_t begin, std::size_t end, std::span<float> rows) const;
 
  private:
-  void describe_point(std::size_t place, const std::vector<spatial::Neighbour>& near,
+  void describe_point(std::size_t place, std::span<const spatial::Neighbour> near,
                       float* row) const;
 
   int kinds_;
   std::vector<Vec3> positions_;                      ///< of all that have a class, along a curve
   std::vector<std::array<float, 2>> probabilities_;  ///< theirs, of sharp-edge and of any edge
   std::vector<std::uint32_t> points_, places_;       ///< to describe; where they are in these lists
-  spatial::KdTree tree_;
+  std::optional<spatial::NeighbourSearch> search_;
 };
 
 /// Lets the second network decide, in place of what was found. `positions` are those that were

@@ -9,19 +9,31 @@
 
 namespace pcednet::detect {
 
+struct PrepareOptions {
+  bool keep_orientation = false;  ///< use the cloud's normals even if their signs are mixed
+};
+
 /// What the descriptors need of a cloud, and what had to be done to get it.
 struct PreparedCloud {
   std::span<const Vec3> positions;  ///< the cloud's own
-  std::span<const Vec3> normals;    ///< the cloud's own, or `estimated`; unit or (0,0,0)
-  std::vector<Vec3> estimated;      ///< empty when the cloud's normals are used
+  std::span<const Vec3> normals;    ///< the cloud's own, or `made`; unit or (0,0,0)
+  std::vector<Vec3> made;           ///< empty when the cloud's normals are used as they are
   std::vector<std::string> notes;   ///< what the user should be told, one sentence each
+  bool reoriented = false;          ///< the signs of the cloud's normals were mixed
 };
 
 /// Makes `cloud` ready for description; it must outlive the result. Where one point in a hundred or
 /// more has no usable normal, those missing are estimated from the positions, and all are oriented:
 /// by the scanners' places if the cloud has them.
+///
+/// Normals of mixed signs are oriented likewise: where more flat pairs of neighbours oppose than
+/// the border of a patch makes, orientation leaves less than a quarter of them, and it turns one
+/// normal in fifty or more against the rest of its surface. A cloud whose normals all point inwards
+/// is not mixed.
+///
 /// Throws Error(kInsufficient) for a cloud without a finite point, or without any normal that could
 /// be used or found.
-PreparedCloud prepare(const PointCloud& cloud, const Progress* progress = nullptr);
+PreparedCloud prepare(const PointCloud& cloud, const PrepareOptions& options = {},
+                      const Progress* progress = nullptr);
 
 }  // namespace pcednet::detect

@@ -43,7 +43,7 @@ std::vector<std::string> add_result(PointCloud& cloud, const PreparedCloud& prep
     set_attribute(cloud, make_attribute("scalar_input_label", cloud.labels));
     notes.push_back("the input's labels are kept as scalar_input_label");
   }
-  if (!prepared.estimated.empty()) cloud.normals = prepared.estimated;
+  if (!prepared.made.empty()) cloud.normals = prepared.made;
   if (cloud.colours.empty() || options.class_colours) {
     cloud.colours.resize(cloud.size());
     std::transform(result.classes.begin(), result.classes.end(), cloud.colours.begin(), colour_of);

@@ -21,22 +21,26 @@ double median(std::vector<double> values) {
 
 }  // namespace
 
-std::size_t choose_neighbour_count(std::span<const Vec3> points, const spatial::KdTree& tree) {
+std::size_t choose_neighbour_count(std::span<const Vec3> points,
+                                   const spatial::NeighbourSearch& search) {
   if (points.size() <= kCounts.back()) return kCounts.front();
   const std::size_t samples = std::min<std::size_t>(points.size(), 2000);
   std::array<std::vector<double>, kCounts.size()> thickness;
   for (std::vector<double>& of_count : thickness) of_count.resize(samples);
   parallel_blocks(samples, 100, [&](std::size_t begin, std::size_t end) {
-    std::vector<spatial::Neighbour> found;
-    std::vector<std::uint32_t> neighbours(kCounts.back());
+    std::vector<std::uint32_t> chosen, neighbours(kCounts.back());
     for (std::size_t s = begin; s < end; ++s) {
-      const std::size_t point = s * points.size() / samples;
-      tree.nearest(points[point], kCounts.back() + 1, found);
-      std::transform(found.begin() + 1, found.end(), neighbours.begin(),
+      chosen.push_back(static_cast<std::uint32_t>(s * points.size() / samples));
+    }
+    std::vector<spatial::Neighbour> found(chosen.size() * kCounts.back());
+    search.nearest_others(chosen, kCounts.back(), found);
+    for (std::size_t s = begin; s < end; ++s) {
+      const auto row = found.begin() + static_cast<std::ptrdiff_t>((s - begin) * kCounts.back());
+      std::transform(row, row + kCounts.back(), neighbours.begin(),
                      [](const spatial::Neighbour& neighbour) { return neighbour.index; });
       for (std::size_t c = 0; c < kCounts.size(); ++c) {
         thickness[c][s] =
-            fit_plane(points, point, std::span(neighbours).first(kCounts[c])).thickness;
+            fit_plane(points, chosen[s - begin], std::span(neighbours).first(kCounts[c])).thickness;
       }
     }
   });

@@ -1,11 +1,13 @@
 #include "pcednet/normals/neighbour_graph.h"
 
 #include <algorithm>
+#include <atomic>
+#include <numeric>
 
 #include "pcednet/core/parallel.h"
 #include "pcednet/normals/neighbour_count.h"
 #include "pcednet/spatial/curve_order.h"
-#include "pcednet/spatial/kd_tree.h"
+#include "pcednet/spatial/neighbour_search.h"
 
 namespace pcednet::normals {
 namespace {
@@ -22,6 +24,11 @@ void collect_distinct_points(std::span<const Vec3> positions, NeighbourGraph& gr
   }
 }
 
+double sq_distance(const Vec3& p, const Vec3& q) {
+  const Vec3 d = p - q;
+  return d.x() * d.x() + d.y() * d.y() + d.z() * d.z();
+}
+
 }  // namespace
 
 NeighbourGraph make_neighbour_graph(std::span<const Vec3> positions, std::size_t count,
@@ -31,19 +38,16 @@ NeighbourGraph make_neighbour_graph(std::span<const Vec3> positions, std::size_t
   const std::size_t points = graph.points.size();
   if (points == 0) return graph;
   Stage stage(progress, "neighbours", points);
-  const spatial::KdTree tree(graph.points);
-  if (count == 0) count = choose_neighbour_count(graph.points, tree);
-  graph.degree = std::min(count, points - 1);
+  const spatial::NeighbourSearch search(graph.points);
+  graph.degree = search.available(count > 0 ? count : choose_neighbour_count(graph.points, search));
   graph.neighbours.resize(points * graph.degree);
   parallel_blocks(points, kBlock, [&](std::size_t begin, std::size_t end) {
-    std::vector<spatial::Neighbour> found;
-    for (std::size_t i = begin; i < end; ++i) {
-      tree.nearest(graph.points[i], graph.degree + 1, found);
-      // The points are distinct, so the first found is the point itself.
-      for (std::size_t j = 0; j < graph.degree; ++j) {
-        graph.neighbours[i * graph.degree + j] = found[j + 1].index;
-      }
-    }
+    std::vector<std::uint32_t> some(end - begin);
+    std::iota(some.begin(), some.end(), static_cast<std::uint32_t>(begin));
+    std::vector<spatial::Neighbour> found(some.size() * graph.degree);
+    search.nearest_others(some, graph.degree, found);
+    std::transform(found.begin(), found.end(), graph.neighbours.data() + begin * graph.degree,
+                   [](const spatial::Neighbour& neighbour) { return neighbour.index; });
     stage.advance(end - begin);
   });
   return graph;
@@ -52,43 +56,46 @@ NeighbourGraph make_neighbour_graph(std::span<const Vec3> positions, std::size_t
 Adjacency make_adjacency(const NeighbourGraph& graph, std::size_t count) {
   const std::size_t points = graph.points.size();
   count = std::min(count, graph.degree);
-  const auto nearest = [&](std::size_t i) { return graph.of(i).first(count); };
+  Adjacency adjacency;
+  adjacency.first.assign(points + 1, count);
+  adjacency.first[0] = 0;
+  if (count == 0) return adjacency;
+  const auto by_block = [&](const auto& work) {
+    parallel_blocks(points, kBlock, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) work(i, graph.of(i).first(count));
+    });
+  };
+  std::vector<double> sq_reach(points);
+  by_block([&](std::size_t i, const auto& row) {
+    sq_reach[i] = sq_distance(graph.points[i], graph.points[row.back()]);
+  });
   const auto is_mutual = [&](std::size_t i, std::uint32_t j) {
-    const auto row = nearest(j);
+    const double sq = sq_distance(graph.points[i], graph.points[j]);
+    if (sq != sq_reach[j]) return sq < sq_reach[j];
+    const auto row = graph.of(j).first(count);
     return std::find(row.begin(), row.end(), i) != row.end();
   };
 
-  // A one-sided link is written at both ends; a mutual one is written at each end by that end.
+  // A one-sided link is written at both ends; a mutual one is written at each end by that end. The
+  // counts of links become the places to write the next link to.
+  const auto take = [](std::size_t& counter) {
+    return std::atomic_ref(counter).fetch_add(1, std::memory_order_relaxed);
+  };
   std::vector<std::uint8_t> mutual(points * count);
-  parallel_blocks(points, kBlock, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      for (std::size_t k = 0; k < count; ++k) {
-        mutual[i * count + k] = is_mutual(i, nearest(i)[k]);
-      }
+  by_block([&](std::size_t i, const auto& row) {
+    for (std::size_t k = 0; k < count; ++k) {
+      mutual[i * count + k] = is_mutual(i, row[k]);
+      if (!mutual[i * count + k]) take(adjacency.first[row[k] + 1]);
     }
   });
-  Adjacency adjacency;
-  adjacency.first.assign(points + 1, 0);
-  for (std::size_t i = 0; i < points; ++i) {
-    adjacency.first[i + 1] += count;
-    for (std::size_t k = 0; k < count; ++k) {
-      if (!mutual[i * count + k]) ++adjacency.first[nearest(i)[k] + 1];
-    }
-  }
-  for (std::size_t i = 0; i < points; ++i) adjacency.first[i + 1] += adjacency.first[i];
+  std::partial_sum(adjacency.first.begin(), adjacency.first.end(), adjacency.first.begin());
   adjacency.target.resize(adjacency.first.back());
   std::vector<std::size_t> next(adjacency.first.begin(), adjacency.first.end() - 1);
-  for (std::size_t i = 0; i < points; ++i) {
+  by_block([&](std::size_t i, const auto& row) {
     for (std::size_t k = 0; k < count; ++k) {
-      const std::uint32_t j = nearest(i)[k];
-      adjacency.target[next[i]++] = j;
-      if (!mutual[i * count + k]) adjacency.target[next[j]++] = static_cast<std::uint32_t>(i);
-    }
-  }
-  parallel_blocks(points, kBlock, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      std::sort(adjacency.target.begin() + static_cast<std::ptrdiff_t>(adjacency.first[i]),
-                adjacency.target.begin() + static_cast<std::ptrdiff_t>(adjacency.first[i + 1]));
+      adjacency.target[take(next[i])] = row[k];
+      if (mutual[i * count + k]) continue;
+      adjacency.target[take(next[row[k]])] = static_cast<std::uint32_t>(i);
     }
   });
   return adjacency;

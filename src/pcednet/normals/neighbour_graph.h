@@ -36,7 +36,7 @@ NeighbourGraph make_neighbour_graph(std::span<const Vec3> positions, std::size_t
 /// each once: the graph without directions.
 struct Adjacency {
   std::vector<std::size_t> first;     ///< points + 1
-  std::vector<std::uint32_t> target;  ///< of point i: first[i] to first[i + 1], ascending
+  std::vector<std::uint32_t> target;  ///< of point i: first[i] to first[i + 1], in any order
 
   std::size_t size() const { return first.size() - 1; }
   std::span<const std::uint32_t> of(std::size_t point) const {

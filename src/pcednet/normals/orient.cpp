@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
@@ -79,6 +80,20 @@ Orientation turn_parts_outwards(std::span<const Vec3> points, std::span<Vec3> no
   return orientation;
 }
 
+/// How many points have another sign than most of their part.
+std::size_t count_minorities(const Signs& signs) {
+  std::vector<std::size_t> sizes(signs.parts, 0), turned(signs.parts, 0);
+  for (std::size_t i = 0; i < signs.sign.size(); ++i) {
+    ++sizes[signs.part[i]];
+    turned[signs.part[i]] += signs.sign[i] < 0;
+  }
+  std::size_t sum = 0;
+  for (std::size_t part = 0; part < signs.parts; ++part) {
+    sum += std::min(turned[part], sizes[part] - turned[part]);
+  }
+  return sum;
+}
+
 /// Orients the normals of the points of the graph.
 Orientation orient_points(const NeighbourGraph& graph, std::span<Vec3> normals,
                           const OrientOptions& options, const Progress* progress) {
@@ -93,7 +108,8 @@ Orientation orient_points(const NeighbourGraph& graph, std::span<Vec3> normals,
     if (signs.sign[i] < 0) normals[i] = -normals[i];
   }
   stage.advance();
-  const Orientation orientation = turn_parts_outwards(graph.points, normals, signs);
+  Orientation orientation = turn_parts_outwards(graph.points, normals, signs);
+  orientation.turned = count_minorities(signs);
   stage.advance();
   return orientation;
 }

@@ -20,6 +20,7 @@ struct OrientOptions {
 struct Orientation {
   std::size_t components = 0;  ///< connected parts, each oriented by itself; 0 with a viewpoint
   std::size_t undecided = 0;   ///< those that are open sheets: their normals point upwards (+z)
+  std::size_t turned = 0;      ///< distinct points turned against the majority of their part
 };
 
 /// Turns normals about so that neighbours agree and closed surfaces have them outwards.

@@ -28,15 +28,20 @@ PlaneFit fit_plane(std::span<const Vec3> points, std::size_t point,
   const double sq_radius = 1.05 * (points[neighbours.back()] - centre).squaredNorm();
   double sum_weights = 1.0;
   Vec3 sum = Vec3::Zero();
-  Mat3 products = Mat3::Zero();
+  double xx = 0.0, xy = 0.0, xz = 0.0, yy = 0.0, yz = 0.0, zz = 0.0;
   for (const std::uint32_t j : neighbours) {
     const Vec3 offset = points[j] - centre;
     const double falloff = 1.0 - offset.squaredNorm() / sq_radius;
     const double weight = falloff * falloff;
+    const Vec3 weighted = weight * offset;
     sum_weights += weight;
-    sum += weight * offset;
-    products += weight * offset * offset.transpose();
+    sum += weighted;
+    xx += weighted.x() * offset.x(), xy += weighted.y() * offset.x();
+    xz += weighted.z() * offset.x(), yy += weighted.y() * offset.y();
+    yz += weighted.z() * offset.y(), zz += weighted.z() * offset.z();
   }
+  Mat3 products;
+  products << xx, xy, xz, xy, yy, yz, xz, yz, zz;
   const Mat3 covariance = products - sum * sum.transpose() / sum_weights;
   if (is_line(covariance)) return {};
   Eigen::SelfAdjointEigenSolver<Mat3> solver;

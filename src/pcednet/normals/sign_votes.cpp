@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "pcednet/core/parallel.h"
+#include "pcednet/core/vector_clones.h"
 
 namespace pcednet::normals {
 namespace {
@@ -56,16 +57,43 @@ class SignedSets {
   std::vector<std::int8_t> sign_;
 };
 
+[[gnu::always_inline]] inline std::int32_t vote_of(const double* p, const double* n,
+                                                   const double* q, const double* m) {
+  constexpr double kReflection = 1.8;
+  const double x = q[0] - p[0], y = q[1] - p[1], z = q[2] - p[2];
+  const double crossing =
+      (x * n[0] + y * n[1] + z * n[2]) * (x * m[0] + y * m[1] + z * m[2]) / (x * x + y * y + z * z);
+  const double parallel = n[0] * m[0] + n[1] * m[1] + n[2] * m[2];
+  const double vote = SignVotes::kUnanimous * (parallel - kReflection * crossing);
+  return static_cast<std::int32_t>(vote + std::copysign(0.5, vote));
+}
+
+/// The votes of point `i` with each of `targets`.
+PCEDNET_VECTOR_CLONES
+void vote_all(const Vec3* points, const Vec3* normals, std::size_t i,
+              std::span<const std::uint32_t> targets, std::int32_t* votes) {
+  const double *const all_points = points->data(), *const all_normals = normals->data();
+  const double* const p = all_points + 3 * i;
+  const double* const n = all_normals + 3 * i;
+  for (std::size_t k = 0; k < targets.size(); ++k) {
+    const std::size_t j = 3 * std::size_t{targets[k]};
+    votes[k] = vote_of(p, n, all_points + j, all_normals + j);
+  }
+}
+
 /// The links of the first round: every vote of the points.
 struct PointRows {
   const SignVotes& votes;
   std::size_t size() const { return votes.links.size(); }
   template <typename Visit>
   void visit(std::size_t i, const Visit& visit) const {
-    for (const std::uint32_t j : votes.links.of(i)) {
-      if (!votes.normals[i].isZero(0.0) && !votes.normals[j].isZero(0.0)) {
-        visit(j, votes.vote(i, j));
-      }
+    if (votes.normals[i].isZero(0.0)) return;
+    const auto row = votes.links.of(i);
+    thread_local std::vector<std::int32_t> of_row;
+    of_row.resize(row.size());
+    vote_all(votes.points.data(), votes.normals.data(), i, row, of_row.data());
+    for (std::size_t k = 0; k < row.size(); ++k) {
+      if (of_row[k] != 0 || !votes.normals[row[k]].isZero(0.0)) visit(row[k], of_row[k]);
     }
   }
 };
@@ -82,8 +110,8 @@ struct PartRows {
   }
 };
 
-/// For every row the target of its strongest link (the first of equals) and whether the two should
-/// have the same sign; itself if it has no link.
+/// For every row the target of its strongest link (the smallest of equals) and whether the two
+/// should have the same sign; itself if it has no link.
 template <typename Rows>
 std::vector<std::pair<std::uint32_t, bool>> strongest_links(const Rows& rows) {
   std::vector<std::pair<std::uint32_t, bool>> strongest(rows.size());
@@ -92,7 +120,8 @@ std::vector<std::pair<std::uint32_t, bool>> strongest_links(const Rows& rows) {
       std::int64_t best = -1;
       strongest[i] = {static_cast<std::uint32_t>(i), true};
       rows.visit(i, [&](std::uint32_t target, std::int64_t vote) {
-        if (std::abs(vote) <= best) return;
+        if (std::abs(vote) < best || (std::abs(vote) == best && target > strongest[i].first))
+          return;
         best = std::abs(vote);
         strongest[i] = {target, vote >= 0};
       });
@@ -140,7 +169,8 @@ Members members_of_parts(const Signs& joined) {
 using Vote = std::pair<std::uint32_t, std::int64_t>;
 
 void append_summed(std::vector<Vote>& votes, Links& links) {
-  std::sort(votes.begin(), votes.end());
+  std::sort(votes.begin(), votes.end(),
+            [](const Vote& a, const Vote& b) { return a.first < b.first; });
   for (std::size_t k = 0; k < votes.size();) {
     const std::uint32_t target = votes[k].first;
     std::int64_t sum = 0;
@@ -187,10 +217,7 @@ Links links_between_parts(const Rows& rows, const Signs& joined) {
 }  // namespace
 
 std::int64_t SignVotes::vote(std::size_t i, std::size_t j) const {
-  constexpr double kReflection = 1.8;
-  const Vec3 edge = points[j] - points[i];
-  const double crossing = edge.dot(normals[i]) * edge.dot(normals[j]) / edge.squaredNorm();
-  return std::llround(kUnanimous * (normals[i].dot(normals[j]) - kReflection * crossing));
+  return vote_of(points[i].data(), normals[i].data(), points[j].data(), normals[j].data());
 }
 
 Signs contract(const SignVotes& votes) {
@@ -212,7 +239,7 @@ Signs contract(const SignVotes& votes) {
 void turn_outvoted_points(const SignVotes& votes, std::vector<std::int8_t>& sign) {
   const auto outvoted = [&](std::size_t i) {
     std::int64_t sum = 0;
-    for (const std::uint32_t j : votes.links.of(i)) sum += votes.vote(i, j) * sign[j];
+    PointRows{votes}.visit(i, [&](std::uint32_t j, std::int64_t vote) { sum += vote * sign[j]; });
     return sum * sign[i] < 0;
   };
   std::vector<std::uint8_t> flagged(sign.size());

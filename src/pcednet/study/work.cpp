@@ -10,6 +10,9 @@
 namespace pcednet::study {
 namespace {
 
+// What is done to a cloud is the experiment; nothing is mended.
+constexpr detect::PrepareOptions kAsGiven = {.keep_orientation = true};
+
 /// The labels of the points to learn from; which these are depends on where they lie.
 std::vector<std::uint8_t> thinned_labels(const PointCloud& cloud, int one_in) {
   std::vector<std::uint8_t> labels = cloud.labels;
@@ -26,7 +29,7 @@ PointCloud treat(const PointCloud& cloud, const Treatment& treatment) {
   if (treatment.keep < 1.0) treated = data::subsample(treated, {.fraction = treatment.keep});
   if (treatment.noise > 0.0) {
     if (treatment.along_normal && !treated.has_normals()) {
-      const auto prepared = detect::prepare(treated);
+      const auto prepared = detect::prepare(treated, kAsGiven);
       treated.normals.assign(prepared.normals.begin(), prepared.normals.end());
     }
     treated = data::add_gaussian_noise(
@@ -58,7 +61,8 @@ void Trainer::describe(const TrainingTask& task) {
   labels.reserve(task.training->clouds.size());  // the training clouds look into them
   for (const StudyCloud& cloud : task.training->clouds) {
     labels.push_back(thinned_labels(cloud.cloud, task.one_in));
-    clouds.push_back({cloud.name, detect::prepare(cloud.cloud, progress_), labels.back()});
+    clouds.push_back(
+        {cloud.name, detect::prepare(cloud.cloud, kAsGiven, progress_), labels.back()});
   }
   EnergyMeter meter(watts_per_core_);
   samples_ = detect::make_samples(clouds, task.options.descriptor, progress_);
@@ -99,7 +103,7 @@ CloudWork::CloudWork(const StudyCloud& cloud, const Treatment& treatment,
     PointCloud treated = treat(cloud.cloud, treatment);
     truth_ = treated.labels;
     EnergyMeter meter(watts_per_core_);
-    const auto prepared = detect::prepare(treated, progress);
+    const auto prepared = detect::prepare(treated, kAsGiven, progress);
     costs_.normals = meter.lap();
     described_ = detect::describe(prepared, descriptor, progress);
     costs_.describe = meter.lap();

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "pcednet/core/vec3.h"
+
+namespace pcednet::normals {
+
+/// Neighbours that lie on one flat piece of surface by their places and the lines of their normals,
+/// so that opposite normals can only be a fault of their signs or the two sides of a wall thinner
+/// than the spacing.
+///
+/// Up to 20,000 points, evenly spread along the curve, are paired with those of their 12 nearest
+/// others whose normal is within 26 degrees of parallel (|n_i.n_j| > 0.9) and whose direction e is
+/// within 17 degrees of the surface (|e.n_i| < 0.3). On clean oriented clouds less than one such
+/// pair in 1000 opposes; with a tenth of the signs wrong, 18 in 100; where two patches of opposite
+/// signs meet, the pairs across the border.
+class FlatPairs {
+ public:
+  /// One normal per position, of unit length; points whose normal is zero or not finite are left
+  /// out.
+  FlatPairs(std::span<const Vec3> positions, std::span<const Vec3> normals);
+
+  std::size_t size() const { return pairs_.size(); }
+
+  /// The pairs whose normals oppose.
+  std::size_t opposed(std::span<const Vec3> normals) const;
+
+ private:
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs_;
+};
+
+}  // namespace pcednet::normals

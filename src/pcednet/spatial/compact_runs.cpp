@@ -1,0 +1,65 @@
+#include "pcednet/spatial/compact_runs.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+#include "pcednet/core/parallel.h"
+
+namespace pcednet::spatial {
+namespace {
+
+constexpr std::size_t kBlock = 1024;
+
+struct Box {
+  Vec3 min = Vec3::Constant(std::numeric_limits<double>::infinity());
+  Vec3 max = Vec3::Constant(-std::numeric_limits<double>::infinity());
+
+  void grow(const Vec3& point) {
+    min = min.cwiseMin(point);
+    max = max.cwiseMax(point);
+  }
+  double size() const { return (max - min).sum(); }
+};
+
+/// Cuts where the two sides together are smallest, each point weighing as much as its side is wide,
+/// until the runs are short enough. `left` is room for the costs of the runs that end before each
+/// point.
+void cut(std::span<const Vec3> points, std::size_t begin, std::size_t end, std::size_t most,
+         std::array<double, kBlock>& left, std::vector<std::uint32_t>& first) {
+  if (end - begin <= most) {
+    first.push_back(static_cast<std::uint32_t>(begin));
+    return;
+  }
+  Box box;
+  for (std::size_t i = begin + 1; i < end; ++i) {
+    box.grow(points[i - 1]);
+    left[i - begin] = static_cast<double>(i - begin) * box.size();
+  }
+  double least = std::numeric_limits<double>::infinity();
+  std::size_t middle = begin + (end - begin) / 2;
+  box = {};
+  for (std::size_t i = end - 1; i > begin; --i) {
+    box.grow(points[i]);
+    const double cost = left[i - begin] + static_cast<double>(end - i) * box.size();
+    if (cost < least) least = cost, middle = i;
+  }
+  cut(points, begin, middle, most, left, first);
+  cut(points, middle, end, most, left, first);
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> cut_compact_runs(std::span<const Vec3> points, std::size_t most) {
+  std::vector<std::vector<std::uint32_t>> blocks((points.size() + kBlock - 1) / kBlock);
+  parallel_blocks(points.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+    std::array<double, kBlock> left;
+    cut(points, begin, end, most, left, blocks[begin / kBlock]);
+  });
+  std::vector<std::uint32_t> first;
+  for (const auto& block : blocks) first.insert(first.end(), block.begin(), block.end());
+  first.push_back(static_cast<std::uint32_t>(points.size()));
+  return first;
+}
+
+}  // namespace pcednet::spatial

@@ -1,0 +1,77 @@
+#include "pcednet/spatial/run_tree.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "pcednet/core/parallel.h"
+#include "pcednet/spatial/compact_runs.h"
+
+namespace pcednet::spatial {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr std::size_t kBlock = 1024;
+
+EightBoxes no_boxes() {
+  EightBoxes boxes;
+  for (int a = 0; a < 3; ++a) {
+    std::fill_n(boxes.min[a], RunTree::kFanOut, kInfinity);
+    std::fill_n(boxes.max[a], RunTree::kFanOut, -kInfinity);
+  }
+  return boxes;
+}
+
+std::vector<EightBoxes> row_of(std::size_t boxes) {
+  return std::vector<EightBoxes>((boxes + RunTree::kFanOut - 1) / RunTree::kFanOut, no_boxes());
+}
+
+std::vector<EightBoxes> boxes_of_runs(std::span<const Vec3> points,
+                                      const std::vector<std::uint32_t>& first) {
+  const std::size_t runs = first.size() - 1;
+  std::vector<EightBoxes> row = row_of(runs);
+  parallel_blocks(runs, kBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t run = begin; run < end; ++run) {
+      Vec3 min = points[first[run]], max = min;
+      for (std::size_t i = first[run] + 1; i < first[run + 1]; ++i) {
+        min = min.cwiseMin(points[i]);
+        max = max.cwiseMax(points[i]);
+      }
+      EightBoxes& node = row[run / RunTree::kFanOut];
+      for (int a = 0; a < 3; ++a) {
+        node.min[a][run % RunTree::kFanOut] = min[a];
+        node.max[a][run % RunTree::kFanOut] = max[a];
+      }
+    }
+  });
+  return row;
+}
+
+std::vector<EightBoxes> boxes_of_nodes(const std::vector<EightBoxes>& finer) {
+  std::vector<EightBoxes> row = row_of(finer.size());
+  for (std::size_t i = 0; i < finer.size(); ++i) {
+    EightBoxes& node = row[i / RunTree::kFanOut];
+    for (int a = 0; a < 3; ++a) {
+      const auto &min = finer[i].min[a], &max = finer[i].max[a];
+      node.min[a][i % RunTree::kFanOut] = *std::min_element(std::begin(min), std::end(min));
+      node.max[a][i % RunTree::kFanOut] = *std::max_element(std::begin(max), std::end(max));
+    }
+  }
+  return row;
+}
+
+}  // namespace
+
+RunTree::RunTree(std::span<const Vec3> points) {
+  if (points.empty()) return;
+  for (std::vector<double>* const axis : {&x, &y, &z}) axis->resize(points.size() + kRun);
+  parallel_blocks(points.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      x[i] = points[i].x(), y[i] = points[i].y(), z[i] = points[i].z();
+    }
+  });
+  first = cut_compact_runs(points, kRun);
+  rows.push_back(boxes_of_runs(points, first));
+  while (rows.back().size() > 1) rows.push_back(boxes_of_nodes(rows.back()));
+}
+
+}  // namespace pcednet::spatial

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "pcednet/core/vec3.h"
+#include "pcednet/spatial/search_kernels.h"
+
+namespace pcednet::spatial {
+
+/// Distinct points in compact runs along a space-filling curve, and the boxes of the runs, of eight
+/// runs, of eight times eight and so on.
+struct RunTree {
+  static constexpr std::size_t kFanOut = 8;               ///< boxes per node
+  static constexpr std::size_t kRun = Candidates::kStep;  ///< points per run at most
+  static constexpr std::size_t kMostRows = 12;            ///< for 2^32 runs
+
+  RunTree() = default;
+  /// `points` must be finite; in curve_order() the runs are compact.
+  explicit RunTree(std::span<const Vec3> points);
+
+  std::size_t size() const { return first.empty() ? 0 : first.back(); }
+  std::array<const double*, 3> axes() const { return {x.data(), y.data(), z.data()}; }
+
+  std::vector<double> x, y, z;       ///< followed by kRun zeros, so that a whole run can be read
+  std::vector<std::uint32_t> first;  ///< first point of each run, and size()
+  std::vector<std::vector<EightBoxes>> rows;  ///< from the runs up to one node
+};
+
+}  // namespace pcednet::spatial
