@@ -28,12 +28,16 @@ class Outputs(CliTest):
     def test_one_of_three_runs_at_once_wins(self):
         write_ply(self.cloud, *cube(600_000)[:2])
         out = self.folder / "out.ply"
-        running = [self.start("convert", self.cloud, "-o", out) for _ in range(3)]
-        # None of them has its result before all of them have begun to write.
-        for process in running:
+        running = []
+        for _ in range(3):  # each is halted in its midst until all of them have begun to write
+            process = self.start("convert", self.cloud, "-o", out)
+            running.append(process)
             while not any(".part" in name and f"-{process.pid}" in name
                           for name in os.listdir(self.folder)):
-                self.assertIsNone(process.poll(), "ended before the others began")
+                self.assertIsNone(process.poll(), "ended without writing")
+            process.send_signal(signal.SIGSTOP)
+        for process in running:
+            process.send_signal(signal.SIGCONT)
         said = [process.stderr.read() for process in running]
         for process in running:
             process.stderr.close()

@@ -120,7 +120,9 @@ TEST(Scales, AreTheSameFromBothEngines) {
       EXPECT_NEAR(fast.scales()[s] / exact.scales()[s], 1.0, 1e-6);
     }
     EXPECT_NE(note_on({}, fast.scales(), cloud.positions), "");
-    EXPECT_EQ(note_on({.s_max = 1.0}, fast.scales(), cloud.positions), "");
+    ScaleSpaceOptions given;
+    given.s_max = 1.0;
+    EXPECT_EQ(note_on(given, fast.scales(), cloud.positions), "");
   }
   const auto dense = test::cube(2000, 2);
   const FastScaleSpace fast({dense.positions, dense.normals}, {});
