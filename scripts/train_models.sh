@@ -1,6 +1,7 @@
 #!/bin/sh
 # Makes the shipped models from generated shapes alone; the same bytes every time.
-# scripts/train_models.sh [scan] [cad] [worn] makes those alone.
+# scripts/train_models.sh [scan] [cad] [worn] makes those alone. The shapes have points with random
+# normals on purpose: --keep-orientation leaves them so.
 set -eu
 cd "$(dirname "$0")/.."
 pcednet=build/release/bin/pcednet
@@ -19,13 +20,14 @@ for model in ${*:-scan cad worn}; do
     generate default 3
     generate scan 1
     $pcednet train "$folder/default1" "$folder/default2" "$folder/default3" "$folder/scan1" \
-      -o models/scan.safetensors --natural --distil 3 --context --seed 1 --overwrite
+      -o models/scan.safetensors --natural --distil 3 --context --keep-orientation --seed 1 --overwrite
     ;;
   cad)
     generate cad 1
     generate cad 2
     $pcednet train "$folder/cad1" "$folder/cad2" -o models/cad.safetensors \
-      --classes 2 --natural --gate 0.4 --second-gate -0.3 --distil 3 --seed 1 --overwrite
+      --classes 2 --natural --gate 0.4 --second-gate -0.3 --distil 3 --keep-orientation \
+      --seed 1 --overwrite
     ;;
   worn)
     generate worn 1
@@ -34,7 +36,7 @@ for model in ${*:-scan cad worn}; do
     generate cad 2
     $pcednet train "$folder/worn1" "$folder/worn2" "$folder/cad1" "$folder/cad2" \
       -o models/worn.safetensors --classes 2 --balance 0.5 --gate -0.5 --distil 3 --context \
-      --seed 1 --overwrite
+      --keep-orientation --seed 1 --overwrite
     ;;
   *)
     echo "train_models.sh: no model $model" >&2

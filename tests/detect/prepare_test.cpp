@@ -91,6 +91,30 @@ TEST(Prepare, LeavesCleanAndInwardNormalsAlone) {
   }
 }
 
+TEST(Prepare, LeavesSurfacesAloneWithSomeNormalsThatPointAnywhere) {
+  // One in ten, as in the paper's noisy clouds: some of them oppose by chance, none is flipped.
+  Random random(9);
+  PointCloud cloud = solids([](std::size_t) { return false; });
+  for (std::size_t i = 0; i < cloud.size(); i += 10) {
+    cloud.normals[i] = Vec3(random.normal(), random.normal(), random.normal()).normalized();
+  }
+  EXPECT_TRUE(prepare(cloud).notes.empty());
+}
+
+TEST(Prepare, LeavesTheSidesOfThinWallsAlone) {
+  // A plate as thick as its points are apart: many of the nearest are those of the other side.
+  Random random(10);
+  for (const double side : {1.0, -1.0}) {
+    PointCloud cloud;
+    for (int i = 0; i < 20000; ++i) {
+      const double up = i % 2 ? 1.0 : -1.0;
+      cloud.positions.emplace_back(random.uniform(), random.uniform(), 0.0015 * up);
+      cloud.normals.emplace_back(0, 0, side * up);
+    }
+    EXPECT_TRUE(prepare(cloud).notes.empty());
+  }
+}
+
 TEST(Prepare, LeavesNormalsAloneThatNoOrientationMakesAgree) {
   // Foliage: places in a ball with normals that point anywhere, on the whole upwards.
   Random random(8);

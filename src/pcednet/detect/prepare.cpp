@@ -21,6 +21,7 @@ constexpr std::size_t kShareToEstimate = 100;
 // 6 / sqrt(n), of which orientation leaves a third.
 constexpr double kBorder = 0.05;
 constexpr std::size_t kFewPairs = 10;
+constexpr double kWalls = 0.3;  // of one_sidedness(): .8 and more on thin walls, .1 on faults
 constexpr std::size_t kMended = 4;
 constexpr std::size_t kShareToOrient = 50;
 
@@ -37,7 +38,7 @@ struct Oriented {
 Oriented complete_and_orient(const PointCloud& cloud, const Progress* progress) {
   const std::vector<Vec3> scanners = scanner_of_points(cloud);
   const auto is_known = [](const Vec3& place) { return place.allFinite(); };
-  normals::PrepareOptions options;
+  normals::PrepareOptions options = {.count_turned = cloud.has_normals()};
   // Where every point has a scanner the costly search for consistent signs is not needed.
   if (!scanners.empty() && std::all_of(scanners.begin(), scanners.end(), is_known)) {
     options.viewpoint = scanners.front();
@@ -104,6 +105,7 @@ void orient_mixed(PreparedCloud& prepared, const PointCloud& cloud, const Progre
       static_cast<double>(opposed) < border * static_cast<double>(pairs.size())) {
     return;
   }
+  if (pairs.one_sidedness(cloud.positions, cloud.normals) > kWalls) return;
   Oriented oriented = complete_and_orient(cloud, progress);
   const std::size_t turned = count_turned(cloud, oriented);
   if (pairs.opposed(oriented.found.normals) * kMended > opposed) return;

@@ -27,7 +27,8 @@ struct PreparedCloud {
 /// by the scanners' places if the cloud has them.
 ///
 /// Normals of mixed signs are oriented likewise: where more flat pairs of neighbours oppose than
-/// the border of a patch makes, orientation leaves less than a quarter of them, and it turns one
+/// the border of a patch makes, not as the two sides of thin walls do, orientation leaves less than
+/// a quarter of them, and it turns one
 /// normal in fifty or more against the rest of its surface. A cloud whose normals all point inwards
 /// is not mixed.
 ///

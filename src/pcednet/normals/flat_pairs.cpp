@@ -58,4 +58,15 @@ std::size_t FlatPairs::opposed(std::span<const Vec3> normals) const {
   }));
 }
 
+double FlatPairs::one_sidedness(std::span<const Vec3> positions,
+                                std::span<const Vec3> normals) const {
+  double sum = 0.0, sizes = 0.0;
+  for (const auto& [i, j] : pairs_) {
+    if (normals[i].dot(normals[j]) >= 0.0) continue;
+    const double rise = (positions[j] - positions[i]).normalized().dot(normals[i]);
+    sum += rise, sizes += std::abs(rise);
+  }
+  return sizes > 0.0 ? std::abs(sum) / sizes : 0.0;
+}
+
 }  // namespace pcednet::normals

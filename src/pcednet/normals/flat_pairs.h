@@ -11,8 +11,8 @@
 namespace pcednet::normals {
 
 /// Neighbours that lie on one flat piece of surface by their places and the lines of their normals,
-/// so that opposite normals can only be a fault of their signs or the two sides of a wall thinner
-/// than the spacing.
+/// so that opposite normals can only be a fault of their signs or the two sides of a wall hardly
+/// thicker than the spacing.
 ///
 /// Up to 20,000 points, evenly spread along the curve, are paired with those of their 12 nearest
 /// others whose normal is within 26 degrees of parallel (|n_i.n_j| > 0.9) and whose direction e is
@@ -29,6 +29,11 @@ class FlatPairs {
 
   /// The pairs whose normals oppose.
   std::size_t opposed(std::span<const Vec3> normals) const;
+
+  /// Whether opposed normals are those of the two sides of walls, from 0 to 1: across a wall each
+  /// point sees the other behind itself (or each in front, with normals inwards), whereas a fault
+  /// of signs is seen from either side as often. |sum e.n_i| / sum |e.n_i| over the opposed pairs.
+  double one_sidedness(std::span<const Vec3> positions, std::span<const Vec3> normals) const;
 
  private:
   std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs_;

@@ -80,10 +80,17 @@ Orientation turn_parts_outwards(std::span<const Vec3> points, std::span<Vec3> no
   return orientation;
 }
 
-/// How many points have another sign than most of their part.
-std::size_t count_minorities(const Signs& signs) {
+/// How many points have another sign than most of their part, of those whose normals lie along
+/// those of most neighbours: the sign of a normal that points anywhere means nothing.
+std::size_t count_minorities(const Signs& signs, const SignVotes& votes) {
+  constexpr double kAlong = 0.9;
   std::vector<std::size_t> sizes(signs.parts, 0), turned(signs.parts, 0);
   for (std::size_t i = 0; i < signs.sign.size(); ++i) {
+    const std::span<const std::uint32_t> links = votes.links.of(i);
+    const auto along = std::count_if(links.begin(), links.end(), [&](std::uint32_t j) {
+      return std::abs(votes.normals[i].dot(votes.normals[j])) > kAlong;
+    });
+    if (2 * static_cast<std::size_t>(along) <= links.size()) continue;
     ++sizes[signs.part[i]];
     turned[signs.part[i]] += signs.sign[i] < 0;
   }
@@ -109,7 +116,7 @@ Orientation orient_points(const NeighbourGraph& graph, std::span<Vec3> normals,
   }
   stage.advance();
   Orientation orientation = turn_parts_outwards(graph.points, normals, signs);
-  orientation.turned = count_minorities(signs);
+  if (options.count_turned) orientation.turned = count_minorities(signs, votes);
   stage.advance();
   return orientation;
 }

@@ -14,13 +14,15 @@ namespace pcednet::normals {
 struct OrientOptions {
   int neighbours = 12;  ///< distinct points that each point compares its sign with, at least 1
   std::optional<Vec3> viewpoint = {};  ///< if given, every normal is turned to face it
+  bool count_turned = false;           ///< fills in Orientation::turned
 };
 
 /// What the signs rest on.
 struct Orientation {
   std::size_t components = 0;  ///< connected parts, each oriented by itself; 0 with a viewpoint
   std::size_t undecided = 0;   ///< those that are open sheets: their normals point upwards (+z)
-  std::size_t turned = 0;      ///< distinct points turned against the majority of their part
+  std::size_t turned = 0;  ///< distinct points turned against the majority of their part, of those
+                           ///< whose normals lie along those of most neighbours
 };
 
 /// Turns normals about so that neighbours agree and closed surfaces have them outwards.

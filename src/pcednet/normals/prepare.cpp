@@ -32,9 +32,11 @@ PreparedNormals complete_and_orient_normals(std::span<const Vec3> positions,
     }
   }
   const int neighbours = std::max(static_cast<int>(graph.degree), 1);
-  prepared.orientation =
-      orient_normals(graph, positions, prepared.normals,
-                     {.neighbours = neighbours, .viewpoint = options.viewpoint}, progress);
+  prepared.orientation = orient_normals(graph, positions, prepared.normals,
+                                        {.neighbours = neighbours,
+                                         .viewpoint = options.viewpoint,
+                                         .count_turned = options.count_turned},
+                                        progress);
   prepared.unusable = static_cast<std::size_t>(
       std::count_if(prepared.normals.begin(), prepared.normals.end(), is_missing));
   return prepared;

@@ -15,6 +15,7 @@ namespace pcednet::normals {
 struct PrepareOptions {
   int neighbours = EstimateOptions{}.neighbours;  ///< for estimation and for orientation
   std::optional<Vec3> viewpoint = {};             ///< as in OrientOptions
+  bool count_turned = false;                      ///< as in OrientOptions
 };
 
 struct PreparedNormals {
