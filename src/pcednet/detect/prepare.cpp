@@ -19,7 +19,7 @@ constexpr std::size_t kShareToEstimate = 100;
 // When signs count as mixed, see the header. Two patches of n points oppose in some 0.4 to 1.4 /
 // sqrt(n) of the pairs, clean clouds in none to 0.06 / sqrt(n), and noise thicker than the walls in
 // 6 / sqrt(n), of which orientation leaves a third.
-constexpr double kBorder = 0.05;
+constexpr double kBorder = 0.2;
 constexpr std::size_t kFewPairs = 10;
 constexpr double kWalls = 0.3;  // of one_sidedness(): .8 and more on thin walls, .1 on faults
 constexpr std::size_t kMended = 4;

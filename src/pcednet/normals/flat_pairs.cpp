@@ -40,13 +40,18 @@ FlatPairs::FlatPairs(std::span<const Vec3> positions, std::span<const Vec3> norm
     }
     std::vector<spatial::Neighbour> found(chosen.size() * count);
     search.nearest_others(chosen, kNeighbours, found);
-    for (std::size_t k = 0; k < found.size(); ++k) {
-      const std::uint32_t i = chosen[k / count], j = found[k].index;
-      const Vec3 &n = normals[order[i]], e = points[j] - points[i];
-      const double rise = e.dot(n);
-      const bool flat = std::abs(n.dot(normals[order[j]])) > kParallel &&
-                        rise * rise < kLevel * kLevel * found[k].sq_distance;
-      if (flat) blocks[begin / kBlock].emplace_back(order[i], order[j]);
+    auto& pairs = blocks[begin / kBlock];
+    for (std::size_t c = 0; c < chosen.size(); ++c) {
+      const std::uint32_t i = chosen[c];
+      const Vec3& n = normals[order[i]];
+      const std::size_t before = pairs.size();
+      for (const spatial::Neighbour& other : std::span(found).subspan(c * count, count)) {
+        const double rise = (points[other.index] - points[i]).dot(n);
+        const bool flat = std::abs(n.dot(normals[order[other.index]])) > kParallel &&
+                          rise * rise < kLevel * kLevel * other.sq_distance;
+        if (flat) pairs.emplace_back(order[i], order[other.index]);
+      }
+      if (2 * (pairs.size() - before) <= count) pairs.resize(before);  // among leaves or noise
     }
   });
   for (const auto& block : blocks) pairs_.insert(pairs_.end(), block.begin(), block.end());
