@@ -1,9 +1,11 @@
 #!/bin/sh
-# From a fresh clone to the edges of a point cloud: installs what is missing, builds, classifies the
-# included sample and draws it.
+# From a fresh clone to the edges of a point cloud: installs what is missing, builds the whole
+# program with its web pages, classifies the included sample and draws it.
 set -eu
 cd "$(dirname "$0")/.."
-scripts/setup.sh
+scripts/setup.sh web
+scripts/build_web.sh ||
+  echo "demo.sh: no web pages, so annotate and report will not work; scripts/build_web.sh says why" >&2
 
 cmake --preset release >/dev/null
 cmake --build --preset release
@@ -17,4 +19,5 @@ cat <<'END'
 Look at   out/building_edges.png
 or open   out/building_edges.ply  in CloudCompare, MeshLab or PCL.
 Your own: build/release/bin/pcednet classify YOUR_FILE.ply
+Or paint: build/release/bin/pcednet annotate YOUR_FILE.ply
 END

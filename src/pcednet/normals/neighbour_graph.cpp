@@ -15,13 +15,19 @@ namespace {
 constexpr std::size_t kBlock = 1024;
 
 void collect_distinct_points(std::span<const Vec3> positions, NeighbourGraph& graph) {
+  const std::vector<std::uint32_t> order = spatial::curve_order(positions);
+  std::vector<Vec3>& points = graph.points;
+  points.resize(order.size());
+  parallel_blocks(order.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) points[i] = positions[order[i]];
+  });
   graph.point_of.assign(positions.size(), kNoPoint);
-  for (const std::uint32_t i : spatial::curve_order(positions)) {
-    if (graph.points.empty() || graph.points.back() != positions[i]) {
-      graph.points.push_back(positions[i]);
-    }
-    graph.point_of[i] = static_cast<std::uint32_t>(graph.points.size() - 1);
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    if (count == 0 || points[count - 1] != points[i]) points[count++] = points[i];
+    graph.point_of[order[i]] = static_cast<std::uint32_t>(count - 1);
   }
+  points.resize(count);
 }
 
 double sq_distance(const Vec3& p, const Vec3& q) {
