@@ -21,7 +21,7 @@ constexpr std::size_t kShareToEstimate = 100;
 // 6 / sqrt(n), of which orientation leaves a third.
 constexpr double kBorder = 0.2;
 constexpr std::size_t kFewPairs = 10;
-constexpr double kWalls = 0.3;  // of one_sidedness(): .8 and more on thin walls, .1 on faults
+constexpr double kWalls = 0.3;  // of one_sidedness()
 constexpr std::size_t kMended = 4;
 constexpr std::size_t kShareToOrient = 50;
 
