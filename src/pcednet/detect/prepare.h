@@ -28,9 +28,8 @@ struct PreparedCloud {
 ///
 /// Normals of mixed signs are oriented likewise: where more flat pairs of neighbours oppose than
 /// the border of a patch makes, not as the two sides of thin walls do, orientation leaves less than
-/// a quarter of them, and it turns one
-/// normal in fifty or more against the rest of its surface. A cloud whose normals all point inwards
-/// is not mixed.
+/// a quarter of them, and it turns one normal in fifty or more against the rest of its surface. A
+/// cloud whose normals all point inwards is not mixed.
 ///
 /// Throws Error(kInsufficient) for a cloud without a finite point, or without any normal that could
 /// be used or found.

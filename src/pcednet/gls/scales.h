@@ -40,9 +40,8 @@ inline constexpr std::size_t kSpacingNeighbours = 11;
 ///
 /// Two rules go beyond the paper, for clouds to which its own gives no range:
 /// - A spacing of 0 (every point has ten copies) becomes the spacing of the distinct positions.
-/// - An s_max that is not above s_min (a sparse cloud: fewer than some 330 points on a cube) and
-/// not given
-///   becomes kSparseRange times s_min; see note_on().
+/// - An s_max that was not given and is not above s_min (a sparse cloud: fewer than some 330 points
+///   on a cube) becomes kSparseRange times s_min; see note_on().
 ///
 /// Throws Error(kInsufficient) for fewer than two places unless both bounds are given,
 /// Error(kUsage) if a given bound is negative, not finite, or leaves no range.

@@ -124,8 +124,7 @@ class BlockPlan {
   std::span<const std::uint32_t> plan(std::span<const Keyed> members) {
     members_ = members;
     voxel_of_.resize(members.size());
-    filling_ = members.size() < kFewestToFill ? 0.0 : find_filling();
-    if (crowd_ == Crowd::kKeep || filling_ < kFillsSpace) {
+    if (crowd_ == Crowd::kKeep || filling() < kFillsSpace) {
       number_by_axis(kAxisBits);
     } else if (crowd_ == Crowd::kMergeByAxis) {
       number_by_axis(kGatedBits);
@@ -139,7 +138,20 @@ class BlockPlan {
   std::size_t count() const { return count_; }
 
   /// How far that block is from a surface: MergeForecast::filling.
-  double filling() const { return filling_; }
+  double filling() const {
+    if (members_.size() < kFewestToFill) return 0.0;
+    NormalSpread spread;
+    std::size_t occupied = 0;
+    for_cells(kAxisBits, [&](std::size_t begin, std::size_t end) {
+      bool is_empty = true;
+      for (std::size_t i = begin; i < end; ++i) {
+        spread.add(normal_of(voxel(i)), voxel(i).count);
+        is_empty = is_empty && voxel(i).count == 0.0f;
+      }
+      occupied += is_empty ? 0 : 1;
+    });
+    return static_cast<double>(occupied) * spread.mean_sq_volume();
+  }
 
  private:
   const Voxel& voxel(std::size_t i) const { return (*from_)[members_[i].index]; }
@@ -184,22 +196,12 @@ class BlockPlan {
     });
   }
 
-  double find_filling() {
-    NormalSpread spread;
-    for (std::size_t i = 0; i < members_.size(); ++i) {
-      spread.add(normal_of(voxel(i)), voxel(i).count);
-    }
-    number_by_place(kAxisBits);
-    return static_cast<double>(count_) * spread.mean_sq_volume();
-  }
-
   const std::vector<Voxel>* from_;
   const Grid* grid_;
   Crowd crowd_;
   std::span<const Keyed> members_;
   std::vector<std::uint32_t> voxel_of_;
   std::uint32_t count_ = 0;
-  double filling_ = 0.0;
 };
 
 /// Calls `use(members, voxel_of, plan)` for every block that begins within [begin, end).
@@ -285,6 +287,7 @@ MergeForecast forecast_merge(const std::vector<Voxel>& from, const MergeCells& c
     for_blocks(from, grid, cells.crowd, keyed, 0, keyed.size(),
                [&](std::span<const Keyed> members, std::span<const std::uint32_t> voxel_of,
                    const BlockPlan& plan) {
+                 const double filling = cells.crowd == Crowd::kKeep ? plan.filling() : 0.0;
                  merged.assign(plan.count(), 0.0), count.assign(plan.count(), 0.0);
                  for (std::size_t i = 0; i < members.size(); ++i) {
                    if (voxel_of[i] == kNone) continue;
@@ -294,7 +297,7 @@ MergeForecast forecast_merge(const std::vector<Voxel>& from, const MergeCells& c
                  for (std::size_t v = 0; v < plan.count(); ++v) {
                    points += count[v];
                    merged_sum += count[v] * merged[v];
-                   filling_sum += count[v] * plan.filling();
+                   filling_sum += count[v] * filling;
                  }
                });
   }

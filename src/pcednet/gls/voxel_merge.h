@@ -30,9 +30,10 @@ std::vector<Voxel> merge_voxels(const std::vector<Voxel>& from, const MergeCells
 /// What the average point would meet in merge_voxels(), estimated from every sixteenth stretch of
 /// the curve.
 struct MergeForecast {
-  double merged = 1.0;   ///< voxels of `from` that go into its voxel; 1 where nothing would merge
-  double filling = 0.0;  ///< of its block: occupied cells times NormalSpread::mean_sq_volume(), at
-                         ///< most 6 on scans of surfaces, 20 and more on noise
+  double merged = 1.0;  ///< voxels of `from` that go into its voxel; 1 where nothing would merge
+  /// Crowd::kKeep: of its block, occupied cells times NormalSpread::mean_sq_volume(), at most 6 on
+  /// scans of surfaces, 20 and more on noise.
+  double filling = 0.0;
 };
 MergeForecast forecast_merge(const std::vector<Voxel>& from, const MergeCells& cells);
 
