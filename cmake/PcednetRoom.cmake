@@ -1,27 +1,40 @@
 # pcednet_room(NAME USES room... LINKS library... PRIVATE_LINKS library...)
+# workbench_room(NAME USES room... LINKS library... PRIVATE_LINKS library...)
 #
-# Makes the library target pcednet_NAME (alias pcednet::NAME) from every source of the current
-# folder. USES names the rooms whose headers it includes; LINKS are outside libraries that appear in
-# its headers, PRIVATE_LINKS those that appear only in its sources.
+# Makes the library target pcednet_NAME (alias pcednet::NAME, workbench::NAME) from every source of
+# the current folder. USES names the rooms whose headers it includes; LINKS are outside libraries
+# that appear in its headers, PRIVATE_LINKS those that appear only in its sources. Rooms of the
+# library are installed, those of the workbench are not.
 function(pcednet_room name)
+  pcednet_make_room(${name} pcednet ${ARGN})
+  set(target pcednet_${name})
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${name})
+  set_property(GLOBAL APPEND PROPERTY PCEDNET_ROOMS ${target})
+  file(GLOB headers CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.h)
+  install(TARGETS ${target} EXPORT pcednetTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  install(FILES ${headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/pcednet/${name})
+endfunction()
+
+function(workbench_room name)
+  pcednet_make_room(${name} workbench ${ARGN})
+  set_property(GLOBAL APPEND PROPERTY WORKBENCH_ROOMS pcednet_${name})
+endfunction()
+
+function(pcednet_make_room name wing)
   cmake_parse_arguments(room "" "" "USES;LINKS;PRIVATE_LINKS" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
   file(GLOB headers CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.h)
   set(target pcednet_${name})
   add_library(${target} STATIC ${sources} ${headers})
-  add_library(pcednet::${name} ALIAS ${target})
-  set_target_properties(${target} PROPERTIES EXPORT_NAME ${name})
+  add_library(${wing}::${name} ALIAS ${target})
   target_include_directories(${target} PUBLIC
     $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_compile_features(${target} PUBLIC cxx_std_20)
   pcednet_compile_options(${target})
   foreach(used ${room_USES})
-    target_link_libraries(${target} PUBLIC pcednet::${used})
+    target_link_libraries(${target} PUBLIC pcednet_${used})
   endforeach()
   target_link_libraries(${target} PUBLIC ${room_LINKS} PRIVATE ${room_PRIVATE_LINKS})
-  set_property(GLOBAL APPEND PROPERTY PCEDNET_ROOMS ${target})
-  install(TARGETS ${target} EXPORT pcednetTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
-  install(FILES ${headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/pcednet/${name})
 endfunction()
 
 # Warnings, and no contraction of a*b+c: the same source gives the same bits on every processor.

@@ -1,8 +1,8 @@
 #include <string_view>
 
 #include "in_memory.h"
-#include "pcednet/annotate/project.h"
-#include "pcednet/annotate/stroke.h"
+#include "workbench/annotate/project.h"
+#include "workbench/annotate/stroke.h"
 
 namespace {
 

@@ -3,9 +3,9 @@
 #include <filesystem>
 #include <optional>
 
-#include "pcednet/classic/edge_measure.h"
 #include "pcednet/cloud/point_cloud.h"
 #include "pcednet/core/progress.h"
+#include "workbench/classic/edge_measure.h"
 
 namespace pcednet::app {
 

@@ -3,7 +3,7 @@
 #include <memory>
 #include <string_view>
 
-#include "pcednet/annotate/api.h"
+#include "workbench/annotate/api.h"
 
 namespace pcednet::app {
 

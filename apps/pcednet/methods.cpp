@@ -6,9 +6,9 @@
 #include <cmath>
 
 #include "fee.h"
-#include "pcednet/classic/edge_measure.h"
 #include "pcednet/core/error.h"
 #include "pcednet/core/stopwatch.h"
+#include "workbench/classic/edge_measure.h"
 
 namespace pcednet::app {
 namespace {

@@ -9,11 +9,11 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "pcednet/annotate/project.h"
-#include "pcednet/annotate/session.h"
 #include "pcednet/core/error.h"
 #include "pcednet/core/random.h"
 #include "pcednet/io/write_cloud.h"
+#include "workbench/annotate/project.h"
+#include "workbench/annotate/session.h"
 
 namespace pcednet::annotate {
 namespace {

@@ -1,4 +1,4 @@
-#include "pcednet/annotate/layout.h"
+#include "workbench/annotate/layout.h"
 
 #include <gtest/gtest.h>
 

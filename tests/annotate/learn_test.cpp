@@ -1,4 +1,4 @@
-#include "pcednet/annotate/learn.h"
+#include "workbench/annotate/learn.h"
 
 #include <gtest/gtest.h>
 

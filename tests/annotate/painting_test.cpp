@@ -4,11 +4,11 @@
 #include <fstream>
 #include <iterator>
 
-#include "pcednet/annotate/journal.h"
-#include "pcednet/annotate/places.h"
-#include "pcednet/annotate/select.h"
 #include "pcednet/core/error.h"
 #include "pcednet/core/random.h"
+#include "workbench/annotate/journal.h"
+#include "workbench/annotate/places.h"
+#include "workbench/annotate/select.h"
 
 namespace pcednet::annotate {
 namespace {

@@ -1,4 +1,4 @@
-#include "pcednet/classic/edge_measure.h"
+#include "workbench/classic/edge_measure.h"
 
 #include <gtest/gtest.h>
 
@@ -6,10 +6,10 @@
 #include <cmath>
 #include <limits>
 
-#include "pcednet/classic/surface_variation.h"
 #include "pcednet/core/error.h"
 #include "pcednet/core/parallel.h"
 #include "pcednet/core/random.h"
+#include "workbench/classic/surface_variation.h"
 
 namespace pcednet::classic {
 namespace {

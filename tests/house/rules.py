@@ -39,16 +39,23 @@ def arguments(text, function):
     return [call.split() for call in re.findall(rf"\b{function}\s*\(([^)]*)\)", text)]
 
 
+WINGS = {"pcednet": "pcednet_room", "workbench": "workbench_room"}
+
+
 def room_order(root):
-    for words in arguments(read(root / "CMakeLists.txt"), "foreach"):
-        if words[0] == "room":
-            return words[1:]
-    raise SystemExit("CMakeLists.txt: no foreach(room ...) lists the rooms")
+    """Every room as (wing, name), from the bottom up."""
+    order = []
+    text = re.sub(r"#.*", "", read(root / "CMakeLists.txt"))
+    for names, wing in re.findall(r"foreach\(room ([^)]*)\)\s*add_subdirectory\(src/(\w+)/", text):
+        order += [(wing, name) for name in names.split()]
+    if not order:
+        raise SystemExit("CMakeLists.txt: no foreach(room ...) lists the rooms")
+    return order
 
 
-def rooms_used(root, room):
-    listing = root / "src/pcednet" / room / "CMakeLists.txt"
-    (words,) = arguments(read(listing), "pcednet_room")
+def rooms_used(root, wing, room):
+    listing = root / "src" / wing / room / "CMakeLists.txt"
+    (words,) = arguments(read(listing), WINGS[wing])
     if words[0] != room:
         raise SystemExit(f"{listing}: names the room {words[0]}")
     used = []
@@ -61,23 +68,25 @@ def rooms_used(root, room):
 
 
 def check_rooms(root):
-    """A room uses rooms above it in the list only, and includes what it says it uses."""
+    """A room uses rooms above it in the lists only, and includes what it says it uses."""
     order = room_order(root)
-    include = re.compile(r'\s*#\s*include\s*[<"]pcednet/([^/">]+)/')
-    for folder in sorted((root / "src/pcednet").iterdir()):
-        room = folder.name
-        if room not in order:
-            yield f"src/pcednet/{room}: not among the rooms of CMakeLists.txt"
+    names = [name for _, name in order]
+    include = re.compile(r'\s*#\s*include\s*[<"](pcednet|workbench)/([^/">]+)/')
+    for folder in sorted(path for wing in WINGS for path in (root / "src" / wing).glob("*")):
+        wing, room = folder.parent.name, folder.name
+        if (wing, room) not in order:
+            yield f"src/{wing}/{room}: not among the rooms of CMakeLists.txt"
             continue
-        used = rooms_used(root, room)
+        used = rooms_used(root, wing, room)
         for other in used:
-            if other not in order[:order.index(room)]:
-                yield f"src/pcednet/{room}/CMakeLists.txt: uses {other}, which is not above it"
-        for path in sources(root, f"src/pcednet/{room}"):
+            if other not in names[:names.index(room)]:
+                yield f"src/{wing}/{room}/CMakeLists.txt: uses {other}, which is not above it"
+        allowed = [place for place in order if place[1] in (room, *used)]
+        for path in sources(root, f"src/{wing}/{room}"):
             for number, line in enumerate(read(path).splitlines(), 1):
                 found = include.match(line)
-                if found and found[1] not in [room, *used]:
-                    yield f"{path}:{number}: includes {found[1]}, which {room} does not use"
+                if found and found.groups() not in allowed:
+                    yield f"{path}:{number}: includes {found[2]}, which {room} does not use"
 
 
 def check_sizes(root):
@@ -133,11 +142,20 @@ RULES = {"rooms": check_rooms, "sizes": check_sizes, "silence": check_silence,
 def check_self():
     """Every rule finds its breach, and nothing else in the same house without it."""
     sound = {
-        "CMakeLists.txt": "project(pcednet VERSION 1.2.3)\nforeach(room core gls) # order\n",
+        "CMakeLists.txt": """project(pcednet VERSION 1.2.3)
+foreach(room core gls) # order
+  add_subdirectory(src/pcednet/${room})
+endforeach()
+foreach(room study)
+  add_subdirectory(src/workbench/${room})
+endforeach()
+""",
         "src/pcednet/core/CMakeLists.txt": "pcednet_room(core LINKS gls)\n",
         "src/pcednet/core/a.h": "#pragma once\n",
         "src/pcednet/gls/CMakeLists.txt": "pcednet_room(gls\n  USES core)\n",
         "src/pcednet/gls/b.cpp": '#include "pcednet/core/a.h"\nint n = snprintf(b, 2, "x");\n',
+        "src/workbench/study/CMakeLists.txt": "workbench_room(study USES gls)\n",
+        "src/workbench/study/c.cpp": '#include "workbench/study/c.h"\n\n#include "pcednet/gls/b.h"\n',
         "CHANGELOG.md": "# Changes\n\n## Unreleased\n\n## 1.2.3\n\n## 1.2.2\n",
         "CITATION.cff": 'cff-version: 1.2.0\nversion: "1.2.3"\n',
         ".clang-format": "BasedOnStyle: Google\n",
@@ -146,7 +164,11 @@ def check_self():
         "rooms": [("src/pcednet/core/a.h", '#include "pcednet/gls/b.h"\n'),
                   ("src/pcednet/gls/CMakeLists.txt", "pcednet_room(gls)\n"),
                   ("src/pcednet/core/CMakeLists.txt", "pcednet_room(core USES gls)\n"),
-                  ("src/pcednet/new/c.h", "\n")],
+                  ("src/pcednet/core/a.h", '#include "workbench/study/c.h"\n'),
+                  ("src/pcednet/gls/CMakeLists.txt", "pcednet_room(gls USES core study)\n"),
+                  ("src/workbench/study/c.cpp", '#include "pcednet/core/a.h"\n'),
+                  ("src/workbench/study/c.cpp", '#include "workbench/gls/b.h"\n'),
+                  ("src/pcednet/new/c.h", "\n"), ("src/workbench/new/c.h", "\n")],
         "sizes": [("src/pcednet/core/a.h", "\n" * 151), ("apps/main.cpp", "\n" * 401)],
         "silence": [("src/pcednet/gls/b.cpp", text) for text in
                     ('std::cout << 1;\n', 'printf("x");\n', "  std::exit(1);\n", "exit (1);\n",

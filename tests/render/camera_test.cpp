@@ -1,4 +1,4 @@
-#include "pcednet/render/camera.h"
+#include "workbench/render/camera.h"
 
 #include <gtest/gtest.h>
 

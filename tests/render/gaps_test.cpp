@@ -1,4 +1,4 @@
-#include "pcednet/render/gaps.h"
+#include "workbench/render/gaps.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "pcednet/render/near_points.h"
+#include "workbench/render/near_points.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "pcednet/render/preview.h"
+#include "workbench/render/preview.h"
 
 #include <gtest/gtest.h>
 #include <png.h>

@@ -1,4 +1,4 @@
-#include "pcednet/report/merge.h"
+#include "workbench/report/merge.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

@@ -1,4 +1,4 @@
-#include "pcednet/report/scene.h"
+#include "workbench/report/scene.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 
 #include "pcednet/core/error.h"
 #include "pcednet/core/random.h"
-#include "pcednet/report/base64.h"
+#include "workbench/report/base64.h"
 
 namespace pcednet::report {
 namespace {

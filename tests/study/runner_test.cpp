@@ -1,4 +1,4 @@
-#include "pcednet/study/runner.h"
+#include "workbench/study/runner.h"
 
 #include <gtest/gtest.h>
 
@@ -11,8 +11,8 @@
 #include "pcednet/core/error.h"
 #include "pcednet/core/parallel.h"
 #include "pcednet/detect/classify.h"
-#include "pcednet/study/keys.h"
-#include "pcednet/study/study_file.h"
+#include "workbench/study/keys.h"
+#include "workbench/study/study_file.h"
 
 namespace pcednet::study {
 namespace {

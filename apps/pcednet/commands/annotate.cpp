@@ -9,9 +9,9 @@
 #include "commands.h"
 #include "http_server.h"
 #include "models.h"
-#include "pcednet/annotate/api.h"
 #include "pcednet/core/error.h"
 #include "web_pages.h"
+#include "workbench/annotate/api.h"
 
 namespace pcednet::app {
 namespace {

@@ -15,8 +15,8 @@
 #include "pcednet/detect/result_cloud.h"
 #include "pcednet/io/read_cloud.h"
 #include "pcednet/io/write_cloud.h"
-#include "pcednet/render/preview.h"
 #include "prepare.h"
+#include "workbench/render/preview.h"
 
 namespace pcednet::app {
 namespace {

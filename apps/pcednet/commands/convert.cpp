@@ -7,12 +7,12 @@
 #include "batch.h"
 #include "commands.h"
 #include "pcednet/core/error.h"
-#include "pcednet/data/mesh_samples.h"
-#include "pcednet/data/perturb.h"
 #include "pcednet/io/faces.h"
 #include "pcednet/io/parts.h"
 #include "pcednet/io/read_cloud.h"
 #include "pcednet/io/write_cloud.h"
+#include "workbench/shapes/mesh_samples.h"
+#include "workbench/shapes/perturb.h"
 
 namespace pcednet::app {
 namespace {
@@ -33,18 +33,18 @@ void sample(const Request& request, PointCloud& cloud) {
   if (triangles.empty()) {
     throw Error(ErrorKind::kInsufficient, "has no faces to sample; .obj and .ply may have");
   }
-  cloud =
-      data::sample_mesh(cloud, triangles, {request.samples, request.vertex_normals, request.seed});
+  cloud = shapes::sample_mesh(cloud, triangles,
+                              {request.samples, request.vertex_normals, request.seed});
 }
 
 void perturb(const Request& request, PointCloud& cloud) {
   if (request.noise > 0.0) {
     with_name_in_errors(request.input, [&] {
-      cloud = data::add_gaussian_noise(std::move(cloud),
-                                       {request.noise, request.along_normal, request.seed});
+      cloud = shapes::add_gaussian_noise(std::move(cloud),
+                                         {request.noise, request.along_normal, request.seed});
     });
   }
-  if (request.fraction < 1.0) cloud = data::subsample(cloud, {request.fraction, request.seed});
+  if (request.fraction < 1.0) cloud = shapes::subsample(cloud, {request.fraction, request.seed});
 }
 
 void warn_of(const std::string& file, const std::vector<std::string>& warnings) {

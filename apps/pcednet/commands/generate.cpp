@@ -5,12 +5,12 @@
 
 #include "commands.h"
 #include "pcednet/core/error.h"
-#include "pcednet/data/building.h"
-#include "pcednet/data/cad_set.h"
-#include "pcednet/data/default_set.h"
-#include "pcednet/data/relief_set.h"
-#include "pcednet/data/scan_set.h"
 #include "pcednet/io/write_cloud.h"
+#include "workbench/shapes/building.h"
+#include "workbench/shapes/cad_set.h"
+#include "workbench/shapes/default_set.h"
+#include "workbench/shapes/relief_set.h"
+#include "workbench/shapes/scan_set.h"
 
 namespace pcednet::app {
 namespace {
@@ -20,7 +20,7 @@ double percent_of(const PointCloud& cloud, EdgeClass label) {
   return 100.0 * static_cast<double>(count) / static_cast<double>(cloud.size());
 }
 
-std::string details(const data::Recipe& recipe) {
+std::string details(const shapes::Recipe& recipe) {
   std::string faults;
   if (recipe.noise > 0.0) faults += fmt::format("  noise {:.2g}", recipe.noise);
   if (recipe.displacement > 0.0) faults += fmt::format("  displaced {}", recipe.displacement);
@@ -29,18 +29,18 @@ std::string details(const data::Recipe& recipe) {
   return faults;
 }
 
-std::string details(const data::CadRecipe& recipe) {
+std::string details(const shapes::CadRecipe& recipe) {
   return fmt::format("  {}{}{}", recipe.mesh ? "vertices" : "drawn",
                      recipe.estimated ? ", normals estimated" : "",
                      recipe.noise > 0.0 ? fmt::format(", noise {:.2g}", recipe.noise) : "");
 }
 
-std::string details(const data::ReliefRecipe& recipe) {
+std::string details(const shapes::ReliefRecipe& recipe) {
   return fmt::format("  {}{}", recipe.even ? "even" : "drawn",
                      recipe.estimated ? ", normals estimated" : "");
 }
 
-std::string details(const data::ScanRecipe& recipe) {
+std::string details(const shapes::ScanRecipe& recipe) {
   return fmt::format("  noise {:.2g}", recipe.scanner.range_noise);
 }
 
@@ -62,7 +62,7 @@ void run(const std::string& folder, std::uint64_t seed, const Common& common,
   say("cloud             points  sharp smooth    non");
   std::size_t points = 0;
   const auto make = [&](const auto& recipe) {
-    const PointCloud cloud = data::generate(recipe, seed).cloud;
+    const PointCloud cloud = shapes::generate(recipe, seed).cloud;
     io::write_cloud(path_of(recipe), cloud, {.overwrite = common.overwrite()});
     say(fmt::format("{:<16} {:>7} {:>6.1f} {:>6.1f} {:>6.1f}{}", recipe.name, cloud.size(),
                     percent_of(cloud, kSharpEdge), percent_of(cloud, kSmoothEdge),
@@ -111,9 +111,9 @@ void add_default(CLI::App& generate, Common& common) {
       ->check(CLI::PositiveNumber);
   command->callback([arguments, &common] {
     const auto& [folder, seed] = static_cast<const SetArguments&>(*arguments);
-    data::DefaultSetOptions options{.extras = !arguments->paper_only};
+    shapes::DefaultSetOptions options{.extras = !arguments->paper_only};
     if (!arguments->bands.empty()) options.bands = {arguments->bands[0], arguments->bands[1]};
-    run(folder, seed, common, data::default_recipes(seed, options));
+    run(folder, seed, common, shapes::default_recipes(seed, options));
   });
 }
 
@@ -124,7 +124,7 @@ void add_cad(CLI::App& generate, Common& common) {
           "pcednet generate cad parts/\n"
           "pcednet generate cad parts/ --seed 2")
       ->callback(
-          [set, &common] { run(set->folder, set->seed, common, data::cad_recipes(set->seed)); });
+          [set, &common] { run(set->folder, set->seed, common, shapes::cad_recipes(set->seed)); });
 }
 
 void add_worn(CLI::App& generate, Common& common) {
@@ -133,8 +133,8 @@ void add_worn(CLI::App& generate, Common& common) {
           "Labelled clouds for training: worn parts and reliefs, their ridge lines labelled",
           "pcednet generate worn parts/")
       ->callback([set, &common] {
-        run(set->folder, set->seed, common, data::worn_recipes(set->seed),
-            data::relief_recipes(set->seed));
+        run(set->folder, set->seed, common, shapes::worn_recipes(set->seed),
+            shapes::relief_recipes(set->seed));
       });
 }
 
@@ -144,7 +144,7 @@ void add_scan(CLI::App& generate, Common& common) {
           "Labelled clouds for training: laser scans of facades, yards, rooms and monuments",
           "pcednet generate scan scans/")
       ->callback(
-          [set, &common] { run(set->folder, set->seed, common, data::scan_recipes(set->seed)); });
+          [set, &common] { run(set->folder, set->seed, common, shapes::scan_recipes(set->seed)); });
 }
 
 void add_sample(CLI::App& generate, Common& common) {
@@ -157,7 +157,7 @@ void add_sample(CLI::App& generate, Common& common) {
   command->add_option("--seed", *seed, "Another seed gives other points")->capture_default_str();
   command->callback([file, seed, &common] {
     check_writable(*file, common.overwrite());
-    io::write_cloud(*file, data::building_scan(*seed).cloud, {.overwrite = common.overwrite()});
+    io::write_cloud(*file, shapes::building_scan(*seed).cloud, {.overwrite = common.overwrite()});
   });
 }
 

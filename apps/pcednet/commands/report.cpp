@@ -4,8 +4,8 @@
 
 #include "commands.h"
 #include "pcednet/core/error.h"
-#include "pcednet/report/merge.h"
 #include "web_pages.h"
+#include "workbench/report/merge.h"
 
 namespace pcednet::app {
 namespace {

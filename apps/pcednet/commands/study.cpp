@@ -14,9 +14,9 @@
 #include "methods.h"
 #include "models.h"
 #include "pcednet/core/error.h"
-#include "pcednet/data/default_set.h"
 #include "pcednet/io/read_labelled.h"
-#include "pcednet/study/study_file.h"
+#include "workbench/shapes/default_set.h"
+#include "workbench/study/study_file.h"
 
 namespace pcednet::app {
 namespace {
@@ -67,7 +67,7 @@ study::CloudSet read_set(const std::string& name, const std::vector<std::string>
 
 study::CloudSet generated_set() {
   study::CloudSet set{.name = "default"};
-  for (data::GeneratedCloud& cloud : data::generate_default(1)) {
+  for (shapes::GeneratedCloud& cloud : shapes::generate_default(1)) {
     set.clouds.push_back(study::make_study_cloud(cloud.name, "", std::move(cloud.cloud)));
   }
   return set;

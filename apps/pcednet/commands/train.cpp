@@ -7,11 +7,11 @@
 #include "batch.h"
 #include "commands.h"
 #include "models.h"
-#include "pcednet/annotate/learn.h"
 #include "pcednet/core/error.h"
 #include "pcednet/detect/train.h"
 #include "pcednet/io/read_labelled.h"
 #include "prepare.h"
+#include "workbench/annotate/learn.h"
 
 namespace pcednet::app {
 namespace {

@@ -1,0 +1,100 @@
+#include "workbench/annotate/journal.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+
+#include "pcednet/core/error.h"
+
+namespace pcednet::annotate {
+
+Journal::Journal(std::filesystem::path path, const InputIdentity& input,
+                 std::vector<Record>& records)
+    : path_(std::move(path)) {
+  file_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+  if (file_ < 0) fail("cannot be opened");
+  try {
+    // Two annotators of one project would write between each other's lines.
+    if (::flock(file_, LOCK_EX | LOCK_NB) != 0) {
+      throw Error(ErrorKind::kFailure,
+                  fmt::format("{}: another annotator has it open", path_.string()));
+    }
+    read(input, records);
+  } catch (...) {
+    ::close(file_);
+    throw;
+  }
+}
+
+Journal::~Journal() {
+  if (file_ >= 0) ::close(file_);
+}
+
+void Journal::fail(const char* what) const {
+  throw Error(ErrorKind::kFailure,
+              fmt::format("{}: {}: {}", path_.string(), what, std::strerror(errno)));
+}
+
+void Journal::read(const InputIdentity& input, std::vector<Record>& records) {
+  std::ifstream stream(path_, std::ios::binary);
+  const std::string text(std::istreambuf_iterator<char>(stream), {});
+  std::vector<Record> found;
+  std::size_t lines = 0;
+  for (std::size_t end; (end = text.find('\n', size_)) != std::string::npos; size_ = end + 1) {
+    const std::string_view line = std::string_view(text).substr(size_, end - size_);
+    try {
+      if (++lines > 1) {
+        found.push_back(parse_record(line, input.points));
+        continue;
+      }
+      if (parse_input(line).digest != input.digest) {
+        throw Error(ErrorKind::kInsufficient,
+                    fmt::format("{}: of another input than {}; move it away to begin anew",
+                                path_.string(), input.name));
+      }
+    } catch (const Error& error) {
+      if (error.kind() == ErrorKind::kInsufficient) throw;
+      throw Error(ErrorKind::kUnreadable,
+                  fmt::format("{}: line {}: {}", path_.string(), lines, error.what()));
+    }
+  }
+  if (::ftruncate(file_, static_cast<off_t>(size_)) != 0) fail("cannot be mended");
+  if (::lseek(file_, 0, SEEK_END) < 0) fail("cannot be appended to");
+  if (lines > 0) {
+    records = std::move(found);
+    return;
+  }
+  write_line(to_line(input));
+  for (const Record& record : records) append(record);
+}
+
+void Journal::append(const Record& record) {
+  write_line(to_line(record));
+}
+
+void Journal::write_line(const std::string& line) {
+  const std::string bytes = line + "\n";
+  std::size_t written = 0;
+  while (written < bytes.size()) {
+    const ssize_t count = ::write(file_, bytes.data() + written, bytes.size() - written);
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) {
+      const int why = errno;
+      // Half a line must not stay: the next one would join it.
+      if (::ftruncate(file_, static_cast<off_t>(size_)) == 0) ::lseek(file_, 0, SEEK_END);
+      errno = why;
+      fail("cannot be written");
+    }
+    written += static_cast<std::size_t>(count);
+  }
+  ::fdatasync(file_);
+  size_ += bytes.size();
+}
+
+}  // namespace pcednet::annotate

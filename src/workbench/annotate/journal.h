@@ -1,0 +1,35 @@
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "workbench/annotate/project.h"
+
+namespace pcednet::annotate {
+
+/// A file that gains a line per record and so survives the end of the program at any moment: its
+/// first line names the input, a last line without its end is dropped.
+class Journal {
+ public:
+  /// Opens the journal at `path`, or begins one that holds `records`. `records` becomes what the
+  /// journal holds. Throws Error(kUnreadable), naming the line, if it is damaged before its end,
+  /// Error(kInsufficient) if it is of another input, Error(kFailure) if it cannot be written.
+  Journal(std::filesystem::path path, const InputIdentity& input, std::vector<Record>& records);
+  ~Journal();
+  Journal(const Journal&) = delete;
+  Journal& operator=(const Journal&) = delete;
+
+  /// Adds a record and hands it to the disk. Throws Error(kFailure); the record is then not in.
+  void append(const Record& record);
+
+ private:
+  void read(const InputIdentity& input, std::vector<Record>& records);
+  void write_line(const std::string& line);
+  [[noreturn]] void fail(const char* what) const;
+
+  std::filesystem::path path_;
+  int file_ = -1;
+  std::size_t size_ = 0;  ///< bytes of whole lines
+};
+
+}  // namespace pcednet::annotate

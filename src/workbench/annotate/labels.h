@@ -1,0 +1,52 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "workbench/annotate/stroke.h"
+
+namespace pcednet::annotate {
+
+/// The painted classes of a cloud's points, with every change that can be taken back.
+class Labels {
+ public:
+  explicit Labels(std::size_t points) : classes_(points, 255) {}
+
+  const std::vector<std::uint8_t>& classes() const { return classes_; }
+  std::array<std::size_t, 3> counts() const { return counts_; }
+  std::size_t undo_steps() const { return done_.size(); }
+  std::size_t redo_steps() const { return undone_.size(); }
+
+  /// Gives the points a class (255: none); a step that can be taken back even if nothing changes.
+  /// What was taken back before cannot be redone any more.
+  void paint(std::uint8_t edge_class, std::vector<std::uint32_t> points);
+
+  /// Takes the last step back, or does it again. Return the points concerned; nothing if there is
+  /// no step.
+  std::span<const std::uint32_t> undo();
+  std::span<const std::uint32_t> redo();
+
+ private:
+  struct Step {
+    std::vector<std::uint32_t> points;
+    std::vector<std::uint8_t> before;
+    std::uint8_t after;
+  };
+
+  void set(std::uint32_t point, std::uint8_t edge_class);
+
+  std::vector<std::uint8_t> classes_;
+  std::array<std::size_t, 3> counts_ = {};
+  std::vector<Step> done_, undone_;
+};
+
+/// Of `points`, those that `stroke` changes: not yet of its class, not protected, not hidden.
+/// `prediction` is per point, or empty.
+std::vector<std::uint32_t> points_to_change(std::vector<std::uint32_t> points, const Stroke& stroke,
+                                            std::span<const std::uint8_t> labels,
+                                            std::span<const std::uint8_t> prediction);
+
+}  // namespace pcednet::annotate

@@ -1,0 +1,291 @@
+#include "workbench/annotate/project.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "pcednet/core/digest.h"
+#include "pcednet/core/error.h"
+#include "pcednet/core/version.h"
+#include "pcednet/io/input_file.h"
+
+namespace pcednet::annotate {
+namespace {
+
+using Json = nlohmann::json;
+using Kind = Record::Kind;
+
+constexpr const char* kFormat = "pcednet-annotation-1";
+constexpr int kMostRuns = 1'000'000'000;
+
+[[noreturn]] void refuse(const std::string& why) {
+  throw Error(ErrorKind::kUnreadable, why);
+}
+
+Json json_of(const Settings& s) {
+  return {{"classes", s.classes}, {"auto", s.automatic}, {"start", s.start}, {"seed", s.seed}};
+}
+
+Settings settings_of(const Json& json, Settings settings) {
+  if (const auto found = json.find("classes"); found != json.end()) {
+    settings.classes = found->is_number_integer() ? found->get<int>() : 0;
+  }
+  if (json.contains("auto")) settings.automatic = json.at("auto").get<bool>();
+  if (json.contains("start")) settings.start = json.at("start").get<std::string>();
+  if (const auto found = json.find("seed"); found != json.end()) {
+    if (!found->is_number_unsigned())
+      throw Error(ErrorKind::kUsage, "seed: a whole number, not negative");
+    settings.seed = found->get<std::uint64_t>();
+  }
+  if (settings.classes != 2 && settings.classes != 3) {
+    throw Error(ErrorKind::kUsage, "classes: 2 or 3");
+  }
+  return settings;
+}
+
+/// Ascending numbers as the steps between them, which are short to write.
+Json steps_of(const std::vector<std::uint32_t>& points) {
+  Json steps = Json::array();
+  std::uint32_t last = 0;
+  for (const std::uint32_t point : points) {
+    steps.push_back(point - last);
+    last = point;
+  }
+  return steps;
+}
+
+std::vector<std::uint32_t> points_of(const Json& steps, std::size_t points) {
+  std::vector<std::uint32_t> result;
+  std::uint64_t last = 0;
+  for (const Json& step : steps) {
+    if (!step.is_number_unsigned()) refuse("a stroke's point is no number");
+    const auto by = step.get<std::uint64_t>();
+    if (by >= points || (by == 0 && !result.empty())) refuse("a stroke's points do not ascend");
+    last += by;
+    if (last >= points) refuse(fmt::format("point {} of a stroke: the input has {}", last, points));
+    result.push_back(static_cast<std::uint32_t>(last));
+  }
+  return result;
+}
+
+Json json_of(const RunRecord& run) {
+  const RunFacts& facts = run.facts;
+  Json json = {{"run", run.number}, {"records", run.records}, {"settings", json_of(run.settings)}};
+  const auto tell = [&](const char* name, const auto& fact) {
+    if (fact) json[name] = *fact;
+  };
+  tell("painted", facts.painted);
+  tell("classes", facts.classes);
+  tell("loss", facts.loss);
+  tell("held_out_accuracy", facts.held_out_accuracy);
+  tell("seconds_train", facts.seconds_train);
+  tell("seconds_classify", facts.seconds_classify);
+  if (!facts.time.empty()) json["time"] = facts.time;
+  return json;
+}
+
+RunRecord run_of(const Json& json) {
+  RunRecord run{.number = json.at("run").get<int>(),
+                .records = json.at("records").get<std::size_t>(),
+                .settings = settings_of(json.at("settings"), {})};
+  if (run.number < 1 || run.number > kMostRuns) refuse("a run of no number");
+  const auto learn = [&]<typename Fact>(const char* name, std::optional<Fact>& fact) {
+    // A number that is not finite was written as null.
+    if (const auto found = json.find(name); found != json.end() && !found->is_null()) {
+      fact = found->get<Fact>();
+    }
+  };
+  learn("painted", run.facts.painted);
+  learn("classes", run.facts.classes);
+  learn("loss", run.facts.loss);
+  learn("held_out_accuracy", run.facts.held_out_accuracy);
+  learn("seconds_train", run.facts.seconds_train);
+  learn("seconds_classify", run.facts.seconds_classify);
+  if (json.contains("time")) run.facts.time = json.at("time").get<std::string>();
+  return run;
+}
+
+Json json_of(const Record& record) {
+  switch (record.kind) {
+    case Kind::kStroke:
+      return {
+          {"stroke", record.id}, {"class", record.edge_class}, {"points", steps_of(record.points)}};
+    case Kind::kUndo:
+      return {{"undo", true}};
+    case Kind::kRedo:
+      return {{"redo", true}};
+    case Kind::kSettings:
+      return {{"settings", json_of(record.settings)}};
+    case Kind::kRun:
+      return json_of(record.run);
+    case Kind::kRestore:
+      break;
+  }
+  return {{"restore", record.run.number}};
+}
+
+Record record_of(const Json& json, std::size_t points) {
+  if (json.contains("stroke")) {
+    const int edge_class = json.at("class").get<int>();
+    if ((edge_class < 0 || edge_class > 2) && edge_class != 255) refuse("a stroke of no class");
+    return {.id = json.at("stroke").get<std::string>(),
+            .edge_class = static_cast<std::uint8_t>(edge_class),
+            .points = points_of(json.at("points"), points)};
+  }
+  if (json.contains("undo")) return {.kind = Kind::kUndo};
+  if (json.contains("redo")) return {.kind = Kind::kRedo};
+  if (json.contains("run")) return {.kind = Kind::kRun, .run = run_of(json)};
+  if (json.contains("restore")) {
+    return {.kind = Kind::kRestore, .run = {.number = json.at("restore").get<int>()}};
+  }
+  return {.kind = Kind::kSettings, .settings = settings_of(json.at("settings"), {})};
+}
+
+Json json_of(const InputIdentity& input) {
+  return {{"name", input.name}, {"digest", input.digest}, {"points", input.points}};
+}
+
+/// Of a project or of the first line of a journal.
+InputIdentity input_of(const Json& file) {
+  if (file.at("format") != kFormat) refuse(fmt::format("not of the format {}", kFormat));
+  const Json& json = file.at("input");
+  InputIdentity input{.name = json.at("name").get<std::string>(),
+                      .digest = json.at("digest").get<std::string>(),
+                      .points = json.at("points").get<std::size_t>()};
+  if (input.points > 0xffffffffu) refuse("more points than 32 bits can count");
+  return input;
+}
+
+/// Runs `read`; whatever it throws becomes Error(kUnreadable).
+template <typename Read>
+auto strictly(Read&& read) {
+  try {
+    return read();
+  } catch (const Error& error) {
+    refuse(error.what());
+  } catch (const Json::exception& error) {
+    refuse(error.what());
+  }
+}
+
+}  // namespace
+
+std::string digest_of_file(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) refuse(fmt::format("{}: cannot be read", path.string()));
+  std::vector<char> part(std::size_t{1} << 20);
+  Digest digest;
+  while (file.read(part.data(), static_cast<std::streamsize>(part.size())), file.gcount() > 0) {
+    digest.add(std::string_view(part.data(), static_cast<std::size_t>(file.gcount())));
+  }
+  return digest.hex();
+}
+
+std::string to_line(const Record& record) {
+  return json_of(record).dump();
+}
+
+std::string to_line(const InputIdentity& input) {
+  return Json{{"format", kFormat}, {"input", json_of(input)}}.dump();
+}
+
+Record parse_record(std::string_view line, std::size_t points) {
+  return strictly([&] { return record_of(Json::parse(line), points); });
+}
+
+InputIdentity parse_input(std::string_view line) {
+  return strictly([&] { return input_of(Json::parse(line)); });
+}
+
+std::string to_json(const Settings& settings) {
+  return json_of(settings).dump();
+}
+
+Settings parse_settings(std::string_view text, const Settings& now) {
+  try {
+    return settings_of(Json::parse(text), now);
+  } catch (const Json::exception& error) {
+    throw Error(ErrorKind::kUsage, fmt::format("settings: {}", error.what()));
+  }
+}
+
+Project read_project(const std::filesystem::path& path) {
+  const std::string text = io::InputFile(path).text();
+  try {
+    return strictly([&] {
+      const Json json = Json::parse(text);
+      Project project{.input = input_of(json), .records = {}};
+      for (const Json& record : json.at("records")) {
+        project.records.push_back(record_of(record, project.input.points));
+      }
+      return project;
+    });
+  } catch (const Error& error) {
+    refuse(fmt::format("{}: no project: {}", path.string(), error.what()));
+  }
+}
+
+void write_project(const std::filesystem::path& path, const Project& project, Overwrite overwrite) {
+  const Replayed end = replay(project.records, project.input.points);
+  std::string text = fmt::format(
+      "{{\"format\":\"{}\",\"version\":\"{}\",\n\"input\":{},\n\"settings\":{},\n\"run\":{},\n"
+      "\"records\":[",
+      kFormat, kVersion, json_of(project.input).dump(), json_of(end.settings).dump(),
+      end.run ? std::to_string(end.run->number) : "null");
+  for (std::size_t i = 0; i < project.records.size(); ++i) {
+    text += (i == 0 ? "\n" : ",\n") + to_line(project.records[i]);
+  }
+  write_text_file(path, text + "]}\n", overwrite);
+}
+
+Replayed replay(std::span<const Record> records, std::size_t points) {
+  Replayed now{.labels = Labels(points)};
+  for (const Record& record : records) {
+    switch (record.kind) {
+      case Kind::kStroke:
+        now.labels.paint(record.edge_class, record.points);
+        break;
+      case Kind::kUndo:
+        now.labels.undo();
+        break;
+      case Kind::kRedo:
+        now.labels.redo();
+        break;
+      case Kind::kSettings:
+        now.settings = record.settings;
+        break;
+      case Kind::kRun:
+        now.run = now.runs[record.run.number] = record.run;
+        break;
+      case Kind::kRestore:
+        if (const auto found = now.runs.find(record.run.number); found != now.runs.end()) {
+          now.run = found->second;
+        }
+        break;
+    }
+  }
+  return now;
+}
+
+Labels labels_of(const RunRecord& run, std::span<const Record> records, std::size_t points) {
+  const auto own = std::find_if(records.begin(), records.end(), [&](const Record& record) {
+    return record.kind == Kind::kRun && record.run.number == run.number;
+  });
+  const auto before = static_cast<std::size_t>(own - records.begin());
+  if (run.records > before) {
+    refuse(fmt::format("run {} was trained on {} records, but only {} are before it", run.number,
+                       run.records, before));
+  }
+  Labels labels = replay(records.first(run.records), points).labels;
+  const auto counts = labels.counts();
+  const std::size_t painted = counts[0] + counts[1] + counts[2];
+  if (run.facts.painted && *run.facts.painted != painted) {
+    refuse(fmt::format("run {} was trained on {} painted points, but its records paint {}",
+                       run.number, *run.facts.painted, painted));
+  }
+  return labels;
+}
+
+}  // namespace pcednet::annotate

@@ -1,0 +1,99 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "pcednet/core/output_file.h"
+#include "workbench/annotate/labels.h"
+
+namespace pcednet::annotate {
+
+struct Settings {
+  int classes = 3;               ///< 2: sharp-edge and the rest
+  bool automatic = true;         ///< train shortly after every stroke
+  std::string start = "random";  ///< or the model whose weights training starts from
+  std::uint64_t seed = 1;
+  bool operator==(const Settings&) const = default;
+};
+
+/// What is told of a run without training it again; records of the first version tell nothing.
+struct RunFacts {
+  std::optional<std::size_t> painted = {};  ///< points
+  std::optional<int> classes = {};
+  std::optional<double> loss = {}, held_out_accuracy = {}, seconds_train = {},
+                        seconds_classify = {};
+  std::string time = {};  ///< ISO 8601, UTC
+};
+
+/// What a run was trained on: the labels after so many records, under these settings.
+struct RunRecord {
+  int number = 0;
+  std::size_t records = 0;
+  Settings settings = {};
+  RunFacts facts = {};
+};
+
+/// One thing that happened. A stroke is kept as the points that it changed, so that replaying it
+/// needs neither the view nor the prediction of the moment.
+struct Record {
+  enum class Kind { kStroke, kUndo, kRedo, kSettings, kRun, kRestore };
+  Kind kind = Kind::kStroke;
+  std::string id = {};  ///< of a stroke
+  std::uint8_t edge_class = 255;
+  std::vector<std::uint32_t> points = {};  ///< ascending
+  Settings settings = {};
+  RunRecord run = {};  ///< of kRestore the number alone
+};
+
+/// The input that records are about.
+struct InputIdentity {
+  std::string name = {};    ///< without its folder
+  std::string digest = {};  ///< of the file's bytes
+  std::size_t points = 0;
+  bool operator==(const InputIdentity&) const = default;
+};
+
+/// The digest of a file's bytes. Throws Error(kUnreadable).
+std::string digest_of_file(const std::filesystem::path& path);
+
+struct Project {
+  InputIdentity input = {};
+  std::vector<Record> records = {};
+};
+
+/// One line of JSON, without its end; the input's is the first line of a journal.
+std::string to_line(const Record& record);
+std::string to_line(const InputIdentity& input);
+
+/// Read what to_line() writes. Throw Error(kUnreadable) that says what is wrong.
+Record parse_record(std::string_view line, std::size_t points);
+InputIdentity parse_input(std::string_view line);
+
+std::string to_json(const Settings& settings);
+
+/// Throws Error(kUsage) unless `json` holds settings; what it leaves out is as in `now`.
+Settings parse_settings(std::string_view json, const Settings& now);
+
+/// Throws Error(kUnreadable), naming the file, for anything but a project.
+Project read_project(const std::filesystem::path& path);
+void write_project(const std::filesystem::path& path, const Project& project, Overwrite overwrite);
+
+/// Where the records lead.
+struct Replayed {
+  Labels labels;
+  Settings settings = {};
+  std::map<int, RunRecord> runs = {};  ///< all, by their numbers
+  std::optional<RunRecord> run = {};   ///< the one that was shown last
+};
+Replayed replay(std::span<const Record> records, std::size_t points);
+
+/// The labels that a run of `records` was trained on. Throws Error(kUnreadable) if the records
+/// before it are too few or paint another number of points than the run had.
+Labels labels_of(const RunRecord& run, std::span<const Record> records, std::size_t points);
+
+}  // namespace pcednet::annotate

@@ -1,0 +1,87 @@
+#include "workbench/annotate/scene.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "pcednet/core/error.h"
+#include "pcednet/gls/scales.h"
+#include "pcednet/io/read_cloud.h"
+#include "pcednet/spatial/curve_order.h"
+#include "workbench/annotate/not_found.h"
+
+namespace pcednet::annotate {
+
+std::shared_ptr<const Scene> load_scene(const std::filesystem::path& input,
+                                        const Progress* progress) {
+  auto scene = std::make_shared<Scene>();
+  Stage stage(progress, "read", 4);
+  auto loaded = io::read_cloud(input);
+  stage.advance();
+  scene->cloud = std::move(loaded.cloud);
+  scene->warnings = std::move(loaded.warnings);
+  scene->input = {input.filename().string(), digest_of_file(input), scene->cloud.size()};
+  scene->prepared = detect::prepare(scene->cloud, {}, progress);
+  scene->bounds = bounding_box(scene->cloud.positions);
+  scene->origin = scene->bounds.centre();
+  stage.advance();
+  std::vector<Vec3> ordered;
+  for (const std::uint32_t i : spatial::curve_order(scene->cloud.positions)) {
+    ordered.push_back(scene->cloud.positions[i]);
+  }
+  const auto range = gls::scale_range(ordered, spatial::KdTree(ordered), {});
+  scene->scales = gls::sample_scales(range, gls::ScaleSpaceOptions{}.scales);
+  if (const auto note = gls::note_on({}, scene->scales, ordered); !note.empty()) {
+    scene->warnings.push_back(note);
+  }
+  stage.advance();
+  scene->layout = make_layout(scene->cloud.positions, scene->spacing());
+  scene->selector = std::make_unique<Selector>(scene->cloud.positions, scene->prepared.normals,
+                                               scene->origin, scene->spacing());
+  stage.advance();
+  return scene;
+}
+
+std::shared_ptr<const Prediction> predict(const Scene& scene, const Described& described,
+                                          detect::EdgeModel model) {
+  auto prediction = std::make_shared<Prediction>();
+  prediction->result = detect::classify(described.cloud, scene.cloud.positions, model);
+  prediction->model = std::move(model);
+  const auto& result = prediction->result;
+  prediction->confidence.resize(result.classes.size());
+  for (std::size_t i = 0; i < result.classes.size(); ++i) {
+    const float sharp = result.p_sharp[i], smooth = result.p_smooth[i];
+    const float non_edge = 1.0f - sharp - smooth;
+    const std::uint8_t c = result.classes[i];
+    prediction->confidence[i] = c == kSharpEdge    ? sharp
+                                : c == kSmoothEdge ? smooth
+                                : c == kNonEdge    ? non_edge
+                                                   : 0.0f;
+  }
+  return prediction;
+}
+
+std::vector<std::uint8_t> feature_bytes(const Described& described,
+                                        std::span<const std::uint32_t> points, int feature,
+                                        int scale) {
+  const auto names = gls::column_names(described.descriptor);
+  const int features = static_cast<int>(names.size());
+  if (feature < 0 || feature >= features || scale < 0 || scale >= described.descriptor.scales) {
+    throw NotFound(fmt::format("no feature {} at scale {}", feature, scale));
+  }
+  const bool is_share = names[static_cast<std::size_t>(feature)].ends_with("phi");
+  const auto width = static_cast<std::size_t>(described.descriptor.scales * features);
+  const auto column = static_cast<std::size_t>(scale * features + feature);
+  std::vector<std::uint8_t> bytes;
+  bytes.reserve(points.size());
+  for (const std::uint32_t point : points) {
+    const std::uint32_t row = described.row_of[point];
+    const float x = row == kNoRow ? 0.0f : described.cloud.values[row * width + column];
+    const float share = is_share ? x : 0.5f * (1.0f + x / (1.0f + std::abs(x)));
+    bytes.push_back(static_cast<std::uint8_t>(std::lround(255.0f * std::clamp(share, 0.0f, 1.0f))));
+  }
+  return bytes;
+}
+
+}  // namespace pcednet::annotate

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string_view>
+#include <vector>
+
+#include "pcednet/cloud/bounding_box.h"
+#include "pcednet/detect/prepare.h"
+#include "workbench/annotate/described.h"
+#include "workbench/annotate/layout.h"
+#include "workbench/annotate/project.h"
+#include "workbench/annotate/select.h"
+
+namespace pcednet::annotate {
+
+/// A cloud with all that looking at it and painting it needs; does not change.
+struct Scene {
+  InputIdentity input = {};
+  PointCloud cloud = {};
+  std::vector<std::string> warnings = {};
+  detect::PreparedCloud prepared = {};
+  BoundingBox bounds = {};
+  Vec3 origin = Vec3::Zero();  ///< what local coordinates are relative to
+  std::vector<double> scales = {};
+  Layout layout = {};
+  std::unique_ptr<const Selector> selector = {};
+
+  double spacing() const { return scales.front(); }
+};
+
+/// Reads and prepares a cloud. Throws what reading and preparing throw.
+std::shared_ptr<const Scene> load_scene(const std::filesystem::path& input,
+                                        const Progress* progress = nullptr);
+
+/// A model's answer for a cloud.
+struct Prediction {
+  detect::EdgeModel model = {};
+  detect::Classification result = {};
+  std::vector<float> confidence =
+      {};  ///< the probability of the chosen class; 0 where there is none
+};
+std::shared_ptr<const Prediction> predict(const Scene& scene, const Described& described,
+                                          detect::EdgeModel model);
+
+/// A byte per point of a node, for colouring: feature `feature` at scale `scale` of a description.
+/// phi is mapped from 0 ... 1 to 0 ... 255, any other value x by (1 + x / (1 + |x|)) / 2; 0 where
+/// there is no description. Throws NotFound if there is no such feature or scale.
+std::vector<std::uint8_t> feature_bytes(const Described& described,
+                                        std::span<const std::uint32_t> points, int feature,
+                                        int scale);
+
+}  // namespace pcednet::annotate

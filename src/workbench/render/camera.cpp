@@ -1,0 +1,81 @@
+#include "workbench/render/camera.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace pcednet::render {
+namespace {
+
+using Eigen::Vector3f;
+
+constexpr float kHalfFieldOfView = 0.24f;  // radians, of the longer side
+constexpr float kFilled = 0.88f;           // of the picture, by the centres of the discs
+
+Eigen::Matrix3f axes_of(const Vector3f& direction) {
+  const Vector3f forward = direction.normalized();
+  const Vector3f up = std::abs(forward.z()) > 0.999f ? Vector3f::UnitY() : Vector3f::UnitZ();
+  const Vector3f right = forward.cross(up).normalized();
+  Eigen::Matrix3f axes;
+  axes << right.transpose(), right.cross(forward).transpose(), forward.transpose();
+  return axes;
+}
+
+struct Range {
+  float low, high;
+};
+
+/// The range of all values, cut where it reaches a quarter further than that of the middle 99.6 %.
+Range robust_range(std::vector<float>& values) {
+  const std::size_t rank = values.size() / 500;
+  const auto at = [&](std::size_t r) {
+    std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(r), values.end());
+    return values[r];
+  };
+  const float low = at(rank), high = at(values.size() - 1 - rank);
+  const auto [least, most] = std::minmax_element(values.begin(), values.end());
+  const float margin = 0.25f * (high - low);
+  return {std::max(*least, low - margin), std::min(*most, high + margin)};
+}
+
+}  // namespace
+
+Camera frame(std::span<const Surfel> surfels, const Vector3f& direction, int width, int height) {
+  const float longer = static_cast<float>(std::max(width, height));
+  Camera camera{axes_of(direction), Vector3f::Zero(), 0.5f * longer / std::tan(kHalfFieldOfView),
+                width, height};
+  const float half_x = kFilled * 0.5f * static_cast<float>(width) / camera.focal;
+  const float half_y = kFilled * 0.5f * static_cast<float>(height) / camera.focal;
+
+  std::vector<float> x, y, z;
+  for (const Surfel& surfel : surfels) {
+    const Vector3f p = camera.to_camera(surfel.position);
+    x.push_back(p.x()), y.push_back(p.y()), z.push_back(p.z());
+  }
+  std::vector<float> scratch = z;
+  const Range depth = robust_range(scratch);
+  const float nearest = std::max(0.5f * (depth.high - depth.low), 1e-3f);
+  float distance = 10.0f;  // from the front of the scene to the eye
+  Vector3f eye(0, 0, depth.low - distance);
+  for (int step = 0; step < 8; ++step) {
+    const auto projected = [&](const std::vector<float>& values, float origin) {
+      for (std::size_t i = 0; i < values.size(); ++i) {
+        scratch[i] = (values[i] - origin) / std::max(z[i] - eye.z(), 0.1f * distance);
+      }
+      return robust_range(scratch);
+    };
+    const Range rx = projected(x, eye.x()), ry = projected(y, eye.y());
+    const float fill =
+        std::max((rx.high - rx.low) / (2 * half_x), (ry.high - ry.low) / (2 * half_y));
+    const float middle = 0.5f * (depth.low + depth.high) - eye.z();
+    eye.x() += 0.5f * (rx.low + rx.high) * middle;
+    eye.y() += 0.5f * (ry.low + ry.high) * middle;
+    distance = std::max(nearest, middle * fill - 0.5f * (depth.high - depth.low));
+    eye.z() = depth.low - distance;
+  }
+  camera.eye = camera.axes.transpose() * eye;
+  return camera;
+}
+
+}  // namespace pcednet::render

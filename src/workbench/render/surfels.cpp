@@ -1,0 +1,226 @@
+#include "workbench/render/surfels.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "pcednet/cloud/bounding_box.h"
+#include "pcednet/core/parallel.h"
+#include "pcednet/spatial/curve_order.h"
+#include "workbench/render/near_points.h"
+
+namespace pcednet::render {
+namespace {
+
+using Eigen::Vector3f;
+
+constexpr std::uint32_t kReached = 6;  // near points that a disc reaches
+constexpr float kStrayRadius = 2.5f;   // median radii, beyond which a point may be stray
+constexpr double kMostStray = 0.2;     // of all points; where more are thin, the density varies
+constexpr std::size_t kBlock = 4096;
+
+constexpr Rgb kNonEdgeColour = {255, 255, 255};
+constexpr Rgb kSmoothEdgeColour = {255, 196, 93};
+constexpr Rgb kSharpEdgeColour = {168, 0, 0};
+constexpr Rgb kUnlabelledColour = {150, 150, 150};
+
+struct Points {
+  std::vector<Vec3> positions;
+  std::vector<std::uint32_t> sources;  ///< their indices in the cloud
+};
+
+Points finite_points(const PointCloud& cloud, std::size_t max_count) {
+  const std::size_t step = (cloud.size() + max_count - 1) / max_count;
+  Points points;
+  for (std::size_t i = 0; i < cloud.size(); i += step) {
+    if (!cloud.positions[i].allFinite()) continue;
+    points.positions.push_back(cloud.positions[i]);
+    points.sources.push_back(static_cast<std::uint32_t>(i));
+  }
+  return points;
+}
+
+/// The box of the middle 96 % along each axis, widened to all sides by twice its longest side:
+/// what lies outside is not part of the scene.
+BoundingBox scene_box(const std::vector<Vec3>& positions) {
+  BoundingBox box;
+  std::vector<double> values(positions.size());
+  const std::size_t low = (positions.size() - 1) / 50, high = positions.size() - 1 - low;
+  for (int axis = 0; axis < 3; ++axis) {
+    std::transform(positions.begin(), positions.end(), values.begin(),
+                   [&](const Vec3& p) { return p[axis]; });
+    const auto at = [&](std::size_t rank) {
+      std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(rank),
+                       values.end());
+      return values[rank];
+    };
+    box.min[axis] = at(low);
+    box.max[axis] = at(high);
+  }
+  const double margin = 2.0 * (box.max - box.min).maxCoeff();
+  return {box.min.array() - margin, box.max.array() + margin};
+}
+
+void remove_outliers(Points& points) {
+  const BoundingBox box = scene_box(points.positions);
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < points.positions.size(); ++i) {
+    const Vec3& p = points.positions[i];
+    if ((p.array() < box.min.array()).any() || (p.array() > box.max.array()).any()) continue;
+    points.positions[kept] = p;
+    points.sources[kept++] = points.sources[i];
+  }
+  points.positions.resize(kept);
+  points.sources.resize(kept);
+}
+
+void sort_along_curve(Points& points) {
+  const std::vector<std::uint32_t> order = spatial::curve_order(points.positions);
+  const Points unsorted = std::move(points);
+  points = {};
+  for (const std::uint32_t i : order) {
+    points.positions.push_back(unsorted.positions[i]);
+    points.sources.push_back(unsorted.sources[i]);
+  }
+}
+
+void move_into_unit_box(std::vector<Vec3>& positions) {
+  const BoundingBox box = bounding_box(positions);
+  const Vec3 centre = box.centre();
+  const double half = 0.5 * (box.max - box.min).maxCoeff();
+  const double scale = half > 0.0 ? 1.0 / half : 1.0;
+  for (Vec3& p : positions) p = (p - centre) * scale;
+}
+
+bool usable(const Vec3& normal) {
+  return std::abs(normal.squaredNorm() - 1.0) < 0.5;
+}
+
+Rgb class_colour(std::uint8_t edge_class) {
+  switch (edge_class) {
+    case kNonEdge:
+      return kNonEdgeColour;
+    case kSmoothEdge:
+      return kSmoothEdgeColour;
+    case kSharpEdge:
+      return kSharpEdgeColour;
+    default:
+      return kUnlabelledColour;
+  }
+}
+
+/// The radius that closes the surface around a point.
+float reach(const NearPoints& near) {
+  return near.count > 0 ? near.distance[std::min(near.count, kReached) - 1] : 0.0f;
+}
+
+Vector3f fitted_normal(std::span<const Vec3> positions, std::size_t i, const NearPoints& near) {
+  if (near.count < 2) return Vector3f::UnitZ();
+  std::array<Vec3, NearPoints::kMost + 1> local;
+  local[near.count] = Vec3::Zero();
+  Vec3 mean = Vec3::Zero();
+  for (std::size_t k = 0; k < near.count; ++k) {
+    local[k] = (positions[near.index[k]] - positions[i]) / near.distance[near.count - 1];
+    mean += local[k] / (near.count + 1);
+  }
+  Mat3 covariance = Mat3::Zero();
+  for (std::size_t k = 0; k <= near.count; ++k) {
+    covariance += (local[k] - mean) * (local[k] - mean).transpose();
+  }
+  Eigen::SelfAdjointEigenSolver<Mat3> solver;
+  solver.computeDirect(covariance);
+  const Vec3 normal = solver.eigenvectors().col(0);
+  return normal.allFinite() ? Vector3f(normal.normalized().cast<float>()) : Vector3f::UnitZ();
+}
+
+/// Evens out radii and normals: each radius becomes the median of those around it, so that no disc
+/// is much larger than its neighbours, each normal the mean of those much like it.
+void smooth(std::vector<Surfel>& surfels, const std::vector<NearPoints>& near) {
+  const std::vector<Surfel> rough = surfels;
+  parallel_blocks(surfels.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      std::array<float, NearPoints::kMost + 1> radii;
+      const std::size_t count = near[i].count;
+      radii[count] = rough[i].radius;
+      Vector3f normal = rough[i].normal;
+      for (std::size_t k = 0; k < count; ++k) {
+        const Surfel& other = rough[near[i].index[k]];
+        radii[k] = other.radius;
+        const float cosine = rough[i].normal.dot(other.normal);
+        normal += cosine * std::abs(cosine * cosine * cosine) * other.normal;
+      }
+      std::nth_element(radii.begin(), radii.begin() + count / 2, radii.begin() + count + 1);
+      surfels[i].radius = std::min(radii[count / 2], 1.5f * rough[i].radius);
+      surfels[i].normal = normal.normalized();
+    }
+  });
+}
+
+/// Drops the points that are much sparser than most, unless these are many.
+void drop_strays(std::vector<Surfel>& surfels, const std::vector<NearPoints>& near) {
+  std::vector<float> radii(near.size());
+  std::transform(near.begin(), near.end(), radii.begin(), reach);
+  const auto at = [&](double share) {
+    const auto rank = static_cast<std::ptrdiff_t>(share * static_cast<double>(radii.size() - 1));
+    std::nth_element(radii.begin(), radii.begin() + rank, radii.end());
+    return radii[static_cast<std::size_t>(rank)];
+  };
+  const float largest = kStrayRadius * at(0.5);
+  if (largest == 0.0f || at(1.0 - kMostStray) > largest) return;
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < surfels.size(); ++i) {
+    if (reach(near[i]) <= largest) surfels[kept++] = surfels[i];
+  }
+  surfels.resize(kept);
+}
+
+/// Moves and scales all, so that they just lie in [-1, 1]^3.
+void fill_unit_box(std::vector<Surfel>& surfels) {
+  std::vector<Vec3> positions;
+  for (const Surfel& surfel : surfels) positions.push_back(surfel.position.cast<double>());
+  const BoundingBox box = bounding_box(positions);
+  const float half = 0.5f * static_cast<float>((box.max - box.min).maxCoeff());
+  const Vector3f centre = box.centre().cast<float>();
+  for (Surfel& surfel : surfels) {
+    surfel.position -= centre;
+    if (half > 0.0f) surfel.position /= half, surfel.radius /= half;
+  }
+}
+
+}  // namespace
+
+std::vector<Surfel> make_surfels(const PointCloud& cloud, std::span<const std::uint8_t> classes,
+                                 std::size_t max_count) {
+  Points points = finite_points(cloud, max_count);
+  if (points.positions.empty()) return {};
+  remove_outliers(points);
+  sort_along_curve(points);
+  move_into_unit_box(points.positions);
+  const std::vector<NearPoints> near = near_points(points.positions);
+
+  std::vector<Surfel> surfels(points.positions.size());
+  parallel_blocks(surfels.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const std::size_t source = points.sources[i];
+      Surfel& surfel = surfels[i];
+      surfel.position = points.positions[i].cast<float>();
+      surfel.radius = reach(near[i]);
+      surfel.normal = cloud.has_normals() && usable(cloud.normals[source])
+                          ? Vector3f(cloud.normals[source].normalized().cast<float>())
+                          : fitted_normal(points.positions, i, near[i]);
+      surfel.colour = !classes.empty()         ? class_colour(classes[source])
+                      : !cloud.colours.empty() ? cloud.colours[source]
+                                               : kNonEdgeColour;
+      surfel.edge =
+          !classes.empty() && (classes[source] == kSmoothEdge || classes[source] == kSharpEdge);
+    }
+  });
+  smooth(surfels, near);
+  drop_strays(surfels, near);
+  fill_unit_box(surfels);
+  return surfels;
+}
+
+}  // namespace pcednet::render

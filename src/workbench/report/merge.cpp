@@ -1,0 +1,305 @@
+#include "workbench/report/merge.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "pcednet/core/error.h"
+#include "pcednet/io/input_file.h"
+#include "pcednet/io/labels.h"
+#include "pcednet/io/read_cloud.h"
+#include "workbench/report/scene.h"
+
+namespace pcednet::report {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kStudySchema = "pcednet-study-1";
+constexpr std::string_view kPlace = "\"PCEDNET-REPORT-DATA\"";
+
+std::vector<fs::path> json_files(const fs::path& folder) {
+  std::error_code error;
+  if (!fs::is_directory(folder, error)) {
+    throw Error(ErrorKind::kUnreadable, fmt::format("{}: no such folder", folder.string()));
+  }
+  std::vector<fs::path> files;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    if (entry.is_regular_file() && entry.path().extension() == ".json") {
+      files.push_back(entry.path());
+    }
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+Json read_json(const fs::path& file) {
+  try {
+    return Json::parse(io::InputFile(file).text());
+  } catch (const Json::parse_error& error) {
+    throw io::unreadable(file, fmt::format("no JSON at byte {}", error.byte));
+  }
+}
+
+/// A place in a study's file, for messages.
+struct Place {
+  const fs::path& file;
+  std::string where = {};
+};
+
+const Json& member(const Json& parent, const char* key, Json::value_t type, const Place& place) {
+  const auto found = parent.is_object() ? parent.find(key) : parent.end();
+  if (!parent.is_object() || found == parent.end() || found->type() != type) {
+    throw io::unreadable(place.file, fmt::format("{}\"{}\" is missing or not {}", place.where, key,
+                                                 Json(type).type_name()));
+  }
+  return *found;
+}
+
+const Json& array_of(const Json& parent, const char* key, const Place& place) {
+  return member(parent, key, Json::value_t::array, place);
+}
+
+std::string text_of(const Json& parent, const char* key, const Place& place) {
+  return member(parent, key, Json::value_t::string, place).get<std::string>();
+}
+
+/// The names that the objects of an array have under `key`.
+std::vector<std::string> names_in(const Json& array, const char* key, const Place& place) {
+  std::vector<std::string> names;
+  for (const Json& object : array) names.push_back(text_of(object, key, place));
+  return names;
+}
+
+void check_scores(const Json& scores, const Place& place) {
+  for (const char* key : {"precision", "recall", "mcc", "f1", "accuracy", "iou"}) {
+    if (!scores.contains(key) || !scores[key].is_number()) {
+      throw io::unreadable(place.file, fmt::format("{}no number \"{}\"", place.where, key));
+    }
+  }
+}
+
+void check_result(const Json& result, const std::vector<std::string>& variants,
+                  const std::vector<std::string>& sets, const Place& place) {
+  const auto known = [&](const char* key, const std::vector<std::string>& names) {
+    const std::string name = text_of(result, key, place);
+    if (std::find(names.begin(), names.end(), name) == names.end()) {
+      throw io::unreadable(place.file,
+                           fmt::format("{}the {} \"{}\" is not defined", place.where, key, name));
+    }
+  };
+  known("variant", variants);
+  known("set", sets);
+  for (const Json& cloud : array_of(result, "clouds", place)) {
+    text_of(cloud, "name", place);
+    check_scores(cloud, place);
+  }
+  for (const char* key : {"median", "pooled"}) {
+    const bool measured = result.contains(key) && !result[key].is_null();
+    if (measured) check_scores(member(result, key, Json::value_t::object, place), place);
+  }
+}
+
+/// Throws unless `study` has what the page relies on.
+void check_study(const Json& study, const fs::path& file) {
+  for (const char* key : {"experiment", "title"}) text_of(study, key, {file});
+  const Json& sets = array_of(study, "sets", {file});
+  const auto set_names = names_in(sets, "name", {file, "a set: "});
+  for (const Json& set : sets) {
+    const Place place{file, fmt::format("set \"{}\": ", set["name"].get<std::string>())};
+    names_in(array_of(set, "clouds", place), "name", place);
+    names_in(array_of(set, "clouds", place), "file", place);
+  }
+  const auto variants = names_in(array_of(study, "variants", {file}), "id", {file, "a variant: "});
+  const Json& results = array_of(study, "results", {file});
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    check_result(results[i], variants, set_names, {file, fmt::format("result {}: ", i)});
+  }
+}
+
+struct Studies {
+  std::vector<Json> texts = {};
+  std::vector<fs::path> files = {};
+  std::vector<std::string> warnings = {};
+};
+
+Studies read_studies(const fs::path& folder) {
+  Studies studies;
+  for (const fs::path& file : json_files(folder)) {
+    Json text = read_json(file);
+    const bool is_study = text.is_object() && text.value("schema", Json()) == kStudySchema;
+    if (!is_study) {
+      studies.warnings.push_back(
+          fmt::format("{}: not of schema {}: left out", file.string(), kStudySchema));
+      continue;
+    }
+    check_study(text, file);
+    studies.texts.push_back(std::move(text));
+    studies.files.push_back(file);
+  }
+  if (studies.texts.empty()) {
+    throw Error(ErrorKind::kInsufficient,
+                fmt::format("{}: no study in it; `pcednet study NAME -o {}` makes one",
+                            folder.string(), folder.string()));
+  }
+  return studies;
+}
+
+/// A cloud of a set, and where predictions for it lie.
+struct Exhibit {
+  std::string set, cloud;
+  fs::path file;
+  struct Source {
+    std::size_t study = 0;
+    std::string variant;
+    Json seed;
+    fs::path predictions;
+  };
+  std::vector<Source> sources = {};
+};
+
+fs::path find_cloud(const std::string& name, const fs::path& folder, const fs::path& study) {
+  std::error_code error;
+  for (const fs::path& candidate : {fs::path(name), folder / name}) {
+    if (fs::is_regular_file(candidate, error)) return fs::weakly_canonical(candidate);
+  }
+  throw io::unreadable(
+      study,
+      fmt::format("its cloud {} is not there (--clouds-per-set 0 does without clouds)", name));
+}
+
+bool lists_cloud(const Json& result, const std::string& cloud) {
+  return std::any_of(result["clouds"].begin(), result["clouds"].end(),
+                     [&](const Json& row) { return row["name"] == cloud; });
+}
+
+/// The first result of each variant that keeps predictions for this cloud.
+std::vector<Exhibit::Source> sources_in(const Json& study, std::size_t number,
+                                        const std::string& set, const std::string& cloud,
+                                        const fs::path& folder) {
+  std::vector<Exhibit::Source> sources;
+  for (const Json& result : study["results"]) {
+    const auto kept = result.find("predictions");
+    if (kept == result.end() || !kept->is_string()) continue;
+    if (result["set"] != set || !lists_cloud(result, cloud)) continue;
+    const auto variant = result["variant"].get<std::string>();
+    const auto same = [&](const auto& source) { return source.variant == variant; };
+    if (std::any_of(sources.begin(), sources.end(), same)) continue;
+    sources.push_back({number, variant, result.value("seed", Json()),
+                       folder / kept->get<std::string>() / (cloud + ".u8")});
+  }
+  return sources;
+}
+
+std::vector<Exhibit> choose_exhibits(const Studies& studies, const fs::path& folder,
+                                     std::size_t clouds_per_set) {
+  std::vector<Exhibit> exhibits;
+  const auto exhibit_of = [&](const std::string& set, const std::string& cloud,
+                              const fs::path& file) -> Exhibit& {
+    for (Exhibit& e : exhibits) {
+      if (e.set == set && e.cloud == cloud && e.file == file) return e;
+    }
+    return exhibits.emplace_back(Exhibit{set, cloud, file});
+  };
+  for (std::size_t number = 0; number < studies.texts.size(); ++number) {
+    const Json& study = studies.texts[number];
+    for (const Json& set : study["sets"]) {
+      const auto set_name = set["name"].get<std::string>();
+      std::size_t shown = 0;
+      for (const Json& cloud : set["clouds"]) {
+        const auto name = cloud["name"].get<std::string>();
+        auto sources = sources_in(study, number, set_name, name, folder);
+        if (sources.empty() || shown == clouds_per_set) continue;
+        ++shown;
+        const auto file =
+            find_cloud(cloud["file"].get<std::string>(), folder, studies.files[number]);
+        auto& all = exhibit_of(set_name, name, file).sources;
+        all.insert(all.end(), sources.begin(), sources.end());
+      }
+    }
+  }
+  return exhibits;
+}
+
+Json predictions_of(const Exhibit& exhibit, const Scene& scene, std::size_t points) {
+  Json predictions = Json::array();
+  for (const Exhibit::Source& source : exhibit.sources) {
+    const auto classes = io::read_labels(source.predictions);
+    if (classes.size() != points) {
+      throw Error(ErrorKind::kInsufficient,
+                  fmt::format("{}: {} classes, but {} has {} points", source.predictions.string(),
+                              classes.size(), exhibit.file.string(), points));
+    }
+    predictions.push_back({{"study", source.study},
+                           {"variant", source.variant},
+                           {"seed", source.seed},
+                           {"classes", pack_classes(classes, scene.shown)}});
+  }
+  return predictions;
+}
+
+Json scene_of(const Exhibit& exhibit, std::size_t points_per_cloud, const Progress* progress) {
+  const auto cloud = io::read_cloud(exhibit.file).cloud;
+  const Scene scene = make_scene(cloud, points_per_cloud, progress);
+  const std::vector<std::uint8_t> truth =
+      cloud.has_labels() ? cloud.labels : std::vector<std::uint8_t>(cloud.size(), kUnlabelled);
+  return {{"set", exhibit.set},
+          {"cloud", exhibit.cloud},
+          {"file", exhibit.file.filename().string()},
+          {"points", cloud.size()},
+          {"shown", scene.shown.size()},
+          {"min", scene.min},
+          {"size", scene.size},
+          {"view", scene.view},
+          {"positions", scene.positions},
+          {"normals", scene.normals},
+          {"truth", pack_classes(truth, scene.shown)},
+          {"predictions", predictions_of(exhibit, scene, cloud.size())}};
+}
+
+}  // namespace
+
+MergedStudies merge_studies(const fs::path& folder, const MergeOptions& options,
+                            const Progress* progress) {
+  Studies studies = read_studies(folder);
+  const auto exhibits = choose_exhibits(studies, folder, options.clouds_per_set);
+  Json scenes = Json::array();
+  Stage stage(progress, "clouds", exhibits.size());
+  for (const Exhibit& exhibit : exhibits) {
+    scenes.push_back(scene_of(exhibit, options.points_per_cloud, progress));
+    stage.advance();
+  }
+  MergedStudies merged{.studies = studies.texts.size(),
+                       .scenes = scenes.size(),
+                       .warnings = std::move(studies.warnings)};
+  const Json whole = {{"schema", "pcednet-report-1"},
+                      {"studies", std::move(studies.texts)},
+                      {"scenes", std::move(scenes)}};
+  // Names in foreign files need not be UTF-8.
+  merged.json = whole.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return merged;
+}
+
+std::string fill_page(std::string_view page, std::string_view json) {
+  const std::size_t place = page.find(kPlace);
+  if (place == std::string_view::npos) {
+    throw Error(ErrorKind::kFailure, "the page has no place for data");
+  }
+  std::string filled(page.substr(0, place));
+  filled.reserve(page.size() + json.size() + json.size() / 64);
+  for (const char c : json) {
+    // In JSON a '<' stands only inside a string, where it may be written so.
+    if (c == '<') {
+      filled += "\\u003c";
+    } else {
+      filled += c;
+    }
+  }
+  return filled.append(page.substr(place + kPlace.size()));
+}
+
+}  // namespace pcednet::report

@@ -1,0 +1,136 @@
+#include "workbench/shapes/cad_set.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "pcednet/cloud/bounding_box.h"
+#include "pcednet/core/random.h"
+#include "pcednet/spatial/kd_tree.h"
+#include "workbench/shapes/cad_parts.h"
+#include "workbench/shapes/wear.h"
+
+namespace pcednet::shapes {
+namespace {
+
+constexpr std::size_t kSamplesPerPoint = 12;
+
+std::vector<Vec3> sharp_edges(std::span<const BorderPoint> borders) {
+  std::vector<Vec3> edges;
+  for (const BorderPoint& border : borders) {
+    if (border.turn() >= kSharpTurn) edges.push_back(border.position);
+  }
+  return edges;
+}
+
+MeshVertices drawn_points(const SolidSamples& samples, std::span<const BorderPoint> borders,
+                          const CadRecipe& recipe) {
+  const std::vector<Vec3> edges = sharp_edges(borders);
+  const spatial::KdTree tree(edges);
+  const std::size_t count = std::min(recipe.style.points, samples.points.size());
+  const double spacing = std::sqrt(samples.area / static_cast<double>(count));
+  MeshVertices drawn;
+  std::vector<spatial::Neighbour> nearest;
+  for (std::size_t i = 0; i < count; ++i) {
+    const FacePoint& point = samples.points[i];
+    drawn.positions.push_back(point.position);
+    drawn.normals.push_back(point.normal);
+    tree.nearest(point.position, 1, nearest);
+    const bool sharp =
+        !nearest.empty() && std::sqrt(nearest.front().sq_distance) < recipe.band * spacing;
+    drawn.labels.push_back(sharp ? kSharpEdge : kNonEdge);
+  }
+  return drawn;
+}
+
+/// As many vertices as of a worn part, labelled and rounded off.
+void wear_off(MeshVertices& vertices, const SolidSamples& samples,
+              std::span<const BorderPoint> borders, const CadRecipe& recipe, Random& random) {
+  SurfaceSamples surface;
+  for (const FacePoint& point : samples.points) {
+    surface.positions.push_back(point.position);
+    surface.normals.push_back(point.normal);
+  }
+  const std::vector<Vec3> edges = sharp_edges(borders);
+  const double spacing = std::sqrt(samples.area / static_cast<double>(vertices.positions.size()));
+  wear_off(vertices, surface, edges,
+           {recipe.wear * spacing, recipe.band * spacing, recipe.scatter * spacing,
+            random.uniform(0.0, 0.5) * spacing},
+           random);
+}
+
+}  // namespace
+
+std::vector<CadRecipe> cad_recipes(std::uint64_t seed) {
+  constexpr int kPartsPerFamily = 7;
+  std::vector<CadRecipe> recipes;
+  for (int part = 0; part < kPartsPerFamily; ++part) {
+    for (int family = 0; family < kPartFamilies; ++family) {
+      CadRecipe recipe;
+      recipe.name = fmt::format("{}_{}", part_family_name(family), part);
+      recipe.family = family;
+      recipe.part = static_cast<std::uint64_t>(part);
+      Random random(seed, 9000 + recipes.size());
+      recipe.style.points = static_cast<std::size_t>(1500.0 * std::pow(12.0, random.uniform()));
+      recipe.style.plane_growth = random.uniform(0.0, 0.6);
+      recipe.style.plane_limit = random.uniform(1.0, 6.0);
+      recipe.style.curved_spacing = random.uniform(0.6, 1.4);
+      recipe.style.smooth_borders = random.index(3) != 0;
+      recipe.estimated = part % 2 == 1;
+      recipe.inward = random.index(2) == 1;
+      if (part == 5) recipe.mesh = false;
+      if (part == 6) recipe.noise = random.uniform(0.001, 0.006);
+      recipes.push_back(recipe);
+    }
+  }
+  return recipes;
+}
+
+std::vector<CadRecipe> worn_recipes(std::uint64_t seed) {
+  std::vector<CadRecipe> recipes = cad_recipes(seed + 1000);
+  for (std::size_t i = 0; i < recipes.size(); ++i) {
+    CadRecipe& recipe = recipes[i];
+    Random random(seed, 19000 + i);
+    recipe.name = "worn_" + recipe.name;
+    recipe.mesh = random.index(4) != 0;
+    recipe.style.points = static_cast<std::size_t>(3000.0 * std::pow(4.0, random.uniform()));
+    recipe.style.plane_limit = random.index(2) ? 1.0 : random.uniform(1.0, 3.0);
+    recipe.style.curved_spacing = 1.0;
+    recipe.style.smooth_borders = false;
+    recipe.noise = 0.0;
+    recipe.wear = std::max(0.05, random.uniform(-0.5, 3.0));
+    recipe.band = 0.5 + 0.4 * recipe.wear;
+    recipe.scatter = random.index(2) ? 0.0 : random.uniform(0.0, 0.15);
+    recipe.estimated = random.index(3) == 0;
+  }
+  return recipes;
+}
+
+GeneratedCloud generate(const CadRecipe& recipe, std::uint64_t seed) {
+  Random shapes(seed, 100 * static_cast<std::uint64_t>(recipe.family) + recipe.part);
+  const Solid solid = random_part(recipe.family, shapes);
+  Random random(seed, 50000 + 100 * static_cast<std::uint64_t>(recipe.family) + recipe.part);
+  const SolidSamples samples =
+      sample_solid(solid, kSamplesPerPoint * recipe.style.points, random.next());
+  const std::vector<BorderPoint> borders = find_borders(solid, samples);
+  MeshVertices vertices = recipe.mesh
+                              ? mesh_vertices(samples, borders, solid, recipe.style, random.next())
+                              : drawn_points(samples, borders, recipe);
+  if (recipe.wear > 0.0) wear_off(vertices, samples, borders, recipe, random);
+  if (recipe.noise > 0.0) {
+    const double sigma = recipe.noise * bounding_box(vertices.positions).diagonal();
+    for (std::size_t i = 0; i < vertices.positions.size(); ++i) {
+      vertices.positions[i] += sigma * random.normal() * vertices.normals[i];
+    }
+  }
+  PointCloud cloud = finish(std::move(vertices), {recipe.estimated, recipe.inward}, random);
+  cloud.comments = {
+      fmt::format("generated by pcednet: {}, seed {}", recipe.name, seed),
+      fmt::format("{}; noise {:.2g} of the diagonal along normals, which are {}{}",
+                  recipe.mesh ? "vertices as of a mesh" : "points drawn by area", recipe.noise,
+                  recipe.estimated ? "estimated" : "of the part", recipe.inward ? ", inward" : "")};
+  return {recipe.name, std::move(cloud)};
+}
+
+}  // namespace pcednet::shapes

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "pcednet/cloud/point_cloud.h"
+
+namespace pcednet::shapes {
+
+struct MeshSampleOptions {
+  std::size_t points = 100000;
+  bool vertex_normals = false;  ///< interpolate those of the vertices instead of the faces' own
+  std::uint64_t seed = 1;
+};
+
+/// Points drawn uniformly by area from the triangles, whose corners are indices of `vertices`, with
+/// unit normals (of the face: to the side from which its corners run counter-clockwise) and, if
+/// the vertices have them, interpolated colours. Comments are kept, attributes are not.
+/// Throws Error(kInsufficient) if the triangles have no area, or vertex normals are asked for and
+/// there are none.
+PointCloud sample_mesh(const PointCloud& vertices,
+                       std::span<const std::array<std::uint32_t, 3>> triangles,
+                       const MeshSampleOptions& options = {});
+
+}  // namespace pcednet::shapes

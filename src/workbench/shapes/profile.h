@@ -1,0 +1,62 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <vector>
+
+namespace pcednet::shapes {
+
+using Vec2 = Eigen::Vector2d;
+
+/// A closed outline in the plane, counter-clockwise, of straight and round sides.
+class Profile {
+ public:
+  /// A straight side, or an arc of at most half a turn: about `centre`, `radius` > 0, the material
+  /// on the side of the centre (`convex`) or on the other.
+  struct Side {
+    Vec2 a, b;
+    double radius = 0.0;
+    Vec2 centre = Vec2::Zero();
+    bool convex = true;
+  };
+
+  Profile() = default;
+  explicit Profile(std::vector<Side> sides) : sides_(std::move(sides)) {}
+
+  std::size_t size() const { return sides_.size(); }
+  bool is_round(std::size_t i) const { return sides_[i].radius > 0.0; }
+  bool is_level(std::size_t i) const { return sides_[i].a.y() == sides_[i].b.y(); }
+
+  /// The signed distance of `p` to the outline, negative inside, and the nearest side.
+  double distance(const Vec2& p, std::size_t& nearest) const;
+
+  /// The signed distance to the line or circle that side `i` is part of.
+  double distance_to(std::size_t i, const Vec2& p) const;
+
+  /// The outline's box.
+  Vec2 low() const;
+  Vec2 high() const;
+
+ private:
+  bool contains(const Vec2& p) const;
+
+  std::vector<Side> sides_;
+};
+
+/// What becomes of a corner of an outline.
+struct Corner {
+  Vec2 at;
+  enum class Shape { kSharp, kFillet, kChamfer } shape = Shape::kSharp;
+  double size = 0.0;  ///< radius of the fillet, or length cut off each side by the chamfer
+};
+
+/// The outline through `corners`, counter-clockwise. A fillet or chamfer that its sides have no
+/// room for is made smaller.
+Profile outline(const std::vector<Corner>& corners);
+
+Profile circle_profile(const Vec2& centre, double radius);
+
+/// A slot: the points within `radius` of the segment from a to b.
+Profile slot_profile(const Vec2& a, const Vec2& b, double radius);
+
+}  // namespace pcednet::shapes

@@ -1,0 +1,114 @@
+#include "workbench/shapes/scanner.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include "pcednet/core/parallel.h"
+#include "pcednet/spatial/kd_tree.h"
+
+namespace pcednet::shapes {
+namespace {
+
+constexpr double kLeaf = 0.04;  // half the width of a leaf
+
+struct Hit {
+  double distance = 0.0;  ///< 0: nothing
+  bool leaf = false;
+};
+
+/// Sphere tracing: the solid's distance, and that to the next leaf, are steps that miss nothing.
+Hit trace(const Scene& scene, const spatial::KdTree& foliage, const Vec3& from,
+          const Vec3& direction, double range) {
+  double t = 0.3;
+  std::vector<spatial::Neighbour> near;
+  for (int i = 0; i < 200 && t < range; ++i) {
+    const Vec3 p = from + t * direction;
+    const double solid = scene.solid.value(p).distance;
+    double step = solid;
+    if (!scene.foliage.empty()) {
+      foliage.nearest(p, 1, near);
+      const double leaf = std::sqrt(near.front().sq_distance) - kLeaf;
+      if (leaf < 1e-3 && leaf <= solid) return {t, true};
+      step = std::min(step, leaf);
+    }
+    if (solid < 1e-4) return {t, false};
+    t += std::max(step, 5e-5);
+  }
+  return {};
+}
+
+/// Directions at equal angles over a window of 120 by 100 degrees about `towards`.
+struct Rays {
+  std::vector<Vec3> directions;  ///< column by column
+  std::size_t rows;
+};
+
+Rays rays_of(const ScanPlace& place, std::size_t rays) {
+  const double wide = 120.0, high = 100.0;
+  const auto columns = static_cast<std::size_t>(std::sqrt(static_cast<double>(rays) * wide / high));
+  const std::size_t rows = rays / columns;
+  const Vec3 forward = (place.towards - place.position).normalized();
+  const double yaw = std::atan2(forward.y(), forward.x()), pitch = std::asin(forward.z());
+  Rays result = {{}, rows};
+  const double degree = std::numbers::pi / 180.0;
+  for (std::size_t c = 0; c < columns; ++c) {
+    for (std::size_t r = 0; r < rows; ++r) {
+      const double a =
+          yaw +
+          wide * degree * ((static_cast<double>(c) + 0.5) / static_cast<double>(columns) - 0.5);
+      const double b =
+          pitch +
+          high * degree * ((static_cast<double>(r) + 0.5) / static_cast<double>(rows) - 0.5);
+      result.directions.emplace_back(std::cos(b) * std::cos(a), std::cos(b) * std::sin(a),
+                                     std::sin(b));
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+Scan scan_scene(const Scene& scene, const ScannerOptions& options, std::uint64_t seed) {
+  const spatial::KdTree foliage(scene.foliage);
+  Scan scan;
+  Random random(seed, 31);
+  for (std::size_t i = 0; i < std::min(options.places, scene.scanners.size()); ++i) {
+    const ScanPlace& place = scene.scanners[i];
+    const Rays rays = rays_of(place, options.rays);
+    const std::vector<Vec3>& directions = rays.directions;
+    std::vector<Hit> hits(directions.size());
+    parallel_blocks(directions.size(), 64, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t r = begin; r < end; ++r) {
+        hits[r] = trace(scene, foliage, place.position, directions[r], options.range);
+      }
+    });
+    const double shift = i == 0 ? 0.0 : options.misalignment;
+    const Vec3 offset = shift * Vec3(random.normal(), random.normal(), 0.5 * random.normal());
+    for (std::size_t r = 0; r < directions.size(); ++r) {
+      if (hits[r].distance == 0.0) continue;
+      double distance = hits[r].distance;
+      ReturnKind kind = hits[r].leaf ? ReturnKind::kLeaf : ReturnKind::kSolid;
+      for (const std::size_t back : {std::size_t{1}, rays.rows}) {
+        const double before = r >= back ? hits[r - back].distance : 0.0;
+        const bool jumps = before > 0.0 && std::abs(before - hits[r].distance) > 0.1;
+        if (!jumps || kind == ReturnKind::kStray || random.uniform() >= options.mixed) continue;
+        distance += random.uniform() * (before - distance);
+        kind = ReturnKind::kStray;
+      }
+      if (random.uniform() < options.outliers) {
+        distance *= random.uniform(0.3, 1.2);
+        kind = ReturnKind::kStray;
+      }
+      distance += options.range_noise * random.normal();
+      scan.positions.push_back(place.position + distance * directions[r] + offset);
+      scan.origins.push_back(place.position);
+      scan.kinds.push_back(kind);
+    }
+  }
+  return scan;
+}
+
+}  // namespace pcednet::shapes

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <vector>
+
+#include "pcednet/core/random.h"
+#include "workbench/shapes/solid.h"
+
+namespace pcednet::shapes {
+
+/// Where a scanner may stand.
+struct ScanPlace {
+  Vec3 position;
+  Vec3 towards;  ///< what it looks at
+};
+
+/// A scene about ten units (metres) large.
+struct Scene {
+  Solid solid = {};
+  std::vector<Vec3> foliage;        ///< where leaves are
+  std::vector<ScanPlace> scanners;  ///< good places, best first
+};
+
+/// The kinds of random_scene(): a facade, a yard with steps and pipes, a room, a monument.
+inline constexpr int kSceneKinds = 4;
+const char* scene_kind_name(int kind);
+
+Scene random_scene(int kind, Random& random);
+
+}  // namespace pcednet::shapes

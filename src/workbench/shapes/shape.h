@@ -1,0 +1,82 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <functional>
+#include <span>
+#include <variant>
+#include <vector>
+
+#include "pcednet/cloud/point_cloud.h"
+#include "pcednet/core/vec3.h"
+
+namespace pcednet::shapes {
+
+/// A point of a surface patch.
+struct SurfacePoint {
+  Vec3 position;
+  Vec3 normal;     ///< unit, out of the solid
+  double density;  ///< area per unit of (u, v); 0 where the patch is trimmed away
+};
+
+/// A piece of surface over the unit square.
+struct SurfacePatch {
+  std::function<SurfacePoint(double u, double v)> at;
+  double max_density;  ///< no density is larger
+};
+
+struct Segment {
+  Vec3 a;
+  Vec3 b;
+};
+
+/// The points centre + radius (cos(t) x + sin(t) y) for t in [0, angle]; x and y are unit and
+/// orthogonal, angle is in (0, 2 pi].
+struct Arc {
+  Vec3 centre;
+  Vec3 x;
+  Vec3 y;
+  double radius;
+  double angle;
+};
+
+/// A true edge: where two patches meet at an angle.
+struct EdgeCurve {
+  std::variant<Segment, Arc> curve;
+  /// kSharpEdge, or kSmoothEdge where the crease is so weak, or so rounded, that no point on it is
+  /// called sharp.
+  EdgeClass strength = kSharpEdge;
+};
+
+/// A surface with its true edges; the patches need not enclose anything.
+struct Shape {
+  std::vector<SurfacePatch> patches;
+  std::vector<EdgeCurve> edges;
+};
+
+/// Adds `part`, moved by `motion`, to `shape`.
+void append(Shape& shape, const Shape& part,
+            const Eigen::Isometry3d& motion = Eigen::Isometry3d::Identity());
+
+/// The area of the patches, by the midpoint rule (within 0.1 % for the shapes of this room).
+double surface_area(const Shape& shape);
+
+double distance(const Segment& segment, const Vec3& point);
+double distance(const Arc& arc, const Vec3& point);
+
+/// How strong a crease between patches with unit normals `a` and `b` is. Planes that turn by 30
+/// degrees or more make a sharp edge, by less than 12 degrees none.
+EdgeClass crease_strength(const Vec3& a, const Vec3& b);
+
+/// The widths of the labelled bands along edges, as lengths.
+struct EdgeBands {
+  double sharp;
+  double smooth;
+};
+
+/// The class of each position from its exact distance to the edges: kSharpEdge nearer than
+/// `bands.sharp` to a sharp curve, kSmoothEdge nearer than `bands.smooth` to any, else kNonEdge.
+std::vector<std::uint8_t> label_by_distance(std::span<const Vec3> positions,
+                                            std::span<const EdgeCurve> edges,
+                                            const EdgeBands& bands);
+
+}  // namespace pcednet::shapes

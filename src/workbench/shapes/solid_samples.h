@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "pcednet/core/progress.h"
+#include "workbench/shapes/solid.h"
+
+namespace pcednet::shapes {
+
+/// A point of a solid's boundary.
+struct FacePoint {
+  Vec3 position;
+  Vec3 normal;  ///< unit, out of the solid
+  Face face;
+};
+
+/// Points on the boundary, by area, and that area.
+struct SolidSamples {
+  std::vector<FacePoint> points;
+  double area = 0.0;
+
+  /// Of points in a regular pattern: sqrt(area / points).
+  double spacing() const;
+};
+
+/// `count` points drawn by area: points of a thin shell about the boundary, moved onto it.
+/// Throws Error(kFailure) if the solid has no boundary to speak of.
+SolidSamples sample_solid(const Solid& solid, std::size_t count, std::uint64_t seed);
+
+/// A point where two faces meet.
+struct BorderPoint {
+  Vec3 position;
+  Face a, b;
+  Vec3 normal_a, normal_b;  ///< of either face there
+
+  Vec3 normal() const { return (normal_a + normal_b).normalized(); }
+  double turn() const;  ///< the angle between the normals, radians; 0 where faces join smoothly
+};
+
+/// Points of the borders between faces, exact to 1e-9, as many as there are samples near borders.
+std::vector<BorderPoint> find_borders(const Solid& solid, const SolidSamples& samples);
+
+/// The same from points near the boundary, which are first moved onto it; between each and the
+/// nearest of its 12 neighbours that lies on another face.
+std::vector<BorderPoint> borders_among(const Solid& solid, std::span<const Vec3> positions);
+
+}  // namespace pcednet::shapes

@@ -1,0 +1,17 @@
+#pragma once
+
+#include "pcednet/core/random.h"
+#include "workbench/shapes/solid.h"
+
+namespace pcednet::shapes {
+
+// Random parts that were turned or have a centre, about one unit large.
+
+Solid shaft(Random& random);
+Solid flange(Random& random);
+Solid gear(Random& random);
+Solid ring(Random& random);
+Solid dome(Random& random);
+Solid knob(Random& random);
+
+}  // namespace pcednet::shapes

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "pcednet/core/output_file.h"
+#include "workbench/study/runner.h"
+
+namespace pcednet::study {
+
+struct FileOptions {
+  std::string command = {};  ///< that made the study, for who reads it
+  bool energy_is_measured = false;
+  double watts_per_core = 0;
+};
+
+/// The study as JSON of schema "pcednet-study-1", see docs/study.md.
+std::string to_json(const Study& study, const FileOptions& options);
+
+/// Writes `folder`/NAME.json, and the classes that the methods found as
+/// `folder`/predictions/NAME/VARIANT/SET/CLOUD.u8, a byte a point. A file that an earlier run of
+/// the same command left there is replaced; otherwise `overwrite` decides.
+void write_study(const std::filesystem::path& folder, const Study& study,
+                 const FileOptions& options, Overwrite overwrite);
+
+/// Throws Error(kUsage) if write_study() would refuse to write NAME.json: before long work.
+void check_study_file(const std::filesystem::path& folder, const std::string& name,
+                      const std::string& command, Overwrite overwrite);
+
+/// A table for people: a row per variant and set, mean and spread over the seeds.
+std::string to_table(const Study& study);
+
+}  // namespace pcednet::study

@@ -1,0 +1,144 @@
+#include "workbench/study/work.h"
+
+#include <cmath>
+#include <utility>
+
+#include "pcednet/core/digest.h"
+#include "pcednet/core/error.h"
+#include "workbench/shapes/perturb.h"
+
+namespace pcednet::study {
+namespace {
+
+// What is done to a cloud is the experiment; nothing is mended.
+constexpr detect::PrepareOptions kAsGiven = {.keep_orientation = true};
+
+/// The labels of the points to learn from; which these are depends on where they lie.
+std::vector<std::uint8_t> thinned_labels(const PointCloud& cloud, int one_in) {
+  std::vector<std::uint8_t> labels = cloud.labels;
+  if (one_in <= 1) return labels;
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    const auto lanes = Digest().add_values(std::span(&cloud.positions[i], 1)).lanes();
+    if (lanes[0] % static_cast<std::uint64_t>(one_in) != 0) labels[i] = kUnlabelled;
+  }
+  return labels;
+}
+
+PointCloud treat(const PointCloud& cloud, const Treatment& treatment) {
+  PointCloud treated = cloud;
+  if (treatment.keep < 1.0) treated = shapes::subsample(treated, {.fraction = treatment.keep});
+  if (treatment.noise > 0.0) {
+    if (treatment.along_normal && !treated.has_normals()) {
+      const auto prepared = detect::prepare(treated, kAsGiven);
+      treated.normals.assign(prepared.normals.begin(), prepared.normals.end());
+    }
+    treated = shapes::add_gaussian_noise(
+        std::move(treated), {.sigma = treatment.noise, .along_normal = treatment.along_normal});
+  }
+  if (treatment.estimate_normals) treated.normals.clear();
+  return treated;
+}
+
+/// Of what is not non-edge; of what is sharp where there is no smooth class. From rows of true
+/// classes and columns of found ones.
+double mcc_of(const std::vector<std::size_t>& confusion) {
+  const auto classes = static_cast<std::size_t>(std::sqrt(static_cast<double>(confusion.size())));
+  eval::ConfusionCounts counts;
+  for (std::size_t i = 0; i < confusion.size(); ++i) {
+    const bool is = i / classes > 0, said = i % classes > 0;
+    (is ? (said ? counts.tp : counts.fn) : (said ? counts.fp : counts.tn)) += confusion[i];
+  }
+  return eval::scores_of(counts).mcc;
+}
+
+}  // namespace
+
+void Trainer::describe(const TrainingTask& task) {
+  if (samples_key_ == task.samples_key) return;
+  samples_ = {};  // room for the new ones
+  std::vector<detect::TrainingCloud> clouds;
+  std::vector<std::vector<std::uint8_t>> labels;
+  labels.reserve(task.training->clouds.size());  // the training clouds look into them
+  for (const StudyCloud& cloud : task.training->clouds) {
+    labels.push_back(thinned_labels(cloud.cloud, task.one_in));
+    clouds.push_back(
+        {cloud.name, detect::prepare(cloud.cloud, kAsGiven, progress_), labels.back()});
+  }
+  EnergyMeter meter(watts_per_core_);
+  samples_ = detect::make_samples(clouds, task.options.descriptor, progress_);
+  cost_ = meter.lap();
+  samples_key_ = task.samples_key;
+}
+
+StoredModel Trainer::train(const TrainingTask& task) {
+  describe(task);
+  StoredModel stored;
+  Stopwatch watch;
+  double seconds = 0;
+  const auto on_epoch = [&](const nn::EpochReport& report) {
+    seconds += watch.lap();
+    stored.epochs.push_back({report.epoch, seconds, report.training_loss, report.validation_loss,
+                             report.validation_accuracy, mcc_of(report.validation_confusion)});
+  };
+  EnergyMeter meter(watts_per_core_);
+  detect::TrainedModel trained =
+      detect::train(task.name, samples_, task.options, on_epoch, progress_);
+  if (trained.cancelled) throw Error(ErrorKind::kCancelled, "stopped by the user");
+  stored.costs.train = meter.lap();
+  stored.costs.describe_training = cost_;
+  stored.model = std::move(trained.model);
+  return stored;
+}
+
+void count_agreement(std::span<const std::uint8_t> truth, StoredClasses& found) {
+  found.sharp = eval::count_confusion(truth, found.classes, eval::Positive::kSharp);
+  found.edge = eval::count_confusion(truth, found.classes, eval::Positive::kEdge);
+}
+
+CloudWork::CloudWork(const StudyCloud& cloud, const Treatment& treatment,
+                     const gls::ScaleSpaceOptions& descriptor, double watts_per_core,
+                     const Progress* progress)
+    : watts_per_core_(watts_per_core) {
+  try {
+    PointCloud treated = treat(cloud.cloud, treatment);
+    truth_ = treated.labels;
+    EnergyMeter meter(watts_per_core_);
+    const auto prepared = detect::prepare(treated, kAsGiven, progress);
+    costs_.normals = meter.lap();
+    described_ = detect::describe(prepared, descriptor, progress);
+    costs_.describe = meter.lap();
+    positions_ = std::move(treated.positions);
+  } catch (const Error& error) {
+    if (error.kind() != ErrorKind::kInsufficient) throw;
+    failure_ = error.what();
+  }
+}
+
+StoredClasses CloudWork::classify(const detect::EdgeModel& model) const {
+  StoredClasses stored{.failure = failure_, .costs = costs_};
+  if (!failure_.empty()) return stored;
+  EnergyMeter meter(watts_per_core_);
+  stored.classes = detect::classify(described_, positions_, model).classes;
+  stored.costs.classify = meter.lap();
+  count_agreement(truth_, stored);
+  return stored;
+}
+
+StoredClasses classify_classic(const StudyCloud& cloud, const std::string& set,
+                               const Treatment& treatment, const ClassicMethod& method,
+                               double watts_per_core, const Progress* progress) {
+  StoredClasses stored;
+  try {
+    const PointCloud treated = treat(cloud.cloud, treatment);
+    EnergyMeter meter(watts_per_core);
+    stored.classes = method.classes(treated, set, progress);
+    stored.costs.describe = meter.lap();
+    count_agreement(treated.labels, stored);
+  } catch (const Error& error) {
+    if (error.kind() != ErrorKind::kInsufficient) throw;
+    stored.failure = error.what();
+  }
+  return stored;
+}
+
+}  // namespace pcednet::study

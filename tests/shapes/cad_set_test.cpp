@@ -1,0 +1,138 @@
+#include "workbench/shapes/cad_set.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "pcednet/core/parallel.h"
+#include "pcednet/spatial/kd_tree.h"
+#include "workbench/shapes/part_pieces.h"
+
+namespace pcednet::shapes {
+namespace {
+
+Solid cube_part() {
+  Solid part;
+  part.add(box(0.5, 0.5, 0.5, Vec3::Zero()));
+  return part;
+}
+
+MeshVertices vertices_of(const Solid& part, const MeshStyle& style) {
+  const SolidSamples samples = sample_solid(part, 12 * style.points, 4);
+  return mesh_vertices(samples, find_borders(part, samples), part, style, 5);
+}
+
+TEST(MeshVertices, AreOnEdgesWhereTheyAreSharp) {
+  const MeshVertices vertices = vertices_of(cube_part(), {.points = 3000});
+  std::size_t sharp = 0;
+  for (std::size_t i = 0; i < vertices.positions.size(); ++i) {
+    const Vec3 p = vertices.positions[i].cwiseAbs();
+    const int faces = (std::abs(p.x() - 0.5) < 1e-8) + (std::abs(p.y() - 0.5) < 1e-8) +
+                      (std::abs(p.z() - 0.5) < 1e-8);
+    EXPECT_EQ(vertices.labels[i] == kSharpEdge, faces >= 2) << p.transpose();
+    if (faces == 2) {
+      // Half-way between the faces' normals.
+      EXPECT_NEAR(vertices.normals[i].cwiseAbs().maxCoeff(), std::sqrt(0.5), 1e-4);
+      ++sharp;
+    }
+  }
+  EXPECT_GT(sharp, 100u);
+  EXPECT_NEAR(static_cast<double>(vertices.positions.size()), 3000.0, 900.0);
+}
+
+TEST(MeshVertices, AreEvenAlongEdges) {
+  const MeshVertices vertices = vertices_of(cube_part(), {.points = 3000, .plane_limit = 1.0});
+  std::vector<Vec3> sharp;
+  for (std::size_t i = 0; i < vertices.positions.size(); ++i) {
+    if (vertices.labels[i] == kSharpEdge) sharp.push_back(vertices.positions[i]);
+  }
+  const spatial::KdTree tree(sharp);
+  std::vector<double> steps;
+  std::vector<spatial::Neighbour> near;
+  for (const Vec3& p : sharp) {
+    tree.nearest(p, 2, near);
+    steps.push_back(std::sqrt(near[1].sq_distance));
+  }
+  std::sort(steps.begin(), steps.end());
+  const double median = steps[steps.size() / 2];
+  EXPECT_GT(steps.front(), 0.65 * median);
+  EXPECT_LT(steps[steps.size() * 95 / 100], 1.5 * median);  // where two walks meet
+}
+
+TEST(MeshVertices, ThinOutOnPlanesWhenAskedTo) {
+  const auto share_near_edges = [](const MeshVertices& vertices) {
+    std::size_t near = 0;
+    for (const Vec3& p : vertices.positions) {
+      Vec3 a = p.cwiseAbs();
+      std::sort(a.begin(), a.end());
+      near += a[1] > 0.35;
+    }
+    return static_cast<double>(near) / static_cast<double>(vertices.positions.size());
+  };
+  const double even =
+      share_near_edges(vertices_of(cube_part(), {.points = 3000, .plane_growth = 0}));
+  const double thinned =
+      share_near_edges(vertices_of(cube_part(), {.points = 3000, .plane_growth = 0.6}));
+  EXPECT_GT(thinned, 1.3 * even);
+}
+
+TEST(CadSet, HasNamesOfItsOwnAndEveryKindOfCloud) {
+  for (const auto& recipes : {cad_recipes(1), worn_recipes(1)}) {
+    std::set<std::string> names;
+    std::size_t mesh = 0, estimated = 0, inward = 0;
+    for (const CadRecipe& recipe : recipes) {
+      names.insert(recipe.name);
+      mesh += recipe.mesh, estimated += recipe.estimated, inward += recipe.inward;
+    }
+    EXPECT_EQ(names.size(), recipes.size());
+    for (const std::size_t some : {mesh, estimated, inward}) {
+      EXPECT_GT(some, 0u);
+      EXPECT_LT(some, recipes.size());
+    }
+  }
+}
+
+TEST(CadSet, GivesTheSameCloudForAnyNumberOfThreads) {
+  CadRecipe recipe = cad_recipes(3)[5];
+  recipe.style.points = 800;
+  recipe.noise = 0.002;
+  CadRecipe worn = worn_recipes(3)[5];
+  worn.style.points = 800;
+  for (const CadRecipe& each : {recipe, worn}) {
+    set_thread_count(1);
+    const GeneratedCloud one = generate(each, 3);
+    set_thread_count(8);
+    const GeneratedCloud eight = generate(each, 3);
+    set_thread_count(0);
+    EXPECT_EQ(one.cloud.positions, eight.cloud.positions);
+    EXPECT_EQ(one.cloud.normals, eight.cloud.normals);
+    EXPECT_EQ(one.cloud.labels, eight.cloud.labels);
+    EXPECT_NE(generate(each, 4).cloud.positions, one.cloud.positions);
+  }
+}
+
+TEST(CadSet, RoundsWornEdgesOff) {
+  CadRecipe sharp = {.name = "a", .family = 5, .part = 1, .style = {.points = 2000}};
+  CadRecipe worn = sharp;
+  worn.wear = 2.0;
+  // The least agreement between the normals of neighbours.
+  const auto roughness = [](const PointCloud& cloud) {
+    const spatial::KdTree tree(cloud.positions);
+    std::vector<spatial::Neighbour> near;
+    double sum = 0.0;
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+      tree.nearest(cloud.positions[i], 7, near);
+      double least = 1.0;
+      for (const auto& n : near)
+        least = std::min(least, cloud.normals[n.index].dot(cloud.normals[i]));
+      sum += 1.0 - least;
+    }
+    return sum / static_cast<double>(cloud.size());
+  };
+  EXPECT_LT(roughness(generate(worn, 1).cloud), 0.7 * roughness(generate(sharp, 1).cloud));
+}
+
+}  // namespace
+}  // namespace pcednet::shapes
