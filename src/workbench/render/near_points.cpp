@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kWindow = 8;  // points to each side along each curve
 constexpr std::size_t kCurves = 3;
-constexpr std::size_t kBlock = 4096;
+constexpr std::size_t kQueriesAtOnce = 4096;
 
 struct Candidate {
   double sq_distance;
@@ -80,7 +80,7 @@ std::vector<NearPoints> near_points(std::span<const Vec3> positions) {
   std::vector<Curve> curves;
   for (std::size_t c = 0; c < kCurves; ++c) curves.emplace_back(positions, 0.7 * c);
   std::vector<NearPoints> near(positions.size());
-  parallel_blocks(positions.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+  parallel_blocks(positions.size(), kQueriesAtOnce, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) near[i] = nearest(positions, curves, i);
   });
   return near;

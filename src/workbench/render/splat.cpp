@@ -11,7 +11,7 @@ namespace {
 using Eigen::Vector3f;
 
 constexpr int kBandRows = 32;
-constexpr std::size_t kBlock = 4096;
+constexpr std::size_t kSurfelsAtOnce = 4096;
 constexpr float kDot = 0.4f;  // of the squared radius of an edge disc: there it covers all else
 constexpr float kEdgeRadius = 0.65f;   // at edges discs stand out from the surface: smaller there
 constexpr float kLeastFacing = 0.12f;  // discs are never seen flatter than this
@@ -223,7 +223,7 @@ void measure_grain(Layer& layer, const std::vector<Splat>& splats) {
 
 Layer draw(std::span<const Surfel> surfels, const Camera& camera, float min_radius) {
   std::vector<Splat> splats(surfels.size());
-  parallel_blocks(surfels.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+  parallel_blocks(surfels.size(), kSurfelsAtOnce, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) splats[i] = project(surfels[i], camera, min_radius);
   });
   const auto bands = sort_into_bands(splats, camera.height);

@@ -15,17 +15,17 @@ using Eigen::Vector3f;
 constexpr int kWidth = 160, kHeight = 120;
 constexpr float kEdgeShare = 0.6f;  // worth of seeing all edges, where seeing all surface is 1
 
-struct Candidate {
+struct View {
   Vector3f direction;
   float preference;
 };
 
-std::vector<Candidate> candidates() {
+std::vector<View> candidates() {
   struct Ring {
     int degrees_above;
     float preference;
   };
-  std::vector<Candidate> all;
+  std::vector<View> all;
   for (const Ring ring : {Ring{12, 0.95f}, Ring{27, 1.0f}, Ring{48, 0.88f}}) {
     for (int azimuth = 15; azimuth < 375; azimuth += 30) {
       const double a = azimuth * std::numbers::pi / 180,
@@ -62,7 +62,7 @@ float score(std::span<const Surfel> surfels, const Vector3f& direction) {
 }  // namespace
 
 Vector3f best_direction(std::span<const Surfel> surfels) {
-  const std::vector<Candidate> all = candidates();
+  const std::vector<View> all = candidates();
   std::vector<float> scores(all.size());
   parallel_blocks(all.size(), 1, [&](std::size_t i, std::size_t) {
     scores[i] = all[i].preference * score(surfels, all[i].direction);

@@ -13,14 +13,11 @@
 namespace pcednet::shapes {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-using Shape = Corner::Shape;
-
 Solid plate(Random& random) {
   const double x = random.uniform(0.35, 0.5), y = random.uniform(0.1, 0.5),
                z = size_between(random, 0.015, 0.12);
   Solid part;
-  const Shape rim = any_shape(random);
+  const CornerShape rim = any_shape(random);
   const double rim_size = random.uniform(0.1, 0.45) * z;
   if (chance(random, 0.5)) {
     part.add(prism(rectangle(x, y, any_shape(random), random.uniform(0.1, 0.9) * y), z,
@@ -42,7 +39,7 @@ Solid bracket(Random& random) {
   const double width = random.uniform(0.1, 0.4), thick = size_between(random, 0.015, 0.06);
   const double reach = random.uniform(0.3, 0.5), height = random.uniform(0.2, 0.5);
   const double bend = random.uniform(0.3, 2.5) * thick;
-  const Shape inner = any_shape(random), outer = any_shape(random);
+  const CornerShape inner = any_shape(random), outer = any_shape(random);
   std::vector<Corner> corners;
   if (chance(random, 0.5)) {  // L
     corners = {{{0, 0}, outer, bend + thick}, {{reach, 0}},      {{reach, thick}},
@@ -59,7 +56,7 @@ Solid bracket(Random& random) {
   }
   Solid part;
   part.add(prism(outline(corners), width, along(1, Vec3::Zero()),
-                 chance(random, 0.3) ? Shape::kFillet : Shape::kSharp, 0.3 * thick));
+                 chance(random, 0.3) ? CornerShape::kFillet : CornerShape::kSharp, 0.3 * thick));
   // The prism's y runs against z: holes go through both legs.
   for (int i = 0; i < 3; ++i) {
     const double radius = size_between(random, 0.1, 0.35) * width;
@@ -138,7 +135,8 @@ Solid grille(Random& random) {
       const double z = chance(random, 0.2) ? thick : 0.0;
       if (kind == 0) part.cut(cylinder(r, thick + 0.01, at({x, y, z})));
       if (kind == 1)
-        part.cut(prism(rectangle(r, r, Shape::kFillet, 0.2 * r), thick + 0.01, at({x, y, z})));
+        part.cut(
+            prism(rectangle(r, r, CornerShape::kFillet, 0.2 * r), thick + 0.01, at({x, y, z})));
       if (kind == 2)
         part.add(cylinder(r, 2.0 * thick, at({x, y, thick}), any_shape(random), 0.2 * r));
       if (kind == 3) part.add(prism(regular_polygon(6, r), 3.0 * thick, at({x, y, thick})));
@@ -151,7 +149,7 @@ Solid housing(Random& random) {
   const double x = random.uniform(0.3, 0.5), y = random.uniform(0.2, 0.4),
                z = random.uniform(0.1, 0.3);
   const double wall = size_between(random, 0.008, 0.05);
-  const Shape shape = any_shape(random);
+  const CornerShape shape = any_shape(random);
   const double round = random.uniform(0.05, 0.15);
   Solid part;
   part.add(prism(rectangle(x, y, shape, round + wall), z, at(Vec3::Zero()), any_shape(random),
@@ -182,8 +180,9 @@ Solid assembly(Random& random) {
   for (int i = 0; i < pieces; ++i) {
     Eigen::Isometry3d frame = at(Vec3(random.uniform(-0.25, 0.25), random.uniform(-0.25, 0.25),
                                       random.uniform(-0.25, 0.25)));
-    const double tilt = chance(random, 0.5) ? 0.5 * kPi * static_cast<double>(random.index(4))
-                                            : random.uniform(0, 2 * kPi);
+    const double tilt = chance(random, 0.5)
+                            ? 0.5 * std::numbers::pi * static_cast<double>(random.index(4))
+                            : random.uniform(0, 2 * std::numbers::pi);
     const Vec3 axes[] = {Vec3::UnitX(), Vec3::UnitY(), Vec3(1, 1, 1).normalized()};
     frame.rotate(Eigen::AngleAxisd(tilt, axes[random.index(3)]));
     const double size = random.uniform(0.12, 0.35), tall = size_between(random, 0.03, 0.4);

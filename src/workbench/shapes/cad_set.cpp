@@ -14,7 +14,7 @@
 namespace pcednet::shapes {
 namespace {
 
-constexpr std::size_t kSamplesPerPoint = 12;
+constexpr std::size_t kSolidSamplesPerPoint = 12;
 
 std::vector<Vec3> sharp_edges(std::span<const BorderPoint> borders) {
   std::vector<Vec3> edges;
@@ -112,7 +112,7 @@ GeneratedCloud generate(const CadRecipe& recipe, std::uint64_t seed) {
   const Solid solid = random_part(recipe.family, shapes);
   Random random(seed, 50000 + 100 * static_cast<std::uint64_t>(recipe.family) + recipe.part);
   const SolidSamples samples =
-      sample_solid(solid, kSamplesPerPoint * recipe.style.points, random.next());
+      sample_solid(solid, kSolidSamplesPerPoint * recipe.style.points, random.next());
   const std::vector<BorderPoint> borders = find_borders(solid, samples);
   MeshVertices vertices = recipe.mesh
                               ? mesh_vertices(samples, borders, solid, recipe.style, random.next())

@@ -12,8 +12,6 @@
 namespace pcednet::shapes {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 Eigen::Isometry3d shifted(const Vec3& shift) {
   return Eigen::Isometry3d(Eigen::Translation3d(shift));
 }
@@ -75,7 +73,7 @@ Shape ring_crease(double slope, double sign) {
       fading([](double x, double y) { return 0.5 * (x * x + y * y - 1.0); },
              [](double x, double y) { return Vec2(x, y); }, slope, -1.5, 1.5, sign);
   const auto circle_at = [](double t) {
-    return Vec2(std::cos(2.0 * kPi * t), std::sin(2.0 * kPi * t));
+    return Vec2(std::cos(2.0 * std::numbers::pi * t), std::sin(2.0 * std::numbers::pi * t));
   };
   Shape shape;
   shape.patches.push_back(graph(field, Vec2(-1.5, -1.5), Vec2(1.5, 1.5)));
@@ -100,7 +98,7 @@ void remove_plane(Shape& shape, int axis, double value) {
 }  // namespace
 
 Shape cone_on_plate() {
-  constexpr double kTurn = 2.0 * kPi;
+  constexpr double kTurn = 2.0 * std::numbers::pi;
   Shape shape;
   shape.patches = {
       revolved_line({0.0, 0.0}, {1.0, 0.0}, kTurn), revolved_line({1.0, 0.0}, {1.0, 0.3}, kTurn),
@@ -117,7 +115,7 @@ Shape fan_part() {
   std::vector<Vec2> last = first;
   last[3] = {1.825, 0.7};
   last[6] = {1.45, 1.25};
-  return make_shape(Loft{first, last, 0.6 * kPi});
+  return make_shape(Loft{first, last, 0.6 * std::numbers::pi});
 }
 
 Shape four_cubes() {
@@ -147,7 +145,7 @@ Shape random_blocks(Random& random) {
 Shape wedges() {
   Shape shape;
   for (int i = 0; i < 7; ++i) {
-    const double dihedral = (60.0 + 15.0 * i) * kPi / 180.0;
+    const double dihedral = (60.0 + 15.0 * i) * std::numbers::pi / 180.0;
     const Vec3 edge = (i % 2 ? -1.0 : 1.0) * Vec3::UnitY();
     const Vec3 side(std::cos(dihedral), 0.0, std::sin(dihedral));
     Shape wedge;
@@ -172,7 +170,7 @@ Shape open_sheets() {
                   triangle(Vec3(0, 0, 0.6), Vec3(1.5, 0.2, 0.8), Vec3(0.4, 1.3, 0.7)),
                   triangle(Vec3(0, 2.0, 0.0), Vec3(1.5, 2.2, 0.3), Vec3(0.2, 3.3, 0.5))};
   Shape bent;
-  bent.patches = {revolved_arc({1.5, 0.3}, 0.4, -1.2, 1.0, 0.5 * kPi)};
+  bent.patches = {revolved_arc({1.5, 0.3}, 0.4, -1.2, 1.0, 0.5 * std::numbers::pi)};
   Shape shape;
   shape.patches = {graph(waves, Vec2(-1.5, -1.0), Vec2(1.5, 1.0))};
   append(shape, flat, shifted(Vec3(2.2, 0.0, 0.0)));
@@ -194,7 +192,8 @@ Shape rounded_box(double radius) {
   const Vec3 inner = half - Vec3::Constant(radius);
   Shape octant;
   Shape ball;
-  ball.patches = {revolved_arc({0.0, 0.0}, radius, 0.0, 0.5 * kPi, 0.5 * kPi)};
+  ball.patches = {
+      revolved_arc({0.0, 0.0}, radius, 0.0, 0.5 * std::numbers::pi, 0.5 * std::numbers::pi)};
   append(octant, ball, shifted(inner));
   for (int axis = 0; axis < 3; ++axis) {
     const Vec3 e = Vec3::Unit(axis);
@@ -202,7 +201,7 @@ Shape rounded_box(double radius) {
     const Vec3 y = Vec3::Unit((axis + 2) % 3);
     const Vec3 end = inner;
     const Vec3 start = inner - inner[axis] * e;
-    octant.patches.push_back(cylinder_strip(start, end, x, radius, 0.5 * kPi));
+    octant.patches.push_back(cylinder_strip(start, end, x, radius, 0.5 * std::numbers::pi));
     octant.patches.push_back(parallelogram(half[axis] * e, inner.dot(x) * x, inner.dot(y) * y));
     const Vec3 middle = radius * (x + y) / std::numbers::sqrt2;
     octant.edges.push_back({Segment{start + middle, end + middle}, kSmoothEdge});
@@ -217,9 +216,10 @@ Shape rounded_box(double radius) {
 }
 
 Shape round_solids() {
-  constexpr double kTurn = 2.0 * kPi;
+  constexpr double kTurn = 2.0 * std::numbers::pi;
   Shape ball;
-  ball.patches = {revolved_arc({0.0, 0.0}, 0.6, -0.5 * kPi, 0.5 * kPi, kTurn)};
+  ball.patches = {
+      revolved_arc({0.0, 0.0}, 0.6, -0.5 * std::numbers::pi, 0.5 * std::numbers::pi, kTurn)};
   Shape shape;
   shape.patches = {revolved_line({0.0, 0.0}, {0.5, 0.0}, kTurn),
                    revolved_line({0.5, 0.0}, {0.5, 1.4}, kTurn),

@@ -6,8 +6,6 @@
 
 namespace pcednet::shapes {
 
-using Shape = Corner::Shape;
-
 Eigen::Isometry3d at(const Vec3& place) {
   return Eigen::Isometry3d(Eigen::Translation3d(place));
 }
@@ -27,12 +25,12 @@ double size_between(Random& random, double low, double high) {
   return low * std::pow(high / low, random.uniform());
 }
 
-Corner::Shape any_shape(Random& random) {
+CornerShape any_shape(Random& random) {
   const std::size_t i = random.index(4);
-  return i < 2 ? Shape::kSharp : i == 2 ? Shape::kFillet : Shape::kChamfer;
+  return i < 2 ? CornerShape::kSharp : i == 2 ? CornerShape::kFillet : CornerShape::kChamfer;
 }
 
-Profile rectangle(double x, double y, Shape shape, double size) {
+Profile rectangle(double x, double y, CornerShape shape, double size) {
   return outline({{{-x, -y}, shape, size},
                   {{x, -y}, shape, size},
                   {{x, y}, shape, size},
@@ -48,16 +46,16 @@ Profile regular_polygon(int corners, double radius, double phase) {
   return outline(list);
 }
 
-Volume prism(Profile profile, double half_height, const Eigen::Isometry3d& frame, Shape rim,
+Volume prism(Profile profile, double half_height, const Eigen::Isometry3d& frame, CornerShape rim,
              double rim_size) {
   return {Volume::Kind::kPrism, std::move(profile), half_height, rim, rim_size, frame};
 }
 
 Volume turned(Profile profile, const Eigen::Isometry3d& frame) {
-  return {Volume::Kind::kRevolution, std::move(profile), 1.0, Shape::kSharp, 0.0, frame};
+  return {Volume::Kind::kRevolution, std::move(profile), 1.0, CornerShape::kSharp, 0.0, frame};
 }
 
-Volume cylinder(double radius, double half_height, const Eigen::Isometry3d& frame, Shape rim,
+Volume cylinder(double radius, double half_height, const Eigen::Isometry3d& frame, CornerShape rim,
                 double rim_size) {
   return prism(circle_profile(Vec2::Zero(), radius), half_height, frame, rim, rim_size);
 }

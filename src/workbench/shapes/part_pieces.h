@@ -17,11 +17,10 @@ bool chance(Random& random, double p);
 /// Mostly small: geometric between the bounds.
 double size_between(Random& random, double low, double high);
 
-Corner::Shape any_shape(Random& random);
+CornerShape any_shape(Random& random);
 
 /// x and y are half its sides.
-Profile rectangle(double x, double y, Corner::Shape shape = Corner::Shape::kSharp,
-                  double size = 0.0);
+Profile rectangle(double x, double y, CornerShape shape = CornerShape::kSharp, double size = 0.0);
 
 Profile regular_polygon(int corners, double radius, double phase = 0.0);
 
@@ -29,12 +28,12 @@ Profile regular_polygon(int corners, double radius, double phase = 0.0);
 Profile random_outline(Random& random, double radius);
 
 Volume prism(Profile profile, double half_height, const Eigen::Isometry3d& frame,
-             Corner::Shape rim = Corner::Shape::kSharp, double rim_size = 0.0);
+             CornerShape rim = CornerShape::kSharp, double rim_size = 0.0);
 
 Volume turned(Profile profile, const Eigen::Isometry3d& frame);
 
 Volume cylinder(double radius, double half_height, const Eigen::Isometry3d& frame,
-                Corner::Shape rim = Corner::Shape::kSharp, double rim_size = 0.0);
+                CornerShape rim = CornerShape::kSharp, double rim_size = 0.0);
 
 /// x, y and z are half its sides.
 Volume box(double x, double y, double z, const Vec3& place);

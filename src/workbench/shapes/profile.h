@@ -50,6 +50,8 @@ struct Corner {
   double size = 0.0;  ///< radius of the fillet, or length cut off each side by the chamfer
 };
 
+using CornerShape = Corner::Shape;
+
 /// The outline through `corners`, counter-clockwise. A fillet or chamfer that its sides have no
 /// room for is made smaller.
 Profile outline(const std::vector<Corner>& corners);

@@ -216,7 +216,7 @@ std::vector<Ornament> random_ornaments(Random& random, const Vec2& half) {
 }
 
 /// The plate itself: bent one or two ways, with shallow waves.
-Field plate(Random& random) {
+Field relief_plate(Random& random) {
   const double bend = random.uniform(-0.8, 0.8), twist = random.uniform(-0.4, 0.4);
   const double other = random.index(2) ? random.uniform(-0.8, 0.8) : 0.0;
   const double wave = random.uniform(0.0, 0.02), phase = random.uniform(0.0, 2 * pi);
@@ -260,7 +260,7 @@ void add_lines(const Ornament& ornament, const Field& height, const Vec2& half, 
 Relief random_relief(Random& random, std::size_t line_points) {
   const Vec2 half{random.uniform(0.4, 1.0), random.uniform(0.3, 0.5)};
   const auto ornaments = random_ornaments(random, half);
-  const Field base = plate(random);
+  const Field base = relief_plate(random);
   const Field height = [ornaments, base](const Vec2& p) {
     double z = base(p);
     for (const Ornament& ornament : ornaments) z += ornament.at(p);

@@ -13,7 +13,7 @@ namespace pcednet::shapes {
 namespace {
 
 constexpr std::uint64_t kReliefs = 16;
-constexpr std::size_t kSamplesPerPoint = 10;
+constexpr std::size_t kReliefSamplesPerPoint = 10;
 
 }  // namespace
 
@@ -44,7 +44,7 @@ GeneratedCloud generate(const ReliefRecipe& recipe, std::uint64_t seed) {
   if (recipe.even) options.min_distance = 0.7 * spacing;
   SurfaceSamples drawn = sample_surface(relief.shape, options, random);
   const SurfaceSamples surface =
-      sample_surface(relief.shape, {.points = kSamplesPerPoint * recipe.points}, random);
+      sample_surface(relief.shape, {.points = kReliefSamplesPerPoint * recipe.points}, random);
   MeshVertices vertices;
   vertices.positions = std::move(drawn.positions);
   vertices.normals = std::move(drawn.normals);

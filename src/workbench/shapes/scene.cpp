@@ -9,8 +9,6 @@
 namespace pcednet::shapes {
 namespace {
 
-using Shape = Corner::Shape;
-
 void add_ground(Scene& scene, Random& random) {
   Eigen::Isometry3d frame = at({0, 0, -0.5});
   frame.rotate(Eigen::AngleAxisd(random.uniform(-0.03, 0.03), Vec3::UnitX()));
@@ -89,8 +87,8 @@ Scene facade(Random& random) {
              random.uniform(0.2, 0.8));
   }
   if (chance(random, 0.5))
-    solid.add(prism(rectangle(0.9, 0.45, Shape::kFillet, 0.15), 0.5, at({2, 0, 0.5}),
-                    Shape::kFillet, 0.12));
+    solid.add(prism(rectangle(0.9, 0.45, CornerShape::kFillet, 0.15), 0.5, at({2, 0, 0.5}),
+                    CornerShape::kFillet, 0.12));
   scene.scanners = {{{random.uniform(-3, 3), -5, 1.7}, {0, front, 0.4 * height}},
                     {{4, -3, 1.7}, {0, front, 0.4 * height}},
                     {{-5, -2, 1.7}, {0, front, 0.4 * height}}};
@@ -191,7 +189,8 @@ Scene monument(Random& random) {
       const double radius = random.uniform(0.1, 0.22);
       solid.add(cylinder(radius, 0.9, at(foot)));
       solid.add(box(1.3 * radius, 1.3 * radius, 0.06, foot - Vec3(0, 0, 0.85)));
-      solid.add(cylinder(1.3 * radius, 0.06, at(foot + Vec3(0, 0, 0.85)), Shape::kFillet, 0.05));
+      solid.add(
+          cylinder(1.3 * radius, 0.06, at(foot + Vec3(0, 0, 0.85)), CornerShape::kFillet, 0.05));
     }
     solid.add(box(half, half, 0.15, {0, 1, top + 1.95}));
     solid.add(prism(outline({{{-half, 0}}, {{half, 0}}, {{0, random.uniform(0.4, 0.9)}}}), half,
@@ -202,8 +201,8 @@ Scene monument(Random& random) {
     solid.add(box(1.15 * wide, 1.15 * wide, 0.06, {0, 1, top + 1.0}));
     solid.add(
         turned(outline({{{-0.6, top + 1}},
-                        {{0.8 * wide, top + 1}, Shape::kFillet, 0.1},
-                        {{random.uniform(0.2, 0.7) * wide, top + 1.6}, Shape::kFillet, 0.2},
+                        {{0.8 * wide, top + 1}, CornerShape::kFillet, 0.1},
+                        {{random.uniform(0.2, 0.7) * wide, top + 1.6}, CornerShape::kFillet, 0.2},
                         {{random.uniform(0.2, 0.9) * wide, top + 2.4}, any_shape(random), 0.2},
                         {{-0.6, top + 2.6}}}),
                at({0, 1, 0})));

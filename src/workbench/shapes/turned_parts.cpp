@@ -10,12 +10,7 @@
 #include "workbench/shapes/part_pieces.h"
 
 namespace pcednet::shapes {
-namespace {
-
-constexpr double kPi = std::numbers::pi;
-using Shape = Corner::Shape;
-
-}  // namespace
+namespace {}  // namespace
 
 Solid shaft(Random& random) {
   const int steps = 2 + static_cast<int>(random.index(5));
@@ -69,7 +64,7 @@ Solid flange(Random& random) {
   const double circle = 0.5 * (hub + radius) + 0.3 * fillet,
                bolt = random.uniform(0.15, 0.35) * (radius - hub);
   for (int i = 0; i < bolts; ++i) {
-    const double t = 2.0 * kPi * i / bolts;
+    const double t = 2.0 * std::numbers::pi * i / bolts;
     part.cut(cylinder(bolt, 1.0, at({circle * std::cos(t), circle * std::sin(t), 0})));
   }
   if (chance(random, 0.4)) part.cut(box(0.04, 0.04, 1.0, {bore, 0, 0}));
@@ -80,20 +75,20 @@ Solid gear(Random& random) {
   const int teeth = 8 + static_cast<int>(random.index(20));
   const double outer = 0.5, root = outer * random.uniform(0.75, 0.9);
   const double flank = random.uniform(0.1, 0.35), tip = random.uniform(0.15, 0.35);
-  const Shape shape = any_shape(random);
+  const CornerShape shape = any_shape(random);
   std::vector<Corner> corners;
   const auto add = [&](double r, double t) {
     corners.push_back({r * Vec2(std::cos(t), std::sin(t)), shape, 0.01});
   };
   for (int i = 0; i < teeth; ++i) {
-    const double step = 2.0 * kPi / teeth, t = i * step;
+    const double step = 2.0 * std::numbers::pi / teeth, t = i * step;
     add(root, t), add(outer, t + flank * step), add(outer, t + (flank + tip) * step);
     add(root, t + std::min(0.95, 2.0 * flank + tip) * step);
   }
   const double z = random.uniform(0.04, 0.2);
   Solid part;
   part.add(prism(outline(corners), z, at(Vec3::Zero()),
-                 chance(random, 0.3) ? Shape::kChamfer : Shape::kSharp, 0.1 * z));
+                 chance(random, 0.3) ? CornerShape::kChamfer : CornerShape::kSharp, 0.1 * z));
   const double bore = random.uniform(0.1, 0.3);
   part.cut(cylinder(bore, 1.0, at(Vec3::Zero())));
   if (chance(random, 0.6)) part.cut(box(0.2 * bore, 0.2 * bore, 1.0, {bore, 0, 0}));
@@ -101,7 +96,7 @@ Solid gear(Random& random) {
     const int windows = 3 + static_cast<int>(random.index(5));
     const double r = 0.5 * (bore + root);
     for (int i = 0; i < windows; ++i) {
-      const double t = 2.0 * kPi * i / windows;
+      const double t = 2.0 * std::numbers::pi * i / windows;
       part.cut(cylinder(0.3 * (root - bore), 1.0, at({r * std::cos(t), r * std::sin(t), 0})));
     }
   }
@@ -148,9 +143,9 @@ Solid dome(Random& random) {
   Solid part;
   std::vector<Corner> corners = {{{-0.6, 0}},
                                  {{radius, 0}, any_shape(random), 0.03},
-                                 {{radius, random.uniform(0.05, 0.2)}, Shape::kFillet, 0.15},
+                                 {{radius, random.uniform(0.05, 0.2)}, CornerShape::kFillet, 0.15},
                                  {{random.uniform(0.3, 0.8) * radius, random.uniform(0.25, 0.45)},
-                                  Shape::kFillet,
+                                  CornerShape::kFillet,
                                   random.uniform(0.05, 0.3)},
                                  {{-0.6, random.uniform(0.45, 0.6)}}};
   part.add(turned(outline(corners), at(Vec3::Zero())));
@@ -169,10 +164,10 @@ Solid knob(Random& random) {
   const int grips = 4 + static_cast<int>(random.index(8));
   const double radius = random.uniform(0.3, 0.5), z = random.uniform(0.08, 0.25);
   part.add(cylinder(radius, z, at(Vec3::Zero()), any_shape(random), random.uniform(0.1, 0.6) * z));
-  const double grip = random.uniform(0.3, 0.9) * kPi * radius / grips,
+  const double grip = random.uniform(0.3, 0.9) * std::numbers::pi * radius / grips,
                out = radius + random.uniform(0.0, 0.7) * grip;
   for (int i = 0; i < grips; ++i) {
-    const double t = 2.0 * kPi * i / grips;
+    const double t = 2.0 * std::numbers::pi * i / grips;
     part.cut(cylinder(grip, 1.0, at({out * std::cos(t), out * std::sin(t), 0})));
   }
   part.add(cylinder(random.uniform(0.3, 0.5) * radius, 0.5 * z, at({0, 0, -1.3 * z}),

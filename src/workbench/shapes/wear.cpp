@@ -11,7 +11,7 @@
 namespace pcednet::shapes {
 namespace {
 
-Mat3 random_rotation(Random& random) {
+Mat3 gaussian_rotation(Random& random) {
   const Vec3 x = Vec3(random.normal(), random.normal(), random.normal()).normalized();
   const Vec3 y = x.cross(Vec3(random.normal(), random.normal(), random.normal())).normalized();
   Mat3 rotation;
@@ -66,7 +66,7 @@ void wear_off(MeshVertices& vertices, const SurfaceSamples& surface, std::span<c
 }
 
 PointCloud finish(MeshVertices vertices, const Finish& finish, Random& random) {
-  const Mat3 rotation = random_rotation(random);
+  const Mat3 rotation = gaussian_rotation(random);
   PointCloud cloud;
   for (std::size_t i = 0; i < vertices.positions.size(); ++i) {
     cloud.positions.push_back((rotation * vertices.positions[i]).cast<float>().cast<double>());
