@@ -21,7 +21,7 @@ std::vector<Recipe> default_recipes(std::uint64_t seed, const DefaultSetOptions&
 /// The Default training set of Himeur et al. 2021, made anew from their description: their six
 /// shapes, point counts, class shares and noisy variants (287,900 points in nine clouds), and,
 /// beyond the paper, clouds for what real scans hold: other angles, edges that fade out or are
-/// rounded, open borders, uneven density, stronger noise. See docs/data.md.
+/// rounded, open borders, uneven density, stronger noise. See docs/shapes.md.
 ///
 /// The same seed gives the same clouds.
 std::vector<GeneratedCloud> generate_default(std::uint64_t seed,
