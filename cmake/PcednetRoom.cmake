@@ -37,7 +37,8 @@ function(pcednet_make_room name wing)
   target_link_libraries(${target} PUBLIC ${room_LINKS} PRIVATE ${room_PRIVATE_LINKS})
 endfunction()
 
-# Warnings, and no contraction of a*b+c: the same source gives the same bits on every processor.
+# Warnings, and no contraction of a*b+c, so that copies for several instruction sets give the same
+# bits. The lane kernels of gls do contract: see docs/architecture.md, Determinism.
 function(pcednet_compile_options target)
   # -Wno-restrict: GCC 12 warns of std::string's own code (GCC bug 105329).
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wshadow -Wnon-virtual-dtor

@@ -1,7 +1,8 @@
 #!/bin/sh
-# Makes the shipped models from generated shapes alone; the same bytes every time.
-# scripts/train_models.sh [scan] [cad] [worn] makes those alone. The shapes have points with random
-# normals on purpose: --keep-orientation leaves them so.
+# Trains the shipped models on generated shapes alone: scripts/train_models.sh [scan] [cad] [worn]
+# The same machine gives the same bytes; other processors differ in the last digits (see
+# docs/architecture.md, Determinism). Some shapes have points with random normals on purpose, which
+# --keep-orientation keeps.
 set -eu
 cd "$(dirname "$0")/.."
 pcednet=build/release/bin/pcednet

@@ -10,14 +10,15 @@
 namespace pcednet::gls {
 namespace {
 
-/// A cloud, how it is described, and how far the fast engine may be from the exact one. The bounds
-/// are what is measured, rounded up: the voxels and not the arithmetic decide them.
+/// A cloud, how it is described, and the errors that the fast engine may have against the exact
+/// one. The bounds are requirements, above the errors measured; voxels cause those errors, not
+/// rounding.
 struct Case {
   const char* name;
   std::function<test::Cloud()> cloud;
   double median,
-      p99;            ///< of |fast - exact| over every feature but dkappa, kappa and the curvatures
-  double dkappa_p99;  ///< of dkappa
+      p99;            ///< of |fast - exact| for each feature but dkappa
+  double dkappa_p99;  ///< of dkappa, whose median may be ten times as large
   std::optional<double> gate = {};
   Reconstruction reconstruction = Reconstruction::kSphere;
   FeatureSet features = FeatureSet::kInvariant7;

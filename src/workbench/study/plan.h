@@ -19,7 +19,7 @@ namespace pcednet::study {
 /// A network that the study trains, once for every seed.
 struct NetworkMethod {
   detect::TrainOptions options = {};  ///< the seed is set by the runner
-  int one_in = 1;                     ///< the share of the training points that is learnt from
+  int one_in = 1;                     ///< 5: a fifth of the training points, chosen by hash
   /// Largest scale over the diagonal when it classifies; empty: as in training.
   std::optional<double> s_max_fraction = {};
 };
