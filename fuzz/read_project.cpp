@@ -1,8 +1,8 @@
 #include <string_view>
 
 #include "in_memory.h"
+#include "workbench/annotate/json.h"
 #include "workbench/annotate/project.h"
-#include "workbench/annotate/stroke.h"
 
 namespace {
 
@@ -27,7 +27,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     }
   };
   try_to([&] { annotate::parse_stroke(text); });
-  try_to([&] { annotate::parse_settings(text, {}); });
+  try_to([&] { annotate::parse_settings_change(text); });
   try_to([&] { annotate::parse_record(text, kMostPoints); });
   try_to([&] { annotate::parse_input(text); });
   return fuzz::read_or_refuse({data, size}, read_project);

@@ -73,7 +73,8 @@ std::string_view view_of(beast::string_view text) {
   return {text.data(), text.size()};
 }
 
-annotate::Request request_of(const Parser::value_type& head) {
+annotate::Request request_of(const Parser& parser) {
+  const auto& head = parser.get();
   std::string_view target = view_of(head.target());
   const std::size_t question = std::min(target.find('?'), target.size());
   annotate::Request request{.method = std::string(view_of(head.method_string())),
@@ -92,6 +93,8 @@ annotate::Request request_of(const Parser::value_type& head) {
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     request.headers.emplace(lower, view_of(field.value()));
   }
+  request.announced =
+      parser.chunked() ? std::nullopt : std::optional(parser.content_length().value_or(0));
   return request;
 }
 
@@ -154,8 +157,6 @@ struct HttpServer::Impl {
   asio::awaitable<void> converse(beast::tcp_stream stream);
   asio::awaitable<annotate::Response> answer(const annotate::Request& request);
   asio::awaitable<void> stream_events(beast::tcp_stream& stream);
-  std::optional<annotate::Response> refusal(const Parser& parser,
-                                            const annotate::Request& request) const;
 };
 
 HttpServer::HttpServer(int port) : impl_(std::make_unique<Impl>()) {
@@ -224,11 +225,12 @@ asio::awaitable<void> HttpServer::Impl::converse(beast::tcp_stream stream) {
   while (keep_alive) {
     Parser parser;
     parser.header_limit(kMostHeadBytes);
-    parser.body_limit(std::numeric_limits<std::uint64_t>::max());  // refusal() has a better answer
+    parser.body_limit(
+        std::numeric_limits<std::uint64_t>::max());  // Api::refuse() has a better answer
     stream.expires_after(is_known ? kRequestTime : kStrangerTime);
     co_await http::async_read_header(stream, buffer, parser, use_awaitable);
-    annotate::Request request = request_of(parser.get());
-    if (const auto refused = refusal(parser, request)) co_await turn_away(stream, *refused);
+    annotate::Request request = request_of(parser);
+    if (const auto refused = api->refuse(request)) co_await turn_away(stream, *refused);
     if (request.path.starts_with("/api") && !is_known) {
       is_known = true;
       strangers.remove(&stream);
@@ -246,23 +248,6 @@ asio::awaitable<void> HttpServer::Impl::converse(beast::tcp_stream stream) {
     stream.expires_never();  // a large download takes its time
     co_await send(stream, answered, keep_alive);
   }
-}
-
-/// What a request gets whose body is not read.
-std::optional<annotate::Response> HttpServer::Impl::refusal(
-    const Parser& parser, const annotate::Request& request) const {
-  if (auto refused = api->refuse(request)) return refused;
-  if (request.method != "GET" && request.method != "POST") {
-    return annotate::error_response(404, "GET or POST");
-  }
-  if (!request.path.starts_with("/api") && (request.path != "/" || request.method != "GET")) {
-    return annotate::error_response(404, "nothing is there");
-  }
-  if (parser.chunked()) return annotate::error_response(400, "Content-Length is missing");
-  if (parser.content_length().value_or(0) > annotate::kMostBodyBytes) {
-    return annotate::error_response(413, "at most 8 MiB are taken");
-  }
-  return {};
 }
 
 /// On a worker's thread.

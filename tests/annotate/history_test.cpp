@@ -12,6 +12,7 @@
 #include "pcednet/core/error.h"
 #include "pcednet/core/random.h"
 #include "pcednet/io/write_cloud.h"
+#include "workbench/annotate/json.h"
 #include "workbench/annotate/project.h"
 #include "workbench/annotate/session.h"
 
@@ -92,7 +93,7 @@ class RunHistory : public testing::Test {
     }
     io::write_cloud(folder_ / "cube.ply", cloud, {});
     open();
-    session_->change_settings(R"({"auto":false})");
+    session_->change_settings({.automatic = false});
   }
 
   void TearDown() override {
@@ -106,10 +107,10 @@ class RunHistory : public testing::Test {
     options.load_model = [](const std::string& name) -> detect::EdgeModel {
       throw Error(ErrorKind::kUnreadable, name + ": no such model");
     };
-    options.emit = [this](const std::string& name, const std::string& json) {
+    options.emit = [this](const Event& event) {
       const std::lock_guard lock(mutex_);
-      if (name == "problem") problems_.push_back(Json::parse(json).at("message"));
-      if (name != "training") return;
+      if (const auto* problem = std::get_if<Problem>(&event)) problems_.push_back(problem->message);
+      if (!std::holds_alternative<EpochDone>(event)) return;
       ++epochs_;
       while (hold_) std::this_thread::yield();
     };
@@ -126,7 +127,7 @@ class RunHistory : public testing::Test {
     session_->paint(stroke);
   }
 
-  Json runs() const { return Json::parse(session_->runs()); }
+  Json runs() const { return Json::parse(to_json(session_->runs())); }
 
   template <typename IsDone>
   void wait(IsDone&& is_done) const {

@@ -75,9 +75,10 @@ annotate::SessionOptions session_options(const AnnotateArguments& arguments, con
   options.load_model = [given = arguments.model](const std::string& name) {
     return detect::load_model(name == given ? find_model(given) : find_shipped(name));
   };
-  options.emit = [&events](const std::string& name, const std::string& json) {
-    events.add(name, json);
-    if (name == "ready") say("ready; Ctrl-C ends, and nothing painted is lost");
+  options.emit = [&events](const annotate::Event& event) {
+    events.add(event);
+    if (std::holds_alternative<annotate::Ready>(event))
+      say("ready; Ctrl-C ends, and nothing painted is lost");
   };
   if (!options.model.empty()) options.load_model(options.model);  // refuse before any work
   return options;

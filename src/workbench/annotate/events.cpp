@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "workbench/annotate/json.h"
+
 namespace pcednet::annotate {
 namespace {
 
@@ -9,9 +11,10 @@ constexpr std::size_t kMostKept = 1000;
 
 }  // namespace
 
-void Events::add(const std::string& name, const std::string& json) {
+void Events::add(const Event& event) {
+  std::string text = "event: " + event_name(event) + "\ndata: " + event_json(event) + "\n\n";
   const std::lock_guard lock(mutex_);
-  recent_.push_back("event: " + name + "\ndata: " + json + "\n\n");
+  recent_.push_back(std::move(text));
   ++end_;
   if (recent_.size() > kMostKept) recent_.pop_front();
   if (on_news_) on_news_();

@@ -6,6 +6,8 @@
 #include <mutex>
 #include <string>
 
+#include "workbench/annotate/messages.h"
+
 namespace pcednet::annotate {
 
 /// Events on their way from the session to any number of windows, in the form of server-sent
@@ -13,7 +15,7 @@ namespace pcednet::annotate {
 /// thread.
 class Events {
  public:
-  void add(const std::string& name, const std::string& json);
+  void add(const Event& event);
 
   /// Calls `on_news` after every event from now on, from the thread that adds it; `on_news` must
   /// not wait, nor call this object. An empty one ends that: the former is not called any more.

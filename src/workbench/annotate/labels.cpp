@@ -11,7 +11,8 @@ void Labels::set(std::uint32_t point, std::uint8_t edge_class) {
   if (label < counts_.size()) ++counts_[label];
 }
 
-void Labels::paint(std::uint8_t edge_class, std::vector<std::uint32_t> points) {
+std::span<const std::uint32_t> Labels::paint(std::uint8_t edge_class,
+                                             std::vector<std::uint32_t> points) {
   Step step{.points = std::move(points), .before = {}, .after = edge_class};
   step.before.reserve(step.points.size());
   for (const std::uint32_t point : step.points) {
@@ -20,6 +21,7 @@ void Labels::paint(std::uint8_t edge_class, std::vector<std::uint32_t> points) {
   }
   done_.push_back(std::move(step));
   undone_.clear();
+  return done_.back().points;
 }
 
 std::span<const std::uint32_t> Labels::undo() {
@@ -48,7 +50,7 @@ std::vector<std::uint32_t> points_to_change(std::vector<std::uint32_t> points, c
   };
   std::erase_if(points, [&](std::uint32_t i) {
     if (labels[i] == stroke.edge_class) return true;
-    if (stroke.protect && labels[i] != 255) return true;
+    if (stroke.protect && labels[i] != kUnlabelled) return true;
     return is_hidden(labels[i]) || (!prediction.empty() && is_hidden(prediction[i]));
   });
   return points;

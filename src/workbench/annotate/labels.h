@@ -11,21 +11,23 @@
 namespace pcednet::annotate {
 
 /// The painted classes of a cloud's points, with every change that can be taken back.
+/// What changes them returns the points concerned, which stay until the next change.
 class Labels {
  public:
-  explicit Labels(std::size_t points) : classes_(points, 255) {}
+  explicit Labels(std::size_t points) : classes_(points, kUnlabelled) {}
 
   const std::vector<std::uint8_t>& classes() const { return classes_; }
   std::array<std::size_t, 3> counts() const { return counts_; }
+  std::size_t painted() const { return counts_[0] + counts_[1] + counts_[2]; }
   std::size_t undo_steps() const { return done_.size(); }
   std::size_t redo_steps() const { return undone_.size(); }
 
-  /// Gives the points a class (255: none); a step that can be taken back even if nothing changes.
+  /// Gives the points a class (kUnlabelled: none); a step that can be taken back even if nothing
+  /// changes.
   /// What was taken back before cannot be redone any more.
-  void paint(std::uint8_t edge_class, std::vector<std::uint32_t> points);
+  std::span<const std::uint32_t> paint(std::uint8_t edge_class, std::vector<std::uint32_t> points);
 
-  /// Takes the last step back, or does it again. Return the points concerned; nothing if there is
-  /// no step.
+  /// Takes the last step back, or does it again; nothing if there is no step.
   std::span<const std::uint32_t> undo();
   std::span<const std::uint32_t> redo();
 

@@ -117,7 +117,7 @@ detect::TrainedModel learn_project(
     end.labels = labels_of(*end.run, project.records, project.input.points);
   }
   std::optional<detect::EdgeModel> start;
-  if (settings.start != "random") start = load_start(settings.start);
+  if (settings.start != kRandomStart) start = load_start(settings.start);
   const detect::PreparedCloud prepared = detect::prepare(loaded.cloud, {}, progress);
   const auto described =
       describe_once(prepared, descriptor_of(start ? &*start : nullptr), {}, progress);

@@ -28,21 +28,23 @@ Json json_of(const Settings& s) {
   return {{"classes", s.classes}, {"auto", s.automatic}, {"start", s.start}, {"seed", s.seed}};
 }
 
-Settings settings_of(const Json& json, Settings settings) {
+SettingsChange settings_change_of(const Json& json) {
+  SettingsChange change;
   if (const auto found = json.find("classes"); found != json.end()) {
-    settings.classes = found->is_number_integer() ? found->get<int>() : 0;
+    change.classes = found->is_number_integer() ? found->get<int>() : 0;
   }
-  if (json.contains("auto")) settings.automatic = json.at("auto").get<bool>();
-  if (json.contains("start")) settings.start = json.at("start").get<std::string>();
+  if (json.contains("auto")) change.automatic = json.at("auto").get<bool>();
+  if (json.contains("start")) change.start = json.at("start").get<std::string>();
   if (const auto found = json.find("seed"); found != json.end()) {
     if (!found->is_number_unsigned())
       throw Error(ErrorKind::kUsage, "seed: a whole number, not negative");
-    settings.seed = found->get<std::uint64_t>();
+    change.seed = found->get<std::uint64_t>();
   }
-  if (settings.classes != 2 && settings.classes != 3) {
-    throw Error(ErrorKind::kUsage, "classes: 2 or 3");
-  }
-  return settings;
+  return change;
+}
+
+Settings settings_of(const Json& json) {
+  return changed({}, settings_change_of(json));
 }
 
 /// Ascending numbers as the steps between them, which are short to write.
@@ -89,7 +91,7 @@ Json json_of(const RunRecord& run) {
 RunRecord run_of(const Json& json) {
   RunRecord run{.number = json.at("run").get<int>(),
                 .records = json.at("records").get<std::size_t>(),
-                .settings = settings_of(json.at("settings"), {})};
+                .settings = settings_of(json.at("settings"))};
   if (run.number < 1 || run.number > kMostRuns) refuse("a run of no number");
   const auto learn = [&]<typename Fact>(const char* name, std::optional<Fact>& fact) {
     // A number that is not finite was written as null.
@@ -129,7 +131,9 @@ Json json_of(const Record& record) {
 Record record_of(const Json& json, std::size_t points) {
   if (json.contains("stroke")) {
     const int edge_class = json.at("class").get<int>();
-    if ((edge_class < 0 || edge_class > 2) && edge_class != 255) refuse("a stroke of no class");
+    if ((edge_class < kNonEdge || edge_class > kSharpEdge) && edge_class != kUnlabelled) {
+      refuse("a stroke of no class");
+    }
     return {.id = json.at("stroke").get<std::string>(),
             .edge_class = static_cast<std::uint8_t>(edge_class),
             .points = points_of(json.at("points"), points)};
@@ -140,7 +144,7 @@ Record record_of(const Json& json, std::size_t points) {
   if (json.contains("restore")) {
     return {.kind = Kind::kRestore, .run = {.number = json.at("restore").get<int>()}};
   }
-  return {.kind = Kind::kSettings, .settings = settings_of(json.at("settings"), {})};
+  return {.kind = Kind::kSettings, .settings = settings_of(json.at("settings"))};
 }
 
 Json json_of(const InputIdentity& input) {
@@ -199,16 +203,27 @@ InputIdentity parse_input(std::string_view line) {
   return strictly([&] { return input_of(Json::parse(line)); });
 }
 
-std::string to_json(const Settings& settings) {
+std::string to_line(const Settings& settings) {
   return json_of(settings).dump();
 }
 
-Settings parse_settings(std::string_view text, const Settings& now) {
+SettingsChange parse_settings_change(std::string_view text) {
   try {
-    return settings_of(Json::parse(text), now);
+    return settings_change_of(Json::parse(text));
   } catch (const Json::exception& error) {
     throw Error(ErrorKind::kUsage, fmt::format("settings: {}", error.what()));
   }
+}
+
+Settings changed(Settings settings, const SettingsChange& change) {
+  settings.classes = change.classes.value_or(settings.classes);
+  settings.automatic = change.automatic.value_or(settings.automatic);
+  settings.start = change.start.value_or(settings.start);
+  settings.seed = change.seed.value_or(settings.seed);
+  if (settings.classes != 2 && settings.classes != 3) {
+    throw Error(ErrorKind::kUsage, "classes: 2 or 3");
+  }
+  return settings;
 }
 
 Project read_project(const std::filesystem::path& path) {
@@ -240,32 +255,32 @@ void write_project(const std::filesystem::path& path, const Project& project, Ov
   write_text_file(path, text + "]}\n", overwrite);
 }
 
+std::span<const std::uint32_t> replay(const Record& record, Replayed& now) {
+  switch (record.kind) {
+    case Kind::kStroke:
+      return now.labels.paint(record.edge_class, record.points);
+    case Kind::kUndo:
+      return now.labels.undo();
+    case Kind::kRedo:
+      return now.labels.redo();
+    case Kind::kSettings:
+      now.settings = record.settings;
+      return {};
+    case Kind::kRun:
+      now.run = now.runs[record.run.number] = record.run;
+      return {};
+    case Kind::kRestore:
+      break;
+  }
+  if (const auto found = now.runs.find(record.run.number); found != now.runs.end()) {
+    now.run = found->second;
+  }
+  return {};
+}
+
 Replayed replay(std::span<const Record> records, std::size_t points) {
   Replayed now{.labels = Labels(points)};
-  for (const Record& record : records) {
-    switch (record.kind) {
-      case Kind::kStroke:
-        now.labels.paint(record.edge_class, record.points);
-        break;
-      case Kind::kUndo:
-        now.labels.undo();
-        break;
-      case Kind::kRedo:
-        now.labels.redo();
-        break;
-      case Kind::kSettings:
-        now.settings = record.settings;
-        break;
-      case Kind::kRun:
-        now.run = now.runs[record.run.number] = record.run;
-        break;
-      case Kind::kRestore:
-        if (const auto found = now.runs.find(record.run.number); found != now.runs.end()) {
-          now.run = found->second;
-        }
-        break;
-    }
-  }
+  for (const Record& record : records) replay(record, now);
   return now;
 }
 
@@ -279,8 +294,7 @@ Labels labels_of(const RunRecord& run, std::span<const Record> records, std::siz
                        run.records, before));
   }
   Labels labels = replay(records.first(run.records), points).labels;
-  const auto counts = labels.counts();
-  const std::size_t painted = counts[0] + counts[1] + counts[2];
+  const std::size_t painted = labels.painted();
   if (run.facts.painted && *run.facts.painted != painted) {
     refuse(fmt::format("run {} was trained on {} painted points, but its records paint {}",
                        run.number, *run.facts.painted, painted));

@@ -13,13 +13,27 @@
 
 namespace pcednet::annotate {
 
+/// The start of a training that begins with random weights.
+inline constexpr const char* kRandomStart = "random";
+
 struct Settings {
-  int classes = 3;               ///< 2: sharp-edge and the rest
-  bool automatic = true;         ///< train shortly after every stroke
-  std::string start = "random";  ///< or the model whose weights training starts from
+  int classes = 3;                   ///< 2: sharp-edge and the rest
+  bool automatic = true;             ///< train shortly after every stroke
+  std::string start = kRandomStart;  ///< or the model whose weights training starts from
   std::uint64_t seed = 1;
   bool operator==(const Settings&) const = default;
 };
+
+/// The settings that a request names; the others stay.
+struct SettingsChange {
+  std::optional<int> classes = {};
+  std::optional<bool> automatic = {};
+  std::optional<std::string> start = {};
+  std::optional<std::uint64_t> seed = {};
+};
+
+/// `settings` with the change. Throws Error(kUsage) unless there are 2 or 3 classes.
+Settings changed(Settings settings, const SettingsChange& change);
 
 /// What is told of a run without training it again; records of the first version tell nothing.
 struct RunFacts {
@@ -44,7 +58,7 @@ struct Record {
   enum class Kind { kStroke, kUndo, kRedo, kSettings, kRun, kRestore };
   Kind kind = Kind::kStroke;
   std::string id = {};  ///< of a stroke
-  std::uint8_t edge_class = 255;
+  std::uint8_t edge_class = kUnlabelled;
   std::vector<std::uint32_t> points = {};  ///< ascending
   Settings settings = {};
   RunRecord run = {};  ///< of kRestore the number alone
@@ -74,10 +88,11 @@ std::string to_line(const InputIdentity& input);
 Record parse_record(std::string_view line, std::size_t points);
 InputIdentity parse_input(std::string_view line);
 
-std::string to_json(const Settings& settings);
+/// The settings as a record has them.
+std::string to_line(const Settings& settings);
 
-/// Throws Error(kUsage) unless `json` holds settings; what it leaves out is as in `now`.
-Settings parse_settings(std::string_view json, const Settings& now);
+/// Throws Error(kUsage) for a setting of the wrong kind.
+SettingsChange parse_settings_change(std::string_view json);
 
 /// Throws Error(kUnreadable), naming the file, for anything but a project.
 Project read_project(const std::filesystem::path& path);
@@ -91,6 +106,9 @@ struct Replayed {
   std::optional<RunRecord> run = {};   ///< the one that was shown last
 };
 Replayed replay(std::span<const Record> records, std::size_t points);
+
+/// Goes one record further; returns the points that it concerns, until the next one.
+std::span<const std::uint32_t> replay(const Record& record, Replayed& now);
 
 /// The labels that a run of `records` was trained on. Throws Error(kUnreadable) if the records
 /// before it are too few or paint another number of points than the run had.

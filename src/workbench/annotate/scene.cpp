@@ -62,6 +62,10 @@ std::shared_ptr<const Prediction> predict(const Scene& scene, const Described& d
   return prediction;
 }
 
+std::uint8_t byte_of(float share) {
+  return static_cast<std::uint8_t>(std::lround(255.0f * std::clamp(share, 0.0f, 1.0f)));
+}
+
 std::vector<std::uint8_t> feature_bytes(const Described& described,
                                         std::span<const std::uint32_t> points, int feature,
                                         int scale) {
@@ -79,7 +83,7 @@ std::vector<std::uint8_t> feature_bytes(const Described& described,
     const std::uint32_t row = described.row_of[point];
     const float x = row == kNoRow ? 0.0f : described.cloud.values[row * width + column];
     const float share = is_share ? x : 0.5f * (1.0f + x / (1.0f + std::abs(x)));
-    bytes.push_back(static_cast<std::uint8_t>(std::lround(255.0f * std::clamp(share, 0.0f, 1.0f))));
+    bytes.push_back(byte_of(share));
   }
   return bytes;
 }

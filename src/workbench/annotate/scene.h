@@ -43,6 +43,9 @@ struct Prediction {
 std::shared_ptr<const Prediction> predict(const Scene& scene, const Described& described,
                                           detect::EdgeModel model);
 
+/// 0 ... 1 as 0 ... 255.
+std::uint8_t byte_of(float share);
+
 /// A byte per point of a node, for colouring: feature `feature` at scale `scale` of a description.
 /// phi is mapped from 0 ... 1 to 0 ... 255, any other value x by (1 + x / (1 + |x|)) / 2; 0 where
 /// there is no description. Throws NotFound if there is no such feature or scale.

@@ -3,12 +3,11 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
-#include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
-#include "workbench/annotate/scene.h"
+#include "workbench/annotate/messages.h"
+#include "workbench/annotate/saving.h"
 #include "workbench/annotate/stroke.h"
 
 namespace pcednet::annotate {
@@ -22,25 +21,18 @@ struct SessionOptions {
   /// The model behind `model` or a name of Settings::start, which the page gives: throws, and opens
   /// no file, for any that it may not have.
   std::function<detect::EdgeModel(const std::string& name)> load_model = {};
-  /// Is told of every event with its JSON, from any thread; must not call the session.
-  std::function<void(const std::string& name, const std::string& json)> emit = {};
+  /// Gets every event, from any thread; must not call the session.
+  std::function<void(const Event& event)> emit = {};
 };
 
-/// `<stem>_annotation.json` beside the input.
-std::filesystem::path default_project(const std::filesystem::path& input);
-
-/// `<project>.journal`.
-std::filesystem::path journal_of(std::filesystem::path project);
-
-enum class Saved { kCloud, kModel, kProject };
 enum class Shown { kLabels, kPrediction, kConfidence, kPSharp, kFeature };
 
 /// An annotation of one cloud while it lasts: loading, painting, training, saving. Loading and
 /// training run on a thread of its own; every function may be called from any thread. The journal
 /// is beside the project: what a stroke's answer reports survives the end of the program.
 ///
-/// Answers are JSON as docs/annotate.md describes. Errors: kUsage for a request that makes no
-/// sense, NotFound for what is not there, kInsufficient for what is not possible now.
+/// Errors: kUsage for a request that makes no sense, NotFound for what is not there, kInsufficient
+/// for what is not possible now.
 class Session {
  public:
   explicit Session(SessionOptions options);
@@ -54,7 +46,7 @@ class Session {
   /// Blocks until it is.
   void wait_until_ready() const;
 
-  std::string summary(bool writer) const;
+  Summary summary() const;
   std::vector<std::byte> node_points(std::size_t node) const;
 
   struct Values {
@@ -64,21 +56,21 @@ class Session {
   /// A byte per point of the nodes; `feature` and `scale` choose a Shown::kFeature.
   Values values(Shown what, const std::vector<std::size_t>& nodes, int feature, int scale) const;
 
-  std::string paint(const Stroke& stroke);
-  std::string undo();
-  std::string redo();
-  std::string change_settings(std::string_view json);
+  /// A stroke of an id that was painted before gets the answer that it got then.
+  Painted paint(const Stroke& stroke);
+  Painted undo();
+  Painted redo();
+  Settings change_settings(const SettingsChange& change);
   void train_now();
   void cancel();
-  std::string runs() const;
+  std::vector<RunView> runs() const;
   void restore(int run);
 
-  std::string uncertain(std::size_t after) const;
-  std::string pick(const Vec3& local_origin, const Vec3& direction, double radius) const;
+  /// The place after so many others.
+  UncertainPlace uncertain(std::size_t after) const;
+  PointView pick(const Vec3& local_origin, const Vec3& direction, double radius) const;
 
-  /// Where `what` goes: `name` or the usual one, beside the input. Throws Error(kUsage) unless
-  /// `name` is a plain file name of `what` that is neither the input, its journal nor another's
-  /// project.
+  /// Where `what` goes: see saving_path().
   std::filesystem::path target(Saved what, const std::string& name) const;
 
   /// Writes `what` to `path` and returns the bytes written.

@@ -12,7 +12,6 @@
 namespace pcednet::annotate {
 namespace {
 
-using Json = nlohmann::json;
 using Lock = std::unique_lock<std::mutex>;
 
 std::string now_as_text() {
@@ -21,13 +20,13 @@ std::string now_as_text() {
 
 }  // namespace
 
-void Session::State::emit(const std::string& name, const Json& json) const {
-  if (options.emit) options.emit(name, json.dump());
+void Session::State::emit(const Event& event) const {
+  if (options.emit) options.emit(event);
 }
 
 bool Session::State::is_void(std::uint64_t of_generation) const {
   const Lock lock(mutex);
-  return stopping || generation != of_generation;
+  return orders.stopping || orders.generation != of_generation;
 }
 
 Progress Session::State::progress(std::uint64_t of_generation) {
@@ -35,9 +34,9 @@ Progress Session::State::progress(std::uint64_t of_generation) {
               [this](const std::string& name, double fraction) {
                 {
                   const Lock lock(mutex);
-                  stage = name;
+                  loading.stage = name;
                 }
-                emit("progress", {{"stage", name}, {"fraction", fraction}});
+                emit(StageProgress{name, fraction});
               },
           .cancelled = [this, of_generation] { return is_void(of_generation); }};
 }
@@ -49,34 +48,41 @@ void Session::State::work() {
   } catch (const std::exception& error) {
     {
       const Lock lock(mutex);
-      failure = std::current_exception();
-      stage = error.what();
+      loading.failure = std::current_exception();
+      loading.stage = error.what();
     }
     changed.notify_all();
-    emit("problem", {{"message", error.what()}});
+    emit(Problem{error.what()});
     return;
   }
   while (true) {
     Lock lock(mutex);
-    while (!stopping && !restore && !(due && *due <= std::chrono::steady_clock::now())) {
-      if (due) {
-        const auto until = *due;  // may change while waiting
-        changed.wait_until(lock, until);
-      } else {
-        changed.wait(lock);
-      }
-    }
-    if (stopping) return;
-    const std::uint64_t mine = generation;
-    const auto wanted = std::exchange(restore, {});
-    if (!wanted) due.reset();
+    wait_for_orders(lock);
+    if (orders.stopping) return;
+    const std::uint64_t mine = orders.generation;
+    const auto wanted = std::exchange(orders.restore, {});
+    if (!wanted) orders.train_at.reset();
     lock.unlock();
     try {
       wanted ? restore_once(*wanted, mine) : train_once(mine);
     } catch (const Error& error) {
-      if (error.kind() != ErrorKind::kCancelled) emit("problem", {{"message", error.what()}});
+      if (error.kind() != ErrorKind::kCancelled) emit(Problem{error.what()});
     } catch (const std::exception& error) {
-      emit("problem", {{"message", error.what()}});
+      emit(Problem{error.what()});
+    }
+  }
+}
+
+void Session::State::wait_for_orders(std::unique_lock<std::mutex>& lock) {
+  const auto is_time = [&] {
+    return orders.train_at && *orders.train_at <= std::chrono::steady_clock::now();
+  };
+  while (!orders.stopping && !orders.restore && !is_time()) {
+    if (orders.train_at) {
+      const auto until = *orders.train_at;  // may change while waiting
+      changed.wait_until(lock, until);
+    } else {
+      changed.wait(lock);
     }
   }
 }
@@ -84,7 +90,7 @@ void Session::State::work() {
 void Session::State::load() {
   const Progress reporter = {.report = progress(0).report, .cancelled = [this] {
                                const Lock lock(mutex);
-                               return stopping;
+                               return orders.stopping;
                              }};
   auto loaded = load_scene(options.input, &reporter);
   auto first = describe_once(loaded->prepared, {}, options.cache_folder, &reporter);
@@ -96,72 +102,41 @@ void Session::State::load() {
   open_project();
   {
     const Lock lock(mutex);
-    ready = true;
-    stage = "ready";
+    loading.is_done = true;
+    loading.stage = "ready";
   }
   changed.notify_all();
-  emit("ready", Json::object());
+  emit(Ready{});
   for (const auto* notes : {&scene->warnings, &scene->prepared.notes}) {
-    for (const std::string& note : *notes) emit("problem", {{"message", note}});
+    for (const std::string& note : *notes) emit(Problem{note});
   }
   if (!options.model.empty()) show_model(options.model);
 }
 
-/// Puts together what the project and the journal remember.
 void Session::State::open_project() {
-  std::vector<Record> saved;
-  if (std::filesystem::exists(options.project)) {
-    Project project = read_project(options.project);
-    if (project.input.digest != scene->input.digest) {
-      throw Error(ErrorKind::kInsufficient,
-                  fmt::format("{}: a project of {}, not of this {}", options.project.string(),
-                              project.input.name, scene->input.name));
-    }
-    saved = std::move(project.records);
-  }
-  std::vector<Record> known = saved;
-  const std::filesystem::path path = journal_of(options.project);
-  auto opened = std::make_unique<Journal>(path, scene->input, known);
-  for (std::size_t i = 0; i < std::min(saved.size(), known.size()); ++i) {
-    if (to_line(saved[i]) != to_line(known[i])) {
-      throw Error(ErrorKind::kInsufficient,
-                  fmt::format("{} and {} tell different stories: move one of them away",
-                              options.project.string(), path.string()));
-    }
-  }
-  for (std::size_t i = known.size(); i < saved.size(); ++i) {
-    opened->append(saved[i]);
-    known.push_back(saved[i]);
-  }
+  Painting opened(options.project, scene->input);
   const Lock lock(mutex);
-  Replayed end = replay(known, scene->input.points);
-  journal = std::move(opened);
-  labels = std::make_unique<Labels>(std::move(end.labels));
-  settings = end.settings;
-  for (const Record& record : known) {
-    if (record.kind == Record::Kind::kStroke) {
-      answers[record.id] = answer(0, record.points.size(), Json::array()).dump();
-    }
+  painting = std::move(opened);
+  labels_version = painting->records().empty() ? 0 : 1;
+  for (const Record& record : painting->records()) {
+    if (record.kind != Record::Kind::kStroke) continue;
+    Painted& answer = answers[record.id] = standing();
+    answer.changed = record.points.size();
   }
-  records = std::move(known);
-  labels_version = records.empty() ? 0 : 1;
-  remember_runs(end);
+  remember_runs();
 }
 
 /// Lists the runs of earlier starts. Models are not kept: that of the current one is made again,
 /// the others' when they are asked for.
-void Session::State::remember_runs(const Replayed& end) {
-  for (const auto& [number, record] : end.runs) {
-    if (end.run && number == end.run->number) {
-      current_run = static_cast<int>(runs.size());
-      restore = recorded_run = number;
-    }
-    runs.push_back({.record = record});
-    next_run = number + 1;
+void Session::State::remember_runs() {
+  for (const auto& [number, record] : painting->now().runs) runs.remember(record);
+  if (const int shown = painting->shown_run(); shown > 0) {
+    runs.await(shown);
+    orders.restore = shown;
   }
-  const bool is_trained = !records.empty() && (records.back().kind == Record::Kind::kRun ||
-                                               records.back().kind == Record::Kind::kRestore);
-  if (settings.automatic && !is_trained) due = std::chrono::steady_clock::now();
+  if (painting->settings().automatic && !painting->is_trained()) {
+    orders.train_at = std::chrono::steady_clock::now();
+  }
 }
 
 std::shared_ptr<const Described> Session::State::description(
@@ -186,7 +161,7 @@ bool Session::State::train(Run& run, std::span<const std::uint8_t> painted_class
   RunFacts& facts = run.record.facts;
   const Settings& its = run.record.settings;
   std::optional<detect::EdgeModel> start;
-  if (its.start != "random") start = options.load_model(its.start);
+  if (its.start != kRandomStart) start = options.load_model(its.start);
   const detect::EdgeModel* from = start ? &*start : nullptr;
   const auto rows = description(descriptor_of(from), mine);
   const Progress cancel = {.report = {}, .cancelled = [&] { return is_void(mine); }};
@@ -196,11 +171,11 @@ bool Session::State::train(Run& run, std::span<const std::uint8_t> painted_class
     facts.loss = report.training_loss;
     if (!report.validation_confusion.empty()) facts.held_out_accuracy = report.validation_accuracy;
     ++epochs;
-    emit("training", {{"run", run.record.number},
-                      {"epoch", report.epoch},
-                      {"epochs", kEpochs},
-                      {"loss", report.training_loss},
-                      {"held_out_accuracy", optional_number(facts.held_out_accuracy)}});
+    emit(EpochDone{.run = run.record.number,
+                   .epoch = report.epoch,
+                   .epochs = kEpochs,
+                   .loss = report.training_loss,
+                   .held_out_accuracy = facts.held_out_accuracy});
   };
   Stopwatch watch;
   auto trained =
@@ -225,11 +200,12 @@ void Session::State::train_once(std::uint64_t mine) {
   bool asked = false;
   {
     const Lock lock(mutex);
-    asked = std::exchange(asked_for, false);
-    painted_classes = labels->classes();
-    run.record = {.number = next_run, .records = records.size(), .settings = settings};
-    const auto counts = labels->counts();
-    run.record.facts.painted = counts[0] + counts[1] + counts[2];
+    asked = std::exchange(orders.asked_for, false);
+    painted_classes = painting->labels().classes();
+    run.record = {.number = painting->next_run(),
+                  .records = painting->records().size(),
+                  .settings = painting->settings()};
+    run.record.facts.painted = painting->labels().painted();
   }
   try {
     classes_to_learn(painted_classes, run.record.settings);
@@ -241,14 +217,12 @@ void Session::State::train_once(std::uint64_t mine) {
   classify(run, mine);
   run.record.facts.time = now_as_text();
   const Lock lock(mutex);
-  if (generation != mine || stopping) return;
+  if (orders.generation != mine || orders.stopping) return;
   Record record;
   record.kind = Record::Kind::kRun;
   record.run = run.record;
-  keep(std::move(record));
-  next_run = run.record.number + 1;
-  recorded_run = run.record.number;
-  publish(std::move(run));
+  painting->add(std::move(record));
+  show(std::move(run));
 }
 
 /// Gives a run of an earlier start the model that it had then.
@@ -258,11 +232,10 @@ bool Session::State::train_again(Run& run, std::uint64_t mine) {
     std::optional<Labels> its;
     {
       const Lock lock(mutex);
-      its = labels_of(run.record, records, scene->input.points);
+      its = labels_of(run.record, painting->records(), scene->input.points);
     }
     if (!train(run, its->classes(), mine)) return false;
-    const auto counts = its->counts();
-    run.record.facts.painted = counts[0] + counts[1] + counts[2];
+    run.record.facts.painted = its->painted();
   } catch (const Error& error) {
     if (error.kind() == ErrorKind::kCancelled) throw;
     throw Error(error.kind(),
@@ -270,9 +243,11 @@ bool Session::State::train_again(Run& run, std::uint64_t mine) {
   }
   if (!then.painted) return true;  // of the first version: nothing was known of it
   if (then.loss != run.record.facts.loss) {
-    emit("problem", {{"message", fmt::format("run {} is not quite what it was: another version of "
-                                             "pcednet or of the model it starts from made it",
-                                             run.record.number)}});
+    emit(
+        Problem{fmt::format("run {} is not quite what it was: another version of pcednet or of the "
+                            "model it starts from "
+                            "made it",
+                            run.record.number)});
   }
   run.record.facts = then;
   return true;
@@ -282,7 +257,7 @@ void Session::State::restore_once(int number, std::uint64_t mine) {
   Run run;
   {
     const Lock lock(mutex);
-    run = *find_run(number);
+    run = *runs.find(number);
   }
   const RunFacts then = run.record.facts;
   try {
@@ -290,27 +265,29 @@ void Session::State::restore_once(int number, std::uint64_t mine) {
     classify(run, mine);
   } catch (...) {
     const Lock lock(mutex);
-    if (generation == mine && !prediction()) current_run = -1;  // nor can it be made again
+    if (orders.generation == mine) runs.stop_awaiting();  // nor can it be made again
     throw;
   }
   if (then.seconds_classify) run.record.facts.seconds_classify = then.seconds_classify;
   const Lock lock(mutex);
-  if (generation != mine || stopping) return;
-  if (number != recorded_run && number > 0) {
+  if (orders.generation != mine || orders.stopping) return;
+  if (number != painting->shown_run() && number > 0) {
     Record record;
     record.kind = Record::Kind::kRestore;
     record.run.number = number;
-    keep(std::move(record));
-    recorded_run = number;
+    painting->add(std::move(record));
   }
-  publish(std::move(run));
+  show(std::move(run));
 }
 
 /// A run without training, number 0.
 void Session::State::show_model(const std::string& name) {
   Run run;
   run.model = options.load_model(name);
-  run.record = {.number = 0, .records = 0, .settings = settings};
+  {
+    const Lock lock(mutex);
+    run.record = {.number = 0, .records = 0, .settings = painting->settings()};
+  }
   run.record.settings.start = name;
   RunFacts& facts = run.record.facts;
   facts = {.painted = 0, .classes = static_cast<int>(run.model->classes.size())};
@@ -318,35 +295,17 @@ void Session::State::show_model(const std::string& name) {
   classify(run, 0);
   facts.time = now_as_text();
   const Lock lock(mutex);
-  publish(std::move(run));
+  show(std::move(run));
 }
 
-std::vector<Run>::iterator Session::State::find_run(int number) {
-  const auto found =
-      std::lower_bound(runs.begin(), runs.end(), number,
-                       [](const Run& run, int wanted) { return run.record.number < wanted; });
-  return found != runs.end() && found->record.number != number ? runs.end() : found;
-}
-
-void Session::State::publish(Run run) {
-  // The answers of other runs are let go: their models can give them again.
-  for (Run& other : runs) other.prediction.reset();
-  auto found = find_run(run.record.number);
-  if (found == runs.end()) {
-    // The number of a model that is shown without training comes before all others.
-    found = runs.insert(run.record.number == 0 ? runs.begin() : runs.end(), Run());
-  }
-  *found = std::move(run);
-  current_run = static_cast<int>(found - runs.begin());
-  ++prediction_version;
-  const auto& counts = found->prediction->result.counts;
-  const RunFacts& facts = found->record.facts;
-  emit("prediction", {{"prediction_version", prediction_version},
-                      {"run", found->record.number},
-                      {"counts", {counts.non_edge, counts.smooth, counts.sharp}},
-                      {"seconds_train", optional_number(facts.seconds_train)},
-                      {"seconds_classify", optional_number(facts.seconds_classify)},
-                      {"held_out_accuracy", optional_number(facts.held_out_accuracy)}});
+void Session::State::show(Run run) {
+  const auto& counts = run.prediction->result.counts;
+  Predicted predicted{.run = run.record.number,
+                      .counts = {counts.non_edge, counts.smooth, counts.sharp},
+                      .facts = run.record.facts};
+  runs.show(std::move(run));
+  predicted.prediction_version = runs.version();
+  emit(predicted);
 }
 
 }  // namespace pcednet::annotate

@@ -4,10 +4,10 @@
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "pcednet/cloud/bounding_box.h"
+#include "pcednet/cloud/point_cloud.h"
 
 namespace pcednet::annotate {
 
@@ -17,7 +17,7 @@ enum class Tool { kBrush, kPolygon };
 struct Stroke {
   std::string id = {};  ///< the window's own name for it
   Tool tool = Tool::kBrush;
-  std::uint8_t edge_class = 255;          ///< EdgeClass; kUnlabelled erases
+  std::uint8_t edge_class = kUnlabelled;  ///< EdgeClass; kUnlabelled erases
   bool protect = false;                   ///< points that have a label keep it
   std::vector<std::uint8_t> hidden = {};  ///< points of these classes are not painted
   std::optional<BoundingBox> clip = {};   ///< only points within it are painted
@@ -31,8 +31,5 @@ struct Stroke {
   double point_size = 1;                    ///< pixels
   std::array<double, 2> viewport = {1, 1};  ///< pixels
 };
-
-/// Reads a stroke from a request's JSON. Throws Error(kUsage) that says what is wrong with it.
-Stroke parse_stroke(std::string_view json);
 
 }  // namespace pcednet::annotate

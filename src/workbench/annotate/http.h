@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+
+namespace pcednet::annotate {
+
+/// A request without its socket.
+struct Request {
+  std::string method = "GET", path = {};
+  std::map<std::string, std::string> query = {};
+  std::map<std::string, std::string> headers = {};  ///< names in lower case
+  std::string body = {};
+  /// The bytes of the body as the head announces them; none if it does not.
+  std::optional<std::uint64_t> announced = 0;
+};
+
+struct Response {
+  int status = 200;
+  std::string type = "application/json";
+  std::string body = {};
+  std::map<std::string, std::string> headers = {};
+};
+
+}  // namespace pcednet::annotate

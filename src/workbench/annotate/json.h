@@ -1,0 +1,44 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "workbench/annotate/messages.h"
+#include "workbench/annotate/stroke.h"
+
+namespace pcednet::annotate {
+
+// What goes to a page and comes from it, as docs/annotate.md describes. Files have a text of their
+// own: see project.h.
+
+std::string to_json(const Summary& summary, bool is_writer);
+std::string to_json(std::span<const RunView> runs);
+std::string to_json(const Painted& painted);
+std::string to_json(const UncertainPlace& place);
+std::string to_json(const PointView& point);
+std::string to_json(const FileSaved& saved);
+
+/// {"window": its name, "writer": whether it is the one that paints}.
+std::string window_json(const std::string& window, bool is_writer);
+
+/// {"error": message}.
+std::string error_json(const std::string& message);
+
+/// An event as a server sends it: its name and its data.
+std::string event_name(const Event& event);
+std::string event_json(const Event& event);
+
+/// Reads a stroke. Throws Error(kUsage) that says what is wrong with it.
+Stroke parse_stroke(std::string_view json);
+
+/// A wish to save; an empty name is the usual one.
+struct SaveRequest {
+  std::string what = {}, name = {};
+  bool overwrite = false;
+};
+
+/// Throws Error(kUsage) that says what is wrong with it.
+SaveRequest parse_save(std::string_view json);
+
+}  // namespace pcednet::annotate

@@ -1,0 +1,90 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "workbench/annotate/scene.h"
+
+namespace pcednet::annotate {
+
+/// Points by class: kNonEdge, kSmoothEdge, kSharpEdge.
+using Counts = std::array<std::size_t, 3>;
+
+/// The outcome of a stroke, an undo or a redo.
+struct Painted {
+  std::size_t stroke = 0;   ///< how many strokes count now; 0 for one of an earlier start
+  std::size_t changed = 0;  ///< points
+  Counts counts = {};       ///< of all labels
+  int labels_version = 0;
+  std::vector<std::uint32_t> nodes = {};  ///< those whose labels are others now, ascending
+  std::size_t undo = 0, redo = 0;         ///< steps
+};
+
+struct RunView {
+  RunRecord record = {};
+  bool is_current = false;
+};
+
+/// Where a session stands.
+struct Summary {
+  std::string name = {}, file = {};         ///< of the input, without and with its extension
+  std::string stage = {};                   ///< of loading and training
+  std::shared_ptr<const Scene> scene = {};  ///< null while loading
+  Counts counts = {};
+  std::size_t undo = 0, redo = 0;
+  Settings settings = {};
+  std::optional<RunView> run = {};  ///< the current one
+  int prediction_version = 0, labels_version = 0;
+};
+
+/// A point of low confidence. Coordinates here and below are local.
+struct UncertainPlace {
+  std::size_t rank = 0, of = 0;  ///< from 1
+  Vec3 position = Vec3::Zero(), normal = Vec3::Zero();
+  float confidence = 0;
+};
+
+/// A point of the cloud and what is known of it.
+struct PointView {
+  std::uint32_t point = 0;
+  Vec3 position = Vec3::Zero(), normal = Vec3::Zero();
+  std::uint8_t label = kUnlabelled, prediction = kUnlabelled;
+  std::optional<std::array<float, 3>> probabilities = {};  ///< by class
+  double distance = 0;                                     ///< from the eye
+};
+
+/// What happens in a session without being asked for at that moment.
+struct StageProgress {
+  std::string stage = {};
+  double fraction = 0;
+};
+struct Ready {};
+struct Problem {
+  std::string message = {};
+};
+struct EpochDone {
+  int run = 0, epoch = 0, epochs = 0;
+  double loss = 0;
+  std::optional<double> held_out_accuracy = {};
+};
+struct Predicted {
+  int prediction_version = 0, run = 0;
+  Counts counts = {};
+  RunFacts facts = {};
+};
+struct WriterChanged {
+  std::string window = {};
+};
+struct FileSaved {
+  std::string path = {};
+  std::uintmax_t bytes = 0;
+};
+using Event = std::variant<StageProgress, Ready, Problem, EpochDone, Painted, Predicted,
+                           WriterChanged, FileSaved>;
+
+}  // namespace pcednet::annotate

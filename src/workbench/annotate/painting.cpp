@@ -1,0 +1,69 @@
+#include "workbench/annotate/painting.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "pcednet/core/error.h"
+
+namespace pcednet::annotate {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<Record> records_of(const fs::path& path, const InputIdentity& input) {
+  if (!fs::exists(path)) return {};
+  Project project = read_project(path);
+  if (project.input.digest != input.digest) {
+    throw Error(ErrorKind::kInsufficient,
+                fmt::format("{}: a project of {}, not of this {}", path.string(),
+                            project.input.name, input.name));
+  }
+  return std::move(project.records);
+}
+
+}  // namespace
+
+fs::path journal_of(fs::path project) {
+  return project += ".journal";
+}
+
+Painting::Painting(const fs::path& project, const InputIdentity& input)
+    : now_{.labels = Labels(input.points)} {
+  const std::vector<Record> saved = records_of(project, input);
+  records_ = saved;
+  const fs::path path = journal_of(project);
+  journal_ = std::make_unique<Journal>(path, input, records_);
+  for (std::size_t i = 0; i < std::min(saved.size(), records_.size()); ++i) {
+    if (to_line(saved[i]) != to_line(records_[i])) {
+      throw Error(ErrorKind::kInsufficient, fmt::format("{} and {} disagree: move one of them away",
+                                                        project.string(), path.string()));
+    }
+  }
+  for (std::size_t i = records_.size(); i < saved.size(); ++i) {
+    journal_->append(saved[i]);
+    records_.push_back(saved[i]);
+  }
+  for (const Record& record : records_) replay(record, now_);
+}
+
+std::span<const std::uint32_t> Painting::add(Record record) {
+  journal_->append(record);
+  records_.push_back(std::move(record));
+  return replay(records_.back(), now_);
+}
+
+int Painting::next_run() const {
+  return now_.runs.empty() ? 1 : now_.runs.rbegin()->first + 1;
+}
+
+int Painting::shown_run() const {
+  return now_.run ? now_.run->number : 0;
+}
+
+bool Painting::is_trained() const {
+  return !records_.empty() && (records_.back().kind == Record::Kind::kRun ||
+                               records_.back().kind == Record::Kind::kRestore);
+}
+
+}  // namespace pcednet::annotate

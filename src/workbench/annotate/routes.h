@@ -1,0 +1,27 @@
+#pragma once
+
+#include <string>
+
+#include "workbench/annotate/events.h"
+#include "workbench/annotate/http.h"
+#include "workbench/annotate/session.h"
+#include "workbench/annotate/windows.h"
+
+namespace pcednet::annotate {
+
+/// The value of that name, or nothing.
+std::string value_of(const std::map<std::string, std::string>& values, const std::string& name);
+
+/// A request and what its answer is made of.
+struct Call {
+  Session& session;
+  Events& events;
+  Windows& windows;
+  const Request& request;
+  std::string name = {};  ///< what stands in the path for the * of the route
+};
+
+/// Answers a request that may be answered. Throws Error, NotFound if nothing is at the path.
+Response answer(Call call);
+
+}  // namespace pcednet::annotate

@@ -1,0 +1,75 @@
+#include "workbench/annotate/saving.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "pcednet/core/error.h"
+#include "pcednet/detect/result_cloud.h"
+#include "workbench/annotate/painting.h"
+
+namespace pcednet::annotate {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Whether `name` is that of a file, not of a folder or of a hidden file, to every function that
+/// takes it: one ends it at a NUL byte, another at a slash. JSON has seen to it that it is UTF-8.
+bool is_plain(const std::string& name) {
+  const auto is_odd = [](unsigned char c) { return c < ' ' || c == 127 || c == '/' || c == '\\'; };
+  return !name.empty() && name.size() <= 200 && name[0] != '.' &&
+         std::none_of(name.begin(), name.end(), is_odd);
+}
+
+bool fits(Saved what, const std::string& extension) {
+  if (what == Saved::kModel) return extension == ".safetensors";
+  if (what == Saved::kProject) return extension == ".json";
+  return extension == ".ply" || extension == ".pcd" || extension == ".obj" || extension == ".xyz" ||
+         extension == ".csv";
+}
+
+}  // namespace
+
+fs::path default_project(const fs::path& input) {
+  return input.parent_path() / (input.stem().string() + "_annotation.json");
+}
+
+fs::path saving_path(Saved what, const std::string& name, const fs::path& input,
+                     const fs::path& project) {
+  if (!name.empty() && !(is_plain(name) && fits(what, fs::path(name).extension().string()))) {
+    throw Error(ErrorKind::kUsage,
+                "name: a file name without folder, ending in .ply, .pcd, .obj, .xyz or .csv for a "
+                "cloud, .safetensors for a model, .json for a project");
+  }
+  fs::path path = input.parent_path() / name;
+  if (name.empty()) {
+    if (what == Saved::kProject) return project;
+    path /= input.stem().string() + (what == Saved::kCloud ? "_annotated.ply" : ".safetensors");
+  }
+  for (const fs::path& kept : {input, journal_of(project), project}) {
+    std::error_code error;
+    if ((what != Saved::kProject || kept != project) && fs::equivalent(path, kept, error)) {
+      throw Error(ErrorKind::kUsage,
+                  fmt::format("name: {} itself is never overwritten", kept.filename().string()));
+    }
+  }
+  return path;
+}
+
+PointCloud saved_cloud(const Scene& scene, const std::vector<std::uint8_t>& labels,
+                       const Prediction* prediction) {
+  PointCloud cloud = scene.cloud;
+  if (prediction) {
+    detect::add_result(cloud, scene.prepared, prediction->result, prediction->model);
+  } else {
+    if (cloud.has_labels()) {
+      set_attribute(cloud, make_attribute("scalar_input_label", cloud.labels));
+    }
+    cloud.labels = labels;
+  }
+  set_attribute(cloud, make_attribute("scalar_painted_label", labels));
+  return cloud;
+}
+
+}  // namespace pcednet::annotate

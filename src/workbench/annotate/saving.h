@@ -1,0 +1,28 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "workbench/annotate/scene.h"
+
+namespace pcednet::annotate {
+
+enum class Saved { kCloud, kModel, kProject };
+
+/// `<stem>_annotation.json` beside the input.
+std::filesystem::path default_project(const std::filesystem::path& input);
+
+/// Where `what` goes: `name` or the usual one, beside the input. Throws Error(kUsage) unless `name`
+/// is empty or a plain file name of `what` that is neither the input, its journal nor another's
+/// project.
+std::filesystem::path saving_path(Saved what, const std::string& name,
+                                  const std::filesystem::path& input,
+                                  const std::filesystem::path& project);
+
+/// The cloud as it is saved: with its painted labels and, if there is a prediction, with that.
+PointCloud saved_cloud(const Scene& scene, const std::vector<std::uint8_t>& labels,
+                       const Prediction* prediction);
+
+}  // namespace pcednet::annotate
