@@ -12,7 +12,7 @@ import time
 os.environ["PCEDNET"] = sys.argv[1]
 os.environ.setdefault("PCEDNET_SOURCE_DIR", str(pathlib.Path(__file__).parent.parent))
 sys.path.insert(0, str(pathlib.Path(__file__).parent.parent / "tests/cli"))
-from annotate_server_test import EDGE, FACE, Server, brush  # noqa: E402
+from annotate_support import EDGE, FACE, Server, brush  # noqa: E402
 from support import cube, write_ply  # noqa: E402
 
 

@@ -1,0 +1,197 @@
+"""What is painted, trained and saved, and what survives."""
+import http.client
+import json
+import pathlib
+import threading
+import time
+import unittest
+
+import numpy as np
+
+from annotate_support import AnnotateTest, Drip, EDGE, FACE, brush
+from support import read_ply, run, write_ply
+
+
+class AnnotateSession(AnnotateTest):
+    def test_paints_the_points_of_the_brush_and_takes_them_back(self):
+        server = self.quiet()
+        session = server.get("/api/session")
+        self.assertEqual(sum(n["points"] for n in session["nodes"]), 20000)
+        centre = np.array([0.5, 0.1, 0.1]) - session["origin"]
+        answer = server.post("/api/stroke", brush("a", 1, [centre]))
+        near = np.linalg.norm(self.positions - [0.5, 0.1, 0.1], axis=1) < 0.1
+        self.assertEqual(answer["changed"], near.sum())
+        self.assertEqual(answer["counts"], [0, near.sum(), 0])
+        places, labels = server.labels()
+        np.testing.assert_array_equal(
+            labels == 1, np.linalg.norm(places - centre, axis=1) < 0.1)
+        # The same stroke again changes nothing; undo and redo do.
+        self.assertEqual(server.post("/api/stroke", brush("a", 1, [centre])), answer)
+        self.assertEqual(server.post("/api/undo")["counts"], [0, 0, 0])
+        self.assertEqual(server.post("/api/redo")["counts"], [0, near.sum(), 0])
+        protected = server.post("/api/stroke", brush("b", 2, [centre], radius=0.15, protect=True))
+        self.assertEqual(protected["counts"][1], near.sum())
+        self.assertGreater(protected["counts"][2], 0)
+
+    def test_loses_no_stroke_of_several_at_once(self):
+        server = self.quiet()
+        random = np.random.default_rng(3)
+        centres = random.uniform(-0.5, 0.5, (40, 3))
+        centres[:, 0] = 0.5
+        ids = iter(range(1000))
+        threads = [threading.Thread(target=lambda part=part: [
+            server.post("/api/stroke", brush(f"s{next(ids)}", 2, [c], radius=0.05)) for c in part])
+            for part in np.split(centres, 8)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        near = (np.linalg.norm(self.positions[:, None] - centres[None], axis=2) < 0.05)
+        facing = self.positions[:, 0] > 0  # none of the balls reaches the other side
+        self.assertEqual(server.get("/api/session")["classes"][2]["count"],
+                         (near.any(axis=1) & facing).sum())
+
+    def test_survives_being_killed(self):
+        server = self.quiet()
+        server.post("/api/stroke", brush("edge", 2, EDGE))
+        server.post("/api/stroke", brush("gone", 1, FACE))
+        server.post("/api/undo")
+        server.post("/api/stroke", brush("face", 0, FACE))
+        before = server.labels()[1]
+        server.kill()
+        with open(self.folder / "cube_annotation.json.journal", "ab") as journal:
+            journal.write(b'{"stroke":"half","cla')
+        server = self.serve()
+        session = server.open()
+        self.assertEqual(session["settings"]["auto"], False)
+        np.testing.assert_array_equal(server.labels()[1], before)
+        self.assertEqual(server.post("/api/stroke", brush("edge", 2, EDGE))["undo"], 2)
+        self.assertEqual(server.post("/api/undo")["counts"][0], 0)
+
+    def test_refuses_a_journal_of_another_cloud(self):
+        server = self.quiet()
+        server.post("/api/stroke", brush("a", 2, EDGE))
+        self.assertEqual(server.end()[0], 0)
+        write_ply(self.cloud, self.positions[:15000])
+        done = run("annotate", self.cloud, "--no-browser", expect=4)
+        self.assertIn("another input", done.stderr)
+
+    def test_trains_and_the_command_line_makes_the_same_model(self):
+        server = self.quiet()
+        server.post("/api/train", expect=409)
+        self.paint_edge_and_face(server)
+        runs = self.train(server, 1)
+        self.assertTrue(runs[0]["current"])
+        self.assertGreater(runs[0]["held_out_accuracy"], 0.9)
+        # What is painted after the run does not belong to its model.
+        server.post("/api/stroke", brush("more", 1, [(0.5, 0.4, 0.4)], radius=0.1))
+        for what in ("model", "project", "cloud"):
+            saved = server.post("/api/save", {"what": what})
+            server.post("/api/save", {"what": what}, expect=409)
+            server.post("/api/save", {"what": what, "overwrite": True})
+            self.assertEqual(server.request(f"/api/download/{what}")[2],
+                             pathlib.Path(saved["path"]).read_bytes())
+        server.post("/api/save", {"what": "cloud", "name": "../x.ply"}, expect=400)
+        server.post("/api/save", {"what": "cloud", "name": "cube.ply", "overwrite": True}, expect=400)
+        model = (self.folder / "cube.safetensors").read_bytes()
+        for threads in (1, 2, 8):
+            again = self.folder / f"again{threads}.safetensors"
+            run("train", "--project", self.folder / "cube_annotation.json", "-o", again,
+                "--threads", threads)
+            self.assertEqual(again.read_bytes(), model)
+        rows, _ = read_ply(self.folder / "cube_annotated.ply")
+        run("classify", self.cloud, "-o", self.folder / "by_model.ply",
+            "--model", self.folder / "cube.safetensors")
+        other, _ = read_ply(self.folder / "by_model.ply")
+        for field in ("scalar_edge_class", "scalar_p_sharp", "scalar_p_smooth", "quality", "label"):
+            np.testing.assert_array_equal(rows[field], other[field])
+        counts = [c["count"] for c in server.get("/api/session")["classes"]]
+        self.assertEqual([int((rows["scalar_painted_label"] == c).sum()) for c in range(3)], counts)
+        place = server.get("/api/uncertain?after=0")
+        self.assertEqual(place["rank"], 1)
+
+    def test_trains_by_itself_and_restores_an_earlier_run(self):
+        server = self.serve()
+        server.open()
+        self.paint_edge_and_face(server)
+        server.until("/api/runs", lambda r: len(r) == 1)
+        first = server.request("/api/download/model")[2]
+        server.post("/api/settings", {"start": "cad", "seed": 5})
+        server.until("/api/runs", lambda r: len(r) == 2 and r[1]["current"])
+        self.assertNotEqual(server.request("/api/download/model")[2], first)
+        server.post("/api/runs/1/restore")
+        server.until("/api/runs", lambda r: r[0]["current"])
+        self.assertEqual(server.request("/api/download/model")[2], first)
+        server.post("/api/runs/9/restore", expect=404)
+
+    def test_restores_a_run_of_an_earlier_start_after_being_killed(self):
+        server = self.quiet()
+        self.paint_edge_and_face(server)
+        self.train(server, 1)
+        first = server.request("/api/download/model")[2]
+        server.post("/api/settings", {"start": "cad", "seed": 5})
+        server.post("/api/stroke", brush("more", 0, [(0.5, 0.4, 0.4)], radius=0.1))
+        runs = self.train(server, 2)
+        second = server.request("/api/download/model")[2]
+        server.kill()
+        server = self.serve()
+        server.open()
+        self.assertEqual(server.get("/api/runs"), runs)
+        self.assertEqual([r["current"] for r in runs], [False, True])
+        server.until("/api/session", lambda s: s["prediction_version"] == 1)
+        self.assertEqual(server.request("/api/download/model")[2], second)
+        server.post("/api/runs/1/restore")
+        server.until("/api/runs", lambda r: r[0]["current"])
+        self.assertEqual(server.request("/api/download/model")[2], first)
+        self.assertEqual(server.get("/api/runs")[0], {**runs[0], "current": True})
+        # The journal says so too: the next start shows it, the command line trains it.
+        server.post("/api/save", {"what": "project"})
+        run("train", "--project", self.folder / "cube_annotation.json", "-o",
+            self.folder / "again.safetensors")
+        server.kill()
+        self.assertEqual((self.folder / "again.safetensors").read_bytes(), first)
+        server = self.serve()
+        server.open()
+        self.assertTrue(server.get("/api/runs")[0]["current"])
+        server.until("/api/session", lambda s: s["prediction_version"] == 1)
+        self.assertEqual(server.request("/api/download/model")[2], first)
+
+    def test_tells_of_what_happens(self):
+        server = self.quiet()
+        stream = http.client.HTTPConnection("127.0.0.1", server.port, timeout=20)
+        stream.request("GET", f"/api/events?token={server.token}")
+        answer = stream.getresponse()
+        self.assertEqual(answer.status, 200)
+        self.assertEqual(answer.headers["Content-Type"], "text/event-stream")
+        server.post("/api/stroke", brush("a", 2, EDGE))
+        lines = []
+        while not any(line.startswith(b"data: {") for line in lines):
+            lines.append(answer.fp.readline())
+            lines.append(answer.fp.readline())
+        self.assertTrue(any(line == b"event: labels\n" for line in lines), lines)
+        # A window that listens, and whoever drips, does not keep the program from ending.
+        drip = Drip(server, 20)
+        self.addCleanup(drip.close)
+        start = time.monotonic()
+        self.assertEqual(server.end()[0], 0)
+        self.assertLess(time.monotonic() - start, 4)
+        stream.close()
+
+    def test_takes_no_cache_that_is_damaged(self):
+        server = self.quiet()
+        values = server.request("/api/node/0/values?of=feature&feature=1&scale=8")[2]
+        server.end()
+        (cache,) = (self.folder / ".pcednet").glob("*.description")
+        sound = cache.read_bytes()
+        for damaged in (sound[:100], sound[:-4], sound[:-4] + b"\x01\x02\x03\x04", b""):
+            cache.write_bytes(damaged)
+            server = self.serve()
+            server.open()
+            self.assertEqual(server.request("/api/node/0/values?of=feature&feature=1&scale=8")[2],
+                             values)
+            server.end()
+            self.assertEqual(cache.read_bytes(), sound)
+
+
+if __name__ == "__main__":
+    unittest.main()
