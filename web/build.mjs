@@ -7,8 +7,10 @@ import { build } from "esbuild";
 /** A policy under which a page runs its own script and style and speaks to its own server alone. */
 function policy(script, style) {
   const hash = (text) => `'sha256-${createHash("sha256").update(text).digest("base64")}'`;
-  return `<meta http-equiv="Content-Security-Policy" content="default-src 'none'; script-src ${hash(script)}; ` +
-    `style-src ${hash(style)}; img-src data: blob:; connect-src 'self'; base-uri 'none'; form-action 'none'" />`;
+  return (
+    `<meta http-equiv="Content-Security-Policy" content="default-src 'none'; script-src ${hash(script)}; ` +
+    `style-src ${hash(style)}; img-src data: blob:; connect-src 'self'; base-uri 'none'; form-action 'none'" />`
+  );
 }
 
 for (const page of process.argv.slice(2)) {

@@ -19,10 +19,32 @@ function faces() {
 /** The edges where two of the faces meet at right angles. */
 function edges() {
   const of = (x0, y0, x1, y1, z0, z1, foot) => {
-    const corners = [[x0, y0], [x1, y0], [x1, y1], [x0, y1]];
+    const corners = [
+      [x0, y0],
+      [x1, y0],
+      [x1, y1],
+      [x0, y1],
+    ];
     return corners.flatMap(([x, y], i) => {
       const [nx, ny] = corners[(i + 1) % 4];
-      return [[[x, y, z0], [x, y, z1]], [[x, y, z1], [nx, ny, z1]], ...(foot ? [[[x, y, z0], [nx, ny, z0]]] : [])];
+      return [
+        [
+          [x, y, z0],
+          [x, y, z1],
+        ],
+        [
+          [x, y, z1],
+          [nx, ny, z1],
+        ],
+        ...(foot
+          ? [
+              [
+                [x, y, z0],
+                [nx, ny, z0],
+              ],
+            ]
+          : []),
+      ];
     });
   };
   return [...of(0, 0, 2, 1.4, 0, 0.6, false), ...of(0.4, 0.3, 1.2, 1.1, 0.6, 1.1, true)];
@@ -30,7 +52,10 @@ function edges() {
 
 function distance(p, [a, b]) {
   const d = b.map((c, i) => c - a[i]);
-  const t = Math.min(Math.max(d.reduce((s, c, i) => s + c * (p[i] - a[i]), 0) / d.reduce((s, c) => s + c * c, 0), 0), 1);
+  const t = Math.min(
+    Math.max(d.reduce((s, c, i) => s + c * (p[i] - a[i]), 0) / d.reduce((s, c) => s + c * c, 0), 0),
+    1,
+  );
   return Math.hypot(...p.map((c, i) => c - a[i] - t * d[i]));
 }
 
@@ -59,12 +84,21 @@ export function roof() {
 }
 
 export function writeRoof(file, points) {
-  const head = ["ply", "format ascii 1.0", `element vertex ${points.length}`,
-    ...["x", "y", "z", "nx", "ny", "nz"].map((name) => `property float ${name}`), "end_header"];
-  fs.writeFileSync(file, [...head, ...points.map(({ p, n }) => [...p.map((c) => c.toFixed(5)), ...n].join(" ")), ""].join("\n"));
+  const head = [
+    "ply",
+    "format ascii 1.0",
+    `element vertex ${points.length}`,
+    ...["x", "y", "z", "nx", "ny", "nz"].map((name) => `property float ${name}`),
+    "end_header",
+  ];
+  fs.writeFileSync(
+    file,
+    [...head, ...points.map(({ p, n }) => [...p.map((c) => c.toFixed(5)), ...n].join(" ")), ""].join("\n"),
+  );
 }
 
-const between = (a, b, steps) => Array.from({ length: steps + 1 }, (_, k) => a.map((c, i) => c + (k / steps) * (b[i] - c)));
+const between = (a, b, steps) =>
+  Array.from({ length: steps + 1 }, (_, k) => a.map((c, i) => c + (k / steps) * (b[i] - c)));
 
 /** Strokes seen from the first view (from the front, the left and above): along edges, and on faces. */
 export const painted = {
@@ -86,7 +120,19 @@ export const painted = {
   ],
 };
 
-const BYTES = { double: 8, float: 4, float64: 8, float32: 4, int: 4, uint: 4, uchar: 1, uint8: 1, char: 1, ushort: 2, short: 2 };
+const BYTES = {
+  double: 8,
+  float: 4,
+  float64: 8,
+  float32: 4,
+  int: 4,
+  uint: 4,
+  uchar: 1,
+  uint8: 1,
+  char: 1,
+  ushort: 2,
+  short: 2,
+};
 
 /** A binary little-endian PLY of one element; `column(name)` gives its numbers. */
 export function readPly(file) {
@@ -104,8 +150,11 @@ export function readPly(file) {
       const offset = end + fields.slice(0, index).reduce((sum, [t]) => sum + BYTES[t], 0);
       return Array.from({ length: count }, (_, i) => {
         const at = offset + i * row;
-        return type === "float" || type === "float32" ? bytes.readFloatLE(at)
-          : type === "double" || type === "float64" ? bytes.readDoubleLE(at) : bytes.readUIntLE(at, BYTES[type]);
+        return type === "float" || type === "float32"
+          ? bytes.readFloatLE(at)
+          : type === "double" || type === "float64"
+            ? bytes.readDoubleLE(at)
+            : bytes.readUIntLE(at, BYTES[type]);
       });
     },
   };

@@ -28,9 +28,11 @@ function pcednet(...words) {
 function serve(words = [], environment) {
   return new Promise((done, fail) => {
     const browser = environment ? [] : ["--no-browser"];
-    const process_ = spawn(process.env.PCEDNET, ["annotate", input, ...browser, ...words],
-      { env: { ...process.env, ...environment } });
-    let text = "", errors = "";
+    const process_ = spawn(process.env.PCEDNET, ["annotate", input, ...browser, ...words], {
+      env: { ...process.env, ...environment },
+    });
+    let text = "",
+      errors = "";
     process_.stdout.on("data", (data) => {
       text += data;
       const address = /http:\/\/127\.0\.0\.1:\d+\/\?token=\S+/.exec(text);
@@ -50,38 +52,52 @@ async function stop() {
 async function open(address = server.address) {
   const opened = await browser.newPage({ viewport: { width: 1280, height: 720 } });
   opened.setDefaultTimeout(120_000);
-  opened.on("console", (m) => ["error", "warning"].includes(m.type()) && !/GPU stall|GL Driver Message/.test(m.text()) &&
-    complaints.push(m.text()));
+  opened.on(
+    "console",
+    (m) =>
+      ["error", "warning"].includes(m.type()) &&
+      !/GPU stall|GL Driver Message/.test(m.text()) &&
+      complaints.push(m.text()),
+  );
   opened.on("pageerror", (e) => complaints.push(e.message));
-  opened.on("request", (r) => !r.url().startsWith(new URL(server.address).origin) && !/^(data|blob):/.test(r.url()) && r.url() !== address &&
-    complaints.push(`asks for ${r.url()}`));
+  opened.on(
+    "request",
+    (r) =>
+      !r.url().startsWith(new URL(server.address).origin) &&
+      !/^(data|blob):/.test(r.url()) &&
+      r.url() !== address &&
+      complaints.push(`asks for ${r.url()}`),
+  );
   await opened.goto(address);
   await opened.waitForURL(server.address);
   await settled(opened);
   return opened;
 }
 
-const settled = (of) => of.waitForFunction(() =>
-  annotator.store.now.progress === null && annotator.stage.isSettled && !annotator.client.isBusy);
+const settled = (of) =>
+  of.waitForFunction(
+    () => annotator.store.now.progress === null && annotator.stage.isSettled && !annotator.client.isBusy,
+  );
 
 const state = (name) => page.evaluate((key) => annotator.store.now[key], name);
 
 /** Pixels of the window where a place of the cloud is seen with nothing before it; null for those that are not. */
-const pixelsOf = (places) => page.evaluate((all) => {
-  const { stage } = annotator;
-  const { left, top } = stage.canvas.getBoundingClientRect();
-  const { matrix: m } = stage.camera.view;
-  const origin = annotator.store.now.session.origin;
-  return all.map((place) => {
-    const p = place.map((c, i) => c - origin[i]);
-    const at = (r) => m[r] * p[0] + m[4 + r] * p[1] + m[8 + r] * p[2] + m[12 + r];
-    const [x, y] = [(at(0) / at(3) + 1) * 0.5 * stage.width, (1 - at(1) / at(3)) * 0.5 * stage.height];
-    if (!(x > 5 && y > 5 && x < stage.width - 5 && y < stage.height - 60)) return null;
-    const picked = stage.pick(x, y);
-    if (!picked || Math.hypot(...picked.position.map((c, i) => c - p[i])) > 0.08) return null;
-    return [x + left, y + top];
-  });
-}, places);
+const pixelsOf = (places) =>
+  page.evaluate((all) => {
+    const { stage } = annotator;
+    const { left, top } = stage.canvas.getBoundingClientRect();
+    const { matrix: m } = stage.camera.view;
+    const origin = annotator.store.now.session.origin;
+    return all.map((place) => {
+      const p = place.map((c, i) => c - origin[i]);
+      const at = (r) => m[r] * p[0] + m[4 + r] * p[1] + m[8 + r] * p[2] + m[12 + r];
+      const [x, y] = [(at(0) / at(3) + 1) * 0.5 * stage.width, (1 - at(1) / at(3)) * 0.5 * stage.height];
+      if (!(x > 5 && y > 5 && x < stage.width - 5 && y < stage.height - 60)) return null;
+      const picked = stage.pick(x, y);
+      if (!picked || Math.hypot(...picked.position.map((c, i) => c - p[i])) > 0.08) return null;
+      return [x + left, y + top];
+    });
+  }, places);
 
 /** A stroke of the brush from place to place; waits for the server's answer. */
 async function stroke(key, places) {
@@ -116,19 +132,29 @@ test("paints with the mouse, counts, trains by itself and shows a prediction", a
   const counts = await state("counts");
   assert.ok(counts[0] > 100 && counts[1] === 0 && counts[2] > 50, `${counts}`);
   assert.equal(await state("undo"), painted.sharp.length + painted.flat.length);
-  await page.waitForFunction(() => annotator.store.now.runs.some((run) => run.current) && !annotator.store.now.training?.active);
-  await page.waitForFunction((n) => annotator.store.now.runs.find((run) => run.current).painted === n, counts[0] + counts[2]);
+  await page.waitForFunction(
+    () => annotator.store.now.runs.some((run) => run.current) && !annotator.store.now.training?.active,
+  );
+  await page.waitForFunction(
+    (n) => annotator.store.now.runs.find((run) => run.current).painted === n,
+    counts[0] + counts[2],
+  );
   await settled(page);
   assert.equal(await state("mode"), "prediction");
   // What was painted is in the page as the server has it, and the prediction agrees with it.
-  const [labelled, agreeing] = await page.evaluate(() => annotator.stage.chunks.reduce(([all, same], chunk) => {
-    chunk.labels.forEach((label, i) => {
-      if (label === 255) return;
-      all += 1;
-      same += Number(chunk.prediction[i] === label);
-    });
-    return [all, same];
-  }, [0, 0]));
+  const [labelled, agreeing] = await page.evaluate(() =>
+    annotator.stage.chunks.reduce(
+      ([all, same], chunk) => {
+        chunk.labels.forEach((label, i) => {
+          if (label === 255) return;
+          all += 1;
+          same += Number(chunk.prediction[i] === label);
+        });
+        return [all, same];
+      },
+      [0, 0],
+    ),
+  );
   assert.equal(labelled, counts[0] + counts[2]);
   assert.ok(agreeing > 0.9 * labelled, `${agreeing} of ${labelled}`);
   if (process.env.SCREENSHOT) await page.screenshot({ path: process.env.SCREENSHOT });
@@ -148,7 +174,12 @@ test("undoes and redoes a stroke", async () => {
 test("erases within a lasso and paints within a polygon, by one stroke each", async () => {
   const counts = await state("counts");
   const [a, b] = await pixelsOf([painted.flat[0][1], painted.flat[0].at(-2)]);
-  const round = [[a[0] - 12, a[1] - 25], [b[0] + 12, b[1] - 25], [b[0] + 12, b[1] + 25], [a[0] - 12, a[1] + 25]];
+  const round = [
+    [a[0] - 12, a[1] - 25],
+    [b[0] + 12, b[1] - 25],
+    [b[0] + 12, b[1] + 25],
+    [a[0] - 12, a[1] + 25],
+  ];
   await page.keyboard.press("e");
   await page.keyboard.press("l");
   await page.mouse.move(...round[0]);
@@ -188,9 +219,11 @@ test("one finger paints or turns, two move the view and come nearer", async () =
   const counts = await state("counts");
   const devtools = await page.context().newCDPSession(page);
   await devtools.send("Emulation.setTouchEmulationEnabled", { enabled: true, maxTouchPoints: 2 });
-  const touch = (type, ...places) => devtools.send("Input.dispatchTouchEvent", {
-    type, touchPoints: places.map(([x, y], id) => ({ x, y, id })),
-  });
+  const touch = (type, ...places) =>
+    devtools.send("Input.dispatchTouchEvent", {
+      type,
+      touchPoints: places.map(([x, y], id) => ({ x, y, id })),
+    });
   /** Fingers that go from places to places; the second follows the first. */
   const gesture = async (...tracks) => {
     await touch("touchStart", tracks[0][0]);
@@ -201,11 +234,12 @@ test("one finger paints or turns, two move the view and come nearer", async () =
     await touch("touchEnd");
     await settled(page);
   };
-  const camera = () => page.evaluate(() => {
-    const { stage } = annotator;
-    return { matrix: [...stage.camera.view.matrix], eye: stage.camera.view.eye, target: stage.camera.target };
-  });
-  const [a, b] = (await pixelsOf([painted.flat[0][1], painted.flat[0].at(-2)]));
+  const camera = () =>
+    page.evaluate(() => {
+      const { stage } = annotator;
+      return { matrix: [...stage.camera.view.matrix], eye: stage.camera.view.eye, target: stage.camera.target };
+    });
+  const [a, b] = await pixelsOf([painted.flat[0][1], painted.flat[0].at(-2)]);
   const middle = a.map((c, i) => (c + b[i]) / 2);
   const near = ([x, y], dx, dy = 0) => [x + dx, y + dy];
   await page.keyboard.press("3");
@@ -219,9 +253,16 @@ test("one finger paints or turns, two move the view and come nearer", async () =
   await gesture([near(middle, -30), near(middle, -90)], [near(middle, 30), near(middle, 90)]);
   assert.deepEqual(await state("counts"), drawn, "two do not paint");
   assert.equal(await state("undo"), steps);
-  assert.equal(await page.evaluate(() => annotator.stage.chunks.reduce(
-    (sum, chunk) => sum + chunk.labels.reduce((n, label) => n + Number(label !== 255), 0), 0)),
-  drawn.reduce((x, y) => x + y), "what the first finger showed is gone");
+  assert.equal(
+    await page.evaluate(() =>
+      annotator.stage.chunks.reduce(
+        (sum, chunk) => sum + chunk.labels.reduce((n, label) => n + Number(label !== 255), 0),
+        0,
+      ),
+    ),
+    drawn.reduce((x, y) => x + y),
+    "what the first finger showed is gone",
+  );
   const nearer = await camera();
   const place = painted.flat[0][1];
   const away = ({ eye }) => Math.hypot(...eye.map((c, i) => c - place[i]));
@@ -232,12 +273,17 @@ test("one finger paints or turns, two move the view and come nearer", async () =
   await gesture([near(middle, -30), near(middle, 10)], [near(middle, 30), near(middle, 70)]);
   const slid = await camera();
   const forward = (m) => [m[3], m[7], m[11]];
-  forward(slid.matrix).forEach((c, i) => assert.ok(Math.abs(c - forward(back.matrix)[i]) < 1e-9, "sliding turns nothing"));
+  forward(slid.matrix).forEach((c, i) =>
+    assert.ok(Math.abs(c - forward(back.matrix)[i]) < 1e-9, "sliding turns nothing"),
+  );
   assert.notDeepEqual(slid.eye, back.eye);
   await page.keyboard.press("v");
   await gesture([middle, near(middle, 80, 40)]);
   const turned = await camera();
-  assert.ok(forward(turned.matrix).some((c, i) => Math.abs(c - forward(slid.matrix)[i]) > 0.05), "one finger turns");
+  assert.ok(
+    forward(turned.matrix).some((c, i) => Math.abs(c - forward(slid.matrix)[i]) > 0.05),
+    "one finger turns",
+  );
   assert.deepEqual(await state("counts"), drawn);
   await devtools.send("Emulation.setTouchEmulationEnabled", { enabled: false });
   await page.keyboard.press("b");
@@ -252,16 +298,18 @@ test("shows the features at any scale, and only what is in the box", async () =>
   await colours.selectOption({ label: "feature" });
   await page.getByRole("combobox", { name: "Feature" }).selectOption({ index: 1 });
   await settled(page);
-  const values = () => page.evaluate(() => annotator.stage.chunks.reduce((sum, c) => sum + c.values.reduce((a, b) => a + b, 0), 0));
+  const values = () =>
+    page.evaluate(() => annotator.stage.chunks.reduce((sum, c) => sum + c.values.reduce((a, b) => a + b, 0), 0));
   const before = await values();
   await page.keyboard.press(".");
   await page.waitForTimeout(300);
   await settled(page);
   assert.notEqual(await values(), before);
-  const seen = () => page.evaluate(() => {
-    const { stage } = annotator;
-    return stage.pick(stage.width / 2, stage.height / 2) !== null;
-  });
+  const seen = () =>
+    page.evaluate(() => {
+      const { stage } = annotator;
+      return stage.pick(stage.width / 2, stage.height / 2) !== null;
+    });
   await page.keyboard.press("f");
   await settled(page);
   assert.ok(await seen());
@@ -278,13 +326,14 @@ test("shows the features at any scale, and only what is in the box", async () =>
 });
 
 test("hides a class", async () => {
-  const seen = () => page.evaluate(() => {
-    const { stage } = annotator;
-    const at = (x, y) => stage.pick(x * stage.width, y * stage.height) !== null;
-    let hits = 0;
-    for (let i = 1; i < 20; ++i) for (let j = 1; j < 20; ++j) hits += Number(at(i / 20, j / 20));
-    return hits;
-  });
+  const seen = () =>
+    page.evaluate(() => {
+      const { stage } = annotator;
+      const at = (x, y) => stage.pick(x * stage.width, y * stage.height) !== null;
+      let hits = 0;
+      for (let i = 1; i < 20; ++i) for (let j = 1; j < 20; ++j) hits += Number(at(i / 20, j / 20));
+      return hits;
+    });
   const all = await seen();
   await page.keyboard.press("Shift+Digit1");
   const hidden = await seen();
@@ -330,7 +379,9 @@ test("predicts the true edges from those few strokes", () => {
   const said = readPly(saved.cloud).column("scalar_edge_class");
   assert.equal(said.length, truth.length);
   const n = { tp: 0, fp: 0, tn: 0, fn: 0 };
-  truth.forEach(({ sharp }, i) => { n[said[i] === 2 ? (sharp ? "tp" : "fp") : sharp ? "fn" : "tn"] += 1; });
+  truth.forEach(({ sharp }, i) => {
+    n[said[i] === 2 ? (sharp ? "tp" : "fp") : sharp ? "fn" : "tn"] += 1;
+  });
   const mcc = (n.tp * n.tn - n.fp * n.fn) / Math.sqrt((n.tp + n.fp) * (n.tp + n.fn) * (n.tn + n.fp) * (n.tn + n.fn));
   console.log(`MCC ${mcc.toFixed(3)}`);
   assert.ok(mcc > LEAST_MCC, `MCC ${mcc} ${JSON.stringify(n)}`);
@@ -352,8 +403,10 @@ test("opens the project as it was left, in a browser that the desktop starts", a
   const programs = path.join(folder, "bin");
   fs.mkdirSync(programs);
   fs.writeFileSync(path.join(programs, "xdg-open"), `#!/bin/sh\nprintf %s "$1" > ${folder}/given\n`, { mode: 0o755 });
-  server = await serve(["--project", saved.project],
-    { PATH: `${programs}:${process.env.PATH}`, XDG_RUNTIME_DIR: folder });
+  server = await serve(["--project", saved.project], {
+    PATH: `${programs}:${process.env.PATH}`,
+    XDG_RUNTIME_DIR: folder,
+  });
   const given = path.join(folder, "given");
   for (let i = 0; i < 500 && !(fs.existsSync(given) && fs.statSync(given).size > 0); ++i) {
     await new Promise((done) => setTimeout(done, 20));
@@ -366,7 +419,8 @@ test("opens the project as it was left, in a browser that the desktop starts", a
 test("restores a run of before the restart", async () => {
   const model = async () => {
     const address = new URL(await page.evaluate(() => annotator.client.downloadAddress("model")), server.address).href;
-    for (;;) { // refused as long as the run is being trained again
+    for (;;) {
+      // refused as long as the run is being trained again
       const answer = await page.request.get(address);
       if (answer.ok()) return answer.body();
       assert.equal(answer.status(), 409);

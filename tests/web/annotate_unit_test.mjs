@@ -12,12 +12,17 @@ const { outputFiles } = await build({
   stdin: {
     resolveDir: path.join(web, "annotate"),
     contents: ["geometry", "detail", "chunk", "paint", "ramp", "budget", "commands", "fingers"]
-      .map((name) => `export * as ${name} from "./${name}";`).join(""),
+      .map((name) => `export * as ${name} from "./${name}";`)
+      .join(""),
   },
-  bundle: true, write: false, format: "esm", platform: "node",
+  bundle: true,
+  write: false,
+  format: "esm",
+  platform: "node",
 });
-const { geometry, detail, chunk, paint, ramp, budget, commands, fingers } =
-  await import(`data:text/javascript;base64,${Buffer.from(outputFiles[0].contents).toString("base64")}`);
+const { geometry, detail, chunk, paint, ramp, budget, commands, fingers } = await import(
+  `data:text/javascript;base64,${Buffer.from(outputFiles[0].contents).toString("base64")}`
+);
 
 /** Numbers in 0..1 by a linear congruential generator. */
 function random(seed) {
@@ -29,8 +34,22 @@ function random(seed) {
 function looking(distance, aspect = 1, focal = 2) {
   const [near, far] = [0.1, 100];
   return [
-    focal / aspect, 0, 0, 0, 0, focal, 0, 0, 0, 0, -(far + near) / (far - near), -1,
-    0, 0, (distance * (far + near) - 2 * far * near) / (far - near), distance,
+    focal / aspect,
+    0,
+    0,
+    0,
+    0,
+    focal,
+    0,
+    0,
+    0,
+    0,
+    -(far + near) / (far - near),
+    -1,
+    0,
+    0,
+    (distance * (far + near) - 2 * far * near) / (far - near),
+    distance,
   ];
 }
 
@@ -85,7 +104,10 @@ test("the planes of the view tell inside from outside as the projection does", (
     const [x, y, z, w] = geometry.project(matrix, p);
     const seen = Math.abs(x) < w && Math.abs(y) < w && z > -w;
     inside += Number(seen);
-    assert.equal(planes.every(([a, b, c, d]) => a * p[0] + b * p[1] + c * p[2] + d > 0), seen);
+    assert.equal(
+      planes.every(([a, b, c, d]) => a * p[0] + b * p[1] + c * p[2] + d > 0),
+      seen,
+    );
   }
   assert.ok(inside > 100 && inside < 2900);
 });
@@ -95,10 +117,13 @@ test("a point in a polygon is told by its winding too", () => {
     const r = k % 2 ? 0.3 : 0.9;
     return [r * Math.sin((k * Math.PI) / 5), r * Math.cos((k * Math.PI) / 5)];
   });
-  const winds = (x, y) => Math.abs(star.reduce((sum, [ax, ay], i) => {
-    const [bx, by] = star[(i + 1) % star.length];
-    return sum + Math.atan2((ax - x) * (by - y) - (ay - y) * (bx - x), (ax - x) * (bx - x) + (ay - y) * (by - y));
-  }, 0)) > 1;
+  const winds = (x, y) =>
+    Math.abs(
+      star.reduce((sum, [ax, ay], i) => {
+        const [bx, by] = star[(i + 1) % star.length];
+        return sum + Math.atan2((ax - x) * (by - y) - (ay - y) * (bx - x), (ax - x) * (bx - x) + (ay - y) * (by - y));
+      }, 0),
+    ) > 1;
   const next = random(3);
   for (let i = 0; i < 2000; ++i) {
     const [x, y] = [2 * next() - 1, 2 * next() - 1];
@@ -114,7 +139,13 @@ function tree() {
     nodes.push(node);
     if (level < 2) {
       for (let k = 0; k < 8; ++k) {
-        node.children.push(add(centre.map((c, a) => c + ((k >> a) & 1 ? 0.5 : -0.5) * half), half / 2, level + 1));
+        node.children.push(
+          add(
+            centre.map((c, a) => c + ((k >> a) & 1 ? 0.5 : -0.5) * half),
+            half / 2,
+            level + 1,
+          ),
+        );
       }
     }
     return node.id;
@@ -137,7 +168,10 @@ test("the choice of nodes keeps to its budget, parents first, and drops what is 
   const view = { matrix: looking(4), eye: [0, 0, 4], pixels: 1000 };
   for (const wanted of [300, 1000, 5500, 73000]) {
     const taken = detail.selectNodes(nodes, view, { budget: wanted });
-    assert.equal(taken.reduce((sum, take) => sum + take.points, 0), wanted);
+    assert.equal(
+      taken.reduce((sum, take) => sum + take.points, 0),
+      wanted,
+    );
     const seen = new Set();
     for (const { id } of taken) {
       const parent = [...nodes.values()].find((node) => node.children.includes(id));
@@ -147,9 +181,16 @@ test("the choice of nodes keeps to its budget, parents first, and drops what is 
   }
   const near = detail.selectNodes(nodes, { ...view, matrix: looking(1.2), eye: [0, 0, 1.2] }, { budget: 1e6 });
   assert.ok(near.length < 73, "from near some cubes are beside the view");
-  const clipped = detail.selectNodes(nodes, view, { budget: 1e6, clip: { min: [0.6, 0.6, 0.6], max: [0.9, 0.9, 0.9] } });
+  const clipped = detail.selectNodes(nodes, view, {
+    budget: 1e6,
+    clip: { min: [0.6, 0.6, 0.6], max: [0.9, 0.9, 0.9] },
+  });
   assert.equal(clipped.length, 3);
-  assert.equal(detail.selectNodes(nodes, { ...view, pixels: 1 }, { budget: 1e6 }).length, 1, "far away the root is enough");
+  assert.equal(
+    detail.selectNodes(nodes, { ...view, pixels: 1 }, { budget: 1e6 }).length,
+    1,
+    "far away the root is enough",
+  );
   const backwards = looking(4).map((v, i) => (i % 4 === 3 || i % 4 === 2 ? -v : v));
   assert.equal(detail.selectNodes(nodes, { ...view, matrix: backwards }, { budget: 1e6 }).length, 0);
 });
@@ -157,7 +198,10 @@ test("the choice of nodes keeps to its budget, parents first, and drops what is 
 test("where children are drawn the points of their parent shrink", () => {
   const nodes = detail.withSpacings(tree(), 0.01);
   const child = nodes.get(0).children[5];
-  const spacings = detail.drawnSpacings(nodes, [{ id: 0, points: 1000 }, { id: child, points: 1000 }]);
+  const spacings = detail.drawnSpacings(nodes, [
+    { id: 0, points: 1000 },
+    { id: child, points: 1000 },
+  ]);
   const root = spacings.get(0);
   assert.equal(detail.octantOf([0, 0, 0], nodes.get(child).centre), 5);
   assert.ok(root[5] < root[4]);
@@ -174,7 +218,8 @@ test("bytes of the wrong number are refused", () => {
 
 /** Two walls at z = 0.5 and z = -0.5, facing up and down. */
 function walls() {
-  const points = [], normals = [];
+  const points = [],
+    normals = [];
   for (const z of [0.5, -0.5]) {
     for (let i = 0; i < 41; ++i) {
       for (let j = 0; j < 41; ++j) {
@@ -190,21 +235,39 @@ test("picking finds the wall in front, and the one behind where the first is cli
   const c = walls();
   const n = c.labels.length;
   const view = { matrix: looking(4), halfWidth: 300, halfHeight: 300, pixels: 600, reach: 6 };
-  for (const target of [[0, 0], [0.4, -0.24], [-0.6, 0.6]]) {
+  for (const target of [
+    [0, 0],
+    [0.4, -0.24],
+    [-0.6, 0.6],
+  ]) {
     const [x, y, , w] = geometry.project(view.matrix, [...target, 0.5]);
     const at = { ...view, ...plain, x: x / w, y: y / w };
     const front = chunk.pick([{ chunk: c, points: n }], at);
     front.position.forEach((v, a) => assert.ok(Math.abs(v - [...target, 0.5][a]) < 1e-3));
     assert.ok(front.normal[2] > 0.99);
-    const behind = chunk.pick([{ chunk: c, points: n }], { ...at, reach: 12, clip: { min: [-1, -1, -1], max: [1, 1, 0] } });
+    const behind = chunk.pick([{ chunk: c, points: n }], {
+      ...at,
+      reach: 12,
+      clip: { min: [-1, -1, -1], max: [1, 1, 0] },
+    });
     assert.ok(Math.abs(behind.position[2] + 0.5) < 1e-3);
   }
   c.prediction.fill(1, 0, n / 2);
-  const through = chunk.pick([{ chunk: c, points: n }], { ...view, x: 0, y: 0, reach: 12, hidden: new Set([1]), clip: null });
+  const through = chunk.pick([{ chunk: c, points: n }], {
+    ...view,
+    x: 0,
+    y: 0,
+    reach: 12,
+    hidden: new Set([1]),
+    clip: null,
+  });
   assert.ok(Math.abs(through.position[2] + 0.5) < 1e-3);
   assert.equal(chunk.pick([{ chunk: c, points: n }], { ...view, ...plain, x: 0.95, y: 0.95 }), null);
-  assert.equal(chunk.pick([{ chunk: c, points: n / 2 }], { ...view, x: 0, y: 0, hidden: new Set([1]), clip: null }), null,
-    "points that are not drawn are not picked");
+  assert.equal(
+    chunk.pick([{ chunk: c, points: n / 2 }], { ...view, x: 0, y: 0, hidden: new Set([1]), clip: null }),
+    null,
+    "points that are not drawn are not picked",
+  );
 });
 
 test("the brush paints a ball of one side, as measured point by point", () => {
@@ -226,8 +289,18 @@ test("the brush paints a ball of one side, as measured point by point", () => {
 test("a polygon paints through to the back, unless front only", () => {
   for (const front of [false, true]) {
     const c = walls();
-    const stroke = { matrix: looking(4), polygon: [[-0.3, -0.3], [0.3, -0.3], [0.3, 0.3], [-0.3, 0.3]],
-      front_only: front, point_size: 16, viewport: [300, 300] };
+    const stroke = {
+      matrix: looking(4),
+      polygon: [
+        [-0.3, -0.3],
+        [0.3, -0.3],
+        [0.3, 0.3],
+        [-0.3, 0.3],
+      ],
+      front_only: front,
+      point_size: 16,
+      viewport: [300, 300],
+    };
     assert.deepEqual(paint.paintPolygon([c], stroke, { class: 1, protect: false, ...plain }), [c]);
     let [near, far] = [0, 0];
     c.labels.forEach((label, i) => {
@@ -251,7 +324,8 @@ test("ramps begin and end with their stops", () => {
 });
 
 test("the budget follows the speed of drawing", () => {
-  const slow = new budget.Budget(), fast = new budget.Budget();
+  const slow = new budget.Budget(),
+    fast = new budget.Budget();
   for (let i = 0; i < 20; ++i) {
     slow.learn(50_000, 50);
     fast.learn(2_000_000, 5);

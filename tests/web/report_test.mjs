@@ -25,11 +25,19 @@ function pcednet(...words) {
 async function open(options) {
   const opened = await browser.newPage({ viewport: { width: 1280, height: 800 }, ...options });
   opened.setDefaultTimeout(120_000); // for busy machines
-  opened.on("console", (m) => ["error", "warning"].includes(m.type()) && !/GPU stall|GL Driver Message/.test(m.text()) &&
-    complaints.push(m.text()));
+  opened.on(
+    "console",
+    (m) =>
+      ["error", "warning"].includes(m.type()) &&
+      !/GPU stall|GL Driver Message/.test(m.text()) &&
+      complaints.push(m.text()),
+  );
   opened.on("pageerror", (e) => complaints.push(e.message));
-  opened.on("request", (r) => r.url() !== pathToFileURL(report).href && !r.url().startsWith("data:") &&
-    complaints.push(`asks for ${r.url()}`));
+  opened.on(
+    "request",
+    (r) =>
+      r.url() !== pathToFileURL(report).href && !r.url().startsWith("data:") && complaints.push(`asks for ${r.url()}`),
+  );
   await opened.goto(pathToFileURL(report).href);
   await opened.waitForSelector(".experiment canvas");
   await frames(opened);
@@ -39,8 +47,10 @@ async function open(options) {
 /** Sets a switch, as a keyboard or a screen reader would find it. */
 const choose = (where, name) => page.locator(where).getByRole("radio", { name, exact: true }).check();
 
-const frames = (of) => of.evaluate(() => new Promise((done) =>
-  requestAnimationFrame(() => requestAnimationFrame(() => requestAnimationFrame(done)))));
+const frames = (of) =>
+  of.evaluate(
+    () => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => requestAnimationFrame(done)))),
+  );
 
 /** What the panel with that number shows: the shares of its pixels of some colours, and all of it. */
 async function seen(of, panel) {
@@ -72,11 +82,18 @@ const mean = (values) => values.reduce((a, b) => a + b, 0) / values.length;
 const resultsOf = (study, variant, set) => study.results.filter((r) => r.variant === variant && r.set === set);
 
 /** Name -> texts of its number cells, of the table at `selector`. */
-const rowsOf = (of, selector) => of.locator(selector).first().evaluate((table) =>
-  [...table.querySelectorAll("tbody tr:not(.cloud):not(.published)")].map((row) => [
-    row.querySelector("th").textContent,
-    [...row.querySelectorAll("td.number:not(.quiet)")].map((cell) => cell.querySelector(".value")?.textContent ?? "none"),
-  ]));
+const rowsOf = (of, selector) =>
+  of
+    .locator(selector)
+    .first()
+    .evaluate((table) =>
+      [...table.querySelectorAll("tbody tr:not(.cloud):not(.published)")].map((row) => [
+        row.querySelector("th").textContent,
+        [...row.querySelectorAll("td.number:not(.quiet)")].map(
+          (cell) => cell.querySelector(".value")?.textContent ?? "none",
+        ),
+      ]),
+    );
 
 before(async () => {
   ({ methods, scales } = writeStudy(folder));
@@ -113,9 +130,13 @@ test("shows every score of a set, of both statistics, as the study has them", as
     for (const set of ["default", "cad"]) {
       await choose(section, set);
       const rows = await rowsOf(page, `${section} .part table`);
-      assert.deepEqual(rows, methods.variants.map(({ id, title }) => [
-        title, KEYS.map((k) => format(mean(resultsOf(methods, id, set).map((r) => r[statistic][k])))),
-      ]));
+      assert.deepEqual(
+        rows,
+        methods.variants.map(({ id, title }) => [
+          title,
+          KEYS.map((k) => format(mean(resultsOf(methods, id, set).map((r) => r[statistic][k])))),
+        ]),
+      );
     }
   }
   await choose(section, "median");
@@ -124,9 +145,13 @@ test("shows every score of a set, of both statistics, as the study has them", as
 
 test("shows one score on all sets, with published figures beside", async () => {
   const rows = await rowsOf(page, "#experiment-0 .overview table");
-  assert.deepEqual(rows, methods.variants.map(({ id, title }) => [
-    title, ["default", "cad"].map((set) => format(mean(resultsOf(methods, id, set).map((r) => r.median.mcc)))),
-  ]));
+  assert.deepEqual(
+    rows,
+    methods.variants.map(({ id, title }) => [
+      title,
+      ["default", "cad"].map((set) => format(mean(resultsOf(methods, id, set).map((r) => r.median.mcc)))),
+    ]),
+  );
   assert.equal(await page.locator("#experiment-0 .overview .beside").textContent(), "(.856)");
   assert.match(await page.locator("#experiment-0 tr.published").first().textContent(), /published\.856/);
 });
@@ -160,7 +185,10 @@ test("opens a method into its clouds, and a cloud into its picture", async () =>
   const [{ clouds }] = resultsOf(methods, "ca", "default");
   for (const [i, cloud] of clouds.entries()) {
     const text = await shown.nth(i).locator("td").allTextContents();
-    assert.deepEqual(text.slice(-6), KEYS.map((k) => format(cloud[k])));
+    assert.deepEqual(
+      text.slice(-6),
+      KEYS.map((k) => format(cloud[k])),
+    );
   }
   assert.equal(await shown.locator("button").count(), 2, "two of the three clouds are in the page");
   await shown.nth(1).locator("button").click();
@@ -170,15 +198,24 @@ test("opens a method into its clouds, and a cloud into its picture", async () =>
 test("draws charts for each method and the sweep", async () => {
   assert.equal(await page.locator("#experiment-0 .panels figure").count(), 3);
   assert.equal(await page.locator("#experiment-0 .panels circle").count(), 9);
-  const [{ clouds: [first] }] = resultsOf(methods, "ca", "default");
+  const [
+    {
+      clouds: [first],
+    },
+  ] = resultsOf(methods, "ca", "default");
   const dot = page.locator("#experiment-0 .panels circle").first();
   const [x, y] = [Number(await dot.getAttribute("cx")), Number(await dot.getAttribute("cy"))];
   assert.ok(Math.abs(x - (26 + first.precision * 156)) < 0.01);
   assert.ok(Math.abs(y - (8 + (1 - first.recall) * 158)) < 3);
   assert.equal(await page.locator("#experiment-1 .uplot").count(), 1);
   assert.equal(await page.locator("#experiment-1 .uplot .u-series").count(), 3, "the x and two sets");
-  const picture = await page.locator("#experiment-1 .uplot canvas").evaluate((canvas) =>
-    canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data.filter((v, i) => i % 4 === 3 && v > 0).length);
+  const picture = await page.locator("#experiment-1 .uplot canvas").evaluate(
+    (canvas) =>
+      canvas
+        .getContext("2d")
+        .getImageData(0, 0, canvas.width, canvas.height)
+        .data.filter((v, i) => i % 4 === 3 && v > 0).length,
+  );
   assert.ok(picture > 1000);
   assert.equal(await page.locator("#experiment-0 .uplot").count(), 2, "loss and score of the curves");
 });
@@ -231,11 +268,16 @@ test("adds and removes panels", async () => {
   assert.equal(await page.locator(".label").count(), before + (on ? -1 : 1));
 });
 
-for (const [name, options] of [["a phone", { viewport: { width: 390, height: 844 } }], ["the dark", { colorScheme: "dark" }]]) {
+for (const [name, options] of [
+  ["a phone", { viewport: { width: 390, height: 844 } }],
+  ["the dark", { colorScheme: "dark" }],
+]) {
   test(`fits ${name}`, async () => {
     const other = await open(options);
-    const [wide, background] = await other.evaluate(() =>
-      [document.documentElement.scrollWidth - window.innerWidth, getComputedStyle(document.body).backgroundColor]);
+    const [wide, background] = await other.evaluate(() => [
+      document.documentElement.scrollWidth - window.innerWidth,
+      getComputedStyle(document.body).backgroundColor,
+    ]);
     assert.ok(wide <= 0, `${wide} pixels too wide`);
     if (name === "the dark") assert.match(background, /rgb\((\d|[1-5]\d), /);
     assert.ok((await seen(other, 0)).pale > 0.004);

@@ -13,7 +13,11 @@ export class Brush {
   private last: [number, number] = [0, 0];
   private readonly shown = new Set<number>();
 
-  constructor(private readonly stage: Stage, private readonly store: AppStore, private readonly client: Client) {}
+  constructor(
+    private readonly stage: Stage,
+    private readonly store: AppStore,
+    private readonly client: Client,
+  ) {}
 
   get isDown(): boolean {
     return this.centres !== null;
@@ -48,8 +52,14 @@ export class Brush {
     if (centres.length === 0) return this.stage.loader.resume();
     const state = this.store.now;
     this.client.paint({
-      id: crypto.randomUUID(), tool: "brush", class: state.paintClass, centres, radius: state.radius,
-      protect: state.protect, hidden: [...state.hidden], clip: activeClip(state),
+      id: crypto.randomUUID(),
+      tool: "brush",
+      class: state.paintClass,
+      centres,
+      radius: state.radius,
+      protect: state.protect,
+      hidden: [...state.hidden],
+      clip: activeClip(state),
     });
   }
 

@@ -104,7 +104,8 @@ export class Camera {
     ++this.flight;
     const pivot = new Vector3(...about);
     const axis = (x: number, y: number): Vector3 => new Vector3(x, y, 0).applyQuaternion(this.three.quaternion);
-    const by = new Quaternion().setFromAxisAngle(axis(0, 1), -right)
+    const by = new Quaternion()
+      .setFromAxisAngle(axis(0, 1), -right)
       .multiply(new Quaternion().setFromAxisAngle(axis(1, 0), -down));
     this.three.position.sub(pivot).applyQuaternion(by).add(pivot);
     this.three.quaternion.premultiply(by).normalize();

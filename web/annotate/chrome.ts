@@ -19,11 +19,24 @@ const TOOLS: { tool: Tool; icon: IconName; name: string; key: string }[] = [
 /** Runs the command that has a key. */
 export type Press = (key: string) => void;
 
-export const presser = (commands: Command[]): Press => (key) => commands.find((c) => c.keys.includes(key))?.run();
+export const presser =
+  (commands: Command[]): Press =>
+  (key) =>
+    commands.find((c) => c.keys.includes(key))?.run();
 
 function iconButton(name: IconName, label: string, key: string, press: Press): HTMLButtonElement {
-  return h("button", { type: "button", class: "tool", title: `${label} (${key})`, "aria-label": label, "aria-keyshortcuts": key.replace("Ctrl", "Control"),
-    onclick: () => press(key) }, icon(name));
+  return h(
+    "button",
+    {
+      type: "button",
+      class: "tool",
+      title: `${label} (${key})`,
+      "aria-label": label,
+      "aria-keyshortcuts": key.replace("Ctrl", "Control"),
+      onclick: () => press(key),
+    },
+    icon(name),
+  );
 }
 
 export function toolbar(store: AppStore, press: Press): HTMLElement {
@@ -31,16 +44,27 @@ export function toolbar(store: AppStore, press: Press): HTMLElement {
   const undo = iconButton("undo", "Undo", "Ctrl+Z", press);
   const redo = iconButton("redo", "Redo", "Ctrl+Shift+Z", press);
   const clip = iconButton("box", "Clipping box", "C", press);
-  store.watch(["tool"], () => tools.forEach(({ tool, button: b }) => b.setAttribute("aria-pressed", String(tool === store.now.tool))));
+  store.watch(["tool"], () =>
+    tools.forEach(({ tool, button: b }) => b.setAttribute("aria-pressed", String(tool === store.now.tool))),
+  );
   store.watch(["clip"], () => clip.setAttribute("aria-pressed", String(store.now.clip?.on ?? false)));
   store.watch(["undo", "redo", "writer"], () => {
     undo.disabled = store.now.undo === 0 || !store.now.writer;
     redo.disabled = store.now.redo === 0 || !store.now.writer;
   });
-  return h("div", { class: "toolbar", role: "toolbar", "aria-label": "Tools", "aria-orientation": "vertical" },
-    ...tools.map((tool) => tool.button), h("hr", {}), undo, redo, h("hr", {}),
-    iconButton("fit", "Show all", "F", press), clip, iconButton("camera", "Screenshot", "Shift+S", press),
-    iconButton("help", "Keys", "?", press));
+  return h(
+    "div",
+    { class: "toolbar", role: "toolbar", "aria-label": "Tools", "aria-orientation": "vertical" },
+    ...tools.map((tool) => tool.button),
+    h("hr", {}),
+    undo,
+    redo,
+    h("hr", {}),
+    iconButton("fit", "Show all", "F", press),
+    clip,
+    iconButton("camera", "Screenshot", "Shift+S", press),
+    iconButton("help", "Keys", "?", press),
+  );
 }
 
 export function header(store: AppStore, save: (what: Saved) => void, client: Client): HTMLElement {
@@ -55,15 +79,39 @@ export function header(store: AppStore, save: (what: Saved) => void, client: Cli
     facts.textContent = `${count(session.points)} points${session.normals === "estimated" ? " · normals estimated" : ""}`;
   });
   const saves = (["project", "model", "cloud"] as Saved[]).map((what) => button(`Save ${what}`, () => save(what)));
-  const links = (["project", "model", "cloud"] as Saved[]).map((what) => h("a", { href: "#", onclick: (e: Event) => {
-    (e.currentTarget as HTMLAnchorElement).href = client.downloadAddress(what); // now: it holds the token
-  }, download: "" }, what));
-  store.watch(["saving", "writer", "progress", "runs"], () => saves.forEach((b, i) => {
-    b.disabled = store.now.saving || !store.now.writer || store.now.progress !== null || (i === 1 && store.now.runs.length === 0);
-  }));
-  return h("header", {}, h("div", { class: "file" }, name, facts),
-    h("div", { class: "saves" }, ...saves,
-      h("details", { class: "more" }, h("summary", {}, "Download"), h("div", {}, ...links))));
+  const links = (["project", "model", "cloud"] as Saved[]).map((what) =>
+    h(
+      "a",
+      {
+        href: "#",
+        onclick: (e: Event) => {
+          (e.currentTarget as HTMLAnchorElement).href = client.downloadAddress(what); // now: it holds the token
+        },
+        download: "",
+      },
+      what,
+    ),
+  );
+  store.watch(["saving", "writer", "progress", "runs"], () =>
+    saves.forEach((b, i) => {
+      b.disabled =
+        store.now.saving ||
+        !store.now.writer ||
+        store.now.progress !== null ||
+        (i === 1 && store.now.runs.length === 0);
+    }),
+  );
+  return h(
+    "header",
+    {},
+    h("div", { class: "file" }, name, facts),
+    h(
+      "div",
+      { class: "saves" },
+      ...saves,
+      h("details", { class: "more" }, h("summary", {}, "Download"), h("div", {}, ...links)),
+    ),
+  );
 }
 
 /** What the colours mean. */
@@ -83,11 +131,13 @@ export function legend(store: AppStore): HTMLElement {
       const [low, high] = rampEnds(store.now);
       element.append(h("span", { class: "scale" }, low, bar, high));
     } else if (mode === "labels" || mode === "prediction") {
-      element.append(...paletteOf(store.now).map(({ name, colour }) => {
-        const swatch = h("span", { class: "swatch" });
-        swatch.style.background = colour;
-        return h("span", { class: "entry" }, swatch, name);
-      }));
+      element.append(
+        ...paletteOf(store.now).map(({ name, colour }) => {
+          const swatch = h("span", { class: "swatch" });
+          swatch.style.background = colour;
+          return h("span", { class: "entry" }, swatch, name);
+        }),
+      );
     }
   });
   return element;
@@ -98,9 +148,17 @@ export function curtain(store: AppStore, client: Client): HTMLElement {
   const bar = h("progress", { max: 1 });
   const stage = h("p", {});
   const loading = h("div", { class: "loading", role: "status" }, stage, bar);
-  const other = h("div", { class: "banner" }, h("span", {}, "Another window paints this cloud; here you can look. "),
-    button("Take over", () => client.takeOver()));
-  const lost = h("div", { class: "banner", role: "alert" }, "The connection to pcednet is lost. Trying again; is it still running?");
+  const other = h(
+    "div",
+    { class: "banner" },
+    h("span", {}, "Another window paints this cloud; here you can look. "),
+    button("Take over", () => client.takeOver()),
+  );
+  const lost = h(
+    "div",
+    { class: "banner", role: "alert" },
+    "The connection to pcednet is lost. Trying again; is it still running?",
+  );
   store.watch(["progress", "writer", "connected"], () => {
     const { progress, writer, connected } = store.now;
     loading.hidden = progress === null;

@@ -127,7 +127,9 @@ function cubeUnderCursor(m: Float64Array, { x, y, halfWidth, halfHeight, reach }
     const at = (r: number): number => m[r] * a + m[4 + r] * b + m[8 + r] * c + m[12 + r];
     const w = at(3);
     const sides = [at(0) - (x - rx) * w, (x + rx) * w - at(0), at(1) - (y - ry) * w, (y + ry) * w - at(1), w];
-    sides.forEach((side, k) => { if (side >= 0) outside[k] = false; });
+    sides.forEach((side, k) => {
+      if (side >= 0) outside[k] = false;
+    });
   }
   return !outside.includes(true);
 }

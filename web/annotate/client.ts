@@ -22,7 +22,11 @@ export class Client {
   private predicted = false;
   stage!: Stage;
 
-  constructor(private readonly api: Api, private readonly store: AppStore, private readonly words: Words) {
+  constructor(
+    private readonly api: Api,
+    private readonly store: AppStore,
+    private readonly words: Words,
+  ) {
     this.queue = new WorkQueue(api, {
       painted: (answer) => this.takePainted(answer),
       failed: (error) => {
@@ -49,7 +53,9 @@ export class Client {
   private listen(): void {
     const { store } = this;
     this.events = this.api.events({
-      progress: ({ stage, fraction }) => { if (!this.opened) store.set({ progress: { stage, fraction } }); },
+      progress: ({ stage, fraction }) => {
+        if (!this.opened) store.set({ progress: { stage, fraction } });
+      },
       ready: () => this.attempt(this.refresh()),
       labels: (answer: Painted) => this.takePainted(answer),
       training: (event: TrainingEvent) => this.takeTraining(event),
@@ -77,7 +83,10 @@ export class Client {
     const session = await this.api.get<Session>("/api/session");
     const { store } = this;
     store.set({
-      session, settings: session.settings, undo: session.undo, redo: session.redo,
+      session,
+      settings: session.settings,
+      undo: session.undo,
+      redo: session.redo,
       counts: [0, 1, 2].map((id) => session.classes.find((c) => c.id === id)?.count ?? 0) as [number, number, number],
     });
     if (session.state !== "ready") {
@@ -88,7 +97,7 @@ export class Client {
     store.set({ runs, progress: null });
     if (this.opened) return;
     this.opened = true;
-    const predicted = this.predicted = session.prediction_version > 0 && session.run !== null;
+    const predicted = (this.predicted = session.prediction_version > 0 && session.run !== null);
     store.set({
       radius: Math.max(session.spacing * 6, boxDiagonal(session.bounds) * 0.008),
       mode: predicted ? "prediction" : session.has_colours ? "rgb" : "labels",
@@ -119,12 +128,16 @@ export class Client {
     const old = this.store.now.training;
     const same = old !== null && old.active && old.run === event.run && event.epoch > (old.epoch.at(-1) ?? 0);
     const before = same ? old : { epoch: [], loss: [], accuracy: [] };
-    this.store.set({ training: {
-      run: event.run, active: true, epochs: event.epochs,
-      epoch: [...before.epoch, event.epoch],
-      loss: [...before.loss, event.loss],
-      accuracy: [...before.accuracy, event.held_out_accuracy],
-    } });
+    this.store.set({
+      training: {
+        run: event.run,
+        active: true,
+        epochs: event.epochs,
+        epoch: [...before.epoch, event.epoch],
+        loss: [...before.loss, event.loss],
+        accuracy: [...before.accuracy, event.held_out_accuracy],
+      },
+    });
   }
 
   private async takePrediction(event: PredictionEvent): Promise<void> {
@@ -155,12 +168,15 @@ export class Client {
     const before = this.store.now.settings;
     const wanted = { ...before, ...changes };
     this.store.set({ settings: wanted });
-    this.attempt(this.api.post<Settings>("/api/settings", wanted)
-      .then((settings) => this.store.set({ settings }))
-      .catch((error: Error) => {
-        this.store.set({ settings: before });
-        throw error;
-      }));
+    this.attempt(
+      this.api
+        .post<Settings>("/api/settings", wanted)
+        .then((settings) => this.store.set({ settings }))
+        .catch((error: Error) => {
+          this.store.set({ settings: before });
+          throw error;
+        }),
+    );
   }
 
   train(): void {
@@ -210,7 +226,8 @@ export class Client {
         (problem: Error) => {
           this.words.warn(problem.message);
           return null;
-        });
+        },
+      );
     } finally {
       this.store.set({ saving: false });
     }

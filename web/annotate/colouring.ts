@@ -6,7 +6,8 @@ import { rampBytes, STOPS, type RampName } from "./ramp";
 import { activeClip, type ColourMode, type State } from "./store";
 import { NO_CLASS } from "./types";
 
-export const paletteOf = (state: Pick<State, "safePalette">): Meaning[] => CLASS_PALETTES[state.safePalette ? "safe" : "paper"];
+export const paletteOf = (state: Pick<State, "safePalette">): Meaning[] =>
+  CLASS_PALETTES[state.safePalette ? "safe" : "paper"];
 
 /** The colour a tool paints with; the eraser's is that of no label. */
 export const paintColour = (state: Pick<State, "safePalette" | "paintClass">): string =>
@@ -14,8 +15,12 @@ export const paintColour = (state: Pick<State, "safePalette" | "paintClass">): s
 
 /** What a feature of the method is called. */
 export const FEATURE_NAMES: Record<string, string> = {
-  tau: "τ, local relief", kappa: "κ, mean curvature", phi: "φ, fitness of the sphere",
-  dtau: "∂τ, change of relief with scale", dkappa: "∂κ, change of curvature with scale", dphi: "∂φ, change of fitness with scale",
+  tau: "τ, local relief",
+  kappa: "κ, mean curvature",
+  phi: "φ, fitness of the sphere",
+  dtau: "∂τ, change of relief with scale",
+  dkappa: "∂κ, change of curvature with scale",
+  dphi: "∂φ, change of fitness with scale",
 };
 
 export const isRamp = (mode: ColourMode): boolean => ["confidence", "p_sharp", "feature"].includes(mode);
@@ -36,9 +41,13 @@ export function appearanceOf(state: State, background: string): Appearance {
   const { mode } = state;
   return {
     mode: mode === "confidence" || mode === "p_sharp" || mode === "feature" ? "ramp" : mode,
-    paintOnTop: state.paintOnTop, palette: paletteOf(state).map((meaning) => meaning.colour),
-    ramp: rampBytes(rampOf(state)), hidden: state.hidden, clip: activeClip(state),
-    pointSize: state.pointSize, background,
+    paintOnTop: state.paintOnTop,
+    palette: paletteOf(state).map((meaning) => meaning.colour),
+    ramp: rampBytes(rampOf(state)),
+    hidden: state.hidden,
+    clip: activeClip(state),
+    pointSize: state.pointSize,
+    background,
   };
 }
 

@@ -89,7 +89,8 @@ function toolCommands({ store, brush, outline, pointer, client }: Hands): Comman
     command(["["], "smaller brush", () => brush.grow(1 / 1.2)),
     command(["]"], "larger brush", () => brush.grow(1.2)),
     command(["Enter"], "paint at the middle of the view; close the polygon", () =>
-      outline.isOpen ? outline.close() : pointer.dab()),
+      outline.isOpen ? outline.close() : pointer.dab(),
+    ),
     command(["Backspace"], "take the polygon's last corner back", () => outline.shorten()),
     command(["P"], "protect what is painted", () => store.set({ protect: !store.now.protect })),
     command(["X"], "lasso and polygon: front only", () => store.set({ frontOnly: !store.now.frontOnly })),
@@ -140,9 +141,17 @@ function colourCommands({ store }: Hands): Command[] {
 
 export function commandsOf(hands: Hands): Command[] {
   const { client, outline, store } = hands;
-  const command = (keys: string[], name: string, group: Command["group"], run: () => void): Command => ({ keys, name, group, run });
+  const command = (keys: string[], name: string, group: Command["group"], run: () => void): Command => ({
+    keys,
+    name,
+    group,
+    run,
+  });
   return [
-    ...toolCommands(hands), ...classCommands(hands), ...viewCommands(hands), ...colourCommands(hands),
+    ...toolCommands(hands),
+    ...classCommands(hands),
+    ...viewCommands(hands),
+    ...colourCommands(hands),
     command(["N"], "go to the next uncertain place", "Training", hands.nextUncertain),
     command(["T"], "train now", "Training", () => client.train()),
     command(["Escape"], "cancel an outline or the training", "Training", () => {
@@ -156,7 +165,13 @@ export function commandsOf(hands: Hands): Command[] {
 }
 
 /** The name of a key event as the commands spell it. */
-export function spell(event: { key: string; code: string; ctrlKey: boolean; metaKey: boolean; shiftKey: boolean }): string {
+export function spell(event: {
+  key: string;
+  code: string;
+  ctrlKey: boolean;
+  metaKey: boolean;
+  shiftKey: boolean;
+}): string {
   const { key, code, ctrlKey, metaKey, shiftKey } = event;
   const digit = /^Digit(\d)$/.exec(code); // Shift+1 is `!` on one keyboard, 1 on another
   const word = shiftKey && digit ? digit[1] : key.length === 1 ? key.toUpperCase() : key;

@@ -37,7 +37,7 @@ class Queue {
   push(id: number, size: number): void {
     const heap = this.heap;
     heap.push({ id, size });
-    for (let i = heap.length - 1; i > 0;) {
+    for (let i = heap.length - 1; i > 0; ) {
       const up = (i - 1) >> 1;
       if (heap[up].size >= heap[i].size) break;
       [heap[up], heap[i]] = [heap[i], heap[up]];
@@ -51,7 +51,7 @@ class Queue {
     const last = heap.pop()!;
     if (heap.length === 0) return top;
     heap[0] = last;
-    for (let i = 0;;) {
+    for (let i = 0; ; ) {
       let largest = i;
       for (const child of [2 * i + 1, 2 * i + 2]) {
         if (child < heap.length && heap[child].size > heap[largest].size) largest = child;
@@ -111,7 +111,10 @@ export function withSpacings(nodes: NodeInfo[], full: number): Map<number, NodeI
   for (let i = 0; i < order.length; ++i) order.push(...byId.get(order[i])!.children.filter((id) => byId.has(id)));
   for (const id of [...order].reverse()) {
     const node = byId.get(id)!;
-    below.set(id, node.children.reduce((sum, child) => sum + (below.get(child) ?? 0), node.points));
+    below.set(
+      id,
+      node.children.reduce((sum, child) => sum + (below.get(child) ?? 0), node.points),
+    );
   }
   const above = new Map<number, number>([[0, 0]]);
   for (const id of order) {
@@ -119,7 +122,8 @@ export function withSpacings(nodes: NodeInfo[], full: number): Map<number, NodeI
     const all = below.get(id)!;
     const drawn = above.get(id)! + node.points;
     node.spacing = full * Math.sqrt((above.get(id)! + all) / Math.max(drawn, 1));
-    for (const child of node.children) above.set(child, (drawn * (below.get(child) ?? 0)) / Math.max(all - node.points, 1));
+    for (const child of node.children)
+      above.set(child, (drawn * (below.get(child) ?? 0)) / Math.max(all - node.points, 1));
   }
   return byId;
 }
@@ -131,7 +135,8 @@ export const octantOf = (centre: Vec3, place: Vec3): number =>
 /** For each node drawn, the distance between the points drawn in each of its octants. */
 export function drawnSpacings(nodes: ReadonlyMap<number, NodeInfo>, taken: Take[]): Map<number, Float32Array> {
   const spacings = new Map<number, Float32Array>();
-  for (let i = taken.length - 1; i >= 0; --i) { // children come after their parents
+  for (let i = taken.length - 1; i >= 0; --i) {
+    // children come after their parents
     const node = nodes.get(taken[i].id)!;
     const own = node.spacing * Math.sqrt(node.points / Math.max(taken[i].points, 1));
     const octants = new Float32Array(8).fill(own);

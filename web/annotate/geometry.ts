@@ -18,8 +18,7 @@ export const dot = (a: Vec3, b: Vec3): number => a[0] * b[0] + a[1] * b[1] + a[2
 
 /** Clip coordinates x, y, z, w of a point; `matrix` is column-major. */
 export function project(matrix: ArrayLike<number>, p: Vec3): [number, number, number, number] {
-  const row = (r: number): number =>
-    matrix[r] * p[0] + matrix[4 + r] * p[1] + matrix[8 + r] * p[2] + matrix[12 + r];
+  const row = (r: number): number => matrix[r] * p[0] + matrix[4 + r] * p[1] + matrix[8 + r] * p[2] + matrix[12 + r];
   return [row(0), row(1), row(2), row(3)];
 }
 
@@ -41,7 +40,13 @@ export function fromCube(matrix: ArrayLike<number>, centre: Vec3, half: number):
 export function viewPlanes(matrix: ArrayLike<number>): [number, number, number, number][] {
   const row = (r: number): number[] => [matrix[r], matrix[4 + r], matrix[8 + r], matrix[12 + r]];
   const w = row(3);
-  const sides: [number, number][] = [[0, 1], [0, -1], [1, 1], [1, -1], [2, 1]];
+  const sides: [number, number][] = [
+    [0, 1],
+    [0, -1],
+    [1, 1],
+    [1, -1],
+    [2, 1],
+  ];
   return sides.map(([axis, sign]) => {
     const plane = row(axis).map((value, i) => w[i] + sign * value);
     const length = Math.hypot(plane[0], plane[1], plane[2]) || 1;

@@ -32,7 +32,10 @@ export class Loader {
   /** So many points are kept: what is looked at, and some of what was. */
   mostPoints = 4_000_000;
 
-  constructor(private readonly api: Api, private readonly on: LoaderEvents) {}
+  constructor(
+    private readonly api: Api,
+    private readonly on: LoaderEvents,
+  ) {}
 
   setNodes(nodes: ReadonlyMap<number, NodeInfo>, hasColours: boolean, hasPrediction: boolean): void {
     this.nodes = nodes;
@@ -60,10 +63,12 @@ export class Loader {
     while (this.loading.size < AT_ONCE && this.wanted.length > 0) {
       const id = this.wanted.shift()!;
       this.loading.add(id);
-      this.load(id).catch((error) => this.on.failed(error)).finally(() => {
-        this.loading.delete(id);
-        this.pump();
-      });
+      this.load(id)
+        .catch((error) => this.on.failed(error))
+        .finally(() => {
+          this.loading.delete(id);
+          this.pump();
+        });
     }
   }
 
@@ -74,10 +79,12 @@ export class Loader {
     if (this.hasPrediction) layers.push("prediction");
     if (this.valuesOf) layers.push("values");
     const asked = this.valuesOf;
-    await Promise.all(layers.map(async (layer) => {
-      const bytes = new Uint8Array(await this.api.bytes(`/api/node/${id}/values?${this.query(layer)}`));
-      if (bytes.length === info.points) chunk[layer].set(bytes);
-    }));
+    await Promise.all(
+      layers.map(async (layer) => {
+        const bytes = new Uint8Array(await this.api.bytes(`/api/node/${id}/values?${this.query(layer)}`));
+        if (bytes.length === info.points) chunk[layer].set(bytes);
+      }),
+    );
     this.chunks.set(id, chunk);
     this.kept += info.points;
     this.evict();

@@ -26,8 +26,12 @@ function open(page: HTMLElement): void {
   const api = new Api(new URLSearchParams(location.search).get("token") ?? "");
   const notices = new Notices();
   const client = new Client(api, store, notices);
-  const canvas = h("canvas", { tabindex: 0, role: "application",
-    "aria-label": "The cloud. Arrow keys turn it, Shift and arrow keys slide it, Enter paints at its middle; question mark lists all keys." });
+  const canvas = h("canvas", {
+    tabindex: 0,
+    role: "application",
+    "aria-label":
+      "The cloud. Arrow keys turn it, Shift and arrow keys slide it, Enter paints at its middle; question mark lists all keys.",
+  });
   const place = h("main", { class: "stage" }, canvas);
   const stage: Stage = new Stage(canvas, api, {
     moved: () => {
@@ -61,11 +65,20 @@ function open(page: HTMLElement): void {
     const place = await client.nextUncertain();
     const { session } = store.now;
     if (!place || !session) return;
-    stage.camera.visit(place.position, place.normal, Math.max(session.spacing * 150, boxDiagonal(session.bounds) * 0.05));
+    stage.camera.visit(
+      place.position,
+      place.normal,
+      Math.max(session.spacing * 150, boxDiagonal(session.bounds) * 0.05),
+    );
     overlay.setMark(place.position);
   };
   const commands = commandsOf({
-    store, stage, client, brush, outline, pointer,
+    store,
+    stage,
+    client,
+    brush,
+    outline,
+    pointer,
     toggleClip: () => store.set({ clip: toggledClip(store.now) }),
     nextUncertain: () => void nextUncertain(),
     save: () => void save("project"),
@@ -82,19 +95,30 @@ function open(page: HTMLElement): void {
     header(store, (what) => void save(what), client),
     toolbar(store, press),
     place,
-    h("aside", { "aria-label": "Settings" },
-      classesPanel(store, brush), viewPanel(store), trainingPanel(store, client),
-      uncertainPanel(store, () => void nextUncertain()), clipPanel(store, () => store.now.session && boxAround(stage.camera.target, store.now.session.bounds)),
-      runsPanel(store, client)),
-    help);
+    h(
+      "aside",
+      { "aria-label": "Settings" },
+      classesPanel(store, brush),
+      viewPanel(store),
+      trainingPanel(store, client),
+      uncertainPanel(store, () => void nextUncertain()),
+      clipPanel(store, () => store.now.session && boxAround(stage.camera.target, store.now.session.bounds)),
+      runsPanel(store, client),
+    ),
+    help,
+  );
 
   store.watch(["mode", "paintOnTop", "safePalette", "hidden", "clip", "pointSize"], () =>
-    stage.setAppearance(appearanceOf(store.now, css("--stage"))));
+    stage.setAppearance(appearanceOf(store.now, css("--stage"))),
+  );
   store.watch(["mode", "feature", "scale"], () => stage.loader.setValues(valuesQuery(store.now)));
   store.watch(["clip"], () => overlay.setClip(activeClip(store.now)));
-  store.watch(["uncertain"], () => { if (!store.now.uncertain) overlay.setMark(null); });
+  store.watch(["uncertain"], () => {
+    if (!store.now.uncertain) overlay.setMark(null);
+  });
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () =>
-    stage.setAppearance(appearanceOf(store.now, css("--stage"))));
+    stage.setAppearance(appearanceOf(store.now, css("--stage"))),
+  );
   client.start().catch((error: Error) => {
     store.set({ progress: { stage: `Cannot open the cloud: ${error.message}.`, fraction: 0 } });
   });
@@ -103,12 +127,14 @@ function open(page: HTMLElement): void {
 
 /** The space bar, held, lets the left button turn the view. */
 function bindSpace(pointer: Pointer): void {
-  const set = (held: boolean) => (event: KeyboardEvent): void => {
-    if (event.code !== "Space" || (event.target as HTMLElement).matches("button, input, select, summary, a")) return;
-    event.preventDefault();
-    pointer.spaceHeld = held;
-    pointer.hoverSoon();
-  };
+  const set =
+    (held: boolean) =>
+    (event: KeyboardEvent): void => {
+      if (event.code !== "Space" || (event.target as HTMLElement).matches("button, input, select, summary, a")) return;
+      event.preventDefault();
+      pointer.spaceHeld = held;
+      pointer.hoverSoon();
+    };
   addEventListener("keydown", set(true));
   addEventListener("keyup", set(false));
 }

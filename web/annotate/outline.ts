@@ -16,8 +16,10 @@ export class Outline {
   private free = false;
 
   constructor(
-    private readonly stage: Stage, private readonly store: AppStore,
-    private readonly client: Client, private readonly overlay: Overlay
+    private readonly stage: Stage,
+    private readonly store: AppStore,
+    private readonly client: Client,
+    private readonly overlay: Overlay,
   ) {}
 
   get isOpen(): boolean {
@@ -63,11 +65,17 @@ export class Outline {
     const every = Math.ceil(corners.length / MOST_CORNERS);
     const state = this.store.now;
     const stroke: PolygonStroke = {
-      id: crypto.randomUUID(), tool: "polygon", class: state.paintClass,
+      id: crypto.randomUUID(),
+      tool: "polygon",
+      class: state.paintClass,
       polygon: corners.filter((_, i) => i % every === 0).map(([x, y]) => this.stage.toClip(x, y)),
-      matrix: Array.from(this.stage.camera.view.matrix), front_only: state.frontOnly,
-      point_size: this.pointSize(), viewport: [this.stage.width, this.stage.height],
-      protect: state.protect, hidden: [...state.hidden], clip: activeClip(state),
+      matrix: Array.from(this.stage.camera.view.matrix),
+      front_only: state.frontOnly,
+      point_size: this.pointSize(),
+      viewport: [this.stage.width, this.stage.height],
+      protect: state.protect,
+      hidden: [...state.hidden],
+      clip: activeClip(state),
     };
     const options = { class: state.paintClass, protect: state.protect, ...this.stage.visibility };
     for (const chunk of paintPolygon(this.stage.chunks, stroke, options)) this.stage.touch(chunk.info.id, "labels");

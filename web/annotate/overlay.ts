@@ -5,7 +5,20 @@ import { project } from "./geometry";
 import type { Stage } from "./stage";
 import type { Box, Vec3 } from "./types";
 
-const EDGES = [[0, 1], [2, 3], [4, 5], [6, 7], [0, 2], [1, 3], [4, 6], [5, 7], [0, 4], [1, 5], [2, 6], [3, 7]];
+const EDGES = [
+  [0, 1],
+  [2, 3],
+  [4, 5],
+  [6, 7],
+  [0, 2],
+  [1, 3],
+  [4, 6],
+  [5, 7],
+  [0, 4],
+  [1, 5],
+  [2, 6],
+  [3, 7],
+];
 
 export class Overlay {
   private readonly ring = svg("circle", { class: "ring" });
@@ -14,8 +27,16 @@ export class Overlay {
   private readonly box = svg("path", { class: "box" });
   private readonly cross = svg("path", { class: "cross" });
   private readonly mark = svg("circle", { class: "mark", r: 16 });
-  readonly element = svg("svg", { class: "overlay", "aria-hidden": "true" },
-    this.box, this.outline, this.mark, this.cross, this.ring, this.core);
+  readonly element = svg(
+    "svg",
+    { class: "overlay", "aria-hidden": "true" },
+    this.box,
+    this.outline,
+    this.mark,
+    this.cross,
+    this.ring,
+    this.core,
+  );
   private clip: Box | null = null;
   private place: Vec3 | null = null;
 
@@ -50,7 +71,10 @@ export class Overlay {
 
   /** In CSS pixels. */
   setOutline(points: [number, number][], closed: boolean): void {
-    this.outline.setAttribute("d", points.length === 0 ? "" : `M${points.map((p) => p.join(" ")).join("L")}${closed ? "Z" : ""}`);
+    this.outline.setAttribute(
+      "d",
+      points.length === 0 ? "" : `M${points.map((p) => p.join(" ")).join("L")}${closed ? "Z" : ""}`,
+    );
   }
 
   setCross(on: boolean): void {
@@ -83,7 +107,8 @@ export class Overlay {
 
   private boxPath({ min, max }: Box): string {
     const corners = Array.from({ length: 8 }, (_, k) =>
-      this.toScreen([k & 1 ? max[0] : min[0], k & 2 ? max[1] : min[1], k & 4 ? max[2] : min[2]]));
+      this.toScreen([k & 1 ? max[0] : min[0], k & 2 ? max[1] : min[1], k & 4 ? max[2] : min[2]]),
+    );
     return EDGES.map(([a, b]) => {
       const [from, to] = [corners[a], corners[b]];
       return from && to ? `M${from.x.toFixed(1)} ${from.y.toFixed(1)}L${to.x.toFixed(1)} ${to.y.toFixed(1)}` : "";

@@ -68,7 +68,11 @@ class DepthGrid {
   }
 }
 
-function forEachInView(chunk: Chunk, matrix: number[], visit: (i: number, x: number, y: number, w: number) => void): void {
+function forEachInView(
+  chunk: Chunk,
+  matrix: number[],
+  visit: (i: number, x: number, y: number, w: number) => void,
+): void {
   const m = fromCube(matrix, chunk.info.centre, chunk.info.half);
   const p = chunk.positions;
   for (let i = 0; i < chunk.labels.length; ++i) {
@@ -87,7 +91,9 @@ export function paintPolygon(chunks: Chunk[], stroke: PolygonStroke, options: Pa
   if (grid) {
     for (const chunk of chunks) {
       const visible = visibleIn(chunk, options);
-      forEachInView(chunk, stroke.matrix, (i, x, y, w) => { if (visible(i)) grid.add(x, y, w); });
+      forEachInView(chunk, stroke.matrix, (i, x, y, w) => {
+        if (visible(i)) grid.add(x, y, w);
+      });
     }
   }
   return chunks.filter((chunk) => {

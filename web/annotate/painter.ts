@@ -1,8 +1,17 @@
 // Chunks on the graphics card.
 
 import {
-  BufferAttribute, BufferGeometry, Color, DataTexture, NearestFilter, Points, Scene, ShaderMaterial, Vector3,
-  WebGLRenderer, type PerspectiveCamera,
+  BufferAttribute,
+  BufferGeometry,
+  Color,
+  DataTexture,
+  NearestFilter,
+  Points,
+  Scene,
+  ShaderMaterial,
+  Vector3,
+  WebGLRenderer,
+  type PerspectiveCamera,
 } from "three";
 import { rgbOf } from "../shared/colours";
 import type { Chunk } from "./chunk";
@@ -58,10 +67,18 @@ export class Painter {
       vertexShader: VERTEX,
       fragmentShader: FRAGMENT,
       uniforms: {
-        mode: { value: 0 }, paint: { value: true }, palette: { value: [0, 1, 2, 3].map(() => new Vector3()) },
-        ramp: { value: this.ramp }, hidden: { value: new Vector3() }, clipped: { value: false },
-        clipMin: { value: new Vector3() }, clipMax: { value: new Vector3() }, pixels: { value: 1 },
-        spacings: { value: new Float32Array(8) }, size: { value: 1 }, least: { value: 1.5 },
+        mode: { value: 0 },
+        paint: { value: true },
+        palette: { value: [0, 1, 2, 3].map(() => new Vector3()) },
+        ramp: { value: this.ramp },
+        hidden: { value: new Vector3() },
+        clipped: { value: false },
+        clipMin: { value: new Vector3() },
+        clipMax: { value: new Vector3() },
+        pixels: { value: 1 },
+        spacings: { value: new Float32Array(8) },
+        size: { value: 1 },
+        least: { value: 1.5 },
       },
     });
   }
@@ -130,7 +147,8 @@ export class Painter {
     object.scale.setScalar(2 * half);
     object.updateMatrixWorld(true);
     object.onBeforeRender = () => {
-      this.material.uniforms.spacings.value = this.spacings.get(chunk.info.id) ?? new Float32Array(8).fill(chunk.info.spacing);
+      this.material.uniforms.spacings.value =
+        this.spacings.get(chunk.info.id) ?? new Float32Array(8).fill(chunk.info.spacing);
       this.material.uniformsNeedUpdate = true;
     };
     this.onCard.set(chunk.info.id, object);

@@ -8,11 +8,17 @@ export function section(title: string, open: boolean, ...children: Child[]): HTM
 }
 
 /** A labelled check box that follows the state. */
-export function checkbox(label: string, key: string, onChange: (on: boolean) => void): { element: HTMLElement; set(on: boolean): void } {
+export function checkbox(
+  label: string,
+  key: string,
+  onChange: (on: boolean) => void,
+): { element: HTMLElement; set(on: boolean): void } {
   const box = h("input", { type: "checkbox", onchange: () => onChange(box.checked) });
   return {
     element: h("label", { class: "check" }, box, h("span", {}, label), key && h("kbd", {}, key)),
-    set: (on) => { box.checked = on; },
+    set: (on) => {
+      box.checked = on;
+    },
   };
 }
 
@@ -22,7 +28,13 @@ export interface Slider {
 }
 
 /** A labelled slider with its value in words beside it. */
-export function slider(label: string, min: number, max: number, step: number, onInput: (value: number) => void): Slider {
+export function slider(
+  label: string,
+  min: number,
+  max: number,
+  step: number,
+  onInput: (value: number) => void,
+): Slider {
   const input = h("input", { type: "range", min, max, step, oninput: () => onInput(Number(input.value)) });
   const words = h("output", {});
   return {
@@ -47,12 +59,23 @@ export interface Picker<T> {
 export function list<T>(label: string, choices: Choice<T>[], onChange: (value: T) => void): Picker<T> {
   const element = h("div", { class: "row" }, dropdown(label, choices, choices[0]?.value, onChange));
   const select = element.querySelector("select")!;
-  return { element, set: (value) => { select.selectedIndex = choices.findIndex((choice) => choice.value === value); } };
+  return {
+    element,
+    set: (value) => {
+      select.selectedIndex = choices.findIndex((choice) => choice.value === value);
+    },
+  };
 }
 
 /** One of a few, which follows the state and keeps the focus. */
 export function buttons<T>(label: string, choices: Choice<T>[], onChange: (value: T) => void): Picker<T> {
   const element = segmented(label, choices, undefined as T, onChange);
   const inputs = element.querySelectorAll("input");
-  return { element, set: (value) => choices.forEach((choice, i) => { inputs[i].checked = choice.value === value; }) };
+  return {
+    element,
+    set: (value) =>
+      choices.forEach((choice, i) => {
+        inputs[i].checked = choice.value === value;
+      }),
+  };
 }

@@ -20,9 +20,18 @@ function classRow(store: AppStore, id: number, index: number): HTMLElement {
   const swatch = h("span", { class: "swatch", "aria-hidden": "true" });
   if (index === 3) swatch.append(icon("eraser"));
   const counter = h("span", { class: "count" });
-  const eye = h("button", { type: "button", class: "eye", onclick: () => store.set({ hidden: toggled(store.now.hidden, id) }) });
-  const row = h("li", { class: "class" }, h("label", {}, radio, swatch, h("span", { class: "name" }, name), h("kbd", {}, KEYS[index])),
-    counter, index < 3 ? eye : h("span", { class: "eye" }));
+  const eye = h("button", {
+    type: "button",
+    class: "eye",
+    onclick: () => store.set({ hidden: toggled(store.now.hidden, id) }),
+  });
+  const row = h(
+    "li",
+    { class: "class" },
+    h("label", {}, radio, swatch, h("span", { class: "name" }, name), h("kbd", {}, KEYS[index])),
+    counter,
+    index < 3 ? eye : h("span", { class: "eye" }),
+  );
   store.watch(["paintClass", "counts", "hidden", "safePalette", "settings"], () => {
     const { now } = store;
     radio.checked = now.paintClass === id;
@@ -59,7 +68,12 @@ export function classesPanel(store: AppStore, brush: Brush): HTMLElement {
     const [low, high] = [session.spacing, boxDiagonal(session.bounds) / 4];
     size.set(Math.log(radius / low) / Math.log(high / low), length(radius));
   });
-  return section("Paint", true,
+  return section(
+    "Paint",
+    true,
     h("ul", { class: "classes" }, ...[0, 1, 2, NO_CLASS].map((id, index) => classRow(store, id, index))),
-    size.element, protect.element, front.element);
+    size.element,
+    protect.element,
+    front.element,
+  );
 }

@@ -24,12 +24,18 @@ function curves(store: AppStore): HTMLElement {
     const { training } = store.now;
     place.hidden = !training || training.epoch.length < 2;
     if (place.hidden || !training) return;
-    place.replaceChildren(linePlot({
-      x: training.epoch, height: 104, xLabel: "", yLabel: "", lines: [
-        { name: "loss", colour: "#8b8f97", y: training.loss, dashed: true },
-        { name: "held-out accuracy", colour: "#b5342b", y: training.accuracy },
-      ],
-    }));
+    place.replaceChildren(
+      linePlot({
+        x: training.epoch,
+        height: 104,
+        xLabel: "",
+        yLabel: "",
+        lines: [
+          { name: "loss", colour: "#8b8f97", y: training.loss, dashed: true },
+          { name: "held-out accuracy", colour: "#b5342b", y: training.accuracy },
+        ],
+      }),
+    );
   };
   store.watch(["training"], () => {
     if (!drawn) drawn = window.setTimeout(draw, 100);
@@ -57,8 +63,14 @@ export function trainingPanel(store: AppStore, client: Client): HTMLElement {
   const train = button("Train now", () => client.train(), "T");
   const cancel = button("Cancel", () => client.cancel(), "Esc");
   const auto = checkbox("Train after each stroke", "", (on) => client.setSettings({ auto: on }));
-  const classes = buttons<2 | 3>("Classes", [{ value: 2, label: "sharp or not" }, { value: 3, label: "smooth too" }],
-    (chosen) => client.setSettings({ classes: chosen }));
+  const classes = buttons<2 | 3>(
+    "Classes",
+    [
+      { value: 2, label: "sharp or not" },
+      { value: 3, label: "smooth too" },
+    ],
+    (chosen) => client.setSettings({ classes: chosen }),
+  );
   const start = list("Begin with", STARTS, (chosen) => client.setSettings({ start: chosen }));
   store.watch(["training", "runs", "counts", "settings"], () => {
     const { training } = store.now;
@@ -74,8 +86,17 @@ export function trainingPanel(store: AppStore, client: Client): HTMLElement {
     classes.set(settings.classes);
     start.set(settings.start);
   });
-  return section("Training", true, words, bar, curves(store), h("div", { class: "buttons" }, train, cancel),
-    auto.element, classes.element, start.element);
+  return section(
+    "Training",
+    true,
+    words,
+    bar,
+    curves(store),
+    h("div", { class: "buttons" }, train, cancel),
+    auto.element,
+    classes.element,
+    start.element,
+  );
 }
 
 export function uncertainPanel(store: AppStore, next: () => void): HTMLElement {
@@ -84,25 +105,53 @@ export function uncertainPanel(store: AppStore, next: () => void): HTMLElement {
     const { uncertain: place, runs } = store.now;
     words.textContent = place
       ? `Place ${count(place.rank)} of ${count(place.of)}: ${percent(place.confidence)} sure. Paint here what it is.`
-      : runs.length > 0 ? "Goes where the network knows least: paint there." : "After the first training: where to paint next.";
+      : runs.length > 0
+        ? "Goes where the network knows least: paint there."
+        : "After the first training: where to paint next.";
   });
   return section("Uncertain places", true, words, h("div", { class: "buttons" }, button("Next place", next, "N")));
 }
 
 function runRow(run: Run, client: Client): HTMLElement {
   const held = run.held_out_accuracy === null ? "–" : percent(run.held_out_accuracy);
-  return h("tr", { class: run.current && "current" },
-    h("th", { scope: "row", title: run.time && new Date(run.time).toLocaleString() }, String(run.run)), h("td", {}, held),
-    h("td", {}, run.loss === null ? "–" : run.loss.toFixed(3)), h("td", {}, run.painted === null ? "–" : count(run.painted)),
-    h("td", {}, run.current ? "in use" : h("button", {
-      type: "button", class: "link", "aria-label": `Restore run ${run.run}`, onclick: () => client.restore(run.run),
-    }, "restore")));
+  return h(
+    "tr",
+    { class: run.current && "current" },
+    h("th", { scope: "row", title: run.time && new Date(run.time).toLocaleString() }, String(run.run)),
+    h("td", {}, held),
+    h("td", {}, run.loss === null ? "–" : run.loss.toFixed(3)),
+    h("td", {}, run.painted === null ? "–" : count(run.painted)),
+    h(
+      "td",
+      {},
+      run.current
+        ? "in use"
+        : h(
+            "button",
+            {
+              type: "button",
+              class: "link",
+              "aria-label": `Restore run ${run.run}`,
+              onclick: () => client.restore(run.run),
+            },
+            "restore",
+          ),
+    ),
+  );
 }
 
 export function runsPanel(store: AppStore, client: Client): HTMLElement {
   const body = h("tbody", {});
-  const table = h("table", {},
-    h("thead", {}, h("tr", {}, ...["Run", "Held out", "Loss", "Painted", ""].map((name) => h("th", { scope: "col" }, name)))), body);
+  const table = h(
+    "table",
+    {},
+    h(
+      "thead",
+      {},
+      h("tr", {}, ...["Run", "Held out", "Loss", "Painted", ""].map((name) => h("th", { scope: "col" }, name))),
+    ),
+    body,
+  );
   const none = h("p", { class: "summary" }, "None yet.");
   store.watch(["runs"], () => {
     const { runs } = store.now;

@@ -14,16 +14,28 @@ export function viewPanel(store: AppStore): HTMLElement {
   const scale = slider("Scale", 0, 15, 1, (value) => store.set({ scale: value }));
   const size = slider("Points", 0.3, 6, 0.05, (value) => store.set({ pointSize: value }));
   const onTop = checkbox("Painted points on top", "O", (on) => store.set({ paintOnTop: on }));
-  const palette = buttons("Palette", [{ value: false, label: "paper" }, { value: true, label: "colour-blind safe" }],
-    (safePalette) => store.set({ safePalette }));
+  const palette = buttons(
+    "Palette",
+    [
+      { value: false, label: "paper" },
+      { value: true, label: "colour-blind safe" },
+    ],
+    (safePalette) => store.set({ safePalette }),
+  );
   let colours: Picker<ColourMode>;
   let features: Picker<number>;
   store.watch(["session"], () => {
     const names = store.now.session?.features ?? [];
-    colours = list("Colour by", MODES.filter(({ mode }) => modesOf(store).includes(mode))
-      .map(({ mode, name }) => ({ value: mode, label: name })), (mode) => store.set({ mode }));
-    features = list("Feature", names.map((name, i) => ({ value: i, label: FEATURE_NAMES[name] ?? name })),
-      (feature) => store.set({ feature }));
+    colours = list(
+      "Colour by",
+      MODES.filter(({ mode }) => modesOf(store).includes(mode)).map(({ mode, name }) => ({ value: mode, label: name })),
+      (mode) => store.set({ mode }),
+    );
+    features = list(
+      "Feature",
+      names.map((name, i) => ({ value: i, label: FEATURE_NAMES[name] ?? name })),
+      (feature) => store.set({ feature }),
+    );
     scale.element.querySelector("input")!.max = String((store.now.session?.scales.length ?? 1) - 1);
     lists.replaceChildren(colours.element, features.element);
   });
@@ -50,19 +62,25 @@ export function toggledClip({ clip, session }: { clip: Clip | null; session: { b
 
 export function clipPanel(store: AppStore, around: () => Box | null): HTMLElement {
   const use = checkbox("Show only what is in the box", "C", () => store.set({ clip: toggledClip(store.now) }));
-  const change = (side: "min" | "max", axis: number) => (at: number): void => {
-    const { session, clip } = store.now;
-    if (!session) return;
-    const { min, max } = session.bounds;
-    const box = structuredClone(clip?.box ?? session.bounds);
-    box[side][axis] = min[axis] + at * (max[axis] - min[axis]);
-    if (side === "min") box.max[axis] = Math.max(box.max[axis], box.min[axis]);
-    else box.min[axis] = Math.min(box.min[axis], box.max[axis]);
-    store.set({ clip: { on: true, box } });
-  };
-  const sides = ["x", "y", "z"].flatMap((name, axis) => (["min", "max"] as const).map((side) => ({
-    axis, side, slider: slider(`${name} ${side === "min" ? "from" : "to"}`, 0, 1, 0.001, change(side, axis)),
-  })));
+  const change =
+    (side: "min" | "max", axis: number) =>
+    (at: number): void => {
+      const { session, clip } = store.now;
+      if (!session) return;
+      const { min, max } = session.bounds;
+      const box = structuredClone(clip?.box ?? session.bounds);
+      box[side][axis] = min[axis] + at * (max[axis] - min[axis]);
+      if (side === "min") box.max[axis] = Math.max(box.max[axis], box.min[axis]);
+      else box.min[axis] = Math.min(box.min[axis], box.max[axis]);
+      store.set({ clip: { on: true, box } });
+    };
+  const sides = ["x", "y", "z"].flatMap((name, axis) =>
+    (["min", "max"] as const).map((side) => ({
+      axis,
+      side,
+      slider: slider(`${name} ${side === "min" ? "from" : "to"}`, 0, 1, 0.001, change(side, axis)),
+    })),
+  );
   store.watch(["clip", "session"], () => {
     const { clip, session } = store.now;
     use.set(clip?.on ?? false);
@@ -73,18 +91,30 @@ export function clipPanel(store: AppStore, around: () => Box | null): HTMLElemen
       control.set((value - min[axis]) / Math.max(max[axis] - min[axis], 1e-12), length(value + session.origin[axis]));
     }
   });
-  return section("Clipping box", false, use.element, ...sides.map((side) => side.slider.element),
-    h("div", { class: "buttons" },
+  return section(
+    "Clipping box",
+    false,
+    use.element,
+    ...sides.map((side) => side.slider.element),
+    h(
+      "div",
+      { class: "buttons" },
       button("Round the middle of the view", () => {
         const box = around();
         if (box) store.set({ clip: { on: true, box } });
       }),
-      button("All", () => store.set({ clip: null }))));
+      button("All", () => store.set({ clip: null })),
+    ),
+  );
 }
 
 /** A cube about a place, a sixth of the cloud wide. */
 export function boxAround(place: number[], bounds: Box): Box {
   const half = boxDiagonal(bounds) / 12;
-  const side = (sign: number): [number, number, number] => [place[0] + sign * half, place[1] + sign * half, place[2] + sign * half];
+  const side = (sign: number): [number, number, number] => [
+    place[0] + sign * half,
+    place[1] + sign * half,
+    place[2] + sign * half,
+  ];
   return { min: side(-1), max: side(1) };
 }

@@ -33,8 +33,12 @@ export class Pointer {
   spaceHeld = false;
 
   constructor(
-    private readonly stage: Stage, private readonly store: AppStore, private readonly brush: Brush,
-    private readonly outline: Outline, private readonly overlay: Overlay, private readonly on: PointerEvents
+    private readonly stage: Stage,
+    private readonly store: AppStore,
+    private readonly brush: Brush,
+    private readonly outline: Outline,
+    private readonly overlay: Overlay,
+    private readonly on: PointerEvents,
   ) {
     const { canvas } = stage;
     canvas.addEventListener("pointerdown", (e) => this.press(e));
@@ -192,8 +196,15 @@ export class Pointer {
     const { tool, radius, session, progress } = this.store.now;
     const navigates = tool === "navigate" || this.spaceHeld;
     this.stage.canvas.dataset.cursor =
-      this.drag === "turn" || this.drag === "slide" ? "grabbing" : navigates ? "grab" : tool === "brush" ? "brush" : "cross";
-    const shown = session && !progress && tool === "brush" && !this.spaceHeld && (this.drag === null || this.drag === "paint");
+      this.drag === "turn" || this.drag === "slide"
+        ? "grabbing"
+        : navigates
+          ? "grab"
+          : tool === "brush"
+            ? "brush"
+            : "cross";
+    const shown =
+      session && !progress && tool === "brush" && !this.spaceHeld && (this.drag === null || this.drag === "paint");
     if (!shown || !(this.inside || this.byKeys)) return this.overlay.setRing(null, 0, "");
     const [x, y] = this.byKeys ? [this.stage.width / 2, this.stage.height / 2] : this.last;
     const picked = this.stage.pick(x, y);

@@ -37,7 +37,11 @@ export class Stage {
   width = 1;
   height = 1;
 
-  constructor(readonly canvas: HTMLCanvasElement, api: Api, on: StageEvents) {
+  constructor(
+    readonly canvas: HTMLCanvasElement,
+    api: Api,
+    on: StageEvents,
+  ) {
     this.painter = new Painter(canvas);
     this.camera = new Camera(() => {
       this.lastMove = performance.now();
@@ -75,7 +79,9 @@ export class Stage {
     const old = this.look;
     this.look = look;
     this.painter.setAppearance(look);
-    const same = (["paintOnTop", "hidden", "clip", "pointSize", "background"] as const).every((key) => old?.[key] === look[key]);
+    const same = (["paintOnTop", "hidden", "clip", "pointSize", "background"] as const).every(
+      (key) => old?.[key] === look[key],
+    );
     if (same && old.mode !== "labels" && look.mode !== "labels") this.recolour();
     else this.redraw();
   }
@@ -130,7 +136,11 @@ export class Stage {
     if (this.stale) this.begin();
     const todo = this.nextTakes();
     const milliseconds = this.painter.draw(todo, this.camera.three, this.camera.pixels);
-    if (milliseconds !== null) this.budget.learn(todo.reduce((sum, take) => sum + take.points, 0), milliseconds);
+    if (milliseconds !== null)
+      this.budget.learn(
+        todo.reduce((sum, take) => sum + take.points, 0),
+        milliseconds,
+      );
     if (this.next < this.takes.length || this.touched.size > 0) this.schedule();
   }
 
@@ -199,8 +209,14 @@ export class Stage {
   pick(x: number, y: number, reach = 8): Picked | null {
     const [cx, cy] = this.toClip(x, y);
     return pick(this.drawn, {
-      ...this.visibility, matrix: this.camera.view.matrix, x: cx, y: cy, reach,
-      halfWidth: this.width / 2, halfHeight: this.height / 2, pixels: this.camera.pixels,
+      ...this.visibility,
+      matrix: this.camera.view.matrix,
+      x: cx,
+      y: cy,
+      reach,
+      halfWidth: this.width / 2,
+      halfHeight: this.height / 2,
+      pixels: this.camera.pixels,
     });
   }
 

@@ -19,8 +19,12 @@ export class Notices {
 
   private add(text: string, kind: string, milliseconds: number): void {
     for (const old of [...this.element.children]) if (old.firstChild?.textContent === text) old.remove();
-    const notice = h("p", { class: kind }, h("span", {}, text),
-      h("button", { type: "button", "aria-label": "Close", onclick: () => notice.remove() }, "×"));
+    const notice = h(
+      "p",
+      { class: kind },
+      h("span", {}, text),
+      h("button", { type: "button", "aria-label": "Close", onclick: () => notice.remove() }, "×"),
+    );
     this.element.append(notice);
     window.setTimeout(() => notice.remove(), milliseconds);
   }
@@ -29,10 +33,21 @@ export class Notices {
 /** Asks in a dialogue; false if it is dismissed. */
 export function ask(question: string, yes: string): Promise<boolean> {
   return new Promise((done) => {
-    const dialog = h("dialog", { class: "question", "aria-label": yes },
-      h("form", { method: "dialog" }, h("p", {}, question),
-        h("div", { class: "buttons" }, h("button", { class: "plain", value: "" }, "Leave it"),
-          h("button", { class: "plain strong", value: "yes" }, yes))));
+    const dialog = h(
+      "dialog",
+      { class: "question", "aria-label": yes },
+      h(
+        "form",
+        { method: "dialog" },
+        h("p", {}, question),
+        h(
+          "div",
+          { class: "buttons" },
+          h("button", { class: "plain", value: "" }, "Leave it"),
+          h("button", { class: "plain strong", value: "yes" }, yes),
+        ),
+      ),
+    );
     dialog.addEventListener("close", () => {
       dialog.remove();
       done(dialog.returnValue === "yes");
@@ -53,17 +68,49 @@ const MOUSE: [string, string][] = [
 ];
 
 const list = (title: string, rows: [string[], string][]): HTMLElement =>
-  h("section", {}, h("h3", {}, title), h("dl", {}, ...rows.flatMap(([keys, name]) => [
-    h("dt", {}, ...keys.map((key) => h("kbd", {}, key.replace("Arrow", "")))), h("dd", {}, name)])));
+  h(
+    "section",
+    {},
+    h("h3", {}, title),
+    h(
+      "dl",
+      {},
+      ...rows.flatMap(([keys, name]) => [
+        h("dt", {}, ...keys.map((key) => h("kbd", {}, key.replace("Arrow", "")))),
+        h("dd", {}, name),
+      ]),
+    ),
+  );
 
 /** The help: what each key and button does. */
 export function helpDialog(commands: Command[]): HTMLDialogElement {
   const groups = [...new Set(commands.map((command) => command.group))];
-  const dialog = h("dialog", { class: "help", "aria-labelledby": "help-title" },
-    h("form", { method: "dialog" }, h("h2", { id: "help-title" }, "Keys"), h("button", { class: "plain" }, "Close", h("kbd", {}, "Esc"))),
-    h("div", { class: "columns" },
-      ...groups.map((group) => list(group, commands.filter((c) => c.group === group).map((c) => [c.keys, c.name]))),
-      list("Mouse and fingers", MOUSE.map(([key, name]) => [[key], name]))));
-  dialog.addEventListener("click", (event) => { if (event.target === dialog) dialog.close(); });
+  const dialog = h(
+    "dialog",
+    { class: "help", "aria-labelledby": "help-title" },
+    h(
+      "form",
+      { method: "dialog" },
+      h("h2", { id: "help-title" }, "Keys"),
+      h("button", { class: "plain" }, "Close", h("kbd", {}, "Esc")),
+    ),
+    h(
+      "div",
+      { class: "columns" },
+      ...groups.map((group) =>
+        list(
+          group,
+          commands.filter((c) => c.group === group).map((c) => [c.keys, c.name]),
+        ),
+      ),
+      list(
+        "Mouse and fingers",
+        MOUSE.map(([key, name]) => [[key], name]),
+      ),
+    ),
+  );
+  dialog.addEventListener("click", (event) => {
+    if (event.target === dialog) dialog.close();
+  });
   return dialog;
 }

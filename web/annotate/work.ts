@@ -17,7 +17,10 @@ export class WorkQueue {
   private readonly jobs: { path: string; body: unknown }[] = [];
   private running = false;
 
-  constructor(private readonly api: Api, private readonly on: WorkEvents) {}
+  constructor(
+    private readonly api: Api,
+    private readonly on: WorkEvents,
+  ) {}
 
   get isBusy(): boolean {
     return this.running;
@@ -57,7 +60,7 @@ export class WorkQueue {
 
   /** A stroke carries its own name and may be sent again; an undo may not. */
   private async send(path: string, body: unknown): Promise<Painted> {
-    for (let attempt = 1;; ++attempt) {
+    for (let attempt = 1; ; ++attempt) {
       try {
         return await this.api.post<Painted>(path, body);
       } catch (error) {

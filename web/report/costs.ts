@@ -44,35 +44,69 @@ export function costPlot(groups: Group[], names: string[], unit: string): HTMLEl
   const x = (v: number): number => NAME + ((Math.log10(v) - low) / (high - low)) * (WIDTH - NAME - 20);
   const height = rows.length * ROW + 30;
   const ticks = Array.from({ length: high - low + 1 }, (_, k) => low + k);
-  const plot = svg("svg", { viewBox: `0 0 ${WIDTH} ${height}`, role: "img", "aria-label": `${unit}, logarithmic` },
+  const plot = svg(
+    "svg",
+    { viewBox: `0 0 ${WIDTH} ${height}`, role: "img", "aria-label": `${unit}, logarithmic` },
     ...ticks.flatMap((t) => [
       svg("line", { x1: x(10 ** t), x2: x(10 ** t), y1: 2, y2: height - 26, class: "rule" }),
-      svg("text", { x: x(10 ** t), y: height - 12, "text-anchor": "middle", class: "tick" },
-        Math.abs(t) < 4 ? String(Number((10 ** t).toPrecision(1))) : `1e${t}`),
+      svg(
+        "text",
+        { x: x(10 ** t), y: height - 12, "text-anchor": "middle", class: "tick" },
+        Math.abs(t) < 4 ? String(Number((10 ** t).toPrecision(1))) : `1e${t}`,
+      ),
     ]),
     ...rows.map(({ group, costs }, row) => {
       const y = row * ROW + ROW / 2 + 2;
       const known = costs.filter(({ spread }) => spread && spread.mean > 0);
       const places = known.map(({ spread }) => x(spread!.mean));
-      return svg("g", {},
+      return svg(
+        "g",
+        {},
         svg("text", { x: NAME - 10, y: y + 4, "text-anchor": "end", class: "row-name" }, titleOf(group.variant)),
         svg("line", { x1: Math.min(...places), x2: Math.max(...places), y1: y, y2: y, class: "base" }),
         ...known.map(({ name, spread }) =>
-          svg("path", { d: SHAPES[name](x(spread!.mean), y), class: `stage ${name}` },
-            svg("title", {}, `${titleOf(group.variant)}, ${costName(name)}: ${formatCost(spread!.mean)} ${unit}`))));
-    }));
-  const key = used.length > 1 && h("figcaption", { class: "key" }, ...used.map((name) =>
-    h("span", {}, svg("svg", { viewBox: "0 0 14 14", width: 14, height: 14, "aria-hidden": "true" },
-      svg("path", { d: SHAPES[name](7, 7), class: `stage ${name}` })), costName(name))));
+          svg(
+            "path",
+            { d: SHAPES[name](x(spread!.mean), y), class: `stage ${name}` },
+            svg("title", {}, `${titleOf(group.variant)}, ${costName(name)}: ${formatCost(spread!.mean)} ${unit}`),
+          ),
+        ),
+      );
+    }),
+  );
+  const key =
+    used.length > 1 &&
+    h(
+      "figcaption",
+      { class: "key" },
+      ...used.map((name) =>
+        h(
+          "span",
+          {},
+          svg(
+            "svg",
+            { viewBox: "0 0 14 14", width: 14, height: 14, "aria-hidden": "true" },
+            svg("path", { d: SHAPES[name](7, 7), class: `stage ${name}` }),
+          ),
+          costName(name),
+        ),
+      ),
+    );
   return h("figure", { class: "wide" }, key, plot);
 }
 
 /** The same in numbers. */
 export function costTable(caption: string, groups: Group[]): HTMLElement {
   const names = [...STAGES, "joules"].filter((name) => groups.some((g) => costOf(g, name) !== null));
-  return plainTable(caption, ["Method", ...names.map((n) => costName(n) + (n === "joules" ? "" : ", s"))],
-    groups.map((group) => [titleOf(group.variant), ...names.map((name) => {
-      const spread = costOf(group, name);
-      return spread ? formatCost(spread.mean) : "–";
-    })]));
+  return plainTable(
+    caption,
+    ["Method", ...names.map((n) => costName(n) + (n === "joules" ? "" : ", s"))],
+    groups.map((group) => [
+      titleOf(group.variant),
+      ...names.map((name) => {
+        const spread = costOf(group, name);
+        return spread ? formatCost(spread.mean) : "–";
+      }),
+    ]),
+  );
 }

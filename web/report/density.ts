@@ -26,7 +26,12 @@ export function filledAbove(grid: Grid, level: number): string {
   let path = "";
   for (let j = 0; j + 1 < grid.side; ++j) {
     for (let i = 0; i + 1 < grid.side; ++i) {
-      const corners = [[i, j], [i + 1, j], [i + 1, j + 1], [i, j + 1]];
+      const corners = [
+        [i, j],
+        [i + 1, j],
+        [i + 1, j + 1],
+        [i, j + 1],
+      ];
       if (corners.every(([x, y]) => at(x, y) < level)) continue;
       const outline: string[] = [];
       corners.forEach(([x, y], k) => {

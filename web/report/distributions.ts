@@ -5,7 +5,14 @@ import { h, svg } from "../shared/dom";
 import { densityOf, filledAbove } from "./density";
 import { gallery } from "./look";
 import {
-  METRIC_NAMES, cloudsOf, formatScore, positiveName, titleOf, type CloudRow, type Group, type Metric,
+  METRIC_NAMES,
+  cloudsOf,
+  formatScore,
+  positiveName,
+  titleOf,
+  type CloudRow,
+  type Group,
+  type Metric,
 } from "./study";
 
 const SIDE = 190;
@@ -31,14 +38,21 @@ function isoF1(f: number): string {
 function frame(): SVGElement[] {
   const ticks = [0, 0.5, 1].flatMap((t) => [
     svg("text", { x: xOf(t), y: SIDE - 8, "text-anchor": "middle", class: "tick" }, String(t).replace("0.", ".")),
-    svg("text", { x: PAD.left - 5, y: yOf(t) + 3.5, "text-anchor": "end", class: "tick" }, String(t).replace("0.", ".")),
+    svg(
+      "text",
+      { x: PAD.left - 5, y: yOf(t) + 3.5, "text-anchor": "end", class: "tick" },
+      String(t).replace("0.", "."),
+    ),
   ]);
   return [
     svg("rect", { x: PAD.left, y: PAD.top, width: INNER, height: INNER, class: "frame" }),
     ...[0.2, 0.4, 0.6, 0.8].flatMap((f) => [
       svg("path", { d: isoF1(f), class: "iso" }),
-      svg("text", { x: xOf(1) - 3, y: yOf(f / (2 - f)) - 2, "text-anchor": "end", class: "iso-name" },
-        `F1 ${String(f).slice(1)}`),
+      svg(
+        "text",
+        { x: xOf(1) - 3, y: yOf(f / (2 - f)) - 2, "text-anchor": "end", class: "iso-name" },
+        `F1 ${String(f).slice(1)}`,
+      ),
     ]),
     ...ticks,
   ];
@@ -51,36 +65,64 @@ function density(clouds: CloudRow[], colour: string): SVGElement | null {
   const most = Math.max(...grid.values);
   const cell = (INNER * (1 + 2 * MARGIN)) / (GRID - 1);
   const place = `translate(${xOf(-MARGIN)} ${yOf(-MARGIN)}) scale(${cell} ${-cell})`;
-  return svg("g", { transform: place, fill: colour, "fill-opacity": 0.13 },
-    ...[0.15, 0.4, 0.7].map((share) => svg("path", { d: filledAbove(grid, share * most) })));
+  return svg(
+    "g",
+    { transform: place, fill: colour, "fill-opacity": 0.13 },
+    ...[0.15, 0.4, 0.7].map((share) => svg("path", { d: filledAbove(grid, share * most) })),
+  );
 }
 
 let clips = 0;
 
 /** A panel for each method: recall over precision, a dot for each cloud, their density behind. */
 export function scatterPanels(groups: Group[], mixed: boolean): HTMLElement {
-  return h("div", { class: "panels" }, ...groups.map((group) => {
-    const clouds = cloudsOf(group);
-    const colour = seriesColour(group.index);
-    const clip = `clip${++clips}`;
-    const name = titleOf(group.variant) + (mixed ? ` (${positiveName(group.positive)})` : "");
-    return h("figure", {},
-      h("figcaption", {}, name),
-      svg("svg", { viewBox: `0 0 ${SIDE} ${SIDE}`, role: "img", "aria-label":
-        `${name}: recall over precision of ${clouds.length} clouds` },
-        svg("clipPath", { id: clip }, svg("rect", { x: PAD.left, y: PAD.top, width: INNER, height: INNER })),
-        ...frame(),
-        svg("g", { "clip-path": `url(#${clip})` }, density(clouds, colour)),
-        ...clouds.map((cloud) =>
-          svg("circle", {
-            cx: xOf(cloud.precision), cy: yOf(cloud.recall), r: 3.2, fill: colour,
-            class: gallery.has(group.set, cloud.name) ? "dot look" : "dot",
-            onclick: () => gallery.has(group.set, cloud.name) &&
-              gallery.show(group.set, cloud.name, group.study, group.variant.id),
+  return h(
+    "div",
+    { class: "panels" },
+    ...groups.map((group) => {
+      const clouds = cloudsOf(group);
+      const colour = seriesColour(group.index);
+      const clip = `clip${++clips}`;
+      const name = titleOf(group.variant) + (mixed ? ` (${positiveName(group.positive)})` : "");
+      return h(
+        "figure",
+        {},
+        h("figcaption", {}, name),
+        svg(
+          "svg",
+          {
+            viewBox: `0 0 ${SIDE} ${SIDE}`,
+            role: "img",
+            "aria-label": `${name}: recall over precision of ${clouds.length} clouds`,
           },
-            svg("title", {}, `${cloud.name}: precision ${formatScore(cloud.precision)}, ` +
-              `recall ${formatScore(cloud.recall)}, MCC ${formatScore(cloud.mcc)}`)))));
-  }));
+          svg("clipPath", { id: clip }, svg("rect", { x: PAD.left, y: PAD.top, width: INNER, height: INNER })),
+          ...frame(),
+          svg("g", { "clip-path": `url(#${clip})` }, density(clouds, colour)),
+          ...clouds.map((cloud) =>
+            svg(
+              "circle",
+              {
+                cx: xOf(cloud.precision),
+                cy: yOf(cloud.recall),
+                r: 3.2,
+                fill: colour,
+                class: gallery.has(group.set, cloud.name) ? "dot look" : "dot",
+                onclick: () =>
+                  gallery.has(group.set, cloud.name) &&
+                  gallery.show(group.set, cloud.name, group.study, group.variant.id),
+              },
+              svg(
+                "title",
+                {},
+                `${cloud.name}: precision ${formatScore(cloud.precision)}, ` +
+                  `recall ${formatScore(cloud.recall)}, MCC ${formatScore(cloud.mcc)}`,
+              ),
+            ),
+          ),
+        ),
+      );
+    }),
+  );
 }
 
 const BINS = 25;
@@ -105,23 +147,54 @@ export function histograms(groups: Group[], metric: Metric, mixed: boolean): HTM
     const middle = sorted.length / 2;
     const median = (sorted[Math.floor(middle)] + sorted[Math.ceil(middle) - 1]) / 2;
     const title = titleOf(group.variant) + (mixed ? `, ${positiveName(group.positive)}` : "");
-    return svg("g", {},
+    return svg(
+      "g",
+      {},
       svg("text", { x: name - 10, y: base - 4, "text-anchor": "end", class: "row-name" }, title),
       svg("line", { x1: name, x2: WIDTH - 14, y1: base, y2: base, class: "base" }),
-      ...counts.map((count, bin) => count > 0 && svg("rect", {
-        x: name + (bin * inner) / BINS + 0.5, width: inner / BINS - 1,
-        y: base - (count / most) * (ROW - 10), height: (count / most) * (ROW - 10),
-        fill: seriesColour(group.index), "fill-opacity": 0.75,
-      }, svg("title", {}, `${title}: ${count} of ${sorted.length} clouds, ${METRIC_NAMES[metric]} ` +
-        `${formatScore(low + ((1 - low) * bin) / BINS)} to ${formatScore(low + ((1 - low) * (bin + 1)) / BINS)}`))),
-      svg("line", { x1: x(median), x2: x(median), y1: base - ROW + 8, y2: base + 3, class: "median" },
-        svg("title", {}, `${title}: median ${formatScore(median)}`)));
+      ...counts.map(
+        (count, bin) =>
+          count > 0 &&
+          svg(
+            "rect",
+            {
+              x: name + (bin * inner) / BINS + 0.5,
+              width: inner / BINS - 1,
+              y: base - (count / most) * (ROW - 10),
+              height: (count / most) * (ROW - 10),
+              fill: seriesColour(group.index),
+              "fill-opacity": 0.75,
+            },
+            svg(
+              "title",
+              {},
+              `${title}: ${count} of ${sorted.length} clouds, ${METRIC_NAMES[metric]} ` +
+                `${formatScore(low + ((1 - low) * bin) / BINS)} to ${formatScore(low + ((1 - low) * (bin + 1)) / BINS)}`,
+            ),
+          ),
+      ),
+      svg(
+        "line",
+        { x1: x(median), x2: x(median), y1: base - ROW + 8, y2: base + 3, class: "median" },
+        svg("title", {}, `${title}: median ${formatScore(median)}`),
+      ),
+    );
   });
-  return h("figure", { class: "wide" },
-    svg("svg", { viewBox: `0 0 ${WIDTH} ${height}`, role: "img", "aria-label": `${METRIC_NAMES[metric]} over the clouds` },
+  return h(
+    "figure",
+    { class: "wide" },
+    svg(
+      "svg",
+      { viewBox: `0 0 ${WIDTH} ${height}`, role: "img", "aria-label": `${METRIC_NAMES[metric]} over the clouds` },
       ...ticks.flatMap((t) => [
         svg("line", { x1: x(t), x2: x(t), y1: 4, y2: height - 22, class: "rule" }),
-        svg("text", { x: x(t), y: height - 8, "text-anchor": "middle", class: "tick" }, String(Number(t.toFixed(1))).replace("0.", ".")),
+        svg(
+          "text",
+          { x: x(t), y: height - 8, "text-anchor": "middle", class: "tick" },
+          String(Number(t.toFixed(1))).replace("0.", "."),
+        ),
       ]),
-      ...lines));
+      ...lines,
+    ),
+  );
 }

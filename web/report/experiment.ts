@@ -6,7 +6,15 @@ import { learningCurves } from "./curves";
 import { histograms, scatterPanels } from "./distributions";
 import { overviewTable, setTable } from "./scores_table";
 import {
-  METRICS, METRIC_NAMES, groupsOf, positiveName, sourcesOf, type Group, type Metric, type Statistic, type Study,
+  METRICS,
+  METRIC_NAMES,
+  groupsOf,
+  positiveName,
+  sourcesOf,
+  type Group,
+  type Metric,
+  type Statistic,
+  type Study,
 } from "./study";
 import { sweep } from "./sweep";
 
@@ -17,12 +25,17 @@ const STATISTICS: { value: Statistic; label: string }[] = [
 
 /** The command that made the study, to copy. */
 function commandLine(command: string): HTMLElement {
-  const button = h("button", {
-    type: "button", class: "copy",
-    onclick: () => {
-      void navigator.clipboard?.writeText(command).then(() => (button.textContent = "copied"));
+  const button = h(
+    "button",
+    {
+      type: "button",
+      class: "copy",
+      onclick: () => {
+        void navigator.clipboard?.writeText(command).then(() => (button.textContent = "copied"));
+      },
     },
-  }, "copy");
+    "copy",
+  );
   return h("div", { class: "command" }, h("code", { tabindex: 0 }, command), button);
 }
 
@@ -47,21 +60,45 @@ function onSet(study: Study, groups: Group[], set: string, statistic: Statistic)
   const counts = mixed ? "" : ` Counts as edge: ${positiveName(own[0]?.positive ?? "sharp")}.`;
   return [
     own.some((g) => g.results.some((r) => r[statistic]))
-      ? part("Scores", `${size} clouds; ${statistic === "median" ? "the median over them of each score" :
-          "the scores of their summed counts"}.${counts} The best of each column is marked. Open a row to ` +
-          `see its clouds.${seedsNote(own)}${sourcesOf(study)}`, setTable(study, groups, set, statistic)) : null,
+      ? part(
+          "Scores",
+          `${size} clouds; ${
+            statistic === "median" ? "the median over them of each score" : "the scores of their summed counts"
+          }.${counts} The best of each column is marked. Open a row to ` +
+            `see its clouds.${seedsNote(own)}${sourcesOf(study)}`,
+          setTable(study, groups, set, statistic),
+        )
+      : null,
     scored.length > 0 && !sweeps
-      ? part("Precision and recall", "Precision to the right, recall upwards, a dot for each cloud, their " +
-          "density behind, curves of equal F1.", scatterPanels(scored, mixed)) : null,
+      ? part(
+          "Precision and recall",
+          "Precision to the right, recall upwards, a dot for each cloud, their " +
+            "density behind, curves of equal F1.",
+          scatterPanels(scored, mixed),
+        )
+      : null,
     !sweeps && (scored.length > 0 || seconds)
-      ? h("div", { class: "pair" },
-          scored.length > 0 && part("MCC over the clouds", "How many clouds got which score; the stroke is " +
-            "the median.", histograms(scored, "mcc", mixed)),
+      ? h(
+          "div",
+          { class: "pair" },
+          scored.length > 0 &&
+            part(
+              "MCC over the clouds",
+              "How many clouds got which score; the stroke is " + "the median.",
+              histograms(scored, "mcc", mixed),
+            ),
           seconds && part("Seconds", "All clouds of the set together; logarithmic.", seconds),
-          joules && part("Joules per 1000 points", "Logarithmic.", joules)) : null,
+          joules && part("Joules per 1000 points", "Logarithmic.", joules),
+        )
+      : null,
     seconds || joules
-      ? h("details", {}, h("summary", {}, "Seconds and joules in numbers"),
-          costTable(`${study.title}: costs on ${set}`, own)) : null,
+      ? h(
+          "details",
+          {},
+          h("summary", {}, "Seconds and joules in numbers"),
+          costTable(`${study.title}: costs on ${set}`, own),
+        )
+      : null,
   ];
 }
 
@@ -75,8 +112,10 @@ export function experimentSection(study: Study, number: number): HTMLElement {
   let set = sets[0];
   const overview = h("div", { class: "overview" });
   const detail = h("div");
-  const curve = typeof study.x_label === "string" && groups.some((g) => typeof g.variant.x === "number")
-    ? sweep(study, groups, () => statistic) : null;
+  const curve =
+    typeof study.x_label === "string" && groups.some((g) => typeof g.variant.x === "number")
+      ? sweep(study, groups, () => statistic)
+      : null;
   const drawOverview = (): void => {
     if (sets.length > 1 && scored) overview.replaceChildren(overviewTable(study, groups, statistic, metric));
   };
@@ -89,13 +128,32 @@ export function experimentSection(study: Study, number: number): HTMLElement {
     curve?.draw();
   };
   draw();
-  const statistics = segmented("Over the clouds", STATISTICS, statistic, (s) => { statistic = s; draw(); });
-  const metrics = dropdown("Score", METRICS.map((m) => ({ value: m, label: METRIC_NAMES[m] })), metric,
-    (m) => { metric = m; drawOverview(); });
-  const setSwitch = segmented("Set", sets.map((s) => ({ value: s, label: s })), set,
-    (s) => { set = s; drawDetail(); });
+  const statistics = segmented("Over the clouds", STATISTICS, statistic, (s) => {
+    statistic = s;
+    draw();
+  });
+  const metrics = dropdown(
+    "Score",
+    METRICS.map((m) => ({ value: m, label: METRIC_NAMES[m] })),
+    metric,
+    (m) => {
+      metric = m;
+      drawOverview();
+    },
+  );
+  const setSwitch = segmented(
+    "Set",
+    sets.map((s) => ({ value: s, label: s })),
+    set,
+    (s) => {
+      set = s;
+      drawDetail();
+    },
+  );
   const curves = learningCurves(study);
-  return h("section", { class: "experiment", id, "aria-labelledby": `${id}-title` },
+  return h(
+    "section",
+    { class: "experiment", id, "aria-labelledby": `${id}-title` },
     h("h2", { id: `${id}-title` }, study.title),
     study.question && h("p", { class: "question" }, study.question),
     study.command && commandLine(study.command),
@@ -104,6 +162,11 @@ export function experimentSection(study: Study, number: number): HTMLElement {
     sets.length > 1 && scored && overview,
     sets.length > 1 && h("div", { class: "controls set-switch" }, setSwitch),
     detail,
-    curves.length > 0 && part("Learning", "The mean over the seeds, bars of one standard deviation. A click " +
-      "on a name hides its line.", h("div", { class: "pair" }, ...curves)));
+    curves.length > 0 &&
+      part(
+        "Learning",
+        "The mean over the seeds, bars of one standard deviation. A click " + "on a name hides its line.",
+        h("div", { class: "pair" }, ...curves),
+      ),
+  );
 }

@@ -6,7 +6,14 @@ import { dropdown, h, segmented } from "../shared/dom";
 import { PointViewer, type Place } from "../shared/viewer";
 import { gallery as door } from "./look";
 import {
-  formatCount, formatScore, positiveName, titleOf, type PackedScene, type Report, type Result, type Study,
+  formatCount,
+  formatScore,
+  positiveName,
+  titleOf,
+  type PackedScene,
+  type Report,
+  type Result,
+  type Study,
 } from "./study";
 
 type Mode = "classes" | "errors";
@@ -36,26 +43,30 @@ function exhibitOf(scene: PackedScene, studies: Study[], study: number): Exhibit
   return {
     scene,
     truth: classesOf(scene.truth, scene.shown),
-    predictions: scene.predictions.filter((p) => p.study === study).map((p) => {
-      // Counted twice, with and without smooth edges: as the set counts.
-      const own = results.filter((r) =>
-        r.variant === p.variant && r.set === scene.set && (r.seed ?? null) === p.seed);
-      const counts = sets.find((s) => s.name === scene.set)?.positive ?? "sharp";
-      const result = own.find((r) => (r.positive ?? counts) === counts) ?? own[0];
-      return {
-        title: titleOf(variants.find((v) => v.id === p.variant)!),
-        result,
-        positive: result?.positive ?? counts,
-        classes: classesOf(p.classes, scene.shown),
-      };
-    }),
+    predictions: scene.predictions
+      .filter((p) => p.study === study)
+      .map((p) => {
+        // Counted twice, with and without smooth edges: as the set counts.
+        const own = results.filter(
+          (r) => r.variant === p.variant && r.set === scene.set && (r.seed ?? null) === p.seed,
+        );
+        const counts = sets.find((s) => s.name === scene.set)?.positive ?? "sharp";
+        const result = own.find((r) => (r.positive ?? counts) === counts) ?? own[0];
+        return {
+          title: titleOf(variants.find((v) => v.id === p.variant)!),
+          result,
+          positive: result?.positive ?? counts,
+          classes: classesOf(p.classes, scene.shown),
+        };
+      }),
   };
 }
 
 class Gallery {
   readonly element = h("section", { class: "gallery", id: "clouds", "aria-labelledby": "clouds-title" });
   private readonly canvas = h("canvas", {
-    tabindex: 0, "aria-label": "The cloud in 3D. Arrow keys turn it, plus and minus zoom, 0 shows all.",
+    tabindex: 0,
+    "aria-label": "The cloud in 3D. Arrow keys turn it, plus and minus zoom, 0 shows all.",
   });
   private readonly labels = h("div", { class: "labels" });
   private readonly stage = h("div", { class: "stage" }, this.canvas, this.labels);
@@ -80,9 +91,18 @@ class Gallery {
     this.study = this.scene.predictions[0].study;
     this.element.append(
       h("h2", { id: "clouds-title" }, "The clouds"),
-      h("p", { class: "question" }, "What the labels say and what the methods say, point by point. Drag to " +
-        "turn all of them; the wheel zooms once a cloud has been clicked."),
-      this.bar, this.chips, this.stage, this.key, this.note);
+      h(
+        "p",
+        { class: "question" },
+        "What the labels say and what the methods say, point by point. Drag to " +
+          "turn all of them; the wheel zooms once a cloud has been clicked.",
+      ),
+      this.bar,
+      this.chips,
+      this.stage,
+      this.key,
+      this.note,
+    );
     this.open(this.scene, true);
     const find = (set: string, cloud: string): PackedScene | undefined =>
       report.scenes.find((s) => s.set === set && s.cloud === cloud);
@@ -104,9 +124,13 @@ class Gallery {
     this.exhibit = exhibitOf(scene, this.report.studies, this.study);
     const titles = this.exhibit.predictions.map((p) => p.title);
     const kept = titles.filter((title) => this.chosen.has(title));
-    this.chosen = new Set(kept.length > 0 && !afresh ? kept : titles.slice(0, matchMedia("(max-width: 640px)").matches ? 3 : 2));
+    this.chosen = new Set(
+      kept.length > 0 && !afresh ? kept : titles.slice(0, matchMedia("(max-width: 640px)").matches ? 3 : 2),
+    );
     this.viewer.setCloud({
-      positions: positionsOf(scene.positions), normals: bytesOf(scene.normals), view: scene.view,
+      positions: positionsOf(scene.positions),
+      normals: bytesOf(scene.normals),
+      view: scene.view,
     });
     this.viewer.setPointSize(this.size);
     this.drawControls();
@@ -119,36 +143,96 @@ class Gallery {
     const clouds = scenes.filter((s) => s.set === this.scene.set);
     const owners = [...new Set(this.scene.predictions.map((p) => p.study))];
     const palettes: { value: Palette; label: string }[] = [
-      { value: "paper", label: "of the paper" }, { value: "safe", label: "colour-blind safe" },
+      { value: "paper", label: "of the paper" },
+      { value: "safe", label: "colour-blind safe" },
     ];
     const modes: { value: Mode; label: string }[] = [
-      { value: "classes", label: "classes" }, { value: "errors", label: "errors" },
+      { value: "classes", label: "classes" },
+      { value: "errors", label: "errors" },
     ];
-    this.colours = segmented("Colours", palettes, this.palette, (p) => { this.palette = p; this.drawPanels(); });
+    this.colours = segmented("Colours", palettes, this.palette, (p) => {
+      this.palette = p;
+      this.drawPanels();
+    });
     this.bar.replaceChildren(
-      dropdown("Set", sets.map((s) => ({ value: s, label: s })), this.scene.set,
-        (set) => this.open(scenes.find((s) => s.set === set)!, false)),
-      dropdown("Cloud", clouds.map((s) => ({ value: s, label: s.cloud })), this.scene, (s) => this.open(s, false)),
-      ...(owners.length < 2 ? [] : [dropdown("Experiment",
-        owners.map((i) => ({ value: i, label: studies[i].title })), this.study,
-        (i) => { this.study = i; this.open(this.scene, true); })]),
-      segmented("Show", modes, this.mode, (mode) => { this.mode = mode; this.drawPanels(); }),
+      dropdown(
+        "Set",
+        sets.map((s) => ({ value: s, label: s })),
+        this.scene.set,
+        (set) => this.open(scenes.find((s) => s.set === set)!, false),
+      ),
+      dropdown(
+        "Cloud",
+        clouds.map((s) => ({ value: s, label: s.cloud })),
+        this.scene,
+        (s) => this.open(s, false),
+      ),
+      ...(owners.length < 2
+        ? []
+        : [
+            dropdown(
+              "Experiment",
+              owners.map((i) => ({ value: i, label: studies[i].title })),
+              this.study,
+              (i) => {
+                this.study = i;
+                this.open(this.scene, true);
+              },
+            ),
+          ]),
+      segmented("Show", modes, this.mode, (mode) => {
+        this.mode = mode;
+        this.drawPanels();
+      }),
       this.colours,
-      h("label", { class: "slider" }, h("span", {}, "Point size"),
-        h("input", { type: "range", min: 0.3, max: 3, step: 0.05, value: this.size, oninput: (e: InputEvent) => {
-          this.size = Number((e.target as HTMLInputElement).value);
-          this.viewer.setPointSize(this.size);
-        } })),
-      h("button", { type: "button", class: "plain", title: "show all of the cloud, as at first", onclick: () => this.viewer.reset() }, "Reset"));
-    this.chips.replaceChildren(h("legend", {}, "Beside the truth"), ...this.exhibit.predictions.map(({ title }) =>
-      h("label", {},
-        h("input", { type: "checkbox", checked: this.chosen.has(title), onchange: (e: Event) => {
-          const box = e.target as HTMLInputElement;
-          if (box.checked && this.chosen.size >= MOST_PANELS) box.checked = false;
-          else if (box.checked) this.chosen.add(title);
-          else this.chosen.delete(title);
-          this.drawPanels();
-        } }), h("span", {}, title))));
+      h(
+        "label",
+        { class: "slider" },
+        h("span", {}, "Point size"),
+        h("input", {
+          type: "range",
+          min: 0.3,
+          max: 3,
+          step: 0.05,
+          value: this.size,
+          oninput: (e: InputEvent) => {
+            this.size = Number((e.target as HTMLInputElement).value);
+            this.viewer.setPointSize(this.size);
+          },
+        }),
+      ),
+      h(
+        "button",
+        {
+          type: "button",
+          class: "plain",
+          title: "show all of the cloud, as at first",
+          onclick: () => this.viewer.reset(),
+        },
+        "Reset",
+      ),
+    );
+    this.chips.replaceChildren(
+      h("legend", {}, "Beside the truth"),
+      ...this.exhibit.predictions.map(({ title }) =>
+        h(
+          "label",
+          {},
+          h("input", {
+            type: "checkbox",
+            checked: this.chosen.has(title),
+            onchange: (e: Event) => {
+              const box = e.target as HTMLInputElement;
+              if (box.checked && this.chosen.size >= MOST_PANELS) box.checked = false;
+              else if (box.checked) this.chosen.add(title);
+              else this.chosen.delete(title);
+              this.drawPanels();
+            },
+          }),
+          h("span", {}, title),
+        ),
+      ),
+    );
   }
 
   private drawPanels(): void {
@@ -166,9 +250,14 @@ class Gallery {
       h("div", { class: "label" }, h("b", {}, "Truth")),
       ...shown.map(({ title, result }) => {
         const mcc = result?.clouds.find((c) => c.name === scene.cloud)?.mcc;
-        return h("div", { class: "label" }, h("b", {}, title),
-          mcc !== undefined && h("span", {}, ` MCC ${formatScore(mcc)}`));
-      }));
+        return h(
+          "div",
+          { class: "label" },
+          h("b", {}, title),
+          mcc !== undefined && h("span", {}, ` MCC ${formatScore(mcc)}`),
+        );
+      }),
+    );
     this.drawKey(errors ? ERROR_PALETTE : CLASS_PALETTES[this.palette], positive);
     this.layOut();
   }
@@ -176,11 +265,15 @@ class Gallery {
   private drawKey(meanings: Meaning[], positive: string): void {
     const { scene, truth } = this.exhibit;
     const unlabelled = truth.includes(3);
-    this.key.replaceChildren(...meanings.filter((m) => unlabelled || m.name !== "no label").map((m) =>
-      h("span", {}, h("span", { class: "swatch", style: `background:${m.colour}` }), m.name)));
-    const sampled = scene.shown < scene.points
-      ? `${formatCount(scene.shown)} of its ${formatCount(scene.points)} points, an even sample`
-      : `all ${formatCount(scene.points)} points`;
+    this.key.replaceChildren(
+      ...meanings
+        .filter((m) => unlabelled || m.name !== "no label")
+        .map((m) => h("span", {}, h("span", { class: "swatch", style: `background:${m.colour}` }), m.name)),
+    );
+    const sampled =
+      scene.shown < scene.points
+        ? `${formatCount(scene.shown)} of its ${formatCount(scene.points)} points, an even sample`
+        : `all ${formatCount(scene.points)} points`;
     const counts = this.mode === "errors" ? ` Counts as edge: ${positiveName(positive)}.` : "";
     this.note.textContent = `${scene.file}: ${sampled}. Scores count every point.${counts}`;
   }
@@ -196,7 +289,10 @@ class Gallery {
     const across = (width - GAP * (columns - 1)) / columns;
     const down = Math.round(Math.min(Math.max(across, 150), 480));
     const places: Place[] = Array.from({ length: count }, (_, i) => ({
-      x: (i % columns) * (across + GAP), y: Math.floor(i / columns) * (down + GAP), width: across, height: down,
+      x: (i % columns) * (across + GAP),
+      y: Math.floor(i / columns) * (down + GAP),
+      width: across,
+      height: down,
     }));
     const height = rows * down + GAP * (rows - 1);
     this.stage.style.height = `${height}px`;
@@ -214,7 +310,11 @@ export function gallery(report: Report): HTMLElement | null {
   try {
     return new Gallery(report).element;
   } catch {
-    return h("section", { class: "gallery", id: "clouds" }, h("h2", {}, "The clouds"),
-      h("p", { class: "note" }, "This browser offers no WebGL, which drawing the clouds needs."));
+    return h(
+      "section",
+      { class: "gallery", id: "clouds" },
+      h("h2", {}, "The clouds"),
+      h("p", { class: "note" }, "This browser offers no WebGL, which drawing the clouds needs."),
+    );
   }
 }

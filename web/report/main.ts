@@ -12,9 +12,12 @@ function masthead(report: Report): HTMLElement {
     [...new Set(studies.map((s) => s.version).filter(Boolean))].map((v) => `pcednet ${v}`).join(", "),
     [...new Set(studies.map((s) => s.machine).filter(Boolean))].join("; "),
   ].filter(Boolean);
-  return h("header", { class: "masthead" },
+  return h(
+    "header",
+    { class: "masthead" },
     h("h1", {}, studies.length === 1 ? studies[0].title : "A study of edges in point clouds"),
-    h("p", {}, facts.join(" · ")));
+    h("p", {}, facts.join(" · ")),
+  );
 }
 
 function show(report: Report): void {
@@ -24,11 +27,25 @@ function show(report: Report): void {
   const link = (section: HTMLElement, name: string): HTMLElement =>
     h("li", {}, h("a", { href: `#${section.id}` }, name));
   page.replaceChildren(
-    h("nav", { "aria-label": "Experiments" }, h("ul", {},
-      clouds && link(clouds, "Clouds"),
-      ...sections.map((section, i) => link(section, report.studies[i].title)))),
-    h("main", {}, masthead(report), clouds, ...sections,
-      h("footer", {}, "Made by pcednet report. This page holds all its data and loads nothing.")));
+    h(
+      "nav",
+      { "aria-label": "Experiments" },
+      h(
+        "ul",
+        {},
+        clouds && link(clouds, "Clouds"),
+        ...sections.map((section, i) => link(section, report.studies[i].title)),
+      ),
+    ),
+    h(
+      "main",
+      {},
+      masthead(report),
+      clouds,
+      ...sections,
+      h("footer", {}, "Made by pcednet report. This page holds all its data and loads nothing."),
+    ),
+  );
 }
 
 const data: unknown = JSON.parse(document.getElementById("data")!.textContent!);

@@ -2,8 +2,21 @@
 
 import { h } from "../shared/dom";
 import {
-  METRICS, METRIC_NAMES, cloudsOf, expectedOf, formatCount, formatScore, positiveName, scoreOf,
-  titleOf, type Group, type Metric, type Scores, type Spread, type Statistic, type Study,
+  METRICS,
+  METRIC_NAMES,
+  cloudsOf,
+  expectedOf,
+  formatCount,
+  formatScore,
+  positiveName,
+  scoreOf,
+  titleOf,
+  type Group,
+  type Metric,
+  type Scores,
+  type Spread,
+  type Statistic,
+  type Study,
 } from "./study";
 import { gallery } from "./look";
 import { swatch } from "./marks";
@@ -20,15 +33,22 @@ interface Column<Row> {
 
 /** A table whose column heads sort it. `details` are further rows behind a row's first cell. */
 function sortableTable<Row>(
-  caption: string, columns: Column<Row>[], rows: Row[], after: (row: Row) => HTMLTableRowElement[] = () => []
+  caption: string,
+  columns: Column<Row>[],
+  rows: Row[],
+  after: (row: Row) => HTMLTableRowElement[] = () => [],
 ): HTMLTableElement {
   const body = h("tbody");
-  const lines = new Map(rows.map((row) => [
-    row, [h("tr", {}, ...columns.map((column) => column.cell(row))), ...after(row)],
-  ]));
+  const lines = new Map(
+    rows.map((row) => [row, [h("tr", {}, ...columns.map((column) => column.cell(row))), ...after(row)]]),
+  );
   const heads = columns.map((column) =>
-    h("th", { scope: "col", title: column.title },
-      h("button", { type: "button", onclick: () => sortBy(column) }, column.name)));
+    h(
+      "th",
+      { scope: "col", title: column.title },
+      h("button", { type: "button", onclick: () => sortBy(column) }, column.name),
+    ),
+  );
   function sortBy(column: Column<Row>): void {
     const head = heads[columns.indexOf(column)];
     const first = column.descending ? "descending" : "ascending";
@@ -58,8 +78,12 @@ function scoreCell(spread: Spread | null, best: boolean, room: boolean): HTMLTab
   const deviation = spread && spread.deviation !== null ? `±${formatScore(spread.deviation)}` : "";
   const after = room && h("span", { class: "deviation" }, deviation);
   if (!spread) return h("td", { class: "number none" }, "–", after);
-  return h("td", { class: best ? "number best" : "number", "data-value": spread.mean },
-    h("span", { class: "value" }, formatScore(spread.mean)), after);
+  return h(
+    "td",
+    { class: best ? "number best" : "number", "data-value": spread.mean },
+    h("span", { class: "value" }, formatScore(spread.mean)),
+    after,
+  );
 }
 
 /** The largest mean among groups that are comparable: of the same positive class. */
@@ -76,25 +100,49 @@ const plainCell = (text: string, room: boolean): HTMLTableCellElement =>
 
 function cloudLines(group: Group, extra: number, room: boolean): HTMLTableRowElement[] {
   return cloudsOf(group).map((cloud) =>
-    h("tr", { class: "cloud", hidden: true },
-      h("th", { scope: "row" }, !gallery.has(group.set, cloud.name) ? cloud.name
-        : h("button", {
-          type: "button", class: "look", title: "look at it",
-          onclick: () => gallery.show(group.set, cloud.name, group.study, group.variant.id),
-        }, cloud.name)),
+    h(
+      "tr",
+      { class: "cloud", hidden: true },
+      h(
+        "th",
+        { scope: "row" },
+        !gallery.has(group.set, cloud.name)
+          ? cloud.name
+          : h(
+              "button",
+              {
+                type: "button",
+                class: "look",
+                title: "look at it",
+                onclick: () => gallery.show(group.set, cloud.name, group.study, group.variant.id),
+              },
+              cloud.name,
+            ),
+      ),
       ...Array.from({ length: extra }, (_, i) =>
-        h("td", { class: "number" }, i === extra - 1 ? `${formatCount(cloud.points)} pts` : "")),
-      ...METRICS.map((m) => plainCell(formatScore(cloud[m]), room))));
+        h("td", { class: "number" }, i === extra - 1 ? `${formatCount(cloud.points)} pts` : ""),
+      ),
+      ...METRICS.map((m) => plainCell(formatScore(cloud[m]), room)),
+    ),
+  );
 }
 
-function publishedLine(scores: Partial<Scores>, source: string | undefined, extra: number, room: boolean): HTMLTableRowElement {
-  return h("tr", { class: "published", title: source },
+function publishedLine(
+  scores: Partial<Scores>,
+  source: string | undefined,
+  extra: number,
+  room: boolean,
+): HTMLTableRowElement {
+  return h(
+    "tr",
+    { class: "published", title: source },
     h("th", { scope: "row" }, "published"),
     ...Array.from({ length: extra }, () => h("td")),
     ...METRICS.map((m) => {
       const value = scores[m];
       return plainCell(value === undefined ? "" : formatScore(value), room);
-    }));
+    }),
+  );
 }
 
 /** All scores of every variant on `set`; a row opens into its clouds. */
@@ -113,38 +161,54 @@ export function setTable(study: Study, groups: Group[], set: string, statistic: 
       ...cloudLines(group, extra, room),
     ]);
   });
-  const columns: Column<Group>[] = [{
-    name: "Method",
-    key: (g) => titleOf(g.variant),
-    cell: (g) => {
-      const clouds = after.get(g)!.filter((row) => row.className === "cloud");
-      const toggle = h("button", {
-        type: "button", class: "open", "aria-expanded": "false", title: g.variant.note,
-        onclick: () => {
-          const open = toggle.getAttribute("aria-expanded") === "false";
-          toggle.setAttribute("aria-expanded", String(open));
-          for (const row of clouds) row.hidden = !open;
-        },
-      }, h("span", { class: "named" }, swatch(g.index), titleOf(g.variant)));
-      return h("th", { scope: "row" }, toggle);
+  const columns: Column<Group>[] = [
+    {
+      name: "Method",
+      key: (g) => titleOf(g.variant),
+      cell: (g) => {
+        const clouds = after.get(g)!.filter((row) => row.className === "cloud");
+        const toggle = h(
+          "button",
+          {
+            type: "button",
+            class: "open",
+            "aria-expanded": "false",
+            title: g.variant.note,
+            onclick: () => {
+              const open = toggle.getAttribute("aria-expanded") === "false";
+              toggle.setAttribute("aria-expanded", String(open));
+              for (const row of clouds) row.hidden = !open;
+            },
+          },
+          h("span", { class: "named" }, swatch(g.index), titleOf(g.variant)),
+        );
+        return h("th", { scope: "row" }, toggle);
+      },
     },
-  }];
+  ];
   if (mixed) {
     columns.push({
-      name: "Counts as edge", key: (g) => g.positive,
+      name: "Counts as edge",
+      key: (g) => g.positive,
       cell: (g) => h("td", { class: "words" }, positiveName(g.positive)),
     });
   }
   if (counted) {
     columns.push({
-      name: "Weights", key: (g) => g.variant.parameters ?? null,
-      cell: (g) => h("td", { class: "number quiet" },
-        typeof g.variant.parameters === "number" ? formatCount(g.variant.parameters) : "–"),
+      name: "Weights",
+      key: (g) => g.variant.parameters ?? null,
+      cell: (g) =>
+        h(
+          "td",
+          { class: "number quiet" },
+          typeof g.variant.parameters === "number" ? formatCount(g.variant.parameters) : "–",
+        ),
     });
   }
   for (const metric of METRICS) {
     columns.push({
-      name: METRIC_NAMES[metric], descending: true,
+      name: METRIC_NAMES[metric],
+      descending: true,
       key: (g) => scoreOf(g, statistic, metric)?.mean ?? null,
       cell: (g) => scoreCell(scoreOf(g, statistic, metric), isBest(rows, g, statistic, metric), room),
     });
@@ -154,7 +218,11 @@ export function setTable(study: Study, groups: Group[], set: string, statistic: 
 
 /** One score of every variant on every set. */
 export function overviewTable(study: Study, groups: Group[], statistic: Statistic, metric: Metric): HTMLElement {
-  interface Row { group: Group; label: string; bySet: Map<string, Group> }
+  interface Row {
+    group: Group;
+    label: string;
+    bySet: Map<string, Group>;
+  }
   const rows: Row[] = [];
   for (const variant of study.variants) {
     const own = groups.filter((g) => g.variant === variant);
@@ -167,14 +235,18 @@ export function overviewTable(study: Study, groups: Group[], statistic: Statisti
     }
   }
   const room = haveSpread(groups);
-  const columns: Column<Row>[] = [{
-    name: "Method", key: (row) => row.label,
-    cell: (row) => h("th", { scope: "row" }, h("span", { class: "named" }, swatch(row.group.index), row.label)),
-  }];
+  const columns: Column<Row>[] = [
+    {
+      name: "Method",
+      key: (row) => row.label,
+      cell: (row) => h("th", { scope: "row" }, h("span", { class: "named" }, swatch(row.group.index), row.label)),
+    },
+  ];
   for (const set of study.sets) {
     if (!groups.some((g) => g.set === set.name)) continue;
     columns.push({
-      name: set.name, descending: true,
+      name: set.name,
+      descending: true,
       title: `${set.clouds.length} clouds; counts as edge: ${positiveName(set.positive ?? "sharp")}`,
       key: (row) => {
         const group = row.bySet.get(set.name);
@@ -199,8 +271,19 @@ export function overviewTable(study: Study, groups: Group[], statistic: Statisti
 
 /** A plain table of texts. */
 export function plainTable(caption: string, heads: string[], rows: string[][]): HTMLElement {
-  return scroller(h("table", {}, h("caption", {}, caption),
-    h("thead", {}, h("tr", {}, ...heads.map((name) => h("th", { scope: "col" }, name)))),
-    h("tbody", {}, ...rows.map(([name, ...cells]) =>
-      h("tr", {}, h("th", { scope: "row" }, name), ...cells.map((cell) => h("td", { class: "number" }, cell)))))));
+  return scroller(
+    h(
+      "table",
+      {},
+      h("caption", {}, caption),
+      h("thead", {}, h("tr", {}, ...heads.map((name) => h("th", { scope: "col" }, name)))),
+      h(
+        "tbody",
+        {},
+        ...rows.map(([name, ...cells]) =>
+          h("tr", {}, h("th", { scope: "row" }, name), ...cells.map((cell) => h("td", { class: "number" }, cell))),
+        ),
+      ),
+    ),
+  );
 }

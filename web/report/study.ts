@@ -3,7 +3,12 @@
 export const METRICS = ["precision", "recall", "mcc", "f1", "accuracy", "iou"] as const;
 export type Metric = (typeof METRICS)[number];
 export const METRIC_NAMES: Record<Metric, string> = {
-  precision: "Precision", recall: "Recall", mcc: "MCC", f1: "F1", accuracy: "Accuracy", iou: "IoU",
+  precision: "Precision",
+  recall: "Recall",
+  mcc: "MCC",
+  f1: "F1",
+  accuracy: "Accuracy",
+  iou: "IoU",
 };
 
 export type Scores = Record<Metric, number>;
@@ -110,8 +115,7 @@ export interface Group {
   results: Result[];
 }
 
-export const positiveName = (positive: string): string =>
-  positive === "edge" ? "sharp + smooth" : positive;
+export const positiveName = (positive: string): string => (positive === "edge" ? "sharp + smooth" : positive);
 
 export const titleOf = (variant: Variant): string => variant.title ?? variant.id;
 
@@ -119,11 +123,16 @@ export function groupsOf(study: Study, number: number): Group[] {
   const groups = new Map<string, Group>();
   for (const result of study.results) {
     const index = study.variants.findIndex((v) => v.id === result.variant);
-    const positive =
-      result.positive ?? study.sets.find((s) => s.name === result.set)?.positive ?? "sharp";
+    const positive = result.positive ?? study.sets.find((s) => s.name === result.set)?.positive ?? "sharp";
     const key = JSON.stringify([index, result.set, positive]);
-    const group = groups.get(key) ??
-      { study: number, variant: study.variants[index], index, set: result.set, positive, results: [] };
+    const group = groups.get(key) ?? {
+      study: number,
+      variant: study.variants[index],
+      index,
+      set: result.set,
+      positive,
+      results: [],
+    };
     group.results.push(result);
     groups.set(key, group);
   }
@@ -157,12 +166,16 @@ export function sourcesOf(study: Study): string {
 }
 
 export const expectedOf = (study: Study, group: Group): Expected | undefined =>
-  study.expected?.find((e) => e.variant === group.variant.id && e.set === group.set &&
-    (e.positive ?? group.positive) === group.positive);
+  study.expected?.find(
+    (e) => e.variant === group.variant.id && e.set === group.set && (e.positive ?? group.positive) === group.positive,
+  );
 
 /** .856, 1.000, -.120 */
 export function formatScore(value: number): string {
-  return value.toFixed(3).replace(/^(-?)0\./, "$1.").replace(/^-(\.000)$/, "$1");
+  return value
+    .toFixed(3)
+    .replace(/^(-?)0\./, "$1.")
+    .replace(/^-(\.000)$/, "$1");
 }
 
 export function formatCost(value: number): string {
@@ -172,4 +185,6 @@ export function formatCost(value: number): string {
 }
 
 export const formatCount = (value: number): string =>
-  Math.round(value).toString().replace(/\B(?=(\d{3})+$)/g, "\u202f");
+  Math.round(value)
+    .toString()
+    .replace(/\B(?=(\d{3})+$)/g, "\u202f");

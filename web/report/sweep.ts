@@ -4,8 +4,18 @@ import { seriesColour } from "../shared/colours";
 import { dropdown, h } from "../shared/dom";
 import { linePlot, type Line } from "../shared/lines";
 import {
-  METRICS, METRIC_NAMES, costOf, positiveName, scoreOf, titleOf, type Group, type Metric, type Spread,
-  type Statistic, type Study, type Variant,
+  METRICS,
+  METRIC_NAMES,
+  costOf,
+  positiveName,
+  scoreOf,
+  titleOf,
+  type Group,
+  type Metric,
+  type Spread,
+  type Statistic,
+  type Study,
+  type Variant,
 } from "./study";
 import { STAGES, costName } from "./costs";
 
@@ -48,7 +58,15 @@ function plotOf(study: Study, groups: Group[], statistic: Statistic, measure: Me
       return group ? measured(group, statistic, measure) : null;
     });
     const both = groups.some((g) => g.set === set && seriesOf(g.variant) === own && g.positive !== positive);
-    const parts = [series.length > 1 && lineName(own, members.map((g) => titleOf(g.variant))), sets.length > 1 && set, both && positiveName(positive)].filter(Boolean);
+    const parts = [
+      series.length > 1 &&
+        lineName(
+          own,
+          members.map((g) => titleOf(g.variant)),
+        ),
+      sets.length > 1 && set,
+      both && positiveName(positive),
+    ].filter(Boolean);
     const many = series.length > 1;
     return {
       name: parts.join(", ") || nameOf(measure),
@@ -61,20 +79,30 @@ function plotOf(study: Study, groups: Group[], statistic: Statistic, measure: Me
   const values = lines.flatMap((line) => line.y).filter((v): v is number => v !== null);
   const isCost = !(METRICS as readonly string[]).includes(measure);
   return linePlot({
-    x, lines, points: true, height: 320,
-    xLabel: study.x_label!, yLabel: nameOf(measure) + (isCost ? "" : ` (${statistic})`),
-    logX: spreads(x), logY: isCost && values.length > 0 && spreads(values),
+    x,
+    lines,
+    points: true,
+    height: 320,
+    xLabel: study.x_label!,
+    yLabel: nameOf(measure) + (isCost ? "" : ` (${statistic})`),
+    logX: spreads(x),
+    logY: isCost && values.length > 0 && spreads(values),
   });
 }
 
 /** The plot, and what to plot. */
-export function sweep(study: Study, groups: Group[], statistic: () => Statistic): { element: HTMLElement; draw: () => void } {
+export function sweep(
+  study: Study,
+  groups: Group[],
+  statistic: () => Statistic,
+): { element: HTMLElement; draw: () => void } {
   const swept = groups.filter((g) => typeof g.variant.x === "number");
   const measures: Measure[] = [...METRICS, ...STAGES, "joules"].filter((measure) =>
     swept.some((g) => {
       const spread = measured(g, "median", measure);
       return spread !== null && ((METRICS as readonly string[]).includes(measure) || spread.mean > 0);
-    }));
+    }),
+  );
   const preferred = study.experiment === "energy" ? "joules" : study.experiment === "timing" ? "classify" : "mcc";
   let measure = measures.includes(preferred) ? preferred : measures[0];
   const place = h("div");
@@ -82,9 +110,14 @@ export function sweep(study: Study, groups: Group[], statistic: () => Statistic)
     if (measure) place.replaceChildren(plotOf(study, swept, statistic(), measure));
   };
   draw();
-  const picker = dropdown("Show", measures.map((m) => ({ value: m, label: nameOf(m) })), measure, (m) => {
-    measure = m;
-    draw();
-  });
+  const picker = dropdown(
+    "Show",
+    measures.map((m) => ({ value: m, label: nameOf(m) })),
+    measure,
+    (m) => {
+      measure = m;
+      draw();
+    },
+  );
   return { element: h("div", {}, h("div", { class: "controls" }, picker), place), draw };
 }

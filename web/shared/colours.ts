@@ -33,8 +33,18 @@ export const ERROR_PALETTE: Meaning[] = [
 
 /** Colours for methods in charts, readable on light and on dark paper. */
 const SERIES = [
-  "#b5342b", "#2f78b7", "#2d936c", "#d08a14", "#8657a8", "#4aa5b8",
-  "#c25c96", "#7d8a2e", "#8a6a4f", "#6c7686", "#e0703a", "#4c5fc4",
+  "#b5342b",
+  "#2f78b7",
+  "#2d936c",
+  "#d08a14",
+  "#8657a8",
+  "#4aa5b8",
+  "#c25c96",
+  "#7d8a2e",
+  "#8a6a4f",
+  "#6c7686",
+  "#e0703a",
+  "#4c5fc4",
 ];
 
 export const seriesColour = (index: number): string => SERIES[index % SERIES.length];

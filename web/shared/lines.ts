@@ -68,8 +68,14 @@ const compact = (v: number): string =>
 /** A label of no letters takes no room. */
 function axis(label: string, size: number): uPlot.Axis {
   return {
-    label: label || undefined, labelSize: label ? 20 : 0, labelFont: `12px ${css("--sans")}`, font: `11px ${css("--sans")}`, size,
-    stroke: css("--ink-2"), grid: { stroke: css("--line"), width: 1 }, ticks: { show: false },
+    label: label || undefined,
+    labelSize: label ? 20 : 0,
+    labelFont: `12px ${css("--sans")}`,
+    font: `11px ${css("--sans")}`,
+    size,
+    stroke: css("--ink-2"),
+    grid: { stroke: css("--line"), width: 1 },
+    ticks: { show: false },
     values: (_, splits) => splits.map((v) => (v === null ? "" : compact(v))),
   };
 }
@@ -85,20 +91,30 @@ function options(plot: LinePlot, width: number): uPlot.Options {
     width,
     height: plot.height ?? 260,
     scales: {
-      x: { time: false, distr: plot.logX ? 3 : 1, range: (_, min, max) => plot.logX
-        ? [min / (max / min) ** 0.04, max * (max / min) ** 0.04]
-        : [min - 0.03 * (max - min || 1), max + 0.03 * (max - min || 1)] },
+      x: {
+        time: false,
+        distr: plot.logX ? 3 : 1,
+        range: (_, min, max) =>
+          plot.logX
+            ? [min / (max / min) ** 0.04, max * (max / min) ** 0.04]
+            : [min - 0.03 * (max - min || 1), max + 0.03 * (max - min || 1)],
+      },
       y: { distr: plot.logY ? 3 : 1 },
     },
     axes: [xAxis, axis(plot.yLabel, plot.yLabel ? 46 : 30)],
     series: [
       { label: plot.xLabel, value: (_, v) => (v === null ? "" : compact(v)) },
-      ...plot.lines.map((line): uPlot.Series => ({
-        label: line.name, stroke: line.colour, width: line.faint ? 1 : 2,
-        dash: line.dashed ? [5, 4] : undefined, spanGaps: true,
-        points: { show: plot.points ?? false, size: 6, fill: line.colour },
-        value: (_, v) => (v === null || v === undefined ? "" : Number(v.toPrecision(3)).toString()),
-      })),
+      ...plot.lines.map(
+        (line): uPlot.Series => ({
+          label: line.name,
+          stroke: line.colour,
+          width: line.faint ? 1 : 2,
+          dash: line.dashed ? [5, 4] : undefined,
+          spanGaps: true,
+          points: { show: plot.points ?? false, size: 6, fill: line.colour },
+          value: (_, v) => (v === null || v === undefined ? "" : Number(v.toPrecision(3)).toString()),
+        }),
+      ),
     ],
     cursor: { drag: { x: false, y: false } },
     plugins: [drawErrors(plot.lines)],
@@ -107,7 +123,14 @@ function options(plot: LinePlot, width: number): uPlot.Options {
 
 /** A plot as wide as its place, drawn anew for another width or another theme. */
 export function linePlot(plot: LinePlot): HTMLElement {
-  const place = h("div", { class: "plot", role: "img", "aria-label": plot.yLabel && plot.xLabel ? `${plot.yLabel} over ${plot.xLabel}` : plot.lines.map((line) => line.name).join(", ") });
+  const place = h("div", {
+    class: "plot",
+    role: "img",
+    "aria-label":
+      plot.yLabel && plot.xLabel
+        ? `${plot.yLabel} over ${plot.xLabel}`
+        : plot.lines.map((line) => line.name).join(", "),
+  });
   let drawn: uPlot | undefined;
   let width = 0;
   const draw = (): void => {

@@ -1,8 +1,16 @@
 // Several colourings of one cloud side by side, seen by one camera.
 
 import {
-  BufferAttribute, BufferGeometry, Color, PerspectiveCamera, Points, Scene, ShaderMaterial,
-  Spherical, Vector3, WebGLRenderer,
+  BufferAttribute,
+  BufferGeometry,
+  Color,
+  PerspectiveCamera,
+  Points,
+  Scene,
+  ShaderMaterial,
+  Spherical,
+  Vector3,
+  WebGLRenderer,
 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { rgbOf, type Meaning } from "./colours";
@@ -199,16 +207,34 @@ export class PointViewer {
 
   private onKey(event: KeyboardEvent): void {
     const arm = this.camera.position.clone().sub(this.controls.target);
-    const turn = new Spherical().setFromVector3(new Vector3(arm.y, arm.z, arm.x));  // z is up
+    const turn = new Spherical().setFromVector3(new Vector3(arm.y, arm.z, arm.x)); // z is up
     switch (event.key) {
-      case "ArrowLeft": turn.theta -= 0.1; break;
-      case "ArrowRight": turn.theta += 0.1; break;
-      case "ArrowUp": turn.phi -= 0.1; break;
-      case "ArrowDown": turn.phi += 0.1; break;
-      case "+": case "=": turn.radius /= 1.15; break;
-      case "-": turn.radius *= 1.15; break;
-      case "Home": case "0": this.reset(); event.preventDefault(); return;
-      default: return;
+      case "ArrowLeft":
+        turn.theta -= 0.1;
+        break;
+      case "ArrowRight":
+        turn.theta += 0.1;
+        break;
+      case "ArrowUp":
+        turn.phi -= 0.1;
+        break;
+      case "ArrowDown":
+        turn.phi += 0.1;
+        break;
+      case "+":
+      case "=":
+        turn.radius /= 1.15;
+        break;
+      case "-":
+        turn.radius *= 1.15;
+        break;
+      case "Home":
+      case "0":
+        this.reset();
+        event.preventDefault();
+        return;
+      default:
+        return;
     }
     event.preventDefault();
     turn.makeSafe();
