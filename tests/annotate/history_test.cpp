@@ -294,7 +294,7 @@ TEST_F(RunHistory, SaysSoIfARunIsNotWhatItWas) {
   edit_journal("\"loss\":" + loss, "\"loss\":0.5");
   open();
   restore(1);
-  EXPECT_NE(problems().find("run 1 is not quite what it was"), std::string::npos);
+  EXPECT_NE(problems().find("run 1 cannot be reproduced exactly"), std::string::npos);
 }
 
 }  // namespace

@@ -319,7 +319,7 @@ test("shows the features at any scale, and only what is in the box", async () =>
   await bottom.press("Home"); // nothing but the lowest points
   await settled(page);
   assert.ok(!(await seen()));
-  await page.getByRole("button", { name: "All", exact: true }).click();
+  await page.getByRole("button", { name: "Reset", exact: true }).click();
   await settled(page);
   assert.ok(await seen());
   await colours.selectOption({ label: "prediction" });
@@ -344,9 +344,9 @@ test("hides a class", async () => {
 
 test("tells a second window that it may look, until it takes over", async () => {
   const second = await open();
-  await second.getByText("Another window paints this cloud; here you can look.").waitFor();
+  await second.getByText("Another window is painting this cloud; this one is read-only.").waitFor();
   await second.getByRole("button", { name: "Take over" }).click();
-  await page.getByText("Another window paints this cloud; here you can look.").waitFor();
+  await page.getByText("Another window is painting this cloud; this one is read-only.").waitFor();
   assert.equal(await second.evaluate(() => annotator.store.now.writer), true);
   await second.close();
   await page.getByRole("button", { name: "Take over" }).click();

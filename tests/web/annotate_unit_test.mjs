@@ -11,7 +11,7 @@ const { build } = createRequire(path.join(web, "package.json"))("esbuild");
 const { outputFiles } = await build({
   stdin: {
     resolveDir: path.join(web, "annotate"),
-    contents: ["geometry", "detail", "chunk", "paint", "ramp", "budget", "commands", "fingers"]
+    contents: ["geometry", "detail", "chunk", "paint", "ramp", "budget", "commands", "fingers", "format"]
       .map((name) => `export * as ${name} from "./${name}";`)
       .join(""),
   },
@@ -20,7 +20,7 @@ const { outputFiles } = await build({
   format: "esm",
   platform: "node",
 });
-const { geometry, detail, chunk, paint, ramp, budget, commands, fingers } = await import(
+const { geometry, detail, chunk, paint, ramp, budget, commands, fingers, format } = await import(
   `data:text/javascript;base64,${Buffer.from(outputFiles[0].contents).toString("base64")}`
 );
 
@@ -361,4 +361,10 @@ test("two fingers slide by their middle and zoom by their distance", () => {
   assert.equal(two.count, 1);
   assert.deepEqual(two.move(9, [310, 100]).by, [10, 0]);
   assert.ok(two.has(9) && !two.has(5));
+});
+
+test("names the stages of loading, and leaves a sentence as it is", () => {
+  assert.equal(format.stageText("describe", 0.824), "Computing descriptors, 82 %");
+  assert.equal(format.stageText("read", 0), "Reading the file");
+  assert.equal(format.stageText("Cannot open the cloud: no points.", 0), "Cannot open the cloud: no points.");
 });

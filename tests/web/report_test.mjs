@@ -234,7 +234,7 @@ test("draws the clouds in the colours of their classes", async () => {
   await choose(".gallery", "colour-blind safe");
   const safe = await seen(page, 0);
   assert.ok(safe.red < 0.001 && safe.blue > 0.004, JSON.stringify(safe));
-  await choose(".gallery", "of the paper");
+  await choose(".gallery", "as in the paper");
 });
 
 test("shows errors: none of the truth, some of a method", async () => {

@@ -4,7 +4,7 @@ import { h } from "../shared/dom";
 import type { Client, Saved } from "./client";
 import { isRamp, paletteOf, rampEnds, rampStops, FEATURE_NAMES } from "./colouring";
 import { MODES, type Command } from "./commands";
-import { count, length, share } from "./format";
+import { count, length, stageText } from "./format";
 import { icon, type IconName } from "./icons";
 import { button } from "./panel";
 import type { AppStore, Tool } from "./store";
@@ -13,7 +13,7 @@ const TOOLS: { tool: Tool; icon: IconName; name: string; key: string }[] = [
   { tool: "brush", icon: "brush", name: "Brush", key: "B" },
   { tool: "lasso", icon: "lasso", name: "Lasso", key: "L" },
   { tool: "polygon", icon: "polygon", name: "Polygon", key: "G" },
-  { tool: "navigate", icon: "navigate", name: "Move the view", key: "V" },
+  { tool: "navigate", icon: "navigate", name: "Navigate", key: "V" },
 ];
 
 /** Runs the command that has a key. */
@@ -60,7 +60,7 @@ export function toolbar(store: AppStore, press: Press): HTMLElement {
     undo,
     redo,
     h("hr", {}),
-    iconButton("fit", "Show all", "F", press),
+    iconButton("fit", "Fit to view", "F", press),
     clip,
     iconButton("camera", "Screenshot", "Shift+S", press),
     iconButton("help", "Keys", "?", press),
@@ -151,13 +151,13 @@ export function curtain(store: AppStore, client: Client): HTMLElement {
   const other = h(
     "div",
     { class: "banner" },
-    h("span", {}, "Another window paints this cloud; here you can look. "),
+    h("span", {}, "Another window is painting this cloud; this one is read-only. "),
     button("Take over", () => client.takeOver()),
   );
   const lost = h(
     "div",
     { class: "banner", role: "alert" },
-    "The connection to pcednet is lost. Trying again; is it still running?",
+    "Connection to pcednet lost, retrying. Is the program still running?",
   );
   store.watch(["progress", "writer", "connected"], () => {
     const { progress, writer, connected } = store.now;
@@ -165,7 +165,7 @@ export function curtain(store: AppStore, client: Client): HTMLElement {
     other.hidden = writer || progress !== null || !connected;
     lost.hidden = connected;
     if (progress) {
-      stage.textContent = `${progress.stage} ${progress.fraction > 0 ? share(progress.fraction) : ""}`;
+      stage.textContent = stageText(progress.stage, progress.fraction);
       bar.value = progress.fraction;
     }
   });

@@ -32,12 +32,12 @@ export interface Hands {
 }
 
 export const MODES: { mode: ColourMode; name: string }[] = [
-  { mode: "rgb", name: "its own colours" },
+  { mode: "rgb", name: "original colours" },
   { mode: "normals", name: "normals" },
   { mode: "labels", name: "painted labels" },
   { mode: "prediction", name: "prediction" },
   { mode: "confidence", name: "confidence" },
-  { mode: "p_sharp", name: "probability of sharp" },
+  { mode: "p_sharp", name: "probability of a sharp edge" },
   { mode: "feature", name: "feature" },
 ];
 
@@ -58,17 +58,17 @@ const SLIDE = 60;
 function viewCommands({ stage: { camera }, toggleClip }: Hands): Command[] {
   const command = (keys: string[], name: string, run: () => void): Command => ({ keys, name, group: "View", run });
   return [
-    command(["F", "Home"], "show all of the cloud", () => camera.fit(true)),
-    command(["ArrowLeft"], "turn left", () => camera.turn(-TURN, 0, camera.target)),
-    command(["ArrowRight"], "turn right", () => camera.turn(TURN, 0, camera.target)),
-    command(["ArrowUp"], "turn up", () => camera.turn(0, -TURN, camera.target)),
-    command(["ArrowDown"], "turn down", () => camera.turn(0, TURN, camera.target)),
-    command(["Shift+ArrowLeft"], "slide left", () => camera.slide(-SLIDE, 0, camera.target)),
-    command(["Shift+ArrowRight"], "slide right", () => camera.slide(SLIDE, 0, camera.target)),
-    command(["Shift+ArrowUp"], "slide up", () => camera.slide(0, -SLIDE, camera.target)),
-    command(["Shift+ArrowDown"], "slide down", () => camera.slide(0, SLIDE, camera.target)),
-    command(["+", "="], "come nearer", () => camera.approach(1 / 1.2, camera.target)),
-    command(["-"], "go back", () => camera.approach(1.2, camera.target)),
+    command(["F", "Home"], "fit the cloud to the view", () => camera.fit(true)),
+    command(["ArrowLeft"], "orbit left", () => camera.turn(-TURN, 0, camera.target)),
+    command(["ArrowRight"], "orbit right", () => camera.turn(TURN, 0, camera.target)),
+    command(["ArrowUp"], "orbit up", () => camera.turn(0, -TURN, camera.target)),
+    command(["ArrowDown"], "orbit down", () => camera.turn(0, TURN, camera.target)),
+    command(["Shift+ArrowLeft"], "pan left", () => camera.slide(-SLIDE, 0, camera.target)),
+    command(["Shift+ArrowRight"], "pan right", () => camera.slide(SLIDE, 0, camera.target)),
+    command(["Shift+ArrowUp"], "pan up", () => camera.slide(0, -SLIDE, camera.target)),
+    command(["Shift+ArrowDown"], "pan down", () => camera.slide(0, SLIDE, camera.target)),
+    command(["+", "="], "zoom in", () => camera.approach(1 / 1.2, camera.target)),
+    command(["-"], "zoom out", () => camera.approach(1.2, camera.target)),
     command(["R"], "roll", () => camera.roll(Math.PI / 12)),
     command(["C"], "clipping box", toggleClip),
   ];
@@ -84,16 +84,16 @@ function toolCommands({ store, brush, outline, pointer, client }: Hands): Comman
   return [
     tool("B", "brush", "brush"),
     tool("L", "lasso", "lasso"),
-    tool("G", "polygon: a click a corner, Enter ends it", "polygon"),
-    tool("V", "turn the view with the left button", "navigate"),
+    tool("G", "polygon: click the corners, Enter closes it", "polygon"),
+    tool("V", "navigate: the left button orbits", "navigate"),
     command(["["], "smaller brush", () => brush.grow(1 / 1.2)),
     command(["]"], "larger brush", () => brush.grow(1.2)),
-    command(["Enter"], "paint at the middle of the view; close the polygon", () =>
+    command(["Enter"], "paint at the centre of the view; close the polygon", () =>
       outline.isOpen ? outline.close() : pointer.dab(),
     ),
-    command(["Backspace"], "take the polygon's last corner back", () => outline.shorten()),
-    command(["P"], "protect what is painted", () => store.set({ protect: !store.now.protect })),
-    command(["X"], "lasso and polygon: front only", () => store.set({ frontOnly: !store.now.frontOnly })),
+    command(["Backspace"], "remove the polygon's last corner", () => outline.shorten()),
+    command(["P"], "protect painted points", () => store.set({ protect: !store.now.protect })),
+    command(["X"], "lasso and polygon: front points only", () => store.set({ frontOnly: !store.now.frontOnly })),
     command(["Ctrl+Z"], "undo the last stroke", () => client.undo()),
     command(["Ctrl+Shift+Z", "Ctrl+Y"], "redo", () => client.redo()),
   ];
@@ -131,9 +131,9 @@ function colourCommands({ store }: Hands): Command[] {
   return [
     command(["M"], "next colouring", () => step(1)),
     command(["Shift+M"], "previous colouring", () => step(-1)),
-    command([","], "feature at a smaller scale", () => scale(-1)),
-    command(["."], "feature at a larger scale", () => scale(1)),
-    command(["O"], "painted points on top or not", () => store.set({ paintOnTop: !store.now.paintOnTop })),
+    command([","], "smaller scale of the feature", () => scale(-1)),
+    command(["."], "larger scale of the feature", () => scale(1)),
+    command(["O"], "painted points on top", () => store.set({ paintOnTop: !store.now.paintOnTop })),
     command(["{"], "smaller points", () => size(1 / 1.15)),
     command(["}"], "larger points", () => size(1.15)),
   ];
@@ -152,15 +152,15 @@ export function commandsOf(hands: Hands): Command[] {
     ...classCommands(hands),
     ...viewCommands(hands),
     ...colourCommands(hands),
-    command(["N"], "go to the next uncertain place", "Training", hands.nextUncertain),
+    command(["N"], "next uncertain place", "Training", hands.nextUncertain),
     command(["T"], "train now", "Training", () => client.train()),
-    command(["Escape"], "cancel an outline or the training", "Training", () => {
+    command(["Escape"], "cancel the outline or the training", "Training", () => {
       if (outline.isOpen) outline.cancel();
       else if (store.now.training?.active) client.cancel();
     }),
     command(["Ctrl+S"], "save the project", "File", hands.save),
     command(["Shift+S"], "screenshot", "File", hands.screenshot),
-    command(["?"], "this list", "File", hands.help),
+    command(["?"], "show these keys", "File", hands.help),
   ];
 }
 

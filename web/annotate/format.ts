@@ -9,5 +9,22 @@ export const seconds = (s: number): string => (s < 10 ? `${s.toFixed(2)} s` : `$
 /** A length with three digits. */
 export const length = (value: number): string => String(Number(value.toPrecision(3)));
 
-/** What happens while a cloud is opened. */
+const STAGES: Record<string, string> = {
+  read: "reading the file",
+  neighbours: "finding neighbours",
+  normals: "estimating normals",
+  orientation: "orienting normals",
+  prepare: "preparing descriptors",
+  resolutions: "building the pyramid",
+  describe: "computing descriptors",
+  classify: "classifying",
+};
+
+/** What happens while a cloud is opened: a stage of the program's, or a sentence. */
+export function stageText(stage: string, fraction: number): string {
+  const name = STAGES[stage] ?? stage;
+  return name.charAt(0).toUpperCase() + name.slice(1) + (fraction > 0 ? `, ${share(fraction)}` : "");
+}
+
+/** A part of a whole. */
 export const share = (fraction: number): string => `${Math.round(100 * Math.min(Math.max(fraction, 0), 1))} %`;

@@ -30,7 +30,7 @@ function open(page: HTMLElement): void {
     tabindex: 0,
     role: "application",
     "aria-label":
-      "The cloud. Arrow keys turn it, Shift and arrow keys slide it, Enter paints at its middle; question mark lists all keys.",
+      "The cloud. Arrow keys orbit, Shift and arrow keys pan, Enter paints at the centre of the view; question mark lists all keys.",
   });
   const place = h("main", { class: "stage" }, canvas);
   const stage: Stage = new Stage(canvas, api, {
@@ -46,7 +46,7 @@ function open(page: HTMLElement): void {
   const brush: Brush = new Brush(stage, store, client);
   const outline = new Outline(stage, store, client, overlay);
   const pointer: Pointer = new Pointer(stage, store, brush, outline, overlay, {
-    refused: () => notices.warn("Another window paints this cloud. Take over to paint here."),
+    refused: () => notices.warn("Another window is painting this cloud. Take over to paint here."),
     colour: () => paintColour(store.now),
   });
 
@@ -144,5 +144,5 @@ try {
   open(page);
 } catch (error) {
   console.error(error);
-  page.textContent = "The cloud cannot be drawn: this browser offers no WebGL 2.";
+  page.textContent = "The cloud cannot be drawn: this browser does not support WebGL 2.";
 }

@@ -15,7 +15,7 @@ const KEYS = ["1", "2", "3", "E"];
 
 /** A row: choose, see, count. */
 function classRow(store: AppStore, id: number, index: number): HTMLElement {
-  const name = index === 3 ? "erase" : paletteOf(store.now)[index].name;
+  const name = index === 3 ? "eraser" : paletteOf(store.now)[index].name;
   const radio = h("input", { type: "radio", name: "class", value: id, onchange: () => store.set({ paintClass: id }) });
   const swatch = h("span", { class: "swatch", "aria-hidden": "true" });
   if (index === 3) swatch.append(icon("eraser"));
@@ -58,8 +58,8 @@ export function classesPanel(store: AppStore, brush: Brush): HTMLElement {
     const [low, high] = [session.spacing, boxDiagonal(session.bounds) / 4];
     brush.grow((low * (high / low) ** at) / store.now.radius);
   });
-  const protect = checkbox("Keep what is painted", "P", (on) => store.set({ protect: on }));
-  const front = checkbox("Lasso: front only", "X", (on) => store.set({ frontOnly: on }));
+  const protect = checkbox("Protect painted points", "P", (on) => store.set({ protect: on }));
+  const front = checkbox("Front points only (lasso, polygon)", "X", (on) => store.set({ frontOnly: on }));
   store.watch(["radius", "session", "protect", "frontOnly"], () => {
     const { radius, session } = store.now;
     protect.set(store.now.protect);

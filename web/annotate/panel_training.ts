@@ -9,7 +9,7 @@ import type { AppStore } from "./store";
 import type { Run, Start } from "./types";
 
 const STARTS: { value: Start; label: string }[] = [
-  { value: "random", label: "nothing" },
+  { value: "random", label: "random weights" },
   { value: "scan", label: "model scan" },
   { value: "cad", label: "model cad" },
   { value: "worn", label: "model worn" },
@@ -43,18 +43,24 @@ function curves(store: AppStore): HTMLElement {
   return place;
 }
 
+/** A model file is known by its name without the folder. */
+const startName = (start: Start): string =>
+  STARTS.find(({ value }) => value === start)?.label ?? `model ${start.split("/").at(-1)}`;
+
 /** How the training stands, in one line. */
 function summary(store: AppStore): string {
   const { training, runs, counts, settings } = store.now;
   const last = runs.find((run) => run.current);
   if (training?.active) return `Run ${training.run}: epoch ${training.epoch.at(-1)} of ${training.epochs}`;
+  if (last?.run === 0) return `${startName(last.start)}: classified in ${seconds(last.seconds_classify ?? 0)}`;
   if (last) {
-    const held = last.held_out_accuracy === null ? "" : `, ${percent(last.held_out_accuracy)} of held-out points right`;
-    const took = last.seconds_train === null ? "" : `; ${seconds(last.seconds_train + (last.seconds_classify ?? 0))}`;
+    const held = last.held_out_accuracy === null ? "" : `, held-out accuracy ${percent(last.held_out_accuracy)}`;
+    const took = last.seconds_train === null ? "" : `, ${seconds(last.seconds_train + (last.seconds_classify ?? 0))}`;
     return `Run ${last.run}${held}${took}`;
   }
   const lacking = counts.filter((n, id) => n > 0 && (id !== 1 || settings.classes === 3)).length < 2;
-  return lacking ? "Paint at least two classes; training starts by itself." : "Not trained yet.";
+  const then = settings.auto ? "training starts automatically" : "then train";
+  return lacking ? `Paint points of two classes; ${then}.` : "Not trained yet.";
 }
 
 export function trainingPanel(store: AppStore, client: Client): HTMLElement {
@@ -64,14 +70,14 @@ export function trainingPanel(store: AppStore, client: Client): HTMLElement {
   const cancel = button("Cancel", () => client.cancel(), "Esc");
   const auto = checkbox("Train after each stroke", "", (on) => client.setSettings({ auto: on }));
   const classes = buttons<2 | 3>(
-    "Classes",
+    "Model",
     [
-      { value: 2, label: "sharp or not" },
-      { value: 3, label: "smooth too" },
+      { value: 2, label: "2 classes" },
+      { value: 3, label: "3 classes" },
     ],
     (chosen) => client.setSettings({ classes: chosen }),
   );
-  const start = list("Begin with", STARTS, (chosen) => client.setSettings({ start: chosen }));
+  const start = list("Start from", STARTS, (chosen) => client.setSettings({ start: chosen }));
   store.watch(["training", "runs", "counts", "settings"], () => {
     const { training } = store.now;
     const active = training?.active ?? false;
@@ -104,10 +110,10 @@ export function uncertainPanel(store: AppStore, next: () => void): HTMLElement {
   store.watch(["uncertain", "runs"], () => {
     const { uncertain: place, runs } = store.now;
     words.textContent = place
-      ? `Place ${count(place.rank)} of ${count(place.of)}: ${percent(place.confidence)} sure. Paint here what it is.`
+      ? `Place ${count(place.rank)} of ${count(place.of)}, confidence ${percent(place.confidence)}. Paint its true class.`
       : runs.length > 0
-        ? "Goes where the network knows least: paint there."
-        : "After the first training: where to paint next.";
+        ? "Places of lowest confidence first."
+        : "Available once there is a prediction.";
   });
   return section("Uncertain places", true, words, h("div", { class: "buttons" }, button("Next place", next, "N")));
 }
@@ -117,7 +123,11 @@ function runRow(run: Run, client: Client): HTMLElement {
   return h(
     "tr",
     { class: run.current && "current" },
-    h("th", { scope: "row", title: run.time && new Date(run.time).toLocaleString() }, String(run.run)),
+    h(
+      "th",
+      { scope: "row", title: run.time && new Date(run.time).toLocaleString() },
+      run.run === 0 ? startName(run.start) : String(run.run),
+    ),
     h("td", {}, held),
     h("td", {}, run.loss === null ? "–" : run.loss.toFixed(3)),
     h("td", {}, run.painted === null ? "–" : count(run.painted)),
@@ -125,7 +135,7 @@ function runRow(run: Run, client: Client): HTMLElement {
       "td",
       {},
       run.current
-        ? "in use"
+        ? "current"
         : h(
             "button",
             {

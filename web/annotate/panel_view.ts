@@ -12,12 +12,12 @@ import type { Box } from "./types";
 export function viewPanel(store: AppStore): HTMLElement {
   const lists = h("div", {}); // what this cloud offers
   const scale = slider("Scale", 0, 15, 1, (value) => store.set({ scale: value }));
-  const size = slider("Points", 0.3, 6, 0.05, (value) => store.set({ pointSize: value }));
+  const size = slider("Point size", 0.3, 6, 0.05, (value) => store.set({ pointSize: value }));
   const onTop = checkbox("Painted points on top", "O", (on) => store.set({ paintOnTop: on }));
   const palette = buttons(
     "Palette",
     [
-      { value: false, label: "paper" },
+      { value: false, label: "as in the paper" },
       { value: true, label: "colour-blind safe" },
     ],
     (safePalette) => store.set({ safePalette }),
@@ -61,7 +61,7 @@ export function toggledClip({ clip, session }: { clip: Clip | null; session: { b
 }
 
 export function clipPanel(store: AppStore, around: () => Box | null): HTMLElement {
-  const use = checkbox("Show only what is in the box", "C", () => store.set({ clip: toggledClip(store.now) }));
+  const use = checkbox("Show only the points in the box", "C", () => store.set({ clip: toggledClip(store.now) }));
   const change =
     (side: "min" | "max", axis: number) =>
     (at: number): void => {
@@ -99,11 +99,11 @@ export function clipPanel(store: AppStore, around: () => Box | null): HTMLElemen
     h(
       "div",
       { class: "buttons" },
-      button("Round the middle of the view", () => {
+      button("Around the view centre", () => {
         const box = around();
         if (box) store.set({ clip: { on: true, box } });
       }),
-      button("All", () => store.set({ clip: null })),
+      button("Reset", () => store.set({ clip: null })),
     ),
   );
 }

@@ -43,7 +43,7 @@ export function ask(question: string, yes: string): Promise<boolean> {
         h(
           "div",
           { class: "buttons" },
-          h("button", { class: "plain", value: "" }, "Leave it"),
+          h("button", { class: "plain", value: "" }, "Cancel"),
           h("button", { class: "plain strong", value: "yes" }, yes),
         ),
       ),
@@ -58,13 +58,13 @@ export function ask(question: string, yes: string): Promise<boolean> {
 }
 
 const MOUSE: [string, string][] = [
-  ["left", "paints with the tool"],
-  ["right, or left with space held", "turns about the point under the pointer"],
-  ["middle, or right with Shift", "slides"],
-  ["wheel", "comes nearer to the point under the pointer"],
-  ["wheel with Alt", "size of the brush"],
-  ["one finger", "paints with the tool, or turns with the tool that moves"],
-  ["two fingers", "slide, and part to come nearer"],
+  ["left button", "paint"],
+  ["right button, or left with space held", "orbit about the point under the pointer"],
+  ["middle button, or right with Shift", "pan"],
+  ["wheel", "zoom about the point under the pointer"],
+  ["wheel with Alt", "brush size"],
+  ["one finger", "paint; orbit with the navigate tool"],
+  ["two fingers", "pan and zoom"],
 ];
 
 const list = (title: string, rows: [string[], string][]): HTMLElement =>

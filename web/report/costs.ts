@@ -10,10 +10,18 @@ const ROW = 26;
 
 export const STAGES = ["normals", "describe", "describe_training", "train", "classify"];
 
+const STAGE_NAMES: Record<string, string> = {
+  normals: "normals",
+  describe: "descriptors",
+  describe_training: "descriptors for training",
+  train: "training",
+  classify: "classification",
+};
+
 /** A cost's name for people. */
 export function costName(name: string): string {
   if (name === "joules") return "joules per 1000 points";
-  return name === "describe_training" ? "describe, for training" : name;
+  return STAGE_NAMES[name] ?? name;
 }
 
 const SHAPES: Record<string, (x: number, y: number) => string> = {

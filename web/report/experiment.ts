@@ -41,7 +41,7 @@ function commandLine(command: string): HTMLElement {
 
 function seedsNote(groups: Group[]): string {
   const most = Math.max(...groups.map((g) => g.results.length));
-  return most > 1 ? ` Several seeds: the mean ± the standard deviation over up to ${most}.` : "";
+  return most > 1 ? ` Mean ± standard deviation over up to ${most} seeds.` : "";
 }
 
 function part(title: string, note: string, ...children: (HTMLElement | null)[]): HTMLElement {
@@ -57,13 +57,13 @@ function onSet(study: Study, groups: Group[], set: string, statistic: Statistic)
   const sweeps = typeof study.x_label === "string";
   const seconds = costPlot(own, STAGES, "seconds");
   const joules = costPlot(own, ["joules"], "joules per 1000 points");
-  const counts = mixed ? "" : ` Counts as edge: ${positiveName(own[0]?.positive ?? "sharp")}.`;
+  const counts = mixed ? "" : ` Positive class: ${positiveName(own[0]?.positive ?? "sharp")}.`;
   return [
     own.some((g) => g.results.some((r) => r[statistic]))
       ? part(
           "Scores",
           `${size} clouds; ${
-            statistic === "median" ? "the median over them of each score" : "the scores of their summed counts"
+            statistic === "median" ? "the median of each score" : "the scores of the pooled counts"
           }.${counts} The best of each column is marked. Open a row to ` +
             `see its clouds.${seedsNote(own)}${sourcesOf(study)}`,
           setTable(study, groups, set, statistic),
@@ -72,8 +72,7 @@ function onSet(study: Study, groups: Group[], set: string, statistic: Statistic)
     scored.length > 0 && !sweeps
       ? part(
           "Precision and recall",
-          "Precision to the right, recall upwards, a dot for each cloud, their " +
-            "density behind, curves of equal F1.",
+          "Recall against precision: a dot for each cloud, their density, and curves of equal F1.",
           scatterPanels(scored, mixed),
         )
       : null,
@@ -84,18 +83,18 @@ function onSet(study: Study, groups: Group[], set: string, statistic: Statistic)
           scored.length > 0 &&
             part(
               "MCC over the clouds",
-              "How many clouds got which score; the stroke is " + "the median.",
+              "Histogram over the clouds; the line marks the median.",
               histograms(scored, "mcc", mixed),
             ),
-          seconds && part("Seconds", "All clouds of the set together; logarithmic.", seconds),
-          joules && part("Joules per 1000 points", "Logarithmic.", joules),
+          seconds && part("Seconds", "Total over the clouds of the set, logarithmic scale.", seconds),
+          joules && part("Joules per 1000 points", "Logarithmic scale.", joules),
         )
       : null,
     seconds || joules
       ? h(
           "details",
           {},
-          h("summary", {}, "Seconds and joules in numbers"),
+          h("summary", {}, "Table of seconds and joules"),
           costTable(`${study.title}: costs on ${set}`, own),
         )
       : null,
@@ -128,7 +127,7 @@ export function experimentSection(study: Study, number: number): HTMLElement {
     curve?.draw();
   };
   draw();
-  const statistics = segmented("Over the clouds", STATISTICS, statistic, (s) => {
+  const statistics = segmented("Statistic", STATISTICS, statistic, (s) => {
     statistic = s;
     draw();
   });
@@ -165,7 +164,7 @@ export function experimentSection(study: Study, number: number): HTMLElement {
     curves.length > 0 &&
       part(
         "Learning",
-        "The mean over the seeds, bars of one standard deviation. A click " + "on a name hides its line.",
+        "Mean over the seeds; error bars show one standard deviation. Click a name to hide its line.",
         h("div", { class: "pair" }, ...curves),
       ),
   );

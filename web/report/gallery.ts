@@ -66,7 +66,7 @@ class Gallery {
   readonly element = h("section", { class: "gallery", id: "clouds", "aria-labelledby": "clouds-title" });
   private readonly canvas = h("canvas", {
     tabindex: 0,
-    "aria-label": "The cloud in 3D. Arrow keys turn it, plus and minus zoom, 0 shows all.",
+    "aria-label": "The cloud in 3D. Arrow keys orbit, plus and minus zoom, 0 resets the view.",
   });
   private readonly labels = h("div", { class: "labels" });
   private readonly stage = h("div", { class: "stage" }, this.canvas, this.labels);
@@ -94,8 +94,8 @@ class Gallery {
       h(
         "p",
         { class: "question" },
-        "What the labels say and what the methods say, point by point. Drag to " +
-          "turn all of them; the wheel zooms once a cloud has been clicked.",
+        "The ground truth and the methods' predictions, point by point. Drag to orbit all views; the wheel " +
+          "zooms once a view has been clicked.",
       ),
       this.bar,
       this.chips,
@@ -143,7 +143,7 @@ class Gallery {
     const clouds = scenes.filter((s) => s.set === this.scene.set);
     const owners = [...new Set(this.scene.predictions.map((p) => p.study))];
     const palettes: { value: Palette; label: string }[] = [
-      { value: "paper", label: "of the paper" },
+      { value: "paper", label: "as in the paper" },
       { value: "safe", label: "colour-blind safe" },
     ];
     const modes: { value: Mode; label: string }[] = [
@@ -206,14 +206,14 @@ class Gallery {
         {
           type: "button",
           class: "plain",
-          title: "show all of the cloud, as at first",
+          title: "reset the view",
           onclick: () => this.viewer.reset(),
         },
         "Reset",
       ),
     );
     this.chips.replaceChildren(
-      h("legend", {}, "Beside the truth"),
+      h("legend", {}, "Shown beside the truth"),
       ...this.exhibit.predictions.map(({ title }) =>
         h(
           "label",
@@ -272,9 +272,9 @@ class Gallery {
     );
     const sampled =
       scene.shown < scene.points
-        ? `${formatCount(scene.shown)} of its ${formatCount(scene.points)} points, an even sample`
+        ? `${formatCount(scene.shown)} of its ${formatCount(scene.points)} points, a uniform sample`
         : `all ${formatCount(scene.points)} points`;
-    const counts = this.mode === "errors" ? ` Counts as edge: ${positiveName(positive)}.` : "";
+    const counts = this.mode === "errors" ? ` Positive class: ${positiveName(positive)}.` : "";
     this.note.textContent = `${scene.file}: ${sampled}. Scores count every point.${counts}`;
   }
 
@@ -314,7 +314,7 @@ export function gallery(report: Report): HTMLElement | null {
       "section",
       { class: "gallery", id: "clouds" },
       h("h2", {}, "The clouds"),
-      h("p", { class: "note" }, "This browser offers no WebGL, which drawing the clouds needs."),
+      h("p", { class: "note" }, "This browser does not support WebGL, which is needed to draw the clouds."),
     );
   }
 }

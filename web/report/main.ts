@@ -15,7 +15,7 @@ function masthead(report: Report): HTMLElement {
   return h(
     "header",
     { class: "masthead" },
-    h("h1", {}, studies.length === 1 ? studies[0].title : "A study of edges in point clouds"),
+    h("h1", {}, studies.length === 1 ? studies[0].title : "Edge detection in point clouds: a study"),
     h("p", {}, facts.join(" · ")),
   );
 }
@@ -43,7 +43,7 @@ function show(report: Report): void {
       masthead(report),
       clouds,
       ...sections,
-      h("footer", {}, "Made by pcednet report. This page holds all its data and loads nothing."),
+      h("footer", {}, "Made by pcednet report. The page contains all its data and loads nothing."),
     ),
   );
 }
@@ -52,5 +52,5 @@ const data: unknown = JSON.parse(document.getElementById("data")!.textContent!);
 if (data !== null && typeof data === "object" && (data as Report).schema === "pcednet-report-1") {
   show(data as Report);
 } else {
-  document.getElementById("page")!.textContent = "No data: pcednet report fills this page.";
+  document.getElementById("page")!.textContent = "This page has no data: pcednet report fills it.";
 }

@@ -113,7 +113,7 @@ function cloudLines(group: Group, extra: number, room: boolean): HTMLTableRowEle
               {
                 type: "button",
                 class: "look",
-                title: "look at it",
+                title: "show it in 3D",
                 onclick: () => gallery.show(group.set, cloud.name, group.study, group.variant.id),
               },
               cloud.name,
@@ -188,7 +188,7 @@ export function setTable(study: Study, groups: Group[], set: string, statistic: 
   ];
   if (mixed) {
     columns.push({
-      name: "Counts as edge",
+      name: "Positive class",
       key: (g) => g.positive,
       cell: (g) => h("td", { class: "words" }, positiveName(g.positive)),
     });
@@ -247,7 +247,7 @@ export function overviewTable(study: Study, groups: Group[], statistic: Statisti
     columns.push({
       name: set.name,
       descending: true,
-      title: `${set.clouds.length} clouds; counts as edge: ${positiveName(set.positive ?? "sharp")}`,
+      title: `${set.clouds.length} clouds; positive class: ${positiveName(set.positive ?? "sharp")}`,
       key: (row) => {
         const group = row.bySet.get(set.name);
         return group ? (scoreOf(group, statistic, metric)?.mean ?? null) : null;

@@ -24,10 +24,10 @@ export const CLASS_PALETTES: Record<"paper" | "safe", Meaning[]> = {
 
 /** Agreement about the positive class, safe for the colour-blind: right is grey, wrong is coloured. */
 export const ERROR_PALETTE: Meaning[] = [
-  { name: "rightly no edge", colour: "#ffffff" },
-  { name: "found", colour: "#20242a" },
-  { name: "false alarm", colour: "#ee7a1a" },
-  { name: "missed", colour: "#1f78d1" },
+  { name: "true negative", colour: "#ffffff" },
+  { name: "true positive", colour: "#20242a" },
+  { name: "false positive", colour: "#ee7a1a" },
+  { name: "false negative", colour: "#1f78d1" },
   { name: "no label", colour: "#8f96a0" },
 ];
 
