@@ -70,8 +70,8 @@ TEST(VoxelMerge, KeepsFarFewerVoxelsOfNoiseWhereItIsCrowded) {
   EXPECT_GT(forecast_merge(points, cells).filling, 20.0);
   cells.crowd = Crowd::kMerge;
   const std::vector<Voxel> merged = merge_voxels(points, cells);
-  EXPECT_LE(merged.size(), 26u * 25 * 25);  // cubes of 0.04, and cells of blocks at the rim
-  EXPECT_LT(merged.size(), kept / 4);
+  EXPECT_LE(merged.size(), 20u * 19 * 19);  // cubes of 0.16 / 3, and cells of blocks at the rim
+  EXPECT_LT(merged.size(), kept / 9);
   cells.crowd = Crowd::kMergeByAxis;
   const std::vector<Voxel> by_axis = merge_voxels(points, cells);
   EXPECT_LE(by_axis.size(), 6u * 13 * 13 * 14);  // cubes of 0.08, axes, signs
@@ -97,7 +97,7 @@ TEST(VoxelMerge, LeavesSurfacesAloneWhereverItIsCrowded) {
     const std::size_t kept = merge_voxels(points, cells).size();
     cells.crowd = Crowd::kMerge;
     const std::size_t merged = merge_voxels(points, cells).size();
-    EXPECT_GE(merged, kept - kept / 25);  // the corners of the cubes
+    EXPECT_GE(merged, kept - kept / 16);  // the corners of the cubes
   }
 }
 
@@ -114,7 +114,8 @@ TEST(VoxelPyramid, HoldsFewVoxelsPerNeighbourhoodOfNoiseAsOfASurface) {
       for (const Voxel& voxel : level.voxels) {
         near += (voxel.position - Vec3(0.5, 0.5, 0.5)).norm() < scales[s];
       }
-      EXPECT_LT(near, 700u) << "at scale " << s;  // 314 of a plane, thousands of points here
+      // 314 of a plane, thousands of points here
+      EXPECT_LT(near, gated ? 700u : 300u) << "at scale " << s;
       EXPECT_GT(near, 100u);
     }
   }

@@ -15,9 +15,10 @@ namespace {
 
 using spatial::Keyed;
 
-// Bits of a key below the place of a cell, and of cubes of 2, 4 and 8 cells a side.
-constexpr int kAxisBits = 2, kCubeBits = kAxisBits + 3, kGatedBits = kAxisBits + 6,
-              kBlockBits = kAxisBits + 9;
+// Bits of a key below the place of a cell, and of cubes of 4 and 8 cells a side.
+constexpr int kAxisBits = 2, kGatedBits = kAxisBits + 6, kBlockBits = kAxisBits + 9;
+// A block is this many cells a side, and where it is merged further, this many voxels.
+constexpr std::uint64_t kBlockCells = 8, kBlockVoxels = 3;
 // filling() from which a block is merged further: 18 cells with normals of every direction.
 constexpr double kFillsSpace = 4.0;
 constexpr std::size_t kFewestToFill = 18;
@@ -78,6 +79,17 @@ class Grid {
     return place << kAxisBits | dominant_axis((*voxels_)[i].normal);
   }
 
+  /// Which voxel of its block, where that is merged further.
+  std::size_t place_in_block(std::size_t i) const {
+    constexpr double kPerCell = static_cast<double>(kBlockVoxels) / kBlockCells;
+    std::size_t place = 0;
+    for (const double c : place_of(i)) {
+      const double offset = c - std::floor(c / kBlockCells) * kBlockCells;
+      place = place * kBlockVoxels + static_cast<std::size_t>(offset * kPerCell);
+    }
+    return place;
+  }
+
   int key_bits() const {
     return kAxisBits + 3 * std::bit_width(static_cast<std::uint64_t>(
                                std::min(cells_along_, static_cast<double>(kMost))));
@@ -97,13 +109,17 @@ class Grid {
  private:
   static constexpr std::uint64_t kMost = (1 << 20) - 1;
 
-  std::array<std::uint64_t, 3> cell_of(std::size_t i) const {
+  /// In units of the edge.
+  std::array<double, 3> place_of(std::size_t i) const {
     const Vec3 place = ((*voxels_)[i].position - origin_) * inverse_edge_;
+    const auto within = [](double c) { return std::clamp(c, 0.0, 0x1p62); };
+    return {within(place.x()), within(place.y()), within(place.z())};
+  }
+
+  std::array<std::uint64_t, 3> cell_of(std::size_t i) const {
+    const std::array<double, 3> place = place_of(i);
     std::array<std::uint64_t, 3> cell;
-    for (std::size_t a = 0; a < 3; ++a) {
-      const double c = place[static_cast<Eigen::Index>(a)];
-      cell[a] = static_cast<std::uint64_t>(std::clamp(c, 0.0, 0x1p62));
-    }
+    for (std::size_t a = 0; a < 3; ++a) cell[a] = static_cast<std::uint64_t>(place[a]);
     return cell;
   }
 
@@ -129,7 +145,7 @@ class BlockPlan {
     } else if (crowd_ == Crowd::kMergeByAxis) {
       number_by_axis(kGatedBits);
     } else {
-      number_by_place(kCubeBits);
+      number_by_place();
     }
     return voxel_of_;
   }
@@ -184,16 +200,18 @@ class BlockPlan {
     });
   }
 
-  /// One voxel per cell.
-  void number_by_place(int bits) {
+  /// kBlockVoxels voxels a side.
+  void number_by_place() {
     count_ = 0;
-    for_cells(bits, [&](std::size_t begin, std::size_t end) {
-      std::uint32_t number = kNone;
-      for (std::size_t i = begin; i < end; ++i) {
-        if (voxel(i).count > 0.0f && number == kNone) number = count_++;
-        voxel_of_[i] = voxel(i).count > 0.0f ? number : kNone;
-      }
-    });
+    std::array<std::uint32_t, kBlockVoxels * kBlockVoxels * kBlockVoxels> number;
+    number.fill(kNone);
+    for (std::size_t i = 0; i < members_.size(); ++i) {
+      voxel_of_[i] = kNone;
+      if (voxel(i).count == 0.0f) continue;
+      std::uint32_t& mine = number[grid_->place_in_block(members_[i].index)];
+      if (mine == kNone) mine = count_++;
+      voxel_of_[i] = mine;
+    }
   }
 
   const std::vector<Voxel>* from_;

@@ -10,7 +10,7 @@ namespace pcednet::gls {
 /// (leaves, noise), of which a neighbourhood holds ten times as many voxels as of a surface.
 enum class Crowd {
   kKeep,         ///< nothing: they are voxels as elsewhere
-  kMerge,        ///< one voxel per 2 x 2 x 2 cells
+  kMerge,        ///< 3 x 3 x 3 voxels, fewer to a neighbourhood than a surface has
   kMergeByAxis,  ///< one per 4 x 4 x 4 cells, axis and sign: for a gate, which looks at directions
 };
 
