@@ -48,12 +48,9 @@ class Evaluate(CliTest):
         report = json.loads((self.folder / "scores.json").read_text())
         self.assertGreater(report["median"]["mcc"], 0.7)
 
-    def test_cleans_up_after_any_method_and_refuses_what_has_no_meaning(self):
-        write_ply(self.folder / "a.ply", *cube(3000, noise=0.01))
-        scores = [json.loads(run("evaluate", self.folder / "a.ply", "--method", "ca", "--json", "-",
-                                 *extra).stdout)["clouds"] for extra in ((), ("--clean-up",))]
-        self.assertNotEqual(*scores)
-        for extra in (("--clean-up",), ("--exact",), ("--s-max", "1")):
+    def test_refuses_what_has_no_meaning(self):
+        write_ply(self.folder / "a.ply", *cube(300))
+        for extra in (("--no-context",), ("--exact",), ("--s-max", "1")):
             run("evaluate", self.folder / "a.ply", "--predictions", self.folder, *extra, expect=2)
 
     def test_takes_the_scales_that_are_given(self):

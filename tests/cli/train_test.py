@@ -81,20 +81,16 @@ class Train(CliTest):
         # What is sure to be no edge stays as it is.
         self.assertTrue((found["without"][changed] >= 0.01).all())
 
-    def test_takes_what_is_there_to_be_tried(self):
-        options = ["--gate", 0.4, "--second-gate", -0.3, "--distil", 2, "--smoothing", 0.05,
-                   "--jitter", 0.2, "--missing-scales", 0.25, "--epochs", 2]
+    def test_trains_with_two_gates_and_teachers(self):
+        options = ["--gate", 0.4, "--second-gate", -0.3, "--distil", 2, "--epochs", 2]
         model = self.train("one.safetensors", *options, "--threads", 1)
         metadata, arrays = tensors(model)
         self.assertEqual(metadata["descriptor_second_gate"], "-0.3")
         self.assertEqual(arrays["tree.0.weight"].shape, (8, 6, 24))
         again = self.train("two.safetensors", *options, "--threads", 2).read_bytes()
         self.assertEqual(model.read_bytes().replace(b'"one"', b'"two"'), again)
-        for option in options[4:10:2]:  # each of them changes something
-            i = options.index(option)
-            other = self.train("six.safetensors", *options[:i], *options[i + 2:],
-                               "--overwrite").read_bytes()
-            self.assertNotEqual(other.replace(b'"six"', b'"two"'), again, option)
+        other = self.train("six.safetensors", *options[:4], *options[6:]).read_bytes()
+        self.assertNotEqual(other.replace(b'"six"', b'"two"'), again, "--distil changes something")
         self.train("bad.safetensors", "--second-gate", 0.1, expect=2)
         self.train("bad.safetensors", "--gate", 2, expect=2)
 

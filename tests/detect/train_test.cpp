@@ -184,7 +184,6 @@ TEST_F(EdgeModelFile, KeepsADescriptionWithTwoGates) {
   auto options = quick(2);
   options.descriptor.side_gate = 0.4;
   options.descriptor.second_gate = -0.3;
-  options.training.sign_rule.symmetry = nn::Symmetry::kAverage;
   const PointCloud cloud = cube(1500, 3);
   const EdgeModel model = train_on(cloud, options).model;
   EXPECT_EQ(model.network.network.parameters.size(), 2182u);

@@ -40,8 +40,7 @@ Problem make_problem(const Architecture& architecture, std::size_t count) {
 }
 
 /// Mean cross-entropy in double.
-double reference_loss(const Problem& problem, std::span<const double> parameters, double smoothing,
-                      bool average) {
+double reference_loss(const Problem& problem, std::span<const double> parameters, bool average) {
   const Architecture& a = problem.model.network.architecture;
   const auto inputs = static_cast<std::size_t>(a.inputs());
   const auto classes = static_cast<std::size_t>(a.classes);
@@ -58,22 +57,18 @@ double reference_loss(const Problem& problem, std::span<const double> parameters
       for (std::size_t c = 0; c < classes; ++c) z[c] = 0.5 * (z[c] + y[c]);
     }
     const auto p = reference::softmax(z);
-    for (std::size_t c = 0; c < classes; ++c) {
-      double target = smoothing / static_cast<double>(classes);
-      if (c == problem.labels[i]) target += 1.0 - smoothing;
-      loss -= target * std::log(p[c]);
-    }
+    loss -= std::log(p[problem.labels[i]]);
   }
   return loss / static_cast<double>(problem.chosen.size());
 }
 
 /// Compares every derivative with a central difference of the reference.
-void expect_right_gradient(const Problem& problem, double smoothing, bool average) {
+void expect_right_gradient(const Problem& problem, bool average) {
   std::vector<double> parameters = to_double(problem.model.network.parameters);
   std::vector<float> gradient(parameters.size());
-  GradientMachine machine(problem.model, smoothing);
+  GradientMachine machine(problem.model);
   const double loss = machine.run(problem.set(), problem.chosen, gradient);
-  EXPECT_NEAR(loss, reference_loss(problem, parameters, smoothing, average), 2e-6);
+  EXPECT_NEAR(loss, reference_loss(problem, parameters, average), 2e-6);
   double largest = 0.0;
   for (const float g : gradient) largest = std::max(largest, std::abs(static_cast<double>(g)));
   EXPECT_GT(largest, 1e-3);
@@ -81,9 +76,9 @@ void expect_right_gradient(const Problem& problem, double smoothing, bool averag
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     const double kept = parameters[i];
     parameters[i] = kept + kStep;
-    const double above = reference_loss(problem, parameters, smoothing, average);
+    const double above = reference_loss(problem, parameters, average);
     parameters[i] = kept - kStep;
-    const double below = reference_loss(problem, parameters, smoothing, average);
+    const double below = reference_loss(problem, parameters, average);
     parameters[i] = kept;
     // Float sums of numbers of the size of the largest derivatives.
     ASSERT_NEAR(gradient[i], (above - below) / (2 * kStep), 3e-6 * std::max(largest, 0.1))
@@ -94,12 +89,8 @@ void expect_right_gradient(const Problem& problem, double smoothing, bool averag
 TEST(Gradient, IsTheDerivativeByEveryParameter) {
   for (const Architecture& architecture : various_architectures()) {
     SCOPED_TRACE(weight_count(architecture));
-    expect_right_gradient(make_problem(architecture, 5), 0.0, false);
+    expect_right_gradient(make_problem(architecture, 5), false);
   }
-}
-
-TEST(Gradient, IsRightWithSmoothedLabels) {
-  expect_right_gradient(make_problem({}, 7), 0.1, false);
 }
 
 TEST(Gradient, IsRightWithSoftTargets) {
@@ -127,30 +118,10 @@ TEST(Gradient, IsRightWithSoftTargets) {
   for (std::size_t k = 0; k < n; ++k) EXPECT_NEAR(found[k], wanted[k], 1e-6);
 }
 
-TEST(Gradient, TakesScalesThatAreNotKeptForUndefined) {
-  Problem problem = make_problem({}, 150);
-  const std::size_t n = problem.model.network.parameters.size();
-  std::vector<ScaleRange> kept;
-  Problem blanked = problem;
-  for (std::size_t i = 0; i < problem.labels.size(); ++i) {
-    kept.push_back(i % 2 ? ScaleRange{3, 16} : ScaleRange{0, 14});
-    for (int scale = 0; scale < 16; ++scale) {
-      if (scale >= kept[i].first && scale < kept[i].last) continue;
-      for (int f = 0; f < 6; ++f) {
-        blanked.samples[i * 96 + static_cast<std::size_t>(scale * 6 + f)] = 0.0f;
-      }
-    }
-  }
-  std::vector<float> wanted(n), found(n);
-  const double loss = GradientMachine(problem.model).run(blanked.set(), problem.chosen, wanted);
-  EXPECT_EQ(GradientMachine(problem.model).run(problem.set(), problem.chosen, found, kept), loss);
-  EXPECT_EQ(found, wanted);
-}
-
 TEST(Gradient, IsThatOfTheAveragedLogits) {
   Problem problem = make_problem({}, 7);
   problem.model.sign_rule = {Symmetry::kAverage, {1, 1, 1, 1, 1, 0}, 1};
-  expect_right_gradient(problem, 0.05, true);
+  expect_right_gradient(problem, true);
 }
 
 TEST(Gradient, OfSeveralChunksIsTheMeanOfItsSamples) {
@@ -178,7 +149,7 @@ TEST(Gradient, HasTheSameBytesOnEveryVectorLevelAndThreadCount) {
       for (const int threads : {1, 2, 8}) {
         set_thread_count(threads);
         std::vector<float> found(wanted.size());
-        GradientMachine machine(problem.model, 0.0, static_cast<VectorLevel>(level));
+        GradientMachine machine(problem.model, static_cast<VectorLevel>(level));
         EXPECT_EQ(machine.run(problem.set(), problem.chosen, found), loss);
         EXPECT_EQ(found, wanted);
       }

@@ -24,7 +24,6 @@ Model example_model(const Architecture& architecture) {
     model.standardisation.inverse_deviation[u] = 1.0f / static_cast<float>(u + 1);
   }
   model.standardisation.bound = 4.5f;
-  model.standardisation.squash = Squash::kSoft;
   std::vector<std::uint8_t> odd(static_cast<std::size_t>(architecture.features), 0);
   odd[0] = 1;
   model.sign_rule = {Symmetry::kCanonical, odd, 0};
@@ -40,7 +39,6 @@ void expect_same(const Model& a, const Model& b) {
   EXPECT_EQ(a.standardisation.mean, b.standardisation.mean);
   EXPECT_EQ(a.standardisation.inverse_deviation, b.standardisation.inverse_deviation);
   EXPECT_EQ(a.standardisation.bound, b.standardisation.bound);
-  EXPECT_EQ(a.standardisation.squash, b.standardisation.squash);
   EXPECT_EQ(a.sign_rule.symmetry, b.sign_rule.symmetry);
   EXPECT_EQ(a.sign_rule.odd_features, b.sign_rule.odd_features);
   EXPECT_EQ(a.sign_rule.deciding_feature, b.sign_rule.deciding_feature);
@@ -199,6 +197,8 @@ TEST(ModelFile, RefusesForeignAndUnfittingContent) {
   expect_refused([](Safetensors& c) { c.metadata["nn.classes"] = "4"; });
   expect_refused([](Safetensors& c) { c.metadata["nn.class_names"] = "[\"a\"]"; });
   expect_refused([](Safetensors& c) { c.metadata["nn.class_names"] = "[1,2,3]"; });
+  expect_refused([](Safetensors& c) { c.metadata["nn.squash"] = "soft"; });
+  expect_refused([](Safetensors& c) { c.metadata.erase("nn.squash"); });
   expect_refused([](Safetensors& c) { c.metadata["nn.odd_features"] = "[1,1,1,1,1,2]"; });
   expect_refused([](Safetensors& c) { c.metadata["nn.deciding_feature"] = "-1"; });
   expect_refused([](Safetensors& c) { c.metadata["nn.deciding_feature"] = "3"; });

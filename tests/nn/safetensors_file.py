@@ -28,7 +28,7 @@ def prepare(samples, tensors, metadata):
     x = samples.reshape(-1, scales, features)
     x = (x - tensors["standardisation.mean"]) * tensors["standardisation.inverse_deviation"]
     bound = tensors["standardisation.bound"][0]
-    x = np.clip(x, -bound, bound) if metadata["nn.squash"] == "clip" else x / (1 + abs(x) / bound)
+    x = np.clip(x, -bound, bound)
     signs = 1 - 2 * np.array(json.loads(metadata["nn.odd_features"]))
     if metadata["nn.symmetry"] == "canonical":
         deciding = int(metadata["nn.deciding_feature"])

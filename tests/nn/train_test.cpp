@@ -157,14 +157,6 @@ TEST(Train, KeepsTheBestEpoch) {
             result.best.network.parameters);
 }
 
-TEST(Train, StopsWhenPatienceEnds) {
-  const Labelled data = rising_features(500, 1);
-  const TrainOptions options{.learning_rate = 0.3, .anneal = false, .epochs = 1000, .patience = 3};
-  const TrainResult result = train(kSmall, data.set(), options);
-  EXPECT_LT(result.history.size(), 1000u);
-  EXPECT_EQ(static_cast<int>(result.history.size()), result.best_epoch + 3);
-}
-
 TEST(Train, ReturnsTheBestSoFarWhenStopped) {
   const Labelled data = rising_features(500, 1);
   int epochs = 0;

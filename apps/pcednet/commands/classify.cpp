@@ -11,7 +11,6 @@
 #include "pcednet/core/error.h"
 #include "pcednet/core/stopwatch.h"
 #include "pcednet/detect/classify.h"
-#include "pcednet/detect/clean_up.h"
 #include "pcednet/detect/result_cloud.h"
 #include "pcednet/io/read_cloud.h"
 #include "pcednet/io/write_cloud.h"
@@ -29,7 +28,7 @@ struct Arguments {
   MethodArguments method;
   gls::ScaleSpaceOptions scales;  ///< its s_min and s_max
   detect::PrepareOptions preparation;
-  bool exact = false, no_context = false, clean_up = false, class_colours = false, ascii = false,
+  bool exact = false, no_context = false, class_colours = false, ascii = false,
        skip_existing = false;
 };
 
@@ -207,10 +206,6 @@ void classify_file(const Job& job, const Arguments& arguments, const detect::Edg
   times.emplace_back("network", result.seconds_network);
   if (model.context) times.emplace_back("context", result.seconds_context);
   watch.lap();
-  if (arguments.clean_up) {
-    detect::clean_up(loaded.cloud.positions, result, {}, &progress);
-    times.emplace_back("clean-up", watch.lap());
-  }
   auto kept = detect::add_result(loaded.cloud, prepared, result, model,
                                  {.class_colours = arguments.class_colours});
   for (const std::string& note : kept) say(fmt::format("  {}", note));
@@ -300,8 +295,6 @@ void add_classify(CLI::App& app, Common& common) {
        {"--model", "--no-context", "--exact", "--s-min", "--s-max", "--keep-orientation"}) {
     command->get_option(of_a_model)->excludes("--method");
   }
-  command->add_flag("--clean-up", arguments->clean_up,
-                    "Let the nearest points vote: fewer lone false edges, thin lines fade");
   command->callback([arguments, &common] { classify(*arguments, common); });
 }
 

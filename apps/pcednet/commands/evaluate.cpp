@@ -10,7 +10,6 @@
 #include "models.h"
 #include "pcednet/core/error.h"
 #include "pcednet/detect/classify.h"
-#include "pcednet/detect/clean_up.h"
 #include "pcednet/eval/predictions.h"
 #include "pcednet/eval/report.h"
 #include "pcednet/io/read_labelled.h"
@@ -27,7 +26,7 @@ struct Arguments {
   MethodArguments method;
   gls::ScaleSpaceOptions scales;  ///< its s_min and s_max
   detect::PrepareOptions preparation;
-  bool exact = false, no_context = false, clean_up = false, calibration = false;
+  bool exact = false, no_context = false, calibration = false;
 };
 
 struct Results {
@@ -46,7 +45,6 @@ detect::Classification predict(const fs::path& input, const PointCloud& cloud,
   } else {
     result = classify_by_method(cloud, arguments.method, &progress);
   }
-  if (arguments.clean_up) detect::clean_up(cloud.positions, result, {}, &progress);
   return result;
 }
 
@@ -168,8 +166,6 @@ void add_evaluate(CLI::App& app, Common& common) {
        {"--no-context", "--exact", "--s-min", "--s-max", "--keep-orientation"}) {
     command->get_option(of_a_model)->needs("--model");
   }
-  command->add_flag("--clean-up", arguments->clean_up, "Let the nearest points vote, as classify")
-      ->excludes("--predictions");
   command->callback([arguments, &common] { evaluate(*arguments, common); });
 }
 

@@ -142,7 +142,6 @@ study::NamedMethod classic_method(const std::string& id, const std::string& titl
 study::PlanOptions plan_of(const Arguments& arguments) {
   study::PlanOptions plan{.quick = arguments.quick};
   detect::TrainOptions& training = plan.training;
-  training.training.sign_rule.symmetry = nn::Symmetry::kAverage;
   if (arguments.natural) training.training.balance = 0.0;
   training.architecture.classes = arguments.classes;
   if (arguments.epochs > 0) training.training.epochs = arguments.epochs;

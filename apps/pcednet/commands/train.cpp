@@ -35,7 +35,7 @@ struct Arguments {
   int classes = 3, scales = 16, epochs = 0, width = 0, teachers = 0;
   gls::ScaleSpaceOptions descriptor;  ///< its s_min and s_max
   std::optional<double> gate, second_gate;
-  double balance = 1.0, smoothing = 0.0, missing_scales = 0.0, jitter = 0.0;
+  double balance = 1.0;
   std::uint64_t seed = 1;
   detect::PrepareOptions preparation;
   bool exact = false, natural = false, context = false;
@@ -61,13 +61,10 @@ detect::TrainOptions options_of(const Arguments& arguments) {
   if (arguments.recipe == "paper") options.training = nn::paper_recipe();
   if (arguments.epochs > 0) options.training.epochs = arguments.epochs;
   options.training.balance = arguments.natural ? 0.0 : arguments.balance;
-  options.training.label_smoothing = arguments.smoothing;
-  options.training.missing_scales = arguments.missing_scales;
-  options.jitter = arguments.jitter;
   options.teachers = arguments.teachers;
   options.context = arguments.context;
   options.training.seed = arguments.seed;
-  options.training.sign_rule.symmetry = kSymmetries.at(arguments.symmetry);
+  options.symmetry = kSymmetries.at(arguments.symmetry);
   return options;
 }
 
@@ -219,18 +216,6 @@ void add_train(CLI::App& app, Common& common) {
       ->add_option("--distil", arguments->teachers,
                    "Train so many networks first and learn from their mean opinion")
       ->check(CLI::Range(0, 100));
-  command
-      ->add_option("--smoothing", arguments->smoothing,
-                   "Label smoothing: the share of every label that goes to all classes alike")
-      ->check(CLI::Range(0.0, 0.9));
-  command
-      ->add_option("--jitter", arguments->jitter,
-                   "Multiply each cloud's scales by a factor between e^-X and e^X")
-      ->check(CLI::Range(0.0, 2.0));
-  command
-      ->add_option("--missing-scales", arguments->missing_scales,
-                   "The share of samples that lose up to a quarter of the scales at one end")
-      ->check(CLI::Range(0.0, 1.0));
   add_prepare_options(*command, arguments->preparation);
   command->add_option("--epochs", arguments->epochs, "Rounds of training (0: the recipe's)");
   command->add_option("--seed", arguments->seed, "Seed of all randomness")->capture_default_str();

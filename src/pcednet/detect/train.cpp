@@ -4,11 +4,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <iterator>
 
 #include "pcednet/core/error.h"
-#include "pcednet/core/random.h"
 #include "pcednet/core/stopwatch.h"
 #include "pcednet/detect/outputs.h"
 #include "pcednet/detect/train_context.h"
@@ -17,8 +15,6 @@
 
 namespace pcednet::detect {
 namespace {
-
-constexpr std::uint64_t kJitterStream = 5;  // of the training's seed
 
 void check_labels(const TrainingCloud& cloud) {
   if (cloud.labels.size() != cloud.cloud.positions.size()) {
@@ -89,9 +85,7 @@ std::map<std::string, std::string> summary_of(const nn::TrainResult& result,
 }  // namespace
 
 Samples make_samples(std::span<const TrainingCloud> clouds,
-                     const gls::ScaleSpaceOptions& descriptor, const Progress* progress,
-                     const Augmentation& augmentation) {
-  Random random(augmentation.seed, kJitterStream);
+                     const gls::ScaleSpaceOptions& descriptor, const Progress* progress) {
   const auto scales = static_cast<std::size_t>(descriptor.scales);
   const auto width = scales * static_cast<std::size_t>(gls::column_count(descriptor));
   const Progress cancel_only = without_report(progress);
@@ -102,17 +96,10 @@ Samples make_samples(std::span<const TrainingCloud> clouds,
   for (const TrainingCloud& cloud : clouds) {
     check_labels(cloud);
     const gls::OrientedPoints points{cloud.cloud.positions, cloud.cloud.normals};
-    gls::ScaleSpace matrix(points, descriptor, &cancel_only);
+    const gls::ScaleSpace matrix(points, descriptor, &cancel_only);
     if (const auto note = gls::note_on(descriptor, matrix.scales(), points.positions);
         !note.empty()) {
       samples.notes.push_back(fmt::format("{}: {}", cloud.name, note));
-    }
-    if (augmentation.jitter > 0.0) {
-      gls::ScaleSpaceOptions moved = descriptor;
-      const double factor = std::exp(random.uniform(-augmentation.jitter, augmentation.jitter));
-      moved.s_min = factor * matrix.scales().front();
-      moved.s_max = factor * matrix.scales().back();
-      matrix = gls::ScaleSpace(points, moved, &cancel_only);
     }
     const auto targets = labelled_points(cloud, matrix.order());
     const std::size_t before = samples.values.size();
@@ -130,8 +117,7 @@ TrainedModel train(const std::string& name, std::span<const TrainingCloud> cloud
                    const std::function<void(const nn::EpochReport&)>& on_epoch,
                    const Progress* progress) {
   Stopwatch watch;
-  const Samples samples =
-      make_samples(clouds, options.descriptor, progress, {options.jitter, options.training.seed});
+  const Samples samples = make_samples(clouds, options.descriptor, progress);
   const double seconds_describe = watch.lap();
   TrainedModel trained = train(name, samples, options, on_epoch, progress);
   trained.notes = samples.notes;
@@ -176,7 +162,7 @@ TrainedModel train(const std::string& name, const Samples& samples, const TrainO
   }
 
   nn::TrainOptions training = options.training;
-  training.sign_rule = sign_rule(model.descriptor, options.training.sign_rule.symmetry);
+  training.sign_rule = sign_rule(model.descriptor, options.symmetry);
   training.class_names = class_names(model.classes);
   std::vector<std::uint8_t> outputs;
   for (const std::uint8_t label : samples.labels) {

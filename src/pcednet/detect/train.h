@@ -20,9 +20,9 @@ struct TrainingCloud {
 struct TrainOptions {
   gls::ScaleSpaceOptions descriptor;
   nn::Architecture architecture;  ///< scales and features are set from `descriptor`
-  nn::TrainOptions training;
-  double jitter = 0.0;   ///< see Augmentation; its seed is the training's
-  int teachers = 0;      ///< learn from so many other networks, see nn::distil()
+  nn::TrainOptions training;      ///< sign rule and class names are set from the rest
+  nn::Symmetry symmetry = nn::Symmetry::kAverage;  ///< flipped normals change no answer
+  int teachers = 0;      ///< networks to train first and to learn from, see nn::distil()
   bool context = false;  ///< train a context network too, where clouds are given
 };
 
@@ -36,18 +36,10 @@ struct Samples {
   std::vector<std::string> notes = {};    ///< what the user should be told, one sentence each
 };
 
-/// How training clouds are made to differ.
-struct Augmentation {
-  /// The scales of each cloud are multiplied by a factor between e^-jitter and e^jitter.
-  double jitter = 0.0;
-  std::uint64_t seed = 1;
-};
-
 /// Describes every labelled point.
 /// Throws Error(kInsufficient), naming the cloud, if it has no labelled point.
 Samples make_samples(std::span<const TrainingCloud> clouds,
-                     const gls::ScaleSpaceOptions& descriptor, const Progress* progress = nullptr,
-                     const Augmentation& augmentation = {});
+                     const gls::ScaleSpaceOptions& descriptor, const Progress* progress = nullptr);
 
 /// Describes the clouds and trains a network on them. `name` goes into the model. The same clouds,
 /// options and seed give the same bytes, whatever the number of threads. With two classes,

@@ -47,7 +47,6 @@ nn::TrainResult train_context(const EdgeModel& model, std::span<const TrainingCl
   const ContextSamples samples = make_samples(model, clouds, exact, progress);
   const auto architecture = context_architecture(static_cast<int>(model.classes.size()));
   nn::TrainOptions training = options.training;
-  training.missing_scales = 0.0;
   training.sign_rule = {};
   training.class_names = model.network.class_names;
   training.start = nullptr;

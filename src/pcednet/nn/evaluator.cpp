@@ -21,8 +21,7 @@ void Evaluator::run(const float* const* rows, LaneTable& table) const {
   const SignPattern signs = {odd_inputs_.data(), inputs(), rule.deciding_feature,
                              model_->network.architecture.features};
   kernels_->transpose(rows, inputs(), data, lanes, paired() ? lanes / 2 : lanes);
-  kernels_->scale({s.mean.data(), s.inverse_deviation.data(), s.bound, s.squash == Squash::kSoft},
-                  inputs(), data, lanes);
+  kernels_->scale({s.mean.data(), s.inverse_deviation.data(), s.bound}, inputs(), data, lanes);
   if (rule.symmetry == Symmetry::kAverage) kernels_->mirror(signs, data, lanes);
   if (rule.symmetry == Symmetry::kCanonical) kernels_->orient(signs, data, lanes);
   const float* parameters = model_->network.parameters.data();

@@ -17,14 +17,13 @@ constexpr int kChunk = 128;
 struct GradientMachine::Workspace {
   LaneTable table, deltas;
   std::array<const float*, kChunk> rows;
-  std::vector<float> blanked;  // samples of which some scales are not seen
   LaneTable targets;
   alignas(64) std::array<float, kChunk> weights;
   alignas(64) std::array<float, kChunk> losses;
 };
 
-GradientMachine::GradientMachine(const Model& model, double label_smoothing, VectorLevel level)
-    : evaluator_(model, level), label_smoothing_(static_cast<float>(label_smoothing)) {}
+GradientMachine::GradientMachine(const Model& model, VectorLevel level)
+    : evaluator_(model, level) {}
 
 GradientMachine::~GradientMachine() = default;
 
@@ -33,7 +32,6 @@ std::unique_ptr<GradientMachine::Workspace> GradientMachine::borrow() {
   if (idle_.empty()) {
     return std::make_unique<Workspace>(Workspace{evaluator_.make_table(kChunk),
                                                  evaluator_.make_table(kChunk),
-                                                 {},
                                                  {},
                                                  {evaluator_.classes(), kChunk},
                                                  {},
@@ -50,7 +48,7 @@ void GradientMachine::give_back(std::unique_ptr<Workspace> workspace) {
 }
 
 double GradientMachine::run(const TrainingSet& set, std::span<const std::uint32_t> chosen,
-                            std::span<float> gradient, std::span<const ScaleRange> kept) {
+                            std::span<float> gradient) {
   const std::size_t chunks = (chosen.size() + kChunk - 1) / kChunk;
   chunk_gradients_.assign(chunks * gradient.size(), 0.0f);
   chunk_losses_.assign(chunks, 0.0);
@@ -58,8 +56,7 @@ double GradientMachine::run(const TrainingSet& set, std::span<const std::uint32_
   parallel_blocks(chosen.size(), kChunk, [&](std::size_t begin, std::size_t end) {
     const std::size_t chunk = begin / kChunk;
     std::unique_ptr<Workspace> workspace = borrow();
-    chunk_losses_[chunk] = run_chunk(*workspace, set, chosen.subspan(begin, end - begin),
-                                     kept.empty() ? kept : kept.subspan(begin, end - begin), weight,
+    chunk_losses_[chunk] = run_chunk(*workspace, set, chosen.subspan(begin, end - begin), weight,
                                      chunk_gradients_.data() + chunk * gradient.size());
     give_back(std::move(workspace));
   });
@@ -74,8 +71,7 @@ double GradientMachine::run(const TrainingSet& set, std::span<const std::uint32_
 }
 
 double GradientMachine::run_chunk(Workspace& w, const TrainingSet& set,
-                                  std::span<const std::uint32_t> chosen,
-                                  std::span<const ScaleRange> kept, float weight,
+                                  std::span<const std::uint32_t> chosen, float weight,
                                   float* gradient) const {
   const auto inputs = static_cast<std::size_t>(evaluator_.inputs());
   for (std::size_t p = 0; p < kChunk; ++p) {
@@ -85,19 +81,7 @@ double GradientMachine::run_chunk(Workspace& w, const TrainingSet& set,
     for (std::size_t u = 0; u < inputs; u += 16) __builtin_prefetch(w.rows[p] + u);
     w.weights[p] = p < chosen.size() ? weight : 0.0f;
   }
-  fill_targets(set, chosen, label_smoothing_, evaluator_.classes(), w.targets);
-  if (!kept.empty()) {
-    const auto features =
-        static_cast<std::size_t>(evaluator_.model().network.architecture.features);
-    w.blanked.assign(kChunk * inputs, 0.0f);
-    for (std::size_t p = 0; p < chosen.size(); ++p) {
-      float* const row = w.blanked.data() + p * inputs;
-      const auto first = static_cast<std::size_t>(kept[p].first) * features;
-      const auto last = static_cast<std::size_t>(kept[p].last) * features;
-      std::copy(w.rows[p] + first, w.rows[p] + last, row + first);
-      w.rows[p] = row;
-    }
-  }
+  fill_targets(set, chosen, evaluator_.classes(), w.targets);
   evaluator_.run(w.rows.data(), w.table);
   const Kernels& kernels = evaluator_.kernels();
   const Plan& plan = evaluator_.plan();

@@ -11,31 +11,22 @@
 
 namespace pcednet::nn {
 
-/// The scales from `first` to before `last`.
-struct ScaleRange {
-  int first = 0, last = 0;
-};
-
 /// The loss of a model over some samples and its derivative by the parameters.
 ///
-/// The loss is the mean cross-entropy -sum_c target_c log p_c, with target 1 - s + s/n for the
-/// label's class and s/n for the others (s the smoothing, n the classes). With Symmetry::kAverage p
-/// is the softmax of the averaged logits, so what is trained is what is predicted.
+/// The loss is the mean cross-entropy -sum_c target_c log p_c. With Symmetry::kAverage p is the
+/// softmax of the averaged logits, so what is trained is what is predicted.
 class GradientMachine {
  public:
   /// `model` must outlive it; its parameters may change between calls.
-  explicit GradientMachine(const Model& model, double label_smoothing = 0.0,
-                           VectorLevel level = vector_level());
+  explicit GradientMachine(const Model& model, VectorLevel level = vector_level());
 
   ~GradientMachine();
 
   /// Returns the mean loss over the samples `chosen` (indices into `set`, none of them ignored) and
   /// writes its derivatives to `gradient`. The batch is cut in chunks of fixed size whose gradients
   /// are added in order: the same bytes for any number of threads.
-  ///
-  /// Of sample i only the scales `kept[i]` are seen, the others count as undefined; empty: all.
   double run(const TrainingSet& set, std::span<const std::uint32_t> chosen,
-             std::span<float> gradient, std::span<const ScaleRange> kept = {});
+             std::span<float> gradient);
 
  private:
   struct Workspace;
@@ -43,11 +34,9 @@ class GradientMachine {
   std::unique_ptr<Workspace> borrow();
   void give_back(std::unique_ptr<Workspace> workspace);
   double run_chunk(Workspace& workspace, const TrainingSet& set,
-                   std::span<const std::uint32_t> chosen, std::span<const ScaleRange> kept,
-                   float weight, float* gradient) const;
+                   std::span<const std::uint32_t> chosen, float weight, float* gradient) const;
 
   Evaluator evaluator_;
-  float label_smoothing_;
   std::vector<float> chunk_gradients_;
   std::vector<double> chunk_losses_;
   std::mutex mutex_;

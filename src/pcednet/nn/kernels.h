@@ -42,8 +42,7 @@ enum class VectorLevel {
 struct InputScaling {
   const float* mean = nullptr;               ///< per input
   const float* inverse_deviation = nullptr;  ///< per input
-  float bound = 0.0f;
-  bool soft = false;  ///< u / (1 + |u| / bound) in place of a hard limit at +-bound
+  float bound = 0.0f;                        ///< on either side
 };
 
 /// Which inputs change sign when every normal is flipped, and those that decide a point's sign.

@@ -26,8 +26,7 @@ constexpr std::array<std::pair<Symmetry, std::string_view>, 3> kSymmetries = {
     {{Symmetry::kNone, "none"},
      {Symmetry::kAverage, "average"},
      {Symmetry::kCanonical, "canonical"}}};
-constexpr std::array<std::pair<Squash, std::string_view>, 2> kSquashes = {
-    {{Squash::kClip, "clip"}, {Squash::kSoft, "soft"}}};
+constexpr std::string_view kSquash = "clip";  // there was another way to limit inputs once
 
 template <typename T, std::size_t N>
 std::string name_of(const std::array<std::pair<T, std::string_view>, N>& names, T value) {
@@ -136,7 +135,10 @@ Standardisation read_standardisation(Reader& reader, const Architecture& a) {
   s.mean = reader.tensor("standardisation.mean", shape);
   s.inverse_deviation = reader.tensor("standardisation.inverse_deviation", shape);
   s.bound = reader.tensor("standardisation.bound", {1})[0];
-  s.squash = reader.choice("nn.squash", kSquashes);
+  if (const std::string& squash = reader.text("nn.squash"); squash != kSquash) {
+    reader.refuse(
+        fmt::format("inputs limited by \"{}\"; this version reads \"{}\"", squash, kSquash));
+  }
   return s;
 }
 
@@ -200,7 +202,7 @@ Safetensors to_safetensors(const Model& model) {
   content.metadata["nn.classes"] = fmt::format("{}", a.classes);
   content.metadata["nn.width"] = fmt::format("{}", a.width);
   content.metadata["nn.hidden"] = fmt::format("{}", a.hidden);
-  content.metadata["nn.squash"] = name_of(kSquashes, s.squash);
+  content.metadata["nn.squash"] = kSquash;
   content.metadata["nn.symmetry"] = name_of(kSymmetries, model.sign_rule.symmetry);
   content.metadata["nn.odd_features"] = Json(model.sign_rule.odd_features).dump();
   content.metadata["nn.deciding_feature"] = fmt::format("{}", model.sign_rule.deciding_feature);

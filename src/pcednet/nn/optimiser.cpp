@@ -5,21 +5,18 @@
 
 namespace pcednet::nn {
 
-Optimiser::Optimiser(OptimiserKind kind, std::size_t parameters, double momentum,
-                     double weight_decay)
+Optimiser::Optimiser(OptimiserKind kind, std::size_t parameters, double momentum)
     : kind_(kind),
       momentum_(static_cast<float>(momentum)),
-      weight_decay_(static_cast<float>(weight_decay)),
       first_(parameters, 0.0f),
       second_(kind == OptimiserKind::kAdam ? parameters : 0, 0.0f) {}
 
 void Optimiser::step(std::span<const float> gradient, double rate, std::span<float> parameters) {
-  const float keep = 1.0f - static_cast<float>(rate) * weight_decay_;
   if (kind_ == OptimiserKind::kMomentum) {
     const auto r = static_cast<float>(rate);
     for (std::size_t i = 0; i < parameters.size(); ++i) {
       first_[i] = momentum_ * first_[i] + gradient[i];
-      parameters[i] = keep * parameters[i] - r * first_[i];
+      parameters[i] -= r * first_[i];
     }
     return;
   }
@@ -32,8 +29,7 @@ void Optimiser::step(std::span<const float> gradient, double rate, std::span<flo
     const float g = gradient[i];
     first_[i] = momentum_ * first_[i] + (1.0f - momentum_) * g;
     second_[i] = kSecond * second_[i] + (1.0f - kSecond) * (g * g);
-    const float step = r * first_[i] / (std::sqrt(second_[i] * correction) + 1e-8f);
-    parameters[i] = keep * parameters[i] - step;
+    parameters[i] -= r * first_[i] / (std::sqrt(second_[i] * correction) + 1e-8f);
   }
 }
 

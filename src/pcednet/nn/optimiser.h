@@ -7,7 +7,7 @@
 namespace pcednet::nn {
 
 enum class OptimiserKind {
-  kAdam,      ///< Kingma and Ba 2015, with decoupled weight decay
+  kAdam,      ///< Kingma and Ba 2015
   kMomentum,  ///< v = momentum v + gradient; parameters -= rate v
 };
 
@@ -15,14 +15,13 @@ enum class OptimiserKind {
 /// the same on every processor.
 class Optimiser {
  public:
-  Optimiser(OptimiserKind kind, std::size_t parameters, double momentum, double weight_decay);
+  Optimiser(OptimiserKind kind, std::size_t parameters, double momentum);
 
   void step(std::span<const float> gradient, double rate, std::span<float> parameters);
 
  private:
   OptimiserKind kind_;
   float momentum_;
-  float weight_decay_;
   double first_power_ = 1.0, second_power_ = 1.0;  // of the decay rates, for the bias correction
   std::vector<float> first_, second_;
 };

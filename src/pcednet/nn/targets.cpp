@@ -4,17 +4,15 @@
 
 namespace pcednet::nn {
 
-void fill_targets(const TrainingSet& set, std::span<const std::uint32_t> chosen, float smoothing,
-                  int classes, LaneTable& targets) {
-  const float other = smoothing / static_cast<float>(classes);
+void fill_targets(const TrainingSet& set, std::span<const std::uint32_t> chosen, int classes,
+                  LaneTable& targets) {
   for (int p = 0; p < targets.lanes(); ++p) {
     const std::size_t sample = chosen[std::min(static_cast<std::size_t>(p), chosen.size() - 1)];
     for (int c = 0; c < classes; ++c) {
-      const float wanted = set.targets.empty()
-                               ? static_cast<float>(set.labels[sample] == c)
-                               : set.targets[sample * static_cast<std::size_t>(classes) +
-                                             static_cast<std::size_t>(c)];
-      targets.row(c)[p] = (1.0f - smoothing) * wanted + other;
+      targets.row(c)[p] = set.targets.empty()
+                              ? static_cast<float>(set.labels[sample] == c)
+                              : set.targets[sample * static_cast<std::size_t>(classes) +
+                                            static_cast<std::size_t>(c)];
     }
   }
 }

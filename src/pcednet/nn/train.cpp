@@ -19,8 +19,9 @@ namespace {
 using SamplesByClass = std::vector<std::vector<std::uint32_t>>;
 
 // Independent streams of the caller's seed.
-enum Stream : std::uint64_t { kSplitStream = 1, kSampleStream = 2, kScaleStream = 3 };
+enum Stream : std::uint64_t { kSplitStream = 1, kSampleStream = 2 };
 
+constexpr double kHeldOut = 0.1;                // of every class, to judge the epochs by
 constexpr std::size_t kFewestToSplit = 20;      // samples of a class
 constexpr std::size_t kMostToValidate = 50000;  // of a class: judging stays cheap beside learning
 
@@ -35,14 +36,9 @@ void check_options(const TrainOptions& o) {
   };
   need(o.learning_rate > 0.0, "the learning rate must be positive");
   need(o.momentum >= 0.0 && o.momentum < 1.0, "the momentum must be in [0, 1)");
-  need(o.weight_decay >= 0.0, "the weight decay must not be negative");
-  need(o.label_smoothing >= 0.0 && o.label_smoothing < 1.0, "label smoothing must be in [0, 1)");
   need(o.epochs > 0 && o.batch > 0, "at least one epoch and batches of one sample are needed");
   need(o.most_per_epoch > 0 && o.least_per_epoch <= o.most_per_epoch,
        "the least samples per epoch exceed the most");
-  need(o.validation_share >= 0.0 && o.validation_share < 1.0,
-       "the validation share must be in [0, 1)");
-  need(o.patience >= 0, "the patience must not be negative");
 }
 
 SamplesByClass sort_by_class(const Architecture& architecture, const TrainingSet& set) {
@@ -78,15 +74,15 @@ std::vector<std::uint32_t> concatenate(const SamplesByClass& samples, std::size_
   return all;
 }
 
-/// Takes `share` of every class out of `samples`; nothing if a class is too small for that.
-SamplesByClass split_off(SamplesByClass& samples, double share, Random random) {
+/// Takes kHeldOut of every class out of `samples`; nothing if a class is too small for that.
+SamplesByClass split_off(SamplesByClass& samples, Random random) {
   SamplesByClass kept(samples.size());
   for (const auto& of_class : samples) {
     if (of_class.size() < kFewestToSplit) return kept;
   }
   for (std::size_t c = 0; c < samples.size(); ++c) {
     random.shuffle(std::span(samples[c]));
-    const auto count = static_cast<std::size_t>(share * static_cast<double>(samples[c].size()));
+    const auto count = static_cast<std::size_t>(kHeldOut * static_cast<double>(samples[c].size()));
     kept[c].assign(samples[c].end() - static_cast<std::ptrdiff_t>(count), samples[c].end());
     samples[c].resize(samples[c].size() - count);
   }
@@ -112,8 +108,8 @@ Model make_model(const Architecture& architecture, const TrainingSet& set,
   const bool symmetric = options.sign_rule.symmetry != Symmetry::kNone;
   const auto odd = symmetric ? std::span<const std::uint8_t>(options.sign_rule.odd_features)
                              : std::span<const std::uint8_t>();
-  model.standardisation = measure_standardisation(set, architecture.scales, architecture.features,
-                                                  odd, options.standardisation);
+  model.standardisation =
+      measure_standardisation(set, architecture.scales, architecture.features, odd);
   return model;
 }
 
@@ -124,13 +120,11 @@ class Trainer {
       : options_(options),
         set_(set),
         model_(std::move(model)),
-        machine_(model_, options.label_smoothing),
+        machine_(model_),
         sampler_(std::move(samples), options.balance, Random(options.seed, kSampleStream)),
-        optimiser_(options.optimiser, model_.network.parameters.size(), options.momentum,
-                   options.weight_decay),
+        optimiser_(options.optimiser, model_.network.parameters.size(), options.momentum),
         gradient_(model_.network.parameters.size()),
-        batch_(options.batch),
-        random_(options.seed, kScaleStream) {
+        batch_(options.batch) {
     const std::size_t samples_per_epoch =
         std::clamp(sampler_.round(), options.least_per_epoch, options.most_per_epoch);
     steps_per_epoch_ = (samples_per_epoch + options.batch - 1) / options.batch;
@@ -145,7 +139,7 @@ class Trainer {
     for (std::size_t i = 0; i < steps_per_epoch_; ++i) {
       if (progress && progress->cancelled && progress->cancelled()) return false;
       sampler_.next(batch_);
-      sum += machine_.run(set_, batch_, gradient_, ranges_to_keep());
+      sum += machine_.run(set_, batch_, gradient_);
       const double share = options_.anneal ? learning_rate_share(step_, steps()) : 1.0;
       optimiser_.step(gradient_, options_.learning_rate * share, model_.network.parameters);
       ++step_;
@@ -156,22 +150,6 @@ class Trainer {
   }
 
  private:
-  /// Some samples lose up to a quarter of the scales at one end.
-  std::span<const ScaleRange> ranges_to_keep() {
-    if (options_.missing_scales == 0.0) return {};
-    const int scales = model_.network.architecture.scales;
-    kept_.assign(batch_.size(), {0, scales});
-    for (ScaleRange& range : kept_) {
-      if (random_.uniform() >= options_.missing_scales) continue;
-      const int lost = 1 + static_cast<int>(random_.index(static_cast<std::size_t>(scales / 4)));
-      if (random_.uniform() < 0.5)
-        range.first = lost;
-      else
-        range.last = scales - lost;
-    }
-    return kept_;
-  }
-
   const TrainOptions& options_;
   const TrainingSet& set_;
   Model model_;
@@ -180,8 +158,6 @@ class Trainer {
   Optimiser optimiser_;
   std::vector<float> gradient_;
   std::vector<std::uint32_t> batch_;
-  std::vector<ScaleRange> kept_;
-  Random random_;  // for the scales that samples lose
   std::size_t steps_per_epoch_ = 0;
   std::size_t step_ = 0;
 };
@@ -214,12 +190,8 @@ TrainResult train(const Architecture& architecture, const TrainingSet& set,
                   fmt::format("no sample of class {} to train on", name_of_class(options, c)));
     }
   }
-  const bool outside = !options.validation.labels.empty();
-  const TrainingSet& judges = outside ? options.validation : set;
-  const std::vector<std::uint32_t> validation = concatenate(
-      outside ? sort_by_class(architecture, options.validation)
-              : split_off(samples, options.validation_share, Random(options.seed, kSplitStream)),
-      kMostToValidate);
+  const std::vector<std::uint32_t> validation =
+      concatenate(split_off(samples, Random(options.seed, kSplitStream)), kMostToValidate);
 
   Trainer trainer(make_model(architecture, set, options), set, std::move(samples), options);
   TrainResult result;
@@ -232,7 +204,7 @@ TrainResult train(const Architecture& architecture, const TrainingSet& set,
     result.cancelled = !trainer.run_epoch(stage, progress, report.training_loss);
     if (result.cancelled) break;
     if (!validation.empty()) {
-      Validation found = validate(trainer.model(), judges, validation);
+      Validation found = validate(trainer.model(), set, validation);
       report.validation_confusion = std::move(found.confusion);
       report.validation_loss = found.loss;
       report.validation_accuracy = found.accuracy;
@@ -244,7 +216,6 @@ TrainResult train(const Architecture& architecture, const TrainingSet& set,
       result.best = trainer.model();
       result.best_epoch = epoch;
     }
-    if (options.patience > 0 && epoch - result.best_epoch >= options.patience) break;
   }
   if (result.best_epoch == 0) result.best = trainer.model();
   return result;

@@ -18,9 +18,6 @@ struct TrainOptions {
   double learning_rate = 0.01;
   bool anneal = true;  ///< let the rate rise and fall (learning_rate_share) over the epochs
   double momentum = 0.9;
-  double weight_decay = 0.0;
-  double label_smoothing = 0.0;
-  double missing_scales = 0.0;  ///< the share of samples that lose some scales at either end
   int epochs = 40;
   std::size_t batch = 512;
   /// 1: every class comes equally often, by replication; 0: as often as it occurs; see Sampler
@@ -30,15 +27,8 @@ struct TrainOptions {
   std::size_t least_per_epoch = 1 << 14, most_per_epoch = 1 << 20;
 
   bool standardise = true;  ///< measure the inputs' range; otherwise they are taken as they are
-  StandardisationOptions standardisation = {};
   SignRule sign_rule = {};
   std::vector<std::string> class_names = {};  ///< one per class, or empty
-
-  /// Samples to judge the epochs by. If empty, `validation_share` of every class is kept apart for
-  /// it; with fewer than 20 samples of a class there is no validation and the last epoch counts.
-  TrainingSet validation = {};
-  double validation_share = 0.1;
-  int patience = 0;  ///< epochs without a better validation loss before stopping; 0: never stop
 
   const Model* start = nullptr;  ///< continue from this model's weights and standardisation
   std::uint64_t seed = 1;
@@ -47,8 +37,9 @@ struct TrainOptions {
 /// What the paper did: SGD with momentum, batches of 100, rate 0.01, 40 epochs, raw inputs.
 TrainOptions paper_recipe();
 
-/// How an epoch ended. Validation numbers are means over the classes of the mean per class, and 0
-/// without validation.
+/// How an epoch ended, judged by a tenth of every class that is held out. Validation numbers are
+/// macro averages (the mean over the classes of each class's mean). With fewer than 20 samples of a
+/// class nothing is held out: they are 0, and the last epoch counts as the best.
 struct EpochReport {
   int epoch = 0;  ///< from 1
   double training_loss = 0.0;

@@ -46,7 +46,7 @@ void judge(const Evaluator& evaluator, const TrainingSet& set,
       labels[p] = set.labels[sample];
     }
     // The labels are what it is judged by, whatever it learnt from.
-    fill_targets({set.samples, set.labels}, chosen.subspan(begin, points), 0.0f, classes, targets);
+    fill_targets({set.samples, set.labels}, chosen.subspan(begin, points), classes, targets);
     evaluator.run(rows.data(), table);
     const Kernels& kernels = evaluator.kernels();
     kernels.cross_entropy(table.row(logits), targets.row(0), weights.data(), classes, table.lanes(),

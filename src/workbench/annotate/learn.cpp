@@ -84,7 +84,6 @@ detect::TrainedModel learn(const std::string& name, const Described& described,
   options.training.seed = settings.seed;
   options.training.epochs = kEpochs;
   options.training.most_per_epoch = kMostPerEpoch;
-  options.training.sign_rule.symmetry = nn::Symmetry::kAverage;
   std::optional<detect::EdgeModel> from;
   if (start) {
     from = with_classes(*start, classes);

@@ -182,7 +182,6 @@ Experiment learning(const PlanOptions& options) {
   NetworkMethod published = network(options);
   const int epochs = published.options.training.epochs;
   published.options.training = nn::paper_recipe();
-  published.options.training.sign_rule = options.training.training.sign_rule;
   if (options.quick) published.options.training.epochs = epochs;
   experiment.variants.push_back({.id = "published",
                                  .title = "PCEDNet, published recipe",

@@ -24,23 +24,16 @@ std::string text_of(const nn::Architecture& architecture) {
 }
 
 std::string text_of(const nn::TrainOptions& options) {
-  const auto& [optimiser, learning_rate, anneal, momentum, weight_decay, label_smoothing,
-               missing_scales, epochs, batch, balance, least_per_epoch, most_per_epoch, standardise,
-               standardisation, sign_rule, class_names, validation, validation_share, patience,
-               start, seed] = options;
-  // The runner has neither validation samples of its own nor a model to start from; the names of
-  // the classes and the odd features follow from the rest.
-  static_cast<void>(validation), static_cast<void>(start), static_cast<void>(class_names);
-  const auto& [bound, squash, tail, most_samples] = standardisation;
+  const auto& [optimiser, learning_rate, anneal, momentum, epochs, batch, balance, least_per_epoch,
+               most_per_epoch, standardise, sign_rule, class_names, start, seed] = options;
+  // The runner has no model to start from; the signs and the names of the classes follow from the
+  // rest.
+  static_cast<void>(start), static_cast<void>(class_names), static_cast<void>(sign_rule);
   return fmt::format(
-      "optimiser {} rate {} anneal {} momentum {} decay {} smoothing {} missing {} epochs {} "
-      "batch {} balance {} least {} most {} standardise {} bound {} squash {} tail {} of {} "
-      "symmetry {} "
-      "validation {} patience {} seed {}",
-      static_cast<int>(optimiser), learning_rate, anneal, momentum, weight_decay, label_smoothing,
-      missing_scales, epochs, batch, balance, least_per_epoch, most_per_epoch, standardise, bound,
-      static_cast<int>(squash), tail, most_samples, static_cast<int>(sign_rule.symmetry),
-      validation_share, patience, seed);
+      "optimiser {} rate {} anneal {} momentum {} epochs {} batch {} balance {} least {} most {} "
+      "standardise {} seed {}",
+      static_cast<int>(optimiser), learning_rate, anneal, momentum, epochs, batch, balance,
+      least_per_epoch, most_per_epoch, standardise, seed);
 }
 
 std::vector<gls::ScaleSpaceOptions> descriptors_to_try() {
@@ -77,11 +70,11 @@ void try_networks(const detect::PreparedCloud& cloud, const PointCloud& labelled
 }  // namespace
 
 std::string text_of(const detect::TrainOptions& options) {
-  const auto& [descriptor, architecture, training, jitter, teachers, context] = options;
-  // The runner trains on samples, which know nothing of these.
-  static_cast<void>(jitter), static_cast<void>(context);
-  return fmt::format("{}, {}, {}, teachers {}", gls::text_of(descriptor), text_of(architecture),
-                     text_of(training), teachers);
+  const auto& [descriptor, architecture, training, symmetry, teachers, context] = options;
+  static_cast<void>(context);  // the runner trains on samples, which have no context
+  return fmt::format("{}, {}, {}, symmetry {}, teachers {}", gls::text_of(descriptor),
+                     text_of(architecture), text_of(training), static_cast<int>(symmetry),
+                     teachers);
 }
 
 std::string text_of(const Treatment& treatment) {
