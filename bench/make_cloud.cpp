@@ -5,7 +5,7 @@
 
 #include "clouds.h"
 #include "pcednet/cloud/point_cloud.h"
-#include "pcednet/io/write_cloud.h"
+#include "pcednet/formats/write_cloud.h"
 
 int main(int count, char** arguments) {
   if (count < 4) {
@@ -20,7 +20,7 @@ int main(int count, char** arguments) {
     pcednet::PointCloud cloud;
     cloud.positions = std::move(made.positions);
     if (count == 4) cloud.normals = std::move(made.normals);
-    pcednet::io::write_cloud(arguments[3], cloud, {.overwrite = pcednet::Overwrite::kYes});
+    pcednet::formats::write_cloud(arguments[3], cloud, {.overwrite = pcednet::Overwrite::kYes});
   } catch (const std::exception& error) {
     std::fprintf(stderr, "bench_cloud: %s\n", error.what());
     return 1;

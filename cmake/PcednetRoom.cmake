@@ -2,13 +2,14 @@
 # workbench_room(NAME USES room... LINKS library... PRIVATE_LINKS library...)
 #
 # Makes the library target pcednet_NAME (alias pcednet::NAME, workbench::NAME) from every source of
-# the current folder. USES names the rooms whose headers it includes; LINKS are outside libraries
+# the current folder. A room in a folder of another is io/las, its target pcednet_io_las. USES names the rooms whose headers it includes; LINKS are outside libraries
 # that appear in its headers, PRIVATE_LINKS those that appear only in its sources. Rooms of the
 # library are installed, those of the workbench are not.
 function(pcednet_room name)
   pcednet_make_room(${name} pcednet ${ARGN})
-  set(target pcednet_${name})
-  set_target_properties(${target} PROPERTIES EXPORT_NAME ${name})
+  string(REPLACE "/" "_" flat ${name})
+  set(target pcednet_${flat})
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${flat})
   set_property(GLOBAL APPEND PROPERTY PCEDNET_ROOMS ${target})
   file(GLOB headers CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.h)
   install(TARGETS ${target} EXPORT pcednetTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
@@ -24,14 +25,16 @@ function(pcednet_make_room name wing)
   cmake_parse_arguments(room "" "" "USES;LINKS;PRIVATE_LINKS" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
   file(GLOB headers CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.h)
-  set(target pcednet_${name})
+  string(REPLACE "/" "_" flat ${name})
+  set(target pcednet_${flat})
   add_library(${target} STATIC ${sources} ${headers})
-  add_library(${wing}::${name} ALIAS ${target})
+  add_library(${wing}::${flat} ALIAS ${target})
   target_include_directories(${target} PUBLIC
     $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_compile_features(${target} PUBLIC cxx_std_20)
   pcednet_compile_options(${target})
-  foreach(used ${room_USES})
+  string(REPLACE "/" "_" used_rooms "${room_USES}")
+  foreach(used ${used_rooms})
     target_link_libraries(${target} PUBLIC pcednet_${used})
   endforeach()
   target_link_libraries(${target} PUBLIC ${room_LINKS} PRIVATE ${room_PRIVATE_LINKS})

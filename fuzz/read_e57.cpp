@@ -2,8 +2,8 @@
 #include <vector>
 
 #include "in_memory.h"
-#include "pcednet/io/e57.h"
-#include "pcednet/io/e57_pages.h"
+#include "pcednet/io/e57/e57.h"
+#include "pcednet/io/e57/pages.h"
 
 namespace {
 

@@ -1,8 +1,8 @@
 #include "in_memory.h"
-#include "pcednet/io/abc_features.h"
+#include "workbench/truth/abc_features.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   return pcednet::fuzz::read_or_refuse({data, size}, [](const std::filesystem::path& path) {
-    pcednet::io::read_abc_labels(path, 1000);
+    pcednet::truth::read_abc_labels(path, 1000);
   });
 }

@@ -1,14 +1,13 @@
 #include <cstdlib>
 
 #include "in_memory.h"
-#include "pcednet/io/parts.h"
-#include "pcednet/io/read_cloud.h"
+#include "pcednet/formats/read_cloud.h"
 
 namespace {
 
 /// What can be read in parts is read as a whole too, and says the same.
 void read_both_ways(const std::filesystem::path& path) {
-  const auto reader = pcednet::io::open_parts(path, 5);
+  const auto reader = pcednet::formats::open_parts(path, 5);
   if (!reader) return;
   std::size_t points = 0;
   for (std::size_t p = 0; p < reader->parts(); ++p) {
@@ -16,7 +15,7 @@ void read_both_ways(const std::filesystem::path& path) {
     check_consistent(part);
     points += part.size();
   }
-  if (points != pcednet::io::read_cloud(path).cloud.size()) std::abort();
+  if (points != pcednet::formats::read_cloud(path).cloud.size()) std::abort();
 }
 
 }  // namespace

@@ -3,32 +3,22 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <cctype>
 #include <new>
 
 #include "common.h"
+#include "pcednet/formats/format.h"
 
 namespace pcednet::app {
 namespace {
 
 namespace fs = std::filesystem;
 
-bool is_point_file(const fs::path& path) {
-  static constexpr std::array kExtensions = {".ply", ".obj", ".xyz", ".txt", ".csv", ".asc",
-                                             ".pts", ".pcd", ".las", ".laz", ".e57"};
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return std::find(kExtensions.begin(), kExtensions.end(), extension) != kExtensions.end();
-}
-
 std::vector<fs::path> files_in(const fs::path& folder) {
   std::vector<fs::path> files;
   std::error_code error, ignored;
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
        entry.increment(error)) {
-    if (is_point_file(entry->path()) && !entry->is_directory(ignored)) {
+    if (formats::find_format(entry->path()) && !entry->is_directory(ignored)) {
       files.push_back(entry->path());
     }
   }

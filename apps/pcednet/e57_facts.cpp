@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <string>
 
-#include "pcednet/io/e57_header.h"
+#include "pcednet/io/e57/header.h"
 
 namespace pcednet::app {
 namespace {

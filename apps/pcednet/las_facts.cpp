@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "pcednet/io/las_file.h"
+#include "pcednet/io/las/file.h"
 
 namespace pcednet::app {
 namespace {

@@ -11,7 +11,7 @@
 
 #include "pcednet/core/error.h"
 #include "pcednet/core/random.h"
-#include "pcednet/io/write_cloud.h"
+#include "pcednet/formats/write_cloud.h"
 #include "workbench/annotate/json.h"
 #include "workbench/annotate/project.h"
 #include "workbench/annotate/session.h"
@@ -91,7 +91,7 @@ class RunHistory : public testing::Test {
       cloud.positions.push_back(p);
       cloud.normals.push_back(n);
     }
-    io::write_cloud(folder_ / "cube.ply", cloud, {});
+    formats::write_cloud(folder_ / "cube.ply", cloud, {});
     open();
     session_->change_settings({.automatic = false});
   }

@@ -2,7 +2,7 @@
 // no index, since web-e57 reads no other.
 #include <iostream>
 
-#include "io/e57_writer.h"
+#include "io/e57/e57_writer.h"
 
 int main() {
   using namespace pcednet::io;

@@ -2,7 +2,7 @@
 // EXTRA bytes beyond it, from CHANNELS scanner channels in turn (formats 6 to 10).
 #include <iostream>
 
-#include "io/las_writer.h"
+#include "io/las/las_writer.h"
 
 int main(int count, char** words) {
   using namespace pcednet::io;

@@ -76,6 +76,8 @@ TEST_F(Predicted, AreFoundByTheStemOfTheCloud) {
   EXPECT_TRUE(find_predictions(folder_, "a").empty());
   write("a_output.xyz", "");
   EXPECT_EQ(find_predictions(folder_, "a"), folder_ / "a_output.xyz");
+  write("a_edges.laz", "LASF");
+  EXPECT_EQ(find_predictions(folder_, "a"), folder_ / "a_edges.laz");
   write("a.npy", "");
   EXPECT_EQ(find_predictions(folder_, "a"), folder_ / "a.npy");
 }

@@ -68,12 +68,13 @@ def rooms_used(root, wing, room):
 
 
 def check_rooms(root):
-    """A room uses rooms above it in the lists only, and includes what it says it uses."""
+    """A room, which is a folder, uses rooms above it in the lists only, and includes what it says
+    it uses."""
     order = room_order(root)
     names = [name for _, name in order]
-    include = re.compile(r'\s*#\s*include\s*[<"](pcednet|workbench)/([^/">]+)/')
-    for folder in sorted(path for wing in WINGS for path in (root / "src" / wing).glob("*")):
-        wing, room = folder.parent.name, folder.name
+    include = re.compile(r'\s*#\s*include\s*[<"](pcednet|workbench)/([^">]+)/[^/">]+[">]')
+    for folder in sorted(path for path in (root / "src").glob("*/**/*") if path.is_dir()):
+        wing, _, room = folder.relative_to(root / "src").as_posix().partition("/")
         if (wing, room) not in order:
             yield f"src/{wing}/{room}: not among the rooms of CMakeLists.txt"
             continue
@@ -82,7 +83,7 @@ def check_rooms(root):
             if other not in names[:names.index(room)]:
                 yield f"src/{wing}/{room}/CMakeLists.txt: uses {other}, which is not above it"
         allowed = [place for place in order if place[1] in (room, *used)]
-        for path in sources(root, f"src/{wing}/{room}"):
+        for path in sorted(path for path in folder.glob("*") if path.suffix in SOURCES):
             for number, line in enumerate(read(path).splitlines(), 1):
                 found = include.match(line)
                 if found and found.groups() not in allowed:
@@ -143,7 +144,7 @@ def check_self():
     """Every rule finds its breach, and nothing else in the same house without it."""
     sound = {
         "CMakeLists.txt": """project(pcednet VERSION 1.2.3)
-foreach(room core gls) # order
+foreach(room core core/fast gls) # order
   add_subdirectory(src/pcednet/${room})
 endforeach()
 foreach(room study)
@@ -152,6 +153,8 @@ endforeach()
 """,
         "src/pcednet/core/CMakeLists.txt": "pcednet_room(core LINKS gls)\n",
         "src/pcednet/core/a.h": "#pragma once\n",
+        "src/pcednet/core/fast/CMakeLists.txt": "pcednet_room(core/fast USES core)\n",
+        "src/pcednet/core/fast/d.h": '#include "pcednet/core/a.h"\n#include "pcednet/core/fast/e.h"\n',
         "src/pcednet/gls/CMakeLists.txt": "pcednet_room(gls\n  USES core)\n",
         "src/pcednet/gls/b.cpp": '#include "pcednet/core/a.h"\nint n = snprintf(b, 2, "x");\n',
         "src/workbench/study/CMakeLists.txt": "workbench_room(study USES gls)\n",
@@ -168,6 +171,11 @@ endforeach()
                   ("src/pcednet/gls/CMakeLists.txt", "pcednet_room(gls USES core study)\n"),
                   ("src/workbench/study/c.cpp", '#include "pcednet/core/a.h"\n'),
                   ("src/workbench/study/c.cpp", '#include "workbench/gls/b.h"\n'),
+                  ("src/pcednet/core/a.h", '#include "pcednet/core/fast/d.h"\n'),
+                  ("src/pcednet/core/fast/d.h", '#include "pcednet/gls/b.h"\n'),
+                  ("src/pcednet/gls/b.h", '#include "pcednet/core/fast/d.h"\n'),
+                  ("src/pcednet/core/CMakeLists.txt", "pcednet_room(core USES core/fast)\n"),
+                  ("src/pcednet/core/slow/d.h", "\n"),
                   ("src/pcednet/new/c.h", "\n"), ("src/workbench/new/c.h", "\n")],
         "sizes": [("src/pcednet/core/a.h", "\n" * 151), ("apps/main.cpp", "\n" * 401)],
         "silence": [("src/pcednet/gls/b.cpp", text) for text in

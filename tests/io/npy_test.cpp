@@ -4,8 +4,8 @@
 
 #include <cmath>
 
+#include "io/scratch.h"
 #include "pcednet/core/random.h"
-#include "scratch.h"
 
 namespace pcednet::io {
 namespace {

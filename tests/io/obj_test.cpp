@@ -2,10 +2,10 @@
 
 #include <cmath>
 
+#include "io/sample_cloud.h"
+#include "io/scratch.h"
+#include "pcednet/formats/write_cloud.h"
 #include "pcednet/io/faces.h"
-#include "pcednet/io/write_cloud.h"
-#include "sample_cloud.h"
-#include "scratch.h"
 
 namespace pcednet::io {
 namespace {
@@ -34,8 +34,9 @@ TEST(Obj, KeepsFacesAsPlyHasThem) {
   EXPECT_EQ(triangles_of(loaded.cloud), (std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}, {3, 2, 0}}));
   ASSERT_EQ(loaded.warnings.size(), 1u);
   EXPECT_TRUE(contains(loaded.warnings[0], "1 lines or points"));
-  write_cloud(scratch.path("a.ply"), loaded.cloud);
-  EXPECT_EQ(triangles_of(read_cloud(scratch.path("a.ply")).cloud), triangles_of(loaded.cloud));
+  formats::write_cloud(scratch.path("a.ply"), loaded.cloud);
+  EXPECT_EQ(triangles_of(formats::read_cloud(scratch.path("a.ply")).cloud),
+            triangles_of(loaded.cloud));
 }
 
 TEST(Obj, RefusesFacesOfOtherVertices) {
@@ -100,14 +101,14 @@ TEST(Obj, GivesBackWhatItCanHold) {
   PointCloud cloud = sample_cloud();
   cloud.position_type = ScalarType::kFloat64;
   cloud.positions[0] = Vec3(512049.781, 5403059.52, 0.1);
-  write_cloud(scratch.path("a.obj"), cloud);
-  const PointCloud back = read_cloud(scratch.path("a.obj")).cloud;
+  formats::write_cloud(scratch.path("a.obj"), cloud);
+  const PointCloud back = formats::read_cloud(scratch.path("a.obj")).cloud;
   EXPECT_TRUE(same_bits(back.positions, cloud.positions));
   EXPECT_EQ(back.colours, cloud.colours);
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     EXPECT_LT((back.normals.at(i) - cloud.normals[i]).norm(), 1.5e-7);  // float and back
   }
-  const auto lost = losses("a.obj", cloud);
+  const auto lost = formats::losses("a.obj", cloud);
   EXPECT_EQ(lost, (std::vector<std::string>{"attribute intensity", "attribute scalar_p_sharp",
                                             "attribute scalar_edge_class", "attribute quality",
                                             "labels"}));

@@ -2,10 +2,10 @@
 
 #include <cmath>
 
+#include "io/sample_cloud.h"
+#include "io/scratch.h"
+#include "pcednet/formats/write_cloud.h"
 #include "pcednet/io/lzf.h"
-#include "pcednet/io/write_cloud.h"
-#include "sample_cloud.h"
-#include "scratch.h"
 
 namespace pcednet::io {
 namespace {
@@ -212,14 +212,15 @@ TEST(Pcd, GivesBackWhatItWasGiven) {
   cloud.attributes.push_back({"fpfh", ScalarType::kInt32, 3, bytes});
   cloud.attributes.push_back(
       make_attribute("time", std::vector<std::int64_t>(cloud.size(), -(1ll << 60))));
-  EXPECT_TRUE(losses("a.pcd", cloud).empty());
+  EXPECT_TRUE(formats::losses("a.pcd", cloud).empty());
   for (const bool ascii : {false, true}) {
-    write_cloud(scratch.path("a.pcd"), cloud, {.overwrite = Overwrite::kYes, .ascii = ascii});
+    formats::write_cloud(scratch.path("a.pcd"), cloud,
+                         {.overwrite = Overwrite::kYes, .ascii = ascii});
     const std::string start = bytes_of(scratch.path("a.pcd")).substr(0, 600);
     EXPECT_TRUE(
         contains(start, "\nWIDTH 200\nHEIGHT 100\nVIEWPOINT 1 2 3 0 1 0 0\nPOINTS 20000\n"));
     EXPECT_TRUE(contains(start, "\nCOUNT 1 1 1 1 1 1 1 1 1 1 1 3 1 1\n"));
-    const PointCloud back = read_cloud(scratch.path("a.pcd")).cloud;
+    const PointCloud back = formats::read_cloud(scratch.path("a.pcd")).cloud;
     EXPECT_TRUE(same_bits(back.positions, cloud.positions));
     EXPECT_EQ(back.position_type, cloud.position_type);
     EXPECT_EQ(back.colours, cloud.colours);
@@ -292,8 +293,8 @@ TEST(Pcd, ReadsAndWritesNoPoints) {
     EXPECT_TRUE(
         scratch.read("a.pcd", header("x y z", "4 4 4", "F F F", "1 1 1", 0, data)).cloud.empty());
   }
-  write_cloud(scratch.path("b.pcd"), {});
-  EXPECT_TRUE(read_cloud(scratch.path("b.pcd")).cloud.empty());
+  formats::write_cloud(scratch.path("b.pcd"), {});
+  EXPECT_TRUE(formats::read_cloud(scratch.path("b.pcd")).cloud.empty());
 }
 
 }  // namespace

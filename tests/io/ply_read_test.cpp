@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "scratch.h"
+#include "io/scratch.h"
 
 namespace pcednet::io {
 namespace {

@@ -2,18 +2,19 @@
 
 #include <cmath>
 
+#include "io/sample_cloud.h"
+#include "io/scratch.h"
 #include "pcednet/core/parallel.h"
-#include "pcednet/io/write_cloud.h"
-#include "sample_cloud.h"
-#include "scratch.h"
+#include "pcednet/formats/write_cloud.h"
 
 namespace pcednet::io {
 namespace {
 
 /// Reads back what is written of `cloud`.
 PointCloud again(const Scratch& scratch, const PointCloud& cloud, bool ascii = false) {
-  write_cloud(scratch.path("again.ply"), cloud, {.overwrite = Overwrite::kYes, .ascii = ascii});
-  return read_cloud(scratch.path("again.ply")).cloud;
+  formats::write_cloud(scratch.path("again.ply"), cloud,
+                       {.overwrite = Overwrite::kYes, .ascii = ascii});
+  return formats::read_cloud(scratch.path("again.ply")).cloud;
 }
 
 TEST(PlyWrite, WritesTheLayoutThatOtherProgramsRead) {
@@ -26,7 +27,7 @@ TEST(PlyWrite, WritesTheLayoutThatOtherProgramsRead) {
   cloud.attributes = {make_attribute("intensity", std::vector<std::int16_t>{-5}),
                       make_attribute("scalar_p", std::vector<double>{0.25}),
                       make_attribute("quality", std::vector<float>{0.75F})};
-  write_cloud(scratch.path("a.ply"), cloud);
+  formats::write_cloud(scratch.path("a.ply"), cloud);
   const std::string expected =
       "ply\nformat binary_little_endian 1.0\ncomment made by a test\nobj_info of its own\n"
       "element vertex 1\nproperty float x\nproperty float y\nproperty float z\n"
@@ -100,11 +101,12 @@ TEST(PlyWrite, WritesTheSameBytesForAnyNumberOfThreads) {
   std::string one;
   for (const int threads : {1, 2, 8}) {
     set_thread_count(threads);
-    write_cloud(scratch.path("a.ply"), cloud, {.overwrite = Overwrite::kYes});
+    formats::write_cloud(scratch.path("a.ply"), cloud, {.overwrite = Overwrite::kYes});
     const std::string bytes = bytes_of(scratch.path("a.ply"));
     if (threads == 1) one = bytes;
     EXPECT_TRUE(bytes == one);
-    EXPECT_TRUE(same_bits(read_cloud(scratch.path("a.ply")).cloud.positions, cloud.positions));
+    EXPECT_TRUE(
+        same_bits(formats::read_cloud(scratch.path("a.ply")).cloud.positions, cloud.positions));
   }
   set_thread_count(0);
 }
@@ -123,7 +125,7 @@ TEST(PlyWrite, CarriesOtherElementsThrough) {
   ASSERT_EQ(binary.foreign_elements.size(), 1u);
   EXPECT_EQ(binary.foreign_elements[0].header, header);
   EXPECT_EQ(binary.foreign_elements[0].bytes, cloud.foreign_elements[0].bytes);
-  write_cloud(scratch.path("b.ply"), binary, {.ascii = true});
+  formats::write_cloud(scratch.path("b.ply"), binary, {.ascii = true});
   EXPECT_EQ(bytes_of(scratch.path("b.ply")), text);
 }
 
@@ -146,9 +148,9 @@ TEST(PlyWrite, GivesNamesAnd64BitIntegersBack) {
                       make_attribute("id_high32", std::vector<std::uint32_t>{8})};
   for (const char* name : {"a.ply", "a.pcd"}) {
     for (const bool ascii : {false, true}) {
-      EXPECT_TRUE(losses(name, cloud).empty());
-      write_cloud(scratch.path(name), cloud, {Overwrite::kYes, ascii});
-      const PointCloud back = read_cloud(scratch.path(name)).cloud;
+      EXPECT_TRUE(formats::losses(name, cloud).empty());
+      formats::write_cloud(scratch.path(name), cloud, {Overwrite::kYes, ascii});
+      const PointCloud back = formats::read_cloud(scratch.path(name)).cloud;
       ASSERT_EQ(back.attributes.size(), cloud.attributes.size());
       for (std::size_t a = 0; a < cloud.attributes.size(); ++a) {
         EXPECT_EQ(back.attributes[a].name, cloud.attributes[a].name);
@@ -177,7 +179,7 @@ TEST(PlyWrite, NamesColumnsInASingleWord) {
   cloud.positions = {Vec3(1, 2, 3)};
   cloud.attributes = {make_attribute("Pulse width", std::vector<float>{1}),
                       make_attribute("x", std::vector<std::uint64_t>{1})};
-  write_cloud(scratch.path("a.ply"), cloud);
+  formats::write_cloud(scratch.path("a.ply"), cloud);
   const std::string bytes = bytes_of(scratch.path("a.ply"));
   for (const char* line : {"\nproperty float Pulse%20width\n", "\nproperty uint x_low32\n",
                            "\nproperty uint x_high32\n"}) {
@@ -196,12 +198,12 @@ TEST(PlyWrite, GivesNormalsBackInTheirTypeAndLength) {
     const PointCloud cloud = scratch.read("a.ply", text).cloud;
     EXPECT_EQ(cloud.normals.at(1), Vec3(0, 0, -1));
     for (const char* name : {"b.ply", "b.pcd", "b.xyz", "b.csv"}) {
-      write_cloud(scratch.path(name), cloud, {.overwrite = Overwrite::kYes});
-      const PointCloud back = read_cloud(scratch.path(name)).cloud;
+      formats::write_cloud(scratch.path(name), cloud, {.overwrite = Overwrite::kYes});
+      const PointCloud back = formats::read_cloud(scratch.path(name)).cloud;
       // Text does not say that its digits are those of floats.
       const bool keeps_type = type == "double" || std::string_view(name).starts_with("b.p");
       EXPECT_TRUE(!keeps_type || same_bits(back.normals, cloud.normals)) << name;
-      write_cloud(scratch.path("a.ply"), back, {Overwrite::kYes, true});
+      formats::write_cloud(scratch.path("a.ply"), back, {Overwrite::kYes, true});
       EXPECT_TRUE(contains(bytes_of(scratch.path("a.ply")), "0.577 0.5774 0.57735\n1 2 3 0 0 -7"));
     }
   }

@@ -13,7 +13,7 @@
 
 #include "pcednet/cloud/point_cloud.h"
 #include "pcednet/core/error.h"
-#include "pcednet/io/read_cloud.h"
+#include "pcednet/formats/read_cloud.h"
 
 namespace pcednet::io {
 
@@ -42,7 +42,7 @@ class Scratch {
   }
 
   LoadedCloud read(const std::string& name, std::string_view bytes) const {
-    return read_cloud(file(name, bytes));
+    return formats::read_cloud(file(name, bytes));
   }
 
  private:

@@ -2,10 +2,10 @@
 
 #include <cmath>
 
-#include "pcednet/io/write_cloud.h"
+#include "io/sample_cloud.h"
+#include "io/scratch.h"
+#include "pcednet/formats/write_cloud.h"
 #include "pcednet/io/xyz_guess.h"
-#include "sample_cloud.h"
-#include "scratch.h"
 
 namespace pcednet::io {
 namespace {
@@ -148,8 +148,8 @@ TEST(Xyz, GivesBackEveryBit) {
   Random random(2);
   for (Vec3& p : cloud.positions) p *= std::pow(10.0, random.uniform(-30, 30));
   for (const std::string name : {"a.xyz", "a.txt", "a.asc", "a.pts", "a.csv"}) {
-    write_cloud(scratch.path(name), cloud);
-    const PointCloud back = read_cloud(scratch.path(name)).cloud;
+    formats::write_cloud(scratch.path(name), cloud);
+    const PointCloud back = formats::read_cloud(scratch.path(name)).cloud;
     EXPECT_TRUE(same_bits(back.positions, cloud.positions)) << name;
     EXPECT_EQ(back.colours, cloud.colours);
     EXPECT_EQ(back.labels, cloud.labels);
@@ -168,8 +168,8 @@ TEST(Xyz, GivesBackEveryBit) {
       EXPECT_EQ(back.comments, cloud.comments);
     }
   }
-  EXPECT_EQ(losses("a.csv", cloud).size(), 2u);
-  EXPECT_EQ(losses("a.xyz", cloud).size(), 1u);
+  EXPECT_EQ(formats::losses("a.csv", cloud).size(), 2u);
+  EXPECT_EQ(formats::losses("a.xyz", cloud).size(), 1u);
 }
 
 TEST(Xyz, WritesPlainColumnsPlainly) {
@@ -177,17 +177,17 @@ TEST(Xyz, WritesPlainColumnsPlainly) {
   PointCloud cloud;
   cloud.positions = {Vec3(0.1, -2, 512049.781)};
   cloud.comments = {"lost"};
-  write_cloud(scratch.path("a.txt"), cloud);
+  formats::write_cloud(scratch.path("a.txt"), cloud);
   EXPECT_EQ(bytes_of(scratch.path("a.txt")), "0.1 -2 512049.781\n");
-  EXPECT_EQ(losses("a.txt", cloud), std::vector<std::string>{"comments"});
-  write_cloud(scratch.path("a.csv"), cloud);
+  EXPECT_EQ(formats::losses("a.txt", cloud), std::vector<std::string>{"comments"});
+  formats::write_cloud(scratch.path("a.csv"), cloud);
   EXPECT_EQ(bytes_of(scratch.path("a.csv")), "x,y,z\n0.1,-2,512049.781\n");
-  write_cloud(scratch.path("a.pts"), cloud);
+  formats::write_cloud(scratch.path("a.pts"), cloud);
   EXPECT_EQ(bytes_of(scratch.path("a.pts")), "1\n0.1 -2 512049.781\n");
   cloud.normals = {Vec3(0, 0, 1)};
-  write_cloud(scratch.path("a.xyz"), cloud);
+  formats::write_cloud(scratch.path("a.xyz"), cloud);
   EXPECT_EQ(bytes_of(scratch.path("a.xyz")), "0.1 -2 512049.781 0 0 1\n");
-  write_cloud(scratch.path("b.txt"), cloud);
+  formats::write_cloud(scratch.path("b.txt"), cloud);
   EXPECT_EQ(bytes_of(scratch.path("b.txt")), "# lost\n# x y z nx ny nz\n0.1 -2 512049.781 0 0 1\n");
 }
 

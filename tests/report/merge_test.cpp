@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "pcednet/core/error.h"
-#include "pcednet/io/write_cloud.h"
+#include "pcednet/formats/write_cloud.h"
 
 namespace pcednet::report {
 namespace {
@@ -26,7 +26,7 @@ class Merge : public ::testing::Test {
     for (int i = 0; i < 5; ++i) cloud.positions.emplace_back(i, i % 2, 0.25 * i);
     cloud.normals.assign(5, Vec3::UnitZ());
     cloud.labels = {0, 1, 2, 255, 0};
-    io::write_cloud(folder_ / "cloud.ply", cloud);
+    formats::write_cloud(folder_ / "cloud.ply", cloud);
     write("predictions/cloud.u8", std::string("\0\1\2\2\0", 5));
     study_ = Json::parse(R"({"schema": "pcednet-study-1", "experiment": "methods",
       "title": "A </script> in a name",

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <cctype>
 #include <memory>
 #include <set>
 
@@ -12,8 +11,9 @@
 #include "pcednet/core/stopwatch.h"
 #include "pcednet/detect/classify.h"
 #include "pcednet/detect/result_cloud.h"
-#include "pcednet/io/read_cloud.h"
-#include "pcednet/io/write_cloud.h"
+#include "pcednet/formats/format.h"
+#include "pcednet/formats/read_cloud.h"
+#include "pcednet/formats/write_cloud.h"
 #include "prepare.h"
 #include "workbench/render/preview.h"
 
@@ -52,9 +52,8 @@ fs::path preview_path(const Arguments& arguments, const fs::path& input, bool se
 
 /// The file for a result unless the user names one: LAS for LAS, PLY for all else.
 std::string output_name(const fs::path& input) {
-  std::string extension = input.extension().string();
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  const bool is_las = extension == ".las" || extension == ".laz";
+  const formats::Format* format = formats::find_format(input);
+  const bool is_las = format && format->name == "LAS";
   return input.stem().string() + (is_las ? "_edges.las" : "_edges.ply");
 }
 
@@ -186,7 +185,7 @@ void classify_file(const Job& job, const Arguments& arguments, const detect::Edg
   const Progress progress = console_progress(common);
   Stopwatch watch;
   std::vector<std::pair<const char*, double>> times;
-  auto loaded = io::read_cloud(job.input);
+  auto loaded = formats::read_cloud(job.input);
   for (const std::string& warning : loaded.warnings) {
     warn(fmt::format("{}: {}", job.input.string(), warning));
   }
@@ -212,10 +211,10 @@ void classify_file(const Job& job, const Arguments& arguments, const detect::Edg
   if (!arguments.las_classification.empty()) {
     set_las_classification(arguments.las_classification, result.classes, loaded.cloud);
   }
-  io::write_cloud(job.output, loaded.cloud,
-                  {.overwrite = common.overwrite(),
-                   .ascii = arguments.ascii,
-                   .new_normals = prepared.made.empty()});
+  formats::write_cloud(job.output, loaded.cloud,
+                       {.overwrite = common.overwrite(),
+                        .ascii = arguments.ascii,
+                        .new_normals = prepared.made.empty()});
   times.emplace_back("write", watch.lap());
   if (!job.preview.empty()) {
     render::write_preview(job.preview, loaded.cloud, result.classes,

@@ -7,10 +7,11 @@
 #include "batch.h"
 #include "commands.h"
 #include "pcednet/core/error.h"
+#include "pcednet/formats/format.h"
+#include "pcednet/formats/read_cloud.h"
+#include "pcednet/formats/write_cloud.h"
 #include "pcednet/io/faces.h"
 #include "pcednet/io/parts.h"
-#include "pcednet/io/read_cloud.h"
-#include "pcednet/io/write_cloud.h"
 #include "workbench/shapes/mesh_samples.h"
 #include "workbench/shapes/perturb.h"
 
@@ -74,7 +75,7 @@ io::EachPart each_part_of(const io::PartReader& reader, const PointCloud& first,
 /// is asked for, takes the whole cloud.
 bool convert_in_parts(const Request& request, const Common& common) {
   if (request.samples > 0 || request.noise > 0.0 || request.fraction < 1.0) return false;
-  const auto reader = io::open_parts(request.input);
+  const auto reader = formats::open_parts(request.input);
   if (!reader) return false;
   const Progress progress = console_progress(common);
   io::PartTally tally;
@@ -84,8 +85,8 @@ bool convert_in_parts(const Request& request, const Common& common) {
                                 .first = &first,
                                 .each_part = each_part_of(*reader, first, progress),
                                 .is_las = reader->is_las()};
-  const auto writer = io::create_parts(request.output, outline,
-                                       {.overwrite = common.overwrite(), .ascii = request.ascii});
+  const auto writer = formats::create_parts(
+      request.output, outline, {.overwrite = common.overwrite(), .ascii = request.ascii});
   if (!writer) return false;
   Stage stage(&progress, "convert", reader->points());
   writer->append(first);
@@ -106,11 +107,11 @@ bool convert_in_parts(const Request& request, const Common& common) {
 
 void convert(const Request& request, const Common& common) {
   // What cannot be written is refused before a long read.
-  io::losses(request.output, {});
+  formats::losses(request.output, {});
   check_writable(request.output, common.overwrite());
   if (convert_in_parts(request, common)) return;
   const Progress progress = console_progress(common);
-  io::LoadedCloud loaded = io::read_cloud(request.input);
+  io::LoadedCloud loaded = formats::read_cloud(request.input);
   throw_if_cancelled(&progress);
   warn_of(request.input, loaded.warnings);
   if (request.samples > 0) {
@@ -118,9 +119,9 @@ void convert(const Request& request, const Common& common) {
   }
   perturb(request, loaded.cloud);
   throw_if_cancelled(&progress);
-  warn_of_losses(request.output, io::losses(request.output, loaded.cloud));
-  io::write_cloud(request.output, loaded.cloud,
-                  {.overwrite = common.overwrite(), .ascii = request.ascii});
+  warn_of_losses(request.output, formats::losses(request.output, loaded.cloud));
+  formats::write_cloud(request.output, loaded.cloud,
+                       {.overwrite = common.overwrite(), .ascii = request.ascii});
   say(fmt::format("{}: {} points", request.output, loaded.cloud.size()));
 }
 
@@ -137,7 +138,7 @@ void add_convert(CLI::App& app, Common& common) {
   command->add_option("input", request->input, "The point file to read")->required();
   command
       ->add_option("-o,--output", request->output,
-                   "The file to write: .ply .pcd .las .laz .obj .xyz .txt .asc .pts or .csv")
+                   "The file to write: " + formats::extensions_written(" or "))
       ->required();
   command->add_flag("--ascii", request->ascii, "Numbers as text in .ply and .pcd");
   CLI::Option* noise =

@@ -11,9 +11,9 @@
 #include "commands.h"
 #include "pcednet/core/error.h"
 #include "pcednet/core/version.h"
+#include "pcednet/formats/read_cloud.h"
 #include "pcednet/gls/engine.h"
 #include "pcednet/io/npy.h"
-#include "pcednet/io/read_cloud.h"
 #include "prepare.h"
 
 namespace pcednet::app {
@@ -128,7 +128,7 @@ void describe(const Arguments& arguments, const Common& common) {
   check_writable(output, common.overwrite());
   OutputFile settings(fs::path(output).replace_extension(".json"), common.overwrite());
 
-  const io::LoadedCloud loaded = io::read_cloud(arguments.input);
+  const io::LoadedCloud loaded = formats::read_cloud(arguments.input);
   for (const std::string& warning : loaded.warnings) {
     warn(fmt::format("{}: {}", arguments.input, warning));
   }

@@ -12,8 +12,8 @@
 #include "pcednet/detect/classify.h"
 #include "pcednet/eval/predictions.h"
 #include "pcednet/eval/report.h"
-#include "pcednet/io/read_labelled.h"
 #include "prepare.h"
+#include "workbench/truth/read_labelled.h"
 
 namespace pcednet::app {
 namespace {
@@ -84,7 +84,7 @@ Results score_all(const Arguments& arguments, const Common& common) {
       warn(fmt::format("{}: no prediction in {}: left out", input.string(), arguments.predictions));
       continue;
     }
-    const auto loaded = io::read_labelled(input);
+    const auto loaded = truth::read_labelled(input);
     throw_if_cancelled(&progress);
     for (const std::string& warning : loaded.warnings) warn(input.string() + ": " + warning);
     with_name_in_errors(input, [&] {

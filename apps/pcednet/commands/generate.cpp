@@ -5,7 +5,7 @@
 
 #include "commands.h"
 #include "pcednet/core/error.h"
-#include "pcednet/io/write_cloud.h"
+#include "pcednet/formats/write_cloud.h"
 #include "workbench/shapes/building.h"
 #include "workbench/shapes/cad_set.h"
 #include "workbench/shapes/default_set.h"
@@ -63,7 +63,7 @@ void run(const std::string& folder, std::uint64_t seed, const Common& common,
   std::size_t points = 0;
   const auto make = [&](const auto& recipe) {
     const PointCloud cloud = shapes::generate(recipe, seed).cloud;
-    io::write_cloud(path_of(recipe), cloud, {.overwrite = common.overwrite()});
+    formats::write_cloud(path_of(recipe), cloud, {.overwrite = common.overwrite()});
     say(fmt::format("{:<16} {:>7} {:>6.1f} {:>6.1f} {:>6.1f}{}", recipe.name, cloud.size(),
                     percent_of(cloud, kSharpEdge), percent_of(cloud, kSmoothEdge),
                     percent_of(cloud, kNonEdge), details(recipe)));
@@ -157,7 +157,8 @@ void add_sample(CLI::App& generate, Common& common) {
   command->add_option("--seed", *seed, "Another seed gives other points")->capture_default_str();
   command->callback([file, seed, &common] {
     check_writable(*file, common.overwrite());
-    io::write_cloud(*file, shapes::building_scan(*seed).cloud, {.overwrite = common.overwrite()});
+    formats::write_cloud(*file, shapes::building_scan(*seed).cloud,
+                         {.overwrite = common.overwrite()});
   });
 }
 

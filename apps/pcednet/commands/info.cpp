@@ -19,7 +19,8 @@
 #include "pcednet/core/error.h"
 #include "pcednet/core/output_file.h"
 #include "pcednet/core/random.h"
-#include "pcednet/io/read_cloud.h"
+#include "pcednet/formats/format.h"
+#include "pcednet/formats/read_cloud.h"
 #include "pcednet/spatial/kd_tree.h"
 
 namespace pcednet::app {
@@ -147,11 +148,11 @@ ordered_json to_json(const Vec3& v) {
 }
 
 ordered_json describe(const std::filesystem::path& path) {
-  const io::LoadedCloud loaded = io::read_cloud(path);
+  const io::LoadedCloud loaded = formats::read_cloud(path);
   const PointCloud& cloud = loaded.cloud;
   const Defects defects = find_defects(cloud);
   ordered_json file = {{"file", path.string()},
-                       {"format", io::format_name(path)},
+                       {"format", formats::format_of(io::InputFile(path)).name},
                        {"points", cloud.size()},
                        {"position_type", name_of(cloud.position_type)}};
   const BoundingBox box = bounding_box(cloud.positions);

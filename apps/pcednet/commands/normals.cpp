@@ -9,8 +9,8 @@
 #include "batch.h"
 #include "commands.h"
 #include "pcednet/core/error.h"
-#include "pcednet/io/read_cloud.h"
-#include "pcednet/io/write_cloud.h"
+#include "pcednet/formats/read_cloud.h"
+#include "pcednet/formats/write_cloud.h"
 #include "pcednet/normals/prepare.h"
 
 namespace pcednet::app {
@@ -73,9 +73,9 @@ void report(const Request& request, const normals::PreparedNormals& prepared) {
 
 void run(const Request& request, const Common& common) {
   // What cannot be written is refused before a long read.
-  io::losses(request.output, {});
+  formats::losses(request.output, {});
   check_writable(request.output, common.overwrite());
-  io::LoadedCloud loaded = io::read_cloud(request.input);
+  io::LoadedCloud loaded = formats::read_cloud(request.input);
   for (const std::string& warning : loaded.warnings) warn(request.input + ": " + warning);
   PointCloud& cloud = loaded.cloud;
   if (cloud.empty()) {
@@ -91,10 +91,10 @@ void run(const Request& request, const Common& common) {
   if (request.flip) {
     for (Vec3& normal : cloud.normals) normal = Vec3::Zero() - normal;
   }
-  for (const std::string& loss : io::losses(request.output, cloud)) {
+  for (const std::string& loss : formats::losses(request.output, cloud)) {
     warn(request.output + " does not keep: " + loss);
   }
-  io::write_cloud(request.output, cloud, {.overwrite = common.overwrite()});
+  formats::write_cloud(request.output, cloud, {.overwrite = common.overwrite()});
   report(request, prepared);
 }
 

@@ -14,9 +14,9 @@
 #include "methods.h"
 #include "models.h"
 #include "pcednet/core/error.h"
-#include "pcednet/io/read_labelled.h"
 #include "workbench/shapes/default_set.h"
 #include "workbench/study/study_file.h"
+#include "workbench/truth/read_labelled.h"
 
 namespace pcednet::app {
 namespace {
@@ -52,7 +52,7 @@ study::CloudSet read_set(const std::string& name, const std::vector<std::string>
   study::CloudSet set{.name = name};
   std::set<std::string> names;
   for (const fs::path& file : expand_inputs(inputs)) {
-    auto loaded = io::read_labelled(file);
+    auto loaded = truth::read_labelled(file);
     for (const std::string& warning : loaded.warnings) warn(file.string() + ": " + warning);
     const std::string stem = file.stem().string();
     if (!names.insert(stem).second) {

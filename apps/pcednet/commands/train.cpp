@@ -9,9 +9,9 @@
 #include "models.h"
 #include "pcednet/core/error.h"
 #include "pcednet/detect/train.h"
-#include "pcednet/io/read_labelled.h"
 #include "prepare.h"
 #include "workbench/annotate/learn.h"
+#include "workbench/truth/read_labelled.h"
 
 namespace pcednet::app {
 namespace {
@@ -98,7 +98,7 @@ detect::TrainedModel train_clouds(const Arguments& arguments, const Common& comm
   std::vector<detect::TrainingCloud> clouds;
   for (const auto& input : inputs) {
     with_name_in_errors(input, [&] {
-      loaded.push_back(io::read_labelled(input));
+      loaded.push_back(truth::read_labelled(input));
       throw_if_cancelled(&progress);
     });
     for (const auto& warning : loaded.back().warnings) warn(input.string() + ": " + warning);

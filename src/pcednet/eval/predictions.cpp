@@ -8,10 +8,11 @@
 #include "pcednet/cloud/point_cloud.h"
 #include "pcednet/core/error.h"
 #include "pcednet/core/parallel.h"
-#include "pcednet/io/labels.h"
+#include "pcednet/formats/format.h"
+#include "pcednet/formats/labels.h"
+#include "pcednet/formats/read_cloud.h"
 #include "pcednet/io/npy.h"
 #include "pcednet/io/promote.h"
-#include "pcednet/io/read_cloud.h"
 #include "pcednet/io/text_scan.h"
 #include "pcednet/spatial/kd_tree.h"
 
@@ -20,8 +21,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kExtensions[] = {".u8",  ".txt", ".csv", ".lbl", ".seg", ".npy",
-                                       ".ply", ".pcd", ".xyz", ".obj", ".asc", ".pts"};
+/// Files of classes alone come before point files.
+std::vector<std::string_view> extensions_of_predictions() {
+  std::vector<std::string_view> extensions = {".u8", ".txt", ".csv", ".lbl", ".seg", ".npy"};
+  for (const formats::Format& format : formats::all_formats()) {
+    extensions.insert(extensions.end(), format.extensions.begin(), format.extensions.end());
+  }
+  return extensions;
+}
 
 Error misfit(const fs::path& path, const std::string& what, std::size_t points) {
   return Error(ErrorKind::kInsufficient,
@@ -87,13 +94,13 @@ std::optional<std::vector<std::uint8_t>> read_bare_classes(const fs::path& path,
                                                            std::size_t points) {
   const std::string extension = io::lower_case(path.extension().string());
   if (extension == ".u8" || extension == ".lbl" || extension == ".seg") {
-    auto classes = io::read_labels(path);
+    auto classes = formats::read_labels(path);
     if (classes.size() == points) return classes;
     throw misfit(path, fmt::format("{} classes", classes.size()), points);
   }
   if (extension != ".txt" && extension != ".csv") return std::nullopt;
   try {
-    auto classes = io::read_labels(path);
+    auto classes = formats::read_labels(path);
     if (classes.size() == points) return classes;
   } catch (const Error&) {  // a text of points
   }
@@ -103,9 +110,10 @@ std::optional<std::vector<std::uint8_t>> read_bare_classes(const fs::path& path,
 }  // namespace
 
 fs::path find_predictions(const fs::path& folder, const std::string& stem) {
+  const auto extensions = extensions_of_predictions();
   for (const char* suffix : {"", "_edges", "_output"}) {
-    for (const char* extension : kExtensions) {
-      const fs::path file = folder / (stem + suffix + extension);
+    for (const std::string_view extension : extensions) {
+      const fs::path file = folder / fmt::format("{}{}{}", stem, suffix, extension);
       std::error_code error;
       if (fs::is_regular_file(file, error)) return file;
     }
@@ -118,8 +126,8 @@ Predictions read_predictions(const fs::path& path, std::span<const Vec3> positio
     return {classes_of_array(path, io::read_npy(path), positions.size()), {}};
   }
   if (auto classes = read_bare_classes(path, positions.size())) return {*std::move(classes), {}};
-  const PointCloud others = io::read_cloud(path).cloud;
-  auto labels = io::labels_of(others, path);
+  const PointCloud others = formats::read_cloud(path).cloud;
+  auto labels = formats::labels_of(others, path);
   if (labels.empty()) {
     return {nearest_to_edge_points(positions, others),
             fmt::format("{} points without labels: taken as points on edges", others.size())};

@@ -21,7 +21,7 @@ struct Predictions {
 };
 
 /// The classes of a cloud at `positions` from another program's file:
-/// - a class per point in the cloud's order: what io::read_labels() reads;
+/// - a class per point in the cloud's order: what formats::read_labels() reads;
 /// - .npy: numbers of shape (points) or (points, 1), or scores of shape (points, classes), of which
 ///   the largest counts, the lower class among equal ones;
 /// - a point file of another number of points with labels, as of a method that resamples: every

@@ -7,7 +7,7 @@
 #include "pcednet/cloud/point_cloud.h"
 #include "pcednet/io/input_file.h"
 #include "pcednet/io/loaded_cloud.h"
-#include "pcednet/io/write_cloud.h"
+#include "pcednet/io/write_options.h"
 
 namespace pcednet::io {
 

@@ -37,4 +37,10 @@ std::vector<std::string> warnings_of(const PartTally& tally) {
   return warnings;
 }
 
+PartOutline outline_of(const PointCloud& cloud) {
+  return {.points = cloud.size(), .first = &cloud, .each_part = [&](const auto& visit) {
+            visit(cloud);
+          }};
+}
+
 }  // namespace pcednet::io

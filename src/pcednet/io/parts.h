@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <filesystem>
 #include <functional>
 #include <memory>
 #include <string>
@@ -10,7 +9,7 @@
 #include "pcednet/cloud/point_cloud.h"
 #include "pcednet/io/input_file.h"
 #include "pcednet/io/loaded_cloud.h"
-#include "pcednet/io/write_cloud.h"
+#include "pcednet/io/write_options.h"
 
 namespace pcednet::io {
 
@@ -31,13 +30,6 @@ class PartReader {
 
   std::vector<std::string> warnings = {};
 };
-
-/// Opens LAS, LAZ and binary PLY for reading in parts of about `most` points (LAZ: in whole
-/// chunks), E57 scan by scan. Null for what is read only as a whole: other formats, no points, PLY
-/// with lists in its vertices, much besides them, or colours or labels of other types than uint8.
-/// Throws as read_cloud.
-std::unique_ptr<PartReader> open_parts(const std::filesystem::path& path,
-                                       std::size_t most = std::size_t{1} << 19);
 
 /// What read_cloud says of the points, counted part by part.
 struct PartTally {
@@ -74,9 +66,7 @@ struct PartOutline {
   bool is_las = false;                ///< see PartReader
 };
 
-/// Opens a file to append the parts that `outline` tells of: the same bytes as write_cloud of them
-/// all. Null for formats written only as a whole: .pcd and .obj. Throws as write_cloud.
-std::unique_ptr<PartWriter> create_parts(const std::filesystem::path& path,
-                                         const PartOutline& outline, const WriteOptions& options);
+/// A whole cloud as its only part; it must outlive the outline.
+PartOutline outline_of(const PointCloud& cloud);
 
 }  // namespace pcednet::io

@@ -1,15 +1,17 @@
 #pragma once
 
 #include <filesystem>
-#include <string>
-#include <vector>
+#include <string_view>
 
 #include "pcednet/cloud/point_cloud.h"
 #include "pcednet/io/input_file.h"
 #include "pcednet/io/loaded_cloud.h"
-#include "pcednet/io/write_cloud.h"
+#include "pcednet/io/write_options.h"
 
 namespace pcednet::io {
+
+/// Whether a file that starts so is PCD.
+bool begins_as_pcd(std::string_view start);
 
 /// Reads PCD 0.5 to 0.7: ascii, binary and binary_compressed.
 ///

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "pcednet/io/pcd.h"
 #include "pcednet/io/text_scan.h"
 
 namespace pcednet::io {
@@ -173,8 +174,16 @@ std::size_t PcdHeader::numbers_per_point() const {
   return numbers;
 }
 
+bool begins_as_pcd(std::string_view start) {
+  return start.starts_with("# .PCD") || start.starts_with("VERSION ") ||
+         start.starts_with("FIELDS ");
+}
+
 PcdHeader read_pcd_header(const InputFile& file) {
   const std::string text = file.text(0, kLongestHeader);
+  if (!begins_as_pcd(text)) {
+    throw unreadable(file.path(), "not a PCD file: no header with VERSION and FIELDS", 1);
+  }
   return HeaderParser(file.path(), text).parse();
 }
 

@@ -2,16 +2,18 @@
 
 #include <filesystem>
 #include <memory>
-#include <string>
-#include <vector>
+#include <string_view>
 
 #include "pcednet/cloud/point_cloud.h"
 #include "pcednet/io/input_file.h"
 #include "pcednet/io/loaded_cloud.h"
 #include "pcednet/io/parts.h"
-#include "pcednet/io/write_cloud.h"
+#include "pcednet/io/write_options.h"
 
 namespace pcednet::io {
+
+/// Whether a file that starts so is PLY.
+bool begins_as_ply(std::string_view start);
 
 /// Reads PLY 1.0: ascii, binary of either byte order, properties in any order and of any type.
 ///

@@ -162,7 +162,15 @@ PlyHeader parse_ply_header(const std::filesystem::path& path, std::string_view t
   return header;
 }
 
+bool begins_as_ply(std::string_view start) {
+  return start.starts_with("ply") && start.size() > 3 &&
+         (start[3] == '\n' || kBlankSeparators(start[3]));
+}
+
 PlyHeader read_ply_header(const InputFile& file) {
+  if (!begins_as_ply(file.text(0, 4))) {
+    throw unreadable(file.path(), "not a PLY file: the first line must be ply");
+  }
   std::uint64_t length = std::min(file.size(), std::uint64_t{64} << 10);
   std::string text = file.text(0, length);
   while (text.find("end_header") == std::string::npos && length < file.size() &&

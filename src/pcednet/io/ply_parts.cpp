@@ -1,9 +1,9 @@
 #include <algorithm>
 
-#include "pcednet/io/e57.h"
 #include "pcednet/io/ply.h"
 #include "pcednet/io/ply_body.h"
 #include "pcednet/io/promote.h"
+#include "pcednet/io/scanners.h"
 #include "pcednet/io/text_scan.h"
 
 namespace pcednet::io {

@@ -9,7 +9,7 @@
 #include "pcednet/io/input_file.h"
 #include "pcednet/io/loaded_cloud.h"
 #include "pcednet/io/parts.h"
-#include "pcednet/io/write_cloud.h"
+#include "pcednet/io/write_options.h"
 
 namespace pcednet::io {
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "pcednet/core/error.h"
-#include "pcednet/io/read_cloud.h"
+#include "pcednet/formats/read_cloud.h"
 
 namespace pcednet::annotate {
 namespace {
@@ -103,7 +103,7 @@ detect::TrainedModel learn_project(
     throw Error(ErrorKind::kInsufficient,
                 fmt::format("{}: not the file that the project is about", input.string()));
   }
-  const auto loaded = io::read_cloud(input);
+  const auto loaded = formats::read_cloud(input);
   if (loaded.cloud.size() != project.input.points) {
     throw Error(ErrorKind::kInsufficient,
                 fmt::format("{}: {} points where the project has {}", input.string(),

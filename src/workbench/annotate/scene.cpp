@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "pcednet/core/error.h"
+#include "pcednet/formats/read_cloud.h"
 #include "pcednet/gls/scales.h"
-#include "pcednet/io/read_cloud.h"
 #include "pcednet/spatial/curve_order.h"
 #include "workbench/annotate/not_found.h"
 
@@ -17,7 +17,7 @@ std::shared_ptr<const Scene> load_scene(const std::filesystem::path& input,
                                         const Progress* progress) {
   auto scene = std::make_shared<Scene>();
   Stage stage(progress, "read", 4);
-  auto loaded = io::read_cloud(input);
+  auto loaded = formats::read_cloud(input);
   stage.advance();
   scene->cloud = std::move(loaded.cloud);
   scene->warnings = std::move(loaded.warnings);

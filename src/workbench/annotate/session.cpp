@@ -5,7 +5,7 @@
 #include <set>
 
 #include "pcednet/core/error.h"
-#include "pcednet/io/write_cloud.h"
+#include "pcednet/formats/write_cloud.h"
 #include "workbench/annotate/learn.h"
 #include "workbench/annotate/not_found.h"
 #include "workbench/annotate/session_state.h"
@@ -210,7 +210,8 @@ std::uintmax_t Session::save(Saved what, const fs::path& path, Overwrite overwri
     detect::save_model(path, prediction->model, overwrite);
   } else {
     check_writable(path, overwrite);
-    io::write_cloud(path, saved_cloud(*scene, labels, prediction.get()), {.overwrite = overwrite});
+    formats::write_cloud(path, saved_cloud(*scene, labels, prediction.get()),
+                         {.overwrite = overwrite});
   }
   return fs::file_size(path);
 }

@@ -8,9 +8,9 @@
 #include <optional>
 
 #include "pcednet/core/error.h"
+#include "pcednet/formats/labels.h"
+#include "pcednet/formats/read_cloud.h"
 #include "pcednet/io/input_file.h"
-#include "pcednet/io/labels.h"
-#include "pcednet/io/read_cloud.h"
 #include "workbench/report/scene.h"
 
 namespace pcednet::report {
@@ -228,7 +228,7 @@ std::vector<Exhibit> choose_exhibits(const Studies& studies, const fs::path& fol
 Json predictions_of(const Exhibit& exhibit, const Scene& scene, std::size_t points) {
   Json predictions = Json::array();
   for (const Exhibit::Source& source : exhibit.sources) {
-    const auto classes = io::read_labels(source.predictions);
+    const auto classes = formats::read_labels(source.predictions);
     if (classes.size() != points) {
       throw Error(ErrorKind::kInsufficient,
                   fmt::format("{}: {} classes, but {} has {} points", source.predictions.string(),
@@ -243,7 +243,7 @@ Json predictions_of(const Exhibit& exhibit, const Scene& scene, std::size_t poin
 }
 
 Json scene_of(const Exhibit& exhibit, std::size_t points_per_cloud, const Progress* progress) {
-  const auto cloud = io::read_cloud(exhibit.file).cloud;
+  const auto cloud = formats::read_cloud(exhibit.file).cloud;
   const Scene scene = make_scene(cloud, points_per_cloud, progress);
   const std::vector<std::uint8_t> truth =
       cloud.has_labels() ? cloud.labels : std::vector<std::uint8_t>(cloud.size(), kUnlabelled);

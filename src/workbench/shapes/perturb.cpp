@@ -13,7 +13,7 @@
 #include "pcednet/cloud/bounding_box.h"
 #include "pcednet/core/error.h"
 #include "pcednet/core/random.h"
-#include "pcednet/io/las_file.h"
+#include "pcednet/io/las/file.h"
 
 namespace pcednet::shapes {
 namespace {

@@ -7,8 +7,8 @@
 #include "pcednet/core/digest.h"
 #include "pcednet/core/error.h"
 #include "pcednet/core/output_file.h"
+#include "pcednet/formats/labels.h"
 #include "pcednet/io/input_file.h"
-#include "pcednet/io/labels.h"
 
 namespace pcednet::study {
 namespace {
@@ -108,7 +108,7 @@ std::optional<StoredClasses> Cache::find_classes(const std::string& key) const {
                          .edge = counts_of(json->at("edge")),
                          .failure = json->at("failure").get<std::string>(),
                          .costs = costs_of(json->at("costs"))};
-    if (stored.failure.empty()) stored.classes = io::read_labels(file("classes", key, ".u8"));
+    if (stored.failure.empty()) stored.classes = formats::read_labels(file("classes", key, ".u8"));
     if (stored.classes.size() != json->at("points").get<std::size_t>()) return std::nullopt;
     return stored;
   });

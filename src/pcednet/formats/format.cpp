@@ -1,0 +1,119 @@
+#include "pcednet/formats/format.h"
+
+#include <fmt/format.h>
+
+#include "pcednet/core/error.h"
+#include "pcednet/io/e57/e57.h"
+#include "pcednet/io/las/file.h"
+#include "pcednet/io/las/las.h"
+#include "pcednet/io/obj.h"
+#include "pcednet/io/pcd.h"
+#include "pcednet/io/ply.h"
+#include "pcednet/io/text_scan.h"
+#include "pcednet/io/xyz.h"
+
+namespace pcednet::formats {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The whole table: what there is, and the order in which messages name it.
+std::vector<Format> make_formats() {
+  return {
+      {.name = "PLY",
+       .extensions = {".ply"},
+       .begins = io::begins_as_ply,
+       .read = io::read_ply,
+       .open_parts = io::open_ply_parts,
+       .create_parts = io::create_ply_parts,
+       .keeps = [](const ForeignElement&) { return true; }},
+      {.name = "PCD",
+       .extensions = {".pcd"},
+       .begins = io::begins_as_pcd,
+       .read = io::read_pcd,
+       .write = io::write_pcd},
+      {.name = "LAS",
+       .extensions = {".las", ".laz"},
+       .begins = io::begins_as_las,
+       .read = io::read_las,
+       .open_parts = io::open_las_parts,
+       .create_parts = io::create_las_parts,
+       .losses = [](const fs::path&, const PointCloud& cloud) { return io::las_losses(cloud); },
+       .keeps = io::is_las_element},
+      {.name = "E57",
+       .extensions = {".e57"},
+       .begins = io::begins_as_e57,
+       .read = io::read_e57,
+       .open_parts = [](auto file, std::size_t) { return io::open_e57_parts(std::move(file)); }},
+      {.name = "OBJ",
+       .extensions = {".obj"},
+       .read = io::read_obj,
+       .write = io::write_obj,
+       .losses = [](const fs::path&, const PointCloud& cloud) { return io::obj_losses(cloud); }},
+      {.name = "text",
+       .extensions = {".xyz", ".txt", ".asc", ".pts", ".csv"},
+       .read = io::read_xyz,
+       .create_parts = io::create_xyz_parts,
+       .losses =
+           [](const fs::path& path, const PointCloud& cloud) {
+             return io::xyz_losses(path, io::outline_of(cloud));
+           }},
+  };
+}
+
+std::string list_extensions(std::string_view last, bool (*has)(const Format&)) {
+  std::string list;
+  std::size_t end = 0;
+  for (const Format& format : all_formats()) {
+    if (!has(format)) continue;
+    for (const std::string_view extension : format.extensions) {
+      end = list.size();
+      list += fmt::format("{}{}", list.empty() ? "" : " ", extension);
+    }
+  }
+  return list.replace(end, 1, last);
+}
+
+}  // namespace
+
+std::span<const Format> all_formats() {
+  static const std::vector<Format> formats = make_formats();
+  return formats;
+}
+
+const Format* find_format(const fs::path& path) {
+  const std::string extension = io::lower_case(path.extension().string());
+  for (const Format& format : all_formats()) {
+    for (const std::string_view other : format.extensions) {
+      if (extension == other) return &format;
+    }
+  }
+  return nullptr;
+}
+
+const Format& format_of(const io::InputFile& file) {
+  const std::string start = file.text(0, 16);
+  for (const Format& format : all_formats()) {
+    if (format.begins && format.begins(start)) return format;
+  }
+  if (const Format* format = find_format(file.path())) return *format;
+  throw io::unreadable(file.path(),
+                       fmt::format("not a format known here; accepted: {}", extensions_read()));
+}
+
+const Format& format_for(const fs::path& path) {
+  const Format* format = find_format(path);
+  if (format && format->is_written()) return *format;
+  throw Error(ErrorKind::kUsage,
+              fmt::format("{}: points are written as {}", path.string(), extensions_written()));
+}
+
+std::string extensions_read(std::string_view last) {
+  return list_extensions(last, [](const Format&) { return true; });
+}
+
+std::string extensions_written(std::string_view last) {
+  return list_extensions(last, [](const Format& format) { return format.is_written(); });
+}
+
+}  // namespace pcednet::formats

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "pcednet/io/input_file.h"
+#include "pcednet/io/loaded_cloud.h"
+#include "pcednet/io/parts.h"
+#include "pcednet/io/write_options.h"
+
+namespace pcednet::formats {
+
+/// A format of point files. A function that it does not have is null.
+struct Format {
+  std::string_view name;
+  std::vector<std::string_view> extensions;  ///< in lower case, with the dot
+
+  /// Whether a file that starts with these bytes is of this format, whatever its extension.
+  bool (*begins)(std::string_view start) = nullptr;
+  io::LoadedCloud (*read)(const io::InputFile& file) = nullptr;
+  std::unique_ptr<io::PartReader> (*open_parts)(std::unique_ptr<io::InputFile> file,
+                                                std::size_t most) = nullptr;
+
+  /// Null for what is written by its parts.
+  void (*write)(const std::filesystem::path& path, const PointCloud& cloud,
+                const io::WriteOptions& options) = nullptr;
+  std::unique_ptr<io::PartWriter> (*create_parts)(const std::filesystem::path& path,
+                                                  const io::PartOutline& outline,
+                                                  const io::WriteOptions& options) = nullptr;
+  /// What it cannot hold of a cloud beside foreign elements; null if it holds everything.
+  std::vector<std::string> (*losses)(const std::filesystem::path& path,
+                                     const PointCloud& cloud) = nullptr;
+  /// Whether it holds that element; null if it holds none.
+  bool (*keeps)(const ForeignElement& element) = nullptr;
+
+  bool is_written() const { return write != nullptr || create_parts != nullptr; }
+};
+
+/// Every format there is. Where the beginning of a file speaks for several, the first counts.
+std::span<const Format> all_formats();
+
+/// The format to read a file as: by its beginning, otherwise by its extension. Throws
+/// Error(kUnreadable) if there is none.
+const Format& format_of(const io::InputFile& file);
+
+/// The format to write under that name. Throws Error(kUsage) if there is none.
+const Format& format_for(const std::filesystem::path& path);
+
+/// The format of that extension, in small letters or capitals; null if there is none.
+const Format* find_format(const std::filesystem::path& path);
+
+/// The extensions of what is read, or written, such as ".ply .pcd .las"; `last` stands before the
+/// last.
+std::string extensions_read(std::string_view last = " ");
+std::string extensions_written(std::string_view last = " ");
+
+}  // namespace pcednet::formats

@@ -1,0 +1,103 @@
+#include "pcednet/formats/labels.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <span>
+
+#include "pcednet/core/error.h"
+#include "pcednet/formats/read_cloud.h"
+#include "pcednet/io/input_file.h"
+#include "pcednet/io/promote.h"
+#include "pcednet/io/text_scan.h"
+
+namespace pcednet::formats {
+namespace {
+
+std::optional<std::uint8_t> parse_label(std::string_view word) {
+  const auto value = io::parse_double(word);
+  if (!value) return std::nullopt;
+  return io::to_label(*value);
+}
+
+bool is_comment(std::string_view line) {
+  return line.starts_with('#') || line.starts_with("//");
+}
+
+/// Labels from a text with one number a line; none if a line holds several.
+std::optional<std::vector<std::uint8_t>> read_text_labels(const io::InputFile& file) {
+  const std::string text = file.text();
+  std::vector<std::uint8_t> labels;
+  std::vector<std::string_view> words;
+  io::Lines lines(text);
+  std::string_view line;
+  while (lines.next(line)) {
+    line = io::trim(line);
+    if (line.empty() || is_comment(line)) continue;
+    io::split(line, words, io::Separators(" \t\r\v\f,;"));
+    if (words.size() != 1) return std::nullopt;
+    const auto label = parse_label(words[0]);
+    if (!label) {
+      throw io::unreadable(file.path(),
+                           fmt::format("expected a label in 0 ... 255 or -1, not {:.40}", words[0]),
+                           lines.number());
+    }
+    labels.push_back(*label);
+  }
+  return labels;
+}
+
+std::vector<std::uint8_t> read_cloud_labels(const std::filesystem::path& path) {
+  const PointCloud cloud = read_cloud(path).cloud;
+  std::vector<std::uint8_t> labels = labels_of(cloud, path);
+  if (labels.empty()) {
+    throw Error(ErrorKind::kInsufficient,
+                fmt::format("{}: no labels; expected scalar_edge_class, edge_class or label",
+                            path.string()));
+  }
+  return labels;
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> labels_of(const PointCloud& cloud, const std::filesystem::path& path) {
+  for (const char* name : {"scalar_edge_class", "edge_class"}) {
+    const Attribute* attribute = find_attribute(cloud, name);
+    if (!attribute) continue;
+    std::vector<std::uint8_t> labels;
+    labels.reserve(cloud.size());
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+      const auto label = io::to_label(attribute->value(i));
+      if (!label) {
+        throw Error(ErrorKind::kInsufficient,
+                    fmt::format("{}: {} of point {} is {}, no class", path.string(), name, i,
+                                attribute->value(i)));
+      }
+      labels.push_back(*label);
+    }
+    return labels;
+  }
+  return cloud.labels;
+}
+
+std::vector<std::uint8_t> read_labels(const std::filesystem::path& path) {
+  const std::string extension = io::lower_case(path.extension().string());
+  if (extension == ".u8") {
+    const io::InputFile file(path);
+    std::vector<std::uint8_t> labels(file.size());
+    file.read(0, std::as_writable_bytes(std::span(labels)));
+    return labels;
+  }
+  const bool labels_only = extension == ".lbl" || extension == ".seg";
+  if (labels_only || extension == ".txt" || extension == ".csv") {
+    const io::InputFile file(path);
+    auto labels = read_text_labels(file);
+    if (labels) return *std::move(labels);
+    if (labels_only) throw io::unreadable(path, "expected one label a line");
+  }
+  return read_cloud_labels(path);
+}
+
+}  // namespace pcednet::formats

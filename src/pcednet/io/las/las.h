@@ -1,0 +1,45 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "pcednet/io/input_file.h"
+#include "pcednet/io/loaded_cloud.h"
+#include "pcednet/io/parts.h"
+#include "pcednet/io/write_options.h"
+
+namespace pcednet::io {
+
+/// Whether a file that starts so is LAS or LAZ.
+bool begins_as_las(std::string_view start);
+
+/// Reads LAS 1.0 to 1.5 (ASPRS), point formats 0 to 10, and their LASzip compressed form.
+///
+/// Every field becomes an attribute in its own type: Intensity, ReturnNumber, ..., GpsTime, Red,
+/// Green, Blue; extra bytes under their own names, not scaled. Red, Green and Blue also give the
+/// colours (divided by 257 unless all are below 256), NormalX, NormalY and NormalZ the normals.
+/// Header and records travel with the cloud for write_las. Throws as read_cloud.
+LoadedCloud read_las(const InputFile& file);
+
+/// For open_parts().
+std::unique_ptr<PartReader> open_las_parts(std::unique_ptr<InputFile> file, std::size_t most);
+
+/// Writes LAS, or LAZ if `path` ends in .laz.
+///
+/// A cloud that was read from LAS gets back version, point format, scale, offset, records and
+/// fields, its integers bit for bit, without the extra bytes that it lost on its way; another
+/// becomes LAS 1.4, point format 6, or 7 with colours, in steps of a power of ten of at most 0.1
+/// mm. Further attributes become extra bytes: scalar_edge_class, scalar_p_sharp and scalar_p_smooth
+/// as edge_class, p_sharp and p_smooth. append() throws Error(kInsufficient) for positions that are
+/// not finite, Error(kFailure) for a number that its field cannot hold; both name the point.
+std::unique_ptr<PartWriter> create_las_parts(const std::filesystem::path& path,
+                                             const PartOutline& outline,
+                                             const WriteOptions& options);
+
+/// What create_las_parts does not keep of `cloud`, one sentence part each.
+std::vector<std::string> las_losses(const PointCloud& cloud);
+
+}  // namespace pcednet::io

@@ -1,0 +1,181 @@
+#include "pcednet/io/las/layout.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "pcednet/cloud/bounding_box.h"
+#include "pcednet/core/error.h"
+#include "pcednet/io/las/comments.h"
+#include "pcednet/io/las/las.h"
+#include "pcednet/io/las/records.h"
+
+namespace pcednet::io {
+namespace {
+
+constexpr int kLeastDigits = 4, kMostDigits = 9;
+
+bool is_exact(const PointCloud& cloud, const LasFile& file) {
+  for (const Vec3& p : cloud.positions) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double value = p[static_cast<int>(axis)];
+      const double step = las_step(file, axis, value);
+      if (std::isfinite(value) && step * file.scale(axis) + file.offset(axis) != value) {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
+bool all_exact(const PartOutline& outline, const LasFile& file) {
+  bool exact = true;
+  outline.each_part([&](const PointCloud& part) { return exact = exact && is_exact(part, file); });
+  return exact;
+}
+
+bool fits(const BoundingBox& box, const LasFile& file) {
+  if (box.empty()) return true;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (const double end : {box.min[static_cast<int>(axis)], box.max[static_cast<int>(axis)]}) {
+      if (!std::isfinite(las_step(file, axis, end))) return false;
+    }
+  }
+  return true;
+}
+
+BoundingBox box_of(const PartOutline& outline) {
+  BoundingBox box;
+  outline.each_part([&](const PointCloud& part) {
+    const BoundingBox more = bounding_box(part.positions);
+    box.min = box.min.cwiseMin(more.min);
+    box.max = box.max.cwiseMax(more.max);
+    return true;
+  });
+  return box;
+}
+
+LasFile with_digits(LasFile file, int digits) {
+  const double scale = digits < 0 ? std::pow(10.0, -digits) : 1.0 / std::pow(10.0, digits);
+  for (std::size_t axis = 0; axis < 3; ++axis) put_number(file.header, 131 + 8 * axis, scale);
+  return file;
+}
+
+/// Offsets at whole numbers, and the coarsest step of at most 0.1 mm that keeps every coordinate as
+/// it is; if none does, the finest that 32 bits reach with. Coarser only where they reach no
+/// further.
+bool choose_scale(const PartOutline& outline, const BoundingBox& box, LasFile& file) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const int a = static_cast<int>(axis);
+    const double middle = box.empty() ? 0.0 : std::round(box.min[a] / 2 + box.max[a] / 2);
+    put_number(file.header, 155 + 8 * axis, middle);
+  }
+  std::vector<LasFile> candidates;
+  for (int digits = kLeastDigits; digits <= kMostDigits; ++digits) {
+    LasFile candidate = with_digits({.header = file.header}, digits);
+    if (!fits(box, candidate)) break;
+    candidates.push_back(std::move(candidate));
+  }
+  if (candidates.empty()) {
+    int digits = kLeastDigits - 1;
+    while (digits > -300 && !fits(box, with_digits({.header = file.header}, digits))) --digits;
+    file = with_digits(std::move(file), digits);
+    return all_exact(outline, file);
+  }
+  const std::string finest = candidates.back().header;
+  outline.each_part([&](const PointCloud& part) {
+    std::erase_if(candidates, [&](const LasFile& c) { return !is_exact(part, c); });
+    return !candidates.empty();
+  });
+  file.header = candidates.empty() ? finest : candidates.front().header;
+  return !candidates.empty();
+}
+
+LasFile new_file(bool with_colours) {
+  LasFile file;
+  file.header.assign(375, '\0');
+  file.header.replace(0, 4, "LASF");
+  put_number<std::uint16_t>(file.header, 6, 16);  // the coordinate system, if any, is WKT
+  put_number<std::uint8_t>(file.header, 24, 1);
+  put_number<std::uint8_t>(file.header, 25, 4);
+  file.header.replace(26, 7, "pcednet");
+  file.header.replace(58, 7, "pcednet");
+  put_number<std::uint8_t>(file.header, 104, with_colours ? 7 : 6);
+  return file;
+}
+
+/// Whether the colours are more than what Red, Green and Blue, if there are, say.
+bool colours_are_new(const PartOutline& outline) {
+  if (outline.first->colours.empty()) return false;
+  if (las_colours(*outline.first, true).empty()) return true;
+  bool narrow = true, same = true;
+  outline.each_part(
+      [&](const PointCloud& part) { return narrow = narrow && has_narrow_colours(part); });
+  outline.each_part([&](const PointCloud& part) {
+    return same = same && las_colours(part, narrow) == part.colours;
+  });
+  return !same;
+}
+
+bool labels_are_classes(const PartOutline& outline) {
+  bool same = outline.first->has_labels();
+  const auto is_class = [](const PointCloud& part) {
+    const Attribute* edge_class = find_attribute(part, "scalar_edge_class");
+    return edge_class && edge_class->type == ScalarType::kUint8 &&
+           edge_class->bytes.size() == part.labels.size() &&
+           std::memcmp(edge_class->bytes.data(), part.labels.data(), part.labels.size()) == 0;
+  };
+  if (!same || !is_class(*outline.first)) return false;
+  outline.each_part([&](const PointCloud& part) { return same = same && is_class(part); });
+  return same;
+}
+
+}  // namespace
+
+double las_step(const LasFile& file, std::size_t axis, double coordinate) {
+  const double step = std::round((coordinate - file.offset(axis)) / file.scale(axis));
+  return step >= INT32_MIN && step <= INT32_MAX ? step : NAN;
+}
+
+LasChoices las_choices(const PartOutline& outline) {
+  LasChoices choices{.file = attached_las_file(*outline.first),
+                     .new_colours = !outline.is_las && colours_are_new(outline),
+                     .label_is_class = labels_are_classes(outline)};
+  const bool is_new = choices.file.header.empty();
+  if (!is_new && outline.is_las) return choices;
+  if (is_new) choices.file = new_file(!outline.first->colours.empty());
+  const BoundingBox box = box_of(outline);
+  if (is_new || !fits(box, choices.file)) {
+    choices.exact = choose_scale(outline, box, choices.file);
+  } else {
+    choices.exact = all_exact(outline, choices.file);
+  }
+  return choices;
+}
+
+std::vector<std::string> las_losses(const PointCloud& cloud) {
+  return las_losses(cloud, las_choices(outline_of(cloud)));
+}
+
+std::vector<std::string> las_losses(const PointCloud& first, const LasChoices& choices) {
+  const LasFile& file = choices.file;
+  std::vector<std::string> losses;
+  if (!first.comments.empty() && !las_comment_record(first.comments)) {
+    losses.emplace_back("comments of more than 64 KiB");
+  }
+  if (!choices.exact) {
+    losses.push_back(fmt::format("digits of positions beyond steps of {}", file.scale(0)));
+  }
+  const auto standard = las_standard_fields(file.point_format());
+  const bool has_colours = std::any_of(standard.begin(), standard.end(),
+                                       [](const LasField& f) { return f.name == "Red"; });
+  if (!first.colours.empty() && !has_colours) {
+    losses.push_back(
+        fmt::format("colours: the input's point format {} has none", file.point_format()));
+  }
+  return losses;
+}
+
+}  // namespace pcednet::io

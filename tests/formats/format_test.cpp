@@ -1,0 +1,40 @@
+#include "pcednet/formats/format.h"
+
+#include <gtest/gtest.h>
+
+#include "io/scratch.h"
+
+namespace pcednet::formats {
+namespace {
+
+TEST(Formats, AreListedByTheirExtensions) {
+  EXPECT_EQ(extensions_read(), ".ply .pcd .las .laz .e57 .obj .xyz .txt .asc .pts .csv");
+  EXPECT_EQ(extensions_written(" or "), ".ply .pcd .las .laz .obj .xyz .txt .asc .pts or .csv");
+}
+
+TEST(Formats, AreFoundByTheExtensionInAnyCase) {
+  ASSERT_NE(find_format("folder.ply/A.LaZ"), nullptr);
+  EXPECT_EQ(find_format("folder.ply/A.LaZ")->name, "LAS");
+  EXPECT_EQ(find_format("folder.ply/a"), nullptr);
+  EXPECT_EQ(find_format("a.stl"), nullptr);
+}
+
+TEST(Formats, AreWrittenOnlyIfTheyHaveAWriter) {
+  EXPECT_EQ(format_for("a.csv").name, "text");
+  const auto refusal = [](const char* name) {
+    return io::error_of(ErrorKind::kUsage, [&] { format_for(name); });
+  };
+  EXPECT_EQ(refusal("a.e57"), "a.e57: points are written as " + extensions_written());
+  EXPECT_EQ(refusal("a"), "a: points are written as " + extensions_written());
+}
+
+TEST(Formats, AreEachToldByTheirOwnBeginning) {
+  const io::Scratch scratch;
+  for (const auto& [start, name] : {std::pair("ply\n", "PLY"), std::pair("# .PCD v0.7", "PCD"),
+                                    std::pair("LASF", "LAS"), std::pair("ASTM-E57", "E57")}) {
+    EXPECT_EQ(format_of(io::InputFile(scratch.file("a.xyz", start))).name, name);
+  }
+}
+
+}  // namespace
+}  // namespace pcednet::formats

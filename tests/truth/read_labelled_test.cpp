@@ -1,0 +1,105 @@
+#include "workbench/truth/read_labelled.h"
+
+#include <gtest/gtest.h>
+
+#include "io/scratch.h"
+#include "pcednet/core/error.h"
+#include "workbench/truth/abc_features.h"
+#include "workbench/truth/colour_labels.h"
+
+namespace pcednet::truth {
+namespace {
+
+using io::contains;
+using io::error_of;
+using io::LoadedCloud;
+using io::Scratch;
+
+constexpr const char* kMesh = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 1 1 1\n";
+constexpr const char* kFeatures =
+    "curves:\n"
+    "- location: [0, 0, 0]\n"
+    "  sharp: true\n"
+    "  type: Line\n"
+    "  vert_indices: [0, 1]\n"
+    "  vert_parameters: [3, 4]\n"
+    "- sharp: false\n"
+    "  vert_indices: [2]\n"
+    "- vert_indices:\n"
+    "  - 4\n"
+    "  sharp: true\n"
+    "  nested:\n"
+    "    vert_indices: [3]\n"
+    "surfaces:\n"
+    "- vert_indices: [3, 2]\n"
+    "  sharp: true\n";
+using Labels = std::vector<std::uint8_t>;
+const Labels kExpected = {2, 2, 0, 0, 2};
+
+TEST(AbcFeatures, MarkTheVerticesOfSharpCurves) {
+  const Scratch scratch;
+  EXPECT_EQ(read_abc_labels(scratch.file("f.yml", kFeatures), 5), kExpected);
+}
+
+TEST(AbcFeatures, AreFoundWhereTheDataSetHasThem) {
+  const Scratch scratch;
+  for (const auto& [mesh, features] : {std::pair{"same/a.obj", "same/a.yml"},
+                                       {"b/1_trimesh_0.obj", "b/1_features_0.yml"},
+                                       {"c/obj/7/2_trimesh_0.obj", "c/feat/7/2_features_0.yml"}}) {
+    const auto file = scratch.file(mesh, kMesh);
+    EXPECT_TRUE(find_abc_features(file).empty()) << mesh;
+    scratch.file(features, kFeatures);
+    const LoadedCloud loaded = read_labelled(file);
+    EXPECT_EQ(loaded.cloud.labels, kExpected) << mesh;
+    EXPECT_TRUE(contains(loaded.warnings.back(), "labels from")) << mesh;
+  }
+}
+
+TEST(AbcFeatures, RefuseWhatTheyCannotBe) {
+  const Scratch scratch;
+  const auto message = [&](const std::string& text) -> std::string {
+    try {
+      read_abc_labels(scratch.file("f.yml", text), 5);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "none";
+  };
+  EXPECT_TRUE(contains(message("curves:\n- vert_indices: [5]\n"), "f.yml:2"));
+  EXPECT_TRUE(contains(message("curves:\n- vert_indices: [-1]\n"), "5 vertices"));
+  EXPECT_TRUE(contains(message("surfaces: []\n"), "no curves"));
+  EXPECT_TRUE(contains(message(""), "no curves"));
+  EXPECT_TRUE(contains(message("curves: [}"), "f.yml:1"));
+  EXPECT_NE(message(std::string(100000, '[')), "none");
+}
+
+PointCloud painted(const std::vector<std::array<std::uint8_t, 3>>& colours) {
+  PointCloud cloud;
+  cloud.positions.assign(colours.size(), Vec3::Zero());
+  for (const auto& c : colours) cloud.colours.push_back({c[0], c[1], c[2]});
+  return cloud;
+}
+
+TEST(ColourLabels, ReadTheColoursOfThePaper) {
+  EXPECT_EQ(labels_of_colours(painted({{255, 255, 255}, {255, 196, 93}, {168, 0, 0}})),
+            (Labels{0, 1, 2}));
+  EXPECT_EQ(labels_of_colours(painted({{255, 0, 0}, {90, 90, 90}, {255, 0, 0}})),
+            (Labels{2, 0, 2}));
+}
+
+TEST(ColourLabels, LeavePhotographsAlone) {
+  EXPECT_TRUE(labels_of_colours(painted({{255, 255, 255}, {255, 196, 93}})).empty());  // no red
+  EXPECT_TRUE(labels_of_colours(painted({{168, 0, 0}})).empty());
+  EXPECT_TRUE(labels_of_colours(painted({{168, 0, 0}, {255, 255, 255}, {9, 9, 9}})).empty());
+  EXPECT_TRUE(labels_of_colours(painted({{168, 0, 0}, {0, 0, 200}})).empty());
+  EXPECT_TRUE(labels_of_colours({}).empty());
+}
+
+TEST(ReadLabelled, TellsWhereThereAreNone) {
+  const Scratch scratch;
+  EXPECT_THROW(read_labelled(scratch.file("a.obj", kMesh)), Error);
+  EXPECT_THROW(read_labelled(scratch.file("a.xyz", "0 0 0\n1 1 1\n")), Error);
+}
+
+}  // namespace
+}  // namespace pcednet::truth
