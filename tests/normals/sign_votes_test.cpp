@@ -25,6 +25,11 @@ struct Scene {
     links = make_adjacency(graph, 12);
   }
   SignVotes votes() const { return {graph.points, normals, links}; }
+  std::int32_t vote(std::uint32_t i, std::uint32_t j) const {
+    const auto row = links.of(i);
+    const auto place = std::find(row.begin(), row.end(), j);
+    return votes().of(i)[static_cast<std::size_t>(place - row.begin())];
+  }
 
   NeighbourGraph graph;
   std::vector<Vec3> normals;
@@ -33,11 +38,32 @@ struct Scene {
 
 TEST(SignVotes, AreSymmetricAndFollowTheSigns) {
   Scene scene;
-  const std::int64_t before = scene.votes().vote(1, 2);
+  const std::uint32_t i = 1, j = scene.links.of(i)[0];
+  const std::int32_t before = scene.vote(i, j);
   EXPECT_NE(before, 0);
-  EXPECT_EQ(scene.votes().vote(2, 1), before);
-  scene.normals[2] = -scene.normals[2];
-  EXPECT_EQ(scene.votes().vote(1, 2), -before);
+  EXPECT_EQ(scene.vote(j, i), before);
+  scene.normals[j] = -scene.normals[j];
+  EXPECT_EQ(scene.vote(i, j), -before);
+  scene.normals[j].setZero();
+  EXPECT_EQ(scene.vote(i, j), SignVotes::kNone);
+}
+
+TEST(SignVotes, FollowTheirDefinition) {
+  const Scene scene;
+  const SignVotes votes = scene.votes();
+  for (std::uint32_t i = 0; i < scene.links.size(); ++i) {
+    for (std::size_t k = 0; k < scene.links.of(i).size(); ++k) {
+      const std::uint32_t j = scene.links.of(i)[k];
+      const Vec3 &n = scene.normals[i], &m = scene.normals[j];
+      if (n.isZero() || m.isZero()) {
+        EXPECT_EQ(votes.of(i)[k], SignVotes::kNone);
+        continue;
+      }
+      const Vec3 e = (scene.graph.points[j] - scene.graph.points[i]).normalized();
+      const double expected = n.dot(m) - 1.8 * e.dot(n) * e.dot(m);
+      EXPECT_NEAR(votes.of(i)[k] / SignVotes::kUnanimous, expected, 1e-6);
+    }
+  }
 }
 
 TEST(SignVotes, LinksAreTheNeighboursOfBothSides) {
@@ -88,7 +114,10 @@ TEST(SignVotes, NoPointStaysOutvoted) {
     std::size_t count = 0;
     for (std::size_t i = 0; i < sign.size(); ++i) {
       std::int64_t sum = 0;
-      for (const std::uint32_t j : scene.links.of(i)) sum += votes.vote(i, j) * sign[i] * sign[j];
+      for (std::size_t k = 0; k < scene.links.of(i).size(); ++k) {
+        if (votes.of(i)[k] == SignVotes::kNone) continue;
+        sum += votes.of(i)[k] * sign[i] * sign[scene.links.of(i)[k]];
+      }
       count += sum < 0;
     }
     return count;

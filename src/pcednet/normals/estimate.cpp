@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <numeric>
+
 #include "pcednet/core/error.h"
 #include "pcednet/core/parallel.h"
 #include "pcednet/normals/plane_fit.h"
@@ -12,9 +14,14 @@ std::vector<Vec3> estimate_normals(const NeighbourGraph& graph, const Progress* 
   std::vector<Vec3> normals(graph.points.size());
   Stage stage(progress, "normals", normals.size());
   parallel_blocks(normals.size(), 1024, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      normals[i] = fit_plane(graph.points, i, graph.of(i)).normal;
-    }
+    std::vector<std::uint32_t> some(end - begin);
+    std::iota(some.begin(), some.end(), static_cast<std::uint32_t>(begin));
+    std::vector<PlaneFit> fits(some.size());
+    fit_planes(
+        graph.points, some,
+        std::span(graph.neighbours).subspan(begin * graph.degree, fits.size() * graph.degree),
+        fits);
+    for (std::size_t i = begin; i < end; ++i) normals[i] = fits[i - begin].normal;
     stage.advance(end - begin);
   });
   return normals;

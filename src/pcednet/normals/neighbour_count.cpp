@@ -28,20 +28,20 @@ std::size_t choose_neighbour_count(std::span<const Vec3> points,
   std::array<std::vector<double>, kCounts.size()> thickness;
   for (std::vector<double>& of_count : thickness) of_count.resize(samples);
   parallel_blocks(samples, 100, [&](std::size_t begin, std::size_t end) {
-    std::vector<std::uint32_t> chosen, neighbours(kCounts.back());
+    std::vector<std::uint32_t> chosen;
     for (std::size_t s = begin; s < end; ++s) {
       chosen.push_back(static_cast<std::uint32_t>(s * points.size() / samples));
     }
     std::vector<spatial::Neighbour> found(chosen.size() * kCounts.back());
     search.nearest_others(chosen, kCounts.back(), found);
-    for (std::size_t s = begin; s < end; ++s) {
-      const auto row = found.begin() + static_cast<std::ptrdiff_t>((s - begin) * kCounts.back());
-      std::transform(row, row + kCounts.back(), neighbours.begin(),
-                     [](const spatial::Neighbour& neighbour) { return neighbour.index; });
-      for (std::size_t c = 0; c < kCounts.size(); ++c) {
-        thickness[c][s] =
-            fit_plane(points, chosen[s - begin], std::span(neighbours).first(kCounts[c])).thickness;
+    std::vector<PlaneFit> fits(chosen.size());
+    for (std::size_t c = 0; c < kCounts.size(); ++c) {
+      std::vector<std::uint32_t> neighbours;
+      for (std::size_t row = 0; row < found.size(); row += kCounts.back()) {
+        for (std::size_t k = 0; k < kCounts[c]; ++k) neighbours.push_back(found[row + k].index);
       }
+      fit_planes(points, chosen, neighbours, fits);
+      for (std::size_t i = 0; i < fits.size(); ++i) thickness[c][begin + i] = fits[i].thickness;
     }
   });
   double thinnest = median(thickness[0]);

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "pcednet/core/parallel.h"
+#include "pcednet/core/vector_clones.h"
 #include "pcednet/normals/neighbour_count.h"
 #include "pcednet/spatial/curve_order.h"
 #include "pcednet/spatial/neighbour_search.h"
@@ -15,24 +16,47 @@ namespace {
 constexpr std::size_t kBlock = 1024;
 
 void collect_distinct_points(std::span<const Vec3> positions, NeighbourGraph& graph) {
-  const std::vector<std::uint32_t> order = spatial::curve_order(positions);
-  std::vector<Vec3>& points = graph.points;
-  points.resize(order.size());
+  graph.order = spatial::curve_order(positions);
+  const std::vector<std::uint32_t>& order = graph.order;
+  std::vector<Vec3> ordered = spatial::in_order(positions, order);
+  const auto is_new = [&](std::size_t i) { return i == 0 || ordered[i] != ordered[i - 1]; };
+  std::vector<std::uint32_t> found((order.size() + kBlock - 1) / kBlock + 1);  // before each block
   parallel_blocks(order.size(), kBlock, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) points[i] = positions[order[i]];
+    for (std::size_t i = begin; i < end; ++i) found[begin / kBlock + 1] += is_new(i);
   });
+  std::partial_sum(found.begin(), found.end(), found.begin());
+  const bool has_copies = found.back() < order.size();
+  if (has_copies) graph.points.resize(found.back());
   graph.point_of.assign(positions.size(), kNoPoint);
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    if (count == 0 || points[count - 1] != points[i]) points[count++] = points[i];
-    graph.point_of[order[i]] = static_cast<std::uint32_t>(count - 1);
-  }
-  points.resize(count);
+  parallel_blocks(order.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+    std::uint32_t count = found[begin / kBlock];
+    for (std::size_t i = begin; i < end; ++i) {
+      if (is_new(i)) {
+        if (has_copies) graph.points[count] = ordered[i];
+        ++count;
+      }
+      graph.point_of[order[i]] = count - 1;
+    }
+  });
+  if (!has_copies) graph.points = std::move(ordered);
 }
 
-double sq_distance(const Vec3& p, const Vec3& q) {
-  const Vec3 d = p - q;
-  return d.x() * d.x() + d.y() * d.y() + d.z() * d.z();
+[[gnu::always_inline]] inline double sq_distance(const double* p, const double* q) {
+  const double x = p[0] - q[0], y = p[1] - q[1], z = p[2] - q[2];
+  return x * x + y * y + z * z;
+}
+
+/// How the distance from a point to one of its neighbours compares with the neighbour's reach.
+enum Within : std::uint8_t { kBeyond, kInside, kOnRim };
+
+PCEDNET_VECTOR_CLONES
+void compare_with_reach(const Vec3* points, const double* sq_reach, std::size_t i,
+                        std::span<const std::uint32_t> row, std::uint8_t* within) {
+  const double *const all = points->data(), *const p = all + 3 * i;
+  for (std::size_t k = 0; k < row.size(); ++k) {
+    const double sq = sq_distance(p, all + 3 * std::size_t{row[k]}), reach = sq_reach[row[k]];
+    within[k] = static_cast<std::uint8_t>((sq < reach ? kInside : 0) + (sq == reach ? kOnRim : 0));
+  }
 }
 
 }  // namespace
@@ -73,33 +97,33 @@ Adjacency make_adjacency(const NeighbourGraph& graph, std::size_t count) {
   };
   std::vector<double> sq_reach(points);
   by_block([&](std::size_t i, const auto& row) {
-    sq_reach[i] = sq_distance(graph.points[i], graph.points[row.back()]);
+    sq_reach[i] = sq_distance(graph.points[i].data(), graph.points[row.back()].data());
   });
-  const auto is_mutual = [&](std::size_t i, std::uint32_t j) {
-    const double sq = sq_distance(graph.points[i], graph.points[j]);
-    if (sq != sq_reach[j]) return sq < sq_reach[j];
-    const auto row = graph.of(j).first(count);
-    return std::find(row.begin(), row.end(), i) != row.end();
-  };
 
-  // A one-sided link is written at both ends; a mutual one is written at each end by that end. The
-  // counts of links become the places to write the next link to.
+  // Every point writes its own links to the front of its row; of one-sided ones, the other end gets
+  // its link behind those. The counts become the places to write the next of these to.
   const auto take = [](std::size_t& counter) {
     return std::atomic_ref(counter).fetch_add(1, std::memory_order_relaxed);
   };
   std::vector<std::uint8_t> mutual(points * count);
   by_block([&](std::size_t i, const auto& row) {
+    std::uint8_t* const flags = mutual.data() + i * count;
+    compare_with_reach(graph.points.data(), sq_reach.data(), i, row, flags);
     for (std::size_t k = 0; k < count; ++k) {
-      mutual[i * count + k] = is_mutual(i, row[k]);
-      if (!mutual[i * count + k]) take(adjacency.first[row[k] + 1]);
+      if (flags[k] == kOnRim) {
+        const auto back = graph.of(row[k]).first(count);
+        flags[k] = std::find(back.begin(), back.end(), i) != back.end();
+      }
+      if (!flags[k]) take(adjacency.first[row[k] + 1]);
     }
   });
   std::partial_sum(adjacency.first.begin(), adjacency.first.end(), adjacency.first.begin());
   adjacency.target.resize(adjacency.first.back());
-  std::vector<std::size_t> next(adjacency.first.begin(), adjacency.first.end() - 1);
+  std::vector<std::size_t> next(points);
+  by_block([&](std::size_t i, const auto&) { next[i] = adjacency.first[i] + count; });
   by_block([&](std::size_t i, const auto& row) {
+    std::copy(row.begin(), row.end(), adjacency.target.data() + adjacency.first[i]);
     for (std::size_t k = 0; k < count; ++k) {
-      adjacency.target[take(next[i])] = row[k];
       if (mutual[i * count + k]) continue;
       adjacency.target[take(next[row[k]])] = static_cast<std::uint32_t>(i);
     }

@@ -18,6 +18,7 @@ inline constexpr std::uint32_t kNoPoint = 0xffffffff;
 /// same for any numbering of the cloud; neighbours lie close in memory.
 struct NeighbourGraph {
   std::vector<Vec3> points;
+  std::vector<std::uint32_t> order;       ///< positions of the cloud; those of one point together
   std::vector<std::uint32_t> point_of;    ///< per position of the cloud, kNoPoint if not finite
   std::size_t degree = 0;                 ///< neighbours of each point
   std::vector<std::uint32_t> neighbours;  ///< points x degree, nearest first, the point left out

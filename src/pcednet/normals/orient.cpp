@@ -14,6 +14,13 @@
 namespace pcednet::normals {
 namespace {
 
+template <typename Work>
+void for_each(std::size_t count, const Work& work) {
+  parallel_blocks(count, 1 << 14, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) work(i);
+  });
+}
+
 void check(const OrientOptions& options) {
   if (options.neighbours < 1) {
     throw Error(ErrorKind::kUsage,
@@ -82,17 +89,21 @@ Orientation turn_parts_outwards(std::span<const Vec3> points, std::span<Vec3> no
 
 /// How many points have another sign than most of their part, of those whose normals lie along
 /// those of most neighbours: the sign of a normal that points anywhere means nothing.
-std::size_t count_minorities(const Signs& signs, const SignVotes& votes) {
+std::size_t count_minorities(const Signs& signs, std::span<const Vec3> normals,
+                             const Adjacency& links) {
   constexpr double kAlong = 0.9;
-  std::vector<std::size_t> sizes(signs.parts, 0), turned(signs.parts, 0);
-  for (std::size_t i = 0; i < signs.sign.size(); ++i) {
-    const std::span<const std::uint32_t> links = votes.links.of(i);
-    const auto along = std::count_if(links.begin(), links.end(), [&](std::uint32_t j) {
-      return std::abs(votes.normals[i].dot(votes.normals[j])) > kAlong;
+  std::vector<std::uint8_t> is_along(normals.size());
+  for_each(normals.size(), [&](std::size_t i) {
+    const auto row = links.of(i);
+    const auto along = std::count_if(row.begin(), row.end(), [&](std::uint32_t j) {
+      return std::abs(normals[i].dot(normals[j])) > kAlong;
     });
-    if (2 * static_cast<std::size_t>(along) <= links.size()) continue;
-    ++sizes[signs.part[i]];
-    turned[signs.part[i]] += signs.sign[i] < 0;
+    is_along[i] = 2 * static_cast<std::size_t>(along) > row.size();
+  });
+  std::vector<std::size_t> sizes(signs.parts, 0), turned(signs.parts, 0);
+  for (std::size_t i = 0; i < normals.size(); ++i) {
+    sizes[signs.part[i]] += is_along[i];
+    turned[signs.part[i]] += is_along[i] && signs.sign[i] < 0;
   }
   std::size_t sum = 0;
   for (std::size_t part = 0; part < signs.parts; ++part) {
@@ -101,24 +112,21 @@ std::size_t count_minorities(const Signs& signs, const SignVotes& votes) {
   return sum;
 }
 
-/// Orients the normals of the points of the graph.
-Orientation orient_points(const NeighbourGraph& graph, std::span<Vec3> normals,
-                          const OrientOptions& options, const Progress* progress) {
-  Stage stage(progress, "orientation", 4);
-  const Adjacency links = make_adjacency(graph, static_cast<std::size_t>(options.neighbours));
-  stage.advance();
-  const SignVotes votes{graph.points, normals, links};
-  Signs signs = contract(votes);
-  stage.advance();
-  turn_outvoted_points(votes, signs.sign);
-  for (std::size_t i = 0; i < normals.size(); ++i) {
-    if (signs.sign[i] < 0) normals[i] = -normals[i];
-  }
-  stage.advance();
-  Orientation orientation = turn_parts_outwards(graph.points, normals, signs);
-  if (options.count_turned) orientation.turned = count_minorities(signs, votes);
-  stage.advance();
-  return orientation;
+/// For each point of the graph the first normal, of those of its copies, that is not zero.
+std::vector<Vec3> first_normals(const NeighbourGraph& graph, std::span<const Vec3> normals) {
+  const std::vector<std::uint32_t>& order = graph.order;
+  const auto point_at = [&](std::size_t i) { return graph.point_of[order[i]]; };
+  std::vector<Vec3> first(graph.points.size());
+  for_each(order.size(), [&](std::size_t i) {
+    const std::uint32_t point = point_at(i);
+    if (i > 0 && point_at(i - 1) == point) return;
+    Vec3 normal = normals[order[i]];
+    while (normal.isZero(0.0) && ++i < order.size() && point_at(i) == point) {
+      normal = normals[order[i]];
+    }
+    first[point] = normal;
+  });
+  return first;
 }
 
 }  // namespace
@@ -142,28 +150,47 @@ std::size_t face_viewpoints(std::span<const Vec3> positions, std::span<Vec3> nor
   return faced;
 }
 
+Orientation orient_points(const NeighbourGraph& graph, std::span<Vec3> normals,
+                          const OrientOptions& options, const Progress* progress) {
+  check(options);
+  if (options.viewpoint) {
+    for_each(normals.size(),
+             [&](std::size_t i) { face(graph.points[i], normals[i], *options.viewpoint); });
+    return {};
+  }
+  Stage stage(progress, "orientation", 4);
+  const Adjacency links = make_adjacency(graph, static_cast<std::size_t>(options.neighbours));
+  stage.advance();
+  const SignVotes votes(graph.points, normals, links);
+  Signs signs = contract(votes);
+  stage.advance();
+  turn_outvoted_points(votes, signs.sign);
+  for_each(normals.size(), [&](std::size_t i) {
+    if (signs.sign[i] < 0) normals[i] = -normals[i];
+  });
+  stage.advance();
+  Orientation orientation = turn_parts_outwards(graph.points, normals, signs);
+  if (options.count_turned) orientation.turned = count_minorities(signs, normals, links);
+  stage.advance();
+  return orientation;
+}
+
 Orientation orient_normals(const NeighbourGraph& graph, std::span<const Vec3> positions,
                            std::span<Vec3> normals, const OrientOptions& options,
                            const Progress* progress) {
   check(options);
   check_size(positions, normals);
   if (options.viewpoint) {
-    for (std::size_t i = 0; i < positions.size(); ++i) {
-      face(positions[i], normals[i], *options.viewpoint);
-    }
+    for_each(positions.size(),
+             [&](std::size_t i) { face(positions[i], normals[i], *options.viewpoint); });
     return {};
   }
-  std::vector<Vec3> of_points(graph.points.size(), Vec3::Zero());
-  for (std::size_t i = positions.size(); i-- > 0;) {
-    if (graph.point_of[i] != kNoPoint && !normals[i].isZero(0.0)) {
-      of_points[graph.point_of[i]] = normals[i];
-    }
-  }
+  std::vector<Vec3> of_points = first_normals(graph, normals);
   const Orientation orientation = orient_points(graph, of_points, options, progress);
-  for (std::size_t i = 0; i < positions.size(); ++i) {
-    if (graph.point_of[i] == kNoPoint) continue;
+  for_each(positions.size(), [&](std::size_t i) {
+    if (graph.point_of[i] == kNoPoint) return;
     turn(normals[i], normals[i].dot(of_points[graph.point_of[i]]) < 0.0);
-  }
+  });
   return orientation;
 }
 

@@ -57,6 +57,10 @@ Orientation orient_normals(const NeighbourGraph& graph, std::span<const Vec3> po
                            std::span<Vec3> normals, const OrientOptions& options = {},
                            const Progress* progress = nullptr);
 
+/// The same for the normals of the graph's points.
+Orientation orient_points(const NeighbourGraph& graph, std::span<Vec3> normals,
+                          const OrientOptions& options, const Progress* progress = nullptr);
+
 /// Turns every normal to face the viewpoint of its position, as in OrientOptions; those whose
 /// viewpoint is not finite stay. Returns how many points have one. One viewpoint per position.
 std::size_t face_viewpoints(std::span<const Vec3> positions, std::span<Vec3> normals,

@@ -13,9 +13,9 @@ struct PlaneFit {
   double thickness = 0.0;      ///< smallest eigenvalue over the middle one, from 0 to 1
 };
 
-/// Fits a plane to `points[point]` and its `neighbours` (nearest first, all distinct) as told at
-/// estimate_normals().
-PlaneFit fit_plane(std::span<const Vec3> points, std::size_t point,
-                   std::span<const std::uint32_t> neighbours);
+/// Fits a plane to each of the points numbered `some` and its neighbours, as told at
+/// estimate_normals(): `neighbours` holds a row for each of them, all distinct, nearest first.
+void fit_planes(std::span<const Vec3> points, std::span<const std::uint32_t> some,
+                std::span<const std::uint32_t> neighbours, std::span<PlaneFit> fits);
 
 }  // namespace pcednet::normals

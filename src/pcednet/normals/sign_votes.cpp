@@ -1,6 +1,9 @@
 #include "pcednet/normals/sign_votes.h"
 
 #include <algorithm>
+#include <array>
+#include <atomic>
+#include <bit>
 #include <cmath>
 #include <numeric>
 #include <utility>
@@ -13,50 +16,6 @@ namespace {
 
 constexpr std::size_t kBlock = 1024;
 
-/// Sums of votes between the parts of one round, as compressed rows; both directions are there.
-struct Links {
-  std::vector<std::size_t> first = {0};
-  std::vector<std::uint32_t> target;
-  std::vector<std::int64_t> vote;
-};
-
-/// Sets of parts with the sign of each relative to its root.
-class SignedSets {
- public:
-  explicit SignedSets(std::size_t size) : parent_(size), sign_(size, 1) {
-    std::iota(parent_.begin(), parent_.end(), 0u);
-  }
-
-  std::pair<std::uint32_t, std::int8_t> find(std::uint32_t i) {
-    std::int8_t sign = 1;
-    std::uint32_t root = i;
-    for (; parent_[root] != root; root = parent_[root]) sign = times(sign, sign_[root]);
-    std::int8_t rest = sign;
-    while (parent_[i] != i) {
-      const std::uint32_t next = std::exchange(parent_[i], root);
-      rest = times(rest, std::exchange(sign_[i], rest));
-      i = next;
-    }
-    return {root, sign};
-  }
-
-  /// The smaller root stays, so that a set is named by its first member.
-  void join(std::uint32_t i, std::uint32_t j, bool same_sign) {
-    auto [a, sign_a] = find(i);
-    auto [b, sign_b] = find(j);
-    if (a == b) return;
-    if (a > b) std::swap(a, b);
-    parent_[b] = a;
-    sign_[b] = times(times(sign_a, sign_b), same_sign ? 1 : -1);
-  }
-
- private:
-  static std::int8_t times(std::int8_t a, std::int8_t b) { return static_cast<std::int8_t>(a * b); }
-
-  std::vector<std::uint32_t> parent_;
-  std::vector<std::int8_t> sign_;
-};
-
 [[gnu::always_inline]] inline std::int32_t vote_of(const double* p, const double* n,
                                                    const double* q, const double* m) {
   constexpr double kReflection = 1.8;
@@ -68,172 +27,222 @@ class SignedSets {
   return static_cast<std::int32_t>(vote + std::copysign(0.5, vote));
 }
 
-/// The votes of point `i` with each of `targets`.
+/// Some points and their normals, side by side.
+struct Lanes {
+  static constexpr std::size_t kMost = 64;
+  alignas(64) double point[3][kMost], normal[3][kMost];
+};
+
 PCEDNET_VECTOR_CLONES
-void vote_all(const Vec3* points, const Vec3* normals, std::size_t i,
-              std::span<const std::uint32_t> targets, std::int32_t* votes) {
-  const double *const all_points = points->data(), *const all_normals = normals->data();
-  const double* const p = all_points + 3 * i;
-  const double* const n = all_normals + 3 * i;
-  for (std::size_t k = 0; k < targets.size(); ++k) {
-    const std::size_t j = 3 * std::size_t{targets[k]};
-    votes[k] = vote_of(p, n, all_points + j, all_normals + j);
+void vote_in_lanes(const double* p, const double* n, const Lanes& lanes, std::size_t count,
+                   std::int32_t* __restrict votes) {
+  const double at[3] = {p[0], p[1], p[2]}, along[3] = {n[0], n[1], n[2]};
+  for (std::size_t k = 0; k < count; ++k) {
+    const double q[3] = {lanes.point[0][k], lanes.point[1][k], lanes.point[2][k]};
+    const double m[3] = {lanes.normal[0][k], lanes.normal[1][k], lanes.normal[2][k]};
+    votes[k] = vote_of(at, along, q, m);
   }
 }
 
 /// The links of the first round: every vote of the points.
 struct PointRows {
   const SignVotes& votes;
-  std::size_t size() const { return votes.links.size(); }
+  std::size_t size() const { return votes.links().size(); }
+  std::size_t width(std::size_t i) const { return votes.of(i).size(); }
   template <typename Visit>
   void visit(std::size_t i, const Visit& visit) const {
-    if (votes.normals[i].isZero(0.0)) return;
-    const auto row = votes.links.of(i);
-    thread_local std::vector<std::int32_t> of_row;
-    of_row.resize(row.size());
-    vote_all(votes.points.data(), votes.normals.data(), i, row, of_row.data());
+    const auto row = votes.links().of(i);
+    const auto of_row = votes.of(i);
     for (std::size_t k = 0; k < row.size(); ++k) {
-      if (of_row[k] != 0 || !votes.normals[row[k]].isZero(0.0)) visit(row[k], of_row[k]);
+      if (of_row[k] != SignVotes::kNone) visit(row[k], of_row[k]);
     }
+  }
+};
+
+/// Sums of votes between the parts of one round, as compressed rows in blocks of kBlock; both
+/// directions are there.
+struct Links {
+  struct Block {
+    std::vector<std::size_t> first = {0};
+    std::vector<std::uint32_t> target = {};
+    std::vector<std::int64_t> vote = {};
+  };
+  std::size_t rows = 0;
+  std::vector<Block> blocks = {};
+
+  bool empty() const {
+    return std::all_of(blocks.begin(), blocks.end(),
+                       [](const Block& block) { return block.target.empty(); });
   }
 };
 
 /// The links of a later round.
 struct PartRows {
   const Links& links;
-  std::size_t size() const { return links.first.size() - 1; }
+  std::size_t size() const { return links.rows; }
+  std::size_t width(std::size_t i) const {
+    const auto first =
+        links.blocks[i / kBlock].first.begin() + static_cast<std::ptrdiff_t>(i % kBlock);
+    return first[1] - first[0];
+  }
   template <typename Visit>
   void visit(std::size_t i, const Visit& visit) const {
-    for (std::size_t k = links.first[i]; k < links.first[i + 1]; ++k) {
-      visit(links.target[k], links.vote[k]);
+    const Links::Block& block = links.blocks[i / kBlock];
+    for (std::size_t k = block.first[i % kBlock]; k < block.first[i % kBlock + 1]; ++k) {
+      visit(block.target[k], block.vote[k]);
     }
   }
 };
 
-/// For every row the target of its strongest link (the smallest of equals) and whether the two
-/// should have the same sign; itself if it has no link.
+/// Every row's link to the target of its strongest vote (the smallest of equals).
 template <typename Rows>
-std::vector<std::pair<std::uint32_t, bool>> strongest_links(const Rows& rows) {
-  std::vector<std::pair<std::uint32_t, bool>> strongest(rows.size());
+std::vector<Join> strongest_links(const Rows& rows) {
+  std::vector<Join> strongest(rows.size());
   parallel_blocks(rows.size(), kBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      std::int64_t best = -1;
-      strongest[i] = {static_cast<std::uint32_t>(i), true};
+      std::int64_t best = 0, size = -1;
+      auto to = static_cast<std::uint32_t>(i);
       rows.visit(i, [&](std::uint32_t target, std::int64_t vote) {
-        if (std::abs(vote) < best || (std::abs(vote) == best && target > strongest[i].first))
-          return;
-        best = std::abs(vote);
-        strongest[i] = {target, vote >= 0};
+        const std::int64_t its_size = std::abs(vote);
+        // Without branches: which is the strongest cannot be foreseen.
+        const bool better = (its_size > size) | ((its_size == size) & (target < to));
+        best = better ? vote : best;
+        size = better ? its_size : size;
+        to = better ? target : to;
       });
+      strongest[i] = {to, static_cast<std::int8_t>(best >= 0 ? 1 : -1)};
     }
   });
   return strongest;
 }
 
-/// Joins every row with the target of its strongest link and numbers the resulting parts.
-template <typename Rows>
-Signs join_strongest(const Rows& rows) {
-  const auto strongest = strongest_links(rows);
-  SignedSets sets(rows.size());
-  for (std::uint32_t i = 0; i < rows.size(); ++i) {
-    sets.join(i, strongest[i].first, strongest[i].second);
-  }
-  Signs joined;
-  joined.part.resize(rows.size());
-  joined.sign.resize(rows.size());
-  for (std::uint32_t i = 0; i < rows.size(); ++i) {
-    const auto [root, sign] = sets.find(i);
-    joined.sign[i] = sign;
-    joined.part[i] = root == i ? static_cast<std::uint32_t>(joined.parts++) : joined.part[root];
-  }
-  return joined;
-}
-
-/// The rows that belong to each part, part after part.
+/// The rows that belong to each part, in any order.
 struct Members {
   std::vector<std::size_t> first;
   std::vector<std::uint32_t> member;
 };
 
 Members members_of_parts(const Signs& joined) {
+  const std::vector<std::uint32_t>& part = joined.part;
+  const auto take = [](std::size_t& counter) {
+    return std::atomic_ref(counter).fetch_add(1, std::memory_order_relaxed);
+  };
+  const auto for_each_row = [&](const auto& work) {
+    parallel_blocks(part.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+      for (auto i = static_cast<std::uint32_t>(begin); i < end; ++i) work(i);
+    });
+  };
   Members members;
   members.first.assign(joined.parts + 1, 0);
-  for (const std::uint32_t part : joined.part) ++members.first[part + 1];
+  for_each_row([&](std::uint32_t i) { take(members.first[part[i] + 1]); });
   std::partial_sum(members.first.begin(), members.first.end(), members.first.begin());
-  members.member.resize(joined.part.size());
+  members.member.resize(part.size());
   std::vector<std::size_t> next(members.first.begin(), members.first.end() - 1);
-  for (std::uint32_t i = 0; i < joined.part.size(); ++i) members.member[next[joined.part[i]]++] = i;
+  for_each_row([&](std::uint32_t i) { members.member[take(next[part[i]])] = i; });
   return members;
 }
 
-using Vote = std::pair<std::uint32_t, std::int64_t>;
+/// Sums up the votes of a part by their targets, in a hash table of places in the block's lists.
+class RowSums {
+ public:
+  explicit RowSums(Links::Block& block) : block_(block) {}
 
-void append_summed(std::vector<Vote>& votes, Links& links) {
-  std::sort(votes.begin(), votes.end(),
-            [](const Vote& a, const Vote& b) { return a.first < b.first; });
-  for (std::size_t k = 0; k < votes.size();) {
-    const std::uint32_t target = votes[k].first;
-    std::int64_t sum = 0;
-    for (; k < votes.size() && votes[k].first == target; ++k) sum += votes[k].second;
-    links.target.push_back(target);
-    links.vote.push_back(sum);
+  /// Begins a row of at most `most` votes.
+  void start(std::size_t most) {
+    const std::size_t size = std::bit_ceil(2 * most + 1);
+    places_.assign(size, kNoPoint);
+    shift_ = 64 - std::countr_zero(size);
   }
-  links.first.push_back(links.target.size());
-}
+
+  void add(std::uint32_t target, std::int64_t vote) {
+    const std::size_t mask = places_.size() - 1;
+    for (std::size_t h = target * 0x9e3779b97f4a7c15u >> shift_;; h = (h + 1) & mask) {
+      if (places_[h] == kNoPoint) {
+        places_[h] = static_cast<std::uint32_t>(block_.target.size());
+        block_.target.push_back(target);
+        block_.vote.push_back(vote);
+        return;
+      }
+      if (block_.target[places_[h]] == target) {
+        block_.vote[places_[h]] += vote;
+        return;
+      }
+    }
+  }
+
+  void finish() { block_.first.push_back(block_.target.size()); }
+
+ private:
+  Links::Block& block_;
+  std::vector<std::uint32_t> places_;
+  int shift_ = 0;
+};
 
 /// The sums of votes between the parts.
 template <typename Rows>
 Links links_between_parts(const Rows& rows, const Signs& joined) {
   const Members members = members_of_parts(joined);
-  std::vector<Links> blocks((joined.parts + kBlock - 1) / kBlock);
+  Links links = {.rows = joined.parts};
+  links.blocks.resize((joined.parts + kBlock - 1) / kBlock);
   parallel_blocks(joined.parts, kBlock, [&](std::size_t begin, std::size_t end) {
-    std::vector<Vote> votes;
+    RowSums sums(links.blocks[begin / kBlock]);
     for (std::size_t part = begin; part < end; ++part) {
-      votes.clear();
-      for (std::size_t k = members.first[part]; k < members.first[part + 1]; ++k) {
-        const std::uint32_t i = members.member[k];
+      const auto of_part =
+          std::span(members.member)
+              .subspan(members.first[part], members.first[part + 1] - members.first[part]);
+      std::size_t most = 0;
+      for (const std::uint32_t i : of_part) most += rows.width(i);
+      sums.start(most);
+      for (const std::uint32_t i : of_part) {
         rows.visit(i, [&](std::uint32_t j, std::int64_t vote) {
           if (joined.part[j] == part) return;
-          votes.emplace_back(joined.part[j], vote * joined.sign[i] * joined.sign[j]);
+          sums.add(joined.part[j], vote * joined.sign[i] * joined.sign[j]);
         });
       }
-      append_summed(votes, blocks[begin / kBlock]);
+      sums.finish();
     }
   });
-  Links links;
-  links.first.reserve(joined.parts + 1);
-  for (Links& block : blocks) {
-    const std::size_t offset = links.target.size();
-    for (std::size_t k = 1; k < block.first.size(); ++k) {
-      links.first.push_back(offset + block.first[k]);
-    }
-    links.target.insert(links.target.end(), block.target.begin(), block.target.end());
-    links.vote.insert(links.vote.end(), block.vote.begin(), block.vote.end());
-    block = {};
-  }
   return links;
 }
 
 }  // namespace
 
-std::int64_t SignVotes::vote(std::size_t i, std::size_t j) const {
-  return vote_of(points[i].data(), normals[i].data(), points[j].data(), normals[j].data());
+SignVotes::SignVotes(std::span<const Vec3> points, std::span<const Vec3> normals,
+                     const Adjacency& links)
+    : links_(&links), votes_(links.target.size()) {
+  parallel_blocks(points.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+    Lanes lanes = {};
+    std::array<std::int32_t, Lanes::kMost> votes;
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto row = links.of(i);
+      std::int32_t* const out = votes_.data() + links.first[i];
+      for (std::size_t first = 0; first < row.size(); first += Lanes::kMost) {
+        const auto some = row.subspan(first, std::min(Lanes::kMost, row.size() - first));
+        for (std::size_t k = 0; k < some.size(); ++k) {
+          const Vec3 &q = points[some[k]], &m = normals[some[k]];
+          for (int a = 0; a < 3; ++a) lanes.point[a][k] = q[a], lanes.normal[a][k] = m[a];
+        }
+        vote_in_lanes(points[i].data(), normals[i].data(), lanes, (some.size() + 7) / 8 * 8,
+                      votes.data());
+        for (std::size_t k = 0; k < some.size(); ++k) {
+          const bool none =
+              votes[k] == 0 && (normals[i].isZero(0.0) || normals[some[k]].isZero(0.0));
+          out[first + k] = none ? kNone : votes[k];
+        }
+      }
+    }
+  });
 }
 
 Signs contract(const SignVotes& votes) {
-  Signs signs = join_strongest(PointRows{votes});
-  Links links = links_between_parts(PointRows{votes}, signs);
-  while (!links.target.empty()) {
-    const Signs joined = join_strongest(PartRows{links});
-    links = links_between_parts(PartRows{links}, joined);
-    for (std::size_t i = 0; i < signs.part.size(); ++i) {
-      const std::uint32_t part = signs.part[i];
-      signs.sign[i] = static_cast<std::int8_t>(signs.sign[i] * joined.sign[part]);
-      signs.part[i] = joined.part[part];
-    }
-    signs.parts = joined.parts;
+  std::vector<Signs> rounds = {follow_joins(strongest_links(PointRows{votes}))};
+  Links links = links_between_parts(PointRows{votes}, rounds.back());
+  while (!links.empty()) {
+    rounds.push_back(follow_joins(strongest_links(PartRows{links})));
+    links = links_between_parts(PartRows{links}, rounds.back());
   }
-  return signs;
+  for (std::size_t k = rounds.size() - 1; k > 0; --k) join_again(rounds[k - 1], rounds[k]);
+  return std::move(rounds.front());
 }
 
 void turn_outvoted_points(const SignVotes& votes, std::vector<std::int8_t>& sign) {
@@ -257,7 +266,7 @@ void turn_outvoted_points(const SignVotes& votes, std::vector<std::int8_t>& sign
     for (const std::uint32_t i : waiting) {
       if (!outvoted(i)) continue;
       sign[i] = static_cast<std::int8_t>(-sign[i]);
-      const auto row = votes.links.of(i);
+      const auto row = votes.links().of(i);
       touched.insert(touched.end(), row.begin(), row.end());
     }
     std::sort(touched.begin(), touched.end());

@@ -2,33 +2,37 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
 #include "pcednet/core/vec3.h"
+#include "pcednet/normals/joined_parts.h"
 #include "pcednet/normals/neighbour_graph.h"
 
 namespace pcednet::normals {
 
-/// Points, the links between them, and a unit normal (or zero) for each.
-struct SignVotes {
-  std::span<const Vec3> points;
-  std::span<const Vec3> normals;
-  const Adjacency& links;
-
-  /// How strongly the normals of two linked points speak for equal signs (negative: for opposite
-  /// ones), see orient.h; 0 if one of them is zero. A whole number, so that sums of votes do not
-  /// depend on their order, at most kUnanimous * 2.8 in size.
-  std::int64_t vote(std::size_t i, std::size_t j) const;
-
+/// How strongly linked points speak for equal signs of their normals, see orient.h.
+class SignVotes {
+ public:
   static constexpr double kUnanimous = 1 << 20;
-};
+  static constexpr std::int32_t kNone = std::numeric_limits<std::int32_t>::min();
 
-/// Which points turn their normal about, and what they are connected to.
-struct Signs {
-  std::vector<std::int8_t> sign;    ///< per point, 1 or -1
-  std::vector<std::uint32_t> part;  ///< per point, in the order of the parts' first points
-  std::size_t parts = 0;
+  /// A unit normal (or zero) for each point; `links` must outlive the votes.
+  SignVotes(std::span<const Vec3> points, std::span<const Vec3> normals, const Adjacency& links);
+
+  const Adjacency& links() const { return *links_; }
+
+  /// The votes with links().of(point): negative for opposite signs, kNone if a normal is zero.
+  /// Whole numbers, so that sums of votes do not depend on their order, at most kUnanimous * 2.8 in
+  /// size.
+  std::span<const std::int32_t> of(std::size_t point) const {
+    return {votes_.data() + links_->first[point], links_->of(point).size()};
+  }
+
+ private:
+  const Adjacency* links_;
+  std::vector<std::int32_t> votes_;
 };
 
 /// Contracts the graph along the strongest sums of votes (Boruvka's rounds). Points with a zero

@@ -1,6 +1,7 @@
 #include "pcednet/spatial/curve_order.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include "pcednet/core/parallel.h"
 #include "pcednet/spatial/morton.h"
@@ -11,6 +12,7 @@ namespace {
 
 constexpr int kBits = 21;
 constexpr double kCells = (1 << kBits) - 1;
+constexpr std::size_t kBlock = 1 << 14;
 constexpr std::size_t kFew = 64;  // so many are compared instead of being given finer keys
 
 bool is_before(const Vec3& p, const Vec3& q) {
@@ -19,11 +21,17 @@ bool is_before(const Vec3& p, const Vec3& q) {
 
 /// Half the lower corner and half the longest side of the box (halves do not overflow).
 std::pair<Vec3, double> half_box(std::span<const Vec3> positions, const std::vector<Keyed>& keyed) {
-  Vec3 min = positions[keyed.front().index], max = min;
-  for (const Keyed& k : keyed) {
-    min = min.cwiseMin(positions[k.index]);
-    max = max.cwiseMax(positions[k.index]);
-  }
+  std::vector<std::pair<Vec3, Vec3>> boxes((keyed.size() + kBlock - 1) / kBlock);
+  parallel_blocks(keyed.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+    Vec3 min = positions[keyed[begin].index], max = min;
+    for (std::size_t i = begin + 1; i < end; ++i) {
+      min = min.cwiseMin(positions[keyed[i].index]);
+      max = max.cwiseMax(positions[keyed[i].index]);
+    }
+    boxes[begin / kBlock] = {min, max};
+  });
+  auto [min, max] = boxes.front();
+  for (const auto& box : boxes) min = min.cwiseMin(box.first), max = max.cwiseMax(box.second);
   return {0.5 * min, (0.5 * max - 0.5 * min).maxCoeff()};
 }
 
@@ -40,7 +48,7 @@ void sort_along_curve(std::span<const Vec3> positions, std::vector<Keyed>& keyed
   }
   const auto [min, side] = half_box(positions, keyed);
   if (!(side > 0.0)) return;
-  parallel_blocks(keyed.size(), 1 << 14, [&, min = min, side = side](auto begin, auto end) {
+  parallel_blocks(keyed.size(), kBlock, [&, min = min, side = side](auto begin, auto end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Vec3 cell = (0.5 * positions[keyed[i].index] - min) / side * kCells;
       keyed[i].key =
@@ -64,15 +72,33 @@ void sort_along_curve(std::span<const Vec3> positions, std::vector<Keyed>& keyed
 }  // namespace
 
 std::vector<std::uint32_t> curve_order(std::span<const Vec3> positions) {
-  std::vector<Keyed> keyed;
-  keyed.reserve(positions.size());
-  for (std::size_t i = 0; i < positions.size(); ++i) {
-    if (positions[i].allFinite()) keyed.push_back({0, static_cast<std::uint32_t>(i)});
-  }
+  std::vector<std::size_t> finite((positions.size() + kBlock - 1) / kBlock + 1);
+  parallel_blocks(positions.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      finite[begin / kBlock + 1] += positions[i].allFinite();
+  });
+  std::partial_sum(finite.begin(), finite.end(), finite.begin());
+  std::vector<Keyed> keyed(finite.back());
+  parallel_blocks(positions.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+    std::size_t to = finite[begin / kBlock];
+    for (std::size_t i = begin; i < end; ++i) {
+      if (positions[i].allFinite()) keyed[to++] = {0, static_cast<std::uint32_t>(i)};
+    }
+  });
   sort_along_curve(positions, keyed);
   std::vector<std::uint32_t> order(keyed.size());
-  std::transform(keyed.begin(), keyed.end(), order.begin(), [](const Keyed& k) { return k.index; });
+  parallel_blocks(order.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) order[i] = keyed[i].index;
+  });
   return order;
+}
+
+std::vector<Vec3> in_order(std::span<const Vec3> positions, std::span<const std::uint32_t> order) {
+  std::vector<Vec3> ordered(order.size());
+  parallel_blocks(order.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) ordered[i] = positions[order[i]];
+  });
+  return ordered;
 }
 
 }  // namespace pcednet::spatial

@@ -17,4 +17,7 @@ namespace pcednet::spatial {
 /// most 2^32 - 1 points.
 std::vector<std::uint32_t> curve_order(std::span<const Vec3> positions);
 
+/// The positions numbered `order`, one after the other.
+std::vector<Vec3> in_order(std::span<const Vec3> positions, std::span<const std::uint32_t> order);
+
 }  // namespace pcednet::spatial

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace pcednet::spatial {
 namespace {
@@ -145,6 +146,16 @@ void RunSearch::put_in_order(const Query& query, std::size_t picked) {
     return;
   }
   rank(sq_distances_.data(), picked, ranks_.data());
+  const auto last_rank = static_cast<std::int64_t>(picked) - 1;
+  const auto sum = std::accumulate(ranks_.begin(), ranks_.begin() + last_rank + 1, std::int64_t{0});
+  if (sum == last_rank * (last_rank + 1) / 2) {  // none are equal, and the point is the first
+    std::array<Neighbour, kRanked> by_rank;
+    for (std::size_t i = 0; i < picked; ++i) {
+      by_rank[static_cast<std::size_t>(ranks_[i])] = {picked_[i], sq_distances_[i]};
+    }
+    std::copy_n(by_rank.begin() + 1, count_, query.found);
+    return;
+  }
   for (std::size_t i = 0; i < count_; ++i) query.found[i].index = kNone;
   for (std::size_t i = 0; i < picked; ++i) {
     if (picked_[i] == query.point) continue;
