@@ -12,6 +12,7 @@
 #include "pcednet/core/error.h"
 #include "pcednet/core/random.h"
 #include "pcednet/formats/write_cloud.h"
+#include "support/expect_error.h"
 #include "workbench/annotate/json.h"
 #include "workbench/annotate/project.h"
 #include "workbench/annotate/session.h"
@@ -54,7 +55,7 @@ TEST(RunRecord, RefusesFactsOfTheWrongKind) {
   for (const char* more : {R"("loss":"small")", R"("painted":[])", R"("time":5)", R"("run":0)"}) {
     std::string line = kOldRun;
     line.insert(line.size() - 1, std::string(",") + more);
-    EXPECT_THROW(parse_record(line, 10), Error) << more;
+    EXPECT_ERROR(ErrorKind::kUnreadable, parse_record(line, 10)) << more;
   }
 }
 
@@ -69,10 +70,10 @@ TEST(LabelsOf, AreThoseOfTheRunAndOfNoOther) {
   run.facts.painted = 3;
   EXPECT_EQ(labels_of(run, records, 10).classes(), expected);
   run.facts.painted = 4;
-  EXPECT_THROW(labels_of(run, records, 10), Error);
+  EXPECT_ERROR(ErrorKind::kUnreadable, labels_of(run, records, 10));
   run.facts.painted.reset();
   records.erase(records.begin());
-  EXPECT_THROW(labels_of(run, records, 10), Error);
+  EXPECT_ERROR(ErrorKind::kUnreadable, labels_of(run, records, 10));
 }
 
 /// A cube whose runs are made, forgotten by ending the session, and asked for again.

@@ -5,6 +5,7 @@
 #include "pcednet/core/error.h"
 #include "pcednet/core/random.h"
 #include "pcednet/nn/predict.h"
+#include "support/expect_error.h"
 
 namespace pcednet::annotate {
 namespace {
@@ -22,7 +23,7 @@ TEST(Learn, WithTwoOfThreeClassesKeepsTheirOdds) {
     const double expected = p3[3 * i + 2] / (p3[3 * i] + p3[3 * i + 2]);
     EXPECT_NEAR(p2[2 * i + 1], expected, 1e-5);
   }
-  EXPECT_THROW(with_classes(two, 3), Error);
+  EXPECT_ERROR(ErrorKind::kModelMismatch, with_classes(two, 3));
 }
 
 TEST(Learn, LeavesSmoothEdgeOutAsLongAsNoneIsPainted) {
@@ -32,8 +33,8 @@ TEST(Learn, LeavesSmoothEdgeOutAsLongAsNoneIsPainted) {
   EXPECT_EQ(classes_to_learn(all, {.classes = 3}), 3);
   EXPECT_EQ(classes_to_learn(all, {.classes = 2}), 2);
   EXPECT_EQ(classes_to_learn(rest, {.classes = 2}), 2);
-  EXPECT_THROW(classes_to_learn(rest, {.classes = 3}), Error);
-  EXPECT_THROW(classes_to_learn(none, {.classes = 2}), Error);
+  EXPECT_ERROR(ErrorKind::kInsufficient, classes_to_learn(rest, {.classes = 3}));
+  EXPECT_ERROR(ErrorKind::kInsufficient, classes_to_learn(none, {.classes = 2}));
 }
 
 }  // namespace
