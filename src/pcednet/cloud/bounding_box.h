@@ -17,8 +17,8 @@ struct BoundingBox {
   double diagonal() const { return empty() ? 0.0 : (max - min).norm(); }
 };
 
-/// Throws Error(kInsufficient), naming the first such point, for finite coordinates so large that
-/// squares of distances are not: beyond 1e150.
+/// Throws Error(kInsufficient), naming the first such point, for finite coordinates beyond 1e150,
+/// whose squared distances would overflow.
 void check_extent(std::span<const Vec3> positions);
 
 BoundingBox bounding_box(std::span<const Vec3> positions);

@@ -8,7 +8,7 @@
 namespace pcednet {
 
 /// A direction as a point of the unfolded octahedron |x| + |y| + |z| = 1 (Cigolle et al. 2014), in
-/// [-1, 1] x [-1, 1]; of any length but zero, which becomes that of +z. For a few bytes a normal.
+/// [-1, 1] x [-1, 1]. Any length is valid; zero becomes +z. Stores a normal in a few bytes.
 inline Eigen::Vector2d octahedral(const Vec3& direction) {
   const double sum = direction.cwiseAbs().sum();
   if (!(sum > 0)) return Eigen::Vector2d::Zero();

@@ -16,29 +16,29 @@ enum EdgeClass : std::uint8_t { kNonEdge = 0, kSmoothEdge = 1, kSharpEdge = 2, k
 
 using Rgb = std::array<std::uint8_t, 3>;
 
-/// A further element of a PLY file (faces, edges, ...), carried through unread.
+/// Another element of a PLY file (faces, edges, ...), kept unparsed.
 struct ForeignElement {
   std::string header;            ///< its "element" and "property" lines, each ended by \n
   std::vector<std::byte> bytes;  ///< its rows, binary little-endian
 };
 
-/// Points with what their file says about them.
+/// The points of a file with all their fields.
 ///
 /// Every per-point vector but `positions` may be empty; otherwise it has the size of `positions`.
 /// Positions and normals may hold NaN or infinity: see find_defects().
 struct PointCloud {
   std::vector<Vec3> positions;
   std::vector<Vec3> normals;  ///< unit length, or (0,0,0) where the file's normal was unusable
-  /// The normals as their file has them, of any length: x, y and z, or nothing. Writers give them
-  /// back while normals_are_stored().
+  /// The normals as in the file, of any length: x, y and z, or empty. Writers use them while
+  /// normals_are_stored().
   std::vector<Attribute> stored_normals;
   std::vector<Rgb> colours;
   std::vector<std::uint8_t> labels;  ///< EdgeClass values
   std::vector<Attribute> attributes;
-  ScalarType position_type = ScalarType::kFloat64;  ///< what the file holds, and output gets back
+  ScalarType position_type = ScalarType::kFloat64;  ///< that of the file, and of the output
   std::vector<std::string> comments;
   std::vector<ForeignElement> foreign_elements;
-  std::vector<Vec3> scanners;  ///< where each scan was taken from; NaN where that is unknown
+  std::vector<Vec3> scanners;  ///< the position of each scan's scanner; NaN where unknown
 
   std::size_t size() const { return positions.size(); }
   bool empty() const { return positions.empty(); }
@@ -53,21 +53,21 @@ const Attribute* find_attribute(const PointCloud& cloud, std::string_view name);
 void set_attribute(PointCloud& cloud, Attribute attribute);
 
 /// Scales every normal to unit length; a normal that is zero or not finite becomes (0,0,0).
-/// Returns how many of these there are.
+/// Returns the number of these.
 std::size_t make_normals_unit(PointCloud& cloud);
 
-/// The normal of `point` as the file has it; there must be some.
+/// The normal of `point` as in the file, which must have normals.
 Vec3 stored_normal(const PointCloud& cloud, std::size_t point);
 
-/// Whether the normals are `stored_normals` made unit, that is, nobody changed them since.
+/// Whether the normals are still the normalised `stored_normals`, that is, unchanged.
 bool normals_are_stored(const PointCloud& cloud);
 
-/// Where each point was seen from: cloud.scanners[s] for the s that the attribute `scan` names, or
-/// for all points if there is one scanner and no such attribute; NaN where unknown. Empty if it is
-/// known of no point.
+/// The scanner position of each point: cloud.scanners[s] with s from the attribute `scan`, or the
+/// only scanner if there is one and no such attribute; NaN where unknown. Empty if unknown for all
+/// points.
 std::vector<Vec3> scanner_of_points(const PointCloud& cloud);
 
-/// What a cloud holds that cannot be computed with.
+/// Values of a cloud that cannot be used in computations.
 struct Defects {
   std::size_t positions = 0;   ///< points whose position is not finite
   std::size_t normals = 0;     ///< points whose normal is zero or not finite

@@ -9,15 +9,15 @@
 
 namespace pcednet {
 
-/// 128 bits that tell contents apart: equal contents have equal digests, different ones practically
-/// never (XXH3). No protection against somebody who wants them equal.
+/// A 128-bit digest (XXH3): different contents practically never have equal digests. It does not
+/// protect against deliberate collisions.
 class Digest {
  public:
-  /// What is added in two calls differs from the same bytes added in one.
+  /// Not concatenation: add(a), add(b) differs from add(a + b).
   Digest& add(std::span<const std::byte> bytes);
   Digest& add(std::string_view text) { return add(std::as_bytes(std::span(text))); }
 
-  /// Of numbers their bytes count: T must have no padding.
+  /// Adds the bytes of the numbers; T must have no padding.
   template <typename T>
   Digest& add_values(std::span<const T> values) {
     return add(std::as_bytes(values));

@@ -5,12 +5,12 @@
 
 namespace pcednet {
 
-/// What went wrong, as far as a caller (and the exit code of the command line) is concerned.
+/// The kind of an error, which is also the exit code of the command line.
 enum class ErrorKind {
   kFailure = 1,        ///< anything else: disk full, no memory, internal limits
-  kUsage = 2,          ///< the request itself makes no sense
+  kUsage = 2,          ///< the request itself is wrong
   kUnreadable = 3,     ///< an input cannot be read: missing, truncated, not of the format it claims
-  kInsufficient = 4,   ///< an input was read but lacks what is needed: no points, no labels
+  kInsufficient = 4,   ///< an input was read but lacks points, normals or labels
   kModelMismatch = 5,  ///< a model file is damaged, foreign, or does not fit the request
   kCancelled = 130,    ///< the user stopped the work
 };

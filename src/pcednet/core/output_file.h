@@ -14,10 +14,10 @@ enum class Overwrite { kNo, kYes };
 
 /// A file that appears under its name only when it is complete.
 ///
-/// Bytes go to a file beside the target, `<name>.part-<process>`; commit() renames it. Without
+/// Bytes go to `<name>.part-<process>` in the folder of the target; commit() renames it. Without
 /// commit (an exception, a cancel) nothing stays behind and an existing target is untouched. With
-/// kNo the rename itself refuses a target that has appeared since: one of several writers wins, in
-/// this process or another. With kYes a symbolic link is replaced, not the file it points to.
+/// kNo the rename itself refuses a target that has appeared since: exactly one of several writers
+/// succeeds, in any process. With kYes a symbolic link is replaced, not the file it points to.
 class OutputFile {
  public:
   /// Throws what check_writable() throws, Error(kUsage) for an empty path, and Error(kFailure) if
@@ -27,16 +27,16 @@ class OutputFile {
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
 
-  /// Throws Error(kFailure), naming the file, when the disk takes no more.
+  /// Throws Error(kFailure), naming the file, when the disk is full.
   void write(std::span<const std::byte> bytes);
   void write(std::string_view text);
 
-  /// Writes at a place of the file, which may lie beyond what is written so far; does not move
-  /// where write() goes on. Throws as write() does.
+  /// Writes at an offset, which may lie beyond the end of the file; does not move the position of
+  /// write(). Throws as write() does.
   void write_at(std::uint64_t offset, std::span<const std::byte> bytes);
 
   /// Flushes to the disk and renames. Must be called once, last. Throws Error(kUsage) if the target
-  /// exists by now and must not be replaced, Error(kFailure) when the disk takes no more.
+  /// exists by now and must not be replaced, Error(kFailure) when the disk is full.
   void commit();
 
  private:
@@ -48,12 +48,12 @@ class OutputFile {
   std::FILE* file_ = nullptr;
 };
 
-/// Refuses before long work what OutputFile would refuse after it. Throws Error(kUsage) if `path`
-/// is a folder or a device, or exists (as a link to nothing, too) and `overwrite` is kNo;
-/// Error(kFailure) if its folder is missing, not a folder, or not writable. An empty path is fine.
+/// Refuses before long work the targets that OutputFile would refuse after it. Throws Error(kUsage)
+/// if `path` is a folder or a device, or exists (even as a dangling link) and `overwrite` is kNo;
+/// Error(kFailure) if its folder is missing, not a folder, or not writable. An empty path is valid.
 void check_writable(const std::filesystem::path& path, Overwrite overwrite);
 
-/// Creates the folder and those above it that are missing. Throws Error(kUsage) if it is a file,
+/// Creates the folder and its missing parents. Throws Error(kUsage) if it is a file,
 /// Error(kFailure) if it cannot be created.
 void make_folder(const std::filesystem::path& folder);
 

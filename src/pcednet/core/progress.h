@@ -8,20 +8,20 @@
 
 namespace pcednet {
 
-/// How long work tells its caller where it stands, and learns that it should stop.
-/// Both functions may be empty. `report` is called by one thread at a time.
+/// The caller's callbacks for progress and cancellation of long work.
+/// Both functions may be empty. One thread at a time calls `report`.
 struct Progress {
   std::function<void(const std::string& stage, double fraction)> report;
   std::function<bool()> cancelled;
 };
 
-/// One stage of long work, counted up from any thread.
+/// One stage of long work. Any thread may advance it.
 class Stage {
  public:
   /// `progress` may be null; otherwise it must outlive the stage.
   Stage(const Progress* progress, std::string name, std::size_t total);
 
-  /// Counts `steps` more as done. Throws Error(kCancelled) once the caller wants to stop.
+  /// Adds `steps` to the steps done. Throws Error(kCancelled) once the caller cancels.
   void advance(std::size_t steps = 1);
 
  private:
@@ -33,7 +33,7 @@ class Stage {
   std::mutex mutex_;
 };
 
-/// `progress` (which may be null) without its report: for work that is a part of a stage.
+/// `progress` (which may be null) without its report, for work within a stage.
 Progress without_report(const Progress* progress);
 
 /// Throws Error(kCancelled) if `progress` (which may be null) says so.

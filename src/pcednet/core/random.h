@@ -7,8 +7,8 @@
 
 namespace pcednet {
 
-/// A stream of pseudo-random numbers (splitmix64): the same for the same seed on every platform,
-/// which the distributions of the standard library are not.
+/// A stream of pseudo-random numbers (splitmix64). Unlike the distributions of the standard library
+/// it gives the same numbers for the same seed on every platform.
 class Random {
  public:
   /// Streams of one seed with different `stream` are independent of each other.

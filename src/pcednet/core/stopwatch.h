@@ -5,7 +5,7 @@
 
 namespace pcednet {
 
-/// Seconds of wall time, lap by lap.
+/// Wall time in seconds, lap by lap.
 class Stopwatch {
  public:
   /// Seconds since the last call, or since the stopwatch was made.

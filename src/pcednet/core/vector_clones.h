@@ -1,10 +1,10 @@
 #pragma once
 
-/// Marks a function of plain loops to be compiled for each of the instruction sets of x86-64, of
-/// which the program picks the best that the processor has as it starts. Elsewhere, and under the
-/// sanitizers, which cannot take part in that choice, it is compiled once.
+/// Marks a function of plain loops to be compiled once per instruction set of x86-64; the program
+/// picks the best one for the processor when it starts. Elsewhere, and under the sanitizers, which
+/// do not support that choice, it is compiled once.
 ///
-/// Sums are never contracted or reordered, so that each copy gives the same bytes.
+/// Sums are never contracted or reordered, so each copy gives the same bytes.
 #if defined(__x86_64__) && defined(__gnu_linux__) && defined(__GNUC__) && !defined(__clang__) && \
     !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 #define PCEDNET_VECTOR_CLONES \

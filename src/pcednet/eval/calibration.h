@@ -9,17 +9,17 @@
 
 namespace pcednet::eval {
 
-/// The points to which the positive classes were given a probability in one tenth of [0, 1].
+/// The points whose probability of the positive classes lies in one tenth of [0, 1].
 struct CalibrationBin {
   std::size_t points = 0;
   double sum_probability = 0.0;
-  std::size_t positive = 0;  ///< that are so in truth
+  std::size_t positive = 0;  ///< whose true class is positive
 };
 
-/// Whether probabilities are what they say: of the points given 0.8, eight in ten should be edges.
+/// A reliability diagram: of the points with probability 0.8, eight in ten should be edges.
 using Calibration = std::array<CalibrationBin, 10>;
 
-/// Counts the points of a cloud in. `probabilities` are those of the positive classes; a point
+/// Adds the points of a cloud. `probabilities` are those of the positive classes; a point
 /// whose truth is kUnlabelled is left out. Throws Error(kInsufficient) if the sizes differ.
 void add_calibration(std::span<const std::uint8_t> truth, std::span<const float> probabilities,
                      Positive positive, Calibration& calibration);

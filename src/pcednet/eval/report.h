@@ -27,10 +27,10 @@ ConfusionCounts pooled_counts(const std::vector<CloudScore>& clouds);
 std::string to_json(const std::vector<CloudScore>& clouds,
                     const Calibration* calibration = nullptr);
 
-/// A table for people: a row per cloud, then median and pooled.
+/// A text table: a row per cloud, then median and pooled.
 std::string to_table(const std::vector<CloudScore>& clouds);
 
-/// A table for people: a row per bin that has points, then the error.
+/// A text table: a row per bin that has points, then the error.
 std::string to_table(const Calibration& calibration);
 
 }  // namespace pcednet::eval

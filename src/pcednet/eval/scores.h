@@ -6,7 +6,7 @@
 
 namespace pcednet::eval {
 
-/// How often prediction and truth agree about the positive class.
+/// The confusion counts of a binary classification.
 struct ConfusionCounts {
   std::size_t tp = 0, fp = 0, tn = 0, fn = 0;
 
@@ -15,7 +15,7 @@ struct ConfusionCounts {
   bool operator==(const ConfusionCounts&) const = default;
 };
 
-/// Which classes count as positive, in the truth and in the prediction alike.
+/// The classes that count as positive, both in the truth and in the prediction.
 enum class Positive {
   kSharp,  ///< sharp-edge alone
   kEdge,   ///< sharp-edge and smooth-edge
