@@ -8,35 +8,35 @@
 
 namespace pcednet::classic {
 
-// Methods without training: a number per point, and edges where it is above a threshold.
+// Methods without training: a measure per point, and edges where it exceeds a threshold.
 
-/// A point whose value is larger than the threshold is on an edge; NaN where there is no answer.
+/// A point whose value exceeds the threshold is on an edge; NaN where the measure is undefined.
 struct EdgeMeasure {
   std::vector<double> values;
   double threshold = 0.0;
 };
 
 struct CovarianceAnalysisOptions {
-  int neighbours = 10;      ///< the point itself among them
+  int neighbours = 10;      ///< including the point itself
   double threshold = 0.65;  ///< in units of twice the standard deviation over the cloud
 };
 
 /// Covariance analysis (Bazazian, Casas, Ruiz-Hidalgo 2015) as the comparison of Himeur et al. 2021
-/// ran it: surface_variation() above threshold * 2 s, s its standard deviation over the cloud
-/// (found from their published output, which this repeats; see docs/classic.md). Throws what
-/// surface_variation() throws, and Error(kUsage) for a negative threshold.
+/// ran it: surface_variation() above threshold * 2 s, s its standard deviation over the cloud. This
+/// reproduces their published output (docs/classic.md). Throws the errors of surface_variation(),
+/// and Error(kUsage) for a negative threshold.
 EdgeMeasure covariance_analysis(std::span<const Vec3> positions,
                                 const CovarianceAnalysisOptions& options = {},
                                 const Progress* progress = nullptr);
 
 struct MultiScaleOptions {
-  std::vector<int> neighbours = {12, 24, 48,
-                                 96};  ///< rising; those the cloud is too small for are left out
-  double threshold = 0.06;             ///< of surface variation
+  std::vector<int> neighbours = {
+      12, 24, 48, 96};      ///< ascending; those above the size of the cloud are left out
+  double threshold = 0.06;  ///< of surface variation
 };
 
 /// Multi-scale surface variation (after Pauly, Keiser, Gross 2003): the median over several
-/// neighbourhoods, so that what shows at most scales counts and noise at the smallest does not.
+/// neighbourhoods, which suppresses noise that shows only at the smallest.
 EdgeMeasure multi_scale_variation(std::span<const Vec3> positions,
                                   const MultiScaleOptions& options = {},
                                   const Progress* progress = nullptr);

@@ -19,13 +19,13 @@ struct Camera {
   }
 };
 
-/// A camera that looks along `direction` (not zero) and stands where the surfels fill the picture,
-/// but for a few that lie far off.
+/// A camera that looks along `direction` (not zero) from a distance at which the surfels, except a
+/// few far outliers, fill the picture.
 Camera frame(std::span<const Surfel> surfels, const Eigen::Vector3f& direction, int width,
              int height);
 
-/// Where to look to see much of the surface from outside, much of its edges, preferably a little
-/// from above. `surfels` should be few (thousands): each is drawn from every candidate.
+/// The viewing direction that shows most of the surface from outside and of its edges, preferably
+/// a little from above. `surfels` should be few (thousands): every candidate draws all of them.
 Eigen::Vector3f best_direction(std::span<const Surfel> surfels);
 
 }  // namespace pcednet::render

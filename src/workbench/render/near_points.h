@@ -9,7 +9,7 @@
 
 namespace pcednet::render {
 
-/// Some points close to a point, nearest first, exact duplicates of it left out.
+/// Some points close to a point, nearest first, without its exact duplicates.
 struct NearPoints {
   static constexpr std::size_t kMost = 8;
 
@@ -18,9 +18,9 @@ struct NearPoints {
   std::uint32_t count = 0;
 };
 
-/// Close points of each point, from the neighbours along three space-filling curves: now and then a
-/// nearer one is missed, but it takes a small part of the time of an exact search and is good
-/// enough to draw with. Positions must be finite.
+/// Approximate nearest neighbours of each point, from the neighbours along three space-filling
+/// curves. Much faster than an exact search; it misses some neighbours, which suffices for drawing.
+/// Positions must be finite.
 std::vector<NearPoints> near_points(std::span<const Vec3> positions);
 
 }  // namespace pcednet::render

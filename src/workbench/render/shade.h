@@ -12,8 +12,8 @@ struct Image {
   std::vector<Rgb> pixels;
 };
 
-/// Darkens what lies in creases and behind others (eye-dome lighting), outlines the shape, puts it
-/// on white and averages `factor` x `factor` pixels of `layer` into one.
+/// Darkens creases and depth steps (eye-dome lighting), outlines the shape, puts it on white and
+/// averages `factor` x `factor` pixels of `layer` into one.
 Image shade(const Layer& layer, int factor);
 
 }  // namespace pcednet::render

@@ -18,13 +18,13 @@ struct Surfel {
   bool edge;  ///< drawn over its surroundings
 };
 
-/// The finite points of `cloud` as discs, without far outliers and strays, moved and scaled so that
-/// they just lie in [-1, 1]^3, in an order that depends on the positions alone.
+/// The finite points of `cloud` as discs, without far outliers and strays, moved and scaled to fit
+/// [-1, 1]^3, in an order that depends on the positions alone.
 ///
-/// The radius follows the local density. Where that is even but for few points, these are strays:
-/// noise that would hide the rest. Normals of the cloud are taken where it has them, fitted to the
-/// neighbours elsewhere. `classes` as in write_preview(). Of more than `max_count` points every
-/// n-th is taken.
+/// The radius follows the local density. If the density is even except at few points, these are
+/// strays: noise that would hide the rest. Points without a normal get one fitted to their
+/// neighbours. `classes` as in write_preview(). Of more than `max_count` points every n-th is
+/// taken.
 std::vector<Surfel> make_surfels(const PointCloud& cloud, std::span<const std::uint8_t> classes,
                                  std::size_t max_count);
 

@@ -10,19 +10,19 @@
 
 namespace pcednet::shapes {
 
-// What acquiring a surface does to its points.
+// Faults of acquisition.
 
 /// Moves every position by a normal deviate of standard deviation `sigma` on each axis.
 void add_noise(std::span<Vec3> positions, double sigma, Random& random);
 
 /// Moves every tenth position by d (1, 1, 1), d uniform in [0, reach): the noise of the paper's
-/// evaluation clouds, which leaves the surface clean between points far off it. Returns the indices
-/// of the moved points.
+/// evaluation clouds, which leaves the other points exactly on the surface. Returns the indices of
+/// the moved points.
 std::vector<std::size_t> displace_every_tenth(std::span<Vec3> positions, double reach,
                                               Random& random);
 
 /// The unit normals, of any sign, of the planes fitted by least squares to the `neighbours` points
-/// nearest to each position, itself among them. These are exactly the normals of the paper's
+/// nearest to each position, including itself. These are exactly the normals of the paper's
 /// evaluation clouds; normals::estimate_normals is the better estimate.
 std::vector<Vec3> plane_normals(std::span<const Vec3> positions, std::size_t neighbours = 10);
 

@@ -14,7 +14,7 @@ struct Box {
 };
 
 /// The surface of the space that `boxes`, applied one after another, leave filled. Its edges are
-/// all lines where that surface turns, convex and concave.
+/// all its creases, convex and concave.
 Shape make_shape(std::span<const Box> boxes);
 
 }  // namespace pcednet::shapes

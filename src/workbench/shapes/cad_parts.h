@@ -7,14 +7,14 @@
 
 namespace pcednet::shapes {
 
-/// The families of parts that random_part() knows.
+/// The number of part families.
 inline constexpr int kPartFamilies = 12;
 
 /// The name of a family: "plate", "bracket", ...
 std::string part_family_name(int family);
 
-/// A part about one unit large, as CAD programs make them: profiles with fillets and chamfers drawn
-/// and turned, holes, slots, pockets, ribs, thin walls, teeth, in many proportions and sizes.
+/// A CAD part about one unit large: extruded and revolved profiles with fillets and chamfers,
+/// holes, slots, pockets, ribs, thin walls and teeth, in many proportions and sizes.
 Solid random_part(int family, Random& random);
 
 }  // namespace pcednet::shapes

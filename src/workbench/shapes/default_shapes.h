@@ -5,13 +5,13 @@
 
 namespace pcednet::shapes {
 
-// The shapes of the Default training set that are more than a regular solid; lengths are about 1.
+// The shapes of the Default training set other than regular solids; lengths are about 1.
 
 /// A cone standing on a round plate: curved edges, convex and concave, and an apex.
 Shape cone_on_plate();
 
-/// A sector of a turned part, after the fan disk of the CAD literature: curved sharp edges of many
-/// angles, a chamfer and a bead that fade out along the turn.
+/// A sector of a revolved part, after the fan disk of the CAD literature: curved sharp edges of
+/// many angles, a chamfer and a bead that fade out along the sector.
 Shape fan_part();
 
 /// Four unit cubes joined at parts of their faces, so that convex and concave edges meet.
@@ -22,7 +22,7 @@ Shape four_cubes();
 /// Three to five boxes added to or cut out of each other at random, on a grid of 1/8.
 Shape random_blocks(Random& random);
 
-/// Pairs of open rectangles meeting at 60 to 150 degrees, every other one turned inside out.
+/// Pairs of open rectangles meeting at 60 to 150 degrees, every other one inside out.
 Shape wedges();
 
 /// Open sheets, flat and bent, without any edge.
@@ -38,7 +38,7 @@ Shape rounded_box(double radius);
 Shape round_solids();
 
 /// The front of a wall with recessed windows, sills, a door, a cornice and steps: an open sheet of
-/// plane pieces, as a scanner in the street sees it.
+/// plane pieces, as seen by a scanner in the street.
 Shape wall_front(Random& random);
 
 }  // namespace pcednet::shapes

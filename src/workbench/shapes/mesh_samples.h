@@ -11,15 +11,15 @@ namespace pcednet::shapes {
 
 struct MeshSampleOptions {
   std::size_t points = 100000;
-  bool vertex_normals = false;  ///< interpolate those of the vertices instead of the faces' own
+  bool vertex_normals = false;  ///< interpolate vertex normals instead of using face normals
   std::uint64_t seed = 1;
 };
 
-/// Points drawn uniformly by area from the triangles, whose corners are indices of `vertices`, with
-/// unit normals (of the face: to the side from which its corners run counter-clockwise) and, if
-/// the vertices have them, interpolated colours. Comments are kept, attributes are not.
-/// Throws Error(kInsufficient) if the triangles have no area, or vertex normals are asked for and
-/// there are none.
+/// Points sampled uniformly by area on the triangles, whose corners are indices of `vertices`, with
+/// unit normals (a face normal points to the side from which its corners run counter-clockwise)
+/// and, if the vertices have them, interpolated colours. Comments are kept, attributes are not.
+/// Throws Error(kInsufficient) if the triangles have no area, or if vertex normals are requested
+/// and missing.
 PointCloud sample_mesh(const PointCloud& vertices,
                        std::span<const std::array<std::uint32_t, 3>> triangles,
                        const MeshSampleOptions& options = {});

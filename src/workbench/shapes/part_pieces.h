@@ -5,7 +5,7 @@
 
 namespace pcednet::shapes {
 
-// What parts are put together from. Frames place a piece in the part.
+// The pieces of parts. A frame places a piece in the part.
 
 Eigen::Isometry3d at(const Vec3& place);
 
@@ -14,12 +14,12 @@ Eigen::Isometry3d along(int axis, const Vec3& place);
 
 bool chance(Random& random, double p);
 
-/// Mostly small: geometric between the bounds.
+/// Log-uniform between the bounds.
 double size_between(Random& random, double low, double high);
 
 CornerShape any_shape(Random& random);
 
-/// x and y are half its sides.
+/// x and y are half the side lengths.
 Profile rectangle(double x, double y, CornerShape shape = CornerShape::kSharp, double size = 0.0);
 
 Profile regular_polygon(int corners, double radius, double phase = 0.0);
@@ -35,7 +35,7 @@ Volume turned(Profile profile, const Eigen::Isometry3d& frame);
 Volume cylinder(double radius, double half_height, const Eigen::Isometry3d& frame,
                 CornerShape rim = CornerShape::kSharp, double rim_size = 0.0);
 
-/// x, y and z are half its sides.
+/// x, y and z are half the side lengths.
 Volume box(double x, double y, double z, const Vec3& place);
 
 /// Cuts a hole of a common kind into a face at z = top, downwards.

@@ -20,17 +20,17 @@ SurfacePatch triangle(const Vec3& a, const Vec3& b, const Vec3& c);
 /// is a x b.
 SurfacePatch polygon(std::vector<Vec2> outline, const Vec3& origin, const Vec3& a, const Vec3& b);
 
-/// The line from (radius, height) `from` to `to`, turned about the z axis from angle 0 to `angle`:
-/// a piece of cylinder, cone or disc. The normal is to the right of the line (away from the axis
-/// when the line goes up).
+/// The line from (radius, height) `from` to `to`, revolved about the z axis from angle 0 to
+/// `angle`: a piece of cylinder, cone or disc. The normal is to the right of the line (away from
+/// the axis when the line goes up).
 SurfacePatch revolved_line(const Vec2& from, const Vec2& to, double angle);
 
-/// The arc (radius, height) = centre + size (cos t, sin t), t from `start` to `end`, turned about
+/// The arc (radius, height) = centre + size (cos t, sin t), t from `start` to `end`, revolved about
 /// the z axis by `angle`: a piece of torus, or of sphere. The normal is away from the arc's centre
 /// if start < end, else towards it.
 SurfacePatch revolved_arc(const Vec2& centre, double size, double start, double end, double angle);
 
-/// A quarter or other part of a cylinder of `size` about the line from `a` to `b`, from the unit
+/// A strip of a cylinder of radius `size` about the line from `a` to `b`, from the unit
 /// direction `x` to `angle` towards (b - a) x x. The normal points away from the line.
 SurfacePatch cylinder_strip(const Vec3& a, const Vec3& b, const Vec3& x, double size, double angle);
 

@@ -7,8 +7,8 @@
 namespace pcednet::shapes {
 
 /// A polyhedron: corners, and faces as counter-clockwise loops of corner indices seen from outside.
-/// Two faces that share a pair of corners make an edge there, as strong as they turn; where only
-/// one face is, there is a border and no edge.
+/// Two faces that share a pair of corners form an edge with the strength of their angle; a pair of
+/// only one face is a border, no edge.
 struct Polyhedron {
   std::vector<Vec3> corners;
   std::vector<std::vector<int>> faces;  ///< convex

@@ -8,7 +8,7 @@ namespace pcednet::shapes {
 
 using Vec2 = Eigen::Vector2d;
 
-/// A closed outline in the plane, counter-clockwise, of straight and round sides.
+/// A closed counter-clockwise outline in the plane, of line segments and arcs.
 class Profile {
  public:
   /// A straight side, or an arc of at most half a turn: about `centre`, `radius` > 0, the material
@@ -43,7 +43,7 @@ class Profile {
   std::vector<Side> sides_;
 };
 
-/// What becomes of a corner of an outline.
+/// A corner of an outline: sharp, rounded or cut off.
 struct Corner {
   Vec2 at;
   enum class Shape { kSharp, kFillet, kChamfer } shape = Shape::kSharp;
@@ -52,8 +52,8 @@ struct Corner {
 
 using CornerShape = Corner::Shape;
 
-/// The outline through `corners`, counter-clockwise. A fillet or chamfer that its sides have no
-/// room for is made smaller.
+/// The outline through `corners`, counter-clockwise. A fillet or chamfer that does not fit its
+/// sides is made smaller.
 Profile outline(const std::vector<Corner>& corners);
 
 Profile circle_profile(const Vec2& centre, double radius);

@@ -27,19 +27,19 @@ struct Recipe {
   std::size_t points = 10000;
   EdgeBands bands = {.sharp = 0.49, .smooth = 1.73};
   double noise = 0.0;         ///< standard deviation on each axis, every point
-  double displacement = 0.0;  ///< reach of displace_every_tenth()
-  double unevenness = 1.0;    ///< how many times denser the densest end is than the sparsest
+  double displacement = 0.0;  ///< `reach` of displace_every_tenth()
+  double unevenness = 1.0;    ///< density at the densest end over that at the sparsest
   double min_distance = 0.0;  ///< between points, before noise
   NormalSource normals = NormalSource::kPlane10;
-  bool inward = false;  ///< all normals into the solid
+  bool inward = false;  ///< all normals point into the solid
 };
 
-/// Draws the points, disturbs them, labels them by their distance to the true edges from where they
-/// are then, gives them normals and turns the whole by a random rotation. Comments say how it was
-/// made; positions are rounded to float.
+/// Samples the points, disturbs them, labels them by the distance of the disturbed points to the
+/// true edges, adds normals and applies a random rotation. Comments state the recipe; positions are
+/// rounded to float.
 ///
-/// Estimated normals have the side of the surface normal; of points displaced off the surface,
-/// which has no bearing on them, one in four is turned about.
+/// Estimated normals point to the side of the surface normal; one in four normals of displaced
+/// points is flipped.
 ///
 /// The result depends on the recipe and `seed` alone: two recipes of different name draw
 /// independent points.

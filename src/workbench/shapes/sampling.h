@@ -11,10 +11,10 @@ namespace pcednet::shapes {
 
 struct SampleOptions {
   std::size_t points = 10000;
-  /// The chance in [0, 1] that a point at this position is kept; empty: 1 everywhere.
+  /// The probability that a point at this position is kept; empty: 1 everywhere.
   std::function<double(const Vec3& position)> keep = {};
-  /// If positive, points closer than this to an earlier point are dropped: an even cover. Must be
-  /// below 0.75 sqrt(area / points), or there is no room for all points.
+  /// If positive, points closer than this to an earlier point are dropped (Poisson disc sampling).
+  /// Must be below 0.75 sqrt(area / points), or there is no room for all points.
   double min_distance = 0.0;
 };
 
@@ -23,8 +23,8 @@ struct SurfaceSamples {
   std::vector<Vec3> normals;  ///< of the surface, unit
 };
 
-/// Points drawn uniformly by area. Throws Error(kFailure) if a patch is denser than it says, or if
-/// there is no room for the points.
+/// Points sampled uniformly by area. Throws Error(kFailure) if a density exceeds the patch's
+/// max_density, or if there is no room for the points.
 SurfaceSamples sample_surface(const Shape& shape, const SampleOptions& options, Random& random);
 
 }  // namespace pcednet::shapes

@@ -7,17 +7,17 @@
 
 namespace pcednet::shapes {
 
-/// Where a scanner may stand.
+/// A position for a scanner.
 struct ScanPlace {
   Vec3 position;
-  Vec3 towards;  ///< what it looks at
+  Vec3 towards;  ///< the point it faces
 };
 
 /// A scene about ten units (metres) large.
 struct Scene {
   Solid solid = {};
-  std::vector<Vec3> foliage;        ///< where leaves are
-  std::vector<ScanPlace> scanners;  ///< good places, best first
+  std::vector<Vec3> foliage;        ///< positions of leaves
+  std::vector<ScanPlace> scanners;  ///< good positions, best first
 };
 
 /// The kinds of random_scene(): a facade, a yard with steps and pipes, a room, a monument.

@@ -15,13 +15,13 @@ namespace pcednet::shapes {
 struct SurfacePoint {
   Vec3 position;
   Vec3 normal;     ///< unit, out of the solid
-  double density;  ///< area per unit of (u, v); 0 where the patch is trimmed away
+  double density;  ///< area per unit of (u, v); 0 where the patch is trimmed
 };
 
 /// A piece of surface over the unit square.
 struct SurfacePatch {
   std::function<SurfacePoint(double u, double v)> at;
-  double max_density;  ///< no density is larger
+  double max_density;  ///< upper bound of the density
 };
 
 struct Segment {
@@ -39,11 +39,10 @@ struct Arc {
   double angle;
 };
 
-/// A true edge: where two patches meet at an angle.
+/// A true edge: a curve where two patches meet at an angle.
 struct EdgeCurve {
   std::variant<Segment, Arc> curve;
-  /// kSharpEdge, or kSmoothEdge where the crease is so weak, or so rounded, that no point on it is
-  /// called sharp.
+  /// kSharpEdge, or kSmoothEdge for a crease too weak or too rounded to be sharp.
   EdgeClass strength = kSharpEdge;
 };
 
@@ -63,8 +62,8 @@ double surface_area(const Shape& shape);
 double distance(const Segment& segment, const Vec3& point);
 double distance(const Arc& arc, const Vec3& point);
 
-/// How strong a crease between patches with unit normals `a` and `b` is. Planes that turn by 30
-/// degrees or more make a sharp edge, by less than 12 degrees none.
+/// The class of a crease between patches with unit normals `a` and `b`: sharp from an angle of 30
+/// degrees, smooth from 12 degrees, otherwise no edge.
 EdgeClass crease_strength(const Vec3& a, const Vec3& b);
 
 /// The widths of the labelled bands along edges, as lengths.

@@ -10,7 +10,7 @@
 
 namespace pcednet::shapes {
 
-/// A volume: a profile drawn along z, or turned about it.
+/// A volume: a profile extruded along z, or revolved about it.
 struct Volume {
   enum class Kind {
     kPrism,      ///< profile in (x, y), |z| <= half_height
@@ -33,20 +33,20 @@ struct Face {
   friend bool operator==(const Face&, const Face&) = default;
 };
 
-/// Volumes added to and cut out of each other, one after another, as an implicit function.
+/// Constructive solid geometry: volumes added and cut one after another, as an implicit function.
 class Solid {
  public:
   void add(Volume volume) { put(std::move(volume), true); }
   void cut(Volume volume) { put(std::move(volume), false); }
 
   struct Value {
-    double distance;  ///< negative inside; exact near the boundary but for its concave edges
-    Face face;        ///< the face whose distance it is
+    double distance;  ///< negative inside; exact near the boundary except at concave edges
+    Face face;        ///< the face that determines it
   };
   Value value(const Vec3& p) const;
 
-  /// The distance of the whole surface that a face is part of, and its gradient of length 1, out of
-  /// the solid.
+  /// The distance to the unbounded surface that contains the face, and its gradient of length 1,
+  /// out of the solid.
   double distance_to(const Face& face, const Vec3& p) const;
   Vec3 normal_of(const Face& face, const Vec3& p) const;
 

@@ -5,7 +5,7 @@
 
 namespace pcednet::shapes {
 
-// Random parts that were turned or have a centre, about one unit large.
+// Random rotationally symmetric parts, about one unit large.
 
 Solid shaft(Random& random);
 Solid flange(Random& random);

@@ -9,25 +9,25 @@
 
 namespace pcednet::shapes {
 
-/// How worn a surface is, all lengths.
+/// The wear of a surface; all values are lengths.
 struct Wear {
-  double rounding = 0.0;  ///< standard deviation of the Gaussian that the surface is averaged with
-  double band = 0.0;      ///< points this near an edge are sharp-edge
+  double rounding = 0.0;  ///< standard deviation of the Gaussian that smooths the surface
+  double band = 0.0;      ///< width of the sharp-edge band
   double scatter = 0.0;   ///< standard deviation of noise on each axis
   double waves = 0.0;     ///< height of shallow waves
 };
 
-/// Labels vertices by the distance to the edges as they were, then rounds these off: every vertex
-/// and its normal become the Gaussian mean of the surface around, which then gets shallow waves.
+/// Labels vertices by their distance to the original edges, then smooths the surface: every vertex
+/// and its normal become the Gaussian mean of the surface around it. Then adds shallow waves.
 void wear_off(MeshVertices& vertices, const SurfaceSamples& surface, std::span<const Vec3> edges,
               const Wear& wear, Random& random);
 
 struct Finish {
   bool estimated = false;  ///< normals from the positions
-  bool inward = false;     ///< all normals turned
+  bool inward = false;     ///< all normals flipped
 };
 
-/// The vertices as a cloud, turned at random, in single precision.
+/// The vertices as a cloud, randomly rotated, in single precision.
 PointCloud finish(MeshVertices vertices, const Finish& finish, Random& random);
 
 }  // namespace pcednet::shapes
