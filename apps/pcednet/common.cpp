@@ -70,19 +70,6 @@ CLI::App* add_command(CLI::App& app, Common& common, const std::string& name,
   return command;
 }
 
-void add_scale_range_options(CLI::App& command, gls::ScaleSpaceOptions& options) {
-  command
-      .add_option("--s-min", options.s_min,
-                  "Smallest scale, in the unit of the cloud (0: its mean point spacing)")
-      ->capture_default_str();
-  command
-      .add_option(
-          "--s-max", options.s_max,
-          "Largest scale, in the unit of the cloud (0: 10 % of the diagonal of its bounding "
-          "box, twice the smallest scale for sparse clouds)")
-      ->capture_default_str();
-}
-
 Progress console_progress(const Common& common) {
   Progress progress;
   progress.cancelled = [] { return interrupted != 0; };

@@ -3,10 +3,11 @@
 #include <CLI/CLI.hpp>
 
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "pcednet/core/output_file.h"
 #include "pcednet/core/progress.h"
-#include "pcednet/gls/scale_space_options.h"
 
 namespace pcednet::app {
 
@@ -29,8 +30,29 @@ struct HelpFormatter : CLI::Formatter {
 CLI::App* add_command(CLI::App& app, Common& common, const std::string& name,
                       const std::string& description, const std::string& examples);
 
-/// Adds --s-min and --s-max. `options` must outlive the parsing.
-void add_scale_range_options(CLI::App& command, gls::ScaleSpaceOptions& options);
+/// What an option may be, by name.
+template <typename Value>
+using Choices = std::vector<std::pair<std::string, Value>>;
+
+/// Adds an option that sets `value`, which must outlive the parsing, to one of the choices.
+template <typename Value>
+CLI::Option* add_choice(CLI::App& command, const std::string& option, Value& value,
+                        const Choices<Value>& choices, const std::string& help) {
+  std::vector<std::string> names;
+  std::string preset;
+  for (const auto& [name, choice] : choices) {
+    names.push_back(name);
+    if (choice == value) preset = name;
+  }
+  const auto choose = [&value, choices](const std::string& wanted) {
+    for (const auto& [name, choice] : choices) {
+      if (name == wanted) value = choice;
+    }
+  };
+  return command.add_option_function<std::string>(option, choose, help)
+      ->default_str(preset)
+      ->check(CLI::IsMember(names));
+}
 
 /// Progress on stderr in the form the user asked for, and a signal as its cancellation.
 Progress console_progress(const Common& common);

@@ -226,7 +226,7 @@ TEST_F(EdgeModelFile, RefusesAContextNetworkForOtherClasses) {
 }
 
 TEST_F(EdgeModelFile, RefusesANetworkWithoutItsDescriptor) {
-  nn::save_model(path_, train_on(cube(800, 3), quick(3)).model.network);
+  nn::write_safetensors(path_, nn::to_safetensors(train_on(cube(800, 3), quick(3)).model.network));
   try {
     load_model(path_);
     FAIL();

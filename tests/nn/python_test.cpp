@@ -45,7 +45,7 @@ void write_case(const fs::path& folder, const std::string& name, const Architect
   model.sign_rule.odd_features.back() = 0;
   model.sign_rule.symmetry = symmetry;
   model.metadata["seed"] = "21";
-  save_model(folder / (name + ".model.safetensors"), model);
+  write_safetensors(folder / (name + ".model.safetensors"), to_safetensors(model));
 
   constexpr std::size_t kCount = 200;
   const auto inputs = static_cast<std::size_t>(architecture.inputs());

@@ -9,6 +9,7 @@
 
 #include "batch.h"
 #include "commands.h"
+#include "descriptor_options.h"
 #include "pcednet/core/error.h"
 #include "pcednet/core/version.h"
 #include "pcednet/formats/read_cloud.h"
@@ -26,31 +27,14 @@ constexpr std::size_t kBlock = std::size_t{1} << 18;  // points described at a t
 
 struct Arguments {
   std::string input, output;
-  std::string features = "6";
-  std::string reconstruction;
   gls::ScaleSpaceOptions options;
   detect::PrepareOptions preparation;
-  bool exact = false;
 };
 
 using StatusCounts = std::array<std::size_t, 3>;
 
-gls::FeatureSet feature_set(const std::string& count) {
-  using gls::FeatureSet;
-  for (const FeatureSet set : {FeatureSet::kAll28, FeatureSet::kInvariant7, FeatureSet::kPaper6,
-                               FeatureSet::kSpatial4, FeatureSet::kRelief3}) {
-    if (std::to_string(gls::feature_count(set)) == count) return set;
-  }
-  throw Error(ErrorKind::kUsage, fmt::format("there is no set of {} features", count));
-}
-
-gls::Reconstruction reconstruction(const std::string& name) {
-  const auto names = gls::reconstruction_names();
-  const auto found = std::find(names.begin(), names.end(), name);
-  if (found == names.end()) {
-    throw Error(ErrorKind::kUsage, fmt::format("there is no reconstruction {}", name));
-  }
-  return static_cast<gls::Reconstruction>(found - names.begin());
+std::string_view name_of(gls::Reconstruction reconstruction) {
+  return gls::reconstruction_names()[static_cast<std::size_t>(reconstruction)];
 }
 
 /// Describes every point into `matrix`, a stretch of the order at a time: neighbours in space share
@@ -102,7 +86,7 @@ ordered_json to_json(const Arguments& arguments, const gls::ScaleSpace& space, s
                        {"points", points},
                        {"scales", space.scales()},
                        {"features", gls::column_names(options)},
-                       {"reconstruction", arguments.reconstruction},
+                       {"reconstruction", name_of(options.reconstruction)},
                        {"gate", nullptr},
                        {"engine", options.engine == gls::Engine::kExact ? "exact" : "fast"}};
   if (gls::projects(options.reconstruction)) {
@@ -120,10 +104,7 @@ void describe(const Arguments& arguments, const Common& common) {
   if (output.extension() != ".npy") {
     throw Error(ErrorKind::kUsage, fmt::format("{}: must end in .npy", output.string()));
   }
-  gls::ScaleSpaceOptions options = arguments.options;
-  options.features = feature_set(arguments.features);
-  options.reconstruction = reconstruction(arguments.reconstruction);
-  if (arguments.exact) options.engine = gls::Engine::kExact;
+  const gls::ScaleSpaceOptions& options = arguments.options;
   // What cannot be written is refused before the work.
   check_writable(output, common.overwrite());
   OutputFile settings(fs::path(output).replace_extension(".json"), common.overwrite());
@@ -163,33 +144,15 @@ void add_describe(CLI::App& app, Common& common) {
                   "pcednet describe scan.ply -o scan.npy      and scan.json: scales, columns\n"
                   "pcednet describe part.ply -o part.npy --features 28 --scales 32\n"
                   "pcednet describe part.ply -o part.npy --gate -0.2");
-  gls::ScaleSpaceOptions& options = arguments->options;
-  const auto names = gls::reconstruction_names();
-  arguments->reconstruction = names[static_cast<std::size_t>(options.reconstruction)];
   command->add_option("input", arguments->input, "A point file")->required();
   command->add_option("-o,--output", arguments->output, "The matrix, a .npy file")->required();
-  command->add_option("--scales", options.scales, "Scales: 4, 8, 16, 32, 64 or 128")
-      ->capture_default_str()
-      ->check(CLI::IsMember({4, 8, 16, 32, 64, 128}));
-  command->add_option("--features", arguments->features, "Numbers per scale: 28, 7, 6, 4 or 3")
-      ->capture_default_str()
-      ->check(CLI::IsMember({"28", "7", "6", "4", "3"}));
-  command->add_option("--reconstruction", arguments->reconstruction, "The surface described")
-      ->capture_default_str()
-      ->check(CLI::IsMember(std::vector<std::string>(names.begin(), names.end())));
-  command->add_option("--gate", options.side_gate,
-                      "Leave out neighbours on the far side of thin walls, whose normals differ by "
-                      "more than this cosine (-1 to 1)");
-  command->add_option("--second-gate", options.second_gate,
-                      "Describe with another gate too: twice as many numbers per scale");
-  add_scale_range_options(*command, options);
+  add_descriptor_options(*command, arguments->options);
   command
-      ->add_option("--eps", options.eps,
+      ->add_option("--eps", arguments->options.eps,
                    "Resolution of far neighbourhoods, in scales: finer is slower and more exact")
       ->check(CLI::Range(0.01, 1.0))
       ->capture_default_str();
   add_prepare_options(*command, arguments->preparation);
-  command->add_flag("--exact", arguments->exact, "Exact neighbourhoods (slow)");
   command->callback([arguments, &common] { describe(*arguments, common); });
 }
 

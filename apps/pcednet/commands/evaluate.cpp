@@ -6,6 +6,7 @@
 
 #include "batch.h"
 #include "commands.h"
+#include "descriptor_options.h"
 #include "methods.h"
 #include "models.h"
 #include "pcednet/core/error.h"

@@ -16,6 +16,7 @@
 #include "e57_facts.h"
 #include "las_facts.h"
 #include "pcednet/cloud/bounding_box.h"
+#include "pcednet/cloud/edge_class.h"
 #include "pcednet/core/error.h"
 #include "pcednet/core/output_file.h"
 #include "pcednet/core/random.h"
@@ -40,18 +41,8 @@ const char* name_of(ScalarType type) {
 }
 
 std::string name_of_class(std::uint8_t label) {
-  switch (label) {
-    case kNonEdge:
-      return "non-edge";
-    case kSmoothEdge:
-      return "smooth-edge";
-    case kSharpEdge:
-      return "sharp-edge";
-    case kUnlabelled:
-      return "unlabelled";
-    default:
-      return fmt::format("class {}", label);
-  }
+  if (label < kEdgeClasses.size()) return std::string(kEdgeClasses[label].name);
+  return label == kUnlabelled ? "unlabelled" : fmt::format("class {}", label);
 }
 
 struct Spacing {

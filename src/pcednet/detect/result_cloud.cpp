@@ -4,22 +4,24 @@
 
 #include <algorithm>
 
+#include "pcednet/cloud/edge_class.h"
 #include "pcednet/core/version.h"
 
 namespace pcednet::detect {
 namespace {
 
+constexpr Rgb kUnlabelledColour = {128, 128, 128};
+
 Rgb colour_of(std::uint8_t edge_class) {
-  switch (edge_class) {
-    case kNonEdge:
-      return {255, 255, 255};
-    case kSmoothEdge:
-      return {255, 196, 93};
-    case kSharpEdge:
-      return {168, 0, 0};
-    default:
-      return {128, 128, 128};
+  return edge_class < kEdgeClasses.size() ? kEdgeClasses[edge_class].colour : kUnlabelledColour;
+}
+
+std::string class_comment() {
+  std::string comment = "pcednet classes";
+  for (const auto& [edge_class, name, colour] : kEdgeClasses) {
+    comment += fmt::format(" {} {}", static_cast<int>(edge_class), name);
   }
+  return comment + fmt::format(" {} unlabelled", static_cast<int>(kUnlabelled));
 }
 
 /// Comments of an earlier classification give way to those of this one.
@@ -29,7 +31,7 @@ void replace_comments(PointCloud& cloud, const EdgeModel& model) {
   cloud.comments.push_back(fmt::format("pcednet {}", kVersion));
   cloud.comments.push_back(fmt::format("pcednet model {}", model.name));
   cloud.comments.push_back(fmt::format("pcednet seed {}", model.seed));
-  cloud.comments.push_back("pcednet classes 0 non-edge 1 smooth-edge 2 sharp-edge 255 unlabelled");
+  cloud.comments.push_back(class_comment());
 }
 
 }  // namespace

@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <iterator>
 
+#include "pcednet/cloud/edge_class.h"
 #include "pcednet/core/error.h"
 #include "pcednet/core/stopwatch.h"
 #include "pcednet/detect/outputs.h"
@@ -47,9 +47,8 @@ std::vector<std::uint8_t> classes_of(const nn::Architecture& architecture) {
 }
 
 std::vector<std::string> class_names(const std::vector<std::uint8_t>& classes) {
-  constexpr std::array<const char*, 3> kNames = {"non-edge", "smooth-edge", "sharp-edge"};
   std::vector<std::string> names;
-  for (const std::uint8_t c : classes) names.emplace_back(kNames[c]);
+  for (const std::uint8_t c : classes) names.emplace_back(kEdgeClasses[c].name);
   return names;
 }
 

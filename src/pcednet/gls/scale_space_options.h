@@ -3,6 +3,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "pcednet/gls/features.h"
@@ -32,6 +33,12 @@ struct ScaleSpaceOptions {
 
   bool operator==(const ScaleSpaceOptions&) const = default;
 };
+
+/// All sets of features, the largest first.
+std::span<const FeatureSet> feature_sets();
+
+/// The reconstruction of that name, see reconstruction_names(); nothing for another name.
+std::optional<Reconstruction> reconstruction_of(std::string_view name);
 
 /// The names of a matrix's columns, those of one scale; those of the second gate begin with
 /// "second_".

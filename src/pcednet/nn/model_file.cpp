@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <utility>
 
 #include "pcednet/core/error.h"
+#include "pcednet/nn/metadata.h"
 
 namespace pcednet::nn {
 namespace {
@@ -47,60 +47,23 @@ std::size_t count_of(const std::vector<std::size_t>& shape) {
   return count;
 }
 
-/// Takes a file's content apart, each piece once.
-class Reader {
+/// Takes a file's tensors apart, each once.
+class Tensors {
  public:
-  Reader(const Safetensors& content, const std::string& name) : content_(content), name_(name) {}
+  Tensors(const Safetensors& content, const Metadata& metadata)
+      : content_(content), metadata_(metadata) {}
 
-  [[noreturn]] void refuse(const std::string& what) const {
-    throw Error(ErrorKind::kModelMismatch, fmt::format("{}: {}", name_, what));
-  }
-
-  const std::string& text(const std::string& key) const {
-    const auto found = content_.metadata.find(key);
-    if (found == content_.metadata.end()) refuse(fmt::format("no metadata \"{}\"", key));
-    return found->second;
-  }
-
-  int number(const std::string& key) const {
-    const std::string& digits = text(key);
-    int value = 0;
-    const char* end = digits.data() + digits.size();
-    const auto [stop, error] = std::from_chars(digits.data(), end, value);
-    if (error != std::errc() || stop != end) {
-      refuse(fmt::format("metadata \"{}\" is \"{}\"; a whole number is needed", key, digits));
-    }
-    return value;
-  }
-
-  template <typename T, std::size_t N>
-  T choice(const std::string& key,
-           const std::array<std::pair<T, std::string_view>, N>& names) const {
-    const std::string& given = text(key);
-    for (const auto& [value, name] : names) {
-      if (name == given) return value;
-    }
-    refuse(fmt::format("metadata \"{}\" is \"{}\", which this version does not know", key, given));
-  }
-
-  template <typename T>
-  std::vector<T> list(const std::string& key) const {
-    try {
-      return Json::parse(text(key)).get<std::vector<T>>();
-    } catch (const Json::exception&) {
-      refuse(fmt::format("metadata \"{}\" is not a list of the right kind", key));
-    }
-  }
-
-  std::vector<float> tensor(const std::string& key, const std::vector<std::size_t>& shape) {
+  std::vector<float> take(const std::string& key, const std::vector<std::size_t>& shape) {
     const auto found = content_.tensors.find(key);
-    if (found == content_.tensors.end()) refuse(fmt::format("no tensor \"{}\"", key));
+    if (found == content_.tensors.end()) metadata_.refuse(fmt::format("no tensor \"{}\"", key));
     if (found->second.shape != shape) {
-      refuse(fmt::format("tensor \"{}\" is {}; the network needs {}", key,
-                         Json(found->second.shape).dump(), Json(shape).dump()));
+      metadata_.refuse(fmt::format("tensor \"{}\" is {}; the network needs {}", key,
+                                   Json(found->second.shape).dump(), Json(shape).dump()));
     }
     for (const float value : found->second.values) {
-      if (!std::isfinite(value)) refuse(fmt::format("tensor \"{}\" holds {}", key, value));
+      if (!std::isfinite(value)) {
+        metadata_.refuse(fmt::format("tensor \"{}\" holds {}", key, value));
+      }
     }
     ++taken_;
     return found->second.values;
@@ -108,64 +71,74 @@ class Reader {
 
   void check_nothing_left() const {
     if (taken_ == content_.tensors.size()) return;
-    refuse(fmt::format("{} tensors; the network needs {}", content_.tensors.size(), taken_));
+    metadata_.refuse(
+        fmt::format("{} tensors; the network needs {}", content_.tensors.size(), taken_));
   }
 
  private:
   const Safetensors& content_;
-  const std::string& name_;
+  const Metadata& metadata_;
   std::size_t taken_ = 0;
 };
 
-Architecture read_architecture(const Reader& reader) {
+template <typename T>
+std::vector<T> take_list(Metadata& metadata, const std::string& key) {
+  try {
+    return Json::parse(metadata.take(key)).get<std::vector<T>>();
+  } catch (const Json::exception&) {
+    metadata.refuse(fmt::format("metadata \"{}\" is not a list of the right kind", key));
+  }
+}
+
+Architecture read_architecture(Metadata& metadata) {
   Architecture a;
-  a.kind = reader.choice("nn.kind", kKinds);
-  a.scales = reader.number("nn.scales");
-  a.features = reader.number("nn.features");
-  a.classes = reader.number("nn.classes");
-  a.width = reader.number("nn.width");
-  a.hidden = reader.number("nn.hidden");
+  a.kind = metadata.take_choice("nn.kind", kKinds);
+  a.scales = metadata.take_number<int>("nn.scales");
+  a.features = metadata.take_number<int>("nn.features");
+  a.classes = metadata.take_number<int>("nn.classes");
+  a.width = metadata.take_number<int>("nn.width");
+  a.hidden = metadata.take_number<int>("nn.hidden");
   return a;
 }
 
-Standardisation read_standardisation(Reader& reader, const Architecture& a) {
+Standardisation read_standardisation(Tensors& tensors, const Architecture& a) {
   const std::vector<std::size_t> shape = {static_cast<std::size_t>(a.scales),
                                           static_cast<std::size_t>(a.features)};
   Standardisation s;
-  s.mean = reader.tensor("standardisation.mean", shape);
-  s.inverse_deviation = reader.tensor("standardisation.inverse_deviation", shape);
-  s.bound = reader.tensor("standardisation.bound", {1})[0];
-  if (const std::string& squash = reader.text("nn.squash"); squash != kSquash) {
-    reader.refuse(
-        fmt::format("inputs limited by \"{}\"; this version reads \"{}\"", squash, kSquash));
-  }
+  s.mean = tensors.take("standardisation.mean", shape);
+  s.inverse_deviation = tensors.take("standardisation.inverse_deviation", shape);
+  s.bound = tensors.take("standardisation.bound", {1})[0];
   return s;
 }
 
-Model read_model(Reader& reader) {
-  if (reader.text("nn.format") != kFormat) {
-    reader.refuse(
-        fmt::format("format \"{}\"; this version reads \"{}\"", reader.text("nn.format"), kFormat));
+SignRule read_sign_rule(Metadata& metadata) {
+  SignRule rule;
+  rule.symmetry = metadata.take_choice("nn.symmetry", kSymmetries);
+  rule.odd_features = take_list<std::uint8_t>(metadata, "nn.odd_features");
+  for (const std::uint8_t odd : rule.odd_features) {
+    if (odd > 1) metadata.refuse("metadata \"nn.odd_features\" holds more than 0 and 1");
   }
+  rule.deciding_feature = metadata.take_number<int>("nn.deciding_feature");
+  return rule;
+}
+
+Model read_model(Metadata& metadata, Tensors& tensors) {
+  metadata.take_fixed("nn.format", kFormat);
+  metadata.take_fixed("nn.squash", kSquash);
   Model model;
-  model.network.architecture = read_architecture(reader);
+  model.network.architecture = read_architecture(metadata);
   const Architecture& a = model.network.architecture;
   for (const Layer& layer : make_plan(a).layers) {
     for (const auto& [suffix, shape] :
          {std::pair(".weight", &layer.weight_shape), std::pair(".bias", &layer.bias_shape)}) {
-      const std::vector<float> values = reader.tensor(layer.name + suffix, *shape);
+      const std::vector<float> values = tensors.take(layer.name + suffix, *shape);
       model.network.parameters.insert(model.network.parameters.end(), values.begin(), values.end());
     }
   }
-  model.standardisation = read_standardisation(reader, a);
-  model.sign_rule.symmetry = reader.choice("nn.symmetry", kSymmetries);
-  model.sign_rule.odd_features = reader.list<std::uint8_t>("nn.odd_features");
-  for (const std::uint8_t odd : model.sign_rule.odd_features) {
-    if (odd > 1) reader.refuse("metadata \"nn.odd_features\" holds more than 0 and 1");
-  }
-  model.sign_rule.deciding_feature = reader.number("nn.deciding_feature");
-  model.class_names = reader.list<std::string>("nn.class_names");
-  reader.check_nothing_left();
+  model.standardisation = read_standardisation(tensors, a);
+  model.sign_rule = read_sign_rule(metadata);
+  model.class_names = take_list<std::string>(metadata, "nn.class_names");
+  tensors.check_nothing_left();
   check_consistent(model);
   return model;
 }
@@ -211,25 +184,18 @@ Safetensors to_safetensors(const Model& model) {
 }
 
 Model from_safetensors(const Safetensors& content, const std::string& name) {
-  Reader reader(content, name);
+  Metadata metadata(content.metadata, name);
+  Tensors tensors(content, metadata);
   try {
-    Model model = read_model(reader);
-    for (const auto& [key, text] : content.metadata) {
+    Model model = read_model(metadata, tensors);
+    for (const auto& [key, text] : metadata.rest()) {
       if (!key.starts_with(kOwn)) model.metadata[key] = text;
     }
     return model;
   } catch (const Error& error) {
     if (error.kind() != ErrorKind::kUsage) throw;
-    reader.refuse(error.what());  // a shape that cannot be built
+    metadata.refuse(error.what());  // a shape that cannot be built
   }
-}
-
-void save_model(const std::filesystem::path& path, const Model& model, Overwrite overwrite) {
-  write_safetensors(path, to_safetensors(model), overwrite);
-}
-
-Model load_model(const std::filesystem::path& path) {
-  return from_safetensors(read_safetensors(path), path.string());
 }
 
 }  // namespace pcednet::nn

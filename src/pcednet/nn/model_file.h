@@ -1,10 +1,7 @@
 #pragma once
 
-#include <filesystem>
 #include <string>
-#include <string_view>
 
-#include "pcednet/core/output_file.h"
 #include "pcednet/nn/model.h"
 #include "pcednet/nn/safetensors.h"
 
@@ -15,19 +12,12 @@ namespace pcednet::nn {
 /// Tensors: LAYER.weight and LAYER.bias with the shapes PyTorch uses (tree.0.weight is pairs x
 /// neurons x inputs), standardisation.mean and standardisation.inverse_deviation (scales x
 /// features) and standardisation.bound (1). Metadata: the keys that begin with "nn." describe the
-/// network, all others are Model::metadata.
+/// network, all others are Model::metadata. Throws Error(kUsage) for a model whose parts do not fit
+/// or whose own metadata begins with "nn.".
 Safetensors to_safetensors(const Model& model);
 
 /// Throws Error(kModelMismatch), naming the file and what does not fit, unless the file holds
 /// exactly the tensors, of exactly the shapes, that its metadata calls for, all of them finite.
 Model from_safetensors(const Safetensors& content, const std::string& name);
-
-/// Throws Error(kUsage) for a model whose parts do not fit or whose own metadata begins with "nn.".
-void save_model(const std::filesystem::path& path, const Model& model,
-                Overwrite overwrite = Overwrite::kNo);
-
-/// Throws Error(kUnreadable) if the file cannot be opened, Error(kModelMismatch) if it is damaged,
-/// foreign, or does not fit together.
-Model load_model(const std::filesystem::path& path);
 
 }  // namespace pcednet::nn

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "pcednet/cloud/bounding_box.h"
+#include "pcednet/cloud/edge_class.h"
 #include "pcednet/core/parallel.h"
 #include "pcednet/spatial/curve_order.h"
 #include "workbench/render/near_points.h"
@@ -21,9 +22,6 @@ constexpr float kStrayRadius = 2.5f;   // median radii, beyond which a point may
 constexpr double kMostStray = 0.2;     // of all points; where more are thin, the density varies
 constexpr std::size_t kBlock = 4096;
 
-constexpr Rgb kNonEdgeColour = {255, 255, 255};
-constexpr Rgb kSmoothEdgeColour = {255, 196, 93};
-constexpr Rgb kSharpEdgeColour = {168, 0, 0};
 constexpr Rgb kUnlabelledColour = {150, 150, 150};
 
 struct Points {
@@ -99,16 +97,7 @@ bool usable(const Vec3& normal) {
 }
 
 Rgb class_colour(std::uint8_t edge_class) {
-  switch (edge_class) {
-    case kNonEdge:
-      return kNonEdgeColour;
-    case kSmoothEdge:
-      return kSmoothEdgeColour;
-    case kSharpEdge:
-      return kSharpEdgeColour;
-    default:
-      return kUnlabelledColour;
-  }
+  return edge_class < kEdgeClasses.size() ? kEdgeClasses[edge_class].colour : kUnlabelledColour;
 }
 
 /// The radius that closes the surface around a point.
@@ -212,7 +201,7 @@ std::vector<Surfel> make_surfels(const PointCloud& cloud, std::span<const std::u
                           : fitted_normal(points.positions, i, near[i]);
       surfel.colour = !classes.empty()         ? class_colour(classes[source])
                       : !cloud.colours.empty() ? cloud.colours[source]
-                                               : kNonEdgeColour;
+                                               : kEdgeClasses[kNonEdge].colour;
       surfel.edge =
           !classes.empty() && (classes[source] == kSmoothEdge || classes[source] == kSharpEdge);
     }

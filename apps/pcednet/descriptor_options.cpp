@@ -1,0 +1,61 @@
+#include "descriptor_options.h"
+
+#include "common.h"
+
+namespace pcednet::app {
+namespace {
+
+Choices<gls::FeatureSet> feature_sets() {
+  Choices<gls::FeatureSet> choices;
+  for (const gls::FeatureSet set : gls::feature_sets()) {
+    choices.emplace_back(std::to_string(gls::feature_count(set)), set);
+  }
+  return choices;
+}
+
+Choices<gls::Reconstruction> reconstructions() {
+  Choices<gls::Reconstruction> choices;
+  for (const std::string_view name : gls::reconstruction_names()) {
+    choices.emplace_back(name, *gls::reconstruction_of(name));
+  }
+  return choices;
+}
+
+}  // namespace
+
+void add_descriptor_options(CLI::App& command, gls::ScaleSpaceOptions& options) {
+  command.add_option("--scales", options.scales, "Scales: 4, 8, 16, 32, 64 or 128")
+      ->capture_default_str()
+      ->check(CLI::IsMember({4, 8, 16, 32, 64, 128}));
+  add_choice(command, "--features", options.features, feature_sets(), "Numbers per scale");
+  add_choice(command, "--reconstruction", options.reconstruction, reconstructions(),
+             "The surface that is described at every scale");
+  command.add_option("--gate", options.side_gate,
+                     "Side-aware neighbourhoods: leave out points whose normal has a cosine below "
+                     "this with the point's own (-1 to 1; default: off)");
+  command.add_option("--second-gate", options.second_gate,
+                     "Describe with another gate too: twice as many numbers per scale");
+  add_engine_option(command, options);
+  add_scale_range_options(command, options);
+}
+
+void add_scale_range_options(CLI::App& command, gls::ScaleSpaceOptions& options) {
+  command
+      .add_option("--s-min", options.s_min,
+                  "Smallest scale, in the unit of the cloud (0: its mean point spacing)")
+      ->capture_default_str();
+  command
+      .add_option(
+          "--s-max", options.s_max,
+          "Largest scale, in the unit of the cloud (0: 10 % of the diagonal of its bounding "
+          "box, twice the smallest scale for sparse clouds)")
+      ->capture_default_str();
+}
+
+void add_engine_option(CLI::App& command, gls::ScaleSpaceOptions& options) {
+  command.add_flag_callback(
+      "--exact", [&options] { options.engine = gls::Engine::kExact; },
+      "Descriptors from exact neighbourhoods (slow)");
+}
+
+}  // namespace pcednet::app

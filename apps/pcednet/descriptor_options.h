@@ -1,0 +1,21 @@
+#pragma once
+
+#include "pcednet/gls/scale_space_options.h"
+
+namespace CLI {
+class App;
+}
+
+namespace pcednet::app {
+
+/// Adds --scales, --features, --reconstruction, --gate, --second-gate, --exact, --s-min and
+/// --s-max. `options` must outlive the parsing.
+void add_descriptor_options(CLI::App& command, gls::ScaleSpaceOptions& options);
+
+/// Adds --s-min and --s-max alone.
+void add_scale_range_options(CLI::App& command, gls::ScaleSpaceOptions& options);
+
+/// Adds --exact alone.
+void add_engine_option(CLI::App& command, gls::ScaleSpaceOptions& options);
+
+}  // namespace pcednet::app

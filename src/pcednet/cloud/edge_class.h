@@ -1,0 +1,22 @@
+#pragma once
+
+#include <array>
+#include <string_view>
+
+#include "pcednet/cloud/point_cloud.h"
+
+namespace pcednet {
+
+/// The edge classes by number: their names, and the colours of the paper.
+struct EdgeClassEntry {
+  EdgeClass edge_class;
+  std::string_view name;
+  Rgb colour;
+};
+inline constexpr std::array<EdgeClassEntry, 3> kEdgeClasses = {{
+    {kNonEdge, "non-edge", {255, 255, 255}},
+    {kSmoothEdge, "smooth-edge", {255, 196, 93}},
+    {kSharpEdge, "sharp-edge", {168, 0, 0}},
+}};
+
+}  // namespace pcednet
