@@ -80,7 +80,7 @@ bool Batch::run(const fs::path& file, const std::function<void()>& work) {
     return true;
   } catch (const Error& error) {
     if (error.kind() == ErrorKind::kCancelled) throw;
-    add({file.string(), error});
+    add({file.string(), Error(error.kind(), explain(error))});
     return false;
   }
 }

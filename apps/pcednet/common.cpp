@@ -8,6 +8,8 @@
 #include <memory>
 #include <sstream>
 
+#include "pcednet/core/exists_already.h"
+
 namespace pcednet::app {
 namespace {
 
@@ -89,6 +91,11 @@ Progress console_progress(const Common& common) {
     progress.report = report_on_terminal;
   }
   return progress;
+}
+
+std::string explain(const Error& error) {
+  const bool exists = dynamic_cast<const ExistsAlready*>(&error) != nullptr;
+  return std::string(error.what()) + (exists ? "; give --overwrite to replace it" : "");
 }
 
 void say(const std::string& line) {

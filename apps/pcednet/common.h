@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "pcednet/core/error.h"
 #include "pcednet/core/output_file.h"
 #include "pcednet/core/progress.h"
 
@@ -61,6 +62,9 @@ Progress console_progress(const Common& common);
 /// stop that console_progress hands on; a second SIGINT ends the program at once. A file that grows
 /// beyond its limit, or a reader that goes away, is an error to report, not a signal to die of.
 void install_signal_handlers();
+
+/// The message of an error, with the option that does without it.
+std::string explain(const Error& error);
 
 /// One line on stderr, after whatever progress line is there.
 void say(const std::string& line);

@@ -60,7 +60,7 @@ int main(int argc, char** argv) {
   try {
     return pcednet::app::run(argc, argv);
   } catch (const pcednet::Error& error) {
-    pcednet::app::say(fmt::format("pcednet: {}", error.what()));
+    pcednet::app::say("pcednet: " + pcednet::app::explain(error));
     return static_cast<int>(error.kind());
   } catch (const std::bad_alloc&) {
     pcednet::app::say("pcednet: not enough memory");

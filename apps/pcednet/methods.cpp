@@ -7,7 +7,6 @@
 
 #include "fee.h"
 #include "pcednet/core/error.h"
-#include "pcednet/core/stopwatch.h"
 #include "workbench/classic/edge_measure.h"
 
 namespace pcednet::app {
@@ -69,14 +68,9 @@ void add_method_options(CLI::App& command, MethodArguments& arguments) {
 
 detect::Classification classify_by_method(const PointCloud& cloud, const MethodArguments& arguments,
                                           const Progress* progress) {
-  Stopwatch watch;
   const classic::EdgeMeasure edges = measure(cloud, arguments, progress);
-  detect::Classification result;
-  const std::size_t points = cloud.size();
-  result.classes.assign(points, kUnlabelled);
-  result.p_sharp.assign(points, 0.0f);
-  result.p_smooth.assign(points, 0.0f);
-  for (std::size_t i = 0; i < points; ++i) {
+  detect::Classification result = detect::nothing_found(cloud.size());
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
     const double value = edges.values[i];
     if (std::isnan(value)) {
       ++result.counts.unlabelled;
@@ -88,7 +82,6 @@ detect::Classification classify_by_method(const PointCloud& cloud, const MethodA
     const double sum = value + edges.threshold;
     result.p_sharp[i] = sum > 0.0 ? static_cast<float>(value / sum) : 0.0f;
   }
-  result.seconds_describe = watch.lap();
   return result;
 }
 

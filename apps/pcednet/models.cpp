@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <CLI/CLI.hpp>
 #include <ranges>
 #include <vector>
 
+#include "descriptor_options.h"
 #include "pcednet/core/error.h"
 
 namespace pcednet::app {
@@ -47,6 +49,24 @@ fs::path find_model(const std::string& name_or_file) {
 
 std::string names_of(const std::map<std::string, fs::path>& models) {
   return fmt::format("{}", fmt::join(std::views::keys(models), ", "));
+}
+
+void add_model_options(CLI::App& command, ModelArguments& arguments) {
+  command.add_option("--model", arguments.name, "A shipped model's name, or a model file")
+      ->capture_default_str();
+  command.add_flag("--no-context", arguments.no_context,
+                   "Do not look at the answers around each point: a little faster, less accurate");
+  add_engine_option(command, arguments.scales);
+  add_scale_range_options(command, arguments.scales);
+}
+
+detect::EdgeModel load_model(const ModelArguments& arguments) {
+  detect::EdgeModel model = detect::load_model(find_model(arguments.name));
+  if (arguments.no_context) model.context.reset();
+  model.descriptor.s_min = arguments.scales.s_min;
+  model.descriptor.s_max = arguments.scales.s_max;
+  model.descriptor.engine = arguments.scales.engine;
+  return model;
 }
 
 }  // namespace pcednet::app

@@ -4,6 +4,12 @@
 #include <map>
 #include <string>
 
+#include "pcednet/detect/model.h"
+
+namespace CLI {
+class App;
+}
+
 namespace pcednet::app {
 
 /// The shipped models by name, looked for beside the installed program and in the source tree.
@@ -15,5 +21,18 @@ std::string names_of(const std::map<std::string, std::filesystem::path>& models)
 /// The file behind `--model`: a file as it is, or the shipped model of that name. Throws
 /// Error(kUsage) with the names there are.
 std::filesystem::path find_model(const std::string& name_or_file);
+
+/// A model and how to use it.
+struct ModelArguments {
+  std::string name;
+  bool no_context = false;
+  gls::ScaleSpaceOptions scales = {};  ///< its s_min, s_max and engine
+};
+
+/// Adds --model, --no-context, --exact, --s-min and --s-max; the last four for a model alone.
+void add_model_options(CLI::App& command, ModelArguments& arguments);
+
+/// Throws what find_model() and detect::load_model() throw.
+detect::EdgeModel load_model(const ModelArguments& arguments);
 
 }  // namespace pcednet::app

@@ -5,17 +5,16 @@
 
 #include "batch.h"
 #include "commands.h"
-#include "descriptor_options.h"
 #include "methods.h"
 #include "models.h"
 #include "pcednet/core/error.h"
-#include "pcednet/core/stopwatch.h"
 #include "pcednet/detect/classify.h"
 #include "pcednet/detect/result_cloud.h"
 #include "pcednet/formats/format.h"
 #include "pcednet/formats/read_cloud.h"
 #include "pcednet/formats/write_cloud.h"
 #include "prepare.h"
+#include "stage_clock.h"
 #include "workbench/render/preview.h"
 
 namespace pcednet::app {
@@ -25,12 +24,11 @@ namespace fs = std::filesystem;
 
 struct Arguments {
   std::vector<std::string> inputs;
-  std::string output, output_folder, model = "scan", preview, las_classification;
+  std::string output, output_folder, preview, las_classification;
+  ModelArguments model{.name = "scan"};
   MethodArguments method;
-  gls::ScaleSpaceOptions scales;  ///< its s_min and s_max
   detect::PrepareOptions preparation;
-  bool exact = false, no_context = false, class_colours = false, ascii = false,
-       skip_existing = false;
+  bool class_colours = false, ascii = false, skip_existing = false;
 };
 
 struct Job {
@@ -158,8 +156,7 @@ void set_las_classification(const std::string& pairs, const std::vector<std::uin
   set_attribute(cloud, make_attribute("Classification", codes));
 }
 
-void report(const Job& job, const detect::Classification& result,
-            const std::vector<std::pair<const char*, double>>& times) {
+void report(const Job& job, const detect::Classification& result, const std::string& seconds) {
   const std::size_t points = result.classes.size();
   const auto share = [&](std::size_t count) {
     return 100.0 * static_cast<double>(count) /
@@ -171,58 +168,52 @@ void report(const Job& job, const detect::Classification& result,
       result.counts.smooth, share(result.counts.smooth), result.counts.non_edge,
       result.counts.unlabelled == 0 ? std::string()
                                     : fmt::format(", {} unlabelled", result.counts.unlabelled)));
-  std::string line = "  seconds:";
-  double total = 0;
-  for (const auto& [stage, seconds] : times) {
-    line += fmt::format(" {} {:.2f},", stage, seconds);
-    total += seconds;
-  }
-  say(line + fmt::format(" total {:.2f}", total));
+  say("  seconds: " + seconds);
   say(fmt::format("  -> {}", job.output.string()));
+}
+
+PointCloud read(const fs::path& input) {
+  auto loaded = formats::read_cloud(input);
+  for (const std::string& warning : loaded.warnings) {
+    warn(fmt::format("{}: {}", input.string(), warning));
+  }
+  return std::move(loaded.cloud);
+}
+
+void say_kept(const detect::KeptInput& kept) {
+  if (kept.labels) say("  the input's labels are kept as scalar_input_label");
+  if (kept.colours) say("  the input's colours are kept; --class-colours replaces them");
 }
 
 void classify_file(const Job& job, const Arguments& arguments, const detect::EdgeModel& model,
                    const Common& common) {
-  const Progress progress = console_progress(common);
-  Stopwatch watch;
-  std::vector<std::pair<const char*, double>> times;
-  auto loaded = formats::read_cloud(job.input);
-  for (const std::string& warning : loaded.warnings) {
-    warn(fmt::format("{}: {}", job.input.string(), warning));
-  }
+  StageClock clock(console_progress(common));
+  const Progress& progress = clock.progress();
+  clock.begin("read");
+  PointCloud cloud = read(job.input);
   throw_if_cancelled(&progress);
-  times.emplace_back("read", watch.lap());
   const bool by_method = !arguments.method.name.empty();
-  const auto prepared = by_method
-                            ? detect::PreparedCloud{}
-                            : prepare(job.input, loaded.cloud, arguments.preparation, progress);
-  times.emplace_back("normals", watch.lap());
-  auto result = by_method
-                    ? classify_by_method(loaded.cloud, arguments.method, &progress)
-                    : detect::classify(prepared, model, {.exact = arguments.exact}, &progress);
+  clock.begin(by_method ? arguments.method.name : "normals");
+  const auto prepared = by_method ? detect::PreparedCloud{}
+                                  : prepare(job.input, cloud, arguments.preparation, progress);
+  const auto result = by_method ? classify_by_method(cloud, arguments.method, &progress)
+                                : detect::classify(prepared, model, &progress);
   if (!result.note.empty()) warn(fmt::format("{}: {}", job.input.string(), result.note));
-  times.emplace_back("prepare", result.seconds_prepare);
-  times.emplace_back("describe", result.seconds_describe);
-  times.emplace_back("network", result.seconds_network);
-  if (model.context) times.emplace_back("context", result.seconds_context);
-  watch.lap();
-  auto kept = detect::add_result(loaded.cloud, prepared, result, model,
-                                 {.class_colours = arguments.class_colours});
-  for (const std::string& note : kept) say(fmt::format("  {}", note));
+  clock.begin("write");
+  say_kept(detect::add_result(cloud, prepared, result, model,
+                              {.class_colours = arguments.class_colours}));
   if (!arguments.las_classification.empty()) {
-    set_las_classification(arguments.las_classification, result.classes, loaded.cloud);
+    set_las_classification(arguments.las_classification, result.classes, cloud);
   }
-  formats::write_cloud(job.output, loaded.cloud,
+  formats::write_cloud(job.output, cloud,
                        {.overwrite = common.overwrite(),
                         .ascii = arguments.ascii,
                         .new_normals = prepared.made.empty()});
-  times.emplace_back("write", watch.lap());
   if (!job.preview.empty()) {
-    render::write_preview(job.preview, loaded.cloud, result.classes,
-                          {.overwrite = common.overwrite()});
-    times.emplace_back("preview", watch.lap());
+    clock.begin("preview");
+    render::write_preview(job.preview, cloud, result.classes, {.overwrite = common.overwrite()});
   }
-  report(job, result, times);
+  report(job, result, clock.seconds());
 }
 
 void classify(const Arguments& arguments, const Common& common) {
@@ -232,10 +223,7 @@ void classify(const Arguments& arguments, const Common& common) {
   }
   detect::EdgeModel model;
   if (arguments.method.name.empty()) {
-    model = detect::load_model(find_model(arguments.model));
-    if (arguments.no_context) model.context.reset();
-    model.descriptor.s_min = arguments.scales.s_min;
-    model.descriptor.s_max = arguments.scales.s_max;
+    model = load_model(arguments.model);
   } else {
     model.name = "none, method " + arguments.method.name;
   }
@@ -279,16 +267,11 @@ void add_classify(CLI::App& app, Common& common) {
       ->add_flag("--skip-existing", arguments->skip_existing,
                  "Leave out inputs whose result is there already, as after a stop")
       ->excludes(overwrite);
-  command->add_option("--model", arguments->model, "A shipped model's name, or a model file")
-      ->capture_default_str();
+  add_model_options(*command, arguments->model);
   command->add_option("--preview", arguments->preview, "Also draw the labelled cloud: a PNG file");
   command->add_flag("--class-colours", arguments->class_colours,
                     "Colour the points by class even where the input has colours");
   command->add_flag("--ascii", arguments->ascii, "Write text instead of binary");
-  command->add_flag("--exact", arguments->exact, "Descriptors from exact neighbourhoods (slow)");
-  command->add_flag("--no-context", arguments->no_context,
-                    "Do not look at the answers around each point: a little faster, less accurate");
-  add_scale_range_options(*command, arguments->scales);
   add_method_options(*command, arguments->method);
   add_prepare_options(*command, arguments->preparation);
   for (const char* of_a_model :

@@ -10,6 +10,7 @@
 #include "batch.h"
 #include "commands.h"
 #include "descriptor_options.h"
+#include "pcednet/core/blocks.h"
 #include "pcednet/core/error.h"
 #include "pcednet/core/version.h"
 #include "pcednet/formats/read_cloud.h"
@@ -57,8 +58,8 @@ StatusCounts write_matrix(const gls::ScaleSpace& space, std::size_t points, io::
     }
     stage.advance(targets.size());
   };
-  for (std::size_t begin = 0; begin < order.size(); begin += kBlock) {
-    const auto some = order.subspan(begin, std::min(kBlock, order.size() - begin));
+  for_each_block(order.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+    const auto some = order.subspan(begin, end - begin);
     targets.assign(some.begin(), some.end());
     std::sort(targets.begin(), targets.end());
     features.resize(targets.size() * row);
@@ -67,7 +68,7 @@ StatusCounts write_matrix(const gls::ScaleSpace& space, std::size_t points, io::
     for (const gls::FitStatus s : status) ++counts[static_cast<std::size_t>(s)];
     for (const std::uint32_t point : targets) described[point] = 1;
     put_rows();
-  }
+  });
   targets.clear();  // what has no place has zeros
   for (std::uint32_t i = 0; i < points; ++i) {
     if (!described[i]) targets.push_back(i);

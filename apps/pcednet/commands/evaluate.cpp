@@ -6,7 +6,6 @@
 
 #include "batch.h"
 #include "commands.h"
-#include "descriptor_options.h"
 #include "methods.h"
 #include "models.h"
 #include "pcednet/core/error.h"
@@ -23,11 +22,11 @@ namespace fs = std::filesystem;
 
 struct Arguments {
   std::vector<std::string> inputs;
-  std::string model, predictions, json, positive = "sharp";
+  std::string predictions, json, positive = "sharp";
+  ModelArguments model;
   MethodArguments method;
-  gls::ScaleSpaceOptions scales;  ///< its s_min and s_max
   detect::PrepareOptions preparation;
-  bool exact = false, no_context = false, calibration = false;
+  bool calibration = false;
 };
 
 struct Results {
@@ -41,7 +40,7 @@ detect::Classification predict(const fs::path& input, const PointCloud& cloud,
   detect::Classification result;
   if (model) {
     const auto prepared = prepare(input, cloud, arguments.preparation, progress);
-    result = detect::classify(prepared, *model, {.exact = arguments.exact}, &progress);
+    result = detect::classify(prepared, *model, &progress);
     if (!result.note.empty()) warn(input.string() + ": " + result.note);
   } else {
     result = classify_by_method(cloud, arguments.method, &progress);
@@ -69,12 +68,7 @@ Results score_all(const Arguments& arguments, const Common& common) {
   const auto positive =
       arguments.positive == "edge" ? eval::Positive::kEdge : eval::Positive::kSharp;
   std::optional<detect::EdgeModel> model;
-  if (!arguments.model.empty()) {
-    model = detect::load_model(find_model(arguments.model));
-    if (arguments.no_context) model->context.reset();
-    model->descriptor.s_min = arguments.scales.s_min;
-    model->descriptor.s_max = arguments.scales.s_max;
-  }
+  if (!arguments.model.name.empty()) model = load_model(arguments.model);
 
   Results results;
   for (const fs::path& input : expand_inputs(arguments.inputs)) {
@@ -111,12 +105,12 @@ Results score_all(const Arguments& arguments, const Common& common) {
 }
 
 void evaluate(const Arguments& arguments, const Common& common) {
-  const int ways =
-      !arguments.model.empty() + !arguments.predictions.empty() + !arguments.method.name.empty();
+  const int ways = !arguments.model.name.empty() + !arguments.predictions.empty() +
+                   !arguments.method.name.empty();
   if (ways != 1) {
     throw Error(ErrorKind::kUsage, "evaluate: give one of --model, --predictions and --method");
   }
-  if (arguments.calibration && arguments.model.empty()) {
+  if (arguments.calibration && arguments.model.name.empty()) {
     throw Error(ErrorKind::kUsage,
                 "evaluate: --calibration is about the probabilities of a --model");
   }
@@ -145,7 +139,7 @@ void add_evaluate(CLI::App& app, Common& common) {
       "pcednet evaluate a.ply b.ply --model my.safetensors --json -");
   command->add_option("inputs", arguments->inputs, "Labelled point files, or folders of them")
       ->required();
-  command->add_option("--model", arguments->model, "A model's name or file to classify with");
+  add_model_options(*command, arguments->model);
   command->add_option("--predictions", arguments->predictions,
                       "Folder with what another program found, a file per cloud of the same stem: "
                       ".u8 (a byte a point), .txt (a number a line), .npy, .ply, ...");
@@ -158,11 +152,7 @@ void add_evaluate(CLI::App& app, Common& common) {
   command->add_option("--json", arguments->json, "Write the scores here; - for standard output");
   command->add_flag("--calibration", arguments->calibration,
                     "Also tell how often a probability is right");
-  command->add_flag("--no-context", arguments->no_context,
-                    "Do not look at the answers around each point, as classify");
   add_prepare_options(*command, arguments->preparation);
-  command->add_flag("--exact", arguments->exact, "Descriptors from exact neighbourhoods (slow)");
-  add_scale_range_options(*command, arguments->scales);
   for (const char* of_a_model :
        {"--no-context", "--exact", "--s-min", "--s-max", "--keep-orientation"}) {
     command->get_option(of_a_model)->needs("--model");

@@ -15,6 +15,15 @@ struct ReportArguments {
   report::MergeOptions merge = {};
 };
 
+report::MergedStudies merge(const ReportArguments& arguments, const Progress& progress) {
+  try {
+    return report::merge_studies(arguments.folder, arguments.merge, &progress);
+  } catch (const report::MissingCloud& error) {
+    throw Error(error.kind(),
+                fmt::format("{}; --clouds-per-set 0 does without clouds", error.what()));
+  }
+}
+
 void make_report(const ReportArguments& arguments, const Common& common) {
   const std::string_view page = report_page();
   if (page.empty()) {
@@ -25,7 +34,7 @@ void make_report(const ReportArguments& arguments, const Common& common) {
   check_writable(arguments.output, common.overwrite());
   check_writable(arguments.json, common.overwrite());
   const Progress progress = console_progress(common);
-  const auto merged = report::merge_studies(arguments.folder, arguments.merge, &progress);
+  const auto merged = merge(arguments, progress);
   for (const std::string& warning : merged.warnings) warn(warning);
   const std::string filled = report::fill_page(page, merged.json);
   write_text_file(arguments.output, filled, common.overwrite());

@@ -1,70 +1,48 @@
 #include <fmt/format.h>
 
-#include <map>
 #include <memory>
-#include <optional>
 
 #include "batch.h"
 #include "commands.h"
+#include "descriptor_options.h"
 #include "models.h"
 #include "pcednet/core/error.h"
 #include "pcednet/detect/train.h"
 #include "prepare.h"
+#include "stage_clock.h"
 #include "workbench/annotate/learn.h"
 #include "workbench/truth/read_labelled.h"
 
 namespace pcednet::app {
 namespace {
 
-const std::map<std::string, nn::NetworkKind> kNetworks = {{"pcednet", nn::NetworkKind::kPcednet},
-                                                          {"fc", nn::NetworkKind::kFc},
-                                                          {"cnn", nn::NetworkKind::kCnn}};
-const std::map<std::string, nn::Symmetry> kSymmetries = {{"none", nn::Symmetry::kNone},
-                                                         {"average", nn::Symmetry::kAverage},
-                                                         {"canonical", nn::Symmetry::kCanonical}};
-const std::map<std::string, gls::FeatureSet> kFeatureSets = {{"28", gls::FeatureSet::kAll28},
-                                                             {"7", gls::FeatureSet::kInvariant7},
-                                                             {"6", gls::FeatureSet::kPaper6},
-                                                             {"4", gls::FeatureSet::kSpatial4},
-                                                             {"3", gls::FeatureSet::kRelief3}};
+const Choices<nn::NetworkKind> kNetworks = {{"pcednet", nn::NetworkKind::kPcednet},
+                                            {"fc", nn::NetworkKind::kFc},
+                                            {"cnn", nn::NetworkKind::kCnn}};
+const Choices<nn::Symmetry> kSymmetries = {{"average", nn::Symmetry::kAverage},
+                                           {"canonical", nn::Symmetry::kCanonical},
+                                           {"none", nn::Symmetry::kNone}};
+
+enum class Recipe { kAdam, kPaper };
 
 struct Arguments {
   std::vector<std::string> inputs;
-  std::string project, output, network = "pcednet", recipe = "adam", symmetry = "average",
-                               features = "6", reconstruction = "sphere";
-  int classes = 3, scales = 16, epochs = 0, width = 0, teachers = 0;
-  gls::ScaleSpaceOptions descriptor;  ///< its s_min and s_max
-  std::optional<double> gate, second_gate;
-  double balance = 1.0;
-  std::uint64_t seed = 1;
+  std::string project, output;
   detect::PrepareOptions preparation;
-  bool exact = false, natural = false, context = false;
+  detect::TrainOptions options;  ///< all but what follows
+  Recipe recipe = Recipe::kAdam;
+  int epochs = 0;  ///< 0: the recipe's
+  double balance = 1.0;
+  bool natural = false;
+  std::uint64_t seed = 1;
 };
 
 detect::TrainOptions options_of(const Arguments& arguments) {
-  detect::TrainOptions options;
-  options.descriptor = arguments.descriptor;
-  options.descriptor.scales = arguments.scales;
-  options.descriptor.features = kFeatureSets.at(arguments.features);
-  const auto names = gls::reconstruction_names();
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    if (names[i] == arguments.reconstruction) {
-      options.descriptor.reconstruction = static_cast<gls::Reconstruction>(i);
-    }
-  }
-  if (arguments.exact) options.descriptor.engine = gls::Engine::kExact;
-  options.descriptor.side_gate = arguments.gate;
-  options.descriptor.second_gate = arguments.second_gate;
-  options.architecture.kind = kNetworks.at(arguments.network);
-  options.architecture.classes = arguments.classes;
-  options.architecture.width = arguments.width;
-  if (arguments.recipe == "paper") options.training = nn::paper_recipe();
+  detect::TrainOptions options = arguments.options;
+  if (arguments.recipe == Recipe::kPaper) options.training = nn::paper_recipe();
   if (arguments.epochs > 0) options.training.epochs = arguments.epochs;
   options.training.balance = arguments.natural ? 0.0 : arguments.balance;
-  options.teachers = arguments.teachers;
-  options.context = arguments.context;
   options.training.seed = arguments.seed;
-  options.symmetry = kSymmetries.at(arguments.symmetry);
   return options;
 }
 
@@ -116,9 +94,11 @@ void train(const Arguments& arguments, const Common& common) {
   if (arguments.inputs.empty() && arguments.project.empty()) {
     throw Error(ErrorKind::kUsage, "train: labelled point files, or --project");
   }
-  const Progress progress = console_progress(common);
-  const auto trained = arguments.project.empty() ? train_clouds(arguments, common, progress)
-                                                 : train_project(arguments, common, progress);
+  StageClock clock(console_progress(common));
+  clock.begin("read");
+  const auto trained = arguments.project.empty()
+                           ? train_clouds(arguments, common, clock.progress())
+                           : train_project(arguments, common, clock.progress());
   if (trained.epochs == 0)
     throw Error(ErrorKind::kCancelled, "stopped by the user before an epoch");
   detect::save_model(arguments.output, trained.model, common.overwrite());
@@ -127,12 +107,10 @@ void train(const Arguments& arguments, const Common& common) {
     warn(fmt::format("no context network, every point is too sure: {}", trained.no_context));
   }
   const auto& context = trained.model.context;
-  say(fmt::format("{} weights{}; seconds: describe {:.2f}, train {:.2f}{}\n  -> {}",
+  say(fmt::format("{} weights{}; seconds: {}\n  -> {}",
                   trained.model.network.network.parameters.size(),
                   context ? fmt::format(" and {}", context->network.parameters.size()) : "",
-                  trained.seconds_describe, trained.seconds_train,
-                  context ? fmt::format(", context {:.2f}", trained.seconds_context) : "",
-                  arguments.output));
+                  clock.seconds(), arguments.output));
   if (trained.cancelled) {
     throw Error(ErrorKind::kCancelled,
                 fmt::format("stopped by the user: {} holds the best of {} epochs", arguments.output,
@@ -140,25 +118,52 @@ void train(const Arguments& arguments, const Common& common) {
   }
 }
 
-void add_descriptor_options(CLI::App& command, Arguments& arguments) {
-  const auto names = gls::reconstruction_names();
-  command.add_option("--scales", arguments.scales, "Scales of the description: 4, 8, ... 128")
-      ->capture_default_str();
-  command.add_option("--features", arguments.features, "Numbers per scale: 28, 7, 6, 4 or 3")
-      ->capture_default_str()
-      ->check(CLI::IsMember(kFeatureSets));
+void add_data_options(CLI::App& command, Arguments& arguments) {
+  command.add_option("inputs", arguments.inputs, "Labelled point files, or folders of them");
+  command.add_option("--project", arguments.project,
+                     "Train as the annotator did, on a project that it saved; its input is looked "
+                     "for beside it, or given");
+  command.add_option("-o,--output", arguments.output, "The model file to write")->required();
+  add_prepare_options(command, arguments.preparation);
+}
+
+void add_network_options(CLI::App& command, detect::TrainOptions& options) {
+  nn::Architecture& architecture = options.architecture;
+  add_choice(command, "--network", architecture.kind, kNetworks,
+             "The network of the paper to train");
   command
-      .add_option("--reconstruction", arguments.reconstruction,
-                  "The surface that is described at every scale")
+      .add_option("--classes", architecture.classes,
+                  "3: non-edge, smooth-edge, sharp-edge; 2: sharp-edge and the rest")
       ->capture_default_str()
-      ->check(CLI::IsMember(std::vector<std::string>(names.begin(), names.end())));
-  command.add_flag("--exact", arguments.exact, "Descriptors from exact neighbourhoods (slow)");
-  add_scale_range_options(command, arguments.descriptor);
-  command.add_option("--gate", arguments.gate,
-                     "Side-aware neighbourhoods: leave out points whose normal has a cosine below "
-                     "this with the point's own (-1 to 1; default: off)");
-  command.add_option("--second-gate", arguments.second_gate,
-                     "Describe with another gate too: twice as many numbers per scale");
+      ->check(CLI::IsMember({2, 3}));
+  command.add_option("--width", architecture.width, "Neurons per pair of scales (0: as the paper)")
+      ->capture_default_str();
+  add_choice(command, "--symmetry", options.symmetry, kSymmetries,
+             "The way in which flipped normals change nothing, or none");
+  command.add_flag("--context", options.context,
+                   "Also train a network that looks at the answers around each point and decides "
+                   "in the end");
+}
+
+void add_recipe_options(CLI::App& command, Arguments& arguments) {
+  add_choice(command, "--recipe", arguments.recipe,
+             {{"adam", Recipe::kAdam}, {"paper", Recipe::kPaper}},
+             "adam, or paper (plain SGD as published)");
+  command.add_option("--epochs", arguments.epochs, "Rounds of training (0: the recipe's)");
+  command.add_flag("--natural", arguments.natural,
+                   "Let every class count as often as it occurs, not all the same: fewer false "
+                   "edges");
+  command
+      .add_option("--balance", arguments.balance,
+                  "1: all classes count the same; 0: as --natural; or between")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 1.0))
+      ->excludes("--natural");
+  command
+      .add_option("--distil", arguments.options.teachers,
+                  "Train this many networks first and learn from their mean opinion")
+      ->check(CLI::Range(0, 100));
+  command.add_option("--seed", arguments.seed, "Seed of all randomness")->capture_default_str();
 }
 
 }  // namespace
@@ -171,54 +176,13 @@ void add_train(CLI::App& app, Common& common) {
       "pcednet train clouds/ -o my.safetensors --classes 2 --seed 7\n"
       "pcednet train clouds/ -o paper.safetensors --recipe paper\n"
       "pcednet train --project scan_annotation.json -o my.safetensors    as painted in annotate");
-  command->add_option("inputs", arguments->inputs, "Labelled point files, or folders of them");
-  command->add_option("--project", arguments->project,
-                      "Train as the annotator did, on a project that it saved; its input is looked "
-                      "for beside it, or given");
-  command->add_option("-o,--output", arguments->output, "The model file to write")->required();
-  command->add_option("--network", arguments->network, "pcednet, fc or cnn")
-      ->capture_default_str()
-      ->check(CLI::IsMember(kNetworks));
-  command
-      ->add_option("--classes", arguments->classes,
-                   "3: non-edge, smooth-edge, sharp-edge; 2: sharp-edge and the rest")
-      ->capture_default_str()
-      ->check(CLI::IsMember({2, 3}));
-  add_descriptor_options(*command, *arguments);
-  for (const char* of_clouds : {"--s-min", "--s-max"}) {
+  add_data_options(*command, *arguments);
+  add_descriptor_options(*command, arguments->options.descriptor);
+  add_network_options(*command, arguments->options);
+  add_recipe_options(*command, *arguments);
+  for (const char* of_clouds : {"--s-min", "--s-max", "--context"}) {
     command->get_option(of_clouds)->excludes("--project");
   }
-  command->add_option("--width", arguments->width, "Neurons per pair of scales (0: as the paper)")
-      ->capture_default_str();
-  command->add_option("--recipe", arguments->recipe, "adam, or paper (plain SGD as published)")
-      ->capture_default_str()
-      ->check(CLI::IsMember({"adam", "paper"}));
-  command
-      ->add_option("--symmetry", arguments->symmetry,
-                   "What makes flipped normals change nothing: average, canonical, none")
-      ->capture_default_str()
-      ->check(CLI::IsMember(kSymmetries));
-  command->add_flag(
-      "--natural", arguments->natural,
-      "Let every class count as often as it occurs, not all alike: fewer false edges");
-  command
-      ->add_option("--balance", arguments->balance,
-                   "1: all classes count alike; 0: as --natural; or between")
-      ->capture_default_str()
-      ->check(CLI::Range(0.0, 1.0))
-      ->excludes("--natural");
-  command
-      ->add_flag("--context", arguments->context,
-                 "Also train a network that looks at the answers around each point and decides "
-                 "in the end")
-      ->excludes("--project");
-  command
-      ->add_option("--distil", arguments->teachers,
-                   "Train so many networks first and learn from their mean opinion")
-      ->check(CLI::Range(0, 100));
-  add_prepare_options(*command, arguments->preparation);
-  command->add_option("--epochs", arguments->epochs, "Rounds of training (0: the recipe's)");
-  command->add_option("--seed", arguments->seed, "Seed of all randomness")->capture_default_str();
   command->callback([arguments, &common] { train(*arguments, common); });
 }
 

@@ -10,16 +10,12 @@
 #include <utility>
 
 #include "pcednet/core/error.h"
+#include "pcednet/core/exists_already.h"
 
 namespace pcednet {
 namespace {
 
 namespace fs = std::filesystem;
-
-Error exists_already(const fs::path& path) {
-  return {ErrorKind::kUsage,
-          fmt::format("{}: exists already; give --overwrite to replace it", path.string())};
-}
 
 /// Renames unless something has the name `to`. Where it cannot, errno tells why.
 bool rename_without_replacing(const fs::path& from, const fs::path& to) {
@@ -71,7 +67,7 @@ void check_writable(const fs::path& path, Overwrite overwrite) {
                 fmt::format("{}: is a device, a pipe or a socket, not a file", path.string()));
   }
   if (overwrite == Overwrite::kNo && fs::exists(fs::symlink_status(path, ignored))) {
-    throw exists_already(path);
+    throw ExistsAlready(path);
   }
   check_folder_of(path);
 }
@@ -138,7 +134,7 @@ void OutputFile::commit() {
   const bool renamed = overwrite_ == Overwrite::kYes
                            ? std::rename(temporary_.c_str(), path_.c_str()) == 0
                            : rename_without_replacing(temporary_, path_);
-  if (!renamed && errno == EEXIST) throw exists_already(path_);
+  if (!renamed && errno == EEXIST) throw ExistsAlready(path_);
   if (!renamed) fail("cannot rename into place");
   temporary_.clear();
 }

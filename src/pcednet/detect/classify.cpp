@@ -2,115 +2,63 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
+#include "pcednet/core/blocks.h"
 #include "pcednet/core/error.h"
-#include "pcednet/core/stopwatch.h"
 #include "pcednet/detect/context.h"
 #include "pcednet/detect/decide.h"
-#include "pcednet/gls/engine.h"
+#include "pcednet/nn/predict.h"
 
 namespace pcednet::detect {
 namespace {
 
-/// Points described and classified at a time: enough to keep every thread busy, few enough for the
-/// matrix to stay in the cache.
-constexpr std::size_t kBlock = 16 * 1024;
-
-Classification nothing_found(std::size_t points) {
-  Classification result;
-  result.classes.assign(points, kUnlabelled);
-  result.p_sharp.assign(points, 0.0f);
-  result.p_smooth.assign(points, 0.0f);
-  return result;
-}
-
-/// Describes the points block by block and lets the model's network decide.
-void describe_and_decide(const PreparedCloud& cloud, const EdgeModel& model,
-                         const ClassifyOptions& options, const Progress* progress,
-                         Classification& result) {
-  Stopwatch watch;
-  gls::ScaleSpaceOptions descriptor = model.descriptor;
-  descriptor.engine = options.exact ? gls::Engine::kExact : gls::Engine::kFast;
-  const gls::ScaleSpace matrix({cloud.positions, cloud.normals}, descriptor, progress);
-  const std::span<const std::uint32_t> order = matrix.order();
-  result.seconds_prepare = watch.lap();
-  result.note = gls::note_on(descriptor, matrix.scales(), cloud.positions);
-
-  const auto inputs = static_cast<std::size_t>(model.network.network.architecture.inputs());
-  const auto scales = static_cast<std::size_t>(model.descriptor.scales);
-  std::vector<float> samples(std::min(kBlock, order.size()) * inputs);
-  std::vector<gls::FitStatus> status(std::min(kBlock, order.size()) * scales);
-  std::vector<float> probabilities;
-  const Progress cancel_only = without_report(progress);
+/// Classifies the points `order`, whose descriptions rows_of(begin, end) gives block by block.
+template <typename RowsOf>
+Classification classify_rows(std::span<const Vec3> positions, std::span<const std::uint32_t> order,
+                             const RowsOf& rows_of, const EdgeModel& model,
+                             const Progress* progress) {
+  Classification found = nothing_found(positions.size());
   Stage stage(progress, "describe", order.size());
-  for (std::size_t first = 0; first < order.size(); first += kBlock) {
-    const auto targets = order.subspan(first, std::min(kBlock, order.size() - first));
-    const auto rows = std::span(samples).first(targets.size() * inputs);
-    matrix.describe(targets, rows, std::span(status).first(targets.size() * scales), &cancel_only);
-    result.seconds_describe += watch.lap();
-    decide(model.network, model.classes, rows, targets, probabilities, result);
-    result.seconds_network += watch.lap();
-    stage.advance(targets.size());
-  }
-}
-
-/// What follows the first network's answers.
-void finish(std::span<const Vec3> positions, const EdgeModel& model, const Progress* progress,
-            Classification& result) {
-  Stopwatch watch;
-  if (model.context) apply_context(*model.context, model.classes, positions, result, progress);
-  result.seconds_context = watch.lap();
-  result.counts = count_classes(result.classes);
+  for_each_block(order.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+    const auto points = order.subspan(begin, end - begin);
+    decide(points, nn::predict(model.network, rows_of(begin, end)), model.classes, found);
+    stage.advance(points.size());
+  });
+  if (model.context) apply_context(*model.context, model.classes, positions, found, progress);
+  found.counts = count_classes(found.classes);
+  return found;
 }
 
 }  // namespace
 
 Classification classify(const PreparedCloud& cloud, const EdgeModel& model,
-                        const ClassifyOptions& options, const Progress* progress) {
-  Classification result = nothing_found(cloud.positions.size());
-  describe_and_decide(cloud, model, options, progress, result);
-  finish(cloud.positions, model, progress, result);
-  return result;
-}
-
-DescribedCloud describe(const PreparedCloud& cloud, const gls::ScaleSpaceOptions& descriptor,
                         const Progress* progress) {
-  Stopwatch watch;
+  const gls::ScaleSpace space({cloud.positions, cloud.normals}, model.descriptor, progress);
+  const auto order = space.order();
+  const std::size_t width = row_width(model.descriptor);
+  std::vector<float> rows(std::min(kBlock, order.size()) * width);
   const Progress cancel_only = without_report(progress);
-  const gls::ScaleSpace matrix({cloud.positions, cloud.normals}, descriptor, &cancel_only);
-  const std::span<const std::uint32_t> order = matrix.order();
-  const auto scales = static_cast<std::size_t>(descriptor.scales);
-  const auto width = scales * static_cast<std::size_t>(gls::column_count(descriptor));
-  DescribedCloud described{.points = cloud.positions.size(), .order = {order.begin(), order.end()}};
-  described.values.resize(order.size() * width);
-  std::vector<gls::FitStatus> status(order.size() * scales);
-  matrix.describe(order, described.values, status, progress);
-  described.seconds = watch.lap();
-  return described;
+  const auto rows_of = [&](std::size_t begin, std::size_t end) {
+    const auto some = std::span(rows).first((end - begin) * width);
+    describe(space, order.subspan(begin, end - begin), some, &cancel_only);
+    return some;
+  };
+  Classification found = classify_rows(cloud.positions, order, rows_of, model, progress);
+  found.note = gls::note_on(model.descriptor, space.scales(), cloud.positions);
+  return found;
 }
 
 Classification classify(const DescribedCloud& cloud, std::span<const Vec3> positions,
                         const EdgeModel& model) {
-  const auto inputs = static_cast<std::size_t>(model.network.network.architecture.inputs());
-  if (cloud.values.size() != cloud.order.size() * inputs || positions.size() != cloud.points) {
+  const std::size_t width = row_width(model.descriptor);
+  if (cloud.values.size() != cloud.order.size() * width || positions.size() != cloud.points) {
     throw Error(ErrorKind::kModelMismatch,
                 fmt::format("{} numbers describe {} of {} points; the model wants {} for each",
-                            cloud.values.size(), cloud.points, positions.size(), inputs));
+                            cloud.values.size(), cloud.points, positions.size(), width));
   }
-  Classification result = nothing_found(cloud.points);
-  result.seconds_describe = cloud.seconds;
-  Stopwatch watch;
-  std::vector<float> probabilities;
-  for (std::size_t first = 0; first < cloud.order.size(); first += kBlock) {
-    const std::size_t count = std::min(kBlock, cloud.order.size() - first);
-    decide(model.network, model.classes,
-           std::span(cloud.values).subspan(first * inputs, count * inputs),
-           std::span(cloud.order).subspan(first, count), probabilities, result);
-  }
-  result.seconds_network = watch.lap();
-  finish(positions, model, nullptr, result);
-  return result;
+  const auto rows_of = [&](std::size_t begin, std::size_t end) {
+    return std::span(cloud.values).subspan(begin * width, (end - begin) * width);
+  };
+  return classify_rows(positions, cloud.order, rows_of, model, nullptr);
 }
 
 }  // namespace pcednet::detect

@@ -4,14 +4,11 @@
 #include <string>
 #include <vector>
 
+#include "pcednet/detect/describe.h"
 #include "pcednet/detect/model.h"
 #include "pcednet/detect/prepare.h"
 
 namespace pcednet::detect {
-
-struct ClassifyOptions {
-  bool exact = false;  ///< exact neighbourhoods instead of the fast engine
-};
 
 struct ClassCounts {
   std::size_t non_edge = 0, smooth = 0, sharp = 0, unlabelled = 0;
@@ -19,35 +16,25 @@ struct ClassCounts {
 
 /// What was found, per point of the cloud in its own order.
 struct Classification {
-  std::vector<std::uint8_t> classes;  ///< EdgeClass; kUnlabelled where the position is not finite
-  std::vector<float> p_sharp;         ///< probability of sharp-edge, 0 where unlabelled
-  std::vector<float> p_smooth;        ///< of smooth-edge; 0 throughout with a two-class model
-  ClassCounts counts;
-  std::string note;  ///< what the user should be told, or empty
-  double seconds_prepare = 0, seconds_describe = 0, seconds_network = 0, seconds_context = 0;
+  std::vector<std::uint8_t> classes = {};  ///< EdgeClass; kUnlabelled: the position is not finite
+  std::vector<float> p_sharp = {};         ///< probability of sharp-edge, 0 where unlabelled
+  std::vector<float> p_smooth = {};        ///< of smooth-edge; 0 throughout with a two-class model
+  ClassCounts counts = {};
+  std::string note = {};  ///< for the user, or empty
 };
+
+/// `points` points that are all unlabelled.
+Classification nothing_found(std::size_t points);
 
 /// Describes every point at every scale and lets the network decide: the class of the highest
 /// probability. Works block by block: the scale-space matrix is never held whole. If the model has
 /// a context network it decides in the end, on what was found around each point.
 /// The result is the same for any number of threads and any order of the points.
 Classification classify(const PreparedCloud& cloud, const EdgeModel& model,
-                        const ClassifyOptions& options = {}, const Progress* progress = nullptr);
-
-/// The scale-space matrix of a cloud as a whole, for several networks to classify.
-struct DescribedCloud {
-  std::size_t points = 0;                 ///< of the cloud
-  std::vector<std::uint32_t> order = {};  ///< the point that each row describes
-  std::vector<float> values = {};         ///< rows x scales x features
-  double seconds = 0;
-};
-
-/// Describes every point that has a position.
-DescribedCloud describe(const PreparedCloud& cloud, const gls::ScaleSpaceOptions& descriptor,
                         const Progress* progress = nullptr);
 
-/// What classify() finds for a cloud that has been described as the model wants it. Throws
-/// Error(kModelMismatch) if the rows are not of the model's size, or the positions not the cloud's.
+/// The same for a cloud that has been described as the model wants it. Throws Error(kModelMismatch)
+/// if the rows are not of the model's size, or the positions not the cloud's.
 Classification classify(const DescribedCloud& cloud, std::span<const Vec3> positions,
                         const EdgeModel& model);
 

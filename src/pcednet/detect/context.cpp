@@ -6,8 +6,10 @@
 #include <tuple>
 
 #include "pcednet/cloud/point_cloud.h"
+#include "pcednet/core/blocks.h"
 #include "pcednet/core/parallel.h"
 #include "pcednet/detect/decide.h"
+#include "pcednet/nn/predict.h"
 #include "pcednet/spatial/curve_order.h"
 
 namespace pcednet::detect {
@@ -16,7 +18,6 @@ namespace {
 constexpr double kReach = 1.2;    // the weight falls to nothing at so many r^2
 constexpr double kLittle = 1e-3;  // added to sums of probabilities, that they can be divided by
 constexpr double kSurest = 1e-6;  // probabilities nearer to 0 or 1 say no more
-constexpr std::size_t kBlock = 16 * 1024;
 
 /// The points that have a class, along a curve. Of points at one place the surer ones come first,
 /// whatever their numbers, so that it is the same for any numbering which of them are nearest.
@@ -147,15 +148,14 @@ void apply_context(const nn::Model& network, const std::vector<std::uint8_t>& cl
                    const Progress* progress) {
   const ContextMatrix matrix(positions, result, static_cast<int>(classes.size()));
   const auto points = matrix.points();
-  std::vector<float> rows(std::min(kBlock, points.size()) * matrix.width()), probabilities;
+  std::vector<float> rows(std::min(kBlock, points.size()) * matrix.width());
   Stage stage(progress, "context", points.size());
-  for (std::size_t first = 0; first < points.size(); first += kBlock) {
-    const auto targets = points.subspan(first, std::min(kBlock, points.size() - first));
-    const auto some = std::span(rows).first(targets.size() * matrix.width());
-    matrix.describe(first, first + targets.size(), some);
-    decide(network, classes, some, targets, probabilities, result);
-    stage.advance(targets.size());
-  }
+  for_each_block(points.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+    const auto some = std::span(rows).first((end - begin) * matrix.width());
+    matrix.describe(begin, end, some);
+    decide(points.subspan(begin, end - begin), nn::predict(network, some), classes, result);
+    stage.advance(end - begin);
+  });
 }
 
 }  // namespace pcednet::detect

@@ -3,33 +3,35 @@
 #include <algorithm>
 
 #include "pcednet/cloud/point_cloud.h"
-#include "pcednet/nn/predict.h"
 
 namespace pcednet::detect {
 namespace {
 
 /// Writes the network's answer for one point.
 void decide_point(std::span<const float> probabilities, const std::vector<std::uint8_t>& classes,
-                  std::size_t point, Classification& result) {
+                  std::size_t point, Classification& found) {
   std::size_t best = 0;
   for (std::size_t c = 0; c < classes.size(); ++c) {
     if (probabilities[c] > probabilities[best]) best = c;
-    if (classes[c] == kSharpEdge) result.p_sharp[point] = probabilities[c];
-    if (classes[c] == kSmoothEdge) result.p_smooth[point] = probabilities[c];
+    if (classes[c] == kSharpEdge) found.p_sharp[point] = probabilities[c];
+    if (classes[c] == kSmoothEdge) found.p_smooth[point] = probabilities[c];
   }
-  result.classes[point] = classes[best];
+  found.classes[point] = classes[best];
 }
 
 }  // namespace
 
-void decide(const nn::Model& network, const std::vector<std::uint8_t>& classes,
-            std::span<const float> rows, std::span<const std::uint32_t> targets,
-            std::vector<float>& probabilities, Classification& result) {
-  probabilities.resize(targets.size() * classes.size());
-  nn::predict_into(network, rows, probabilities);
-  for (std::size_t i = 0; i < targets.size(); ++i) {
-    decide_point(std::span(probabilities).subspan(i * classes.size(), classes.size()), classes,
-                 targets[i], result);
+Classification nothing_found(std::size_t points) {
+  return {.classes = std::vector<std::uint8_t>(points, kUnlabelled),
+          .p_sharp = std::vector<float>(points, 0.0f),
+          .p_smooth = std::vector<float>(points, 0.0f)};
+}
+
+void decide(std::span<const std::uint32_t> points, std::span<const float> probabilities,
+            const std::vector<std::uint8_t>& classes, Classification& found) {
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    decide_point(probabilities.subspan(i * classes.size(), classes.size()), classes, points[i],
+                 found);
   }
 }
 

@@ -36,21 +36,20 @@ void replace_comments(PointCloud& cloud, const EdgeModel& model) {
 
 }  // namespace
 
-std::vector<std::string> add_result(PointCloud& cloud, const PreparedCloud& prepared,
-                                    const Classification& result, const EdgeModel& model,
-                                    const ResultOptions& options) {
-  std::vector<std::string> notes;
+KeptInput add_result(PointCloud& cloud, const PreparedCloud& prepared, const Classification& result,
+                     const EdgeModel& model, const ResultOptions& options) {
+  KeptInput kept;
   const bool classified_before = find_attribute(cloud, "scalar_edge_class") != nullptr;
   if (cloud.has_labels() && !classified_before) {
     set_attribute(cloud, make_attribute("scalar_input_label", cloud.labels));
-    notes.push_back("the input's labels are kept as scalar_input_label");
+    kept.labels = true;
   }
   if (!prepared.made.empty()) cloud.normals = prepared.made;
   if (cloud.colours.empty() || options.class_colours) {
     cloud.colours.resize(cloud.size());
     std::transform(result.classes.begin(), result.classes.end(), cloud.colours.begin(), colour_of);
   } else {
-    notes.push_back("the input's colours are kept; --class-colours replaces them");
+    kept.colours = true;
   }
   std::vector<float> edge(result.classes.size());
   for (std::size_t i = 0; i < edge.size(); ++i) edge[i] = result.p_sharp[i] + result.p_smooth[i];
@@ -60,7 +59,7 @@ std::vector<std::string> add_result(PointCloud& cloud, const PreparedCloud& prep
   set_attribute(cloud, make_attribute("scalar_p_smooth", result.p_smooth));
   cloud.labels = result.classes;
   replace_comments(cloud, model);
-  return notes;
+  return kept;
 }
 
 }  // namespace pcednet::detect

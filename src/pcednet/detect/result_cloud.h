@@ -1,14 +1,16 @@
 #pragma once
 
-#include <string>
-#include <vector>
-
 #include "pcednet/detect/classify.h"
 
 namespace pcednet::detect {
 
 struct ResultOptions {
   bool class_colours = false;  ///< colour by class even if the cloud has colours
+};
+
+struct KeptInput {
+  bool labels = false;   ///< as scalar_input_label
+  bool colours = false;  ///< in place of those of the classes
 };
 
 /// Puts a classification into the cloud it was made of, under the names that viewers understand:
@@ -20,9 +22,8 @@ struct ResultOptions {
 ///
 /// with the colours of the paper where the cloud has none, normals that were estimated, and
 /// comments on version and model. Labels that the cloud had move to scalar_input_label. Returns
-/// what the user should be told about that.
-std::vector<std::string> add_result(PointCloud& cloud, const PreparedCloud& prepared,
-                                    const Classification& result, const EdgeModel& model,
-                                    const ResultOptions& options = {});
+/// what of the cloud's own was kept so.
+KeptInput add_result(PointCloud& cloud, const PreparedCloud& prepared, const Classification& result,
+                     const EdgeModel& model, const ResultOptions& options = {});
 
 }  // namespace pcednet::detect

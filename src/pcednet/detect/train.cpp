@@ -7,10 +7,9 @@
 
 #include "pcednet/cloud/edge_class.h"
 #include "pcednet/core/error.h"
-#include "pcednet/core/stopwatch.h"
+#include "pcednet/detect/describe.h"
 #include "pcednet/detect/outputs.h"
 #include "pcednet/detect/train_context.h"
-#include "pcednet/gls/engine.h"
 #include "pcednet/nn/distil.h"
 
 namespace pcednet::detect {
@@ -85,28 +84,24 @@ std::map<std::string, std::string> summary_of(const nn::TrainResult& result,
 
 Samples make_samples(std::span<const TrainingCloud> clouds,
                      const gls::ScaleSpaceOptions& descriptor, const Progress* progress) {
-  const auto scales = static_cast<std::size_t>(descriptor.scales);
-  const auto width = scales * static_cast<std::size_t>(gls::column_count(descriptor));
+  const std::size_t width = row_width(descriptor);
   const Progress cancel_only = without_report(progress);
   Samples samples{.descriptor = descriptor, .clouds = clouds.size()};
   for (const TrainingCloud& cloud : clouds) samples.points += cloud.cloud.positions.size();
   Stage stage(progress, "describe", samples.points);
-  std::vector<gls::FitStatus> status;
   for (const TrainingCloud& cloud : clouds) {
     check_labels(cloud);
-    const gls::OrientedPoints points{cloud.cloud.positions, cloud.cloud.normals};
-    const gls::ScaleSpace matrix(points, descriptor, &cancel_only);
-    if (const auto note = gls::note_on(descriptor, matrix.scales(), points.positions);
-        !note.empty()) {
+    const auto positions = cloud.cloud.positions;
+    const gls::ScaleSpace space({positions, cloud.cloud.normals}, descriptor, &cancel_only);
+    if (const auto note = gls::note_on(descriptor, space.scales(), positions); !note.empty()) {
       samples.notes.push_back(fmt::format("{}: {}", cloud.name, note));
     }
-    const auto targets = labelled_points(cloud, matrix.order());
+    const auto points = labelled_points(cloud, space.order());
     const std::size_t before = samples.values.size();
-    samples.values.resize(before + targets.size() * width);
-    status.resize(targets.size() * scales);
-    matrix.describe(targets, std::span(samples.values).subspan(before), status, &cancel_only);
-    for (const std::uint32_t i : targets) samples.labels.push_back(cloud.labels[i]);
-    stage.advance(cloud.cloud.positions.size());
+    samples.values.resize(before + points.size() * width);
+    describe(space, points, std::span(samples.values).subspan(before), &cancel_only);
+    for (const std::uint32_t i : points) samples.labels.push_back(cloud.labels[i]);
+    stage.advance(positions.size());
   }
   return samples;
 }
@@ -115,36 +110,16 @@ TrainedModel train(const std::string& name, std::span<const TrainingCloud> cloud
                    const TrainOptions& options,
                    const std::function<void(const nn::EpochReport&)>& on_epoch,
                    const Progress* progress) {
-  Stopwatch watch;
   const Samples samples = make_samples(clouds, options.descriptor, progress);
-  const double seconds_describe = watch.lap();
   TrainedModel trained = train(name, samples, options, on_epoch, progress);
   trained.notes = samples.notes;
-  trained.seconds_describe = seconds_describe;
-  if (!options.context || trained.cancelled) return trained;
-  watch.lap();
-  try {
-    nn::TrainResult context = train_context(trained.model, clouds, options, on_epoch, progress);
-    trained.cancelled = context.cancelled;
-    if (context.best_epoch > 0) trained.model.context = std::move(context.best);
-  } catch (const Error& error) {
-    // The network itself is good.
-    if (error.kind() == ErrorKind::kCancelled) {
-      trained.cancelled = true;
-    } else if (error.kind() == ErrorKind::kInsufficient) {
-      trained.no_context = error.what();
-    } else {
-      throw;
-    }
-  }
-  trained.seconds_context = watch.lap();
+  if (options.context) add_context(trained, clouds, options, on_epoch, progress);
   return trained;
 }
 
 TrainedModel train(const std::string& name, const Samples& samples, const TrainOptions& options,
                    const std::function<void(const nn::EpochReport&)>& on_epoch,
                    const Progress* progress) {
-  Stopwatch watch;
   TrainedModel trained;
   EdgeModel& model = trained.model;
   model.name = name;
@@ -171,7 +146,6 @@ TrainedModel train(const std::string& name, const Samples& samples, const TrainO
                                       options.teachers, on_epoch, progress);
   trained.cancelled = result.cancelled;
   trained.epochs = static_cast<int>(result.history.size());
-  trained.seconds_train = watch.lap();
   model.network = std::move(result.best);
   model.network.metadata = summary_of(result, samples);
   return trained;

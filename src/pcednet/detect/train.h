@@ -51,7 +51,6 @@ struct TrainedModel {
   int epochs = 0;                       ///< completed; a model of none is not worth keeping
   std::vector<std::string> notes = {};  ///< what the user should be told, one sentence each
   std::string no_context = {};          ///< why there is no context network though one was wanted
-  double seconds_describe = 0, seconds_train = 0, seconds_context = 0;
 };
 TrainedModel train(const std::string& name, std::span<const TrainingCloud> clouds,
                    const TrainOptions& options,

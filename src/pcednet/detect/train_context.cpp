@@ -1,5 +1,6 @@
 #include "pcednet/detect/train_context.h"
 
+#include "pcednet/core/error.h"
 #include "pcednet/detect/classify.h"
 #include "pcednet/detect/context.h"
 #include "pcednet/detect/outputs.h"
@@ -15,14 +16,14 @@ struct ContextSamples {
 };
 
 ContextSamples make_samples(const EdgeModel& model, std::span<const TrainingCloud> clouds,
-                            bool exact, const Progress* progress) {
+                            const Progress* progress) {
   std::size_t points = 0;
   for (const TrainingCloud& cloud : clouds) points += cloud.labels.size();
   const Progress cancel_only = without_report(progress);
   Stage stage(progress, "look around", points);
   ContextSamples samples;
   for (const TrainingCloud& cloud : clouds) {
-    const auto found = classify(cloud.cloud, model, {.exact = exact}, &cancel_only);
+    const auto found = classify(cloud.cloud, model, &cancel_only);
     const ContextMatrix matrix(cloud.cloud.positions, found,
                                static_cast<int>(model.classes.size()));
     const std::size_t count = matrix.points().size();
@@ -37,14 +38,11 @@ ContextSamples make_samples(const EdgeModel& model, std::span<const TrainingClou
   return samples;
 }
 
-}  // namespace
-
 nn::TrainResult train_context(const EdgeModel& model, std::span<const TrainingCloud> clouds,
                               const TrainOptions& options,
                               const std::function<void(const nn::EpochReport&)>& on_epoch,
                               const Progress* progress) {
-  const bool exact = options.descriptor.engine == gls::Engine::kExact;
-  const ContextSamples samples = make_samples(model, clouds, exact, progress);
+  const ContextSamples samples = make_samples(model, clouds, progress);
   const auto architecture = context_architecture(static_cast<int>(model.classes.size()));
   nn::TrainOptions training = options.training;
   training.sign_rule = {};
@@ -52,6 +50,29 @@ nn::TrainResult train_context(const EdgeModel& model, std::span<const TrainingCl
   training.start = nullptr;
   return nn::distil(architecture, {samples.values, samples.outputs}, training, options.teachers,
                     on_epoch, progress);
+}
+
+}  // namespace
+
+void add_context(TrainedModel& trained, std::span<const TrainingCloud> clouds,
+                 const TrainOptions& options,
+                 const std::function<void(const nn::EpochReport&)>& on_epoch,
+                 const Progress* progress) {
+  if (trained.cancelled) return;
+  try {
+    nn::TrainResult context = train_context(trained.model, clouds, options, on_epoch, progress);
+    trained.cancelled = context.cancelled;
+    if (context.best_epoch > 0) trained.model.context = std::move(context.best);
+  } catch (const Error& error) {
+    // The network itself is good.
+    if (error.kind() == ErrorKind::kCancelled) {
+      trained.cancelled = true;
+    } else if (error.kind() == ErrorKind::kInsufficient) {
+      trained.no_context = error.what();
+    } else {
+      throw;
+    }
+  }
 }
 
 }  // namespace pcednet::detect

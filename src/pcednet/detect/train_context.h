@@ -7,13 +7,14 @@
 
 namespace pcednet::detect {
 
-/// Trains the context network of `model`, which has none yet: classifies the clouds with the model
-/// and learns from what was found around their labelled points. `options` as for the model's own
-/// network; its architecture and symmetry are not used. A cancel during the training proper gives
-/// the best network so far, or one of no epoch.
-nn::TrainResult train_context(const EdgeModel& model, std::span<const TrainingCloud> clouds,
-                              const TrainOptions& options,
-                              const std::function<void(const nn::EpochReport&)>& on_epoch = {},
-                              const Progress* progress = nullptr);
+/// Trains a context network for the model, unless its own training was cancelled: classifies the
+/// clouds with the model and learns from what was found around their labelled points. `options` as
+/// for the model's own network; its architecture and symmetry are not used. After a cancel the
+/// model has the best context network so far, or none; TrainedModel::no_context says why there can
+/// be none.
+void add_context(TrainedModel& trained, std::span<const TrainingCloud> clouds,
+                 const TrainOptions& options,
+                 const std::function<void(const nn::EpochReport&)>& on_epoch = {},
+                 const Progress* progress = nullptr);
 
 }  // namespace pcednet::detect

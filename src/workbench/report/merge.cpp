@@ -167,9 +167,8 @@ fs::path find_cloud(const std::string& name, const fs::path& folder, const fs::p
   for (const fs::path& candidate : {fs::path(name), folder / name}) {
     if (fs::is_regular_file(candidate, error)) return fs::weakly_canonical(candidate);
   }
-  throw io::unreadable(
-      study,
-      fmt::format("its cloud {} is not there (--clouds-per-set 0 does without clouds)", name));
+  throw MissingCloud(ErrorKind::kUnreadable,
+                     fmt::format("{}: its cloud {} is not there", study.string(), name));
 }
 
 bool lists_cloud(const Json& result, const std::string& cloud) {

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "pcednet/core/error.h"
 #include "pcednet/core/progress.h"
 
 namespace pcednet::report {
@@ -14,6 +15,11 @@ struct MergeOptions {
   std::size_t clouds_per_set =
       4;  ///< the first so many of each set, of those with predictions; 0: none
   std::size_t points_per_cloud = 30000;  ///< of a larger cloud, a sample
+};
+
+/// Error(kUnreadable) for the file of a cloud, which MergeOptions::clouds_per_set 0 does without.
+class MissingCloud : public Error {
+  using Error::Error;
 };
 
 /// What a page shows.

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "pcednet/detect/prepare.h"
+#include "pcednet/gls/engine.h"
+
+namespace pcednet::detect {
+
+/// Points described at a time: enough to keep every thread busy, few enough for their rows to stay
+/// in the cache.
+constexpr std::size_t kBlock = 16 * 1024;
+
+/// Numbers that describe a point: scales x columns.
+std::size_t row_width(const gls::ScaleSpaceOptions& descriptor);
+
+/// Describes `points` into `rows`, row_width() numbers each; scales without a fit are 0.
+void describe(const gls::ScaleSpace& space, std::span<const std::uint32_t> points,
+              std::span<float> rows, const Progress* progress = nullptr);
+
+/// The scale-space matrix of a cloud as a whole, for several networks to classify.
+struct DescribedCloud {
+  std::size_t points = 0;                 ///< of the cloud
+  std::vector<std::uint32_t> order = {};  ///< the point that each row describes
+  std::vector<float> values = {};         ///< rows x scales x columns
+};
+
+/// Describes every point that has a position.
+DescribedCloud describe(const PreparedCloud& cloud, const gls::ScaleSpaceOptions& descriptor,
+                        const Progress* progress = nullptr);
+
+}  // namespace pcednet::detect
