@@ -6,6 +6,7 @@
 
 #include "pcednet/core/error.h"
 #include "pcednet/detect/result_cloud.h"
+#include "pcednet/formats/format.h"
 #include "workbench/annotate/painting.h"
 
 namespace pcednet::annotate {
@@ -22,11 +23,11 @@ bool is_plain(const std::string& name) {
          std::none_of(name.begin(), name.end(), is_odd);
 }
 
-bool fits(Saved what, const std::string& extension) {
-  if (what == Saved::kModel) return extension == ".safetensors";
-  if (what == Saved::kProject) return extension == ".json";
-  return extension == ".ply" || extension == ".pcd" || extension == ".obj" || extension == ".xyz" ||
-         extension == ".csv";
+bool fits(Saved what, const fs::path& name) {
+  if (what == Saved::kModel) return name.extension() == ".safetensors";
+  if (what == Saved::kProject) return name.extension() == ".json";
+  const formats::Format* format = formats::find_format(name);
+  return format && format->is_written();
 }
 
 }  // namespace
@@ -37,10 +38,11 @@ fs::path default_project(const fs::path& input) {
 
 fs::path saving_path(Saved what, const std::string& name, const fs::path& input,
                      const fs::path& project) {
-  if (!name.empty() && !(is_plain(name) && fits(what, fs::path(name).extension().string()))) {
+  if (!name.empty() && !(is_plain(name) && fits(what, name))) {
     throw Error(ErrorKind::kUsage,
-                "name: a file name without folder, ending in .ply, .pcd, .obj, .xyz or .csv for a "
-                "cloud, .safetensors for a model, .json for a project");
+                fmt::format("name: a file name without folder, ending in {} for a cloud, "
+                            ".safetensors for a model, .json for a project",
+                            formats::extensions_written(" or ")));
   }
   fs::path path = input.parent_path() / name;
   if (name.empty()) {
