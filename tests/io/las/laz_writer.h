@@ -37,7 +37,8 @@ inline std::vector<LazItem> test_items(const LasTestFile& file, unsigned version
   return items;
 }
 
-inline LasTestRecord laz_record(const std::vector<LazItem>& items, const LazTestLayout& layout) {
+inline LasTestRecord laz_test_record(const std::vector<LazItem>& items,
+                                     const LazTestLayout& layout) {
   const bool layered = items[0].type == 10;
   const std::uint32_t any = layout.size_zero ? 0 : UINT32_MAX;
   const std::uint32_t size = layout.fixed_size ? static_cast<std::uint32_t>(layout.chunks[0]) : any;
@@ -72,7 +73,7 @@ inline std::string test_chunk_table(const LazTestLayout& layout,
 /// A LAZ file with chunks as `layout` has them; header and table are the test's own.
 inline std::string laz_bytes(LasTestFile file, const LazTestLayout& layout) {
   const auto items = test_items(file, layout.version);
-  file.records.push_back(laz_record(items, layout));
+  file.records.push_back(laz_test_record(items, layout));
   const std::size_t stride = las_test_stride(file.format, file.extra);
   std::string whole = las_bytes(file);
   whole.resize(get_number<std::uint32_t>(whole, 96));

@@ -12,19 +12,18 @@
 namespace pcednet::io {
 namespace {
 
-constexpr std::size_t kDescriptorBytes = 192;
-
 /// The record that describes the extra bytes; the end of the records if there is none.
 auto descriptor_record(LasFile& file) {
   return std::find_if(file.records.begin(), file.records.end(),
-                      [](const LasRecord& r) { return r.is("LASF_Spec", 4); });
+                      [](const LasRecord& r) { return r.is(kExtraBytesRecord); });
 }
 
 /// Its descriptors, whole ones.
 std::string descriptors_of(LasFile& file) {
   const auto record = descriptor_record(file);
   if (record == file.records.end()) return {};
-  return record->data.substr(0, record->data.size() / kDescriptorBytes * kDescriptorBytes);
+  return record->data.substr(0,
+                             record->data.size() / las_descriptor::kBytes * las_descriptor::kBytes);
 }
 
 /// Builds the columns: those of the file's own fields first, then extra bytes for what is left.
@@ -71,9 +70,9 @@ class LayoutBuilder {
         lost.push_back(field);
       }
     }
-    put_number(file_.header, 105, static_cast<std::uint16_t>(end));
+    put_number(file_.header, las_header::kRecordLength, static_cast<std::uint16_t>(end));
     for (auto field = lost.rbegin(); field != lost.rend(); ++field) {
-      if (field->descriptor) descriptors_.erase(*field->descriptor, kDescriptorBytes);
+      if (field->descriptor) descriptors_.erase(*field->descriptor, las_descriptor::kBytes);
     }
   }
 
@@ -87,7 +86,8 @@ class LayoutBuilder {
     } else if (record != file_.records.end()) {
       record->data = std::move(descriptors_);
     } else {
-      file_.records.push_back({"LASF_Spec", 4, "extra bytes", std::move(descriptors_)});
+      file_.records.push_back(
+          new_record(kExtraBytesRecord, "extra bytes", std::move(descriptors_)));
     }
   }
 
@@ -213,7 +213,7 @@ class LayoutBuilder {
     const std::size_t length = file_.record_length() + size_of(type);
     if (length > UINT16_MAX) too_many();
     describe_undocumented();
-    put_number(file_.header, 105, static_cast<std::uint16_t>(length));
+    put_number(file_.header, las_header::kRecordLength, static_cast<std::uint16_t>(length));
     descriptors_ += las_extra_descriptor(field);
     return field;
   }
@@ -225,17 +225,18 @@ class LayoutBuilder {
   /// New extra bytes come after what the file has, which must be described for that.
   void describe_undocumented() {
     for (std::size_t at = descriptors_.size(); at > 0;) {
-      at -= kDescriptorBytes;
-      const bool no_bytes = descriptors_[at + 2] == 0 && descriptors_[at + 3] == 0;
-      if (no_bytes) descriptors_.erase(at, kDescriptorBytes);
+      at -= las_descriptor::kBytes;
+      const bool no_bytes = descriptors_[at + las_descriptor::kType] == 0 &&
+                            descriptors_[at + las_descriptor::kOptions] == 0;
+      if (no_bytes) descriptors_.erase(at, las_descriptor::kBytes);
     }
     LasFile described = file_;
-    described.records = {{"LASF_Spec", 4, "", descriptors_}};
+    described.records = {new_record(kExtraBytesRecord, "", descriptors_)};
     std::vector<std::string> warnings;
     const auto fields = las_extra_fields(described, warnings);
-    const std::size_t count = descriptors_.size() / kDescriptorBytes;
+    const std::size_t count = descriptors_.size() / las_descriptor::kBytes;
     if (fields.size() <= count) {
-      descriptors_.resize(fields.size() * kDescriptorBytes);
+      descriptors_.resize(fields.size() * las_descriptor::kBytes);
       return;
     }
     LasField rest = fields.back();
@@ -243,8 +244,8 @@ class LayoutBuilder {
       rest.components = std::min<std::size_t>(left, 255);
       left -= rest.components;
       std::string bytes = las_extra_descriptor(rest);
-      put_number<std::uint8_t>(bytes, 2, 0);
-      put_number(bytes, 3, static_cast<std::uint8_t>(rest.components));
+      put_number<std::uint8_t>(bytes, las_descriptor::kType, 0);
+      put_number(bytes, las_descriptor::kOptions, static_cast<std::uint8_t>(rest.components));
       descriptors_ += bytes;
     }
   }

@@ -8,8 +8,6 @@
 namespace pcednet::io {
 namespace {
 
-constexpr std::size_t kDescriptorBytes = 192;
-
 /// Collects fields that lie one after the other.
 class FieldList {
  public:
@@ -110,15 +108,15 @@ std::string to_file_name(const std::string& name) {
   for (const char* ours : kOurs) {
     if (name == fmt::format("scalar_{}", ours)) return ours;
   }
-  return name.substr(0, 32);
+  return name.substr(0, las_descriptor::kNameBytes);
 }
 
 LasField read_descriptor(std::string_view bytes) {
-  const unsigned type = number_at<std::uint8_t>(bytes, 2);
-  const std::string_view name = bytes.substr(4, 32);
+  const unsigned type = number_at<std::uint8_t>(bytes, las_descriptor::kType);
+  const std::string_view name = bytes.substr(las_descriptor::kName, las_descriptor::kNameBytes);
   LasField field{to_attribute_name(std::string(name.substr(0, name.find('\0'))))};
   if (type == 0 || type > 3 * kExtraTypes.size()) {
-    field.components = number_at<std::uint8_t>(bytes, 3);
+    field.components = number_at<std::uint8_t>(bytes, las_descriptor::kOptions);
   } else {
     field.type = kExtraTypes[(type - 1) % kExtraTypes.size()];
     field.components = 1 + (type - 1) / kExtraTypes.size();
@@ -150,9 +148,11 @@ std::vector<LasField> las_extra_fields(const LasFile& file, std::vector<std::str
     fields.push_back(std::move(field));
   };
   for (const LasRecord& record : file.records) {
-    if (!record.is("LASF_Spec", 4)) continue;
-    for (std::size_t at = 0; at + kDescriptorBytes <= record.data.size(); at += kDescriptorBytes) {
-      LasField field = read_descriptor(std::string_view(record.data).substr(at, kDescriptorBytes));
+    if (!record.is(kExtraBytesRecord)) continue;
+    for (std::size_t at = 0; at + las_descriptor::kBytes <= record.data.size();
+         at += las_descriptor::kBytes) {
+      LasField field =
+          read_descriptor(std::string_view(record.data).substr(at, las_descriptor::kBytes));
       if (field.components == 0) continue;
       if (offset + field.components * size_of(field.type) > end) {
         warnings.push_back(fmt::format(
@@ -169,16 +169,18 @@ std::vector<LasField> las_extra_fields(const LasFile& file, std::vector<std::str
 }
 
 std::string las_extra_descriptor(const LasField& field) {
-  std::string bytes(kDescriptorBytes, '\0');
+  std::string bytes(las_descriptor::kBytes, '\0');
   const auto place = std::find(kExtraTypes.begin(), kExtraTypes.end(), field.type);
   const auto type = static_cast<std::uint8_t>(1 + (place - kExtraTypes.begin()));
   const bool plain = field.components == 1;
-  put_number<std::uint8_t>(bytes, 2, plain ? type : 0);
+  put_number<std::uint8_t>(bytes, las_descriptor::kType, plain ? type : 0);
   put_number<std::uint8_t>(
-      bytes, 3, plain ? 0 : static_cast<std::uint8_t>(field.components * size_of(field.type)));
-  to_file_name(field.name).copy(&bytes[4], 32);
+      bytes, las_descriptor::kOptions,
+      plain ? 0 : static_cast<std::uint8_t>(field.components * size_of(field.type)));
+  to_file_name(field.name).copy(&bytes[las_descriptor::kName], las_descriptor::kNameBytes);
   if (field.name == "scalar_edge_class") {
-    std::string("0 non-edge 1 smooth 2 sharp").copy(&bytes[160], 32);
+    std::string("0 non-edge 1 smooth 2 sharp")
+        .copy(&bytes[las_descriptor::kDescription], las_descriptor::kDescriptionBytes);
   }
   return bytes;
 }

@@ -8,16 +8,27 @@
 namespace pcednet::io {
 namespace {
 
-constexpr std::size_t kLeastHeader = 227, kHeader13 = 235, kHeader14 = 375, kHeader15 = 393;
 constexpr unsigned kMostMinor = 5;
 constexpr const char* kElements[] = {"las_header", "las_vlrs", "las_evlrs", "las_before_points"};
 
 std::size_t header_bytes_of(bool extended) {
-  return extended ? 60 : 54;
+  return extended ? las_record::kExtendedHeadBytes : las_record::kHeadBytes;
 }
 
 std::string until_zero(std::string_view text) {
   return std::string(text.substr(0, text.find('\0')));
+}
+
+std::uint64_t data_length(std::string_view head, bool extended) {
+  return extended ? number_at<std::uint64_t>(head, las_record::kLength)
+                  : number_at<std::uint16_t>(head, las_record::kLength);
+}
+
+LasRecord make_record(std::string_view head, std::string data) {
+  const std::size_t description = head.size() - las_record::kDescriptionBytes;
+  return {until_zero(head.substr(las_record::kUserId, las_record::kUserIdBytes)),
+          number_at<std::uint16_t>(head, las_record::kRecordId),
+          until_zero(head.substr(description)), std::move(data), std::string(head)};
 }
 
 /// The records from `begin` on, which moves behind them; those that leave [begin, end) are left out
@@ -31,17 +42,13 @@ std::vector<LasRecord> read_records(const InputFile& file, std::uint64_t& begin,
   for (std::uint64_t i = 0; i < count; ++i) {
     const std::uint64_t room = end - std::min(begin, end);
     const std::string bytes = room < head ? "" : file.text(begin, head);
-    const std::uint64_t length =
-        extended ? number_at<std::uint64_t>(bytes, 20) : number_at<std::uint16_t>(bytes, 20);
+    const std::uint64_t length = data_length(bytes, extended);
     if (bytes.empty() || length > room - head) {
       warnings.push_back(fmt::format("{} of {} {} fit before byte {}: the others are left out", i,
                                      count, kind, end));
       break;
     }
-    const std::string_view view = bytes;
-    records.push_back({until_zero(view.substr(2, 16)), number_at<std::uint16_t>(view, 18),
-                       until_zero(view.substr(head - 32, 32)), file.text(begin + head, length),
-                       bytes});
+    records.push_back(make_record(bytes, file.text(begin + head, length)));
     begin += head + length;
   }
   return records;
@@ -52,26 +59,28 @@ void check_header(const InputFile& file, LasFile& las) {
     throw unreadable(file.path(), fmt::format("byte {}: {}", byte, what));
   };
   const std::string& header = las.header;
-  if (header.size() < kLeastHeader) fail(header.size(), "ends within the LAS header");
-  const unsigned major = number_at<std::uint8_t>(header, 24);
+  if (header.size() < las_header::kLeastBytes) fail(header.size(), "ends within the LAS header");
+  const unsigned major = number_at<std::uint8_t>(header, las_header::kMajorVersion);
   if (major != 1 || las.minor_version() > kMostMinor) {
-    fail(24,
+    fail(las_header::kMajorVersion,
          fmt::format("LAS {}.{}; 1.0 to 1.{} are read", major, las.minor_version(), kMostMinor));
   }
   if (las.point_format() >= kLasFormats) {
-    fail(104, fmt::format("point format {}; 0 to 10 are read", las.point_format()));
+    fail(las_header::kPointFormat,
+         fmt::format("point format {}; 0 to 10 are read", las.point_format()));
   }
   if (las.record_length() < las_format_bytes(las.point_format())) {
-    fail(105, fmt::format("points of {} bytes; format {} needs {}", las.record_length(),
-                          las.point_format(), las_format_bytes(las.point_format())));
+    fail(las_header::kRecordLength,
+         fmt::format("points of {} bytes; format {} needs {}", las.record_length(),
+                     las.point_format(), las_format_bytes(las.point_format())));
   }
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const double scale = las.scale(axis);
     if (!std::isfinite(scale) || scale == 0.0) {
-      fail(131 + 8 * axis, fmt::format("a scale of {}", scale));
+      fail(las_header::kScales + 8 * axis, fmt::format("a scale of {}", scale));
     }
     if (!std::isfinite(las.offset(axis))) {
-      fail(155 + 8 * axis, fmt::format("an offset of {}", las.offset(axis)));
+      fail(las_header::kOffsets + 8 * axis, fmt::format("an offset of {}", las.offset(axis)));
     }
   }
 }
@@ -79,11 +88,11 @@ void check_header(const InputFile& file, LasFile& las) {
 /// The extended records: as many as LAS 1.4 counts, or only that of the waveforms (LAS 1.3).
 void read_extended(const InputFile& file, LasFile& las, std::vector<std::string>& warnings) {
   if (las.minor_version() < 3) return;
-  auto begin = number_at<std::uint64_t>(las.header, 227);
+  auto begin = number_at<std::uint64_t>(las.header, las_header::kWaveforms);
   std::uint32_t count = begin > 0 ? 1 : 0;
-  if (las.counts_wide() && number_at<std::uint32_t>(las.header, 243) > 0) {
-    begin = number_at<std::uint64_t>(las.header, 235);
-    count = number_at<std::uint32_t>(las.header, 243);
+  if (las.counts_wide() && number_at<std::uint32_t>(las.header, las_header::kExtendedCount) > 0) {
+    begin = number_at<std::uint64_t>(las.header, las_header::kExtendedRecords);
+    count = number_at<std::uint32_t>(las.header, las_header::kExtendedCount);
   }
   if (count == 0) return;
   if (begin < las.points_offset()) {
@@ -111,13 +120,9 @@ std::vector<LasRecord> parse_records(std::string_view bytes, bool extended) {
   const std::size_t head = header_bytes_of(extended);
   std::vector<LasRecord> records;
   while (bytes.size() >= head) {
-    const std::uint64_t length =
-        extended ? number_at<std::uint64_t>(bytes, 20) : number_at<std::uint16_t>(bytes, 20);
+    const std::uint64_t length = data_length(bytes, extended);
     if (length > bytes.size() - head) break;
-    records.push_back({until_zero(bytes.substr(2, 16)), number_at<std::uint16_t>(bytes, 18),
-                       until_zero(bytes.substr(head - 32, 32)),
-                       std::string(bytes.substr(head, length)),
-                       std::string(bytes.substr(0, head))});
+    records.push_back(make_record(bytes.substr(0, head), std::string(bytes.substr(head, length))));
     bytes.remove_prefix(head + length);
   }
   return records;
@@ -133,23 +138,28 @@ std::string element_bytes(const PointCloud& cloud, const std::string& name) {
 
 }  // namespace
 
+LasRecord new_record(const LasRecordKind& kind, std::string description, std::string data) {
+  return {std::string(kind.user_id), kind.record_id, std::move(description), std::move(data)};
+}
+
 bool LasFile::counts_wide() const {
-  return minor_version() >= 4 && header.size() >= kHeader14;
+  return minor_version() >= 4 && header.size() >= las_header::kBytes14;
 }
 
 bool LasFile::has_time_range() const {
-  return minor_version() >= 5 && header.size() >= kHeader15;
+  return minor_version() >= 5 && header.size() >= las_header::kBytes15;
 }
 
 std::uint64_t LasFile::point_count() const {
-  const std::uint64_t wide = counts_wide() ? number_at<std::uint64_t>(header, 247) : 0;
-  return wide > 0 ? wide : number_at<std::uint32_t>(header, 107);
+  const std::uint64_t wide =
+      counts_wide() ? number_at<std::uint64_t>(header, las_header::kPointCount64) : 0;
+  return wide > 0 ? wide : number_at<std::uint32_t>(header, las_header::kPointCount32);
 }
 
 void LasFile::set_point_count(std::uint64_t count) {
   const bool narrow = (point_format() < 6 || !counts_wide()) && count <= UINT32_MAX;
-  put_number(header, 107, static_cast<std::uint32_t>(narrow ? count : 0));
-  if (counts_wide()) put_number(header, 247, count);
+  put_number(header, las_header::kPointCount32, static_cast<std::uint32_t>(narrow ? count : 0));
+  if (counts_wide()) put_number(header, las_header::kPointCount64, count);
 }
 
 bool begins_as_las(std::string_view start) {
@@ -158,32 +168,35 @@ bool begins_as_las(std::string_view start) {
 
 LasFile read_las_file(const InputFile& file, std::vector<std::string>& warnings) {
   LasFile las;
-  las.header = file.text(0, kLeastHeader);
+  las.header = file.text(0, las_header::kLeastBytes);
   if (!begins_as_las(las.header)) {
     throw unreadable(file.path(), "not a LAS file: it must begin with LASF");
   }
-  const std::size_t promised = number_at<std::uint16_t>(las.header, 94);
+  const std::size_t promised = number_at<std::uint16_t>(las.header, las_header::kHeaderBytes);
   const unsigned minor = las.minor_version();
-  const std::size_t needed = minor >= 5 ? kHeader15 : minor == 4 ? kHeader14 : kLeastHeader;
-  if (las.header.size() == kLeastHeader && promised < needed) {
+  const std::size_t needed = minor >= 5   ? las_header::kBytes15
+                             : minor == 4 ? las_header::kBytes14
+                                          : las_header::kLeastBytes;
+  if (las.header.size() == las_header::kLeastBytes && promised < needed) {
     warnings.push_back(fmt::format("the header calls itself {} bytes, version 1.{} has {}",
                                    promised, minor, needed));
   }
-  las.header = file.text(0, std::max(promised, kLeastHeader));
+  las.header = file.text(0, std::max(promised, las_header::kLeastBytes));
   check_header(file, las);
-  const auto narrow = number_at<std::uint32_t>(las.header, 107);
+  const auto narrow = number_at<std::uint32_t>(las.header, las_header::kPointCount32);
   if (narrow > 0 && narrow != las.point_count()) {
     warnings.push_back(fmt::format("the header counts {} points and, in 64 bits, {}: these hold",
                                    narrow, las.point_count()));
   }
   const std::uint64_t end = las.points_offset();
   if (end < las.header.size() || end > file.size()) {
-    throw unreadable(file.path(),
-                     fmt::format("byte 96: points from byte {} on, of {}", end, file.size()));
+    throw unreadable(file.path(), fmt::format("byte {}: points from byte {} on, of {}",
+                                              las_header::kPointsOffset, end, file.size()));
   }
   std::uint64_t at = las.header.size();
   las.records =
-      read_records(file, at, end, number_at<std::uint32_t>(las.header, 100), false, warnings);
+      read_records(file, at, end, number_at<std::uint32_t>(las.header, las_header::kRecordCount),
+                   false, warnings);
   las.before_points = file.text(at, end - at);
   read_extended(file, las, warnings);
   if (las.compressed()) {
@@ -199,22 +212,27 @@ std::uint64_t las_points_limit(const InputFile& file, const LasFile& las) {
   const auto stop_at = [&](std::uint64_t begin) {
     if (begin >= las.points_offset()) limit = std::min(limit, begin);
   };
-  if (las.minor_version() >= 3) stop_at(number_at<std::uint64_t>(las.header, 227));
-  if (las.counts_wide()) stop_at(number_at<std::uint64_t>(las.header, 235));
+  if (las.minor_version() >= 3) {
+    stop_at(number_at<std::uint64_t>(las.header, las_header::kWaveforms));
+  }
+  if (las.counts_wide())
+    stop_at(number_at<std::uint64_t>(las.header, las_header::kExtendedRecords));
   return limit;
 }
 
 bool place_extended_records(LasFile& file, std::uint64_t begin) {
-  if (file.minor_version() < 3 || file.header.size() < kHeader13) return false;
+  if (file.minor_version() < 3 || file.header.size() < las_header::kBytes13) return false;
   std::uint64_t waves = 0, at = begin;
   for (const LasRecord& record : file.extended_records) {
-    if (record.is("LASF_Spec", 65535)) waves = at;
+    if (record.is(kWaveformsRecord)) waves = at;
     at += header_bytes_of(true) + record.data.size();
   }
-  put_number(file.header, 227, waves);
+  put_number(file.header, las_header::kWaveforms, waves);
   if (!file.counts_wide()) return true;
-  put_number<std::uint64_t>(file.header, 235, file.extended_records.empty() ? 0 : begin);
-  put_number(file.header, 243, static_cast<std::uint32_t>(file.extended_records.size()));
+  put_number<std::uint64_t>(file.header, las_header::kExtendedRecords,
+                            file.extended_records.empty() ? 0 : begin);
+  put_number(file.header, las_header::kExtendedCount,
+             static_cast<std::uint32_t>(file.extended_records.size()));
   return true;
 }
 
@@ -224,14 +242,16 @@ std::string las_record_bytes(const std::vector<LasRecord>& records, bool extende
     std::string head = record.head;
     if (head.size() != header_bytes_of(extended)) {
       head.assign(header_bytes_of(extended), '\0');
-      head.replace(2, 16, fixed(record.user_id, 16));
-      put_number(head, 18, record.record_id);
-      head.replace(head.size() - 32, 32, fixed(record.description, 32));
+      using namespace las_record;
+      head.replace(kUserId, kUserIdBytes, fixed(record.user_id, kUserIdBytes));
+      put_number(head, kRecordId, record.record_id);
+      head.replace(head.size() - kDescriptionBytes, kDescriptionBytes,
+                   fixed(record.description, kDescriptionBytes));
     }
     if (extended) {
-      put_number<std::uint64_t>(head, 20, record.data.size());
+      put_number<std::uint64_t>(head, las_record::kLength, record.data.size());
     } else {
-      put_number(head, 20, static_cast<std::uint16_t>(record.data.size()));
+      put_number(head, las_record::kLength, static_cast<std::uint16_t>(record.data.size()));
     }
     bytes += head + record.data;
   }
@@ -256,8 +276,9 @@ void attach_las_file(PointCloud& cloud, const LasFile& file) {
 LasFile attached_las_file(const PointCloud& cloud) {
   LasFile file;
   file.header = element_bytes(cloud, kElements[0]);
-  const bool sound = file.header.size() >= kLeastHeader && file.header.size() <= UINT16_MAX &&
-                     file.minor_version() <= kMostMinor && file.point_format() < kLasFormats &&
+  const bool sound = file.header.size() >= las_header::kLeastBytes &&
+                     file.header.size() <= UINT16_MAX && file.minor_version() <= kMostMinor &&
+                     file.point_format() < kLasFormats &&
                      file.record_length() >= las_format_bytes(file.point_format());
   if (!sound) return {};
   for (std::size_t axis = 0; axis < 3; ++axis) {

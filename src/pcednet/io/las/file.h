@@ -10,6 +10,7 @@
 
 #include "pcednet/cloud/point_cloud.h"
 #include "pcednet/io/input_file.h"
+#include "pcednet/io/las/offsets.h"
 
 namespace pcednet::io {
 
@@ -32,10 +33,12 @@ struct LasRecord {
   std::string data = {};
   std::string head = {};  ///< all before the data, as the file has it; empty: a new record
 
-  bool is(std::string_view user, std::uint16_t id) const {
-    return user_id == user && record_id == id;
+  bool is(const LasRecordKind& kind) const {
+    return user_id == kind.user_id && record_id == kind.record_id;
   }
 };
+
+LasRecord new_record(const LasRecordKind& kind, std::string description, std::string data);
 
 /// The number of type T at `offset` of little-endian bytes (the only order LAS has).
 template <typename T>
@@ -61,19 +64,34 @@ struct LasFile {
   std::vector<LasRecord> records = {}, extended_records = {};
   std::string before_points = {};  ///< bytes behind the records that belong to none of them
 
-  unsigned minor_version() const { return number_at<std::uint8_t>(header, 25); }
-  unsigned point_format() const { return number_at<std::uint8_t>(header, 104) & 0x3FU; }
-  bool compressed() const { return (number_at<std::uint8_t>(header, 104) & 0xC0U) != 0; }
-  std::size_t record_length() const { return number_at<std::uint16_t>(header, 105); }
-  std::uint64_t points_offset() const { return number_at<std::uint32_t>(header, 96); }
+  unsigned minor_version() const {
+    return number_at<std::uint8_t>(header, las_header::kMinorVersion);
+  }
+  unsigned point_format() const {
+    return number_at<std::uint8_t>(header, las_header::kPointFormat) & las_header::kFormatBits;
+  }
+  bool compressed() const {
+    return (number_at<std::uint8_t>(header, las_header::kPointFormat) &
+            las_header::kCompressedBits) != 0;
+  }
+  std::size_t record_length() const {
+    return number_at<std::uint16_t>(header, las_header::kRecordLength);
+  }
+  std::uint64_t points_offset() const {
+    return number_at<std::uint32_t>(header, las_header::kPointsOffset);
+  }
   /// Whether the header has the 64-bit counts of LAS 1.4.
   bool counts_wide() const;
   /// Whether it has the range of the times (LAS 1.5).
   bool has_time_range() const;
   std::uint64_t point_count() const;
   void set_point_count(std::uint64_t count);
-  double scale(std::size_t axis) const { return number_at<double>(header, 131 + 8 * axis); }
-  double offset(std::size_t axis) const { return number_at<double>(header, 155 + 8 * axis); }
+  double scale(std::size_t axis) const {
+    return number_at<double>(header, las_header::kScales + 8 * axis);
+  }
+  double offset(std::size_t axis) const {
+    return number_at<double>(header, las_header::kOffsets + 8 * axis);
+  }
 };
 
 constexpr unsigned kLasFormats = 11;

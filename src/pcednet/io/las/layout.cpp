@@ -59,7 +59,9 @@ BoundingBox box_of(const PartOutline& outline) {
 
 LasFile with_digits(LasFile file, int digits) {
   const double scale = digits < 0 ? std::pow(10.0, -digits) : 1.0 / std::pow(10.0, digits);
-  for (std::size_t axis = 0; axis < 3; ++axis) put_number(file.header, 131 + 8 * axis, scale);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    put_number(file.header, las_header::kScales + 8 * axis, scale);
+  }
   return file;
 }
 
@@ -70,7 +72,7 @@ bool choose_scale(const PartOutline& outline, const BoundingBox& box, LasFile& f
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const int a = static_cast<int>(axis);
     const double middle = box.empty() ? 0.0 : std::round(box.min[a] / 2 + box.max[a] / 2);
-    put_number(file.header, 155 + 8 * axis, middle);
+    put_number(file.header, las_header::kOffsets + 8 * axis, middle);
   }
   std::vector<LasFile> candidates;
   for (int digits = kLeastDigits; digits <= kMostDigits; ++digits) {
@@ -95,14 +97,14 @@ bool choose_scale(const PartOutline& outline, const BoundingBox& box, LasFile& f
 
 LasFile new_file(bool with_colours) {
   LasFile file;
-  file.header.assign(375, '\0');
-  file.header.replace(0, 4, "LASF");
-  put_number<std::uint16_t>(file.header, 6, 16);  // the coordinate system, if any, is WKT
-  put_number<std::uint8_t>(file.header, 24, 1);
-  put_number<std::uint8_t>(file.header, 25, 4);
-  file.header.replace(26, 7, "pcednet");
-  file.header.replace(58, 7, "pcednet");
-  put_number<std::uint8_t>(file.header, 104, with_colours ? 7 : 6);
+  file.header.assign(las_header::kBytes14, '\0');
+  file.header.replace(las_header::kSignature, 4, "LASF");
+  put_number<std::uint16_t>(file.header, las_header::kGlobalEncoding, las_header::kWktBit);
+  put_number<std::uint8_t>(file.header, las_header::kMajorVersion, 1);
+  put_number<std::uint8_t>(file.header, las_header::kMinorVersion, 4);
+  file.header.replace(las_header::kSystem, 7, "pcednet");
+  file.header.replace(las_header::kSoftware, 7, "pcednet");
+  put_number<std::uint8_t>(file.header, las_header::kPointFormat, with_colours ? 7 : 6);
   return file;
 }
 

@@ -58,8 +58,9 @@ void Point10::code(Coder& coder, std::byte* item) {
   }
   changed = coder.symbol(changed_, changed);
   const auto code_symbol = [&](unsigned flag, LazyModels& models, std::size_t at) {
-    if (changed & flag)
+    if (changed & flag) {
       last[at] = std::byte(coder.symbol(models[byte(last + at)], byte(item + at)));
+    }
   };
   code_symbol(32, flags_, 14);
   const unsigned r = byte(last + 14) & 7, n = byte(last + 14) >> 3 & 7;

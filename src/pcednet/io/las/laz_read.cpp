@@ -29,14 +29,16 @@ void LazReader::fail(std::uint64_t byte, const std::string& what) const {
 LazReader::LazReader(const InputFile& file, LasFile& las, std::vector<std::string>& warnings)
     : file_(file), begin_(las.points_offset()), record_length_(las.record_length()) {
   const auto found = std::find_if(las.records.begin(), las.records.end(),
-                                  [](const LasRecord& r) { return r.is("laszip encoded", 22204); });
-  if (found == las.records.end()) fail(104, "compressed, but no record says how");
+                                  [](const LasRecord& r) { return r.is(kLaszipRecord); });
+  if (found == las.records.end()) {
+    fail(las_header::kPointFormat, "compressed, but no record says how");
+  }
   read_items(found->data);
   const std::uint64_t points = las.point_count();
   const bool holds_all = compressor_ == kUnchunked ? may_stand_for(file_.size() - begin_, points)
                                                    : points / kSymbolsPerByte <= file_.size();
   if (!holds_all) {
-    fail(las.counts_wide() ? 247 : 107,
+    fail(las.counts_wide() ? las_header::kPointCount64 : las_header::kPointCount32,
          fmt::format("{} points in a file of {} bytes", points, file_.size()));
   }
   if (points == 0) {
@@ -52,21 +54,24 @@ void LazReader::read_items(const std::string& record) {
   const auto refuse = [&](const std::string& what) {
     throw unreadable(file_.path(), "record laszip encoded: " + what);
   };
-  compressor_ = number_at<std::uint16_t>(record, 0);
+  compressor_ = number_at<std::uint16_t>(record, laz_record::kCompressor);
   if (compressor_ < kUnchunked || compressor_ > kLayered) {
     refuse(fmt::format("compressor {}; 1 to 3 are read", compressor_));
   }
-  if (number_at<std::uint16_t>(record, 2) != 0) refuse("a coder that is not arithmetic");
-  chunk_size_ = number_at<std::uint32_t>(record, 12);
+  if (number_at<std::uint16_t>(record, laz_record::kCoder) != 0) {
+    refuse("a coder that is not arithmetic");
+  }
+  chunk_size_ = number_at<std::uint32_t>(record, laz_record::kChunkSize);
   if (chunk_size_ == 0) chunk_size_ = kVariable;  // as LAStools writes it into COPC
-  const std::size_t count = number_at<std::uint16_t>(record, 32);
-  if (record.size() < 34 + 6 * count) refuse("ends early");
+  const std::size_t count = number_at<std::uint16_t>(record, laz_record::kItemCount);
+  if (record.size() < laz_record::kItems + laz_record::kItemBytes * count) refuse("ends early");
   std::size_t offset = 0;
   static constexpr std::size_t kSizes[] = {0, 0, 0, 0, 0, 0, 20, 8, 6, 29, 30, 6, 8, 29, 0};
   for (std::size_t i = 0; i < count; ++i) {
-    LazItem item{number_at<std::uint16_t>(record, 34 + 6 * i),
-                 number_at<std::uint16_t>(record, 36 + 6 * i),
-                 number_at<std::uint16_t>(record, 38 + 6 * i), offset};
+    const std::size_t at = laz_record::kItems + laz_record::kItemBytes * i;
+    LazItem item{number_at<std::uint16_t>(record, at + laz_record::kItemType),
+                 number_at<std::uint16_t>(record, at + laz_record::kItemSize),
+                 number_at<std::uint16_t>(record, at + laz_record::kItemVersion), offset};
     const bool layered = compressor_ == kLayered;
     const bool known = item.type == 0 || (item.type >= 6 && item.type <= 14);
     const bool sound = known && (item.type >= 10) == layered && item.size > 0 &&
@@ -96,9 +101,10 @@ std::optional<std::uint64_t> LazReader::table_place() const {
 }
 
 std::vector<LazReader::Entry> LazReader::read_table(std::uint64_t place) const {
-  const std::size_t count = number_at<std::uint32_t>(file_.text(place, 8), 4);
+  const std::size_t count =
+      number_at<std::uint32_t>(file_.text(place, laz_table::kChunks), laz_table::kChunkCount);
   if (count > (place - begin_) / record_length_) fail(place, fmt::format("{} chunks", count));
-  const std::string bytes = file_.text(place + 8, 16 * std::uint64_t{count} + 64);
+  const std::string bytes = file_.text(place + laz_table::kChunks, 16 * std::uint64_t{count} + 64);
   laz::Decoder decoder;
   decoder.start(std::as_bytes(std::span(bytes)));
   laz::IntegerModel numbers(32, 2);
@@ -196,7 +202,8 @@ void LazReader::recover(LasFile& las, std::vector<std::string>& warnings) {
     last_uncounted = chunk_size_ != kVariable && !found.empty();
     if (last_uncounted) found.pop_back();
   }
-  const std::size_t count_byte = las.counts_wide() ? 247 : 107;
+  const std::size_t count_byte =
+      las.counts_wide() ? las_header::kPointCount64 : las_header::kPointCount32;
   if (found.empty() && !place && end > begin_ + 8 + record_length_) {
     fail(count_byte, fmt::format("no points, though {} bytes of compressed ones follow: the "
                                  "writing of the file was interrupted, and no whole chunk is found",

@@ -33,8 +33,8 @@ std::vector<LazItem> items_of(const LasFile& file) {
 }
 
 std::string chunk_table(const std::vector<std::string::size_type>& sizes) {
-  std::string table(8, '\0');
-  put_number(table, 4, static_cast<std::uint32_t>(sizes.size()));
+  std::string table(laz_table::kChunks, '\0');
+  put_number(table, laz_table::kChunkCount, static_cast<std::uint32_t>(sizes.size()));
   laz::Encoder encoder;
   laz::IntegerModel numbers(32, 2);
   std::int32_t last = 0;
@@ -48,20 +48,22 @@ std::string chunk_table(const std::vector<std::string::size_type>& sizes) {
 
 void add_laz_record(LasFile& file) {
   const auto items = items_of(file);
-  std::string data(34 + 6 * items.size(), '\0');
-  put_number<std::uint16_t>(data, 0, file.point_format() < 6 ? 2 : 3);
-  put_number<std::uint8_t>(data, 4, 3);  // the version of LASzip whose format this is
-  put_number<std::uint8_t>(data, 5, 4);
-  put_number<std::uint32_t>(data, 12, kChunk);
-  put_number<std::int64_t>(data, 16, -1);
-  put_number<std::int64_t>(data, 24, -1);
-  put_number(data, 32, static_cast<std::uint16_t>(items.size()));
+  std::string data(laz_record::kItems + laz_record::kItemBytes * items.size(), '\0');
+  put_number<std::uint16_t>(data, laz_record::kCompressor, file.point_format() < 6 ? 2 : 3);
+  // The version of LASzip whose format this is.
+  put_number<std::uint8_t>(data, laz_record::kMajorVersion, 3);
+  put_number<std::uint8_t>(data, laz_record::kMinorVersion, 4);
+  put_number<std::uint32_t>(data, laz_record::kChunkSize, kChunk);
+  put_number<std::int64_t>(data, laz_record::kSpecialCount, -1);
+  put_number<std::int64_t>(data, laz_record::kSpecialOffset, -1);
+  put_number(data, laz_record::kItemCount, static_cast<std::uint16_t>(items.size()));
   for (std::size_t i = 0; i < items.size(); ++i) {
-    put_number(data, 34 + 6 * i, static_cast<std::uint16_t>(items[i].type));
-    put_number(data, 36 + 6 * i, static_cast<std::uint16_t>(items[i].size));
-    put_number(data, 38 + 6 * i, static_cast<std::uint16_t>(items[i].version));
+    const std::size_t at = laz_record::kItems + laz_record::kItemBytes * i;
+    put_number(data, at + laz_record::kItemType, static_cast<std::uint16_t>(items[i].type));
+    put_number(data, at + laz_record::kItemSize, static_cast<std::uint16_t>(items[i].size));
+    put_number(data, at + laz_record::kItemVersion, static_cast<std::uint16_t>(items[i].version));
   }
-  file.records.push_back({"laszip encoded", 22204, "", std::move(data)});
+  file.records.push_back(new_record(kLaszipRecord, "", std::move(data)));
 }
 
 LazPointWriter::LazPointWriter(OutputFile& out, const LasFile& file, std::uint64_t offset)

@@ -137,8 +137,9 @@ void check_las_points(const InputFile& file, LasFile& las, std::vector<std::stri
   std::uint64_t room = (las_points_limit(file, las) - begin) / las.record_length();
   if (!las.counts_wide()) room = std::min<std::uint64_t>(room, UINT32_MAX);
   // Extended records whose place the header does not tell may be what stands behind the points.
-  const bool all_found = !las.counts_wide() ||
-                         las.extended_records.size() == number_at<std::uint32_t>(las.header, 243);
+  const bool all_found =
+      !las.counts_wide() || las.extended_records.size() ==
+                                number_at<std::uint32_t>(las.header, las_header::kExtendedCount);
   if (room <= count || !all_found) return;
   if (count > 0) {
     warnings.push_back(
@@ -155,9 +156,9 @@ void check_las_points(const InputFile& file, LasFile& las, std::vector<std::stri
 }
 
 void forget_compression(LasFile& las) {
-  std::erase_if(las.records, [](const LasRecord& r) { return r.is("laszip encoded", 22204); });
+  std::erase_if(las.records, [](const LasRecord& r) { return r.is(kLaszipRecord); });
   const auto format = static_cast<std::uint8_t>(las.point_format());
-  put_number(las.header, 104, format);
+  put_number(las.header, las_header::kPointFormat, format);
 }
 
 bool has_narrow_colours(const PointCloud& cloud) {

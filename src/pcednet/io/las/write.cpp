@@ -68,7 +68,7 @@ void encode(const std::filesystem::path& path, const PointCloud& cloud, const La
 
 /// Counts by return number (index 0 for return 1), the bounds, and those of the times.
 struct Summary {
-  std::array<std::uint64_t, 15> by_return = {};
+  std::array<std::uint64_t, las_header::kReturns64> by_return = {};
   BoundingBox bounds = {};
   double least_time = INFINITY, most_time = -INFINITY;
 
@@ -81,7 +81,7 @@ struct Summary {
     const Attribute* returns = find_attribute(part, "ReturnNumber");
     for (std::size_t i = 0; i < part.size(); ++i) {
       const auto number = returns ? static_cast<std::size_t>(returns->value(i)) : 1;
-      if (number >= 1 && number <= 15) ++by_return[number - 1];
+      if (number >= 1 && number <= by_return.size()) ++by_return[number - 1];
       for (std::size_t axis = 0; axis < 3; ++axis) {
         const int a = static_cast<int>(axis);
         const double step = las_step(file, axis, part.positions[i][a]);
@@ -103,24 +103,28 @@ void update_header(LasFile& file, const Summary& summary, std::uint64_t count,
     throw Error(ErrorKind::kFailure,
                 fmt::format("LAS 1.{} cannot count {} points", file.minor_version(), count));
   }
-  put_number(header, 94, static_cast<std::uint16_t>(header.size()));
-  put_number(header, 96, static_cast<std::uint32_t>(points_offset));
-  put_number(header, 100, static_cast<std::uint32_t>(file.records.size()));
-  const bool narrow = number_at<std::uint32_t>(header, 107) == count;
-  for (std::size_t r = 0; r < 5; ++r) {
-    put_number(header, 111 + 4 * r, static_cast<std::uint32_t>(narrow ? summary.by_return[r] : 0));
+  put_number(header, las_header::kHeaderBytes, static_cast<std::uint16_t>(header.size()));
+  put_number(header, las_header::kPointsOffset, static_cast<std::uint32_t>(points_offset));
+  put_number(header, las_header::kRecordCount, static_cast<std::uint32_t>(file.records.size()));
+  const bool narrow = number_at<std::uint32_t>(header, las_header::kPointCount32) == count;
+  for (std::size_t r = 0; r < las_header::kReturns32; ++r) {
+    put_number(header, las_header::kByReturn32 + 4 * r,
+               static_cast<std::uint32_t>(narrow ? summary.by_return[r] : 0));
   }
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const int a = static_cast<int>(axis);
-    put_number(header, 179 + 16 * axis, count == 0 ? 0.0 : summary.bounds.max[a]);
-    put_number(header, 187 + 16 * axis, count == 0 ? 0.0 : summary.bounds.min[a]);
+    put_number(header, las_header::kBounds + 16 * axis, count == 0 ? 0.0 : summary.bounds.max[a]);
+    put_number(header, las_header::kBounds + 8 + 16 * axis,
+               count == 0 ? 0.0 : summary.bounds.min[a]);
   }
   if (!wide) return;
-  for (std::size_t r = 0; r < 15; ++r) put_number(header, 255 + 8 * r, summary.by_return[r]);
+  for (std::size_t r = 0; r < las_header::kReturns64; ++r) {
+    put_number(header, las_header::kByReturn64 + 8 * r, summary.by_return[r]);
+  }
   if (!file.has_time_range()) return;
   const bool timed = summary.least_time <= summary.most_time;
-  put_number(header, 375, timed ? summary.most_time : 0.0);
-  put_number(header, 383, timed ? summary.least_time : 0.0);
+  put_number(header, las_header::kLastTime, timed ? summary.most_time : 0.0);
+  put_number(header, las_header::kFirstTime, timed ? summary.least_time : 0.0);
 }
 
 class LasPartWriter : public PartWriter {
@@ -142,7 +146,7 @@ class LasPartWriter : public PartWriter {
     out_->write(file_.header + records);  // the header is written again at the end
     if (compress) compressed_.emplace(*out_, file_, points_offset_);
     // What each part is laid out by needs no other records.
-    std::erase_if(choices_.file.records, [](const auto& r) { return !r.is("LASF_Spec", 4); });
+    std::erase_if(choices_.file.records, [](const auto& r) { return !r.is(kExtraBytesRecord); });
     choices_.file.extended_records.clear();
     choices_.file.before_points.clear();
   }
@@ -172,7 +176,8 @@ class LasPartWriter : public PartWriter {
     update_header(file_, summary_, count_, points_offset_);
     std::string& header = file_.header;
     if (compressed_) {
-      put_number(header, 104, static_cast<std::uint8_t>(file_.point_format() | 0x80U));
+      put_number(header, las_header::kPointFormat,
+                 static_cast<std::uint8_t>(file_.point_format() | las_header::kCompressedBit));
     }
     if (place_extended_records(file_, end)) {
       out_->write(las_record_bytes(file_.extended_records, true));

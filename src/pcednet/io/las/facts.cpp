@@ -1,0 +1,67 @@
+#include "pcednet/io/las/facts.h"
+
+#include <algorithm>
+
+namespace pcednet::io {
+namespace {
+
+std::string text_at(const std::string& header, std::size_t offset) {
+  const std::string field = header.substr(offset, las_header::kTextBytes);
+  return field.substr(0, field.find('\0'));
+}
+
+/// The citations stand in one text, separated by bars.
+std::string coordinate_system(const LasFile& file) {
+  std::string citations;
+  for (const auto* records : {&file.records, &file.extended_records}) {
+    for (const LasRecord& record : *records) {
+      const std::string text = record.data.substr(0, record.data.find('\0'));
+      if (record.is(kWktRecord)) return text;
+      if (record.is(kGeoTextRecord)) citations = text;
+    }
+  }
+  std::replace(citations.begin(), citations.end(), '|', ' ');
+  return citations;
+}
+
+/// How many points have each value of a field.
+std::map<int, std::size_t> counts_of(const PointCloud& points, const char* name) {
+  std::map<int, std::size_t> counts;
+  const Attribute* field = find_attribute(points, name);
+  if (!field) return counts;
+  for (std::size_t i = 0; i < points.size(); ++i) ++counts[static_cast<int>(field->value(i))];
+  return counts;
+}
+
+}  // namespace
+
+LasFacts las_facts(const InputFile& file, const PointCloud& points) {
+  std::vector<std::string> warnings;  // read_las() gives them
+  const LasFile las = read_las_file(file, warnings);
+  LasFacts facts{.minor_version = las.minor_version(),
+                 .point_format = las.point_format(),
+                 .compressed = las.compressed(),
+                 .system = text_at(las.header, las_header::kSystem),
+                 .software = text_at(las.header, las_header::kSoftware),
+                 .created_day = number_at<std::uint16_t>(las.header, las_header::kCreationDay),
+                 .created_year = number_at<std::uint16_t>(las.header, las_header::kCreationYear),
+                 .scale = {las.scale(0), las.scale(1), las.scale(2)},
+                 .offset = {las.offset(0), las.offset(1), las.offset(2)},
+                 .coordinate_system = coordinate_system(las),
+                 .records = {},
+                 .extra_bytes = {},
+                 .points_by_return = counts_of(points, "ReturnNumber"),
+                 .points_by_class = counts_of(points, "Classification")};
+  for (const auto* records : {&las.records, &las.extended_records}) {
+    for (const LasRecord& record : *records) {
+      facts.records.push_back(
+          {record.user_id, record.record_id, record.description, record.data.size()});
+    }
+  }
+  for (const LasField& field : las_extra_fields(las, warnings)) {
+    facts.extra_bytes.push_back(field.name);
+  }
+  return facts;
+}
+
+}  // namespace pcednet::io
