@@ -1,0 +1,19 @@
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "pcednet/formats/cloud_facts.h"
+
+namespace pcednet::app {
+
+/// What `info` says of a file, for programs and for people.
+nlohmann::ordered_json json_of(const std::filesystem::path& path, const formats::CloudFacts& facts);
+std::string text_of(const std::filesystem::path& path, const formats::CloudFacts& facts);
+
+/// Names that both use.
+const char* name_of(ScalarType type);
+const char* name_of(io::E57Field::Kind kind);
+
+}  // namespace pcednet::app

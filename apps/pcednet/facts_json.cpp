@@ -1,0 +1,134 @@
+#include <fmt/format.h>
+
+#include <array>
+
+#include "facts.h"
+
+namespace pcednet::app {
+namespace {
+
+using nlohmann::ordered_json;
+
+ordered_json json_of(const Vec3& v) {
+  return {v.x(), v.y(), v.z()};
+}
+
+template <typename Value>
+ordered_json json_of(const std::map<Value, std::size_t>& counts) {
+  ordered_json described = ordered_json::object();
+  for (const auto& [value, count] : counts) described[std::to_string(value)] = count;
+  return described;
+}
+
+ordered_json json_of(const formats::AttributeFacts& attribute) {
+  ordered_json described = {{"name", attribute.name},
+                            {"type", name_of(attribute.type)},
+                            {"components", attribute.components}};
+  if (attribute.has_numbers) {
+    described["min"] = attribute.least;
+    described["max"] = attribute.largest;
+  }
+  return described;
+}
+
+ordered_json json_of(const io::E57Field& field) {
+  ordered_json described = {{"name", field.name}, {"kind", name_of(field.kind)}};
+  if (field.is_integer()) {
+    described["bits"] = field.bits();
+    described["min"] = field.least;
+    described["max"] = field.largest;
+  }
+  if (field.kind == io::E57Field::Kind::kScaledInteger) {
+    described["scale"] = field.scale;
+    described["offset"] = field.offset;
+  }
+  return described;
+}
+
+ordered_json json_of(const io::E57Scan& scan) {
+  ordered_json described = {
+      {"name", scan.name}, {"guid", scan.guid}, {"sensor", scan.sensor}, {"points", scan.points}};
+  if (scan.has_pose) {
+    const Eigen::Quaterniond& q = scan.rotation;
+    described["pose"] = {{"rotation_wxyz", {q.w(), q.x(), q.y(), q.z()}},
+                         {"translation", json_of(scan.translation)}};
+  }
+  described["scanner_known"] = scan.knows_scanner();
+  described["fields"] = ordered_json::array();
+  for (const io::E57Field& field : scan.fields) described["fields"].push_back(json_of(field));
+  return described;
+}
+
+ordered_json json_of(const io::E57Document& document) {
+  ordered_json scans = ordered_json::array();
+  for (const io::E57Scan& scan : document.scans) scans.push_back(json_of(scan));
+  return {{"coordinate_system", document.coordinate_system}, {"scans", scans}};
+}
+
+ordered_json json_of(const io::LasFacts& las) {
+  ordered_json records = ordered_json::array();
+  for (const io::LasFacts::Record& record : las.records) {
+    records.push_back({{"user_id", record.user_id},
+                       {"record_id", record.record_id},
+                       {"description", record.description},
+                       {"bytes", record.bytes}});
+  }
+  return {{"version", fmt::format("1.{}", las.minor_version)},
+          {"point_format", las.point_format},
+          {"compressed", las.compressed},
+          {"system", las.system},
+          {"software", las.software},
+          {"created_day", las.created_day},
+          {"created_year", las.created_year},
+          {"scale", las.scale},
+          {"offset", las.offset},
+          {"coordinate_system", las.coordinate_system},
+          {"records", records},
+          {"extra_bytes", las.extra_bytes},
+          {"points_by_return", json_of(las.points_by_return)},
+          {"points_by_class", json_of(las.points_by_class)}};
+}
+
+}  // namespace
+
+const char* name_of(ScalarType type) {
+  static constexpr std::array kNames = {"int8",   "uint8", "int16",  "uint16",  "int32",
+                                        "uint32", "int64", "uint64", "float32", "float64"};
+  return kNames[static_cast<std::size_t>(type)];
+}
+
+const char* name_of(io::E57Field::Kind kind) {
+  static constexpr std::array kNames = {"integer", "scaled integer", "single", "double", "string"};
+  return kNames[static_cast<std::size_t>(kind)];
+}
+
+ordered_json json_of(const std::filesystem::path& path, const formats::CloudFacts& facts) {
+  ordered_json file = {{"file", path.string()},
+                       {"format", facts.format},
+                       {"points", facts.points},
+                       {"position_type", name_of(facts.position_type)}};
+  if (!facts.bounds.empty()) {
+    file["bounds"] = {{"min", json_of(facts.bounds.min)}, {"max", json_of(facts.bounds.max)}};
+  }
+  if (facts.spacing) {
+    file["mean_spacing"] = facts.spacing->mean;
+    file["median_spacing"] = facts.spacing->median;
+  }
+  file["normals"] = facts.has_normals;
+  file["colours"] = facts.has_colours;
+  if (!facts.labels.empty()) file["labels"] = json_of(facts.labels);
+  file["attributes"] = ordered_json::array();
+  for (const auto& attribute : facts.attributes) file["attributes"].push_back(json_of(attribute));
+  file["comments"] = facts.comments;
+  file["elements"] = facts.elements;
+  file["defects"] = {{"positions_not_finite", facts.defects.positions},
+                     {"normals_unusable", facts.defects.normals},
+                     {"duplicate_positions", facts.defects.duplicates}};
+  file["problems"] = facts.problems;
+  if (facts.e57) file["e57"] = json_of(*facts.e57);
+  if (facts.las) file["las"] = json_of(*facts.las);
+  file["warnings"] = facts.warnings;
+  return file;
+}
+
+}  // namespace pcednet::app
