@@ -243,9 +243,10 @@ bool Session::State::train_again(Run& run, std::uint64_t mine) {
   }
   if (!then.painted) return true;  // of the first version: nothing was known of it
   if (then.loss != run.record.facts.loss) {
-    emit(Problem{fmt::format("run {} cannot be reproduced exactly: another version of pcednet or of "
-                             "its start model made it",
-                             run.record.number)});
+    emit(
+        Problem{fmt::format("run {} cannot be reproduced exactly: another version of pcednet or of "
+                            "its start model made it",
+                            run.record.number)});
   }
   run.record.facts = then;
   return true;
