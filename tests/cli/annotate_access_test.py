@@ -9,7 +9,7 @@ import unittest
 
 import support
 from annotate_support import AnnotateTest, Drip, EDGE, FACE, brush
-from support import read_ply, run
+from support import read_ply, run, write_ply
 
 
 class AnnotateAccess(AnnotateTest):
@@ -204,6 +204,34 @@ half.rename({str(given)!r})
         self.assertGreater(server.post("/api/stroke", brush("a", 2, EDGE))["changed"], 0)
         server.window = first
         server.post("/api/stroke", brush("b", 2, FACE), expect=409)
+
+    def test_a_window_that_leaves_lets_another_paint(self):
+        server = self.quiet()
+        first, second, third = server.window, *(server.post("/api/window")["window"] for _ in range(2))
+        server.post(f"/api/window/{second}/leave")
+        self.assertGreater(server.post("/api/stroke", brush("a", 2, EDGE))["changed"], 0)
+        server.post(f"/api/window/{first}/leave")
+        server.post("/api/undo", expect=409)
+        server.window = third
+        server.post("/api/undo")
+        server.post(f"/api/window/{third}/leave")
+        self.assertTrue(server.post("/api/window")["writer"])
+        for gone in (first, "w99", "w", "x1"):
+            for what in ("leave", "take"):
+                server.post(f"/api/window/{gone}/{what}", expect=404)
+
+    def test_opens_no_browser_for_an_input_that_cannot_be_painted(self):
+        given = self.folder / "given"
+        opener = self.folder / "xdg-open"
+        opener.write_text(f"#!/bin/sh\ntouch {given}\n")
+        opener.chmod(0o755)
+        environment = {**os.environ, "PATH": f"{self.folder}:{os.environ['PATH']}"}
+        server = self.serve()
+        server.open()
+        write_ply(self.folder / "none.ply", self.positions[:0])
+        run("annotate", self.folder / "none.ply", expect=4, env=environment)
+        run("annotate", self.cloud, expect=1, env=environment)  # another annotator has it open
+        self.assertFalse(given.exists())
 
     def test_says_what_is_wrong_and_ends(self):
         self.assertIn("no such file", run("annotate", self.folder / "none.ply", expect=3).stderr)

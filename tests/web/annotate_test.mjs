@@ -189,6 +189,11 @@ test("erases within a lasso and paints within a polygon, by one stroke each", as
   await settled(page);
   const erased = await state("counts");
   assert.ok(erased[0] < counts[0] && erased[2] <= counts[2], `${erased}`);
+  const pixels = () => page.evaluate(() => annotator.stage.canvas.toDataURL());
+  const left = await pixels();
+  await page.evaluate(() => annotator.stage.redraw());
+  await settled(page);
+  assert.ok((await pixels()) === left, "nothing of what was erased is left on the screen");
   await page.keyboard.press("1");
   await page.keyboard.press("g");
   for (const corner of round) await page.mouse.click(...corner);
@@ -348,9 +353,23 @@ test("tells a second window that it may look, until it takes over", async () => 
   await second.getByRole("button", { name: "Take over" }).click();
   await page.getByText("Another window is painting this cloud; this one is read-only.").waitFor();
   assert.equal(await second.evaluate(() => annotator.store.now.writer), true);
-  await second.close();
   await page.getByRole("button", { name: "Take over" }).click();
   await page.waitForFunction(() => annotator.store.now.writer);
+  await second.waitForFunction(() => !annotator.store.now.writer);
+  await second.close();
+});
+
+test("still paints after a reload, and in another window once the first is closed", async () => {
+  await page.reload();
+  await settled(page);
+  await page.waitForFunction(() => annotator.store.now.writer);
+  const second = await open();
+  assert.equal(await second.evaluate(() => annotator.store.now.writer), false);
+  await second.keyboard.press("Control+z");
+  await second.getByText("Take over to paint here.").waitFor();
+  await page.close({ runBeforeUnload: true });
+  await second.waitForFunction(() => annotator.store.now.writer);
+  page = second;
 });
 
 test("goes to an uncertain place", async () => {

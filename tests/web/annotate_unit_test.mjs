@@ -363,6 +363,12 @@ test("two fingers slide by their middle and zoom by their distance", () => {
   assert.ok(two.has(9) && !two.has(5));
 });
 
+test("tells coordinates of a national grid apart", () => {
+  assert.equal(format.coordinate(652012.34567, 40), "652012.35");
+  assert.equal(format.coordinate(-0.5, 1), "-0.500");
+  assert.equal(format.coordinate(5, 0), "5.000");
+});
+
 test("names the stages of loading, and leaves a sentence as it is", () => {
   assert.equal(format.stageText("describe", 0.824), "Computing descriptors, 82 %");
   assert.equal(format.stageText("read", 0), "Reading the file");

@@ -46,6 +46,11 @@ export class Api {
     return (await this.ask(path)).arrayBuffer();
   }
 
+  /** The window closes: another one may paint. */
+  leave(): void {
+    if (this.window) navigator.sendBeacon(this.address(`/api/window/${this.window}/leave`));
+  }
+
   /** An address that a link or an event source can open. */
   address(path: string): string {
     return `${path}${path.includes("?") ? "&" : "?"}token=${encodeURIComponent(this.token)}`;

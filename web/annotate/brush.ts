@@ -6,7 +6,7 @@ import { boxDiagonal } from "./geometry";
 import type { Client } from "./client";
 import type { Stage } from "./stage";
 import { activeClip, type AppStore } from "./store";
-import type { Vec3 } from "./types";
+import { NO_CLASS, type Vec3 } from "./types";
 
 export class Brush {
   private centres: Vec3[] | null = null;
@@ -51,6 +51,7 @@ export class Brush {
     if (!centres) return;
     if (centres.length === 0) return this.stage.loader.resume();
     const state = this.store.now;
+    if (state.paintClass === NO_CLASS) this.stage.redraw(); // erased points are smaller than painted ones
     this.client.paint({
       id: crypto.randomUUID(),
       tool: "brush",

@@ -9,6 +9,8 @@ import { WorkQueue } from "./work";
 
 export type Saved = "cloud" | "model" | "project";
 
+export const READ_ONLY = "Another window is painting this cloud. Take over to paint here.";
+
 export interface Words {
   say(text: string): void;
   warn(text: string): void;
@@ -156,11 +158,19 @@ export class Client {
     this.queue.stroke(stroke);
   }
 
+  /** Whether this window paints; says so if it does not. */
+  private mayPaint(): boolean {
+    if (!this.store.now.writer) this.words.warn(READ_ONLY);
+    return this.store.now.writer;
+  }
+
   undo(): void {
+    if (!this.mayPaint()) return;
     if (this.store.now.undo > 0 || this.isBusy) this.queue.undo();
   }
 
   redo(): void {
+    if (!this.mayPaint()) return;
     if (this.store.now.redo > 0 || this.isBusy) this.queue.redo();
   }
 

@@ -6,6 +6,10 @@ export const percent = (share: number): string => `${(100 * share).toFixed(1)} %
 
 export const seconds = (s: number): string => (s < 10 ? `${s.toFixed(2)} s` : `${s.toFixed(0)} s`);
 
+/** A coordinate, to a thousandth of what it ranges over. */
+export const coordinate = (value: number, range: number): string =>
+  value.toFixed(Math.min(Math.max(3 - Math.floor(Math.log10(range || 1)), 0), 12));
+
 /** A length with three digits. */
 export const length = (value: number): string => String(Number(value.toPrecision(3)));
 

@@ -5,7 +5,7 @@ import { h } from "../shared/dom";
 import { Api } from "./api";
 import { Brush } from "./brush";
 import { curtain, header, legend, presser, toolbar } from "./chrome";
-import { Client, type Saved } from "./client";
+import { Client, READ_ONLY, type Saved } from "./client";
 import { appearanceOf, paintColour, valuesQuery } from "./colouring";
 import { bindKeys, commandsOf } from "./commands";
 import { boxDiagonal } from "./geometry";
@@ -46,7 +46,7 @@ function open(page: HTMLElement): void {
   const brush: Brush = new Brush(stage, store, client);
   const outline = new Outline(stage, store, client, overlay);
   const pointer: Pointer = new Pointer(stage, store, brush, outline, overlay, {
-    refused: () => notices.warn("Another window is painting this cloud. Take over to paint here."),
+    refused: () => notices.warn(READ_ONLY),
     colour: () => paintColour(store.now),
   });
 
@@ -119,6 +119,8 @@ function open(page: HTMLElement): void {
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () =>
     stage.setAppearance(appearanceOf(store.now, css("--stage"))),
   );
+  addEventListener("pagehide", () => api.leave());
+  addEventListener("pageshow", ({ persisted }) => persisted && location.reload()); // it has left before
   client.start().catch((error: Error) => {
     store.set({ progress: { stage: `Cannot open the cloud: ${error.message}.`, fraction: 0 } });
   });

@@ -6,7 +6,7 @@ import type { Overlay } from "./overlay";
 import { paintPolygon } from "./paint";
 import type { Stage } from "./stage";
 import { activeClip, type AppStore } from "./store";
-import type { PolygonStroke } from "./types";
+import { NO_CLASS, type PolygonStroke } from "./types";
 
 const MOST_CORNERS = 2000;
 
@@ -79,6 +79,7 @@ export class Outline {
     };
     const options = { class: state.paintClass, protect: state.protect, ...this.stage.visibility };
     for (const chunk of paintPolygon(this.stage.chunks, stroke, options)) this.stage.touch(chunk.info.id, "labels");
+    if (state.paintClass === NO_CLASS) this.stage.redraw(); // erased points are smaller than painted ones
     this.client.paint(stroke);
   }
 

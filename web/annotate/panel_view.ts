@@ -4,7 +4,7 @@ import { h } from "../shared/dom";
 import { FEATURE_NAMES } from "./colouring";
 import { MODES, modesOf } from "./commands";
 import { boxDiagonal } from "./geometry";
-import { length } from "./format";
+import { coordinate, length } from "./format";
 import { button, buttons, checkbox, list, section, slider, type Picker } from "./panel";
 import type { AppStore, Clip, ColourMode } from "./store";
 import type { Box } from "./types";
@@ -17,7 +17,7 @@ export function viewPanel(store: AppStore): HTMLElement {
   const palette = buttons(
     "Palette",
     [
-      { value: false, label: "as in the paper" },
+      { value: false, label: "standard" },
       { value: true, label: "colour-blind safe" },
     ],
     (safePalette) => store.set({ safePalette }),
@@ -88,7 +88,10 @@ export function clipPanel(store: AppStore, around: () => Box | null): HTMLElemen
     for (const { axis, side, slider: control } of sides) {
       const { min, max } = session.bounds;
       const value = (clip?.box ?? session.bounds)[side][axis];
-      control.set((value - min[axis]) / Math.max(max[axis] - min[axis], 1e-12), length(value + session.origin[axis]));
+      control.set(
+        (value - min[axis]) / Math.max(max[axis] - min[axis], 1e-12),
+        coordinate(value + session.origin[axis], max[axis] - min[axis]),
+      );
     }
   });
   return section(

@@ -18,6 +18,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// A browser opens when the input is found to be sound, or when that takes longer than this.
+constexpr std::chrono::seconds kPatience{3};
+
 struct AnnotateArguments {
   std::string input, project, model;
   int port = 0;
@@ -103,11 +106,17 @@ void annotate_cloud(const AnnotateArguments& arguments, const Common& common) {
   const std::string url = fmt::format("http://127.0.0.1:{}/?token={}", server->port(), token);
   fmt::print("{}\n", url);
   std::fflush(stdout);
-  auto tab = arguments.no_browser ? nullptr : open_browser(url);
+  std::unique_ptr<BrowserTab> tab;
+  bool is_browser_wanted = !arguments.no_browser;
+  const auto opening = std::chrono::steady_clock::now() + kPatience;
   const auto cancelled = console_progress(common).cancelled;
   while (!cancelled()) {
+    const bool is_accepted = session.is_accepted();  // throws what went wrong with loading
+    if (is_browser_wanted && (is_accepted || std::chrono::steady_clock::now() > opening)) {
+      tab = open_browser(url);
+      is_browser_wanted = false;
+    }
     if (api.was_opened()) tab.reset();
-    session.is_ready();  // throws what went wrong with loading
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
   }
 }

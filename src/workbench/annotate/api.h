@@ -25,7 +25,7 @@ class Api {
   Response handle(const Request& request);
 
   /// Whether a page has come so far as to ask for a window's name.
-  bool was_opened() const { return windows_.is_any_open(); }
+  bool was_opened() const { return windows_.was_any_opened(); }
 
  private:
   Session& session_;

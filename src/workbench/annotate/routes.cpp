@@ -166,6 +166,11 @@ Response take_over(const Call& call) {
   return json_response(window_json(call.name, true));
 }
 
+Response leave(const Call& call) {
+  if (const auto writer = call.windows.leave(call.name)) call.events.add(WriterChanged{*writer});
+  return json_response("{}");
+}
+
 Response paint(const Call& call) {
   return json_response(to_json(call.session.paint(parse_stroke(call.request.body))));
 }
@@ -230,6 +235,7 @@ constexpr Route kRoutes[] = {
     {"GET", "/api/download/*", get_download},
     {"POST", "/api/window", open_window},
     {"POST", "/api/window/*/take", take_over},
+    {"POST", "/api/window/*/leave", leave},
     {"POST", "/api/stroke", paint, true},
     {"POST", "/api/undo", undo, true},
     {"POST", "/api/redo", redo, true},

@@ -54,6 +54,12 @@ const SessionOptions& Session::options() const {
   return state_->options;
 }
 
+bool Session::is_accepted() const {
+  const Lock lock(state_->mutex);
+  if (state_->loading.failure) std::rethrow_exception(state_->loading.failure);
+  return state_->loading.is_accepted;
+}
+
 bool Session::is_ready() const {
   const Lock lock(state_->mutex);
   if (state_->loading.failure) std::rethrow_exception(state_->loading.failure);

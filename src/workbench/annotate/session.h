@@ -40,6 +40,10 @@ class Session {
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
+  /// Whether the cloud and the project were found to be sound: all that takes time from now on is
+  /// computing descriptors. Throws like is_ready().
+  bool is_accepted() const;
+
   /// Whether the cloud can be painted yet; throws what prevents it from ever being.
   bool is_ready() const;
 

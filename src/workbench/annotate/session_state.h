@@ -15,6 +15,7 @@ namespace pcednet::annotate {
 
 /// How far the worker is.
 struct Loading {
+  bool is_accepted = false;  ///< the cloud and the project are sound, and nobody else has them open
   bool is_done = false;
   std::exception_ptr failure = {};  ///< if it never will be done
   std::string stage = "read";       ///< also of training

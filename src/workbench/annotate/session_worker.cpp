@@ -93,15 +93,15 @@ void Session::State::load() {
                                return orders.stopping;
                              }};
   auto loaded = load_scene(options.input, &reporter);
-  auto first = describe_once(loaded->prepared, {}, options.cache_folder, &reporter);
   {
     const Lock lock(mutex);
     scene = std::move(loaded);
-    described = std::move(first);
   }
   open_project();
+  auto first = describe_once(scene->prepared, {}, options.cache_folder, &reporter);
   {
     const Lock lock(mutex);
+    described = std::move(first);
     loading.is_done = true;
     loading.stage = "ready";
   }
@@ -124,6 +124,7 @@ void Session::State::open_project() {
     answer.changed = record.points.size();
   }
   remember_runs();
+  loading.is_accepted = true;
 }
 
 /// Lists the runs of earlier starts. Models are not kept: that of the current one is made again,

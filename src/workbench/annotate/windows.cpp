@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
+#include <algorithm>
 
 #include "workbench/annotate/not_found.h"
 
@@ -10,36 +10,47 @@ namespace pcednet::annotate {
 namespace {
 
 std::string name_of(int number) {
-  return fmt::format("w{}", number);
+  return number > 0 ? fmt::format("w{}", number) : "";
 }
 
 }  // namespace
 
 Windows::Opened Windows::open() {
   const std::lock_guard lock(mutex_);
-  const std::string window = name_of(++count_);
-  if (writer_.empty()) writer_ = window;
-  return {window, writer_ == window};
+  open_.insert(++count_);
+  if (writer_ == 0) writer_ = count_;
+  return {name_of(count_), writer_ == count_};
 }
 
 void Windows::take_over(const std::string& window) {
   const std::lock_guard lock(mutex_);
-  int number = 0;
-  if (!window.empty()) std::from_chars(window.data() + 1, window.data() + window.size(), number);
-  if (number < 1 || number > count_ || name_of(number) != window) {
-    throw NotFound("there is no such window");
-  }
-  writer_ = window;
+  writer_ = number_of(window);
+}
+
+std::optional<std::string> Windows::leave(const std::string& window) {
+  const std::lock_guard lock(mutex_);
+  const int number = number_of(window);
+  open_.erase(number);
+  if (number != writer_) return {};
+  writer_ = open_.empty() ? 0 : *open_.rbegin();
+  return name_of(writer_);
 }
 
 bool Windows::is_writer(const std::string& window) const {
   const std::lock_guard lock(mutex_);
-  return !writer_.empty() && window == writer_;
+  return writer_ > 0 && window == name_of(writer_);
 }
 
-bool Windows::is_any_open() const {
+bool Windows::was_any_opened() const {
   const std::lock_guard lock(mutex_);
   return count_ > 0;
+}
+
+int Windows::number_of(const std::string& window) const {
+  const auto found = std::find_if(open_.begin(), open_.end(),
+                                  [&](int number) { return name_of(number) == window; });
+  if (found == open_.end()) throw NotFound("there is no such window");
+  return *found;
 }
 
 }  // namespace pcednet::annotate

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <mutex>
+#include <optional>
+#include <set>
 #include <string>
 
 namespace pcednet::annotate {
@@ -19,12 +21,19 @@ class Windows {
   /// Makes `window` the one that paints. Throws NotFound if there is none of that name.
   void take_over(const std::string& window);
 
+  /// The window is closed. If it painted, the one that was opened last does from now on: returns
+  /// its name, which is empty if there is none. Throws NotFound like take_over().
+  std::optional<std::string> leave(const std::string& window);
+
   bool is_writer(const std::string& window) const;
-  bool is_any_open() const;
+  bool was_any_opened() const;
 
  private:
+  int number_of(const std::string& window) const;
+
   mutable std::mutex mutex_;
-  std::string writer_;
+  std::set<int> open_;
+  int writer_ = 0;  ///< 0: none
   int count_ = 0;
 };
 
