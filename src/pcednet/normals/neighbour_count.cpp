@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "pcednet/core/median.h"
 #include "pcednet/core/parallel.h"
 #include "pcednet/normals/plane_fit.h"
 
@@ -12,12 +13,6 @@ namespace pcednet::normals {
 namespace {
 
 constexpr std::array<std::size_t, 3> kCounts = {12, 24, 48};
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 }  // namespace
 
@@ -44,11 +39,11 @@ std::size_t choose_neighbour_count(std::span<const Vec3> points,
       for (std::size_t i = 0; i < fits.size(); ++i) thickness[c][begin + i] = fits[i].thickness;
     }
   });
-  double thinnest = median(thickness[0]);
+  double thinnest = upper_median(thickness[0]);
   if (thinnest <= 0.01) return kCounts[0];
   std::size_t chosen = 0;
   for (std::size_t c = 1; c < kCounts.size(); ++c) {
-    const double wider = median(thickness[c]);
+    const double wider = upper_median(thickness[c]);
     if (wider >= thinnest) break;
     thinnest = wider;
     chosen = c;

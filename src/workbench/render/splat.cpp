@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pcednet/core/median.h"
 #include "pcednet/core/parallel.h"
 
 namespace pcednet::render {
@@ -201,12 +202,6 @@ std::vector<std::vector<std::uint32_t>> sort_into_bands(const std::vector<Splat>
   return bands;
 }
 
-float median(std::vector<float> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 void measure_grain(Layer& layer, const std::vector<Splat>& splats) {
   std::vector<float> lengths, pixels;
   for (const Splat& splat : splats) {
@@ -215,8 +210,8 @@ void measure_grain(Layer& layer, const std::vector<Splat>& splats) {
     pixels.push_back(splat.radius);
   }
   if (pixels.empty()) return;
-  layer.grain = median(std::move(lengths));
-  layer.grain_pixels = median(std::move(pixels));
+  layer.grain = upper_median(std::move(lengths));
+  layer.grain_pixels = upper_median(std::move(pixels));
 }
 
 }  // namespace
