@@ -6,9 +6,9 @@
 #include <cmath>
 #include <limits>
 
-#include "pcednet/core/error.h"
 #include "pcednet/core/parallel.h"
 #include "pcednet/core/random.h"
+#include "support/expect_error.h"
 #include "workbench/classic/surface_variation.h"
 
 namespace pcednet::classic {
@@ -42,9 +42,9 @@ TEST(SurfaceVariation, AnswersForEveryInput) {
   for (const double v : surface_variation(positions, 10)) EXPECT_EQ(v, 0.0);
   positions[4].x() = std::numeric_limits<double>::infinity();
   EXPECT_TRUE(std::isnan(surface_variation(positions, 10)[4]));
-  EXPECT_THROW(surface_variation(positions, 3), Error);
-  EXPECT_THROW(surface_variation(positions, 30), Error);
-  EXPECT_THROW(surface_variation({}, 10), Error);
+  EXPECT_ERROR(ErrorKind::kUsage, surface_variation(positions, 3));
+  EXPECT_ERROR(ErrorKind::kInsufficient, surface_variation(positions, 30));
+  EXPECT_ERROR(ErrorKind::kInsufficient, surface_variation({}, 10));
 }
 
 TEST(CovarianceAnalysis, PutsItsThresholdAtMultiplesOfTheDeviation) {

@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <fstream>
 
-#include "pcednet/core/error.h"
 #include "pcednet/io/npy.h"
+#include "support/expect_error.h"
 
 namespace pcednet::eval {
 namespace {
@@ -38,7 +38,7 @@ TEST_F(Predicted, AClassPerPointInTheOrderOfTheCloud) {
             (Classes{0, 1, 2, 255}));
   EXPECT_EQ(read_predictions(write("a.u8", std::string("\2\0\1\0", 4)), positions_).classes,
             (Classes{2, 0, 1, 0}));
-  EXPECT_THROW(read_predictions(write("b.u8", "\2"), positions_), Error);
+  EXPECT_ERROR(ErrorKind::kInsufficient, read_predictions(write("b.u8", "\2"), positions_));
 }
 
 TEST_F(Predicted, ArraysOfClassesOrOfScores) {
@@ -51,8 +51,8 @@ TEST_F(Predicted, ArraysOfClassesOrOfScores) {
   EXPECT_EQ(npy({4}, {0, 2, 1, -1}), (Classes{0, 2, 1, 255}));
   EXPECT_EQ(npy({4, 3}, {.1f, .2f, .7f, 5, 4, 3, 0, 9, 0, 1, 1, 1}), (Classes{2, 0, 1, 0}));
   EXPECT_EQ(npy({4, 2}, {.9f, .1f, .1f, .9f, 0, 1, 1, 0}), (Classes{0, 2, 2, 0}));
-  EXPECT_THROW(npy({3}, {0, 0, 0}), Error);
-  EXPECT_THROW(npy({4}, {0, .5f, 0, 0}), Error);
+  EXPECT_ERROR(ErrorKind::kInsufficient, npy({3}, {0, 0, 0}));
+  EXPECT_ERROR(ErrorKind::kInsufficient, npy({4}, {0, .5f, 0, 0}));
 }
 
 TEST_F(Predicted, AnotherSamplingGivesTheLabelOfItsNearestPoint) {

@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "pcednet/core/error.h"
 #include "pcednet/eval/report.h"
+#include "support/expect_error.h"
 
 namespace pcednet::eval {
 namespace {
@@ -50,7 +50,7 @@ TEST(Scores, AreZeroWhereUndefinedAndExactForHugeCounts) {
 
 TEST(Scores, RefusePredictionsOfAnotherSize) {
   const std::vector<std::uint8_t> too_few = {0, 1};
-  EXPECT_THROW(count_confusion(kTruth, too_few, Positive::kSharp), Error);
+  EXPECT_ERROR(ErrorKind::kInsufficient, count_confusion(kTruth, too_few, Positive::kSharp));
 }
 
 TEST(EvaluationReport, GivesMedianAndPooledAsJson) {
@@ -82,7 +82,8 @@ TEST(Calibration, IsTheMeanDifferenceInTheBins) {
   add_calibration(truth, p, Positive::kEdge, edges);
   EXPECT_NEAR(calibration_error(edges), (0.0 * 4 + 0.1 * 2) / 6, 1e-6);
   EXPECT_EQ(calibration_error({}), 0.0);
-  EXPECT_THROW(add_calibration(truth, {p.data(), 3}, Positive::kEdge, edges), Error);
+  EXPECT_ERROR(ErrorKind::kInsufficient,
+               add_calibration(truth, {p.data(), 3}, Positive::kEdge, edges));
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "pcednet/core/error.h"
 #include "pcednet/core/parallel.h"
 #include "pcednet/gls/engine.h"
+#include "support/expect_error.h"
 
 namespace pcednet::gls {
 namespace {
@@ -252,24 +253,25 @@ TEST(FastScaleSpace, RefusesWhatItCannotDescribe) {
     options.eps = eps;
     EXPECT_EQ(kind(options), ErrorKind::kUsage);
   }
-  EXPECT_THROW(FastScaleSpace({}, {}), Error);
+  EXPECT_ERROR(ErrorKind::kInsufficient, FastScaleSpace({}, {}));
   const FastScaleSpace space(cube.points(), {});
   std::vector<float> out(16 * 6);
   std::vector<FitStatus> status(16);
   const std::vector<std::uint32_t> beyond = {1000}, two = {1, 2};
-  EXPECT_THROW(space.describe(beyond, out, status), Error);
-  EXPECT_THROW(space.describe(two, out, status), Error);
+  EXPECT_ERROR(ErrorKind::kUsage, space.describe(beyond, out, status));
+  EXPECT_ERROR(ErrorKind::kUsage, space.describe(two, out, status));
 }
 
 TEST(FastScaleSpace, StopsWhenToldTo) {
   const test::Cloud cube = test::cube(1000, 1);
   Progress progress;
   progress.cancelled = [] { return true; };
-  EXPECT_THROW(FastScaleSpace(cube.points(), {}, &progress), Error);
+  EXPECT_ERROR(ErrorKind::kCancelled, FastScaleSpace(cube.points(), {}, &progress));
   const FastScaleSpace space(cube.points(), {});
   std::vector<float> out(1000 * 16 * 6);
   std::vector<FitStatus> status(1000 * 16);
-  EXPECT_THROW(space.describe(test::all_targets(1000), out, status, &progress), Error);
+  EXPECT_ERROR(ErrorKind::kCancelled,
+               space.describe(test::all_targets(1000), out, status, &progress));
 }
 
 TEST(ScaleSpaceFront, UsesTheEngineThatIsNamed) {
@@ -314,10 +316,10 @@ TEST(ScaleSpaceFront, PutsTheFeaturesOfTheSecondGateAfterThoseOfTheFirst) {
     ASSERT_EQ(status[cell], std::max(first.status[cell], second.status[cell])) << i;
   }
   both.second_gate = 1.5;
-  EXPECT_THROW(ScaleSpace(cube.points(), both), Error);
+  EXPECT_ERROR(ErrorKind::kUsage, ScaleSpace(cube.points(), both));
   both.second_gate = 0.1;
   both.side_gate.reset();
-  EXPECT_THROW(ScaleSpace(cube.points(), both), Error);
+  EXPECT_ERROR(ErrorKind::kUsage, ScaleSpace(cube.points(), both));
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "gls/test_clouds.h"
 #include "pcednet/core/error.h"
 #include "pcednet/core/parallel.h"
+#include "support/expect_error.h"
 
 namespace pcednet::gls {
 namespace {
@@ -441,20 +442,20 @@ TEST(ScaleSpace, RefusesWhatItCannotDescribe) {
   std::vector<float> out(16 * 6);
   std::vector<FitStatus> status(16);
   const std::vector<std::uint32_t> beyond = {1000}, two = {1, 2};
-  EXPECT_THROW(space.describe(beyond, std::span(out), status), Error);
-  EXPECT_THROW(space.describe(two, std::span(out), status), Error);
+  EXPECT_ERROR(ErrorKind::kUsage, space.describe(beyond, std::span(out), status));
+  EXPECT_ERROR(ErrorKind::kUsage, space.describe(two, std::span(out), status));
 }
 
 TEST(ScaleSpace, StopsWhenToldTo) {
   const test::Cloud cube = test::cube(1000, 1);
   Progress progress;
   progress.cancelled = [] { return true; };
-  EXPECT_THROW(ExactScaleSpace(cube.points(), {}, &progress), Error);
+  EXPECT_ERROR(ErrorKind::kCancelled, ExactScaleSpace(cube.points(), {}, &progress));
   const ExactScaleSpace space(cube.points(), {});
   std::vector<float> out(1000 * 16 * 6);
   std::vector<FitStatus> status(1000 * 16);
-  EXPECT_THROW(space.describe(test::all_targets(1000), std::span<float>(out), status, &progress),
-               Error);
+  EXPECT_ERROR(ErrorKind::kCancelled,
+               space.describe(test::all_targets(1000), std::span<float>(out), status, &progress));
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "pcednet/core/error.h"
 #include "pcednet/gls/fast_scale_space.h"
 #include "pcednet/gls/scale_space.h"
+#include "support/expect_error.h"
 
 namespace pcednet::gls {
 namespace {
@@ -53,10 +54,10 @@ TEST(Scales, AreSampledEvenlyInTheLogarithm) {
 
 TEST(Scales, RefuseCountsThatAreNotPowersOfTwo) {
   for (const int count : {-4, 0, 1, 2, 3, 12, 17, 256}) {
-    EXPECT_THROW(sample_scales({0.1, 1.0}, count), Error) << count;
+    EXPECT_ERROR(ErrorKind::kUsage, sample_scales({0.1, 1.0}, count)) << count;
   }
-  EXPECT_THROW(sample_scales({1.0, 1.0}, 16), Error);
-  EXPECT_THROW(sample_scales({0.0, 1.0}, 16), Error);
+  EXPECT_ERROR(ErrorKind::kUsage, sample_scales({1.0, 1.0}, 16));
+  EXPECT_ERROR(ErrorKind::kUsage, sample_scales({0.0, 1.0}, 16));
 }
 
 TEST(Scales, RefuseCloudsInOnePlace) {

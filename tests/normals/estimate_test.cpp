@@ -7,9 +7,9 @@
 #include <numeric>
 
 #include "normals/shapes.h"
-#include "pcednet/core/error.h"
 #include "pcednet/core/parallel.h"
 #include "pcednet/spatial/kd_tree.h"
+#include "support/expect_error.h"
 
 namespace pcednet::normals {
 namespace {
@@ -172,7 +172,7 @@ TEST(Estimate, LooksPastPointsThatAreNotFinite) {
 
 TEST(Estimate, RefusesTooFewNeighbours) {
   for (const int count : {1, -1}) {
-    EXPECT_THROW(estimate_normals(std::vector<Vec3>(5), {.neighbours = count}), Error);
+    EXPECT_ERROR(ErrorKind::kUsage, estimate_normals(std::vector<Vec3>(5), {.neighbours = count}));
   }
 }
 

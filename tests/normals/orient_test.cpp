@@ -6,9 +6,9 @@
 #include <numeric>
 
 #include "normals/shapes.h"
-#include "pcednet/core/error.h"
 #include "pcednet/core/parallel.h"
 #include "pcednet/normals/prepare.h"
+#include "support/expect_error.h"
 
 namespace pcednet::normals {
 namespace {
@@ -193,11 +193,11 @@ TEST(Orient, TakesTinyClouds) {
 TEST(Orient, RefusesWhatMakesNoSense) {
   const Shape shape = sphere(10, 1.0);
   std::vector<Vec3> normals(9);
-  EXPECT_THROW(orient_normals(shape.positions, normals), Error);
+  EXPECT_ERROR(ErrorKind::kUsage, orient_normals(shape.positions, normals));
   normals.resize(10);
-  EXPECT_THROW(orient_normals(shape.positions, normals, {.neighbours = 0}), Error);
+  EXPECT_ERROR(ErrorKind::kUsage, orient_normals(shape.positions, normals, {.neighbours = 0}));
   const OrientOptions nowhere = {.viewpoint = Vec3::Constant(std::nan(""))};
-  EXPECT_THROW(orient_normals(shape.positions, normals, nowhere), Error);
+  EXPECT_ERROR(ErrorKind::kUsage, orient_normals(shape.positions, normals, nowhere));
 }
 
 }  // namespace

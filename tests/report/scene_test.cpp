@@ -7,8 +7,8 @@
 #include <limits>
 #include <numeric>
 
-#include "pcednet/core/error.h"
 #include "pcednet/core/random.h"
+#include "support/expect_error.h"
 #include "workbench/report/base64.h"
 
 namespace pcednet::report {
@@ -122,8 +122,8 @@ TEST(Scene, LeavesOutPositionsThatAreNotFinite) {
   EXPECT_EQ(scene.shown.size(), 49u);
   EXPECT_EQ(std::count(scene.shown.begin(), scene.shown.end(), 7u), 0);
   for (Vec3& p : cloud.positions) p.x() = std::numeric_limits<double>::infinity();
-  EXPECT_THROW(make_scene(cloud, 100), Error);
-  EXPECT_THROW(make_scene({}, 100), Error);
+  EXPECT_ERROR(ErrorKind::kInsufficient, make_scene(cloud, 100));
+  EXPECT_ERROR(ErrorKind::kInsufficient, make_scene({}, 100));
 }
 
 TEST(Scene, TakesOnePointDuplicatesAndCloudsWithoutNormals) {

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "pcednet/core/error.h"
+#include "support/expect_error.h"
 #include "workbench/shapes/mesh_samples.h"
 
 namespace pcednet::shapes {
@@ -60,9 +60,11 @@ TEST(MeshSamples, InterpolateTheNormalsOfVertices) {
 
 TEST(MeshSamples, NeedAnArea) {
   const TwoFaces mesh;
-  EXPECT_THROW(sample_mesh(mesh.vertices, {}), Error);
-  EXPECT_THROW(sample_mesh(mesh.vertices, std::span(mesh.triangles).first(1)), Error);
-  EXPECT_THROW(sample_mesh(mesh.vertices, mesh.triangles, {.vertex_normals = true}), Error);
+  EXPECT_ERROR(ErrorKind::kInsufficient, sample_mesh(mesh.vertices, {}));
+  EXPECT_ERROR(ErrorKind::kInsufficient,
+               sample_mesh(mesh.vertices, std::span(mesh.triangles).first(1)));
+  EXPECT_ERROR(ErrorKind::kInsufficient,
+               sample_mesh(mesh.vertices, mesh.triangles, {.vertex_normals = true}));
 }
 
 }  // namespace

@@ -11,8 +11,8 @@
 #include <set>
 
 #include "pcednet/cloud/bounding_box.h"
-#include "pcednet/core/error.h"
 #include "pcednet/core/random.h"
+#include "support/expect_error.h"
 
 namespace pcednet::shapes {
 namespace {
@@ -153,12 +153,12 @@ TEST(Perturb, SubsamplesAreUniformAndNested) {
 
 TEST(Perturb, RefusesWhatMakesNoSense) {
   PointCloud cloud = box_of_points(10);
-  EXPECT_THROW(add_gaussian_noise(cloud, {.sigma = -1}), Error);
-  EXPECT_THROW(add_gaussian_noise(cloud, {.sigma = NAN}), Error);
-  EXPECT_THROW(subsample(cloud, {.fraction = 1.5}), Error);
-  EXPECT_THROW(subsample(cloud, {.fraction = NAN}), Error);
+  EXPECT_ERROR(ErrorKind::kUsage, add_gaussian_noise(cloud, {.sigma = -1}));
+  EXPECT_ERROR(ErrorKind::kUsage, add_gaussian_noise(cloud, {.sigma = NAN}));
+  EXPECT_ERROR(ErrorKind::kUsage, subsample(cloud, {.fraction = 1.5}));
+  EXPECT_ERROR(ErrorKind::kUsage, subsample(cloud, {.fraction = NAN}));
   cloud.normals.clear();
-  EXPECT_THROW(add_gaussian_noise(cloud, {.along_normal = true}), Error);
+  EXPECT_ERROR(ErrorKind::kInsufficient, add_gaussian_noise(cloud, {.along_normal = true}));
   EXPECT_EQ(add_gaussian_noise({}).size(), 0u);
   EXPECT_EQ(subsample({}).size(), 0u);
 }
