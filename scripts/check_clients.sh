@@ -1,21 +1,30 @@
 #!/bin/sh
 # Checks that CloudCompare, MeshLab and PCL read our files as we mean them, and that we read PCL's.
-# Usage: scripts/check_clients.sh [PCEDNET]   (default: build/release/bin/pcednet)
-# `scripts/setup.sh clients` installs the programs; one that is not there is skipped, with a message.
-# Exits with 1 on a mismatch.
+# Usage: scripts/check_clients.sh [PCEDNET [cloudcompare|meshlab|pcl]]
+# (default: build/release/bin/pcednet, all three). `scripts/setup.sh clients` installs the programs;
+# one that is not there is skipped, with a message.
+# Exits with 1 on a mismatch, with 77 if nothing could be checked.
 set -eu
 cd "$(dirname "$0")/.."
 pcednet=$(realpath "${1:-build/release/bin/pcednet}")
 [ -x "$pcednet" ] || { echo "check_clients.sh: no $pcednet; build it or name it" >&2; exit 2; }
+client=${2:-all}
+case $client in all | cloudcompare | meshlab | pcl) ;; *)
+  echo "check_clients.sh: no client $client" >&2
+  exit 2
+  ;;
+esac
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cd "$work"
 failures=0
+checks=0
 points=900
 
 # compare NAME TOLERANCES: rows.txt (what we meant) against got.txt, column by column. A tolerance
 # holds for the absolute difference; for one that ends in r, relative to the number.
 compare() {
+  checks=$((checks + 1))
   if awk -v name="$1" -v tolerances="$2" '
       BEGIN { columns = split(tolerances, t, " ") }
       NR == FNR { want[NR] = $0; rows = NR; next }
@@ -42,13 +51,17 @@ compare() {
 
 # same NAME FILE FILE
 same() {
+  checks=$((checks + 1))
   if cmp "$2" "$3"; then echo "ok       $1"; else
     echo "MISMATCH $1"
     failures=$((failures + 1))
   fi
 }
 
+# have CLIENT PROGRAM...: whether the client is asked for and its programs are there
 have() {
+  [ "$client" = all ] || [ "$client" = "$1" ] || return 1
+  shift
   for program in "$@"; do
     command -v "$program" >/dev/null || { echo "skipped  $program is not installed"; return 1; }
   done
@@ -82,7 +95,7 @@ awk -v n=$points 'BEGIN {
 "$pcednet" convert given.ply -o r.ply 2>/dev/null
 "$pcednet" convert r.ply -o whole.ply --ascii 2>/dev/null
 
-if have CloudCompare; then
+if have cloudcompare CloudCompare; then
   # Its scalar fields are our scalar_*; field 0 is edge_class. Positions become
   # floats after a global shift (half a unit in the last place of 256), normals are quantised.
   QT_QPA_PLATFORM=offscreen CloudCompare -SILENT -NO_TIMESTAMP -AUTO_SAVE OFF -C_EXPORT_FMT ASC \
@@ -102,7 +115,7 @@ if have CloudCompare; then
   same "CloudCompare: how many these are" rows1.txt count.txt
 fi
 
-if have meshlabserver xvfb-run; then
+if have meshlab meshlabserver xvfb-run; then
   # Positions become float and are written with seven digits; an alpha of 255 is added.
   xvfb-run -a meshlabserver -i r.ply -o back.ply -m vq vn vc sa >ml.log 2>&1 || cat ml.log
   touch back.ply
@@ -111,7 +124,7 @@ if have meshlabserver xvfb-run; then
   compare "MeshLab: normals, colours and quality" "1e-6r 1e-6r 1e-6r 1e-6 1e-6 1e-6 0 0 0 0 1e-6"
 fi
 
-if have pcl_ply2pcd pcl_convert_pcd_ascii_binary; then
+if have pcl pcl_ply2pcd pcl_convert_pcd_ascii_binary; then
   pcl_ply2pcd r.ply r.pcd >pcl.log 2>&1 || cat pcl.log
   for encoding in 0 1 2; do
     pcl_convert_pcd_ascii_binary r.pcd "r$encoding.pcd" $encoding 12 >pcl.log 2>&1 || cat pcl.log
@@ -135,3 +148,4 @@ if have pcl_ply2pcd pcl_convert_pcd_ascii_binary; then
 fi
 
 [ $failures -eq 0 ] || { echo "$failures mismatches"; exit 1; }
+[ $checks -gt 0 ] || exit 77

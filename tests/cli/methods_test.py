@@ -1,21 +1,14 @@
-"""Methods without a model: covariance analysis, multi-scale surface variation, FEE."""
+"""Methods without a model: covariance analysis, multi-scale surface variation."""
 import json
-import pathlib
-import shutil
 import unittest
 
-import numpy as np
-
-from support import PROGRAM, CliTest, cube, run, write_ply
-
-HAS_FEE = (pathlib.Path(PROGRAM).parent / "pcednet-fee").exists() or shutil.which("pcednet-fee")
+from support import CliTest, cube, run, write_ply
 
 
 class Methods(CliTest):
     def setUp(self):
         super().setUp()
-        self.position, normal, label = cube(4000)
-        write_ply(self.folder / "a.ply", self.position, normal, label)
+        write_ply(self.folder / "a.ply", *cube(4000))
 
     def scores(self, *arguments):
         done = run("evaluate", self.folder / "a.ply", *arguments, "--json", "-")
@@ -44,20 +37,6 @@ class Methods(CliTest):
         again = json.loads(run("evaluate", self.folder / "a.ply", "--predictions", self.folder,
                                "--json", "-").stdout)
         self.assertEqual(again["clouds"][0]["points"], 4000)
-
-    @unittest.skipUnless(HAS_FEE, "pcednet-fee was not built")
-    def test_fee_agrees_with_its_definition_far_from_edges(self):
-        size = np.ptp(self.position, axis=0).max()
-        radii = ("--offset-radius", size * 0.1, "--convolution-radius", size * 0.05)
-        found = self.scores("--method", "fee", *map(str, radii), "--positive", "edge")
-        self.assertGreater(found["mcc"], 0.3)
-        nothing = self.scores("--method", "fee", *map(str, radii), "--threshold", "0.5")
-        self.assertEqual(nothing["tp"] + nothing["fp"], 0)
-
-    @unittest.skipIf(HAS_FEE, "pcednet-fee was built")
-    def test_fee_says_what_is_missing(self):
-        done = run("evaluate", self.folder / "a.ply", "--method", "fee", expect=4)
-        self.assertIn("CGAL", done.stderr)
 
 
 if __name__ == "__main__":

@@ -10,6 +10,7 @@
 
 #include "pcednet/core/error.h"
 #include "pcednet/formats/write_cloud.h"
+#include "support/expect_error.h"
 
 namespace pcednet::report {
 namespace {
@@ -127,7 +128,7 @@ TEST_F(Merge, SharesACloudBetweenStudies) {
 }
 
 TEST_F(Merge, RefusesAFolderWithoutStudies) {
-  EXPECT_THROW(merge_studies(folder_ / "nowhere"), Error);
+  EXPECT_ERROR(ErrorKind::kUnreadable, merge_studies(folder_ / "nowhere"));
   write("other.json", "{\"schema\":\"something else\"}");
   try {
     merge_studies(folder_);
@@ -191,7 +192,7 @@ TEST(FillPage, PutsDataWhereItBelongsAndKeepsItsScriptElementWhole) {
   const std::string page = "<script>\"PCEDNET-REPORT-DATA\"</script><p>";
   const std::string filled = fill_page(page, R"({"a":"</script><!--"})");
   EXPECT_EQ(filled, R"(<script>{"a":"\u003c/script>\u003c!--"}</script><p>)");
-  EXPECT_THROW(fill_page("<p>", "{}"), Error);
+  EXPECT_ERROR(ErrorKind::kFailure, fill_page("<p>", "{}"));
 }
 
 }  // namespace

@@ -1,0 +1,19 @@
+#!/bin/sh
+# Lists the tests that a run of ctest skipped: scripts/check_skips.sh LOG (of ctest --output-log).
+# Exits with 1 if one of them needs nothing but what scripts/test.sh installs.
+set -eu
+log=${1:?usage: scripts/check_skips.sh LOG}
+grep -q '^Total Test time' "$log" || { echo "check_skips.sh: $log is no log of ctest" >&2; exit 2; }
+
+# They need the authors' data beside this folder, or programs that scripts/setup.sh clients installs.
+may_be_skipped='EqualsTheWholeFilesWhereTheyAre|^Cli\.published_scores_test$|^Clients\.(cloudcompare|meshlab|pcl)$'
+
+skipped=$(sed -n 's/^[[:space:]]*[0-9]* - \(.*\) (\(Skipped\|Disabled\))$/\1/p' "$log")
+[ -n "$skipped" ] || { echo "No test was skipped."; exit 0; }
+echo "$(echo "$skipped" | wc -l) tests were skipped:"
+echo "$skipped" | sed 's/^/  /'
+if unexpected=$(echo "$skipped" | grep -Ev "$may_be_skipped"); then
+  echo "of which these should have run:"
+  echo "$unexpected" | sed 's/^/  /'
+  exit 1
+fi
