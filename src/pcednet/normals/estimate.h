@@ -11,29 +11,29 @@
 namespace pcednet::normals {
 
 struct EstimateOptions {
-  int neighbours = 0;  ///< distinct points around each point, 0: as many as the noise asks for
+  int neighbours = 0;  ///< distinct points around each point; 0: see choose_neighbour_count()
 };
 
-/// The graph that normals are estimated on. Throws as estimate_normals() does.
+/// The graph for estimate_normals(). Throws the errors of estimate_normals().
 NeighbourGraph make_estimation_graph(std::span<const Vec3> positions, int neighbours,
                                      const Progress* progress);
 
 /// The unit normal of the surface at every point, its sign arbitrary (see orient.h).
 ///
-/// It is the direction in which the k nearest distinct points y_j, the point itself among them,
-/// vary least: the eigenvector of the smallest eigenvalue of
+/// It is the direction of least variance of the k nearest distinct points y_j, including the point
+/// itself: the eigenvector of the smallest eigenvalue of
 ///
 ///     C = sum w_j (y_j - m)(y_j - m)^T,   m = sum w_j y_j / sum w_j,   w_j = (1 - (r_j/h)^2)^2
 ///
 /// with r_j the distance to the point and h^2 = 1.05 times the largest r_j^2. The weights keep the
-/// plane of a point beside an edge from leaning over it.
+/// plane of a point beside an edge from tilting over it.
 ///
 /// k is 12 unless given, more on noisy clouds: see choose_neighbour_count().
 ///
-/// (0,0,0) where there is no plane to fit: the position is not finite, there are fewer than three
-/// distinct points, or the neighbourhood is a line (second eigenvalue below 1e-10 of the largest).
+/// (0,0,0) where no plane can be fitted: the position is not finite, there are fewer than three
+/// distinct points, or the neighbours are collinear (second eigenvalue below 1e-10 of the largest).
 /// The result has the same bytes for any number of threads and any order of the points, and points
-/// at the same position get the same normal. Throws Error(kUsage) on 1 neighbour or less than 0.
+/// at the same position get the same normal. Throws Error(kUsage) on 1 neighbour or fewer than 0.
 std::vector<Vec3> estimate_normals(std::span<const Vec3> positions,
                                    const EstimateOptions& options = {},
                                    const Progress* progress = nullptr);

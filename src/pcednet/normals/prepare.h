@@ -19,14 +19,14 @@ struct PrepareOptions {
 };
 
 struct PreparedNormals {
-  std::vector<Vec3> normals;   ///< per position; (0,0,0) where none could be found
-  std::size_t unusable = 0;    ///< how many are (0,0,0)
-  std::size_t estimated = 0;   ///< how many were estimated and are not (0,0,0)
-  std::size_t neighbours = 0;  ///< of each point: as asked for, or chosen
+  std::vector<Vec3> normals;   ///< per position; (0,0,0) where there is none
+  std::size_t unusable = 0;    ///< the number of (0,0,0)
+  std::size_t estimated = 0;   ///< the number estimated that are not (0,0,0)
+  std::size_t neighbours = 0;  ///< of each point, given or chosen
   Orientation orientation;
 };
 
-/// estimate_normals() and orient_normals() on one search for neighbours.
+/// estimate_normals() and orient_normals() with a single neighbour search.
 PreparedNormals estimate_oriented_normals(std::span<const Vec3> positions,
                                           const PrepareOptions& options = {},
                                           const Progress* progress = nullptr);

@@ -12,29 +12,29 @@
 
 namespace pcednet::spatial {
 
-/// A tree of boxes over things that lie along a space-filling curve, so that a run of them is
-/// compact and the tree needs no more than the boxes of runs, and of runs of runs.
+/// A tree of boxes over items along a space-filling curve. Runs of items are compact, so the tree
+/// consists of the boxes of runs, and of runs of runs.
 ///
-/// Boxes are kept relative to an origin, in float and rounded outwards: a query may find a little
-/// too much and never too little. Coordinates relative to the origin must fit a float.
+/// Boxes are relative to an origin, in float and rounded outwards: a query may find slightly too
+/// much, never too little. Coordinates relative to the origin must fit a float.
 class BoxTree {
  public:
-  static constexpr std::size_t kLeaf = 8;    ///< things per box of the lowest row
+  static constexpr std::size_t kLeaf = 8;    ///< items per box of the lowest row
   static constexpr std::size_t kFanOut = 8;  ///< boxes per box of the row above
 
   BoxTree() = default;
 
-  /// `position_at(i)` is where thing `i` of `count` is.
+  /// `position_at(i)` is the position of item `i` of `count`.
   template <typename PositionAt>
   BoxTree(std::size_t count, const Vec3& origin, PositionAt&& position_at);
 
-  /// Appends the runs (things [kLeaf * run, kLeaf * (run + 1))) whose boxes are closer than
+  /// Appends the runs (items [kLeaf * run, kLeaf * (run + 1))) whose boxes are closer than
   /// `distance` to the box from `min` to `max`, in order.
   void runs_near(const Vec3& min, const Vec3& max, double distance,
                  std::vector<std::uint32_t>& runs) const;
 
-  /// Replaces `sq_distances`, all of which it fills if there are things enough, by those from
-  /// `query` to the things nearest to it, in order. Returns how many there are.
+  /// Fills `sq_distances` with the squared distances from `query` to its nearest items, ascending.
+  /// Returns their number, less than the size if there are fewer items.
   template <typename PositionAt>
   std::size_t nearest(const Vec3& query, std::span<double> sq_distances,
                       PositionAt&& position_at) const;
@@ -48,7 +48,7 @@ class BoxTree {
     float sq_gap(const Box& box) const;
   };
   Box outward(const Vec3& min, const Vec3& max) const;
-  static constexpr std::size_t kMostRows = 21;  ///< 8^21 things
+  static constexpr std::size_t kMostRows = 21;  ///< 8^21 items
   void add_rows();
 
   std::size_t count_ = 0;

@@ -9,9 +9,9 @@
 
 namespace pcednet::spatial {
 
-/// Cuts points that lie along a space-filling curve into compact runs of at most `most`: where the
-/// curve jumps, one run ends and another begins. Returns the first point of each run, and the
-/// number of points at the end. Any order is cut; that of curve_order() gives small runs.
+/// Cuts points along a space-filling curve into compact runs of at most `most`; a run ends where
+/// the curve jumps. Returns the first point of each run, followed by the number of points. Any
+/// order is valid; curve_order() gives small runs.
 std::vector<std::uint32_t> cut_compact_runs(std::span<const Vec3> points, std::size_t most);
 
 }  // namespace pcednet::spatial

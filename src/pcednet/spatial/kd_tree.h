@@ -17,9 +17,9 @@ struct Neighbour {
 
 /// Exact nearest-neighbour and radius queries over a fixed set of points.
 ///
-/// Answers depend on the set of positions alone, not on how they are numbered: they are sorted by
-/// distance, ties by x, y, z of the neighbour, and where equally distant points compete for the
-/// last place the choice is the same for any numbering. Queries may run in parallel.
+/// Results depend on the set of positions, not on their numbering: they are sorted by distance,
+/// ties by x, y, z of the neighbour; if equally distant points compete for the last place, the
+/// choice is the same for any numbering. Queries may run in parallel.
 class KdTree {
  public:
   /// Points that are not finite are never found. Keeps its own copy of the positions.
@@ -31,15 +31,15 @@ class KdTree {
   /// The finite points.
   std::size_t size() const;
 
-  /// The `count` points nearest to `query` (which is among them if it is a point of the set), fewer
+  /// The `count` points nearest to `query` (including `query` if it is a point of the set), fewer
   /// if the set is smaller. `query` must be finite. Replaces the content of `found`.
   void nearest(const Vec3& query, std::size_t count, std::vector<Neighbour>& found) const;
 
   /// Every point closer to `query` than `radius`. Replaces the content of `found`.
   void within(const Vec3& query, double radius, std::vector<Neighbour>& found) const;
 
-  /// The same points without the cost of sorting, in an order that suits the tree. It is the same
-  /// for any numbering too, but for points at exactly the same position.
+  /// The same points without the cost of sorting, in the order of the tree, which is also the same
+  /// for any numbering except for coincident points.
   void within_unsorted(const Vec3& query, double radius, std::vector<Neighbour>& found) const;
 
  private:

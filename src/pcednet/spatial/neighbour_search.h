@@ -12,12 +12,12 @@
 
 namespace pcednet::spatial {
 
-/// The exact nearest neighbours of the points of a set among themselves, for many points at once:
+/// The exact nearest neighbours of the points of a set among themselves, for many points at once;
 /// about three times as fast as KdTree.
 ///
-/// The answers are those of a sort of all distances ((dx^2 + dy^2) + dz^2 in double): nearest
-/// first, of points at the same distance the first in the order. They have the same bytes on every
-/// processor. Points far from all others, clumps and copies cost little more than others do.
+/// Results equal those of a stable sort by (dx^2 + dy^2) + dz^2 in double: nearest first, at equal
+/// distance the first in the order. They have the same bytes on every processor. Outliers, clumps
+/// and duplicates cost little more than other points.
 class NeighbourSearch {
  public:
   /// `points` must be finite and in curve_order(), at most 2^32 - 1. Keeps its own copy.
@@ -25,7 +25,7 @@ class NeighbourSearch {
 
   std::size_t size() const { return copies_.empty() ? tree_.size() : copies_.back(); }
 
-  /// How many neighbours a point has when asked for `count`.
+  /// The number of neighbours of a point if `count` are requested.
   std::size_t available(std::size_t count) const {
     return size() == 0 ? 0 : std::min(count, size() - 1);
   }
@@ -40,8 +40,9 @@ class NeighbourSearch {
   void add_copies(std::uint32_t point, std::size_t count, std::span<const Neighbour> places,
                   Neighbour* found) const;
 
-  RunTree tree_;                       ///< of the distinct places
-  std::vector<std::uint32_t> copies_;  ///< first point at each place, and size(); if any share one
+  RunTree tree_;  ///< of the distinct positions
+  std::vector<std::uint32_t>
+      copies_;  ///< first point at each position, and size(); empty if none coincide
 };
 
 }  // namespace pcednet::spatial

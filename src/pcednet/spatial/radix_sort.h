@@ -11,7 +11,7 @@ struct Keyed {
 };
 
 /// Sorts by the lowest `bits` bits of the keys, on all threads; equal keys keep their order. Higher
-/// bits must be 0. Linear in the size; needs as much memory again.
+/// bits must be 0. Takes linear time and as much additional memory as the input.
 void sort_by_key(std::vector<Keyed>& keyed, int bits);
 
 }  // namespace pcednet::spatial

@@ -13,12 +13,12 @@
 
 namespace pcednet::spatial {
 
-/// Finds the nearest others of the points of one run after the other.
+/// Finds the nearest neighbours of the points of one run after the other.
 ///
-/// The points of a run share their candidates: all points within a radius of the run's box, guessed
-/// from what the run before needed. A point whose neighbours turn out to be farther gets a wider
-/// radius, and where that brings too many candidates (one point of the run lies apart, or the runs
-/// before were much sparser) it descends the tree by itself.
+/// The points of a run share their candidates: all points within a radius of the run's box. The
+/// radius is predicted from the previous run and widened for points with farther neighbours. If
+/// that yields too many candidates (an outlier in the run, or much sparser previous runs), the
+/// point searches the tree by itself.
 class RunSearch {
  public:
   /// `count` is above 0 and below the number of points.
@@ -49,9 +49,9 @@ class RunSearch {
 
   const RunTree& tree_;
   std::size_t count_;
-  double sq_radius_ = 0.0;  ///< of the candidates about the box of the run
+  double sq_radius_ = 0.0;  ///< of the candidates around the box of the run
   double sq_needed_ = 0.0;  ///< the largest distance to a last neighbour
-  float sq_guess_ = 0.0f;  ///< what the last point's distance to it lets expect, in the local frame
+  float sq_guess_ = 0.0f;   ///< predicted from the previous point, in the local frame
   std::unique_ptr<Candidates> near_;
   std::array<std::pair<std::uint32_t, std::uint32_t>, RunTree::kFanOut * RunTree::kMostRows> stack_;
   std::size_t depth_ = 0;

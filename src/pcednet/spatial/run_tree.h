@@ -11,8 +11,8 @@
 
 namespace pcednet::spatial {
 
-/// Distinct points in compact runs along a space-filling curve, and the boxes of the runs, of eight
-/// runs, of eight times eight and so on.
+/// Distinct points in compact runs along a space-filling curve, with the boxes of the runs, of
+/// groups of 8 runs, of groups of 64 runs and so on.
 struct RunTree {
   static constexpr std::size_t kFanOut = 8;               ///< boxes per node
   static constexpr std::size_t kRun = Candidates::kStep;  ///< points per run at most
@@ -25,9 +25,9 @@ struct RunTree {
   std::size_t size() const { return first.empty() ? 0 : first.back(); }
   std::array<const double*, 3> axes() const { return {x.data(), y.data(), z.data()}; }
 
-  std::vector<double> x, y, z;       ///< followed by kRun zeros, so that a whole run can be read
+  std::vector<double> x, y, z;       ///< padded with kRun zeros, so that whole runs can be read
   std::vector<std::uint32_t> first;  ///< first point of each run, and size()
-  std::vector<std::vector<EightBoxes>> rows;  ///< from the runs up to one node
+  std::vector<std::vector<EightBoxes>> rows;  ///< from the runs up to a single node
 };
 
 }  // namespace pcednet::spatial
