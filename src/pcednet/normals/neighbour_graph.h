@@ -12,29 +12,29 @@ namespace pcednet::normals {
 
 inline constexpr std::uint32_t kNoPoint = 0xffffffff;
 
-/// The distinct finite positions of a cloud, each with its nearest others.
+/// The distinct finite positions of a cloud, each with its nearest neighbours.
 ///
-/// The points stand in curve order, so all that is computed from this graph, ties included, is the
-/// same for any numbering of the cloud; neighbours lie close in memory.
+/// The points are in curve order, so results from this graph, including ties, are the same for any
+/// numbering of the cloud, and neighbours are close in memory.
 struct NeighbourGraph {
   std::vector<Vec3> points;
   std::vector<std::uint32_t> order;       ///< positions of the cloud; those of one point together
   std::vector<std::uint32_t> point_of;    ///< per position of the cloud, kNoPoint if not finite
   std::size_t degree = 0;                 ///< neighbours of each point
-  std::vector<std::uint32_t> neighbours;  ///< points x degree, nearest first, the point left out
+  std::vector<std::uint32_t> neighbours;  ///< points x degree, nearest first, without the point
 
   std::span<const std::uint32_t> of(std::size_t point) const {
     return {neighbours.data() + point * degree, degree};
   }
 };
 
-/// `degree` becomes `count`, or less if there are not so many distinct points; if `count` is 0, it
-/// is chosen by choose_neighbour_count(). At most 2^32 - 1 positions.
+/// `degree` becomes `count`, or less if there are too few distinct points; for `count` 0,
+/// choose_neighbour_count() chooses it. At most 2^32 - 1 positions.
 NeighbourGraph make_neighbour_graph(std::span<const Vec3> positions, std::size_t count,
                                     const Progress* progress);
 
-/// For every point those that it has among its neighbours and those that have it among theirs,
-/// each once: the graph without directions.
+/// The undirected graph: for every point its neighbours and the points that have it as a neighbour,
+/// each once.
 struct Adjacency {
   std::vector<std::size_t> first;     ///< points + 1
   std::vector<std::uint32_t> target;  ///< of point i: first[i] to first[i + 1], in any order
@@ -45,7 +45,7 @@ struct Adjacency {
   }
 };
 
-/// Uses the nearest `count` neighbours of each point at most.
+/// Uses at most the nearest `count` neighbours of each point.
 Adjacency make_adjacency(const NeighbourGraph& graph, std::size_t count);
 
 }  // namespace pcednet::normals

@@ -7,14 +7,14 @@
 
 namespace pcednet::normals {
 
-/// The plane through the surroundings of a point.
+/// The plane through a point and its neighbours.
 struct PlaneFit {
   Vec3 normal = Vec3::Zero();  ///< unit length, or zero if there is no plane
   double thickness = 0.0;      ///< smallest eigenvalue over the middle one, from 0 to 1
 };
 
-/// Fits a plane to each of the points numbered `some` and its neighbours, as told at
-/// estimate_normals(): `neighbours` holds a row for each of them, all distinct, nearest first.
+/// Fits a plane to each of the points numbered `some` and its neighbours, see estimate_normals():
+/// `neighbours` holds a row for each of them, all distinct, nearest first.
 void fit_planes(std::span<const Vec3> points, std::span<const std::uint32_t> some,
                 std::span<const std::uint32_t> neighbours, std::span<PlaneFit> fits);
 

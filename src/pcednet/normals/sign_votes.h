@@ -12,7 +12,7 @@
 
 namespace pcednet::normals {
 
-/// How strongly linked points speak for equal signs of their normals, see orient.h.
+/// The votes of linked points for equal signs of their normals, see orient.h.
 class SignVotes {
  public:
   static constexpr double kUnanimous = 1 << 20;
@@ -24,8 +24,8 @@ class SignVotes {
   const Adjacency& links() const { return *links_; }
 
   /// The votes with links().of(point): negative for opposite signs, kNone if a normal is zero.
-  /// Whole numbers, so that sums of votes do not depend on their order, at most kUnanimous * 2.8 in
-  /// size.
+  /// Whole numbers of magnitude at most kUnanimous * 2.8, so sums of votes do not depend on their
+  /// order.
   std::span<const std::int32_t> of(std::size_t point) const {
     return {votes_.data() + links_->first[point], links_->of(point).size()};
   }
@@ -36,10 +36,10 @@ class SignVotes {
 };
 
 /// Contracts the graph along the strongest sums of votes (Boruvka's rounds). Points with a zero
-/// normal are parts by themselves.
+/// normal form parts of their own.
 Signs contract(const SignVotes& votes);
 
-/// Turns single points as long as their neighbours outvote them.
+/// Flips single points as long as their neighbours outvote them.
 void turn_outvoted_points(const SignVotes& votes, std::vector<std::int8_t>& sign);
 
 }  // namespace pcednet::normals
