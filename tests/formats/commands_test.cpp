@@ -145,7 +145,7 @@ TEST(ConvertCommand, NamesThePointThatIsTooFarToComputeWith) {
     const Outcome outcome = run(scratch, command);
     EXPECT_EQ(outcome.code, 4) << command;
     EXPECT_TRUE(contains(outcome.err,
-                         "a.xyz: coordinates too large to compute with: 1.7e+308 at "
+                         "a.xyz: coordinates too large: 1.7e+308 at "
                          "point 61; at most 1e+150"))
         << command << ": " << outcome.err;
   }

@@ -271,7 +271,7 @@ TEST(Pcd, SaysWhereAFileIsBroken) {
   for (const char* data : {"ascii", "binary", "binary_compressed"}) {
     unreadable(xyz(99999999999, data) + "1 2 3 4 5 6 7 8 9\n", "");
   }
-  unreadable(xyz(1, "binary") + std::string(11, '\0'), "promises 1 points");
+  unreadable(xyz(1, "binary") + std::string(11, '\0'), "declares 1 points");
   const std::string plain(12, '\0');
   const std::string lzf = packed_lzf(plain);
   const auto size = static_cast<std::uint32_t>(lzf.size());
@@ -279,9 +279,9 @@ TEST(Pcd, SaysWhereAFileIsBroken) {
       scratch.read("b.pcd", xyz(1, "binary_compressed") + packed(size, 12u) + lzf).cloud.size(),
       1u);
   unreadable(xyz(1, "binary_compressed") + packed(size, 13u) + lzf, "13 bytes for 1 points");
-  unreadable(xyz(1, "binary_compressed") + packed(size + 1, 12u) + lzf, "promises");
+  unreadable(xyz(1, "binary_compressed") + packed(size + 1, 12u) + lzf, "declares");
   unreadable(xyz(1, "binary_compressed") + packed(size - 1, 12u) + lzf, "damaged");
-  unreadable(xyz(1, "binary_compressed") + packed(size, 0xFFFFFFFCu) + lzf, "promises");
+  unreadable(xyz(1, "binary_compressed") + packed(size, 0xFFFFFFFCu) + lzf, "declares");
   error_of(ErrorKind::kInsufficient, [&] {
     scratch.read("a.pcd", header("x y", "4 4", "F F", "1 1", 1, "ascii") + "1 2\n");
   });

@@ -275,8 +275,8 @@ TEST(PlyRead, SaysWhereAFileIsBroken) {
   unreadable(header("ascii", vertex) + "1 2 3\n4 five 6\n", ":9: expected a number of type float");
   unreadable(header("ascii", vertex) + "1 2 3 \n          \n", ":9: the file ends within");
   unreadable(header("ascii", "element vertex 99999999999\n" + std::string(kXyz)) + "1 2 3\n",
-             "promises 99999999999 rows");
-  unreadable(header("binary_little_endian", vertex) + std::string(23, '\0'), "promises 2 rows");
+             "declares 99999999999 rows");
+  unreadable(header("binary_little_endian", vertex) + std::string(23, '\0'), "declares 2 rows");
   EXPECT_TRUE(
       contains(error(ErrorKind::kInsufficient, header("ascii", "element point 1\n")), "point"));
   EXPECT_TRUE(contains(error(ErrorKind::kInsufficient, "ply \nformat ascii 1.0\nend_header\n"),

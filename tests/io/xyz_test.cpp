@@ -204,8 +204,8 @@ TEST(Xyz, NamesTheLineThatDoesNotFit) {
   unreadable("1 2 3\n4 5 -1.8e308\n", ":2: -1.8e308 is beyond the largest double");
   unreadable("hello world\n", ":1: expected numbers, or names");
   unreadable("x y z a\n1 2 3\n", ":2: 3 numbers under 4 names");
-  unreadable("3\n1 2 3\n4 5 6\n", ": promises 3 points but holds 2");
-  unreadable("7\n", ": promises 7 points but holds 0");
+  unreadable("3\n1 2 3\n4 5 6\n", ": declares 3 points but holds 2");
+  unreadable("7\n", ": declares 7 points but holds 0");
   unreadable("7\n8\n", ":2: expected at least three numbers");
   for (const char* nothing : {"", "\n\n", "# only\n####\n//\n", "x y z\n", "0\n"}) {
     EXPECT_TRUE(scratch.read("b.xyz", nothing).cloud.empty()) << nothing;

@@ -13,8 +13,7 @@ void check_extent(std::span<const Vec3> positions) {
     if (!positions[i].allFinite() || largest <= kMost) continue;
     throw Error(
         ErrorKind::kInsufficient,
-        fmt::format("coordinates too large to compute with: {:.6g} at point {}; at most {:g}",
-                    largest, i, kMost));
+        fmt::format("coordinates too large: {:.6g} at point {}; at most {:g}", largest, i, kMost));
   }
 }
 

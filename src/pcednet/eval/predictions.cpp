@@ -130,7 +130,7 @@ Predictions read_predictions(const fs::path& path, std::span<const Vec3> positio
   auto labels = formats::labels_of(others, path);
   if (labels.empty()) {
     return {nearest_to_edge_points(positions, others),
-            fmt::format("{} points without labels: taken as points on edges", others.size())};
+            fmt::format("{} points without labels: read as edge points", others.size())};
   }
   if (labels.size() == positions.size()) return {std::move(labels), {}};
   return {labels_of_nearest(positions, others, labels),

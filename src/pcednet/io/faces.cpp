@@ -19,7 +19,7 @@ class Rows {
   double number(ScalarType type) {
     return visit_scalar(type, [&](auto value) {
       if (bytes_.size() - at_ < sizeof value) {
-        throw Error(ErrorKind::kUnreadable, "the faces end before the last of them");
+        throw Error(ErrorKind::kUnreadable, "the faces end early");
       }
       std::memcpy(&value, bytes_.data() + at_, sizeof value);
       at_ += sizeof value;

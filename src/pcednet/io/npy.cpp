@@ -148,7 +148,7 @@ NpyArray read_npy(const std::filesystem::path& path) {
     throw unreadable(path, "expected little-endian numbers in C order");
   }
   if (product > (file.size() - begin) / size_of(*type)) {
-    throw unreadable(path, fmt::format("promises {} numbers, but ends {} bytes after byte {}",
+    throw unreadable(path, fmt::format("declares {} numbers, but ends {} bytes after byte {}",
                                        product, file.size() - begin, begin));
   }
   Attribute numbers{"", *type, 1, std::vector<std::byte>(product * size_of(*type))};

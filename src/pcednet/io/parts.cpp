@@ -25,7 +25,7 @@ void finish_part(PointCloud& part, PartTally& tally) {
 std::vector<std::string> warnings_of(const PartTally& tally) {
   std::vector<std::string> warnings;
   if (tally.unusable_normals > 0 && tally.unusable_normals == tally.points) {
-    warnings.emplace_back("all normals are zero or not finite: taken as absent");
+    warnings.emplace_back("all normals are zero or not finite: treated as missing");
   } else if (tally.unusable_normals > 0) {
     warnings.push_back(fmt::format("{} of {} normals are zero or not finite",
                                    tally.unusable_normals, tally.points));

@@ -84,8 +84,7 @@ Unpacked read_compressed(const InputFile& file, const PcdHeader& header) {
   const std::uint64_t begin = header.bytes + sizeof sizes;
   if (sizes[0] > file.size() - begin || sizes[1] > kMostLzfGain * sizes[0]) {
     throw unreadable(file.path(),
-                     fmt::format("byte {}: promises {} bytes packed in {}, but holds "
-                                 "{}",
+                     fmt::format("byte {}: declares {} bytes packed in {}, but holds {}",
                                  header.bytes, sizes[1], sizes[0], file.size() - begin));
   }
   const std::size_t row = header.row_bytes();
@@ -118,10 +117,10 @@ void check_fits(const InputFile& file, const PcdHeader& header) {
   const std::uint64_t left = file.size() - header.bytes;
   // The last line may lack its end.
   if (header.points > (left + (ascii ? 1 : 0)) / row) {
-    throw unreadable(file.path(),
-                     fmt::format("promises {} points, of {} bytes or more each, but ends {} bytes "
-                                 "after byte {}",
-                                 header.points, row, left, header.bytes));
+    throw unreadable(
+        file.path(),
+        fmt::format("declares {} points, of {} bytes or more each, but ends {} bytes after byte {}",
+                    header.points, row, left, header.bytes));
   }
 }
 

@@ -53,7 +53,7 @@ void check_fits(const InputFile& file, const PlyElement& element, std::uint64_t 
   const std::uint64_t left = file.size() - offset + (ascii ? 1 : 0);
   if (row != 0 && element.count > left / row) {
     throw unreadable(file.path(),
-                     fmt::format("promises {} rows of element {}, of {} bytes or more each, but "
+                     fmt::format("declares {} rows of element {}, of {} bytes or more each, but "
                                  "ends {} bytes after byte {}",
                                  element.count, element.name, row, file.size() - offset, offset));
   }

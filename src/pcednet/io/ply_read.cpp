@@ -86,7 +86,7 @@ class AsciiBody {
     std::string_view line;
     do {
       if (!lines_.next(line)) {
-        throw error(fmt::format("the file ends within element {}, which promises {} rows",
+        throw error(fmt::format("the file ends within element {}, which declares {} rows",
                                 element.name, element.count));
       }
     } while (trim(line).empty());

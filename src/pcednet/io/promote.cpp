@@ -169,7 +169,8 @@ LoadedCloud keep_spelled_digits(LoadedCloud declared,
     for (int axis = 0; axis < 3; ++axis) {
       const double spelled = wide.cloud.positions[i][axis];
       if (!is_far(spelled) || floats[i][axis] == spelled) continue;
-      wide.warnings.emplace_back("positions are called float but have more digits: kept as double");
+      wide.warnings.emplace_back(
+          "positions are declared as float but have more digits: kept as double");
       return wide;
     }
   }

@@ -65,7 +65,7 @@ class TableReader {
     }
     if (promised_ && *promised_ != table_.rows()) {
       throw unreadable(path_,
-                       fmt::format("promises {} points but holds {}", *promised_, table_.rows()));
+                       fmt::format("declares {} points but holds {}", *promised_, table_.rows()));
     }
     return build();
   }
@@ -187,8 +187,7 @@ class TableReader {
     LoadedCloud loaded = builder.finish();
     loaded.cloud.comments = std::move(comments_);
     if (guessed && table_.columns > 3) {
-      loaded.warnings.push_back(
-          fmt::format("no names of columns: taken as {}", fmt::join(names_, " ")));
+      loaded.warnings.push_back(fmt::format("no column names: read as {}", fmt::join(names_, " ")));
     }
     return loaded;
   }

@@ -58,7 +58,7 @@ VectorLevel vector_level() {
 
 const Kernels& kernels(VectorLevel level) {
   if (level > vector_level()) {
-    throw Error(ErrorKind::kFailure, "this processor lacks the vector instructions asked for");
+    throw Error(ErrorKind::kFailure, "this processor lacks the requested vector instructions");
   }
 #if defined(__x86_64__)
   if (level == VectorLevel::kAvx512) return avx512::kKernels;

@@ -165,7 +165,7 @@ Safetensors decode_safetensors(std::string_view bytes, const std::string& name) 
     content.tensors[p.name] = std::move(p.tensor);
   }
   if (end != data.size()) {
-    refuse(name, kPrefix + header_size + end, "bytes behind the last tensor");
+    refuse(name, kPrefix + header_size + end, "bytes after the last tensor");
   }
   return content;
 }

@@ -93,7 +93,7 @@ Model make_model(const Architecture& architecture, const TrainingSet& set,
                  const TrainOptions& options) {
   if (options.start) {
     if (!(options.start->network.architecture == architecture)) {
-      throw Error(ErrorKind::kUsage, "the model to start from has another architecture");
+      throw Error(ErrorKind::kUsage, "the start model has another architecture");
     }
     return *options.start;
   }

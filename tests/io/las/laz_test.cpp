@@ -226,7 +226,7 @@ TEST(Laz, RefusesItemsThatDoNotMakeAPoint) {
   for (const std::uint16_t version : {0, 3}) {
     expect(with(good, record + 38, version), "item 0 of type 6, 20 bytes, version");
   }
-  expect(with(good, 227 + 2, 'x'), "no record says how");
+  expect(with(good, 227 + 2, 'x'), "without a laszip record");
 }
 
 TEST(Laz, RefusesEveryTruncation) {

@@ -191,9 +191,10 @@ TEST(LasRead, WarnsOfWhatIsSlightlyWrong) {
   file.records = {{"LASF_Spec", 4, las_test_extra("there", 3) + las_test_extra("absent", 1)}};
   expect(las_bytes(file), "\"absent\" are described but not in the points' 36 bytes");
   std::string short_header = las_bytes({3, 3, las_test_rows(3, 20)});
-  expect(with(short_header, 25, std::uint8_t{4}), "calls itself 235 bytes, version 1.4 has 375");
+  expect(with(short_header, 25, std::uint8_t{4}),
+         "declares its size as 235 bytes; version 1.4 has 375");
   const std::string newer = with(las_bytes({6, 4, las_test_rows(6, 20)}), 25, std::uint8_t{5});
-  expect(newer, "calls itself 375 bytes, version 1.5 has 393");
+  expect(newer, "declares its size as 375 bytes; version 1.5 has 393");
 }
 
 TEST(LasRead, WarnsOfPointsBehindThoseThatTheHeaderCounts) {
@@ -275,8 +276,8 @@ TEST(LasRead, NamesTheByteThatCannotBeTrusted) {
   expect(with(good, 25, std::uint8_t{6}), "byte 24: LAS 1.6");
   expect(with(good, 104, std::uint8_t{11}), "byte 104: point format 11");
   expect(with(good, 104, std::uint8_t{63}), "byte 104: point format 63");
-  expect(with(good, 104, std::uint8_t{0x83}), "byte 104: compressed, but no record");
-  expect(with(good, 104, std::uint8_t{0x43}), "byte 104: compressed, but no record");
+  expect(with(good, 104, std::uint8_t{0x83}), "byte 104: compressed, but without");
+  expect(with(good, 104, std::uint8_t{0x43}), "byte 104: compressed, but without");
   for (const std::uint16_t length : {0, 33}) expect(with(good, 105, length), "byte 105: points of");
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const std::string scale = "byte " + std::to_string(131 + 8 * axis) + ": a scale of ";

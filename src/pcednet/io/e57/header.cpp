@@ -92,7 +92,7 @@ E57Field Parser::field(const pugi::xml_node& node) const {
   } else if (type == "String") {
     field.kind = Kind::kString;
   } else {
-    throw error(fmt::format("points with {:.40} of type {:.40} are not known", field.name, type));
+    throw error(fmt::format("points with {:.40} of the unknown type {:.40}", field.name, type));
   }
   return field;
 }
@@ -200,7 +200,7 @@ E57Document read_e57_document(const E57Pages& pages) {
   const Parser parser(pages.file());
   const std::uint64_t begin = pages.logical(header.xml_offset, "the XML");
   if (header.xml_bytes > pages.size() - begin) {
-    throw parser.error(fmt::format("{} bytes promised at byte {}, but only {} follow",
+    throw parser.error(fmt::format("{} bytes declared at byte {}, but only {} follow",
                                    header.xml_bytes, header.xml_offset, pages.size() - begin));
   }
   std::vector<std::byte> text(header.xml_bytes);

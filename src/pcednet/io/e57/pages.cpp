@@ -81,7 +81,7 @@ E57Pages::E57Pages(const InputFile& file) : file_(file) {
   }
   if (bytes > file.size()) {
     throw unreadable(file.path(),
-                     fmt::format("promises {} bytes, but holds {}", bytes, file.size()));
+                     fmt::format("declares {} bytes, but holds {}", bytes, file.size()));
   }
   header_ = {number_at<std::uint64_t>(start, 24), number_at<std::uint64_t>(start, 32)};
   size_ = bytes / kE57PageBytes * kE57PageContent;

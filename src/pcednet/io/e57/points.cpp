@@ -217,7 +217,7 @@ void check_e57_sizes(const E57Pages& pages, const std::vector<E57Scan>& scans) {
     const std::uint64_t numbers = scan.fields.size() + 1;
     if (scan.points > numbers_left / numbers || (bits > 0 && scan.points > bits_left / bits)) {
       throw damaged(pages, scan,
-                    fmt::format("promises {} points of {} bits, more than the file has room for",
+                    fmt::format("declares {} points of {} bits, more than the file can hold",
                                 scan.points, bits));
     }
     numbers_left -= scan.points * numbers;

@@ -44,8 +44,8 @@ std::vector<LasRecord> read_records(const InputFile& file, std::uint64_t& begin,
     const std::string bytes = room < head ? "" : file.text(begin, head);
     const std::uint64_t length = data_length(bytes, extended);
     if (bytes.empty() || length > room - head) {
-      warnings.push_back(fmt::format("{} of {} {} fit before byte {}: the others are left out", i,
-                                     count, kind, end));
+      warnings.push_back(fmt::format("only {} of {} {} fit before byte {}: the others are left out",
+                                     i, count, kind, end));
       break;
     }
     records.push_back(make_record(bytes, file.text(begin + head, length)));
@@ -178,15 +178,16 @@ LasFile read_las_file(const InputFile& file, std::vector<std::string>& warnings)
                              : minor == 4 ? las_header::kBytes14
                                           : las_header::kLeastBytes;
   if (las.header.size() == las_header::kLeastBytes && promised < needed) {
-    warnings.push_back(fmt::format("the header calls itself {} bytes, version 1.{} has {}",
+    warnings.push_back(fmt::format("the header declares its size as {} bytes; version 1.{} has {}",
                                    promised, minor, needed));
   }
   las.header = file.text(0, std::max(promised, las_header::kLeastBytes));
   check_header(file, las);
   const auto narrow = number_at<std::uint32_t>(las.header, las_header::kPointCount32);
   if (narrow > 0 && narrow != las.point_count()) {
-    warnings.push_back(fmt::format("the header counts {} points and, in 64 bits, {}: these hold",
-                                   narrow, las.point_count()));
+    warnings.push_back(
+        fmt::format("the header counts {} points and, in 64 bits, {}: the 64-bit count is used",
+                    narrow, las.point_count()));
   }
   const std::uint64_t end = las.points_offset();
   if (end < las.header.size() || end > file.size()) {

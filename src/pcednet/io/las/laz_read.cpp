@@ -31,7 +31,7 @@ LazReader::LazReader(const InputFile& file, LasFile& las, std::vector<std::strin
   const auto found = std::find_if(las.records.begin(), las.records.end(),
                                   [](const LasRecord& r) { return r.is(kLaszipRecord); });
   if (found == las.records.end()) {
-    fail(las_header::kPointFormat, "compressed, but no record says how");
+    fail(las_header::kPointFormat, "compressed, but without a laszip record");
   }
   read_items(found->data);
   const std::uint64_t points = las.point_count();

@@ -35,9 +35,9 @@ void encode(const std::filesystem::path& path, const PointCloud& cloud, const La
       if (!std::isfinite(step)) {
         refuse(path, ErrorKind::kInsufficient, before + i,
                std::isfinite(coordinate)
-                   ? fmt::format("{} is out of reach of 32 bits in steps of {}", coordinate,
+                   ? fmt::format("{} does not fit into 32 bits in steps of {}", coordinate,
                                  layout.file.scale(axis))
-                   : "LAS has no positions that are not finite");
+                   : "LAS cannot hold positions that are not finite");
       }
       const auto whole = static_cast<std::int32_t>(step);
       std::memcpy(&out[start + (i - begin) * stride + 4 * axis], &whole, 4);
@@ -140,7 +140,7 @@ class LasPartWriter : public PartWriter {
     points_offset_ = file_.header.size() + records.size();
     if (points_offset_ > UINT32_MAX) {
       throw Error(ErrorKind::kFailure,
-                  path.string() + ": more than 4 GiB before the points; LAS has no place for them");
+                  path.string() + ": more than 4 GiB before the points, which LAS cannot hold");
     }
     out_.emplace(path, options.overwrite);
     out_->write(file_.header + records);  // the header is written again at the end
