@@ -13,7 +13,7 @@ constexpr double kWorthwhileMerge = 1.6;
 
 /// MergeForecast::filling from which a level costs far more than one of a surface. As with merging,
 /// what the average point meets decides, so that a tree on a wall does not coarsen anything.
-constexpr double kCrowded = 8.0;
+constexpr double kCrowded = 9.0;
 
 void add_boxes(VoxelLevel& level, const Vec3& origin) {
   level.boxes = spatial::BoxTree(level.voxels.size(), origin,
@@ -55,15 +55,16 @@ void add_levels(VoxelPyramid& pyramid, std::span<const double> scales, const Lev
                 const Progress* progress) {
   Stage stage(progress, "resolutions", scales.size());
   pyramid.levels.reserve(1 + scales.size());
+  Crowd crowd = Crowd::kKeep;  // once it is merged further, it is at all larger scales
   for (const double scale : scales) {
     MergeCells cells = {.origin = pyramid.origin,
                         .side = pyramid.side,
                         .edge = options.eps * scale,
-                        .crowd = Crowd::kKeep};
+                        .crowd = crowd};
     const std::vector<Voxel>& finer = pyramid.levels.back().voxels;
     MergeForecast forecast = forecast_merge(finer, cells);
     if (forecast.filling > kCrowded) {
-      cells.crowd = options.gated ? Crowd::kMergeByAxis : Crowd::kMerge;
+      cells.crowd = crowd = options.gated ? Crowd::kMergeByAxis : Crowd::kMerge;
       forecast = forecast_merge(finer, cells);
     }
     if (forecast.merged >= kWorthwhileMerge) {
