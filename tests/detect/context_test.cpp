@@ -11,6 +11,7 @@
 #include "pcednet/cloud/point_cloud.h"
 #include "pcednet/core/parallel.h"
 #include "pcednet/core/random.h"
+#include "pcednet/spatial/curve_order.h"
 
 namespace pcednet::detect {
 namespace {
@@ -40,7 +41,8 @@ Answered random_answers(std::size_t points) {
 
 /// A row per point, zeros where there is none.
 std::vector<std::vector<float>> rows_of(const Answered& answered, int classes = 3) {
-  const ContextMatrix matrix(answered.positions, answered.found, classes);
+  const ContextMatrix matrix(answered.positions, spatial::curve_order(answered.positions),
+                             answered.found, classes);
   std::vector<float> values(matrix.points().size() * matrix.width());
   matrix.describe(0, matrix.points().size(), values);
   std::vector<std::vector<float>> rows(answered.positions.size());

@@ -5,12 +5,13 @@
 #include <limits>
 
 #include "normals/shapes.h"
+#include "pcednet/spatial/curve_order.h"
 
 namespace pcednet::normals {
 namespace {
 
 double share_opposed(const Shape& shape, const std::vector<Vec3>& normals) {
-  const FlatPairs pairs(shape.positions, shape.normals);
+  const FlatPairs pairs(shape.positions, shape.normals, spatial::curve_order(shape.positions));
   EXPECT_GT(pairs.size(), 5 * std::min<std::size_t>(shape.positions.size(), 20000));
   return static_cast<double>(pairs.opposed(normals)) / static_cast<double>(pairs.size());
 }
@@ -50,10 +51,10 @@ TEST(FlatPairs, LeaveOutPointsWithoutNormalOrPlace) {
     shape.normals[i] = i % 2 ? Vec3(Vec3::Zero()) : Vec3(Vec3::Constant(kNan));
   }
   shape.positions[700].x() = kNan;
-  const FlatPairs pairs(shape.positions, shape.normals);
+  const FlatPairs pairs(shape.positions, shape.normals, spatial::curve_order(shape.positions));
   EXPECT_GT(pairs.size(), 499u * 5);
   EXPECT_LE(pairs.size(), 499u * 12);
-  EXPECT_EQ(FlatPairs({}, {}).size(), 0u);
+  EXPECT_EQ(FlatPairs({}, {}, {}).size(), 0u);
 }
 
 }  // namespace

@@ -119,7 +119,8 @@ void describe(const Arguments& arguments, const Common& common) {
   const auto prepared = prepare(arguments.input, cloud, arguments.preparation, progress);
   std::optional<gls::ScaleSpace> made;
   with_name_in_errors(arguments.input, [&] {
-    made.emplace(gls::OrientedPoints{prepared.positions, prepared.normals}, options, &progress);
+    made.emplace(gls::OrientedPoints{prepared.positions, prepared.normals, prepared.curve}, options,
+                 &progress);
   });
   const gls::ScaleSpace& space = *made;
   if (const auto note = gls::note_on(options, space.scales(), cloud.positions); !note.empty()) {

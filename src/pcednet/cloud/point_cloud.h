@@ -52,6 +52,11 @@ const Attribute* find_attribute(const PointCloud& cloud, std::string_view name);
 /// Adds `attribute`, replacing one of the same name.
 void set_attribute(PointCloud& cloud, Attribute attribute);
 
+/// Whether a normal is finite and has a direction.
+inline bool is_usable(const Vec3& normal) {
+  return normal.allFinite() && !normal.isZero(0.0);
+}
+
 /// Scales every normal to unit length; a normal that is zero or not finite becomes (0,0,0).
 /// Returns the number of these.
 std::size_t make_normals_unit(PointCloud& cloud);

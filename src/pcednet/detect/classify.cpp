@@ -7,15 +7,17 @@
 #include "pcednet/detect/context.h"
 #include "pcednet/detect/decide.h"
 #include "pcednet/nn/predict.h"
+#include "pcednet/spatial/curve_order.h"
 
 namespace pcednet::detect {
 namespace {
 
-/// Classifies the points `order`, whose descriptions rows_of(begin, end) gives block by block.
+/// Classifies the points `order`, whose descriptions rows_of(begin, end) gives block by block. A
+/// context network needs the `curve` order of all positions.
 template <typename RowsOf>
-Classification classify_rows(std::span<const Vec3> positions, std::span<const std::uint32_t> order,
-                             const RowsOf& rows_of, const EdgeModel& model,
-                             const Progress* progress) {
+Classification classify_rows(std::span<const Vec3> positions, std::span<const std::uint32_t> curve,
+                             std::span<const std::uint32_t> order, const RowsOf& rows_of,
+                             const EdgeModel& model, const Progress* progress) {
   Classification found = nothing_found(positions.size());
   Stage stage(progress, "describe", order.size());
   for_each_block(order.size(), kBlock, [&](std::size_t begin, std::size_t end) {
@@ -23,7 +25,8 @@ Classification classify_rows(std::span<const Vec3> positions, std::span<const st
     decide(points, nn::predict(model.network, rows_of(begin, end)), model.classes, found);
     stage.advance(points.size());
   });
-  if (model.context) apply_context(*model.context, model.classes, positions, found, progress);
+  if (model.context)
+    apply_context(*model.context, model.classes, positions, curve, found, progress);
   found.counts = count_classes(found.classes);
   return found;
 }
@@ -32,7 +35,8 @@ Classification classify_rows(std::span<const Vec3> positions, std::span<const st
 
 Classification classify(const PreparedCloud& cloud, const EdgeModel& model,
                         const Progress* progress) {
-  const gls::ScaleSpace space({cloud.positions, cloud.normals}, model.descriptor, progress);
+  const gls::ScaleSpace space({cloud.positions, cloud.normals, cloud.curve}, model.descriptor,
+                              progress);
   const auto order = space.order();
   const std::size_t width = row_width(model.descriptor);
   std::vector<float> rows(std::min(kBlock, order.size()) * width);
@@ -42,7 +46,8 @@ Classification classify(const PreparedCloud& cloud, const EdgeModel& model,
     describe(space, order.subspan(begin, end - begin), some, &cancel_only);
     return some;
   };
-  Classification found = classify_rows(cloud.positions, order, rows_of, model, progress);
+  Classification found =
+      classify_rows(cloud.positions, cloud.curve, order, rows_of, model, progress);
   found.note = gls::note_on(model.descriptor, space.scales(), cloud.positions);
   return found;
 }
@@ -58,7 +63,9 @@ Classification classify(const DescribedCloud& cloud, std::span<const Vec3> posit
   const auto rows_of = [&](std::size_t begin, std::size_t end) {
     return std::span(cloud.values).subspan(begin * width, (end - begin) * width);
   };
-  return classify_rows(positions, cloud.order, rows_of, model, nullptr);
+  std::vector<std::uint32_t> curve;
+  if (model.context) curve = spatial::curve_order(positions);
+  return classify_rows(positions, curve, cloud.order, rows_of, model, nullptr);
 }
 
 }  // namespace pcednet::detect

@@ -10,7 +10,6 @@
 #include "pcednet/core/parallel.h"
 #include "pcednet/detect/decide.h"
 #include "pcednet/nn/predict.h"
-#include "pcednet/spatial/curve_order.h"
 
 namespace pcednet::detect {
 namespace {
@@ -21,8 +20,10 @@ constexpr double kSurest = 1e-6;  // probabilities nearer to 0 or 1 say no more
 
 /// The points that have a class, along a curve. Of points at one place the surer ones come first,
 /// whatever their numbers, so that it is the same for any numbering which of them are nearest.
-std::vector<std::uint32_t> order_of(std::span<const Vec3> positions, const Classification& found) {
-  auto order = spatial::curve_order(positions);
+std::vector<std::uint32_t> order_of(std::span<const Vec3> positions,
+                                    std::span<const std::uint32_t> curve,
+                                    const Classification& found) {
+  std::vector<std::uint32_t> order(curve.begin(), curve.end());
   std::erase_if(order, [&](std::uint32_t i) { return found.classes[i] == kUnlabelled; });
   const auto surer = [&](std::uint32_t a, std::uint32_t b) {
     return std::tie(found.p_sharp[a], found.p_smooth[a]) >
@@ -92,10 +93,10 @@ nn::Architecture context_architecture(int classes) {
           .classes = classes};
 }
 
-ContextMatrix::ContextMatrix(std::span<const Vec3> positions, const Classification& found,
-                             int classes)
+ContextMatrix::ContextMatrix(std::span<const Vec3> positions, std::span<const std::uint32_t> curve,
+                             const Classification& found, int classes)
     : kinds_(classes - 1) {
-  for (const std::uint32_t i : order_of(positions, found)) {
+  for (const std::uint32_t i : order_of(positions, curve, found)) {
     const float edge = found.p_sharp[i] + found.p_smooth[i];
     if (edge >= kLeastEdge) {
       points_.push_back(i);
@@ -144,9 +145,9 @@ void ContextMatrix::describe_point(std::size_t place, std::span<const spatial::N
 }
 
 void apply_context(const nn::Model& network, const std::vector<std::uint8_t>& classes,
-                   std::span<const Vec3> positions, Classification& result,
-                   const Progress* progress) {
-  const ContextMatrix matrix(positions, result, static_cast<int>(classes.size()));
+                   std::span<const Vec3> positions, std::span<const std::uint32_t> curve,
+                   Classification& result, const Progress* progress) {
+  const ContextMatrix matrix(positions, curve, result, static_cast<int>(classes.size()));
   const auto points = matrix.points();
   std::vector<float> rows(std::min(kBlock, points.size()) * matrix.width());
   Stage stage(progress, "context", points.size());

@@ -41,8 +41,10 @@ constexpr int kContextFeatures = 8;
 /// None depends on the cloud's units, place or orientation.
 class ContextMatrix {
  public:
-  /// Points that `found` leaves unlabelled have no context and are none.
-  ContextMatrix(std::span<const Vec3> positions, const Classification& found, int classes);
+  /// Points that `found` leaves unlabelled have no context and are none. `curve` is the
+  /// spatial::curve_order() of the positions.
+  ContextMatrix(std::span<const Vec3> positions, std::span<const std::uint32_t> curve,
+                const Classification& found, int classes);
 
   /// The points to describe, edges of a probability of kLeastEdge or more, in an order that is free
   /// of their numbering and kind to the caches.
@@ -69,9 +71,10 @@ class ContextMatrix {
 };
 
 /// Lets the second network decide, in place of what was found. `positions` are those that were
-/// classified. The result does not depend on threads or on the order of the points.
+/// classified, `curve` their spatial::curve_order(). The result does not depend on threads or on
+/// the order of the points.
 void apply_context(const nn::Model& network, const std::vector<std::uint8_t>& classes,
-                   std::span<const Vec3> positions, Classification& result,
-                   const Progress* progress = nullptr);
+                   std::span<const Vec3> positions, std::span<const std::uint32_t> curve,
+                   Classification& result, const Progress* progress = nullptr);
 
 }  // namespace pcednet::detect

@@ -16,7 +16,8 @@ void describe(const gls::ScaleSpace& space, std::span<const std::uint32_t> point
 DescribedCloud describe(const PreparedCloud& cloud, const gls::ScaleSpaceOptions& descriptor,
                         const Progress* progress) {
   const Progress cancel_only = without_report(progress);
-  const gls::ScaleSpace space({cloud.positions, cloud.normals}, descriptor, &cancel_only);
+  const gls::ScaleSpace space({cloud.positions, cloud.normals, cloud.curve}, descriptor,
+                              &cancel_only);
   const auto order = space.order();
   DescribedCloud described{.points = cloud.positions.size(), .order = {order.begin(), order.end()}};
   described.values.resize(order.size() * row_width(descriptor));

@@ -9,6 +9,7 @@
 #include "pcednet/core/error.h"
 #include "pcednet/normals/flat_pairs.h"
 #include "pcednet/normals/prepare.h"
+#include "pcednet/spatial/curve_order.h"
 
 namespace pcednet::detect {
 namespace {
@@ -25,20 +26,17 @@ constexpr double kWalls = 0.3;  // of one_sidedness()
 constexpr std::size_t kMended = 4;
 constexpr std::size_t kShareToOrient = 50;
 
-bool is_usable(const Vec3& normal) {
-  return normal.allFinite() && !normal.isZero(0.0);
-}
-
 struct Oriented {
   normals::PreparedNormals found;
   std::size_t faced;  ///< turned towards their scanner
 };
 
 /// Estimates the normals that are missing and orients all.
-Oriented complete_and_orient(const PointCloud& cloud, const Progress* progress) {
+Oriented complete_and_orient(const PointCloud& cloud, std::span<const std::uint32_t> curve,
+                             const Progress* progress) {
   const std::vector<Vec3> scanners = scanner_of_points(cloud);
   const auto is_known = [](const Vec3& place) { return place.allFinite(); };
-  normals::PrepareOptions options = {.count_turned = cloud.has_normals()};
+  normals::PrepareOptions options = {.count_turned = cloud.has_normals(), .curve = curve};
   // Where every point has a scanner the costly search for consistent signs is not needed.
   if (!scanners.empty() && std::all_of(scanners.begin(), scanners.end(), is_known)) {
     options.viewpoint = scanners.front();
@@ -80,7 +78,7 @@ void use(Oriented&& oriented, const std::string& note, PreparedCloud& prepared) 
 
 void estimate(PreparedCloud& prepared, const PointCloud& cloud, const std::string& why,
               const Progress* progress) {
-  Oriented oriented = complete_and_orient(cloud, progress);
+  Oriented oriented = complete_and_orient(cloud, prepared.curve, progress);
   const std::string note = fmt::format("{}: estimated from the {} nearest points and {}", why,
                                        oriented.found.neighbours, describe(oriented));
   use(std::move(oriented), note, prepared);
@@ -98,7 +96,7 @@ std::size_t count_turned(const PointCloud& cloud, const Oriented& oriented) {
 
 /// Orients the cloud's normals if their signs are mixed, see the header.
 void orient_mixed(PreparedCloud& prepared, const PointCloud& cloud, const Progress* progress) {
-  const normals::FlatPairs pairs(cloud.positions, cloud.normals);
+  const normals::FlatPairs pairs(cloud.positions, cloud.normals, prepared.curve);
   const std::size_t opposed = pairs.opposed(cloud.normals);
   const double border = kBorder / std::sqrt(static_cast<double>(cloud.size()));
   if (opposed < kFewPairs ||
@@ -106,7 +104,7 @@ void orient_mixed(PreparedCloud& prepared, const PointCloud& cloud, const Progre
     return;
   }
   if (pairs.one_sidedness(cloud.positions, cloud.normals) > kWalls) return;
-  Oriented oriented = complete_and_orient(cloud, progress);
+  Oriented oriented = complete_and_orient(cloud, prepared.curve, progress);
   const std::size_t turned = count_turned(cloud, oriented);
   if (pairs.opposed(oriented.found.normals) * kMended > opposed) return;
   if (turned * kShareToOrient < cloud.size()) return;
@@ -123,12 +121,12 @@ PreparedCloud prepare(const PointCloud& cloud, const PrepareOptions& options,
                       const Progress* progress) {
   check_consistent(cloud);
   if (cloud.empty()) throw Error(ErrorKind::kInsufficient, "the cloud has no points");
-  const auto finite = static_cast<std::size_t>(std::count_if(
-      cloud.positions.begin(), cloud.positions.end(), [](const Vec3& p) { return p.allFinite(); }));
+  PreparedCloud prepared;
+  prepared.curve = spatial::curve_order(cloud.positions);
+  const std::size_t finite = prepared.curve.size();
   if (finite == 0) throw Error(ErrorKind::kInsufficient, "no point has a finite position");
   check_extent(cloud.positions);
 
-  PreparedCloud prepared;
   prepared.positions = cloud.positions;
   prepared.normals = cloud.normals;
   if (finite < cloud.size()) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
@@ -15,11 +16,12 @@ struct PrepareOptions {
 
 /// What the descriptors need of a cloud, and what had to be done to get it.
 struct PreparedCloud {
-  std::span<const Vec3> positions;  ///< the cloud's own
-  std::span<const Vec3> normals;    ///< the cloud's own, or `made`; unit or (0,0,0)
-  std::vector<Vec3> made;           ///< empty when the cloud's normals are used as they are
-  std::vector<std::string> notes;   ///< what the user should be told, one sentence each
-  bool reoriented = false;          ///< the signs of the cloud's normals were mixed
+  std::span<const Vec3> positions;   ///< the cloud's own
+  std::span<const Vec3> normals;     ///< the cloud's own, or `made`; unit or (0,0,0)
+  std::vector<std::uint32_t> curve;  ///< spatial::curve_order() of the positions
+  std::vector<Vec3> made;            ///< empty when the cloud's normals are used as they are
+  std::vector<std::string> notes;    ///< what the user should be told, one sentence each
+  bool reoriented = false;           ///< the signs of the cloud's normals were mixed
 };
 
 /// Makes `cloud` ready for description; it must outlive the result. Where one point in a hundred or

@@ -92,7 +92,8 @@ Samples make_samples(std::span<const TrainingCloud> clouds,
   for (const TrainingCloud& cloud : clouds) {
     check_labels(cloud);
     const auto positions = cloud.cloud.positions;
-    const gls::ScaleSpace space({positions, cloud.cloud.normals}, descriptor, &cancel_only);
+    const gls::ScaleSpace space({positions, cloud.cloud.normals, cloud.cloud.curve}, descriptor,
+                                &cancel_only);
     if (const auto note = gls::note_on(descriptor, space.scales(), positions); !note.empty()) {
       samples.notes.push_back(fmt::format("{}: {}", cloud.name, note));
     }

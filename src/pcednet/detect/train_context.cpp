@@ -24,7 +24,7 @@ ContextSamples make_samples(const EdgeModel& model, std::span<const TrainingClou
   ContextSamples samples;
   for (const TrainingCloud& cloud : clouds) {
     const auto found = classify(cloud.cloud, model, &cancel_only);
-    const ContextMatrix matrix(cloud.cloud.positions, found,
+    const ContextMatrix matrix(cloud.cloud.positions, cloud.cloud.curve, found,
                                static_cast<int>(model.classes.size()));
     const std::size_t count = matrix.points().size();
     const std::size_t before = samples.values.size();

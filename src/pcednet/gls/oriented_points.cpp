@@ -26,10 +26,6 @@ void refuse(const std::string& why) {
 
 }  // namespace
 
-bool is_usable(const Vec3& normal) {
-  return normal.allFinite() && !normal.isZero(0.0);
-}
-
 void check(OrientedPoints points, const ScaleSpaceOptions& options) {
   if (points.positions.size() != points.normals.size()) {
     refuse(fmt::format("{} positions with {} normals", points.positions.size(),
@@ -58,7 +54,8 @@ std::vector<std::uint32_t> point_order(OrientedPoints points) {
   const auto usable = [&](std::uint32_t i) {
     return is_usable(points.normals[i]) ? points.normals[i] : Vec3::Zero().eval();
   };
-  std::vector<std::uint32_t> order = spatial::curve_order(points.positions);
+  std::vector<std::uint32_t> order(points.curve.begin(), points.curve.end());
+  if (order.empty()) order = spatial::curve_order(points.positions);
   for (auto first = order.begin(); first != order.end();) {
     const auto last = std::find_if(first + 1, order.end(), [&](std::uint32_t i) {
       return points.positions[i] != points.positions[*first];

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "pcednet/cloud/point_cloud.h"
 #include "pcednet/core/vec3.h"
 #include "pcednet/gls/scale_space_options.h"
 
@@ -15,9 +16,8 @@ namespace pcednet::gls {
 struct OrientedPoints {
   std::span<const Vec3> positions;
   std::span<const Vec3> normals;
+  std::span<const std::uint32_t> curve = {};  ///< spatial::curve_order() of the positions, if known
 };
-
-bool is_usable(const Vec3& normal);
 
 /// Throws Error(kUsage) for options out of range, for arrays of different sizes and for usable
 /// normals that are not of unit length (to 1e-3).

@@ -38,10 +38,8 @@ double spacing_in(std::span<const Vec3> positions, const spatial::KdTree& tree) 
 
 /// The spacing of the finite points with all their copies left out.
 double spacing_of_distinct(std::span<const Vec3> positions) {
-  std::vector<Vec3> distinct;
-  for (const std::uint32_t i : spatial::curve_order(positions)) {
-    if (distinct.empty() || positions[i] != distinct.back()) distinct.push_back(positions[i]);
-  }
+  std::vector<Vec3> distinct = spatial::in_order(positions, spatial::curve_order(positions));
+  distinct.erase(std::unique(distinct.begin(), distinct.end()), distinct.end());
   return spacing_in(distinct, spatial::KdTree(distinct));
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "pcednet/cloud/point_cloud.h"
 #include "pcednet/core/parallel.h"
 #include "pcednet/gls/voxel_merge.h"
 
@@ -32,7 +33,7 @@ VoxelPyramid make_pyramid(std::span<const Vec3> positions, std::span<const Vec3>
       const Vec3& n = normals[order[i]];
       Voxel& point = points.voxels[i];
       point.position = positions[order[i]] * unit;
-      point.count = n.allFinite() && !n.isZero(0.0) ? 1.0f : 0.0f;
+      point.count = is_usable(n) ? 1.0f : 0.0f;
       for (std::size_t a = 0; a < 3; ++a) {
         const auto component = static_cast<float>(n[static_cast<Eigen::Index>(a)]);
         point.normal[a] = point.count > 0.0f ? component : 0.0f;

@@ -28,13 +28,14 @@ std::vector<Vec3> estimate_normals(const NeighbourGraph& graph, const Progress* 
 }
 
 NeighbourGraph make_estimation_graph(std::span<const Vec3> positions, int neighbours,
-                                     const Progress* progress) {
+                                     const Progress* progress,
+                                     std::span<const std::uint32_t> curve) {
   if (neighbours < 0 || neighbours == 1) {
     throw Error(
         ErrorKind::kUsage,
         fmt::format("normals need at least 2 neighbours, or 0 to choose; not {}", neighbours));
   }
-  return make_neighbour_graph(positions, static_cast<std::size_t>(neighbours), progress);
+  return make_neighbour_graph(positions, static_cast<std::size_t>(neighbours), progress, curve);
 }
 
 std::vector<Vec3> estimate_normals(std::span<const Vec3> positions, const EstimateOptions& options,

@@ -14,9 +14,11 @@ struct EstimateOptions {
   int neighbours = 0;  ///< distinct points around each point; 0: see choose_neighbour_count()
 };
 
-/// The graph for estimate_normals(). Throws the errors of estimate_normals().
+/// The graph for estimate_normals(), see make_neighbour_graph(). Throws the errors of
+/// estimate_normals().
 NeighbourGraph make_estimation_graph(std::span<const Vec3> positions, int neighbours,
-                                     const Progress* progress);
+                                     const Progress* progress,
+                                     std::span<const std::uint32_t> curve = {});
 
 /// The unit normal of the surface at every point, its sign arbitrary (see orient.h).
 ///

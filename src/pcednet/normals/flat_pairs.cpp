@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pcednet/cloud/point_cloud.h"
 #include "pcednet/core/parallel.h"
 #include "pcednet/spatial/curve_order.h"
 #include "pcednet/spatial/neighbour_search.h"
@@ -16,19 +17,13 @@ constexpr std::size_t kBlock = 1024;
 constexpr double kParallel = 0.9;
 constexpr double kLevel = 0.3;
 
-bool is_usable(const Vec3& normal) {
-  return normal.allFinite() && !normal.isZero(0.0);
-}
-
 }  // namespace
 
-FlatPairs::FlatPairs(std::span<const Vec3> positions, std::span<const Vec3> normals) {
-  std::vector<std::uint32_t> order = spatial::curve_order(positions);
+FlatPairs::FlatPairs(std::span<const Vec3> positions, std::span<const Vec3> normals,
+                     std::span<const std::uint32_t> curve) {
+  std::vector<std::uint32_t> order(curve.begin(), curve.end());
   std::erase_if(order, [&](std::uint32_t i) { return !is_usable(normals[i]); });
-  std::vector<Vec3> points(order.size());
-  parallel_blocks(points.size(), kBlock, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) points[i] = positions[order[i]];
-  });
+  const std::vector<Vec3> points = spatial::in_order(positions, order);
   const spatial::NeighbourSearch search(points);
   const std::size_t count = search.available(kNeighbours);
   const std::size_t samples = std::min(points.size(), kSample);

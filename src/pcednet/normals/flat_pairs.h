@@ -23,8 +23,9 @@ namespace pcednet::normals {
 class FlatPairs {
  public:
   /// One normal per position, of unit length; points whose normal is zero or not finite are left
-  /// out.
-  FlatPairs(std::span<const Vec3> positions, std::span<const Vec3> normals);
+  /// out. `curve` is the spatial::curve_order() of the positions.
+  FlatPairs(std::span<const Vec3> positions, std::span<const Vec3> normals,
+            std::span<const std::uint32_t> curve);
 
   std::size_t size() const { return pairs_.size(); }
 

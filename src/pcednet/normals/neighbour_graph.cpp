@@ -16,7 +16,6 @@ namespace {
 constexpr std::size_t kBlock = 1024;
 
 void collect_distinct_points(std::span<const Vec3> positions, NeighbourGraph& graph) {
-  graph.order = spatial::curve_order(positions);
   const std::vector<std::uint32_t>& order = graph.order;
   std::vector<Vec3> ordered = spatial::in_order(positions, order);
   const auto is_new = [&](std::size_t i) { return i == 0 || ordered[i] != ordered[i - 1]; };
@@ -62,8 +61,11 @@ void compare_with_reach(const Vec3* points, const double* sq_reach, std::size_t 
 }  // namespace
 
 NeighbourGraph make_neighbour_graph(std::span<const Vec3> positions, std::size_t count,
-                                    const Progress* progress) {
+                                    const Progress* progress,
+                                    std::span<const std::uint32_t> curve) {
   NeighbourGraph graph;
+  graph.order.assign(curve.begin(), curve.end());
+  if (curve.empty()) graph.order = spatial::curve_order(positions);
   collect_distinct_points(positions, graph);
   const std::size_t points = graph.points.size();
   if (points == 0) return graph;

@@ -36,7 +36,8 @@ OrientOptions orientation_on(const NeighbourGraph& graph, const PrepareOptions& 
 PreparedNormals estimate_oriented_normals(std::span<const Vec3> positions,
                                           const PrepareOptions& options, const Progress* progress) {
   check_extent(positions);
-  const NeighbourGraph graph = make_estimation_graph(positions, options.neighbours, progress);
+  const NeighbourGraph graph =
+      make_estimation_graph(positions, options.neighbours, progress, options.curve);
   std::vector<Vec3> of_points = estimate_normals(graph, progress);
   PreparedNormals prepared;
   prepared.neighbours = graph.degree;
@@ -59,7 +60,8 @@ PreparedNormals complete_and_orient_normals(std::span<const Vec3> positions,
                                             const Progress* progress) {
   check_size(positions, given);
   check_extent(positions);
-  const NeighbourGraph graph = make_estimation_graph(positions, options.neighbours, progress);
+  const NeighbourGraph graph =
+      make_estimation_graph(positions, options.neighbours, progress, options.curve);
   PreparedNormals prepared;
   prepared.neighbours = graph.degree;
   prepared.normals.assign(given.begin(), given.end());

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
@@ -16,6 +17,7 @@ struct PrepareOptions {
   int neighbours = EstimateOptions{}.neighbours;  ///< for estimation and for orientation
   std::optional<Vec3> viewpoint = {};             ///< as in OrientOptions
   bool count_turned = false;                      ///< as in OrientOptions
+  std::span<const std::uint32_t> curve = {};  ///< spatial::curve_order() of the positions, if known
 };
 
 struct PreparedNormals {
