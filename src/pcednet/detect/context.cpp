@@ -1,7 +1,7 @@
 #include "pcednet/detect/context.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <tuple>
 
@@ -9,6 +9,7 @@
 #include "pcednet/core/blocks.h"
 #include "pcednet/core/parallel.h"
 #include "pcednet/detect/decide.h"
+#include "pcednet/detect/principal_axes.h"
 #include "pcednet/nn/predict.h"
 
 namespace pcednet::detect {
@@ -57,7 +58,14 @@ struct Sums {
   }
 };
 
-void write_features(const Sums& sums, double own, double sq_r, float* out) {
+/// What the features of one size and kind are made of, weighted, in units of r.
+struct Surroundings {
+  double share = 0, most = 0;  ///< S w p / S w, max p
+  Vec3 centre = Vec3::Zero();
+  Mat3 covariance = Mat3::Zero();
+};
+
+Surroundings weigh(const Sums& sums, double sq_r) {
   // Weights and lengths in units of r; a neighbourhood of copies of the point has none.
   const double falloff = sq_r > 0 ? 1.0 / (kReach * sq_r) : 0.0;
   const double scale = sq_r > 0 ? 1.0 / std::sqrt(sq_r) : 0.0;
@@ -65,20 +73,23 @@ void write_features(const Sums& sums, double own, double sq_r, float* out) {
   const double p = sums.p - falloff * sums.pd;
   const double total = 1.0 / (p + kLittle);
   const Vec3 centre = scale * total * (sums.py - falloff * sums.pyd);
-  const Mat3 covariance =
-      scale * scale * total * (sums.pyy - falloff * sums.pyyd) - centre * centre.transpose();
-  const Eigen::SelfAdjointEigenSolver<Mat3> axes(covariance);
-  const double l1 = std::max(0.0, axes.eigenvalues()[2]);
-  const double l2 = std::max(0.0, axes.eigenvalues()[1]);
-  const Vec3 along = axes.eigenvectors().col(2);
+  return {p / weight, sums.most, centre,
+          scale * scale * total * (sums.pyy - falloff * sums.pyyd) - centre * centre.transpose()};
+}
+
+void write_features(const Surroundings& around, const PrincipalAxes& axes, std::size_t lane,
+                    double own, float* out) {
+  const double l1 = std::max(0.0, axes.largest[lane]);
+  const double l2 = std::max(0.0, axes.middle[lane]);
+  const Vec3 along(axes.axis[0][lane], axes.axis[1][lane], axes.axis[2][lane]);
   const double clamped = std::clamp(own, kSurest, 1.0 - kSurest);
   const std::array<double, kContextFeatures> features = {
       std::log(clamped / (1.0 - clamped)),
-      p / weight,
-      sums.most,
-      centre.norm(),
-      std::sqrt(std::max(0.0, covariance.trace())),
-      (centre - along * along.dot(centre)).norm(),
+      around.share,
+      around.most,
+      around.centre.norm(),
+      std::sqrt(std::max(0.0, around.covariance.trace())),
+      (around.centre - along * along.dot(around.centre)).norm(),
       std::sqrt(l1),
       std::sqrt(l2 / (l1 + kSurest))};
   std::transform(features.begin(), features.end(), out,
@@ -123,22 +134,37 @@ void ContextMatrix::describe(std::size_t begin, std::size_t end, std::span<float
 
 void ContextMatrix::describe_point(std::size_t place, std::span<const spatial::Neighbour> near,
                                    float* row) const {
-  for (std::size_t kind = 0; kind < static_cast<std::size_t>(kinds_); ++kind) {
+  const auto kinds = static_cast<std::size_t>(kinds_);
+  constexpr std::size_t kSizes = kContextSizes.size();
+  static_assert(2 * kSizes <= SymmetricMatrices::kLanes);
+  std::array<Surroundings, SymmetricMatrices::kLanes> around;
+  SymmetricMatrices covariances = {};
+  for (std::size_t kind = 0; kind < kinds; ++kind) {
     Sums sums;
     double sq_r = 0.0;
     auto neighbour = near.begin();
-    for (std::size_t size = 0; size < kContextSizes.size(); ++size) {
+    for (std::size_t size = 0; size < kSizes; ++size) {
       for (; neighbour != near.end() && sums.count < kContextSizes[size]; ++neighbour) {
         sq_r = neighbour->sq_distance;
         sums.add(positions_[neighbour->index] - positions_[place], sq_r,
                  static_cast<double>(probabilities_[neighbour->index][kind]));
       }
-      float* const out =
-          row + size * features() + kind * static_cast<std::size_t>(kContextFeatures);
-      if (sums.count > 0) {
-        write_features(sums, static_cast<double>(probabilities_[place][kind]), sq_r, out);
-      } else {
+      const std::size_t lane = kind * kSizes + size;
+      if (sums.count > 0) around[lane] = weigh(sums, sq_r);
+      covariances.set(lane, around[lane].covariance);
+    }
+  }
+  PrincipalAxes axes;
+  find_principal_axes(covariances, axes);
+  for (std::size_t kind = 0; kind < kinds; ++kind) {
+    const auto own = static_cast<double>(probabilities_[place][kind]);
+    for (std::size_t size = 0; size < kSizes; ++size) {
+      const std::size_t lane = kind * kSizes + size;
+      float* const out = row + size * features() + kind * std::size_t{kContextFeatures};
+      if (near.empty()) {
         std::fill_n(out, kContextFeatures, 0.0f);
+      } else {
+        write_features(around[lane], axes, lane, own, out);
       }
     }
   }
