@@ -30,13 +30,17 @@ void add_descriptor_options(CLI::App& command, gls::ScaleSpaceOptions& options) 
   add_choice(command, "--features", options.features, feature_sets(), "Numbers per scale");
   add_choice(command, "--reconstruction", options.reconstruction, reconstructions(),
              "The surface that is described at every scale");
+  add_gate_options(command, options);
+  add_engine_option(command, options);
+  add_scale_range_options(command, options);
+}
+
+void add_gate_options(CLI::App& command, gls::ScaleSpaceOptions& options) {
   command.add_option("--gate", options.side_gate,
                      "Side-aware neighbourhoods: leave out points whose normal has a cosine below "
                      "this with the point's own (-1 to 1; default: off)");
   command.add_option("--second-gate", options.second_gate,
                      "Describe with another gate too: twice as many numbers per scale");
-  add_engine_option(command, options);
-  add_scale_range_options(command, options);
 }
 
 void add_scale_range_options(CLI::App& command, gls::ScaleSpaceOptions& options) {

@@ -12,6 +12,9 @@ namespace pcednet::app {
 /// --s-max. `options` must outlive the parsing.
 void add_descriptor_options(CLI::App& command, gls::ScaleSpaceOptions& options);
 
+/// Adds --gate and --second-gate alone.
+void add_gate_options(CLI::App& command, gls::ScaleSpaceOptions& options);
+
 /// Adds --s-min and --s-max alone.
 void add_scale_range_options(CLI::App& command, gls::ScaleSpaceOptions& options);
 

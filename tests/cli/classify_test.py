@@ -90,6 +90,17 @@ class Classify(CliTest):
         self.assertIn(rows["label"][7], (0, 1, 2))
         self.assertTrue(np.all(np.isfinite(rows["scalar_p_sharp"])))
 
+    def test_tells_the_seconds_of_every_stage(self):
+        write_ply(self.folder / "a.ply", *cube(400)[:2])
+        said = run("classify", self.folder / "a.ply").stderr
+        line = next(line for line in said.splitlines() if line.startswith("  seconds: "))
+        stages = dict(part.split() for part in line.removeprefix("  seconds: ").split(", "))
+        self.assertLessEqual({"read", "normals", "prepare", "describe", "context", "write", "total"},
+                             stages.keys())
+        seconds = {name: float(text) for name, text in stages.items()}
+        total = seconds.pop("total")
+        self.assertAlmostEqual(total, sum(seconds.values()), delta=0.01 * len(stages))
+
     def test_takes_a_folder(self):
         for name in ("a.ply", "b.ply"):
             write_ply(self.folder / name, *cube(400)[:2])

@@ -97,7 +97,8 @@ class Outputs(CliTest):
             there = self.folder / name
             there.write_text("precious")
             done = run(command, broken, "-o", there, expect=2)
-            self.assertIn(f"{there}: exists already", done.stderr, command)
+            self.assertIn(f"{there}: exists already; give --overwrite to replace it", done.stderr,
+                          command)
             self.assertEqual(there.read_text(), "precious")
 
     def test_an_existing_cloud_of_a_set_is_found_before_the_others_are_made(self):

@@ -16,6 +16,7 @@
 #include <set>
 
 #include "pcednet/core/error.h"
+#include "pcednet/core/exists_already.h"
 
 namespace pcednet {
 namespace {
@@ -147,6 +148,7 @@ TEST_F(OutputFileTest, RefusesBeforeTheWorkWhatCannotBeWrittenAfterIt) {
   EXPECT_EQ(kind("new", Overwrite::kNo), ErrorKind(0));
   EXPECT_EQ(kind("file", Overwrite::kYes), ErrorKind(0));
   EXPECT_EQ(kind("file", Overwrite::kNo), ErrorKind::kUsage);
+  EXPECT_THROW(check_writable(path("file"), Overwrite::kNo), ExistsAlready);
   EXPECT_EQ(kind("link", Overwrite::kNo), ErrorKind::kUsage);
   EXPECT_EQ(kind("pipe", Overwrite::kYes), ErrorKind::kUsage);
   EXPECT_EQ(kind("", Overwrite::kYes), ErrorKind::kUsage);  // the folder itself

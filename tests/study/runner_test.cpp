@@ -69,18 +69,18 @@ std::string scores_in(const Study& study) {
   return text;
 }
 
-TEST_F(StudyRun, ScoresWhatTrainingAndClassificationByHandFind) {
-  const Study study = run("classes", "cache", {.seeds = {5}});
-  // 2 variants x 2 sets, each with both readings of what an edge is.
-  ASSERT_EQ(study.results.size(), 8u);
-  const PointCloud& training = data_.training->clouds[0].cloud;
+/// Compares the results of a study, whose networks have seed 5, with training and classification by
+/// hand.
+void expect_found_by_hand(const Study& study, const StudyData& data) {
+  const PointCloud& training = data.training->clouds[0].cloud;
   for (const Result& result : study.results) {
     const auto& variant = study.experiment.variants[result.variant];
     detect::TrainOptions options = std::get<NetworkMethod>(variant.method).options;
     options.training.seed = 5;
     const detect::TrainingCloud learnt{"cube", detect::prepare(training), training.labels};
     const auto model = detect::train("by hand", {&learnt, 1}, options).model;
-    const auto set = std::find_if(data_.tests.begin(), data_.tests.end(),
+    EXPECT_EQ(model.context.has_value(), options.context);
+    const auto set = std::find_if(data.tests.begin(), data.tests.end(),
                                   [&](const auto& s) { return s->name == result.set; });
     ASSERT_EQ(result.scores.size(), (*set)->clouds.size());
     for (std::size_t i = 0; i < result.scores.size(); ++i) {
@@ -91,6 +91,22 @@ TEST_F(StudyRun, ScoresWhatTrainingAndClassificationByHandFind) {
       EXPECT_EQ(result.classes[i], classes);
     }
   }
+}
+
+TEST_F(StudyRun, ScoresWhatTrainingAndClassificationByHandFind) {
+  const Study study = run("classes", "cache", {.seeds = {5}});
+  // 2 variants x 2 sets, each with both readings of what an edge is.
+  ASSERT_EQ(study.results.size(), 8u);
+  expect_found_by_hand(study, data_);
+}
+
+TEST_F(StudyRun, TrainsWhatShips) {
+  const Study study = run("additions", "cache", {.seeds = {5}});
+  ASSERT_EQ(study.results.size(), 10u);  // 5 variants x 2 sets
+  expect_found_by_hand(study, data_);
+  EXPECT_EQ(run("additions", "cache", {.seeds = {5}}).trained, 0u);
+  plan_.training.context = true;
+  EXPECT_EQ(run("additions", "cache", {.seeds = {5}}).trained, 2u);  // with "gates" and "distilled"
 }
 
 TEST_F(StudyRun, FindsEverythingInTheCacheTheSecondTime) {
@@ -118,11 +134,9 @@ TEST_F(StudyRun, DoesNotDependOnTheOrderOfTheSeeds) {
 TEST_F(StudyRun, GivesTheSameScoresForAnyNumberOfThreads) {
   set_thread_count(1);
   const std::string one = scores_in(run("features", "cache1"));
-  const std::string basis = behaviour();
   for (const int threads : {2, 7}) {
     set_thread_count(threads);
     EXPECT_EQ(scores_in(run("features", "cache" + std::to_string(threads))), one);
-    EXPECT_EQ(behaviour(), basis);
   }
 }
 

@@ -10,6 +10,7 @@
 
 #include "batch.h"
 #include "commands.h"
+#include "descriptor_options.h"
 #include "fee.h"
 #include "methods.h"
 #include "models.h"
@@ -27,9 +28,10 @@ struct Arguments {
   std::vector<std::string> names, training, tests, positives, models, predictions, methods, fee;
   std::string folder;
   std::vector<std::uint64_t> seeds;
-  int classes = 3, epochs = 0;
+  detect::TrainOptions networks;  ///< all but the epochs and the balance
+  int epochs = 0;
   double core_watts = study::RunOptions().watts_per_core;
-  bool quick = false, exact = false, natural = false;
+  bool quick = false, natural = false;
 };
 
 /// NAME=VALUE. The name will be that of folders and columns.
@@ -140,12 +142,9 @@ study::NamedMethod classic_method(const std::string& id, const std::string& titl
 }
 
 study::PlanOptions plan_of(const Arguments& arguments) {
-  study::PlanOptions plan{.quick = arguments.quick};
-  detect::TrainOptions& training = plan.training;
-  if (arguments.natural) training.training.balance = 0.0;
-  training.architecture.classes = arguments.classes;
-  if (arguments.epochs > 0) training.training.epochs = arguments.epochs;
-  if (arguments.exact) training.descriptor.engine = gls::Engine::kExact;
+  study::PlanOptions plan{.training = arguments.networks, .quick = arguments.quick};
+  if (arguments.natural) plan.training.training.balance = 0.0;
+  if (arguments.epochs > 0) plan.training.training.epochs = arguments.epochs;
   for (const std::string& name : arguments.models) {
     plan.models.emplace_back(fs::path(name).stem().string(), find_model(name));
   }
@@ -257,6 +256,22 @@ void study_command(const Arguments& arguments, const Common& common) {
   }
 }
 
+/// Of the networks that are trained, where the experiment does not vary them.
+void add_network_options(CLI::App& command, Arguments& arguments) {
+  detect::TrainOptions& training = arguments.networks;
+  command.add_option("--classes", training.architecture.classes, "Classes of the networks")
+      ->capture_default_str()
+      ->check(CLI::IsMember({2, 3}));
+  command.add_option("--epochs", arguments.epochs, "Rounds of training (0: the recipe's)");
+  command.add_flag("--natural", arguments.natural,
+                   "Let every class count as often as it occurs, not all the same");
+  add_gate_options(command, training.descriptor);
+  command.add_flag("--context", training.context, "Train context networks too, as train");
+  command.add_option("--distil", training.teachers, "Networks to train first, as train")
+      ->check(CLI::Range(0, 100));
+  add_engine_option(command, training.descriptor);
+}
+
 }  // namespace
 
 void add_study(CLI::App& app, Common& common) {
@@ -290,15 +305,7 @@ void add_study(CLI::App& app, Common& common) {
       "NAME=DIR: classes that another program found; {set} in DIR is the set's name");
   command->add_option("--fee", arguments->fee,
                       "SET=R,r[,THRESHOLD]: radii of feature edge estimation in a set's unit");
-  command
-      ->add_option("--classes", arguments->classes,
-                   "Classes of the networks, where the experiment does not vary them")
-      ->capture_default_str()
-      ->check(CLI::IsMember({2, 3}));
-  command->add_option("--epochs", arguments->epochs, "Rounds of training (0: the recipe's)");
-  command->add_flag("--natural", arguments->natural,
-                    "Let every class count as often as it occurs, not all alike");
-  command->add_flag("--exact", arguments->exact, "Descriptors from exact neighbourhoods (slow)");
+  add_network_options(*command, *arguments);
   command
       ->add_option("--core-watts", arguments->core_watts,
                    "Design power of a processor core, where energy cannot be read")

@@ -18,5 +18,7 @@ inline constexpr std::array<EdgeClassEntry, 3> kEdgeClasses = {{
     {kSmoothEdge, "smooth-edge", {255, 196, 93}},
     {kSharpEdge, "sharp-edge", {168, 0, 0}},
 }};
+static_assert(kEdgeClasses[kSmoothEdge].edge_class == kSmoothEdge &&
+              kEdgeClasses[kSharpEdge].edge_class == kSharpEdge);
 
 }  // namespace pcednet

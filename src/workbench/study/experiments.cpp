@@ -38,13 +38,17 @@ constexpr KindName kKinds[] = {{nn::NetworkKind::kPcednet, "pcednet", "PCEDNet"}
                                {nn::NetworkKind::kFc, "fc", "FC"},
                                {nn::NetworkKind::kCnn, "cnn", "CNN"}};
 
-void add_outside_methods(Experiment& experiment, const PlanOptions& options) {
+void add_models(Experiment& experiment, const PlanOptions& options) {
   for (const auto& [id, file] : options.models) {
     experiment.variants.push_back({.id = id,
                                    .title = fmt::format("model {}", id),
                                    .method = ModelMethod{file, options.training.descriptor.engine},
                                    .note = "as it comes, trained on clouds of its own"});
   }
+}
+
+void add_outside_methods(Experiment& experiment, const PlanOptions& options) {
+  add_models(experiment, options);
   for (const NamedMethod& classic : options.classic) {
     experiment.variants.push_back({.id = classic.id,
                                    .title = classic.title,
@@ -124,6 +128,30 @@ Experiment classes(const PlanOptions& options) {
                                    .title = fmt::format("{} classes", count),
                                    .method = std::move(method)});
   }
+  return experiment;
+}
+
+/// The three ideas of docs/accuracy.md, one at a time and together.
+Experiment additions(const PlanOptions& options) {
+  Experiment experiment{.name = "additions",
+                        .title = "Beyond the paper",
+                        .question = "How much do two gates, context and distillation bring?"};
+  const auto add = [&](const char* id, const char* title, bool gates, bool context, bool distil) {
+    NetworkMethod method = network(options);
+    if (gates) {
+      method.options.descriptor.side_gate = 0.4;
+      method.options.descriptor.second_gate = -0.3;
+    }
+    if (context) method.options.context = true;
+    if (distil) method.options.teachers = 3;
+    experiment.variants.push_back({.id = id, .title = title, .method = std::move(method)});
+  };
+  add("plain", "none of them", false, false, false);
+  add("gates", "two gates, 0.4 and -0.3", true, false, false);
+  add("context", "a context network", false, true, false);
+  add("distilled", "distilled from three", false, false, true);
+  add("all", "all three", true, true, true);
+  add_models(experiment, options);
   return experiment;
 }
 
@@ -317,6 +345,7 @@ const std::vector<ExperimentEntry>& experiments() {
       {"density", "test clouds thinned to a sixteenth", density},
       {"noise", "noise every way and along the normals, clean and estimated normals", noise},
       {"reconstructions", "plane or sphere, with and without projection", reconstructions},
+      {"additions", "two gates, context and distillation, beside shipped models", additions},
       {"learning", "loss and held-out scores per epoch, our recipe and the published one",
        learning},
       {"timing", "seconds of training and classification by method and number of points", timing},

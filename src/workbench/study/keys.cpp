@@ -2,12 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <utility>
-
 #include "pcednet/core/digest.h"
-#include "pcednet/core/version.h"
-#include "pcednet/detect/classify.h"
-#include "workbench/shapes/default_set.h"
+#include "pcednet/io/input_file.h"
+#include "pcednet/nn/kernels.h"
 
 namespace pcednet::study {
 namespace {
@@ -36,45 +33,13 @@ std::string text_of(const nn::TrainOptions& options) {
       least_per_epoch, most_per_epoch, standardise, seed);
 }
 
-std::vector<gls::ScaleSpaceOptions> descriptors_to_try() {
-  std::vector<gls::ScaleSpaceOptions> all(gls::reconstruction_names().size());
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    all[i].scales = 8;
-    all[i].features = gls::FeatureSet::kAll28;
-    all[i].reconstruction = static_cast<gls::Reconstruction>(i);
-  }
-  gls::ScaleSpaceOptions gated, exact;
-  gated.side_gate = -0.2;
-  exact.engine = gls::Engine::kExact;
-  all.push_back(gated);
-  all.push_back(exact);
-  return all;
-}
-
-void try_networks(const detect::PreparedCloud& cloud, const PointCloud& labelled, Digest& digest) {
-  const detect::TrainingCloud training{"probe", cloud, labelled.labels};
-  const auto samples = detect::make_samples({&training, 1}, {});
-  const auto described = detect::describe(cloud, {});
-  for (const auto kind : {nn::NetworkKind::kPcednet, nn::NetworkKind::kFc, nn::NetworkKind::kCnn}) {
-    detect::TrainOptions options;
-    options.architecture.kind = kind;
-    options.training.epochs = 2;
-    options.training.least_per_epoch = 1;
-    const auto trained = detect::train("probe", samples, options);
-    digest.add_values(std::span(std::as_const(trained.model.network.network.parameters)));
-    digest.add_values(std::span<const float>(
-        detect::classify(described, cloud.positions, trained.model).p_sharp));
-  }
-}
-
 }  // namespace
 
 std::string text_of(const detect::TrainOptions& options) {
   const auto& [descriptor, architecture, training, symmetry, teachers, context] = options;
-  static_cast<void>(context);  // the runner trains on samples, which have no context
-  return fmt::format("{}, {}, {}, symmetry {}, teachers {}", gls::text_of(descriptor),
-                     text_of(architecture), text_of(training), static_cast<int>(symmetry),
-                     teachers);
+  return fmt::format("{}, {}, {}, symmetry {}, teachers {}{}", gls::text_of(descriptor),
+                     text_of(architecture), text_of(training), static_cast<int>(symmetry), teachers,
+                     context ? ", context" : "");
 }
 
 std::string text_of(const Treatment& treatment) {
@@ -90,21 +55,9 @@ std::string text_of(const CloudSet& set) {
   return text;
 }
 
-std::string behaviour() {
-  Digest digest;
-  digest.add(std::string_view(kVersion));
-  for (const shapes::Recipe& recipe : shapes::default_recipes(1)) {
-    if (recipe.name != "icosahedron_0") continue;  // small, with points of every class
-    PointCloud cloud = shapes::generate(recipe, 1).cloud;
-    const auto given = detect::prepare(cloud);
-    for (const auto& descriptor : descriptors_to_try()) {
-      digest.add_values(std::span<const float>(detect::describe(given, descriptor).values));
-    }
-    try_networks(given, cloud, digest);
-    cloud.normals.clear();
-    digest.add_values(detect::prepare(cloud).normals);
-  }
-  return digest.hex();
+std::string this_program() {
+  return fmt::format("{} level {}", Digest().add(io::InputFile("/proc/self/exe").text()).hex(),
+                     static_cast<int>(nn::vector_level()));
 }
 
 }  // namespace pcednet::study

@@ -14,9 +14,8 @@ std::string text_of(const Treatment& treatment);
 /// The digests of the clouds.
 std::string text_of(const CloudSet& set);
 
-/// What this build of the program computes for a small cloud: descriptions of every kind, trained
-/// weights, classes. So results that an older program kept are not taken for those of another one
-/// that computes differently. Takes some tens of milliseconds; the same for any number of threads.
-std::string behaviour();
+/// The digest of the running program and the vector instructions that it uses: results that another
+/// program kept are not taken for those of this one.
+std::string this_program();
 
 }  // namespace pcednet::study

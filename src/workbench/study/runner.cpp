@@ -49,7 +49,7 @@ class Runner {
     study_.experiment = experiment;
     if (data.training) study_.training = data.training->name;
     std::sort(options_.seeds.begin(), options_.seeds.end());
-    basis_ = behaviour();
+    basis_ = this_program();
     if (experiment.timed) basis_ += ", " + machine_name();
   }
 
@@ -105,6 +105,11 @@ class Runner {
   std::map<std::string, std::shared_ptr<const StoredModel>> models_;  ///< by key
   std::map<std::string, StoredClasses> found_;                        ///< by key
 };
+
+std::size_t weights_of(const detect::EdgeModel& model) {
+  return model.network.network.parameters.size() +
+         (model.context ? model.context->network.parameters.size() : 0);
+}
 
 Classifier classifier_from(const ModelMethod& method) {
   auto stored = std::make_shared<StoredModel>();
@@ -264,8 +269,13 @@ void Runner::collect(std::size_t v, const CloudSet& set, const Classifier& class
   Result result{.variant = v,
                 .set = set.name,
                 .seed = classifier.seed,
-                .parameters = classifier.model->model.network.network.parameters.size(),
+                .parameters = weights_of(classifier.model->model),
                 .costs = classifier.model->costs};
+  const auto* network = std::get_if<NetworkMethod>(&variants()[v].method);
+  if (network && network->options.context && !classifier.model->model.context) {
+    note(fmt::format("{}, seed {}, has no context network: the first left no point in doubt",
+                     variants()[v].id, *classifier.seed));
+  }
   std::vector<Scored> clouds;
   for (const StudyCloud& cloud : set.clouds) {
     if (learnt_from(classifier, cloud)) {

@@ -5,6 +5,7 @@
 
 #include "pcednet/core/digest.h"
 #include "pcednet/core/error.h"
+#include "pcednet/detect/train_context.h"
 #include "workbench/shapes/perturb.h"
 
 namespace pcednet::study {
@@ -56,16 +57,18 @@ double mcc_of(const std::vector<std::size_t>& confusion) {
 void Trainer::describe(const TrainingTask& task) {
   if (samples_key_ == task.samples_key) return;
   samples_ = {};  // room for the new ones
-  std::vector<detect::TrainingCloud> clouds;
-  std::vector<std::vector<std::uint8_t>> labels;
-  labels.reserve(task.training->clouds.size());  // the training clouds look into them
-  for (const StudyCloud& cloud : task.training->clouds) {
-    labels.push_back(thinned_labels(cloud.cloud, task.one_in));
-    clouds.push_back(
-        {cloud.name, detect::prepare(cloud.cloud, kAsGiven, progress_), labels.back()});
+  clouds_.clear();
+  labels_.clear();
+  training_ = task.training;
+  for (const StudyCloud& cloud : training_->clouds) {
+    labels_.push_back(thinned_labels(cloud.cloud, task.one_in));
+  }
+  for (std::size_t i = 0; i < labels_.size(); ++i) {
+    const StudyCloud& cloud = training_->clouds[i];
+    clouds_.push_back({cloud.name, detect::prepare(cloud.cloud, kAsGiven, progress_), labels_[i]});
   }
   EnergyMeter meter(watts_per_core_);
-  samples_ = detect::make_samples(clouds, task.options.descriptor, progress_);
+  samples_ = detect::make_samples(clouds_, task.options.descriptor, progress_);
   cost_ = meter.lap();
   samples_key_ = task.samples_key;
 }
@@ -77,12 +80,14 @@ StoredModel Trainer::train(const TrainingTask& task) {
   double seconds = 0;
   const auto on_epoch = [&](const nn::EpochReport& report) {
     seconds += watch.lap();
+    if (report.epoch == 1) stored.epochs.clear();  // those before were a teacher's
     stored.epochs.push_back({report.epoch, seconds, report.training_loss, report.validation_loss,
                              report.validation_accuracy, mcc_of(report.validation_confusion)});
   };
   EnergyMeter meter(watts_per_core_);
   detect::TrainedModel trained =
       detect::train(task.name, samples_, task.options, on_epoch, progress_);
+  if (task.options.context) detect::add_context(trained, clouds_, task.options, {}, progress_);
   if (trained.cancelled) throw Error(ErrorKind::kCancelled, "stopped by the user");
   stored.costs.train = meter.lap();
   stored.costs.describe_training = cost_;

@@ -24,8 +24,8 @@ struct TrainingTask {
   std::string key = {};
 };
 
-/// Trains one network after the other, and keeps the descriptions of the training points for the
-/// next one that learns from the same.
+/// Trains one network after the other, and keeps clouds and descriptions of the training points for
+/// the next one that learns from the same.
 class Trainer {
  public:
   Trainer(double watts_per_core, const Progress* progress)
@@ -40,6 +40,9 @@ class Trainer {
   double watts_per_core_;
   const Progress* progress_;
   std::string samples_key_ = {};
+  std::shared_ptr<const CloudSet> training_ = {};
+  std::vector<std::vector<std::uint8_t>> labels_ = {};
+  std::vector<detect::TrainingCloud> clouds_ = {};  ///< of training_, with labels_
   detect::Samples samples_ = {};
   Cost cost_ = {};  ///< of describing them
 };
