@@ -1,6 +1,6 @@
 // The annotator end to end: a real server, headless Chromium, a mouse that paints; then the same on the command line.
 // Environment: PCEDNET the program, PCEDNET_SOURCE_DIR the repository, CHROMIUM the browser;
-// SCREENSHOT, if set, is where a picture of the page goes.
+// SCREENSHOT and SCREENSHOT_PHONE, if set, are where pictures of the page go.
 import assert from "node:assert/strict";
 import { spawn, spawnSync } from "node:child_process";
 import { once } from "node:events";
@@ -370,6 +370,22 @@ test("still paints after a reload, and in another window once the first is close
   await page.close({ runBeforeUnload: true });
   await second.waitForFunction(() => annotator.store.now.writer);
   page = second;
+});
+
+test("fits a phone: the cloud has room, no button is cut off", async () => {
+  await page.setViewportSize({ width: 390, height: 844 });
+  const { canvas, cut } = await page.evaluate(() => {
+    const { width, height } = annotator.stage.canvas.getBoundingClientRect();
+    const names = [...document.querySelectorAll("header button, aside button, aside input")]
+      .filter((e) => e.checkVisibility() && e.getBoundingClientRect().right > innerWidth)
+      .map((e) => e.textContent || e.type);
+    return { canvas: { width, height }, cut: names };
+  });
+  assert.deepEqual(cut, []);
+  assert.ok(canvas.width > 300 && canvas.height > 350, JSON.stringify(canvas));
+  if (process.env.SCREENSHOT_PHONE) await page.screenshot({ path: process.env.SCREENSHOT_PHONE });
+  await page.setViewportSize({ width: 1280, height: 720 });
+  await settled(page);
 });
 
 test("goes to an uncertain place", async () => {

@@ -59,7 +59,7 @@ export function classesPanel(store: AppStore, brush: Brush): HTMLElement {
     brush.grow((low * (high / low) ** at) / store.now.radius);
   });
   const protect = checkbox("Protect painted points", "P", (on) => store.set({ protect: on }));
-  const front = checkbox("Front points only (lasso, polygon)", "X", (on) => store.set({ frontOnly: on }));
+  const front = checkbox("Lasso: front points only", "X", (on) => store.set({ frontOnly: on }));
   store.watch(["radius", "session", "protect", "frontOnly"], () => {
     const { radius, session } = store.now;
     protect.set(store.now.protect);

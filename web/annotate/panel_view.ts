@@ -18,7 +18,7 @@ export function viewPanel(store: AppStore): HTMLElement {
     "Palette",
     [
       { value: false, label: "standard" },
-      { value: true, label: "colour-blind safe" },
+      { value: true, label: "colour-blind" },
     ],
     (safePalette) => store.set({ safePalette }),
   );
