@@ -62,13 +62,13 @@ CLI::App* add_command(CLI::App& app, Common& common, const std::string& name,
   std::istringstream lines(examples);
   for (std::string line; std::getline(lines, line);) text += "  " + line + "\n";
   CLI::App* command = app.add_subcommand(name, text);
-  command->add_option("--threads", common.threads, "Threads to use (0: every core)")
+  command->add_option("--threads", common.threads, "Threads (0: all cores)")
       ->capture_default_str()
       ->check(CLI::Range(0, 4096));
   command->add_option("--progress", common.progress, "Progress on stderr: auto, plain, json, none")
       ->capture_default_str()
       ->check(CLI::IsMember({"auto", "plain", "json", "none"}));
-  command->add_flag("--overwrite", common.overwrite_files, "Replace output files that exist");
+  command->add_flag("--overwrite", common.overwrite_files, "Replace existing output files");
   return command;
 }
 

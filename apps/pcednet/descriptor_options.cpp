@@ -29,7 +29,7 @@ void add_descriptor_options(CLI::App& command, gls::ScaleSpaceOptions& options) 
       ->check(CLI::IsMember({4, 8, 16, 32, 64, 128}));
   add_choice(command, "--features", options.features, feature_sets(), "Numbers per scale");
   add_choice(command, "--reconstruction", options.reconstruction, reconstructions(),
-             "The surface that is described at every scale");
+             "Surface to fit: sphere or plane, with (-mls) or without projection");
   add_gate_options(command, options);
   add_engine_option(command, options);
   add_scale_range_options(command, options);
@@ -37,10 +37,10 @@ void add_descriptor_options(CLI::App& command, gls::ScaleSpaceOptions& options) 
 
 void add_gate_options(CLI::App& command, gls::ScaleSpaceOptions& options) {
   command.add_option("--gate", options.side_gate,
-                     "Side-aware neighbourhoods: leave out points whose normal has a cosine below "
-                     "this with the point's own (-1 to 1; default: off)");
+                     "Leave out neighbours whose normal has a cosine below this with the point's "
+                     "own, such as the far side of thin walls (-1 to 1; default: off)");
   command.add_option("--second-gate", options.second_gate,
-                     "Describe with another gate too: twice as many numbers per scale");
+                     "Describe with a second gate as well: twice the numbers per scale");
 }
 
 void add_scale_range_options(CLI::App& command, gls::ScaleSpaceOptions& options) {
@@ -59,7 +59,7 @@ void add_scale_range_options(CLI::App& command, gls::ScaleSpaceOptions& options)
 void add_engine_option(CLI::App& command, gls::ScaleSpaceOptions& options) {
   command.add_flag_callback(
       "--exact", [&options] { options.engine = gls::Engine::kExact; },
-      "Descriptors from exact neighbourhoods (slow)");
+      "Describe with exact neighbourhoods in double precision (slow)");
 }
 
 }  // namespace pcednet::app

@@ -107,7 +107,7 @@ classic::EdgeMeasure feature_edge_estimation(const PointCloud& cloud, const FeeO
     sent.push_back(i);
   }
   if (std::fflush(input.get()) != 0 || std::ferror(input.get())) {
-    throw Error(ErrorKind::kFailure, "method fee: the disk takes no more");
+    throw Error(ErrorKind::kFailure, "method fee: the disk is full");
   }
   std::rewind(input.get());
   run({program.string(), fmt::format("{}", offset), fmt::format("{}", convolution)}, input.get(),

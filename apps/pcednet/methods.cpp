@@ -53,17 +53,20 @@ classic::EdgeMeasure measure(const PointCloud& cloud, const MethodArguments& arg
 void add_method_options(CLI::App& command, MethodArguments& arguments) {
   command
       .add_option("--method", arguments.name,
-                  "Without a model: ca (covariance analysis), multi-scale (surface variation over "
-                  "several neighbourhoods), fee (feature edge estimation, where it is built)")
+                  "Use a method without a model: ca (covariance analysis), multi-scale (surface "
+                  "variation over several neighbourhoods), fee (feature edge estimation, if built)")
       ->check(CLI::IsMember({"ca", "multi-scale", "fee"}));
-  command.add_option("--neighbours", arguments.neighbours, "Of --method ca (default 10)");
+  command.add_option("--neighbours", arguments.neighbours,
+                     "Neighbours for --method ca (default: 10)");
+  command.add_option("--threshold", arguments.threshold,
+                     "Threshold for --method (default: ca 0.65, in units of twice the standard "
+                     "deviation; multi-scale 0.06; fee 0.16)");
   command.add_option(
-      "--threshold", arguments.threshold,
-      "Of --method: ca 0.65, in twice the standard deviation; multi-scale 0.06, fee 0.16");
-  command.add_option("--offset-radius", arguments.offset_radius,
-                     "Of --method fee, in the cloud's unit (default: 0.05 of the diagonal)");
+      "--offset-radius", arguments.offset_radius,
+      "Offset radius for --method fee, in the unit of the cloud (default: 0.05 of the diagonal)");
   command.add_option("--convolution-radius", arguments.convolution_radius,
-                     "Of --method fee, in the cloud's unit (default: half the offset radius)");
+                     "Convolution radius for --method fee, in the unit of the cloud (default: half "
+                     "the offset radius)");
 }
 
 detect::Classification classify_by_method(const PointCloud& cloud, const MethodArguments& arguments,

@@ -52,10 +52,10 @@ std::string names_of(const std::map<std::string, fs::path>& models) {
 }
 
 void add_model_options(CLI::App& command, ModelArguments& arguments) {
-  command.add_option("--model", arguments.name, "A shipped model's name, or a model file")
+  command.add_option("--model", arguments.name, "Name of a shipped model, or a model file")
       ->capture_default_str();
   command.add_flag("--no-context", arguments.no_context,
-                   "Do not look at the answers around each point: a little faster, less accurate");
+                   "Leave out the context network: faster, less accurate");
   add_engine_option(command, arguments.scales);
   add_scale_range_options(command, arguments.scales);
 }

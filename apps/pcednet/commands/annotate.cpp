@@ -81,7 +81,7 @@ annotate::SessionOptions session_options(const AnnotateArguments& arguments, con
   options.emit = [&events](const annotate::Event& event) {
     events.add(event);
     if (std::holds_alternative<annotate::Ready>(event))
-      say("ready; Ctrl-C ends, and nothing painted is lost");
+      say("ready; Ctrl-C ends the program, and all strokes are kept");
   };
   if (!options.model.empty()) options.load_model(options.model);  // refuse before any work
   return options;
@@ -126,18 +126,18 @@ void annotate_cloud(const AnnotateArguments& arguments, const Common& common) {
 void add_annotate(CLI::App& app, Common& common) {
   auto arguments = std::make_shared<AnnotateArguments>();
   CLI::App* command = add_command(
-      app, common, "annotate", "Paint edges in the browser and train on them as you paint.",
+      app, common, "annotate", "Paint edges in the browser and train on them",
       "pcednet annotate scan.ply                       opens the browser\n"
       "pcednet annotate scan.ply --no-browser --port 8080\n"
-      "pcednet annotate scan.ply --model scan          begins with a model's answer\n"
+      "pcednet annotate scan.ply --model scan          starts with a model's labels\n"
       "pcednet train --project scan_annotation.json -o my.safetensors   the same model again");
-  command->add_option("input", arguments->input, "A point file")->required();
+  command->add_option("input", arguments->input, "Point file")->required();
   command->add_option("--project", arguments->project,
-                      "Where the painting is kept (default: <stem>_annotation.json beside the "
-                      "input); its journal beside it");
+                      "Project file, with its journal beside it (default: <stem>_annotation.json "
+                      "beside the input)");
   command->add_option("--model", arguments->model,
-                      "A shipped model's name, or a model file, whose answer is shown first");
-  command->add_option("--port", arguments->port, "Of 127.0.0.1 (0: any free one)")
+                      "Shipped model or model file whose labels are shown first");
+  command->add_option("--port", arguments->port, "Port of 127.0.0.1 (0: any free port)")
       ->capture_default_str()
       ->check(CLI::Range(0, 65535));
   command->add_flag("--no-browser", arguments->no_browser, "Print the address only");

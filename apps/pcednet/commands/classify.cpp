@@ -85,8 +85,8 @@ void refuse_existing(const std::vector<Job>& jobs) {
   }
   if (existing == 0) return;
   throw Error(ErrorKind::kUsage,
-              fmt::format("{} of the results exist already: give --skip-existing to leave them or "
-                          "--overwrite to replace them; nothing is done",
+              fmt::format("{} of the results exist already; nothing was done. Give --skip-existing "
+                          "to keep them or --overwrite to replace them",
                           existing));
 }
 
@@ -111,7 +111,7 @@ void drop_results(std::vector<Job>& jobs) {
   const std::size_t dropped = std::erase_if(jobs, [&](const Job& job) {
     return jobs.size() > 1 && results.contains(job.input.lexically_normal());
   });
-  if (dropped > 0) say(fmt::format("{} files left out: they are results for others", dropped));
+  if (dropped > 0) say(fmt::format("{} files left out: they are results of other inputs", dropped));
 }
 
 Plan plan(const Inputs& inputs, const Arguments& arguments, const Common& common) {
@@ -245,32 +245,33 @@ void classify(const Arguments& arguments, const Common& common) {
 
 void add_classify(CLI::App& app, Common& common) {
   auto arguments = std::make_shared<Arguments>();
-  CLI::App* command =
-      add_command(app, common, "classify", "Label every point: non-edge, smooth-edge, sharp-edge.",
-                  "pcednet classify scan.ply                       writes scan_edges.ply\n"
-                  "pcednet classify scan.ply -o out.ply --preview out.png\n"
-                  "pcednet classify folder/ --out-dir results/     every point file in a folder\n"
-                  "pcednet classify folder/ --out-dir results/ --skip-existing    and go on later\n"
-                  "pcednet classify small.ply --s-min 0.02 --s-max 0.2     scales in its own unit\n"
-                  "pcednet classify part.obj --model my.safetensors");
-  command->add_option("inputs", arguments->inputs, "Point files, or folders of them")->required();
-  command->add_option("-o,--output", arguments->output,
-                      "The result (default: <stem>_edges.ply beside the input, .las for LAS "
-                      "and LAZ)");
+  CLI::App* command = add_command(
+      app, common, "classify", "Label every point: non-edge, smooth-edge or sharp-edge",
+      "pcednet classify scan.ply                       writes scan_edges.ply\n"
+      "pcednet classify scan.ply -o out.ply --preview out.png\n"
+      "pcednet classify folder/ --out-dir results/     every point file in a folder\n"
+      "pcednet classify folder/ --out-dir results/ --skip-existing    the rest, after a stop\n"
+      "pcednet classify small.ply --s-min 0.02 --s-max 0.2     scales in the unit of the cloud\n"
+      "pcednet classify part.obj --model my.safetensors");
+  command->add_option("inputs", arguments->inputs, "Point files or folders of point files")
+      ->required();
+  command->add_option(
+      "-o,--output", arguments->output,
+      "Output file (default: <stem>_edges.ply beside the input, .las for LAS and LAZ)");
   command->add_option("--las-classification", arguments->las_classification,
-                      "Classes that set the LAS field Classification, as class=code,...; 2=64 "
-                      "makes sharp edges 64");
+                      "Set the LAS field Classification of some classes, as class=code,...: 2=64 "
+                      "sets sharp edges to 64");
   command->add_option("--out-dir", arguments->output_folder,
-                      "Folder for the results; created if it is missing");
+                      "Folder for the results, created if missing");
   CLI::Option* overwrite = command->get_option("--overwrite");
   command
       ->add_flag("--skip-existing", arguments->skip_existing,
-                 "Leave out inputs whose result is there already, as after a stop")
+                 "Leave out inputs whose result exists, as after a stop")
       ->excludes(overwrite);
   add_model_options(*command, arguments->model);
-  command->add_option("--preview", arguments->preview, "Also draw the labelled cloud: a PNG file");
+  command->add_option("--preview", arguments->preview, "Draw the labelled cloud to this PNG file");
   command->add_flag("--class-colours", arguments->class_colours,
-                    "Colour the points by class even where the input has colours");
+                    "Colour the points by class even if the input has colours");
   command->add_flag("--ascii", arguments->ascii, "Write text instead of binary");
   add_method_options(*command, arguments->method);
   add_prepare_options(*command, arguments->preparation);

@@ -32,7 +32,8 @@ struct Request {
 void sample(const Request& request, PointCloud& cloud) {
   const auto triangles = io::triangles_of(cloud);
   if (triangles.empty()) {
-    throw Error(ErrorKind::kInsufficient, "has no faces to sample; .obj and .ply may have");
+    throw Error(ErrorKind::kInsufficient,
+                "has no faces to sample; .obj and .ply files can have faces");
   }
   cloud = shapes::sample_mesh(cloud, triangles,
                               {request.samples, request.vertex_normals, request.seed});
@@ -128,39 +129,40 @@ void convert(const Request& request, const Common& common) {
 }  // namespace
 
 void add_convert(CLI::App& app, Common& common) {
-  CLI::App* command = add_command(app, common, "convert", "Writes a point file in another format",
+  CLI::App* command = add_command(app, common, "convert", "Convert a point file to another format",
                                   "pcednet convert scan.xyz -o scan.ply\n"
                                   "pcednet convert scan.ply -o scan.pcd\n"
                                   "pcednet convert scan.ply -o readable.ply --ascii\n"
                                   "pcednet convert part.obj -o part.ply --sample 100000\n"
                                   "pcednet convert scan.ply -o worse.ply --noise 0.004 --seed 7");
   auto request = std::make_shared<Request>();
-  command->add_option("input", request->input, "The point file to read")->required();
+  command->add_option("input", request->input, "Input file")->required();
   command
       ->add_option("-o,--output", request->output,
-                   "The file to write: " + formats::extensions_written(" or "))
+                   "Output file: " + formats::extensions_written(" or "))
       ->required();
-  command->add_flag("--ascii", request->ascii, "Numbers as text in .ply and .pcd");
-  CLI::Option* noise =
-      command
-          ->add_option(
-              "--noise", request->noise,
-              "Move the points by Gaussian noise of this many diagonals of the bounding box")
-          ->check(CLI::NonNegativeNumber);
+  command->add_flag("--ascii", request->ascii, "Write .ply and .pcd as text");
+  CLI::Option* noise = command
+                           ->add_option("--noise", request->noise,
+                                        "Add Gaussian noise with this standard deviation, as a "
+                                        "fraction of the bounding box diagonal")
+                           ->check(CLI::NonNegativeNumber);
   command
       ->add_flag("--noise-along-normal", request->along_normal,
-                 "Move them along their normals only")
+                 "Add the noise along the normals only")
       ->needs(noise);
-  command->add_option("--subsample", request->fraction, "Keep this share of the points, at random")
+  command
+      ->add_option("--subsample", request->fraction,
+                   "Keep this share of the points, chosen at random")
       ->check(CLI::Range(0.0, 1.0));
-  CLI::Option* samples =
-      command->add_option("--sample", request->samples,
-                          "Instead of the vertices of a mesh, this many points on its faces");
+  CLI::Option* samples = command->add_option(
+      "--sample", request->samples,
+      "Sample this many points on the faces of a mesh instead of reading its vertices");
   command
       ->add_flag("--vertex-normals", request->vertex_normals,
-                 "Give them normals between those of the vertices, not those of the faces")
+                 "Interpolate the normals of the vertices instead of using those of the faces")
       ->needs(samples);
-  command->add_option("--seed", request->seed, "Another seed gives other noise and other points")
+  command->add_option("--seed", request->seed, "Seed of the noise and of the choice of points")
       ->capture_default_str();
   command->callback([request, &common] { convert(*request, common); });
 }

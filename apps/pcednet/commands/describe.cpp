@@ -141,17 +141,17 @@ void describe(const Arguments& arguments, const Common& common) {
 
 void add_describe(CLI::App& app, Common& common) {
   auto arguments = std::make_shared<Arguments>();
-  CLI::App* command =
-      add_command(app, common, "describe", "Write the scale-space matrix of a cloud for NumPy",
-                  "pcednet describe scan.ply -o scan.npy      and scan.json: scales, columns\n"
-                  "pcednet describe part.ply -o part.npy --features 28 --scales 32\n"
-                  "pcednet describe part.ply -o part.npy --gate -0.2");
-  command->add_option("input", arguments->input, "A point file")->required();
-  command->add_option("-o,--output", arguments->output, "The matrix, a .npy file")->required();
+  CLI::App* command = add_command(
+      app, common, "describe", "Write the scale-space matrix of a cloud for NumPy",
+      "pcednet describe scan.ply -o scan.npy      also writes scan.json: scales, columns\n"
+      "pcednet describe part.ply -o part.npy --features 28 --scales 32\n"
+      "pcednet describe part.ply -o part.npy --gate -0.2");
+  command->add_option("input", arguments->input, "Point file")->required();
+  command->add_option("-o,--output", arguments->output, "Output file, .npy")->required();
   add_descriptor_options(*command, arguments->options);
   command
       ->add_option("--eps", arguments->options.eps,
-                   "Resolution of far neighbourhoods, in scales: finer is slower and more exact")
+                   "Voxel size over scale; smaller is slower and more accurate")
       ->check(CLI::Range(0.01, 1.0))
       ->capture_default_str();
   add_prepare_options(*command, arguments->preparation);

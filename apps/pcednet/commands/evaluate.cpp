@@ -108,11 +108,10 @@ void evaluate(const Arguments& arguments, const Common& common) {
   const int ways = !arguments.model.name.empty() + !arguments.predictions.empty() +
                    !arguments.method.name.empty();
   if (ways != 1) {
-    throw Error(ErrorKind::kUsage, "evaluate: give one of --model, --predictions and --method");
+    throw Error(ErrorKind::kUsage, "evaluate: give one of --model, --predictions or --method");
   }
   if (arguments.calibration && arguments.model.name.empty()) {
-    throw Error(ErrorKind::kUsage,
-                "evaluate: --calibration is about the probabilities of a --model");
+    throw Error(ErrorKind::kUsage, "evaluate: --calibration needs --model");
   }
   if (arguments.json != "-") check_writable(arguments.json, common.overwrite());
   const Results results = score_all(arguments, common);
@@ -132,26 +131,28 @@ void evaluate(const Arguments& arguments, const Common& common) {
 void add_evaluate(CLI::App& app, Common& common) {
   auto arguments = std::make_shared<Arguments>();
   CLI::App* command = add_command(
-      app, common, "evaluate", "Compare predicted classes with the labels in the clouds.",
+      app, common, "evaluate", "Score predicted classes against the labels of the clouds",
       "pcednet evaluate clouds/ --model scan --positive edge\n"
       "pcednet evaluate clouds/ --predictions other_tool/ --json scores.json\n"
       "pcednet evaluate clouds/ --method ca\n"
       "pcednet evaluate a.ply b.ply --model my.safetensors --json -");
-  command->add_option("inputs", arguments->inputs, "Labelled point files, or folders of them")
+  command->add_option("inputs", arguments->inputs, "Labelled point files or folders of them")
       ->required();
   add_model_options(*command, arguments->model);
-  command->add_option("--predictions", arguments->predictions,
-                      "Folder with what another program found, a file per cloud of the same stem: "
-                      ".u8 (a byte a point), .txt (a number a line), .npy, .ply, ...");
+  command->add_option(
+      "--predictions", arguments->predictions,
+      "Folder with the labels of another program, one file per cloud with the same stem: .u8 (one "
+      "byte per point), .txt (one number per line), .npy, .ply, ...");
   add_method_options(*command, arguments->method);
   command
       ->add_option("--positive", arguments->positive,
                    "Classes that count as positive: sharp, or edge (sharp and smooth)")
       ->capture_default_str()
       ->check(CLI::IsMember({"sharp", "edge"}));
-  command->add_option("--json", arguments->json, "Write the scores here; - for standard output");
+  command->add_option("--json", arguments->json,
+                      "Write the scores to this JSON file; - for standard output");
   command->add_flag("--calibration", arguments->calibration,
-                    "Also tell how often a probability is right");
+                    "Also compare probabilities with frequencies");
   add_prepare_options(*command, arguments->preparation);
   for (const char* of_a_model :
        {"--no-context", "--exact", "--s-min", "--s-max", "--keep-orientation"}) {

@@ -84,10 +84,9 @@ CLI::App* add_set(CLI::App& generate, Common& common, SetArguments& arguments,
                   const std::string& name, const std::string& description,
                   const std::string& examples) {
   CLI::App* command = add_command(generate, common, name, description, examples);
-  command->add_option("folder", arguments.folder, "Where the PLY files go; created if need be")
+  command->add_option("folder", arguments.folder, "Folder for the PLY files, created if missing")
       ->required();
-  command->add_option("--seed", arguments.seed, "Another seed gives other clouds")
-      ->capture_default_str();
+  command->add_option("--seed", arguments.seed, "Seed of the clouds")->capture_default_str();
   return command;
 }
 
@@ -97,16 +96,16 @@ void add_default(CLI::App& generate, Common& common) {
     std::vector<double> bands;
   };
   auto arguments = std::make_shared<Arguments>();
-  CLI::App* command =
-      add_set(generate, common, *arguments, "default",
-              "Labelled clouds for training: the paper's Default training set, made anew, and more",
-              "pcednet generate default clouds/\n"
-              "pcednet generate default clouds/ --paper-only --seed 2");
+  CLI::App* command = add_set(
+      generate, common, *arguments, "default",
+      "Labelled clouds for training: a remake of the paper's Default training set, and more",
+      "pcednet generate default clouds/\n"
+      "pcednet generate default clouds/ --paper-only --seed 2");
   command->add_flag("--paper-only", arguments->paper_only,
-                    "Only the paper's nine clouds, without the shapes beyond it (x_...)");
+                    "Only the nine clouds of the paper, without the further shapes (x_...)");
   command
       ->add_option("--bands", arguments->bands,
-                   "Widths of the sharp and smooth band in point spacings, for every cloud")
+                   "Widths of the sharp and the smooth band of every cloud, in point spacings")
       ->expected(2)
       ->check(CLI::PositiveNumber);
   command->callback([arguments, &common] {
@@ -120,7 +119,7 @@ void add_default(CLI::App& generate, Common& common) {
 void add_cad(CLI::App& generate, Common& common) {
   auto set = std::make_shared<SetArguments>();
   add_set(generate, common, *set, "cad",
-          "Labelled clouds for training: CAD parts as vertices of meshes and as surface points",
+          "Labelled clouds for training: CAD parts, as mesh vertices or surface samples",
           "pcednet generate cad parts/\n"
           "pcednet generate cad parts/ --seed 2")
       ->callback(
@@ -130,7 +129,7 @@ void add_cad(CLI::App& generate, Common& common) {
 void add_worn(CLI::App& generate, Common& common) {
   auto set = std::make_shared<SetArguments>();
   add_set(generate, common, *set, "worn",
-          "Labelled clouds for training: worn parts and reliefs, their ridge lines labelled",
+          "Labelled clouds for training: worn parts and reliefs with labelled ridge lines",
           "pcednet generate worn parts/")
       ->callback([set, &common] {
         run(set->folder, set->seed, common, shapes::worn_recipes(set->seed),
@@ -153,8 +152,8 @@ void add_sample(CLI::App& generate, Common& common) {
   CLI::App* command = add_command(generate, common, "sample",
                                   "The labelled building that the demo classifies, as one file",
                                   "pcednet generate sample building.ply");
-  command->add_option("file", *file, "The file to write")->required();
-  command->add_option("--seed", *seed, "Another seed gives other points")->capture_default_str();
+  command->add_option("file", *file, "Output file")->required();
+  command->add_option("--seed", *seed, "Seed of the points")->capture_default_str();
   command->callback([file, seed, &common] {
     check_writable(*file, common.overwrite());
     formats::write_cloud(*file, shapes::building_scan(*seed).cloud,
@@ -166,7 +165,7 @@ void add_sample(CLI::App& generate, Common& common) {
 
 void add_generate(CLI::App& app, Common& common) {
   CLI::App* generate = app.add_subcommand("generate",
-                                          "Make labelled point clouds\n\nExamples:\n"
+                                          "Generate labelled point clouds\n\nExamples:\n"
                                           "  pcednet generate default clouds/\n"
                                           "  pcednet generate default clouds/ --seed 2\n");
   generate->require_subcommand(1);

@@ -59,14 +59,15 @@ void info(const Request& request, const Common& common) {
 }  // namespace
 
 void add_info(CLI::App& app, Common& common) {
-  CLI::App* command = add_command(app, common, "info", "Says what point files hold",
+  CLI::App* command = add_command(app, common, "info", "Describe point files",
                                   "pcednet info scan.ply\n"
                                   "pcednet info folder/ --json report.json\n"
                                   "pcednet info scan.ply --json -");
   auto request = std::make_shared<Request>();
-  command->add_option("inputs", request->inputs, "Point files, or folders of them")->required();
+  command->add_option("inputs", request->inputs, "Point files or folders of point files")
+      ->required();
   command->add_option("--json", request->json,
-                      "Write the same as JSON to this file, or to stdout alone with -");
+                      "Write the result as JSON to this file; - for standard output only");
   command->callback([request, &common] { info(*request, common); });
 }
 

@@ -35,9 +35,9 @@ normals::PreparedNormals prepare(const Request& request, const PointCloud& cloud
                                  const Progress& progress) {
   const normals::PrepareOptions options = {request.neighbours, request.eye()};
   if (request.keep && !cloud.has_normals()) {
-    throw Error(ErrorKind::kInsufficient,
-                fmt::format("{}: has no normals to keep; leave out --keep to estimate them",
-                            request.input));
+    throw Error(
+        ErrorKind::kInsufficient,
+        fmt::format("{}: has no normals to keep; estimate them without --keep", request.input));
   }
   normals::PreparedNormals prepared;
   with_name_in_errors(request.input, [&] {
@@ -102,24 +102,25 @@ void run(const Request& request, const Common& common) {
 
 void add_normals(CLI::App& app, Common& common) {
   CLI::App* command =
-      add_command(app, common, "normals", "Estimates normals and makes their signs agree",
+      add_command(app, common, "normals", "Estimate normals and orient them consistently",
                   "pcednet normals scan.ply -o with_normals.ply\n"
                   "pcednet normals scan.ply -o with_normals.ply --viewpoint 0 0 1.7\n"
                   "pcednet normals inward.ply -o outward.ply --keep");
   auto request = std::make_shared<Request>();
-  command->add_option("input", request->input, "The point file to read")->required();
-  command->add_option("-o,--output", request->output, "The file to write")->required();
+  command->add_option("input", request->input, "Input file")->required();
+  command->add_option("-o,--output", request->output, "Output file")->required();
   command
       ->add_option("--neighbours", request->neighbours,
-                   "Points around each point (0: 12, more on noisy clouds)")
+                   "Neighbours of each point (0: 12, more on noisy clouds)")
       ->capture_default_str()
       ->check(CLI::Range(0, 1000));
-  command->add_flag("--keep", request->keep,
-                    "Keep the normals of the file up to their signs; estimate missing ones only");
-  command->add_flag("--flip", request->flip, "Turn all normals about in the end: inwards");
+  command->add_flag(
+      "--keep", request->keep,
+      "Keep the normals of the file except for their signs; estimate only missing ones");
+  command->add_flag("--flip", request->flip, "Flip all normals at the end, to point inwards");
   command
       ->add_option("--viewpoint", request->viewpoint,
-                   "Turn every normal to face this place (X Y Z) instead of outwards")
+                   "Turn every normal to face this position (X Y Z) instead of outwards")
       ->expected(3);
   command->callback([request, &common] { run(*request, common); });
 }

@@ -53,21 +53,20 @@ void add_report(CLI::App& app, Common& common) {
       add_command(app, common, "report", "Make one web page of the studies in a folder",
                   "pcednet report study/ -o report.html\n"
                   "pcednet report study/ --clouds-per-set 9 --points 100000 --overwrite");
-  command->add_option("folder", arguments->folder, "A folder that `pcednet study` has written")
-      ->required();
-  command->add_option("-o,--output", arguments->output, "The page; it needs no other file")
+  command->add_option("folder", arguments->folder, "Folder written by `pcednet study`")->required();
+  command->add_option("-o,--output", arguments->output, "Output page; it needs no other file")
       ->capture_default_str();
   command
       ->add_option("--clouds-per-set", arguments->merge.clouds_per_set,
-                   "How many clouds of each set to show in 3D (0: none)")
+                   "Clouds of each set to show in 3D (0: none)")
       ->capture_default_str()
       ->check(CLI::Range(0, 10000));
   command
       ->add_option("--points", arguments->merge.points_per_cloud,
-                   "Points to show of a cloud; of a larger one, a sample")
+                   "Points to show per cloud; larger clouds are sampled")
       ->capture_default_str()
       ->check(CLI::Range(1, 10000000));
-  command->add_option("--json", arguments->json, "Write the page's data to this file as well");
+  command->add_option("--json", arguments->json, "Also write the data of the page to this file");
   command->callback([arguments, &common] { make_report(*arguments, common); });
 }
 

@@ -235,9 +235,10 @@ void run_studies(const Arguments& arguments, const Common& common) {
     for (const std::string& note : result.notes) warn(note);
     study::write_study(arguments.folder, result, file, common.overwrite());
     std::cout << study::to_table(result) << std::flush;
-    say(fmt::format("{}: {} networks trained, {} clouds classified; the rest was known\n  -> {}",
-                    experiment.name, result.trained, result.classified,
-                    (fs::path(arguments.folder) / (experiment.name + ".json")).string()));
+    say(fmt::format(
+        "{}: {} networks trained, {} clouds classified; other results were kept\n  -> {}",
+        experiment.name, result.trained, result.classified,
+        (fs::path(arguments.folder) / (experiment.name + ".json")).string()));
   }
 }
 
@@ -250,9 +251,9 @@ void study_command(const Arguments& arguments, const Common& common) {
     if (error.kind() != ErrorKind::kCancelled) throw;
     throw Error(
         ErrorKind::kCancelled,
-        fmt::format("stopped by the user; what is done is kept in {}: the same command goes "
-                    "on from there",
-                    (fs::path(arguments.folder) / "cache").string()));
+        fmt::format(
+            "stopped by the user; finished results are kept in {}: the same command resumes",
+            (fs::path(arguments.folder) / "cache").string()));
   }
 }
 
@@ -262,12 +263,12 @@ void add_network_options(CLI::App& command, Arguments& arguments) {
   command.add_option("--classes", training.architecture.classes, "Classes of the networks")
       ->capture_default_str()
       ->check(CLI::IsMember({2, 3}));
-  command.add_option("--epochs", arguments.epochs, "Rounds of training (0: the recipe's)");
+  command.add_option("--epochs", arguments.epochs, "Training epochs (0: as in the recipe)");
   command.add_flag("--natural", arguments.natural,
-                   "Let every class count as often as it occurs, not all the same");
+                   "Keep natural class frequencies instead of balancing the classes");
   add_gate_options(command, training.descriptor);
-  command.add_flag("--context", training.context, "Train context networks too, as train");
-  command.add_option("--distil", training.teachers, "Networks to train first, as train")
+  command.add_flag("--context", training.context, "Train context networks too, like train");
+  command.add_option("--distil", training.teachers, "Networks to train first, like train")
       ->check(CLI::Range(0, 100));
   add_engine_option(command, training.descriptor);
 }
@@ -277,38 +278,38 @@ void add_network_options(CLI::App& command, Arguments& arguments) {
 void add_study(CLI::App& app, Common& common) {
   auto arguments = std::make_shared<Arguments>();
   CLI::App* command = add_command(
-      app, common, "study", "Run the experiments of the paper on your clouds",
-      "pcednet study list                                        what there is\n"
+      app, common, "study", "Run the paper's experiments on your clouds",
+      "pcednet study list                                        lists the experiments\n"
       "pcednet study methods --test mine=clouds/ -o study/       on the generated training set\n"
       "pcednet study scales noise --train a/ --test b=b/ --test c=c/ -o study/ --quick\n"
       "pcednet study methods --test c=c/ --predictions other='out/{set}/' -o study/");
   command->add_option("names", arguments->names, "Experiments, or list")->required();
   command->add_option("-o,--output", arguments->folder,
-                      "The folder of the study; what is known there is not done again");
+                      "Folder of the study; results kept there are not computed again");
   command->add_option("--train", arguments->training,
-                      "Labelled clouds to learn from (default: the generated set)");
+                      "Labelled clouds to train on (default: the generated set)");
   command->add_option("--test", arguments->tests,
-                      "NAME=IN: labelled clouds to test on; of one name together");
+                      "NAME=IN: labelled clouds to test on; inputs of the same name form one set");
   command->add_option("--positive", arguments->positives,
-                      "NAME=sharp or NAME=edge: what counts as an edge in a set (default: edge, "
-                      "sharp and smooth, if it has smooth edges)");
-  command->add_option("--seeds", arguments->seeds, "Trainings of every network (default: 1,2,3)")
+                      "NAME=sharp or NAME=edge: positive classes of a set (default: edge, that is "
+                      "sharp and smooth, if the set has smooth edges)");
+  command
+      ->add_option("--seeds", arguments->seeds, "Training seeds of every network (default: 1,2,3)")
       ->delimiter(',');
-  command->add_flag("--quick", arguments->quick,
-                    "One seed, fewer epochs and samples: a first look");
+  command->add_flag("--quick", arguments->quick, "One seed, fewer epochs and samples");
   command->add_option("--methods", arguments->methods, "Only these rows of an experiment")
       ->delimiter(',');
   command->add_option("--models", arguments->models, "Trained models to compare: names or files")
       ->delimiter(',');
+  command->add_option("--predictions", arguments->predictions,
+                      "NAME=DIR: labels of another program; {set} in DIR is the name of the set");
   command->add_option(
-      "--predictions", arguments->predictions,
-      "NAME=DIR: classes that another program found; {set} in DIR is the set's name");
-  command->add_option("--fee", arguments->fee,
-                      "SET=R,r[,THRESHOLD]: radii of feature edge estimation in a set's unit");
+      "--fee", arguments->fee,
+      "SET=R,r[,THRESHOLD]: radii of feature edge estimation in the unit of the set");
   add_network_options(*command, *arguments);
   command
       ->add_option("--core-watts", arguments->core_watts,
-                   "Design power of a processor core, where energy cannot be read")
+                   "Power of a processor core, for processors without energy counters")
       ->capture_default_str()
       ->check(CLI::PositiveNumber);
   command->callback([arguments, &common] { study_command(*arguments, common); });

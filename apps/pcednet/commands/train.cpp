@@ -57,7 +57,7 @@ detect::TrainedModel train_project(const Arguments& arguments, const Common& com
   const std::filesystem::path file = arguments.project;
   const annotate::Project project = annotate::read_project(file);
   if (arguments.inputs.size() > 1) {
-    throw Error(ErrorKind::kUsage, "train: a project is about one input");
+    throw Error(ErrorKind::kUsage, "train: a project has one input");
   }
   const std::filesystem::path input = arguments.inputs.empty()
                                           ? file.parent_path() / project.input.name
@@ -92,7 +92,7 @@ detect::TrainedModel train_clouds(const Arguments& arguments, const Common& comm
 void train(const Arguments& arguments, const Common& common) {
   check_writable(arguments.output, common.overwrite());
   if (arguments.inputs.empty() && arguments.project.empty()) {
-    throw Error(ErrorKind::kUsage, "train: labelled point files, or --project");
+    throw Error(ErrorKind::kUsage, "train: give labelled point files or --project");
   }
   StageClock clock(console_progress(common));
   clock.begin("read");
@@ -100,11 +100,12 @@ void train(const Arguments& arguments, const Common& common) {
                            ? train_clouds(arguments, common, clock.progress())
                            : train_project(arguments, common, clock.progress());
   if (trained.epochs == 0)
-    throw Error(ErrorKind::kCancelled, "stopped by the user before an epoch");
+    throw Error(ErrorKind::kCancelled, "stopped by the user before the end of the first epoch");
   detect::save_model(arguments.output, trained.model, common.overwrite());
   for (const std::string& note : trained.notes) warn(note);
   if (!trained.no_context.empty()) {
-    warn(fmt::format("no context network, every point is too sure: {}", trained.no_context));
+    warn(fmt::format("no context network was trained: the first network left no point in doubt: {}",
+                     trained.no_context));
   }
   const auto& context = trained.model.context;
   say(fmt::format("{} weights{}; seconds: {}\n  -> {}",
@@ -119,51 +120,51 @@ void train(const Arguments& arguments, const Common& common) {
 }
 
 void add_data_options(CLI::App& command, Arguments& arguments) {
-  command.add_option("inputs", arguments.inputs, "Labelled point files, or folders of them");
+  command.add_option("inputs", arguments.inputs, "Labelled point files or folders of them");
   command.add_option("--project", arguments.project,
-                     "Train as the annotator did, on a project that it saved; its input is looked "
-                     "for beside it, or given");
-  command.add_option("-o,--output", arguments.output, "The model file to write")->required();
+                     "Repeat a training of the annotator from its project; the input is expected "
+                     "beside the project unless given");
+  command.add_option("-o,--output", arguments.output, "Output model file")->required();
   add_prepare_options(command, arguments.preparation);
 }
 
 void add_network_options(CLI::App& command, detect::TrainOptions& options) {
   nn::Architecture& architecture = options.architecture;
-  add_choice(command, "--network", architecture.kind, kNetworks,
-             "The network of the paper to train");
+  add_choice(command, "--network", architecture.kind, kNetworks, "Architecture");
   command
       .add_option("--classes", architecture.classes,
-                  "3: non-edge, smooth-edge, sharp-edge; 2: sharp-edge and the rest")
+                  "3: non-edge, smooth-edge, sharp-edge; 2: sharp-edge and all other points")
       ->capture_default_str()
       ->check(CLI::IsMember({2, 3}));
-  command.add_option("--width", architecture.width, "Neurons per pair of scales (0: as the paper)")
+  command
+      .add_option("--width", architecture.width, "Neurons per pair of scales (0: as in the paper)")
       ->capture_default_str();
   add_choice(command, "--symmetry", options.symmetry, kSymmetries,
-             "The way in which flipped normals change nothing, or none");
+             "Symmetry under flipped normals: average, canonical (half the work) or none");
   command.add_flag("--context", options.context,
-                   "Also train a network that looks at the answers around each point and decides "
-                   "in the end");
+                   "Also train a context network, which refines the result from the predictions "
+                   "around each point");
 }
 
 void add_recipe_options(CLI::App& command, Arguments& arguments) {
   add_choice(command, "--recipe", arguments.recipe,
              {{"adam", Recipe::kAdam}, {"paper", Recipe::kPaper}},
-             "adam, or paper (plain SGD as published)");
-  command.add_option("--epochs", arguments.epochs, "Rounds of training (0: the recipe's)");
-  command.add_flag("--natural", arguments.natural,
-                   "Let every class count as often as it occurs, not all the same: fewer false "
-                   "edges");
+             "adam, or paper (SGD as published)");
+  command.add_option("--epochs", arguments.epochs, "Training epochs (0: as in the recipe)");
+  command.add_flag(
+      "--natural", arguments.natural,
+      "Keep natural class frequencies instead of balancing the classes: fewer false edges");
   command
       .add_option("--balance", arguments.balance,
-                  "1: all classes count the same; 0: as --natural; or between")
+                  "Balance of the classes, from 0 (natural frequencies) to 1 (equal frequencies)")
       ->capture_default_str()
       ->check(CLI::Range(0.0, 1.0))
       ->excludes("--natural");
   command
       .add_option("--distil", arguments.options.teachers,
-                  "Train this many networks first and learn from their mean opinion")
+                  "Train this many networks first and learn their mean prediction")
       ->check(CLI::Range(0, 100));
-  command.add_option("--seed", arguments.seed, "Seed of all randomness")->capture_default_str();
+  command.add_option("--seed", arguments.seed, "Random seed")->capture_default_str();
 }
 
 }  // namespace
@@ -171,11 +172,11 @@ void add_recipe_options(CLI::App& command, Arguments& arguments) {
 void add_train(CLI::App& app, Common& common) {
   auto arguments = std::make_shared<Arguments>();
   CLI::App* command = add_command(
-      app, common, "train", "Train a network on labelled clouds.",
+      app, common, "train", "Train a network on labelled clouds",
       "pcednet train painted.ply -o my.safetensors      labels 0, 1, 2; 255 unlabelled\n"
       "pcednet train clouds/ -o my.safetensors --classes 2 --seed 7\n"
       "pcednet train clouds/ -o paper.safetensors --recipe paper\n"
-      "pcednet train --project scan_annotation.json -o my.safetensors    as painted in annotate");
+      "pcednet train --project scan_annotation.json -o my.safetensors    a training of annotate");
   add_data_options(*command, *arguments);
   add_descriptor_options(*command, arguments->options.descriptor);
   add_network_options(*command, arguments->options);
