@@ -5,6 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "pcednet/cloud/edge_class.h"
 #include "pcednet/core/error.h"
 
 namespace pcednet::annotate {
@@ -28,18 +29,11 @@ std::string text_of(const Json& json) {
 }
 
 Json classes_of(const Counts& counts) {
-  return Json::array({{{"id", kNonEdge},
-                       {"name", "non-edge"},
-                       {"colour", {255, 255, 255}},
-                       {"count", counts[kNonEdge]}},
-                      {{"id", kSmoothEdge},
-                       {"name", "smooth-edge"},
-                       {"colour", {255, 196, 93}},
-                       {"count", counts[kSmoothEdge]}},
-                      {{"id", kSharpEdge},
-                       {"name", "sharp-edge"},
-                       {"colour", {168, 0, 0}},
-                       {"count", counts[kSharpEdge]}}});
+  Json classes = Json::array();
+  for (const auto& [id, name, colour] : kEdgeClasses) {
+    classes.push_back({{"id", id}, {"name", name}, {"colour", colour}, {"count", counts[id]}});
+  }
+  return classes;
 }
 
 Json nodes_of(const Scene& scene) {
