@@ -80,7 +80,7 @@ bool Batch::run(const fs::path& file, const std::function<void()>& work) {
     return true;
   } catch (const Error& error) {
     if (error.kind() == ErrorKind::kCancelled) throw;
-    add({file.string(), Error(error.kind(), explain(error))});
+    add({file.string(), error});
     return false;
   }
 }
@@ -101,10 +101,10 @@ void with_name_in_errors(const fs::path& file, const std::function<void()>& work
   try {
     work();
   } catch (const Error& error) {
-    const std::string message = error.what();
-    if (error.kind() == ErrorKind::kCancelled || message.find(file.string()) != std::string::npos) {
-      throw;
-    }
+    if (error.kind() == ErrorKind::kCancelled) throw;
+    // Explained here: what is thrown on does not have the type of an ExistsAlready any more.
+    const std::string message = explain(error);
+    if (message.find(file.string()) != std::string::npos) throw Error(error.kind(), message);
     throw named(error.kind(), message);
   } catch (const std::bad_alloc&) {
     throw named(ErrorKind::kFailure, "not enough memory");
