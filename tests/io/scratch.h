@@ -13,6 +13,7 @@
 
 #include "pcednet/cloud/point_cloud.h"
 #include "pcednet/core/error.h"
+#include "pcednet/core/random.h"
 #include "pcednet/formats/read_cloud.h"
 
 namespace pcednet::io {
@@ -89,6 +90,25 @@ std::string error_of(ErrorKind kind, Action&& action) {
 
 inline bool contains(std::string_view text, std::string_view part) {
   return text.find(part) != std::string_view::npos;
+}
+
+/// Reads the file `name` so many times with one to four bytes from `begin` on replaced: what is
+/// read must be consistent, and an Error must name the file.
+inline void expect_to_survive_damage(const Scratch& scratch, const std::string& name,
+                                     const std::string& whole, std::size_t begin, int times,
+                                     Random& random) {
+  for (int i = 0; i < times; ++i) {
+    std::string bytes = whole;
+    for (std::size_t changes = 1 + random.index(4); changes > 0; --changes) {
+      bytes[begin + random.index(bytes.size() - begin)] = static_cast<char>(random.next());
+    }
+    try {
+      check_consistent(scratch.read(name, bytes).cloud);
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::kUnreadable) << error.what();
+      EXPECT_TRUE(contains(error.what(), name)) << error.what();
+    }
+  }
 }
 
 /// Whether two vectors have the same bits, NaN included.

@@ -4,6 +4,7 @@
 
 #include "io/scratch.h"
 #include "pcednet/core/error.h"
+#include "support/expect_error.h"
 #include "workbench/truth/abc_features.h"
 #include "workbench/truth/colour_labels.h"
 
@@ -97,8 +98,8 @@ TEST(ColourLabels, LeavePhotographsAlone) {
 
 TEST(ReadLabelled, TellsWhereThereAreNone) {
   const Scratch scratch;
-  EXPECT_THROW(read_labelled(scratch.file("a.obj", kMesh)), Error);
-  EXPECT_THROW(read_labelled(scratch.file("a.xyz", "0 0 0\n1 1 1\n")), Error);
+  EXPECT_ERROR(ErrorKind::kInsufficient, read_labelled(scratch.file("a.obj", kMesh)));
+  EXPECT_ERROR(ErrorKind::kInsufficient, read_labelled(scratch.file("a.xyz", "0 0 0\n1 1 1\n")));
 }
 
 }  // namespace
