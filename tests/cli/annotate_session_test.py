@@ -177,6 +177,20 @@ class AnnotateSession(AnnotateTest):
         self.assertLess(time.monotonic() - start, 4)
         stream.close()
 
+    def test_opens_las_and_saves_it_as_las(self):
+        las = self.folder / "cube.las"
+        run("convert", self.cloud, "-o", las)
+        self.cloud = las
+        server = self.quiet()
+        counts = server.post("/api/stroke", brush("a", 2, EDGE))["counts"]
+        for name in ("painted.laz", "painted.las", "painted.ply"):
+            saved = server.post("/api/save", {"what": "cloud", "name": name})["path"]
+            back = self.folder / "back.ply"
+            run("convert", saved, "-o", back, "--overwrite")
+            rows, _ = read_ply(back)
+            self.assertEqual(int((rows["scalar_painted_label"] == 2).sum()), counts[2], name)
+        server.post("/api/save", {"what": "cloud", "name": "painted.e57"}, expect=400)
+
     def test_takes_no_cache_that_is_damaged(self):
         server = self.quiet()
         values = server.request("/api/node/0/values?of=feature&feature=1&scale=8")[2]
