@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 
@@ -63,13 +64,15 @@ TEST_F(Predicted, AnotherSamplingGivesTheLabelOfItsNearestPoint) {
   const Predictions found = read_predictions(file, positions_);
   EXPECT_EQ(found.classes, (Classes{2, 0, 1, 2}));
   EXPECT_FALSE(found.note.empty());
+  positions_[1].y() = NAN;
+  EXPECT_EQ(read_predictions(file, positions_).classes, (Classes{2, 255, 1, 2}));
 }
 
 TEST_F(Predicted, PointsWithoutLabelsAreOnEdges) {
   const Predictions found =
       read_predictions(write("a.xyz", "0.9 0 0\n1.1 0 0\n3.1 0 0\n"), positions_);
   EXPECT_EQ(found.classes, (Classes{0, 2, 0, 2}));
-  EXPECT_NE(found.note.find("edges"), std::string::npos);
+  EXPECT_NE(found.note.find("edge points"), std::string::npos);
 }
 
 TEST_F(Predicted, AreFoundByTheStemOfTheCloud) {

@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <vector>
 
 #include "pcednet/eval/report.h"
@@ -84,6 +86,33 @@ TEST(Calibration, IsTheMeanDifferenceInTheBins) {
   EXPECT_EQ(calibration_error({}), 0.0);
   EXPECT_ERROR(ErrorKind::kInsufficient,
                add_calibration(truth, {p.data(), 3}, Positive::kEdge, edges));
+}
+
+TEST(EvaluationReport, TakesTheMedianOfEachScoreByItself) {
+  const std::vector<CloudScore> clouds = {{"a", {.tp = 10, .fp = 3, .tn = 80, .fn = 7}},
+                                          {"b", {.tp = 20, .fp = 9, .tn = 60, .fn = 1}},
+                                          {"c", {.tp = 5, .fp = 1, .tn = 30, .fn = 9}}};
+  const auto json = nlohmann::json::parse(to_json(clouds));
+  std::set<double> medians;
+  for (const char* key : {"precision", "recall", "mcc", "f1", "accuracy", "iou"}) {
+    std::vector<double> values;
+    for (const auto& row : json["clouds"]) values.push_back(row[key]);
+    std::sort(values.begin(), values.end());
+    EXPECT_EQ(json["median"][key], values[1]) << key;
+    medians.insert(values[1]);
+  }
+  EXPECT_EQ(medians.size(), 6u) << "equal scores could be exchanged unseen";
+}
+
+TEST(Calibration, HasABinForEveryProbability) {
+  const std::vector<std::uint8_t> truth = {2, 0, 2, 0, 0};
+  const std::vector<float> p = {1.0f, 0.0f, 0.95f, -0.5f, 7.0f};
+  Calibration calibration = {};
+  add_calibration(truth, p, Positive::kSharp, calibration);
+  EXPECT_EQ(calibration[0].points, 2u);
+  EXPECT_EQ(calibration[9].points, 3u);
+  EXPECT_EQ(calibration[9].positive, 2u);
+  EXPECT_NEAR(calibration[9].sum_probability, 2.95, 1e-6);
 }
 
 }  // namespace

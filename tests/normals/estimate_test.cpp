@@ -176,5 +176,19 @@ TEST(Estimate, RefusesTooFewNeighbours) {
   }
 }
 
+TEST(Estimate, TakesMoreNeighboursWhereTheSurfaceIsThickerThanAHundredth) {
+  const auto degree = [](double noise) {
+    Random random(4);
+    std::vector<Vec3> positions;
+    for (int i = 0; i < 3000; ++i) {
+      positions.emplace_back(random.uniform(), random.uniform(), noise * random.normal());
+    }
+    return make_neighbour_graph(positions, 0, nullptr).degree;
+  };
+  const double spacing = 1 / std::sqrt(3000.0);
+  EXPECT_EQ(degree(0.01 * spacing), 12u);
+  EXPECT_GT(degree(0.1 * spacing), 12u);
+}
+
 }  // namespace
 }  // namespace pcednet::normals

@@ -200,5 +200,39 @@ TEST(Orient, RefusesWhatMakesNoSense) {
   EXPECT_ERROR(ErrorKind::kUsage, orient_normals(shape.positions, normals, nowhere));
 }
 
+TEST(Orient, TurnsNormalsAcrossTheViewUpwards) {
+  const std::vector<Vec3> positions(2, Vec3::Zero());
+  std::vector<Vec3> normals = {{0, 0, 1}, {0, 0, -1}};
+  orient_normals(positions, normals, {.viewpoint = Vec3(5, 0, 0)});
+  EXPECT_EQ(normals, std::vector<Vec3>(2, Vec3::UnitZ()));
+}
+
+TEST(Orient, TakesTheFirstNormalThatACopyOfThePointHas) {
+  const Shape shape = sphere(500, 1.0);
+  std::vector<Vec3> positions, normals;
+  for (std::size_t i = 0; i < shape.positions.size(); ++i) {
+    positions.insert(positions.end(), 2, shape.positions[i]);
+    normals.push_back(Vec3::Zero());
+    normals.push_back(i % 3 == 0 ? Vec3(-shape.normals[i]) : shape.normals[i]);
+  }
+  orient_normals(positions, normals);
+  for (std::size_t i = 0; i < shape.positions.size(); ++i) {
+    EXPECT_EQ(normals[2 * i], Vec3::Zero());
+    EXPECT_EQ(normals[2 * i + 1], shape.normals[i] + Vec3::Zero()) << i;
+  }
+}
+
+TEST(Orient, CountsTurnedNormalsButNotThoseThatPointAnywhere) {
+  const Shape shape = sphere(2000, 1.0);
+  for (const bool flipped : {true, false}) {
+    std::vector<Vec3> normals = shape.normals;
+    for (std::size_t i = 0; i < normals.size(); i += 10) {
+      normals[i] = flipped ? Vec3(-normals[i]) : normals[i].unitOrthogonal();
+    }
+    const Orientation found = orient_normals(shape.positions, normals, {.count_turned = true});
+    EXPECT_EQ(found.turned, flipped ? 200u : 0u);
+  }
+}
+
 }  // namespace
 }  // namespace pcednet::normals

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "pcednet/core/random.h"
 
@@ -39,6 +40,31 @@ TEST(CompactRuns, CutPointsAtOnePlaceToo) {
   EXPECT_EQ(first.back(), 5000u);
   for (std::size_t run = 0; run + 1 < first.size(); ++run) {
     EXPECT_LE(first[run + 1] - first[run], 16u);
+  }
+}
+
+TEST(CompactRuns, CutWhereTheTwoSidesWeighLeast) {
+  Random random(6);
+  for (std::size_t size = 2; size < 40; ++size) {
+    std::vector<Vec3> points(size, Vec3::Zero());
+    for (std::size_t i = 1; i < size; ++i) {
+      points[i] = points[i - 1] + Vec3(random.normal(), random.normal(), random.normal());
+    }
+    const auto weight = [&](std::size_t begin, std::size_t end) {
+      Vec3 min = points[begin], max = min;
+      for (std::size_t i = begin; i < end; ++i) {
+        min = min.cwiseMin(points[i]);
+        max = max.cwiseMax(points[i]);
+      }
+      return static_cast<double>(end - begin) * (max - min).sum();
+    };
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 1; i < size; ++i) {
+      least = std::min(least, weight(0, i) + weight(i, size));
+    }
+    const auto first = cut_compact_runs(points, size - 1);
+    ASSERT_EQ(first.size(), 3u);
+    ASSERT_NEAR(weight(0, first[1]) + weight(first[1], size), least, 1e-9) << size;
   }
 }
 
