@@ -1,6 +1,10 @@
 #include <gtest/gtest.h>
+#include <unistd.h>
 
-#include "io/scratch.h"
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
 #include "pcednet/core/version.h"
 #include "pcednet/detect/model.h"
 #include "pcednet/nn/predict.h"
@@ -22,6 +26,11 @@ namespace {
 namespace fs = std::filesystem;
 
 const fs::path kFolder = fs::path(PCEDNET_SOURCE_DIR) / "tests/detect/golden";
+
+std::string bytes_of(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
 
 class GoldenModel : public testing::TestWithParam<std::string> {
  protected:
@@ -48,12 +57,15 @@ TEST_P(GoldenModel, GivesItsKnownAnswers) {
 }
 
 TEST_P(GoldenModel, IsWrittenWithTheSameBytes) {
-  const io::Scratch scratch;
-  save_model(scratch.path("again"), load_model(path_), Overwrite::kNo);
+  const fs::path path =
+      fs::path(testing::TempDir()) / ("pcednet_" + GetParam() + std::to_string(getpid()));
+  save_model(path, load_model(path_), Overwrite::kNo);
+  const std::string written = bytes_of(path);
+  fs::remove(path);
   nn::Safetensors content = nn::read_safetensors(path_);
-  EXPECT_EQ(nn::encode_safetensors(content), io::bytes_of(path_));
+  EXPECT_EQ(nn::encode_safetensors(content), bytes_of(path_));
   content.metadata["version"] = kVersion;  // of the program that writes, all else is the model's
-  EXPECT_EQ(io::bytes_of(scratch.path("again")), nn::encode_safetensors(content));
+  EXPECT_EQ(written, nn::encode_safetensors(content));
 }
 
 INSTANTIATE_TEST_SUITE_P(OfFormat, GoldenModel, testing::Values("model_1", "model_2"),

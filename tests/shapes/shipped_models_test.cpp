@@ -1,0 +1,118 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "io/scratch.h"
+#include "pcednet/core/parallel.h"
+#include "pcednet/formats/write_cloud.h"
+#include "workbench/shapes/cad_set.h"
+#include "workbench/shapes/default_set.h"
+
+// The scores of the shipped models on clouds of a seed that nothing was learnt from (they learn
+// from seeds 1 to 3): the smallest of `pcednet generate default|cad|worn DIR --seed 5`, scored by
+// `pcednet evaluate DIR --model ... --json -`. MCC, median over the clouds and pooled:
+//
+//           seed 5       seed 6       seed 7       seed 5, by the wrong model
+//   scan    .929 .930    .929 .931    .936 .934    .578 .543
+//   cad     .861 .763    .840 .766    .728 .694    .738 .707
+//   noise   .709 .750    .772 .759    .685 .723    .566 .631
+//   worn    .683 .678    .608 .570    .650 .639    .368 .353
+//
+// So few parts differ more from seed to seed than good models from bad ones. That is why the floors
+// hold for the clouds of seed 5 alone: they are three times the standard deviation over training
+// seeds (docs/accuracy.md: .0025 of `scan`, .0056 of `cad`, .011 with noise, .0064 of `worn`) below
+// its column. Who trains the models anew may have to measure them again.
+
+namespace pcednet::shapes {
+namespace {
+
+constexpr std::uint64_t kHeldOutSeed = 5;
+
+struct Mcc {
+  double median, pooled;
+};
+
+std::size_t points_of(const Recipe& recipe) {
+  return recipe.points;
+}
+std::size_t points_of(const CadRecipe& recipe) {
+  return recipe.style.points;
+}
+
+/// A folder with the `count` clouds of the fewest points.
+class Clouds {
+ public:
+  template <typename Recipe>
+  Clouds(std::vector<Recipe> recipes, std::size_t count) {
+    std::stable_sort(recipes.begin(), recipes.end(),
+                     [](const Recipe& a, const Recipe& b) { return points_of(a) < points_of(b); });
+    EXPECT_GE(recipes.size(), count);
+    parallel_blocks(std::min(count, recipes.size()), 1, [&](std::size_t i, std::size_t) {
+      formats::write_cloud(scratch_.path(recipes[i].name + ".ply"),
+                           generate(recipes[i], kHeldOutSeed).cloud);
+    });
+  }
+
+  /// What `pcednet evaluate` finds.
+  Mcc score(const std::string& model) const {
+    const std::string command = std::string(PCEDNET_BINARY) + " evaluate " +
+                                scratch_.path("").string() + " --json - --progress none --model " +
+                                model;
+    const std::unique_ptr<std::FILE, int (*)(std::FILE*)> pipe(popen(command.c_str(), "r"), pclose);
+    std::string text;
+    std::array<char, 4096> part;
+    while (const std::size_t size = std::fread(part.data(), 1, part.size(), pipe.get())) {
+      text.append(part.data(), size);
+    }
+    const auto report = nlohmann::json::parse(text);
+    return {report["median"]["mcc"], report["pooled"]["mcc"]};
+  }
+
+ private:
+  io::Scratch scratch_;
+};
+
+/// The model scores above the floor, and the floor is above what another model scores.
+void expect_above(const Mcc& floor, const Clouds& clouds, const std::string& model,
+                  const std::string& other) {
+  const Mcc found = clouds.score(model);
+  EXPECT_GE(found.median, floor.median);
+  EXPECT_GE(found.pooled, floor.pooled);
+  const Mcc poor = clouds.score(other);
+  EXPECT_LT(poor.median, floor.median);
+  EXPECT_LT(poor.pooled, floor.pooled);
+}
+
+std::vector<CadRecipe> parts(bool with_noise) {
+  std::vector<CadRecipe> recipes = cad_recipes(kHeldOutSeed);
+  std::erase_if(recipes, [&](const CadRecipe& r) { return (r.noise > 0.0) != with_noise; });
+  return recipes;
+}
+
+TEST(ShippedModels, ScanFindsBandsAlongEdges) {
+  const Clouds clouds(default_recipes(kHeldOutSeed), 28);
+  expect_above({.median = .921, .pooled = .922}, clouds, "scan --positive edge",
+               "worn --positive edge");
+}
+
+TEST(ShippedModels, CadFindsVerticesOnEdges) {
+  expect_above({.median = .843, .pooled = .746}, Clouds(parts(false), 24), "cad", "worn");
+}
+
+TEST(ShippedModels, CadFindsVerticesOnEdgesInNoise) {
+  expect_above({.median = .676, .pooled = .717}, Clouds(parts(true), 9), "cad", "worn");
+}
+
+TEST(ShippedModels, WornFindsRoundedRidges) {
+  expect_above({.median = .663, .pooled = .658}, Clouds(worn_recipes(kHeldOutSeed), 18), "worn",
+               "cad");
+}
+
+}  // namespace
+}  // namespace pcednet::shapes
