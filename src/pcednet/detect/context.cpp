@@ -8,6 +8,7 @@
 #include "pcednet/cloud/point_cloud.h"
 #include "pcednet/core/blocks.h"
 #include "pcednet/core/parallel.h"
+#include "pcednet/core/vector_clones.h"
 #include "pcednet/detect/decide.h"
 #include "pcednet/detect/principal_axes.h"
 #include "pcednet/nn/predict.h"
@@ -43,20 +44,54 @@ std::vector<std::uint32_t> order_of(std::span<const Vec3> positions,
 /// position as seen from the point, d its square.
 struct Sums {
   double count = 0, d = 0, most = 0;
-  // Of p, p y and p y y^T, and of the same times d.
-  double p = 0, pd = 0;
-  Vec3 py = Vec3::Zero(), pyd = Vec3::Zero();
-  Mat3 pyy = Mat3::Zero(), pyyd = Mat3::Zero();
-
-  void add(const Vec3& y, double sq_distance, double probability) {
-    const Vec3 py_here = probability * y;
-    const Mat3 pyy_here = py_here * y.transpose();
-    count += 1, d += sq_distance, most = std::max(most, probability);
-    p += probability, pd += probability * sq_distance;
-    py += py_here, pyd += sq_distance * py_here;
-    pyy += pyy_here, pyyd += sq_distance * pyy_here;
-  }
+  /// Of p, p y and the lower half of p y y^T.
+  struct Moments {
+    double p = 0, x = 0, y = 0, z = 0, xx = 0, yx = 0, zx = 0, yy = 0, zy = 0, zz = 0;
+  };
+  Moments plain, by_d;  ///< as they are, and times d
 };
+
+/// Adds `near`, as seen from the point at `place`.
+PCEDNET_VECTOR_CLONES
+void add_nearest(std::span<const spatial::Neighbour> near, const Vec3* positions,
+                 const std::array<float, 2>* probabilities, std::size_t kind, std::size_t place,
+                 Sums& sums) {
+  const double* const from = positions[place].data();
+  const double from_x = from[0], from_y = from[1], from_z = from[2];
+  Sums s = sums;
+  const auto add = [](double value, double d, double& plain, double& by_d) {
+    plain += value;
+    by_d += d * value;
+  };
+  for (const spatial::Neighbour& neighbour : near) {
+    const double* const at = positions[neighbour.index].data();
+    const double x = at[0] - from_x, y = at[1] - from_y, z = at[2] - from_z;
+    const double p = static_cast<double>(probabilities[neighbour.index].data()[kind]);
+    const double d = neighbour.sq_distance, px = p * x, py = p * y, pz = p * z;
+    s.count += 1, s.d += d, s.most = s.most < p ? p : s.most;
+    add(p, d, s.plain.p, s.by_d.p);
+    add(px, d, s.plain.x, s.by_d.x);
+    add(py, d, s.plain.y, s.by_d.y);
+    add(pz, d, s.plain.z, s.by_d.z);
+    add(px * x, d, s.plain.xx, s.by_d.xx);
+    add(py * x, d, s.plain.yx, s.by_d.yx);
+    add(pz * x, d, s.plain.zx, s.by_d.zx);
+    add(py * y, d, s.plain.yy, s.by_d.yy);
+    add(pz * y, d, s.plain.zy, s.by_d.zy);
+    add(pz * z, d, s.plain.zz, s.by_d.zz);
+  }
+  sums = s;
+}
+
+Vec3 vector_of(const Sums::Moments& m) {
+  return {m.x, m.y, m.z};
+}
+
+Mat3 matrix_of(const Sums::Moments& m) {
+  Mat3 matrix;
+  matrix << m.xx, m.yx, m.zx, m.yx, m.yy, m.zy, m.zx, m.zy, m.zz;
+  return matrix;
+}
 
 /// What the features of one size and kind are made of, weighted, in units of r.
 struct Surroundings {
@@ -70,11 +105,12 @@ Surroundings weigh(const Sums& sums, double sq_r) {
   const double falloff = sq_r > 0 ? 1.0 / (kReach * sq_r) : 0.0;
   const double scale = sq_r > 0 ? 1.0 / std::sqrt(sq_r) : 0.0;
   const double weight = sums.count - falloff * sums.d;
-  const double p = sums.p - falloff * sums.pd;
+  const double p = sums.plain.p - falloff * sums.by_d.p;
   const double total = 1.0 / (p + kLittle);
-  const Vec3 centre = scale * total * (sums.py - falloff * sums.pyd);
+  const Vec3 centre = scale * total * (vector_of(sums.plain) - falloff * vector_of(sums.by_d));
   return {p / weight, sums.most, centre,
-          scale * scale * total * (sums.pyy - falloff * sums.pyyd) - centre * centre.transpose()};
+          scale * scale * total * (matrix_of(sums.plain) - falloff * matrix_of(sums.by_d)) -
+              centre * centre.transpose()};
 }
 
 void write_features(const Surroundings& around, const PrincipalAxes& axes, std::size_t lane,
@@ -142,13 +178,13 @@ void ContextMatrix::describe_point(std::size_t place, std::span<const spatial::N
   for (std::size_t kind = 0; kind < kinds; ++kind) {
     Sums sums;
     double sq_r = 0.0;
-    auto neighbour = near.begin();
+    std::size_t taken = 0;
     for (std::size_t size = 0; size < kSizes; ++size) {
-      for (; neighbour != near.end() && sums.count < kContextSizes[size]; ++neighbour) {
-        sq_r = neighbour->sq_distance;
-        sums.add(positions_[neighbour->index] - positions_[place], sq_r,
-                 static_cast<double>(probabilities_[neighbour->index][kind]));
-      }
+      const std::size_t end = std::min(near.size(), static_cast<std::size_t>(kContextSizes[size]));
+      add_nearest(near.subspan(taken, end - taken), positions_.data(), probabilities_.data(), kind,
+                  place, sums);
+      if (end > 0) sq_r = near[end - 1].sq_distance;
+      taken = end;
       const std::size_t lane = kind * kSizes + size;
       if (sums.count > 0) around[lane] = weigh(sums, sq_r);
       covariances.set(lane, around[lane].covariance);
