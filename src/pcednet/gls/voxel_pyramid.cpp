@@ -13,8 +13,9 @@ namespace {
 constexpr double kWorthwhileMerge = 1.6;
 
 /// MergeForecast::filling from which a level costs far more than one of a surface. As with merging,
-/// what the average point meets decides, so that a tree on a wall does not coarsen anything.
-constexpr double kCrowded = 9.0;
+/// what the average point meets decides, so that a tree on a wall does not coarsen anything. With a
+/// gate every source costs more.
+constexpr double kCrowded = 9.0, kCrowdedGated = 8.0;
 
 void add_boxes(VoxelLevel& level, const Vec3& origin) {
   level.boxes = spatial::BoxTree(level.voxels.size(), origin,
@@ -56,7 +57,7 @@ void add_levels(VoxelPyramid& pyramid, std::span<const double> scales, const Lev
                 const Progress* progress) {
   Stage stage(progress, "resolutions", scales.size());
   pyramid.levels.reserve(1 + scales.size());
-  Crowd crowd = Crowd::kKeep;  // once it is merged further, it is at all larger scales
+  Crowd crowd = Crowd::kKeep;
   for (const double scale : scales) {
     MergeCells cells = {.origin = pyramid.origin,
                         .side = pyramid.side,
@@ -64,8 +65,10 @@ void add_levels(VoxelPyramid& pyramid, std::span<const double> scales, const Lev
                         .crowd = crowd};
     const std::vector<Voxel>& finer = pyramid.levels.back().voxels;
     MergeForecast forecast = forecast_merge(finer, cells);
-    if (forecast.filling > kCrowded) {
-      cells.crowd = crowd = options.gated ? Crowd::kMergeByAxis : Crowd::kMerge;
+    if (forecast.filling > (options.gated ? kCrowdedGated : kCrowded)) {
+      cells.crowd = options.gated ? Crowd::kMergeByAxis : Crowd::kMerge;
+      // Voxels without axes do not tell how far they fill space: they are merged on.
+      if (!options.gated) crowd = Crowd::kMerge;
       forecast = forecast_merge(finer, cells);
     }
     if (forecast.merged >= kWorthwhileMerge) {
