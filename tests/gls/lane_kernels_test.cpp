@@ -120,6 +120,42 @@ TEST(LaneKernels, SumSinglePointsAlike) {
   }
 }
 
+/// Turns of 48 sources: one that both gates leave alone, one that both shut out, one that only the
+/// second lets in, and one that lies between them.
+Scene scene_between_gates() {
+  Scene scene(192);
+  for (std::size_t lane = 0; lane < kLanes; ++lane) {
+    scene.targets.nx[lane] = scene.targets.ny[lane] = 0.0f, scene.targets.nz[lane] = 1.0f;
+  }
+  const float upward[4] = {0.95f, -0.9f, 0.1f, 0.5f};
+  for (std::size_t j = 0; j < 192; ++j) {
+    Source& s = scene.sources[scene.indices[j]];
+    s.nz = upward[j / 48];
+    s.nx = std::sqrt(1.0f - s.nz * s.nz), s.ny = 0.0f;
+  }
+  return scene;
+}
+
+TEST(LaneKernels, SumForTwoGatesWhatTheySumForEach) {
+  const LaneGate gates[2] = {{.enabled = true, .threshold = 0.4f},
+                             {.enabled = true, .threshold = -0.3f}};
+  for (const Scene& scene : {scene_between_gates(), Scene(300), Scene(0)}) {
+    for (const LaneKernels& kernels : all_lane_kernels()) {
+      for (const bool points : {false, true}) {
+        LaneSums both[2];
+        kernels.sum_both(scene.sources.data(), scene.indices.data(), scene.indices.size(),
+                         scene.targets, gates, points, both);
+        for (int g = 0; g < 2; ++g) {
+          LaneSums one;
+          kernels.sum(scene.sources.data(), scene.indices.data(), scene.indices.size(),
+                      scene.targets, gates[g], points, one);
+          EXPECT_EQ(std::memcmp(&both[g], &one, sizeof one), 0) << kernels.name << " gate " << g;
+        }
+      }
+    }
+  }
+}
+
 TEST(LaneKernels, SumWhatIsInsideEverySupportOnce) {
   for (const std::size_t count : {1, 15, 64, 65, 300}) {
     Scene scene(count);

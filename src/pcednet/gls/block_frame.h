@@ -10,6 +10,9 @@
 
 namespace pcednet::gls {
 
+/// t: the support, and what rounding may add.
+inline constexpr float kReach = 1.00001f;
+
 /// Owns the arrays of Candidates, of which the kernels fill as many as they find.
 class CandidateList {
  public:
@@ -51,8 +54,10 @@ class BlockFrame {
   /// Changes the scale of what was gathered; `reach` t must not grow.
   void rescale(double t);
 
-  /// How far from the box all is gathered, in the cloud's units.
-  double reach() const { return reach_; }
+  /// True if all of `level` that is closer than `reach`, in the cloud's units, to the box is here.
+  bool holds(const VoxelLevel& level, double reach) const {
+    return &level == level_ && reach <= reach_;
+  }
   const Vec3& origin() const { return origin_; }
   const VoxelLevel& level() const { return *level_; }
   double inverse_t() const { return inverse_t_; }

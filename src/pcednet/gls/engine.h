@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <variant>
 #include <vector>
@@ -24,17 +23,13 @@ class ScaleSpace {
   const std::vector<double>& scales() const;
   std::span<const std::uint32_t> order() const;
 
-  /// As the engines do it, with column_count() numbers per scale. With two gates a status is the
-  /// worse of both.
+  /// As the engines do it.
   void describe(std::span<const std::uint32_t> targets, std::span<float> out,
                 std::span<FitStatus> status, const Progress* progress = nullptr) const;
 
  private:
-  using AnyEngine = std::variant<FastScaleSpace, ExactScaleSpace>;
-
   ScaleSpaceOptions options_;
-  AnyEngine engine_;
-  std::optional<AnyEngine> second_;
+  std::variant<FastScaleSpace, ExactScaleSpace> engine_;
 };
 
 }  // namespace pcednet::gls

@@ -34,6 +34,18 @@ LaneDetail detail_of(FeatureSet set) {
   return set == FeatureSet::kAll28 ? LaneDetail::kAll : LaneDetail::kInvariant;
 }
 
+/// Writes the features of a lane with every gate, and returns the worst of its statuses.
+FitStatus put(std::span<const GroupFit> fits, std::size_t lane, std::span<const std::size_t> rows,
+              std::span<float> out) {
+  auto status = fits.front().status[lane];
+  auto to = out.begin();
+  for (const GroupFit& fit : fits) {
+    status = std::max(status, fit.status[lane]);
+    for (const std::size_t row : rows) *to++ = fit.fits.features[row][lane];
+  }
+  return status;
+}
+
 /// The power of two that brings the cloud's longest side to between 1/2 and 2, so that squares and
 /// cubes of its lengths fit a float; exact.
 double unit_for(const BoundingBox& box) {
@@ -92,7 +104,7 @@ void FastScaleSpace::find_scales(OrientedPoints points, std::span<const std::uin
 
 void FastScaleSpace::describe(std::span<const std::uint32_t> targets, std::span<float> out,
                               std::span<FitStatus> status, const Progress* progress) const {
-  const auto width = static_cast<std::size_t>(feature_count(options_.features));
+  const auto width = static_cast<std::size_t>(column_count(options_));
   check_room(targets.size(), scales_.size(), width, out.size(), status.size());
   const std::vector<Visit> visits = plan_visits(targets, place_);
   std::vector<std::size_t> blocks;  // where each begins
@@ -112,11 +124,12 @@ void FastScaleSpace::describe(std::span<const std::uint32_t> targets, std::span<
 void FastScaleSpace::describe_block(std::span<const Visit> visits, std::span<float> out,
                                     std::span<FitStatus> status) const {
   const std::vector<std::size_t> rows = rows_of(options_.features);
+  const auto width = static_cast<std::size_t>(column_count(options_));
   if (visits.front().place == kNowhere) {
     for (const Visit& visit : visits) {
       const std::size_t first = visit.row * scales_.size();
       std::fill_n(&status[first], scales_.size(), FitStatus::kUndefined);
-      std::fill_n(&out[first * rows.size()], scales_.size() * rows.size(), 0.0f);
+      std::fill_n(&out[first * width], scales_.size() * width, 0.0f);
     }
     return;
   }
@@ -135,24 +148,19 @@ void FastScaleSpace::describe_block(std::span<const Visit> visits, std::span<flo
   BlockEvaluator evaluator(pyramid_,
                            {.detail = detail_of(options_.features),
                             .projection_steps = moves ? options_.max_projection_steps : 0,
-                            .side_gate = options_.side_gate},
+                            .gates = gates_of(options_)},
                            *kernels_);
   for (std::size_t s = scales_.size(); s-- > 0;) {  // the largest first: see gather_block()
     evaluator.evaluate(
         begin, end, s, scales_[s] * unit_,
         [&](const LaneGroup& group) { return !visits_to(group).empty(); },
-        [&](const LaneGroup& group, const GroupFit& fit) {
+        [&](const LaneGroup& group, std::span<const GroupFit> fits) {
           for (const Visit& visit : visits_to(group)) {
-            const std::size_t lane = visit.place - group.begin;
             const std::size_t cell = visit.row * scales_.size() + s;
             if (&visit + kLanes < visits.data() + visits.size()) {  // soon written, too
-              __builtin_prefetch(&out[((&visit)[kLanes].row * scales_.size() + s) * rows.size()],
-                                 1);
+              __builtin_prefetch(&out[((&visit)[kLanes].row * scales_.size() + s) * width], 1);
             }
-            status[cell] = fit.status[lane];
-            for (std::size_t k = 0; k < rows.size(); ++k) {
-              out[cell * rows.size() + k] = fit.fits.features[rows[k]][lane];
-            }
+            status[cell] = put(fits, visit.place - group.begin, rows, out.subspan(cell * width));
           }
         });
   }

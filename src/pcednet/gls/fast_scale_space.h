@@ -47,9 +47,9 @@ class FastScaleSpace {
   std::span<const std::uint32_t> order() const { return order_; }
 
   /// Describes the points numbered `targets`, on all threads. `out` is targets x scales x
-  /// feature_count() numbers, `status` targets x scales. A point that is not finite is undefined at
-  /// every scale. May be called from many threads. Throws Error(kUsage) if a target or a size is
-  /// wrong.
+  /// column_count() numbers, `status` targets x scales; with two gates a status is the worse of
+  /// both. A point that is not finite is undefined at every scale. May be called from many threads.
+  /// Throws Error(kUsage) if a target or a size is wrong.
   void describe(std::span<const std::uint32_t> targets, std::span<float> out,
                 std::span<FitStatus> status, const Progress* progress = nullptr) const;
 

@@ -105,6 +105,10 @@ struct LaneKernels {
   /// Sums over sources[indices[0 .. count)); `points` says that all are single points with normals.
   void (*sum)(const Source* sources, const std::uint32_t* indices, std::size_t count,
               const LaneTargets& targets, const LaneGate& gate, bool points, LaneSums& sums);
+  /// What sum() gives for either gate, both enabled, to the same bits.
+  void (*sum_both)(const Source* sources, const std::uint32_t* indices, std::size_t count,
+                   const LaneTargets& targets, const LaneGate (&gates)[2], bool points,
+                   LaneSums (&sums)[2]);
   /// Sums over sources[indices[0 .. count)) about sums.centre.
   void (*sum_inside)(const Source* sources, const std::uint32_t* indices, std::size_t count,
                      InsideSums& sums);

@@ -38,7 +38,8 @@ struct ExactScaleSpace::Fit {
 
 /// What a thread needs to describe points, kept from one point to the next.
 struct ExactScaleSpace::Scratch {
-  std::vector<spatial::Neighbour> found;
+  std::vector<spatial::Neighbour> all;    ///< around the point, at the largest scale
+  std::vector<spatial::Neighbour> found;  ///< around its projection
   std::vector<spatial::Neighbour> unordered;
   Neighbourhood neighbours;  ///< of the point, at the largest scale
   Neighbourhood projected;   ///< of its projection, at one scale
@@ -46,7 +47,7 @@ struct ExactScaleSpace::Scratch {
 
 ExactScaleSpace::ExactScaleSpace(OrientedPoints points, const ScaleSpaceOptions& options,
                                  const Progress* progress)
-    : options_(options), tree_({}) {
+    : options_(options), gates_(gates_of(options)), tree_({}) {
   check(points, options);
   Stage stage(progress, "prepare", 3);
   order_ = point_order(points);
@@ -68,15 +69,17 @@ ExactScaleSpace::ExactScaleSpace(OrientedPoints points, const ScaleSpaceOptions&
 /// to the gate. An offset and not a position, so that differences of large coordinates are taken
 /// before anything small is added.
 void ExactScaleSpace::localise(std::span<const spatial::Neighbour> found, std::uint32_t place,
-                               const Vec3& offset, double radius, Neighbourhood& neighbours) const {
+                               const Vec3& offset, double radius,
+                               const std::optional<double>& gate_threshold,
+                               Neighbourhood& neighbours) const {
   const Vec3& own = normals_[place];
-  const bool gated = options_.side_gate && !own.isZero(0.0);
+  const bool gated = gate_threshold && !own.isZero(0.0);
   const bool moved = !offset.isZero(0.0);
   neighbours.clear();
   for (const spatial::Neighbour& neighbour : found) {
     const Vec3& n = normals_[neighbour.index];
     if (n.isZero(0.0)) continue;
-    const double gate = gated ? side_gate(n, own, *options_.side_gate) : 1.0;
+    const double gate = gated ? side_gate(n, own, *gate_threshold) : 1.0;
     if (gate == 0.0) continue;
     const Vec3 y = (positions_[neighbour.index] - positions_[place]) - offset;
     const double sq_distance = moved ? y.squaredNorm() : neighbour.sq_distance;
@@ -105,13 +108,14 @@ ExactScaleSpace::Fit ExactScaleSpace::fit(std::span<const LocalNeighbour> neighb
 /// the next one would be undefined). The descriptor is that of the last evaluation point but for
 /// tau, which stays the distance of the point itself to the last surface.
 ExactScaleSpace::Fit ExactScaleSpace::project(std::uint32_t place, Fit fit, double t,
+                                              const std::optional<double>& gate,
                                               Scratch& scratch) const {
   Vec3 offset = Vec3::Zero();
   for (int step = 0; step < options_.max_projection_steps; ++step) {
     if (fit.status != FitStatus::kStable) break;
     const Vec3 move = projection_move(fit.surface);
     tree_.within_unsorted(positions_[place] + (offset + move), t, scratch.found);
-    localise(scratch.found, place, offset + move, t, scratch.projected);
+    localise(scratch.found, place, offset + move, t, gate, scratch.projected);
     const Fit next = this->fit(scratch.projected, t);
     if (next.status == FitStatus::kUndefined) break;
     fit = next;
@@ -127,20 +131,23 @@ void ExactScaleSpace::describe_point(std::uint32_t place, Scratch& scratch, std:
                                      std::span<FitStatus> status) const {
   const auto width = static_cast<std::size_t>(feature_count(options_.features));
   std::array<double, 28> features;
-  tree_.within_unsorted(positions_[place], scales_.back(), scratch.found);
-  order_by_shell(scales_, scratch.found, scratch.unordered);
-  localise(scratch.found, place, Vec3::Zero(), scales_.back(), scratch.neighbours);
-  const std::span<const LocalNeighbour> neighbours = scratch.neighbours;
-  std::size_t count = 0;
-  for (std::size_t s = 0; s < scales_.size(); ++s) {
-    const double t = scales_[s];
-    while (count < neighbours.size() && neighbours[count].sq_distance() < t * t) ++count;
-    Fit fit = this->fit(neighbours.first(count), t);
-    if (projects(options_.reconstruction)) fit = project(place, fit, t, scratch);
-    write_features(options_.features, fit.descriptor, t, features);
-    const bool finite =
-        store<Number>(std::span(features).first(width), out.subspan(s * width, width));
-    status[s] = finite ? fit.status : FitStatus::kUndefined;
+  tree_.within_unsorted(positions_[place], scales_.back(), scratch.all);
+  order_by_shell(scales_, scratch.all, scratch.unordered);
+  std::fill(status.begin(), status.end(), FitStatus::kStable);
+  for (std::size_t g = 0; g < gates_.size(); ++g) {
+    localise(scratch.all, place, Vec3::Zero(), scales_.back(), gates_[g], scratch.neighbours);
+    const std::span<const LocalNeighbour> neighbours = scratch.neighbours;
+    std::size_t count = 0;
+    for (std::size_t s = 0; s < scales_.size(); ++s) {
+      const double t = scales_[s];
+      while (count < neighbours.size() && neighbours[count].sq_distance() < t * t) ++count;
+      Fit fit = this->fit(neighbours.first(count), t);
+      if (projects(options_.reconstruction)) fit = project(place, fit, t, gates_[g], scratch);
+      write_features(options_.features, fit.descriptor, t, features);
+      const bool finite = store<Number>(std::span(features).first(width),
+                                        out.subspan((s * gates_.size() + g) * width, width));
+      status[s] = std::max(status[s], finite ? fit.status : FitStatus::kUndefined);
+    }
   }
 }
 
@@ -148,7 +155,7 @@ template <typename Number>
 void ExactScaleSpace::describe_all(std::span<const std::uint32_t> targets, std::span<Number> out,
                                    std::span<FitStatus> status, const Progress* progress) const {
   const std::size_t scales = scales_.size();
-  const auto width = static_cast<std::size_t>(feature_count(options_.features));
+  const auto width = static_cast<std::size_t>(column_count(options_));
   const std::size_t row = scales * width;
   check_room(targets.size(), scales, width, out.size(), status.size());
   const std::vector<Visit> visits = plan_visits(targets, place_);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -36,7 +37,8 @@ class ExactScaleSpace {
   std::span<const std::uint32_t> order() const { return order_; }
 
   /// Describes the points numbered `targets`, on all threads. `out` is targets x scales x
-  /// feature_count() numbers, `status` targets x scales. A point that is not finite is undefined at
+  /// column_count() numbers, `status` targets x scales; with two gates a status is the worse of
+  /// both. A point that is not finite is undefined at
   /// every scale; so is a description beyond the range of float. May be called from many threads.
   /// Throws Error(kUsage) if a target or a size is wrong.
   void describe(std::span<const std::uint32_t> targets, std::span<float> out,
@@ -49,9 +51,10 @@ class ExactScaleSpace {
   struct Scratch;
 
   void localise(std::span<const spatial::Neighbour> found, std::uint32_t place, const Vec3& offset,
-                double radius, Neighbourhood& neighbours) const;
+                double radius, const std::optional<double>& gate, Neighbourhood& neighbours) const;
   Fit fit(std::span<const LocalNeighbour> neighbours, double t) const;
-  Fit project(std::uint32_t place, Fit fit, double t, Scratch& scratch) const;
+  Fit project(std::uint32_t place, Fit fit, double t, const std::optional<double>& gate,
+              Scratch& scratch) const;
   template <typename Number>
   void describe_point(std::uint32_t place, Scratch& scratch, std::span<Number> out,
                       std::span<FitStatus> status) const;
@@ -60,6 +63,7 @@ class ExactScaleSpace {
                     std::span<FitStatus> status, const Progress* progress) const;
 
   ScaleSpaceOptions options_;
+  std::vector<std::optional<double>> gates_;
   std::vector<std::uint32_t> order_;
   std::vector<std::uint32_t> place_;  ///< of each point in the arrays below, or kNowhere
   std::vector<Vec3> positions_;       ///< the finite points, in an order free of their numbering

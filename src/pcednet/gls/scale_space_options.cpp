@@ -37,6 +37,11 @@ int column_count(const ScaleSpaceOptions& options) {
   return (options.second_gate ? 2 : 1) * feature_count(options.features);
 }
 
+std::vector<std::optional<double>> gates_of(const ScaleSpaceOptions& options) {
+  if (!options.second_gate) return {options.side_gate};
+  return {options.side_gate, options.second_gate};
+}
+
 std::string note_on(const ScaleSpaceOptions& options, std::span<const double> scales,
                     std::span<const Vec3> positions) {
   const double usual = options.s_max_fraction * bounding_box(positions).diagonal();

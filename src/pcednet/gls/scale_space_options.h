@@ -26,10 +26,9 @@ struct ScaleSpaceOptions {
   Reconstruction reconstruction = Reconstruction::kSphere;
   int max_projection_steps = 5;     ///< for the reconstructions that project
   std::optional<double> side_gate;  ///< the a of side_gate(), -1 to 1; without one all count alike
-  std::optional<double>
-      second_gate;  ///< ScaleSpace: features with this gate follow those with the first
-  Engine engine = Engine::kFast;  ///< what ScaleSpace uses
-  double eps = 0.10;              ///< voxel edge over support radius, 0.01 to 1; fast engine only
+  std::optional<double> second_gate;  ///< features with this gate follow those with the first
+  Engine engine = Engine::kFast;      ///< what ScaleSpace uses
+  double eps = 0.10;  ///< voxel edge over support radius, 0.01 to 1; fast engine only
 
   bool operator==(const ScaleSpaceOptions&) const = default;
 };
@@ -46,6 +45,9 @@ std::vector<std::string> column_names(const ScaleSpaceOptions& options);
 
 /// How many they are.
 int column_count(const ScaleSpaceOptions& options);
+
+/// The gates to describe with: one, which may be open, or two.
+std::vector<std::optional<double>> gates_of(const ScaleSpaceOptions& options);
 
 /// A sentence for the user if the `scales` of the cloud are those that scale_range() gives to
 /// sparse clouds, else nothing.
