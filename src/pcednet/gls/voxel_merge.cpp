@@ -259,6 +259,43 @@ std::vector<Voxel> merge_stretch(const std::vector<Voxel>& from, const Grid& gri
   return to;
 }
 
+/// MergeForecast, each number summed over `points`.
+struct ForecastSums {
+  double points = 0, merged = 0, filling = 0;
+};
+
+/// What the points of the voxels [begin, end) would meet if there were no others.
+ForecastSums forecast_stretch(const std::vector<Voxel>& from, const Grid& grid, Crowd crowd,
+                              std::size_t begin, std::size_t end) {
+  std::vector<Keyed> keyed;
+  keyed.reserve(end - begin);
+  for (std::size_t i = begin; i < end; ++i) {
+    keyed.push_back({grid.key(i), static_cast<std::uint32_t>(i)});
+  }
+  std::sort(keyed.begin(), keyed.end(), [](const Keyed& a, const Keyed& b) {
+    return a.key != b.key ? a.key < b.key : a.index < b.index;
+  });
+  ForecastSums sums;
+  std::vector<double> merged, count;
+  for_blocks(from, grid, crowd, keyed, 0, keyed.size(),
+             [&](std::span<const Keyed> members, std::span<const std::uint32_t> voxel_of,
+                 const BlockPlan& plan) {
+               const double filling = crowd == Crowd::kKeep ? plan.filling() : 0.0;
+               merged.assign(plan.count(), 0.0), count.assign(plan.count(), 0.0);
+               for (std::size_t i = 0; i < members.size(); ++i) {
+                 if (voxel_of[i] == kNone) continue;
+                 merged[voxel_of[i]] += 1.0;
+                 count[voxel_of[i]] += from[members[i].index].count;
+               }
+               for (std::size_t v = 0; v < plan.count(); ++v) {
+                 sums.points += count[v];
+                 sums.merged += count[v] * merged[v];
+                 sums.filling += count[v] * filling;
+               }
+             });
+  return sums;
+}
+
 }  // namespace
 
 std::vector<Voxel> merge_voxels(const std::vector<Voxel>& from, const MergeCells& cells) {
@@ -291,36 +328,18 @@ std::vector<Voxel> merge_voxels(const std::vector<Voxel>& from, const MergeCells
 MergeForecast forecast_merge(const std::vector<Voxel>& from, const MergeCells& cells) {
   constexpr std::size_t kStretch = 1 << 14, kStep = 16 * kStretch;
   const Grid grid(from, cells);
-  double points = 0, merged_sum = 0, filling_sum = 0;
-  std::vector<Keyed> keyed;
-  std::vector<double> merged, count;
-  for (std::size_t begin = 0; begin < from.size(); begin += kStep) {
-    keyed.clear();
-    for (std::size_t i = begin; i < std::min(from.size(), begin + kStretch); ++i) {
-      keyed.push_back({grid.key(i), static_cast<std::uint32_t>(i)});
-    }
-    std::sort(keyed.begin(), keyed.end(), [](const Keyed& a, const Keyed& b) {
-      return a.key != b.key ? a.key < b.key : a.index < b.index;
-    });
-    for_blocks(from, grid, cells.crowd, keyed, 0, keyed.size(),
-               [&](std::span<const Keyed> members, std::span<const std::uint32_t> voxel_of,
-                   const BlockPlan& plan) {
-                 const double filling = cells.crowd == Crowd::kKeep ? plan.filling() : 0.0;
-                 merged.assign(plan.count(), 0.0), count.assign(plan.count(), 0.0);
-                 for (std::size_t i = 0; i < members.size(); ++i) {
-                   if (voxel_of[i] == kNone) continue;
-                   merged[voxel_of[i]] += 1.0;
-                   count[voxel_of[i]] += from[members[i].index].count;
-                 }
-                 for (std::size_t v = 0; v < plan.count(); ++v) {
-                   points += count[v];
-                   merged_sum += count[v] * merged[v];
-                   filling_sum += count[v] * filling;
-                 }
-               });
+  std::vector<ForecastSums> stretches((from.size() + kStep - 1) / kStep);
+  parallel_blocks(from.size(), kStep, [&](std::size_t begin, std::size_t end) {
+    const std::size_t last = std::min(end, begin + kStretch);
+    stretches[begin / kStep] = forecast_stretch(from, grid, cells.crowd, begin, last);
+  });
+  ForecastSums sums;
+  for (const ForecastSums& stretch : stretches) {
+    sums.points += stretch.points;
+    sums.merged += stretch.merged, sums.filling += stretch.filling;
   }
-  if (points == 0) return {};
-  return {.merged = merged_sum / points, .filling = filling_sum / points};
+  if (sums.points == 0) return {};
+  return {.merged = sums.merged / sums.points, .filling = sums.filling / sums.points};
 }
 
 }  // namespace pcednet::gls

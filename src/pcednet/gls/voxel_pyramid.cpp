@@ -1,6 +1,7 @@
 #include "pcednet/gls/voxel_pyramid.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "pcednet/cloud/point_cloud.h"
 #include "pcednet/core/parallel.h"
@@ -29,7 +30,10 @@ VoxelPyramid make_pyramid(std::span<const Vec3> positions, std::span<const Vec3>
   VoxelPyramid pyramid;
   VoxelLevel& points = pyramid.levels.emplace_back();
   points.voxels.resize(order.size());
-  parallel_blocks(order.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
+  constexpr std::size_t kStretch = 1 << 14;
+  std::vector<std::pair<Vec3, Vec3>> corners((order.size() + kStretch - 1) / kStretch);
+  parallel_blocks(order.size(), kStretch, [&](std::size_t begin, std::size_t end) {
+    Vec3 min = positions[order[begin]] * unit, max = min;
     for (std::size_t i = begin; i < end; ++i) {
       const Vec3& n = normals[order[i]];
       Voxel& point = points.voxels[i];
@@ -39,14 +43,14 @@ VoxelPyramid make_pyramid(std::span<const Vec3> positions, std::span<const Vec3>
         const auto component = static_cast<float>(n[static_cast<Eigen::Index>(a)]);
         point.normal[a] = point.count > 0.0f ? component : 0.0f;
       }
+      min = min.cwiseMin(point.position);
+      max = max.cwiseMax(point.position);
     }
+    corners[begin / kStretch] = {min, max};
   });
   if (order.empty()) return pyramid;
-  Vec3 min = points.voxels.front().position, max = min;
-  for (const Voxel& point : points.voxels) {
-    min = min.cwiseMin(point.position);
-    max = max.cwiseMax(point.position);
-  }
+  auto [min, max] = corners.front();
+  for (const auto& [low, high] : corners) min = min.cwiseMin(low), max = max.cwiseMax(high);
   pyramid.origin = min;
   pyramid.side = (max - min).maxCoeff();
   add_boxes(points, pyramid.origin);
