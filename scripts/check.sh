@@ -1,0 +1,57 @@
+#!/bin/sh
+# Checks beyond the tests: scripts/check.sh [CHECK...], all of them if none is named.
+#   format   C++ and TypeScript are as their formatters leave them
+#   gcc      everything compiles without a warning with g++
+#   clang    the same with clang++
+#   tidy     clang-tidy finds nothing
+#   address  the tests of every room under the address and undefined-behaviour sanitizers
+#   threads  the same under the thread sanitizer
+# Installs what is missing. About an hour on two cores; each check leaves its build in build/.
+set -eu
+cd "$(dirname "$0")/.."
+scripts/setup.sh test web check
+[ $# -gt 0 ] || set -- format gcc clang tidy address threads
+
+# build PRESET: configures and builds it.
+build() {
+  cmake --preset "$1" >/dev/null
+  cmake --build --preset "$1"
+}
+
+# test_rooms PRESET: runs its unit tests. Those of the program and of the house check what the
+# release build checks already, at many times its cost.
+test_rooms() {
+  ctest --preset "$1" -j "$(nproc)" -E '^(Cli|Web|Clients|House)\.' --timeout 1500
+}
+
+for check; do
+  echo "== $check"
+  case $check in
+    format)
+      python3 tests/house/rules.py style .
+      scripts/build_web.sh
+      (cd web && npm run --silent check)
+      ;;
+    gcc) build dev ;;
+    clang) build clang ;;
+    tidy)
+      cmake --preset clang >/dev/null
+      run-clang-tidy-14 -p build/clang -quiet -j "$(nproc)" '/(src|apps)/.*\.cpp$' \
+        >build/clang-tidy.log 2>/dev/null || { grep -E 'warning:|error:' build/clang-tidy.log; exit 1; }
+      ;;
+    address)
+      build sanitize
+      test_rooms sanitize
+      ;;
+    threads)
+      build threads
+      # setarch: the thread sanitizer of GCC 12 cannot place its memory where addresses are spread wide.
+      setarch "$(uname -m)" -R ctest --preset threads -j "$(nproc)" \
+        -E '^(Cli|Web|Clients|House)\.' --timeout 1500
+      ;;
+    *)
+      echo "check.sh: no check is called $check; there are format gcc clang tidy address threads" >&2
+      exit 2
+      ;;
+  esac
+done

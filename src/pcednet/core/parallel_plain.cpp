@@ -1,0 +1,61 @@
+// parallel.h on plain threads, for ThreadSanitizer (PCEDNET_PLAIN_THREADS, preset threads): TBB of
+// Debian is not instrumented, so that every block it hands over would count as a race.
+#include <algorithm>
+#include <atomic>
+#include <exception>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include "pcednet/core/parallel.h"
+
+namespace pcednet {
+namespace {
+
+std::atomic<int> wanted_threads = 0;
+thread_local bool is_worker = false;
+
+}  // namespace
+
+void set_thread_count(int threads) {
+  wanted_threads = std::max(threads, 0);
+}
+
+int thread_count() {
+  if (wanted_threads > 0) return wanted_threads;
+  return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+}
+
+void parallel_blocks(std::size_t count, std::size_t block,
+                     const std::function<void(std::size_t, std::size_t)>& work) {
+  const std::size_t blocks = (count + block - 1) / block;
+  std::atomic<std::size_t> next = 0;
+  std::atomic<bool> failed = false;
+  std::exception_ptr error;
+  std::mutex mutex;
+  const auto take_blocks = [&] {
+    for (std::size_t b = next++; b < blocks && !failed; b = next++) {
+      try {
+        work(b * block, std::min(count, (b + 1) * block));
+      } catch (...) {
+        const std::lock_guard lock(mutex);
+        if (!failed.exchange(true)) error = std::current_exception();
+      }
+    }
+  };
+  if (is_worker || blocks <= 1) {
+    take_blocks();  // within a block: its own thread does
+  } else {
+    std::vector<std::jthread> threads(
+        std::min<std::size_t>(static_cast<std::size_t>(thread_count()), blocks));
+    for (std::jthread& thread : threads) {
+      thread = std::jthread([&] {
+        is_worker = true;
+        take_blocks();
+      });
+    }
+  }  // joined here
+  if (error) std::rethrow_exception(error);
+}
+
+}  // namespace pcednet
