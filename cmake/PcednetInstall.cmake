@@ -1,15 +1,33 @@
 include(CMakePackageConfigHelpers)
-get_property(rooms GLOBAL PROPERTY PCEDNET_ROOMS)
 
-# pcednet::pcednet links every room.
+# pcednet::pcednet links what labels points in memory; pcednet::formats (component formats) adds the
+# point files.
 add_library(pcednet_all INTERFACE)
 add_library(pcednet::pcednet ALIAS pcednet_all)
 set_target_properties(pcednet_all PROPERTIES EXPORT_NAME pcednet)
-target_link_libraries(pcednet_all INTERFACE ${rooms})
+target_link_libraries(pcednet_all INTERFACE pcednet_detect)
 install(TARGETS pcednet_all EXPORT pcednetTargets)
+
+# What a program may include: these headers include no others of pcednet, see tests/house.
+set(public_headers
+  pcednet.h
+  cloud/attribute.h cloud/point_cloud.h
+  core/error.h core/output_file.h core/parallel.h core/progress.h core/vec3.h
+  detect/classify.h detect/model.h detect/prepare.h detect/result_cloud.h detect/train.h
+  eval/scores.h
+  formats/read_cloud.h formats/write_cloud.h
+  gls/features.h gls/projection.h gls/scale_space_options.h gls/scales.h
+  io/loaded_cloud.h io/write_options.h
+  nn/architecture.h nn/model.h nn/network.h nn/optimiser.h nn/standardise.h nn/train.h
+  nn/training_set.h)
+foreach(header ${public_headers})
+  cmake_path(GET header PARENT_PATH folder)
+  install(FILES src/pcednet/${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/pcednet/${folder})
+endforeach()
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/pcednet)
 install(EXPORT pcednetTargets NAMESPACE pcednet:: DESTINATION ${package_dir})
+install(EXPORT pcednet_formatsTargets NAMESPACE pcednet:: DESTINATION ${package_dir})
 configure_package_config_file(cmake/pcednetConfig.cmake.in pcednetConfig.cmake
                               INSTALL_DESTINATION ${package_dir})
 write_basic_package_version_file(pcednetConfigVersion.cmake COMPATIBILITY SameMinorVersion)

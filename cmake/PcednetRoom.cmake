@@ -2,18 +2,18 @@
 # workbench_room(NAME USES room... LINKS library... PRIVATE_LINKS library...)
 #
 # Makes the library target pcednet_NAME (alias pcednet::NAME, workbench::NAME) from every source of
-# the current folder. A room in a folder of another is io/las, its target pcednet_io_las. USES names the rooms whose headers it includes; LINKS are outside libraries
-# that appear in its headers, PRIVATE_LINKS those that appear only in its sources. Rooms of the
-# library are installed, those of the workbench are not.
+# the current folder; a room within another is named io/las, its target pcednet_io_las. USES names
+# the rooms whose headers it includes; LINKS are outside libraries that appear in its headers,
+# PRIVATE_LINKS those that appear only in its sources. Rooms of the library are installed, as part of
+# the package's component PCEDNET_COMPONENT; those of the workbench are not.
 function(pcednet_room name)
   pcednet_make_room(${name} pcednet ${ARGN})
   string(REPLACE "/" "_" flat ${name})
   set(target pcednet_${flat})
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${flat})
   set_property(GLOBAL APPEND PROPERTY PCEDNET_ROOMS ${target})
-  file(GLOB headers CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.h)
-  install(TARGETS ${target} EXPORT pcednetTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
-  install(FILES ${headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/pcednet/${name})
+  install(TARGETS ${target} EXPORT ${PCEDNET_COMPONENT}Targets
+          ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 endfunction()
 
 function(workbench_room name)
@@ -37,6 +37,8 @@ function(pcednet_make_room name wing)
   foreach(used ${used_rooms})
     target_link_libraries(${target} PUBLIC pcednet_${used})
   endforeach()
+  # Who uses the installed room need not have what is only headers of its sources.
+  list(TRANSFORM room_PRIVATE_LINKS REPLACE "^(nlohmann_json|nanoflann)::.*$" "$<BUILD_INTERFACE:\\0>")
   target_link_libraries(${target} PUBLIC ${room_LINKS} PRIVATE ${room_PRIVATE_LINKS})
 endfunction()
 

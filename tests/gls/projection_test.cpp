@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "gls/test_clouds.h"
+#include "pcednet/gls/sphere_fit.h"
 
 namespace pcednet::gls {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "pcednet/core/output_file.h"
-#include "pcednet/gls/scale_space.h"
+#include "pcednet/gls/scale_space_options.h"
 #include "pcednet/nn/model.h"
 
 namespace pcednet::detect {

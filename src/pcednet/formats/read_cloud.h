@@ -5,7 +5,10 @@
 #include <memory>
 
 #include "pcednet/io/loaded_cloud.h"
-#include "pcednet/io/parts.h"
+
+namespace pcednet::io {
+class PartReader;
+}
 
 namespace pcednet::formats {
 

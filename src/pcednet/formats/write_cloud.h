@@ -6,8 +6,12 @@
 #include <vector>
 
 #include "pcednet/cloud/point_cloud.h"
-#include "pcednet/io/parts.h"
 #include "pcednet/io/write_options.h"
+
+namespace pcednet::io {
+class PartWriter;
+struct PartOutline;
+}  // namespace pcednet::io
 
 namespace pcednet::formats {
 

@@ -1,4 +1,6 @@
 #include "pcednet/gls/features.h"
+#include "pcednet/core/vec3.h"
+#include "pcednet/gls/descriptor.h"
 
 #include <array>
 

@@ -3,9 +3,9 @@
 #include <span>
 #include <string_view>
 
-#include "pcednet/gls/descriptor.h"
-
 namespace pcednet::gls {
+
+struct Descriptor;
 
 /// Which numbers describe a point at a scale; the count is the enumerator's.
 enum class FeatureSet {

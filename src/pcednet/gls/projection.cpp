@@ -1,4 +1,5 @@
 #include "pcednet/gls/projection.h"
+#include "pcednet/gls/sphere_fit.h"
 
 #include <array>
 

@@ -4,9 +4,10 @@
 #include <string_view>
 
 #include "pcednet/core/vec3.h"
-#include "pcednet/gls/sphere_fit.h"
 
 namespace pcednet::gls {
+
+struct AlgebraicSphere;
 
 /// The surface whose geometry is described.
 enum class Reconstruction {

@@ -11,6 +11,7 @@
 #include "pcednet/core/error.h"
 #include "pcednet/core/parallel.h"
 #include "pcednet/spatial/curve_order.h"
+#include "pcednet/spatial/kd_tree.h"
 
 namespace pcednet::gls {
 namespace {

@@ -5,7 +5,10 @@
 #include <vector>
 
 #include "pcednet/core/vec3.h"
-#include "pcednet/spatial/kd_tree.h"
+
+namespace pcednet::spatial {
+class KdTree;
+}
 
 namespace pcednet::gls {
 

@@ -1,29 +1,34 @@
-// Uses the installed library as an outside project would. Returns 0 if it works.
-#include <pcednet/cloud/bounding_box.h>
-#include <pcednet/core/version.h>
-#include <pcednet/normals/prepare.h>
+// Uses the installed library as an outside program would, on points in memory:
+//   consumer VERSION MODEL
+// Returns 0 if it finds the fold of a roof.
+#include <pcednet/pcednet.h>
 
 #include <cmath>
 #include <cstdio>
 #include <string>
-#include <vector>
 
 int main(int argc, char** argv) {
-  if (argc != 2 || std::string(argv[1]) != pcednet::kVersion) {
+  if (argc != 3 || std::string(argv[1]) != pcednet::kVersion) {
     std::fprintf(stderr, "the headers are of version %s\n", pcednet::kVersion);
     return 1;
   }
-  // A slope that rises along x by one half.
-  std::vector<pcednet::Vec3> positions;
-  for (int i = 0; i < 400; ++i) positions.emplace_back(i % 20, i / 20, 0.5 * (i % 20));
-  const pcednet::Vec3 expected = pcednet::Vec3(-0.5, 0, 1).normalized();
-  const auto prepared = pcednet::normals::estimate_oriented_normals(positions);
-  for (const pcednet::Vec3& normal : prepared.normals) {
-    if (!((normal - expected).norm() < 1e-6)) {
-      std::fprintf(stderr, "a normal is (%g, %g, %g)\n", normal.x(), normal.y(), normal.z());
-      return 1;
-    }
+  pcednet::PointCloud roof;
+  for (int i = 0; i < 10000; ++i) {
+    const double x = i % 100 - 49.5, y = i / 100;
+    roof.positions.emplace_back(x, y, -std::abs(x));
   }
-  const double diagonal = pcednet::bounding_box(positions).diagonal();
-  return std::abs(diagonal - std::hypot(19.0, 19.0, 9.5)) < 1e-12 ? 0 : 1;
+  const auto model = pcednet::detect::load_model(argv[2]);
+  const auto prepared = pcednet::detect::prepare(roof);
+  const auto found = pcednet::detect::classify(prepared, model);
+  int sharp_on_fold = 0, sharp_elsewhere = 0;
+  for (std::size_t i = 0; i < roof.size(); ++i) {
+    const pcednet::Vec3& p = roof.positions[i];
+    if (found.classes[i] != pcednet::kSharpEdge || p.y() < 10 || p.y() > 89) continue;
+    (std::abs(p.x()) < 1 ? sharp_on_fold : sharp_elsewhere) += 1;
+  }
+  if (prepared.notes.size() != 1 || sharp_on_fold < 120 || sharp_elsewhere > 400) {
+    std::fprintf(stderr, "%zu notes, %d sharp points on the fold and %d elsewhere\n",
+                 prepared.notes.size(), sharp_on_fold, sharp_elsewhere);
+    return 1;
+  }
 }

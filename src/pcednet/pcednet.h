@@ -1,0 +1,27 @@
+#pragma once
+
+/// Edges of 3D point clouds, for programs that hold their points in memory:
+///
+///     pcednet::PointCloud cloud;
+///     cloud.positions = ...;  // and cloud.normals, if there are any
+///     const auto model = pcednet::detect::load_model("scan.safetensors");
+///     const auto prepared = pcednet::detect::prepare(cloud);
+///     const auto found = pcednet::detect::classify(prepared, model);
+///     // found.classes[i] is 0, 1 or 2; found.p_sharp[i] its probability of being a sharp edge
+///
+/// prepare() estimates missing normals and says so in its notes; detect/train.h trains a model.
+/// Every error is a pcednet::Error. Work runs on every core unless set_thread_count() bounds it.
+///
+/// Link pcednet::pcednet. Point files are read and written by formats/read_cloud.h and
+/// formats/write_cloud.h: find_package(pcednet COMPONENTS formats), pcednet::formats.
+
+#include "pcednet/cloud/point_cloud.h"
+#include "pcednet/core/error.h"
+#include "pcednet/core/parallel.h"
+#include "pcednet/core/progress.h"
+#include "pcednet/core/version.h"
+#include "pcednet/detect/classify.h"
+#include "pcednet/detect/model.h"
+#include "pcednet/detect/prepare.h"
+#include "pcednet/detect/result_cloud.h"
+#include "pcednet/detect/train.h"
