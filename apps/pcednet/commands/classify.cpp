@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Arguments {
+struct ClassifyArguments {
   std::vector<std::string> inputs;
   std::string output, output_folder, preview, las_classification;
   ModelArguments model{.name = "scan"};
@@ -41,7 +41,7 @@ struct Plan {
   std::size_t skipped = 0;
 };
 
-fs::path preview_path(const Arguments& arguments, const fs::path& input, bool several) {
+fs::path preview_path(const ClassifyArguments& arguments, const fs::path& input, bool several) {
   if (arguments.preview.empty()) return {};
   if (!several) return arguments.preview;
   const fs::path pattern = arguments.preview;
@@ -56,7 +56,7 @@ std::string output_name(const fs::path& input) {
   return input.stem().string() + (is_las ? "_edges.las" : "_edges.ply");
 }
 
-std::vector<Job> jobs_for(const std::vector<fs::path>& inputs, const Arguments& arguments) {
+std::vector<Job> jobs_for(const std::vector<fs::path>& inputs, const ClassifyArguments& arguments) {
   std::vector<Job> jobs;
   for (const fs::path& input : inputs) {
     const fs::path folder =
@@ -114,7 +114,7 @@ void drop_results(std::vector<Job>& jobs) {
   if (dropped > 0) say(fmt::format("{} files left out: they are results of other inputs", dropped));
 }
 
-Plan plan(const Inputs& inputs, const Arguments& arguments, const Common& common) {
+Plan plan(const Inputs& inputs, const ClassifyArguments& arguments, const Common& common) {
   if (!arguments.output.empty() && (inputs.count() > 1 || !arguments.output_folder.empty())) {
     throw Error(ErrorKind::kUsage, "classify: -o is for one input; use --out-dir for several");
   }
@@ -185,8 +185,8 @@ void say_kept(const detect::KeptInput& kept) {
   if (kept.colours) say("  the input's colours are kept; --class-colours replaces them");
 }
 
-void classify_file(const Job& job, const Arguments& arguments, const detect::EdgeModel& model,
-                   const Common& common) {
+void classify_file(const Job& job, const ClassifyArguments& arguments,
+                   const detect::EdgeModel& model, const Common& common) {
   StageClock clock(console_progress(common));
   const Progress& progress = clock.progress();
   clock.begin("read");
@@ -216,7 +216,7 @@ void classify_file(const Job& job, const Arguments& arguments, const detect::Edg
   report(job, result, clock.seconds());
 }
 
-void classify(const Arguments& arguments, const Common& common) {
+void classify(const ClassifyArguments& arguments, const Common& common) {
   PointCloud nothing;
   if (!arguments.las_classification.empty()) {
     set_las_classification(arguments.las_classification, {}, nothing);  // refuses before the work
@@ -244,7 +244,7 @@ void classify(const Arguments& arguments, const Common& common) {
 }  // namespace
 
 void add_classify(CLI::App& app, Common& common) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<ClassifyArguments>();
   CLI::App* command = add_command(
       app, common, "classify", "Label every point: non-edge, smooth-edge or sharp-edge",
       "pcednet classify scan.ply                       writes scan_edges.ply\n"

@@ -18,7 +18,7 @@
 namespace pcednet::app {
 namespace {
 
-struct Request {
+struct ConvertRequest {
   std::string input;
   std::string output;
   bool ascii = false;
@@ -29,7 +29,7 @@ struct Request {
   bool vertex_normals = false;
 };
 
-void sample(const Request& request, PointCloud& cloud) {
+void sample(const ConvertRequest& request, PointCloud& cloud) {
   const auto triangles = io::triangles_of(cloud);
   if (triangles.empty()) {
     throw Error(ErrorKind::kInsufficient,
@@ -39,7 +39,7 @@ void sample(const Request& request, PointCloud& cloud) {
                               {request.samples, request.vertex_normals, request.seed});
 }
 
-void perturb(const Request& request, PointCloud& cloud) {
+void perturb(const ConvertRequest& request, PointCloud& cloud) {
   if (request.noise > 0.0) {
     with_name_in_errors(request.input, [&] {
       cloud = shapes::add_gaussian_noise(std::move(cloud),
@@ -74,7 +74,7 @@ io::EachPart each_part_of(const io::PartReader& reader, const PointCloud& first,
 
 /// Converts in memory that does not grow with the file; false if one of the formats, or what else
 /// is asked for, takes the whole cloud.
-bool convert_in_parts(const Request& request, const Common& common) {
+bool convert_in_parts(const ConvertRequest& request, const Common& common) {
   if (request.samples > 0 || request.noise > 0.0 || request.fraction < 1.0) return false;
   const auto reader = formats::open_parts(request.input);
   if (!reader) return false;
@@ -106,7 +106,7 @@ bool convert_in_parts(const Request& request, const Common& common) {
   return true;
 }
 
-void convert(const Request& request, const Common& common) {
+void convert(const ConvertRequest& request, const Common& common) {
   // What cannot be written is refused before a long read.
   formats::losses(request.output, {});
   check_writable(request.output, common.overwrite());
@@ -135,7 +135,7 @@ void add_convert(CLI::App& app, Common& common) {
                                   "pcednet convert scan.ply -o readable.ply --ascii\n"
                                   "pcednet convert part.obj -o part.ply --sample 100000\n"
                                   "pcednet convert scan.ply -o worse.ply --noise 0.004 --seed 7");
-  auto request = std::make_shared<Request>();
+  auto request = std::make_shared<ConvertRequest>();
   command->add_option("input", request->input, "Input file")->required();
   command
       ->add_option("-o,--output", request->output,

@@ -26,7 +26,7 @@ using nlohmann::ordered_json;
 
 constexpr std::size_t kBlock = std::size_t{1} << 18;  // points described at a time
 
-struct Arguments {
+struct DescribeArguments {
   std::string input, output;
   gls::ScaleSpaceOptions options;
   detect::PrepareOptions preparation;
@@ -79,8 +79,8 @@ StatusCounts write_matrix(const gls::ScaleSpace& space, std::size_t points, io::
   return counts;
 }
 
-ordered_json to_json(const Arguments& arguments, const gls::ScaleSpace& space, std::size_t points,
-                     const StatusCounts& counts) {
+ordered_json to_json(const DescribeArguments& arguments, const gls::ScaleSpace& space,
+                     std::size_t points, const StatusCounts& counts) {
   const gls::ScaleSpaceOptions& options = space.options();
   ordered_json json = {{"version", kVersion},
                        {"input", fs::path(arguments.input).filename().string()},
@@ -100,7 +100,7 @@ ordered_json to_json(const Arguments& arguments, const gls::ScaleSpace& space, s
   return json;
 }
 
-void describe(const Arguments& arguments, const Common& common) {
+void describe(const DescribeArguments& arguments, const Common& common) {
   const fs::path output = arguments.output;
   if (output.extension() != ".npy") {
     throw Error(ErrorKind::kUsage, fmt::format("{}: must end in .npy", output.string()));
@@ -140,7 +140,7 @@ void describe(const Arguments& arguments, const Common& common) {
 }  // namespace
 
 void add_describe(CLI::App& app, Common& common) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<DescribeArguments>();
   CLI::App* command = add_command(
       app, common, "describe", "Write the scale-space matrix of a cloud for NumPy",
       "pcednet describe scan.ply -o scan.npy      also writes scan.json: scales, columns\n"

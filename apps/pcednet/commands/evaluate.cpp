@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Arguments {
+struct EvaluateArguments {
   std::vector<std::string> inputs;
   std::string predictions, json, positive = "sharp";
   ModelArguments model;
@@ -35,7 +35,7 @@ struct Results {
 };
 
 detect::Classification predict(const fs::path& input, const PointCloud& cloud,
-                               const detect::EdgeModel* model, const Arguments& arguments,
+                               const detect::EdgeModel* model, const EvaluateArguments& arguments,
                                const Progress& progress) {
   detect::Classification result;
   if (model) {
@@ -63,7 +63,7 @@ std::vector<float> probabilities(const detect::Classification& found, eval::Posi
   return p;
 }
 
-Results score_all(const Arguments& arguments, const Common& common) {
+Results score_all(const EvaluateArguments& arguments, const Common& common) {
   const Progress progress = console_progress(common);
   const auto positive =
       arguments.positive == "edge" ? eval::Positive::kEdge : eval::Positive::kSharp;
@@ -104,7 +104,7 @@ Results score_all(const Arguments& arguments, const Common& common) {
   return results;
 }
 
-void evaluate(const Arguments& arguments, const Common& common) {
+void evaluate(const EvaluateArguments& arguments, const Common& common) {
   const int ways = !arguments.model.name.empty() + !arguments.predictions.empty() +
                    !arguments.method.name.empty();
   if (ways != 1) {
@@ -129,7 +129,7 @@ void evaluate(const Arguments& arguments, const Common& common) {
 }  // namespace
 
 void add_evaluate(CLI::App& app, Common& common) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<EvaluateArguments>();
   CLI::App* command = add_command(
       app, common, "evaluate", "Score predicted classes against the labels of the clouds",
       "pcednet evaluate clouds/ --model scan --positive edge\n"

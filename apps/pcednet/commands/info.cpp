@@ -17,12 +17,12 @@ namespace {
 
 using nlohmann::ordered_json;
 
-struct Request {
+struct InfoRequest {
   std::vector<std::string> inputs;
   std::string json;
 };
 
-void write_json(const Request& request, const ordered_json& files, const Common& common) {
+void write_json(const InfoRequest& request, const ordered_json& files, const Common& common) {
   if (request.json.empty()) return;
   // Names and comments of foreign files need not be UTF-8.
   const std::string text = files.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
@@ -33,7 +33,7 @@ void write_json(const Request& request, const ordered_json& files, const Common&
   }
 }
 
-void info(const Request& request, const Common& common) {
+void info(const InfoRequest& request, const Common& common) {
   if (request.json != "-") check_writable(request.json, common.overwrite());
   const Progress progress = console_progress(common);
   const Inputs inputs = find_inputs(request.inputs);
@@ -63,7 +63,7 @@ void add_info(CLI::App& app, Common& common) {
                                   "pcednet info scan.ply\n"
                                   "pcednet info folder/ --json report.json\n"
                                   "pcednet info scan.ply --json -");
-  auto request = std::make_shared<Request>();
+  auto request = std::make_shared<InfoRequest>();
   command->add_option("inputs", request->inputs, "Point files or folders of point files")
       ->required();
   command->add_option("--json", request->json,

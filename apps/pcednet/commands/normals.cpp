@@ -16,7 +16,7 @@
 namespace pcednet::app {
 namespace {
 
-struct Request {
+struct NormalsRequest {
   std::string input;
   std::string output;
   int neighbours = 0;
@@ -31,7 +31,7 @@ struct Request {
 };
 
 /// New normals, or those of the cloud with new signs.
-normals::PreparedNormals prepare(const Request& request, const PointCloud& cloud,
+normals::PreparedNormals prepare(const NormalsRequest& request, const PointCloud& cloud,
                                  const Progress& progress) {
   const normals::PrepareOptions options = {request.neighbours, request.eye()};
   if (request.keep && !cloud.has_normals()) {
@@ -49,7 +49,7 @@ normals::PreparedNormals prepare(const Request& request, const PointCloud& cloud
   return prepared;
 }
 
-void report(const Request& request, const normals::PreparedNormals& prepared) {
+void report(const NormalsRequest& request, const normals::PreparedNormals& prepared) {
   const normals::Orientation& orientation = prepared.orientation;
   std::string line =
       fmt::format("{}: {} normals", request.output, prepared.normals.size() - prepared.unusable);
@@ -71,7 +71,7 @@ void report(const Request& request, const normals::PreparedNormals& prepared) {
   }
 }
 
-void run(const Request& request, const Common& common) {
+void run(const NormalsRequest& request, const Common& common) {
   // What cannot be written is refused before a long read.
   formats::losses(request.output, {});
   check_writable(request.output, common.overwrite());
@@ -106,7 +106,7 @@ void add_normals(CLI::App& app, Common& common) {
                   "pcednet normals scan.ply -o with_normals.ply\n"
                   "pcednet normals scan.ply -o with_normals.ply --viewpoint 0 0 1.7\n"
                   "pcednet normals inward.ply -o outward.ply --keep");
-  auto request = std::make_shared<Request>();
+  auto request = std::make_shared<NormalsRequest>();
   command->add_option("input", request->input, "Input file")->required();
   command->add_option("-o,--output", request->output, "Output file")->required();
   command

@@ -24,7 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Arguments {
+struct StudyArguments {
   std::vector<std::string> names, training, tests, positives, models, predictions, methods, fee;
   std::string folder;
   std::vector<std::uint64_t> seeds;
@@ -75,7 +75,7 @@ study::CloudSet generated_set() {
   return set;
 }
 
-study::StudyData read_data(const Arguments& arguments) {
+study::StudyData read_data(const StudyArguments& arguments) {
   study::StudyData data;
   std::vector<std::string> order;
   std::map<std::string, std::vector<std::string>> inputs;
@@ -141,7 +141,7 @@ study::NamedMethod classic_method(const std::string& id, const std::string& titl
   return method;
 }
 
-study::PlanOptions plan_of(const Arguments& arguments) {
+study::PlanOptions plan_of(const StudyArguments& arguments) {
   study::PlanOptions plan{.training = arguments.networks, .quick = arguments.quick};
   if (arguments.natural) plan.training.training.balance = 0.0;
   if (arguments.epochs > 0) plan.training.training.epochs = arguments.epochs;
@@ -202,7 +202,7 @@ void list_experiments() {
   }
 }
 
-void run_studies(const Arguments& arguments, const Common& common) {
+void run_studies(const StudyArguments& arguments, const Common& common) {
   const auto plan = plan_of(arguments);
   study::FileOptions file{
       .command = command_line(),
@@ -242,7 +242,7 @@ void run_studies(const Arguments& arguments, const Common& common) {
   }
 }
 
-void study_command(const Arguments& arguments, const Common& common) {
+void study_command(const StudyArguments& arguments, const Common& common) {
   if (arguments.names == std::vector<std::string>{"list"}) return list_experiments();
   if (arguments.folder.empty()) throw Error(ErrorKind::kUsage, "study: give a folder with -o");
   try {
@@ -258,7 +258,7 @@ void study_command(const Arguments& arguments, const Common& common) {
 }
 
 /// Of the networks that are trained, where the experiment does not vary them.
-void add_network_options(CLI::App& command, Arguments& arguments) {
+void add_network_options(CLI::App& command, StudyArguments& arguments) {
   detect::TrainOptions& training = arguments.networks;
   command.add_option("--classes", training.architecture.classes, "Classes of the networks")
       ->capture_default_str()
@@ -276,7 +276,7 @@ void add_network_options(CLI::App& command, Arguments& arguments) {
 }  // namespace
 
 void add_study(CLI::App& app, Common& common) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<StudyArguments>();
   CLI::App* command = add_command(
       app, common, "study", "Run the paper's experiments on your clouds",
       "pcednet study list                                        lists the experiments\n"

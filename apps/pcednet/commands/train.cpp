@@ -25,7 +25,7 @@ const Choices<nn::Symmetry> kSymmetries = {{"average", nn::Symmetry::kAverage},
 
 enum class Recipe { kAdam, kPaper };
 
-struct Arguments {
+struct TrainArguments {
   std::vector<std::string> inputs;
   std::string project, output;
   detect::PrepareOptions preparation;
@@ -37,7 +37,7 @@ struct Arguments {
   std::uint64_t seed = 1;
 };
 
-detect::TrainOptions options_of(const Arguments& arguments) {
+detect::TrainOptions options_of(const TrainArguments& arguments) {
   detect::TrainOptions options = arguments.options;
   if (arguments.recipe == Recipe::kPaper) options.training = nn::paper_recipe();
   if (arguments.epochs > 0) options.training.epochs = arguments.epochs;
@@ -52,7 +52,7 @@ void print_epoch(const nn::EpochReport& report) {
 }
 
 /// The model that the annotator saves for a project.
-detect::TrainedModel train_project(const Arguments& arguments, const Common& common,
+detect::TrainedModel train_project(const TrainArguments& arguments, const Common& common,
                                    const Progress& progress) {
   const std::filesystem::path file = arguments.project;
   const annotate::Project project = annotate::read_project(file);
@@ -67,7 +67,7 @@ detect::TrainedModel train_project(const Arguments& arguments, const Common& com
       common.progress == "none" ? decltype(&print_epoch)(nullptr) : print_epoch, &progress);
 }
 
-detect::TrainedModel train_clouds(const Arguments& arguments, const Common& common,
+detect::TrainedModel train_clouds(const TrainArguments& arguments, const Common& common,
                                   const Progress& progress) {
   const auto options = options_of(arguments);
   const auto inputs = expand_inputs(arguments.inputs);
@@ -89,7 +89,7 @@ detect::TrainedModel train_clouds(const Arguments& arguments, const Common& comm
                        &progress);
 }
 
-void train(const Arguments& arguments, const Common& common) {
+void train(const TrainArguments& arguments, const Common& common) {
   check_writable(arguments.output, common.overwrite());
   if (arguments.inputs.empty() && arguments.project.empty()) {
     throw Error(ErrorKind::kUsage, "train: give labelled point files or --project");
@@ -119,7 +119,7 @@ void train(const Arguments& arguments, const Common& common) {
   }
 }
 
-void add_data_options(CLI::App& command, Arguments& arguments) {
+void add_data_options(CLI::App& command, TrainArguments& arguments) {
   command.add_option("inputs", arguments.inputs, "Labelled point files or folders of them");
   command.add_option("--project", arguments.project,
                      "Repeat a training of the annotator from its project; the input is expected "
@@ -146,7 +146,7 @@ void add_network_options(CLI::App& command, detect::TrainOptions& options) {
                    "around each point");
 }
 
-void add_recipe_options(CLI::App& command, Arguments& arguments) {
+void add_recipe_options(CLI::App& command, TrainArguments& arguments) {
   add_choice(command, "--recipe", arguments.recipe,
              {{"adam", Recipe::kAdam}, {"paper", Recipe::kPaper}},
              "adam, or paper (SGD as published)");
@@ -170,7 +170,7 @@ void add_recipe_options(CLI::App& command, Arguments& arguments) {
 }  // namespace
 
 void add_train(CLI::App& app, Common& common) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<TrainArguments>();
   CLI::App* command = add_command(
       app, common, "train", "Train a network on labelled clouds",
       "pcednet train painted.ply -o my.safetensors      labels 0, 1, 2; 255 unlabelled\n"

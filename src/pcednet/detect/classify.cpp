@@ -1,4 +1,5 @@
 #include "pcednet/detect/classify.h"
+#include "pcednet/detect/describe.h"
 
 #include <fmt/format.h>
 

@@ -4,11 +4,12 @@
 #include <string>
 #include <vector>
 
-#include "pcednet/detect/describe.h"
 #include "pcednet/detect/model.h"
 #include "pcednet/detect/prepare.h"
 
 namespace pcednet::detect {
+
+struct DescribedCloud;
 
 struct ClassCounts {
   std::size_t non_edge = 0, smooth = 0, sharp = 0, unlabelled = 0;

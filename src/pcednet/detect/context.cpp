@@ -1,4 +1,5 @@
 #include "pcednet/detect/context.h"
+#include "pcednet/detect/describe.h"
 
 #include <algorithm>
 #include <array>

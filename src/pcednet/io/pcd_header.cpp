@@ -11,11 +11,11 @@
 namespace pcednet::io {
 namespace {
 
-constexpr std::uint64_t kLongestHeader = std::uint64_t{1} << 20;
+constexpr std::uint64_t kLongestPcdHeader = std::uint64_t{1} << 20;
 /// More numbers in one field than any descriptor has; keeps sums of sizes from overflowing.
 constexpr std::uint64_t kMostCount = std::uint64_t{1} << 20;
 
-using Words = std::vector<std::string_view>;
+using PcdWords = std::vector<std::string_view>;
 
 std::optional<ScalarType> parse_type(std::string_view kind, std::string_view size) {
   if (kind == "F" && size == "4") return ScalarType::kFloat32;
@@ -154,7 +154,7 @@ class HeaderParser {
   const std::filesystem::path& path_;
   std::string_view text_;
   std::string_view line_;
-  Words words_;
+  PcdWords words_;
   std::vector<std::string> names_, sizes_, types_, counts_;
   std::optional<std::uint64_t> width_, points_;
   PcdHeader header_;
@@ -180,7 +180,7 @@ bool begins_as_pcd(std::string_view start) {
 }
 
 PcdHeader read_pcd_header(const InputFile& file) {
-  const std::string text = file.text(0, kLongestHeader);
+  const std::string text = file.text(0, kLongestPcdHeader);
   if (!begins_as_pcd(text)) {
     throw unreadable(file.path(), "not a PCD file: no header with VERSION and FIELDS", 1);
   }

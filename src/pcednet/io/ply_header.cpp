@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::uint64_t kLongestHeader = std::uint64_t{64} << 20;
 
-std::optional<ScalarType> parse_type(std::string_view name) {
+std::optional<ScalarType> parse_scalar_type(std::string_view name) {
   static constexpr std::pair<std::string_view, ScalarType> kTypes[] = {
       {"char", ScalarType::kInt8},      {"int8", ScalarType::kInt8},
       {"uchar", ScalarType::kUint8},    {"uint8", ScalarType::kUint8},
@@ -87,7 +87,7 @@ PlyElement parse_element(const Words& words, const HeaderLines& lines) {
 
 PlyProperty parse_property(const Words& words, const HeaderLines& lines) {
   const auto type_of = [&](std::string_view name) {
-    const auto type = parse_type(name);
+    const auto type = parse_scalar_type(name);
     if (!type) throw lines.error(fmt::format("unknown type {}", name));
     return *type;
   };

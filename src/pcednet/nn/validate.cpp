@@ -10,8 +10,8 @@
 namespace pcednet::nn {
 namespace {
 
-constexpr std::size_t kPoints = kLaneStep;
-constexpr std::size_t kTask = 64 * kPoints;
+constexpr std::size_t kLanes = kLaneStep;
+constexpr std::size_t kSamplesAtOnce = 64 * kLanes;
 
 struct ClassSums {
   double loss = 0.0;
@@ -29,18 +29,18 @@ std::uint8_t most_probable(LaneTable& table, int first_row, int classes, std::si
 /// Adds up the samples of one task, class by class.
 void judge(const Evaluator& evaluator, const TrainingSet& set,
            std::span<const std::uint32_t> chosen, ClassSums* sums, std::size_t* confusion) {
-  LaneTable table = evaluator.make_table(kPoints);
+  LaneTable table = evaluator.make_table(kLanes);
   const int classes = evaluator.classes();
   const int logits = evaluator.logits_row();
   LaneTable deltas(classes, table.lanes());
-  std::array<const float*, kPoints> rows;
-  std::array<std::uint8_t, kPoints> labels;
-  LaneTable targets(classes, kPoints);
-  std::array<float, kPoints> weights, losses;
+  std::array<const float*, kLanes> rows;
+  std::array<std::uint8_t, kLanes> labels;
+  LaneTable targets(classes, kLanes);
+  std::array<float, kLanes> weights, losses;
   weights.fill(1.0f);
-  for (std::size_t begin = 0; begin < chosen.size(); begin += kPoints) {
-    const std::size_t points = std::min(kPoints, chosen.size() - begin);
-    for (std::size_t p = 0; p < kPoints; ++p) {
+  for (std::size_t begin = 0; begin < chosen.size(); begin += kLanes) {
+    const std::size_t points = std::min(kLanes, chosen.size() - begin);
+    for (std::size_t p = 0; p < kLanes; ++p) {
       const std::size_t sample = chosen[begin + std::min(p, points - 1)];
       rows[p] = set.samples.data() + sample * static_cast<std::size_t>(evaluator.inputs());
       labels[p] = set.labels[sample];
@@ -69,12 +69,13 @@ Validation validate(const Model& model, const TrainingSet& set,
                     std::span<const std::uint32_t> chosen) {
   const Evaluator evaluator(model);
   const auto classes = static_cast<std::size_t>(evaluator.classes());
-  const std::size_t tasks = (chosen.size() + kTask - 1) / kTask;
+  const std::size_t tasks = (chosen.size() + kSamplesAtOnce - 1) / kSamplesAtOnce;
   std::vector<ClassSums> sums(tasks * classes);
   std::vector<std::size_t> confusion(tasks * classes * classes);
-  parallel_blocks(chosen.size(), kTask, [&](std::size_t begin, std::size_t end) {
-    judge(evaluator, set, chosen.subspan(begin, end - begin), sums.data() + begin / kTask * classes,
-          confusion.data() + begin / kTask * classes * classes);
+  parallel_blocks(chosen.size(), kSamplesAtOnce, [&](std::size_t begin, std::size_t end) {
+    judge(evaluator, set, chosen.subspan(begin, end - begin),
+          sums.data() + begin / kSamplesAtOnce * classes,
+          confusion.data() + begin / kSamplesAtOnce * classes * classes);
   });
   Validation result;
   result.confusion.resize(classes * classes);

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kSample = 20000;
 constexpr std::size_t kNeighbours = 12;
-constexpr std::size_t kBlock = 1024;
+constexpr std::size_t kPairsAtOnce = 1024;
 constexpr double kParallel = 0.9;
 constexpr double kLevel = 0.3;
 
@@ -27,15 +27,15 @@ FlatPairs::FlatPairs(std::span<const Vec3> positions, std::span<const Vec3> norm
   const spatial::NeighbourSearch search(points);
   const std::size_t count = search.available(kNeighbours);
   const std::size_t samples = std::min(points.size(), kSample);
-  std::vector<decltype(pairs_)> blocks((samples + kBlock - 1) / kBlock);
-  parallel_blocks(samples, kBlock, [&](std::size_t begin, std::size_t end) {
+  std::vector<decltype(pairs_)> blocks((samples + kPairsAtOnce - 1) / kPairsAtOnce);
+  parallel_blocks(samples, kPairsAtOnce, [&](std::size_t begin, std::size_t end) {
     std::vector<std::uint32_t> chosen;
     for (std::size_t s = begin; s < end; ++s) {
       chosen.push_back(static_cast<std::uint32_t>(s * points.size() / samples));
     }
     std::vector<spatial::Neighbour> found(chosen.size() * count);
     search.nearest_others(chosen, kNeighbours, found);
-    auto& pairs = blocks[begin / kBlock];
+    auto& pairs = blocks[begin / kPairsAtOnce];
     for (std::size_t c = 0; c < chosen.size(); ++c) {
       const std::uint32_t i = chosen[c];
       const Vec3& n = normals[order[i]];

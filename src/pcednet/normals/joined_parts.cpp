@@ -9,7 +9,7 @@
 namespace pcednet::normals {
 namespace {
 
-constexpr std::size_t kBlock = 1 << 14;
+constexpr std::size_t kRowsAtOnce = 1 << 14;
 
 std::int8_t times(std::int8_t a, std::int8_t b) {
   return static_cast<std::int8_t>(a * b);
@@ -17,7 +17,7 @@ std::int8_t times(std::int8_t a, std::int8_t b) {
 
 template <typename Work>
 void for_each_row(std::size_t rows, const Work& work) {
-  parallel_blocks(rows, kBlock, [&](std::size_t begin, std::size_t end) {
+  parallel_blocks(rows, kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
     for (auto i = static_cast<std::uint32_t>(begin); i < end; ++i) work(i);
   });
 }
@@ -33,7 +33,7 @@ void join_roots(std::vector<Join>& joins) {
   // Each round doubles the steps that a row has gone.
   for (std::atomic<bool> moved = true; moved;) {
     moved = false;
-    parallel_blocks(joins.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+    parallel_blocks(joins.size(), kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
       bool any = false;
       for (std::size_t i = begin; i < end; ++i) {
         const Join& on = joins[joins[i].to];
@@ -65,15 +65,16 @@ Signs follow_joins(std::vector<Join> joins) {
   join_roots(joins);
   const std::vector<std::uint32_t> first = first_rows(joins);
   const auto begins_part = [&](std::uint32_t i) { return first[joins[i].to] == i; };
-  std::vector<std::uint32_t> begun((joins.size() + kBlock - 1) / kBlock + 1);
-  for_each_row(joins.size(), [&](std::uint32_t i) { begun[i / kBlock + 1] += begins_part(i); });
+  std::vector<std::uint32_t> begun((joins.size() + kRowsAtOnce - 1) / kRowsAtOnce + 1);
+  for_each_row(joins.size(),
+               [&](std::uint32_t i) { begun[i / kRowsAtOnce + 1] += begins_part(i); });
   std::partial_sum(begun.begin(), begun.end(), begun.begin());
 
   Signs signs;
   signs.parts = begun.back();
   std::vector<std::uint32_t> of_root(joins.size());
   for_each_row(joins.size(), [&](std::uint32_t i) {
-    if (begins_part(i)) of_root[joins[i].to] = begun[i / kBlock]++;
+    if (begins_part(i)) of_root[joins[i].to] = begun[i / kRowsAtOnce]++;
   });
   signs.part.resize(joins.size());
   signs.sign.resize(joins.size());

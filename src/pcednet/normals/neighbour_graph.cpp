@@ -13,22 +13,23 @@
 namespace pcednet::normals {
 namespace {
 
-constexpr std::size_t kBlock = 1024;
+constexpr std::size_t kQueriesAtOnce = 1024;
 
 void collect_distinct_points(std::span<const Vec3> positions, NeighbourGraph& graph) {
   const std::vector<std::uint32_t>& order = graph.order;
   std::vector<Vec3> ordered = spatial::in_order(positions, order);
   const auto is_new = [&](std::size_t i) { return i == 0 || ordered[i] != ordered[i - 1]; };
-  std::vector<std::uint32_t> found((order.size() + kBlock - 1) / kBlock + 1);  // before each block
-  parallel_blocks(order.size(), kBlock, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) found[begin / kBlock + 1] += is_new(i);
+  std::vector<std::uint32_t> found((order.size() + kQueriesAtOnce - 1) / kQueriesAtOnce +
+                                   1);  // before each block
+  parallel_blocks(order.size(), kQueriesAtOnce, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) found[begin / kQueriesAtOnce + 1] += is_new(i);
   });
   std::partial_sum(found.begin(), found.end(), found.begin());
   const bool has_copies = found.back() < order.size();
   if (has_copies) graph.points.resize(found.back());
   graph.point_of.assign(positions.size(), kNoPoint);
-  parallel_blocks(order.size(), kBlock, [&](std::size_t begin, std::size_t end) {
-    std::uint32_t count = found[begin / kBlock];
+  parallel_blocks(order.size(), kQueriesAtOnce, [&](std::size_t begin, std::size_t end) {
+    std::uint32_t count = found[begin / kQueriesAtOnce];
     for (std::size_t i = begin; i < end; ++i) {
       if (is_new(i)) {
         if (has_copies) graph.points[count] = ordered[i];
@@ -73,7 +74,7 @@ NeighbourGraph make_neighbour_graph(std::span<const Vec3> positions, std::size_t
   const spatial::NeighbourSearch search(graph.points);
   graph.degree = search.available(count > 0 ? count : choose_neighbour_count(graph.points, search));
   graph.neighbours.resize(points * graph.degree);
-  parallel_blocks(points, kBlock, [&](std::size_t begin, std::size_t end) {
+  parallel_blocks(points, kQueriesAtOnce, [&](std::size_t begin, std::size_t end) {
     std::vector<std::uint32_t> some(end - begin);
     std::iota(some.begin(), some.end(), static_cast<std::uint32_t>(begin));
     std::vector<spatial::Neighbour> found(some.size() * graph.degree);
@@ -93,7 +94,7 @@ Adjacency make_adjacency(const NeighbourGraph& graph, std::size_t count) {
   adjacency.first[0] = 0;
   if (count == 0) return adjacency;
   const auto by_block = [&](const auto& work) {
-    parallel_blocks(points, kBlock, [&](std::size_t begin, std::size_t end) {
+    parallel_blocks(points, kQueriesAtOnce, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) work(i, graph.of(i).first(count));
     });
   };

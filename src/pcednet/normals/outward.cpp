@@ -12,7 +12,7 @@ namespace pcednet::normals {
 namespace {
 
 constexpr std::size_t kDirections = 48;
-constexpr std::size_t kBlock = 1024;
+constexpr std::size_t kMembersAtOnce = 1024;
 
 /// The permutations of (+-1, +-2, +-3): well spread, and along none of the axes and diagonals that
 /// the faces of parts and buildings like.
@@ -63,10 +63,10 @@ std::vector<Ends> measure_blocks(const std::array<Vec3, kDirections>& all,
   Ends none;
   none.lowest.fill(std::numeric_limits<double>::infinity());
   none.highest.fill(-std::numeric_limits<double>::infinity());
-  std::vector<Ends> blocks((members.size() + kBlock - 1) / kBlock, none);
-  parallel_blocks(members.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+  std::vector<Ends> blocks((members.size() + kMembersAtOnce - 1) / kMembersAtOnce, none);
+  parallel_blocks(members.size(), kMembersAtOnce, [&](std::size_t begin, std::size_t end) {
     measure(directions, points[members.front()], points, members.subspan(begin, end - begin),
-            blocks[begin / kBlock]);
+            blocks[begin / kMembersAtOnce]);
   });
   return blocks;
 }
@@ -86,7 +86,8 @@ double mean_at_far_end(std::span<const Vec3> points, std::span<const Vec3> norma
   std::size_t count = 0;
   for (std::size_t block = 0; block < blocks.size(); ++block) {
     if (blocks[block].highest[k] < bound) continue;
-    const std::size_t begin = block * kBlock, end = std::min(members.size(), begin + kBlock);
+    const std::size_t begin = block * kMembersAtOnce,
+                      end = std::min(members.size(), begin + kMembersAtOnce);
     for (const std::uint32_t i : members.subspan(begin, end - begin)) {
       const Vec3 p = points[i] - origin;
       if (direction[0] * p[0] + direction[1] * p[1] + direction[2] * p[2] < bound) continue;

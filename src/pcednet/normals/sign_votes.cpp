@@ -14,7 +14,7 @@
 namespace pcednet::normals {
 namespace {
 
-constexpr std::size_t kBlock = 1024;
+constexpr std::size_t kVotesAtOnce = 1024;
 
 [[gnu::always_inline]] inline std::int32_t vote_of(const double* p, const double* n,
                                                    const double* q, const double* m) {
@@ -59,7 +59,7 @@ struct PointRows {
   }
 };
 
-/// Sums of votes between the parts of one round, as compressed rows in blocks of kBlock; both
+/// Sums of votes between the parts of one round, as compressed rows in blocks of kVotesAtOnce; both
 /// directions are there.
 struct Links {
   struct Block {
@@ -81,14 +81,15 @@ struct PartRows {
   const Links& links;
   std::size_t size() const { return links.rows; }
   std::size_t width(std::size_t i) const {
-    const auto first =
-        links.blocks[i / kBlock].first.begin() + static_cast<std::ptrdiff_t>(i % kBlock);
+    const auto first = links.blocks[i / kVotesAtOnce].first.begin() +
+                       static_cast<std::ptrdiff_t>(i % kVotesAtOnce);
     return first[1] - first[0];
   }
   template <typename Visit>
   void visit(std::size_t i, const Visit& visit) const {
-    const Links::Block& block = links.blocks[i / kBlock];
-    for (std::size_t k = block.first[i % kBlock]; k < block.first[i % kBlock + 1]; ++k) {
+    const Links::Block& block = links.blocks[i / kVotesAtOnce];
+    for (std::size_t k = block.first[i % kVotesAtOnce]; k < block.first[i % kVotesAtOnce + 1];
+         ++k) {
       visit(block.target[k], block.vote[k]);
     }
   }
@@ -98,7 +99,7 @@ struct PartRows {
 template <typename Rows>
 std::vector<Join> strongest_links(const Rows& rows) {
   std::vector<Join> strongest(rows.size());
-  parallel_blocks(rows.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+  parallel_blocks(rows.size(), kVotesAtOnce, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       std::int64_t best = 0, size = -1;
       auto to = static_cast<std::uint32_t>(i);
@@ -128,7 +129,7 @@ Members members_of_parts(const Signs& joined) {
     return std::atomic_ref(counter).fetch_add(1, std::memory_order_relaxed);
   };
   const auto for_each_row = [&](const auto& work) {
-    parallel_blocks(part.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+    parallel_blocks(part.size(), kVotesAtOnce, [&](std::size_t begin, std::size_t end) {
       for (auto i = static_cast<std::uint32_t>(begin); i < end; ++i) work(i);
     });
   };
@@ -183,9 +184,9 @@ template <typename Rows>
 Links links_between_parts(const Rows& rows, const Signs& joined) {
   const Members members = members_of_parts(joined);
   Links links = {.rows = joined.parts};
-  links.blocks.resize((joined.parts + kBlock - 1) / kBlock);
-  parallel_blocks(joined.parts, kBlock, [&](std::size_t begin, std::size_t end) {
-    RowSums sums(links.blocks[begin / kBlock]);
+  links.blocks.resize((joined.parts + kVotesAtOnce - 1) / kVotesAtOnce);
+  parallel_blocks(joined.parts, kVotesAtOnce, [&](std::size_t begin, std::size_t end) {
+    RowSums sums(links.blocks[begin / kVotesAtOnce]);
     for (std::size_t part = begin; part < end; ++part) {
       const auto of_part =
           std::span(members.member)
@@ -210,7 +211,7 @@ Links links_between_parts(const Rows& rows, const Signs& joined) {
 SignVotes::SignVotes(std::span<const Vec3> points, std::span<const Vec3> normals,
                      const Adjacency& links)
     : links_(&links), votes_(links.target.size()) {
-  parallel_blocks(points.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+  parallel_blocks(points.size(), kVotesAtOnce, [&](std::size_t begin, std::size_t end) {
     Lanes lanes = {};
     std::array<std::int32_t, Lanes::kMost> votes;
     for (std::size_t i = begin; i < end; ++i) {
@@ -252,7 +253,7 @@ void turn_outvoted_points(const SignVotes& votes, std::vector<std::int8_t>& sign
     return sum * sign[i] < 0;
   };
   std::vector<std::uint8_t> flagged(sign.size());
-  parallel_blocks(sign.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+  parallel_blocks(sign.size(), kVotesAtOnce, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) flagged[i] = outvoted(i);
   });
   std::vector<std::uint32_t> waiting;

@@ -9,9 +9,9 @@
 namespace pcednet::spatial {
 namespace {
 
-constexpr std::size_t kBlock = 1024;
+constexpr std::size_t kLongest = 1024;
 
-struct Box {
+struct FlatBox {
   Vec3 min = Vec3::Constant(std::numeric_limits<double>::infinity());
   Vec3 max = Vec3::Constant(-std::numeric_limits<double>::infinity());
 
@@ -26,12 +26,12 @@ struct Box {
 /// until the runs are short enough. `left` is room for the costs of the runs that end before each
 /// point.
 void cut(std::span<const Vec3> points, std::size_t begin, std::size_t end, std::size_t most,
-         std::array<double, kBlock>& left, std::vector<std::uint32_t>& first) {
+         std::array<double, kLongest>& left, std::vector<std::uint32_t>& first) {
   if (end - begin <= most) {
     first.push_back(static_cast<std::uint32_t>(begin));
     return;
   }
-  Box box;
+  FlatBox box;
   for (std::size_t i = begin + 1; i < end; ++i) {
     box.grow(points[i - 1]);
     left[i - begin] = static_cast<double>(i - begin) * box.size();
@@ -51,10 +51,10 @@ void cut(std::span<const Vec3> points, std::size_t begin, std::size_t end, std::
 }  // namespace
 
 std::vector<std::uint32_t> cut_compact_runs(std::span<const Vec3> points, std::size_t most) {
-  std::vector<std::vector<std::uint32_t>> blocks((points.size() + kBlock - 1) / kBlock);
-  parallel_blocks(points.size(), kBlock, [&](std::size_t begin, std::size_t end) {
-    std::array<double, kBlock> left;
-    cut(points, begin, end, most, left, blocks[begin / kBlock]);
+  std::vector<std::vector<std::uint32_t>> blocks((points.size() + kLongest - 1) / kLongest);
+  parallel_blocks(points.size(), kLongest, [&](std::size_t begin, std::size_t end) {
+    std::array<double, kLongest> left;
+    cut(points, begin, end, most, left, blocks[begin / kLongest]);
   });
   std::vector<std::uint32_t> first;
   for (const auto& block : blocks) first.insert(first.end(), block.begin(), block.end());

@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kBits = 21;
 constexpr double kCells = (1 << kBits) - 1;
-constexpr std::size_t kBlock = 1 << 14;
+constexpr std::size_t kCodesAtOnce = 1 << 14;
 constexpr std::size_t kFew = 64;  // so many are compared instead of being given finer keys
 
 bool is_before(const Vec3& p, const Vec3& q) {
@@ -21,14 +21,14 @@ bool is_before(const Vec3& p, const Vec3& q) {
 
 /// Half the lower corner and half the longest side of the box (halves do not overflow).
 std::pair<Vec3, double> half_box(std::span<const Vec3> positions, const std::vector<Keyed>& keyed) {
-  std::vector<std::pair<Vec3, Vec3>> boxes((keyed.size() + kBlock - 1) / kBlock);
-  parallel_blocks(keyed.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+  std::vector<std::pair<Vec3, Vec3>> boxes((keyed.size() + kCodesAtOnce - 1) / kCodesAtOnce);
+  parallel_blocks(keyed.size(), kCodesAtOnce, [&](std::size_t begin, std::size_t end) {
     Vec3 min = positions[keyed[begin].index], max = min;
     for (std::size_t i = begin + 1; i < end; ++i) {
       min = min.cwiseMin(positions[keyed[i].index]);
       max = max.cwiseMax(positions[keyed[i].index]);
     }
-    boxes[begin / kBlock] = {min, max};
+    boxes[begin / kCodesAtOnce] = {min, max};
   });
   auto [min, max] = boxes.front();
   for (const auto& box : boxes) min = min.cwiseMin(box.first), max = max.cwiseMax(box.second);
@@ -48,7 +48,7 @@ void sort_along_curve(std::span<const Vec3> positions, std::vector<Keyed>& keyed
   }
   const auto [min, side] = half_box(positions, keyed);
   if (!(side > 0.0)) return;
-  parallel_blocks(keyed.size(), kBlock, [&, min = min, side = side](auto begin, auto end) {
+  parallel_blocks(keyed.size(), kCodesAtOnce, [&, min = min, side = side](auto begin, auto end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Vec3 cell = (0.5 * positions[keyed[i].index] - min) / side * kCells;
       keyed[i].key =
@@ -72,22 +72,22 @@ void sort_along_curve(std::span<const Vec3> positions, std::vector<Keyed>& keyed
 }  // namespace
 
 std::vector<std::uint32_t> curve_order(std::span<const Vec3> positions) {
-  std::vector<std::size_t> finite((positions.size() + kBlock - 1) / kBlock + 1);
-  parallel_blocks(positions.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+  std::vector<std::size_t> finite((positions.size() + kCodesAtOnce - 1) / kCodesAtOnce + 1);
+  parallel_blocks(positions.size(), kCodesAtOnce, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
-      finite[begin / kBlock + 1] += positions[i].allFinite();
+      finite[begin / kCodesAtOnce + 1] += positions[i].allFinite();
   });
   std::partial_sum(finite.begin(), finite.end(), finite.begin());
   std::vector<Keyed> keyed(finite.back());
-  parallel_blocks(positions.size(), kBlock, [&](std::size_t begin, std::size_t end) {
-    std::size_t to = finite[begin / kBlock];
+  parallel_blocks(positions.size(), kCodesAtOnce, [&](std::size_t begin, std::size_t end) {
+    std::size_t to = finite[begin / kCodesAtOnce];
     for (std::size_t i = begin; i < end; ++i) {
       if (positions[i].allFinite()) keyed[to++] = {0, static_cast<std::uint32_t>(i)};
     }
   });
   sort_along_curve(positions, keyed);
   std::vector<std::uint32_t> order(keyed.size());
-  parallel_blocks(order.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+  parallel_blocks(order.size(), kCodesAtOnce, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) order[i] = keyed[i].index;
   });
   return order;
@@ -95,7 +95,7 @@ std::vector<std::uint32_t> curve_order(std::span<const Vec3> positions) {
 
 std::vector<Vec3> in_order(std::span<const Vec3> positions, std::span<const std::uint32_t> order) {
   std::vector<Vec3> ordered(order.size());
-  parallel_blocks(order.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+  parallel_blocks(order.size(), kCodesAtOnce, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) ordered[i] = positions[order[i]];
   });
   return ordered;

@@ -9,14 +9,14 @@
 namespace pcednet::spatial {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr std::size_t kBlock = 1024;
+constexpr double kNowhere = std::numeric_limits<double>::infinity();
+constexpr std::size_t kPointsAtOnce = 1024;
 
 EightBoxes no_boxes() {
   EightBoxes boxes;
   for (int a = 0; a < 3; ++a) {
-    std::fill_n(boxes.min[a], RunTree::kFanOut, kInfinity);
-    std::fill_n(boxes.max[a], RunTree::kFanOut, -kInfinity);
+    std::fill_n(boxes.min[a], RunTree::kFanOut, kNowhere);
+    std::fill_n(boxes.max[a], RunTree::kFanOut, -kNowhere);
   }
   return boxes;
 }
@@ -29,7 +29,7 @@ std::vector<EightBoxes> boxes_of_runs(std::span<const Vec3> points,
                                       const std::vector<std::uint32_t>& first) {
   const std::size_t runs = first.size() - 1;
   std::vector<EightBoxes> row = row_of(runs);
-  parallel_blocks(runs, kBlock, [&](std::size_t begin, std::size_t end) {
+  parallel_blocks(runs, kPointsAtOnce, [&](std::size_t begin, std::size_t end) {
     for (std::size_t run = begin; run < end; ++run) {
       Vec3 min = points[first[run]], max = min;
       for (std::size_t i = first[run] + 1; i < first[run + 1]; ++i) {
@@ -64,7 +64,7 @@ std::vector<EightBoxes> boxes_of_nodes(const std::vector<EightBoxes>& finer) {
 RunTree::RunTree(std::span<const Vec3> points) {
   if (points.empty()) return;
   for (std::vector<double>* const axis : {&x, &y, &z}) axis->resize(points.size() + kRun);
-  parallel_blocks(points.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+  parallel_blocks(points.size(), kPointsAtOnce, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       x[i] = points[i].x(), y[i] = points[i].y(), z[i] = points[i].z();
     }

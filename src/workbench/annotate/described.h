@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "pcednet/detect/classify.h"
+#include "pcednet/detect/describe.h"
 
 namespace pcednet::annotate {
 

@@ -8,6 +8,7 @@
 
 #include "pcednet/core/progress.h"
 #include "pcednet/detect/classify.h"
+#include "pcednet/detect/describe.h"
 #include "pcednet/detect/train.h"
 #include "workbench/study/cache.h"
 #include "workbench/study/plan.h"
