@@ -13,9 +13,25 @@
 
 namespace pcednet::io {
 
+namespace laz {
+/// The kinds of items, by their numbers in LASzip's record. Those above 9 are coded in layers.
+enum ItemType : unsigned {
+  kByte = 0,
+  kPoint10 = 6,
+  kGpsTime11 = 7,
+  kRgb12 = 8,
+  kWave13 = 9,
+  kPoint14 = 10,
+  kRgb14 = 11,
+  kRgbNir14 = 12,
+  kWave14 = 13,
+  kByte14 = 14,
+};
+}  // namespace laz
+
 /// A part of a point record as LASzip compresses it.
 struct LazItem {
-  unsigned type = 0;
+  unsigned type = 0;  ///< laz::ItemType
   std::size_t size = 0;
   unsigned version = 0;
   std::size_t offset = 0;  ///< bytes into the record

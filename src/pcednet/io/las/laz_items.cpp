@@ -7,7 +7,7 @@ namespace pcednet::io::laz {
 namespace {
 
 /// The contexts of a return number (column) of a pulse with so many returns (row).
-constexpr std::uint8_t kReturnContext[8][8] = {
+constexpr std::uint8_t kReturnContext10[8][8] = {
     {15, 14, 13, 12, 11, 10, 9, 8},  {14, 0, 1, 3, 6, 10, 10, 9},
     {13, 1, 2, 4, 7, 11, 11, 10},    {12, 3, 4, 5, 8, 12, 12, 11},
     {11, 6, 7, 8, 9, 13, 13, 12},    {10, 10, 11, 12, 13, 14, 14, 13},
@@ -49,7 +49,7 @@ void Point10::code(Coder& coder, std::byte* item) {
   const auto byte = [](const std::byte* at) { return std::to_integer<unsigned>(*at); };
   unsigned changed = 0;
   if constexpr (Coder::kEncodes) {
-    const unsigned m = kReturnContext[byte(item + 14) >> 3 & 7][byte(item + 14) & 7];
+    const unsigned m = kReturnContext10[byte(item + 14) >> 3 & 7][byte(item + 14) & 7];
     changed = (item[14] != last[14] ? 32U : 0U) |
               (get<std::uint16_t>(item + 12) != intensity_[m] ? 16U : 0U) |
               (item[15] != last[15] ? 8U : 0U) | (item[16] != last[16] ? 4U : 0U) |
@@ -64,7 +64,7 @@ void Point10::code(Coder& coder, std::byte* item) {
   };
   code_symbol(32, flags_, 14);
   const unsigned r = byte(last + 14) & 7, n = byte(last + 14) >> 3 & 7;
-  const unsigned m = kReturnContext[n][r], l = n > r ? n - r : r - n;
+  const unsigned m = kReturnContext10[n][r], l = n > r ? n - r : r - n;
   if (changed & 16) {
     intensity_[m] =
         intensities_.code(coder, intensity_[m], std::min(m, 3U), get<std::uint16_t>(item + 12));

@@ -10,12 +10,7 @@
 namespace pcednet::io::laz {
 namespace {
 
-enum ItemType : unsigned { kRgb14 = 11, kRgbNir14 = 12, kWave14 = 13, kByte14 = 14 };
 constexpr std::size_t kPointLayers = 9;
-
-unsigned channel_of(const std::byte* record) {
-  return std::to_integer<unsigned>(record[15]) >> 4 & 3;
-}
 
 /// One layer with models of its own for each of four contexts.
 template <typename Coder>

@@ -18,7 +18,7 @@ enum LayerIndex : std::size_t {
 };
 
 /// The contexts of LASzip for a return (column) of a pulse with so many (row).
-constexpr std::uint8_t kReturnContext[16][16] = {{0, 1, 2, 3, 4, 5, 3, 4, 4, 5, 5, 5, 5, 5, 5, 5},
+constexpr std::uint8_t kReturnContext14[16][16] = {{0, 1, 2, 3, 4, 5, 3, 4, 4, 5, 5, 5, 5, 5, 5, 5},
                                                  {1, 0, 1, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3},
                                                  {2, 1, 2, 4, 4, 4, 4, 4, 4, 4, 4, 3, 3, 3, 3, 3},
                                                  {3, 3, 4, 5, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4},
@@ -37,10 +37,6 @@ constexpr std::uint8_t kReturnContext[16][16] = {{0, 1, 2, 3, 4, 5, 3, 4, 4, 5, 
 
 unsigned byte_of(const std::byte* at) {
   return std::to_integer<unsigned>(*at);
-}
-
-unsigned channel_of(const std::byte* item) {
-  return byte_of(item + 15) >> 4 & 3;
 }
 
 unsigned return_of(const std::byte* item) {
@@ -133,7 +129,7 @@ void Point14::code_position(Coder& coder, Coder* z_coder, const std::byte* item,
   Channel& channel = *channels_[current_];
   std::byte* last = channel.last.data();
   const unsigned n = returns_of(last), r = return_of(last), single = n == 1 ? 1 : 0;
-  const std::size_t m = std::size_t{kReturnContext[n][r]} << 1 | (time_changes ? 1U : 0U);
+  const std::size_t m = std::size_t{kReturnContext14[n][r]} << 1 | (time_changes ? 1U : 0U);
   const unsigned l = std::min(n > r ? n - r : r - n, 7U);
   code_axis(coder, channel.dx, channel.x[m], single, last, item);
   code_axis(coder, channel.dy, channel.y[m], single + even_bits(channel.dx.last_bits(), 20),

@@ -8,6 +8,11 @@
 
 namespace pcednet::io::laz {
 
+/// The scanner channel of a POINT14.
+inline unsigned channel_of(const std::byte* item) {
+  return std::to_integer<unsigned>(item[15]) >> 4 & 3;
+}
+
 /// POINT14: the 30 bytes that formats 6 to 10 share, in nine layers, with models of their own for
 /// each of four scanner channels.
 class Point14 {

@@ -10,8 +10,6 @@
 namespace pcednet::io::laz {
 namespace {
 
-enum ItemType : unsigned { kByte = 0, kPoint10 = 6, kGpsTime11 = 7, kRgb12 = 8, kWave13 = 9 };
-
 /// The models of a chunk's items; `step` codes one item of a record.
 template <typename Coder>
 using Step = std::function<void(Coder&, std::byte* record)>;
