@@ -113,7 +113,7 @@ void BM_Gradient(benchmark::State& state) {
   std::iota(order.begin(), order.end(), 0u);
   Random random(1);
   random.shuffle(std::span(order));
-  GradientMachine machine(model, 0.0, level);
+  GradientMachine machine(model, level);
   std::vector<float> gradient(model.network.parameters.size());
   set_thread_count(static_cast<int>(state.range(3)));
   std::size_t at = 0;

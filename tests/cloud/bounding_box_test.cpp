@@ -1,16 +1,13 @@
 #include "pcednet/cloud/bounding_box.h"
 
 #include <cmath>
-#include <limits>
 #include <vector>
 
+#include "cloud/not_finite.h"
 #include "support/expect_error.h"
 
 namespace pcednet {
 namespace {
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 TEST(BoundingBox, HoldsTheFinitePointsAlone) {
   const std::vector<Vec3> positions = {{1, -2, 3},         {kNan, 100, 100}, {-1, 4, 3},

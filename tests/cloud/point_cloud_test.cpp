@@ -1,16 +1,13 @@
 #include "pcednet/cloud/point_cloud.h"
 
 #include <cmath>
-#include <limits>
 
+#include "cloud/not_finite.h"
 #include "pcednet/core/random.h"
 #include "support/expect_error.h"
 
 namespace pcednet {
 namespace {
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 std::vector<Attribute> axes(const std::vector<Vec3>& vectors) {
   std::vector<Attribute> found;

@@ -92,6 +92,11 @@ inline bool contains(std::string_view text, std::string_view part) {
   return text.find(part) != std::string_view::npos;
 }
 
+/// What reading a damaged LAZ says.
+inline std::string message_of(const Scratch& scratch, const std::string& bytes) {
+  return error_of(ErrorKind::kUnreadable, [&] { scratch.read("odd.laz", bytes); });
+}
+
 /// Reads the file `name` so many times with one to four bytes from `begin` on replaced: what is
 /// read must be consistent, and an Error must name the file.
 inline void expect_to_survive_damage(const Scratch& scratch, const std::string& name,

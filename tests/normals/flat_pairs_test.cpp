@@ -46,11 +46,11 @@ TEST(FlatPairs, OpposeWhereSignsAreWrong) {
 
 TEST(FlatPairs, LeaveOutPointsWithoutNormalOrPlace) {
   Shape shape = sphere(1000, 1.0);
-  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
   for (std::size_t i = 0; i < 500; ++i) {
-    shape.normals[i] = i % 2 ? Vec3(Vec3::Zero()) : Vec3(Vec3::Constant(kNan));
+    shape.normals[i] = i % 2 ? Vec3(Vec3::Zero()) : Vec3(Vec3::Constant(kNothing));
   }
-  shape.positions[700].x() = kNan;
+  shape.positions[700].x() = kNothing;
   const FlatPairs pairs(shape.positions, shape.normals, spatial::curve_order(shape.positions));
   EXPECT_GT(pairs.size(), 499u * 5);
   EXPECT_LE(pairs.size(), 499u * 12);

@@ -151,10 +151,6 @@ TEST(Laz, LeavesOutTheIndexOfCopc) {
   EXPECT_TRUE(converted(scratch, "in.laz", "back.las") == las_bytes(file));
 }
 
-std::string message_of(const Scratch& scratch, const std::string& bytes) {
-  return error_of(ErrorKind::kUnreadable, [&] { scratch.read("odd.laz", bytes); });
-}
-
 TEST(Laz, RefusesADamagedChunkTable) {
   const Scratch scratch;
   for (const unsigned format : {3U, 7U}) {

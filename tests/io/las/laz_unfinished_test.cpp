@@ -42,10 +42,6 @@ std::string counting(const std::string& bytes, std::uint64_t points) {
   return with(with(bytes, 247, points), 107, static_cast<std::uint32_t>(narrow ? points : 0));
 }
 
-std::string message_of(const Scratch& scratch, const std::string& bytes) {
-  return error_of(ErrorKind::kUnreadable, [&] { scratch.read("odd.laz", bytes); });
-}
-
 TEST(LazUnfinished, WarnsOfPointsBehindThoseThatTheHeaderCounts) {
   const Scratch scratch;
   for (const unsigned format : {3U, 8U}) {
