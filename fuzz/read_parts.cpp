@@ -2,6 +2,7 @@
 
 #include "in_memory.h"
 #include "pcednet/formats/read_cloud.h"
+#include "pcednet/io/parts.h"
 
 namespace {
 
