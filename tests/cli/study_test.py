@@ -108,7 +108,7 @@ class Study(CliTest):
         program.send_signal(signal.SIGINT)
         _, words = program.communicate(timeout=120)
         self.assertEqual(program.returncode, 130, words)
-        self.assertIn("goes on", words)
+        self.assertIn("the same command resumes", words)
         self.assertFalse((self.folder / "out" / "features.json").exists())
         kept = len(list((self.folder / "out" / "cache").glob("model-*.json")))
         done = run(*command, cwd=self.folder)
