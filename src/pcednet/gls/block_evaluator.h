@@ -17,7 +17,7 @@ struct BlockOptions {
 };
 
 /// Describes the points of a pyramid's first level from the level that serves each scale, a block
-/// at a time. Holds the buffers for that, so that none is allocated per point: one per thread.
+/// at a time. Holds the buffers for that, so that none is allocated per point.
 class BlockEvaluator {
  public:
   using Wanted = std::function<bool(const LaneGroup&)>;
