@@ -32,7 +32,14 @@ Random random_at(const Vec3& position, std::uint64_t seed, std::uint64_t purpose
 }
 
 Vec3 rounded_to(ScalarType type, const Vec3& position) {
-  return type == ScalarType::kFloat32 ? Vec3(position.cast<float>().cast<double>()) : position;
+  if (type != ScalarType::kFloat32) return position;
+  Vec3 rounded;
+  for (int axis = 0; axis < 3; ++axis) {
+    // Unless volatile, g++ 12 takes two neighbouring conversions to float and back for none.
+    const volatile float narrow = static_cast<float>(position[axis]);
+    rounded[axis] = narrow;
+  }
+  return rounded;
 }
 
 template <typename T>
