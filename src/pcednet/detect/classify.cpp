@@ -13,29 +13,25 @@
 namespace pcednet::detect {
 namespace {
 
-/// Classifies the points `order`, whose descriptions rows_of(begin, end) gives block by block. A
-/// context network needs the `curve` order of all positions.
+/// Classifies the points `order` of a cloud of `points`, whose descriptions rows_of(begin, end)
+/// gives block by block.
 template <typename RowsOf>
-Classification classify_rows(std::span<const Vec3> positions, std::span<const std::uint32_t> curve,
-                             std::span<const std::uint32_t> order, const RowsOf& rows_of,
-                             const EdgeModel& model, const Progress* progress) {
-  Classification found = nothing_found(positions.size());
+Classification decide_rows(std::size_t points, std::span<const std::uint32_t> order,
+                           const RowsOf& rows_of, const EdgeModel& model,
+                           const Progress* progress) {
+  Classification found = nothing_found(points);
   Stage stage(progress, "describe", order.size());
   for_each_block(order.size(), kBlock, [&](std::size_t begin, std::size_t end) {
-    const auto points = order.subspan(begin, end - begin);
-    decide(points, nn::predict(model.network, rows_of(begin, end)), model.classes, found);
-    stage.advance(points.size());
+    const auto block = order.subspan(begin, end - begin);
+    decide(block, nn::predict(model.network, rows_of(begin, end)), model.classes, found);
+    stage.advance(block.size());
   });
-  if (model.context)
-    apply_context(*model.context, model.classes, positions, curve, found, progress);
-  found.counts = count_classes(found.classes);
   return found;
 }
 
-}  // namespace
-
-Classification classify(const PreparedCloud& cloud, const EdgeModel& model,
-                        const Progress* progress) {
+/// Holds the scale space no longer than it is needed.
+Classification describe_and_decide(const PreparedCloud& cloud, const EdgeModel& model,
+                                   const Progress* progress) {
   const gls::ScaleSpace space({cloud.positions, cloud.normals, cloud.curve}, model.descriptor,
                               progress);
   const auto order = space.order();
@@ -47,9 +43,20 @@ Classification classify(const PreparedCloud& cloud, const EdgeModel& model,
     describe(space, order.subspan(begin, end - begin), some, &cancel_only);
     return some;
   };
-  Classification found =
-      classify_rows(cloud.positions, cloud.curve, order, rows_of, model, progress);
+  Classification found = decide_rows(cloud.positions.size(), order, rows_of, model, progress);
   found.note = gls::note_on(model.descriptor, space.scales(), cloud.positions);
+  return found;
+}
+
+}  // namespace
+
+Classification classify(const PreparedCloud& cloud, const EdgeModel& model,
+                        const Progress* progress) {
+  Classification found = describe_and_decide(cloud, model, progress);
+  if (model.context) {
+    apply_context(*model.context, model.classes, cloud.positions, cloud.curve, found, progress);
+  }
+  found.counts = count_classes(found.classes);
   return found;
 }
 
@@ -64,9 +71,13 @@ Classification classify(const DescribedCloud& cloud, std::span<const Vec3> posit
   const auto rows_of = [&](std::size_t begin, std::size_t end) {
     return std::span(cloud.values).subspan(begin * width, (end - begin) * width);
   };
-  std::vector<std::uint32_t> curve;
-  if (model.context) curve = spatial::curve_order(positions);
-  return classify_rows(positions, curve, cloud.order, rows_of, model, nullptr);
+  Classification found = decide_rows(cloud.points, cloud.order, rows_of, model, nullptr);
+  if (model.context) {
+    const auto curve = spatial::curve_order(positions);
+    apply_context(*model.context, model.classes, positions, curve, found);
+  }
+  found.counts = count_classes(found.classes);
+  return found;
 }
 
 }  // namespace pcednet::detect
