@@ -1,10 +1,8 @@
 #include "models.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
-#include <ranges>
 #include <vector>
 
 #include "descriptor_options.h"
@@ -48,7 +46,9 @@ fs::path find_model(const std::string& name_or_file) {
 }
 
 std::string names_of(const std::map<std::string, fs::path>& models) {
-  return fmt::format("{}", fmt::join(std::views::keys(models), ", "));
+  std::string names;
+  for (const auto& [name, path] : models) names += (names.empty() ? "" : ", ") + name;
+  return names;
 }
 
 void add_model_options(CLI::App& command, ModelArguments& arguments) {

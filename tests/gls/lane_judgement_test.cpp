@@ -7,7 +7,10 @@
 #include <string>
 
 #include "gls/test_clouds.h"
+#include "pcednet/gls/descriptor.h"
 #include "pcednet/gls/lane_kernels.h"
+#include "pcednet/gls/moments.h"
+#include "pcednet/gls/sphere_fit.h"
 
 namespace pcednet::gls {
 namespace {
