@@ -1,5 +1,4 @@
 #include "pcednet/detect/classify.h"
-#include "pcednet/detect/describe.h"
 
 #include <fmt/format.h>
 
@@ -7,6 +6,7 @@
 #include "pcednet/core/error.h"
 #include "pcednet/detect/context.h"
 #include "pcednet/detect/decide.h"
+#include "pcednet/detect/describe.h"
 #include "pcednet/nn/predict.h"
 #include "pcednet/spatial/curve_order.h"
 

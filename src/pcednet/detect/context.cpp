@@ -1,5 +1,4 @@
 #include "pcednet/detect/context.h"
-#include "pcednet/detect/describe.h"
 
 #include <algorithm>
 #include <array>
@@ -11,6 +10,7 @@
 #include "pcednet/core/parallel.h"
 #include "pcednet/core/vector_clones.h"
 #include "pcednet/detect/decide.h"
+#include "pcednet/detect/describe.h"
 #include "pcednet/detect/principal_axes.h"
 #include "pcednet/nn/predict.h"
 

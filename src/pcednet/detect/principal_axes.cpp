@@ -22,10 +22,6 @@ struct Tridiagonals {
   double start[kLanes], end[kLanes];  ///< the block at work; it ends with 0
 };
 
-[[gnu::always_inline]] inline double larger(double a, double b) {
-  return a < b ? b : a;
-}
-
 PCEDNET_VECTOR_CLONES
 void make_tridiagonal(const SymmetricMatrices& m, Tridiagonals& __restrict t) {
   for (std::size_t i = 0; i < kLanes; ++i) {

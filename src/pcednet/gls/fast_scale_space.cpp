@@ -150,7 +150,7 @@ void FastScaleSpace::describe_block(std::span<const Visit> visits, std::span<flo
                             .projection_steps = moves ? options_.max_projection_steps : 0,
                             .gates = gates_of(options_)},
                            *kernels_);
-  for (std::size_t s = scales_.size(); s-- > 0;) {  // the largest first: see gather_block()
+  for (std::size_t s = scales_.size(); s-- > 0;) {  // the largest first: see gather()
     evaluator.evaluate(
         begin, end, s, scales_[s] * unit_,
         [&](const LaneGroup& group) { return !visits_to(group).empty(); },

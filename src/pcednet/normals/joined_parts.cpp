@@ -4,7 +4,7 @@
 #include <functional>
 #include <numeric>
 
-#include "pcednet/core/parallel.h"
+#include "pcednet/core/parallel_loops.h"
 
 namespace pcednet::normals {
 namespace {
@@ -15,17 +15,10 @@ std::int8_t times(std::int8_t a, std::int8_t b) {
   return static_cast<std::int8_t>(a * b);
 }
 
-template <typename Work>
-void for_each_row(std::size_t rows, const Work& work) {
-  parallel_blocks(rows, kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
-    for (auto i = static_cast<std::uint32_t>(begin); i < end; ++i) work(i);
-  });
-}
-
 /// Makes every row join the one that its way ends in, of two that join each other the first.
 void join_roots(std::vector<Join>& joins) {
   std::vector<Join> next(joins.size());
-  for_each_row(joins.size(), [&](std::uint32_t i) {
+  parallel_for_each(joins.size(), [&](std::uint32_t i) {
     const bool is_root = joins[joins[i].to].to == i && i < joins[i].to;
     next[i] = is_root ? Join{i, 1} : joins[i];
   });
@@ -50,7 +43,7 @@ void join_roots(std::vector<Join>& joins) {
 std::vector<std::uint32_t> first_rows(const std::vector<Join>& joins) {
   std::vector<std::uint32_t> first(joins.size());
   std::iota(first.begin(), first.end(), 0u);
-  for_each_row(joins.size(), [&](std::uint32_t i) {
+  parallel_for_each(joins.size(), [&](std::uint32_t i) {
     const std::atomic_ref of_root(first[joins[i].to]);
     std::uint32_t before = of_root.load(std::memory_order_relaxed);
     while (i < before && !of_root.compare_exchange_weak(before, i, std::memory_order_relaxed)) {
@@ -65,20 +58,20 @@ Signs follow_joins(std::vector<Join> joins) {
   join_roots(joins);
   const std::vector<std::uint32_t> first = first_rows(joins);
   const auto begins_part = [&](std::uint32_t i) { return first[joins[i].to] == i; };
-  std::vector<std::uint32_t> begun((joins.size() + kRowsAtOnce - 1) / kRowsAtOnce + 1);
-  for_each_row(joins.size(),
-               [&](std::uint32_t i) { begun[i / kRowsAtOnce + 1] += begins_part(i); });
-  std::partial_sum(begun.begin(), begun.end(), begun.begin());
+  const auto begun = counts_before_blocks(joins.size(), kRowsAtOnce, begins_part);
 
   Signs signs;
   signs.parts = begun.back();
   std::vector<std::uint32_t> of_root(joins.size());
-  for_each_row(joins.size(), [&](std::uint32_t i) {
-    if (begins_part(i)) of_root[joins[i].to] = begun[i / kRowsAtOnce]++;
+  parallel_blocks(joins.size(), kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
+    auto part = static_cast<std::uint32_t>(begun[begin / kRowsAtOnce]);
+    for (auto i = static_cast<std::uint32_t>(begin); i < end; ++i) {
+      if (begins_part(i)) of_root[joins[i].to] = part++;
+    }
   });
   signs.part.resize(joins.size());
   signs.sign.resize(joins.size());
-  for_each_row(joins.size(), [&](std::uint32_t i) {
+  parallel_for_each(joins.size(), [&](std::uint32_t i) {
     signs.part[i] = of_root[joins[i].to];
     signs.sign[i] = times(joins[i].sign, joins[first[joins[i].to]].sign);
   });
@@ -86,7 +79,7 @@ Signs follow_joins(std::vector<Join> joins) {
 }
 
 void join_again(Signs& finer, const Signs& coarser) {
-  for_each_row(finer.part.size(), [&](std::uint32_t i) {
+  parallel_for_each(finer.part.size(), [&](std::uint32_t i) {
     const std::uint32_t part = finer.part[i];
     finer.sign[i] = times(finer.sign[i], coarser.sign[part]);
     finer.part[i] = coarser.part[part];

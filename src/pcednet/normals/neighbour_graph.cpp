@@ -4,7 +4,7 @@
 #include <atomic>
 #include <numeric>
 
-#include "pcednet/core/parallel.h"
+#include "pcednet/core/parallel_loops.h"
 #include "pcednet/core/vector_clones.h"
 #include "pcednet/normals/neighbour_count.h"
 #include "pcednet/spatial/curve_order.h"
@@ -19,17 +19,12 @@ void collect_distinct_points(std::span<const Vec3> positions, NeighbourGraph& gr
   const std::vector<std::uint32_t>& order = graph.order;
   std::vector<Vec3> ordered = spatial::in_order(positions, order);
   const auto is_new = [&](std::size_t i) { return i == 0 || ordered[i] != ordered[i - 1]; };
-  std::vector<std::uint32_t> found((order.size() + kQueriesAtOnce - 1) / kQueriesAtOnce +
-                                   1);  // before each block
-  parallel_blocks(order.size(), kQueriesAtOnce, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) found[begin / kQueriesAtOnce + 1] += is_new(i);
-  });
-  std::partial_sum(found.begin(), found.end(), found.begin());
+  const auto found = counts_before_blocks(order.size(), kQueriesAtOnce, is_new);
   const bool has_copies = found.back() < order.size();
   if (has_copies) graph.points.resize(found.back());
   graph.point_of.assign(positions.size(), kNoPoint);
   parallel_blocks(order.size(), kQueriesAtOnce, [&](std::size_t begin, std::size_t end) {
-    std::uint32_t count = found[begin / kQueriesAtOnce];
+    auto count = static_cast<std::uint32_t>(found[begin / kQueriesAtOnce]);
     for (std::size_t i = begin; i < end; ++i) {
       if (is_new(i)) {
         if (has_copies) graph.points[count] = ordered[i];

@@ -7,19 +7,12 @@
 #include <numeric>
 
 #include "pcednet/core/error.h"
-#include "pcednet/core/parallel.h"
+#include "pcednet/core/parallel_loops.h"
 #include "pcednet/normals/outward.h"
 #include "pcednet/normals/sign_votes.h"
 
 namespace pcednet::normals {
 namespace {
-
-template <typename Work>
-void for_each(std::size_t count, const Work& work) {
-  parallel_blocks(count, 1 << 14, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) work(i);
-  });
-}
 
 void check(const OrientOptions& options) {
   if (options.neighbours < 1) {
@@ -93,7 +86,7 @@ std::size_t count_minorities(const Signs& signs, std::span<const Vec3> normals,
                              const Adjacency& links) {
   constexpr double kAlong = 0.9;
   std::vector<std::uint8_t> is_along(normals.size());
-  for_each(normals.size(), [&](std::size_t i) {
+  parallel_for_each(normals.size(), [&](std::size_t i) {
     const auto row = links.of(i);
     const auto along = std::count_if(row.begin(), row.end(), [&](std::uint32_t j) {
       return std::abs(normals[i].dot(normals[j])) > kAlong;
@@ -117,7 +110,7 @@ std::vector<Vec3> first_normals(const NeighbourGraph& graph, std::span<const Vec
   const std::vector<std::uint32_t>& order = graph.order;
   const auto point_at = [&](std::size_t i) { return graph.point_of[order[i]]; };
   std::vector<Vec3> first(graph.points.size());
-  for_each(order.size(), [&](std::size_t i) {
+  parallel_for_each(order.size(), [&](std::size_t i) {
     const std::uint32_t point = point_at(i);
     if (i > 0 && point_at(i - 1) == point) return;
     Vec3 normal = normals[order[i]];
@@ -154,8 +147,9 @@ Orientation orient_points(const NeighbourGraph& graph, std::span<Vec3> normals,
                           const OrientOptions& options, const Progress* progress) {
   check(options);
   if (options.viewpoint) {
-    for_each(normals.size(),
-             [&](std::size_t i) { face(graph.points[i], normals[i], *options.viewpoint); });
+    parallel_for_each(normals.size(), [&](std::size_t i) {
+      face(graph.points[i], normals[i], *options.viewpoint);
+    });
     return {};
   }
   Stage stage(progress, "orientation", 4);
@@ -165,7 +159,7 @@ Orientation orient_points(const NeighbourGraph& graph, std::span<Vec3> normals,
   Signs signs = contract(votes);
   stage.advance();
   turn_outvoted_points(votes, signs.sign);
-  for_each(normals.size(), [&](std::size_t i) {
+  parallel_for_each(normals.size(), [&](std::size_t i) {
     if (signs.sign[i] < 0) normals[i] = -normals[i];
   });
   stage.advance();
@@ -181,13 +175,13 @@ Orientation orient_normals(const NeighbourGraph& graph, std::span<const Vec3> po
   check(options);
   check_size(positions, normals);
   if (options.viewpoint) {
-    for_each(positions.size(),
-             [&](std::size_t i) { face(positions[i], normals[i], *options.viewpoint); });
+    parallel_for_each(positions.size(),
+                      [&](std::size_t i) { face(positions[i], normals[i], *options.viewpoint); });
     return {};
   }
   std::vector<Vec3> of_points = first_normals(graph, normals);
   const Orientation orientation = orient_points(graph, of_points, options, progress);
-  for_each(positions.size(), [&](std::size_t i) {
+  parallel_for_each(positions.size(), [&](std::size_t i) {
     if (graph.point_of[i] == kNoPoint) return;
     turn(normals[i], normals[i].dot(of_points[graph.point_of[i]]) < 0.0);
   });

@@ -71,10 +71,6 @@ struct Cubic {
   Lane shift, scale, third, a, half_b, q;
 };
 
-double larger(double a, double b) {
-  return a < b ? b : a;
-}
-
 /// Here and below the steps are those of Eigen's SelfAdjointEigenSolver::computeDirect().
 PCEDNET_VECTOR_CLONES
 void make_cubics(const Matrices& c, Cubic& __restrict cubic) {
@@ -132,34 +128,11 @@ void find_kernels(const Matrices& m, const Lane& e, Vectors& __restrict v) {
     const double xy = m.xy[i], xz = m.xz[i], yz = m.yz[i];
     const double size_x = std::fabs(xx), size_y = std::fabs(yy), size_z = std::fabs(zz);
     const bool y_first = size_y > size_x, z_first = size_z > larger(size_x, size_y);
-    // The chosen column, the next and the one after that.
-    const double px = z_first   ? xz
-                      : y_first ? xy
-                                : xx,
-                 qx = z_first   ? xx
-                      : y_first ? xz
-                                : xy,
-                 rx = z_first   ? xy
-                      : y_first ? xx
-                                : xz;
-    const double py = z_first   ? yz
-                      : y_first ? yy
-                                : xy,
-                 qy = z_first   ? xy
-                      : y_first ? yz
-                                : yy,
-                 ry = z_first   ? yy
-                      : y_first ? xy
-                                : yz;
-    const double pz = z_first   ? zz
-                      : y_first ? yz
-                                : xz,
-                 qz = z_first   ? xz
-                      : y_first ? zz
-                                : yz,
-                 rz = z_first   ? yz
-                      : y_first ? xz
-                                : zz;
+    // The chosen column p, the next, q, and the one after that.
+    const auto chosen = [=](double x, double y, double z) { return z_first ? z : y_first ? y : x; };
+    const double px = chosen(xx, xy, xz), qx = chosen(xy, xz, xx), rx = chosen(xz, xx, xy);
+    const double py = chosen(xy, yy, yz), qy = chosen(yy, yz, xy), ry = chosen(yz, xy, yy);
+    const double pz = chosen(xz, yz, zz), qz = chosen(yz, zz, xz), rz = chosen(zz, xz, yz);
     const double ax = py * qz - pz * qy, ay = pz * qx - px * qz, az = px * qy - py * qx;
     const double bx = py * rz - pz * ry, by = pz * rx - px * rz, bz = px * ry - py * rx;
     const double sq_a = ax * ax + ay * ay + az * az, sq_b = bx * bx + by * by + bz * bz;

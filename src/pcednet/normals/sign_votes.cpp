@@ -8,7 +8,7 @@
 #include <numeric>
 #include <utility>
 
-#include "pcednet/core/parallel.h"
+#include "pcednet/core/parallel_loops.h"
 #include "pcednet/core/vector_clones.h"
 
 namespace pcednet::normals {
@@ -128,18 +128,15 @@ Members members_of_parts(const Signs& joined) {
   const auto take = [](std::size_t& counter) {
     return std::atomic_ref(counter).fetch_add(1, std::memory_order_relaxed);
   };
-  const auto for_each_row = [&](const auto& work) {
-    parallel_blocks(part.size(), kVotesAtOnce, [&](std::size_t begin, std::size_t end) {
-      for (auto i = static_cast<std::uint32_t>(begin); i < end; ++i) work(i);
-    });
-  };
   Members members;
   members.first.assign(joined.parts + 1, 0);
-  for_each_row([&](std::uint32_t i) { take(members.first[part[i] + 1]); });
+  parallel_for_each(part.size(), [&](std::size_t i) { take(members.first[part[i] + 1]); });
   std::partial_sum(members.first.begin(), members.first.end(), members.first.begin());
   members.member.resize(part.size());
   std::vector<std::size_t> next(members.first.begin(), members.first.end() - 1);
-  for_each_row([&](std::uint32_t i) { members.member[take(next[part[i]])] = i; });
+  parallel_for_each(part.size(), [&](std::size_t i) {
+    members.member[take(next[part[i]])] = static_cast<std::uint32_t>(i);
+  });
   return members;
 }
 

@@ -1,9 +1,8 @@
 #include "pcednet/spatial/curve_order.h"
 
 #include <algorithm>
-#include <numeric>
 
-#include "pcednet/core/parallel.h"
+#include "pcednet/core/parallel_loops.h"
 #include "pcednet/spatial/morton.h"
 #include "pcednet/spatial/radix_sort.h"
 
@@ -72,12 +71,8 @@ void sort_along_curve(std::span<const Vec3> positions, std::vector<Keyed>& keyed
 }  // namespace
 
 std::vector<std::uint32_t> curve_order(std::span<const Vec3> positions) {
-  std::vector<std::size_t> finite((positions.size() + kCodesAtOnce - 1) / kCodesAtOnce + 1);
-  parallel_blocks(positions.size(), kCodesAtOnce, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i)
-      finite[begin / kCodesAtOnce + 1] += positions[i].allFinite();
-  });
-  std::partial_sum(finite.begin(), finite.end(), finite.begin());
+  const auto finite = counts_before_blocks(positions.size(), kCodesAtOnce,
+                                           [&](std::size_t i) { return positions[i].allFinite(); });
   std::vector<Keyed> keyed(finite.back());
   parallel_blocks(positions.size(), kCodesAtOnce, [&](std::size_t begin, std::size_t end) {
     std::size_t to = finite[begin / kCodesAtOnce];
@@ -87,17 +82,13 @@ std::vector<std::uint32_t> curve_order(std::span<const Vec3> positions) {
   });
   sort_along_curve(positions, keyed);
   std::vector<std::uint32_t> order(keyed.size());
-  parallel_blocks(order.size(), kCodesAtOnce, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) order[i] = keyed[i].index;
-  });
+  parallel_for_each(order.size(), [&](std::size_t i) { order[i] = keyed[i].index; });
   return order;
 }
 
 std::vector<Vec3> in_order(std::span<const Vec3> positions, std::span<const std::uint32_t> order) {
   std::vector<Vec3> ordered(order.size());
-  parallel_blocks(order.size(), kCodesAtOnce, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) ordered[i] = positions[order[i]];
-  });
+  parallel_for_each(order.size(), [&](std::size_t i) { ordered[i] = positions[order[i]]; });
   return ordered;
 }
 

@@ -5,9 +5,8 @@
 namespace pcednet::io {
 namespace {
 
-std::string text_at(const std::string& header, std::size_t offset) {
-  const std::string field = header.substr(offset, las_header::kTextBytes);
-  return field.substr(0, field.find('\0'));
+std::string text_at(std::string_view header, std::size_t offset) {
+  return until_zero(header.substr(offset, las_header::kTextBytes));
 }
 
 /// The citations stand in one text, separated by bars.
@@ -15,7 +14,7 @@ std::string coordinate_system(const LasFile& file) {
   std::string citations;
   for (const auto* records : {&file.records, &file.extended_records}) {
     for (const LasRecord& record : *records) {
-      const std::string text = record.data.substr(0, record.data.find('\0'));
+      const std::string text = until_zero(record.data);
       if (record.is(kWktRecord)) return text;
       if (record.is(kGeoTextRecord)) citations = text;
     }

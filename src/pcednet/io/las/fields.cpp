@@ -114,7 +114,7 @@ std::string to_file_name(const std::string& name) {
 LasField read_descriptor(std::string_view bytes) {
   const unsigned type = number_at<std::uint8_t>(bytes, las_descriptor::kType);
   const std::string_view name = bytes.substr(las_descriptor::kName, las_descriptor::kNameBytes);
-  LasField field{to_attribute_name(std::string(name.substr(0, name.find('\0'))))};
+  LasField field{to_attribute_name(until_zero(name))};
   if (type == 0 || type > 3 * kExtraTypes.size()) {
     field.components = number_at<std::uint8_t>(bytes, las_descriptor::kOptions);
   } else {

@@ -15,10 +15,6 @@ std::size_t header_bytes_of(bool extended) {
   return extended ? las_record::kExtendedHeadBytes : las_record::kHeadBytes;
 }
 
-std::string until_zero(std::string_view text) {
-  return std::string(text.substr(0, text.find('\0')));
-}
-
 std::uint64_t data_length(std::string_view head, bool extended) {
   return extended ? number_at<std::uint64_t>(head, las_record::kLength)
                   : number_at<std::uint16_t>(head, las_record::kLength);

@@ -50,6 +50,11 @@ T number_at(std::string_view bytes, std::size_t offset) {
   return value;
 }
 
+/// A text of a field that zeros fill up.
+inline std::string until_zero(std::string_view text) {
+  return std::string(text.substr(0, text.find('\0')));
+}
+
 template <typename T>
 void put_number(std::string& bytes, std::size_t offset, T value) {
   if (offset + sizeof value <= bytes.size()) {

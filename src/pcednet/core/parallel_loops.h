@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstddef>
+#include <numeric>
+#include <vector>
+
+#include "pcednet/core/parallel.h"
+
+namespace pcednet {
+
+/// Calls work(i) for every i below `count`, on all threads.
+template <typename Work>
+void parallel_for_each(std::size_t count, const Work& work) {
+  parallel_blocks(count, 1 << 14, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) work(i);
+  });
+}
+
+/// How many i below `count` are `counted` before each block of parallel_blocks(count, block, ...),
+/// and at last how many there are: where a block may write what it keeps.
+template <typename Counted>
+std::vector<std::size_t> counts_before_blocks(std::size_t count, std::size_t block,
+                                              const Counted& counted) {
+  std::vector<std::size_t> before((count + block - 1) / block + 1);
+  parallel_blocks(count, block, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) before[begin / block + 1] += counted(i) ? 1 : 0;
+  });
+  std::partial_sum(before.begin(), before.end(), before.begin());
+  return before;
+}
+
+}  // namespace pcednet
