@@ -12,7 +12,14 @@
 namespace pcednet {
 
 /// The classes of a point, as stored in labels and in files.
-enum EdgeClass : std::uint8_t { kNonEdge = 0, kSmoothEdge = 1, kSharpEdge = 2, kUnlabelled = 255 };
+/// No model gives kBoundary yet: the end of a surface, which geometry alone finds.
+enum EdgeClass : std::uint8_t {
+  kNonEdge = 0,
+  kSmoothEdge = 1,
+  kSharpEdge = 2,
+  kBoundary = 3,
+  kUnlabelled = 255
+};
 
 using Rgb = std::array<std::uint8_t, 3>;
 
