@@ -1,0 +1,93 @@
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include "pcednet/core/parallel.h"
+#include "pcednet/lines/crease.h"
+#include "pcednet/lines/ordered_points.h"
+
+namespace pcednet::lines {
+namespace {
+
+constexpr std::size_t kBoundaryPointsAtOnce = 512;
+constexpr std::size_t kNeighbours = 26;
+constexpr double kOpenAngle = 125.0 * std::numbers::pi / 180.0;
+
+// In spacings.
+constexpr double kOffPlane = 0.8;
+constexpr double kStrip = 1.0;       ///< half the width of the strip that ends at the boundary
+constexpr double kBeyondLast = 0.4;  ///< from the last of its points to the boundary, on average
+
+/// The middle of the widest angle without a direction, and that angle.
+struct Opening {
+  double middle, width;
+};
+
+Opening widest(std::vector<double>& angles) {
+  std::sort(angles.begin(), angles.end());
+  Opening best{angles.back() + std::numbers::pi, 0.0};
+  for (std::size_t i = 0; i < angles.size(); ++i) {
+    const bool last = i + 1 == angles.size();
+    const double next = last ? angles.front() + 2.0 * std::numbers::pi : angles[i + 1];
+    if (next - angles[i] > best.width) best = {0.5 * (angles[i] + next), next - angles[i]};
+  }
+  return best;
+}
+
+std::optional<Crease> boundary_at(const OrderedPoints& cloud, std::size_t i,
+                                  std::vector<spatial::Neighbour>& nearest,
+                                  std::vector<double>& angles) {
+  const Vec3& normal = cloud.normal(i);
+  if (normal.isZero(0.0)) return std::nullopt;
+  cloud.tree().nearest(cloud.position(i), kNeighbours, nearest);
+  const double spacing = spacing_of(nearest);
+  if (!(spacing > 0.0) || nearest.size() < kNeighbours / 2) return std::nullopt;
+  const Vec3 x = normal.unitOrthogonal(), y = normal.cross(x);
+  angles.clear();
+  for (const auto& near : nearest) {
+    const Vec3 offset = cloud.position(near.index) - cloud.position(i);
+    const Eigen::Vector2d flat(x.dot(offset), y.dot(offset));
+    if (flat.norm() > 0.1 * spacing) angles.push_back(std::atan2(flat.y(), flat.x()));
+  }
+  if (angles.size() < kNeighbours / 3) return std::nullopt;
+  const Opening opening = widest(angles);
+  if (opening.width < kOpenAngle) return std::nullopt;
+  const Vec3 outward = std::cos(opening.middle) * x + std::sin(opening.middle) * y;
+  const Vec3 along = normal.cross(outward);
+  double last = 0.0;
+  for (const auto& near : nearest) {
+    const Vec3 offset = (cloud.position(near.index) - cloud.position(i)) / spacing;
+    if (std::abs(offset.dot(along)) > kStrip || std::abs(offset.dot(normal)) > kOffPlane) continue;
+    last = std::max(last, offset.dot(outward));
+  }
+  return Crease{.at = cloud.position(i) + (last + kBeyondLast) * spacing * outward,
+                .along = along,
+                .side_a = -outward,
+                .side_b = -outward,
+                .spacing = spacing,
+                .probability = static_cast<float>(std::min(1.0, opening.width / std::numbers::pi)),
+                .edge_class = kBoundary};
+}
+
+}  // namespace
+
+std::vector<Crease> find_boundaries(const OrderedPoints& cloud, const Progress* progress) {
+  std::vector<std::optional<Crease>> found(cloud.size());
+  Stage stage(progress, "boundaries", cloud.size());
+  parallel_blocks(cloud.size(), kBoundaryPointsAtOnce, [&](std::size_t begin, std::size_t end) {
+    std::vector<spatial::Neighbour> nearest;
+    std::vector<double> angles;
+    for (std::size_t i = begin; i < end; ++i) found[i] = boundary_at(cloud, i, nearest, angles);
+    stage.advance(end - begin);
+  });
+  std::vector<Crease> creases;
+  for (const auto& crease : found) {
+    if (crease) creases.push_back(*crease);
+  }
+  return creases;
+}
+
+}  // namespace pcednet::lines

@@ -1,0 +1,253 @@
+#include "pcednet/lines/chain.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <optional>
+
+#include "pcednet/core/parallel.h"
+#include "pcednet/spatial/kd_tree.h"
+
+namespace pcednet::lines {
+namespace {
+
+constexpr std::size_t kCreasesAtOnce = 512;
+constexpr double kSameDirection = 0.78;  ///< cosine of creases that continue each other
+constexpr double kSameWedge = 0.76;      ///< cosine of their sides
+
+// In spacings.
+constexpr double kBeside = 1.5;
+constexpr double kReach = 2.6;
+constexpr double kLeastStep = 0.25;
+constexpr double kNodeLength = 0.9;
+constexpr std::size_t kLeastLoop = 5;  ///< nodes
+
+std::vector<Vec3> places_of(std::span<const Crease> creases) {
+  std::vector<Vec3> places;
+  places.reserve(creases.size());
+  for (const Crease& crease : creases) places.push_back(crease.at);
+  return places;
+}
+
+bool continues(const Crease& a, const Crease& b) {
+  return std::abs(a.along.dot(b.along)) > kSameDirection &&
+         match(a.side_a, a.side_b, b.side_a, b.side_b).cosine > kSameWedge;
+}
+
+/// Follows creases from one to the next and takes them on the way.
+class Tracer {
+ public:
+  Tracer(std::span<const Crease> creases, double gap, double noise)
+      : creases_(creases),
+        tree_(places_of(creases)),
+        taken_(creases.size(), 0),
+        gap_(gap),
+        noise_(noise) {}
+
+  std::vector<std::size_t> densest_first(const Progress* progress) const;
+  Chain trace_from(std::size_t crease);
+  bool is_taken(std::size_t crease) const { return taken_[crease] != 0; }
+
+ private:
+  std::optional<ChainNode> next(const ChainNode& node);
+  std::optional<ChainNode> next_within(const ChainNode& node, double reach, double cone);
+  bool fits(const ChainNode& node, const Crease& crease) const;
+  void take_beside(const ChainNode& node);
+  bool closes(const ChainNode& last, const ChainNode& first) const;
+  void extend(std::vector<ChainNode>& nodes, bool& closed);
+
+  std::span<const Crease> creases_;
+  spatial::KdTree tree_;
+  std::vector<std::uint8_t> taken_;
+  double gap_, noise_;
+  std::vector<spatial::Neighbour> found_;
+};
+
+std::vector<std::size_t> Tracer::densest_first(const Progress* progress) const {
+  std::vector<std::uint32_t> beside(creases_.size());
+  Stage stage(progress, "chains", creases_.size());
+  parallel_blocks(creases_.size(), kCreasesAtOnce, [&](std::size_t begin, std::size_t end) {
+    std::vector<spatial::Neighbour> found;
+    for (std::size_t i = begin; i < end; ++i) {
+      tree_.within_unsorted(creases_[i].at, kBeside * creases_[i].spacing, found);
+      beside[i] = static_cast<std::uint32_t>(std::count_if(
+          found.begin(), found.end(),
+          [&](const auto& near) { return continues(creases_[i], creases_[near.index]); }));
+    }
+    stage.advance(end - begin);
+  });
+  std::vector<std::size_t> order(creases_.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return beside[a] > beside[b]; });
+  return order;
+}
+
+bool Tracer::fits(const ChainNode& node, const Crease& crease) const {
+  return std::abs(crease.along.dot(node.along)) > kSameDirection &&
+         match(node.side_a, node.side_b, crease.side_a, crease.side_b).cosine > kSameWedge;
+}
+
+/// The mean of creases, turned as `node` is.
+ChainNode mean_of(std::span<const Crease> creases, std::span<const std::uint32_t> members,
+                  const ChainNode& node) {
+  ChainNode mean{
+      .at = Vec3::Zero(), .along = Vec3::Zero(), .side_a = Vec3::Zero(), .side_b = Vec3::Zero()};
+  const double count = static_cast<double>(members.size());
+  for (const std::uint32_t member : members) {
+    const Crease& crease = creases[member];
+    mean.at += crease.at / count;
+    mean.along += crease.along.dot(node.along) < 0.0 ? Vec3(-crease.along) : crease.along;
+    const bool crossed = match(node.side_a, node.side_b, crease.side_a, crease.side_b).crossed;
+    mean.side_a += crossed ? crease.side_b : crease.side_a;
+    mean.side_b += crossed ? crease.side_a : crease.side_b;
+    mean.spacing += crease.spacing / count;
+    mean.probability += crease.probability / count;
+    mean.bend += crease.bend / count;
+    mean.sharp += (crease.edge_class == kSharpEdge ? 1.0 : 0.0) / count;
+    mean.boundary += (crease.edge_class == kBoundary ? 1.0 : 0.0) / count;
+  }
+  mean.creases = count;
+  mean.along.normalize();
+  mean.side_a.normalize();
+  mean.side_b.normalize();
+  return mean;
+}
+
+std::optional<ChainNode> Tracer::next_within(const ChainNode& node, double reach, double cone) {
+  const double spacing = node.spacing;
+  tree_.within(node.at, reach, found_);
+  struct Ahead {
+    std::uint32_t index;
+    double distance;
+  };
+  std::vector<Ahead> ahead;
+  for (const auto& near : found_) {
+    if (taken_[near.index] || !fits(node, creases_[near.index])) continue;
+    const Vec3 offset = creases_[near.index].at - node.at;
+    const double distance = offset.dot(node.along);
+    const double aside = (offset - distance * node.along).norm();
+    if (distance < kLeastStep * spacing) continue;
+    if (aside > cone * distance + (0.35 + noise_) * spacing) continue;
+    ahead.push_back({near.index, distance});
+  }
+  if (ahead.empty()) return std::nullopt;
+  const double nearest =
+      std::min_element(ahead.begin(), ahead.end(), [](const Ahead& a, const Ahead& b) {
+        return a.distance < b.distance;
+      })->distance;
+  std::vector<std::uint32_t> members;
+  for (const Ahead& crease : ahead) {
+    if (crease.distance <= nearest + kNodeLength * spacing) members.push_back(crease.index);
+  }
+  return mean_of(creases_, members, node);
+}
+
+std::optional<ChainNode> Tracer::next(const ChainNode& node) {
+  if (auto near = next_within(node, kReach * node.spacing, 0.4)) return near;
+  if (gap_ <= kReach * node.spacing) return std::nullopt;
+  return next_within(node, gap_, 0.08);
+}
+
+void Tracer::take_beside(const ChainNode& node) {
+  tree_.within_unsorted(node.at, (1.1 + noise_) * node.spacing, found_);
+  for (const auto& near : found_) {
+    if (fits(node, creases_[near.index])) taken_[near.index] = 1;
+  }
+}
+
+bool Tracer::closes(const ChainNode& last, const ChainNode& first) const {
+  const Vec3 offset = first.at - last.at;
+  const double distance = offset.dot(last.along);
+  return distance > 0.0 && distance < kReach * last.spacing &&
+         (offset - distance * last.along).norm() <
+             0.4 * distance + (0.35 + noise_) * last.spacing &&
+         last.along.dot(first.along) > kSameDirection &&
+         match(last.side_a, last.side_b, first.side_a, first.side_b).cosine > kSameWedge;
+}
+
+void Tracer::extend(std::vector<ChainNode>& nodes, bool& closed) {
+  while (auto node = next(nodes.back())) {
+    // The chord says more about the direction than creases at corners do.
+    const Vec3 chord = (node->at - nodes.back().at).normalized();
+    node->along = (node->along + 0.5 * chord).normalized();
+    take_beside(*node);
+    nodes.push_back(*node);
+    if (nodes.size() >= kLeastLoop && closes(nodes.back(), nodes.front())) {
+      closed = true;
+      return;
+    }
+  }
+}
+
+Chain Tracer::trace_from(std::size_t crease) {
+  const Crease& seed = creases_[crease];
+  const ChainNode first{.at = seed.at,
+                        .along = seed.along,
+                        .side_a = seed.side_a,
+                        .side_b = seed.side_b,
+                        .spacing = seed.spacing,
+                        .creases = 1.0,
+                        .probability = seed.probability,
+                        .bend = seed.bend,
+                        .sharp = seed.edge_class == kSharpEdge ? 1.0 : 0.0,
+                        .boundary = seed.edge_class == kBoundary ? 1.0 : 0.0};
+  Chain chain{.nodes = {first}};
+  taken_[crease] = 1;
+  take_beside(first);
+  extend(chain.nodes, chain.closed);
+  if (chain.closed) return chain;
+  std::reverse(chain.nodes.begin(), chain.nodes.end());
+  for (ChainNode& node : chain.nodes) node.along = -node.along;
+  extend(chain.nodes, chain.closed);
+  return chain;
+}
+
+}  // namespace
+
+WedgeMatch match(const Vec3& side_a, const Vec3& side_b, const Vec3& other_a, const Vec3& other_b) {
+  const double straight = std::min(side_a.dot(other_a), side_b.dot(other_b));
+  const double crossed = std::min(side_a.dot(other_b), side_b.dot(other_a));
+  return straight >= crossed ? WedgeMatch{straight, false} : WedgeMatch{crossed, true};
+}
+
+std::vector<Crease> smoothed(std::span<const Crease> creases, double reach,
+                             const Progress* progress) {
+  const spatial::KdTree tree(places_of(creases));
+  std::vector<Crease> result(creases.begin(), creases.end());
+  Stage stage(progress, "smooth creases", creases.size());
+  parallel_blocks(creases.size(), kCreasesAtOnce, [&](std::size_t begin, std::size_t end) {
+    std::vector<spatial::Neighbour> found;
+    std::vector<std::uint32_t> members;
+    for (std::size_t i = begin; i < end; ++i) {
+      const Crease& crease = creases[i];
+      tree.within(crease.at, reach * crease.spacing, found);
+      members.clear();
+      for (const auto& near : found) {
+        if (continues(crease, creases[near.index])) members.push_back(near.index);
+      }
+      const ChainNode own{
+          .at = crease.at, .along = crease.along, .side_a = crease.side_a, .side_b = crease.side_b};
+      const ChainNode mean = mean_of(creases, members, own);
+      const Vec3 offset = mean.at - crease.at;
+      result[i].at += offset - offset.dot(mean.along) * mean.along;
+      result[i].along = mean.along;
+      result[i].side_a = mean.side_a;
+      result[i].side_b = mean.side_b;
+    }
+    stage.advance(end - begin);
+  });
+  return result;
+}
+
+std::vector<Chain> trace(std::span<const Crease> creases, double gap, double noise,
+                         const Progress* progress) {
+  Tracer tracer(creases, gap, noise);
+  std::vector<Chain> chains;
+  for (const std::size_t crease : tracer.densest_first(progress)) {
+    if (!tracer.is_taken(crease)) chains.push_back(tracer.trace_from(crease));
+  }
+  return chains;
+}
+
+}  // namespace pcednet::lines

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "pcednet/core/progress.h"
+#include "pcednet/lines/crease.h"
+
+namespace pcednet::lines {
+
+/// The mean of creases that lie side by side.
+struct ChainNode {
+  Vec3 at;
+  Vec3 along;  ///< unit, towards the next node
+  Vec3 side_a, side_b;
+  double spacing = 0.0;
+  double creases = 0.0;      ///< how many there are
+  double probability = 0.0;  ///< mean
+  double bend = 0.0;         ///< mean
+  double sharp = 0.0;        ///< share of sharp-edge points
+  double boundary = 0.0;     ///< share of boundary points
+};
+
+/// Creases in their order along an edge, about one spacing apart.
+struct Chain {
+  std::vector<ChainNode> nodes;
+  bool closed = false;
+};
+
+/// How alike two wedges are: the smaller cosine of their sides, matched one way or the other.
+struct WedgeMatch {
+  double cosine;
+  bool crossed;  ///< side a of one is side b of the other
+};
+WedgeMatch match(const Vec3& side_a, const Vec3& side_b, const Vec3& other_a, const Vec3& other_b);
+
+/// Every crease again, averaged with those nearer than `reach` (in spacings) that continue it.
+std::vector<Crease> smoothed(std::span<const Crease> creases, double reach,
+                             const Progress* progress);
+
+/// Chains from one end to the other, those of the densest creases first. They run over gaps up to
+/// `gap` where creases beyond continue them.
+std::vector<Chain> trace(std::span<const Crease> creases, double gap, double noise,
+                         const Progress* progress);
+
+}  // namespace pcednet::lines

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <vector>
+
+#include "pcednet/lines/piece.h"
+
+namespace pcednet::lines {
+
+/// Joins arcs of one circle whatever the gaps between them, and closes those of more than half a
+/// circle unless another long piece ends where a gap begins.
+void complete_circles(std::vector<Piece>& pieces, double tolerance);
+
+}  // namespace pcednet::lines

@@ -1,0 +1,213 @@
+#include "pcednet/lines/crease.h"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include "pcednet/core/parallel.h"
+#include "pcednet/lines/local_planes.h"
+#include "pcednet/lines/ordered_points.h"
+
+namespace pcednet::lines {
+namespace {
+
+constexpr std::size_t kPointsAtOnce = 256;
+constexpr std::size_t kPlaneNeighbours = 16;
+constexpr std::size_t kSamples = 2000;  ///< points that spacing and noise are measured at
+constexpr double kLeastAngle = 20.0 * std::numbers::pi / 180.0;
+constexpr double kMostNoise = 0.7;         ///< in spacings: more is no surface
+constexpr float kLeastProbability = 0.3f;  ///< of points to be tried beside those of an edge class
+
+// In spacings.
+constexpr double kFarthest = 2.2;       ///< of an edge point from its crease
+constexpr double kSliceAlong = 1.6;     ///< half the length of crease that its sides are seen from
+constexpr double kSideReach = 3.0;      ///< of the points of a side
+constexpr double kLeastFromLine = 0.4;  ///< of those that tell on which side the surface is
+
+/// Ends of the zones of a side: near the line, between, far.
+constexpr double kNearZone[] = {0.15, 0.9}, kMiddleZone = 1.9, kFarZone = 3.3;
+
+double median(std::vector<double>& values) {
+  if (values.empty()) return 0.0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+double distance_to_plane(const OrderedPoints& cloud, std::size_t i,
+                         std::span<const spatial::Neighbour> nearest) {
+  Vec3 mean = Vec3::Zero();
+  for (const auto& near : nearest) mean += cloud.position(near.index) - cloud.position(i);
+  mean /= static_cast<double>(nearest.size());
+  Mat3 covariance = Mat3::Zero();
+  for (const auto& near : nearest) {
+    const Vec3 offset = cloud.position(near.index) - cloud.position(i) - mean;
+    covariance += offset * offset.transpose();
+  }
+  Eigen::SelfAdjointEigenSolver<Mat3> solver;
+  solver.computeDirect(covariance / static_cast<double>(nearest.size()), Eigen::EigenvaluesOnly);
+  return std::sqrt(std::max(solver.eigenvalues()[0], 0.0));
+}
+
+}  // namespace
+
+Sampling measure_sampling(const OrderedPoints& cloud) {
+  std::vector<double> spacings, noises;
+  std::vector<spatial::Neighbour> nearest;
+  const std::size_t step = std::max<std::size_t>(1, cloud.size() / kSamples);
+  for (std::size_t i = 0; i < cloud.size(); i += step) {
+    if (cloud.is_edge(i)) continue;
+    cloud.tree().nearest(cloud.position(i), kPlaneNeighbours, nearest);
+    const double spacing = spacing_of(nearest);
+    if (!(spacing > 0.0) || nearest.size() < 6) continue;
+    spacings.push_back(spacing);
+    noises.push_back(distance_to_plane(cloud, i, nearest) / spacing);
+  }
+  return {median(spacings), std::min(median(noises), kMostNoise)};
+}
+
+namespace {
+
+/// The wedge that two planes make at the edge point, which is the origin; all in spacings.
+struct Wedge {
+  Vec3 at, along, side_a, side_b;
+  double score;
+};
+
+/// The direction from the line into `plane` on which its points are near the line's point `at`, or
+/// none if they are on both sides or too few.
+std::optional<Vec3> side_of(const LocalPlane& plane, const Vec3& at, const Vec3& along,
+                            std::span<const NearPoint> points, double tolerance) {
+  const Vec3 side = along.cross(plane.normal).normalized();
+  double before = 0.0, after = 0.0;
+  for (const NearPoint& point : points) {
+    const Vec3 offset = point.offset - at;
+    if (std::abs(offset.dot(along)) > kSliceAlong || std::abs(plane(point.offset)) > tolerance)
+      continue;
+    const double place = offset.dot(side);
+    if (std::abs(place) < std::max(kLeastFromLine, 1.5 * tolerance) || std::abs(place) > kSideReach)
+      continue;
+    (place < 0.0 ? before : after) += 1.0;
+  }
+  if (std::max(before, after) < 2.0) return std::nullopt;
+  if (std::min(before, after) > 0.25 * std::max(before, after)) return std::nullopt;
+  return before > after ? Vec3(-side) : side;
+}
+
+std::optional<Wedge> wedge_of(const LocalPlane& a, const LocalPlane& b,
+                              std::span<const NearPoint> points, double tolerance) {
+  const double cosine = a.normal.dot(b.normal);
+  const double sq_sine = 1.0 - cosine * cosine;
+  if (sq_sine < std::pow(std::sin(kLeastAngle), 2)) return std::nullopt;
+  const Vec3 at = ((a.distance - cosine * b.distance) * a.normal +
+                   (b.distance - cosine * a.distance) * b.normal) /
+                  sq_sine;
+  if (at.norm() > kFarthest) return std::nullopt;
+  const Vec3 along = a.normal.cross(b.normal).normalized();
+  const auto side_a = side_of(a, at, along, points, tolerance);
+  const auto side_b = side_of(b, at, along, points, tolerance);
+  if (!side_a || !side_b) return std::nullopt;
+  return Wedge{at, along, *side_a, *side_b, std::sqrt(sq_sine) - 0.5 * at.norm()};
+}
+
+/// How much the points of a side bend towards the inside of the wedge: their mean distance to the
+/// plane near the line and far from it, less that between.
+double bend_of(const Vec3& at, const Vec3& along, const Vec3& side, const Vec3& inward,
+               std::span<const NearPoint> points, double tolerance) {
+  double sum[3] = {}, count[3] = {};
+  for (const NearPoint& point : points) {
+    const Vec3 offset = point.offset - at;
+    if (std::abs(offset.dot(along)) > kSliceAlong) continue;
+    const double place = offset.dot(side), height = offset.dot(inward);
+    if (place < kNearZone[0] || place > kFarZone || std::abs(height) > tolerance + 0.3) continue;
+    const int zone = place < kNearZone[1] ? 0 : place < kMiddleZone ? 1 : 2;
+    sum[zone] += height;
+    count[zone] += 1.0;
+  }
+  if (count[1] == 0.0) return 0.0;
+  const double middle = sum[1] / count[1];
+  double bend = 0.0;
+  for (const int zone : {0, 2}) {
+    if (count[zone] > 0.0) bend += sum[zone] / count[zone] - middle;
+  }
+  return bend;
+}
+
+/// The mean of both sides.
+double bend_of(const Wedge& wedge, std::span<const NearPoint> points, double tolerance) {
+  Vec3 into_a = wedge.along.cross(wedge.side_a), into_b = wedge.along.cross(wedge.side_b);
+  if (into_a.dot(wedge.side_b) < 0.0) into_a = -into_a;
+  if (into_b.dot(wedge.side_a) < 0.0) into_b = -into_b;
+  const double a = bend_of(wedge.at, wedge.along, wedge.side_a, into_a, points, tolerance);
+  const double b = bend_of(wedge.at, wedge.along, wedge.side_b, into_b, points, tolerance);
+  return 0.5 * (a + b);
+}
+
+/// The best wedge of all pairs of planes.
+std::optional<Wedge> best_wedge(std::span<const NearPoint> points, double tolerance) {
+  std::vector<LocalPlane> planes;
+  find_planes(points, tolerance, planes);
+  std::optional<Wedge> best;
+  for (std::size_t a = 0; a < planes.size(); ++a) {
+    for (std::size_t b = a + 1; b < planes.size(); ++b) {
+      const auto wedge = wedge_of(planes[a], planes[b], points, tolerance);
+      if (wedge && (!best || wedge->score > best->score)) best = wedge;
+    }
+  }
+  return best;
+}
+
+std::optional<Crease> crease_at(const OrderedPoints& cloud, std::size_t i, const Sampling& sampling,
+                                std::vector<spatial::Neighbour>& nearest,
+                                std::vector<NearPoint>& near_points) {
+  const auto count = static_cast<std::size_t>(40.0 + 100.0 * sampling.noise);
+  const double tolerance = 0.3 + 1.1 * sampling.noise;
+  cloud.tree().nearest(cloud.position(i), count, nearest);
+  const double spacing = spacing_of(nearest);
+  if (!(spacing > 0.0)) return std::nullopt;
+  near_points.clear();
+  for (const auto& near : nearest) {
+    near_points.push_back({(cloud.position(near.index) - cloud.position(i)) / spacing,
+                           cloud.normal(near.index), cloud.probability(near.index)});
+  }
+  const auto wedge = best_wedge(near_points, tolerance);
+  if (!wedge) return std::nullopt;
+  return Crease{.at = cloud.position(i) + spacing * wedge->at,
+                .along = wedge->along,
+                .side_a = wedge->side_a,
+                .side_b = wedge->side_b,
+                .spacing = spacing,
+                .probability = cloud.probability(i),
+                .bend = static_cast<float>(bend_of(*wedge, near_points, tolerance)),
+                .edge_class = cloud.edge_class(i)};
+}
+
+}  // namespace
+
+std::vector<Crease> find_creases(const OrderedPoints& cloud, const Sampling& sampling,
+                                 const Progress* progress) {
+  std::vector<std::size_t> edge_points;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    if (cloud.is_edge(i) || cloud.probability(i) > kLeastProbability) edge_points.push_back(i);
+  }
+  std::vector<std::optional<Crease>> found(edge_points.size());
+  Stage stage(progress, "creases", edge_points.size());
+  parallel_blocks(edge_points.size(), kPointsAtOnce, [&](std::size_t begin, std::size_t end) {
+    std::vector<spatial::Neighbour> nearest;
+    std::vector<NearPoint> near_points;
+    for (std::size_t i = begin; i < end; ++i) {
+      found[i] = crease_at(cloud, edge_points[i], sampling, nearest, near_points);
+    }
+    stage.advance(end - begin);
+  });
+  std::vector<Crease> creases;
+  for (const auto& crease : found) {
+    if (crease) creases.push_back(*crease);
+  }
+  return creases;
+}
+
+}  // namespace pcednet::lines

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "pcednet/cloud/point_cloud.h"
+#include "pcednet/core/progress.h"
+#include "pcednet/core/vec3.h"
+
+namespace pcednet::lines {
+
+class OrderedPoints;
+
+/// What one edge point knows of its edge: the line where two planes beside it meet.
+struct Crease {
+  Vec3 at;               ///< the point of that line nearest to the edge point
+  Vec3 along;            ///< unit, its sign arbitrary
+  Vec3 side_a, side_b;   ///< unit, orthogonal to `along`: in each plane, away from the line
+  double spacing;        ///< of the points around it
+  float probability;     ///< of the edge point to be of an edge
+  float bend = 0.0f;     ///< of the surfaces beside it into the wedge, in spacings; 0: plane
+  EdgeClass edge_class;  ///< of the edge point
+};
+
+/// Spacing and noise of a cloud, from points off its edges.
+struct Sampling {
+  double spacing = 0.0;  ///< sqrt of the area per point, median
+  double noise = 0.0;    ///< distance of points to the plane of their neighbours, in spacings
+};
+
+Sampling measure_sampling(const OrderedPoints& cloud);
+
+/// The creases of the edge points. Edge points without two planes beside them have none.
+std::vector<Crease> find_creases(const OrderedPoints& cloud, const Sampling& sampling,
+                                 const Progress* progress);
+
+/// Where the surface ends: beside points that have no neighbours on one side, the line along which
+/// it ends. Both sides of such a crease point into the surface.
+std::vector<Crease> find_boundaries(const OrderedPoints& cloud, const Progress* progress);
+
+}  // namespace pcednet::lines

@@ -1,0 +1,108 @@
+#include "pcednet/lines/find_lines.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "pcednet/core/error.h"
+#include "pcednet/lines/chain.h"
+#include "pcednet/lines/circles.h"
+#include "pcednet/lines/crease.h"
+#include "pcednet/lines/finish.h"
+#include "pcednet/lines/ordered_points.h"
+#include "pcednet/lines/piece.h"
+#include "pcednet/lines/split.h"
+#include "pcednet/lines/strings.h"
+
+namespace pcednet::lines {
+namespace {
+
+constexpr std::size_t kLeastNodes = 2;
+
+/// The options, and what they are where the spacing decides.
+struct Limits {
+  double gap, min_length;           ///< in the unit of the cloud
+  double tolerance, smooth_within;  ///< in spacings
+  double angle;                     ///< radians
+};
+
+Limits limits_of(const LineOptions& options, const Sampling& sampling) {
+  const auto given = [](double value, double otherwise) { return value > 0.0 ? value : otherwise; };
+  return {.gap = given(options.gap, 6.0 * sampling.spacing),
+          .min_length = given(options.min_length, 3.0 * sampling.spacing),
+          .tolerance = given(options.tolerance / sampling.spacing, 0.2 + 0.4 * sampling.noise),
+          .smooth_within = 1.5 + 2.0 * sampling.noise,
+          .angle = options.angle * std::numbers::pi / 180.0};
+}
+
+void check(const EdgePoints& points, const LineOptions& options) {
+  for (const double number : {options.min_length, options.gap, options.angle, options.tolerance}) {
+    if (!(number >= 0.0) || !std::isfinite(number)) {
+      throw Error(ErrorKind::kUsage,
+                  fmt::format("{} is neither a length nor an angle: it must be 0 or more", number));
+    }
+  }
+  const std::size_t count = points.positions.size();
+  const auto fits = [&](std::size_t size) { return size == count; };
+  const bool sound = fits(points.normals.size()) && fits(points.classes.size()) &&
+                     (points.p_sharp.empty() || fits(points.p_sharp.size())) &&
+                     (points.p_smooth.empty() || fits(points.p_smooth.size()));
+  if (!sound) {
+    throw Error(ErrorKind::kUsage,
+                "positions, normals, classes and probabilities differ in number");
+  }
+}
+
+std::vector<Piece> split_chains(const std::vector<Chain>& chains, double tolerance) {
+  std::vector<Piece> pieces;
+  for (const Chain& chain : chains) {
+    for (Piece& piece : pieces_of(chain, split(chain, tolerance), kLeastNodes)) {
+      pieces.push_back(std::move(piece));
+    }
+  }
+  return pieces;
+}
+
+/// Moves the smooth edges to a list of their own: they do not share corners with the others.
+std::vector<Piece> take_smooth(std::vector<Piece>& pieces, double noise) {
+  const auto smooth = std::stable_partition(pieces.begin(), pieces.end(), [&](const Piece& piece) {
+    return class_of(piece, noise) != kSmoothEdge;
+  });
+  std::vector<Piece> taken(std::make_move_iterator(smooth), std::make_move_iterator(pieces.end()));
+  pieces.erase(smooth, pieces.end());
+  return taken;
+}
+
+}  // namespace
+
+std::vector<Curve> find_lines(const EdgePoints& points, const LineOptions& options,
+                              const Progress* progress) {
+  check(points, options);
+  const OrderedPoints cloud(points);
+  const Sampling sampling = measure_sampling(cloud);
+  std::vector<Crease> creases = find_creases(cloud, sampling, progress);
+  if (options.boundaries) {
+    const std::vector<Crease> boundaries = find_boundaries(cloud, progress);
+    creases.insert(creases.end(), boundaries.begin(), boundaries.end());
+  }
+  if (creases.empty()) return {};
+
+  const Limits limits = limits_of(options, sampling);
+  creases = smoothed(creases, limits.smooth_within, progress);
+  const std::vector<Chain> chains = trace(creases, limits.gap, sampling.noise, progress);
+  std::vector<Piece> pieces = split_chains(chains, limits.tolerance);
+  join_pieces(pieces, limits.gap, limits.tolerance);
+  complete_circles(pieces, limits.tolerance);
+  string_together(pieces, 0.5 * limits.gap, limits.angle);
+  if (options.regularise) regularise(pieces);
+
+  const FinishOptions finish_options = {limits.min_length, limits.tolerance, sampling.noise};
+  const std::vector<Piece> smooth = take_smooth(pieces, sampling.noise);
+  std::vector<Curve> curves = finish(std::move(pieces), finish_options);
+  for (Curve& curve : finish(smooth, finish_options)) curves.push_back(std::move(curve));
+  return curves;
+}
+
+}  // namespace pcednet::lines

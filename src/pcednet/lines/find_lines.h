@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "pcednet/core/progress.h"
+#include "pcednet/lines/curve.h"
+
+namespace pcednet::lines {
+
+/// Lengths are in the unit of the cloud; those that are 0 come from the spacing of the points.
+struct LineOptions {
+  double min_length = 0.0;  ///< shorter curves are left out; 0: 3 spacings
+  double gap = 0.0;         ///< curves continue over gaps up to it; 0: 6 spacings
+  double angle = 30.0;      ///< degrees: curves are split where they bend by more
+  double tolerance = 0.0;   ///< of the points to a curve; 0: 0.3 spacings
+  bool regularise = false;  ///< turns nearly parallel and nearly orthogonal segments so
+  bool boundaries = false;  ///< also lines where the sampled surface ends
+};
+
+/// The points and what is known of each, in any order. The spans are equally long; the
+/// probabilities may be empty.
+struct EdgePoints {
+  std::span<const Vec3> positions;
+  std::span<const Vec3> normals;          ///< unit, or (0,0,0); their signs do not matter
+  std::span<const std::uint8_t> classes;  ///< EdgeClass
+  std::span<const float> p_sharp = {};
+  std::span<const float> p_smooth = {};
+};
+
+/// The edges of the cloud as curves that share their corners.
+///
+/// 1. A crease is fitted beside every edge point: where the planes of two surfaces meet.
+/// 2. Creases that continue each other are ordered into chains.
+/// 3. A chain is split into the few segments and arcs that explain it.
+/// 4. Curves are prolonged to the corners in which they meet.
+///
+/// The result is the same for any number of threads and any order of the points. Throws
+/// Error(kUsage) if an option is negative or not finite, or if the spans differ in length.
+std::vector<Curve> find_lines(const EdgePoints& points, const LineOptions& options = {},
+                              const Progress* progress = nullptr);
+
+}  // namespace pcednet::lines

@@ -1,0 +1,166 @@
+#include "pcednet/lines/finish.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "pcednet/lines/corners.h"
+#include "pcednet/lines/strings.h"
+
+namespace pcednet::lines {
+namespace {
+
+// In spacings; the second number is added per spacing of noise.
+constexpr double kLoose[] = {5.0, 8.0};     ///< length of a piece that no corner holds
+constexpr double kHeldOnce[] = {3.0, 4.0};  ///< and of one that ends free
+constexpr double kCornerReach = 5.0;
+constexpr double kCornerTolerance = 0.8;
+
+constexpr double kBend = 0.08;
+constexpr double kFewSharp = 0.1;
+constexpr double kSnap = 0.07;  ///< sine of the largest turn of regularise()
+
+double mean_of(const Piece& piece, double ChainNode::*value) {
+  double sum = 0.0;
+  for (const ChainNode& node : piece.nodes) sum += node.*value;
+  return sum / static_cast<double>(piece.nodes.size());
+}
+
+double mean_dihedral(const Piece& piece) {
+  double sum = 0.0;
+  for (const ChainNode& node : piece.nodes) {
+    const double inside = std::acos(std::clamp(node.side_a.dot(node.side_b), -1.0, 1.0));
+    sum += std::numbers::pi - inside;
+  }
+  return sum / static_cast<double>(piece.nodes.size());
+}
+
+/// The arc through both ends whose centre is the nearest to that of the fit.
+void set_arc(Curve& curve, const Fit& fit) {
+  const Vec3 &from = curve.points.front(), &to = curve.points.back();
+  const Vec3 chord = (to - from).normalized(), middle = 0.5 * (from + to);
+  curve.axis = (fit.direction - fit.direction.dot(chord) * chord).normalized();
+  const Vec3 across = curve.axis.cross(chord);
+  curve.centre = middle + (fit.point - middle).dot(across) * across;
+  curve.radius = (from - curve.centre).norm();
+}
+
+void set_shape(Curve& curve, const Piece& piece, const std::array<Vec3, 2>& ends,
+               double tolerance) {
+  curve.kind = piece.fit.kind;
+  curve.closed = piece.closed;
+  if (curve.kind == CurveKind::kPolyline) {
+    for (const ChainNode& node : piece.nodes) curve.points.push_back(node.at);
+    if (!piece.closed) {
+      curve.points.front() = ends[0];
+      curve.points.back() = ends[1];
+    }
+    curve.points = simplified(curve.points, 0.5 * tolerance * piece.spacing());
+  } else if (piece.closed) {
+    curve.kind = CurveKind::kCircle;
+    curve.centre = piece.fit.point;
+    curve.axis = piece.fit.direction;
+    curve.points = {nearest_on(piece.fit, piece.nodes.front().at)};
+    curve.radius = (curve.points.front() - curve.centre).norm();
+  } else {
+    curve.points = {ends[0], ends[1]};
+    if (curve.kind == CurveKind::kArc) set_arc(curve, piece.fit);
+  }
+}
+
+Curve curve_of(const Piece& piece, const std::array<Vec3, 2>& ends, const FinishOptions& options) {
+  Curve curve{.edge_class = class_of(piece, options.noise)};
+  set_shape(curve, piece, ends, options.tolerance);
+  curve.confidence = mean_of(piece, &ChainNode::probability);
+  curve.dihedral_angle = mean_dihedral(piece);
+  for (const ChainNode& node : piece.nodes) {
+    curve.support += static_cast<std::size_t>(node.creases);
+  }
+  return curve;
+}
+
+Corners corners_of(const std::vector<Piece>& pieces, double noise) {
+  return find_corners(pieces, kCornerReach, kCornerTolerance + noise);
+}
+
+/// True if a piece was dropped.
+bool drop_loose(std::vector<Piece>& pieces, const Corners& corners, double noise) {
+  std::size_t i = 0;
+  return std::erase_if(pieces, [&](const Piece& piece) {
+           const auto& own = corners.of_ends[i++];
+           if (piece.closed) return false;
+           const auto held = std::count_if(own.begin(), own.end(), [](std::size_t corner) {
+             return corner != Corners::kNoCorner;
+           });
+           if (held == 2) return false;
+           const double* least = held == 0 ? kLoose : kHeldOnce;
+           return length_of(piece) < (least[0] + least[1] * noise) * piece.spacing();
+         }) > 0;
+}
+
+bool is_sound(const Curve& curve) {
+  const bool round = curve.kind == CurveKind::kArc || curve.kind == CurveKind::kCircle;
+  return std::all_of(curve.points.begin(), curve.points.end(),
+                     [](const Vec3& p) { return p.allFinite(); }) &&
+         (!round || (curve.radius > 0.0 && curve.centre.allFinite() && curve.axis.allFinite() &&
+                     curve.axis.norm() > 0.5));
+}
+
+}  // namespace
+
+EdgeClass class_of(const Piece& piece, double noise) {
+  if (mean_of(piece, &ChainNode::boundary) > 0.5) return kBoundary;
+  const bool bends = mean_of(piece, &ChainNode::bend) > kBend + noise;
+  return bends && mean_of(piece, &ChainNode::sharp) < kFewSharp ? kSmoothEdge : kSharpEdge;
+}
+
+std::vector<Curve> finish(std::vector<Piece> pieces, const FinishOptions& options) {
+  Corners corners = corners_of(pieces, options.noise);
+  if (drop_loose(pieces, corners, options.noise)) corners = corners_of(pieces, options.noise);
+  std::vector<Curve> curves;
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    std::array<Vec3, 2> ends = pieces[i].ends;
+    for (const std::size_t side : {0, 1}) {
+      const std::size_t corner = corners.of_ends[i][side];
+      if (corner != Corners::kNoCorner) ends[side] = corners.places[corner];
+    }
+    Curve curve = curve_of(pieces[i], ends, options);
+    if (is_sound(curve) && length_of(curve) >= options.min_length) {
+      curves.push_back(std::move(curve));
+    }
+  }
+  return curves;
+}
+
+void regularise(std::vector<Piece>& pieces) {
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    if (pieces[i].fit.kind == CurveKind::kSegment) order.push_back(i);
+  }
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return length_of(pieces[a]) > length_of(pieces[b]);
+  });
+  std::vector<Vec3> directions;  // of the longer segments
+  for (const std::size_t i : order) {
+    Vec3 own = pieces[i].fit.direction;
+    const auto parallel = std::find_if(directions.begin(), directions.end(),
+                                       [&](const Vec3& d) { return own.cross(d).norm() < kSnap; });
+    if (parallel != directions.end()) {
+      own = own.dot(*parallel) < 0.0 ? Vec3(-*parallel) : *parallel;
+    } else {
+      int orthogonal = 0;
+      for (const Vec3& d : directions) {
+        if (orthogonal == 2 || std::abs(own.dot(d)) > kSnap) continue;
+        own = (own - own.dot(d) * d).normalized();
+        ++orthogonal;
+      }
+      directions.push_back(own);
+    }
+    pieces[i].fit.direction = own;
+    for (Vec3& end : pieces[i].ends) end = nearest_on(pieces[i].fit, end);
+  }
+}
+
+}  // namespace pcednet::lines

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <span>
+
+#include "pcednet/lines/chain.h"
+#include "pcednet/lines/curve.h"
+
+namespace pcednet::lines {
+
+/// A line or a circle through nodes.
+struct Fit {
+  CurveKind kind = CurveKind::kPolyline;  ///< kSegment, kArc, or kPolyline: neither fits
+  Vec3 point = Vec3::Zero();              ///< of the line; the centre of the circle
+  Vec3 direction = Vec3::UnitX();         ///< of the line; the axis of the circle; unit
+  double radius = 0.0;
+  double error = 0.0;  ///< root mean square distance of the nodes, in spacings
+};
+
+Fit fit_segment(std::span<const ChainNode> nodes);
+
+/// kPolyline if the nodes are on no circle.
+Fit fit_arc(std::span<const ChainNode> nodes);
+
+/// The point of the unbounded line or circle that is nearest to `place`.
+Vec3 nearest_on(const Fit& fit, const Vec3& place);
+
+/// The direction there, unit, with the sign of the axis' counter-clockwise sense on a circle.
+Vec3 tangent_at(const Fit& fit, const Vec3& place);
+
+}  // namespace pcednet::lines

@@ -1,0 +1,41 @@
+#include "pcednet/lines/ordered_points.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "pcednet/spatial/curve_order.h"
+
+namespace pcednet::lines {
+namespace {
+
+constexpr std::size_t kSpacingNeighbours = 16;
+
+/// Points at one place follow each other along the curve; the first stands for all.
+std::vector<std::uint32_t> distinct_points(std::span<const Vec3> positions) {
+  std::vector<std::uint32_t> order = spatial::curve_order(positions);
+  const auto same = [&](std::uint32_t a, std::uint32_t b) { return positions[a] == positions[b]; };
+  order.erase(std::unique(order.begin(), order.end(), same), order.end());
+  return order;
+}
+
+}  // namespace
+
+OrderedPoints::OrderedPoints(const EdgePoints& points)
+    : points_(points),
+      order_(distinct_points(points.positions)),
+      positions_(spatial::in_order(points.positions, order_)),
+      tree_(positions_) {}
+
+float OrderedPoints::probability(std::size_t i) const {
+  if (points_.p_sharp.empty()) return is_edge(i) ? 1.0f : 0.0f;
+  const std::uint32_t point = order_[i];
+  return points_.p_sharp[point] + (points_.p_smooth.empty() ? 0.0f : points_.p_smooth[point]);
+}
+
+double spacing_of(std::span<const spatial::Neighbour> nearest) {
+  const std::size_t count = std::min(nearest.size(), kSpacingNeighbours);
+  return std::sqrt(std::numbers::pi * nearest[count - 1].sq_distance / static_cast<double>(count));
+}
+
+}  // namespace pcednet::lines

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "pcednet/lines/find_lines.h"
+#include "pcednet/spatial/kd_tree.h"
+
+namespace pcednet::lines {
+
+/// The finite points along the space-filling curve, so that nothing depends on their numbering.
+class OrderedPoints {
+ public:
+  explicit OrderedPoints(const EdgePoints& points);
+
+  std::size_t size() const { return positions_.size(); }
+  const Vec3& position(std::size_t i) const { return positions_[i]; }
+  const Vec3& normal(std::size_t i) const { return points_.normals[order_[i]]; }
+  EdgeClass edge_class(std::size_t i) const {
+    return static_cast<EdgeClass>(points_.classes[order_[i]]);
+  }
+  bool is_edge(std::size_t i) const {
+    return edge_class(i) == kSharpEdge || edge_class(i) == kSmoothEdge;
+  }
+  /// To be of an edge; by the class alone where there are no probabilities.
+  float probability(std::size_t i) const;
+  const spatial::KdTree& tree() const { return tree_; }
+
+ private:
+  EdgePoints points_;
+  std::vector<std::uint32_t> order_;
+  std::vector<Vec3> positions_;
+  spatial::KdTree tree_;
+};
+
+/// The side of a square that holds one point, from the nearest neighbours of a point, itself first.
+double spacing_of(std::span<const spatial::Neighbour> nearest);
+
+}  // namespace pcednet::lines

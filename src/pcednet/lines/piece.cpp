@@ -1,0 +1,215 @@
+#include "pcednet/lines/piece.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "pcednet/lines/curve.h"
+#include "pcednet/spatial/kd_tree.h"
+
+namespace pcednet::lines {
+namespace {
+
+constexpr double kSameWedge = 0.7;
+constexpr double kDuplicate = 1.2;  ///< spacings between copies of one edge
+
+void set_ends(Piece& piece) {
+  const ChainNode &first = piece.nodes.front(), &last = piece.nodes.back();
+  if (piece.fit.kind == CurveKind::kPolyline) {
+    piece.ends = {first.at, last.at};
+    return;
+  }
+  // Creases reach half a node beyond the means of the first and the last.
+  piece.ends = {nearest_on(piece.fit, first.at - 0.4 * first.spacing * first.along),
+                nearest_on(piece.fit, last.at + 0.4 * last.spacing * last.along)};
+}
+
+double arc_angle(const Piece& piece) {
+  const Vec3 from = piece.ends[0] - piece.fit.point, to = piece.ends[1] - piece.fit.point;
+  const double angle = std::atan2(piece.fit.direction.dot(from.cross(to)), from.dot(to));
+  return angle > 0.0 ? angle : angle + 2.0 * std::numbers::pi;
+}
+
+Piece reversed(Piece piece) {
+  std::reverse(piece.nodes.begin(), piece.nodes.end());
+  for (ChainNode& node : piece.nodes) node.along = -node.along;
+  std::swap(piece.ends[0], piece.ends[1]);
+  piece.fit.direction = -piece.fit.direction;
+  return piece;
+}
+
+bool same_wedge(const ChainNode& a, const ChainNode& b) {
+  return match(a.side_a, a.side_b, b.side_a, b.side_b).cosine > kSameWedge;
+}
+
+/// Both, a's end before b's start, as one; nothing if no segment or arc fits them together.
+std::optional<Piece> joined(const Piece& a, const Piece& b, double tolerance) {
+  Piece both{.fit = {}, .nodes = a.nodes, .ends = {}};
+  both.nodes.insert(both.nodes.end(), b.nodes.begin(), b.nodes.end());
+  const bool straight = a.fit.kind == CurveKind::kSegment && b.fit.kind == CurveKind::kSegment;
+  both.fit = straight ? fit_segment(both.nodes) : fit_arc(both.nodes);
+  const double limit = std::max({1.4 * tolerance, 1.3 * a.fit.error, 1.3 * b.fit.error});
+  if (both.fit.kind == CurveKind::kPolyline || both.fit.error > limit) return std::nullopt;
+  set_ends(both);
+  return both;
+}
+
+std::optional<Piece> try_join(const Piece& a, const Piece& b, double gap, double tolerance) {
+  const ChainNode &end = a.nodes.back(), &start = b.nodes.front();
+  const Vec3 offset = start.at - end.at;
+  const double reach = std::max(gap, 2.0 * end.spacing);
+  if (offset.norm() > reach || end.along.dot(start.along) < 0.5) return std::nullopt;
+  if (offset.dot(end.along) < -1.5 * end.spacing || !same_wedge(end, start)) return std::nullopt;
+  return joined(a, b, tolerance);
+}
+
+/// The same piece begun at the other end, or with sides swapped: every way two can continue.
+std::optional<Piece> try_ways(const Piece& a, const Piece& b, double gap, double tolerance) {
+  if (auto piece = try_join(a, b, gap, tolerance)) return piece;
+  if (auto piece = try_join(a, reversed(b), gap, tolerance)) return piece;
+  if (auto piece = try_join(reversed(a), b, gap, tolerance)) return piece;
+  return try_join(b, a, gap, tolerance);
+}
+
+std::vector<Vec3> ends_of(const std::vector<Piece>& pieces) {
+  std::vector<Vec3> places;
+  for (const Piece& piece : pieces) {
+    places.push_back(piece.nodes.front().at);
+    places.push_back(piece.nodes.back().at);
+  }
+  return places;
+}
+
+/// One pass of joins; true if there was one.
+bool join_once(std::vector<Piece>& pieces, double gap, double tolerance) {
+  const spatial::KdTree tree(ends_of(pieces));
+  std::vector<std::uint8_t> gone(pieces.size(), 0), changed(pieces.size(), 0);
+  std::vector<spatial::Neighbour> near;
+  bool any = false;
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    if (gone[i] || changed[i] || pieces[i].closed || pieces[i].fit.kind == CurveKind::kPolyline) {
+      continue;
+    }
+    for (const std::size_t side : {0, 1}) {
+      const Vec3 place = side == 0 ? pieces[i].nodes.front().at : pieces[i].nodes.back().at;
+      tree.within(place, std::max(gap, 2.0 * pieces[i].spacing()), near);
+      for (const auto& other : near) {
+        const std::size_t j = other.index / 2;
+        if (j == i || gone[j] || changed[j] || pieces[j].closed) continue;
+        if (pieces[j].fit.kind == CurveKind::kPolyline) continue;
+        auto both = try_ways(pieces[i], pieces[j], gap, tolerance);
+        if (!both) continue;
+        pieces[i] = std::move(*both);
+        changed[i] = gone[j] = 1;
+        any = true;
+        break;
+      }
+      if (changed[i]) break;
+    }
+  }
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    if (gone[i]) continue;
+    if (kept != i) pieces[kept] = std::move(pieces[i]);
+    ++kept;
+  }
+  pieces.resize(kept);
+  return any;
+}
+
+/// Arcs whose ends are nearly at the same place become circles.
+void close_circles(std::vector<Piece>& pieces, double gap) {
+  for (Piece& piece : pieces) {
+    if (piece.closed || piece.fit.kind != CurveKind::kArc) continue;
+    const double angle = arc_angle(piece);
+    const double open = (2.0 * std::numbers::pi - angle) * piece.fit.radius;
+    const double turn = 1.5 * std::numbers::pi;
+    if (angle > turn && open < gap) piece.closed = true;
+  }
+}
+
+/// The share of the nodes of `piece` beside nodes of pieces that were kept before it.
+void drop_duplicates(std::vector<Piece>& pieces) {
+  std::vector<std::size_t> order(pieces.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return pieces[a].nodes.size() > pieces[b].nodes.size();
+  });
+  std::vector<Vec3> places;
+  std::vector<std::size_t> owner, rank(pieces.size());
+  for (std::size_t r = 0; r < order.size(); ++r) rank[order[r]] = r;
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    for (const ChainNode& node : pieces[i].nodes) {
+      places.push_back(node.at);
+      owner.push_back(i);
+    }
+  }
+  const spatial::KdTree tree(places);
+  std::vector<std::uint8_t> dropped(pieces.size(), 0);
+  std::vector<spatial::Neighbour> near;
+  for (const std::size_t i : order) {
+    std::size_t covered = 0;
+    for (const ChainNode& node : pieces[i].nodes) {
+      tree.within_unsorted(node.at, kDuplicate * node.spacing, near);
+      covered += std::any_of(near.begin(), near.end(), [&](const auto& other) {
+        const std::size_t j = owner[other.index];
+        if (rank[j] >= rank[i] || dropped[j]) return false;
+        const ChainNode* nodes = pieces[j].nodes.data();
+        std::size_t first = other.index;
+        while (first > 0 && owner[first - 1] == j) --first;
+        const ChainNode& of_other = nodes[other.index - first];
+        return std::abs(of_other.along.dot(node.along)) > kSameWedge;
+      });
+    }
+    dropped[i] = 2 * covered > pieces[i].nodes.size();
+  }
+  std::size_t i = 0;
+  std::erase_if(pieces, [&](const Piece&) { return dropped[i++] != 0; });
+}
+
+}  // namespace
+
+double length_of(const Piece& piece) {
+  switch (piece.fit.kind) {
+    case CurveKind::kSegment:
+      return (piece.ends[1] - piece.ends[0]).norm();
+    case CurveKind::kArc:
+      return piece.fit.radius * (piece.closed ? 2.0 * std::numbers::pi : arc_angle(piece));
+    default:
+      break;
+  }
+  double length = 0.0;
+  for (std::size_t i = 1; i < piece.nodes.size(); ++i) {
+    length += (piece.nodes[i].at - piece.nodes[i - 1].at).norm();
+  }
+  return length;
+}
+
+std::vector<Piece> pieces_of(const Chain& chain, const std::vector<Run>& runs,
+                             std::size_t least_nodes) {
+  std::vector<Piece> pieces;
+  const std::size_t count = chain.nodes.size();
+  for (const Run& run : runs) {
+    if (run.last - run.first < least_nodes) continue;
+    Piece piece{.fit = run.fit, .nodes = {}, .ends = {}};
+    for (std::size_t i = run.first; i < run.last; ++i) {
+      piece.nodes.push_back(chain.nodes[i % count]);
+    }
+    piece.closed = chain.closed && runs.size() == 1;
+    set_ends(piece);
+    pieces.push_back(std::move(piece));
+  }
+  return pieces;
+}
+
+void join_pieces(std::vector<Piece>& pieces, double gap, double tolerance) {
+  drop_duplicates(pieces);
+  while (join_once(pieces, gap, tolerance)) {
+  }
+  close_circles(pieces, gap);
+  drop_duplicates(pieces);
+}
+
+}  // namespace pcednet::lines

@@ -1,0 +1,188 @@
+#include "pcednet/lines/strings.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "pcednet/spatial/kd_tree.h"
+
+namespace pcednet::lines {
+namespace {
+
+constexpr double kStringWedge = 0.7;
+constexpr std::size_t kLong = 7;  ///< nodes
+constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+
+struct End {
+  std::size_t piece;
+  std::size_t side;
+};
+
+const ChainNode& node_at(const Piece& piece, std::size_t side) {
+  return side == 0 ? piece.nodes.front() : piece.nodes.back();
+}
+
+Vec3 outward(const Piece& piece, std::size_t side) {
+  const ChainNode& node = node_at(piece, side);
+  Vec3 along = node.along;
+  if (piece.fit.kind != CurveKind::kPolyline) {
+    const Vec3 tangent = tangent_at(piece.fit, piece.ends[side]);
+    along = tangent.dot(node.along) < 0.0 ? Vec3(-tangent) : tangent;
+  }
+  return side == 0 ? Vec3(-along) : along;
+}
+
+bool stay_apart(const Piece& a, const Piece& b) {
+  const bool both_long = a.nodes.size() >= kLong && b.nodes.size() >= kLong;
+  const bool straight = a.fit.kind == CurveKind::kSegment || b.fit.kind == CurveKind::kSegment;
+  return both_long && straight;
+}
+
+struct Link {
+  std::size_t a, b;  ///< ends
+  double cost;
+};
+
+struct Reach {
+  double gap;
+  double cosine;  ///< least, of the directions
+};
+
+/// Whether and how well end b continues end a.
+bool continues(const Piece& a, std::size_t side_a, const Piece& b, std::size_t side_b,
+               const Reach& reach, double& cost) {
+  if (a.fit.kind == CurveKind::kPolyline && b.fit.kind == CurveKind::kPolyline &&
+      a.nodes.size() < 3 && b.nodes.size() < 3) {
+    return false;
+  }
+  if (stay_apart(a, b)) return false;
+  const double spacing = a.spacing();
+  const Vec3 out_a = outward(a, side_a), out_b = outward(b, side_b);
+  const Vec3 offset = b.ends[side_b] - a.ends[side_a];
+  const double ahead = offset.dot(out_a), aside = (offset - ahead * out_a).norm();
+  if (out_a.dot(-out_b) < reach.cosine || ahead < -2.0 * spacing) return false;
+  if (offset.norm() > reach.gap || aside > 0.7 * spacing + 0.2 * std::abs(ahead)) return false;
+  const ChainNode &node_a = node_at(a, side_a), &node_b = node_at(b, side_b);
+  if (match(node_a.side_a, node_a.side_b, node_b.side_a, node_b.side_b).cosine < kStringWedge) {
+    return false;
+  }
+  cost = (offset.norm() + 2.0 * aside) / spacing + 4.0 * (1.0 - out_a.dot(-out_b));
+  return true;
+}
+
+std::vector<Link> links_of(const std::vector<Piece>& pieces, const Reach& reach) {
+  std::vector<End> ends;
+  std::vector<Vec3> places;
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    if (pieces[i].closed) continue;
+    for (const std::size_t side : {0, 1}) {
+      ends.push_back({i, side});
+      places.push_back(pieces[i].ends[side]);
+    }
+  }
+  const spatial::KdTree tree(places);
+  std::vector<Link> links;
+  std::vector<spatial::Neighbour> near;
+  for (std::size_t e = 0; e < ends.size(); ++e) {
+    tree.within(places[e], reach.gap, near);
+    for (const auto& other : near) {
+      const End &a = ends[e], &b = ends[other.index];
+      double cost = 0.0;
+      if (other.index <= e || a.piece == b.piece) continue;
+      if (!continues(pieces[a.piece], a.side, pieces[b.piece], b.side, reach, cost)) continue;
+      links.push_back({2 * a.piece + a.side, 2 * b.piece + b.side, cost});
+    }
+  }
+  std::stable_sort(links.begin(), links.end(),
+                   [](const Link& a, const Link& b) { return a.cost < b.cost; });
+  return links;
+}
+
+/// Nodes of the piece from its end `side` on, moved onto its curve.
+void append_nodes(const Piece& piece, std::size_t side, std::vector<ChainNode>& nodes) {
+  const std::size_t count = piece.nodes.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    ChainNode node = piece.nodes[side == 0 ? i : count - 1 - i];
+    if (piece.fit.kind != CurveKind::kPolyline) {
+      node.at = nearest_on(piece.fit, node.at);
+      const Vec3 tangent = tangent_at(piece.fit, node.at);
+      node.along = tangent.dot(node.along) < 0.0 ? Vec3(-tangent) : tangent;
+    }
+    if (side != 0) node.along = -node.along;
+    if (!nodes.empty() && (node.at - nodes.back().at).dot(nodes.back().along) <= 0.0) continue;
+    nodes.push_back(node);
+  }
+}
+
+}  // namespace
+
+void string_together(std::vector<Piece>& pieces, double gap, double angle) {
+  std::vector<std::size_t> partner(2 * pieces.size(), kNone);
+  for (const Link& link : links_of(pieces, {gap, std::cos(angle)})) {
+    if (partner[link.a] != kNone || partner[link.b] != kNone) continue;
+    partner[link.a] = link.b;
+    partner[link.b] = link.a;
+  }
+  std::vector<Piece> result;
+  std::vector<std::uint8_t> done(pieces.size(), 0);
+  const auto follow = [&](std::size_t start) {
+    std::size_t entry = start;
+    Piece string{.fit = {}, .nodes = {}, .ends = {}};
+    for (;;) {
+      const std::size_t piece = entry / 2, side = entry % 2;
+      done[piece] = 1;
+      append_nodes(pieces[piece], side, string.nodes);
+      entry = partner[2 * piece + 1 - side];
+      if (entry == kNone || done[entry / 2]) break;
+    }
+    string.closed = entry != kNone && string.nodes.size() > 4;
+    string.ends = {string.nodes.front().at, string.nodes.back().at};
+    result.push_back(std::move(string));
+  };
+  for (std::size_t i = 0; i < pieces.size(); ++i) {  // those that begin at a free end
+    if (done[i]) continue;
+    const bool linked_first = partner[2 * i] != kNone, linked_last = partner[2 * i + 1] != kNone;
+    if (!linked_first && !linked_last) {
+      result.push_back(pieces[i]);
+      done[i] = 1;
+    } else if (!linked_first || !linked_last) {
+      follow(2 * i + (linked_first ? 1 : 0));
+    }
+  }
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    if (!done[i]) follow(2 * i);  // rings
+  }
+  pieces = std::move(result);
+}
+
+std::vector<Vec3> simplified(const std::vector<Vec3>& places, double tolerance) {
+  if (places.size() < 3) return places;
+  std::vector<std::uint8_t> kept(places.size(), 0);
+  kept.front() = kept.back() = 1;
+  std::vector<std::pair<std::size_t, std::size_t>> spans = {{0, places.size() - 1}};
+  while (!spans.empty()) {
+    const auto [first, last] = spans.back();
+    spans.pop_back();
+    const Vec3 chord = (places[last] - places[first]).stableNormalized();
+    std::size_t farthest = first;
+    double most = tolerance;
+    for (std::size_t i = first + 1; i < last; ++i) {
+      const Vec3 offset = places[i] - places[first];
+      const double distance = (offset - offset.dot(chord) * chord).norm();
+      if (distance > most) {
+        most = distance;
+        farthest = i;
+      }
+    }
+    if (farthest == first) continue;
+    kept[farthest] = 1;
+    spans.emplace_back(first, farthest);
+    spans.emplace_back(farthest, last);
+  }
+  std::vector<Vec3> vertices;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    if (kept[i]) vertices.push_back(places[i]);
+  }
+  return vertices;
+}
+
+}  // namespace pcednet::lines
