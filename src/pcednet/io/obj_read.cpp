@@ -2,15 +2,13 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
-#include <optional>
 #include <utility>
 
 #include "pcednet/io/faces.h"
 #include "pcednet/io/obj.h"
+#include "pcednet/io/obj_statements.h"
 #include "pcednet/io/promote.h"
-#include "pcednet/io/text_scan.h"
 
 namespace pcednet::io {
 namespace {
@@ -51,68 +49,47 @@ struct Statements {
 
 class StatementParser {
  public:
-  explicit StatementParser(const std::filesystem::path& path) : path_(path) {}
+  StatementParser(const std::filesystem::path& path, std::string_view text)
+      : statements_(path, text) {}
 
-  Statements parse(std::string_view text) {
-    Lines lines(text);
-    std::string_view line;
-    while (lines.next(line)) {
-      number_ = lines.number();
-      line = trim(line);
-      if (line.starts_with('#')) {
-        result_.comments.emplace_back(trim(line.substr(1)));
-        continue;
+  Statements parse() {
+    while (statements_.next()) {
+      const std::string_view keyword = statements_.words()[0];
+      if (keyword == "v") {
+        take_vertex();
+      } else if (keyword == "vn") {
+        take_normal();
+      } else if (keyword == "f" || keyword == "l" || keyword == "p") {
+        take_face(keyword == "f");
       }
-      const bool continues = line.ends_with('\\');
-      if (continues) line.remove_suffix(1);
-      split(line, words_);
-      statement_.insert(statement_.end(), words_.begin(), words_.end());
-      if (!continues) take_statement();
     }
-    take_statement();
+    result_.comments = std::move(statements_.comments());
     return std::move(result_);
   }
 
  private:
-  Error error(const std::string& what) const { return unreadable(path_, what, number_); }
-
-  void take_statement() {
-    const std::string_view keyword = statement_.empty() ? "" : statement_[0];
-    if (keyword == "v") {
-      take_vertex();
-    } else if (keyword == "vn") {
-      if (statement_.size() != 4) throw error("expected vn x y z");
-      result_.normals.emplace_back(number(1), number(2), number(3));
-    } else if (keyword == "f" || keyword == "l" || keyword == "p") {
-      take_face(keyword == "f");
-    }
-    statement_.clear();
-  }
-
-  double number(std::size_t word) const {
-    const auto value = parse_double(statement_[word]);
-    if (!value) throw error(number_fault(statement_[word]));
-    return *value;
-  }
-
   void take_vertex() {
-    const std::size_t count = statement_.size() - 1;
-    if (count != 3 && count != 4 && count != 6) {
-      throw error(fmt::format("v with {} numbers; expected x y z, x y z w or x y z r g b", count));
-    }
-    result_.positions.emplace_back(number(1), number(2), number(3));
-    if (count == 4) number(4);
+    result_.positions.push_back(statements_.vertex());
+    const std::size_t count = statements_.words().size() - 1;
+    if (count == 4) statements_.number(4);
     if (count != 6) return;
-    for (std::size_t c = 0; c < 3; ++c) result_.colours[c].push_back(number(4 + c));
+    for (std::size_t c = 0; c < 3; ++c) result_.colours[c].push_back(statements_.number(4 + c));
+  }
+
+  void take_normal() {
+    if (statements_.words().size() != 4) throw statements_.error("expected vn x y z");
+    result_.normals.emplace_back(statements_.number(1), statements_.number(2),
+                                 statements_.number(3));
   }
 
   void take_face(bool keep) {
-    for (std::size_t w = 1; w < statement_.size(); ++w) {
-      const std::size_t vertex = take_corner(statement_[w]);
+    const auto& words = statements_.words();
+    for (std::size_t w = 1; w < words.size(); ++w) {
+      const std::size_t vertex = take_corner(words[w]);
       if (keep) result_.face_corners.push_back(static_cast<std::uint32_t>(vertex));
     }
     if (keep) {
-      result_.face_sizes.push_back(static_cast<std::uint32_t>(statement_.size() - 1));
+      result_.face_sizes.push_back(static_cast<std::uint32_t>(words.size() - 1));
     } else {
       ++result_.others;
     }
@@ -125,37 +102,23 @@ class StatementParser {
     if (first == std::string_view::npos) return vertex;
     const std::size_t second = corner.find('/', first + 1);
     if (second == std::string_view::npos || second + 1 == corner.size()) return vertex;
-    if (const auto normal = index(corner.substr(second + 1), result_.normals.size())) {
-      result_.corners.push_back({vertex, *normal, number_});
+    if (const auto normal = obj_index(corner.substr(second + 1), result_.normals.size())) {
+      result_.corners.push_back({vertex, *normal, statements_.line()});
     } else {
-      result_.corners_without_normal.add(number_);
+      result_.corners_without_normal.add(statements_.line());
     }
     return vertex;
   }
 
   std::size_t vertex_index(std::string_view word) {
-    const auto found = index(word, result_.positions.size());
-    if (!found) throw error(fmt::format("expected the index of a v, not {:.40}", word));
+    const auto found = obj_index(word, result_.positions.size());
+    if (!found) throw statements_.error(fmt::format("expected the index of a v, not {:.40}", word));
     FarthestIndex& farthest = result_.farthest_vertex;
-    if (*found >= farthest.end) farthest = {*found + 1, number_};
+    if (*found >= farthest.end) farthest = {*found + 1, statements_.line()};
     return *found;
   }
 
-  /// What an index means: n is the n-th of the file, -n the n-th last of the `so_far` before it.
-  static std::optional<std::size_t> index(std::string_view word, std::size_t so_far) {
-    std::int64_t value = 0;
-    const auto [end, fault] = std::from_chars(word.data(), word.data() + word.size(), value);
-    const bool is_number = fault == std::errc{} && end == word.data() + word.size();
-    const bool is_before = value < 0 && static_cast<std::uint64_t>(-(value + 1)) < so_far;
-    if (!is_number || !(value > 0 || is_before)) return std::nullopt;
-    return value > 0 ? static_cast<std::size_t>(value - 1)
-                     : so_far - static_cast<std::size_t>(-value);
-  }
-
-  const std::filesystem::path& path_;
-  std::size_t number_ = 0;
-  std::vector<std::string_view> words_;
-  std::vector<std::string_view> statement_;  ///< keyword and arguments
+  ObjStatements statements_;
   Statements result_;
 };
 
@@ -205,7 +168,7 @@ std::vector<Vec3> normals_of_vertices(const Statements& statements,
 
 LoadedCloud read_obj(const InputFile& file) {
   const std::string text = file.text();
-  Statements statements = StatementParser(file.path()).parse(text);
+  Statements statements = StatementParser(file.path(), text).parse();
   check_vertices(file.path(), statements);
   LoadedCloud loaded;
   drop_corners_without_normal(statements, loaded.warnings);

@@ -124,8 +124,8 @@ void check_fits(const InputFile& file, const PcdHeader& header) {
   }
 }
 
-void warn_of_unread(std::uint64_t bytes, const PcdHeader& header,
-                    std::vector<std::string>& warnings) {
+void warn_of_unread_data(std::uint64_t bytes, const PcdHeader& header,
+                         std::vector<std::string>& warnings) {
   if (bytes == 0) return;
   warnings.push_back(fmt::format("{} bytes after the {} points of the header were not read", bytes,
                                  header.points));
@@ -154,7 +154,7 @@ LoadedCloud read_body(const InputFile& file, const PcdHeader& header) {
       break;
   }
   LoadedCloud loaded = builder.finish();
-  warn_of_unread(unread, header, loaded.warnings);
+  warn_of_unread_data(unread, header, loaded.warnings);
   loaded.cloud.comments = header.comments;
   return loaded;
 }
