@@ -1,0 +1,94 @@
+#include "pcednet/io/coordinate_system.h"
+
+#include <algorithm>
+#include <charconv>
+#include <vector>
+
+#include "pcednet/io/text_scan.h"
+
+namespace pcednet::io {
+namespace {
+
+/// A node of a definition: KEYWORD["text", number, NODE[...], ...].
+struct WktNode {
+  std::string keyword;                   ///< in lower case
+  std::vector<std::string_view> values;  ///< texts without their quotes
+};
+
+/// Calls `visit(ancestors)`, the outermost first, for every node as it closes.
+template <typename Visit>
+void visit_wkt(std::string_view wkt, Visit&& visit) {
+  std::vector<WktNode> open;
+  std::size_t word = 0;
+  const auto take_word = [&](std::size_t end) {
+    const std::string_view value = trim(wkt.substr(word, end - word));
+    if (!value.empty() && !open.empty()) open.back().values.push_back(value);
+  };
+  for (std::size_t i = 0; i < wkt.size(); ++i) {
+    const char c = wkt[i];
+    if (c == '"') {
+      const std::size_t end = std::min(wkt.find('"', i + 1), wkt.size());
+      if (!open.empty()) open.back().values.push_back(wkt.substr(i + 1, end - i - 1));
+      i = end;
+    } else if (c == '[' || c == '(') {
+      open.push_back({lower_case(trim(wkt.substr(word, i - word))), {}});
+    } else if (c == ']' || c == ')') {
+      if (open.empty()) return;
+      take_word(i);
+      visit(open);
+      open.pop_back();
+    } else if (c != ',') {
+      continue;
+    } else {
+      take_word(i);
+    }
+    word = i + 1;
+  }
+}
+
+bool is_one_of(std::string_view word, std::initializer_list<std::string_view> words) {
+  return std::find(words.begin(), words.end(), word) != words.end();
+}
+
+int epsg_of(const WktNode& node) {
+  if (!is_one_of(node.keyword, {"authority", "id"})) return 0;
+  if (node.values.size() < 2 || lower_case(node.values[0]) != "epsg") return 0;
+  int code = 0;
+  const std::string_view word = node.values[1];
+  const auto [end, fault] = std::from_chars(word.data(), word.data() + word.size(), code);
+  return fault == std::errc{} && end == word.data() + word.size() && code > 0 ? code : 0;
+}
+
+}  // namespace
+
+CoordinateSystem coordinate_system_of_wkt(std::string_view wkt) {
+  CoordinateSystem system{.epsg = 0, .wkt = std::string(trim(wkt)), .in_metres = false};
+  int whole = 0, horizontal = 0;
+  bool metres = false, other_lengths = false;
+  visit_wkt(wkt, [&](const std::vector<WktNode>& open) {
+    const WktNode& node = open.back();
+    const std::string_view parent = open.size() > 1 ? std::string_view(open.end()[-2].keyword) : "";
+    if (const int code = epsg_of(node)) {
+      if (open.size() == 2) whole = code;
+      const bool of_part = is_one_of(parent, {"projcs", "projcrs", "geogcs", "geogcrs", "geodcrs"});
+      if (open.size() == 3 && of_part && is_one_of(open[0].keyword, {"compd_cs", "compoundcrs"})) {
+        horizontal = code;
+      }
+    }
+    const bool is_length =
+        node.keyword == "lengthunit" ||
+        (node.keyword == "unit" && is_one_of(parent, {"projcs", "vert_cs", "geoccs", "local_cs"}));
+    if (!is_length || node.values.size() < 2) return;
+    const bool is_metre = parse_double(node.values[1]) == 1.0;
+    (is_metre ? metres : other_lengths) = true;
+  });
+  system.epsg = whole ? whole : horizontal;
+  // An ellipsoid has a length unit too, the degrees of a geographic system have not.
+  const bool geographic =
+      is_one_of(lower_case(system.wkt.substr(0, system.wkt.find_first_of("[("))),
+                {"geogcs", "geogcrs", "geodcrs"});
+  system.in_metres = metres && !other_lengths && !geographic;
+  return system;
+}
+
+}  // namespace pcednet::io

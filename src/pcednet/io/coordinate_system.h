@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace pcednet::io {
+
+/// The coordinate system of a file, as far as it is known.
+struct CoordinateSystem {
+  int epsg = 0;            ///< its code; 0: unknown
+  std::string wkt = {};    ///< its definition (OGC 01-009 or 18-010); may be empty
+  bool in_metres = false;  ///< all its lengths, as far as said
+};
+
+/// The system that a definition describes: its code is that of its outermost AUTHORITY or ID of
+/// EPSG, or that of the horizontal part of a compound system.
+CoordinateSystem coordinate_system_of_wkt(std::string_view wkt);
+
+}  // namespace pcednet::io

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "pcednet/core/output_file.h"
+#include "pcednet/io/coordinate_system.h"
+#include "pcednet/lines/curve.h"
+
+namespace pcednet::io {
+
+enum class DxfVersion { kR12, k2000 };
+
+/// Where an SVG is seen from: above (x to the right, y up), the front (x, z) or the side (y, z).
+enum class View { kTop, kFront, kSide };
+
+enum class LengthUnit { kNone, kMillimetre, kCentimetre, kMetre, kInch, kFoot };
+
+struct DrawingOptions {
+  Overwrite overwrite = Overwrite::kNo;
+  /// Formats without arcs get polylines that are nowhere farther from them; 0: a thousandth of the
+  /// radius.
+  double tolerance = 0.0;
+  DxfVersion dxf_version = DxfVersion::k2000;
+  LengthUnit unit = LengthUnit::kNone;  ///< DXF: of the coordinates
+  View view = View::kTop;
+  CoordinateSystem coordinate_system = {};  ///< GeoJSON and GeoPackage
+};
+
+/// A format of files of lines.
+struct DrawingFormat {
+  std::string_view name;
+  std::string_view extension;  ///< in lower case, with the dot
+  void (*write)(const std::filesystem::path& path, std::span<const lines::Curve> curves,
+                const DrawingOptions& options);
+};
+
+/// The whole table.
+std::span<const DrawingFormat> drawing_formats();
+
+/// The extensions, such as ".dxf .obj .ply"; `last` stands before the last.
+std::string drawing_extensions(std::string_view last = " ");
+
+/// The format to write under that name. Throws Error(kUsage) if there is none, or if it was left
+/// out of this build.
+const DrawingFormat& drawing_format_for(const std::filesystem::path& path);
+
+/// Writes `curves` in the format that the extension names, the same bytes each time; no curves give
+/// an empty, valid file. Coordinates keep every bit, except for those of arcs and circles in a
+/// tilted plane of DXF, which has them in the plane's own axes, and those of SVG, whose origin is a
+/// corner of the drawing. The file appears under its name only when it is complete.
+///
+/// Throws Error(kUsage) as drawing_format_for() does and for an existing file, Error(kFailure) when
+/// the disk takes no more, or for a curve that is none: without points, or with numbers that are
+/// not finite.
+void write_drawing(const std::filesystem::path& path, std::span<const lines::Curve> curves,
+                   const DrawingOptions& options = {});
+
+}  // namespace pcednet::io

@@ -1,0 +1,57 @@
+#include "pcednet/io/coordinate_system.h"
+
+#include <gtest/gtest.h>
+
+namespace pcednet::io {
+namespace {
+
+constexpr const char* kGeographic =
+    R"(GEOGCS["ETRS89",DATUM["E",SPHEROID["GRS 1980",6378137,298.25,AUTHORITY["EPSG","7019"]]],)"
+    R"(UNIT["degree",0.01745,AUTHORITY["EPSG","9122"]],AUTHORITY["EPSG","4258"]])";
+
+std::string projected(const std::string& unit, const std::string& code) {
+  return std::string(R"(PROJCS["UTM, [zone] 32",)") + kGeographic +
+         R"(,PROJECTION["Transverse_Mercator"],PARAMETER["false_easting",500000],UNIT[)" + unit +
+         "]" + (code.empty() ? "" : R"(,AUTHORITY["EPSG",")" + code + "\"]") + "]";
+}
+
+TEST(CoordinateSystem, FindsTheCodeOfADefinition) {
+  const auto utm = coordinate_system_of_wkt(projected(R"("metre",1)", "25832"));
+  EXPECT_EQ(utm.epsg, 25832);
+  EXPECT_TRUE(utm.in_metres);
+  EXPECT_EQ(coordinate_system_of_wkt(kGeographic).epsg, 4258);
+  EXPECT_FALSE(coordinate_system_of_wkt(kGeographic).in_metres);
+  EXPECT_EQ(coordinate_system_of_wkt(projected(R"("metre",1)", "")).epsg, 0);
+}
+
+TEST(CoordinateSystem, TakesTheHorizontalPartOfACompoundSystem) {
+  const std::string vertical =
+      R"(,VERT_CS["DHHN",VERT_DATUM["D",2005],UNIT["metre",1],AUTHORITY["EPSG","7837"]])";
+  const std::string parts = projected(R"("metre",1)", "25832") + vertical;
+  EXPECT_EQ(coordinate_system_of_wkt("COMPD_CS[\"both\"," + parts + "]").epsg, 25832);
+  const auto named = coordinate_system_of_wkt("COMPD_CS[\"both\"," + parts +
+                                              R"(, AUTHORITY [ "EPSG" , "5555" ] ])");
+  EXPECT_EQ(named.epsg, 5555);
+  EXPECT_TRUE(named.in_metres);
+}
+
+TEST(CoordinateSystem, KnowsFeetAndTheNewerForm) {
+  EXPECT_FALSE(coordinate_system_of_wkt(projected(R"("foot",0.3048)", "2263")).in_metres);
+  const auto modern = coordinate_system_of_wkt(
+      R"(PROJCRS["x",BASEGEOGCRS["y",DATUM["z",ELLIPSOID["e",6378137,298,LENGTHUNIT["metre",1]]],)"
+      R"(ID["EPSG",4258]],CS[Cartesian,2],AXIS["E",east],LENGTHUNIT["metre",1],ID["EPSG",25832]])");
+  EXPECT_EQ(modern.epsg, 25832);
+  EXPECT_TRUE(modern.in_metres);
+}
+
+TEST(CoordinateSystem, SurvivesNonsense) {
+  for (const char* text :
+       {"", "]", "[", "A[\"", "A[B[C[", "PROJCS[AUTHORITY[\"EPSG\"]]",
+        "PROJCS[AUTHORITY[\"EPSG\",\"x\"]]", "PROJCS[AUTHORITY[\"EPSG\",\"-5\"]]",
+        "PROJCS[AUTHORITY[\"EPSG\",\"99999999999\"]]", "WGS 84 / UTM zone 32N"}) {
+    EXPECT_EQ(coordinate_system_of_wkt(text).epsg, 0) << text;
+  }
+}
+
+}  // namespace
+}  // namespace pcednet::io
