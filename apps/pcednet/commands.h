@@ -10,6 +10,7 @@ namespace pcednet::app {
 // by throwing pcednet::Error. One file per subcommand, in commands/.
 
 void add_classify(CLI::App& app, Common& common);
+void add_lines(CLI::App& app, Common& common);
 void add_train(CLI::App& app, Common& common);
 void add_evaluate(CLI::App& app, Common& common);
 void add_describe(CLI::App& app, Common& common);

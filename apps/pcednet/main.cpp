@@ -20,6 +20,7 @@ int run(int argc, char** argv) {
       "pcednet finds edges in 3D point clouds.\n\nExamples:\n"
       "  pcednet classify scan.ply              labels and confidences in scan_edges.ply\n"
       "  pcednet classify folder/ --out-dir out every point file of a folder\n"
+      "  pcednet lines scan.ply -o edges.dxf    edges as segments, arcs, circles and polylines\n"
       "  pcednet train painted.ply -o my.safetensors\n"};
   app.formatter(std::make_shared<HelpFormatter>());
   app.set_version_flag("--version", std::string("pcednet ") + kVersion);
@@ -30,6 +31,7 @@ int run(int argc, char** argv) {
   install_signal_handlers();
   // One line per subcommand, in the order of the help.
   add_classify(app, common);
+  add_lines(app, common);
   add_train(app, common);
   add_evaluate(app, common);
   add_describe(app, common);

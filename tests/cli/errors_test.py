@@ -30,7 +30,7 @@ class Errors(CliTest):
         run("no-such-command", expect=2)
         run("classify", "--no-such-option", expect=2)
         run("classify", expect=2)
-        for command in ("classify", "train", "evaluate", "describe", "generate", "normals", "info",
+        for command in ("classify", "lines", "train", "evaluate", "describe", "generate", "normals", "info",
                         "convert"):
             self.assertIn("Examples", run(command, "--help").stdout)
 

@@ -4,14 +4,13 @@
 #include <set>
 
 #include "batch.h"
+#include "classify_cloud.h"
 #include "commands.h"
 #include "methods.h"
 #include "models.h"
 #include "pcednet/core/error.h"
-#include "pcednet/detect/classify.h"
 #include "pcednet/detect/result_cloud.h"
 #include "pcednet/formats/format.h"
-#include "pcednet/formats/read_cloud.h"
 #include "pcednet/formats/write_cloud.h"
 #include "prepare.h"
 #include "stage_clock.h"
@@ -172,14 +171,6 @@ void report(const Job& job, const detect::Classification& result, const std::str
   say(fmt::format("  -> {}", job.output.string()));
 }
 
-PointCloud read(const fs::path& input) {
-  auto loaded = formats::read_cloud(input);
-  for (const std::string& warning : loaded.warnings) {
-    warn(fmt::format("{}: {}", input.string(), warning));
-  }
-  return std::move(loaded.cloud);
-}
-
 void say_kept(const detect::KeptInput& kept) {
   if (kept.labels) say("  the input's labels are kept as scalar_input_label");
   if (kept.colours) say("  the input's colours are kept; --class-colours replaces them");
@@ -190,15 +181,12 @@ void classify_file(const Job& job, const ClassifyArguments& arguments,
   StageClock clock(console_progress(common));
   const Progress& progress = clock.progress();
   clock.begin("read");
-  PointCloud cloud = read(job.input);
+  PointCloud cloud = read_cloud(job.input);
   throw_if_cancelled(&progress);
   const bool by_method = !arguments.method.name.empty();
   clock.begin(by_method ? arguments.method.name : "normals");
-  const auto prepared = by_method ? detect::PreparedCloud{}
-                                  : prepare(job.input, cloud, arguments.preparation, progress);
-  const auto result = by_method ? classify_by_method(cloud, arguments.method, &progress)
-                                : detect::classify(prepared, model, &progress);
-  if (!result.note.empty()) warn(fmt::format("{}: {}", job.input.string(), result.note));
+  const auto [prepared, result] = classify_cloud(job.input, cloud, by_method ? nullptr : &model,
+                                                 arguments.method, arguments.preparation, progress);
   clock.begin("write");
   say_kept(detect::add_result(cloud, prepared, result, model,
                               {.class_colours = arguments.class_colours}));

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "pcednet/io/coordinate_system.h"
 #include "pcednet/io/input_file.h"
 #include "pcednet/io/loaded_cloud.h"
 #include "pcednet/io/parts.h"
@@ -38,6 +39,10 @@ std::unique_ptr<PartReader> open_las_parts(std::unique_ptr<InputFile> file, std:
 std::unique_ptr<PartWriter> create_las_parts(const std::filesystem::path& path,
                                              const PartOutline& outline,
                                              const WriteOptions& options);
+
+/// The coordinate system of a cloud that was read from LAS, or from a PLY file made of one: that of
+/// its WKT, otherwise of its GeoTIFF keys.
+CoordinateSystem las_coordinate_system(const PointCloud& cloud);
 
 /// What create_las_parts does not keep of `cloud`, one sentence part each.
 std::vector<std::string> las_losses(const PointCloud& cloud);

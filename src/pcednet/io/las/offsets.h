@@ -64,8 +64,8 @@ struct LasRecordKind {
   std::uint16_t record_id;
 };
 inline constexpr LasRecordKind kWktRecord{"LASF_Projection", 2112},
-    kGeoTextRecord{"LASF_Projection", 34737}, kExtraBytesRecord{"LASF_Spec", 4},
-    kWaveformsRecord{"LASF_Spec", 65535}, kLaszipRecord{"laszip encoded", 22204},
-    kCommentsRecord{"pcednet", 1};
+    kGeoKeysRecord{"LASF_Projection", 34735}, kGeoTextRecord{"LASF_Projection", 34737},
+    kExtraBytesRecord{"LASF_Spec", 4}, kWaveformsRecord{"LASF_Spec", 65535},
+    kLaszipRecord{"laszip encoded", 22204}, kCommentsRecord{"pcednet", 1};
 
 }  // namespace pcednet::io

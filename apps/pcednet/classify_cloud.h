@@ -1,0 +1,26 @@
+#pragma once
+
+#include <filesystem>
+
+#include "methods.h"
+#include "pcednet/detect/classify.h"
+#include "pcednet/detect/model.h"
+#include "pcednet/detect/prepare.h"
+
+namespace pcednet::app {
+
+/// A classification, and what the model saw of the cloud.
+struct ClassifiedCloud {
+  detect::PreparedCloud prepared;  ///< empty where a method classified
+  detect::Classification found;
+};
+
+/// formats::read_cloud(), with its warnings on stderr.
+PointCloud read_cloud(const std::filesystem::path& file);
+
+/// Classifies by `model`, or by the method where that is null. Notes are warnings that name `file`.
+ClassifiedCloud classify_cloud(const std::filesystem::path& file, const PointCloud& cloud,
+                               const detect::EdgeModel* model, const MethodArguments& method,
+                               const detect::PrepareOptions& preparation, const Progress& progress);
+
+}  // namespace pcednet::app

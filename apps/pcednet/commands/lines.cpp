@@ -1,0 +1,290 @@
+#include "pcednet/lines/find_lines.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <set>
+
+#include "batch.h"
+#include "classify_cloud.h"
+#include "commands.h"
+#include "models.h"
+#include "pcednet/core/error.h"
+#include "pcednet/formats/labels.h"
+#include "pcednet/io/drawing/drawing.h"
+#include "pcednet/io/drawing/line_classes.h"
+#include "pcednet/io/las/las.h"
+#include "prepare.h"
+#include "stage_clock.h"
+
+namespace pcednet::app {
+namespace {
+
+namespace fs = std::filesystem;
+using lines::Curve;
+using lines::CurveKind;
+
+constexpr std::array kKinds = {CurveKind::kSegment, CurveKind::kArc, CurveKind::kCircle,
+                               CurveKind::kPolyline};
+
+struct LinesArguments {
+  std::string input;
+  std::vector<std::string> outputs, classes, kinds;
+  bool classify = false;
+  ModelArguments model{.name = "scan"};
+  detect::PrepareOptions preparation;
+  lines::LineOptions lines;
+  double min_confidence = 0.0;
+  io::DrawingOptions drawing;
+  bool has_unit = false;
+};
+
+/// What find_lines() takes, and what holds it.
+struct LabelledCloud {
+  detect::PreparedCloud prepared;
+  std::vector<std::uint8_t> classes;
+  std::vector<float> p_sharp, p_smooth;
+};
+
+/// Refuses before any work what could not be written after it.
+void check_outputs(const LinesArguments& arguments) {
+  std::set<fs::path> taken;
+  for (const fs::path output : arguments.outputs) {
+    io::drawing_format_for(output);
+    check_writable(output, arguments.drawing.overwrite);
+    if (taken.insert(output.lexically_normal()).second) continue;
+    throw Error(ErrorKind::kUsage, fmt::format("{}: named twice", output.string()));
+  }
+}
+
+/// The attribute scalar_`name` or `name` of every point; empty if there is none.
+std::vector<float> probabilities(const PointCloud& cloud, const std::string& name) {
+  for (const std::string& spelling : {"scalar_" + name, name}) {
+    const Attribute* attribute = find_attribute(cloud, spelling);
+    if (!attribute || attribute->components != 1) continue;
+    std::vector<float> values(cloud.size());
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      values[i] = static_cast<float>(attribute->value(i));
+    }
+    return values;
+  }
+  return {};
+}
+
+void warn_of_other_classes(const std::string& file, const std::vector<std::uint8_t>& classes) {
+  const auto others = std::count_if(classes.begin(), classes.end(), [](std::uint8_t label) {
+    return label > kBoundary && label != kUnlabelled;
+  });
+  if (others == 0) return;
+  warn(fmt::format("{}: {} labels are no classes of edges: 1 is smooth, 2 sharp, 3 boundary", file,
+                   others));
+}
+
+LabelledCloud with_given_labels(const LinesArguments& arguments, const PointCloud& cloud,
+                                std::vector<std::uint8_t> classes, const Progress& progress) {
+  warn_of_other_classes(arguments.input, classes);
+  LabelledCloud labelled{
+      .prepared = prepare(arguments.input, cloud, arguments.preparation, progress),
+      .classes = std::move(classes),
+      .p_sharp = probabilities(cloud, "p_sharp"),
+      .p_smooth = probabilities(cloud, "p_smooth")};
+  if (labelled.p_sharp.empty()) labelled.p_smooth.clear();
+  if (!labelled.p_sharp.empty()) labelled.p_smooth.resize(cloud.size());
+  return labelled;
+}
+
+LabelledCloud label(const LinesArguments& arguments, const PointCloud& cloud, StageClock& clock) {
+  std::vector<std::uint8_t> given = formats::labels_of(cloud, arguments.input);
+  clock.begin("normals");
+  if (!given.empty() && !arguments.classify) {
+    return with_given_labels(arguments, cloud, std::move(given), clock.progress());
+  }
+  const detect::EdgeModel model = load_model(arguments.model);
+  if (given.empty()) {
+    say(fmt::format("{}: no labels: classified by model {}", arguments.input, model.name));
+  }
+  ClassifiedCloud classified =
+      classify_cloud(arguments.input, cloud, &model, {}, arguments.preparation, clock.progress());
+  return {.prepared = std::move(classified.prepared),
+          .classes = std::move(classified.found.classes),
+          .p_sharp = std::move(classified.found.p_sharp),
+          .p_smooth = std::move(classified.found.p_smooth)};
+}
+
+/// Leaves what the user asked for; returns how many curves that took away.
+std::size_t filter(const LinesArguments& arguments, std::vector<Curve>& curves) {
+  const auto lacks = [](const std::vector<std::string>& names, std::string_view name) {
+    return !names.empty() && std::find(names.begin(), names.end(), name) == names.end();
+  };
+  return std::erase_if(curves, [&](const Curve& curve) {
+    const std::string_view name = io::line_class(curve.edge_class).name;
+    return lacks(arguments.classes, name.substr(0, name.find('-'))) ||
+           lacks(arguments.kinds, name_of(curve.kind)) ||
+           curve.confidence < arguments.min_confidence;
+  });
+}
+
+void report(const LinesArguments& arguments, const std::vector<Curve>& curves,
+            std::size_t left_out) {
+  double length = 0.0;
+  for (const Curve& curve : curves) length += length_of(curve);
+  say(fmt::format("{}: {} curve{}, total length {:.6g}{}", arguments.input, curves.size(),
+                  curves.size() == 1 ? "" : "s", length,
+                  left_out == 0 ? "" : fmt::format("; {} left out as asked", left_out)));
+  for (const io::LineClass& entry : io::kLineClasses) {
+    std::string kinds;
+    double class_length = 0.0;
+    for (const CurveKind kind : kKinds) {
+      std::size_t count = 0;
+      for (const Curve& curve : curves) {
+        if (curve.edge_class != entry.edge_class || curve.kind != kind) continue;
+        ++count;
+        class_length += length_of(curve);
+      }
+      if (count == 0) continue;
+      kinds += fmt::format("{} {}{}, ", count, name_of(kind), count == 1 ? "" : "s");
+    }
+    if (!kinds.empty()) say(fmt::format("  {}: {}length {:.6g}", entry.name, kinds, class_length));
+  }
+}
+
+void run(LinesArguments arguments, const Common& common) {
+  arguments.drawing.overwrite = common.overwrite();
+  check_outputs(arguments);
+  find_model(arguments.model.name);  // refuses before the work
+  StageClock clock(console_progress(common));
+  clock.begin("read");
+  const PointCloud cloud = read_cloud(arguments.input);
+  throw_if_cancelled(&clock.progress());
+  const LabelledCloud labelled = label(arguments, cloud, clock);
+  clock.begin("lines");
+  std::vector<Curve> curves;
+  with_name_in_errors(arguments.input, [&] {
+    curves = lines::find_lines({.positions = labelled.prepared.positions,
+                                .normals = labelled.prepared.normals,
+                                .classes = labelled.classes,
+                                .p_sharp = labelled.p_sharp,
+                                .p_smooth = labelled.p_smooth},
+                               arguments.lines, &clock.progress());
+  });
+  const std::size_t left_out = filter(arguments, curves);
+  clock.begin("write");
+  arguments.drawing.tolerance = arguments.lines.tolerance;
+  arguments.drawing.coordinate_system = io::las_coordinate_system(cloud);
+  if (!arguments.has_unit && arguments.drawing.coordinate_system.in_metres) {
+    arguments.drawing.unit = io::LengthUnit::kMetre;
+  }
+  for (const std::string& output : arguments.outputs) {
+    io::write_drawing(output, curves, arguments.drawing);
+  }
+  report(arguments, curves, left_out);
+  if (curves.empty()) say("  no edges: what was written holds no lines");
+  say("  seconds: " + clock.seconds());
+  for (const std::string& output : arguments.outputs) say("  -> " + output);
+}
+
+/// A number that the user gave: from above `least` to `most`.
+CLI::Validator above(double least, double most, const std::string& meaning) {
+  return {[=](const std::string& word) -> std::string {
+            double value = 0.0;
+            const bool sound = CLI::detail::lexical_cast(word, value) && std::isfinite(value) &&
+                               value > least && value <= most;
+            return sound ? "" : fmt::format("{} is not {}", word, meaning);
+          },
+          meaning};
+}
+
+void add_line_options(CLI::App& command, lines::LineOptions& options) {
+  const CLI::Validator length = above(0.0, 1e150, "a length above 0");
+  command
+      .add_option("--min-length", options.min_length,
+                  "Leave out shorter curves (default: from the spacing, as the two below)")
+      ->check(length);
+  command.add_option("--gap", options.gap, "Bridge gaps up to this length")->check(length);
+  command
+      .add_option("--tolerance", options.tolerance,
+                  "How far the points may be from their curve; also of the polylines that stand "
+                  "for arcs in formats without arcs (default there: a thousandth of the radius)")
+      ->check(length);
+  command
+      .add_option("--angle", options.angle,
+                  "Split a curve where it bends by more than this many degrees")
+      ->capture_default_str()
+      ->check(above(0.0, 180.0, "an angle above 0, up to 180"));
+  command.add_flag("--regularise", options.regularise,
+                   "Make nearly parallel and nearly right angles exactly so");
+  command.add_flag("--boundaries", options.boundaries,
+                   "Also draw where the surface ends, on a layer of its own");
+}
+
+void add_drawing_options(CLI::App& command, LinesArguments& arguments) {
+  command
+      .add_option("--class", arguments.classes,
+                  "Keep these classes only: sharp, smooth, boundary, with commas between")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"sharp", "smooth", "boundary"}));
+  command
+      .add_option("--kind", arguments.kinds,
+                  "Keep these kinds only: segment, arc, circle, polyline, with commas between")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"segment", "arc", "circle", "polyline"}));
+  command
+      .add_option("--min-confidence", arguments.min_confidence,
+                  "Leave out curves whose points are edges with a lower mean probability")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 1.0));
+  add_choice(command, "--dxf-version", arguments.drawing.dxf_version,
+             {{"2000", io::DxfVersion::k2000}, {"r12", io::DxfVersion::kR12}},
+             "DXF: of AutoCAD 2000, which all later ones read, or R12 for old programs");
+  add_choice(command, "--view", arguments.drawing.view,
+             {{"top", io::View::kTop}, {"front", io::View::kFront}, {"side", io::View::kSide}},
+             "SVG: seen from above, from the front (x, z) or from the side (y, z)");
+  using enum io::LengthUnit;
+  CLI::Option* unit = add_choice(command, "--unit", arguments.drawing.unit,
+                                 {{"none", kNone},
+                                  {"mm", kMillimetre},
+                                  {"cm", kCentimetre},
+                                  {"m", kMetre},
+                                  {"in", kInch},
+                                  {"ft", kFoot}},
+                                 "DXF: the unit of the coordinates (default: m if the coordinate "
+                                 "system of a LAS file says so, otherwise none)");
+  unit->default_str("");
+  unit->each([&arguments](const std::string&) { arguments.has_unit = true; });
+}
+
+}  // namespace
+
+void add_lines(CLI::App& app, Common& common) {
+  CLI::App* command = add_command(
+      app, common, "lines", "Draw the edges as curves: segments, arcs, circles and polylines",
+      "pcednet lines scan_edges.ply -o edges.dxf       of a cloud that was classified\n"
+      "pcednet lines scan.ply -o edges.dxf --model cad     classifies it first\n"
+      "pcednet lines roof.las -o roof.gpkg -o roof.svg --boundaries --min-length 0.5\n"
+      "pcednet lines part.ply -o part.obj --class sharp --kind segment,arc --regularise");
+  auto arguments = std::make_shared<LinesArguments>();
+  command->add_option("input", arguments->input, "Point file")->required();
+  command
+      ->add_option(
+          "-o,--output", arguments->outputs,
+          "Output file: " + io::drawing_extensions(" or ") + "; may be given several times")
+      ->required()
+      ->allow_extra_args(false);
+  add_line_options(*command, arguments->lines);
+  add_drawing_options(*command, *arguments);
+  command->add_flag("--classify", arguments->classify,
+                    "Classify first even if the points have labels");
+  add_model_options(*command, arguments->model);
+  add_prepare_options(*command, arguments->preparation);
+  for (const char* of_a_model : {"--model", "--no-context", "--exact", "--s-min", "--s-max"}) {
+    command->get_option(of_a_model)->each([arguments](const std::string&) {
+      arguments->classify = true;
+    });
+  }
+  command->callback([arguments, &common] { run(*arguments, common); });
+}
+
+}  // namespace pcednet::app

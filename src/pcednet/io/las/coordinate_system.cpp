@@ -1,0 +1,56 @@
+#include "pcednet/io/coordinate_system.h"
+
+#include <map>
+
+#include "pcednet/io/las/file.h"
+#include "pcednet/io/las/las.h"
+
+namespace pcednet::io {
+namespace {
+
+// GeoTIFF keys, and the values that say nothing.
+constexpr std::uint16_t kGeographicType = 2048, kProjectedType = 3072, kProjectedUnit = 3076,
+                        kVerticalUnit = 4099;
+constexpr int kMetre = 9001, kUserDefined = 32767;
+
+/// The keys whose value stands with them, which codes do.
+std::map<std::uint16_t, int> geo_keys(std::string_view data) {
+  constexpr std::size_t kEntryBytes = 8;
+  std::map<std::uint16_t, int> keys;
+  for (std::size_t at = kEntryBytes; at + kEntryBytes <= data.size(); at += kEntryBytes) {
+    const bool stands_here = number_at<std::uint16_t>(data, at + 2) == 0;
+    const int value = number_at<std::uint16_t>(data, at + 6);
+    if (stands_here && value != kUserDefined) {
+      keys.emplace(number_at<std::uint16_t>(data, at), value);
+    }
+  }
+  return keys;
+}
+
+CoordinateSystem coordinate_system_of_keys(std::string_view data) {
+  const auto keys = geo_keys(data);
+  const auto value = [&](std::uint16_t key, int otherwise) {
+    const auto found = keys.find(key);
+    return found == keys.end() ? otherwise : found->second;
+  };
+  CoordinateSystem system;
+  system.epsg = value(kProjectedType, value(kGeographicType, 0));
+  system.in_metres = value(kProjectedUnit, 0) == kMetre && value(kVerticalUnit, kMetre) == kMetre;
+  return system;
+}
+
+}  // namespace
+
+CoordinateSystem las_coordinate_system(const PointCloud& cloud) {
+  const LasFile file = attached_las_file(cloud);
+  CoordinateSystem system;
+  for (const auto* records : {&file.records, &file.extended_records}) {
+    for (const LasRecord& record : *records) {
+      if (record.is(kWktRecord)) return coordinate_system_of_wkt(until_zero(record.data));
+      if (record.is(kGeoKeysRecord)) system = coordinate_system_of_keys(record.data);
+    }
+  }
+  return system;
+}
+
+}  // namespace pcednet::io

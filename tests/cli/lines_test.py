@@ -1,0 +1,232 @@
+"""`pcednet lines`: curves of a cloud in every format, what is asked for and nothing else, bad input."""
+import json
+import os
+import re
+import resource
+import sqlite3
+import struct
+import subprocess
+import unittest
+import xml.etree.ElementTree as ElementTree
+
+import numpy as np
+
+from las_test import NEW, OFFSET, SCALE, las, vlr
+from support import PROGRAM, CliTest, cube, run, write_ply
+
+WITHOUT_SQLITE = b"made without SQLite" in subprocess.run([PROGRAM, "lines", "a.ply", "-o", "a.gpkg"],
+                                                          capture_output=True).stderr
+FORMATS = ("dxf", "obj", "ply", "geojson", "svg") + (() if WITHOUT_SQLITE else ("gpkg",))
+WKT = ('PROJCS["ETRS89 / UTM zone 32N",GEOGCS["ETRS89",DATUM["European_Terrestrial_Reference_System_'
+       '1989",SPHEROID["GRS 1980",6378137,298.257222101]],PRIMEM["Greenwich",0],UNIT["degree",'
+       '0.0174532925199433]],PROJECTION["Transverse_Mercator"],PARAMETER["latitude_of_origin",0],'
+       'PARAMETER["central_meridian",9],PARAMETER["scale_factor",0.9996],PARAMETER["false_easting",'
+       '500000],PARAMETER["false_northing",0],UNIT["metre",1],AUTHORITY["EPSG","25832"]]')
+
+
+def geojson(path):
+    """The properties and the vertices of every feature."""
+    features = json.loads(path.read_text())["features"]
+    return [(f["properties"], np.array(f["geometry"]["coordinates"])) for f in features]
+
+
+def geopackage(path):
+    """The same of a GeoPackage, by the words of its standard."""
+    database = sqlite3.connect(path)
+    names = ("class", "kind", "length", "confidence", "dihedral_angle", "points", "radius")
+    (srs, z, m), = database.execute("SELECT srs_id, z, m FROM gpkg_geometry_columns")
+    box, = database.execute("SELECT min_x, min_y, max_x, max_y FROM gpkg_contents")
+    found, every = [], []
+    for blob, *values in database.execute(f"SELECT geom, {', '.join(names)} FROM edges ORDER BY fid"):
+        magic, version, flags, of = struct.unpack_from("<2sBBi", blob)
+        assert (magic, version, flags, of, z, m) == (b"GP", 0, 5, srs, 1, 0)
+        envelope = struct.unpack_from("<6d", blob, 8)
+        order, kind, count = struct.unpack_from("<BII", blob, 56)
+        assert (order, kind, len(blob)) == (1, 1002, 65 + 24 * count)
+        points = np.frombuffer(blob, "<f8", 3 * count, 65).reshape(-1, 3)
+        assert np.array_equal(np.reshape(envelope, (3, 2)).T, [points.min(0), points.max(0)])
+        found.append((dict(zip(names, values)), points))
+        every.append(points)
+    if every:
+        every = np.vstack(every)
+        assert np.array_equal(box, [*every[:, :2].min(0), *every[:, :2].max(0)])
+    else:
+        assert box == (None,) * 4
+    database.close()
+    return found
+
+
+class Lines(CliTest):
+    def outputs(self, *formats):
+        self.made = {f: self.folder / f"out.{f}" for f in formats or FORMATS}
+        return [word for path in self.made.values() for word in ("-o", path)]
+
+    def labelled_cube(self, name="cube.ply", shift=(0, 0, 0)):
+        p, n, label = cube(30000)
+        write_ply(self.folder / name, p + shift, n, np.where(label == 2, 2, 0).astype(np.uint8),
+                  position_type="double")
+        return self.folder / name
+
+    def stated_count(self, done):
+        return int(re.search(r": (\d+) curves?, total length", done.stderr)[1])
+
+    def test_every_format_holds_the_same_curves(self):
+        far = np.array([512049.25, 5403059.5, 252.5])
+        done = run("lines", self.labelled_cube(shift=far), *self.outputs())
+        count = self.stated_count(done)
+        self.assertGreaterEqual(count, 6)
+        for path in self.made.values():
+            self.assertIn(f"-> {path}", done.stderr)
+        curves = geojson(self.made["geojson"])
+        self.assertEqual(len(curves), count)
+        for properties, points in curves:
+            self.assertEqual(properties["class"], "sharp-edge")
+            self.assertLess(np.abs(points - far).max(), 0.6)
+        if "gpkg" in FORMATS:
+            packed = geopackage(self.made["gpkg"])
+            self.assertEqual([p for p, _ in packed], [p for p, _ in curves])
+            for (_, a), (_, b) in zip(packed, curves):
+                self.assertTrue(np.array_equal(a, b))
+        obj = self.made["obj"].read_text()
+        vertices = np.array([line.split()[1:] for line in obj.splitlines() if line.startswith("v ")],
+                            float)
+        chains = [line.split()[1:] for line in obj.splitlines() if line.startswith("l ")]
+        self.assertEqual(len(chains), count)
+        for chain, (_, points) in zip(chains, curves):
+            self.assertTrue(np.array_equal(vertices[np.array(chain, int) - 1], points))
+        self.assertEqual(len(np.unique(vertices, axis=0)), len(vertices))
+        self.assertIn(f": {count} curves\n".encode(), self.made["ply"].read_bytes())
+        svg = ElementTree.parse(self.made["svg"])
+        self.assertEqual(len(svg.findall(".//{http://www.w3.org/2000/svg}polyline")), count)
+        dxf = self.made["dxf"].read_text().split("ENTITIES")[1]
+        self.assertEqual(len(re.findall(r"^  0\n(?:LINE|ARC|CIRCLE|POLYLINE)$", dxf, re.M)), count)
+
+    def test_the_same_bytes_with_any_number_of_threads(self):
+        path = self.labelled_cube()
+        bytes_of = []
+        for threads in (1, 2):
+            run("lines", path, *self.outputs(), "--threads", threads, "--overwrite")
+            bytes_of.append([p.read_bytes() for p in self.made.values()])
+        self.assertEqual(*bytes_of)
+
+    def test_filters_and_versions(self):
+        path = self.labelled_cube()
+        every = self.stated_count(run("lines", path, *self.outputs("geojson")))
+        kinds = [p["kind"] for p, _ in geojson(self.made["geojson"])]
+        done = run("lines", path, *self.outputs("geojson"), "--kind", "segment", "--overwrite")
+        self.assertEqual(self.stated_count(done), kinds.count("segment"))
+        done = run("lines", path, *self.outputs("geojson"), "--class", "smooth,boundary",
+                   "--overwrite")
+        self.assertEqual(geojson(self.made["geojson"]), [])
+        self.assertIn(f"{every} left out", done.stderr)
+        run("lines", path, *self.outputs("dxf"), "--dxf-version", "r12", "--overwrite")
+        self.assertIn("AC1009", self.made["dxf"].read_text())
+        run("lines", path, *self.outputs("dxf"), "--unit", "mm", "--overwrite")
+        self.assertIn("$INSUNITS\n 70\n4\n", self.made["dxf"].read_text())
+
+    @unittest.skipIf(WITHOUT_SQLITE, "no GeoPackage in this build")
+    def test_las_without_labels_or_normals_is_classified_and_keeps_its_coordinate_system(self):
+        p, _, _ = cube(8000)
+        rows = np.zeros(len(p), NEW)
+        for i, axis in enumerate("XYZ"):
+            rows[axis] = np.round((100 + 10 * p[:, i]) / SCALE[i])
+        path = self.folder / "a.las"
+        path.write_bytes(las(6, rows, [vlr(b"LASF_Projection", 2112, WKT.encode() + b"\0")]))
+        done = run("lines", path, *self.outputs("gpkg", "geojson", "dxf"))
+        self.assertIn("no labels: classified by model scan", done.stderr)
+        self.assertIn("no normals", done.stderr)
+        for _, points in geopackage(self.made["gpkg"]):
+            self.assertLess(np.abs(points - OFFSET - 100).max(), 8)
+        database = sqlite3.connect(self.made["gpkg"])
+        row, = database.execute("SELECT s.organization, s.organization_coordsys_id, s.definition "
+                                "FROM gpkg_contents c JOIN gpkg_spatial_ref_sys s USING (srs_id)")
+        database.close()
+        self.assertEqual(row, ("EPSG", 25832, WKT))
+        crs = json.loads(self.made["geojson"].read_text())["crs"]
+        self.assertEqual(crs["properties"]["name"], "urn:ogc:def:crs:EPSG::25832")
+        self.assertIn("$INSUNITS\n 70\n6\n", self.made["dxf"].read_text())
+
+    def test_labels_are_used_unless_asked_otherwise(self):
+        p, n, _ = cube(4000)
+        write_ply(self.folder / "a.ply", p, n, np.zeros(len(p), np.uint8))
+        done = run("lines", self.folder / "a.ply", *self.outputs("geojson"))
+        self.assertIn("no edges", done.stderr)
+        done = run("lines", self.folder / "a.ply", *self.outputs("geojson"), "--classify",
+                   "--overwrite")
+        self.assertNotIn("no edges", done.stderr)
+        done = run("lines", self.folder / "a.ply", *self.outputs("geojson"), "--model", "cad",
+                   "--overwrite")
+        self.assertNotIn("no edges", done.stderr)
+
+    def test_no_edges_give_empty_files(self):
+        p, n, _ = cube(2000)
+        write_ply(self.folder / "a.ply", p, n, np.full(len(p), 255, np.uint8))
+        done = run("lines", self.folder / "a.ply", *self.outputs())
+        self.assertIn("0 curves", done.stderr)
+        self.assertEqual(geojson(self.made["geojson"]), [])
+        if "gpkg" in FORMATS:
+            self.assertEqual(geopackage(self.made["gpkg"]), [])
+        ElementTree.parse(self.made["svg"])
+        self.assertTrue(self.made["dxf"].read_text().endswith("  0\nEOF\n"))
+
+    def test_odd_clouds(self):
+        p, n, label = cube(3000)
+        write_ply(self.folder / "one.ply", p[:1], n[:1], np.full(1, 2, np.uint8))
+        self.assertIn("0 curves", run("lines", self.folder / "one.ply", *self.outputs("obj")).stderr)
+        p[::7] = np.nan
+        n[::11] = 0
+        write_ply(self.folder / "nan.ply", p, n, label)
+        run("lines", self.folder / "nan.ply", *self.outputs(), "--overwrite")
+        for _, points in geojson(self.made["geojson"]):
+            self.assertTrue(np.isfinite(points).all())
+        write_ply(self.folder / "odd.ply", *cube(3000)[:2], np.full(3000, 17, np.uint8))
+        done = run("lines", self.folder / "odd.ply", *self.outputs("obj"), "--overwrite")
+        self.assertIn("3000 labels are no classes of edges", done.stderr)
+
+    def test_options_out_of_range(self):
+        path = self.labelled_cube()
+        before = set(os.listdir(self.folder))
+        bad = [(option, value) for option in ("--tolerance", "--gap", "--min-length", "--angle")
+               for value in ("0", "-1", "nan", "inf", "1e999", "x", "")]
+        bad += [("--angle", "181"), ("--min-confidence", "1.5"), ("--class", "sharp,blunt"),
+                ("--kind", "spline"), ("--dxf-version", "2018"), ("--view", "below"),
+                ("--unit", "yard"), ("--model", "none such")]
+        for option, value in bad:
+            done = run("lines", path, "-o", self.folder / "a.dxf", option + "=" + value, expect=2)
+            self.assertTrue(option in done.stderr or value in done.stderr, done.stderr)
+        run("lines", path, expect=2)
+        run("lines", path, "-o", self.folder / "a.shp", expect=2)
+        run("lines", path, "-o", self.folder / "a.obj", "-o", self.folder / "." / "a.obj", expect=2)
+        self.assertEqual(set(os.listdir(self.folder)), before)
+
+    def test_inputs_that_cannot_be_used(self):
+        out = ("-o", self.folder / "a.dxf")
+        run("lines", self.folder / "none.ply", *out, expect=3)
+        (self.folder / "text.ply").write_text("no ply\n")
+        run("lines", self.folder / "text.ply", *out, expect=3)
+        write_ply(self.folder / "empty.ply", np.zeros((0, 3)))
+        run("lines", self.folder / "empty.ply", *out, expect=4)
+        (self.folder / "half.ply").write_text(
+            "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
+            "property float z\nproperty float edge_class\nend_header\n0 0 0 0.5\n")
+        self.assertIn("no class", run("lines", self.folder / "half.ply", *out, expect=4).stderr)
+        run("lines", self.labelled_cube(), "-o", self.folder / "no" / "a.dxf", expect=1)
+
+    def test_nothing_is_replaced_or_left_half_written(self):
+        path = self.labelled_cube()
+        precious = self.folder / "out.obj"
+        precious.write_text("precious")
+        done = run("lines", path, *self.outputs("dxf", "obj"), expect=2)
+        self.assertIn("--overwrite", done.stderr)
+        self.assertEqual(precious.read_text(), "precious")
+        self.assertFalse(self.made["dxf"].exists())
+        precious.unlink()
+        limit = lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (200, 200))
+        for name in FORMATS:
+            done = run("lines", path, *self.outputs(name), expect=1, preexec_fn=limit)
+            self.assertIn(f"out.{name}", done.stderr)
+        self.assertEqual(os.listdir(self.folder), [path.name])
+
+
+if __name__ == "__main__":
+    unittest.main()

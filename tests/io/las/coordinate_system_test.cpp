@@ -1,0 +1,57 @@
+#include <gtest/gtest.h>
+
+#include "io/las/las_writer.h"
+#include "pcednet/formats/write_cloud.h"
+#include "pcednet/io/las/las.h"
+
+namespace pcednet::io {
+namespace {
+
+PointCloud cloud_with(const Scratch& scratch, const std::vector<LasTestRecord>& records) {
+  LasTestFile file{.rows = las_test_rows(6, 3)};
+  file.records = records;
+  return scratch.read("a.las", las_bytes(file)).cloud;
+}
+
+constexpr const char* kWkt = R"(PROJCS["x",UNIT["metre",1],AUTHORITY["EPSG","25833"]])";
+
+std::string keys(std::initializer_list<std::uint16_t> numbers) {
+  std::string bytes;
+  for (const std::uint16_t number : numbers) bytes += packed(number);
+  return bytes;
+}
+
+TEST(LasCoordinateSystem, IsThatOfTheWktOrOfTheKeys) {
+  const Scratch scratch;
+  EXPECT_EQ(las_coordinate_system(PointCloud{}).epsg, 0);
+  EXPECT_EQ(las_coordinate_system(cloud_with(scratch, {})).epsg, 0);
+  const LasTestRecord geo_keys{
+      "LASF_Projection", 34735,
+      keys({1, 1, 0, 4, 1024, 0, 1, 1, 2048, 0, 1, 4258, 3072, 0, 1, 25832, 3076, 0, 1, 9001})};
+  const auto of_keys = las_coordinate_system(cloud_with(scratch, {geo_keys}));
+  EXPECT_EQ(of_keys.epsg, 25832);
+  EXPECT_TRUE(of_keys.in_metres);
+  EXPECT_EQ(of_keys.wkt, "");
+  const LasTestRecord wkt{"LASF_Projection", 2112, std::string(kWkt) + '\0'};
+  const PointCloud cloud = cloud_with(scratch, {geo_keys, wkt});
+  EXPECT_EQ(las_coordinate_system(cloud).epsg, 25833);
+  EXPECT_EQ(las_coordinate_system(cloud).wkt, kWkt);
+  formats::write_cloud(scratch.path("a.ply"), cloud);
+  const PointCloud ply = formats::read_cloud(scratch.path("a.ply")).cloud;
+  EXPECT_EQ(las_coordinate_system(ply).wkt, kWkt);
+}
+
+TEST(LasCoordinateSystem, SurvivesBrokenKeys) {
+  const Scratch scratch;
+  for (const auto& data :
+       {keys({}), keys({1, 1, 0, 9}), keys({1, 1, 0, 1, 3072, 0, 1}),
+        keys({1, 1, 0, 1, 3072, 34737, 1, 25832}), keys({1, 1, 0, 1, 3072, 0, 1, 32767})}) {
+    const auto system =
+        las_coordinate_system(cloud_with(scratch, {{"LASF_Projection", 34735, data}}));
+    EXPECT_EQ(system.epsg, 0);
+    EXPECT_FALSE(system.in_metres);
+  }
+}
+
+}  // namespace
+}  // namespace pcednet::io
