@@ -1,13 +1,13 @@
 #!/bin/sh
 # Fuzzes every reader for SECONDS each: scripts/fuzz.sh SECONDS [READER...]
-# Readers: ply pcd obj xyz las e57 parts npy features model project. Inputs found are kept in build/fuzz/corpus, and what
+# Readers: ply pcd obj xyz las e57 parts npy features model project curves. Inputs found are kept in build/fuzz/corpus, and what
 # breaks a reader in build/fuzz/findings. Exits with 1 if something does.
 # PCEDNET names the program that makes the first inputs (default: build/release/bin/pcednet).
 set -eu
 cd "$(dirname "$0")/.."
 seconds=${1:?usage: scripts/fuzz.sh SECONDS [READER...]}
 shift
-all="ply pcd obj xyz las e57 parts npy features model project"
+all="ply pcd obj xyz las e57 parts npy features model project curves"
 # shellcheck disable=SC2086
 [ $# -gt 0 ] || set -- $all
 command -v clang++ >/dev/null || { echo "fuzz.sh: no clang++; scripts/setup.sh test" >&2; exit 77; }
@@ -57,6 +57,12 @@ printf '%s' '{"id":"a","tool":"brush","class":1,"centres":[[0,0,0]],"radius":1,"
 printf '%s' '{"id":"a","tool":"polygon","class":2,"polygon":[[0,0],[1,0],[0,1]],"matrix":' \
   '[1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1],"front_only":true,"point_size":2,"viewport":[9,9],' \
   '"protect":false,"hidden":[],"clip":null}' >"$corpus/project/polygon.json"
+printf '%s\n' '# two' 'v 0 0 0' 'v 1 0 0' 'v 0 1 0' 'o boundary' 'l 1 2 -1 1' 'l 3/1 1' \
+  >"$corpus/curves/seed.obj"
+printf '%s\n' ply 'format ascii 1.0' 'element vertex 3' 'property float x' 'property float y' \
+  'property float z' 'element edge 2' 'property int vertex1' 'property int vertex2' \
+  'property uchar class' 'property int curve' end_header '0 0 0' '1 0 0' '0 1 0' '0 1 2 0' '1 2 2 0' \
+  >"$corpus/curves/seed.ply"
 build/fuzz/bin/e57_seed >"$corpus/e57/seed.e57"
 
 failed=0
