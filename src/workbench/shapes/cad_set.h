@@ -31,6 +31,10 @@ std::vector<CadRecipe> cad_recipes(std::uint64_t seed);
 /// slightly uneven surfaces. The ridge line is sharp-edge, as annotators draw it.
 std::vector<CadRecipe> worn_recipes(std::uint64_t seed);
 
+/// The first `most` samples, labelled sharp-edge within `band` spacings of a sharp border.
+MeshVertices drawn_points(const SolidSamples& samples, std::span<const BorderPoint> borders,
+                          std::size_t most, double band);
+
 /// The recipe's cloud, randomly rotated; sharp-edge and non-edge. Noise leaves normals unchanged.
 GeneratedCloud generate(const CadRecipe& recipe, std::uint64_t seed);
 

@@ -13,6 +13,7 @@
 #include "pcednet/normals/estimate.h"
 #include "workbench/shapes/acquisition.h"
 #include "workbench/shapes/sampling.h"
+#include "workbench/shapes/true_curves.h"
 
 namespace pcednet::shapes {
 namespace {
@@ -126,7 +127,7 @@ GeneratedCloud generate(const Recipe& recipe, std::uint64_t seed) {
   }
   cloud.position_type = ScalarType::kFloat32;
   cloud.comments = comments(recipe, seed, spacing);
-  return {recipe.name, std::move(cloud)};
+  return {recipe.name, std::move(cloud), rotated(true_curves(recipe.shape.edges), rotation)};
 }
 
 }  // namespace pcednet::shapes

@@ -3,8 +3,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "pcednet/cloud/point_cloud.h"
+#include "pcednet/lines/curve.h"
 #include "workbench/shapes/shape.h"
 
 namespace pcednet::shapes {
@@ -12,6 +14,7 @@ namespace pcednet::shapes {
 struct GeneratedCloud {
   std::string name;
   PointCloud cloud;
+  std::vector<lines::Curve> curves = {};  ///< the true edges, in the place of the cloud
 };
 
 enum class NormalSource {

@@ -11,14 +11,6 @@
 namespace pcednet::shapes {
 namespace {
 
-Mat3 gaussian_rotation(Random& random) {
-  const Vec3 x = Vec3(random.normal(), random.normal(), random.normal()).normalized();
-  const Vec3 y = x.cross(Vec3(random.normal(), random.normal(), random.normal())).normalized();
-  Mat3 rotation;
-  rotation << x, y, x.cross(y);
-  return rotation;
-}
-
 /// Moves a vertex to the mean of the surface around it, of what faces the same way.
 void round_off(Vec3& position, Vec3& normal, const SurfaceSamples& surface,
                std::span<const spatial::Neighbour> near, double sigma) {
@@ -65,8 +57,15 @@ void wear_off(MeshVertices& vertices, const SurfaceSamples& surface, std::span<c
   }
 }
 
-PointCloud finish(MeshVertices vertices, const Finish& finish, Random& random) {
-  const Mat3 rotation = gaussian_rotation(random);
+Mat3 gaussian_rotation(Random& random) {
+  const Vec3 x = Vec3(random.normal(), random.normal(), random.normal()).normalized();
+  const Vec3 y = x.cross(Vec3(random.normal(), random.normal(), random.normal())).normalized();
+  Mat3 rotation;
+  rotation << x, y, x.cross(y);
+  return rotation;
+}
+
+PointCloud finish(MeshVertices vertices, const Finish& finish, const Mat3& rotation) {
   PointCloud cloud;
   for (std::size_t i = 0; i < vertices.positions.size(); ++i) {
     cloud.positions.push_back((rotation * vertices.positions[i]).cast<float>().cast<double>());

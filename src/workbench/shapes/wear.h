@@ -27,7 +27,9 @@ struct Finish {
   bool inward = false;     ///< all normals flipped
 };
 
-/// The vertices as a cloud, randomly rotated, in single precision.
-PointCloud finish(MeshVertices vertices, const Finish& finish, Random& random);
+Mat3 gaussian_rotation(Random& random);
+
+/// The vertices as a cloud, rotated, in single precision.
+PointCloud finish(MeshVertices vertices, const Finish& finish, const Mat3& rotation);
 
 }  // namespace pcednet::shapes
