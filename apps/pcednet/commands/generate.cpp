@@ -6,9 +6,11 @@
 #include "commands.h"
 #include "pcednet/core/error.h"
 #include "pcednet/formats/write_cloud.h"
+#include "pcednet/io/drawing/drawing.h"
 #include "workbench/shapes/building.h"
 #include "workbench/shapes/cad_set.h"
 #include "workbench/shapes/default_set.h"
+#include "workbench/shapes/line_set.h"
 #include "workbench/shapes/relief_set.h"
 #include "workbench/shapes/scan_set.h"
 
@@ -44,16 +46,32 @@ std::string details(const shapes::ScanRecipe& recipe) {
   return fmt::format("  noise {:.2g}", recipe.scanner.range_noise);
 }
 
+std::string details(const shapes::LineRecipe&) {
+  return "";
+}
+
+/// The true curves of a cloud: in a folder of their own, which folder inputs leave out.
+std::filesystem::path curves_of(const std::filesystem::path& folder, const std::string& name) {
+  return folder / "curves" / (name + ".obj");
+}
+
+void write_curves(const std::filesystem::path& path, const std::vector<lines::Curve>& curves,
+                  const Common& common) {
+  constexpr double kTolerance = 2e-5;
+  io::write_drawing(path, curves, {.overwrite = common.overwrite(), .tolerance = kTolerance});
+}
+
 /// Makes the clouds of the recipes, of all lists one after another.
 template <typename... Recipes>
 void run(const std::string& folder, std::uint64_t seed, const Common& common,
          const std::vector<Recipes>&... lists) {
-  make_folder(folder);
+  make_folder(std::filesystem::path(folder) / "curves");
   const auto path_of = [&](const auto& recipe) {
     return std::filesystem::path(folder) / (recipe.name + ".ply");
   };
   const auto check = [&](const auto& recipe) {
     check_writable(path_of(recipe), common.overwrite());
+    check_writable(curves_of(folder, recipe.name), common.overwrite());
   };
   (std::for_each(lists.begin(), lists.end(), check), ...);
   const Progress progress = console_progress(common);
@@ -62,7 +80,9 @@ void run(const std::string& folder, std::uint64_t seed, const Common& common,
   say("cloud             points  sharp smooth    non");
   std::size_t points = 0;
   const auto make = [&](const auto& recipe) {
-    const PointCloud cloud = shapes::generate(recipe, seed).cloud;
+    const shapes::GeneratedCloud made = shapes::generate(recipe, seed);
+    const PointCloud& cloud = made.cloud;
+    if (!made.curves.empty()) write_curves(curves_of(folder, recipe.name), made.curves, common);
     formats::write_cloud(path_of(recipe), cloud, {.overwrite = common.overwrite()});
     say(fmt::format("{:<16} {:>7} {:>6.1f} {:>6.1f} {:>6.1f}{}", recipe.name, cloud.size(),
                     percent_of(cloud, kSharpEdge), percent_of(cloud, kSmoothEdge),
@@ -146,6 +166,14 @@ void add_scan(CLI::App& generate, Common& common) {
           [set, &common] { run(set->folder, set->seed, common, shapes::scan_recipes(set->seed)); });
 }
 
+void add_lines(CLI::App& generate, Common& common) {
+  auto set = std::make_shared<SetArguments>();
+  add_set(generate, common, *set, "lines",
+          "Clouds for measuring lines: CAD parts, clean, noisy and scanned, and roofs",
+          "pcednet generate lines parts/")
+      ->callback([set, &common] { run(set->folder, set->seed, common, shapes::line_recipes()); });
+}
+
 void add_sample(CLI::App& generate, Common& common) {
   auto file = std::make_shared<std::string>();
   auto seed = std::make_shared<std::uint64_t>(1);
@@ -173,6 +201,7 @@ void add_generate(CLI::App& app, Common& common) {
   add_cad(*generate, common);
   add_worn(*generate, common);
   add_scan(*generate, common);
+  add_lines(*generate, common);
   add_sample(*generate, common);
 }
 
