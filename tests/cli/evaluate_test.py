@@ -1,5 +1,6 @@
 """pcednet evaluate: scores as JSON, of a model and of other tools' predictions."""
 import json
+import os
 import unittest
 
 import numpy as np
@@ -47,6 +48,58 @@ class Evaluate(CliTest):
             self.folder / "scores.json")
         report = json.loads((self.folder / "scores.json").read_text())
         self.assertGreater(report["median"]["mcc"], 0.7)
+
+    def test_scores_lines_against_the_curves_that_generate_writes(self):
+        parts = self.folder / "parts"
+        run("generate", "lines", parts, "--only", "roof_hip")
+        self.assertEqual(sorted(os.listdir(parts)), ["curves", "roof_hip_0.ply", "roof_hip_1.ply"])
+        self.assertEqual(sorted(os.listdir(parts / "curves")), ["roof_hip_0.obj", "roof_hip_1.obj"])
+        # The curves are no clouds of the folder.
+        self.assertEqual(len(json.loads(run("evaluate", parts, "--method", "ca", "--json",
+                                            "-").stdout)["clouds"]), 2)
+        done = run("evaluate", parts / "curves", "--truth", parts, "--cloud", parts, "--json",
+                   self.folder / "lines.json")
+        self.assertEqual(len(done.stdout.splitlines()), 5)
+        scores = json.loads((self.folder / "lines.json").read_text())
+        self.assertEqual([row["name"] for row in scores["clouds"]], ["roof_hip_0", "roof_hip_1"])
+        for name in ("precision_01", "recall_02", "found", "pieces", "corners"):
+            self.assertEqual(scores["mean"][name], 1.0, name)
+        run("generate", "lines", parts, "--only", "no such part", expect=2)
+
+    def test_scores_lines_by_hand(self):
+        truth, lines = self.folder / "truth.obj", self.folder / "lines.obj"
+        truth.write_text("v -1 0 0\nv 1 0 0\nv 1 1 0\nl 1 2\nl 2 3\n")
+        lines.write_text("v -1 0 0\nv 0.5 0 0\nv 1 0 0\nl 1 2\nl 2 3\n")
+        run("convert", self.square(), "-o", self.folder / "cloud.ply")
+        for extra in ((), ("--cloud", self.folder / "cloud.ply")):
+            row = json.loads(run("evaluate", lines, "--truth", truth, "--json", "-",
+                                 *extra).stdout)["clouds"][0]
+            self.assertEqual((row["lines"], row["true_curves"]), (2, 2))
+            self.assertAlmostEqual(row["precision_02"], 1.0)
+            self.assertAlmostEqual(row["recall_02"], 2 / 3, delta=0.01)
+            self.assertEqual((row["found"], row["pieces"]), (0.0, 2.0))
+            self.assertAlmostEqual(row["corners"], 2 / 3)
+        lines.write_text("# nothing found\n")
+        row = json.loads(run("evaluate", lines, "--truth", truth, "--json",
+                             "-").stdout)["clouds"][0]
+        self.assertEqual((row["lines"], row["found"], row["cd"]), (0, 0.0, None))
+
+    def square(self):
+        path = self.folder / "square.xyz"
+        path.write_text("".join(f"{x} {y} 0\n" for x in (-1, 1) for y in (-1, 1)))
+        return path
+
+    def test_refuses_lines_without_truth(self):
+        truth = self.folder / "truth.obj"
+        truth.write_text("v 0 0 0\nv 1 0 0\nl 1 2\n")
+        (self.folder / "other").mkdir()
+        (self.folder / "empty.obj").write_text("")
+        run("evaluate", truth, "--truth", truth, "--model", "scan", expect=2)
+        run("evaluate", truth, "--cloud", truth, expect=2)
+        run("evaluate", truth, "--truth", self.folder / "other", expect=4)
+        run("evaluate", truth, "--truth", self.folder / "empty.obj", expect=4)
+        run("evaluate", truth, "--truth", self.folder / "gone.obj", expect=3)
+        run("evaluate", truth, "--truth", truth, "--cloud", self.folder / "other", expect=3)
 
     def test_refuses_what_has_no_meaning(self):
         write_ply(self.folder / "a.ply", *cube(300))

@@ -6,6 +6,7 @@
 
 #include "batch.h"
 #include "commands.h"
+#include "evaluate_lines.h"
 #include "methods.h"
 #include "models.h"
 #include "pcednet/core/error.h"
@@ -22,7 +23,7 @@ namespace fs = std::filesystem;
 
 struct EvaluateArguments {
   std::vector<std::string> inputs;
-  std::string predictions, json, positive = "sharp";
+  std::string predictions, json, positive = "sharp", truth, cloud;
   ModelArguments model;
   MethodArguments method;
   detect::PrepareOptions preparation;
@@ -105,10 +106,15 @@ Results score_all(const EvaluateArguments& arguments, const Common& common) {
 }
 
 void evaluate(const EvaluateArguments& arguments, const Common& common) {
+  if (!arguments.truth.empty()) {
+    return evaluate_lines({arguments.inputs, arguments.truth, arguments.cloud, arguments.json},
+                          common);
+  }
   const int ways = !arguments.model.name.empty() + !arguments.predictions.empty() +
                    !arguments.method.name.empty();
   if (ways != 1) {
-    throw Error(ErrorKind::kUsage, "evaluate: give one of --model, --predictions or --method");
+    throw Error(ErrorKind::kUsage,
+                "evaluate: give one of --model, --predictions, --method or --truth");
   }
   if (arguments.calibration && arguments.model.name.empty()) {
     throw Error(ErrorKind::kUsage, "evaluate: --calibration needs --model");
@@ -130,13 +136,17 @@ void evaluate(const EvaluateArguments& arguments, const Common& common) {
 
 void add_evaluate(CLI::App& app, Common& common) {
   auto arguments = std::make_shared<EvaluateArguments>();
-  CLI::App* command = add_command(
-      app, common, "evaluate", "Score predicted classes against the labels of the clouds",
-      "pcednet evaluate clouds/ --model scan --positive edge\n"
-      "pcednet evaluate clouds/ --predictions other_tool/ --json scores.json\n"
-      "pcednet evaluate clouds/ --method ca\n"
-      "pcednet evaluate a.ply b.ply --model my.safetensors --json -");
-  command->add_option("inputs", arguments->inputs, "Labelled point files or folders of them")
+  CLI::App* command =
+      add_command(app, common, "evaluate",
+                  "Score predicted classes against labels, or lines against true curves",
+                  "pcednet evaluate clouds/ --model scan --positive edge\n"
+                  "pcednet evaluate clouds/ --predictions other_tool/ --json scores.json\n"
+                  "pcednet evaluate clouds/ --method ca\n"
+                  "pcednet evaluate a.ply b.ply --model my.safetensors --json -\n"
+                  "pcednet evaluate lines.obj --truth curves.obj --cloud cloud.ply");
+  command
+      ->add_option("inputs", arguments->inputs,
+                   "Labelled point files or folders of them; with --truth files of lines")
       ->required();
   add_model_options(*command, arguments->model);
   command->add_option(
@@ -144,6 +154,18 @@ void add_evaluate(CLI::App& app, Common& common) {
       "Folder with the labels of another program, one file per cloud with the same stem: .u8 (one "
       "byte per point), .txt (one number per line), .npy, .ply, ...");
   add_method_options(*command, arguments->method);
+  CLI::Option* truth = command->add_option(
+      "--truth", arguments->truth,
+      "Score lines (.obj, .ply) against these true curves: a file, or a folder with STEM.obj or "
+      "curves/STEM.obj, as generate writes");
+  command
+      ->add_option("--cloud", arguments->cloud,
+                   "The cloud of the lines, or a folder of clouds with the same stems: lengths are "
+                   "relative to it; without it to the box of the true curves")
+      ->needs(truth);
+  for (const char* of_labels : {"--model", "--predictions", "--method"}) {
+    truth->excludes(command->get_option(of_labels));
+  }
   command
       ->add_option("--positive", arguments->positive,
                    "Classes that count as positive: sharp, or edge (sharp and smooth)")

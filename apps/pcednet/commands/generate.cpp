@@ -65,15 +65,19 @@ void write_curves(const std::filesystem::path& path, const std::vector<lines::Cu
 template <typename... Recipes>
 void run(const std::string& folder, std::uint64_t seed, const Common& common,
          const std::vector<Recipes>&... lists) {
-  make_folder(std::filesystem::path(folder) / "curves");
+  make_folder(folder);
   const auto path_of = [&](const auto& recipe) {
     return std::filesystem::path(folder) / (recipe.name + ".ply");
   };
   const auto check = [&](const auto& recipe) {
     check_writable(path_of(recipe), common.overwrite());
+  };
+  const auto check_curves = [&](const auto& recipe) {
     check_writable(curves_of(folder, recipe.name), common.overwrite());
   };
   (std::for_each(lists.begin(), lists.end(), check), ...);
+  make_folder(std::filesystem::path(folder) / "curves");
+  (std::for_each(lists.begin(), lists.end(), check_curves), ...);
   const Progress progress = console_progress(common);
   const std::size_t clouds = (lists.size() + ...);
   Stage stage(&progress, "generate", clouds);
@@ -104,7 +108,10 @@ CLI::App* add_set(CLI::App& generate, Common& common, SetArguments& arguments,
                   const std::string& name, const std::string& description,
                   const std::string& examples) {
   CLI::App* command = add_command(generate, common, name, description, examples);
-  command->add_option("folder", arguments.folder, "Folder for the PLY files, created if missing")
+  command
+      ->add_option(
+          "folder", arguments.folder,
+          "Folder for the PLY files, created if missing; true curves go to its folder curves")
       ->required();
   command->add_option("--seed", arguments.seed, "Seed of the clouds")->capture_default_str();
   return command;
@@ -167,11 +174,28 @@ void add_scan(CLI::App& generate, Common& common) {
 }
 
 void add_lines(CLI::App& generate, Common& common) {
-  auto set = std::make_shared<SetArguments>();
-  add_set(generate, common, *set, "lines",
-          "Clouds for measuring lines: CAD parts, clean, noisy and scanned, and roofs",
-          "pcednet generate lines parts/")
-      ->callback([set, &common] { run(set->folder, set->seed, common, shapes::line_recipes()); });
+  struct Arguments : SetArguments {
+    std::string only;
+  };
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* command =
+      add_set(generate, common, *arguments, "lines",
+              "Clouds with true curves for measuring lines: CAD parts, clean, noisy and scanned, "
+              "and roofs",
+              "pcednet generate lines parts/\n"
+              "pcednet generate lines roofs/ --only roof_");
+  command->add_option("--only", arguments->only, "Only the clouds with this in their names");
+  command->callback([arguments, &common] {
+    std::vector<shapes::LineRecipe> recipes = shapes::line_recipes();
+    std::erase_if(recipes, [&](const shapes::LineRecipe& recipe) {
+      return recipe.name.find(arguments->only) == std::string::npos;
+    });
+    if (recipes.empty()) {
+      throw Error(ErrorKind::kUsage,
+                  fmt::format("--only {}: no cloud has this in its name", arguments->only));
+    }
+    run(arguments->folder, arguments->seed, common, recipes);
+  });
 }
 
 void add_sample(CLI::App& generate, Common& common) {

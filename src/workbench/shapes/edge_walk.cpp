@@ -1,5 +1,6 @@
 #include "workbench/shapes/edge_walk.h"
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
 #include <array>

@@ -1,0 +1,98 @@
+#include "evaluate_lines.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <iostream>
+
+#include "batch.h"
+#include "pcednet/eval/line_scores.h"
+#include "pcednet/formats/format.h"
+#include "pcednet/formats/read_cloud.h"
+#include "pcednet/io/drawing/read_curves.h"
+
+namespace pcednet::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The first file STEM + ending, of the folders in turn; `place` itself if it is no folder.
+fs::path find_file(const fs::path& place, const std::vector<fs::path>& folders,
+                   const std::string& stem, const std::vector<std::string>& endings) {
+  std::error_code ignored;
+  if (!fs::is_directory(place, ignored)) return place;
+  for (const fs::path& folder : folders) {
+    for (const std::string& ending : endings) {
+      const fs::path path = folder / (stem + ending);
+      if (fs::is_regular_file(path, ignored)) return path;
+    }
+  }
+  return {};
+}
+
+fs::path find_truth(const fs::path& place, const std::string& stem) {
+  return find_file(place, {place / "curves", place}, stem,
+                   {"_curves.obj", "_curves.ply", ".obj", ".ply"});
+}
+
+fs::path find_cloud(const fs::path& place, const std::string& stem) {
+  std::vector<std::string> endings;
+  for (const formats::Format& format : formats::all_formats()) {
+    endings.insert(endings.end(), format.extensions.begin(), format.extensions.end());
+  }
+  return find_file(place, {place}, stem, endings);
+}
+
+/// A file of vertices alone is one without lines: what a method that found nothing may write.
+std::vector<lines::Curve> read_found(const fs::path& path) {
+  try {
+    return io::read_curves(path);
+  } catch (const Error& error) {
+    if (error.kind() == ErrorKind::kInsufficient) return {};
+    throw;
+  }
+}
+
+eval::LineFrame frame_for(const LineEvaluation& arguments, const std::string& stem,
+                          const std::vector<lines::Curve>& truth) {
+  if (arguments.cloud.empty()) return eval::frame_of_curves(truth);
+  const fs::path cloud = find_cloud(arguments.cloud, stem);
+  if (cloud.empty()) {
+    throw Error(ErrorKind::kUnreadable, fmt::format("{}: no cloud {}.*", arguments.cloud, stem));
+  }
+  return eval::frame_of_cloud(formats::read_cloud(cloud).cloud.positions);
+}
+
+}  // namespace
+
+void evaluate_lines(const LineEvaluation& arguments, const Common& common) {
+  if (arguments.json != "-") check_writable(arguments.json, common.overwrite());
+  std::vector<eval::NamedLineScores> scores;
+  for (const fs::path& input : expand_inputs(arguments.inputs)) {
+    const std::string stem = input.stem().string();
+    const fs::path truth = find_truth(arguments.truth, stem);
+    if (truth.empty()) {
+      warn(fmt::format("{}: no true curves in {}: left out", input.string(), arguments.truth));
+      continue;
+    }
+    with_name_in_errors(input, [&] {
+      const auto curves = io::read_curves(truth);
+      const auto found = read_found(input);
+      scores.push_back(
+          {stem, eval::score_lines(found, curves, frame_for(arguments, stem, curves))});
+    });
+  }
+  if (scores.empty()) {
+    throw Error(ErrorKind::kInsufficient,
+                fmt::format("{}: no true curves for any input", arguments.truth));
+  }
+  const std::string json = eval::to_json(scores);
+  if (arguments.json == "-") {
+    std::cout << json;
+    return;
+  }
+  std::cout << eval::to_table(scores);
+  if (!arguments.json.empty()) write_text_file(arguments.json, json, common.overwrite());
+}
+
+}  // namespace pcednet::app
