@@ -173,7 +173,7 @@ void add_scan(CLI::App& generate, Common& common) {
           [set, &common] { run(set->folder, set->seed, common, shapes::scan_recipes(set->seed)); });
 }
 
-void add_lines(CLI::App& generate, Common& common) {
+void add_line_set(CLI::App& generate, Common& common) {
   struct Arguments : SetArguments {
     std::string only;
   };
@@ -225,7 +225,7 @@ void add_generate(CLI::App& app, Common& common) {
   add_cad(*generate, common);
   add_worn(*generate, common);
   add_scan(*generate, common);
-  add_lines(*generate, common);
+  add_line_set(*generate, common);
   add_sample(*generate, common);
 }
 
