@@ -5,7 +5,7 @@ include(CMakePackageConfigHelpers)
 add_library(pcednet_all INTERFACE)
 add_library(pcednet::pcednet ALIAS pcednet_all)
 set_target_properties(pcednet_all PROPERTIES EXPORT_NAME pcednet)
-target_link_libraries(pcednet_all INTERFACE pcednet_detect)
+target_link_libraries(pcednet_all INTERFACE pcednet_detect pcednet_lines)
 install(TARGETS pcednet_all EXPORT pcednetTargets)
 
 # What a program may include: these headers include no others of pcednet, see tests/house.
@@ -17,7 +17,8 @@ set(public_headers
   eval/scores.h
   formats/read_cloud.h formats/write_cloud.h
   gls/features.h gls/projection.h gls/scale_space_options.h gls/scales.h
-  io/loaded_cloud.h io/write_options.h
+  io/coordinate_system.h io/drawing/drawing.h io/loaded_cloud.h io/write_options.h
+  lines/curve.h lines/find_lines.h
   nn/architecture.h nn/model.h nn/network.h nn/optimiser.h nn/standardise.h nn/train.h
   nn/training_set.h)
 foreach(header ${public_headers})

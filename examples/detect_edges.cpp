@@ -1,5 +1,5 @@
 // Edges from C++: of arrays in memory, and from file to file.
-//   detect_edges MODEL.safetensors             counts the edge points of a cube
+//   detect_edges MODEL.safetensors             finds the edge points and the edges of a cube
 //   detect_edges MODEL.safetensors IN OUT      labels the points of a file
 #include <pcednet/formats/read_cloud.h>
 #include <pcednet/formats/write_cloud.h>
@@ -35,6 +35,10 @@ void from_arrays(const pcednet::detect::EdgeModel& model) {
   const auto found = pcednet::detect::classify(prepared, model);
   std::printf("%zu points: %zu sharp, %zu smooth\n", cloud.size(), found.counts.sharp,
               found.counts.smooth);
+  const auto curves = pcednet::lines::find_lines(
+      {prepared.positions, prepared.normals, found.classes, found.p_sharp, found.p_smooth});
+  std::printf("%zu curves; the first is %.3f long\n", curves.size(),
+              curves.empty() ? 0.0 : pcednet::lines::length_of(curves.front()));
 }
 
 void from_file_to_file(const pcednet::detect::EdgeModel& model, const char* in, const char* out) {

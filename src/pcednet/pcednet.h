@@ -8,12 +8,16 @@
 ///     const auto prepared = pcednet::detect::prepare(cloud);
 ///     const auto found = pcednet::detect::classify(prepared, model);
 ///     // found.classes[i] is 0, 1 or 2; found.p_sharp[i] its probability of being a sharp edge
+///     const auto curves = pcednet::lines::find_lines({prepared.positions, prepared.normals,
+///                                                     found.classes, found.p_sharp,
+///                                                     found.p_smooth});
 ///
 /// prepare() estimates missing normals and says so in its notes; detect/train.h trains a model.
 /// Every error is a pcednet::Error. Work runs on every core unless set_thread_count() bounds it.
 ///
 /// Link pcednet::pcednet. Point files are read and written by formats/read_cloud.h and
-/// formats/write_cloud.h: find_package(pcednet COMPONENTS formats), pcednet::formats.
+/// formats/write_cloud.h, lines are written by io/drawing/drawing.h: find_package(pcednet
+/// COMPONENTS formats), pcednet::formats.
 
 #include "pcednet/cloud/point_cloud.h"
 #include "pcednet/core/error.h"
@@ -25,3 +29,4 @@
 #include "pcednet/detect/prepare.h"
 #include "pcednet/detect/result_cloud.h"
 #include "pcednet/detect/train.h"
+#include "pcednet/lines/find_lines.h"

@@ -32,7 +32,8 @@ constexpr std::array kKinds = {CurveKind::kSegment, CurveKind::kArc, CurveKind::
 
 struct LinesArguments {
   std::string input;
-  std::vector<std::string> outputs, classes, kinds;
+  std::vector<std::string> outputs, kinds;
+  std::vector<std::string> classes = {"sharp", "boundary"};
   bool classify = false;
   ModelArguments model{.name = "scan"};
   detect::PrepareOptions preparation;
@@ -223,8 +224,10 @@ void add_line_options(CLI::App& command, lines::LineOptions& options) {
 void add_drawing_options(CLI::App& command, LinesArguments& arguments) {
   command
       .add_option("--class", arguments.classes,
-                  "Keep these classes only: sharp, smooth, boundary, with commas between")
+                  "The classes to draw, with commas between: sharp, smooth (rounded edges, at "
+                  "the cost of some that are none), boundary")
       ->delimiter(',')
+      ->default_str("sharp,boundary")
       ->check(CLI::IsMember({"sharp", "smooth", "boundary"}));
   command
       .add_option("--kind", arguments.kinds,

@@ -13,6 +13,7 @@
 #include "pcednet/lines/finish.h"
 #include "pcednet/lines/ordered_points.h"
 #include "pcednet/lines/piece.h"
+#include "pcednet/lines/refine.h"
 #include "pcednet/lines/split.h"
 #include "pcednet/lines/strings.h"
 
@@ -58,7 +59,9 @@ void check(const EdgePoints& points, const LineOptions& options) {
 std::vector<Piece> split_chains(const std::vector<Chain>& chains, double tolerance) {
   std::vector<Piece> pieces;
   for (const Chain& chain : chains) {
-    for (Piece& piece : pieces_of(chain, split(chain, tolerance), kLeastNodes)) {
+    const bool boundary = chain.nodes[chain.nodes.size() / 2].boundary > 0.5;
+    const double within = boundary ? std::max(tolerance, kBoundaryTolerance) : tolerance;
+    for (Piece& piece : pieces_of(chain, split(chain, within), kLeastNodes)) {
       pieces.push_back(std::move(piece));
     }
   }
@@ -96,6 +99,7 @@ std::vector<Curve> find_lines(const EdgePoints& points, const LineOptions& optio
   join_pieces(pieces, limits.gap, limits.tolerance);
   complete_circles(pieces, limits.tolerance);
   string_together(pieces, 0.5 * limits.gap, limits.angle);
+  refine(pieces, cloud, sampling, progress);
   if (options.regularise) regularise(pieces);
 
   const FinishOptions finish_options = {limits.min_length, limits.tolerance, sampling.noise};

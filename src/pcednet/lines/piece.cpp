@@ -50,7 +50,9 @@ std::optional<Piece> joined(const Piece& a, const Piece& b, double tolerance) {
   both.nodes.insert(both.nodes.end(), b.nodes.begin(), b.nodes.end());
   const bool straight = a.fit.kind == CurveKind::kSegment && b.fit.kind == CurveKind::kSegment;
   both.fit = straight ? fit_segment(both.nodes) : fit_arc(both.nodes);
-  const double limit = std::max({1.4 * tolerance, 1.3 * a.fit.error, 1.3 * b.fit.error});
+  const double within =
+      a.nodes.back().boundary > 0.5 ? std::max(tolerance, kBoundaryTolerance) : tolerance;
+  const double limit = std::max({1.4 * within, 1.3 * a.fit.error, 1.3 * b.fit.error});
   if (both.fit.kind == CurveKind::kPolyline || both.fit.error > limit) return std::nullopt;
   set_ends(both);
   return both;

@@ -10,6 +10,9 @@
 
 namespace pcednet::lines {
 
+/// The tolerance of boundaries is no less, in spacings: where points end is a matter of chance.
+inline constexpr double kBoundaryTolerance = 0.4;
+
 /// One curve in the making.
 struct Piece {
   Fit fit;

@@ -1,0 +1,285 @@
+#include "pcednet/lines/refine.h"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include "pcednet/core/parallel.h"
+
+namespace pcednet::lines {
+namespace {
+
+constexpr std::size_t kNodesToRefine = 4;
+constexpr double kPlaneSide = 0.94;  ///< least cosine of a node's side and the mean
+constexpr std::size_t kLeastPoints = 8;
+constexpr int kPlaneFits = 3;
+
+// In spacings.
+constexpr double kSideOfPlane = 4.0;  ///< of the points that place a crease
+constexpr double kFromLine = 0.3;     ///< those nearer to it may be of either side
+constexpr double kMostShift = 0.8;
+constexpr double kStripInside = 1.6, kStripOutside = 1.0;
+constexpr double kEmptyArea = 1.0;  ///< beyond the last points of a strip, in squared spacings
+
+struct Plane {
+  Vec3 point, normal;
+};
+
+/// The points near a segment, each once, in curve order.
+std::vector<Vec3> points_beside(const Piece& piece, const OrderedPoints& cloud) {
+  std::vector<std::uint32_t> indices;
+  std::vector<spatial::Neighbour> near;
+  for (const ChainNode& node : piece.nodes) {
+    cloud.tree().within_unsorted(node.at, (kSideOfPlane + 1.0) * node.spacing, near);
+    for (const auto& point : near) indices.push_back(point.index);
+  }
+  std::sort(indices.begin(), indices.end());
+  indices.erase(std::unique(indices.begin(), indices.end()), indices.end());
+  std::vector<Vec3> points;
+  points.reserve(indices.size());
+  for (const std::uint32_t index : indices) points.push_back(cloud.position(index));
+  return points;
+}
+
+/// The mean of a side over the nodes, orthogonal to `along`; nothing if it turns.
+std::optional<Vec3> mean_side(const Piece& piece, const Vec3& along, Vec3 ChainNode::*side) {
+  Vec3 mean = Vec3::Zero();
+  for (const ChainNode& node : piece.nodes) mean += node.*side;
+  mean = (mean - mean.dot(along) * along).stableNormalized();
+  for (const ChainNode& node : piece.nodes) {
+    if ((node.*side).dot(mean) < kPlaneSide) return std::nullopt;
+  }
+  return mean;
+}
+
+/// The plane of the points of a side, by least squares with shrinking reach.
+std::optional<Plane> plane_of_side(const Piece& piece, const std::vector<Vec3>& points,
+                                   const Vec3& side, double tolerance) {
+  const double spacing = piece.spacing();
+  const Vec3 along = piece.fit.direction;
+  const double length = (piece.ends[1] - piece.ends[0]).norm();
+  Plane plane{piece.fit.point, along.cross(side)};
+  for (int fit = 0; fit < kPlaneFits; ++fit) {
+    const double reach = (fit == 0 ? 1.5 : 1.0) * tolerance * spacing;
+    std::vector<Vec3> on;
+    Vec3 mean = Vec3::Zero();
+    for (const Vec3& point : points) {
+      const Vec3 offset = point - piece.ends[0];
+      const double place = offset.dot(along), away = offset.dot(side) / spacing;
+      if (place < 0.0 || place > length || away < kFromLine || away > kSideOfPlane) continue;
+      if (std::abs((point - plane.point).dot(plane.normal)) > reach) continue;
+      on.push_back(point);
+      mean += point;
+    }
+    if (on.size() < kLeastPoints) return std::nullopt;
+    mean /= static_cast<double>(on.size());
+    Mat3 products = Mat3::Zero();
+    for (const Vec3& point : on) products += (point - mean) * (point - mean).transpose();
+    Eigen::SelfAdjointEigenSolver<Mat3> solver;
+    solver.computeDirect(products / (spacing * spacing * static_cast<double>(on.size())));
+    if (!(solver.eigenvalues()[1] > 0.2)) return std::nullopt;
+    plane = {mean, solver.eigenvectors().col(0).normalized()};
+  }
+  return plane;
+}
+
+/// The line of a crease in place of the piece's, if it is near it.
+std::optional<Fit> crease_line(const Piece& piece, const std::vector<Vec3>& points,
+                               double tolerance) {
+  const Vec3& along = piece.fit.direction;
+  const auto side_a = mean_side(piece, along, &ChainNode::side_a);
+  const auto side_b = mean_side(piece, along, &ChainNode::side_b);
+  if (!side_a || !side_b) return std::nullopt;
+  const auto a = plane_of_side(piece, points, *side_a, tolerance);
+  const auto b = plane_of_side(piece, points, *side_b, tolerance);
+  if (!a || !b) return std::nullopt;
+  const Vec3 cross = a->normal.cross(b->normal);
+  if (cross.norm() < 0.2) return std::nullopt;
+  const double cosine = a->normal.dot(b->normal), scale = 1.0 / (1.0 - cosine * cosine);
+  Vec3 point = piece.fit.point;
+  const double to_a = (a->point - point).dot(a->normal), to_b = (b->point - point).dot(b->normal);
+  point += scale * ((to_a - cosine * to_b) * a->normal + (to_b - cosine * to_a) * b->normal);
+  const Vec3 direction = cross.normalized();
+  return Fit{CurveKind::kSegment, point, direction.dot(along) < 0.0 ? Vec3(-direction) : direction,
+             0.0, piece.fit.error};
+}
+
+/// Where the strip of points along the piece ends: the side of their convex hull there, moved out
+/// by what is empty beyond it on average.
+std::optional<Fit> boundary_line(const Piece& piece, const std::vector<Vec3>& points) {
+  const double spacing = piece.spacing();
+  const Vec3& along = piece.fit.direction;
+  const auto inward = mean_side(piece, along, &ChainNode::side_a);
+  if (!inward) return std::nullopt;
+  const Vec3 up = along.cross(*inward);
+  const double length = (piece.ends[1] - piece.ends[0]).norm();
+  std::vector<Eigen::Vector2d> strip;  // (along, outward)
+  for (const Vec3& point : points) {
+    const Vec3 offset = point - piece.ends[0];
+    const double place = offset.dot(along), out = -offset.dot(*inward);
+    if (place < 0.0 || place > length || std::abs(offset.dot(up)) > spacing) continue;
+    if (out < -kStripInside * spacing || out > kStripOutside * spacing) continue;
+    strip.emplace_back(place, out);
+  }
+  if (strip.size() < kLeastPoints) return std::nullopt;
+  std::sort(strip.begin(), strip.end(), [](const auto& a, const auto& b) {
+    return a.x() < b.x() || (a.x() == b.x() && a.y() < b.y());
+  });
+  std::vector<Eigen::Vector2d> hull;  // its outer side
+  for (const auto& point : strip) {
+    while (hull.size() > 1) {
+      const Eigen::Vector2d u = hull.back() - hull[hull.size() - 2], v = point - hull.back();
+      if (u.x() * v.y() - u.y() * v.x() < 0.0) break;
+      hull.pop_back();
+    }
+    hull.push_back(point);
+  }
+  std::size_t i = 1;
+  while (i + 1 < hull.size() && hull[i].x() < 0.5 * length) ++i;
+  if (hull.size() < 2 || hull[i].x() - hull[i - 1].x() < 0.25 * length) return std::nullopt;
+  const double slope = (hull[i].y() - hull[i - 1].y()) / (hull[i].x() - hull[i - 1].x());
+  const double beyond = kEmptyArea * spacing * spacing / length;
+  const double out = hull[i].y() + slope * (0.5 * length - hull[i].x()) + beyond;
+  const Vec3 middle = 0.5 * (piece.ends[0] + piece.ends[1]);
+  return Fit{CurveKind::kSegment, middle - out * *inward, (along - slope * *inward).normalized(),
+             0.0, piece.fit.error};
+}
+
+/// A side of an arc in its half-plane (outward from the axis, along the axis).
+struct Ray {
+  Eigen::Vector2d point, direction;
+};
+
+/// Outward from the axis and along it, from the circle.
+Eigen::Vector2d in_half_plane(const Fit& circle, const Vec3& place) {
+  const Vec3 offset = place - circle.point;
+  const double height = offset.dot(circle.direction);
+  return {(offset - height * circle.direction).norm() - circle.radius, height};
+}
+
+/// Whether the place is beside the arc, not beyond its ends.
+bool is_beside(const Piece& piece, const Vec3& place) {
+  if (piece.closed) return true;
+  const Vec3& axis = piece.fit.direction;
+  const auto angle = [&](const Vec3& to) {
+    const Vec3 x = piece.ends[0] - piece.fit.point, y = to - piece.fit.point;
+    const double turn = std::atan2(axis.dot(x.cross(y)), x.dot(y - axis.dot(y) * axis));
+    return turn < 0.0 ? turn + 2.0 * std::numbers::pi : turn;
+  };
+  return angle(place) <= angle(piece.ends[1]);
+}
+
+std::optional<Ray> ray_of_side(const Piece& piece, const std::vector<Eigen::Vector2d>& points,
+                               const Eigen::Vector2d& side, double tolerance) {
+  const double spacing = piece.spacing();
+  Ray ray{Eigen::Vector2d::Zero(), side};
+  for (int fit = 0; fit < kPlaneFits; ++fit) {
+    const double reach = (fit == 0 ? 1.5 : 1.0) * tolerance * spacing;
+    const Eigen::Vector2d normal(-ray.direction.y(), ray.direction.x());
+    Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+    Eigen::Matrix2d products = Eigen::Matrix2d::Zero();
+    double count = 0.0;
+    for (const Eigen::Vector2d& point : points) {
+      const double away = point.dot(side) / spacing;
+      if (away < kFromLine || away > kSideOfPlane) continue;
+      if (std::abs((point - ray.point).dot(normal)) > reach) continue;
+      mean += point;
+      products += point * point.transpose();
+      count += 1.0;
+    }
+    if (count < static_cast<double>(kLeastPoints)) return std::nullopt;
+    mean /= count;
+    const Eigen::Matrix2d covariance = products / count - mean * mean.transpose();
+    Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver;
+    solver.computeDirect(covariance / (spacing * spacing));
+    if (!(solver.eigenvalues()[1] > 0.2)) return std::nullopt;
+    const Eigen::Vector2d direction = solver.eigenvectors().col(1);
+    ray = {mean, direction.dot(side) < 0.0 ? Eigen::Vector2d(-direction) : direction};
+  }
+  return ray;
+}
+
+/// The mean of a side over the nodes in the half-plane; sides are told apart by the first node.
+std::optional<std::array<Eigen::Vector2d, 2>> sides_about_axis(const Piece& piece) {
+  std::array<Eigen::Vector2d, 2> mean = {Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero()};
+  for (const ChainNode& node : piece.nodes) {
+    const Vec3 tangent = tangent_at(piece.fit, node.at);
+    const Vec3 outward = tangent.cross(piece.fit.direction);
+    const auto turned = [&](const Vec3& side) {
+      return Eigen::Vector2d(side.dot(outward), side.dot(piece.fit.direction));
+    };
+    const Eigen::Vector2d a = turned(node.side_a), b = turned(node.side_b);
+    const bool crossed = a.dot(mean[0]) + b.dot(mean[1]) < a.dot(mean[1]) + b.dot(mean[0]);
+    mean[0] += crossed ? b : a;
+    mean[1] += crossed ? a : b;
+  }
+  for (Eigen::Vector2d& side : mean) {
+    if (side.norm() < 0.8 * static_cast<double>(piece.nodes.size())) return std::nullopt;
+    side.normalize();
+  }
+  return mean;
+}
+
+/// The circle in which the two surfaces of revolution about the piece's axis meet.
+std::optional<Fit> crease_circle(const Piece& piece, const std::vector<Vec3>& points,
+                                 double tolerance) {
+  const auto sides = sides_about_axis(piece);
+  if (!sides) return std::nullopt;
+  std::vector<Eigen::Vector2d> flat;
+  for (const Vec3& point : points) {
+    if (is_beside(piece, point)) flat.push_back(in_half_plane(piece.fit, point));
+  }
+  const auto a = ray_of_side(piece, flat, (*sides)[0], tolerance);
+  const auto b = ray_of_side(piece, flat, (*sides)[1], tolerance);
+  if (!a || !b) return std::nullopt;
+  const double cross = a->direction.x() * b->direction.y() - a->direction.y() * b->direction.x();
+  if (std::abs(cross) < 0.3) return std::nullopt;
+  const Eigen::Vector2d between = b->point - a->point;
+  const double t = (between.x() * b->direction.y() - between.y() * b->direction.x()) / cross;
+  const Eigen::Vector2d meet = a->point + t * a->direction;
+  Fit fit = piece.fit;
+  fit.radius += meet.x();
+  fit.point += meet.y() * fit.direction;
+  if (!(fit.radius > 0.0)) return std::nullopt;
+  return fit;
+}
+
+std::optional<Fit> better_fit(const Piece& piece, const std::vector<Vec3>& points,
+                              double tolerance) {
+  if (piece.nodes[piece.nodes.size() / 2].boundary > 0.5) {
+    if (piece.fit.kind != CurveKind::kSegment) return std::nullopt;
+    return boundary_line(piece, points);
+  }
+  if (piece.fit.kind == CurveKind::kSegment) return crease_line(piece, points, tolerance);
+  return crease_circle(piece, points, tolerance);
+}
+
+void place(Piece& piece, const OrderedPoints& cloud, double tolerance) {
+  if (piece.fit.kind == CurveKind::kPolyline || piece.nodes.size() < kNodesToRefine) return;
+  const auto line = better_fit(piece, points_beside(piece, cloud), tolerance);
+  if (!line) return;
+  const std::array<Vec3, 2> ends = {nearest_on(*line, piece.ends[0]),
+                                    nearest_on(*line, piece.ends[1])};
+  for (const std::size_t side : {0, 1}) {
+    if ((ends[side] - piece.ends[side]).norm() > kMostShift * piece.spacing()) return;
+  }
+  piece.fit = *line;
+  piece.ends = ends;
+}
+
+}  // namespace
+
+void refine(std::vector<Piece>& pieces, const OrderedPoints& cloud, const Sampling& sampling,
+            const Progress* progress) {
+  Stage stage(progress, "refine", pieces.size());
+  const double tolerance = 0.3 + 1.2 * sampling.noise;
+  parallel_blocks(pieces.size(), 16, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) place(pieces[i], cloud, tolerance);
+    stage.advance(end - begin);
+  });
+}
+
+}  // namespace pcednet::lines

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <vector>
+
+#include "pcednet/core/progress.h"
+#include "pcednet/lines/crease.h"
+#include "pcednet/lines/ordered_points.h"
+#include "pcednet/lines/piece.h"
+
+namespace pcednet::lines {
+
+/// Places pieces by all points beside them: segments where the planes of both sides meet, arcs and
+/// circles where two cones about one axis do (cylinders and planes are cones, too), boundaries
+/// where the strip of points along them ends. Pieces with sides of other shapes stay as they are.
+void refine(std::vector<Piece>& pieces, const OrderedPoints& cloud, const Sampling& sampling,
+            const Progress* progress);
+
+}  // namespace pcednet::lines

@@ -1,0 +1,259 @@
+#include "pcednet/lines/find_lines.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <numeric>
+
+#include "pcednet/core/error.h"
+#include "pcednet/core/parallel.h"
+#include "pcednet/core/random.h"
+
+namespace pcednet::lines {
+namespace {
+
+constexpr double kNear = 0.7;  // of an edge: spacings that are labelled
+
+struct Cloud {
+  std::vector<Vec3> positions = {}, normals = {};
+  std::vector<std::uint8_t> classes = {};
+  double spacing = 0.0;
+
+  void add(const Vec3& position, const Vec3& normal, bool edge) {
+    positions.push_back(position);
+    normals.push_back(normal);
+    classes.push_back(edge ? kSharpEdge : kNonEdge);
+  }
+};
+
+std::vector<Curve> lines_of(const Cloud& cloud, const LineOptions& options = {}) {
+  return find_lines({cloud.positions, cloud.normals, cloud.classes}, options);
+}
+
+/// Points uniform on the surface of the unit cube.
+Cloud cube(std::size_t points) {
+  Random random(1);
+  Cloud cloud{.spacing = std::sqrt(6.0 / static_cast<double>(points))};
+  for (std::size_t i = 0; i < points; ++i) {
+    const auto axis = static_cast<Eigen::Index>(random.index(3));
+    const double side = random.index(2) == 0 ? 0.0 : 1.0;
+    Vec3 p(random.uniform(), random.uniform(), random.uniform());
+    p[axis] = side;
+    double nearest = 1.0;
+    for (Eigen::Index other = 0; other < 3; ++other) {
+      if (other != axis) nearest = std::min({nearest, p[other], 1.0 - p[other]});
+    }
+    Vec3 normal = Vec3::Zero();
+    normal[axis] = side == 0.0 ? -1.0 : 1.0;
+    cloud.add(p, normal, nearest < kNear * cloud.spacing);
+  }
+  return cloud;
+}
+
+/// A cylinder of radius 1 and height 1 with both caps.
+Cloud cylinder(std::size_t points) {
+  Random random(2);
+  const double area = 4.0 * std::numbers::pi;
+  Cloud cloud{.spacing = std::sqrt(area / static_cast<double>(points))};
+  for (std::size_t i = 0; i < points; ++i) {
+    const double angle = 2.0 * std::numbers::pi * random.uniform();
+    const Vec3 outward(std::cos(angle), std::sin(angle), 0.0);
+    if (random.index(2) == 0) {
+      const double z = random.uniform();
+      cloud.add(outward + z * Vec3::UnitZ(), outward, std::min(z, 1.0 - z) < kNear * cloud.spacing);
+    } else {
+      const double radius = std::sqrt(random.uniform()), z = random.index(2) == 0 ? 0.0 : 1.0;
+      cloud.add(radius * outward + z * Vec3::UnitZ(), (2.0 * z - 1.0) * Vec3::UnitZ(),
+                1.0 - radius < kNear * cloud.spacing);
+    }
+  }
+  return cloud;
+}
+
+Cloud sheet(std::size_t points) {
+  Random random(3);
+  Cloud cloud{.spacing = std::sqrt(1.0 / static_cast<double>(points))};
+  for (std::size_t i = 0; i < points; ++i) {
+    cloud.add({random.uniform(), random.uniform(), 0.0}, Vec3::UnitZ(), false);
+  }
+  return cloud;
+}
+
+bool same(const Curve& a, const Curve& b) {
+  return a.kind == b.kind && a.edge_class == b.edge_class && a.points == b.points &&
+         a.closed == b.closed && a.centre == b.centre && a.axis == b.axis && a.radius == b.radius &&
+         a.confidence == b.confidence && a.support == b.support;
+}
+
+bool same(const std::vector<Curve>& a, const std::vector<Curve>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](const Curve& x, const Curve& y) { return same(x, y); });
+}
+
+TEST(FindLines, GivesACubeItsTwelveEdgesAndEightCorners) {
+  const Cloud cloud = cube(6000);
+  const auto curves = lines_of(cloud);
+  ASSERT_EQ(curves.size(), 12u);
+  std::vector<Vec3> corners;
+  for (const Curve& curve : curves) {
+    EXPECT_EQ(curve.kind, CurveKind::kSegment);
+    EXPECT_EQ(curve.edge_class, kSharpEdge);
+    EXPECT_NEAR(length_of(curve), 1.0, 0.2 * cloud.spacing);
+    EXPECT_NEAR(curve.dihedral_angle, 0.5 * std::numbers::pi, 0.08);
+    EXPECT_GT(curve.support, 20u);
+    EXPECT_EQ(curve.confidence, 1.0);
+    for (const Vec3& end : curve.points) {
+      const Vec3 rounded = end.array().round();
+      EXPECT_LT((end - rounded).norm(), 0.15 * cloud.spacing);
+      corners.push_back(end);
+    }
+  }
+  for (const Vec3& corner : corners) {  // three curves share each to the last bit
+    EXPECT_EQ(std::count(corners.begin(), corners.end(), corner), 3);
+  }
+}
+
+TEST(FindLines, RecognisesCirclesToATenthOfASpacing) {
+  const Cloud cloud = cylinder(8000);
+  const auto curves = lines_of(cloud);
+  ASSERT_EQ(curves.size(), 2u);
+  for (const Curve& curve : curves) {
+    EXPECT_EQ(curve.kind, CurveKind::kCircle);
+    EXPECT_TRUE(curve.closed);
+    EXPECT_NEAR(curve.radius, 1.0, 0.1 * cloud.spacing);
+    EXPECT_LT(std::hypot(curve.centre.x(), curve.centre.y()), 0.1 * cloud.spacing);
+    EXPECT_NEAR(std::abs(curve.axis.z()), 1.0, 1e-3);
+  }
+}
+
+TEST(FindLines, DrawsBoundariesOnDemand) {
+  const Cloud cloud = sheet(2500);
+  EXPECT_TRUE(lines_of(cloud).empty());
+  const auto curves = lines_of(cloud, {.boundaries = true});
+  ASSERT_EQ(curves.size(), 4u);
+  for (const Curve& curve : curves) {
+    EXPECT_EQ(curve.edge_class, kBoundary);
+    for (const Vec3& end : curve.points) {
+      const Vec3 rounded = end.array().round();
+      EXPECT_LT((end - rounded).norm(), 0.6 * cloud.spacing);
+    }
+  }
+}
+
+TEST(FindLines, AreTheSameForAnyThreadsAndOrderAndSignsOfNormals) {
+  const Cloud cloud = cylinder(4000);
+  set_thread_count(1);
+  const auto curves = lines_of(cloud);
+  for (const int threads : {2, 8}) {
+    set_thread_count(threads);
+    EXPECT_TRUE(same(lines_of(cloud), curves)) << threads;
+  }
+  set_thread_count(0);
+  Cloud shuffled = cloud;
+  std::vector<std::size_t> order(cloud.positions.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  Random random(4);
+  for (std::size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[random.index(i)]);
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    shuffled.positions[i] = cloud.positions[order[i]];
+    shuffled.normals[i] = (random.index(2) == 0 ? 1.0 : -1.0) * cloud.normals[order[i]];
+    shuffled.classes[i] = cloud.classes[order[i]];
+  }
+  EXPECT_TRUE(same(lines_of(shuffled), curves));
+}
+
+TEST(FindLines, FollowTheCloudToANationalGrid) {
+  const Cloud cloud = cube(3000);
+  const auto curves = lines_of(cloud);
+  const Vec3 shift(652000.0, 5400000.0, 300.0);
+  Cloud moved = cloud;
+  for (Vec3& position : moved.positions) position += shift;
+  const auto there = lines_of(moved);
+  ASSERT_EQ(there.size(), curves.size());
+  for (const Curve& curve : there) {  // the order along the curve may be another
+    const bool found = std::any_of(curves.begin(), curves.end(), [&](const Curve& other) {
+      const Vec3 a = curve.points.front() - shift, b = curve.points.back() - shift;
+      const Vec3 &c = other.points.front(), &d = other.points.back();
+      return std::min((a - c).norm() + (b - d).norm(), (a - d).norm() + (b - c).norm()) < 1e-3;
+    });
+    EXPECT_TRUE(found);
+  }
+}
+
+TEST(FindLines, RegulariseMakesRightAnglesExact) {
+  const auto curves = lines_of(cube(3000), {.regularise = true});
+  ASSERT_EQ(curves.size(), 12u);
+  for (const Curve& a : curves) {
+    for (const Curve& b : curves) {
+      const Vec3 u = (a.points[1] - a.points[0]).normalized();
+      const Vec3 v = (b.points[1] - b.points[0]).normalized();
+      const double cosine = std::abs(u.dot(v));
+      EXPECT_LT(std::min(cosine, 1.0 - cosine), 0.01);
+    }
+  }
+}
+
+TEST(FindLines, LeaveOutWhatIsTooShort) {
+  const Cloud cloud = cube(3000);
+  EXPECT_TRUE(lines_of(cloud, {.min_length = 1.1}).empty());
+  EXPECT_EQ(lines_of(cloud, {.min_length = 0.9}).size(), 12u);
+}
+
+TEST(FindLines, AreNoneWhereThereIsNothingToSee) {
+  EXPECT_TRUE(find_lines({}).empty());
+  Cloud one;
+  one.add({1, 2, 3}, Vec3::UnitZ(), true);
+  EXPECT_TRUE(lines_of(one).empty());
+  Cloud unplaced;
+  for (int i = 0; i < 50; ++i) {
+    unplaced.add(Vec3::Constant(std::numeric_limits<double>::quiet_NaN()), Vec3::UnitZ(), true);
+  }
+  EXPECT_TRUE(lines_of(unplaced).empty());
+  Cloud one_place;
+  for (int i = 0; i < 50; ++i) one_place.add({1, 2, 3}, Vec3::UnitZ(), true);
+  EXPECT_TRUE(lines_of(one_place, {.boundaries = true}).empty());
+  Cloud without_normals = cube(1000);
+  for (Vec3& normal : without_normals.normals) normal.setZero();
+  EXPECT_TRUE(lines_of(without_normals).empty());
+  Cloud all_edges = cube(1000);
+  std::fill(all_edges.classes.begin(), all_edges.classes.end(), kSharpEdge);
+  EXPECT_EQ(lines_of(all_edges).size(), 12u);
+}
+
+TEST(FindLines, StayFiniteOnAnyPoints) {
+  Random random(5);
+  Cloud cloud;
+  for (int i = 0; i < 3000; ++i) {
+    const Vec3 p(random.normal(), random.normal(), i % 3 == 0 ? 0.0 : random.normal());
+    cloud.add(p, Vec3(random.normal(), random.normal(), random.normal()).normalized(),
+              random.index(2) == 0);
+  }
+  for (const Curve& curve : lines_of(cloud, {.regularise = true, .boundaries = true})) {
+    EXPECT_TRUE(std::isfinite(length_of(curve)));
+    for (const Vec3& point : curve.points) EXPECT_TRUE(point.allFinite());
+  }
+}
+
+ErrorKind kind_of(const EdgePoints& points, const LineOptions& options) {
+  try {
+    find_lines(points, options);
+  } catch (const Error& error) {
+    return error.kind();
+  }
+  return ErrorKind::kFailure;
+}
+
+TEST(FindLines, RefuseWhatMakesNoSense) {
+  EXPECT_EQ(kind_of({}, {.gap = -1.0}), ErrorKind::kUsage);
+  EXPECT_EQ(kind_of({}, {.tolerance = std::numeric_limits<double>::infinity()}), ErrorKind::kUsage);
+  const Cloud cloud = cube(10);
+  EXPECT_EQ(kind_of({cloud.positions, {}, cloud.classes}, {}), ErrorKind::kUsage);
+  const std::vector<float> few(3);
+  EXPECT_EQ(kind_of({cloud.positions, cloud.normals, cloud.classes, few}, {}), ErrorKind::kUsage);
+}
+
+}  // namespace
+}  // namespace pcednet::lines
