@@ -59,16 +59,18 @@ class Preview : public testing::Test {
   }
 
   std::string bytes_of(const PointCloud& cloud, const std::vector<std::uint8_t>& classes,
-                       PreviewOptions options = {.width = 160, .height = 120}) const {
+                       PreviewOptions options = {.width = 160, .height = 120},
+                       const std::vector<lines::Curve>& curves = {}) const {
     options.overwrite = Overwrite::kYes;
-    write_preview(path(), cloud, classes, options);
+    write_preview(path(), cloud, classes, options, curves);
     std::ifstream file(path(), std::ios::binary);
     return {std::istreambuf_iterator<char>(file), {}};
   }
 
   Picture picture_of(const PointCloud& cloud, const std::vector<std::uint8_t>& classes,
-                     const PreviewOptions& options = {.width = 160, .height = 120}) const {
-    const std::string bytes = bytes_of(cloud, classes, options);
+                     const PreviewOptions& options = {.width = 160, .height = 120},
+                     const std::vector<lines::Curve>& curves = {}) const {
+    const std::string bytes = bytes_of(cloud, classes, options, curves);
     png_image image{};
     image.version = PNG_IMAGE_VERSION;
     EXPECT_TRUE(png_image_begin_read_from_memory(&image, bytes.data(), bytes.size()));
@@ -290,6 +292,85 @@ TEST_F(Preview, DrawsCloudsThatHaveNoSurface) {
   EXPECT_GT(picture_of(cloud, std::vector<std::uint8_t>(50, kSharpEdge)).share(is_red), 0.0);
   cloud.normals.assign(50, Vec3::Zero());
   EXPECT_GT(picture_of(cloud, std::vector<std::uint8_t>(50, kSharpEdge)).share(is_red), 0.0);
+}
+
+/// The twelve edges of the cube.
+std::vector<lines::Curve> edges_of_the_cube(EdgeClass edge_class) {
+  std::vector<lines::Curve> edges;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const double a : {-1.0, 1.0}) {
+      for (const double b : {-1.0, 1.0}) {
+        Vec3 from = Vec3::Constant(-1.0);
+        from[(axis + 1) % 3] = a;
+        from[(axis + 2) % 3] = b;
+        Vec3 to = from;
+        to[axis] = 1.0;
+        edges.push_back(
+            {.kind = lines::CurveKind::kSegment, .edge_class = edge_class, .points = {from, to}});
+      }
+    }
+  }
+  return edges;
+}
+
+TEST_F(Preview, DrawsCurvesInTheColoursOfTheirClasses) {
+  const Labelled shape = cube();
+  const PreviewOptions options{.width = 320, .height = 240};
+  const auto is_of_a_boundary = [](const Rgb& c) { return c[2] > c[0] + 100; };
+  const auto is_of_a_corner = [](const Rgb& c) { return c == Rgb{32, 36, 42}; };
+  const auto drawn = [&](const std::vector<lines::Curve>& curves) {
+    return picture_of(shape.cloud, {}, options, curves);
+  };
+  EXPECT_EQ(drawn({}).share(is_red), 0.0);
+  const Picture sharp = drawn(edges_of_the_cube(kSharpEdge));
+  EXPECT_GT(sharp.share(is_red), 0.01);
+  EXPECT_GT(sharp.share(is_of_a_corner), 7 * 2.0 / (320 * 240));
+  EXPECT_GT(drawn(edges_of_the_cube(kSmoothEdge)).share(is_yellow), 0.01);
+  EXPECT_GT(drawn(edges_of_the_cube(kBoundary)).share(is_of_a_boundary), 0.01);
+}
+
+TEST_F(Preview, DrawsCurvesWhereThePointsAreAndHidesThoseBehindThem) {
+  const Labelled shape = cube();
+  const PreviewOptions options{.width = 640, .height = 480, .view_direction = Vec3(0, 1, 0)};
+  // Pixels covered, those at the rim of a line in part.
+  const auto ink = [&](const lines::Curve& curve) {
+    double sum = 0.0;
+    for (const Rgb& c : picture_of(shape.cloud, {}, options, {curve}).pixels) {
+      sum += (c[0] - c[1]) / 168.0;
+    }
+    return sum;
+  };
+  const lines::Curve circle{.kind = lines::CurveKind::kCircle,
+                            .points = {Vec3(0.5, -1, 0)},
+                            .closed = true,
+                            .centre = Vec3(0, -1, 0),
+                            .axis = Vec3(0, -1, 0),
+                            .radius = 0.5};
+  const lines::Curve segment{.points = {Vec3(-0.9, -1, 0.5), Vec3(0.9, -1, 0.5)}};
+  const double in_front = ink(segment);
+  EXPECT_GT(in_front, 0.9 * 0.88 * 480);  // the front of the cube spans 88 % of the height
+  EXPECT_NEAR(ink(circle) / in_front, length_of(circle) / length_of(segment), 0.1);
+  lines::Curve behind = segment;
+  for (Vec3& p : behind.points) p.y() = 1.0;
+  EXPECT_EQ(ink(behind), 0.0);
+  for (Vec3& p : behind.points) p.y() = 0.0;
+  EXPECT_EQ(ink(behind), 0.0);
+}
+
+TEST_F(Preview, DrawsCurvesWithTheSameBytesForAnyThreadsAndPlace) {
+  Labelled shape = cube();
+  std::vector<lines::Curve> curves = edges_of_the_cube(kSharpEdge);
+  const PreviewOptions options{.width = 160, .height = 120};
+  const std::string bytes = bytes_of(shape.cloud, {}, options, curves);
+  set_thread_count(1);
+  EXPECT_TRUE(bytes_of(shape.cloud, {}, options, curves) == bytes);
+  set_thread_count(0);
+  const Vec3 far(448'321.5, 5'411'932.25, 212.0);
+  for (Vec3& p : shape.cloud.positions) p += far;
+  for (lines::Curve& curve : curves) {
+    for (Vec3& p : curve.points) p += far;
+  }
+  EXPECT_TRUE(bytes_of(shape.cloud, {}, options, curves) == bytes);
 }
 
 ErrorKind kind_of_error(const std::filesystem::path& png, const PointCloud& cloud,

@@ -8,6 +8,7 @@
 
 #include "pcednet/core/error.h"
 #include "workbench/render/camera.h"
+#include "workbench/render/draw_curves.h"
 #include "workbench/render/gaps.h"
 #include "workbench/render/png.h"
 #include "workbench/render/shade.h"
@@ -56,10 +57,12 @@ std::vector<Surfel> thinned(const std::vector<Surfel>& surfels, std::size_t coun
 }  // namespace
 
 void write_preview(const std::filesystem::path& png, const PointCloud& cloud,
-                   std::span<const std::uint8_t> classes, const PreviewOptions& options) {
+                   std::span<const std::uint8_t> classes, const PreviewOptions& options,
+                   std::span<const lines::Curve> curves) {
   check(png, cloud, classes, options);
   OutputFile file(png, options.overwrite);
-  const std::vector<Surfel> surfels = make_surfels(cloud, classes, kMostSurfels);
+  UnitBox box;
+  const std::vector<Surfel> surfels = make_surfels(cloud, classes, kMostSurfels, &box);
   if (surfels.empty()) {
     throw Error(ErrorKind::kInsufficient,
                 fmt::format("{}: nothing to draw: the cloud has no finite point", png.string()));
@@ -75,7 +78,9 @@ void write_preview(const std::filesystem::path& png, const PointCloud& cloud,
                                       1.5f, 8.0f * kSupersampling);
   Layer layer = draw(surfels, camera, min_radius);
   close_gaps(layer, static_cast<int>(1.5f * layer.grain_pixels));
-  file.write(encode_png(shade(layer, kSupersampling)));
+  Image image = shade(layer, kSupersampling);
+  if (!curves.empty()) draw_curves(image, layer, camera, box, curves);
+  file.write(encode_png(image));
   file.commit();
 }
 

@@ -8,6 +8,7 @@
 #include "pcednet/cloud/point_cloud.h"
 #include "pcednet/core/output_file.h"
 #include "pcednet/core/vec3.h"
+#include "pcednet/lines/curve.h"
 
 namespace pcednet::render {
 
@@ -25,13 +26,15 @@ struct PreviewOptions {
 /// `classes` holds one EdgeClass per point, drawn white, yellow and dark red (other values grey).
 /// If it is empty, points have the colours of the cloud, or white if it has none. Points that are
 /// not finite, far outliers, and strays (see make_surfels()) are skipped. Of more than four million
-/// points every n-th is drawn. The picture does not depend on the position of the cloud nor on the
-/// number of threads.
+/// points every n-th is drawn. `curves`, in the place of the cloud, are drawn over it: see
+/// draw_curves(). The picture does not depend on the position of the cloud nor on the number of
+/// threads.
 ///
 /// Throws Error(kInsufficient) if no point is finite, Error(kUsage) on a size out of range, a
 /// direction that is zero or not finite, or an existing file that may not be overwritten, and
 /// Error(kFailure) if `classes` has not the size of the cloud or the file cannot be written.
 void write_preview(const std::filesystem::path& png, const PointCloud& cloud,
-                   std::span<const std::uint8_t> classes, const PreviewOptions& options = {});
+                   std::span<const std::uint8_t> classes, const PreviewOptions& options = {},
+                   std::span<const lines::Curve> curves = {});
 
 }  // namespace pcednet::render

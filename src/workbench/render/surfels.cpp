@@ -84,12 +84,13 @@ void sort_along_curve(Points& points) {
   }
 }
 
-void move_into_unit_box(std::vector<Vec3>& positions) {
+UnitBox move_into_unit_box(std::vector<Vec3>& positions) {
   const BoundingBox box = bounding_box(positions);
   const Vec3 centre = box.centre();
   const double half = 0.5 * (box.max - box.min).maxCoeff();
   const double scale = half > 0.0 ? 1.0 / half : 1.0;
   for (Vec3& p : positions) p = (p - centre) * scale;
+  return {.centre = centre, .half = half > 0.0 ? half : 1.0};
 }
 
 bool usable(const Vec3& normal) {
@@ -166,7 +167,7 @@ void drop_strays(std::vector<Surfel>& surfels, const std::vector<NearPoints>& ne
 }
 
 /// Moves and scales all, so that they just lie in [-1, 1]^3.
-void fill_unit_box(std::vector<Surfel>& surfels) {
+UnitBox fill_unit_box(std::vector<Surfel>& surfels) {
   std::vector<Vec3> positions;
   for (const Surfel& surfel : surfels) positions.push_back(surfel.position.cast<double>());
   const BoundingBox box = bounding_box(positions);
@@ -176,17 +177,18 @@ void fill_unit_box(std::vector<Surfel>& surfels) {
     surfel.position -= centre;
     if (half > 0.0f) surfel.position /= half, surfel.radius /= half;
   }
+  return {.centre = centre.cast<double>(), .half = half > 0.0f ? half : 1.0};
 }
 
 }  // namespace
 
 std::vector<Surfel> make_surfels(const PointCloud& cloud, std::span<const std::uint8_t> classes,
-                                 std::size_t max_count) {
+                                 std::size_t max_count, UnitBox* box) {
   Points points = finite_points(cloud, max_count);
   if (points.positions.empty()) return {};
   remove_outliers(points);
   sort_along_curve(points);
-  move_into_unit_box(points.positions);
+  const UnitBox all = move_into_unit_box(points.positions);
   const std::vector<NearPoints> near = near_points(points.positions);
 
   std::vector<Surfel> surfels(points.positions.size());
@@ -208,7 +210,8 @@ std::vector<Surfel> make_surfels(const PointCloud& cloud, std::span<const std::u
   });
   smooth(surfels, near);
   drop_strays(surfels, near);
-  fill_unit_box(surfels);
+  const UnitBox kept = fill_unit_box(surfels);
+  if (box) *box = {.centre = all.centre + all.half * kept.centre, .half = all.half * kept.half};
   return surfels;
 }
 

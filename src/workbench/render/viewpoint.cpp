@@ -21,17 +21,18 @@ struct View {
 };
 
 std::vector<View> candidates() {
-  struct Ring {
+  struct Elevation {
     int degrees_above;
     float preference;
   };
   std::vector<View> all;
-  for (const Ring ring : {Ring{12, 0.95f}, Ring{27, 1.0f}, Ring{48, 0.88f}}) {
+  for (const Elevation elevation :
+       {Elevation{12, 0.95f}, Elevation{27, 1.0f}, Elevation{48, 0.88f}}) {
     for (int azimuth = 15; azimuth < 375; azimuth += 30) {
       const double a = azimuth * std::numbers::pi / 180,
-                   e = ring.degrees_above * std::numbers::pi / 180;
+                   e = elevation.degrees_above * std::numbers::pi / 180;
       const Vec3 from(std::cos(a) * std::cos(e), std::sin(a) * std::cos(e), std::sin(e));
-      all.push_back({-from.cast<float>(), ring.preference});
+      all.push_back({-from.cast<float>(), elevation.preference});
     }
   }
   return all;
