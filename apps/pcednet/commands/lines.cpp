@@ -19,6 +19,7 @@
 #include "pcednet/io/las/las.h"
 #include "prepare.h"
 #include "stage_clock.h"
+#include "workbench/render/preview.h"
 
 namespace pcednet::app {
 namespace {
@@ -31,7 +32,7 @@ constexpr std::array kKinds = {CurveKind::kSegment, CurveKind::kArc, CurveKind::
                                CurveKind::kPolyline};
 
 struct LinesArguments {
-  std::string input;
+  std::string input, preview;
   std::vector<std::string> outputs, kinds;
   std::vector<std::string> classes = {"sharp", "boundary"};
   bool classify = false;
@@ -58,6 +59,11 @@ void check_outputs(const LinesArguments& arguments) {
     check_writable(output, arguments.drawing.overwrite);
     if (taken.insert(output.lexically_normal()).second) continue;
     throw Error(ErrorKind::kUsage, fmt::format("{}: named twice", output.string()));
+  }
+  if (arguments.preview.empty()) return;
+  check_writable(arguments.preview, arguments.drawing.overwrite);
+  if (!taken.insert(fs::path(arguments.preview).lexically_normal()).second) {
+    throw Error(ErrorKind::kUsage, fmt::format("{}: named twice", arguments.preview));
   }
 }
 
@@ -181,10 +187,15 @@ void run(LinesArguments arguments, const Common& common) {
   for (const std::string& output : arguments.outputs) {
     io::write_drawing(output, curves, arguments.drawing);
   }
+  if (!arguments.preview.empty()) {
+    clock.begin("preview");
+    render::write_preview(arguments.preview, cloud, {}, {.overwrite = common.overwrite()}, curves);
+  }
   report(arguments, curves, left_out);
   if (curves.empty()) say("  no edges: what was written holds no lines");
   say("  seconds: " + clock.seconds());
   for (const std::string& output : arguments.outputs) say("  -> " + output);
+  if (!arguments.preview.empty()) say("  -> " + arguments.preview);
 }
 
 /// A number that the user gave: from above `least` to `most`.
@@ -266,6 +277,7 @@ void add_lines(CLI::App& app, Common& common) {
       app, common, "lines", "Draw the edges as curves: segments, arcs, circles and polylines",
       "pcednet lines scan_edges.ply -o edges.dxf       of a cloud that was classified\n"
       "pcednet lines scan.ply -o edges.dxf --model cad     classifies it first\n"
+      "pcednet lines scan_edges.ply -o edges.dxf --preview edges.png\n"
       "pcednet lines roof.las -o roof.gpkg -o roof.svg --boundaries --min-length 0.5\n"
       "pcednet lines part.ply -o part.obj --class sharp --kind segment,arc --regularise");
   auto arguments = std::make_shared<LinesArguments>();
@@ -276,6 +288,8 @@ void add_lines(CLI::App& app, Common& common) {
           "Output file: " + io::drawing_extensions(" or ") + "; may be given several times")
       ->required()
       ->allow_extra_args(false);
+  command->add_option("--preview", arguments->preview,
+                      "Draw the curves over the shaded cloud to this PNG file");
   add_line_options(*command, arguments->lines);
   add_drawing_options(*command, *arguments);
   command->add_flag("--classify", arguments->classify,
