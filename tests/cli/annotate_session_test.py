@@ -156,6 +156,69 @@ class AnnotateSession(AnnotateTest):
         server.until("/api/session", lambda s: s["prediction_version"] == 1)
         self.assertEqual(server.request("/api/download/model")[2], first)
 
+    def find_lines(self, server, version):
+        """Finds lines and waits for that version of them, which it returns."""
+        server.post("/api/lines/find")
+        return server.until("/api/lines",
+                            lambda l: l["version"] == version and not l["searching"])
+
+    def test_finds_lines_and_keeps_the_decisions_on_them(self):
+        server = self.quiet()
+        self.assertEqual(server.get("/api/lines"), {"version": 0, "prediction_version": 0,
+                                                    "searching": False, "lines": []})
+        server.post("/api/lines/find", expect=409)  # in no prediction
+        self.paint_edge_and_face(server)
+        self.train(server, 1)
+        found = self.find_lines(server, 1)
+        self.assertEqual(found["prediction_version"], 1)
+        origin = np.array(server.get("/api/session")["origin"])
+        # The cube's edges: straight, at right angles, one long, half a side from two of the axes.
+        self.assertGreaterEqual(len(found["lines"]), 12)
+        edges = [l for l in found["lines"] if l["kind"] == "segment" and l["length"] > 0.9]
+        self.assertGreaterEqual(len(edges), 10)
+        for line in edges:
+            self.assertEqual((line["class"], line["decision"]), (2, "open"))
+            self.assertAlmostEqual(line["length"], 1, delta=0.05)
+            self.assertAlmostEqual(line["angle"], 90, delta=5)
+            middle = np.sort(np.abs(np.add(line["middle"], origin)))
+            np.testing.assert_allclose(middle, [0, 0.5, 0.5], atol=0.05)
+            self.assertGreater(np.dot(line["normal"], np.add(line["middle"], origin)), 0.5)
+            ends = np.reshape(line["path"], (-1, 3))
+            self.assertAlmostEqual(np.linalg.norm(ends[-1] - ends[0]), line["length"])
+        self.assertEqual(server.request("/api/download/lines")[0], 409)  # none is accepted
+
+        def decide(decision, *lines, expect=200, version=1):
+            return server.post("/api/lines/decide", {"version": version, "decision": decision,
+                                                     "lines": lines}, expect=expect)
+
+        decide("accepted", *range(len(found["lines"])))
+        decide("rejected", 3)
+        decide("open", 4)
+        decide("rejected", len(found["lines"]), expect=404)
+        decide("rejected", 1, expect=409, version=2)
+        decide("good", 1, expect=400)
+        server.post("/api/lines/decide", {"version": 1}, expect=400)
+        decisions = [l["decision"] for l in server.get("/api/lines")["lines"]]
+        self.assertEqual(decisions, ["rejected" if i == 3 else "open" if i == 4 else "accepted"
+                                     for i in range(len(decisions))])
+        saved = server.post("/api/save", {"what": "lines"})
+        self.assertEqual(pathlib.Path(saved["path"]), self.folder / "cube_lines.dxf")
+        for name, expect in (("cube_lines.geojson", 200), ("cube.ply", 400), ("x.txt", 400)):
+            server.post("/api/save", {"what": "lines", "name": name}, expect=expect)
+        drawn = json.loads((self.folder / "cube_lines.geojson").read_text())["features"]
+        self.assertEqual(len(drawn), len(decisions) - 2)
+        for format in ("dxf", "geojson"):
+            status, headers, data = server.request(f"/api/download/lines?format={format}")
+            self.assertEqual((status, headers["Content-Disposition"]),
+                             (200, f'attachment; filename="cube_lines.{format}"'))
+            self.assertEqual(data, (self.folder / f"cube_lines.{format}").read_bytes())
+        self.assertEqual(server.request("/api/download/lines?format=doc")[0], 400)
+        # A new search begins afresh; what runs is cancelled, as training is.
+        self.assertEqual({l["decision"] for l in self.find_lines(server, 2)["lines"]}, {"open"})
+        server.post("/api/lines/find")
+        server.post("/api/cancel")
+        self.assertFalse(server.get("/api/lines")["searching"])
+
     def test_tells_of_what_happens(self):
         server = self.quiet()
         stream = http.client.HTTPConnection("127.0.0.1", server.port, timeout=20)

@@ -117,6 +117,16 @@ Json json_of(const Predicted& predicted) {
           {"held_out_accuracy", optional_number(predicted.facts.held_out_accuracy)}};
 }
 
+Json json_of(const LinesChanged& changed) {
+  return {{"version", changed.version}, {"searching", changed.is_searching}};
+}
+
+Json json_of(const LinesDecided& decided) {
+  return {{"version", decided.version},
+          {"decision", decision_name(decided.decision)},
+          {"lines", decided.lines}};
+}
+
 Json json_of(const WriterChanged& changed) {
   return {{"window", changed.window}};
 }
@@ -128,6 +138,8 @@ struct EventName {
   const char* operator()(const EpochDone&) const { return "training"; }
   const char* operator()(const Painted&) const { return "labels"; }
   const char* operator()(const Predicted&) const { return "prediction"; }
+  const char* operator()(const LinesChanged&) const { return "lines"; }
+  const char* operator()(const LinesDecided&) const { return "decided"; }
   const char* operator()(const WriterChanged&) const { return "writer"; }
   const char* operator()(const FileSaved&) const { return "saved"; }
 };

@@ -18,6 +18,10 @@ std::string to_json(const Painted& painted);
 std::string to_json(const UncertainPlace& place);
 std::string to_json(const PointView& point);
 std::string to_json(const FileSaved& saved);
+std::string to_json(const LinesView& lines);
+
+/// "open", "accepted" or "rejected".
+const char* decision_name(Decision decision);
 
 /// {"window": its name, "writer": whether it is the one that paints}.
 std::string window_json(const std::string& window, bool is_writer);
@@ -31,6 +35,9 @@ std::string event_json(const Event& event);
 
 /// Reads a stroke. Throws Error(kUsage) that says what is wrong with it.
 Stroke parse_stroke(std::string_view json);
+
+/// Throws Error(kUsage) that says what is wrong with it.
+LinesDecided parse_decision(std::string_view json);
 
 /// A wish to save; an empty name is the usual one.
 struct SaveRequest {

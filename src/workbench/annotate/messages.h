@@ -8,6 +8,7 @@
 #include <variant>
 #include <vector>
 
+#include "workbench/annotate/line_review.h"
 #include "workbench/annotate/scene.h"
 
 namespace pcednet::annotate {
@@ -58,6 +59,12 @@ struct PointView {
   double distance = 0;                                     ///< from the eye
 };
 
+/// The lines and the scene that they are in.
+struct LinesView {
+  LineReview review = {};
+  std::shared_ptr<const Scene> scene = {};
+};
+
 /// What happens in a session without being asked for at that moment.
 struct StageProgress {
   std::string stage = {};
@@ -77,6 +84,10 @@ struct Predicted {
   Counts counts = {};
   RunFacts facts = {};
 };
+struct LinesChanged {
+  int version = 0;
+  bool is_searching = false;
+};
 struct WriterChanged {
   std::string window = {};
 };
@@ -85,6 +96,6 @@ struct FileSaved {
   std::uintmax_t bytes = 0;
 };
 using Event = std::variant<StageProgress, Ready, Problem, EpochDone, Painted, Predicted,
-                           WriterChanged, FileSaved>;
+                           LinesChanged, LinesDecided, WriterChanged, FileSaved>;
 
 }  // namespace pcednet::annotate

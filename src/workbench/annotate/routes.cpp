@@ -61,7 +61,8 @@ Saved saved_of(const std::string& what) {
   if (what == "cloud") return Saved::kCloud;
   if (what == "model") return Saved::kModel;
   if (what == "project") return Saved::kProject;
-  throw Error(ErrorKind::kUsage, "what: cloud, model or project");
+  if (what == "lines") return Saved::kLines;
+  throw Error(ErrorKind::kUsage, "what: cloud, model, project or lines");
 }
 
 Shown shown_of(const std::string& of) {
@@ -137,9 +138,20 @@ Response get_node_points(const Call& call) {
   return binary(call.session.node_points(number_of<std::size_t>(call.name, "node")));
 }
 
+/// Lines may be asked for in any of their formats.
+std::string wanted_name(const Call& call) {
+  const std::string format = asked(call, "format");
+  if (format.empty()) return {};
+  return call.session.options().input.stem().string() + "_lines." + format;
+}
+
+Response get_lines(const Call& call) {
+  return json_response(to_json(call.session.lines()));
+}
+
 Response get_download(const Call& call) {
   const Saved what = saved_of(call.name);
-  const auto target = call.session.target(what, "");
+  const auto target = call.session.target(what, wanted_name(call));
   std::string folder =
       (std::filesystem::temp_directory_path() / "pcednet-download-XXXXXX").string();
   if (!::mkdtemp(folder.data())) throw Error(ErrorKind::kFailure, folder + ": cannot be made");
@@ -188,6 +200,16 @@ Response change_settings(const Call& call) {
   return json_response(to_line(call.session.change_settings(change)));
 }
 
+Response find_lines(const Call& call) {
+  call.session.find_lines();
+  return json_response("{}");
+}
+
+Response decide(const Call& call) {
+  call.session.decide(parse_decision(call.request.body));
+  return json_response("{}");
+}
+
 Response train(const Call& call) {
   call.session.train_now();
   return json_response("{}");
@@ -232,6 +254,7 @@ constexpr Route kRoutes[] = {
     {"GET", "/api/values", get_values},
     {"GET", "/api/node/*/values", get_node_values},
     {"GET", "/api/node/*/points", get_node_points},
+    {"GET", "/api/lines", get_lines},
     {"GET", "/api/download/*", get_download},
     {"POST", "/api/window", open_window},
     {"POST", "/api/window/*/take", take_over},
@@ -241,6 +264,8 @@ constexpr Route kRoutes[] = {
     {"POST", "/api/redo", redo, true},
     {"POST", "/api/settings", change_settings, true},
     {"POST", "/api/save", save, true},
+    {"POST", "/api/lines/find", find_lines, true},
+    {"POST", "/api/lines/decide", decide, true},
     {"POST", "/api/train", train, true},
     {"POST", "/api/cancel", cancel, true},
     {"POST", "/api/runs/*/restore", restore, true},

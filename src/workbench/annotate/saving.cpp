@@ -7,6 +7,8 @@
 #include "pcednet/core/error.h"
 #include "pcednet/detect/result_cloud.h"
 #include "pcednet/formats/format.h"
+#include "pcednet/io/drawing/drawing.h"
+#include "pcednet/io/las/las.h"
 #include "workbench/annotate/painting.h"
 
 namespace pcednet::annotate {
@@ -23,9 +25,22 @@ bool is_plain(const std::string& name) {
          std::none_of(name.begin(), name.end(), is_odd);
 }
 
+bool is_drawing(const fs::path& name) {
+  const auto formats = io::drawing_formats();
+  return std::any_of(formats.begin(), formats.end(), [&](const io::DrawingFormat& format) {
+    return format.extension == name.extension();
+  });
+}
+
+const char* ending_of(Saved what) {
+  if (what == Saved::kModel) return ".safetensors";
+  return what == Saved::kLines ? "_lines.dxf" : "_annotated.ply";
+}
+
 bool fits(Saved what, const fs::path& name) {
   if (what == Saved::kModel) return name.extension() == ".safetensors";
   if (what == Saved::kProject) return name.extension() == ".json";
+  if (what == Saved::kLines) return is_drawing(name);
   const formats::Format* format = formats::find_format(name);
   return format && format->is_written();
 }
@@ -41,13 +56,13 @@ fs::path saving_path(Saved what, const std::string& name, const fs::path& input,
   if (!name.empty() && !(is_plain(name) && fits(what, name))) {
     throw Error(ErrorKind::kUsage,
                 fmt::format("name: a file name without folder, ending in {} for a cloud, "
-                            ".safetensors for a model, .json for a project",
-                            formats::extensions_written(" or ")));
+                            ".safetensors for a model, .json for a project, {} for lines",
+                            formats::extensions_written(" or "), io::drawing_extensions(" or ")));
   }
   fs::path path = input.parent_path() / name;
   if (name.empty()) {
     if (what == Saved::kProject) return project;
-    path /= input.stem().string() + (what == Saved::kCloud ? "_annotated.ply" : ".safetensors");
+    path /= input.stem().string() + ending_of(what);
   }
   for (const fs::path& kept : {input, journal_of(project), project}) {
     std::error_code error;
@@ -57,6 +72,14 @@ fs::path saving_path(Saved what, const std::string& name, const fs::path& input,
     }
   }
   return path;
+}
+
+void write_lines(const std::filesystem::path& path, std::span<const lines::Curve> curves,
+                 const PointCloud& cloud, Overwrite overwrite) {
+  io::DrawingOptions options{.overwrite = overwrite,
+                             .coordinate_system = io::las_coordinate_system(cloud)};
+  if (options.coordinate_system.in_metres) options.unit = io::LengthUnit::kMetre;
+  io::write_drawing(path, curves, options);
 }
 
 PointCloud saved_cloud(const Scene& scene, const std::vector<std::uint8_t>& labels,

@@ -5,11 +5,12 @@
 #include <span>
 #include <string>
 
+#include "pcednet/lines/curve.h"
 #include "workbench/annotate/scene.h"
 
 namespace pcednet::annotate {
 
-enum class Saved { kCloud, kModel, kProject };
+enum class Saved { kCloud, kModel, kProject, kLines };
 
 /// `<stem>_annotation.json` beside the input.
 std::filesystem::path default_project(const std::filesystem::path& input);
@@ -20,6 +21,10 @@ std::filesystem::path default_project(const std::filesystem::path& input);
 std::filesystem::path saving_path(Saved what, const std::string& name,
                                   const std::filesystem::path& input,
                                   const std::filesystem::path& project);
+
+/// Writes curves found in a cloud, with its coordinate system.
+void write_lines(const std::filesystem::path& path, std::span<const lines::Curve> curves,
+                 const PointCloud& cloud, Overwrite overwrite);
 
 /// The cloud as it is saved: with its painted labels and, if there is a prediction, with that.
 PointCloud saved_cloud(const Scene& scene, const std::vector<std::uint8_t>& labels,

@@ -84,6 +84,8 @@ void Session::State::interrupt() {
   orders.train_at.reset();
   orders.restore.reset();
   orders.asked_for = false;
+  orders.find_lines = false;
+  set_searching(false);
   runs.stop_awaiting();
   changed.notify_all();
 }
@@ -205,6 +207,12 @@ std::uintmax_t Session::save(Saved what, const fs::path& path, Overwrite overwri
     const Project project{.input = scene->input, .records = s.painting->records()};
     lock.unlock();  // writing takes its time
     write_project(path, project, overwrite);
+    return fs::file_size(path);
+  }
+  if (what == Saved::kLines) {
+    const auto accepted = accepted_curves(s.review);
+    lock.unlock();
+    write_lines(path, accepted, scene->cloud, overwrite);
     return fs::file_size(path);
   }
   const auto prediction = s.runs.settled_prediction();

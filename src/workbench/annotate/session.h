@@ -70,6 +70,12 @@ class Session {
   std::vector<RunView> runs() const;
   void restore(int run);
 
+  LinesView lines() const;
+  /// Finds the lines in the present prediction, on the session's thread.
+  void find_lines();
+  /// Throws what annotate::decide() throws.
+  void decide(const LinesDecided& wanted);
+
   /// The place after so many others.
   UncertainPlace uncertain(std::size_t after) const;
   PointView pick(const Vec3& local_origin, const Vec3& direction, double radius) const;

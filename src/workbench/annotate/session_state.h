@@ -25,6 +25,7 @@ struct Loading {
 struct Orders {
   std::optional<std::chrono::steady_clock::time_point> train_at = {};
   bool asked_for = false;           ///< by the user: an error if it cannot be done
+  bool find_lines = false;          ///< once there is nothing else to do
   std::optional<int> restore = {};  ///< a run
   std::uint64_t generation = 0;
   bool stopping = false;
@@ -57,6 +58,7 @@ struct Session::State {
 
   Runs runs = {};
   mutable UncertainRanking uncertain = {};
+  LineReview review = {};
 
   void emit(const Event& event) const;
   Progress progress(std::uint64_t of_generation);
@@ -68,6 +70,7 @@ struct Session::State {
   void open_project();
   void train_once(std::uint64_t mine);
   void restore_once(int number, std::uint64_t mine);
+  void find_lines_once(std::uint64_t mine);
   bool train(Run& run, std::span<const std::uint8_t> painted_classes, std::uint64_t mine);
   bool train_again(Run& run, std::uint64_t mine);
   void classify(Run& run, std::uint64_t mine);
@@ -76,9 +79,12 @@ struct Session::State {
                                                std::uint64_t of_generation);
 
   // With the mutex.
+  bool is_training_due() const;
   void wait_for_orders(std::unique_lock<std::mutex>& lock);
+  std::function<void()> next_work();
   void check_ready() const;
   void show(Run run);
+  void set_searching(bool on);
   Painted answer_to(std::span<const std::uint32_t> points);
   Painted standing() const;
   void interrupt();

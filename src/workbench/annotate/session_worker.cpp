@@ -41,7 +41,7 @@ Progress Session::State::progress(std::uint64_t of_generation) {
           .cancelled = [this, of_generation] { return is_void(of_generation); }};
 }
 
-/// The worker's life: load, then train and restore as asked.
+/// The worker's life: load, then restore, train and find lines as asked.
 void Session::State::work() {
   try {
     load();
@@ -59,12 +59,10 @@ void Session::State::work() {
     Lock lock(mutex);
     wait_for_orders(lock);
     if (orders.stopping) return;
-    const std::uint64_t mine = orders.generation;
-    const auto wanted = std::exchange(orders.restore, {});
-    if (!wanted) orders.train_at.reset();
+    const std::function<void()> work = next_work();
     lock.unlock();
     try {
-      wanted ? restore_once(*wanted, mine) : train_once(mine);
+      work();
     } catch (const Error& error) {
       if (error.kind() != ErrorKind::kCancelled) emit(Problem{error.what()});
     } catch (const std::exception& error) {
@@ -73,11 +71,26 @@ void Session::State::work() {
   }
 }
 
+bool Session::State::is_training_due() const {
+  return orders.train_at && *orders.train_at <= std::chrono::steady_clock::now();
+}
+
+/// Takes the first of the orders.
+std::function<void()> Session::State::next_work() {
+  const std::uint64_t mine = orders.generation;
+  if (const auto wanted = std::exchange(orders.restore, {})) {
+    return [this, mine, number = *wanted] { restore_once(number, mine); };
+  }
+  if (is_training_due()) {
+    orders.train_at.reset();
+    return [this, mine] { train_once(mine); };
+  }
+  orders.find_lines = false;
+  return [this, mine] { find_lines_once(mine); };
+}
+
 void Session::State::wait_for_orders(std::unique_lock<std::mutex>& lock) {
-  const auto is_time = [&] {
-    return orders.train_at && *orders.train_at <= std::chrono::steady_clock::now();
-  };
-  while (!orders.stopping && !orders.restore && !is_time()) {
+  while (!orders.stopping && !orders.restore && !orders.find_lines && !is_training_due()) {
     if (orders.train_at) {
       const auto until = *orders.train_at;  // may change while waiting
       changed.wait_until(lock, until);

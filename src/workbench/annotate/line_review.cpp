@@ -1,0 +1,63 @@
+#include "workbench/annotate/line_review.h"
+
+#include <fmt/format.h>
+
+#include "pcednet/core/error.h"
+#include "workbench/annotate/not_found.h"
+
+namespace pcednet::annotate {
+namespace {
+
+constexpr double kDrawnTolerance = 0.1;     // spacings
+constexpr std::size_t kNormalsAround = 24;  // points on both sides of an edge
+
+/// The place at half the length of a polyline.
+Vec3 middle_of(const std::vector<Vec3>& path) {
+  double left = 0.0;
+  for (std::size_t i = 1; i < path.size(); ++i) left += 0.5 * (path[i] - path[i - 1]).norm();
+  for (std::size_t i = 1; i < path.size(); ++i) {
+    const double length = (path[i] - path[i - 1]).norm();
+    if (length > 0.0 && left <= length) {
+      return path[i - 1] + left / length * (path[i] - path[i - 1]);
+    }
+    left -= length;
+  }
+  return path.back();
+}
+
+}  // namespace
+
+void decide(LineReview& review, const LinesDecided& wanted) {
+  if (wanted.version != review.version || !review.curves) {
+    throw Error(ErrorKind::kInsufficient, "the lines were found anew: look at these first");
+  }
+  for (const std::uint32_t line : wanted.lines) {
+    if (line >= review.decisions.size()) throw NotFound(fmt::format("there is no line {}", line));
+  }
+  for (const std::uint32_t line : wanted.lines) review.decisions[line] = wanted.decision;
+}
+
+std::vector<lines::Curve> accepted_curves(const LineReview& review) {
+  std::vector<lines::Curve> accepted;
+  for (std::size_t i = 0; i < review.decisions.size(); ++i) {
+    if (review.decisions[i] == Decision::kAccepted) accepted.push_back((*review.curves)[i]);
+  }
+  if (accepted.empty()) {
+    throw Error(ErrorKind::kInsufficient, "no line is accepted yet: find and accept some");
+  }
+  return accepted;
+}
+
+CurveView view_of(const lines::Curve& curve, const Scene& scene) {
+  CurveView view{.path = lines::sampled(curve, kDrawnTolerance * scene.spacing())};
+  view.middle = middle_of(view.path);
+  std::vector<spatial::Neighbour> near;
+  scene.selector->tree().nearest(view.middle, kNormalsAround, near);
+  for (const spatial::Neighbour& one : near) view.normal += scene.prepared.normals[one.index];
+  view.normal.normalize();
+  view.middle -= scene.origin;
+  for (Vec3& vertex : view.path) vertex -= scene.origin;
+  return view;
+}
+
+}  // namespace pcednet::annotate

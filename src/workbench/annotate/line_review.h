@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "pcednet/lines/curve.h"
+#include "workbench/annotate/scene.h"
+
+namespace pcednet::annotate {
+
+/// What the user says to a line.
+enum class Decision : std::uint8_t { kOpen, kAccepted, kRejected };
+
+/// The lines that were found last, and the decisions on them.
+struct LineReview {
+  int version = 0;             ///< how often lines were found
+  int prediction_version = 0;  ///< of the prediction that they were found in
+  bool is_searching = false;
+  std::shared_ptr<const std::vector<lines::Curve>> curves = {};  ///< null before the first time
+  std::vector<Decision> decisions = {};                          ///< one per curve
+};
+
+/// A wish to decide on lines of a version, or what came of it.
+struct LinesDecided {
+  int version = 0;
+  Decision decision = Decision::kOpen;
+  std::vector<std::uint32_t> lines = {};  ///< numbers from 0
+};
+
+/// Throws Error(kInsufficient) if the lines were found anew since, NotFound for a line that is not
+/// there; changes nothing then.
+void decide(LineReview& review, const LinesDecided& wanted);
+
+/// The accepted curves. Throws Error(kInsufficient) if there are none.
+std::vector<lines::Curve> accepted_curves(const LineReview& review);
+
+/// How a page draws a curve and where it looks at it from. Local coordinates.
+struct CurveView {
+  std::vector<Vec3> path = {};  ///< as lines::sampled()
+  Vec3 middle = Vec3::Zero();   ///< half way along it
+  Vec3 normal = Vec3::Zero();   ///< the mean of the surface there
+};
+CurveView view_of(const lines::Curve& curve, const Scene& scene);
+
+}  // namespace pcednet::annotate

@@ -1,0 +1,71 @@
+#include "pcednet/core/error.h"
+#include "pcednet/lines/find_lines.h"
+#include "workbench/annotate/session_state.h"
+
+namespace pcednet::annotate {
+
+using Lock = std::unique_lock<std::mutex>;
+
+LinesView Session::lines() const {
+  const Lock lock(state_->mutex);
+  state_->check_ready();
+  return {state_->review, state_->scene};
+}
+
+void Session::find_lines() {
+  const Lock lock(state_->mutex);
+  State& s = *state_;
+  s.check_ready();
+  if (!s.runs.settled_prediction()) {
+    throw Error(ErrorKind::kInsufficient, "there is no prediction yet: paint and train");
+  }
+  s.orders.find_lines = true;
+  s.set_searching(true);
+  s.changed.notify_all();
+}
+
+void Session::decide(const LinesDecided& wanted) {
+  const Lock lock(state_->mutex);
+  state_->check_ready();
+  annotate::decide(state_->review, wanted);
+  state_->emit(wanted);
+}
+
+void Session::State::set_searching(bool on) {
+  if (review.is_searching == on) return;
+  review.is_searching = on;
+  emit(LinesChanged{.version = review.version, .is_searching = on});
+}
+
+void Session::State::find_lines_once(std::uint64_t mine) {
+  std::shared_ptr<const Prediction> prediction;
+  int version = 0;
+  {
+    const Lock lock(mutex);
+    prediction = runs.prediction();
+    version = runs.version();
+  }
+  try {
+    const Progress reporter = progress(mine);
+    auto curves = std::make_shared<std::vector<lines::Curve>>(
+        lines::find_lines({.positions = scene->prepared.positions,
+                           .normals = scene->prepared.normals,
+                           .classes = prediction->result.classes,
+                           .p_sharp = prediction->result.p_sharp,
+                           .p_smooth = prediction->result.p_smooth},
+                          {}, &reporter));
+    const Lock lock(mutex);
+    if (orders.generation != mine || orders.stopping) return;
+    review.decisions.assign(curves->size(), Decision::kOpen);
+    review.curves = std::move(curves);
+    review.prediction_version = version;
+    ++review.version;
+    set_searching(false);
+  } catch (...) {
+    const Lock lock(mutex);
+    if (orders.generation == mine) set_searching(false);
+    throw;
+  }
+}
+
+}  // namespace pcednet::annotate

@@ -1,0 +1,46 @@
+#include "workbench/annotate/line_review.h"
+
+#include <gtest/gtest.h>
+
+#include "support/expect_error.h"
+
+namespace pcednet::annotate {
+namespace {
+
+/// Three lines of lengths 1, 2 and 3.
+LineReview three_lines() {
+  auto curves = std::make_shared<std::vector<lines::Curve>>();
+  for (int i = 1; i <= 3; ++i) {
+    curves->push_back(
+        {.kind = lines::CurveKind::kSegment, .points = {Vec3::Zero(), Vec3(i, 0, 0)}});
+  }
+  LineReview review{.version = 5, .curves = curves};
+  review.decisions.resize(3);
+  return review;
+}
+
+TEST(LineReview, KeepsTheAcceptedLinesInTheirOrder) {
+  LineReview review = three_lines();
+  EXPECT_ERROR(ErrorKind::kInsufficient, accepted_curves(review));
+  decide(review, {.version = 5, .decision = Decision::kAccepted, .lines = {2, 0, 1}});
+  decide(review, {.version = 5, .decision = Decision::kRejected, .lines = {1}});
+  const auto accepted = accepted_curves(review);
+  ASSERT_EQ(accepted.size(), 2u);
+  EXPECT_EQ(length_of(accepted[0]), 1.0);
+  EXPECT_EQ(length_of(accepted[1]), 3.0);
+}
+
+TEST(LineReview, ChangesNothingWhenItRefuses) {
+  LineReview review = three_lines();
+  EXPECT_ERROR(ErrorKind::kUsage,
+               decide(review, {.version = 5, .decision = Decision::kAccepted, .lines = {0, 3}}));
+  EXPECT_ERROR(ErrorKind::kInsufficient,
+               decide(review, {.version = 4, .decision = Decision::kAccepted, .lines = {0}}));
+  EXPECT_EQ(review.decisions, std::vector<Decision>(3, Decision::kOpen));
+  LineReview none;
+  EXPECT_ERROR(ErrorKind::kInsufficient, decide(none, {}));
+  EXPECT_ERROR(ErrorKind::kInsufficient, accepted_curves(none));
+}
+
+}  // namespace
+}  // namespace pcednet::annotate
