@@ -1,6 +1,6 @@
 // The annotator end to end: a real server, headless Chromium, a mouse that paints; then the same on the command line.
 // Environment: PCEDNET the program, PCEDNET_SOURCE_DIR the repository, CHROMIUM the browser;
-// SCREENSHOT and SCREENSHOT_PHONE, if set, are where pictures of the page go.
+// SCREENSHOT, SCREENSHOT_PHONE and SCREENSHOT_LINES, if set, are where pictures of the page go.
 import assert from "node:assert/strict";
 import { spawn, spawnSync } from "node:child_process";
 import { once } from "node:events";
@@ -407,6 +407,100 @@ test("saves beside the input and says where", async () => {
     await notice.getByRole("button", { name: "Close" }).click();
     assert.ok(fs.statSync(saved[what]).size > 0);
   }
+});
+
+test("finds lines, goes through them, and downloads those that are accepted", async () => {
+  await page.evaluate(() => annotator.stage.camera.fit(true));
+  await settled(page);
+  /** Pixels of the canvas that are red, or whose blue is that of the line looked at. */
+  const coloured = () =>
+    page.evaluate(async () => {
+      const { canvas } = annotator.stage;
+      const flat = Object.assign(document.createElement("canvas"), { width: canvas.width, height: canvas.height });
+      const context = flat.getContext("2d");
+      context.drawImage(canvas, 0, 0);
+      const { data } = context.getImageData(0, 0, flat.width, flat.height);
+      const n = { red: 0, chosen: 0 };
+      for (let i = 0; i < data.length; i += 4) {
+        const [r, g, b] = data.subarray(i, i + 3);
+        if (r === 168 && g === 0 && b === 0) n.red += 1;
+        if (b > 230 && r < 60 && g > 130) n.chosen += 1;
+      }
+      return n;
+    });
+  const before = await coloured();
+  await page.getByRole("button", { name: "Find lines" }).click();
+  await page.waitForFunction(() => annotator.store.now.lines.version === 1);
+  await settled(page);
+  const drawn = await coloured();
+  assert.ok(drawn.red > before.red + 500, `${JSON.stringify(before)} then ${JSON.stringify(drawn)}`);
+  const found = (await state("lines")).lines;
+  assert.ok(found.length >= 12, `${found.length} lines`);
+
+  // To the first, to the last, and back: the view comes near, the line stands out, its facts are shown.
+  const eye = () => page.evaluate(() => annotator.stage.camera.view.eye);
+  const far = await eye();
+  await page.keyboard.press("j");
+  await page.waitForTimeout(500); // the flight
+  await settled(page);
+  const [near, first] = [await eye(), found[0].middle];
+  const away = (place) => Math.hypot(...place.map((c, i) => c - first[i]));
+  assert.ok(away(near) < 0.7 * away(far), `${away(near)} of ${away(far)}`);
+  assert.ok((await coloured()).chosen > 50);
+  const panel = page.locator("details.section", { hasText: "Find lines" });
+  await panel.getByText(`Line 1 of ${found.length}`).waitFor();
+  await panel.getByText(`${found[0].kind}, sharp edge`).waitFor();
+  await panel.getByRole("button", { name: /^Previous/ }).click();
+  assert.equal(await state("line"), found.length - 1);
+  await panel.getByRole("button", { name: /^Next/ }).click();
+  assert.equal(await state("line"), 0);
+
+  // The first is accepted, which leads to the second; that is rejected; the rest are accepted at once.
+  await page.keyboard.press("a");
+  await page.waitForFunction(() => annotator.store.now.line === 1);
+  await page.keyboard.press("d");
+  await page.waitForFunction(() => annotator.store.now.line === 2);
+  await panel.getByText(`${found.length} lines: 1 accepted, 1 rejected.`).waitFor();
+  await page.getByRole("button", { name: "Accept the rest" }).click();
+  await panel.getByText(`${found.length} lines: ${found.length - 1} accepted, 1 rejected.`).waitFor();
+  const download = async (name) => {
+    const [offer] = await Promise.all([
+      page.waitForEvent("download"),
+      page.getByRole("button", { name, exact: true }).click(),
+    ]);
+    assert.equal(offer.suggestedFilename(), `roof_lines.${name.toLowerCase()}`);
+    return fs.readFileSync(await offer.path(), "utf8");
+  };
+  const { features } = JSON.parse(await download("GeoJSON"));
+  const rejected = found[1];
+  const accepted = found.filter((line) => line !== rejected);
+  assert.deepEqual(
+    features.map(({ properties }) => properties.kind),
+    accepted.map(({ kind }) => kind),
+  );
+  features.forEach(({ properties }, i) => assert.ok(Math.abs(properties.length - accepted[i].length) < 1e-9));
+  assert.match(await download("DXF"), /LINE\r?\n/);
+  const drawnLines = (await download("OBJ")).split("\n").filter((line) => line.startsWith("l "));
+  assert.equal(drawnLines.length, accepted.length);
+
+  // Another window shows the same decisions; hidden lines are gone.
+  const second = await open();
+  assert.deepEqual(
+    await second.evaluate(() => annotator.store.now.lines.lines.map(({ decision }) => decision)),
+    found.map((line) => (line === rejected ? "rejected" : "accepted")),
+  );
+  await second.close();
+  await page.evaluate(() => annotator.stage.camera.fit(true));
+  await settled(page);
+  if (process.env.SCREENSHOT_LINES) {
+    await page.getByRole("button", { name: "GeoJSON" }).scrollIntoViewIfNeeded();
+    await page.evaluate(() => document.querySelectorAll(".notice").forEach((notice) => notice.remove()));
+    await page.screenshot({ path: process.env.SCREENSHOT_LINES });
+  }
+  await page.keyboard.press("h");
+  await settled(page);
+  const hidden = await coloured();
+  assert.ok(hidden.red < drawn.red - 500 && hidden.chosen === 0, JSON.stringify(hidden));
 });
 
 test("predicts the true edges from those few strokes", () => {

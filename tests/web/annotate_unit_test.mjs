@@ -11,7 +11,7 @@ const { build } = createRequire(path.join(web, "package.json"))("esbuild");
 const { outputFiles } = await build({
   stdin: {
     resolveDir: path.join(web, "annotate"),
-    contents: ["geometry", "detail", "chunk", "paint", "ramp", "budget", "commands", "fingers", "format"]
+    contents: ["geometry", "detail", "chunk", "paint", "ramp", "budget", "commands", "fingers", "format", "reviewer"]
       .map((name) => `export * as ${name} from "./${name}";`)
       .join(""),
   },
@@ -20,7 +20,7 @@ const { outputFiles } = await build({
   format: "esm",
   platform: "node",
 });
-const { geometry, detail, chunk, paint, ramp, budget, commands, fingers, format } = await import(
+const { geometry, detail, chunk, paint, ramp, budget, commands, fingers, format, reviewer } = await import(
   `data:text/javascript;base64,${Buffer.from(outputFiles[0].contents).toString("base64")}`
 );
 
@@ -373,4 +373,16 @@ test("names the stages of loading, and leaves a sentence as it is", () => {
   assert.equal(format.stageText("describe", 0.824), "Computing descriptors, 82 %");
   assert.equal(format.stageText("read", 0), "Reading the file");
   assert.equal(format.stageText("Cannot open the cloud: no points.", 0), "Cannot open the cloud: no points.");
+});
+
+test("goes through lines round the end, and to those that are undecided", () => {
+  const { stepped, nextOpen, countDecisions } = reviewer;
+  assert.deepEqual([stepped(0, null, 1), stepped(3, null, 1), stepped(3, null, -1)], [null, 0, 2]);
+  assert.deepEqual([stepped(3, 0, 1), stepped(3, 2, 1), stepped(3, 0, -1), stepped(1, 0, -1)], [1, 0, 2, 0]);
+  const lines = (...decisions) => decisions.map((decision) => ({ decision }));
+  assert.equal(nextOpen(lines("open", "accepted", "rejected", "open"), 0), 3);
+  assert.equal(nextOpen(lines("open", "accepted", "rejected", "open"), 3), 0);
+  assert.equal(nextOpen(lines("accepted", "open"), 1), null); // itself does not count
+  assert.equal(nextOpen(lines("accepted"), 0), null);
+  assert.deepEqual(countDecisions(lines("open", "rejected", "open")), { open: 2, accepted: 0, rejected: 1 });
 });

@@ -1,13 +1,25 @@
 // Keeps the page's state in step with the server's.
 
+import { h } from "../shared/dom";
 import { ApiError, type Api } from "./api";
 import { boxDiagonal } from "./geometry";
+import { LineClient } from "./line_client";
 import type { Stage } from "./stage";
 import type { AppStore } from "./store";
-import type { Painted, PredictionEvent, Run, Session, Settings, Stroke, TrainingEvent, Uncertain } from "./types";
+import type {
+  DecidedEvent,
+  Painted,
+  PredictionEvent,
+  Run,
+  Session,
+  Settings,
+  Stroke,
+  TrainingEvent,
+  Uncertain,
+} from "./types";
 import { WorkQueue } from "./work";
 
-export type Saved = "cloud" | "model" | "project";
+export type Saved = "cloud" | "model" | "project" | "lines";
 
 export const READ_ONLY = "Another window is painting this cloud. Take over to paint here.";
 
@@ -18,6 +30,7 @@ export interface Words {
 
 export class Client {
   private readonly queue: WorkQueue;
+  readonly lines: LineClient;
   private events: EventSource | null = null;
   private opened = false;
   /** A prediction was shown before. */
@@ -29,6 +42,7 @@ export class Client {
     private readonly store: AppStore,
     private readonly words: Words,
   ) {
+    this.lines = new LineClient(api, store, words, () => this.mayPaint());
     this.queue = new WorkQueue(api, {
       painted: (answer) => this.takePainted(answer),
       failed: (error) => {
@@ -57,11 +71,14 @@ export class Client {
     this.events = this.api.events({
       progress: ({ stage, fraction }) => {
         if (!this.opened) store.set({ progress: { stage, fraction } });
+        else this.lines.takeStage(stage, fraction);
       },
       ready: () => this.attempt(this.refresh()),
       labels: (answer: Painted) => this.takePainted(answer),
       training: (event: TrainingEvent) => this.takeTraining(event),
       prediction: (event: PredictionEvent) => this.attempt(this.takePrediction(event)),
+      lines: ({ version, searching }) => this.attempt(this.lines.take(version, searching)),
+      decided: (event: DecidedEvent) => this.lines.takeDecisions(event),
       writer: ({ window: name }) => store.set({ writer: name === this.api.window }),
       problem: ({ message }) => {
         this.endTraining();
@@ -89,6 +106,7 @@ export class Client {
       settings: session.settings,
       undo: session.undo,
       redo: session.redo,
+      predictionVersion: session.prediction_version,
       counts: [0, 1, 2].map((id) => session.classes.find((c) => c.id === id)?.count ?? 0) as [number, number, number],
     });
     if (session.state !== "ready") {
@@ -97,6 +115,7 @@ export class Client {
     }
     const runs = await this.api.get<Run[]>("/api/runs");
     store.set({ runs, progress: null });
+    await this.lines.refresh();
     if (this.opened) return;
     this.opened = true;
     const predicted = (this.predicted = session.prediction_version > 0 && session.run !== null);
@@ -147,7 +166,7 @@ export class Client {
     const first = !this.predicted;
     this.predicted = true;
     this.endTraining();
-    store.set({ predicted: event.counts, uncertain: null });
+    store.set({ predicted: event.counts, uncertain: null, predictionVersion: event.prediction_version });
     this.stage.loader.refresh("prediction");
     if (["confidence", "p_sharp"].includes(store.now.mode)) this.stage.loader.refresh("values");
     if (first && ["labels", "rgb"].includes(store.now.mode)) store.set({ mode: "prediction" });
@@ -243,7 +262,11 @@ export class Client {
     }
   }
 
-  downloadAddress(what: Saved): string {
-    return this.api.address(`/api/download/${what}`);
+  downloadAddress(what: Saved, query = ""): string {
+    return this.api.address(`/api/download/${what}${query}`);
+  }
+
+  download(what: Saved, query: string): void {
+    h("a", { href: this.downloadAddress(what, query), download: "" }).click();
   }
 }

@@ -1,6 +1,7 @@
 // From what the page is set to show to what the points look like.
 
-import { CLASS_PALETTES, type Meaning } from "../shared/colours";
+import { BOUNDARY_COLOUR, CLASS_PALETTES, type Meaning } from "../shared/colours";
+import type { LineLook } from "./line_layer";
 import type { Appearance } from "./painter";
 import { rampBytes, STOPS, type RampName } from "./ramp";
 import { activeClip, type ColourMode, type State } from "./store";
@@ -50,6 +51,16 @@ export function appearanceOf(state: State, background: string): Appearance {
     background,
   };
 }
+
+export const lineLookOf = (state: State, chosen: number | null): LineLook => ({
+  palette: [
+    ...paletteOf(state)
+      .slice(0, 3)
+      .map((meaning) => meaning.colour),
+    BOUNDARY_COLOUR,
+  ],
+  chosen,
+});
 
 /** What the ends of the present ramp mean. */
 export function rampEnds({ mode }: State): [string, string] {

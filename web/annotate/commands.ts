@@ -4,6 +4,7 @@ import type { Brush } from "./brush";
 import type { Client } from "./client";
 import type { Outline } from "./outline";
 import type { Pointer } from "./pointer";
+import type { Reviewer } from "./reviewer";
 import type { Stage } from "./stage";
 import { NO_CLASS } from "./types";
 import type { AppStore, ColourMode, Tool } from "./store";
@@ -12,7 +13,7 @@ export interface Command {
   /** As `Ctrl+Shift+Z`; the first is shown on buttons. */
   keys: string[];
   name: string;
-  group: "Tools" | "Classes" | "View" | "Colours" | "Training" | "File";
+  group: "Tools" | "Classes" | "View" | "Colours" | "Training" | "Lines" | "File";
   run(): void;
 }
 
@@ -24,6 +25,7 @@ export interface Hands {
   brush: Brush;
   outline: Outline;
   pointer: Pointer;
+  reviewer: Reviewer;
   toggleClip(): void;
   nextUncertain(): void;
   save(): void;
@@ -139,6 +141,17 @@ function colourCommands({ store }: Hands): Command[] {
   ];
 }
 
+function lineCommands({ store, reviewer }: Hands): Command[] {
+  const command = (keys: string[], name: string, run: () => void): Command => ({ keys, name, group: "Lines", run });
+  return [
+    command(["J"], "next line", () => reviewer.step(1)),
+    command(["K"], "previous line", () => reviewer.step(-1)),
+    command(["A"], "accept the line", () => void reviewer.decide("accepted")),
+    command(["D"], "reject the line", () => void reviewer.decide("rejected")),
+    command(["H"], "hide or show lines", () => store.set({ showLines: !store.now.showLines })),
+  ];
+}
+
 export function commandsOf(hands: Hands): Command[] {
   const { client, outline, store } = hands;
   const command = (keys: string[], name: string, group: Command["group"], run: () => void): Command => ({
@@ -154,10 +167,11 @@ export function commandsOf(hands: Hands): Command[] {
     ...colourCommands(hands),
     command(["N"], "next uncertain place", "Training", hands.nextUncertain),
     command(["T"], "train now", "Training", () => client.train()),
-    command(["Escape"], "cancel the outline or the training", "Training", () => {
+    command(["Escape"], "cancel the outline, the training or the search for lines", "Training", () => {
       if (outline.isOpen) outline.cancel();
-      else if (store.now.training?.active) client.cancel();
+      else if (store.now.training?.active || store.now.lines.searching) client.cancel();
     }),
+    ...lineCommands(hands),
     command(["Ctrl+S"], "save the project", "File", hands.save),
     command(["Shift+S"], "screenshot", "File", hands.screenshot),
     command(["?"], "show these keys", "File", hands.help),

@@ -30,5 +30,9 @@ export function stageText(stage: string, fraction: number): string {
   return name.charAt(0).toUpperCase() + name.slice(1) + (fraction > 0 ? `, ${share(fraction)}` : "");
 }
 
+/** What happens while lines are searched. */
+export const searchText = (stage: string, fraction: number): string =>
+  `Finding lines${fraction > 0 ? `: ${stage}, ${share(fraction)}` : ""}`;
+
 /** A part of a whole. */
 export const share = (fraction: number): string => `${Math.round(100 * Math.min(Math.max(fraction, 0), 1))} %`;

@@ -6,7 +6,7 @@ import { Api } from "./api";
 import { Brush } from "./brush";
 import { curtain, header, legend, presser, toolbar } from "./chrome";
 import { Client, READ_ONLY, type Saved } from "./client";
-import { appearanceOf, paintColour, valuesQuery } from "./colouring";
+import { appearanceOf, lineLookOf, paintColour, valuesQuery } from "./colouring";
 import { bindKeys, commandsOf } from "./commands";
 import { boxDiagonal } from "./geometry";
 import { Outline } from "./outline";
@@ -14,7 +14,9 @@ import { Overlay } from "./overlay";
 import { classesPanel } from "./panel_classes";
 import { runsPanel, trainingPanel, uncertainPanel } from "./panel_training";
 import { boxAround, clipPanel, toggledClip, viewPanel } from "./panel_view";
+import { linesPanel } from "./panel_lines";
 import { Pointer } from "./pointer";
+import { Reviewer } from "./reviewer";
 import { Stage } from "./stage";
 import { activeClip, initialState, Store, type State } from "./store";
 import { ask, helpDialog, Notices } from "./words";
@@ -50,6 +52,8 @@ function open(page: HTMLElement): void {
     colour: () => paintColour(store.now),
   });
 
+  const reviewer = new Reviewer(stage, store, client.lines);
+
   const save = async (what: Saved): Promise<void> => {
     const path = await client.save(what, (problem) => ask(`${problem}. Replace the file?`, "Replace"));
     if (path) notices.say(`Saved ${path}`);
@@ -79,6 +83,7 @@ function open(page: HTMLElement): void {
     brush,
     outline,
     pointer,
+    reviewer,
     toggleClip: () => store.set({ clip: toggledClip(store.now) }),
     nextUncertain: () => void nextUncertain(),
     save: () => void save("project"),
@@ -102,6 +107,7 @@ function open(page: HTMLElement): void {
       viewPanel(store),
       trainingPanel(store, client),
       uncertainPanel(store, () => void nextUncertain()),
+      linesPanel(store, client, reviewer),
       clipPanel(store, () => store.now.session && boxAround(stage.camera.target, store.now.session.bounds)),
       runsPanel(store, client),
     ),
@@ -112,6 +118,10 @@ function open(page: HTMLElement): void {
     stage.setAppearance(appearanceOf(store.now, css("--stage"))),
   );
   store.watch(["mode", "feature", "scale"], () => stage.loader.setValues(valuesQuery(store.now)));
+  store.watch(["lines", "line", "showLines", "safePalette", "session"], () => {
+    const { lines, line, showLines, session } = store.now;
+    stage.setLines(showLines ? lines.lines : [], lineLookOf(store.now, line), session?.spacing ?? 0);
+  });
   store.watch(["clip"], () => overlay.setClip(activeClip(store.now)));
   store.watch(["uncertain"], () => {
     if (!store.now.uncertain) overlay.setMark(null);

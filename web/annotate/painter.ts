@@ -15,6 +15,7 @@ import {
 } from "three";
 import { rgbOf } from "../shared/colours";
 import type { Chunk } from "./chunk";
+import { LineLayer } from "./line_layer";
 import { FRAGMENT, VERTEX } from "./shaders";
 import type { Box } from "./types";
 
@@ -47,12 +48,14 @@ function isSoftware(renderer: WebGLRenderer): boolean {
 export class Painter {
   readonly renderer: WebGLRenderer;
   readonly ratio: number;
+  readonly lines: LineLayer;
   private readonly scene = new Scene();
   private readonly onCard = new Map<number, Points>();
   private readonly material: ShaderMaterial;
   private readonly ramp = new DataTexture(new Uint8Array(1024), 256, 1);
   private spacings = new Map<number, Float32Array>();
   private fresh = false;
+  private size: [number, number] = [1, 1];
 
   /** Throws if the browser offers no WebGL. */
   constructor(private readonly canvas: HTMLCanvasElement) {
@@ -61,6 +64,7 @@ export class Painter {
     this.renderer.autoClear = false;
     this.ratio = isSoftware(this.renderer) ? 1 : Math.min(window.devicePixelRatio, 2);
     this.renderer.setPixelRatio(this.ratio);
+    this.lines = new LineLayer(this.ratio);
     this.ramp.minFilter = this.ramp.magFilter = NearestFilter;
     this.scene.matrixWorldAutoUpdate = false;
     this.material = new ShaderMaterial({
@@ -85,6 +89,7 @@ export class Painter {
 
   resize(width: number, height: number): void {
     this.renderer.setSize(width, height, false);
+    this.size = [width * this.ratio, height * this.ratio];
   }
 
   setAppearance(look: Appearance): void {
@@ -102,6 +107,7 @@ export class Painter {
     }
     u.size.value = look.pointSize;
     u.least.value = 1.5 * this.ratio;
+    this.lines.setClip(look.clip);
     this.renderer.setClearColor(new Color(look.background));
   }
 
@@ -127,6 +133,13 @@ export class Painter {
     const gl = this.renderer.getContext();
     gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4)); // waits until it is drawn
     return this.fresh ? null : performance.now() - start;
+  }
+
+  /** Draws the lines over what there is. */
+  drawLines(camera: PerspectiveCamera, pixels: number): void {
+    if (this.lines.scene.children.length === 0) return;
+    this.lines.setView(...this.size, pixels * this.ratio, camera.near);
+    this.renderer.render(this.lines.scene, camera);
   }
 
   private objectOf(chunk: Chunk): Points {

@@ -7,7 +7,8 @@ import { pick, type Chunk, type Picked, type Visibility } from "./chunk";
 import { drawnSpacings, selectNodes, withSpacings, type Take } from "./detail";
 import { Loader } from "./loader";
 import { Painter, type Appearance, type Layer } from "./painter";
-import type { Box, Session } from "./types";
+import type { LineLook } from "./line_layer";
+import type { Box, Line, Session } from "./types";
 
 const SETTLE_MS = 120;
 const REST_MS = 200;
@@ -86,6 +87,11 @@ export class Stage {
     else this.redraw();
   }
 
+  setLines(lines: Line[], look: LineLook, spacing: number): void {
+    this.painter.lines.setLines(lines, look, spacing);
+    this.redraw();
+  }
+
   private resize(): void {
     const { clientWidth: width, clientHeight: height } = this.canvas.parentElement!;
     if (width === 0 || height === 0) return;
@@ -133,7 +139,8 @@ export class Stage {
   private drawFrame(): void {
     this.frame = 0;
     if (!this.look || !this.bounds) return;
-    if (this.stale) this.begin();
+    const isFirst = this.stale;
+    if (isFirst) this.begin();
     const todo = this.nextTakes();
     const milliseconds = this.painter.draw(todo, this.camera.three, this.camera.pixels);
     if (milliseconds !== null)
@@ -141,7 +148,9 @@ export class Stage {
         todo.reduce((sum, take) => sum + take.points, 0),
         milliseconds,
       );
-    if (this.next < this.takes.length || this.touched.size > 0) this.schedule();
+    const isLast = this.next >= this.takes.length && this.touched.size === 0;
+    if (isFirst || isLast) this.painter.drawLines(this.camera.three, this.camera.pixels);
+    if (!isLast) this.schedule();
   }
 
   private begin(): void {

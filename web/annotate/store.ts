@@ -1,6 +1,6 @@
 // What the page shows, in one place; those who show it watch it.
 
-import type { Box, Run, Session, Settings, Uncertain, Vec3 } from "./types";
+import type { Box, Lines, Run, Session, Settings, Uncertain, Vec3 } from "./types";
 
 export type Tool = "navigate" | "brush" | "lasso" | "polygon";
 export type ColourMode = "rgb" | "normals" | "labels" | "prediction" | "confidence" | "p_sharp" | "feature";
@@ -50,6 +50,13 @@ export interface State {
   /** Shares of the classes in the prediction. */
   predicted: Vec3 | null;
   uncertain: Uncertain | null;
+  predictionVersion: number;
+  lines: Lines;
+  /** The number of the line that is looked at. */
+  line: number | null;
+  showLines: boolean;
+  /** How far the search for lines is, in words. */
+  searchStage: string;
 }
 
 export const initialState: State = {
@@ -79,6 +86,11 @@ export const initialState: State = {
   training: null,
   predicted: null,
   uncertain: null,
+  predictionVersion: 0,
+  lines: { version: 0, prediction_version: 0, searching: false, lines: [] },
+  line: null,
+  showLines: true,
+  searchStage: "",
 };
 
 export class Store<T extends object> {

@@ -106,6 +106,39 @@ export interface PredictionEvent {
   held_out_accuracy: number | null;
 }
 
+export type Decision = "open" | "accepted" | "rejected";
+
+/** An edge as a curve. */
+export interface Line {
+  kind: "segment" | "arc" | "circle" | "polyline";
+  class: number;
+  length: number;
+  confidence: number;
+  /** Between the normals of its surfaces, degrees. */
+  angle: number;
+  /** That it stands for. */
+  points: number;
+  decision: Decision;
+  middle: Vec3;
+  normal: Vec3;
+  /** Vertices: x, y, z, x, y, z, ... */
+  path: number[];
+}
+
+export interface Lines {
+  version: number;
+  prediction_version: number;
+  searching: boolean;
+  lines: Line[];
+}
+
+/** Decisions of any window. */
+export interface DecidedEvent {
+  version: number;
+  decision: Decision;
+  lines: number[];
+}
+
 interface StrokeCommon {
   id: string;
   /** 255 erases. */

@@ -22,6 +22,9 @@ export const CLASS_PALETTES: Record<"paper" | "safe", Meaning[]> = {
   ],
 };
 
+/** Of lines where a surface ends. */
+export const BOUNDARY_COLOUR = "#0052a5";
+
 /** Agreement about the positive class, safe for the colour-blind: right is grey, wrong is coloured. */
 export const ERROR_PALETTE: Meaning[] = [
   { name: "true negative", colour: "#ffffff" },

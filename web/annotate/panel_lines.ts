@@ -1,0 +1,98 @@
+// The lines found in the prediction: a search, a walk through them, what becomes of each.
+
+import { h } from "../shared/dom";
+import type { Client } from "./client";
+import { count, length, percent } from "./format";
+import { button, checkbox, section } from "./panel";
+import { countDecisions, type Reviewer } from "./reviewer";
+import type { AppStore } from "./store";
+import type { Line } from "./types";
+
+export const LINE_CLASSES = ["non-edge", "smooth edge", "sharp edge", "boundary"];
+const FORMATS: [string, string][] = [
+  ["dxf", "DXF"],
+  ["obj", "OBJ"],
+  ["geojson", "GeoJSON"],
+];
+
+const plural = (n: number, noun: string): string => `${count(n)} ${noun}${n === 1 ? "" : "s"}`;
+
+/** How the search and the decisions stand. */
+function summary(store: AppStore): string {
+  const { lines, searchStage, runs, predictionVersion } = store.now;
+  if (lines.searching) return searchStage || "Finding lines";
+  if (lines.version === 0) {
+    return runs.length > 0
+      ? "The predicted edges as segments, arcs and circles."
+      : "Available once there is a prediction.";
+  }
+  const { accepted, rejected } = countDecisions(lines.lines);
+  const stale = lines.prediction_version === predictionVersion ? "" : " The prediction has changed since.";
+  return `${plural(lines.lines.length, "line")}: ${count(accepted)} accepted, ${count(rejected)} rejected.${stale}`;
+}
+
+/** What is known of a line. */
+function facts(line: Line): [string, string][] {
+  return [
+    ["kind", `${line.kind}, ${LINE_CLASSES[line.class]}`],
+    ["length", length(line.length)],
+    ["confidence", percent(line.confidence)],
+    ["angle", `${line.angle.toFixed(0)}° between the surfaces`],
+    ["points", count(line.points)],
+    ["decision", line.decision],
+  ];
+}
+
+export function linesPanel(store: AppStore, client: Client, reviewer: Reviewer): HTMLElement {
+  const words = h("p", { class: "summary", role: "status" });
+  const find = button("Find lines", () => client.lines.find());
+  const cancel = button("Cancel", () => client.cancel());
+  const show = checkbox("Show lines", "H", (on) => store.set({ showLines: on }));
+  const title = h("h3", {});
+  const list = h("dl", { class: "line-facts" });
+  const accept = button("Accept", () => void reviewer.decide("accepted"), "A");
+  const reject = button("Reject", () => void reviewer.decide("rejected"), "D");
+  const rest = button("Accept the rest", () => void reviewer.acceptRest());
+  const walk = h(
+    "div",
+    { class: "buttons" },
+    button("Previous", () => reviewer.step(-1), "K"),
+    button("Next", () => reviewer.step(1), "J"),
+  );
+  const downloads = FORMATS.map(([format, label]) =>
+    button(label, () => client.download("lines", `?format=${format}`)),
+  );
+  const review = h(
+    "div",
+    {},
+    show.element,
+    walk,
+    title,
+    list,
+    h("div", { class: "buttons" }, accept, reject, rest),
+    h("p", { class: "summary" }, "Download the accepted lines"),
+    h("div", { class: "buttons" }, ...downloads),
+  );
+  store.watch(["lines", "searchStage", "runs", "predictionVersion", "writer", "training"], () => {
+    const { lines, runs, writer } = store.now;
+    const { open, accepted } = countDecisions(lines.lines);
+    words.textContent = summary(store);
+    find.hidden = lines.searching;
+    find.disabled = !writer || runs.length === 0;
+    cancel.hidden = !lines.searching;
+    review.hidden = lines.lines.length === 0;
+    rest.disabled = !writer || open === 0;
+    for (const download of downloads) download.disabled = accepted === 0;
+  });
+  store.watch(["lines", "line", "writer", "showLines"], () => {
+    const { lines, line, writer } = store.now;
+    const chosen = line === null ? undefined : lines.lines[line];
+    show.set(store.now.showLines);
+    title.textContent = chosen ? `Line ${count(line! + 1)} of ${count(lines.lines.length)}` : "";
+    list.replaceChildren(
+      ...(chosen ? facts(chosen) : []).flatMap(([name, value]) => [h("dt", {}, name), h("dd", {}, value)]),
+    );
+    accept.disabled = reject.disabled = !writer || !chosen;
+  });
+  return section("Lines", true, words, h("div", { class: "buttons" }, find, cancel), review);
+}
