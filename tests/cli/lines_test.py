@@ -169,6 +169,20 @@ class Lines(CliTest):
         ElementTree.parse(self.made["svg"])
         self.assertTrue(self.made["dxf"].read_text().endswith("  0\nEOF\n"))
 
+    def test_draws_the_curves_over_the_cloud(self):
+        path = self.labelled_cube()
+        picture = self.folder / "edges.png"
+        done = run("lines", path, *self.outputs("dxf"), "--preview", picture)
+        self.assertIn(f"-> {picture}", done.stderr)
+        drawn = picture.read_bytes()
+        self.assertEqual(drawn[:8], b"\x89PNG\r\n\x1a\n")
+        self.assertEqual(struct.unpack(">II", drawn[16:24]), (1280, 960))
+        run("lines", path, *self.outputs("svg"), "--preview", picture, expect=2)
+        run("lines", path, "-o", picture, "--preview", picture, expect=2)
+        run("lines", path, *self.outputs("svg"), "--preview", picture, "--overwrite",
+            "--kind", "circle")
+        self.assertNotEqual(picture.read_bytes(), drawn)  # the cube has no circles
+
     def test_odd_clouds(self):
         p, n, label = cube(3000)
         write_ply(self.folder / "one.ply", p[:1], n[:1], np.full(1, 2, np.uint8))

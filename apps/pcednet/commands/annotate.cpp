@@ -126,7 +126,7 @@ void annotate_cloud(const AnnotateArguments& arguments, const Common& common) {
 void add_annotate(CLI::App& app, Common& common) {
   auto arguments = std::make_shared<AnnotateArguments>();
   CLI::App* command = add_command(
-      app, common, "annotate", "Paint edges in the browser and train on them",
+      app, common, "annotate", "Paint edges in the browser, train on them, review their lines",
       "pcednet annotate scan.ply                       opens the browser\n"
       "pcednet annotate scan.ply --no-browser --port 8080\n"
       "pcednet annotate scan.ply --model scan          starts with a model's labels\n"
