@@ -16,7 +16,7 @@ ChainNode node(const Vec3& at, const Vec3& along) {
           .side_a = Vec3::UnitZ(),
           .side_b = -Vec3::UnitZ(),
           .spacing = 1.0,
-          .creases = 1.0};
+          .edge_points = 1.0};
 }
 
 /// Nodes one apart: straight for 20, a quarter turn of radius 10, straight for 20.

@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <optional>
 
 #include "pcednet/core/parallel.h"
@@ -13,7 +14,7 @@ namespace pcednet::lines {
 namespace {
 
 constexpr std::size_t kBoundaryPointsAtOnce = 512;
-constexpr std::size_t kNeighbours = 26;
+constexpr std::size_t kNeighbours = 25;
 constexpr double kOpenAngle = 125.0 * std::numbers::pi / 180.0;
 
 // In spacings.
@@ -38,11 +39,10 @@ Opening widest(std::vector<double>& angles) {
 }
 
 std::optional<Crease> boundary_at(const OrderedPoints& cloud, std::size_t i,
-                                  std::vector<spatial::Neighbour>& nearest,
+                                  std::span<const spatial::Neighbour> nearest,
                                   std::vector<double>& angles) {
   const Vec3& normal = cloud.normal(i);
   if (normal.isZero(0.0)) return std::nullopt;
-  cloud.tree().nearest(cloud.position(i), kNeighbours, nearest);
   const double spacing = spacing_of(nearest);
   if (!(spacing > 0.0) || nearest.size() < kNeighbours / 2) return std::nullopt;
   const Vec3 x = normal.unitOrthogonal(), y = normal.cross(x);
@@ -77,10 +77,17 @@ std::optional<Crease> boundary_at(const OrderedPoints& cloud, std::size_t i,
 std::vector<Crease> find_boundaries(const OrderedPoints& cloud, const Progress* progress) {
   std::vector<std::optional<Crease>> found(cloud.size());
   Stage stage(progress, "boundaries", cloud.size());
+  const std::size_t others = cloud.available(kNeighbours);
   parallel_blocks(cloud.size(), kBoundaryPointsAtOnce, [&](std::size_t begin, std::size_t end) {
+    std::vector<std::uint32_t> points(end - begin);
+    std::iota(points.begin(), points.end(), static_cast<std::uint32_t>(begin));
     std::vector<spatial::Neighbour> nearest;
+    cloud.nearest_others(points, others, nearest);
     std::vector<double> angles;
-    for (std::size_t i = begin; i < end; ++i) found[i] = boundary_at(cloud, i, nearest, angles);
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto row = std::span(nearest).subspan((i - begin) * others, others);
+      found[i] = boundary_at(cloud, i, row, angles);
+    }
     stage.advance(end - begin);
   });
   std::vector<Crease> creases;

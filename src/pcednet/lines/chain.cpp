@@ -102,12 +102,15 @@ ChainNode mean_of(std::span<const Crease> creases, std::span<const std::uint32_t
     mean.side_a += crossed ? crease.side_b : crease.side_a;
     mean.side_b += crossed ? crease.side_a : crease.side_b;
     mean.spacing += crease.spacing / count;
-    mean.probability += crease.probability / count;
+    if (crease.edge_class != kNonEdge) {
+      mean.edge_points += 1.0;
+      mean.probability += crease.probability;
+    }
     mean.bend += crease.bend / count;
     mean.sharp += (crease.edge_class == kSharpEdge ? 1.0 : 0.0) / count;
     mean.boundary += (crease.edge_class == kBoundary ? 1.0 : 0.0) / count;
   }
-  mean.creases = count;
+  mean.probability /= std::max(mean.edge_points, 1.0);
   mean.along.normalize();
   mean.side_a.normalize();
   mean.side_b.normalize();
@@ -187,7 +190,7 @@ Chain Tracer::trace_from(std::size_t crease) {
                         .side_a = seed.side_a,
                         .side_b = seed.side_b,
                         .spacing = seed.spacing,
-                        .creases = 1.0,
+                        .edge_points = seed.edge_class == kNonEdge ? 0.0 : 1.0,
                         .probability = seed.probability,
                         .bend = seed.bend,
                         .sharp = seed.edge_class == kSharpEdge ? 1.0 : 0.0,

@@ -14,8 +14,8 @@ struct ChainNode {
   Vec3 along;  ///< unit, towards the next node
   Vec3 side_a, side_b;
   double spacing = 0.0;
-  double creases = 0.0;      ///< how many there are
-  double probability = 0.0;  ///< mean
+  double edge_points = 0.0;  ///< how many of its points are of an edge class
+  double probability = 0.0;  ///< their mean
   double bend = 0.0;         ///< mean
   double sharp = 0.0;        ///< share of sharp-edge points
   double boundary = 0.0;     ///< share of boundary points

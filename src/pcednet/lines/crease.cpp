@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <numbers>
 #include <optional>
@@ -15,9 +16,12 @@ namespace pcednet::lines {
 namespace {
 
 constexpr std::size_t kPointsAtOnce = 256;
-constexpr std::size_t kPlaneNeighbours = 16;
+constexpr std::size_t kPlaneNeighbours = 15, kLeastNeighbours = 5;
 constexpr std::size_t kSamples = 2000;  ///< points that spacing and noise are measured at
 constexpr double kLeastAngle = 20.0 * std::numbers::pi / 180.0;
+/// Nearest points that are tried with an edge point, itself among them: bands of smooth-edge are
+/// wide enough, sharp-edge may be a single row.
+constexpr std::size_t kWithSharp = 9, kWithSmooth = 3;
 constexpr double kMostNoise = 0.7;         ///< in spacings: more is no surface
 constexpr float kLeastProbability = 0.3f;  ///< of points to be tried beside those of an edge class
 
@@ -55,16 +59,21 @@ double distance_to_plane(const OrderedPoints& cloud, std::size_t i,
 }  // namespace
 
 Sampling measure_sampling(const OrderedPoints& cloud) {
-  std::vector<double> spacings, noises;
-  std::vector<spatial::Neighbour> nearest;
   const std::size_t step = std::max<std::size_t>(1, cloud.size() / kSamples);
+  std::vector<std::uint32_t> points;
   for (std::size_t i = 0; i < cloud.size(); i += step) {
-    if (cloud.is_edge(i)) continue;
-    cloud.tree().nearest(cloud.position(i), kPlaneNeighbours, nearest);
-    const double spacing = spacing_of(nearest);
-    if (!(spacing > 0.0) || nearest.size() < 6) continue;
+    if (!cloud.is_edge(i)) points.push_back(static_cast<std::uint32_t>(i));
+  }
+  const std::size_t others = cloud.available(kPlaneNeighbours);
+  std::vector<spatial::Neighbour> nearest;
+  cloud.nearest_others(points, others, nearest);
+  std::vector<double> spacings, noises;
+  for (std::size_t k = 0; k < points.size() && others >= kLeastNeighbours; ++k) {
+    const auto row = std::span(nearest).subspan(k * others, others);
+    const double spacing = spacing_of(row);
+    if (!(spacing > 0.0)) continue;
     spacings.push_back(spacing);
-    noises.push_back(distance_to_plane(cloud, i, nearest) / spacing);
+    noises.push_back(distance_to_plane(cloud, points[k], row) / spacing);
   }
   return {median(spacings), std::min(median(noises), kMostNoise)};
 }
@@ -80,13 +89,13 @@ struct Wedge {
 /// The direction from the line into `plane` on which its points are near the line's point `at`, or
 /// none if they are on both sides or too few.
 std::optional<Vec3> side_of(const LocalPlane& plane, const Vec3& at, const Vec3& along,
-                            std::span<const NearPoint> points, double tolerance) {
+                            const NearPoints& points, double tolerance) {
   const Vec3 side = along.cross(plane.normal).normalized();
   double before = 0.0, after = 0.0;
-  for (const NearPoint& point : points) {
-    const Vec3 offset = point.offset - at;
-    if (std::abs(offset.dot(along)) > kSliceAlong || std::abs(plane(point.offset)) > tolerance)
-      continue;
+  for (std::size_t i = 0; i < points.count; ++i) {
+    const Vec3 offset = points.offset(i) - at;
+    if (std::abs(offset.dot(along)) > kSliceAlong) continue;
+    if (std::abs(plane(points.offset(i))) > tolerance) continue;
     const double place = offset.dot(side);
     if (std::abs(place) < std::max(kLeastFromLine, 1.5 * tolerance) || std::abs(place) > kSideReach)
       continue;
@@ -97,8 +106,8 @@ std::optional<Vec3> side_of(const LocalPlane& plane, const Vec3& at, const Vec3&
   return before > after ? Vec3(-side) : side;
 }
 
-std::optional<Wedge> wedge_of(const LocalPlane& a, const LocalPlane& b,
-                              std::span<const NearPoint> points, double tolerance) {
+std::optional<Wedge> wedge_of(const LocalPlane& a, const LocalPlane& b, const NearPoints& points,
+                              double tolerance) {
   const double cosine = a.normal.dot(b.normal);
   const double sq_sine = 1.0 - cosine * cosine;
   if (sq_sine < std::pow(std::sin(kLeastAngle), 2)) return std::nullopt;
@@ -116,10 +125,10 @@ std::optional<Wedge> wedge_of(const LocalPlane& a, const LocalPlane& b,
 /// How much the points of a side bend towards the inside of the wedge: their mean distance to the
 /// plane near the line and far from it, less that between.
 double bend_of(const Vec3& at, const Vec3& along, const Vec3& side, const Vec3& inward,
-               std::span<const NearPoint> points, double tolerance) {
+               const NearPoints& points, double tolerance) {
   double sum[3] = {}, count[3] = {};
-  for (const NearPoint& point : points) {
-    const Vec3 offset = point.offset - at;
+  for (std::size_t i = 0; i < points.count; ++i) {
+    const Vec3 offset = points.offset(i) - at;
     if (std::abs(offset.dot(along)) > kSliceAlong) continue;
     const double place = offset.dot(side), height = offset.dot(inward);
     if (place < kNearZone[0] || place > kFarZone || std::abs(height) > tolerance + 0.3) continue;
@@ -137,7 +146,7 @@ double bend_of(const Vec3& at, const Vec3& along, const Vec3& side, const Vec3& 
 }
 
 /// The mean of both sides.
-double bend_of(const Wedge& wedge, std::span<const NearPoint> points, double tolerance) {
+double bend_of(const Wedge& wedge, const NearPoints& points, double tolerance) {
   Vec3 into_a = wedge.along.cross(wedge.side_a), into_b = wedge.along.cross(wedge.side_b);
   if (into_a.dot(wedge.side_b) < 0.0) into_a = -into_a;
   if (into_b.dot(wedge.side_a) < 0.0) into_b = -into_b;
@@ -147,7 +156,7 @@ double bend_of(const Wedge& wedge, std::span<const NearPoint> points, double tol
 }
 
 /// The best wedge of all pairs of planes.
-std::optional<Wedge> best_wedge(std::span<const NearPoint> points, double tolerance) {
+std::optional<Wedge> best_wedge(const NearPoints& points, double tolerance) {
   std::vector<LocalPlane> planes;
   find_planes(points, tolerance, planes);
   std::optional<Wedge> best;
@@ -160,18 +169,16 @@ std::optional<Wedge> best_wedge(std::span<const NearPoint> points, double tolera
   return best;
 }
 
-std::optional<Crease> crease_at(const OrderedPoints& cloud, std::size_t i, const Sampling& sampling,
-                                std::vector<spatial::Neighbour>& nearest,
-                                std::vector<NearPoint>& near_points) {
-  const auto count = static_cast<std::size_t>(40.0 + 100.0 * sampling.noise);
-  const double tolerance = 0.3 + 1.1 * sampling.noise;
-  cloud.tree().nearest(cloud.position(i), count, nearest);
-  const double spacing = spacing_of(nearest);
+std::optional<Crease> crease_at(const OrderedPoints& cloud, std::uint32_t i,
+                                std::span<const spatial::Neighbour> others, double tolerance,
+                                NearPoints& near_points) {
+  const double spacing = spacing_of(others);
   if (!(spacing > 0.0)) return std::nullopt;
-  near_points.clear();
-  for (const auto& near : nearest) {
-    near_points.push_back({(cloud.position(near.index) - cloud.position(i)) / spacing,
-                           cloud.normal(near.index), cloud.probability(near.index)});
+  near_points.count = 0;
+  near_points.add(Vec3::Zero(), cloud.normal(i), cloud.probability(i));
+  for (const auto& near : others) {
+    near_points.add((cloud.position(near.index) - cloud.position(i)) / spacing,
+                    cloud.normal(near.index), cloud.probability(near.index));
   }
   const auto wedge = best_wedge(near_points, tolerance);
   if (!wedge) return std::nullopt;
@@ -185,21 +192,54 @@ std::optional<Crease> crease_at(const OrderedPoints& cloud, std::size_t i, const
                 .edge_class = cloud.edge_class(i)};
 }
 
+/// The points of an edge class, those that may be, and the neighbours of both.
+std::vector<std::uint32_t> points_near_edges(const OrderedPoints& cloud, const Progress* progress) {
+  std::vector<std::uint32_t> edge_points;
+  for (std::uint32_t i = 0; i < cloud.size(); ++i) {
+    if (cloud.is_edge(i) || cloud.probability(i) > kLeastProbability) edge_points.push_back(i);
+  }
+  std::vector<std::uint8_t> chosen(cloud.size(), 0);
+  const auto choose = [&](std::uint32_t i) {
+    std::atomic_ref(chosen[i]).store(1, std::memory_order_relaxed);
+  };
+  const std::size_t others = cloud.available(kWithSharp - 1);
+  Stage stage(progress, "edge points", edge_points.size());
+  parallel_blocks(edge_points.size(), kPointsAtOnce, [&](std::size_t begin, std::size_t end) {
+    std::vector<spatial::Neighbour> nearest;
+    cloud.nearest_others(std::span(edge_points).subspan(begin, end - begin), others, nearest);
+    for (std::size_t k = begin; k < end; ++k) {
+      choose(edge_points[k]);
+      const bool sharp = cloud.edge_class(edge_points[k]) == kSharpEdge;
+      const std::size_t beside = std::min(others, (sharp ? kWithSharp : kWithSmooth) - 1);
+      for (std::size_t n = 0; n < beside; ++n) choose(nearest[(k - begin) * others + n].index);
+    }
+    stage.advance(end - begin);
+  });
+  std::vector<std::uint32_t> points;
+  for (std::uint32_t i = 0; i < cloud.size(); ++i) {
+    if (chosen[i]) points.push_back(i);
+  }
+  return points;
+}
+
 }  // namespace
 
 std::vector<Crease> find_creases(const OrderedPoints& cloud, const Sampling& sampling,
                                  const Progress* progress) {
-  std::vector<std::size_t> edge_points;
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    if (cloud.is_edge(i) || cloud.probability(i) > kLeastProbability) edge_points.push_back(i);
-  }
-  std::vector<std::optional<Crease>> found(edge_points.size());
-  Stage stage(progress, "creases", edge_points.size());
-  parallel_blocks(edge_points.size(), kPointsAtOnce, [&](std::size_t begin, std::size_t end) {
+  const std::vector<std::uint32_t> points = points_near_edges(cloud, progress);
+  const std::size_t others =
+      cloud.available(static_cast<std::size_t>(39.0 + 80.0 * sampling.noise));
+  const double tolerance = 0.3 + 1.1 * sampling.noise;
+  std::vector<std::optional<Crease>> found(points.size());
+  Stage stage(progress, "creases", points.size());
+  parallel_blocks(points.size(), kPointsAtOnce, [&](std::size_t begin, std::size_t end) {
     std::vector<spatial::Neighbour> nearest;
-    std::vector<NearPoint> near_points;
-    for (std::size_t i = begin; i < end; ++i) {
-      found[i] = crease_at(cloud, edge_points[i], sampling, nearest, near_points);
+    cloud.nearest_others(std::span(points).subspan(begin, end - begin), others, nearest);
+    NearPoints near_points;
+    for (std::size_t k = begin; k < end; ++k) {
+      found[k] =
+          crease_at(cloud, points[k], std::span(nearest).subspan((k - begin) * others, others),
+                    tolerance, near_points);
     }
     stage.advance(end - begin);
   });

@@ -13,13 +13,14 @@ namespace pcednet::lines {
 namespace {
 
 // In spacings; the second number is added per spacing of noise.
-constexpr double kLoose[] = {5.0, 8.0};     ///< length of a piece that no corner holds
-constexpr double kHeldOnce[] = {3.0, 4.0};  ///< and of one that ends free
+constexpr double kLoose[] = {7.0, 14.0};    ///< length of a piece that no corner holds
+constexpr double kHeldOnce[] = {4.0, 8.0};  ///< and of one that ends free
 constexpr double kCornerReach = 5.0;
 constexpr double kCornerTolerance = 0.8;
 
-constexpr double kBend = 0.08;
-constexpr double kFewSharp = 0.1;
+/// Surfaces that bend by more are rounded at the edge unless as many of its points are sharp-edge.
+constexpr double kBend = 0.08, kFewSharp = 0.1;
+constexpr double kStrongBend = 0.16, kSomeSharp = 0.3;
 constexpr double kSnap = 0.07;  ///< sine of the largest turn of regularise()
 
 double mean_of(const Piece& piece, double ChainNode::*value) {
@@ -73,11 +74,12 @@ void set_shape(Curve& curve, const Piece& piece, const std::array<Vec3, 2>& ends
 Curve curve_of(const Piece& piece, const std::array<Vec3, 2>& ends, const FinishOptions& options) {
   Curve curve{.edge_class = class_of(piece, options.noise)};
   set_shape(curve, piece, ends, options.tolerance);
-  curve.confidence = mean_of(piece, &ChainNode::probability);
   curve.dihedral_angle = mean_dihedral(piece);
   for (const ChainNode& node : piece.nodes) {
-    curve.support += static_cast<std::size_t>(node.creases);
+    curve.support += static_cast<std::size_t>(node.edge_points);
+    curve.confidence += node.edge_points * node.probability;
   }
+  curve.confidence /= std::max(static_cast<double>(curve.support), 1.0);
   return curve;
 }
 
@@ -112,8 +114,11 @@ bool is_sound(const Curve& curve) {
 
 EdgeClass class_of(const Piece& piece, double noise) {
   if (mean_of(piece, &ChainNode::boundary) > 0.5) return kBoundary;
-  const bool bends = mean_of(piece, &ChainNode::bend) > kBend + noise;
-  return bends && mean_of(piece, &ChainNode::sharp) < kFewSharp ? kSmoothEdge : kSharpEdge;
+  const double bend = mean_of(piece, &ChainNode::bend) - noise;
+  const double sharp = mean_of(piece, &ChainNode::sharp);
+  const bool rounded =
+      (bend > kBend && sharp < kFewSharp) || (bend > kStrongBend && sharp < kSomeSharp);
+  return rounded ? kSmoothEdge : kSharpEdge;
 }
 
 std::vector<Curve> finish(std::vector<Piece> pieces, const FinishOptions& options) {

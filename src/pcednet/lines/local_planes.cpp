@@ -2,85 +2,142 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
 #include <cmath>
+
+#include "pcednet/core/vector_clones.h"
 
 namespace pcednet::lines {
 namespace {
 
 constexpr std::size_t kMostPlanes = 4;
 constexpr std::size_t kMostSeeds = 16;
-constexpr double kLeastSupport = 4.0;
+constexpr int kLeastSupport = 4;
 constexpr double kSameDirection = 0.75;  ///< cosine of normals on one plane
-constexpr float kTrusted = 0.5f;         ///< edginess below which a normal counts
+constexpr double kTrusted = 0.5;         ///< edginess up to which a normal counts
+constexpr double kFar = 1e9;
 
-bool agrees(const LocalPlane& plane, const NearPoint& point) {
-  return point.edginess > kTrusted || point.normal.isZero(0.0) ||
-         std::abs(plane.normal.dot(point.normal)) > kSameDirection;
+/// What decides whether points are on a plane.
+struct Tests {
+  NearPoints::Row least_cosine;  ///< of the normals; below 0: any
+  NearPoints::Row taken;         ///< kFar for the points of planes found before, else 0
+};
+
+Tests tests_of(const NearPoints& points) {
+  Tests tests;
+  for (std::size_t i = 0; i < points.count; ++i) {
+    const bool trusted = points.edginess[i] <= kTrusted && !points.normal(i).isZero(0.0);
+    tests.least_cosine[i] = trusted ? kSameDirection : -1.0;
+    tests.taken[i] = 0.0;
+  }
+  return tests;
+}
+
+/// The points within `tolerance` of the plane that are not taken.
+PCEDNET_VECTOR_CLONES
+int support_of(const LocalPlane& plane, const NearPoints& points, const Tests& tests,
+               double tolerance) {
+  const double a = plane.normal.x(), b = plane.normal.y(), c = plane.normal.z();
+  const double distance = plane.distance;
+  int support = 0;
+  for (std::size_t i = 0; i < points.count; ++i) {
+    const double away = std::fabs(a * points.x[i] + b * points.y[i] + c * points.z[i] - distance);
+    const double cosine =
+        std::fabs(a * points.normal_x[i] + b * points.normal_y[i] + c * points.normal_z[i]);
+    const bool near = away + tests.taken[i] <= tolerance;
+    const bool agrees = cosine > tests.least_cosine[i];
+    support += static_cast<int>(near) & static_cast<int>(agrees);
+  }
+  return support;
 }
 
 /// The plane of least squares of the points near `plane`; weights fall to 0 at `reach`.
-LocalPlane refit(const LocalPlane& plane, std::span<const NearPoint> points, double reach) {
+LocalPlane refit(const LocalPlane& plane, const NearPoints& points, const Tests& tests,
+                 double reach) {
   double sum = 0.0;
   Vec3 mean = Vec3::Zero();
   Mat3 products = Mat3::Zero();
-  for (const NearPoint& point : points) {
-    const double part = plane(point.offset) / reach;
-    if (part * part >= 1.0 || !agrees(plane, point)) continue;
+  for (std::size_t i = 0; i < points.count; ++i) {
+    const Vec3 offset = points.offset(i);
+    const double part = plane(offset) / reach;
+    if (part * part >= 1.0) continue;
+    if (!(std::abs(plane.normal.dot(points.normal(i))) > tests.least_cosine[i])) continue;
     const double weight = (1.0 - part * part) * (1.0 - part * part);
     sum += weight;
-    mean += weight * point.offset;
-    products += weight * point.offset * point.offset.transpose();
+    mean += weight * offset;
+    products += weight * offset * offset.transpose();
   }
   if (sum < 3.0) return plane;
   mean /= sum;
   const Mat3 covariance = products / sum - mean * mean.transpose();
   Eigen::SelfAdjointEigenSolver<Mat3> solver;
   solver.computeDirect(covariance);
-  const auto& sizes = solver.eigenvalues();
-  if (!(sizes[1] > 0.04)) return plane;  // a row of points has many planes
+  if (!(solver.eigenvalues()[1] > 0.04)) return plane;  // a row of points has many planes
   const Vec3 normal = solver.eigenvectors().col(0).normalized();
   return {normal, normal.dot(mean), plane.support};
 }
 
-double support_of(const LocalPlane& plane, std::span<const NearPoint> points,
-                  std::span<const std::uint8_t> taken, double tolerance) {
-  double support = 0.0;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    if (taken[i] || std::abs(plane(points[i].offset)) > tolerance) continue;
-    if (agrees(plane, points[i])) support += 1.0;
+/// Points with a normal, those surest not to be of an edge first.
+struct Seeds {
+  std::array<std::uint32_t, NearPoints::kMost> points;
+  std::size_t count = 0;
+};
+
+Seeds seeds_of(const NearPoints& points) {
+  constexpr double kSteps = 1 << 20;  // of edginess; then the order of the points decides
+  Seeds seeds;
+  for (std::uint32_t i = 0; i < points.count; ++i) {
+    if (points.normal(i).isZero(0.0)) continue;
+    const double edginess = std::clamp(points.edginess[i], 0.0, 4.0);
+    seeds.points[seeds.count++] = (static_cast<std::uint32_t>(edginess * kSteps) << 8) | i;
   }
-  return support;
+  std::sort(seeds.points.begin(), seeds.points.begin() + seeds.count);
+  for (std::size_t k = 0; k < seeds.count; ++k) seeds.points[k] &= 0xff;
+  return seeds;
+}
+
+LocalPlane best_plane(const NearPoints& points, const Tests& tests, const Seeds& seeds,
+                      double tolerance) {
+  LocalPlane best{Vec3::Zero(), 0.0, 0};
+  std::size_t tried = 0;
+  for (std::size_t k = 0; k < seeds.count; ++k) {
+    const std::size_t seed = seeds.points[k];
+    if (tests.taken[seed] > 0.0) continue;
+    if (tried++ == kMostSeeds) break;
+    const Vec3 normal = points.normal(seed);
+    LocalPlane plane{normal, normal.dot(points.offset(seed)), 0};
+    plane.support = support_of(plane, points, tests, tolerance);
+    if (plane.support > best.support) best = plane;
+  }
+  return best;
 }
 
 }  // namespace
 
-void find_planes(std::span<const NearPoint> points, double tolerance,
-                 std::vector<LocalPlane>& planes) {
+void NearPoints::add(const Vec3& offset, const Vec3& normal, double probability) {
+  x[count] = offset.x();
+  y[count] = offset.y();
+  z[count] = offset.z();
+  normal_x[count] = normal.x();
+  normal_y[count] = normal.y();
+  normal_z[count] = normal.z();
+  edginess[count] = probability;
+  ++count;
+}
+
+void find_planes(const NearPoints& points, double tolerance, std::vector<LocalPlane>& planes) {
   planes.clear();
-  std::vector<std::uint8_t> taken(points.size(), 0);
-  std::vector<std::size_t> seeds;
+  Tests tests = tests_of(points);
+  const Seeds seeds = seeds_of(points);
   while (planes.size() < kMostPlanes) {
-    seeds.clear();
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      if (!taken[i] && !points[i].normal.isZero(0.0)) seeds.push_back(i);
-    }
-    std::stable_sort(seeds.begin(), seeds.end(), [&](std::size_t a, std::size_t b) {
-      return points[a].edginess < points[b].edginess;
-    });
-    if (seeds.size() > kMostSeeds) seeds.resize(kMostSeeds);
-    LocalPlane best{Vec3::Zero(), 0.0, 0.0};
-    for (const std::size_t seed : seeds) {
-      const Vec3& normal = points[seed].normal;
-      LocalPlane plane{normal, normal.dot(points[seed].offset), 0.0};
-      plane.support = support_of(plane, points, taken, tolerance);
-      if (plane.support > best.support) best = plane;
-    }
+    const LocalPlane best = best_plane(points, tests, seeds, tolerance);
     if (best.support < kLeastSupport) break;
-    LocalPlane fitted = refit(refit(best, points, 2.0 * tolerance), points, 1.5 * tolerance);
-    fitted.support = support_of(fitted, points, taken, tolerance);
+    LocalPlane fitted =
+        refit(refit(best, points, tests, 2.0 * tolerance), points, tests, 1.5 * tolerance);
+    fitted.support = support_of(fitted, points, tests, tolerance);
     if (fitted.support < best.support) fitted = best;
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      taken[i] |= std::abs(fitted(points[i].offset)) < 1.3 * tolerance;
+    for (std::size_t i = 0; i < points.count; ++i) {
+      if (std::abs(fitted(points.offset(i))) < 1.3 * tolerance) tests.taken[i] = kFar;
     }
     planes.push_back(fitted);
   }

@@ -9,7 +9,7 @@
 namespace pcednet::lines {
 namespace {
 
-constexpr std::size_t kSpacingNeighbours = 16;
+constexpr std::size_t kSpacingNeighbours = 15;
 
 /// Points at one place follow each other along the curve; the first stands for all.
 std::vector<std::uint32_t> distinct_points(std::span<const Vec3> positions) {
@@ -25,7 +25,8 @@ OrderedPoints::OrderedPoints(const EdgePoints& points)
     : points_(points),
       order_(distinct_points(points.positions)),
       positions_(spatial::in_order(points.positions, order_)),
-      tree_(positions_) {}
+      tree_(positions_),
+      search_(positions_) {}
 
 float OrderedPoints::probability(std::size_t i) const {
   if (points_.p_sharp.empty()) return is_edge(i) ? 1.0f : 0.0f;
@@ -33,9 +34,17 @@ float OrderedPoints::probability(std::size_t i) const {
   return points_.p_sharp[point] + (points_.p_smooth.empty() ? 0.0f : points_.p_smooth[point]);
 }
 
-double spacing_of(std::span<const spatial::Neighbour> nearest) {
-  const std::size_t count = std::min(nearest.size(), kSpacingNeighbours);
-  return std::sqrt(std::numbers::pi * nearest[count - 1].sq_distance / static_cast<double>(count));
+void OrderedPoints::nearest_others(std::span<const std::uint32_t> points, std::size_t count,
+                                   std::vector<spatial::Neighbour>& found) const {
+  found.resize(points.size() * available(count));
+  search_.nearest_others(points, count, found);
+}
+
+double spacing_of(std::span<const spatial::Neighbour> others) {
+  const std::size_t count = std::min(others.size(), kSpacingNeighbours);
+  if (count == 0) return 0.0;
+  return std::sqrt(std::numbers::pi * others[count - 1].sq_distance /
+                   static_cast<double>(count + 1));
 }
 
 }  // namespace pcednet::lines

@@ -6,6 +6,7 @@
 
 #include "pcednet/lines/find_lines.h"
 #include "pcednet/spatial/kd_tree.h"
+#include "pcednet/spatial/neighbour_search.h"
 
 namespace pcednet::lines {
 
@@ -27,14 +28,21 @@ class OrderedPoints {
   float probability(std::size_t i) const;
   const spatial::KdTree& tree() const { return tree_; }
 
+  /// The available(count) nearest others of each of `points` (ascending), row after row.
+  void nearest_others(std::span<const std::uint32_t> points, std::size_t count,
+                      std::vector<spatial::Neighbour>& found) const;
+  std::size_t available(std::size_t count) const { return search_.available(count); }
+
  private:
   EdgePoints points_;
   std::vector<std::uint32_t> order_;
   std::vector<Vec3> positions_;
   spatial::KdTree tree_;
+  spatial::NeighbourSearch search_;
 };
 
-/// The side of a square that holds one point, from the nearest neighbours of a point, itself first.
-double spacing_of(std::span<const spatial::Neighbour> nearest);
+/// The side of a square that holds one point, from the nearest others of a point; 0 if there are
+/// none.
+double spacing_of(std::span<const spatial::Neighbour> others);
 
 }  // namespace pcednet::lines
