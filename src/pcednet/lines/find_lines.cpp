@@ -98,7 +98,7 @@ std::vector<Curve> find_lines(const EdgePoints& points, const LineOptions& optio
   std::vector<Piece> pieces = split_chains(chains, limits.tolerance);
   join_pieces(pieces, limits.gap, limits.tolerance);
   complete_circles(pieces, limits.tolerance);
-  string_together(pieces, 0.5 * limits.gap, limits.angle);
+  string_together(pieces, limits.gap, limits.angle);
   refine(pieces, cloud, sampling, progress);
   if (options.regularise) regularise(pieces);
 

@@ -31,10 +31,10 @@ Vec3 outward(const Piece& piece, std::size_t side) {
   return side == 0 ? Vec3(-along) : along;
 }
 
+/// Whether a straight and a round piece touch: each is what it seems if both are long.
 bool stay_apart(const Piece& a, const Piece& b) {
   const bool both_long = a.nodes.size() >= kLong && b.nodes.size() >= kLong;
-  const bool straight = a.fit.kind == CurveKind::kSegment || b.fit.kind == CurveKind::kSegment;
-  return both_long && straight;
+  return both_long && (a.fit.kind == CurveKind::kSegment) != (b.fit.kind == CurveKind::kSegment);
 }
 
 struct Link {
