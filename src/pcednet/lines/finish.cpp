@@ -13,9 +13,9 @@ namespace pcednet::lines {
 namespace {
 
 // In spacings; the second number is added per spacing of noise.
-constexpr double kLoose[] = {7.0, 14.0};    ///< length of a piece that no corner holds
-constexpr double kHeldOnce[] = {4.0, 8.0};  ///< and of one that ends free
-constexpr double kCornerReach = 5.0;
+constexpr double kLoose[] = {8.0, 24.0};     ///< length of a piece that no corner holds
+constexpr double kHeldOnce[] = {4.0, 12.0};  ///< and of one that ends free
+constexpr double kCornerReach = 9.0;
 constexpr double kCornerTolerance = 0.8;
 
 /// Surfaces that bend by more are rounded at the edge unless as many of its points are sharp-edge.

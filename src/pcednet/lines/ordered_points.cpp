@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "pcednet/core/parallel.h"
 #include "pcednet/spatial/curve_order.h"
 
 namespace pcednet::lines {
@@ -24,9 +25,12 @@ std::vector<std::uint32_t> distinct_points(std::span<const Vec3> positions) {
 OrderedPoints::OrderedPoints(const EdgePoints& points)
     : points_(points),
       order_(distinct_points(points.positions)),
-      positions_(spatial::in_order(points.positions, order_)),
-      tree_(positions_),
-      search_(positions_) {}
+      positions_(spatial::in_order(points.positions, order_)) {
+  parallel_blocks(2, 1, [&](std::size_t which, std::size_t) {  // side by side
+    if (which == 0) tree_.emplace(positions_);
+    if (which == 1) search_.emplace(positions_);
+  });
+}
 
 float OrderedPoints::probability(std::size_t i) const {
   if (points_.p_sharp.empty()) return is_edge(i) ? 1.0f : 0.0f;
@@ -37,7 +41,7 @@ float OrderedPoints::probability(std::size_t i) const {
 void OrderedPoints::nearest_others(std::span<const std::uint32_t> points, std::size_t count,
                                    std::vector<spatial::Neighbour>& found) const {
   found.resize(points.size() * available(count));
-  search_.nearest_others(points, count, found);
+  search_->nearest_others(points, count, found);
 }
 
 double spacing_of(std::span<const spatial::Neighbour> others) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -26,19 +27,19 @@ class OrderedPoints {
   }
   /// To be of an edge; by the class alone where there are no probabilities.
   float probability(std::size_t i) const;
-  const spatial::KdTree& tree() const { return tree_; }
+  const spatial::KdTree& tree() const { return *tree_; }
 
   /// The available(count) nearest others of each of `points` (ascending), row after row.
   void nearest_others(std::span<const std::uint32_t> points, std::size_t count,
                       std::vector<spatial::Neighbour>& found) const;
-  std::size_t available(std::size_t count) const { return search_.available(count); }
+  std::size_t available(std::size_t count) const { return search_->available(count); }
 
  private:
   EdgePoints points_;
   std::vector<std::uint32_t> order_;
   std::vector<Vec3> positions_;
-  spatial::KdTree tree_;
-  spatial::NeighbourSearch search_;
+  std::optional<spatial::KdTree> tree_;
+  std::optional<spatial::NeighbourSearch> search_;
 };
 
 /// The side of a square that holds one point, from the nearest others of a point; 0 if there are
