@@ -11,7 +11,7 @@ namespace pcednet::lines {
 namespace {
 
 constexpr int kMeetSteps = 6;
-constexpr double kPull = 0.02;  ///< towards the ends, where curves are parallel
+constexpr double kPull = 1e-3;  ///< towards the ends, where curves are parallel
 
 struct End {
   std::size_t piece;

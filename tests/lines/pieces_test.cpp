@@ -1,0 +1,177 @@
+// What is made of pieces: joins, circles, strings and corners.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "pcednet/lines/circles.h"
+#include "pcednet/lines/corners.h"
+#include "pcednet/lines/local_planes.h"
+#include "pcednet/lines/piece.h"
+#include "pcednet/lines/strings.h"
+
+namespace pcednet::lines {
+namespace {
+
+constexpr double kWithin = 0.2;
+
+/// A straight piece with nodes about one apart; its wedge is open to `side_a` and `side_b`.
+Piece straight(const Vec3& from, const Vec3& to, const Vec3& side_a = Vec3::UnitZ(),
+               const Vec3& side_b = -Vec3::UnitZ()) {
+  Piece piece;
+  const auto steps = static_cast<int>(std::round((to - from).norm()));
+  for (int i = 0; i <= steps; ++i) {
+    piece.nodes.push_back({.at = from + (to - from) * i / steps,
+                           .along = (to - from).normalized(),
+                           .side_a = side_a,
+                           .side_b = side_b,
+                           .spacing = 1.0});
+  }
+  piece.fit = fit_segment(piece.nodes);
+  piece.ends = {from, to};
+  return piece;
+}
+
+/// Part of the circle of radius 10 about the origin, its wedge open outwards and upwards.
+Piece round_piece(double from, double to) {
+  Piece piece;
+  for (double t = from; t <= to; t += 0.1) {
+    const Vec3 out(std::cos(t), std::sin(t), 0);
+    piece.nodes.push_back({.at = 10 * out,
+                           .along = {-std::sin(t), std::cos(t), 0},
+                           .side_a = out,
+                           .side_b = Vec3::UnitZ(),
+                           .spacing = 1.0});
+  }
+  piece.fit = fit_arc(piece.nodes);
+  piece.ends = {piece.nodes.front().at, piece.nodes.back().at};
+  return piece;
+}
+
+TEST(Pieces, OfOneLineAreJoinedOverAGap) {
+  std::vector<Piece> pieces = {straight({0, 0, 0}, {10, 0, 0}), straight({14, 0, 0}, {30, 0, 0}),
+                               straight({40, 0, 0}, {50, 0, 0})};
+  join_pieces(pieces, 6.0, kWithin);
+  ASSERT_EQ(pieces.size(), 2u);
+  EXPECT_NEAR(length_of(pieces[0]), 30.0, 1.0);
+}
+
+TEST(Pieces, OfOneLineStayApartIfTheirWedgesDiffer) {
+  std::vector<Piece> pieces = {straight({0, 0, 0}, {10, 0, 0}),
+                               straight({12, 0, 0}, {30, 0, 0}, Vec3::UnitY(), Vec3::UnitZ())};
+  join_pieces(pieces, 6.0, kWithin);
+  EXPECT_EQ(pieces.size(), 2u);
+}
+
+TEST(Pieces, ThatLieOnALongerOneAreDropped) {
+  std::vector<Piece> pieces = {straight({0, 0, 0}, {30, 0, 0}),
+                               straight({10, 0.5, 0}, {15, 0.5, 0}),
+                               straight({10, 5, 0}, {15, 5, 0})};
+  join_pieces(pieces, 1.0, kWithin);
+  EXPECT_EQ(pieces.size(), 2u);
+}
+
+TEST(Circles, AreCompletedFromTheirArcs) {
+  std::vector<Piece> pieces = {round_piece(0.0, 2.5), round_piece(3.3, 5.5)};
+  complete_circles(pieces, kWithin);
+  ASSERT_EQ(pieces.size(), 1u);
+  EXPECT_TRUE(pieces[0].closed);
+  EXPECT_NEAR(pieces[0].fit.radius, 10.0, 1e-6);
+}
+
+TEST(Circles, StayOpenWhereAnotherEdgeEndsOrTooLittleIsThere) {
+  std::vector<Piece> cut = {round_piece(0.0, 5.0)};
+  cut.push_back(straight(cut[0].ends[1], cut[0].ends[0]));
+  complete_circles(cut, kWithin);
+  EXPECT_FALSE(cut[0].closed);
+  std::vector<Piece> quarter = {round_piece(0.0, 1.6)};
+  complete_circles(quarter, kWithin);
+  EXPECT_FALSE(quarter[0].closed);
+}
+
+TEST(Strings, JoinWhatContinuesButNotALongLineAndALongArc) {
+  std::vector<Piece> bent = {straight({0, 0, 0}, {10, 0, 0}), straight({11, 0, 0}, {20, 1.5, 0})};
+  string_together(bent, 3.0, 0.5);
+  ASSERT_EQ(bent.size(), 1u);
+  EXPECT_EQ(bent[0].fit.kind, CurveKind::kPolyline);
+  std::vector<Piece> corner = {straight({0, 0, 0}, {10, 0, 0}), straight({10, 1, 0}, {10, 9, 0})};
+  string_together(corner, 3.0, 0.5);
+  EXPECT_EQ(corner.size(), 2u);
+  std::vector<Piece> tangent = {straight({10, -12, 0}, {10, -1, 0}, Vec3::UnitX(), Vec3::UnitZ()),
+                                round_piece(0.0, 2.0)};
+  string_together(tangent, 3.0, 0.5);
+  EXPECT_EQ(tangent.size(), 2u);
+}
+
+TEST(Strings, SimplifiedPolylinesStayWithinTheTolerance) {
+  std::vector<Vec3> places;
+  for (int i = 0; i <= 100; ++i) {
+    places.emplace_back(0.1 * i, std::sin(0.1 * i), 0.0);
+  }
+  const auto vertices = simplified(places, 0.05);
+  EXPECT_LT(vertices.size(), 20u);
+  EXPECT_EQ(vertices.front(), places.front());
+  EXPECT_EQ(vertices.back(), places.back());
+  for (const Vec3& place : places) {
+    double nearest = 1.0;
+    for (std::size_t i = 1; i < vertices.size(); ++i) {
+      const Vec3 along = vertices[i] - vertices[i - 1];
+      const double t =
+          std::clamp((place - vertices[i - 1]).dot(along) / along.squaredNorm(), 0.0, 1.0);
+      nearest = std::min(nearest, (place - vertices[i - 1] - t * along).norm());
+    }
+    EXPECT_LE(nearest, 0.05 + 1e-12);
+  }
+}
+
+TEST(Corners, AreWhereThreeLinesMeet) {
+  const std::vector<Piece> pieces = {straight({2, 0, 0}, {20, 0, 0}),
+                                     straight({0, 3, 0}, {0, 20, 0}),
+                                     straight({0, 0, 1.5}, {0, 0, 20})};
+  const Corners corners = find_corners(pieces, 5.0, 0.8);
+  ASSERT_EQ(corners.places.size(), 1u);
+  EXPECT_LT(corners.places[0].norm(), 2e-3);
+  for (const auto& ends : corners.of_ends) {
+    EXPECT_EQ(ends[0], 0u);
+    EXPECT_EQ(ends[1], Corners::kNoCorner);
+  }
+}
+
+TEST(Corners, EndOnTheInsideOfAnotherPiece) {
+  const std::vector<Piece> pieces = {straight({-20, 0, 0}, {20, 0, 0}),
+                                     straight({1, 2, 0}, {1, 20, 0})};
+  const Corners corners = find_corners(pieces, 5.0, 0.8);
+  ASSERT_NE(corners.of_ends[1][0], Corners::kNoCorner);
+  EXPECT_LT((corners.places[corners.of_ends[1][0]] - Vec3(1, 0, 0)).norm(), 1e-6);
+  EXPECT_EQ(corners.of_ends[0][0], Corners::kNoCorner);
+}
+
+TEST(Corners, AreNotWhereLinesMissEachOther) {
+  const std::vector<Piece> pieces = {straight({2, 0, 0}, {20, 0, 0}),
+                                     straight({0, 2, 3}, {0, 20, 3})};
+  EXPECT_TRUE(find_corners(pieces, 9.0, 0.8).places.empty());
+}
+
+TEST(LocalPlanes, AreThoseOfACorner) {
+  NearPoints points;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (int i = 0; i < 36; ++i) {
+      Vec3 place = Vec3::Zero();
+      place[(axis + 1) % 3] = 0.3 + i % 6;
+      place[(axis + 2) % 3] = 0.3 + i / 6;
+      points.add(place, Vec3::Unit(axis), 0.0);
+    }
+  }
+  std::vector<LocalPlane> planes;
+  find_planes(points, 0.2, planes);
+  ASSERT_EQ(planes.size(), 3u);
+  for (const LocalPlane& plane : planes) {
+    EXPECT_NEAR(plane.normal.cwiseAbs().maxCoeff(), 1.0, 1e-6);
+    EXPECT_NEAR(plane.distance, 0.0, 1e-6);
+    EXPECT_GE(plane.support, 30);
+  }
+}
+
+}  // namespace
+}  // namespace pcednet::lines
