@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "pcednet/core/error.h"
+#include "pcednet/core/parallel.h"
 #include "pcednet/lines/chain.h"
 #include "pcednet/lines/circles.h"
 #include "pcednet/lines/crease.h"
@@ -56,14 +57,22 @@ void check(const EdgePoints& points, const LineOptions& options) {
   }
 }
 
-std::vector<Piece> split_chains(const std::vector<Chain>& chains, double tolerance) {
-  std::vector<Piece> pieces;
-  for (const Chain& chain : chains) {
-    const bool boundary = chain.nodes[chain.nodes.size() / 2].boundary > 0.5;
-    const double within = boundary ? std::max(tolerance, kBoundaryTolerance) : tolerance;
-    for (Piece& piece : pieces_of(chain, split(chain, within), kLeastNodes)) {
-      pieces.push_back(std::move(piece));
+std::vector<Piece> split_chains(const std::vector<Chain>& chains, double tolerance,
+                                const Progress* progress) {
+  std::vector<std::vector<Piece>> of_chains(chains.size());
+  Stage stage(progress, "segments and arcs", chains.size());
+  parallel_blocks(chains.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const Chain& chain = chains[i];
+      const bool boundary = chain.nodes[chain.nodes.size() / 2].boundary > 0.5;
+      const double within = boundary ? std::max(tolerance, kBoundaryTolerance) : tolerance;
+      of_chains[i] = pieces_of(chain, split(chain, within), kLeastNodes);
     }
+    stage.advance(end - begin);
+  });
+  std::vector<Piece> pieces;
+  for (std::vector<Piece>& of_chain : of_chains) {
+    for (Piece& piece : of_chain) pieces.push_back(std::move(piece));
   }
   return pieces;
 }
@@ -95,7 +104,7 @@ std::vector<Curve> find_lines(const EdgePoints& points, const LineOptions& optio
   const Limits limits = limits_of(options, sampling);
   creases = smoothed(creases, limits.smooth_within, progress);
   const std::vector<Chain> chains = trace(creases, limits.gap, sampling.noise, progress);
-  std::vector<Piece> pieces = split_chains(chains, limits.tolerance);
+  std::vector<Piece> pieces = split_chains(chains, limits.tolerance, progress);
   join_pieces(pieces, limits.gap, limits.tolerance);
   complete_circles(pieces, limits.tolerance);
   string_together(pieces, limits.gap, limits.angle);
