@@ -14,7 +14,7 @@ struct LineOptions {
   double min_length = 0.0;  ///< shorter curves are left out; 0: 3 spacings
   double gap = 0.0;         ///< curves continue over gaps up to it; 0: 6 spacings
   double angle = 30.0;      ///< degrees: curves are split where they bend by more
-  double tolerance = 0.0;   ///< of the points to a curve; 0: 0.3 spacings
+  double tolerance = 0.0;   ///< of the points to a curve; 0: 0.2 spacings, more with noise
   bool regularise = false;  ///< turns nearly parallel and nearly orthogonal segments so
   bool boundaries = false;  ///< also lines where the sampled surface ends
 };
