@@ -22,8 +22,10 @@ constexpr double kLeastAngle = 20.0 * std::numbers::pi / 180.0;
 /// Nearest points that are tried with an edge point, itself among them: bands of smooth-edge are
 /// wide enough, sharp-edge may be a single row.
 constexpr std::size_t kWithSharp = 9, kWithSmooth = 3;
-constexpr double kMostNoise = 0.7;         ///< in spacings: more is no surface
-constexpr float kLeastProbability = 0.3f;  ///< of points to be tried beside those of an edge class
+constexpr double kMostNoise = 0.7;  ///< in spacings: more is no surface
+
+/// Of points to be tried beside those of an edge class; the second is added per spacing of noise.
+constexpr double kLeastProbability[] = {0.1, 0.9};
 
 // In spacings.
 constexpr double kFarthest = 2.2;       ///< of an edge point from its crease
@@ -193,10 +195,12 @@ std::optional<Crease> crease_at(const OrderedPoints& cloud, std::uint32_t i,
 }
 
 /// The points of an edge class, those that may be, and the neighbours of both.
-std::vector<std::uint32_t> points_near_edges(const OrderedPoints& cloud, const Progress* progress) {
+std::vector<std::uint32_t> points_near_edges(const OrderedPoints& cloud, double noise,
+                                             const Progress* progress) {
+  const double least = kLeastProbability[0] + kLeastProbability[1] * noise;
   std::vector<std::uint32_t> edge_points;
   for (std::uint32_t i = 0; i < cloud.size(); ++i) {
-    if (cloud.is_edge(i) || cloud.probability(i) > kLeastProbability) edge_points.push_back(i);
+    if (cloud.is_edge(i) || cloud.probability(i) > least) edge_points.push_back(i);
   }
   std::vector<std::uint8_t> chosen(cloud.size(), 0);
   const auto choose = [&](std::uint32_t i) {
@@ -226,7 +230,7 @@ std::vector<std::uint32_t> points_near_edges(const OrderedPoints& cloud, const P
 
 std::vector<Crease> find_creases(const OrderedPoints& cloud, const Sampling& sampling,
                                  const Progress* progress) {
-  const std::vector<std::uint32_t> points = points_near_edges(cloud, progress);
+  const std::vector<std::uint32_t> points = points_near_edges(cloud, sampling.noise, progress);
   const std::size_t others =
       cloud.available(static_cast<std::size_t>(39.0 + 80.0 * sampling.noise));
   const double tolerance = 0.3 + 1.1 * sampling.noise;
