@@ -8,12 +8,12 @@
 #include <string>
 
 #include "batch.h"
+#include "classify_cloud.h"
 #include "commands.h"
 #include "descriptor_options.h"
 #include "pcednet/core/blocks.h"
 #include "pcednet/core/error.h"
 #include "pcednet/core/version.h"
-#include "pcednet/formats/read_cloud.h"
 #include "pcednet/gls/engine.h"
 #include "pcednet/io/npy.h"
 #include "prepare.h"
@@ -110,11 +110,7 @@ void describe(const DescribeArguments& arguments, const Common& common) {
   check_writable(output, common.overwrite());
   OutputFile settings(fs::path(output).replace_extension(".json"), common.overwrite());
 
-  const io::LoadedCloud loaded = formats::read_cloud(arguments.input);
-  for (const std::string& warning : loaded.warnings) {
-    warn(fmt::format("{}: {}", arguments.input, warning));
-  }
-  const PointCloud& cloud = loaded.cloud;
+  const PointCloud cloud = read_cloud(arguments.input);
   const Progress progress = console_progress(common);
   const auto prepared = prepare(arguments.input, cloud, arguments.preparation, progress);
   std::optional<gls::ScaleSpace> made;

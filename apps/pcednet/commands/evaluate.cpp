@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "batch.h"
+#include "classify_cloud.h"
 #include "commands.h"
 #include "evaluate_lines.h"
 #include "methods.h"
@@ -13,7 +14,6 @@
 #include "pcednet/detect/classify.h"
 #include "pcednet/eval/predictions.h"
 #include "pcednet/eval/report.h"
-#include "prepare.h"
 #include "workbench/truth/read_labelled.h"
 
 namespace pcednet::app {
@@ -34,20 +34,6 @@ struct Results {
   std::vector<eval::CloudScore> scores;
   eval::Calibration calibration;
 };
-
-detect::Classification predict(const fs::path& input, const PointCloud& cloud,
-                               const detect::EdgeModel* model, const EvaluateArguments& arguments,
-                               const Progress& progress) {
-  detect::Classification result;
-  if (model) {
-    const auto prepared = prepare(input, cloud, arguments.preparation, progress);
-    result = detect::classify(prepared, *model, &progress);
-    if (!result.note.empty()) warn(input.string() + ": " + result.note);
-  } else {
-    result = classify_by_method(cloud, arguments.method, &progress);
-  }
-  return result;
-}
 
 std::vector<std::uint8_t> read_predictions(const fs::path& file, const PointCloud& cloud) {
   auto predictions = eval::read_predictions(file, cloud.positions);
@@ -89,7 +75,9 @@ Results score_all(const EvaluateArguments& arguments, const Common& common) {
       if (given) {
         found.classes = read_predictions(prediction, loaded.cloud);
       } else {
-        found = predict(input, loaded.cloud, model ? &*model : nullptr, arguments, progress);
+        found = classify_cloud(input, loaded.cloud, model ? &*model : nullptr, arguments.method,
+                               arguments.preparation, progress)
+                    .found;
       }
       results.scores.push_back(
           {input.stem().string(), eval::count_confusion(truth, found.classes, positive)});

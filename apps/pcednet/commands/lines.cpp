@@ -174,7 +174,8 @@ void run(LinesArguments arguments, const Common& common) {
                                 .normals = labelled.prepared.normals,
                                 .classes = labelled.classes,
                                 .p_sharp = labelled.p_sharp,
-                                .p_smooth = labelled.p_smooth},
+                                .p_smooth = labelled.p_smooth,
+                                .curve = labelled.prepared.curve},
                                arguments.lines, &clock.progress());
   });
   const std::size_t left_out = filter(arguments, curves);

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "batch.h"
+#include "classify_cloud.h"
 #include "commands.h"
 #include "pcednet/core/error.h"
-#include "pcednet/formats/read_cloud.h"
 #include "pcednet/formats/write_cloud.h"
 #include "pcednet/normals/prepare.h"
 
@@ -75,9 +75,7 @@ void run(const NormalsRequest& request, const Common& common) {
   // What cannot be written is refused before a long read.
   formats::losses(request.output, {});
   check_writable(request.output, common.overwrite());
-  io::LoadedCloud loaded = formats::read_cloud(request.input);
-  for (const std::string& warning : loaded.warnings) warn(request.input + ": " + warning);
-  PointCloud& cloud = loaded.cloud;
+  PointCloud cloud = read_cloud(request.input);
   if (cloud.empty()) {
     throw Error(ErrorKind::kInsufficient, request.input + ": has no points");
   }

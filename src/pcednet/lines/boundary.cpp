@@ -1,19 +1,15 @@
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <numeric>
-#include <optional>
 
-#include "pcednet/core/parallel.h"
 #include "pcednet/lines/crease.h"
 #include "pcednet/lines/ordered_points.h"
 
 namespace pcednet::lines {
 namespace {
 
-constexpr std::size_t kBoundaryPointsAtOnce = 512;
 constexpr std::size_t kNeighbours = 25;
 constexpr double kOpenAngle = 125.0 * std::numbers::pi / 180.0;
 
@@ -39,14 +35,13 @@ Opening widest(std::vector<double>& angles) {
 }
 
 std::optional<Crease> boundary_at(const OrderedPoints& cloud, std::size_t i,
-                                  std::span<const spatial::Neighbour> nearest,
-                                  std::vector<double>& angles) {
+                                  std::span<const spatial::Neighbour> nearest) {
   const Vec3& normal = cloud.normal(i);
   if (normal.isZero(0.0)) return std::nullopt;
   const double spacing = spacing_of(nearest);
   if (!(spacing > 0.0) || nearest.size() < kNeighbours / 2) return std::nullopt;
   const Vec3 x = normal.unitOrthogonal(), y = normal.cross(x);
-  angles.clear();
+  std::vector<double> angles;
   for (const auto& near : nearest) {
     const Vec3 offset = cloud.position(near.index) - cloud.position(i);
     const Eigen::Vector2d flat(x.dot(offset), y.dot(offset));
@@ -75,26 +70,13 @@ std::optional<Crease> boundary_at(const OrderedPoints& cloud, std::size_t i,
 }  // namespace
 
 std::vector<Crease> find_boundaries(const OrderedPoints& cloud, const Progress* progress) {
-  std::vector<std::optional<Crease>> found(cloud.size());
-  Stage stage(progress, "boundaries", cloud.size());
-  const std::size_t others = cloud.available(kNeighbours);
-  parallel_blocks(cloud.size(), kBoundaryPointsAtOnce, [&](std::size_t begin, std::size_t end) {
-    std::vector<std::uint32_t> points(end - begin);
-    std::iota(points.begin(), points.end(), static_cast<std::uint32_t>(begin));
-    std::vector<spatial::Neighbour> nearest;
-    cloud.nearest_others(points, others, nearest);
-    std::vector<double> angles;
-    for (std::size_t i = begin; i < end; ++i) {
-      const auto row = std::span(nearest).subspan((i - begin) * others, others);
-      found[i] = boundary_at(cloud, i, row, angles);
-    }
-    stage.advance(end - begin);
-  });
-  std::vector<Crease> creases;
-  for (const auto& crease : found) {
-    if (crease) creases.push_back(*crease);
-  }
-  return creases;
+  std::vector<std::uint32_t> points(cloud.size());
+  std::iota(points.begin(), points.end(), 0u);
+  Stage stage(progress, "boundaries", points.size());
+  return creases_at(cloud, points, kNeighbours, stage,
+                    [&](std::uint32_t point, std::span<const spatial::Neighbour> others) {
+                      return boundary_at(cloud, point, others);
+                    });
 }
 
 }  // namespace pcednet::lines

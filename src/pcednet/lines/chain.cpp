@@ -29,7 +29,9 @@ std::vector<Vec3> places_of(std::span<const Crease> creases) {
   return places;
 }
 
-bool continues(const Crease& a, const Crease& b) {
+/// Whether two creases, or a node and a crease, continue each other.
+template <typename A, typename B>
+bool continues(const A& a, const B& b) {
   return std::abs(a.along.dot(b.along)) > kSameDirection &&
          match(a.side_a, a.side_b, b.side_a, b.side_b).cosine > kSameWedge;
 }
@@ -51,7 +53,6 @@ class Tracer {
  private:
   std::optional<ChainNode> next(const ChainNode& node);
   std::optional<ChainNode> next_within(const ChainNode& node, double reach, double cone);
-  bool fits(const ChainNode& node, const Crease& crease) const;
   void take_beside(const ChainNode& node);
   bool closes(const ChainNode& last, const ChainNode& first) const;
   void extend(std::vector<ChainNode>& nodes, bool& closed);
@@ -81,11 +82,6 @@ std::vector<std::size_t> Tracer::densest_first(const Progress* progress) const {
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return beside[a] > beside[b]; });
   return order;
-}
-
-bool Tracer::fits(const ChainNode& node, const Crease& crease) const {
-  return std::abs(crease.along.dot(node.along)) > kSameDirection &&
-         match(node.side_a, node.side_b, crease.side_a, crease.side_b).cosine > kSameWedge;
 }
 
 /// The mean of creases, turned as `node` is.
@@ -126,7 +122,7 @@ std::optional<ChainNode> Tracer::next_within(const ChainNode& node, double reach
   };
   std::vector<Ahead> ahead;
   for (const auto& near : found_) {
-    if (taken_[near.index] || !fits(node, creases_[near.index])) continue;
+    if (taken_[near.index] || !continues(node, creases_[near.index])) continue;
     const Vec3 offset = creases_[near.index].at - node.at;
     const double distance = offset.dot(node.along);
     const double aside = (offset - distance * node.along).norm();
@@ -155,7 +151,7 @@ std::optional<ChainNode> Tracer::next(const ChainNode& node) {
 void Tracer::take_beside(const ChainNode& node) {
   tree_.within_unsorted(node.at, (1.1 + noise_) * node.spacing, found_);
   for (const auto& near : found_) {
-    if (fits(node, creases_[near.index])) taken_[near.index] = 1;
+    if (continues(node, creases_[near.index])) taken_[near.index] = 1;
   }
 }
 

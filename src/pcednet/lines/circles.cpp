@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 
 namespace pcednet::lines {
 namespace {
@@ -37,7 +36,7 @@ bool lies_on(const Fit& circle, const Piece& whole, const Piece& piece, double r
     const Vec3 nearest = nearest_on(circle, node.at);
     on += (nearest - node.at).norm() < reach * node.spacing &&
           std::abs(tangent_at(circle, node.at).dot(node.along)) > 0.8 &&
-          same_wedge(circle, whole.nodes[whole.nodes.size() / 2], node);
+          same_wedge(circle, whole.middle(), node);
   }
   return 5 * on >= 4 * piece.nodes.size();
 }
@@ -63,8 +62,7 @@ std::vector<Gap> sort_about_axis(const Fit& circle, std::vector<ChainNode>& node
   std::vector<ChainNode> sorted;
   for (const auto& [angle, i] : order) {
     ChainNode node = nodes[i];
-    const Vec3 tangent = tangent_at(circle, node.at);
-    if (tangent.dot(node.along) < 0.0) node.along = -node.along;
+    if (tangent_at(circle, node.at).dot(node.along) < 0.0) node.along = -node.along;
     sorted.push_back(node);
   }
   nodes = std::move(sorted);
@@ -124,13 +122,8 @@ std::optional<Piece> completed(const std::vector<Piece>& pieces, std::size_t arc
 }  // namespace
 
 void complete_circles(std::vector<Piece>& pieces, double tolerance) {
-  std::vector<std::size_t> order(pieces.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return pieces[a].nodes.size() > pieces[b].nodes.size();
-  });
   std::vector<std::uint8_t> gone(pieces.size(), 0), joined;
-  for (const std::size_t i : order) {
+  for (const std::size_t i : longest_first(pieces)) {
     const Piece& piece = pieces[i];
     if (gone[i] || piece.closed || piece.fit.kind != CurveKind::kArc) continue;
     if (piece.nodes.size() < kLeastArc || piece.fit.radius < kSmallestRadius * piece.spacing()) {
@@ -146,8 +139,7 @@ void complete_circles(std::vector<Piece>& pieces, double tolerance) {
     }
     pieces[i] = std::move(*circle);
   }
-  std::size_t i = 0;
-  std::erase_if(pieces, [&](const Piece&) { return gone[i++] != 0; });
+  erase_marked(pieces, gone);
 }
 
 }  // namespace pcednet::lines

@@ -6,16 +6,15 @@
 #include <atomic>
 #include <cmath>
 #include <numbers>
-#include <optional>
+#include <utility>
 
-#include "pcednet/core/parallel.h"
+#include "pcednet/core/median.h"
 #include "pcednet/lines/local_planes.h"
 #include "pcednet/lines/ordered_points.h"
 
 namespace pcednet::lines {
 namespace {
 
-constexpr std::size_t kPointsAtOnce = 256;
 constexpr std::size_t kPlaneNeighbours = 15, kLeastNeighbours = 5;
 constexpr std::size_t kSamples = 2000;  ///< points that spacing and noise are measured at
 constexpr double kLeastAngle = 20.0 * std::numbers::pi / 180.0;
@@ -36,11 +35,8 @@ constexpr double kLeastFromLine = 0.4;  ///< of those that tell on which side th
 /// Ends of the zones of a side: near the line, between, far.
 constexpr double kNearZone[] = {0.15, 0.9}, kMiddleZone = 1.9, kFarZone = 3.3;
 
-double median(std::vector<double>& values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+double typical(std::vector<double> values) {
+  return values.empty() ? 0.0 : upper_median(std::move(values));
 }
 
 double distance_to_plane(const OrderedPoints& cloud, std::size_t i,
@@ -77,7 +73,7 @@ Sampling measure_sampling(const OrderedPoints& cloud) {
     spacings.push_back(spacing);
     noises.push_back(distance_to_plane(cloud, points[k], row) / spacing);
   }
-  return {median(spacings), std::min(median(noises), kMostNoise)};
+  return {typical(spacings), std::min(typical(noises), kMostNoise)};
 }
 
 namespace {
@@ -172,11 +168,10 @@ std::optional<Wedge> best_wedge(const NearPoints& points, double tolerance) {
 }
 
 std::optional<Crease> crease_at(const OrderedPoints& cloud, std::uint32_t i,
-                                std::span<const spatial::Neighbour> others, double tolerance,
-                                NearPoints& near_points) {
+                                std::span<const spatial::Neighbour> others, double tolerance) {
   const double spacing = spacing_of(others);
   if (!(spacing > 0.0)) return std::nullopt;
-  near_points.count = 0;
+  NearPoints near_points;
   near_points.add(Vec3::Zero(), cloud.normal(i), cloud.probability(i));
   for (const auto& near : others) {
     near_points.add((cloud.position(near.index) - cloud.position(i)) / spacing,
@@ -206,19 +201,15 @@ std::vector<std::uint32_t> points_near_edges(const OrderedPoints& cloud, double 
   const auto choose = [&](std::uint32_t i) {
     std::atomic_ref(chosen[i]).store(1, std::memory_order_relaxed);
   };
-  const std::size_t others = cloud.available(kWithSharp - 1);
   Stage stage(progress, "edge points", edge_points.size());
-  parallel_blocks(edge_points.size(), kPointsAtOnce, [&](std::size_t begin, std::size_t end) {
-    std::vector<spatial::Neighbour> nearest;
-    cloud.nearest_others(std::span(edge_points).subspan(begin, end - begin), others, nearest);
-    for (std::size_t k = begin; k < end; ++k) {
-      choose(edge_points[k]);
-      const bool sharp = cloud.edge_class(edge_points[k]) == kSharpEdge;
-      const std::size_t beside = std::min(others, (sharp ? kWithSharp : kWithSmooth) - 1);
-      for (std::size_t n = 0; n < beside; ++n) choose(nearest[(k - begin) * others + n].index);
-    }
-    stage.advance(end - begin);
-  });
+  cloud.for_each_neighbourhood(
+      edge_points, kWithSharp - 1, stage,
+      [&](std::size_t k, std::span<const spatial::Neighbour> others) {
+        choose(edge_points[k]);
+        const bool sharp = cloud.edge_class(edge_points[k]) == kSharpEdge;
+        const std::size_t beside = (sharp ? kWithSharp : kWithSmooth) - 1;
+        for (const auto& other : others.first(std::min(others.size(), beside))) choose(other.index);
+      });
   std::vector<std::uint32_t> points;
   for (std::uint32_t i = 0; i < cloud.size(); ++i) {
     if (chosen[i]) points.push_back(i);
@@ -228,30 +219,30 @@ std::vector<std::uint32_t> points_near_edges(const OrderedPoints& cloud, double 
 
 }  // namespace
 
-std::vector<Crease> find_creases(const OrderedPoints& cloud, const Sampling& sampling,
-                                 const Progress* progress) {
-  const std::vector<std::uint32_t> points = points_near_edges(cloud, sampling.noise, progress);
-  const std::size_t others =
-      cloud.available(static_cast<std::size_t>(39.0 + 80.0 * sampling.noise));
-  const double tolerance = 0.3 + 1.1 * sampling.noise;
+std::vector<Crease> creases_at(const OrderedPoints& cloud, std::span<const std::uint32_t> points,
+                               std::size_t count, Stage& stage, const CreaseAt& crease_at) {
   std::vector<std::optional<Crease>> found(points.size());
-  Stage stage(progress, "creases", points.size());
-  parallel_blocks(points.size(), kPointsAtOnce, [&](std::size_t begin, std::size_t end) {
-    std::vector<spatial::Neighbour> nearest;
-    cloud.nearest_others(std::span(points).subspan(begin, end - begin), others, nearest);
-    NearPoints near_points;
-    for (std::size_t k = begin; k < end; ++k) {
-      found[k] =
-          crease_at(cloud, points[k], std::span(nearest).subspan((k - begin) * others, others),
-                    tolerance, near_points);
-    }
-    stage.advance(end - begin);
-  });
+  cloud.for_each_neighbourhood(points, count, stage,
+                               [&](std::size_t k, std::span<const spatial::Neighbour> others) {
+                                 found[k] = crease_at(points[k], others);
+                               });
   std::vector<Crease> creases;
   for (const auto& crease : found) {
     if (crease) creases.push_back(*crease);
   }
   return creases;
+}
+
+std::vector<Crease> find_creases(const OrderedPoints& cloud, const Sampling& sampling,
+                                 const Progress* progress) {
+  const std::vector<std::uint32_t> points = points_near_edges(cloud, sampling.noise, progress);
+  const auto others = static_cast<std::size_t>(39.0 + 80.0 * sampling.noise);
+  const double tolerance = 0.3 + 1.1 * sampling.noise;
+  Stage stage(progress, "creases", points.size());
+  return creases_at(cloud, points, others, stage,
+                    [&](std::uint32_t point, std::span<const spatial::Neighbour> near) {
+                      return crease_at(cloud, point, near, tolerance);
+                    });
 }
 
 }  // namespace pcednet::lines

@@ -1,12 +1,15 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "pcednet/cloud/point_cloud.h"
 #include "pcednet/core/progress.h"
 #include "pcednet/core/vec3.h"
+#include "pcednet/spatial/kd_tree.h"
 
 namespace pcednet::lines {
 
@@ -28,6 +31,14 @@ struct Sampling {
   double spacing = 0.0;  ///< sqrt of the area per point, median
   double noise = 0.0;    ///< distance of points to the plane of their neighbours, in spacings
 };
+
+/// The crease of a point, from its nearest others; nothing where there is none.
+using CreaseAt = std::function<std::optional<Crease>(std::uint32_t point,
+                                                     std::span<const spatial::Neighbour> others)>;
+
+/// What crease_at() finds at `points` (ascending), in their order, from `count` others of each.
+std::vector<Crease> creases_at(const OrderedPoints& cloud, std::span<const std::uint32_t> points,
+                               std::size_t count, Stage& stage, const CreaseAt& crease_at);
 
 Sampling measure_sampling(const OrderedPoints& cloud);
 

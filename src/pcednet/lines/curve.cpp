@@ -45,11 +45,15 @@ const char* name_of(CurveKind kind) {
   return "polyline";
 }
 
+double turn_about(const Vec3& axis, const Vec3& from, const Vec3& to) {
+  const double angle = std::atan2(axis.dot(from.cross(to)), from.dot(to));
+  return angle > 0.0 ? angle : angle + kTurn;
+}
+
 double angle_of(const Curve& curve) {
   if (curve.kind == CurveKind::kCircle) return kTurn;
-  const Vec3 from = curve.points.front() - curve.centre, to = curve.points.back() - curve.centre;
-  const double angle = std::atan2(curve.axis.dot(from.cross(to)), from.dot(to));
-  return angle > 0.0 ? angle : angle + kTurn;
+  return turn_about(curve.axis, curve.points.front() - curve.centre,
+                    curve.points.back() - curve.centre);
 }
 
 double length_of(const Curve& curve) {

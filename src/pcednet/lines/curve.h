@@ -34,6 +34,10 @@ struct Curve {
 /// "segment", "arc", "circle" or "polyline".
 const char* name_of(CurveKind kind);
 
+/// The angle from `from` to `to` counter-clockwise about `axis`, to which they are orthogonal, in
+/// (0, 2 pi].
+double turn_about(const Vec3& axis, const Vec3& from, const Vec3& to);
+
 /// The angle that an arc or a circle spans, in (0, 2 pi].
 double angle_of(const Curve& curve);
 

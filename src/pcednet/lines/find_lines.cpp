@@ -64,8 +64,7 @@ std::vector<Piece> split_chains(const std::vector<Chain>& chains, double toleran
   parallel_blocks(chains.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Chain& chain = chains[i];
-      const bool boundary = chain.nodes[chain.nodes.size() / 2].boundary > 0.5;
-      const double within = boundary ? std::max(tolerance, kBoundaryTolerance) : tolerance;
+      const double within = tolerance_at(chain.nodes[chain.nodes.size() / 2], tolerance);
       of_chains[i] = pieces_of(chain, split(chain, within), kLeastNodes);
     }
     stage.advance(end - begin);

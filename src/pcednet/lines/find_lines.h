@@ -27,6 +27,7 @@ struct EdgePoints {
   std::span<const std::uint8_t> classes;  ///< EdgeClass
   std::span<const float> p_sharp = {};
   std::span<const float> p_smooth = {};
+  std::span<const std::uint32_t> curve = {};  ///< spatial::curve_order() of the positions, if known
 };
 
 /// The edges of the cloud as curves that share their corners.

@@ -10,11 +10,14 @@
 namespace pcednet::lines {
 namespace {
 
+constexpr std::size_t kPointsAtOnce = 256;
 constexpr std::size_t kSpacingNeighbours = 15;
 
 /// Points at one place follow each other along the curve; the first stands for all.
-std::vector<std::uint32_t> distinct_points(std::span<const Vec3> positions) {
-  std::vector<std::uint32_t> order = spatial::curve_order(positions);
+std::vector<std::uint32_t> distinct_points(const EdgePoints& points) {
+  const std::span<const Vec3> positions = points.positions;
+  std::vector<std::uint32_t> order(points.curve.begin(), points.curve.end());
+  if (order.empty()) order = spatial::curve_order(positions);
   const auto same = [&](std::uint32_t a, std::uint32_t b) { return positions[a] == positions[b]; };
   order.erase(std::unique(order.begin(), order.end(), same), order.end());
   return order;
@@ -24,7 +27,7 @@ std::vector<std::uint32_t> distinct_points(std::span<const Vec3> positions) {
 
 OrderedPoints::OrderedPoints(const EdgePoints& points)
     : points_(points),
-      order_(distinct_points(points.positions)),
+      order_(distinct_points(points)),
       positions_(spatial::in_order(points.positions, order_)) {
   parallel_blocks(2, 1, [&](std::size_t which, std::size_t) {  // side by side
     if (which == 0) tree_.emplace(positions_);
@@ -42,6 +45,19 @@ void OrderedPoints::nearest_others(std::span<const std::uint32_t> points, std::s
                                    std::vector<spatial::Neighbour>& found) const {
   found.resize(points.size() * available(count));
   search_->nearest_others(points, count, found);
+}
+
+void OrderedPoints::for_each_neighbourhood(std::span<const std::uint32_t> points, std::size_t count,
+                                           Stage& stage, const Visit& visit) const {
+  const std::size_t others = available(count);
+  parallel_blocks(points.size(), kPointsAtOnce, [&](std::size_t begin, std::size_t end) {
+    std::vector<spatial::Neighbour> found;
+    nearest_others(points.subspan(begin, end - begin), count, found);
+    for (std::size_t k = begin; k < end; ++k) {
+      visit(k, std::span(found).subspan((k - begin) * others, others));
+    }
+    stage.advance(end - begin);
+  });
 }
 
 double spacing_of(std::span<const spatial::Neighbour> others) {

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "pcednet/core/progress.h"
 #include "pcednet/lines/find_lines.h"
 #include "pcednet/spatial/kd_tree.h"
 #include "pcednet/spatial/neighbour_search.h"
@@ -33,6 +35,11 @@ class OrderedPoints {
   void nearest_others(std::span<const std::uint32_t> points, std::size_t count,
                       std::vector<spatial::Neighbour>& found) const;
   std::size_t available(std::size_t count) const { return search_->available(count); }
+
+  /// Calls visit(k, row of nearest_others()) for each of `points`, on all threads.
+  using Visit = std::function<void(std::size_t k, std::span<const spatial::Neighbour> others)>;
+  void for_each_neighbourhood(std::span<const std::uint32_t> points, std::size_t count,
+                              Stage& stage, const Visit& visit) const;
 
  private:
   EdgePoints points_;

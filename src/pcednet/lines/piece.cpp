@@ -7,13 +7,13 @@
 #include <numeric>
 
 #include "pcednet/lines/curve.h"
-#include "pcednet/spatial/kd_tree.h"
 
 namespace pcednet::lines {
 namespace {
 
-constexpr double kSameWedge = 0.7;
-constexpr double kDuplicate = 1.2;  ///< spacings between copies of one edge
+constexpr double kOneWedge = 0.7;            ///< least cosine of sides
+constexpr double kSameDirectionTwice = 0.7;  ///< of an edge and its copy
+constexpr double kDuplicate = 1.2;           ///< spacings between copies of one edge
 
 void set_ends(Piece& piece) {
   const ChainNode &first = piece.nodes.front(), &last = piece.nodes.back();
@@ -27,9 +27,8 @@ void set_ends(Piece& piece) {
 }
 
 double arc_angle(const Piece& piece) {
-  const Vec3 from = piece.ends[0] - piece.fit.point, to = piece.ends[1] - piece.fit.point;
-  const double angle = std::atan2(piece.fit.direction.dot(from.cross(to)), from.dot(to));
-  return angle > 0.0 ? angle : angle + 2.0 * std::numbers::pi;
+  return turn_about(piece.fit.direction, piece.ends[0] - piece.fit.point,
+                    piece.ends[1] - piece.fit.point);
 }
 
 Piece reversed(Piece piece) {
@@ -40,18 +39,13 @@ Piece reversed(Piece piece) {
   return piece;
 }
 
-bool same_wedge(const ChainNode& a, const ChainNode& b) {
-  return match(a.side_a, a.side_b, b.side_a, b.side_b).cosine > kSameWedge;
-}
-
 /// Both, a's end before b's start, as one; nothing if no segment or arc fits them together.
 std::optional<Piece> joined(const Piece& a, const Piece& b, double tolerance) {
   Piece both{.fit = {}, .nodes = a.nodes, .ends = {}};
   both.nodes.insert(both.nodes.end(), b.nodes.begin(), b.nodes.end());
   const bool straight = a.fit.kind == CurveKind::kSegment && b.fit.kind == CurveKind::kSegment;
   both.fit = straight ? fit_segment(both.nodes) : fit_arc(both.nodes);
-  const double within =
-      a.nodes.back().boundary > 0.5 ? std::max(tolerance, kBoundaryTolerance) : tolerance;
+  const double within = tolerance_at(a.nodes.back(), tolerance);
   const double limit = std::max({1.4 * within, 1.3 * a.fit.error, 1.3 * b.fit.error});
   if (both.fit.kind == CurveKind::kPolyline || both.fit.error > limit) return std::nullopt;
   set_ends(both);
@@ -111,13 +105,7 @@ bool join_once(std::vector<Piece>& pieces, double gap, double tolerance) {
       if (changed[i]) break;
     }
   }
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < pieces.size(); ++i) {
-    if (gone[i]) continue;
-    if (kept != i) pieces[kept] = std::move(pieces[i]);
-    ++kept;
-  }
-  pieces.resize(kept);
+  erase_marked(pieces, gone);
   return any;
 }
 
@@ -132,46 +120,79 @@ void close_circles(std::vector<Piece>& pieces, double gap) {
   }
 }
 
-/// The share of the nodes of `piece` beside nodes of pieces that were kept before it.
+/// Drops the pieces most of whose nodes are beside nodes of longer ones that are kept.
 void drop_duplicates(std::vector<Piece>& pieces) {
+  const NodeIndex index(pieces);
+  std::vector<std::uint8_t> dropped(pieces.size(), 0), kept(pieces.size(), 0);
+  std::vector<spatial::Neighbour> near;
+  for (const std::size_t i : longest_first(pieces)) {
+    std::size_t covered = 0;
+    for (const ChainNode& node : pieces[i].nodes) {
+      index.tree.within_unsorted(node.at, kDuplicate * node.spacing, near);
+      covered += std::any_of(near.begin(), near.end(), [&](const auto& other) {
+        const ChainNode& of_other = *index.nodes[other.index];
+        return kept[index.piece[other.index]] &&
+               std::abs(of_other.along.dot(node.along)) > kSameDirectionTwice;
+      });
+    }
+    dropped[i] = 2 * covered > pieces[i].nodes.size();
+    kept[i] = !dropped[i];
+  }
+  erase_marked(pieces, dropped);
+}
+
+}  // namespace
+
+Vec3 along_at(const Fit& fit, const ChainNode& node, const Vec3& place) {
+  if (fit.kind == CurveKind::kPolyline) return node.along;
+  const Vec3 tangent = tangent_at(fit, place);
+  return tangent.dot(node.along) < 0.0 ? Vec3(-tangent) : tangent;
+}
+
+Vec3 outward(const Piece& piece, std::size_t side) {
+  const Vec3 along = along_at(piece.fit, node_at(piece, side), piece.ends[side]);
+  return side == 0 ? Vec3(-along) : along;
+}
+
+bool same_wedge(const ChainNode& a, const ChainNode& b) {
+  return match(a.side_a, a.side_b, b.side_a, b.side_b).cosine > kOneWedge;
+}
+
+std::vector<End> open_ends(const std::vector<Piece>& pieces) {
+  std::vector<End> ends;
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    if (pieces[i].closed) continue;
+    ends.push_back({i, 0});
+    ends.push_back({i, 1});
+  }
+  return ends;
+}
+
+NodeIndex::NodeIndex(const std::vector<Piece>& pieces) : tree({}) {
+  std::vector<Vec3> places;
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    for (const ChainNode& node : pieces[i].nodes) {
+      nodes.push_back(&node);
+      piece.push_back(i);
+      places.push_back(node.at);
+    }
+  }
+  tree = spatial::KdTree(places);
+}
+
+std::vector<std::size_t> longest_first(const std::vector<Piece>& pieces) {
   std::vector<std::size_t> order(pieces.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
     return pieces[a].nodes.size() > pieces[b].nodes.size();
   });
-  std::vector<Vec3> places;
-  std::vector<std::size_t> owner, rank(pieces.size());
-  for (std::size_t r = 0; r < order.size(); ++r) rank[order[r]] = r;
-  for (std::size_t i = 0; i < pieces.size(); ++i) {
-    for (const ChainNode& node : pieces[i].nodes) {
-      places.push_back(node.at);
-      owner.push_back(i);
-    }
-  }
-  const spatial::KdTree tree(places);
-  std::vector<std::uint8_t> dropped(pieces.size(), 0);
-  std::vector<spatial::Neighbour> near;
-  for (const std::size_t i : order) {
-    std::size_t covered = 0;
-    for (const ChainNode& node : pieces[i].nodes) {
-      tree.within_unsorted(node.at, kDuplicate * node.spacing, near);
-      covered += std::any_of(near.begin(), near.end(), [&](const auto& other) {
-        const std::size_t j = owner[other.index];
-        if (rank[j] >= rank[i] || dropped[j]) return false;
-        const ChainNode* nodes = pieces[j].nodes.data();
-        std::size_t first = other.index;
-        while (first > 0 && owner[first - 1] == j) --first;
-        const ChainNode& of_other = nodes[other.index - first];
-        return std::abs(of_other.along.dot(node.along)) > kSameWedge;
-      });
-    }
-    dropped[i] = 2 * covered > pieces[i].nodes.size();
-  }
-  std::size_t i = 0;
-  std::erase_if(pieces, [&](const Piece&) { return dropped[i++] != 0; });
+  return order;
 }
 
-}  // namespace
+void erase_marked(std::vector<Piece>& pieces, const std::vector<std::uint8_t>& marks) {
+  std::size_t i = 0;
+  std::erase_if(pieces, [&](const Piece&) { return marks[i++] != 0; });
+}
 
 double length_of(const Piece& piece) {
   switch (piece.fit.kind) {

@@ -1,12 +1,15 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
 #include "pcednet/lines/fit.h"
 #include "pcednet/lines/split.h"
+#include "pcednet/spatial/kd_tree.h"
 
 namespace pcednet::lines {
 
@@ -20,8 +23,57 @@ struct Piece {
   std::array<Vec3, 2> ends;  ///< on the fit; unused if closed
   bool closed = false;
 
-  double spacing() const { return nodes[nodes.size() / 2].spacing; }
+  const ChainNode& middle() const { return nodes[nodes.size() / 2]; }
+  double spacing() const { return middle().spacing; }
 };
+
+inline bool is_boundary(const ChainNode& node) {
+  return node.boundary > 0.5;
+}
+
+/// `tolerance` (in spacings), or that of boundaries if the node is of one.
+inline double tolerance_at(const ChainNode& node, double tolerance) {
+  return is_boundary(node) ? std::max(tolerance, kBoundaryTolerance) : tolerance;
+}
+
+/// The node at an end of the piece: 0, its first, or 1, its last.
+inline const ChainNode& node_at(const Piece& piece, std::size_t side) {
+  return side == 0 ? piece.nodes.front() : piece.nodes.back();
+}
+
+/// The direction of the node's curve at `place`, in the node's sense; that of the node where there
+/// is neither line nor circle.
+Vec3 along_at(const Fit& fit, const ChainNode& node, const Vec3& place);
+
+/// The direction in which the piece would go on beyond an end.
+Vec3 outward(const Piece& piece, std::size_t side);
+
+/// Whether the wedges at two nodes are those of one edge.
+bool same_wedge(const ChainNode& a, const ChainNode& b);
+
+/// An end of a piece.
+struct End {
+  std::size_t piece;
+  std::size_t side;
+};
+
+/// Both ends of every piece that is not closed.
+std::vector<End> open_ends(const std::vector<Piece>& pieces);
+
+/// All nodes of all pieces, to be found by place.
+struct NodeIndex {
+  explicit NodeIndex(const std::vector<Piece>& pieces);
+
+  std::vector<const ChainNode*> nodes;
+  std::vector<std::size_t> piece;  ///< of each node
+  spatial::KdTree tree;
+};
+
+/// The numbers of the pieces, those with the most nodes first.
+std::vector<std::size_t> longest_first(const std::vector<Piece>& pieces);
+
+/// Removes the pieces that are marked.
+void erase_marked(std::vector<Piece>& pieces, const std::vector<std::uint8_t>& marks);
 
 /// The pieces of a chain; those of fewer than `least_nodes` nodes are left out.
 std::vector<Piece> pieces_of(const Chain& chain, const std::vector<Run>& runs,

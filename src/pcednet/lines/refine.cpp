@@ -4,7 +4,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <optional>
 
 #include "pcednet/core/parallel.h"
@@ -163,11 +162,8 @@ Eigen::Vector2d in_half_plane(const Fit& circle, const Vec3& place) {
 /// Whether the place is beside the arc, not beyond its ends.
 bool is_beside(const Piece& piece, const Vec3& place) {
   if (piece.closed) return true;
-  const Vec3& axis = piece.fit.direction;
   const auto angle = [&](const Vec3& to) {
-    const Vec3 x = piece.ends[0] - piece.fit.point, y = to - piece.fit.point;
-    const double turn = std::atan2(axis.dot(x.cross(y)), x.dot(y - axis.dot(y) * axis));
-    return turn < 0.0 ? turn + 2.0 * std::numbers::pi : turn;
+    return turn_about(piece.fit.direction, piece.ends[0] - piece.fit.point, to - piece.fit.point);
   };
   return angle(place) <= angle(piece.ends[1]);
 }
@@ -249,7 +245,7 @@ std::optional<Fit> crease_circle(const Piece& piece, const std::vector<Vec3>& po
 
 std::optional<Fit> better_fit(const Piece& piece, const std::vector<Vec3>& points,
                               double tolerance) {
-  if (piece.nodes[piece.nodes.size() / 2].boundary > 0.5) {
+  if (is_boundary(piece.middle())) {
     if (piece.fit.kind != CurveKind::kSegment) return std::nullopt;
     return boundary_line(piece, points);
   }

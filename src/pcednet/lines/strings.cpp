@@ -8,28 +8,8 @@
 namespace pcednet::lines {
 namespace {
 
-constexpr double kStringWedge = 0.7;
 constexpr std::size_t kLong = 7;  ///< nodes
 constexpr std::size_t kNone = static_cast<std::size_t>(-1);
-
-struct End {
-  std::size_t piece;
-  std::size_t side;
-};
-
-const ChainNode& node_at(const Piece& piece, std::size_t side) {
-  return side == 0 ? piece.nodes.front() : piece.nodes.back();
-}
-
-Vec3 outward(const Piece& piece, std::size_t side) {
-  const ChainNode& node = node_at(piece, side);
-  Vec3 along = node.along;
-  if (piece.fit.kind != CurveKind::kPolyline) {
-    const Vec3 tangent = tangent_at(piece.fit, piece.ends[side]);
-    along = tangent.dot(node.along) < 0.0 ? Vec3(-tangent) : tangent;
-  }
-  return side == 0 ? Vec3(-along) : along;
-}
 
 /// Whether a straight and a round piece touch: each is what it seems if both are long.
 bool stay_apart(const Piece& a, const Piece& b) {
@@ -61,24 +41,15 @@ bool continues(const Piece& a, std::size_t side_a, const Piece& b, std::size_t s
   const double ahead = offset.dot(out_a), aside = (offset - ahead * out_a).norm();
   if (out_a.dot(-out_b) < reach.cosine || ahead < -2.0 * spacing) return false;
   if (offset.norm() > reach.gap || aside > 0.7 * spacing + 0.2 * std::abs(ahead)) return false;
-  const ChainNode &node_a = node_at(a, side_a), &node_b = node_at(b, side_b);
-  if (match(node_a.side_a, node_a.side_b, node_b.side_a, node_b.side_b).cosine < kStringWedge) {
-    return false;
-  }
+  if (!same_wedge(node_at(a, side_a), node_at(b, side_b))) return false;
   cost = (offset.norm() + 2.0 * aside) / spacing + 4.0 * (1.0 - out_a.dot(-out_b));
   return true;
 }
 
 std::vector<Link> links_of(const std::vector<Piece>& pieces, const Reach& reach) {
-  std::vector<End> ends;
+  const std::vector<End> ends = open_ends(pieces);
   std::vector<Vec3> places;
-  for (std::size_t i = 0; i < pieces.size(); ++i) {
-    if (pieces[i].closed) continue;
-    for (const std::size_t side : {0, 1}) {
-      ends.push_back({i, side});
-      places.push_back(pieces[i].ends[side]);
-    }
-  }
+  for (const auto& [piece, side] : ends) places.push_back(pieces[piece].ends[side]);
   const spatial::KdTree tree(places);
   std::vector<Link> links;
   std::vector<spatial::Neighbour> near;
@@ -104,8 +75,7 @@ void append_nodes(const Piece& piece, std::size_t side, std::vector<ChainNode>& 
     ChainNode node = piece.nodes[side == 0 ? i : count - 1 - i];
     if (piece.fit.kind != CurveKind::kPolyline) {
       node.at = nearest_on(piece.fit, node.at);
-      const Vec3 tangent = tangent_at(piece.fit, node.at);
-      node.along = tangent.dot(node.along) < 0.0 ? Vec3(-tangent) : tangent;
+      node.along = along_at(piece.fit, node, node.at);
     }
     if (side != 0) node.along = -node.along;
     if (!nodes.empty() && (node.at - nodes.back().at).dot(nodes.back().along) <= 0.0) continue;

@@ -52,7 +52,8 @@ void Session::State::find_lines_once(std::uint64_t mine) {
                            .normals = scene->prepared.normals,
                            .classes = prediction->result.classes,
                            .p_sharp = prediction->result.p_sharp,
-                           .p_smooth = prediction->result.p_smooth},
+                           .p_smooth = prediction->result.p_smooth,
+                           .curve = scene->prepared.curve},
                           {}, &reporter));
     const Lock lock(mutex);
     if (orders.generation != mine || orders.stopping) return;

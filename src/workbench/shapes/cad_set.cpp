@@ -27,22 +27,29 @@ std::vector<Vec3> sharp_edges(std::span<const BorderPoint> borders) {
 
 }  // namespace
 
+std::vector<std::uint8_t> label_bands(std::span<const Vec3> positions,
+                                      std::span<const BorderPoint> borders, double width) {
+  const spatial::KdTree tree(sharp_edges(borders));
+  std::vector<std::uint8_t> labels;
+  std::vector<spatial::Neighbour> nearest;
+  for (const Vec3& position : positions) {
+    tree.nearest(position, 1, nearest);
+    const bool sharp = !nearest.empty() && std::sqrt(nearest.front().sq_distance) < width;
+    labels.push_back(sharp ? kSharpEdge : kNonEdge);
+  }
+  return labels;
+}
+
 MeshVertices drawn_points(const SolidSamples& samples, std::span<const BorderPoint> borders,
                           std::size_t most, double band) {
-  const std::vector<Vec3> edges = sharp_edges(borders);
-  const spatial::KdTree tree(edges);
   const std::size_t count = std::min(most, samples.points.size());
   const double spacing = std::sqrt(samples.area / static_cast<double>(count));
   MeshVertices drawn;
-  std::vector<spatial::Neighbour> nearest;
   for (std::size_t i = 0; i < count; ++i) {
-    const FacePoint& point = samples.points[i];
-    drawn.positions.push_back(point.position);
-    drawn.normals.push_back(point.normal);
-    tree.nearest(point.position, 1, nearest);
-    const bool sharp = !nearest.empty() && std::sqrt(nearest.front().sq_distance) < band * spacing;
-    drawn.labels.push_back(sharp ? kSharpEdge : kNonEdge);
+    drawn.positions.push_back(samples.points[i].position);
+    drawn.normals.push_back(samples.points[i].normal);
   }
+  drawn.labels = label_bands(drawn.positions, borders, band * spacing);
   return drawn;
 }
 

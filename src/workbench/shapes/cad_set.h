@@ -31,6 +31,10 @@ std::vector<CadRecipe> cad_recipes(std::uint64_t seed);
 /// slightly uneven surfaces. The ridge line is sharp-edge, as annotators draw it.
 std::vector<CadRecipe> worn_recipes(std::uint64_t seed);
 
+/// Sharp-edge for each position nearer than `width` to a sharp border, else non-edge.
+std::vector<std::uint8_t> label_bands(std::span<const Vec3> positions,
+                                      std::span<const BorderPoint> borders, double width);
+
 /// The first `most` samples, labelled sharp-edge within `band` spacings of a sharp border.
 MeshVertices drawn_points(const SolidSamples& samples, std::span<const BorderPoint> borders,
                           std::size_t most, double band);

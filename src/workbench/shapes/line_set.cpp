@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "pcednet/spatial/kd_tree.h"
 #include "workbench/shapes/acquisition.h"
 #include "workbench/shapes/cad_parts.h"
 #include "workbench/shapes/cad_set.h"
@@ -67,18 +66,10 @@ MeshVertices scanned_points(const Solid& solid, const SolidSamples& samples,
                             Random& random) {
   const double spacing = std::sqrt(samples.area / static_cast<double>(points));
   Scan scan = scan_part(solid, points, spacing, random);
-  std::vector<Vec3> edges;
-  for (const BorderPoint& border : borders) {
-    if (border.turn() >= kSharpTurn) edges.push_back(border.position);
-  }
-  const spatial::KdTree tree(edges);
   MeshVertices vertices;
-  std::vector<spatial::Neighbour> near;
-  for (std::size_t i = 0; i < scan.positions.size(); ++i) {
-    tree.nearest(scan.positions[i], 1, near);
-    const bool sharp = !near.empty() && std::sqrt(near.front().sq_distance) < kBand * spacing;
-    const bool stray = scan.kinds[i] == ReturnKind::kStray;
-    vertices.labels.push_back(stray ? kUnlabelled : sharp ? kSharpEdge : kNonEdge);
+  vertices.labels = label_bands(scan.positions, borders, kBand * spacing);
+  for (std::size_t i = 0; i < vertices.labels.size(); ++i) {
+    if (scan.kinds[i] == ReturnKind::kStray) vertices.labels[i] = kUnlabelled;
   }
   vertices.positions = std::move(scan.positions);
   vertices.normals.resize(vertices.positions.size(), Vec3::Zero());
