@@ -33,6 +33,10 @@ void add_descriptor_options(CLI::App& command, gls::ScaleSpaceOptions& options) 
   add_gate_options(command, options);
   add_engine_option(command, options);
   add_scale_range_options(command, options);
+  command
+      .add_option("--s-max-ratio", options.s_max_ratio,
+                  "Largest scale over the smallest, in place of 10 % of the diagonal (0: off)")
+      ->capture_default_str();
 }
 
 void add_gate_options(CLI::App& command, gls::ScaleSpaceOptions& options) {

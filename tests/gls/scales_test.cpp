@@ -103,6 +103,34 @@ TEST(Scales, OfPointsWithManyCopiesAreThoseOfOneEach) {
   EXPECT_EQ(many.s_max, one.s_max);
 }
 
+TEST(Scales, OfARatioFollowTheSpacingAlone) {
+  constexpr ScaleRange kTenfold = {.s_max_ratio = 10.0};
+  const auto cloud = test::cube(4000, 1);
+  const auto whole = scale_range(cloud.positions, spatial::KdTree(cloud.positions), kTenfold);
+  EXPECT_DOUBLE_EQ(whole.s_max, 10.0 * whole.s_min);
+
+  std::vector<Vec3> side;
+  for (const Vec3& p : cloud.positions) {
+    if (p.z() > 0.0) side.push_back(p);
+  }
+  const auto half = scale_range(side, spatial::KdTree(side), kTenfold);
+  EXPECT_NEAR(half.s_min / whole.s_min, 1.0, 0.03);
+  const auto given = scale_range(side, spatial::KdTree(side), {.s_min = 0.5, .s_max_ratio = 10.0});
+  EXPECT_DOUBLE_EQ(given.s_max, 5.0);
+  EXPECT_ERROR(ErrorKind::kUsage, scale_range(side, spatial::KdTree(side), {.s_max_ratio = 0.5}));
+}
+
+TEST(Scales, OfARatioAreNotMovedByAThrownPoint) {
+  constexpr ScaleRange kTenfold = {.s_max_ratio = 10.0};
+  auto positions = test::cube(4000, 1).positions;
+  const double s_min = scale_range(positions, spatial::KdTree(positions), kTenfold).s_min;
+  const double mean = scale_range(positions, spatial::KdTree(positions), {}).s_min;
+  positions.emplace_back(1000.0, 0.0, 0.0);
+  const spatial::KdTree tree(positions);
+  EXPECT_NEAR(scale_range(positions, tree, kTenfold).s_min / s_min, 1.0, 0.001);
+  EXPECT_GT(scale_range(positions, tree, {}).s_min / mean, 2.0);
+}
+
 TEST(Scales, AreTheSameFromBothEngines) {
   const auto sparse = test::cube(60, 2);
   test::Cloud copies;

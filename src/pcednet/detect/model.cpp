@@ -67,6 +67,9 @@ gls::ScaleSpaceOptions take_descriptor(nn::Metadata& metadata) {
   if (metadata.has("descriptor_s_max_fraction")) {
     descriptor.s_max_fraction = metadata.take_number<double>("descriptor_s_max_fraction");
   }
+  if (metadata.has("descriptor_s_max_ratio")) {
+    descriptor.s_max_ratio = metadata.take_number<double>("descriptor_s_max_ratio");
+  }
   return descriptor;
 }
 
@@ -85,6 +88,9 @@ void put_descriptor(const gls::ScaleSpaceOptions& descriptor,
   }
   if (descriptor.s_max_fraction != gls::kPartOfDiagonal) {
     metadata["descriptor_s_max_fraction"] = fmt::format("{}", descriptor.s_max_fraction);
+  }
+  if (descriptor.s_max_ratio > 0.0) {
+    metadata["descriptor_s_max_ratio"] = fmt::format("{}", descriptor.s_max_ratio);
   }
 }
 

@@ -97,8 +97,9 @@ void FastScaleSpace::find_scales(OrientedPoints points, std::span<const std::uin
     return mean_distance(std::span(sq_distances).first(found)) / unit_;
   };
   scales_ = sample_scales(
-      scale_range(points.positions, {options_.s_min, options_.s_max, options_.s_max_fraction},
-                  [&] { return mean_spacing(curve.size(), distance); }),
+      scale_range(points.positions,
+                  {options_.s_min, options_.s_max, options_.s_max_fraction, options_.s_max_ratio},
+                  [&] { return sampled_spacings(curve.size(), distance); }),
       options_.scales);
 }
 

@@ -60,7 +60,8 @@ ExactScaleSpace::ExactScaleSpace(OrientedPoints points, const ScaleSpaceOptions&
   tree_ = spatial::KdTree(positions_);
   stage.advance();
   scales_ = sample_scales(
-      scale_range(positions_, tree_, {options.s_min, options.s_max, options.s_max_fraction}),
+      scale_range(positions_, tree_,
+                  {options.s_min, options.s_max, options.s_max_fraction, options.s_max_ratio}),
       options.scales);
   stage.advance();
 }

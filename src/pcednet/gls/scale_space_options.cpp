@@ -45,7 +45,7 @@ std::vector<std::optional<double>> gates_of(const ScaleSpaceOptions& options) {
 std::string note_on(const ScaleSpaceOptions& options, std::span<const double> scales,
                     std::span<const Vec3> positions) {
   const double usual = options.s_max_fraction * bounding_box(positions).diagonal();
-  if (options.s_max > 0.0 || scales.front() < usual) return {};
+  if (options.s_max > 0.0 || options.s_max_ratio > 0.0 || scales.front() < usual) return {};
   return fmt::format(
       "too few points for scales up to {:.4g}, {:g} % of the diagonal: scales from {:.4g} to "
       "{:.4g}; expect false edges",
@@ -54,12 +54,13 @@ std::string note_on(const ScaleSpaceOptions& options, std::span<const double> sc
 
 std::string text_of(const ScaleSpaceOptions& options) {
   // Names every member, so that a new one does not compile before it has its place in the text.
-  const auto& [scales, s_min, s_max, s_max_fraction, features, reconstruction, steps, side_gate,
-               second_gate, engine, eps] = options;
+  const auto& [scales, s_min, s_max, s_max_fraction, s_max_ratio, features, reconstruction, steps,
+               side_gate, second_gate, engine, eps] = options;
   return fmt::format(
-      "scales {} s_min {} s_max {} fraction {} features {} reconstruction {} steps {} gate {}{} "
+      "scales {} s_min {} s_max {} fraction {} ratio {} features {} reconstruction {} steps {} "
+      "gate {}{} "
       "engine {} eps {}",
-      scales, s_min, s_max, s_max_fraction, static_cast<int>(features),
+      scales, s_min, s_max, s_max_fraction, s_max_ratio, static_cast<int>(features),
       static_cast<int>(reconstruction), steps, side_gate ? fmt::format("{}", *side_gate) : "none",
       second_gate ? fmt::format(" and {}", *second_gate) : "", static_cast<int>(engine), eps);
 }

@@ -6,6 +6,8 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <numeric>
+#include <utility>
 
 #include "pcednet/cloud/bounding_box.h"
 #include "pcednet/core/error.h"
@@ -26,9 +28,9 @@ void check_given(double bound, const char* name) {
       fmt::format("{} is {}: a positive length is needed, or 0 for the cloud's own", name, bound));
 }
 
-/// The spacing of points in curve order, from a tree of them.
-double spacing_in(std::span<const Vec3> positions, const spatial::KdTree& tree) {
-  return mean_spacing(positions.size(), [&](std::size_t place) {
+/// Of points in curve order, from a tree of them.
+std::vector<double> spacings_in(std::span<const Vec3> positions, const spatial::KdTree& tree) {
+  return sampled_spacings(positions.size(), [&](std::size_t place) {
     std::vector<spatial::Neighbour> found;
     std::array<double, kSpacingNeighbours> sq_distances;
     tree.nearest(positions[place], kSpacingNeighbours, found);
@@ -37,11 +39,32 @@ double spacing_in(std::span<const Vec3> positions, const spatial::KdTree& tree) 
   });
 }
 
-/// The spacing of the finite points with all their copies left out.
-double spacing_of_distinct(std::span<const Vec3> positions) {
+/// Of the finite points with all their copies left out.
+std::vector<double> spacings_of_distinct(std::span<const Vec3> positions) {
   std::vector<Vec3> distinct = spatial::in_order(positions, spatial::curve_order(positions));
   distinct.erase(std::unique(distinct.begin(), distinct.end()), distinct.end());
-  return spacing_in(distinct, spatial::KdTree(distinct));
+  return spacings_in(distinct, spatial::KdTree(distinct));
+}
+
+double mean_of(std::span<const double> values) {
+  constexpr std::size_t kBlock = 256;
+  double sum = 0.0;
+  for (std::size_t begin = 0; begin < values.size(); begin += kBlock) {
+    const auto block = values.subspan(begin, std::min(kBlock, values.size() - begin));
+    sum += std::accumulate(block.begin(), block.end(), 0.0);
+  }
+  return values.empty() ? 0.0 : sum / static_cast<double>(values.size());
+}
+
+/// The mean of the middle half.
+double midmean_of(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  const std::size_t quarter = values.size() / 4;
+  return mean_of(std::span(values).subspan(quarter, values.size() - 2 * quarter));
+}
+
+double spacing_by(const ScaleRange& rule, std::vector<double> spacings) {
+  return rule.s_max_ratio > 0.0 ? midmean_of(std::move(spacings)) : mean_of(spacings);
 }
 
 }  // namespace
@@ -52,29 +75,28 @@ double mean_distance(std::span<const double> sq_distances) {
   return sum / static_cast<double>(sq_distances.size() - 1);
 }
 
-double mean_spacing(std::size_t points, const std::function<double(std::size_t)>& distance) {
-  if (points < 2) return 0.0;
+std::vector<double> sampled_spacings(std::size_t points,
+                                     const std::function<double(std::size_t)>& distance) {
+  if (points < 2) return {};
   constexpr std::size_t kBlock = 256;
-  const std::size_t count = std::min(points, kSample);
-  std::vector<double> sums((count + kBlock - 1) / kBlock);
-  parallel_blocks(count, kBlock, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) sums[begin / kBlock] += distance(i * points / count);
+  std::vector<double> spacings(std::min(points, kSample));
+  parallel_blocks(spacings.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) spacings[i] = distance(i * points / spacings.size());
   });
-  double sum = 0.0;
-  for (const double block : sums) sum += block;
-  return sum / static_cast<double>(count);
+  return spacings;
 }
 
 ScaleRange scale_range(std::span<const Vec3> positions, const spatial::KdTree& tree,
                        const ScaleRange& given) {
-  return scale_range(positions, given, [&] { return spacing_in(positions, tree); });
+  return scale_range(positions, given, [&] { return spacings_in(positions, tree); });
 }
 
 ScaleRange scale_range(std::span<const Vec3> positions, const ScaleRange& given,
-                       const std::function<double()>& spacing) {
+                       const std::function<std::vector<double>()>& spacings) {
   check_given(given.s_min, "s_min");
   check_given(given.s_max, "s_max");
   check_given(given.s_max_fraction, "s_max_fraction");
+  check_given(given.s_max_ratio, "s_max_ratio");
   const bool both_given = given.s_min > 0.0 && given.s_max > 0.0;
   const double diagonal = bounding_box(positions).diagonal();
   if (!both_given && !(diagonal > kShortest && diagonal < kLongest)) {
@@ -85,9 +107,11 @@ ScaleRange scale_range(std::span<const Vec3> positions, const ScaleRange& given,
                     diagonal));
   }
   ScaleRange range = given;
-  if (range.s_min == 0.0) range.s_min = spacing();
-  if (range.s_min == 0.0) range.s_min = spacing_of_distinct(positions);
-  if (range.s_max == 0.0) {
+  if (range.s_min == 0.0) range.s_min = spacing_by(given, spacings());
+  if (range.s_min == 0.0) range.s_min = spacing_by(given, spacings_of_distinct(positions));
+  if (range.s_max == 0.0 && given.s_max_ratio > 0.0) {
+    range.s_max = given.s_max_ratio * range.s_min;
+  } else if (range.s_max == 0.0) {
     range.s_max = given.s_max_fraction * diagonal;
     if (!(range.s_min < range.s_max)) range.s_max = kSparseRange * range.s_min;
   }

@@ -23,12 +23,14 @@ struct ScaleRange {
   double s_min = 0.0;
   double s_max = 0.0;
   double s_max_fraction = kPartOfDiagonal;  ///< of the diagonal: s_max where it is not given
+  double s_max_ratio = 0.0;  ///< s_max over s_min where it is not given; 0: s_max_fraction rules
 };
 
-/// Mean distances to the 10 nearest other points (to all others if they are fewer), averaged over
-/// the points or, of more than 16384, over so many of them that follow each other at equal steps
-/// along the curve order. `distance(place)` is that of the point at a place of the order.
-double mean_spacing(std::size_t points, const std::function<double(std::size_t)>& distance);
+/// Mean distances to the 10 nearest other points (to all others if they are fewer): of every point
+/// or, of more than 16384, of so many of them that follow each other at equal steps along the curve
+/// order. `distance(place)` is that of the point at a place of the order.
+std::vector<double> sampled_spacings(std::size_t points,
+                                     const std::function<double(std::size_t)>& distance);
 
 /// The mean distance in a row of nearest squared distances, of which the first, to the point
 /// itself, is left out.
@@ -37,11 +39,13 @@ double mean_distance(std::span<const double> sq_distances);
 /// How many nearest points, with the point itself, mean_distance() wants.
 inline constexpr std::size_t kSpacingNeighbours = 11;
 
-/// The paper's range wherever there is one: s_min = `spacing()`, s_max = s_max_fraction (10 %) of
-/// the diagonal of the bounding box of the finite `positions`. Bounds other than 0 in `given` are
-/// kept.
+/// The range of scales of the finite `positions`. Bounds other than 0 in `given` are kept.
 ///
-/// Two rules go beyond the paper, for clouds to which its own gives no range:
+/// With an s_max_ratio: s_min is the mean of the middle half of `spacings()`, which a few far
+/// points do not change, and s_max = s_max_ratio s_min. The range does not depend on the extent.
+///
+/// Without one, the paper's range: s_min = the mean of `spacings()`, s_max = s_max_fraction (10 %)
+/// of the diagonal of the bounding box. Where this gives no range:
 /// - A spacing of 0 (every point has ten copies) becomes the spacing of the distinct positions.
 /// - An s_max that was not given and is not above s_min (a sparse cloud: fewer than some 330 points
 ///   on a cube) becomes kSparseRange times s_min; see note_on().
@@ -49,7 +53,7 @@ inline constexpr std::size_t kSpacingNeighbours = 11;
 /// Throws Error(kInsufficient) for fewer than two places unless both bounds are given,
 /// Error(kUsage) if a given bound is negative, not finite, or leaves no range.
 ScaleRange scale_range(std::span<const Vec3> positions, const ScaleRange& given,
-                       const std::function<double()>& spacing);
+                       const std::function<std::vector<double>()>& spacings);
 
 /// The same from a tree of `positions`, the finite points in curve order.
 ScaleRange scale_range(std::span<const Vec3> positions, const spatial::KdTree& tree,
