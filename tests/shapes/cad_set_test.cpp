@@ -9,6 +9,7 @@
 #include "pcednet/core/parallel.h"
 #include "pcednet/spatial/kd_tree.h"
 #include "workbench/shapes/part_pieces.h"
+#include "workbench/shapes/varied_set.h"
 
 namespace pcednet::shapes {
 namespace {
@@ -92,6 +93,58 @@ TEST(CadSet, HasNamesOfItsOwnAndEveryKindOfCloud) {
       EXPECT_LT(some, recipes.size());
     }
   }
+}
+
+TEST(CadSet, LabelsTheBandBesideASharpEdge) {
+  const SolidSamples samples = sample_solid(cube_part(), 12 * 3000, 4);
+  const auto borders = find_borders(cube_part(), samples);
+  const MeshVertices drawn = drawn_points(samples, borders, 3000, {.sharp = 0.6, .smooth = 1.73});
+  const double spacing = std::sqrt(6.0 / 3000.0);
+  std::size_t of_class[3] = {}, agreeing = 0;
+  for (std::size_t i = 0; i < drawn.positions.size(); ++i) {
+    Vec3 beside = (Vec3::Constant(0.5) - drawn.positions[i].cwiseAbs()).cwiseAbs();
+    std::sort(beside.begin(), beside.end());
+    const double distance = std::hypot(beside[0], beside[1]) / spacing;
+    const std::uint8_t label = drawn.labels[i];
+    ++of_class[label];
+    const EdgeClass expected = distance < 0.6    ? kSharpEdge
+                               : distance < 1.73 ? kSmoothEdge
+                                                 : kNonEdge;
+    agreeing += label == expected;
+  }
+  // The borders are points some way apart.
+  EXPECT_GT(static_cast<double>(agreeing), 0.97 * static_cast<double>(drawn.positions.size()));
+  for (const std::size_t some : of_class) EXPECT_GT(some, 100u);
+}
+
+TEST(VariedSet, ReachesFromAThousandPointsToManyAndIsNoisy) {
+  std::set<std::string> names;
+  std::size_t sparse = 0, noisy = 0;
+  const auto recipes = varied_part_recipes(1);
+  for (const CadRecipe& recipe : recipes) {
+    names.insert(recipe.name);
+    sparse += recipe.style.points<2000, noisy += recipe.scatter> 0.0 || recipe.noise > 0.0;
+    EXPECT_TRUE(recipe.estimated);
+  }
+  EXPECT_EQ(names.size(), recipes.size());
+  EXPECT_GT(sparse, recipes.size() / 2);
+  EXPECT_GT(noisy, recipes.size() / 4);
+}
+
+TEST(VariedSet, ThinnedCloudsKeepLabelsAndNormals) {
+  const Recipe recipe = thinned_recipes(1).front();
+  Recipe dense = recipe;
+  dense.thinned = 1;
+  const PointCloud some = generate(recipe, 1).cloud, all = generate(dense, 1).cloud;
+  EXPECT_NEAR(static_cast<double>(some.size() * recipe.thinned) / static_cast<double>(all.size()),
+              1.0, 0.15);
+  const auto share = [](const PointCloud& cloud) {
+    return static_cast<double>(std::count(cloud.labels.begin(), cloud.labels.end(), kSharpEdge)) /
+           static_cast<double>(cloud.size());
+  };
+  EXPECT_NEAR(share(some) / share(all), 1.0, 0.3);
+  EXPECT_EQ(some.normals.size(), some.size());
+  EXPECT_EQ(some.labels.size(), some.size());
 }
 
 TEST(CadSet, GivesTheSameCloudForAnyNumberOfThreads) {

@@ -13,6 +13,7 @@
 #include "workbench/shapes/line_set.h"
 #include "workbench/shapes/relief_set.h"
 #include "workbench/shapes/scan_set.h"
+#include "workbench/shapes/varied_set.h"
 
 namespace pcednet::app {
 namespace {
@@ -164,6 +165,19 @@ void add_worn(CLI::App& generate, Common& common) {
       });
 }
 
+void add_varied(CLI::App& generate, Common& common) {
+  auto set = std::make_shared<SetArguments>();
+  add_set(
+      generate, common, *set, "varied",
+      "Labelled clouds for training: CAD parts from a thousand points on, clean and noisy, with "
+      "estimated normals, and thinned clouds",
+      "pcednet generate varied parts/")
+      ->callback([set, &common] {
+        run(set->folder, set->seed, common, shapes::varied_part_recipes(set->seed),
+            shapes::thinned_recipes(set->seed));
+      });
+}
+
 void add_scan(CLI::App& generate, Common& common) {
   auto set = std::make_shared<SetArguments>();
   add_set(generate, common, *set, "scan",
@@ -225,6 +239,7 @@ void add_generate(CLI::App& app, Common& common) {
   add_cad(*generate, common);
   add_worn(*generate, common);
   add_scan(*generate, common);
+  add_varied(*generate, common);
   add_line_set(*generate, common);
   add_sample(*generate, common);
 }

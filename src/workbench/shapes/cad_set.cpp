@@ -8,6 +8,7 @@
 #include "pcednet/cloud/bounding_box.h"
 #include "pcednet/core/random.h"
 #include "pcednet/spatial/kd_tree.h"
+#include "workbench/shapes/acquisition.h"
 #include "workbench/shapes/cad_parts.h"
 #include "workbench/shapes/true_curves.h"
 #include "workbench/shapes/wear.h"
@@ -28,20 +29,21 @@ std::vector<Vec3> sharp_edges(std::span<const BorderPoint> borders) {
 }  // namespace
 
 std::vector<std::uint8_t> label_bands(std::span<const Vec3> positions,
-                                      std::span<const BorderPoint> borders, double width) {
+                                      std::span<const BorderPoint> borders,
+                                      const EdgeBands& bands) {
   const spatial::KdTree tree(sharp_edges(borders));
   std::vector<std::uint8_t> labels;
   std::vector<spatial::Neighbour> nearest;
   for (const Vec3& position : positions) {
     tree.nearest(position, 1, nearest);
-    const bool sharp = !nearest.empty() && std::sqrt(nearest.front().sq_distance) < width;
-    labels.push_back(sharp ? kSharpEdge : kNonEdge);
+    labels.push_back(nearest.empty() ? kNonEdge
+                                     : class_at(std::sqrt(nearest.front().sq_distance), bands));
   }
   return labels;
 }
 
 MeshVertices drawn_points(const SolidSamples& samples, std::span<const BorderPoint> borders,
-                          std::size_t most, double band) {
+                          std::size_t most, const EdgeBands& bands) {
   const std::size_t count = std::min(most, samples.points.size());
   const double spacing = std::sqrt(samples.area / static_cast<double>(count));
   MeshVertices drawn;
@@ -49,11 +51,21 @@ MeshVertices drawn_points(const SolidSamples& samples, std::span<const BorderPoi
     drawn.positions.push_back(samples.points[i].position);
     drawn.normals.push_back(samples.points[i].normal);
   }
-  drawn.labels = label_bands(drawn.positions, borders, band * spacing);
+  drawn.labels = label_bands(drawn.positions, borders, spacing * bands);
   return drawn;
 }
 
 namespace {
+
+/// Vertices on no sharp border are smooth-edge within `band` spacings of one.
+void label_beside(MeshVertices& vertices, const SolidSamples& samples,
+                  std::span<const BorderPoint> borders, double band) {
+  const double spacing = std::sqrt(samples.area / static_cast<double>(vertices.positions.size()));
+  const auto labels = label_bands(vertices.positions, borders, {0.0, band * spacing});
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    vertices.labels[i] = std::max(vertices.labels[i], labels[i]);
+  }
+}
 
 /// As many vertices as of a worn part, labelled and rounded off.
 void wear_off(MeshVertices& vertices, const SolidSamples& samples,
@@ -66,7 +78,7 @@ void wear_off(MeshVertices& vertices, const SolidSamples& samples,
   const std::vector<Vec3> edges = sharp_edges(borders);
   const double spacing = std::sqrt(samples.area / static_cast<double>(vertices.positions.size()));
   wear_off(vertices, surface, edges,
-           {recipe.wear * spacing, recipe.band * spacing, recipe.scatter * spacing,
+           {recipe.wear * spacing, spacing * recipe.bands, recipe.scatter * spacing,
             random.uniform(0.0, 0.5) * spacing},
            random);
 }
@@ -111,7 +123,8 @@ std::vector<CadRecipe> worn_recipes(std::uint64_t seed) {
     recipe.style.smooth_borders = false;
     recipe.noise = 0.0;
     recipe.wear = std::max(0.05, random.uniform(-0.5, 3.0));
-    recipe.band = 0.5 + 0.4 * recipe.wear;
+    recipe.bands.sharp = 0.5 + 0.4 * recipe.wear;
+    recipe.bands.smooth = recipe.bands.sharp + 1.24;
     recipe.scatter = random.index(2) ? 0.0 : random.uniform(0.0, 0.15);
     recipe.estimated = random.index(3) == 0;
   }
@@ -127,8 +140,13 @@ GeneratedCloud generate(const CadRecipe& recipe, std::uint64_t seed) {
   const std::vector<BorderPoint> borders = find_borders(solid, samples);
   MeshVertices vertices = recipe.mesh
                               ? mesh_vertices(samples, borders, solid, recipe.style, random.next())
-                              : drawn_points(samples, borders, recipe.style.points, recipe.band);
+                              : drawn_points(samples, borders, recipe.style.points, recipe.bands);
+  if (recipe.mesh) label_beside(vertices, samples, borders, recipe.bands.smooth);
   if (recipe.wear > 0.0) wear_off(vertices, samples, borders, recipe, random);
+  if (recipe.wear == 0.0 && recipe.scatter > 0.0) {
+    const double spacing = std::sqrt(samples.area / static_cast<double>(vertices.positions.size()));
+    add_noise(vertices.positions, recipe.scatter * spacing, random);
+  }
   if (recipe.noise > 0.0) {
     const double sigma = recipe.noise * bounding_box(vertices.positions).diagonal();
     for (std::size_t i = 0; i < vertices.positions.size(); ++i) {

@@ -6,6 +6,7 @@
 
 #include "workbench/shapes/mesh_vertices.h"
 #include "workbench/shapes/recipe.h"
+#include "workbench/shapes/shape.h"
 
 namespace pcednet::shapes {
 
@@ -19,9 +20,9 @@ struct CadRecipe {
   double noise = 0.0;      ///< along the normal, standard deviation over the box's diagonal
   bool estimated = false;  ///< normals estimated from the positions; else those of the part
   bool inward = false;     ///< all normals point into the solid
-  double band = 0.6;       ///< width of the sharp-edge band, in spacings; sampled or worn parts
-  double wear = 0.0;       ///< rounding of edges: standard deviation of a Gaussian, in spacings
-  double scatter = 0.0;    ///< noise of worn parts on each axis, in spacings
+  EdgeBands bands = {.sharp = 0.6, .smooth = 1.73};  ///< in spacings; vertices on edges are sharp
+  double wear = 0.0;     ///< rounding of edges: standard deviation of a Gaussian, in spacings
+  double scatter = 0.0;  ///< noise on each axis, in spacings
 };
 
 /// The recipes of `pcednet generate cad`.
@@ -31,13 +32,13 @@ std::vector<CadRecipe> cad_recipes(std::uint64_t seed);
 /// slightly uneven surfaces. The ridge line is sharp-edge, as annotators draw it.
 std::vector<CadRecipe> worn_recipes(std::uint64_t seed);
 
-/// Sharp-edge for each position nearer than `width` to a sharp border, else non-edge.
+/// The class of each position by its distance to the sharp borders.
 std::vector<std::uint8_t> label_bands(std::span<const Vec3> positions,
-                                      std::span<const BorderPoint> borders, double width);
+                                      std::span<const BorderPoint> borders, const EdgeBands& bands);
 
-/// The first `most` samples, labelled sharp-edge within `band` spacings of a sharp border.
+/// The first `most` samples, labelled by bands in spacings.
 MeshVertices drawn_points(const SolidSamples& samples, std::span<const BorderPoint> borders,
-                          std::size_t most, double band);
+                          std::size_t most, const EdgeBands& bands);
 
 /// The recipe's cloud, randomly rotated; sharp-edge and non-edge. Noise leaves normals unchanged.
 GeneratedCloud generate(const CadRecipe& recipe, std::uint64_t seed);

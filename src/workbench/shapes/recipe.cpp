@@ -75,6 +75,20 @@ std::vector<Vec3> make_normals(const Recipe& recipe, const SurfaceSamples& sampl
   return normals;
 }
 
+/// Keeps one point in so many, with its label and normal.
+void thin(std::vector<Vec3>& positions, PointCloud& cloud, std::size_t thinned, Random& random) {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    if (random.index(thinned) != 0) continue;
+    positions[kept] = positions[i];
+    cloud.labels[kept] = cloud.labels[i];
+    cloud.normals[kept++] = cloud.normals[i];
+  }
+  positions.resize(kept);
+  cloud.labels.resize(kept);
+  cloud.normals.resize(kept);
+}
+
 std::string_view name_of(NormalSource source) {
   switch (source) {
     case NormalSource::kSurface:
@@ -118,6 +132,7 @@ GeneratedCloud generate(const Recipe& recipe, std::uint64_t seed) {
       samples.positions, recipe.shape.edges,
       {.sharp = recipe.bands.sharp * spacing, .smooth = recipe.bands.smooth * spacing});
   cloud.normals = make_normals(recipe, samples, displaced, random);
+  if (recipe.thinned > 1) thin(samples.positions, cloud, recipe.thinned, random);
   const Mat3 rotation = random_rotation(random);
   for (const Vec3& position : samples.positions) {
     cloud.positions.push_back((rotation * position).cast<float>().cast<double>());

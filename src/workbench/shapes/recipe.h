@@ -34,7 +34,8 @@ struct Recipe {
   double unevenness = 1.0;    ///< density at the densest end over that at the sparsest
   double min_distance = 0.0;  ///< between points, before noise
   NormalSource normals = NormalSource::kPlane10;
-  bool inward = false;  ///< all normals point into the solid
+  bool inward = false;      ///< all normals point into the solid
+  std::size_t thinned = 1;  ///< one point in so many is kept in the end, drawn at random
 };
 
 /// Samples the points, disturbs them, labels them by the distance of the disturbed points to the

@@ -27,7 +27,8 @@ std::vector<ReliefRecipe> relief_recipes(std::uint64_t seed) {
     recipe.points = static_cast<std::size_t>(4000.0 * std::pow(5.0, random.uniform()));
     recipe.even = random.index(5) != 0;
     recipe.wear = random.uniform(0.25, 2.0);
-    recipe.band = 0.5 + 0.2 * recipe.wear;
+    recipe.bands.sharp = 0.5 + 0.2 * recipe.wear;
+    recipe.bands.smooth = recipe.bands.sharp + 1.24;
     recipe.scatter = random.index(2) ? 0.0 : random.uniform(0.0, 0.15);
     recipe.estimated = random.index(3) == 0;
     recipe.inward = random.index(2) == 1;
@@ -50,7 +51,7 @@ GeneratedCloud generate(const ReliefRecipe& recipe, std::uint64_t seed) {
   vertices.normals = std::move(drawn.normals);
   vertices.labels.assign(vertices.positions.size(), kNonEdge);
   wear_off(vertices, surface, relief.lines,
-           {recipe.wear * spacing, recipe.band * spacing, recipe.scatter * spacing,
+           {recipe.wear * spacing, spacing * recipe.bands, recipe.scatter * spacing,
             random.uniform(0.0, 0.3) * spacing},
            random);
   PointCloud cloud =

@@ -15,7 +15,7 @@ struct ReliefRecipe {
   std::size_t points = 10000;
   bool even = true;        ///< evenly spaced, as a remeshed scan; else sampled uniformly by area
   double wear = 1.0;       ///< see Wear::rounding
-  double band = 0.8;       ///< width of the sharp-edge band along lines
+  EdgeBands bands = {};    ///< along lines
   double scatter = 0.0;    ///< noise on each axis
   bool estimated = false;  ///< normals from the positions
   bool inward = false;

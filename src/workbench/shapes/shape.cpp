@@ -90,6 +90,14 @@ EdgeClass crease_strength(const Vec3& a, const Vec3& b) {
   return turn >= 30.0 ? kSharpEdge : turn >= 12.0 ? kSmoothEdge : kNonEdge;
 }
 
+EdgeBands operator*(double factor, const EdgeBands& bands) {
+  return {factor * bands.sharp, factor * bands.smooth};
+}
+
+EdgeClass class_at(double distance, const EdgeBands& bands) {
+  return distance < bands.sharp ? kSharpEdge : distance < bands.smooth ? kSmoothEdge : kNonEdge;
+}
+
 std::vector<std::uint8_t> label_by_distance(std::span<const Vec3> positions,
                                             std::span<const EdgeCurve> edges,
                                             const EdgeBands& bands) {

@@ -68,9 +68,14 @@ EdgeClass crease_strength(const Vec3& a, const Vec3& b);
 
 /// The widths of the labelled bands along edges, as lengths.
 struct EdgeBands {
-  double sharp;
-  double smooth;
+  double sharp = 0.0;
+  double smooth = 0.0;
 };
+
+EdgeBands operator*(double factor, const EdgeBands& bands);
+
+/// The class at a distance from a sharp edge.
+EdgeClass class_at(double distance, const EdgeBands& bands);
 
 /// The class of each position from its exact distance to the edges: kSharpEdge nearer than
 /// `bands.sharp` to a sharp curve, kSmoothEdge nearer than `bands.smooth` to any, else kNonEdge.

@@ -43,8 +43,8 @@ void wear_off(MeshVertices& vertices, const SurfaceSamples& surface, std::span<c
       Vec3& position = vertices.positions[i];
       Vec3& normal = vertices.normals[i];
       edge_tree.nearest(position, 1, near);
-      const bool sharp = !near.empty() && std::sqrt(near.front().sq_distance) < wear.band;
-      vertices.labels[i] = sharp ? kSharpEdge : kNonEdge;
+      vertices.labels[i] =
+          near.empty() ? kNonEdge : class_at(std::sqrt(near.front().sq_distance), wear.bands);
       tree.within(position, 2.5 * wear.rounding, near);
       round_off(position, normal, surface, near, wear.rounding);
       double wave = 0.0;

@@ -6,13 +6,14 @@
 #include "pcednet/core/random.h"
 #include "workbench/shapes/mesh_vertices.h"
 #include "workbench/shapes/sampling.h"
+#include "workbench/shapes/shape.h"
 
 namespace pcednet::shapes {
 
 /// The wear of a surface; all values are lengths.
 struct Wear {
   double rounding = 0.0;  ///< standard deviation of the Gaussian that smooths the surface
-  double band = 0.0;      ///< width of the sharp-edge band
+  EdgeBands bands = {};   ///< widths of the labelled bands
   double scatter = 0.0;   ///< standard deviation of noise on each axis
   double waves = 0.0;     ///< height of shallow waves
 };

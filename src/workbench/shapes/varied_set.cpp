@@ -1,0 +1,88 @@
+#include "workbench/shapes/varied_set.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "pcednet/core/random.h"
+#include "workbench/shapes/cad_parts.h"
+#include "workbench/shapes/default_set.h"
+#include "workbench/shapes/default_shapes.h"
+
+namespace pcednet::shapes {
+namespace {
+
+constexpr std::uint64_t kFirstPart = 20;  // after those of other sets
+constexpr int kSparseParts = 6, kPartsPerFamily = 10;
+
+std::size_t log_uniform(Random& random, double least, double most) {
+  return static_cast<std::size_t>(least * std::pow(most / least, random.uniform()));
+}
+
+void make_mesh(CadRecipe& recipe, Random& random) {
+  recipe.mesh = true;
+  recipe.style.points = log_uniform(random, 2000, 18000);
+  recipe.style.plane_growth = random.uniform(0.0, 0.6);
+  recipe.style.plane_limit = random.uniform(1.0, 6.0);
+  recipe.style.curved_spacing = random.uniform(0.6, 1.4);
+  recipe.style.smooth_borders = random.index(3) != 0;
+  recipe.noise = random.uniform(0.001, 0.006);
+}
+
+CadRecipe varied_part(int family, int number, std::uint64_t seed) {
+  Random random(seed, 39000 + static_cast<std::uint64_t>(100 * number + family));
+  CadRecipe recipe;
+  recipe.name = fmt::format("varied_{}_{}", part_family_name(family), number);
+  recipe.family = family;
+  recipe.part = kFirstPart + static_cast<std::uint64_t>(number);
+  recipe.estimated = true;
+  recipe.inward = random.index(2) == 1;
+  recipe.mesh = false;
+  if (number < kSparseParts) {
+    recipe.style.points = log_uniform(random, 700, 2000);
+    recipe.scatter = number % 3 == 2 ? random.uniform(0.0, 0.3) : 0.0;
+  } else if (number == kSparseParts) {
+    recipe.style.points = log_uniform(random, 8000, 40000);
+  } else if (number < kPartsPerFamily - 1) {
+    recipe.style.points = log_uniform(random, 4000, 20000);
+    recipe.scatter = random.uniform(0.1, 0.7);
+  } else {
+    make_mesh(recipe, random);
+  }
+  return recipe;
+}
+
+}  // namespace
+
+std::vector<CadRecipe> varied_part_recipes(std::uint64_t seed) {
+  std::vector<CadRecipe> recipes;
+  for (int number = 0; number < kPartsPerFamily; ++number) {
+    for (int family = 0; family < kPartFamilies; ++family) {
+      recipes.push_back(varied_part(family, number, seed));
+    }
+  }
+  return recipes;
+}
+
+std::vector<Recipe> thinned_recipes(std::uint64_t seed) {
+  constexpr std::size_t kBlocks = 24;
+  std::vector<Recipe> recipes;
+  for (std::size_t i = 0; i < kBlocks; ++i) {
+    Random random(seed, 49000 + i);
+    recipes.push_back({.name = fmt::format("thinned_blocks_{}", i),
+                       .shape = random_blocks(random),
+                       .points = log_uniform(random, 5000, 30000),
+                       .displacement = i % 3 == 1 ? random.uniform(2.0, 8.0) : 0.0,
+                       .inward = i % 2 == 1,
+                       .thinned = std::size_t{4} << (i % 3)});
+  }
+  for (Recipe& recipe : default_recipes(seed, {.extras = false})) {
+    if (recipe.points < 7000) continue;
+    recipe.name = "thinned_" + recipe.name;
+    recipe.thinned = 16;
+    recipes.push_back(std::move(recipe));
+  }
+  return recipes;
+}
+
+}  // namespace pcednet::shapes

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "workbench/shapes/cad_set.h"
+
+namespace pcednet::shapes {
+
+/// CAD parts of `pcednet generate varied`: from a thousand points to 40,000, drawn by area or
+/// vertices of a mesh, clean or noisy, all with normals estimated from what there is.
+std::vector<CadRecipe> varied_part_recipes(std::uint64_t seed);
+
+/// Its thinned clouds: of blocks and of the paper's shapes, with the labels and normals that they
+/// had before.
+std::vector<Recipe> thinned_recipes(std::uint64_t seed);
+
+}  // namespace pcednet::shapes
