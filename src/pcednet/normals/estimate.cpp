@@ -6,9 +6,26 @@
 
 #include "pcednet/core/error.h"
 #include "pcednet/core/parallel.h"
+#include "pcednet/normals/exact_planes.h"
 #include "pcednet/normals/plane_fit.h"
 
 namespace pcednet::normals {
+
+namespace {
+
+/// The first graph.fitted neighbours of the points from `begin` to `end`.
+std::vector<std::uint32_t> nearest_rows(const NeighbourGraph& graph, std::size_t begin,
+                                        std::size_t end) {
+  std::vector<std::uint32_t> rows;
+  rows.reserve((end - begin) * graph.fitted);
+  for (std::size_t i = begin; i < end; ++i) {
+    const auto row = graph.of(i).first(graph.fitted);
+    rows.insert(rows.end(), row.begin(), row.end());
+  }
+  return rows;
+}
+
+}  // namespace
 
 std::vector<Vec3> estimate_normals(const NeighbourGraph& graph, const Progress* progress) {
   std::vector<Vec3> normals(graph.points.size());
@@ -17,11 +34,19 @@ std::vector<Vec3> estimate_normals(const NeighbourGraph& graph, const Progress* 
     std::vector<std::uint32_t> some(end - begin);
     std::iota(some.begin(), some.end(), static_cast<std::uint32_t>(begin));
     std::vector<PlaneFit> fits(some.size());
-    fit_planes(
-        graph.points, some,
-        std::span(graph.neighbours).subspan(begin * graph.degree, fits.size() * graph.degree),
-        fits);
-    for (std::size_t i = begin; i < end; ++i) normals[i] = fits[i - begin].normal;
+    if (graph.fitted < graph.degree) {
+      fit_planes(graph.points, some, nearest_rows(graph, begin, end), fits);
+    } else {
+      fit_planes(
+          graph.points, some,
+          std::span(graph.neighbours).subspan(begin * graph.degree, fits.size() * graph.degree),
+          fits);
+    }
+    for (std::size_t i = begin; i < end; ++i) {
+      normals[i] =
+          graph.has_exact_planes ? exact_normal(graph.points, i, graph.of(i)) : Vec3(Vec3::Zero());
+      if (normals[i].isZero(0.0)) normals[i] = fits[i - begin].normal;
+    }
     stage.advance(end - begin);
   });
   return normals;

@@ -11,7 +11,7 @@
 namespace pcednet::normals {
 
 struct EstimateOptions {
-  int neighbours = 0;  ///< distinct points around each point; 0: see choose_neighbour_count()
+  int neighbours = 0;  ///< distinct points around each point; 0: see choose_neighbours()
 };
 
 /// The graph for estimate_normals(), see make_neighbour_graph(). Throws the errors of
@@ -30,7 +30,8 @@ NeighbourGraph make_estimation_graph(std::span<const Vec3> positions, int neighb
 /// with r_j the distance to the point and h^2 = 1.05 times the largest r_j^2. The weights keep the
 /// plane of a point beside an edge from tilting over it.
 ///
-/// k is 12 unless given, more on noisy clouds: see choose_neighbour_count().
+/// k is 12 unless given, more on noisy clouds: see choose_neighbours(). On clouds of plane faces
+/// with many edges, a point on a face gets the normal of the face: see exact_normal().
 ///
 /// (0,0,0) where no plane can be fitted: the position is not finite, there are fewer than three
 /// distinct points, or the neighbours are collinear (second eigenvalue below 1e-10 of the largest).
@@ -40,7 +41,7 @@ std::vector<Vec3> estimate_normals(std::span<const Vec3> positions,
                                    const EstimateOptions& options = {},
                                    const Progress* progress = nullptr);
 
-/// The same for the points of a graph, from all its neighbours.
+/// The same for the points of a graph, from its nearest graph.fitted neighbours.
 std::vector<Vec3> estimate_normals(const NeighbourGraph& graph, const Progress* progress = nullptr);
 
 }  // namespace pcednet::normals

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <numeric>
 #include <vector>
 
 #include "pcednet/core/median.h"
 #include "pcednet/core/parallel.h"
+#include "pcednet/normals/exact_planes.h"
 #include "pcednet/normals/plane_fit.h"
 
 namespace pcednet::normals {
@@ -14,14 +16,20 @@ namespace {
 
 constexpr std::array<std::size_t, 3> kCounts = {12, 24, 48};
 
-}  // namespace
+constexpr double kClean = 0.01;  ///< median thickness
+constexpr double kExactShare = 0.2;
 
-std::size_t choose_neighbour_count(std::span<const Vec3> points,
-                                   const spatial::NeighbourSearch& search) {
-  if (points.size() <= kCounts.back()) return kCounts.front();
+/// Of a sample of the points.
+struct Measures {
+  std::array<double, kCounts.size()> thickness;  ///< median
+  double exact = 0.0;                            ///< share of the points on plane faces
+};
+
+Measures measure(std::span<const Vec3> points, const spatial::NeighbourSearch& search) {
   const std::size_t samples = std::min<std::size_t>(points.size(), 2000);
   std::array<std::vector<double>, kCounts.size()> thickness;
   for (std::vector<double>& of_count : thickness) of_count.resize(samples);
+  std::vector<std::uint8_t> is_exact(samples);
   parallel_blocks(samples, 100, [&](std::size_t begin, std::size_t end) {
     std::vector<std::uint32_t> chosen;
     for (std::size_t s = begin; s < end; ++s) {
@@ -36,19 +44,35 @@ std::size_t choose_neighbour_count(std::span<const Vec3> points,
         for (std::size_t k = 0; k < kCounts[c]; ++k) neighbours.push_back(found[row + k].index);
       }
       fit_planes(points, chosen, neighbours, fits);
-      for (std::size_t i = 0; i < fits.size(); ++i) thickness[c][begin + i] = fits[i].thickness;
+      for (std::size_t i = 0; i < fits.size(); ++i) {
+        thickness[c][begin + i] = fits[i].thickness;
+        if (kCounts[c] != kCounts.back()) continue;
+        const auto row = std::span(neighbours).subspan(i * kCounts[c], kCounts[c]);
+        is_exact[begin + i] = !exact_normal(points, chosen[i], row).isZero(0.0);
+      }
     }
   });
-  double thinnest = upper_median(thickness[0]);
-  if (thinnest <= 0.01) return kCounts[0];
+  Measures measures;
+  std::transform(thickness.begin(), thickness.end(), measures.thickness.begin(),
+                 [](const std::vector<double>& of_count) { return upper_median(of_count); });
+  measures.exact =
+      std::accumulate(is_exact.begin(), is_exact.end(), 0.0) / static_cast<double>(samples);
+  return measures;
+}
+
+}  // namespace
+
+NeighbourChoice choose_neighbours(std::span<const Vec3> points,
+                                  const spatial::NeighbourSearch& search) {
+  if (points.size() <= kCounts.back()) return {};
+  const Measures measures = measure(points, search);
+  if (measures.thickness[0] <= kClean) return {};
   std::size_t chosen = 0;
-  for (std::size_t c = 1; c < kCounts.size(); ++c) {
-    const double wider = upper_median(thickness[c]);
-    if (wider >= thinnest) break;
-    thinnest = wider;
-    chosen = c;
+  while (chosen + 1 < kCounts.size() &&
+         measures.thickness[chosen + 1] < measures.thickness[chosen]) {
+    ++chosen;
   }
-  return kCounts[chosen];
+  return {kCounts[chosen], measures.exact >= kExactShare};
 }
 
 }  // namespace pcednet::normals

@@ -8,13 +8,21 @@
 
 namespace pcednet::normals {
 
-/// The number of neighbours to estimate normals from: 12, or 24 or 48 on noisy clouds.
+/// How normals are estimated.
+struct NeighbourChoice {
+  std::size_t neighbours = 12;    ///< that planes are fitted to
+  bool has_exact_planes = false;  ///< points on plane faces have the normal of exact_normal()
+};
+
+/// 12 neighbours, or 24 or 48 on noisy clouds, and whether the surface consists of plane faces.
 ///
 /// Twice the neighbours increase the relative thickness of the fitted planes where the surface
 /// bends and reduce it where it is noise. The count is therefore doubled as long as the median
-/// thickness of 2000 points (see PlaneFit) falls, the first time only if it is above 0.01. `points`
-/// must be distinct and in curve order, and `search` made from them.
-std::size_t choose_neighbour_count(std::span<const Vec3> points,
-                                   const spatial::NeighbourSearch& search);
+/// thickness of 2000 points (see PlaneFit) falls, the first time only if it is above 0.01. Only
+/// then, where planes across edges are the rule, are exact planes looked for: a fifth of the 2000
+/// points must have one, which neither noise nor curved surfaces reach. `points` must be distinct
+/// and in curve order, and `search` made from them.
+NeighbourChoice choose_neighbours(std::span<const Vec3> points,
+                                  const spatial::NeighbourSearch& search);
 
 }  // namespace pcednet::normals

@@ -6,6 +6,7 @@
 
 #include "pcednet/core/parallel_loops.h"
 #include "pcednet/core/vector_clones.h"
+#include "pcednet/normals/exact_planes.h"
 #include "pcednet/normals/neighbour_count.h"
 #include "pcednet/spatial/curve_order.h"
 #include "pcednet/spatial/neighbour_search.h"
@@ -67,7 +68,11 @@ NeighbourGraph make_neighbour_graph(std::span<const Vec3> positions, std::size_t
   if (points == 0) return graph;
   Stage stage(progress, "neighbours", points);
   const spatial::NeighbourSearch search(graph.points);
-  graph.degree = search.available(count > 0 ? count : choose_neighbour_count(graph.points, search));
+  const NeighbourChoice choice =
+      count > 0 ? NeighbourChoice{count, false} : choose_neighbours(graph.points, search);
+  graph.fitted = search.available(choice.neighbours);
+  graph.has_exact_planes = choice.has_exact_planes;
+  graph.degree = choice.has_exact_planes ? std::max(graph.fitted, kExactNeighbours) : graph.fitted;
   graph.neighbours.resize(points * graph.degree);
   parallel_blocks(points, kQueriesAtOnce, [&](std::size_t begin, std::size_t end) {
     std::vector<std::uint32_t> some(end - begin);

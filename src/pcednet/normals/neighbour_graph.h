@@ -22,6 +22,8 @@ struct NeighbourGraph {
   std::vector<std::uint32_t> point_of;    ///< per position of the cloud, kNoPoint if not finite
   std::size_t degree = 0;                 ///< neighbours of each point
   std::vector<std::uint32_t> neighbours;  ///< points x degree, nearest first, without the point
+  std::size_t fitted = 0;                 ///< the nearest of them, which planes are fitted to
+  bool has_exact_planes = false;          ///< see NeighbourChoice
 
   std::span<const std::uint32_t> of(std::size_t point) const {
     return {neighbours.data() + point * degree, degree};
@@ -29,7 +31,7 @@ struct NeighbourGraph {
 };
 
 /// `degree` becomes `count`, or less if there are too few distinct points; for `count` 0,
-/// choose_neighbour_count() chooses it. `curve` is spatial::curve_order() of the positions; if
+/// choose_neighbours() chooses it. `curve` is spatial::curve_order() of the positions; if
 /// empty, it is computed. At most 2^32 - 1 positions.
 NeighbourGraph make_neighbour_graph(std::span<const Vec3> positions, std::size_t count,
                                     const Progress* progress,

@@ -26,7 +26,7 @@ std::size_t count_where(std::size_t count, const Work& work) {
 }
 
 OrientOptions orientation_on(const NeighbourGraph& graph, const PrepareOptions& options) {
-  return {.neighbours = std::max(static_cast<int>(graph.degree), 1),
+  return {.neighbours = std::max(static_cast<int>(graph.fitted), 1),
           .viewpoint = options.viewpoint,
           .count_turned = options.count_turned};
 }
@@ -40,7 +40,7 @@ PreparedNormals estimate_oriented_normals(std::span<const Vec3> positions,
       make_estimation_graph(positions, options.neighbours, progress, options.curve);
   std::vector<Vec3> of_points = estimate_normals(graph, progress);
   PreparedNormals prepared;
-  prepared.neighbours = graph.degree;
+  prepared.neighbours = graph.fitted;
   prepared.orientation = orient_points(graph, of_points, orientation_on(graph, options), progress);
   prepared.normals.resize(positions.size());
   prepared.unusable = count_where(positions.size(), [&](std::size_t i) {
@@ -63,7 +63,7 @@ PreparedNormals complete_and_orient_normals(std::span<const Vec3> positions,
   const NeighbourGraph graph =
       make_estimation_graph(positions, options.neighbours, progress, options.curve);
   PreparedNormals prepared;
-  prepared.neighbours = graph.degree;
+  prepared.neighbours = graph.fitted;
   prepared.normals.assign(given.begin(), given.end());
   if (std::any_of(given.begin(), given.end(), is_missing)) {
     const std::vector<Vec3> of_points = estimate_normals(graph, progress);
