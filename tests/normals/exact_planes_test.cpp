@@ -73,6 +73,21 @@ TEST(ExactPlanes, AreNotTakenFromNoiseOrCurvedSurfaces) {
   EXPECT_FALSE(make_neighbour_graph(torus(600, 1.0, 0.4).positions, 0, nullptr).has_exact_planes);
 }
 
+TEST(ExactPlanes, AreNotTakenFromScanLines) {
+  // Every line is in a vertical plane through the scanner; only their heights are rough.
+  Random random(7);
+  std::vector<Vec3> positions;
+  for (int line = 0; line < 60; ++line) {
+    const double angle = 0.1 * line;
+    for (int i = 0; i < 60; ++i) {
+      const double range = 2.0 + 0.03 * i;
+      positions.emplace_back(range * std::cos(angle), range * std::sin(angle),
+                             0.03 * random.normal());
+    }
+  }
+  EXPECT_FALSE(make_neighbour_graph(positions, 0, nullptr).has_exact_planes);
+}
+
 TEST(ExactPlanes, NeedSixteenNeighbours) {
   const Shape shape = drawn_box(16, Vec3(1, 1, 1e-9));
   std::vector<std::uint32_t> others(15);

@@ -15,6 +15,7 @@ constexpr std::size_t kSeeds = 8;             ///< planes pass through two of th
 constexpr double kLeastSine = 0.3;            ///< between the directions to those two
 constexpr double kTolerance = 0.003;          ///< over the distance to the last neighbour
 constexpr int kLeastOnPlane = 5;              ///< neighbours, including the two
+constexpr double kLeastRoundness = 0.25;      ///< of these; 0 on a line, 1 all around the point
 constexpr int kLeastOnSecond = 3;             ///< of these not on the first plane
 constexpr double kLargestSecondCosine = 0.9;  ///< between the normals of the two planes
 
@@ -48,6 +49,19 @@ Plane plane_with(const Vec3& normal, const Neighbourhood& around) {
   return plane;
 }
 
+/// Whether the neighbours on the plane determine it: those along one line, a scan line or an edge,
+/// lie on many planes. Compares the product of the two second moments in the plane with their sum.
+bool is_determined(const Plane& plane, const Neighbourhood& around) {
+  if (plane.support() < kLeastOnPlane) return false;
+  Mat3 moments = Mat3::Zero();
+  for (std::size_t k = 0; k < around.count; ++k) {
+    if (plane.has(k)) moments += around.offsets[k] * around.offsets[k].transpose();
+  }
+  const double trace = moments.trace();
+  const double product = 0.5 * (trace * trace - moments.squaredNorm());
+  return 4.0 * product >= kLeastRoundness * trace * trace;
+}
+
 /// The planes with enough neighbours on them.
 struct Planes {
   std::array<Plane, kSeeds*(kSeeds - 1) / 2> all;
@@ -63,7 +77,7 @@ Planes planes_of(const Neighbourhood& around) {
       const double sq_length = product.squaredNorm();
       if (!(sq_length > kLeastSine * kLeastSine * u.squaredNorm() * v.squaredNorm())) continue;
       const Plane plane = plane_with(product / std::sqrt(sq_length), around);
-      if (plane.support() >= kLeastOnPlane) planes.all[planes.count++] = plane;
+      if (is_determined(plane, around)) planes.all[planes.count++] = plane;
     }
   }
   return planes;
