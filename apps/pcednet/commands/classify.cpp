@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 struct ClassifyArguments {
   std::vector<std::string> inputs;
   std::string output, output_folder, preview, las_classification;
-  ModelArguments model{.name = "scan"};
+  ModelArguments model{.name = kDefaultModel};
   MethodArguments method;
   detect::PrepareOptions preparation;
   bool class_colours = false, ascii = false, skip_existing = false;
@@ -167,6 +167,7 @@ void report(const Job& job, const detect::Classification& result, const std::str
       result.counts.smooth, share(result.counts.smooth), result.counts.non_edge,
       result.counts.unlabelled == 0 ? std::string()
                                     : fmt::format(", {} unlabelled", result.counts.unlabelled)));
+  say(fmt::format("  scales: {:.9g} to {:.9g}", result.s_min, result.s_max));
   say("  seconds: " + seconds);
   say(fmt::format("  -> {}", job.output.string()));
 }

@@ -44,6 +44,8 @@ Classification describe_and_decide(const PreparedCloud& cloud, const EdgeModel& 
     return some;
   };
   Classification found = decide_rows(cloud.positions.size(), order, rows_of, model, progress);
+  found.s_min = space.scales().front();
+  found.s_max = space.scales().back();
   found.note = gls::note_on(model.descriptor, space.scales(), cloud.positions);
   return found;
 }

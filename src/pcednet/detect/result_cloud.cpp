@@ -25,12 +25,16 @@ std::string class_comment() {
 }
 
 /// Comments of an earlier classification give way to those of this one.
-void replace_comments(PointCloud& cloud, const EdgeModel& model) {
+void replace_comments(PointCloud& cloud, const EdgeModel& model, const Classification& result) {
   std::erase_if(cloud.comments,
                 [](const std::string& comment) { return comment.starts_with("pcednet "); });
   cloud.comments.push_back(fmt::format("pcednet {}", kVersion));
   cloud.comments.push_back(fmt::format("pcednet model {}", model.name));
   cloud.comments.push_back(fmt::format("pcednet seed {}", model.seed));
+  if (result.s_max > 0.0) {
+    cloud.comments.push_back(
+        fmt::format("pcednet scales {:.9g} to {:.9g}", result.s_min, result.s_max));
+  }
   cloud.comments.push_back(class_comment());
 }
 
@@ -58,7 +62,7 @@ KeptInput add_result(PointCloud& cloud, const PreparedCloud& prepared, const Cla
   set_attribute(cloud, make_attribute("scalar_p_sharp", result.p_sharp));
   set_attribute(cloud, make_attribute("scalar_p_smooth", result.p_smooth));
   cloud.labels = result.classes;
-  replace_comments(cloud, model);
+  replace_comments(cloud, model, result);
   return kept;
 }
 
