@@ -1,5 +1,5 @@
 #!/bin/sh
-# Trains the shipped models on generated shapes alone: scripts/train_models.sh [scan] [cad] [worn]
+# Trains the shipped models on generated shapes alone: scripts/train_models.sh [general] [scan] [cad] [worn]
 # The same machine gives the same bytes; other processors differ in the last digits (see
 # docs/architecture.md, Determinism). Some shapes have points with random normals on purpose, which
 # --keep-orientation keeps.
@@ -13,8 +13,18 @@ generate() { # KIND SEED
   [ -d "$folder/$1$2" ] || $pcednet generate "$1" "$folder/$1$2" --seed "$2"
 }
 
-for model in ${*:-scan cad worn}; do
+for model in ${*:-general scan cad worn}; do
   case $model in
+  general)
+    clouds=
+    for set in default:1 default:2 scan:1 cad:1 cad:2 cad:3 cad:4 worn:1 worn:2 varied:1 varied:2; do
+      generate "${set%:*}" "${set#*:}"
+      clouds="$clouds $folder/${set%:*}${set#*:}"
+    done
+    # shellcheck disable=SC2086  # one argument for each folder
+    $pcednet train $clouds -o models/general.safetensors --natural --scales 8 --s-max-ratio 8 \
+      --gate 0.4 --second-gate -0.3 --width 18 --context --keep-orientation --seed 1 --overwrite
+    ;;
   scan)
     generate default 1
     generate default 2

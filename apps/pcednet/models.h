@@ -12,10 +12,13 @@ class App;
 
 namespace pcednet::app {
 
+/// The model of commands that are given none.
+inline constexpr const char* kDefaultModel = "general";
+
 /// The shipped models by name, looked for beside the installed program and in the source tree.
 std::map<std::string, std::filesystem::path> shipped_models();
 
-/// "cad, scan, worn".
+/// "cad, general, scan, worn".
 std::string names_of(const std::map<std::string, std::filesystem::path>& models);
 
 /// The file behind `--model`: a file as it is, or the shipped model of that name. Throws

@@ -10,6 +10,7 @@ import type { Run, Start } from "./types";
 
 const STARTS: { value: Start; label: string }[] = [
   { value: "random", label: "random weights" },
+  { value: "general", label: "model general" },
   { value: "scan", label: "model scan" },
   { value: "cad", label: "model cad" },
   { value: "worn", label: "model worn" },

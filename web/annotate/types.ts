@@ -24,7 +24,7 @@ export interface ClassInfo {
   count: number;
 }
 
-export type Start = "random" | "scan" | "cad" | "worn";
+export type Start = "random" | "general" | "scan" | "cad" | "worn";
 
 export interface Settings {
   classes: 2 | 3;

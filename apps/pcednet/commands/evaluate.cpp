@@ -93,17 +93,18 @@ Results score_all(const EvaluateArguments& arguments, const Common& common) {
   return results;
 }
 
-void evaluate(const EvaluateArguments& arguments, const Common& common) {
+void evaluate(EvaluateArguments arguments, const Common& common) {
   if (!arguments.truth.empty()) {
     return evaluate_lines({arguments.inputs, arguments.truth, arguments.cloud, arguments.json},
                           common);
   }
   const int ways = !arguments.model.name.empty() + !arguments.predictions.empty() +
                    !arguments.method.name.empty();
-  if (ways != 1) {
+  if (ways > 1) {
     throw Error(ErrorKind::kUsage,
                 "evaluate: give one of --model, --predictions, --method or --truth");
   }
+  if (ways == 0) arguments.model.name = kDefaultModel;
   if (arguments.calibration && arguments.model.name.empty()) {
     throw Error(ErrorKind::kUsage, "evaluate: --calibration needs --model");
   }
@@ -127,7 +128,7 @@ void add_evaluate(CLI::App& app, Common& common) {
   CLI::App* command =
       add_command(app, common, "evaluate",
                   "Score predicted classes against labels, or lines against true curves",
-                  "pcednet evaluate clouds/ --model scan --positive edge\n"
+                  "pcednet evaluate clouds/ --positive edge\n"
                   "pcednet evaluate clouds/ --predictions other_tool/ --json scores.json\n"
                   "pcednet evaluate clouds/ --method ca\n"
                   "pcednet evaluate a.ply b.ply --model my.safetensors --json -\n"

@@ -36,7 +36,7 @@ struct LinesArguments {
   std::vector<std::string> outputs, kinds;
   std::vector<std::string> classes = {"sharp", "boundary"};
   bool classify = false;
-  ModelArguments model{.name = "scan"};
+  ModelArguments model{.name = kDefaultModel};
   detect::PrepareOptions preparation;
   lines::LineOptions lines;
   double min_confidence = 0.0;
