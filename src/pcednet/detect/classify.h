@@ -12,7 +12,7 @@ namespace pcednet::detect {
 struct DescribedCloud;
 
 struct ClassCounts {
-  std::size_t non_edge = 0, smooth = 0, sharp = 0, unlabelled = 0;
+  std::size_t non_edge = 0, smooth = 0, sharp = 0, boundary = 0, unlabelled = 0;
 };
 
 /// What was found, per point of the cloud in its own order.

@@ -39,7 +39,8 @@ ClassCounts count_classes(const std::vector<std::uint8_t>& classes) {
   const auto count = [&](std::uint8_t wanted) {
     return static_cast<std::size_t>(std::count(classes.begin(), classes.end(), wanted));
   };
-  return {count(kNonEdge), count(kSmoothEdge), count(kSharpEdge), count(kUnlabelled)};
+  return {count(kNonEdge), count(kSmoothEdge), count(kSharpEdge), count(kBoundary),
+          count(kUnlabelled)};
 }
 
 }  // namespace pcednet::detect

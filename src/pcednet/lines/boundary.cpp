@@ -6,6 +6,7 @@
 
 #include "pcednet/lines/crease.h"
 #include "pcednet/lines/ordered_points.h"
+#include "pcednet/spatial/opening.h"
 
 namespace pcednet::lines {
 namespace {
@@ -17,22 +18,6 @@ constexpr double kOpenAngle = 125.0 * std::numbers::pi / 180.0;
 constexpr double kOffPlane = 0.8;
 constexpr double kStrip = 1.0;       ///< half the width of the strip that ends at the boundary
 constexpr double kBeyondLast = 0.4;  ///< from the last of its points to the boundary, on average
-
-/// The middle of the widest angle without a direction, and that angle.
-struct Opening {
-  double middle, width;
-};
-
-Opening widest(std::vector<double>& angles) {
-  std::sort(angles.begin(), angles.end());
-  Opening best{angles.back() + std::numbers::pi, 0.0};
-  for (std::size_t i = 0; i < angles.size(); ++i) {
-    const bool last = i + 1 == angles.size();
-    const double next = last ? angles.front() + 2.0 * std::numbers::pi : angles[i + 1];
-    if (next - angles[i] > best.width) best = {0.5 * (angles[i] + next), next - angles[i]};
-  }
-  return best;
-}
 
 std::optional<Crease> boundary_at(const OrderedPoints& cloud, std::size_t i,
                                   std::span<const spatial::Neighbour> nearest) {
@@ -48,7 +33,7 @@ std::optional<Crease> boundary_at(const OrderedPoints& cloud, std::size_t i,
     if (flat.norm() > 0.1 * spacing) angles.push_back(std::atan2(flat.y(), flat.x()));
   }
   if (angles.size() < kNeighbours / 3) return std::nullopt;
-  const Opening opening = widest(angles);
+  const spatial::Opening opening = spatial::widest_opening(angles);
   if (opening.width < kOpenAngle) return std::nullopt;
   const Vec3 outward = std::cos(opening.middle) * x + std::sin(opening.middle) * y;
   const Vec3 along = normal.cross(outward);

@@ -1,0 +1,315 @@
+#include "pcednet/detect/boundary.h"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <numbers>
+#include <optional>
+#include <span>
+
+#include "pcednet/cloud/point_cloud.h"
+#include "pcednet/core/parallel.h"
+#include "pcednet/detect/decide.h"
+#include "pcednet/spatial/neighbour_search.h"
+#include "pcednet/spatial/opening.h"
+
+namespace pcednet::detect {
+namespace {
+
+constexpr std::size_t kNeighbours = 24, kLeastNeighbours = 12;
+/// One point in so many along the curve is tried at first, then all around those found: a rim is a
+/// line of points.
+constexpr std::size_t kStride = 4;
+constexpr std::size_t kTogether = 1024;
+
+constexpr double kOpening = 105.0 * std::numbers::pi / 180.0;
+constexpr double kWideOpening = 125.0 * std::numbers::pi / 180.0;
+constexpr double kOffCentre = 0.2;     ///< of the neighbours' centre, in their radius
+constexpr double kLeastSpread = 0.06;  ///< less across than along, as variances, is a line
+
+// In spacings.
+constexpr double kThickness = 0.5;  ///< standard deviation of the neighbours from their plane
+constexpr double kHeight = 0.5;     ///< of the point above it
+constexpr double kExact = 0.1;      ///< nearer points are never outliers
+
+constexpr double kOutlier = 3.0;    ///< median distances from the plane
+constexpr double kInliers = 0.7;    ///< share of the neighbours
+constexpr double kAgreement = 0.8;  ///< mean cosine between the neighbours' normals and the plane's
+constexpr double kOpposed = 0.2;    ///< share of neighbours that face the other way
+
+// Of the neighbours that a point of the rim needs along it; lengths in spacings.
+constexpr int kRounds = 3;
+constexpr double kSameSide = 0.5;  ///< cosine between the open directions
+constexpr double kLeastAlong = 0.3;
+constexpr double kAcross = 0.7;  ///< and as much per length along the rim
+
+constexpr std::uint32_t kNone = 0xffffffff;
+
+/// The finite positions along the curve, each once, in an order free of their numbering.
+struct DistinctPoints {
+  std::vector<Vec3> positions = {};
+  std::vector<Vec3> normals = {};         ///< of copies the first by its numbers; zero: unusable
+  std::vector<std::uint32_t> first = {};  ///< place in the curve of each, and the curve's length
+};
+
+bool is_before(const Vec3& a, const Vec3& b) {
+  return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
+}
+
+DistinctPoints distinct_points(const PreparedCloud& cloud) {
+  DistinctPoints points;
+  points.positions.reserve(cloud.curve.size());
+  points.normals.reserve(cloud.curve.size());
+  points.first.reserve(cloud.curve.size() + 1);
+  for (std::size_t i = 0; i < cloud.curve.size(); ++i) {
+    const Vec3& position = cloud.positions[cloud.curve[i]];
+    const Vec3& given = cloud.normals[cloud.curve[i]];
+    const Vec3 normal = is_usable(given) ? given : Vec3(Vec3::Zero());
+    if (i > 0 && position == points.positions.back()) {
+      if (is_before(normal, points.normals.back())) points.normals.back() = normal;
+      continue;
+    }
+    points.positions.push_back(position);
+    points.normals.push_back(normal);
+    points.first.push_back(static_cast<std::uint32_t>(i));
+  }
+  points.first.push_back(static_cast<std::uint32_t>(cloud.curve.size()));
+  return points;
+}
+
+/// A point that has its neighbours on one side.
+struct RimPoint {
+  std::uint32_t point = kNone;
+  Vec3 outward = Vec3::Zero(), along = Vec3::Zero();  ///< unit, orthogonal
+  double spacing = 0.0;
+  bool wide = false;  ///< the opening is kWideOpening or more
+  std::array<std::uint32_t, kNeighbours> others;
+};
+
+/// Neighbours as seen from a point.
+struct Around {
+  std::array<Vec3, kNeighbours> offset;
+  std::array<std::uint32_t, kNeighbours> index;
+  std::size_t count = 0;
+
+  void add(const Vec3& its_offset, std::uint32_t its_index) {
+    offset[count] = its_offset;
+    index[count++] = its_index;
+  }
+  Vec3 sum() const {
+    Vec3 total = Vec3::Zero();
+    for (std::size_t i = 0; i < count; ++i) total += offset[i];
+    return total;
+  }
+};
+
+/// The plane of the neighbours and the point.
+struct Plane {
+  Vec3 centre, normal, x, y;
+  double thickness;  ///< standard deviation along the normal
+  double spread;     ///< the smaller variance within the plane over the larger
+
+  double height(const Vec3& offset) const { return std::abs(normal.dot(offset - centre)); }
+};
+
+Plane plane_of(const Around& around) {
+  const double count = static_cast<double>(around.count + 1);
+  const Vec3 centre = around.sum() / count;
+  Mat3 covariance = centre * centre.transpose();
+  for (std::size_t i = 0; i < around.count; ++i) {
+    const Vec3 offset = around.offset[i] - centre;
+    covariance += offset * offset.transpose();
+  }
+  Eigen::SelfAdjointEigenSolver<Mat3> solver;
+  solver.computeDirect(covariance / count);
+  const Vec3 normal = solver.eigenvectors().col(0), y = solver.eigenvectors().col(1);
+  const Vec3 variances = solver.eigenvalues();
+  return {.centre = centre,
+          .normal = normal,
+          .x = y.cross(normal),
+          .y = y,
+          .thickness = std::sqrt(std::max(0.0, variances[0])),
+          .spread = variances[2] > 0.0 ? variances[1] / variances[2] : 0.0};
+}
+
+/// Those not far off the plane.
+Around inliers(const Around& around, const Plane& plane, double spacing) {
+  std::array<double, kNeighbours> heights = {};
+  for (std::size_t i = 0; i < around.count; ++i) heights[i] = plane.height(around.offset[i]);
+  std::array<double, kNeighbours> sorted = heights;
+  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(around.count / 2);
+  std::nth_element(sorted.begin(), middle,
+                   sorted.begin() + static_cast<std::ptrdiff_t>(around.count));
+  const double most = std::max(kOutlier * *middle, kExact * spacing);
+  Around kept;
+  for (std::size_t i = 0; i < around.count; ++i) {
+    if (heights[i] <= most) kept.add(around.offset[i], around.index[i]);
+  }
+  return kept;
+}
+
+/// Whether the normals of the neighbours are those of one sheet in the plane.
+bool is_one_sheet(const DistinctPoints& points, const Around& around, const Vec3& normal) {
+  double sum = 0.0, known = 0.0, up = 0.0, down = 0.0;
+  for (std::size_t i = 0; i < around.count; ++i) {
+    const Vec3& other = points.normals[around.index[i]];
+    if (other.isZero(0.0)) continue;
+    const double cosine = other.dot(normal);
+    known += 1.0;
+    sum += std::abs(cosine);
+    up += cosine > 0.0 ? 1.0 : 0.0;
+    down += cosine < 0.0 ? 1.0 : 0.0;
+  }
+  return known == 0.0 || (sum > kAgreement * known && std::min(up, down) <= kOpposed * known);
+}
+
+std::optional<RimPoint> rim_at(const DistinctPoints& points, std::uint32_t point,
+                               std::span<const spatial::Neighbour> others) {
+  Around all;
+  for (const spatial::Neighbour& other : others) {
+    all.add(points.positions[other.index] - points.positions[point], other.index);
+  }
+  const double count = static_cast<double>(all.count);
+  const double radius = std::sqrt(others.back().sq_distance);
+  if (all.sum().norm() < kOffCentre * radius * count) return std::nullopt;    // most points
+  const double spacing = radius * std::sqrt(0.5 * std::numbers::pi / count);  // in half a disc
+
+  const Around around = inliers(all, plane_of(all), spacing);
+  if (static_cast<double>(around.count) < kInliers * count) return std::nullopt;
+  const Plane plane = plane_of(around);
+  if (plane.thickness > kThickness * spacing || plane.height(Vec3::Zero()) > kHeight * spacing ||
+      plane.spread < kLeastSpread || !is_one_sheet(points, all, plane.normal)) {
+    return std::nullopt;
+  }
+  std::array<double, kNeighbours> angles;
+  for (std::size_t i = 0; i < all.count; ++i) {
+    angles[i] = std::atan2(plane.y.dot(all.offset[i]), plane.x.dot(all.offset[i]));
+  }
+  const auto opening = spatial::widest_opening(std::span(angles).first(all.count));
+  if (opening.width < kOpening) return std::nullopt;
+  const Vec3 outward = std::cos(opening.middle) * plane.x + std::sin(opening.middle) * plane.y;
+  const double inside = -around.sum().dot(outward) / static_cast<double>(around.count);
+  if (inside < kOffCentre * radius) return std::nullopt;
+
+  RimPoint rim{.point = point,
+               .outward = outward,
+               .along = plane.normal.cross(outward),
+               .spacing = spacing,
+               .wide = opening.width >= kWideOpening,
+               .others = all.index};
+  std::fill(rim.others.begin() + static_cast<std::ptrdiff_t>(all.count), rim.others.end(), kNone);
+  return rim;
+}
+
+/// What rim_at() finds at the points `todo` (ascending), in their order.
+std::vector<RimPoint> rims_at(const DistinctPoints& points, const spatial::NeighbourSearch& search,
+                              std::span<const std::uint32_t> todo, Stage& stage) {
+  const std::size_t count = search.available(kNeighbours);
+  std::vector<std::vector<RimPoint>> found((todo.size() + kTogether - 1) / kTogether);
+  parallel_blocks(todo.size(), kTogether, [&](std::size_t begin, std::size_t end) {
+    std::vector<spatial::Neighbour> near((end - begin) * count);
+    search.nearest_others(todo.subspan(begin, end - begin), count, near);
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto rim = rim_at(points, todo[i], std::span(near).subspan((i - begin) * count, count));
+      if (rim) found[begin / kTogether].push_back(*rim);
+    }
+    stage.advance(end - begin);
+  });
+  std::vector<RimPoint> rims;
+  for (const std::vector<RimPoint>& some : found) rims.insert(rims.end(), some.begin(), some.end());
+  return rims;
+}
+
+/// The points of all rims, and of the gaps that look like one. Where one is found all around it are
+/// tried.
+std::vector<RimPoint> find_rims(const DistinctPoints& points, const Progress* progress) {
+  const spatial::NeighbourSearch search(points.positions);
+  if (search.available(kNeighbours) < kLeastNeighbours) return {};
+  std::vector<std::uint32_t> todo;
+  for (std::size_t i = 0; i < points.positions.size(); i += kStride) {
+    todo.push_back(static_cast<std::uint32_t>(i));
+  }
+  std::vector<std::uint8_t> tried(points.positions.size(), 0);
+  for (const std::uint32_t i : todo) tried[i] = 1;
+  std::vector<RimPoint> rims;
+  Stage stage(progress, "boundary", points.positions.size());
+  while (!todo.empty()) {
+    const std::vector<RimPoint> found = rims_at(points, search, todo, stage);
+    rims.insert(rims.end(), found.begin(), found.end());
+    todo.clear();
+    for (const RimPoint& rim : found) {
+      for (const std::uint32_t other : rim.others) {
+        if (other == kNone || tried[other]) continue;
+        tried[other] = 1;
+        todo.push_back(other);
+      }
+    }
+    std::sort(todo.begin(), todo.end());
+  }
+  stage.advance(static_cast<std::size_t>(std::count(tried.begin(), tried.end(), 0)));
+  return rims;
+}
+
+/// Whether the rim goes on to both sides of the point, through the rims numbered `rim_of` the
+/// points, and one of these opens widely.
+bool goes_on(const RimPoint& rim, const DistinctPoints& points, std::span<const RimPoint> rims,
+             std::span<const std::uint32_t> rim_of) {
+  bool before = false, after = false, wide = rim.wide;
+  for (const std::uint32_t point : rim.others) {
+    if (point == kNone || rim_of[point] == kNone) continue;
+    const RimPoint& other = rims[rim_of[point]];
+    if (other.outward.dot(rim.outward) < kSameSide) continue;
+    const Vec3 offset = (points.positions[point] - points.positions[rim.point]) / rim.spacing;
+    const double along = offset.dot(rim.along), across = std::abs(offset.dot(rim.outward));
+    if (across > kAcross * (1.0 + std::abs(along))) continue;
+    wide = wide || other.wide;
+    before = before || along < -kLeastAlong;
+    after = after || along > kLeastAlong;
+  }
+  return wide && before && after;
+}
+
+/// Removes points whose rim does not go on, and the ends that this leaves.
+void remove_isolated(const DistinctPoints& points, std::vector<RimPoint>& rims) {
+  std::vector<std::uint32_t> rim_of(points.positions.size(), kNone);
+  for (int round = 0; round < kRounds; ++round) {
+    for (std::size_t i = 0; i < rims.size(); ++i) {
+      rim_of[rims[i].point] = static_cast<std::uint32_t>(i);
+    }
+    std::vector<std::uint8_t> stays(rims.size(), 0);
+    parallel_blocks(rims.size(), kTogether, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) stays[i] = goes_on(rims[i], points, rims, rim_of);
+    });
+    for (const RimPoint& rim : rims) rim_of[rim.point] = kNone;
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < rims.size(); ++i) {
+      if (stays[i]) rims[kept++] = rims[i];
+    }
+    rims.resize(kept);
+  }
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> find_boundary(const PreparedCloud& cloud, const Progress* progress) {
+  const DistinctPoints points = distinct_points(cloud);
+  std::vector<RimPoint> rims = find_rims(points, progress);
+  remove_isolated(points, rims);
+  std::vector<std::uint32_t> boundary;
+  for (const RimPoint& rim : rims) {
+    std::copy(cloud.curve.begin() + points.first[rim.point],
+              cloud.curve.begin() + points.first[rim.point + 1], std::back_inserter(boundary));
+  }
+  std::sort(boundary.begin(), boundary.end());
+  return boundary;
+}
+
+void mark_boundary(const PreparedCloud& cloud, Classification& found, const Progress* progress) {
+  for (const std::uint32_t point : find_boundary(cloud, progress)) found.classes[point] = kBoundary;
+  found.counts = count_classes(found.classes);
+}
+
+}  // namespace pcednet::detect

@@ -1,0 +1,203 @@
+#include "pcednet/detect/boundary.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "detect/labelled_cube.h"
+#include "pcednet/core/parallel.h"
+
+namespace pcednet::detect {
+namespace {
+
+constexpr double kHole = 0.2;  // its radius, in the middle of the sheet
+
+/// `points` random points of the unit square with a hole; noise is relative to the spacing.
+PointCloud sheet(std::size_t points, double noise = 0.0) {
+  Random random(7);
+  PointCloud cloud;
+  const double sigma = noise / std::sqrt(static_cast<double>(points));
+  while (cloud.size() < points) {
+    const Vec3 p(random.uniform(), random.uniform(), 0.0);
+    if ((p - Vec3(0.5, 0.5, 0.0)).norm() < kHole) continue;
+    cloud.positions.push_back(p + sigma * Vec3(random.normal(), random.normal(), random.normal()));
+    cloud.normals.push_back(Vec3::UnitZ());
+  }
+  return cloud;
+}
+
+double distance_to_rim(const Vec3& p) {
+  const double outer = std::min({p.x(), 1.0 - p.x(), p.y(), 1.0 - p.y()});
+  return std::min(std::abs(outer), std::abs((p - Vec3(0.5, 0.5, 0.0)).norm() - kHole));
+}
+
+std::vector<std::uint32_t> boundary_of(const PointCloud& cloud) {
+  return find_boundary(prepare(cloud));
+}
+
+double share_found(const PointCloud& cloud) {
+  return static_cast<double>(boundary_of(cloud).size()) / static_cast<double>(cloud.size());
+}
+
+/// Expects most of what is found within 1.5 spacings of the rim, and most of the rim within one of
+/// what is found.
+void expect_rim(const PointCloud& cloud) {
+  const double spacing = std::sqrt((1.0 - 3.1416 * kHole * kHole) / double(cloud.size()));
+  const std::vector<std::uint32_t> found = boundary_of(cloud);
+  ASSERT_FALSE(found.empty());
+  const auto near = std::count_if(found.begin(), found.end(), [&](std::uint32_t i) {
+    return distance_to_rim(cloud.positions[i]) < 1.5 * spacing;
+  });
+  EXPECT_GT(double(near), 0.9 * double(found.size()));
+  std::size_t rim = 0, met = 0;
+  for (const Vec3& p : cloud.positions) {
+    if (distance_to_rim(p) > 0.7 * spacing) continue;
+    ++rim;
+    met += std::any_of(found.begin(), found.end(),
+                       [&](std::uint32_t i) { return (cloud.positions[i] - p).norm() < spacing; });
+  }
+  EXPECT_GT(double(met), 0.85 * double(rim));
+}
+
+TEST(Boundary, IsTheRimOfASheetAndOfItsHole) {
+  expect_rim(sheet(5000));
+  expect_rim(sheet(5000, 0.2));
+}
+
+TEST(Boundary, IsFoundWithoutNormals) {
+  PointCloud cloud = sheet(3000);
+  cloud.normals.clear();
+  expect_rim(cloud);
+}
+
+TEST(Boundary, OfAClosedSolidIsNone) {
+  EXPECT_LT(share_found(cube(8000, 3)), 0.001);
+  PointCloud noisy = cube(8000, 3);
+  Random random(5);
+  for (Vec3& p : noisy.positions) {
+    p += 0.5 * std::sqrt(6.0 / 8000.0) * Vec3(random.normal(), random.normal(), random.normal());
+  }
+  noisy.normals.clear();
+  EXPECT_LT(share_found(noisy), 0.005);
+}
+
+TEST(Boundary, OfScanLinesIsNoneBetweenThem) {
+  Random random(9);
+  PointCloud cloud;  // rows five times as far from each other as their points, around a cylinder
+  for (int row = 0; row < 60; ++row) {
+    for (int i = 0; i < 300; ++i) {
+      const double angle = 2.0 * 3.14159265 * (i + random.uniform()) / 300.0;
+      const Vec3 normal(std::cos(angle), std::sin(angle), 0.0);
+      cloud.positions.push_back(normal + 0.105 * row * Vec3::UnitZ());
+      cloud.normals.push_back(normal);
+    }
+  }
+  for (const std::uint32_t i : boundary_of(cloud)) {
+    const double z = cloud.positions[i].z();
+    EXPECT_LT(std::min(z, 59 * 0.105 - z), 0.15);
+  }
+}
+
+TEST(Boundary, OfAThinWallIsNone) {
+  PointCloud wall;  // a slab less than two spacings thick
+  Random random(4);
+  constexpr double kThick = 0.03;
+  while (wall.size() < 9000) {
+    Vec3 p(random.uniform(), random.uniform(), random.uniform(0.0, kThick));
+    const bool side = random.uniform() < 4.0 * kThick / (2.0 + 4.0 * kThick);
+    const auto axis = side ? static_cast<Eigen::Index>(random.index(2)) : Eigen::Index{2};
+    const bool up = random.index(2) == 1;
+    p[axis] = up ? (side ? 1.0 : kThick) : 0.0;
+    wall.positions.push_back(p);
+    wall.normals.push_back((up ? 1.0 : -1.0) * Vec3::Unit(axis));
+  }
+  EXPECT_LT(share_found(wall), 0.003);
+}
+
+TEST(Boundary, DoesNotDependOnTheOrderOfThePoints) {
+  const PointCloud cloud = sheet(2000);
+  std::vector<std::size_t> order(cloud.size());
+  std::iota(order.begin(), order.end(), 0u);
+  Random random(3);
+  for (std::size_t i = order.size(); i-- > 1;) std::swap(order[i], order[random.index(i + 1)]);
+  PointCloud shuffled;
+  for (const std::size_t i : order) {
+    shuffled.positions.push_back(cloud.positions[i]);
+    shuffled.normals.push_back(cloud.normals[i]);
+  }
+  std::vector<std::uint32_t> found;
+  for (const std::uint32_t i : boundary_of(shuffled)) {
+    found.push_back(static_cast<std::uint32_t>(order[i]));
+  }
+  std::sort(found.begin(), found.end());
+  EXPECT_EQ(found, boundary_of(cloud));
+}
+
+TEST(Boundary, DoesNotDependOnTheSignsOfTheNormals) {
+  PointCloud cloud = sheet(2000);
+  const auto before = boundary_of(cloud);
+  for (Vec3& normal : cloud.normals) normal = -normal;
+  EXPECT_EQ(boundary_of(cloud), before);
+}
+
+TEST(Boundary, DoesNotDependOnTheThreads) {
+  const PointCloud cloud = sheet(5000);
+  const auto all = boundary_of(cloud);
+  set_thread_count(1);
+  const auto one = boundary_of(cloud);
+  set_thread_count(0);
+  EXPECT_EQ(one, all);
+}
+
+TEST(Boundary, DoesNotDependOnTheOrigin) {
+  PointCloud cloud = sheet(2000);
+  for (Vec3& p : cloud.positions) p = p.cast<float>().cast<double>();
+  const auto before = boundary_of(cloud);
+  for (Vec3& p : cloud.positions) p += Vec3(1024.0, -4096.0, 65536.0);  // exact
+  EXPECT_EQ(boundary_of(cloud), before);
+}
+
+TEST(Boundary, HoldsAllCopiesOfAPoint) {
+  PointCloud cloud = sheet(2000);
+  const auto once = boundary_of(cloud);
+  const std::size_t points = cloud.size();
+  for (std::size_t i = 0; i < points; ++i) {
+    cloud.positions.push_back(cloud.positions[i]);
+    cloud.normals.push_back(cloud.normals[i]);
+  }
+  auto expected = once;
+  for (const std::uint32_t i : once) expected.push_back(i + static_cast<std::uint32_t>(points));
+  EXPECT_EQ(boundary_of(cloud), expected);
+}
+
+TEST(Boundary, OfFewPointsOrALineIsNone) {
+  PointCloud few = sheet(10);
+  EXPECT_TRUE(boundary_of(few).empty());
+  PointCloud line;
+  for (int i = 0; i < 100; ++i) {
+    line.positions.push_back(0.01 * i * Vec3::UnitX());
+    line.normals.push_back(Vec3::UnitZ());
+  }
+  EXPECT_TRUE(boundary_of(line).empty());
+}
+
+TEST(Boundary, IsMarkedOverTheNetworksClassesButNotOnPointsThatAreNowhere) {
+  PointCloud cloud = sheet(2000);
+  cloud.positions.push_back(Vec3::Constant(std::numeric_limits<double>::quiet_NaN()));
+  cloud.normals.push_back(Vec3::UnitZ());
+  const PreparedCloud prepared = prepare(cloud);
+  Classification found = nothing_found(cloud.size());
+  std::fill(found.classes.begin(), found.classes.end() - 1, kSharpEdge);
+  mark_boundary(prepared, found);
+  const auto boundary = find_boundary(prepared);
+  EXPECT_EQ(found.counts.boundary, boundary.size());
+  EXPECT_EQ(found.counts.sharp, 2000 - boundary.size());
+  EXPECT_EQ(found.counts.unlabelled, 1u);
+  for (const std::uint32_t i : boundary) EXPECT_EQ(found.classes[i], kBoundary);
+}
+
+}  // namespace
+}  // namespace pcednet::detect
