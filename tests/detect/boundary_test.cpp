@@ -73,6 +73,18 @@ TEST(Boundary, IsFoundWithoutNormals) {
   expect_rim(cloud);
 }
 
+TEST(Boundary, IsFoundInLargeCloudsOfWhichNotAllIsTried) {
+  const PointCloud cloud = sheet(200000);
+  const auto found = boundary_of(cloud);
+  const double spacing = 1.0 / std::sqrt(200000.0);
+  const auto hole = std::count_if(found.begin(), found.end(), [&](std::uint32_t i) {
+    return std::abs((cloud.positions[i] - Vec3(0.5, 0.5, 0.0)).norm() - kHole) < 1.5 * spacing;
+  });
+  // Five points in six spacings: of the outermost points few are missing.
+  EXPECT_GT(double(hole), 5.0 / 6.0 * 2.0 * 3.1416 * kHole / spacing);
+  EXPECT_GT(double(found.size() - static_cast<std::size_t>(hole)), 5.0 / 6.0 * 4.0 / spacing);
+}
+
 TEST(Boundary, OfAClosedSolidIsNone) {
   EXPECT_LT(share_found(cube(8000, 3)), 0.001);
   PointCloud noisy = cube(8000, 3);

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <iterator>
 #include <numbers>
 #include <optional>
 #include <span>
@@ -20,14 +19,16 @@ namespace pcednet::detect {
 namespace {
 
 constexpr std::size_t kNeighbours = 24, kLeastNeighbours = 12;
-/// One point in so many along the curve is tried at first, then all around those found: a rim is a
-/// line of points.
-constexpr std::size_t kStride = 4;
+/// Of more points than this the first kTried of every kStride along the curve are tried at first,
+/// then all around those found: a rim is a line of points.
+constexpr std::size_t kMostWhole = std::size_t{1} << 17;
+constexpr std::size_t kTried = 8, kStride = 32;
 constexpr std::size_t kTogether = 1024;
 
 constexpr double kOpening = 105.0 * std::numbers::pi / 180.0;
 constexpr double kWideOpening = 125.0 * std::numbers::pi / 180.0;
 constexpr double kOffCentre = 0.2;     ///< of the neighbours' centre, in their radius
+constexpr double kAcrossFrom = 0.92;   ///< cosine to the direction away from that centre
 constexpr double kLeastSpread = 0.06;  ///< less across than along, as variances, is a line
 
 // In spacings.
@@ -48,32 +49,38 @@ constexpr double kAcross = 0.7;  ///< and as much per length along the rim
 
 constexpr std::uint32_t kNone = 0xffffffff;
 
-/// The finite positions along the curve, each once, in an order free of their numbering.
-struct DistinctPoints {
-  std::vector<Vec3> positions = {};
-  std::vector<Vec3> normals = {};         ///< of copies the first by its numbers; zero: unusable
-  std::vector<std::uint32_t> first = {};  ///< place in the curve of each, and the curve's length
-};
-
 bool is_before(const Vec3& a, const Vec3& b) {
   return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
 }
 
+/// The finite positions along the curve, each once, in an order free of their numbering.
+struct DistinctPoints {
+  const PreparedCloud& cloud;
+  std::vector<Vec3> positions = {};
+  std::vector<std::uint32_t> first = {};  ///< place in the curve of each, and the curve's length
+
+  std::span<const std::uint32_t> copies(std::size_t point) const {
+    return std::span(cloud.curve).subspan(first[point], first[point + 1] - first[point]);
+  }
+  /// Of copies that differ the first by its numbers; zero if none is usable.
+  Vec3 normal(std::size_t point) const {
+    Vec3 found = Vec3::Zero();
+    for (const std::uint32_t copy : copies(point)) {
+      const Vec3& normal = cloud.normals[copy];
+      if (is_usable(normal) && (found.isZero(0.0) || is_before(normal, found))) found = normal;
+    }
+    return found;
+  }
+};
+
 DistinctPoints distinct_points(const PreparedCloud& cloud) {
-  DistinctPoints points;
+  DistinctPoints points{cloud};
   points.positions.reserve(cloud.curve.size());
-  points.normals.reserve(cloud.curve.size());
   points.first.reserve(cloud.curve.size() + 1);
   for (std::size_t i = 0; i < cloud.curve.size(); ++i) {
     const Vec3& position = cloud.positions[cloud.curve[i]];
-    const Vec3& given = cloud.normals[cloud.curve[i]];
-    const Vec3 normal = is_usable(given) ? given : Vec3(Vec3::Zero());
-    if (i > 0 && position == points.positions.back()) {
-      if (is_before(normal, points.normals.back())) points.normals.back() = normal;
-      continue;
-    }
+    if (i > 0 && position == points.positions.back()) continue;
     points.positions.push_back(position);
-    points.normals.push_back(normal);
     points.first.push_back(static_cast<std::uint32_t>(i));
   }
   points.first.push_back(static_cast<std::uint32_t>(cloud.curve.size()));
@@ -155,7 +162,7 @@ Around inliers(const Around& around, const Plane& plane, double spacing) {
 bool is_one_sheet(const DistinctPoints& points, const Around& around, const Vec3& normal) {
   double sum = 0.0, known = 0.0, up = 0.0, down = 0.0;
   for (std::size_t i = 0; i < around.count; ++i) {
-    const Vec3& other = points.normals[around.index[i]];
+    const Vec3 other = points.normal(around.index[i]);
     if (other.isZero(0.0)) continue;
     const double cosine = other.dot(normal);
     known += 1.0;
@@ -166,15 +173,32 @@ bool is_one_sheet(const DistinctPoints& points, const Around& around, const Vec3
   return known == 0.0 || (sum > kAgreement * known && std::min(up, down) <= kOpposed * known);
 }
 
+/// Whether the neighbours may leave an opening: their centre is off the point, and none is straight
+/// across from it. Decides for most points.
+bool may_open(const DistinctPoints& points, std::uint32_t point,
+              std::span<const spatial::Neighbour> others) {
+  const Vec3& position = points.positions[point];
+  Vec3 sum = Vec3::Zero();
+  for (const spatial::Neighbour& other : others) sum += points.positions[other.index] - position;
+  const double length = sum.norm();
+  const double count = static_cast<double>(others.size());
+  if (length < kOffCentre * std::sqrt(others.back().sq_distance) * count) return false;
+  const Vec3 outward = -sum / length;
+  return std::none_of(others.begin(), others.end(), [&](const spatial::Neighbour& other) {
+    const double along = outward.dot(points.positions[other.index] - position);
+    return along > 0.0 && along * along > kAcrossFrom * kAcrossFrom * other.sq_distance;
+  });
+}
+
 std::optional<RimPoint> rim_at(const DistinctPoints& points, std::uint32_t point,
                                std::span<const spatial::Neighbour> others) {
+  if (!may_open(points, point, others)) return std::nullopt;
   Around all;
   for (const spatial::Neighbour& other : others) {
     all.add(points.positions[other.index] - points.positions[point], other.index);
   }
   const double count = static_cast<double>(all.count);
   const double radius = std::sqrt(others.back().sq_distance);
-  if (all.sum().norm() < kOffCentre * radius * count) return std::nullopt;    // most points
   const double spacing = radius * std::sqrt(0.5 * std::numbers::pi / count);  // in half a disc
 
   const Around around = inliers(all, plane_of(all), spacing);
@@ -228,9 +252,10 @@ std::vector<RimPoint> rims_at(const DistinctPoints& points, const spatial::Neigh
 std::vector<RimPoint> find_rims(const DistinctPoints& points, const Progress* progress) {
   const spatial::NeighbourSearch search(points.positions);
   if (search.available(kNeighbours) < kLeastNeighbours) return {};
+  const bool whole = points.positions.size() <= kMostWhole;
   std::vector<std::uint32_t> todo;
-  for (std::size_t i = 0; i < points.positions.size(); i += kStride) {
-    todo.push_back(static_cast<std::uint32_t>(i));
+  for (std::size_t i = 0; i < points.positions.size(); ++i) {
+    if (whole || i % kStride < kTried) todo.push_back(static_cast<std::uint32_t>(i));
   }
   std::vector<std::uint8_t> tried(points.positions.size(), 0);
   for (const std::uint32_t i : todo) tried[i] = 1;
@@ -300,8 +325,8 @@ std::vector<std::uint32_t> find_boundary(const PreparedCloud& cloud, const Progr
   remove_isolated(points, rims);
   std::vector<std::uint32_t> boundary;
   for (const RimPoint& rim : rims) {
-    std::copy(cloud.curve.begin() + points.first[rim.point],
-              cloud.curve.begin() + points.first[rim.point + 1], std::back_inserter(boundary));
+    const auto copies = points.copies(rim.point);
+    boundary.insert(boundary.end(), copies.begin(), copies.end());
   }
   std::sort(boundary.begin(), boundary.end());
   return boundary;
