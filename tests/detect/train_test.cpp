@@ -86,6 +86,15 @@ TEST(TrainEdges, TakesSmoothEdgesForNonEdgesWithTwoClasses) {
   EXPECT_EQ(*std::max_element(result.p_smooth.begin(), result.p_smooth.end()), 0.0f);
 }
 
+TEST(TrainEdges, TakesBoundaryForNonEdge) {
+  PointCloud cloud = cube(1500, 1);
+  const auto reference = train_on(cloud, quick(3)).model.network.network.parameters;
+  for (std::size_t i = 0; i < cloud.size(); i += 3) {
+    if (cloud.labels[i] == kNonEdge) cloud.labels[i] = kBoundary;
+  }
+  EXPECT_EQ(train_on(cloud, quick(3)).model.network.network.parameters, reference);
+}
+
 TEST(TrainEdges, NamesTheCloudWithoutLabels) {
   PointCloud cloud = cube(100, 1);
   std::fill(cloud.labels.begin(), cloud.labels.end(), kUnlabelled);

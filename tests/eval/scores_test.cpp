@@ -33,6 +33,17 @@ TEST(Scores, CountBothEdgeClasses) {
   EXPECT_EQ(counts.tn, 2u);
 }
 
+TEST(Scores, CountBoundaryAloneOrAsNoEdge) {
+  const std::vector<std::uint8_t> truth = {3, 3, 2, 0, 3, 255};
+  const std::vector<std::uint8_t> predicted = {3, 2, 3, 3, 1, 3};
+  EXPECT_EQ(count_confusion(truth, predicted, Positive::kBoundary),
+            (ConfusionCounts{.tp = 1, .fp = 2, .tn = 0, .fn = 2}));
+  EXPECT_EQ(count_confusion(truth, predicted, Positive::kSharp),
+            (ConfusionCounts{.tp = 0, .fp = 1, .tn = 3, .fn = 1}));
+  EXPECT_EQ(count_confusion(truth, predicted, Positive::kEdge),
+            (ConfusionCounts{.tp = 0, .fp = 2, .tn = 2, .fn = 1}));
+}
+
 TEST(Scores, FollowTheirDefinitions) {
   const Scores scores = scores_of({.tp = 4, .fp = 2, .tn = 10, .fn = 1});
   EXPECT_DOUBLE_EQ(scores.precision, 4.0 / 6.0);

@@ -12,7 +12,7 @@
 namespace pcednet {
 
 /// The classes of a point, as stored in labels and in files.
-/// No model gives kBoundary yet: the end of a surface, which geometry alone finds.
+/// No network gives kBoundary: the end of a surface, which geometry alone finds.
 enum EdgeClass : std::uint8_t {
   kNonEdge = 0,
   kSmoothEdge = 1,

@@ -9,10 +9,15 @@
 
 namespace pcednet::detect {
 
-/// The output of a network that stands for `label`, given the EdgeClass of each; with two classes
-/// smooth-edge counts as non-edge. What is no edge class is not learnt from.
+/// Whether networks learn from points of that label.
+inline bool is_learnt_from(std::uint8_t label) {
+  return label <= kBoundary;
+}
+
+/// The output of a network that stands for `label`, given the EdgeClass of each. Boundary counts as
+/// non-edge, with two classes smooth-edge as well.
 inline std::uint8_t output_of(std::uint8_t label, const std::vector<std::uint8_t>& classes) {
-  if (label > kSharpEdge) return nn::kIgnoredLabel;
+  if (!is_learnt_from(label)) return nn::kIgnoredLabel;
   const auto found = std::find(classes.begin(), classes.end(), label);
   return found == classes.end() ? 0 : static_cast<std::uint8_t>(found - classes.begin());
 }

@@ -21,11 +21,11 @@ void check_labels(const TrainingCloud& cloud) {
                 fmt::format("{}: {} labels for {} points", cloud.name, cloud.labels.size(),
                             cloud.cloud.positions.size()));
   }
-  if (std::none_of(cloud.labels.begin(), cloud.labels.end(),
-                   [](std::uint8_t label) { return label <= kSharpEdge; })) {
+  if (std::none_of(cloud.labels.begin(), cloud.labels.end(), is_learnt_from)) {
     throw Error(
         ErrorKind::kInsufficient,
-        fmt::format("{}: no labelled point (0 non-edge, 1 smooth-edge, 2 sharp-edge)", cloud.name));
+        fmt::format("{}: no labelled point (0 non-edge, 1 smooth-edge, 2 sharp-edge, 3 boundary)",
+                    cloud.name));
   }
 }
 
@@ -34,7 +34,7 @@ std::vector<std::uint32_t> labelled_points(const TrainingCloud& cloud,
                                            std::span<const std::uint32_t> order) {
   std::vector<std::uint32_t> points;
   std::copy_if(order.begin(), order.end(), std::back_inserter(points),
-               [&](std::uint32_t i) { return cloud.labels[i] <= kSharpEdge; });
+               [&](std::uint32_t i) { return is_learnt_from(cloud.labels[i]); });
   return points;
 }
 

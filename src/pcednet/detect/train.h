@@ -14,7 +14,8 @@ namespace pcednet::detect {
 struct TrainingCloud {
   std::string name;
   PreparedCloud cloud;
-  std::span<const std::uint8_t> labels;  ///< EdgeClass per point; kUnlabelled is left out
+  std::span<const std::uint8_t> labels;  ///< EdgeClass per point; kUnlabelled is left out,
+                                         ///< kBoundary counts as kNonEdge
 };
 
 struct TrainOptions {

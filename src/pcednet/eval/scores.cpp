@@ -18,7 +18,15 @@ double ratio(double numerator, double denominator) {
 }  // namespace
 
 bool is_positive(std::uint8_t label, Positive positive) {
-  return label == kSharpEdge || (positive == Positive::kEdge && label == kSmoothEdge);
+  switch (positive) {
+    case Positive::kSharp:
+      return label == kSharpEdge;
+    case Positive::kEdge:
+      return label == kSharpEdge || label == kSmoothEdge;
+    case Positive::kBoundary:
+      break;
+  }
+  return label == kBoundary;
 }
 
 ConfusionCounts& ConfusionCounts::operator+=(const ConfusionCounts& other) {

@@ -17,8 +17,9 @@ struct ConfusionCounts {
 
 /// The classes that count as positive, both in the truth and in the prediction.
 enum class Positive {
-  kSharp,  ///< sharp-edge alone
-  kEdge,   ///< sharp-edge and smooth-edge
+  kSharp,     ///< sharp-edge alone
+  kEdge,      ///< sharp-edge and smooth-edge
+  kBoundary,  ///< boundary alone
 };
 
 bool is_positive(std::uint8_t label, Positive positive);

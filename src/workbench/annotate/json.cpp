@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <span>
 
 #include "pcednet/cloud/edge_class.h"
 #include "pcednet/core/error.h"
@@ -30,7 +31,7 @@ std::string text_of(const Json& json) {
 
 Json classes_of(const Counts& counts) {
   Json classes = Json::array();
-  for (const auto& [id, name, colour] : kEdgeClasses) {
+  for (const auto& [id, name, colour] : std::span(kEdgeClasses).first(counts.size())) {
     classes.push_back({{"id", id}, {"name", name}, {"colour", colour}, {"count", counts[id]}});
   }
   return classes;

@@ -13,7 +13,7 @@
 
 namespace pcednet::annotate {
 
-/// Points by class: kNonEdge, kSmoothEdge, kSharpEdge.
+/// Points by class that can be painted: kNonEdge, kSmoothEdge, kSharpEdge.
 using Counts = std::array<std::size_t, 3>;
 
 /// The outcome of a stroke, an undo or a redo.

@@ -23,7 +23,8 @@ struct PreviewOptions {
 
 /// Writes a shaded picture of the cloud as a PNG.
 ///
-/// `classes` holds one EdgeClass per point, drawn white, yellow and dark red (other values grey).
+/// `classes` holds one EdgeClass per point, drawn white, yellow, dark red and blue (other values
+/// grey).
 /// If it is empty, points have the colours of the cloud, or white if it has none. Points that are
 /// not finite, far outliers, and strays (see make_surfels()) are skipped. Of more than four million
 /// points every n-th is drawn. `curves`, in the place of the cloud, are drawn over it: see

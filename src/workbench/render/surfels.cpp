@@ -205,7 +205,7 @@ std::vector<Surfel> make_surfels(const PointCloud& cloud, std::span<const std::u
                       : !cloud.colours.empty() ? cloud.colours[source]
                                                : kEdgeClasses[kNonEdge].colour;
       surfel.edge =
-          !classes.empty() && (classes[source] == kSmoothEdge || classes[source] == kSharpEdge);
+          !classes.empty() && classes[source] != kNonEdge && classes[source] < kEdgeClasses.size();
     }
   });
   smooth(surfels, near);

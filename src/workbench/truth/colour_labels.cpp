@@ -13,6 +13,7 @@ using Colour = std::array<std::uint8_t, 3>;
 std::optional<std::uint8_t> class_of(const Colour& colour) {
   const int red = colour[0], green = colour[1], blue = colour[2];
   if (std::max({red, green, blue}) - std::min({red, green, blue}) <= 16) return kNonEdge;
+  if (blue >= 96 && red < blue / 4) return kBoundary;
   if (red < 96 || blue > green + 16) return std::nullopt;
   if (green < red / 4) return kSharpEdge;
   if (green > red / 2 && blue < red * 2 / 3) return kSmoothEdge;

@@ -20,7 +20,7 @@ struct LineClass {
 inline constexpr std::array<LineClass, 3> kLineClasses = {{
     {kSharpEdge, kEdgeClasses[kSharpEdge].name, kEdgeClasses[kSharpEdge].colour, 12},
     {kSmoothEdge, kEdgeClasses[kSmoothEdge].name, kEdgeClasses[kSmoothEdge].colour, 31},
-    {kBoundary, "boundary", {0, 82, 165}, 152},
+    {kBoundary, kEdgeClasses[kBoundary].name, kEdgeClasses[kBoundary].colour, 152},
 }};
 
 /// The entry of a class; that of sharp edges for one that curves do not have.
