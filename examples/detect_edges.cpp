@@ -44,7 +44,8 @@ void from_arrays(const pcednet::detect::EdgeModel& model) {
 void from_file_to_file(const pcednet::detect::EdgeModel& model, const char* in, const char* out) {
   pcednet::PointCloud cloud = pcednet::formats::read_cloud(in).cloud;
   const auto prepared = pcednet::detect::prepare(cloud);
-  const auto found = pcednet::detect::classify(prepared, model);
+  auto found = pcednet::detect::classify(prepared, model);
+  pcednet::detect::mark_boundary(prepared, found);
   pcednet::detect::add_result(cloud, prepared, found, model);
   pcednet::formats::write_cloud(out, cloud);
 }

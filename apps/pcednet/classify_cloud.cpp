@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "common.h"
+#include "pcednet/detect/boundary.h"
 #include "pcednet/formats/read_cloud.h"
 #include "prepare.h"
 
@@ -19,15 +20,14 @@ PointCloud read_cloud(const std::filesystem::path& file) {
 }
 
 ClassifiedCloud classify_cloud(const std::filesystem::path& file, const PointCloud& cloud,
-                               const detect::EdgeModel* model, const MethodArguments& method,
-                               const detect::PrepareOptions& preparation,
-                               const Progress& progress) {
+                               const Classifier& classifier, const Progress& progress) {
   ClassifiedCloud result;
-  if (model) {
-    result.prepared = prepare(file, cloud, preparation, progress);
-    result.found = detect::classify(result.prepared, *model, &progress);
+  if (classifier.model) {
+    result.prepared = prepare(file, cloud, classifier.preparation, progress);
+    result.found = detect::classify(result.prepared, *classifier.model, &progress);
+    if (classifier.boundary) detect::mark_boundary(result.prepared, result.found, &progress);
   } else {
-    result.found = classify_by_method(cloud, method, &progress);
+    result.found = classify_by_method(cloud, classifier.method, &progress);
   }
   if (!result.found.note.empty()) warn(fmt::format("{}: {}", file.string(), result.found.note));
   return result;

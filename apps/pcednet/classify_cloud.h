@@ -18,9 +18,17 @@ struct ClassifiedCloud {
 /// formats::read_cloud(), with its warnings on stderr.
 PointCloud read_cloud(const std::filesystem::path& file);
 
-/// Classifies by `model`, or by the method where that is null. Notes are warnings that name `file`.
+/// How to classify: by `model`, then by geometry where `boundary`, or by the method where there is
+/// no model.
+struct Classifier {
+  const detect::EdgeModel* model = nullptr;
+  MethodArguments method = {};
+  detect::PrepareOptions preparation = {};
+  bool boundary = true;
+};
+
+/// Notes are warnings that name `file`.
 ClassifiedCloud classify_cloud(const std::filesystem::path& file, const PointCloud& cloud,
-                               const detect::EdgeModel* model, const MethodArguments& method,
-                               const detect::PrepareOptions& preparation, const Progress& progress);
+                               const Classifier& classifier, const Progress& progress);
 
 }  // namespace pcednet::app

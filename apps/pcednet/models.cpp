@@ -56,6 +56,8 @@ void add_model_options(CLI::App& command, ModelArguments& arguments) {
       ->capture_default_str();
   command.add_flag("--no-context", arguments.no_context,
                    "Leave out the context network: faster, less accurate");
+  command.add_flag("--no-boundary", arguments.no_boundary,
+                   "Leave out the class boundary (3): where the sampled surface ends");
   add_engine_option(command, arguments.scales);
   add_scale_range_options(command, arguments.scales);
 }

@@ -29,10 +29,12 @@ std::filesystem::path find_model(const std::string& name_or_file);
 struct ModelArguments {
   std::string name;
   bool no_context = false;
+  bool no_boundary = false;
   gls::ScaleSpaceOptions scales = {};  ///< its s_min, s_max and engine
 };
 
-/// Adds --model, --no-context, --exact, --s-min and --s-max; the last four for a model alone.
+/// Adds --model, --no-context, --no-boundary, --exact, --s-min and --s-max; the last five for a
+/// model alone.
 void add_model_options(CLI::App& command, ModelArguments& arguments);
 
 /// Throws what find_model() and detect::load_model() throw.

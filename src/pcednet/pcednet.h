@@ -6,8 +6,9 @@
 ///     cloud.positions = ...;  // and cloud.normals, if there are any
 ///     const auto model = pcednet::detect::load_model("scan.safetensors");
 ///     const auto prepared = pcednet::detect::prepare(cloud);
-///     const auto found = pcednet::detect::classify(prepared, model);
+///     auto found = pcednet::detect::classify(prepared, model);
 ///     // found.classes[i] is 0, 1 or 2; found.p_sharp[i] its probability of being a sharp edge
+///     pcednet::detect::mark_boundary(prepared, found);  // 3 where the surface ends
 ///     const auto curves = pcednet::lines::find_lines({prepared.positions, prepared.normals,
 ///                                                     found.classes, found.p_sharp,
 ///                                                     found.p_smooth});
@@ -24,6 +25,7 @@
 #include "pcednet/core/parallel.h"
 #include "pcednet/core/progress.h"
 #include "pcednet/core/version.h"
+#include "pcednet/detect/boundary.h"
 #include "pcednet/detect/classify.h"
 #include "pcednet/detect/model.h"
 #include "pcednet/detect/prepare.h"

@@ -7,7 +7,7 @@ import unittest
 
 import numpy as np
 
-from support import PROGRAM, CliTest, cube, read_ply, run, write_ply
+from support import PROGRAM, CliTest, cube, read_ply, run, sheet, write_ply
 
 
 class Classify(CliTest):
@@ -57,6 +57,26 @@ class Classify(CliTest):
             np.testing.assert_array_equal(reference[field], flipped[field])
         moved = self.classify(p + np.array([652000.0, 6862000.0, 35.0]), n, position_type="double")
         np.testing.assert_array_equal(reference["label"], moved["label"])
+
+    def test_labels_where_the_surface_ends(self):
+        p, n, rim = sheet()
+        rows = self.classify(p, n)
+        boundary = rows["label"] == 3
+        self.assertGreater(np.mean(rim[boundary] < 1.5), 0.9)
+        self.assertGreater(np.mean(boundary[rim < 0.5]), 0.75)
+        self.assertEqual({tuple(c) for c in zip(*(rows[c][boundary]
+                                                  for c in ("red", "green", "blue")))},
+                         {(0, 82, 165)})
+        np.testing.assert_array_equal(self.classify(p, -n)["label"] == 3, boundary)
+        paper = self.classify(p, n, extra=("--no-boundary",))
+        self.assertFalse(np.any(paper["label"] == 3))
+        np.testing.assert_array_equal(rows["label"][~boundary], paper["label"][~boundary])
+        np.testing.assert_array_equal(rows["scalar_p_sharp"], paper["scalar_p_sharp"])
+        run("classify", self.folder / "cloud.ply", "--method", "ca", "--no-boundary", expect=2)
+        said = run("classify", self.folder / "cloud.ply", "-o", self.folder / "b.ply").stderr
+        self.assertIn(f"{np.sum(boundary)} boundary (", said)
+        self.assertIn(f"{np.sum(boundary)} boundary (3)",
+                      run("info", self.folder / "b.ply").stdout)
 
     def test_estimates_missing_normals_and_says_so(self):
         p, _, label = cube()

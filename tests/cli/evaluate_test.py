@@ -5,7 +5,7 @@ import unittest
 
 import numpy as np
 
-from support import CliTest, cube, run, write_ply
+from support import CliTest, cube, run, sheet, write_ply
 
 
 class Evaluate(CliTest):
@@ -41,6 +41,19 @@ class Evaluate(CliTest):
         self.assertEqual(sum(b["points"] for b in calibration["bins"]), 3000)
         self.assertLess(calibration["error"], 0.1)
         run("evaluate", self.folder / "a.ply", "--method", "ca", "--calibration", expect=2)
+
+    def test_scores_where_the_surface_ends(self):
+        p, n, rim = sheet()
+        write_ply(self.folder / "a.ply", p, n, np.where(rim < 0.7, 3, 0).astype(np.uint8))
+        said = {}
+        for extra in ((), ("--no-boundary",)):
+            report = json.loads(run("evaluate", self.folder / "a.ply", "--model", "scan",
+                                    "--positive", "boundary", "--json", "-", *extra).stdout)
+            said[extra] = report["clouds"][0]
+        self.assertGreater(said[()]["mcc"], 0.6)
+        self.assertEqual(said[("--no-boundary",)]["tp"] + said[("--no-boundary",)]["fp"], 0)
+        run("evaluate", self.folder / "a.ply", "--model", "scan", "--positive", "boundary",
+            "--calibration", expect=2)
 
     def test_scores_a_model_and_writes_the_file(self):
         write_ply(self.folder / "a.ply", *cube(3000))
@@ -103,7 +116,7 @@ class Evaluate(CliTest):
 
     def test_refuses_what_has_no_meaning(self):
         write_ply(self.folder / "a.ply", *cube(300))
-        for extra in (("--no-context",), ("--exact",), ("--s-max", "1")):
+        for extra in (("--no-context",), ("--no-boundary",), ("--exact",), ("--s-max", "1")):
             run("evaluate", self.folder / "a.ply", "--predictions", self.folder, *extra, expect=2)
 
     def test_takes_the_scales_that_are_given(self):

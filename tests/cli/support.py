@@ -35,6 +35,13 @@ def cube(points=4000, seed=1, noise=0.0):
     return p + noise * random.normal(size=p.shape), n, label
 
 
+def sheet(points=3000, seed=1):
+    """A unit square, open all around: positions, normals, distances to its rim in spacings."""
+    p = np.random.default_rng(seed).uniform(0.0, 1.0, (points, 3)) * (1.0, 1.0, 0.0)
+    rim = np.minimum(p[:, :2], 1.0 - p[:, :2]).min(axis=1) * np.sqrt(points)
+    return p, np.tile([0.0, 0.0, 1.0], (points, 1)), rim
+
+
 def write_ply(path, positions, normals=None, labels=None, position_type="float"):
     """A binary PLY as any program might write it."""
     fields = [(a, "<f8" if position_type == "double" else "<f4") for a in "xyz"]

@@ -141,10 +141,10 @@ void set_las_classification(const std::string& pairs, const std::vector<std::uin
     int edge_class = -1, code = -1, used = 0;
     const bool sound = std::sscanf(pair.c_str(), "%d=%d%n", &edge_class, &code, &used) == 2 &&
                        static_cast<std::size_t>(used) == pair.size() && edge_class >= 0 &&
-                       edge_class <= 2 && code >= 0 && code <= 255;
+                       edge_class <= kBoundary && code >= 0 && code <= 255;
     if (!sound) {
       throw Error(ErrorKind::kUsage,
-                  fmt::format("--las-classification: \"{}\" is not class=code, class 0 to 2, code "
+                  fmt::format("--las-classification: \"{}\" is not class=code, class 0 to 3, code "
                               "0 to 255",
                               pair));
     }
@@ -162,9 +162,13 @@ void report(const Job& job, const detect::Classification& result, const std::str
            static_cast<double>(std::max<std::size_t>(points, 1));
   };
   say(fmt::format(
-      "{}: {} points: {} sharp-edge ({:.1f} %), {} smooth-edge ({:.1f} %), {} non-edge{}",
+      "{}: {} points: {} sharp-edge ({:.1f} %), {} smooth-edge ({:.1f} %), {}{} non-edge{}",
       job.input.string(), points, result.counts.sharp, share(result.counts.sharp),
-      result.counts.smooth, share(result.counts.smooth), result.counts.non_edge,
+      result.counts.smooth, share(result.counts.smooth),
+      result.counts.boundary == 0 ? std::string()
+                                  : fmt::format("{} boundary ({:.1f} %), ", result.counts.boundary,
+                                                share(result.counts.boundary)),
+      result.counts.non_edge,
       result.counts.unlabelled == 0 ? std::string()
                                     : fmt::format(", {} unlabelled", result.counts.unlabelled)));
   say(fmt::format("  scales: {:.9g} to {:.9g}", result.s_min, result.s_max));
@@ -186,8 +190,12 @@ void classify_file(const Job& job, const ClassifyArguments& arguments,
   throw_if_cancelled(&progress);
   const bool by_method = !arguments.method.name.empty();
   clock.begin(by_method ? arguments.method.name : "normals");
-  const auto [prepared, result] = classify_cloud(job.input, cloud, by_method ? nullptr : &model,
-                                                 arguments.method, arguments.preparation, progress);
+  const auto [prepared, result] = classify_cloud(job.input, cloud,
+                                                 {.model = by_method ? nullptr : &model,
+                                                  .method = arguments.method,
+                                                  .preparation = arguments.preparation,
+                                                  .boundary = !arguments.model.no_boundary},
+                                                 progress);
   clock.begin("write");
   say_kept(detect::add_result(cloud, prepared, result, model,
                               {.class_colours = arguments.class_colours}));
@@ -235,7 +243,7 @@ void classify(const ClassifyArguments& arguments, const Common& common) {
 void add_classify(CLI::App& app, Common& common) {
   auto arguments = std::make_shared<ClassifyArguments>();
   CLI::App* command = add_command(
-      app, common, "classify", "Label every point: non-edge, smooth-edge or sharp-edge",
+      app, common, "classify", "Label every point: non-edge, smooth-edge, sharp-edge or boundary",
       "pcednet classify scan.ply                       writes scan_edges.ply\n"
       "pcednet classify scan.ply -o out.ply --preview out.png\n"
       "pcednet classify folder/ --out-dir results/     every point file in a folder\n"
@@ -264,8 +272,8 @@ void add_classify(CLI::App& app, Common& common) {
   command->add_flag("--ascii", arguments->ascii, "Write text instead of binary");
   add_method_options(*command, arguments->method);
   add_prepare_options(*command, arguments->preparation);
-  for (const char* of_a_model :
-       {"--model", "--no-context", "--exact", "--s-min", "--s-max", "--keep-orientation"}) {
+  for (const char* of_a_model : {"--model", "--no-context", "--no-boundary", "--exact", "--s-min",
+                                 "--s-max", "--keep-orientation"}) {
     command->get_option(of_a_model)->excludes("--method");
   }
   command->callback([arguments, &common] { classify(*arguments, common); });

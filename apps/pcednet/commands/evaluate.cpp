@@ -41,6 +41,11 @@ std::vector<std::uint8_t> read_predictions(const fs::path& file, const PointClou
   return std::move(predictions.classes);
 }
 
+eval::Positive positive_named(const std::string& name) {
+  if (name == "boundary") return eval::Positive::kBoundary;
+  return name == "edge" ? eval::Positive::kEdge : eval::Positive::kSharp;
+}
+
 /// What was given to the positive classes.
 std::vector<float> probabilities(const detect::Classification& found, eval::Positive positive) {
   std::vector<float> p = found.p_sharp;
@@ -52,8 +57,7 @@ std::vector<float> probabilities(const detect::Classification& found, eval::Posi
 
 Results score_all(const EvaluateArguments& arguments, const Common& common) {
   const Progress progress = console_progress(common);
-  const auto positive =
-      arguments.positive == "edge" ? eval::Positive::kEdge : eval::Positive::kSharp;
+  const eval::Positive positive = positive_named(arguments.positive);
   std::optional<detect::EdgeModel> model;
   if (!arguments.model.name.empty()) model = load_model(arguments.model);
 
@@ -75,8 +79,12 @@ Results score_all(const EvaluateArguments& arguments, const Common& common) {
       if (given) {
         found.classes = read_predictions(prediction, loaded.cloud);
       } else {
-        found = classify_cloud(input, loaded.cloud, model ? &*model : nullptr, arguments.method,
-                               arguments.preparation, progress)
+        found = classify_cloud(input, loaded.cloud,
+                               {.model = model ? &*model : nullptr,
+                                .method = arguments.method,
+                                .preparation = arguments.preparation,
+                                .boundary = !arguments.model.no_boundary},
+                               progress)
                     .found;
       }
       results.scores.push_back(
@@ -107,6 +115,9 @@ void evaluate(EvaluateArguments arguments, const Common& common) {
   if (ways == 0) arguments.model.name = kDefaultModel;
   if (arguments.calibration && arguments.model.name.empty()) {
     throw Error(ErrorKind::kUsage, "evaluate: --calibration needs --model");
+  }
+  if (arguments.calibration && arguments.positive == "boundary") {
+    throw Error(ErrorKind::kUsage, "evaluate: boundary has no probabilities to calibrate");
   }
   if (arguments.json != "-") check_writable(arguments.json, common.overwrite());
   const Results results = score_all(arguments, common);
@@ -157,16 +168,16 @@ void add_evaluate(CLI::App& app, Common& common) {
   }
   command
       ->add_option("--positive", arguments->positive,
-                   "Classes that count as positive: sharp, or edge (sharp and smooth)")
+                   "Classes that count as positive: sharp, edge (sharp and smooth), or boundary")
       ->capture_default_str()
-      ->check(CLI::IsMember({"sharp", "edge"}));
+      ->check(CLI::IsMember({"sharp", "edge", "boundary"}));
   command->add_option("--json", arguments->json,
                       "Write the scores to this JSON file; - for standard output");
   command->add_flag("--calibration", arguments->calibration,
                     "Also compare probabilities with frequencies");
   add_prepare_options(*command, arguments->preparation);
   for (const char* of_a_model :
-       {"--no-context", "--exact", "--s-min", "--s-max", "--keep-orientation"}) {
+       {"--no-context", "--no-boundary", "--exact", "--s-min", "--s-max", "--keep-orientation"}) {
     command->get_option(of_a_model)->needs("--model");
   }
   command->callback([arguments, &common] { evaluate(*arguments, common); });

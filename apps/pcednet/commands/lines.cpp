@@ -113,8 +113,11 @@ LabelledCloud label(const LinesArguments& arguments, const PointCloud& cloud, St
   if (given.empty()) {
     say(fmt::format("{}: no labels: classified by model {}", arguments.input, model.name));
   }
-  ClassifiedCloud classified =
-      classify_cloud(arguments.input, cloud, &model, {}, arguments.preparation, clock.progress());
+  ClassifiedCloud classified = classify_cloud(arguments.input, cloud,
+                                              {.model = &model,
+                                               .preparation = arguments.preparation,
+                                               .boundary = !arguments.model.no_boundary},
+                                              clock.progress());
   return {.prepared = std::move(classified.prepared),
           .classes = std::move(classified.found.classes),
           .p_sharp = std::move(classified.found.p_sharp),
@@ -230,17 +233,22 @@ void add_line_options(CLI::App& command, lines::LineOptions& options) {
   command.add_flag("--regularise", options.regularise,
                    "Make nearly parallel and nearly right angles exactly so");
   command.add_flag("--boundaries", options.boundaries,
-                   "Also draw where the surface ends, on a layer of its own");
+                   "Also draw where the surface ends, on a layer of its own; --class with boundary "
+                   "does the same");
 }
 
 void add_drawing_options(CLI::App& command, LinesArguments& arguments) {
-  command
-      .add_option("--class", arguments.classes,
-                  "The classes to draw, with commas between: sharp, smooth (rounded edges, at "
-                  "the cost of some that are none), boundary")
-      ->delimiter(',')
-      ->default_str("sharp,boundary")
-      ->check(CLI::IsMember({"sharp", "smooth", "boundary"}));
+  CLI::Option* classes =
+      command
+          .add_option("--class", arguments.classes,
+                      "The classes to draw, with commas between: sharp, smooth (rounded edges, at "
+                      "the cost of some that are none), boundary (where the surface ends)")
+          ->delimiter(',')
+          ->default_str("sharp,boundary")
+          ->check(CLI::IsMember({"sharp", "smooth", "boundary"}));
+  classes->each([&arguments](const std::string& name) {
+    arguments.lines.boundaries = arguments.lines.boundaries || name == "boundary";
+  });
   command
       .add_option("--kind", arguments.kinds,
                   "Keep these kinds only: segment, arc, circle, polyline, with commas between")
@@ -297,7 +305,8 @@ void add_lines(CLI::App& app, Common& common) {
                     "Classify first even if the points have labels");
   add_model_options(*command, arguments->model);
   add_prepare_options(*command, arguments->preparation);
-  for (const char* of_a_model : {"--model", "--no-context", "--exact", "--s-min", "--s-max"}) {
+  for (const char* of_a_model :
+       {"--model", "--no-context", "--no-boundary", "--exact", "--s-min", "--s-max"}) {
     command->get_option(of_a_model)->each([arguments](const std::string&) {
       arguments->classify = true;
     });
