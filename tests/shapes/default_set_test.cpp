@@ -8,7 +8,9 @@
 #include "pcednet/spatial/kd_tree.h"
 #include "workbench/shapes/acquisition.h"
 #include "workbench/shapes/default_set.h"
+#include "workbench/shapes/patches.h"
 #include "workbench/shapes/polyhedra.h"
+#include "workbench/shapes/rims.h"
 
 namespace pcednet::shapes {
 namespace {
@@ -63,6 +65,39 @@ TEST(DefaultSet, IsTheSameForTheSameSeedOnly) {
     EXPECT_TRUE(same(generate(one, 1), generate(default_recipes(1)[i], 1))) << one.name;
     EXPECT_FALSE(same(generate(one, 1), generate(default_recipes(2)[i], 2))) << one.name;
   }
+}
+
+/// Training takes boundary for non-edge: labels of rims must not change any other.
+TEST(DefaultSet, LabelsRimsInPlaceOfNonEdgeAlone) {
+  for (const Recipe& recipe : default_recipes(1)) {
+    const bool open = !recipe.shape.rims.empty();
+    EXPECT_EQ(open, recipe.name.starts_with("x_sheets") || recipe.name.starts_with("x_wedges") ||
+                        recipe.name.starts_with("x_fading") || recipe.name.starts_with("x_wall"))
+        << recipe.name;
+    if (!open || !recipe.name.ends_with("_0")) continue;
+    Recipe without = recipe;
+    without.shape.rims.clear();
+    PointCloud cloud = generate(recipe, 1).cloud;
+    EXPECT_GT(share(cloud, kBoundary), 0.5) << recipe.name;
+    EXPECT_LT(share(cloud, kBoundary), 10.0) << recipe.name;
+    std::replace(cloud.labels.begin(), cloud.labels.end(), kBoundary, kNonEdge);
+    EXPECT_TRUE(cloud.labels == generate(without, 1).cloud.labels) << recipe.name;
+  }
+}
+
+TEST(DefaultSet, LabelsRimsByTheirDistance) {
+  Recipe recipe;
+  recipe.name = "square";
+  recipe.points = 2000;
+  recipe.shape.patches = {parallelogram(Vec3::Zero(), Vec3::UnitX(), Vec3::UnitY())};
+  add_rims(recipe.shape);
+  EXPECT_EQ(recipe.shape.rims.size(), 384u);
+  const double share_of_band = 100.0 * 4.0 * kBoundaryBand / std::sqrt(2000.0);
+  EXPECT_NEAR(share(generate(recipe, 1).cloud, kBoundary), share_of_band, 1.2);
+  recipe.shape.edges = {{Segment{Vec3::Zero(), Vec3::UnitX()}}};
+  recipe.shape.rims.clear();
+  add_rims(recipe.shape);
+  EXPECT_EQ(recipe.shape.rims.size(), 288u);
 }
 
 TEST(DefaultSet, CloudsAreWhole) {

@@ -67,6 +67,9 @@ TEST(ReliefSet, MakesLabelledCloudsAndTheSameAgain) {
     const auto sharp = std::count(cloud.labels.begin(), cloud.labels.end(), kSharpEdge);
     EXPECT_GT(sharp, 10) << recipes[i].name;
     EXPECT_LT(sharp, 1800) << recipes[i].name;
+    const auto rim = std::count(cloud.labels.begin(), cloud.labels.end(), kBoundary);
+    EXPECT_GT(rim, 40) << recipes[i].name;
+    EXPECT_LT(rim, 250) << recipes[i].name;
     for (const Vec3& normal : cloud.normals) EXPECT_NEAR(normal.norm(), 1.0, 1e-9);
     EXPECT_EQ(generate(recipes[i], 3).cloud.positions, cloud.positions);
   }

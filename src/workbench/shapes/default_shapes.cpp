@@ -8,6 +8,7 @@
 #include "workbench/shapes/boxes.h"
 #include "workbench/shapes/loft.h"
 #include "workbench/shapes/patches.h"
+#include "workbench/shapes/rims.h"
 
 namespace pcednet::shapes {
 namespace {
@@ -86,13 +87,17 @@ bool on_plane(const EdgeCurve& edge, int axis, double value) {
   return segment.a[axis] == value && segment.b[axis] == value;
 }
 
-/// Removes what lies in an axis plane: patches, and the edges that become borders.
+/// Removes what lies in an axis plane: patches, and the edges, which become rims.
 void remove_plane(Shape& shape, int axis, double value) {
   std::erase_if(shape.patches, [&](const SurfacePatch& patch) {
     const SurfacePoint middle = patch.at(0.5, 0.5);
     return middle.position[axis] == value && std::abs(middle.normal[axis]) == 1.0;
   });
-  std::erase_if(shape.edges, [&](const EdgeCurve& edge) { return on_plane(edge, axis, value); });
+  std::erase_if(shape.edges, [&](const EdgeCurve& edge) {
+    if (!on_plane(edge, axis, value)) return false;
+    shape.rims.push_back(std::get<Segment>(edge.curve));
+    return true;
+  });
 }
 
 }  // namespace
@@ -152,6 +157,7 @@ Shape wedges() {
     wedge.patches = {parallelogram(-0.5 * edge, edge, Vec3::UnitX()),
                      parallelogram(-0.5 * edge, 0.8 * side, edge)};
     wedge.edges = {{Segment{-0.5 * edge, 0.5 * edge}}};
+    add_rims(wedge);
     append(shape, wedge, shifted(Vec3(2.0 * (i % 3), 1.5 * (i / 3), 0.2 * i)));
   }
   return shape;
@@ -175,6 +181,7 @@ Shape open_sheets() {
   shape.patches = {graph(waves, Vec2(-1.5, -1.0), Vec2(1.5, 1.0))};
   append(shape, flat, shifted(Vec3(2.2, 0.0, 0.0)));
   append(shape, bent, shifted(Vec3(-1.0, 1.5, 0.0)));
+  add_rims(shape);
   return shape;
 }
 
@@ -184,6 +191,7 @@ Shape fading_creases() {
   append(shape, straight_crease(0.7, -1.0), shifted(Vec3(0.0, 2.0, 0.0)));
   append(shape, ring_crease(0.6, 1.0), shifted(Vec3(5.0, 0.0, 0.0)));
   append(shape, ring_crease(0.6, -1.0), shifted(Vec3(5.0, 3.5, 0.0)));
+  add_rims(shape);
   return shape;
 }
 

@@ -12,6 +12,7 @@
 #include "pcednet/core/random.h"
 #include "pcednet/normals/estimate.h"
 #include "workbench/shapes/acquisition.h"
+#include "workbench/shapes/rims.h"
 #include "workbench/shapes/sampling.h"
 #include "workbench/shapes/true_curves.h"
 
@@ -131,6 +132,7 @@ GeneratedCloud generate(const Recipe& recipe, std::uint64_t seed) {
   cloud.labels = label_by_distance(
       samples.positions, recipe.shape.edges,
       {.sharp = recipe.bands.sharp * spacing, .smooth = recipe.bands.smooth * spacing});
+  label_rims(samples.positions, recipe.shape.rims, kBoundaryBand * spacing, cloud.labels);
   cloud.normals = make_normals(recipe, samples, displaced, random);
   if (recipe.thinned > 1) thin(samples.positions, cloud, recipe.thinned, random);
   const Mat3 rotation = random_rotation(random);

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "workbench/shapes/patches.h"
+#include "workbench/shapes/rims.h"
 
 namespace pcednet::shapes {
 namespace {
@@ -282,6 +283,7 @@ Relief random_relief(Random& random, std::size_t line_points) {
   };
   Relief relief;
   relief.shape.patches.push_back(graph(field, -half, half));
+  add_rims(relief.shape);
   for (const Ornament& ornament : ornaments) {
     add_lines(ornament, height, half, line_points, random, relief.lines);
   }

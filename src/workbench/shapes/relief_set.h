@@ -24,8 +24,8 @@ struct ReliefRecipe {
 /// The reliefs of `pcednet generate worn`.
 std::vector<ReliefRecipe> relief_recipes(std::uint64_t seed);
 
-/// The recipe's cloud, randomly rotated; sharp-edge along its lines, non-edge elsewhere, including
-/// its open borders.
+/// The recipe's cloud, randomly rotated; sharp-edge along its lines, boundary along its open
+/// borders, non-edge elsewhere.
 GeneratedCloud generate(const ReliefRecipe& recipe, std::uint64_t seed);
 
 }  // namespace pcednet::shapes

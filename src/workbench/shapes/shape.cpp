@@ -47,6 +47,7 @@ void append(Shape& shape, const Shape& part, const Eigen::Isometry3d& motion) {
     shape.patches.push_back({at, patch.max_density});
   }
   for (const EdgeCurve& edge : part.edges) shape.edges.push_back(moved(edge, motion));
+  for (const Segment& rim : part.rims) shape.rims.push_back({motion * rim.a, motion * rim.b});
 }
 
 double surface_area(const Shape& shape) {

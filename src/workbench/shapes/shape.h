@@ -50,6 +50,7 @@ struct EdgeCurve {
 struct Shape {
   std::vector<SurfacePatch> patches;
   std::vector<EdgeCurve> edges;
+  std::vector<Segment> rims = {};  ///< where the surface ends, as far as that is known
 };
 
 /// Adds `part`, moved by `motion`, to `shape`.
