@@ -183,7 +183,7 @@ half.rename({str(given)!r})
             self.assertNotIn("sesame", told)
             if start and start != 7:
                 self.assertNotIn(start, told)
-                self.assertIn("cad, scan, worn", told)
+                self.assertIn("cad, general, scan, worn", told)
         for start in ("scan", "cad", "worn", "random"):
             self.assertEqual(server.post("/api/settings", {"start": start})["start"], start)
         server.end()
