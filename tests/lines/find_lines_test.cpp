@@ -11,6 +11,8 @@
 #include "pcednet/core/error.h"
 #include "pcednet/core/parallel.h"
 #include "pcednet/core/random.h"
+#include "pcednet/lines/crease.h"
+#include "pcednet/lines/ordered_points.h"
 
 namespace pcednet::lines {
 namespace {
@@ -221,6 +223,16 @@ TEST(FindLines, AreNoneWhereThereIsNothingToSee) {
   Cloud all_edges = cube(1000);
   std::fill(all_edges.classes.begin(), all_edges.classes.end(), kSharpEdge);
   EXPECT_EQ(lines_of(all_edges).size(), 12u);
+}
+
+TEST(Sampling, IsMeasuredAtAllPointsIfAllAreOfAnEdge) {
+  Cloud cloud = cube(3000);
+  const auto measured = [&] {
+    return measure_sampling(OrderedPoints({cloud.positions, cloud.normals, cloud.classes}));
+  };
+  EXPECT_NEAR(measured().spacing, cloud.spacing, 0.1 * cloud.spacing);
+  std::fill(cloud.classes.begin(), cloud.classes.end(), kSharpEdge);
+  EXPECT_NEAR(measured().spacing, cloud.spacing, 0.1 * cloud.spacing);
 }
 
 TEST(FindLines, StayFiniteOnAnyPoints) {

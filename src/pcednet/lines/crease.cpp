@@ -58,10 +58,12 @@ double distance_to_plane(const OrderedPoints& cloud, std::size_t i,
 
 Sampling measure_sampling(const OrderedPoints& cloud) {
   const std::size_t step = std::max<std::size_t>(1, cloud.size() / kSamples);
-  std::vector<std::uint32_t> points;
+  std::vector<std::uint32_t> all, points;
   for (std::size_t i = 0; i < cloud.size(); i += step) {
-    if (!cloud.is_edge(i)) points.push_back(static_cast<std::uint32_t>(i));
+    all.push_back(static_cast<std::uint32_t>(i));
+    if (!cloud.is_edge(i)) points.push_back(all.back());
   }
+  if (points.empty()) points = std::move(all);
   const std::size_t others = cloud.available(kPlaneNeighbours);
   std::vector<spatial::Neighbour> nearest;
   cloud.nearest_others(points, others, nearest);

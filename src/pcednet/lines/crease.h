@@ -26,7 +26,7 @@ struct Crease {
   EdgeClass edge_class;  ///< of the edge point
 };
 
-/// Spacing and noise of a cloud, from points off its edges.
+/// Spacing and noise of a cloud, from points off its edges; from all points if none is off.
 struct Sampling {
   double spacing = 0.0;  ///< sqrt of the area per point, median
   double noise = 0.0;    ///< distance of points to the plane of their neighbours, in spacings
