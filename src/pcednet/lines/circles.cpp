@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "pcednet/spatial/kd_tree.h"
+
 namespace pcednet::lines {
 namespace {
 
@@ -12,6 +14,30 @@ constexpr double kWholeTurn = 2.0 * std::numbers::pi;
 constexpr std::size_t kLeastArc = 5;     ///< nodes
 constexpr double kSmallestRadius = 1.2;  ///< in spacings
 constexpr double kMostOpen = 0.55;       ///< of a circle that is to be closed
+constexpr double kBlocking = 2.5;        ///< spacings from the end of a piece to a gap
+constexpr double kParallel = 0.97;       ///< least cosine of a facet and the axis
+constexpr double kOnCylinder = 1.2;      ///< spacings from a facet to the cylinder
+constexpr double kSymmetric = 0.3;       ///< of a facet's sides about the radius
+constexpr double kFacetReach = 6.0;      ///< spacings from the end of a facet to the circle
+
+/// The pieces as they are at first, by their first nodes and by their ends.
+struct Index {
+  explicit Index(const std::vector<Piece>& pieces);
+
+  spatial::KdTree starts, ends;  ///< of each piece its first node, and both ends
+  double largest_spacing = 0.0;
+};
+
+Index::Index(const std::vector<Piece>& pieces) : starts({}), ends({}) {
+  std::vector<Vec3> first_nodes, both_ends;
+  for (const Piece& piece : pieces) {
+    first_nodes.push_back(piece.nodes.front().at);
+    both_ends.insert(both_ends.end(), piece.ends.begin(), piece.ends.end());
+    largest_spacing = std::max(largest_spacing, piece.spacing());
+  }
+  starts = spatial::KdTree(first_nodes);
+  ends = spatial::KdTree(both_ends);
+}
 
 /// A wedge seen from the axis of a circle: the same all around it.
 ChainNode seen_from_axis(const Fit& circle, const ChainNode& node) {
@@ -77,33 +103,65 @@ std::vector<Gap> sort_about_axis(const Fit& circle, std::vector<ChainNode>& node
   return gaps;
 }
 
-bool is_blocked(const std::vector<Gap>& gaps, const std::vector<Piece>& pieces,
-                const std::vector<std::uint8_t>& joined) {
-  for (std::size_t j = 0; j < pieces.size(); ++j) {
-    if (joined[j] || pieces[j].closed || pieces[j].nodes.size() < kLeastArc) continue;
-    for (const Vec3& end : pieces[j].ends) {
-      for (const Gap& gap : gaps) {
-        const double reach = 2.5 * pieces[j].spacing();
-        if ((end - gap.from).norm() < reach || (end - gap.to).norm() < reach) return true;
+/// Whether a straight piece is no edge but a facet of the cylinder about the circle: parallel to
+/// the axis, at the distance of its radius, both its surfaces as steep.
+bool is_facet(const Fit& circle, const Piece& piece) {
+  if (piece.fit.kind != CurveKind::kSegment) return false;
+  if (std::abs(piece.fit.direction.dot(circle.direction)) < kParallel) return false;
+  const Vec3 offset = piece.middle().at - circle.point;
+  const Vec3 radial = offset - offset.dot(circle.direction) * circle.direction;
+  if (std::abs(radial.norm() - circle.radius) > kOnCylinder * piece.spacing()) return false;
+  Vec3 difference = Vec3::Zero();
+  for (const ChainNode& node : piece.nodes) difference += node.side_a - node.side_b;
+  const auto count = static_cast<double>(piece.nodes.size());
+  return std::abs(difference.dot(radial.normalized())) < kSymmetric * count;
+}
+
+/// Whether an end of another long piece is where a gap begins.
+bool is_blocked(const Fit& circle, const std::vector<Gap>& gaps, const std::vector<Piece>& pieces,
+                const Index& index, const std::vector<std::size_t>& joined) {
+  std::vector<spatial::Neighbour> near;
+  for (const Gap& gap : gaps) {
+    for (const Vec3& place : {gap.from, gap.to}) {
+      index.ends.within_unsorted(place, kBlocking * index.largest_spacing, near);
+      for (const auto& end : near) {
+        const std::size_t j = end.index / 2;
+        const Piece& other = pieces[j];
+        if (other.closed || other.nodes.size() < kLeastArc) continue;
+        if (std::binary_search(joined.begin(), joined.end(), j)) continue;
+        if (is_facet(circle, other)) continue;
+        if ((other.ends[end.index % 2] - place).norm() < kBlocking * other.spacing()) return true;
       }
     }
   }
   return false;
 }
 
-/// The circle that `arc` is of, with all pieces on it; nothing if it is not to be closed.
-std::optional<Piece> completed(const std::vector<Piece>& pieces, std::size_t arc, double tolerance,
-                               std::vector<std::uint8_t>& joined) {
-  Piece whole = pieces[arc];
-  joined.assign(pieces.size(), 0);
-  joined[arc] = 1;
-  const double far = whole.fit.radius + 3.0 * whole.spacing();
-  const double reach = 3.0 * tolerance;
-  for (std::size_t j = 0; j < pieces.size(); ++j) {
+/// The pieces on the circle of `arc`, itself among them, in their order.
+std::vector<std::size_t> pieces_on_circle(const std::vector<Piece>& pieces, const Index& index,
+                                          std::size_t arc, double reach) {
+  const Piece& whole = pieces[arc];
+  std::vector<spatial::Neighbour> near;
+  index.starts.within_unsorted(whole.fit.point, whole.fit.radius + 3.0 * whole.spacing(), near);
+  std::vector<std::size_t> found = {arc};
+  for (const auto& start : near) {
+    const std::size_t j = start.index;
     if (j == arc || pieces[j].closed) continue;
-    if ((pieces[j].nodes.front().at - whole.fit.point).norm() > far) continue;
-    joined[j] = lies_on(whole.fit, pieces[arc], pieces[j], reach);
-    if (!joined[j]) continue;
+    if (lies_on(whole.fit, whole, pieces[j], reach)) found.push_back(j);
+  }
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+/// The circle that `arc` is of, with all pieces on it (`joined`); nothing if it is not to be
+/// closed.
+std::optional<Piece> completed(const std::vector<Piece>& pieces, const Index& index,
+                               std::size_t arc, double tolerance,
+                               std::vector<std::size_t>& joined) {
+  Piece whole = pieces[arc];
+  joined = pieces_on_circle(pieces, index, arc, 3.0 * tolerance);
+  for (const std::size_t j : joined) {
+    if (j == arc) continue;
     whole.nodes.insert(whole.nodes.end(), pieces[j].nodes.begin(), pieces[j].nodes.end());
   }
   const Fit fit = fit_arc(whole.nodes);
@@ -113,7 +171,7 @@ std::optional<Piece> completed(const std::vector<Piece>& pieces, std::size_t arc
   double open = 0.0;
   for (const Gap& gap : gaps) open += gap.length;
   if (open > kMostOpen * kWholeTurn * fit.radius) return std::nullopt;
-  if (is_blocked(gaps, pieces, joined)) return std::nullopt;
+  if (is_blocked(fit, gaps, pieces, index, joined)) return std::nullopt;
   whole.closed = true;
   whole.ends = {whole.nodes.front().at, whole.nodes.front().at};
   return whole;
@@ -121,25 +179,44 @@ std::optional<Piece> completed(const std::vector<Piece>& pieces, std::size_t arc
 
 }  // namespace
 
+void drop_facets(std::vector<Piece>& pieces) {
+  const NodeIndex index(pieces);
+  std::vector<std::uint8_t> dropped(pieces.size(), 0);
+  std::vector<spatial::Neighbour> near;
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    if (pieces[i].fit.kind != CurveKind::kSegment) continue;
+    for (const Vec3& end : pieces[i].ends) {
+      index.tree.within_unsorted(end, kFacetReach * pieces[i].spacing(), near);
+      dropped[i] |= std::any_of(near.begin(), near.end(), [&](const auto& node) {
+        const Piece& other = pieces[index.piece[node.index]];
+        return other.closed && other.fit.kind == CurveKind::kArc && is_facet(other.fit, pieces[i]);
+      });
+    }
+  }
+  erase_marked(pieces, dropped);
+}
+
 void complete_circles(std::vector<Piece>& pieces, double tolerance) {
-  std::vector<std::uint8_t> gone(pieces.size(), 0), joined;
+  const Index index(pieces);
+  std::vector<std::uint8_t> gone(pieces.size(), 0);
+  std::vector<std::size_t> joined;
   for (const std::size_t i : longest_first(pieces)) {
     const Piece& piece = pieces[i];
     if (gone[i] || piece.closed || piece.fit.kind != CurveKind::kArc) continue;
     if (piece.nodes.size() < kLeastArc || piece.fit.radius < kSmallestRadius * piece.spacing()) {
       continue;
     }
-    auto circle = completed(pieces, i, tolerance, joined);
+    auto circle = completed(pieces, index, i, tolerance, joined);
     if (!circle) continue;
-    for (std::size_t j = 0; j < pieces.size(); ++j) {
-      if (joined[j] && j != i) {
-        gone[j] = 1;
-        pieces[j].closed = true;  // not to be joined again
-      }
+    for (const std::size_t j : joined) {
+      if (j == i) continue;
+      gone[j] = 1;
+      pieces[j].closed = true;  // not to be joined again
     }
     pieces[i] = std::move(*circle);
   }
   erase_marked(pieces, gone);
+  drop_facets(pieces);
 }
 
 }  // namespace pcednet::lines
