@@ -7,9 +7,11 @@
 
 #include "pcednet/lines/circles.h"
 #include "pcednet/lines/corners.h"
+#include "pcednet/lines/finish.h"
 #include "pcednet/lines/local_planes.h"
 #include "pcednet/lines/piece.h"
 #include "pcednet/lines/strings.h"
+#include "pcednet/lines/touch.h"
 
 namespace pcednet::lines {
 namespace {
@@ -180,6 +182,45 @@ TEST(Corners, AreNotWhereLinesMissEachOther) {
   const std::vector<Piece> pieces = {straight({2, 0, 0}, {20, 0, 0}),
                                      straight({0, 2, 3}, {0, 20, 3})};
   EXPECT_TRUE(find_corners(pieces, 9.0, 0.8).places.empty());
+}
+
+TEST(Corners, OfALineAndAnArcAreWhereTheyTouch) {
+  std::vector<Piece> pieces = {straight({10.2, -20, 0}, {10.2, 3, 0}), round_piece(0.4, 2.0)};
+  const Corners corners = find_corners(pieces, 9.0, 0.8);
+  ASSERT_EQ(corners.places.size(), 1u);
+  EXPECT_LT((corners.places[0] - Vec3(10.1, 0, 0)).norm(), 1e-6);
+  EXPECT_EQ(corners.of_ends[0][1], 0u);
+  EXPECT_EQ(corners.of_ends[1][0], 0u);
+}
+
+Fit circle(const Vec3& centre, double radius) {
+  return {CurveKind::kArc, centre, Vec3::UnitZ(), radius, 0.0};
+}
+
+TEST(TouchingPlace, IsOnTheLineThroughBothCentres) {
+  const auto outside = touching_place(circle({0, 0, 0}, 5), circle({8.2, 0, 0}, 3), {5, 1, 0}, 0.5);
+  ASSERT_TRUE(outside);
+  EXPECT_LT((*outside - Vec3(5.1, 0, 0)).norm(), 1e-9);
+  const auto inside = touching_place(circle({0, 0, 0}, 5), circle({-3, 0, 0}, 2), {-5, 1, 0}, 0.5);
+  ASSERT_TRUE(inside);
+  EXPECT_LT((*inside - Vec3(-5, 0, 0)).norm(), 1e-9);
+}
+
+TEST(TouchingPlace, IsNoneOfLinesOrCurvesThatCrossOrMiss) {
+  const Fit line{CurveKind::kSegment, {4, 0, 0}, Vec3::UnitY(), 0.0, 0.0};
+  EXPECT_FALSE(touching_place(line, line, {0, 0, 0}, 0.5));
+  EXPECT_FALSE(touching_place(line, circle({0, 0, 0}, 5), {4, 3, 0}, 0.5));
+  EXPECT_TRUE(touching_place(line, circle({0, 0, 0}, 4.1), {4, 1, 0}, 0.5));
+  EXPECT_FALSE(touching_place(circle({0, 0, 0}, 5), circle({0.5, 0, 0}, 5), {5, 0, 0}, 1.0));
+}
+
+TEST(Finish, DropsFreePiecesWithHardlyAnEdgePoint) {
+  Piece piece = straight({0, 0, 0}, {20, 0, 0});
+  for (ChainNode& node : piece.nodes) node.edge_points = 0.1;
+  const FinishOptions options = {.min_length = 3.0, .tolerance = kWithin, .noise = 0.0};
+  EXPECT_TRUE(finish({piece}, options).empty());
+  for (ChainNode& node : piece.nodes) node.edge_points = 1.0;
+  EXPECT_EQ(finish({piece}, options).size(), 1u);
 }
 
 TEST(LocalPlanes, AreThoseOfACorner) {

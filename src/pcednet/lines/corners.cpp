@@ -4,12 +4,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pcednet/lines/touch.h"
 #include "pcednet/spatial/kd_tree.h"
 
 namespace pcednet::lines {
 namespace {
 
 constexpr int kMeetSteps = 6;
+constexpr double kCornerReach = 9.0, kCornerTolerance = 0.8;
+constexpr double kTouch = 0.5;  ///< spacings between curves that touch
 constexpr double kPull = 1e-3;  ///< towards the ends, where curves are parallel
 
 class Meeting {
@@ -55,6 +58,11 @@ class Meeting {
 Vec3 Meeting::meet(const std::vector<std::size_t>& ends) const {
   Vec3 centre = Vec3::Zero();
   for (const std::size_t end : ends) centre += place_of(end) / static_cast<double>(ends.size());
+  if (ends.size() == 2) {
+    const Piece &a = piece_of(ends[0]), &b = piece_of(ends[1]);
+    if (const auto touch = touching_place(a.fit, b.fit, centre, kTouch * a.spacing()))
+      return *touch;
+  }
   Vec3 place = centre;
   for (int step = 0; step < kMeetSteps; ++step) {
     Mat3 left = kPull * Mat3::Identity();
@@ -170,6 +178,10 @@ Corners Meeting::solve() {
 
 Corners find_corners(const std::vector<Piece>& pieces, double reach, double tolerance) {
   return Meeting(pieces, reach, tolerance).solve();
+}
+
+Corners find_corners(const std::vector<Piece>& pieces, double noise) {
+  return find_corners(pieces, kCornerReach, kCornerTolerance + noise);
 }
 
 }  // namespace pcednet::lines

@@ -18,4 +18,7 @@ struct Corners {
 /// are in spacings. Then ends that stop short of the inside of another piece are moved to it.
 Corners find_corners(const std::vector<Piece>& pieces, double reach, double tolerance);
 
+/// With the reach and tolerance of points of this noise (in spacings).
+Corners find_corners(const std::vector<Piece>& pieces, double noise);
+
 }  // namespace pcednet::lines

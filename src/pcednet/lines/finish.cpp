@@ -15,8 +15,9 @@ namespace {
 // In spacings; the second number is added per spacing of noise.
 constexpr double kLoose[] = {8.0, 24.0};     ///< length of a piece that no corner holds
 constexpr double kHeldOnce[] = {4.0, 12.0};  ///< and of one that ends free
-constexpr double kCornerReach = 9.0;
-constexpr double kCornerTolerance = 0.8;
+
+/// Edge points per spacing: pieces with fewer are kept only if corners hold both their ends.
+constexpr double kFewEdgePoints = 0.25;
 
 /// Surfaces that bend by more are rounded at the edge unless as many of its points are sharp-edge.
 constexpr double kBend = 0.08, kFewSharp = 0.1;
@@ -83,8 +84,11 @@ Curve curve_of(const Piece& piece, const std::array<Vec3, 2>& ends, const Finish
   return curve;
 }
 
-Corners corners_of(const std::vector<Piece>& pieces, double noise) {
-  return find_corners(pieces, kCornerReach, kCornerTolerance + noise);
+/// Whether the piece hangs on points that are nearly all of no edge class.
+bool has_few_edge_points(const Piece& piece) {
+  double edge_points = 0.0;
+  for (const ChainNode& node : piece.nodes) edge_points += node.edge_points;
+  return edge_points < kFewEdgePoints * length_of(piece) / piece.spacing();
 }
 
 /// True if a piece was dropped.
@@ -97,6 +101,7 @@ bool drop_loose(std::vector<Piece>& pieces, const Corners& corners, double noise
              return corner != Corners::kNoCorner;
            });
            if (held == 2) return false;
+           if (has_few_edge_points(piece)) return true;
            const double* least = held == 0 ? kLoose : kHeldOnce;
            return length_of(piece) < (least[0] + least[1] * noise) * piece.spacing();
          }) > 0;
@@ -122,8 +127,8 @@ EdgeClass class_of(const Piece& piece, double noise) {
 }
 
 std::vector<Curve> finish(std::vector<Piece> pieces, const FinishOptions& options) {
-  Corners corners = corners_of(pieces, options.noise);
-  if (drop_loose(pieces, corners, options.noise)) corners = corners_of(pieces, options.noise);
+  Corners corners = find_corners(pieces, options.noise);
+  if (drop_loose(pieces, corners, options.noise)) corners = find_corners(pieces, options.noise);
   std::vector<Curve> curves;
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     std::array<Vec3, 2> ends = pieces[i].ends;
