@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "pcednet/core/random.h"
+#include "pcednet/lines/bridge.h"
 #include "pcednet/lines/circles.h"
 #include "pcednet/lines/corners.h"
 #include "pcednet/lines/finish.h"
@@ -212,6 +214,47 @@ TEST(TouchingPlace, IsNoneOfLinesOrCurvesThatCrossOrMiss) {
   EXPECT_FALSE(touching_place(line, circle({0, 0, 0}, 5), {4, 3, 0}, 0.5));
   EXPECT_TRUE(touching_place(line, circle({0, 0, 0}, 4.1), {4, 1, 0}, 0.5));
   EXPECT_FALSE(touching_place(circle({0, 0, 0}, 5), circle({0.5, 0, 0}, 5), {5, 0, 0}, 1.0));
+}
+
+/// Points one apart on a strip along x, but for those with `from` < x < `to`.
+struct Strip {
+  std::vector<Vec3> positions, normals;
+  std::vector<std::uint8_t> classes;
+
+  explicit Strip(double from = 0.0, double to = 0.0) {
+    Random random(7);
+    for (int i = 0; i < 1200; ++i) {
+      const Vec3 place(100.0 * random.uniform(), 12.0 * random.uniform() - 6.0, 0.0);
+      if (place.x() > from && place.x() < to) continue;
+      positions.push_back(place);
+      normals.push_back(Vec3::UnitZ());
+      classes.push_back(kNonEdge);
+    }
+  }
+};
+
+std::size_t bridged(std::vector<Piece> pieces, const Strip& strip = Strip()) {
+  const OrderedPoints cloud({strip.positions, strip.normals, strip.classes});
+  bridge_gaps(pieces, cloud, {.tolerance = kWithin, .noise = 0.0});
+  return pieces.size();
+}
+
+TEST(Bridges, JoinTwoPiecesOfOneLineOverAWideGap) {
+  const Piece left = straight({5, 0, 0}, {25, 0, 0}), right = straight({45, 0, 0}, {70, 0, 0});
+  EXPECT_EQ(bridged({left, right}), 1u);
+  EXPECT_EQ(bridged({right, left}), 1u);
+  EXPECT_EQ(bridged({left, straight({70, 0, 0}, {45, 0, 0})}), 1u);
+  EXPECT_EQ(bridged({left, right, straight({85, 0, 0}, {95, 0, 0})}), 1u);
+}
+
+TEST(Bridges, AreNotBuiltWithoutReason) {
+  const Piece left = straight({5, 0, 0}, {25, 0, 0}), right = straight({45, 0, 0}, {70, 0, 0});
+  EXPECT_EQ(bridged({left, right}, Strip(27, 43)), 2u) << "no surface";
+  EXPECT_EQ(bridged({left, straight({25, 5, 0}, {25, 1, 0}), right}), 3u) << "a corner";
+  EXPECT_EQ(bridged({left, straight({45, 3, 0}, {70, 3, 0})}), 2u) << "another line";
+  EXPECT_EQ(bridged({left, straight({60, 0, 0}, {90, 0, 0})}), 2u) << "too wide";
+  EXPECT_EQ(bridged({straight({15, 0, 0}, {20, 0, 0}), straight({45, 0, 0}, {50, 0, 0})}), 2u);
+  EXPECT_EQ(bridged({left, straight({45, 0, 0}, {70, 0, 0}, Vec3::UnitY(), Vec3::UnitZ())}), 2u);
 }
 
 TEST(Finish, DropsFreePiecesWithHardlyAnEdgePoint) {

@@ -8,6 +8,7 @@
 
 #include "pcednet/core/error.h"
 #include "pcednet/core/parallel.h"
+#include "pcednet/lines/bridge.h"
 #include "pcednet/lines/chain.h"
 #include "pcednet/lines/circles.h"
 #include "pcednet/lines/crease.h"
@@ -106,6 +107,7 @@ std::vector<Curve> find_lines(const EdgePoints& points, const LineOptions& optio
   std::vector<Piece> pieces = split_chains(chains, limits.tolerance, progress);
   join_pieces(pieces, limits.gap, limits.tolerance);
   complete_circles(pieces, limits.tolerance);
+  bridge_gaps(pieces, cloud, {limits.tolerance, sampling.noise});
   string_together(pieces, limits.gap, limits.angle);
   refine(pieces, cloud, sampling, progress);
   if (options.regularise) regularise(pieces);

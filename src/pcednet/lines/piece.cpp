@@ -12,6 +12,7 @@ namespace pcednet::lines {
 namespace {
 
 constexpr double kOneWedge = 0.7;            ///< least cosine of sides
+constexpr double kFacing = 0.5;              ///< least cosine of the ends of joined pieces
 constexpr double kSameDirectionTwice = 0.7;  ///< of an edge and its copy
 constexpr double kDuplicate = 1.2;           ///< spacings between copies of one edge
 
@@ -56,7 +57,7 @@ std::optional<Piece> try_join(const Piece& a, const Piece& b, double gap, double
   const ChainNode &end = a.nodes.back(), &start = b.nodes.front();
   const Vec3 offset = start.at - end.at;
   const double reach = std::max(gap, 2.0 * end.spacing);
-  if (offset.norm() > reach || end.along.dot(start.along) < 0.5) return std::nullopt;
+  if (offset.norm() > reach || end.along.dot(start.along) < kFacing) return std::nullopt;
   if (offset.dot(end.along) < -1.5 * end.spacing || !same_wedge(end, start)) return std::nullopt;
   return joined(a, b, tolerance);
 }
@@ -225,6 +226,17 @@ std::vector<Piece> pieces_of(const Chain& chain, const std::vector<Run>& runs,
     pieces.push_back(std::move(piece));
   }
   return pieces;
+}
+
+std::optional<Piece> joined_at(const Piece& a, std::size_t side_a, const Piece& b,
+                               std::size_t side_b, double tolerance) {
+  const Piece first = side_a == 1 ? a : reversed(a), second = side_b == 0 ? b : reversed(b);
+  const Vec3 &end = first.ends[1], &start = second.ends[0];
+  const Vec3 out = outward(first, 1), on = -outward(second, 0);
+  if (out.dot(on) < kFacing) return std::nullopt;
+  const double back = std::min((start - end).dot(out), (start - end).dot(on));
+  if (back < -first.spacing()) return std::nullopt;
+  return joined(first, second, tolerance);
 }
 
 void join_pieces(std::vector<Piece>& pieces, double gap, double tolerance) {

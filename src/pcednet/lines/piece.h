@@ -82,6 +82,11 @@ std::vector<Piece> pieces_of(const Chain& chain, const std::vector<Run>& runs,
 /// Length between the ends.
 double length_of(const Piece& piece);
 
+/// Both as one, joined at these ends, which may face each other at any distance; nothing if no
+/// segment or arc fits them together. `tolerance` is in spacings.
+std::optional<Piece> joined_at(const Piece& a, std::size_t side_a, const Piece& b,
+                               std::size_t side_b, double tolerance);
+
 /// Joins pieces that lie on one line or circle and continue each other over gaps up to `gap`, and
 /// drops those that lie on a longer one. `tolerance` is in spacings.
 void join_pieces(std::vector<Piece>& pieces, double gap, double tolerance);
