@@ -235,6 +235,37 @@ TEST(Sampling, IsMeasuredAtAllPointsIfAllAreOfAnEdge) {
   EXPECT_NEAR(measured().spacing, cloud.spacing, 0.1 * cloud.spacing);
 }
 
+/// Two walls and a chamfer between them, along y; points about one apart, the chamfer labelled.
+Cloud chamfer(double from_corner) {
+  Random random(6);
+  Cloud cloud{.spacing = 1.0};
+  const double width = std::sqrt(2.0) * from_corner, length = 60.0, wall = 10.0;
+  const auto at = [&] { return length * random.uniform(); };
+  for (int i = 0; i < static_cast<int>(length * wall); ++i) {
+    cloud.add({from_corner + wall * random.uniform(), at(), 0.0}, Vec3::UnitZ(), false);
+    cloud.add({0.0, at(), from_corner + wall * random.uniform()}, Vec3::UnitX(), false);
+  }
+  for (int i = 0; i < static_cast<int>(length * width); ++i) {
+    const double x = from_corner * random.uniform();
+    cloud.add({x, at(), from_corner - x}, Vec3(1, 0, 1).normalized(), true);
+  }
+  return cloud;
+}
+
+TEST(Creases, OfAChamferAreNotWhereItsNeighboursWouldMeet) {
+  constexpr double kFromCorner = 2.2;
+  const Cloud cloud = chamfer(kFromCorner);
+  const OrderedPoints points({cloud.positions, cloud.normals, cloud.classes});
+  std::size_t on_edges = 0, in_the_air = 0;
+  for (const Crease& crease : find_creases(points, {.spacing = 1.0, .noise = 0.0}, nullptr)) {
+    const double x = crease.at.x(), z = crease.at.z();
+    on_edges += std::hypot(std::max(x, z) - kFromCorner, std::min(x, z)) < 0.5;
+    in_the_air += std::hypot(x, z) < 0.5;
+  }
+  EXPECT_GT(on_edges, 50u);
+  EXPECT_EQ(in_the_air, 0u);
+}
+
 TEST(FindLines, StayFiniteOnAnyPoints) {
   Random random(5);
   Cloud cloud;

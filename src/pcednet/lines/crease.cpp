@@ -80,6 +80,12 @@ Sampling measure_sampling(const OrderedPoints& cloud) {
 
 namespace {
 
+/// In spacings.
+struct Tolerances {
+  double plane;  ///< from a plane to its points
+  double first;  ///< from a crease to the nearest points of a side
+};
+
 /// The wedge that two planes make at the edge point, which is the origin; all in spacings.
 struct Wedge {
   Vec3 at, along, side_a, side_b;
@@ -87,11 +93,12 @@ struct Wedge {
 };
 
 /// The direction from the line into `plane` on which its points are near the line's point `at`, or
-/// none if they are on both sides or too few.
+/// none if they are on both sides, too few, or all far from it: beyond a chamfer or a fillet.
 std::optional<Vec3> side_of(const LocalPlane& plane, const Vec3& at, const Vec3& along,
-                            const NearPoints& points, double tolerance) {
+                            const NearPoints& points, const Tolerances& within) {
+  const auto [tolerance, first] = within;
   const Vec3 side = along.cross(plane.normal).normalized();
-  double before = 0.0, after = 0.0;
+  double before = 0.0, after = 0.0, nearest = kSideReach;
   for (std::size_t i = 0; i < points.count; ++i) {
     const Vec3 offset = points.offset(i) - at;
     if (std::abs(offset.dot(along)) > kSliceAlong) continue;
@@ -99,15 +106,16 @@ std::optional<Vec3> side_of(const LocalPlane& plane, const Vec3& at, const Vec3&
     const double place = offset.dot(side);
     if (std::abs(place) < std::max(kLeastFromLine, 1.5 * tolerance) || std::abs(place) > kSideReach)
       continue;
+    nearest = std::min(nearest, std::abs(place));
     (place < 0.0 ? before : after) += 1.0;
   }
-  if (std::max(before, after) < 2.0) return std::nullopt;
+  if (std::max(before, after) < 2.0 || nearest > first) return std::nullopt;
   if (std::min(before, after) > 0.25 * std::max(before, after)) return std::nullopt;
   return before > after ? Vec3(-side) : side;
 }
 
 std::optional<Wedge> wedge_of(const LocalPlane& a, const LocalPlane& b, const NearPoints& points,
-                              double tolerance) {
+                              const Tolerances& within) {
   const double cosine = a.normal.dot(b.normal);
   const double sq_sine = 1.0 - cosine * cosine;
   if (sq_sine < std::pow(std::sin(kLeastAngle), 2)) return std::nullopt;
@@ -116,8 +124,8 @@ std::optional<Wedge> wedge_of(const LocalPlane& a, const LocalPlane& b, const Ne
                   sq_sine;
   if (at.norm() > kFarthest) return std::nullopt;
   const Vec3 along = a.normal.cross(b.normal).normalized();
-  const auto side_a = side_of(a, at, along, points, tolerance);
-  const auto side_b = side_of(b, at, along, points, tolerance);
+  const auto side_a = side_of(a, at, along, points, within);
+  const auto side_b = side_of(b, at, along, points, within);
   if (!side_a || !side_b) return std::nullopt;
   return Wedge{at, along, *side_a, *side_b, std::sqrt(sq_sine) - 0.5 * at.norm()};
 }
@@ -156,13 +164,13 @@ double bend_of(const Wedge& wedge, const NearPoints& points, double tolerance) {
 }
 
 /// The best wedge of all pairs of planes.
-std::optional<Wedge> best_wedge(const NearPoints& points, double tolerance) {
+std::optional<Wedge> best_wedge(const NearPoints& points, const Tolerances& within) {
   std::vector<LocalPlane> planes;
-  find_planes(points, tolerance, planes);
+  find_planes(points, within.plane, planes);
   std::optional<Wedge> best;
   for (std::size_t a = 0; a < planes.size(); ++a) {
     for (std::size_t b = a + 1; b < planes.size(); ++b) {
-      const auto wedge = wedge_of(planes[a], planes[b], points, tolerance);
+      const auto wedge = wedge_of(planes[a], planes[b], points, within);
       if (wedge && (!best || wedge->score > best->score)) best = wedge;
     }
   }
@@ -170,7 +178,8 @@ std::optional<Wedge> best_wedge(const NearPoints& points, double tolerance) {
 }
 
 std::optional<Crease> crease_at(const OrderedPoints& cloud, std::uint32_t i,
-                                std::span<const spatial::Neighbour> others, double tolerance) {
+                                std::span<const spatial::Neighbour> others,
+                                const Tolerances& within) {
   const double spacing = spacing_of(others);
   if (!(spacing > 0.0)) return std::nullopt;
   NearPoints near_points;
@@ -179,7 +188,7 @@ std::optional<Crease> crease_at(const OrderedPoints& cloud, std::uint32_t i,
     near_points.add((cloud.position(near.index) - cloud.position(i)) / spacing,
                     cloud.normal(near.index), cloud.probability(near.index));
   }
-  const auto wedge = best_wedge(near_points, tolerance);
+  const auto wedge = best_wedge(near_points, within);
   if (!wedge) return std::nullopt;
   return Crease{.at = cloud.position(i) + spacing * wedge->at,
                 .along = wedge->along,
@@ -187,7 +196,7 @@ std::optional<Crease> crease_at(const OrderedPoints& cloud, std::uint32_t i,
                 .side_b = wedge->side_b,
                 .spacing = spacing,
                 .probability = cloud.probability(i),
-                .bend = static_cast<float>(bend_of(*wedge, near_points, tolerance)),
+                .bend = static_cast<float>(bend_of(*wedge, near_points, within.plane)),
                 .edge_class = cloud.edge_class(i)};
 }
 
@@ -239,11 +248,12 @@ std::vector<Crease> find_creases(const OrderedPoints& cloud, const Sampling& sam
                                  const Progress* progress) {
   const std::vector<std::uint32_t> points = points_near_edges(cloud, sampling.noise, progress);
   const auto others = static_cast<std::size_t>(39.0 + 80.0 * sampling.noise);
-  const double tolerance = 0.3 + 1.1 * sampling.noise;
+  const Tolerances within = {.plane = 0.3 + 1.1 * sampling.noise,
+                             .first = 2.0 + 2.0 * sampling.noise};
   Stage stage(progress, "creases", points.size());
   return creases_at(cloud, points, others, stage,
                     [&](std::uint32_t point, std::span<const spatial::Neighbour> near) {
-                      return crease_at(cloud, point, near, tolerance);
+                      return crease_at(cloud, point, near, within);
                     });
 }
 
