@@ -22,7 +22,7 @@ struct Classification {
   std::vector<float> p_smooth = {};        ///< of smooth-edge; 0 throughout with a two-class model
   ClassCounts counts = {};
   double s_min = 0.0, s_max = 0.0;  ///< the scales of the description; 0 if it was given
-  std::string note = {};  ///< for the user, or empty
+  std::string note = {};            ///< for the user, or empty
 };
 
 /// `points` points that are all unlabelled.
