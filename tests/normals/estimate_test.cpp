@@ -106,6 +106,23 @@ TEST(Estimate, TakesMoreNeighboursWhereThereIsNoise) {
   EXPECT_EQ(mean_angle(0), mean_angle(48));
 }
 
+TEST(Estimate, SeesASurfaceThroughNoiseOfItsSpacing) {
+  Random random(9);
+  std::vector<Vec3> positions;  // spacing 1, within which 12 neighbours are a ball
+  for (int i = 0; i < 4000; ++i) {
+    positions.emplace_back(63 * random.uniform(), 63 * random.uniform(), 1.5 * random.normal());
+  }
+  const auto share_beyond_a_radian = [&](int neighbours) {
+    const auto normals = estimate_normals(positions, {.neighbours = neighbours});
+    const auto beyond = std::count_if(normals.begin(), normals.end(), [](const Vec3& n) {
+      return angle_between_lines(n, Vec3::UnitZ()) > 1.0;
+    });
+    return static_cast<double>(beyond) / static_cast<double>(normals.size());
+  };
+  EXPECT_GT(share_beyond_a_radian(12), 0.4);
+  EXPECT_LT(share_beyond_a_radian(0), 0.25);
+}
+
 TEST(Estimate, TakesFewNeighboursWhereTheSurfaceBends) {
   const Shape coarse = sphere(300, 1.0);  // thickness above 0.01 at 12 neighbours
   EXPECT_EQ(make_neighbour_graph(coarse.positions, 0, nullptr).degree, 12u);

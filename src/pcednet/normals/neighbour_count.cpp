@@ -17,6 +17,7 @@ namespace {
 constexpr std::array<std::size_t, 3> kCounts = {12, 24, 48};
 
 constexpr double kClean = 0.01;  ///< median thickness
+constexpr double kBall = 0.4;    ///< median thickness of neighbourhoods that show no surface
 constexpr double kExactShare = 0.2;
 
 /// Of a sample of the points.
@@ -67,12 +68,14 @@ NeighbourChoice choose_neighbours(std::span<const Vec3> points,
   if (points.size() <= kCounts.back()) return {};
   const Measures measures = measure(points, search);
   if (measures.thickness[0] <= kClean) return {};
+  const bool has_exact_planes = measures.exact >= kExactShare;
+  if (measures.thickness[0] >= kBall && !has_exact_planes) return {.neighbours = kCounts.back()};
   std::size_t chosen = 0;
   while (chosen + 1 < kCounts.size() &&
          measures.thickness[chosen + 1] < measures.thickness[chosen]) {
     ++chosen;
   }
-  return {kCounts[chosen], measures.exact >= kExactShare};
+  return {kCounts[chosen], has_exact_planes};
 }
 
 }  // namespace pcednet::normals
