@@ -120,7 +120,7 @@ TEST(Estimate, SeesASurfaceThroughNoiseOfItsSpacing) {
     return static_cast<double>(beyond) / static_cast<double>(normals.size());
   };
   EXPECT_GT(share_beyond_a_radian(12), 0.4);
-  EXPECT_LT(share_beyond_a_radian(0), 0.25);
+  EXPECT_LT(share_beyond_a_radian(0), 0.1);
 }
 
 TEST(Estimate, TakesFewNeighboursWhereTheSurfaceBends) {
