@@ -1,7 +1,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <numbers>
 #include <numeric>
 
@@ -53,20 +52,11 @@ std::optional<Crease> boundary_at(const OrderedPoints& cloud, std::size_t i,
                 .edge_class = kBoundary};
 }
 
-/// The points of class boundary; all, if none has it.
-std::vector<std::uint32_t> points_to_try(const OrderedPoints& cloud) {
-  std::vector<std::uint32_t> all(cloud.size());
-  std::iota(all.begin(), all.end(), 0u);
-  std::vector<std::uint32_t> boundary;
-  std::copy_if(all.begin(), all.end(), std::back_inserter(boundary),
-               [&](std::uint32_t i) { return cloud.edge_class(i) == kBoundary; });
-  return boundary.empty() ? all : boundary;
-}
-
 }  // namespace
 
 std::vector<Crease> find_boundaries(const OrderedPoints& cloud, const Progress* progress) {
-  const std::vector<std::uint32_t> points = points_to_try(cloud);
+  std::vector<std::uint32_t> points(cloud.size());
+  std::iota(points.begin(), points.end(), 0u);
   Stage stage(progress, "boundaries", points.size());
   return creases_at(cloud, points, kNeighbours, stage,
                     [&](std::uint32_t point, std::span<const spatial::Neighbour> others) {

@@ -47,8 +47,7 @@ std::vector<Crease> find_creases(const OrderedPoints& cloud, const Sampling& sam
                                  const Progress* progress);
 
 /// Where the surface ends: beside points that have no neighbours on one side, the line along which
-/// it ends. Tries the points of class boundary; all, if none has it. Both sides of such a crease
-/// point into the surface.
+/// it ends. Both sides of such a crease point into the surface.
 std::vector<Crease> find_boundaries(const OrderedPoints& cloud, const Progress* progress);
 
 }  // namespace pcednet::lines

@@ -16,8 +16,7 @@ struct LineOptions {
   double angle = 30.0;      ///< degrees: curves are split where they bend by more
   double tolerance = 0.0;   ///< of the points to a curve; 0: 0.2 spacings, more with noise
   bool regularise = false;  ///< turns nearly parallel and nearly orthogonal segments so
-  bool boundaries = false;  ///< also lines where the sampled surface ends, at the points of
-                            ///< class boundary if there are any
+  bool boundaries = false;  ///< also lines where the sampled surface ends
 };
 
 /// The points and what is known of each, in any order. The spans are equally long; the
