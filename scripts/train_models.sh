@@ -23,7 +23,7 @@ for model in ${*:-general scan cad worn}; do
     done
     # shellcheck disable=SC2086  # one argument for each folder
     $pcednet train $clouds -o models/general.safetensors --natural --scales 8 --s-max-ratio 8 \
-      --gate 0.4 --second-gate -0.3 --width 18 --context --keep-orientation --seed 1 --overwrite
+      --gate 0.4 --second-gate -0.3 --width 32 --distil 2 --context --keep-orientation --seed 1 --overwrite
     ;;
   scan)
     generate default 1

@@ -65,7 +65,7 @@ std::vector<CadRecipe> varied_part_recipes(std::uint64_t seed) {
 }
 
 std::vector<Recipe> thinned_recipes(std::uint64_t seed) {
-  constexpr std::size_t kBlocks = 72;
+  constexpr std::size_t kBlocks = 36;
   std::vector<Recipe> recipes;
   for (std::size_t i = 0; i < kBlocks; ++i) {
     Random random(seed, 49000 + i);
