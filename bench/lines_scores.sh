@@ -11,6 +11,7 @@ pcednet=$(dirname "$0")/../build/release/bin/pcednet
 [ -d "$folder/curves" ] || "$pcednet" generate lines "$folder" --seed "$seed" >/dev/null 2>&1
 for cloud in "$folder"/*.ply; do
   name=$(basename "$cloud" .ply)
+  [ -f "$folder/curves/$name.obj" ] || continue  # a part without edges
   case $name in
     roof*) kind=roof boundaries=--boundaries ;;
     *_noisy) kind=noisy boundaries= ;;

@@ -253,7 +253,7 @@ Cloud chamfer(double from_corner) {
 }
 
 TEST(Creases, OfAChamferAreNotWhereItsNeighboursWouldMeet) {
-  constexpr double kFromCorner = 2.2;
+  constexpr double kFromCorner = 2.6;
   const Cloud cloud = chamfer(kFromCorner);
   const OrderedPoints points({cloud.positions, cloud.normals, cloud.classes});
   std::size_t on_edges = 0, in_the_air = 0;

@@ -1,6 +1,7 @@
 #include "pcednet/lines/bridge.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "pcednet/lines/corners.h"
@@ -14,8 +15,8 @@ constexpr double kOnSurface = 1.2;  ///< of a point of the cloud from a place of
 constexpr double kBetween = 1.0;    ///< from such a place to the next
 
 struct Bridge {
-  std::size_t a, b;  ///< ends
-  double gap;        ///< in spacings
+  End a, b;
+  double gap;  ///< in spacings
 };
 
 /// Whether points of the cloud follow the joined curve from one place to the other.
@@ -32,26 +33,45 @@ bool surface_between(const Fit& fit, const Vec3& from, const Vec3& to, double sp
   return 5 * there >= 4 * (steps - 1);
 }
 
-std::vector<Bridge> bridges_of(const std::vector<Piece>& pieces, const std::vector<End>& ends) {
+/// Which ends of each piece are in no corner.
+using FreeEnds = std::vector<std::array<bool, 2>>;
+
+FreeEnds free_ends(const std::vector<Piece>& pieces, double noise) {
+  const Corners corners = find_corners(pieces, noise);
+  FreeEnds free(pieces.size());
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    const bool open = !pieces[i].closed && pieces[i].fit.kind != CurveKind::kPolyline;
+    for (const std::size_t side : {0, 1}) {
+      free[i][side] = open && corners.of_ends[i][side] == Corners::kNoCorner;
+    }
+  }
+  return free;
+}
+
+/// Pairs of free ends of one wedge, those nearest to each other first. The longer piece comes
+/// first.
+std::vector<Bridge> bridges_of(const std::vector<Piece>& pieces, const FreeEnds& free) {
+  std::vector<End> ends = open_ends(pieces);
+  std::erase_if(ends, [&](const End& end) { return !free[end.piece][end.side]; });
   std::vector<Vec3> places;
   for (const auto& [piece, side] : ends) places.push_back(pieces[piece].ends[side]);
   const spatial::KdTree tree(places);
   std::vector<Bridge> bridges;
   std::vector<spatial::Neighbour> near;
-  for (std::size_t a = 0; a < ends.size(); ++a) {
-    const Piece& piece = pieces[ends[a].piece];
-    const double spacing = piece.spacing();
-    tree.within(places[a], kWidest * spacing, near);
-    const Vec3 out = outward(piece, ends[a].side);
+  for (std::size_t e = 0; e < ends.size(); ++e) {
+    const Piece& piece = pieces[ends[e].piece];
+    const double spacing = piece.spacing(), length = length_of(piece);
+    tree.within(places[e], std::min(kWidest * spacing, 2.0 * length), near);
+    const Vec3 out = outward(piece, ends[e].side);
     for (const auto& other : near) {
-      const std::size_t b = other.index;
-      const Piece& next = pieces[ends[b].piece];
-      if (b <= a || ends[a].piece == ends[b].piece) continue;
-      const double gap = std::sqrt(other.sq_distance) / spacing;
-      if (gap * spacing > length_of(piece) + length_of(next)) continue;
-      if (!same_wedge(node_at(piece, ends[a].side), node_at(next, ends[b].side))) continue;
-      if ((places[b] - places[a]).dot(out) < -spacing) continue;
-      bridges.push_back({a, b, gap});
+      const Piece& next = pieces[ends[other.index].piece];
+      const double its_length = length_of(next), gap = std::sqrt(other.sq_distance);
+      if (its_length > length || (its_length == length && other.index <= e)) continue;
+      if (ends[e].piece == ends[other.index].piece || gap > length + its_length) continue;
+      if (!same_wedge(node_at(piece, ends[e].side), node_at(next, ends[other.index].side)))
+        continue;
+      if ((places[other.index] - places[e]).dot(out) < -spacing) continue;
+      bridges.push_back({ends[e], ends[other.index], gap / spacing});
     }
   }
   std::stable_sort(bridges.begin(), bridges.end(),
@@ -59,36 +79,27 @@ std::vector<Bridge> bridges_of(const std::vector<Piece>& pieces, const std::vect
   return bridges;
 }
 
-/// The ends that no corner holds, of pieces on a line or circle.
-std::vector<End> free_ends(const std::vector<Piece>& pieces, double noise) {
-  const Corners corners = find_corners(pieces, noise);
-  std::vector<End> ends = open_ends(pieces);
-  std::erase_if(ends, [&](const End& end) {
-    return pieces[end.piece].fit.kind == CurveKind::kPolyline ||
-           corners.of_ends[end.piece][end.side] != Corners::kNoCorner;
-  });
-  return ends;
-}
-
-bool bridge_once(std::vector<Piece>& pieces, const OrderedPoints& cloud,
-                 const BridgeOptions& options) {
-  const std::vector<End> ends = free_ends(pieces, options.noise);
+/// One pass of bridges, no piece in two of them; true if there was one.
+bool bridge_once(std::vector<Piece>& pieces, FreeEnds& free, const OrderedPoints& cloud,
+                 double tolerance) {
   std::vector<std::uint8_t> changed(pieces.size(), 0), gone(pieces.size(), 0);
   bool any = false;
-  for (const Bridge& bridge : bridges_of(pieces, ends)) {
-    const End &a = ends[bridge.a], &b = ends[bridge.b];
+  for (const auto& [a, b, gap] : bridges_of(pieces, free)) {
     if (changed[a.piece] || changed[b.piece]) continue;
-    auto both = joined_at(pieces[a.piece], a.side, pieces[b.piece], b.side, options.tolerance);
-    if (!both) continue;
-    if (!surface_between(both->fit, pieces[a.piece].ends[a.side], pieces[b.piece].ends[b.side],
-                         pieces[a.piece].spacing(), cloud)) {
+    const Piece &from = pieces[a.piece], &to = pieces[b.piece];
+    auto both = joined_at(from, a.side, to, b.side, tolerance);
+    if (!both ||
+        !surface_between(both->fit, from.ends[a.side], to.ends[b.side], from.spacing(), cloud)) {
       continue;
     }
     pieces[a.piece] = std::move(*both);
+    free[a.piece] = {free[a.piece][1 - a.side], free[b.piece][1 - b.side]};
     changed[a.piece] = changed[b.piece] = gone[b.piece] = 1;
     any = true;
   }
   erase_marked(pieces, gone);
+  std::size_t i = 0;
+  std::erase_if(free, [&](const auto&) { return gone[i++] != 0; });
   return any;
 }
 
@@ -96,7 +107,8 @@ bool bridge_once(std::vector<Piece>& pieces, const OrderedPoints& cloud,
 
 void bridge_gaps(std::vector<Piece>& pieces, const OrderedPoints& cloud,
                  const BridgeOptions& options) {
-  while (bridge_once(pieces, cloud, options)) {
+  FreeEnds free = free_ends(pieces, options.noise);
+  while (bridge_once(pieces, free, cloud, options.tolerance)) {
   }
 }
 

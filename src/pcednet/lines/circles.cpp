@@ -15,10 +15,6 @@ constexpr std::size_t kLeastArc = 5;     ///< nodes
 constexpr double kSmallestRadius = 1.2;  ///< in spacings
 constexpr double kMostOpen = 0.55;       ///< of a circle that is to be closed
 constexpr double kBlocking = 2.5;        ///< spacings from the end of a piece to a gap
-constexpr double kParallel = 0.97;       ///< least cosine of a facet and the axis
-constexpr double kOnCylinder = 1.2;      ///< spacings from a facet to the cylinder
-constexpr double kSymmetric = 0.3;       ///< of a facet's sides about the radius
-constexpr double kFacetReach = 6.0;      ///< spacings from the end of a facet to the circle
 
 /// The pieces as they are at first, by their first nodes and by their ends.
 struct Index {
@@ -103,23 +99,9 @@ std::vector<Gap> sort_about_axis(const Fit& circle, std::vector<ChainNode>& node
   return gaps;
 }
 
-/// Whether a straight piece is no edge but a facet of the cylinder about the circle: parallel to
-/// the axis, at the distance of its radius, both its surfaces as steep.
-bool is_facet(const Fit& circle, const Piece& piece) {
-  if (piece.fit.kind != CurveKind::kSegment) return false;
-  if (std::abs(piece.fit.direction.dot(circle.direction)) < kParallel) return false;
-  const Vec3 offset = piece.middle().at - circle.point;
-  const Vec3 radial = offset - offset.dot(circle.direction) * circle.direction;
-  if (std::abs(radial.norm() - circle.radius) > kOnCylinder * piece.spacing()) return false;
-  Vec3 difference = Vec3::Zero();
-  for (const ChainNode& node : piece.nodes) difference += node.side_a - node.side_b;
-  const auto count = static_cast<double>(piece.nodes.size());
-  return std::abs(difference.dot(radial.normalized())) < kSymmetric * count;
-}
-
 /// Whether an end of another long piece is where a gap begins.
-bool is_blocked(const Fit& circle, const std::vector<Gap>& gaps, const std::vector<Piece>& pieces,
-                const Index& index, const std::vector<std::size_t>& joined) {
+bool is_blocked(const std::vector<Gap>& gaps, const std::vector<Piece>& pieces, const Index& index,
+                const std::vector<std::size_t>& joined) {
   std::vector<spatial::Neighbour> near;
   for (const Gap& gap : gaps) {
     for (const Vec3& place : {gap.from, gap.to}) {
@@ -129,7 +111,6 @@ bool is_blocked(const Fit& circle, const std::vector<Gap>& gaps, const std::vect
         const Piece& other = pieces[j];
         if (other.closed || other.nodes.size() < kLeastArc) continue;
         if (std::binary_search(joined.begin(), joined.end(), j)) continue;
-        if (is_facet(circle, other)) continue;
         if ((other.ends[end.index % 2] - place).norm() < kBlocking * other.spacing()) return true;
       }
     }
@@ -171,30 +152,13 @@ std::optional<Piece> completed(const std::vector<Piece>& pieces, const Index& in
   double open = 0.0;
   for (const Gap& gap : gaps) open += gap.length;
   if (open > kMostOpen * kWholeTurn * fit.radius) return std::nullopt;
-  if (is_blocked(fit, gaps, pieces, index, joined)) return std::nullopt;
+  if (is_blocked(gaps, pieces, index, joined)) return std::nullopt;
   whole.closed = true;
   whole.ends = {whole.nodes.front().at, whole.nodes.front().at};
   return whole;
 }
 
 }  // namespace
-
-void drop_facets(std::vector<Piece>& pieces) {
-  const NodeIndex index(pieces);
-  std::vector<std::uint8_t> dropped(pieces.size(), 0);
-  std::vector<spatial::Neighbour> near;
-  for (std::size_t i = 0; i < pieces.size(); ++i) {
-    if (pieces[i].fit.kind != CurveKind::kSegment) continue;
-    for (const Vec3& end : pieces[i].ends) {
-      index.tree.within_unsorted(end, kFacetReach * pieces[i].spacing(), near);
-      dropped[i] |= std::any_of(near.begin(), near.end(), [&](const auto& node) {
-        const Piece& other = pieces[index.piece[node.index]];
-        return other.closed && other.fit.kind == CurveKind::kArc && is_facet(other.fit, pieces[i]);
-      });
-    }
-  }
-  erase_marked(pieces, dropped);
-}
 
 void complete_circles(std::vector<Piece>& pieces, double tolerance) {
   const Index index(pieces);
@@ -216,7 +180,6 @@ void complete_circles(std::vector<Piece>& pieces, double tolerance) {
     pieces[i] = std::move(*circle);
   }
   erase_marked(pieces, gone);
-  drop_facets(pieces);
 }
 
 }  // namespace pcednet::lines

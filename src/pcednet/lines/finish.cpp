@@ -16,8 +16,8 @@ namespace {
 constexpr double kLoose[] = {8.0, 24.0};     ///< length of a piece that no corner holds
 constexpr double kHeldOnce[] = {4.0, 12.0};  ///< and of one that ends free
 
-/// Edge points per spacing: pieces with fewer are kept only if corners hold both their ends.
-constexpr double kFewEdgePoints = 0.25;
+/// Edge points per spacing: shorter pieces with fewer are kept only if corners hold both ends.
+constexpr double kFewEdgePoints = 0.1, kLongAnyway = 15.0;
 
 /// Surfaces that bend by more are rounded at the edge unless as many of its points are sharp-edge.
 constexpr double kBend = 0.08, kFewSharp = 0.1;
@@ -84,11 +84,12 @@ Curve curve_of(const Piece& piece, const std::array<Vec3, 2>& ends, const Finish
   return curve;
 }
 
-/// Whether the piece hangs on points that are nearly all of no edge class.
+/// Whether the piece is short and hangs on points that are nearly all of no edge class.
 bool has_few_edge_points(const Piece& piece) {
+  const double length = length_of(piece) / piece.spacing();
   double edge_points = 0.0;
   for (const ChainNode& node : piece.nodes) edge_points += node.edge_points;
-  return edge_points < kFewEdgePoints * length_of(piece) / piece.spacing();
+  return length < kLongAnyway && edge_points < kFewEdgePoints * length;
 }
 
 /// True if a piece was dropped.
