@@ -13,6 +13,7 @@
 #include "pcednet/formats/write_cloud.h"
 #include "workbench/shapes/cad_set.h"
 #include "workbench/shapes/default_set.h"
+#include "workbench/shapes/varied_set.h"
 
 // The scores of the shipped models on clouds of a seed that nothing was learnt from (they learn
 // from seeds 1 to 3): the smallest of `pcednet generate default|cad|worn DIR --seed 5`, scored by
@@ -93,6 +94,16 @@ std::vector<CadRecipe> parts(bool with_noise) {
   std::vector<CadRecipe> recipes = cad_recipes(kHeldOutSeed);
   std::erase_if(recipes, [&](const CadRecipe& r) { return (r.noise > 0.0) != with_noise; });
   return recipes;
+}
+
+TEST(ShippedModels, GeneralFindsEdgesOfAnyCloud) {
+  expect_above({.median = .870, .pooled = .880}, Clouds(default_recipes(kHeldOutSeed), 28),
+               "general --positive edge", "worn --positive edge");
+  expect_above({.median = .800, .pooled = .750}, Clouds(parts(false), 24), "general", "worn");
+  expect_above({.median = .600, .pooled = .600}, Clouds(worn_recipes(kHeldOutSeed), 18), "general",
+               "cad");
+  expect_above({.median = .400, .pooled = .400}, Clouds(varied_part_recipes(kHeldOutSeed), 24),
+               "general", "scan");
 }
 
 TEST(ShippedModels, ScanFindsBandsAlongEdges) {

@@ -13,7 +13,7 @@ namespace pcednet::shapes {
 namespace {
 
 constexpr std::uint64_t kFirstPart = 20;  // after those of other sets
-constexpr int kPartsPerFamily = 20, kSparseParts = 16;
+constexpr int kPartsPerFamily = 10, kSparseParts = 6;
 
 std::size_t log_uniform(Random& random, double least, double most) {
   return static_cast<std::size_t>(least * std::pow(most / least, random.uniform()));
@@ -65,7 +65,7 @@ std::vector<CadRecipe> varied_part_recipes(std::uint64_t seed) {
 }
 
 std::vector<Recipe> thinned_recipes(std::uint64_t seed) {
-  constexpr std::size_t kBlocks = 36;
+  constexpr std::size_t kBlocks = 72;
   std::vector<Recipe> recipes;
   for (std::size_t i = 0; i < kBlocks; ++i) {
     Random random(seed, 49000 + i);
