@@ -29,7 +29,7 @@ class Methods(CliTest):
         for arguments in (("--method", "multi-scale", "--neighbours", "5"),
                           ("--method", "ca", "--offset-radius", "1"),
                           ("--method", "ca", "--neighbours", "3"),
-                          ("--method", "ca", "--model", "scan"), ()):
+                          ("--method", "ca", "--model", "scan")):
             run("evaluate", self.folder / "a.ply", *arguments, expect=2)
 
     def test_classify_without_a_model(self):

@@ -100,9 +100,9 @@ TEST(ShippedModels, GeneralFindsEdgesOfAnyCloud) {
   expect_above({.median = .870, .pooled = .880}, Clouds(default_recipes(kHeldOutSeed), 28),
                "general --positive edge", "worn --positive edge");
   expect_above({.median = .800, .pooled = .750}, Clouds(parts(false), 24), "general", "worn");
-  expect_above({.median = .600, .pooled = .600}, Clouds(worn_recipes(kHeldOutSeed), 18), "general",
+  expect_above({.median = .550, .pooled = .560}, Clouds(worn_recipes(kHeldOutSeed), 18), "general",
                "cad");
-  expect_above({.median = .400, .pooled = .400}, Clouds(varied_part_recipes(kHeldOutSeed), 24),
+  expect_above({.median = .350, .pooled = .350}, Clouds(varied_part_recipes(kHeldOutSeed), 24),
                "general", "scan");
 }
 

@@ -86,13 +86,15 @@ TEST(ColourLabels, ReadTheColoursOfThePaper) {
             (Labels{0, 1, 2}));
   EXPECT_EQ(labels_of_colours(painted({{255, 0, 0}, {90, 90, 90}, {255, 0, 0}})),
             (Labels{2, 0, 2}));
+  EXPECT_EQ(labels_of_colours(painted({{168, 0, 0}, {0, 80, 160}, {255, 255, 255}})),
+            (Labels{2, kBoundary, 0}));
 }
 
 TEST(ColourLabels, LeavePhotographsAlone) {
   EXPECT_TRUE(labels_of_colours(painted({{255, 255, 255}, {255, 196, 93}})).empty());  // no red
   EXPECT_TRUE(labels_of_colours(painted({{168, 0, 0}})).empty());
   EXPECT_TRUE(labels_of_colours(painted({{168, 0, 0}, {255, 255, 255}, {9, 9, 9}})).empty());
-  EXPECT_TRUE(labels_of_colours(painted({{168, 0, 0}, {0, 0, 200}})).empty());
+  EXPECT_TRUE(labels_of_colours(painted({{168, 0, 0}, {0, 120, 0}})).empty());
   EXPECT_TRUE(labels_of_colours({}).empty());
 }
 
