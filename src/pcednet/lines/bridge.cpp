@@ -53,25 +53,24 @@ FreeEnds free_ends(const std::vector<Piece>& pieces, double noise) {
 std::vector<Bridge> bridges_of(const std::vector<Piece>& pieces, const FreeEnds& free) {
   std::vector<End> ends = open_ends(pieces);
   std::erase_if(ends, [&](const End& end) { return !free[end.piece][end.side]; });
-  std::vector<Vec3> places;
-  for (const auto& [piece, side] : ends) places.push_back(pieces[piece].ends[side]);
-  const spatial::KdTree tree(places);
+  const EndIndex index(pieces, std::move(ends));
   std::vector<Bridge> bridges;
   std::vector<spatial::Neighbour> near;
-  for (std::size_t e = 0; e < ends.size(); ++e) {
-    const Piece& piece = pieces[ends[e].piece];
+  for (std::size_t e = 0; e < index.ends.size(); ++e) {
+    const End& a = index.ends[e];
+    const Piece& piece = pieces[a.piece];
     const double spacing = piece.spacing(), length = length_of(piece);
-    tree.within(places[e], std::min(kWidest * spacing, 2.0 * length), near);
-    const Vec3 out = outward(piece, ends[e].side);
+    index.tree.within(index.places[e], std::min(kWidest * spacing, 2.0 * length), near);
+    const Vec3 out = outward(piece, a.side);
     for (const auto& other : near) {
-      const Piece& next = pieces[ends[other.index].piece];
+      const End& b = index.ends[other.index];
+      const Piece& next = pieces[b.piece];
       const double its_length = length_of(next), gap = std::sqrt(other.sq_distance);
       if (its_length > length || (its_length == length && other.index <= e)) continue;
-      if (ends[e].piece == ends[other.index].piece || gap > length + its_length) continue;
-      if (!same_wedge(node_at(piece, ends[e].side), node_at(next, ends[other.index].side)))
-        continue;
-      if ((places[other.index] - places[e]).dot(out) < -spacing) continue;
-      bridges.push_back({ends[e], ends[other.index], gap / spacing});
+      if (a.piece == b.piece || gap > length + its_length) continue;
+      if (!same_wedge(node_at(piece, a.side), node_at(next, b.side))) continue;
+      if ((index.places[other.index] - index.places[e]).dot(out) < -spacing) continue;
+      bridges.push_back({a, b, gap / spacing});
     }
   }
   std::stable_sort(bridges.begin(), bridges.end(),

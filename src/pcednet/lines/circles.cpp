@@ -20,19 +20,18 @@ constexpr double kBlocking = 2.5;        ///< spacings from the end of a piece t
 struct Index {
   explicit Index(const std::vector<Piece>& pieces);
 
-  spatial::KdTree starts, ends;  ///< of each piece its first node, and both ends
+  spatial::KdTree starts;  ///< the first node of each piece
+  EndIndex open;
   double largest_spacing = 0.0;
 };
 
-Index::Index(const std::vector<Piece>& pieces) : starts({}), ends({}) {
-  std::vector<Vec3> first_nodes, both_ends;
+Index::Index(const std::vector<Piece>& pieces) : starts({}), open(pieces, open_ends(pieces)) {
+  std::vector<Vec3> first_nodes;
   for (const Piece& piece : pieces) {
     first_nodes.push_back(piece.nodes.front().at);
-    both_ends.insert(both_ends.end(), piece.ends.begin(), piece.ends.end());
     largest_spacing = std::max(largest_spacing, piece.spacing());
   }
   starts = spatial::KdTree(first_nodes);
-  ends = spatial::KdTree(both_ends);
 }
 
 /// A wedge seen from the axis of a circle: the same all around it.
@@ -105,13 +104,13 @@ bool is_blocked(const std::vector<Gap>& gaps, const std::vector<Piece>& pieces, 
   std::vector<spatial::Neighbour> near;
   for (const Gap& gap : gaps) {
     for (const Vec3& place : {gap.from, gap.to}) {
-      index.ends.within_unsorted(place, kBlocking * index.largest_spacing, near);
+      index.open.tree.within_unsorted(place, kBlocking * index.largest_spacing, near);
       for (const auto& end : near) {
-        const std::size_t j = end.index / 2;
+        const auto [j, side] = index.open.ends[end.index];
         const Piece& other = pieces[j];
         if (other.closed || other.nodes.size() < kLeastArc) continue;
         if (std::binary_search(joined.begin(), joined.end(), j)) continue;
-        if ((other.ends[end.index % 2] - place).norm() < kBlocking * other.spacing()) return true;
+        if ((other.ends[side] - place).norm() < kBlocking * other.spacing()) return true;
       }
     }
   }

@@ -169,6 +169,12 @@ std::vector<End> open_ends(const std::vector<Piece>& pieces) {
   return ends;
 }
 
+EndIndex::EndIndex(const std::vector<Piece>& pieces, std::vector<End> of_these)
+    : ends(std::move(of_these)), tree({}) {
+  for (const auto& [piece, side] : ends) places.push_back(pieces[piece].ends[side]);
+  tree = spatial::KdTree(places);
+}
+
 NodeIndex::NodeIndex(const std::vector<Piece>& pieces) : tree({}) {
   std::vector<Vec3> places;
   for (std::size_t i = 0; i < pieces.size(); ++i) {

@@ -60,6 +60,15 @@ struct End {
 /// Both ends of every piece that is not closed.
 std::vector<End> open_ends(const std::vector<Piece>& pieces);
 
+/// Ends of pieces, to be found by place.
+struct EndIndex {
+  EndIndex(const std::vector<Piece>& pieces, std::vector<End> of_these);
+
+  std::vector<End> ends;
+  std::vector<Vec3> places;  ///< of each end
+  spatial::KdTree tree;
+};
+
 /// All nodes of all pieces, to be found by place.
 struct NodeIndex {
   explicit NodeIndex(const std::vector<Piece>& pieces);

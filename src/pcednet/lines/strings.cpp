@@ -47,16 +47,13 @@ bool continues(const Piece& a, std::size_t side_a, const Piece& b, std::size_t s
 }
 
 std::vector<Link> links_of(const std::vector<Piece>& pieces, const Reach& reach) {
-  const std::vector<End> ends = open_ends(pieces);
-  std::vector<Vec3> places;
-  for (const auto& [piece, side] : ends) places.push_back(pieces[piece].ends[side]);
-  const spatial::KdTree tree(places);
+  const EndIndex index(pieces, open_ends(pieces));
   std::vector<Link> links;
   std::vector<spatial::Neighbour> near;
-  for (std::size_t e = 0; e < ends.size(); ++e) {
-    tree.within(places[e], reach.gap, near);
+  for (std::size_t e = 0; e < index.ends.size(); ++e) {
+    index.tree.within(index.places[e], reach.gap, near);
     for (const auto& other : near) {
-      const End &a = ends[e], &b = ends[other.index];
+      const End &a = index.ends[e], &b = index.ends[other.index];
       double cost = 0.0;
       if (other.index <= e || a.piece == b.piece) continue;
       if (!continues(pieces[a.piece], a.side, pieces[b.piece], b.side, reach, cost)) continue;
