@@ -96,11 +96,9 @@ void FastScaleSpace::find_scales(OrientedPoints points, std::span<const std::uin
                             [&](std::size_t i) { return level.voxels[i].position; });
     return mean_distance(std::span(sq_distances).first(found)) / unit_;
   };
-  scales_ = sample_scales(
-      scale_range(points.positions,
-                  {options_.s_min, options_.s_max, options_.s_max_fraction, options_.s_max_ratio},
-                  [&] { return sampled_spacings(curve.size(), distance); }),
-      options_.scales);
+  scales_ = sample_scales(scale_range(points.positions, given_range(options_),
+                                      [&] { return sampled_spacings(curve.size(), distance); }),
+                          options_.scales);
 }
 
 void FastScaleSpace::describe(std::span<const std::uint32_t> targets, std::span<float> out,

@@ -59,10 +59,7 @@ ExactScaleSpace::ExactScaleSpace(OrientedPoints points, const ScaleSpaceOptions&
   stage.advance();
   tree_ = spatial::KdTree(positions_);
   stage.advance();
-  scales_ = sample_scales(
-      scale_range(positions_, tree_,
-                  {options.s_min, options.s_max, options.s_max_fraction, options.s_max_ratio}),
-      options.scales);
+  scales_ = sample_scales(scale_range(positions_, tree_, given_range(options)), options.scales);
   stage.advance();
 }
 

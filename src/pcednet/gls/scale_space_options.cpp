@@ -42,6 +42,13 @@ std::vector<std::optional<double>> gates_of(const ScaleSpaceOptions& options) {
   return {options.side_gate, options.second_gate};
 }
 
+ScaleRange given_range(const ScaleSpaceOptions& options) {
+  return {.s_min = options.s_min,
+          .s_max = options.s_max,
+          .s_max_fraction = options.s_max_fraction,
+          .s_max_ratio = options.s_max_ratio};
+}
+
 std::string note_on(const ScaleSpaceOptions& options, std::span<const double> scales,
                     std::span<const Vec3> positions) {
   const double usual = options.s_max_fraction * bounding_box(positions).diagonal();
@@ -58,8 +65,7 @@ std::string text_of(const ScaleSpaceOptions& options) {
                side_gate, second_gate, engine, eps] = options;
   return fmt::format(
       "scales {} s_min {} s_max {} fraction {} ratio {} features {} reconstruction {} steps {} "
-      "gate {}{} "
-      "engine {} eps {}",
+      "gate {}{} engine {} eps {}",
       scales, s_min, s_max, s_max_fraction, s_max_ratio, static_cast<int>(features),
       static_cast<int>(reconstruction), steps, side_gate ? fmt::format("{}", *side_gate) : "none",
       second_gate ? fmt::format(" and {}", *second_gate) : "", static_cast<int>(engine), eps);

@@ -34,6 +34,9 @@ struct ScaleSpaceOptions {
   bool operator==(const ScaleSpaceOptions&) const = default;
 };
 
+/// What the options say of the range, for scale_range().
+ScaleRange given_range(const ScaleSpaceOptions& options);
+
 /// All sets of features, the largest first.
 std::span<const FeatureSet> feature_sets();
 

@@ -46,6 +46,7 @@ std::vector<double> spacings_of_distinct(std::span<const Vec3> positions) {
   return spacings_in(distinct, spatial::KdTree(distinct));
 }
 
+/// Block by block: in another order the last digits of every s_min would change.
 double mean_of(std::span<const double> values) {
   constexpr std::size_t kBlock = 256;
   double sum = 0.0;
