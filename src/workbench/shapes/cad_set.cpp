@@ -10,6 +10,7 @@
 #include "pcednet/spatial/kd_tree.h"
 #include "workbench/shapes/acquisition.h"
 #include "workbench/shapes/cad_parts.h"
+#include "workbench/shapes/part_pieces.h"
 #include "workbench/shapes/true_curves.h"
 #include "workbench/shapes/wear.h"
 
@@ -57,11 +58,9 @@ MeshVertices drawn_points(const SolidSamples& samples, std::span<const BorderPoi
 
 namespace {
 
-/// Vertices on no sharp border are smooth-edge within `band` spacings of one.
-void label_beside(MeshVertices& vertices, const SolidSamples& samples,
-                  std::span<const BorderPoint> borders, double band) {
-  const double spacing = std::sqrt(samples.area / static_cast<double>(vertices.positions.size()));
-  const auto labels = label_bands(vertices.positions, borders, {0.0, band * spacing});
+/// Vertices on no sharp border are smooth-edge within `band` of one.
+void label_beside(MeshVertices& vertices, std::span<const BorderPoint> borders, double band) {
+  const auto labels = label_bands(vertices.positions, borders, {0.0, band});
   for (std::size_t i = 0; i < labels.size(); ++i) {
     vertices.labels[i] = std::max(vertices.labels[i], labels[i]);
   }
@@ -69,14 +68,14 @@ void label_beside(MeshVertices& vertices, const SolidSamples& samples,
 
 /// As many vertices as of a worn part, labelled and rounded off.
 void wear_off(MeshVertices& vertices, const SolidSamples& samples,
-              std::span<const BorderPoint> borders, const CadRecipe& recipe, Random& random) {
+              std::span<const BorderPoint> borders, const CadRecipe& recipe, double spacing,
+              Random& random) {
   SurfaceSamples surface;
   for (const FacePoint& point : samples.points) {
     surface.positions.push_back(point.position);
     surface.normals.push_back(point.normal);
   }
   const std::vector<Vec3> edges = sharp_edges(borders);
-  const double spacing = std::sqrt(samples.area / static_cast<double>(vertices.positions.size()));
   wear_off(vertices, surface, edges,
            {recipe.wear * spacing, spacing * recipe.bands, recipe.scatter * spacing,
             random.uniform(0.0, 0.5) * spacing},
@@ -84,6 +83,16 @@ void wear_off(MeshVertices& vertices, const SolidSamples& samples,
 }
 
 }  // namespace
+
+MeshStyle random_mesh_style(Random& random, double least, double most) {
+  MeshStyle style;
+  style.points = static_cast<std::size_t>(size_between(random, least, most));
+  style.plane_growth = random.uniform(0.0, 0.6);
+  style.plane_limit = random.uniform(1.0, 6.0);
+  style.curved_spacing = random.uniform(0.6, 1.4);
+  style.smooth_borders = random.index(3) != 0;
+  return style;
+}
 
 std::vector<CadRecipe> cad_recipes(std::uint64_t seed) {
   constexpr int kPartsPerFamily = 7;
@@ -95,11 +104,7 @@ std::vector<CadRecipe> cad_recipes(std::uint64_t seed) {
       recipe.family = family;
       recipe.part = static_cast<std::uint64_t>(part);
       Random random(seed, 9000 + recipes.size());
-      recipe.style.points = static_cast<std::size_t>(1500.0 * std::pow(12.0, random.uniform()));
-      recipe.style.plane_growth = random.uniform(0.0, 0.6);
-      recipe.style.plane_limit = random.uniform(1.0, 6.0);
-      recipe.style.curved_spacing = random.uniform(0.6, 1.4);
-      recipe.style.smooth_borders = random.index(3) != 0;
+      recipe.style = random_mesh_style(random, 1500, 18000);
       recipe.estimated = part % 2 == 1;
       recipe.inward = random.index(2) == 1;
       if (part == 5) recipe.mesh = false;
@@ -117,14 +122,13 @@ std::vector<CadRecipe> worn_recipes(std::uint64_t seed) {
     Random random(seed, 19000 + i);
     recipe.name = "worn_" + recipe.name;
     recipe.mesh = random.index(4) != 0;
-    recipe.style.points = static_cast<std::size_t>(3000.0 * std::pow(4.0, random.uniform()));
+    recipe.style.points = static_cast<std::size_t>(size_between(random, 3000, 12000));
     recipe.style.plane_limit = random.index(2) ? 1.0 : random.uniform(1.0, 3.0);
     recipe.style.curved_spacing = 1.0;
     recipe.style.smooth_borders = false;
     recipe.noise = 0.0;
     recipe.wear = std::max(0.05, random.uniform(-0.5, 3.0));
-    recipe.bands.sharp = 0.5 + 0.4 * recipe.wear;
-    recipe.bands.smooth = recipe.bands.sharp + 1.24;
+    recipe.bands = worn_bands(0.5 + 0.4 * recipe.wear);
     recipe.scatter = random.index(2) ? 0.0 : random.uniform(0.0, 0.15);
     recipe.estimated = random.index(3) == 0;
   }
@@ -141,11 +145,12 @@ GeneratedCloud generate(const CadRecipe& recipe, std::uint64_t seed) {
   MeshVertices vertices = recipe.mesh
                               ? mesh_vertices(samples, borders, solid, recipe.style, random.next())
                               : drawn_points(samples, borders, recipe.style.points, recipe.bands);
-  if (recipe.mesh) label_beside(vertices, samples, borders, recipe.bands.smooth);
-  if (recipe.wear > 0.0) wear_off(vertices, samples, borders, recipe, random);
-  if (recipe.wear == 0.0 && recipe.scatter > 0.0) {
-    const double spacing = std::sqrt(samples.area / static_cast<double>(vertices.positions.size()));
-    add_noise(vertices.positions, recipe.scatter * spacing, random);
+  const double spacing = std::sqrt(samples.area / static_cast<double>(vertices.positions.size()));
+  if (recipe.wear > 0.0) {
+    wear_off(vertices, samples, borders, recipe, spacing, random);
+  } else {
+    if (recipe.mesh) label_beside(vertices, borders, recipe.bands.smooth * spacing);
+    if (recipe.scatter > 0.0) add_noise(vertices.positions, recipe.scatter * spacing, random);
   }
   if (recipe.noise > 0.0) {
     const double sigma = recipe.noise * bounding_box(vertices.positions).diagonal();

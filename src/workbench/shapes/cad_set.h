@@ -4,26 +4,34 @@
 #include <string>
 #include <vector>
 
+#include "pcednet/core/random.h"
 #include "workbench/shapes/mesh_vertices.h"
 #include "workbench/shapes/recipe.h"
 #include "workbench/shapes/shape.h"
 
 namespace pcednet::shapes {
 
+/// The labelled bands of points drawn from a part, in spacings.
+inline constexpr EdgeBands kPartBands = {.sharp = 0.6, .smooth = 1.73};
+
 /// How a labelled cloud of a CAD part is made.
 struct CadRecipe {
   std::string name = {};
-  int family = 0;          ///< of random_part()
-  std::uint64_t part = 0;  ///< which part of the family
-  bool mesh = true;        ///< vertices of a mesh; else points sampled uniformly by area
-  MeshStyle style = {};    ///< of the mesh; `points` for sampled points, too
-  double noise = 0.0;      ///< along the normal, standard deviation over the box's diagonal
-  bool estimated = false;  ///< normals estimated from the positions; else those of the part
-  bool inward = false;     ///< all normals point into the solid
-  EdgeBands bands = {.sharp = 0.6, .smooth = 1.73};  ///< in spacings; vertices on edges are sharp
+  int family = 0;                ///< of random_part()
+  std::uint64_t part = 0;        ///< which part of the family
+  bool mesh = true;              ///< vertices of a mesh; else points sampled uniformly by area
+  MeshStyle style = {};          ///< of the mesh; `points` for sampled points, too
+  double noise = 0.0;            ///< along the normal, standard deviation over the box's diagonal
+  bool estimated = false;        ///< normals estimated from the positions; else those of the part
+  bool inward = false;           ///< all normals point into the solid
+  EdgeBands bands = kPartBands;  ///< in spacings; vertices on edges are sharp
   double wear = 0.0;     ///< rounding of edges: standard deviation of a Gaussian, in spacings
   double scatter = 0.0;  ///< noise on each axis, in spacings
 };
+
+/// A mesh of `least` to `most` vertices, small numbers as likely as large ones, with planes meshed
+/// more or less coarsely.
+MeshStyle random_mesh_style(Random& random, double least, double most);
 
 /// The recipes of `pcednet generate cad`.
 std::vector<CadRecipe> cad_recipes(std::uint64_t seed);

@@ -129,9 +129,7 @@ GeneratedCloud generate(const Recipe& recipe, std::uint64_t seed) {
     displaced = displace_every_tenth(samples.positions, recipe.displacement * spacing, random);
   }
   PointCloud cloud;
-  cloud.labels = label_by_distance(
-      samples.positions, recipe.shape.edges,
-      {.sharp = recipe.bands.sharp * spacing, .smooth = recipe.bands.smooth * spacing});
+  cloud.labels = label_by_distance(samples.positions, recipe.shape.edges, spacing * recipe.bands);
   label_rims(samples.positions, recipe.shape.rims, kBoundaryBand * spacing, cloud.labels);
   cloud.normals = make_normals(recipe, samples, displaced, random);
   if (recipe.thinned > 1) thin(samples.positions, cloud, recipe.thinned, random);

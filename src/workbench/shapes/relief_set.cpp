@@ -28,8 +28,7 @@ std::vector<ReliefRecipe> relief_recipes(std::uint64_t seed) {
     recipe.points = static_cast<std::size_t>(4000.0 * std::pow(5.0, random.uniform()));
     recipe.even = random.index(5) != 0;
     recipe.wear = random.uniform(0.25, 2.0);
-    recipe.bands.sharp = 0.5 + 0.2 * recipe.wear;
-    recipe.bands.smooth = recipe.bands.sharp + 1.24;
+    recipe.bands = worn_bands(0.5 + 0.2 * recipe.wear);
     recipe.scatter = random.index(2) ? 0.0 : random.uniform(0.0, 0.15);
     recipe.estimated = random.index(3) == 0;
     recipe.inward = random.index(2) == 1;

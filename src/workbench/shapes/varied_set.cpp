@@ -2,12 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include "pcednet/core/random.h"
 #include "workbench/shapes/cad_parts.h"
 #include "workbench/shapes/default_set.h"
 #include "workbench/shapes/default_shapes.h"
+#include "workbench/shapes/part_pieces.h"
 
 namespace pcednet::shapes {
 namespace {
@@ -15,18 +14,8 @@ namespace {
 constexpr std::uint64_t kFirstPart = 20;  // after those of other sets
 constexpr int kPartsPerFamily = 10, kSparseParts = 6;
 
-std::size_t log_uniform(Random& random, double least, double most) {
-  return static_cast<std::size_t>(least * std::pow(most / least, random.uniform()));
-}
-
-void make_mesh(CadRecipe& recipe, Random& random) {
-  recipe.mesh = true;
-  recipe.style.points = log_uniform(random, 2000, 18000);
-  recipe.style.plane_growth = random.uniform(0.0, 0.6);
-  recipe.style.plane_limit = random.uniform(1.0, 6.0);
-  recipe.style.curved_spacing = random.uniform(0.6, 1.4);
-  recipe.style.smooth_borders = random.index(3) != 0;
-  recipe.noise = random.uniform(0.001, 0.006);
+std::size_t points_between(Random& random, double least, double most) {
+  return static_cast<std::size_t>(size_between(random, least, most));
 }
 
 CadRecipe varied_part(int family, int number, std::uint64_t seed) {
@@ -39,15 +28,17 @@ CadRecipe varied_part(int family, int number, std::uint64_t seed) {
   recipe.inward = random.index(2) == 1;
   recipe.mesh = false;
   if (number < kSparseParts) {
-    recipe.style.points = log_uniform(random, 700, 2000);
+    recipe.style.points = points_between(random, 700, 2000);
     recipe.scatter = number % 3 == 2 ? random.uniform(0.0, 0.3) : 0.0;
   } else if (number == kSparseParts) {
-    recipe.style.points = log_uniform(random, 8000, 40000);
+    recipe.style.points = points_between(random, 8000, 40000);
   } else if (number < kPartsPerFamily - 1) {
-    recipe.style.points = log_uniform(random, 4000, 20000);
+    recipe.style.points = points_between(random, 4000, 20000);
     recipe.scatter = random.uniform(0.1, 0.7);
   } else {
-    make_mesh(recipe, random);
+    recipe.mesh = true;
+    recipe.style = random_mesh_style(random, 2000, 18000);
+    recipe.noise = random.uniform(0.001, 0.006);
   }
   return recipe;
 }
@@ -71,7 +62,7 @@ std::vector<Recipe> thinned_recipes(std::uint64_t seed) {
     Random random(seed, 49000 + i);
     recipes.push_back({.name = fmt::format("thinned_blocks_{}", i),
                        .shape = random_blocks(random),
-                       .points = log_uniform(random, 5000, 30000),
+                       .points = points_between(random, 5000, 30000),
                        .displacement = i % 3 == 1 ? random.uniform(2.0, 8.0) : 0.0,
                        .inward = i % 2 == 1,
                        .thinned = std::size_t{4} << (i % 3)});

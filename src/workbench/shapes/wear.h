@@ -10,6 +10,12 @@
 
 namespace pcednet::shapes {
 
+/// The bands of worn edges, in spacings: the smooth-edge band is as wide beside that of sharp-edge
+/// as beside an edge that is not worn.
+inline EdgeBands worn_bands(double sharp) {
+  return {.sharp = sharp, .smooth = sharp + 1.24};
+}
+
 /// The wear of a surface; all values are lengths.
 struct Wear {
   double rounding = 0.0;  ///< standard deviation of the Gaussian that smooths the surface
