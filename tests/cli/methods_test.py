@@ -33,7 +33,9 @@ class Methods(CliTest):
             run("evaluate", self.folder / "a.ply", *arguments, expect=2)
 
     def test_classify_without_a_model(self):
-        run("classify", self.folder / "a.ply", "--method", "ca", "-o", self.folder / "b.ply")
+        done = run("classify", self.folder / "a.ply", "--method", "ca", "-o", self.folder / "b.ply")
+        self.assertIn("4000 points:", done.stderr)
+        self.assertNotIn("scales:", done.stderr)
         again = json.loads(run("evaluate", self.folder / "a.ply", "--predictions", self.folder,
                                "--json", "-").stdout)
         self.assertEqual(again["clouds"][0]["points"], 4000)

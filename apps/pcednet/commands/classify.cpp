@@ -171,7 +171,9 @@ void report(const Job& job, const detect::Classification& result, const std::str
       result.counts.non_edge,
       result.counts.unlabelled == 0 ? std::string()
                                     : fmt::format(", {} unlabelled", result.counts.unlabelled)));
-  say(fmt::format("  scales: {:.9g} to {:.9g}", result.s_min, result.s_max));
+  if (result.s_max > 0.0) {  // a method has none
+    say(fmt::format("  scales: {:.9g} to {:.9g}", result.s_min, result.s_max));
+  }
   say("  seconds: " + seconds);
   say(fmt::format("  -> {}", job.output.string()));
 }
