@@ -131,6 +131,28 @@ TEST(VariedSet, ReachesFromAThousandPointsToManyAndIsNoisy) {
   EXPECT_GT(noisy, recipes.size() / 4);
 }
 
+TEST(VariedSet, EvenPartsHaveNoPointsNearEachOther) {
+  for (const CadRecipe& recipe : varied_part_recipes(1)) {
+    if (!recipe.even || recipe.scatter > 0.0 || recipe.style.points > 900) continue;
+    CadRecipe uneven = recipe;
+    uneven.even = false;
+    const auto least_distance = [](const PointCloud& cloud) {
+      const spatial::KdTree tree(cloud.positions);
+      std::vector<spatial::Neighbour> near;
+      double least = 1e9;
+      for (const Vec3& p : cloud.positions) {
+        tree.nearest(p, 2, near);
+        least = std::min(least, std::sqrt(near[1].sq_distance));
+      }
+      return least;
+    };
+    const PointCloud even = generate(recipe, 1).cloud;
+    EXPECT_GT(least_distance(even), 5.0 * least_distance(generate(uneven, 1).cloud)) << recipe.name;
+    EXPECT_LT(even.size(), 1.2 * static_cast<double>(recipe.style.points));
+    EXPECT_GT(even.size(), 0.4 * static_cast<double>(recipe.style.points));  // thin: few
+  }
+}
+
 TEST(VariedSet, ThinnedCloudsKeepLabelsAndNormals) {
   const Recipe recipe = thinned_recipes(1).front();
   Recipe dense = recipe;

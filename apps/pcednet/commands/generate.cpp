@@ -13,6 +13,7 @@
 #include "workbench/shapes/line_set.h"
 #include "workbench/shapes/relief_set.h"
 #include "workbench/shapes/scan_set.h"
+#include "workbench/shapes/terrain.h"
 #include "workbench/shapes/varied_set.h"
 
 namespace pcednet::app {
@@ -45,6 +46,11 @@ std::string details(const shapes::ReliefRecipe& recipe) {
 
 std::string details(const shapes::ScanRecipe& recipe) {
   return fmt::format("  noise {:.2g}", recipe.scanner.range_noise);
+}
+
+std::string details(const shapes::TerrainRecipe& recipe) {
+  return fmt::format("  {:.0f} % leaves{}", 100.0 * recipe.leaves,
+                     recipe.given_normals ? ", normals given" : "");
 }
 
 std::string details(const shapes::LineRecipe&) {
@@ -170,11 +176,11 @@ void add_varied(CLI::App& generate, Common& common) {
   add_set(
       generate, common, *set, "varied",
       "Labelled clouds for training: CAD parts from a thousand points on, clean and noisy, with "
-      "estimated normals, and thinned clouds",
+      "estimated normals, thinned clouds, and terrains with plants and houses",
       "pcednet generate varied parts/")
       ->callback([set, &common] {
         run(set->folder, set->seed, common, shapes::varied_part_recipes(set->seed),
-            shapes::thinned_recipes(set->seed));
+            shapes::thinned_recipes(set->seed), shapes::terrain_recipes(set->seed));
       });
 }
 

@@ -19,6 +19,12 @@ namespace {
 
 constexpr std::size_t kSolidSamplesPerPoint = 12;
 
+std::vector<Vec3> positions_of(const SolidSamples& samples) {
+  std::vector<Vec3> positions;
+  for (const FacePoint& point : samples.points) positions.push_back(point.position);
+  return positions;
+}
+
 std::vector<Vec3> sharp_edges(std::span<const BorderPoint> borders) {
   std::vector<Vec3> edges;
   for (const BorderPoint& border : borders) {
@@ -66,15 +72,29 @@ void label_beside(MeshVertices& vertices, std::span<const BorderPoint> borders, 
   }
 }
 
+/// About `points` of the samples, none near another: as thinned by the usual tools.
+SolidSamples spread(const SolidSamples& samples, std::size_t points) {
+  constexpr double kFill = 0.7;  // number times distance squared, over the area
+  const double distance = std::sqrt(kFill * samples.area / static_cast<double>(points));
+  const spatial::KdTree tree(positions_of(samples));
+  std::vector<char> free(samples.points.size(), 1);
+  std::vector<spatial::Neighbour> near;
+  SolidSamples spread = {{}, samples.area};
+  for (std::size_t i = 0; i < samples.points.size(); ++i) {
+    if (!free[i]) continue;
+    spread.points.push_back(samples.points[i]);
+    tree.within(samples.points[i].position, distance, near);
+    for (const spatial::Neighbour& neighbour : near) free[neighbour.index] = 0;
+  }
+  return spread;
+}
+
 /// As many vertices as of a worn part, labelled and rounded off.
 void wear_off(MeshVertices& vertices, const SolidSamples& samples,
               std::span<const BorderPoint> borders, const CadRecipe& recipe, double spacing,
               Random& random) {
-  SurfaceSamples surface;
-  for (const FacePoint& point : samples.points) {
-    surface.positions.push_back(point.position);
-    surface.normals.push_back(point.normal);
-  }
+  SurfaceSamples surface = {positions_of(samples), {}};
+  for (const FacePoint& point : samples.points) surface.normals.push_back(point.normal);
   const std::vector<Vec3> edges = sharp_edges(borders);
   wear_off(vertices, surface, edges,
            {recipe.wear * spacing, spacing * recipe.bands, recipe.scatter * spacing,
@@ -139,9 +159,10 @@ GeneratedCloud generate(const CadRecipe& recipe, std::uint64_t seed) {
   Random shapes(seed, 100 * static_cast<std::uint64_t>(recipe.family) + recipe.part);
   const Solid solid = random_part(recipe.family, shapes);
   Random random(seed, 50000 + 100 * static_cast<std::uint64_t>(recipe.family) + recipe.part);
-  const SolidSamples samples =
+  SolidSamples samples =
       sample_solid(solid, kSolidSamplesPerPoint * recipe.style.points, random.next());
   const std::vector<BorderPoint> borders = find_borders(solid, samples);
+  if (recipe.even) samples = spread(samples, recipe.style.points);
   MeshVertices vertices = recipe.mesh
                               ? mesh_vertices(samples, borders, solid, recipe.style, random.next())
                               : drawn_points(samples, borders, recipe.style.points, recipe.bands);

@@ -11,28 +11,11 @@
 #include "pcednet/core/random.h"
 #include "pcednet/normals/prepare.h"
 #include "pcednet/spatial/kd_tree.h"
+#include "workbench/shapes/local_spacing.h"
 #include "workbench/shapes/true_curves.h"
 
 namespace pcednet::shapes {
 namespace {
-
-constexpr std::size_t kNeighbours = 11;  // the point itself among them
-
-/// Of a regular grid: the mean distance to the ten nearest neighbours is 1.25 spacings.
-std::vector<double> local_spacings(std::span<const Vec3> positions) {
-  const spatial::KdTree tree(positions);
-  std::vector<double> spacings(positions.size());
-  parallel_blocks(positions.size(), 1024, [&](std::size_t begin, std::size_t end) {
-    std::vector<spatial::Neighbour> near;
-    for (std::size_t i = begin; i < end; ++i) {
-      tree.nearest(positions[i], kNeighbours, near);
-      double sum = 0.0;
-      for (const auto& neighbour : near) sum += std::sqrt(neighbour.sq_distance);
-      spacings[i] = sum / (1.25 * static_cast<double>(kNeighbours - 1));
-    }
-  });
-  return spacings;
-}
 
 /// The class of a point among the borders near it; each stands for a short straight piece of edge.
 std::uint8_t label_of(const Vec3& position, double spacing, const spatial::KdTree& tree,

@@ -216,22 +216,22 @@ Scene monument(Random& random) {
   return scene;
 }
 
-struct Kind {
+struct SceneKind {
   const char* name;
   Scene (*make)(Random& random);
 };
 
-constexpr std::array<Kind, kSceneKinds> kKinds = {
+constexpr std::array<SceneKind, kSceneKinds> kScenes = {
     {{"facade", facade}, {"yard", yard}, {"room", room}, {"monument", monument}}};
 
 }  // namespace
 
 const char* scene_kind_name(int kind) {
-  return kKinds.at(static_cast<std::size_t>(kind)).name;
+  return kScenes.at(static_cast<std::size_t>(kind)).name;
 }
 
 Scene random_scene(int kind, Random& random) {
-  return kKinds.at(static_cast<std::size_t>(kind)).make(random);
+  return kScenes.at(static_cast<std::size_t>(kind)).make(random);
 }
 
 }  // namespace pcednet::shapes

@@ -27,6 +27,7 @@ CadRecipe varied_part(int family, int number, std::uint64_t seed) {
   recipe.estimated = true;
   recipe.inward = random.index(2) == 1;
   recipe.mesh = false;
+  recipe.even = number % 2 == 1 && number < kPartsPerFamily - 1;
   if (number < kSparseParts) {
     recipe.style.points = points_between(random, 700, 2000);
     recipe.scatter = number % 3 == 2 ? random.uniform(0.0, 0.3) : 0.0;
