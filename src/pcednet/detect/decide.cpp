@@ -10,13 +10,15 @@ namespace {
 /// Writes the network's answer for one point.
 void decide_point(std::span<const float> probabilities, const std::vector<std::uint8_t>& classes,
                   std::size_t point, Classification& found) {
-  std::size_t best = 0;
+  float sharp = 0.0f, smooth = 0.0f;
   for (std::size_t c = 0; c < classes.size(); ++c) {
-    if (probabilities[c] > probabilities[best]) best = c;
-    if (classes[c] == kSharpEdge) found.p_sharp[point] = probabilities[c];
-    if (classes[c] == kSmoothEdge) found.p_smooth[point] = probabilities[c];
+    if (classes[c] == kSharpEdge) sharp = probabilities[c];
+    if (classes[c] == kSmoothEdge) smooth = probabilities[c];
   }
-  found.classes[point] = classes[best];
+  found.p_sharp[point] = sharp;
+  found.p_smooth[point] = smooth;
+  const bool edge = sharp + smooth > 0.5f;
+  found.classes[point] = !edge ? kNonEdge : sharp >= smooth ? kSharpEdge : kSmoothEdge;
 }
 
 }  // namespace
