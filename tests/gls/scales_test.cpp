@@ -3,10 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "gls/test_clouds.h"
 #include "pcednet/core/error.h"
+#include "pcednet/core/random.h"
 #include "pcednet/gls/fast_scale_space.h"
 #include "pcednet/gls/scale_space.h"
 #include "support/expect_error.h"
@@ -129,6 +131,28 @@ TEST(Scales, OfARatioAreNotMovedByAThrownPoint) {
   const spatial::KdTree tree(positions);
   EXPECT_NEAR(scale_range(positions, tree, kTenfold).s_min / s_min, 1.0, 0.001);
   EXPECT_GT(scale_range(positions, tree, {}).s_min / mean, 2.0);
+}
+
+/// A plane seen from the origin: the spacing grows with the range, `reach` times in all.
+std::vector<Vec3> fan(double reach) {
+  Random random(9);
+  std::vector<Vec3> positions;
+  for (int i = 0; i < 4000; ++i) {
+    const double range = std::pow(reach, random.uniform()), angle = random.uniform(0.0, 6.283);
+    positions.emplace_back(range * std::cos(angle), range * std::sin(angle), 0.0);
+  }
+  return positions;
+}
+
+TEST(Scales, OfARatioReachFurtherWhereTheSpacingVaries) {
+  const auto reach_of = [](const std::vector<Vec3>& positions) {
+    const auto range = scale_range(positions, spatial::KdTree(positions), {.s_max_ratio = 10.0});
+    return range.s_max / range.s_min;
+  };
+  // The quartiles of the spacing are sqrt(6) apart, but for the randomness of the points.
+  EXPECT_NEAR(reach_of(fan(6.0)), 10.0 * std::sqrt(6.0) / 1.6, 1.5);
+  EXPECT_DOUBLE_EQ(reach_of(fan(1.5)), 10.0);
+  EXPECT_DOUBLE_EQ(reach_of(fan(100.0)), 30.0);
 }
 
 TEST(Scales, AreTheSameFromBothEngines) {

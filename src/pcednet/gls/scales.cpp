@@ -19,6 +19,7 @@ namespace pcednet::gls {
 namespace {
 
 constexpr std::size_t kSample = 16384;
+constexpr double kEvenQuartiles = 1.6, kLargestSpread = 3.0;
 constexpr double kShortest = 1e-100, kLongest = 1e100;  // their squares and inverses are finite
 
 void check_given(double bound, const char* name) {
@@ -57,15 +58,41 @@ double mean_of(std::span<const double> values) {
   return values.empty() ? 0.0 : sum / static_cast<double>(values.size());
 }
 
-/// The mean of the middle half.
-double midmean_of(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const std::size_t quarter = values.size() / 4;
-  return mean_of(std::span(values).subspan(quarter, values.size() - 2 * quarter));
+/// Of a range tied to the spacing: few outlying points change neither number.
+struct Spacing {
+  double middle = 0.0;  ///< the mean of the middle half
+  double spread = 1.0;  ///< how much larger s_max is because the spacing varies
+};
+
+Spacing spacing_of(std::vector<double> spacings) {
+  if (spacings.empty()) return {};
+  std::sort(spacings.begin(), spacings.end());
+  const std::size_t quarter = spacings.size() / 4;
+  const auto half = std::span(spacings).subspan(quarter, spacings.size() - 2 * quarter);
+  const double quartiles = half.back() / half.front();  // infinite if half of the points are copies
+  return {mean_of(half), std::clamp(quartiles / kEvenQuartiles, 1.0, kLargestSpread)};
 }
 
-double spacing_by(const ScaleRange& rule, std::vector<double> spacings) {
-  return rule.s_max_ratio > 0.0 ? midmean_of(std::move(spacings)) : mean_of(spacings);
+ScaleRange tied_range(const ScaleRange& given, std::span<const Vec3> positions,
+                      const std::function<std::vector<double>()>& spacings) {
+  Spacing spacing = spacing_of(spacings());
+  if (spacing.middle == 0.0) spacing = spacing_of(spacings_of_distinct(positions));
+  ScaleRange range = given;
+  if (range.s_min == 0.0) range.s_min = spacing.middle;
+  if (range.s_max == 0.0) range.s_max = given.s_max_ratio * spacing.spread * range.s_min;
+  return range;
+}
+
+/// The paper's.
+ScaleRange range_by_extent(const ScaleRange& given, std::span<const Vec3> positions,
+                           double diagonal, const std::function<std::vector<double>()>& spacings) {
+  ScaleRange range = given;
+  if (range.s_min == 0.0) range.s_min = mean_of(spacings());
+  if (range.s_min == 0.0) range.s_min = mean_of(spacings_of_distinct(positions));
+  if (range.s_max > 0.0) return range;
+  range.s_max = given.s_max_fraction * diagonal;
+  if (!(range.s_min < range.s_max)) range.s_max = kSparseRange * range.s_min;
+  return range;
 }
 
 }  // namespace
@@ -107,15 +134,10 @@ ScaleRange scale_range(std::span<const Vec3> positions, const ScaleRange& given,
                     "points at two places or more are needed",
                     diagonal));
   }
-  ScaleRange range = given;
-  if (range.s_min == 0.0) range.s_min = spacing_by(given, spacings());
-  if (range.s_min == 0.0) range.s_min = spacing_by(given, spacings_of_distinct(positions));
-  if (range.s_max == 0.0 && given.s_max_ratio > 0.0) {
-    range.s_max = given.s_max_ratio * range.s_min;
-  } else if (range.s_max == 0.0) {
-    range.s_max = given.s_max_fraction * diagonal;
-    if (!(range.s_min < range.s_max)) range.s_max = kSparseRange * range.s_min;
-  }
+  const ScaleRange range = both_given ? given
+                           : given.s_max_ratio > 0.0
+                               ? tied_range(given, positions, spacings)
+                               : range_by_extent(given, positions, diagonal, spacings);
   if (kShortest < range.s_min && range.s_min < range.s_max && range.s_max < kLongest) return range;
   throw Error(
       ErrorKind::kUsage,

@@ -23,7 +23,7 @@ struct ScaleRange {
   double s_min = 0.0;
   double s_max = 0.0;
   double s_max_fraction = kPartOfDiagonal;  ///< of the diagonal: s_max where it is not given
-  double s_max_ratio = 0.0;  ///< s_max over s_min where it is not given; 0: s_max_fraction rules
+  double s_max_ratio = 0.0;  ///< s_max over s_min in even clouds; 0: s_max_fraction rules
 };
 
 /// Mean distances to the 10 nearest other points (to all others if they are fewer): of every point
@@ -41,8 +41,10 @@ inline constexpr std::size_t kSpacingNeighbours = 11;
 
 /// The range of scales of the finite `positions`. Bounds other than 0 in `given` are kept.
 ///
-/// With an s_max_ratio: s_min is the mean of the middle half of `spacings()`, which a few far
-/// points do not change, and s_max = s_max_ratio s_min. The range does not depend on the extent.
+/// With an s_max_ratio: s_min is the mean of the middle half of `spacings()` and s_max =
+/// s_max_ratio s_min; where the third quartile of the spacings is more than 1.6 times the first, as
+/// in scans from one place, s_max is larger in proportion, up to three times. Neither the extent
+/// nor a few far points change the range.
 ///
 /// Without one, the paper's range: s_min = the mean of `spacings()`, s_max = s_max_fraction (10 %)
 /// of the diagonal of the bounding box. Where this gives no range:
