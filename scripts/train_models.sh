@@ -17,7 +17,8 @@ for model in ${*:-general scan cad worn}; do
   case $model in
   general)
     clouds=
-    for set in default:1 default:2 scan:1 cad:1 cad:2 cad:3 cad:4 worn:1 worn:2 varied:1 varied:2; do
+    for set in default:1 default:2 default:3 scan:1 scan:2 scan:3 scan:4 cad:1 cad:2 cad:3 cad:4 \
+      worn:1 worn:2 varied:1 varied:2 varied:3; do
       generate "${set%:*}" "${set#*:}"
       clouds="$clouds $folder/${set%:*}${set#*:}"
     done

@@ -13,7 +13,7 @@ class App;
 namespace pcednet::app {
 
 /// The model of commands that are given none.
-inline constexpr const char* kDefaultModel = "scan";
+inline constexpr const char* kDefaultModel = "general";
 
 /// The shipped models by name, looked for beside the installed program and in the source tree.
 std::map<std::string, std::filesystem::path> shipped_models();

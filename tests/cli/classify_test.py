@@ -175,7 +175,7 @@ class Classify(CliTest):
         p, n, _ = cube(100)
         write_ply(self.folder / "a.ply", p, n)
         for engine in ((), ("--exact",)):
-            done = run("classify", self.folder / "a.ply", "--overwrite", *engine)
+            done = run("classify", self.folder / "a.ply", "--model", "scan", "--overwrite", *engine)
             self.assertIn("warning", done.stderr)
             self.assertIn("too few points for scales up to", done.stderr)
         rows, _ = read_ply(self.folder / "a_edges.ply")
@@ -185,12 +185,10 @@ class Classify(CliTest):
         p, n, _ = cube(3000)
         spacings = np.sort([np.sort(np.linalg.norm(p - q, axis=1))[1:11].mean() for q in p])
         spacing = spacings[750:2250].mean()  # the middle half
-        general = ("--model", "general")
-        own = self.classify(p, n, position_type="double", extra=general)
+        own = self.classify(p, n, position_type="double")
         same = self.classify(p, n, position_type="double",
-                             extra=(*general, "--s-min", repr(spacing), "--s-max",
-                                    repr(8 * spacing)))
-        other = self.classify(p, n, position_type="double", extra=(*general, "--s-max", 0.5))
+                             extra=("--s-min", repr(spacing), "--s-max", repr(8 * spacing)))
+        other = self.classify(p, n, position_type="double", extra=("--s-max", 0.5))
         np.testing.assert_allclose(own["scalar_p_sharp"], same["scalar_p_sharp"], atol=1e-4)
         self.assertGreater(np.max(np.abs(own["scalar_p_sharp"] - other["scalar_p_sharp"])), 0.1)
         write_ply(self.folder / "b.ply", p, n)

@@ -133,7 +133,7 @@ class Lines(CliTest):
         path = self.folder / "a.las"
         path.write_bytes(las(6, rows, [vlr(b"LASF_Projection", 2112, WKT.encode() + b"\0")]))
         done = run("lines", path, *self.outputs("gpkg", "geojson", "dxf"))
-        self.assertIn("no labels: classified by model scan", done.stderr)
+        self.assertIn("no labels: classified by model general", done.stderr)
         self.assertIn("no normals", done.stderr)
         for _, points in geopackage(self.made["gpkg"]):
             self.assertLess(np.abs(points - OFFSET - 100).max(), 8)

@@ -80,7 +80,7 @@ for (const [format, minor] of [[0, 2], [1, 4], [2, 2], [3, 2], [6, 4], [7, 4], [
     assert.equal(spec.length, 1);
     const said = now.contents.filter(([user, id]) => user === "pcednet" && id === 1);
     assert.equal(said.length, 1);
-    assert.match(Buffer.from(said[0][3], "hex").toString(), /^pcednet [0-9.]+\npcednet model scan\npcednet seed 1\npcednet scales [0-9.e+-]+ to [0-9.e+-]+\n/);
+    assert.match(Buffer.from(said[0][3], "hex").toString(), /^pcednet [0-9.]+\npcednet model general\npcednet seed 1\npcednet scales [0-9.e+-]+ to [0-9.e+-]+\n/);
     const others = now.contents.filter((record) => record !== spec[0] && record !== said[0]);
     assert.deepEqual(others, before.contents);
     assert.deepEqual(

@@ -8,13 +8,13 @@
 #include "pcednet/gls/engine.h"
 #include "workbench/shapes/default_set.h"
 
-// The labels of `general` do not depend on the extent of a file: its scales are multiples of the
+// The default model's labels do not depend on the extent of a file: its scales are multiples of the
 // spacing.
 
 namespace pcednet::shapes {
 namespace {
 
-const detect::EdgeModel& general_model() {
+const detect::EdgeModel& default_model() {
   static const auto model = detect::load_model(PCEDNET_SOURCE_DIR "/models/general.safetensors");
   return model;
 }
@@ -37,14 +37,14 @@ detect::Classification labels_of(const PointCloud& cloud, const detect::EdgeMode
 gls::ScaleRange range_of(const PointCloud& cloud) {
   const auto prepared = detect::prepare(cloud);
   const gls::ScaleSpace space({prepared.positions, prepared.normals, prepared.curve},
-                              general_model().descriptor);
+                              default_model().descriptor);
   return {.s_min = space.scales().front(), .s_max = space.scales().back()};
 }
 
 /// The share of points that keep their labels when the cloud is cut into n x n pieces along its two
 /// longest axes, each with a halo of the largest scale, and `model` labels each piece.
 double share_kept(const PointCloud& cloud, int n, double halo, const detect::EdgeModel& model) {
-  const auto whole = labels_of(cloud, general_model()).classes;
+  const auto whole = labels_of(cloud, default_model()).classes;
   BoundingBox box = bounding_box(cloud.positions);
   const Vec3 extent = box.max - box.min;
   int flat = 0;
@@ -78,23 +78,23 @@ double share_kept(const PointCloud& cloud, int n, double halo, const detect::Edg
 
 TEST(CutCloud, KeepsItsLabels) {
   const gls::ScaleRange range = range_of(wall());
-  detect::EdgeModel given = general_model();
+  detect::EdgeModel given = default_model();
   given.descriptor.s_min = range.s_min;
   given.descriptor.s_max = range.s_max;
   for (const int n : {2, 4}) {
     EXPECT_GE(share_kept(wall(), n, range.s_max, given), 0.995) << n;
-    EXPECT_GE(share_kept(wall(), n, range.s_max, general_model()), 0.97) << n;
+    EXPECT_GE(share_kept(wall(), n, range.s_max, default_model()), 0.97) << n;
   }
 }
 
 TEST(CutCloud, AThrownPointChangesHardlyALabel) {
   PointCloud thrown = wall();
   thrown.labels.clear();
-  const auto before = labels_of(thrown, general_model()).classes;
+  const auto before = labels_of(thrown, default_model()).classes;
   const BoundingBox box = bounding_box(thrown.positions);
   thrown.positions.push_back(box.max + 20.0 * (box.max - box.min));
   thrown.normals.push_back(Vec3::UnitZ());
-  const auto after = labels_of(thrown, general_model()).classes;
+  const auto after = labels_of(thrown, default_model()).classes;
   std::size_t same = 0;
   for (std::size_t i = 0; i < before.size(); ++i) same += before[i] == after[i];
   EXPECT_GE(static_cast<double>(same), 0.995 * static_cast<double>(before.size()));
