@@ -119,7 +119,13 @@ void Sums(benchmark::State& state) {
   }
   LaneSums sums;
   for (auto _ : state) {
-    kernels[which].sum(sources.data(), indices.data(), kSources, targets, {}, false, sums);
+    kernels[which].sum({.all = sources.data(),
+                        .open = indices.data(),
+                        .rest = nullptr,
+                        .open_count = kSources,
+                        .rest_count = 0,
+                        .points = false},
+                       targets, nullptr, 0, &sums);
     benchmark::DoNotOptimize(sums);
   }
   constexpr double kFusedPerInteraction = 43.0;  // multiplications, with or without an addition

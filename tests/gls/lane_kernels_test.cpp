@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <tuple>
+#include <utility>
 
 #include "gls/test_clouds.h"
 #include "pcednet/gls/block_frame.h"
@@ -81,6 +83,27 @@ void expect_sums(const LaneSums& sums, const Scene& scene, const LaneGate& gate,
   }
 }
 
+/// The sources of `scene`, all of which may be shut out by a gate.
+LaneSources gated(const Scene& scene, bool points) {
+  return {.all = scene.sources.data(),
+          .open = nullptr,
+          .rest = scene.indices.data(),
+          .open_count = 0,
+          .rest_count = scene.indices.size(),
+          .points = points};
+}
+
+/// Sums with one gate, or none.
+LaneSums sum(const LaneKernels& kernels, const Scene& scene, const LaneGate& gate, bool points) {
+  LaneSources sources = gated(scene, points);
+  if (!gate.enabled) {
+    std::swap(sources.open, sources.rest), std::swap(sources.open_count, sources.rest_count);
+  }
+  LaneSums sums;
+  kernels.sum(sources, scene.targets, &gate, gate.enabled ? 1 : 0, &sums);
+  return sums;
+}
+
 float total_count(const Scene& scene) {
   float count = 0.0f;
   for (const Source& s : scene.sources) count += s.count;
@@ -99,10 +122,7 @@ TEST(LaneKernels, SumAsTheDefinitionsSay) {
     const Scene scene(count);
     for (const LaneGate& gate : kGates) {
       for (const LaneKernels& kernels : all_lane_kernels()) {
-        LaneSums sums;
-        kernels.sum(scene.sources.data(), scene.indices.data(), count, scene.targets, gate, false,
-                    sums);
-        expect_sums(sums, scene, gate, kernels.name);
+        expect_sums(sum(kernels, scene, gate, false), scene, gate, kernels.name);
       }
     }
   }
@@ -113,9 +133,7 @@ TEST(LaneKernels, SumSinglePointsAlike) {
   for (Source& s : scene.sources) s.count = 1.0f, s.qq = s.qn = 0.0f;
   for (const LaneGate& gate : kGates) {
     for (const LaneKernels& kernels : all_lane_kernels()) {
-      LaneSums sums;
-      kernels.sum(scene.sources.data(), scene.indices.data(), 300, scene.targets, gate, true, sums);
-      expect_sums(sums, scene, gate, kernels.name);
+      expect_sums(sum(kernels, scene, gate, true), scene, gate, kernels.name);
     }
   }
 }
@@ -143,15 +161,75 @@ TEST(LaneKernels, SumForTwoGatesWhatTheySumForEach) {
     for (const LaneKernels& kernels : all_lane_kernels()) {
       for (const bool points : {false, true}) {
         LaneSums both[2];
-        kernels.sum_both(scene.sources.data(), scene.indices.data(), scene.indices.size(),
-                         scene.targets, gates, points, both);
+        kernels.sum(gated(scene, points), scene.targets, gates, 2, both);
         for (int g = 0; g < 2; ++g) {
-          LaneSums one;
-          kernels.sum(scene.sources.data(), scene.indices.data(), scene.indices.size(),
-                      scene.targets, gates[g], points, one);
+          const LaneSums one = sum(kernels, scene, gates[g], points);
           EXPECT_EQ(std::memcmp(&both[g], &one, sizeof one), 0) << kernels.name << " gate " << g;
         }
       }
+    }
+  }
+}
+
+/// Some unit vectors that are in the box.
+std::vector<Vec3> normals_in(const NormalBox& box) {
+  test::Stream stream(3);
+  std::vector<Vec3> normals;
+  while (normals.size() < 200) {
+    const Vec3 n = stream.direction();
+    bool is_within = true;
+    for (int a = 0; a < 3; ++a) {
+      is_within = is_within && std::abs(n[a] - double(box.middle[a])) <= double(box.half[a]);
+    }
+    if (is_within) normals.push_back(n);
+  }
+  return normals;
+}
+
+TEST(LaneKernels, PartSourcesWhoseNormalIsCloseToAllOfABox) {
+  const Scene scene(300);
+  const NormalBox box = {{0.0f, 0.0f, 0.99f}, {0.1f, 0.1f, 0.01f}};
+  const std::vector<Vec3> normals = normals_in(box);
+  for (const LaneKernels& kernels : all_lane_kernels()) {
+    std::vector<std::uint32_t> open = scene.indices, rest(300);
+    const std::size_t count = kernels.part_open(scene.sources.data(), open.data(), 300, box, 0.7f,
+                                                open.data(), rest.data());
+    open.resize(count), rest.resize(300 - count);
+    ASSERT_GT(count, 10u);
+    for (const std::uint32_t i : open) {
+      const Source& s = scene.sources[i];
+      for (const Vec3& n : normals) EXPECT_GE(n.dot(Vec3(s.nx, s.ny, s.nz)), 0.7 - 1e-6);
+    }
+    for (const std::uint32_t i : rest) EXPECT_LT(scene.sources[i].nz, 0.9f) << kernels.name;
+    std::vector<std::uint32_t> all = open, expected = scene.indices;
+    all.insert(all.end(), rest.begin(), rest.end());
+    std::sort(all.begin(), all.end()), std::sort(expected.begin(), expected.end());
+    EXPECT_EQ(all, expected) << kernels.name;
+  }
+}
+
+TEST(LaneKernels, SumOpenSourcesAsIfTheGatesWereEvaluated) {
+  Scene scene(300);
+  for (std::size_t lane = 0; lane < kLanes; ++lane) {
+    scene.targets.nx[lane] = scene.targets.ny[lane] = 0.0f, scene.targets.nz[lane] = 1.0f;
+  }
+  const LaneGate gates[2] = {{.enabled = true, .threshold = 0.4f},
+                             {.enabled = true, .threshold = -0.3f}};
+  for (const LaneKernels& kernels : all_lane_kernels()) {
+    std::vector<std::uint32_t> open(300), rest(300);
+    LaneSources sources = gated(scene, false);
+    sources.open_count =
+        kernels.part_open(sources.all, scene.indices.data(), 300, {{0.0f, 0.0f, 1.0f}, {}}, 0.7001f,
+                          open.data(), rest.data());
+    sources.rest_count = 300 - sources.open_count;
+    sources.open = open.data(), sources.rest = rest.data();
+    ASSERT_GT(sources.open_count, 10u);
+    LaneSums both[2], one;
+    kernels.sum(sources, scene.targets, gates, 2, both);
+    for (int g = 0; g < 2; ++g) {
+      expect_sums(both[g], scene, gates[g], kernels.name);
+      kernels.sum(sources, scene.targets, &gates[g], 1, &one);
+      EXPECT_EQ(std::memcmp(&both[g], &one, sizeof one), 0) << kernels.name << " gate " << g;
     }
   }
 }
@@ -274,9 +352,8 @@ TEST(LaneKernels, SplitOffWhatIsNearAllOfTheBox) {
 
 TEST(LaneKernels, SolveAlike) {
   const Scene scene(300);
-  LaneSums sums;
   const LaneKernels& baseline = all_lane_kernels().front();
-  baseline.sum(scene.sources.data(), scene.indices.data(), 300, scene.targets, {}, false, sums);
+  const LaneSums sums = sum(baseline, scene, {}, false);
   LaneFits expected = {};
   baseline.solve(sums, LaneDetail::kAll, 1e-6f, expected);
   for (const LaneKernels& kernels : all_lane_kernels()) {

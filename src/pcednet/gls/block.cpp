@@ -28,18 +28,35 @@ float inner_reach(const BlockFrame& frame, float margin) {
   return static_cast<float>(std::sqrt(sq_inner) - 1e-4) - margin;
 }
 
+/// Leaves of the sources inside those that every gate lets in wholly.
+void keep_open(Part& part, const Source* sources, const NormalBox& normals, float open_from,
+               const LaneKernels& kernels) {
+  Candidates& inside = part.inside.view;
+  part.gated.reserve(inside.count);
+  const std::uint32_t* rest = part.gated.rest.data();
+  const std::size_t open = kernels.part_open(sources, inside.index, inside.count, normals,
+                                             open_from, inside.index, part.gated.rest.data());
+  for (std::size_t j = 0; j < inside.count - open; ++j) part.near.add(rest[j], sources[rest[j]]);
+  inside.count = open;
+}
+
 }  // namespace
 
 void GroupBoxes::cover(std::span<const Voxel> points, std::size_t begin, std::size_t end) {
   if (begin >= begin_ && end <= end_) return;
   points_ = points, begin_ = begin, end_ = end;
-  boxes_.clear();
+  boxes_.clear(), normals_.clear();
   for (std::size_t first = begin; first < end; first += kLanes) {
     TargetBox box = {points[first].position, points[first].position};
+    Normals normals = {points[first].normal, points[first].normal};
     for (std::size_t i = first + 1; i < std::min(first + kLanes, end); ++i) {
       box.grow(points[i].position);
+      for (std::size_t a = 0; a < 3; ++a) {
+        normals.min[a] = std::min(normals.min[a], points[i].normal[a]);
+        normals.max[a] = std::max(normals.max[a], points[i].normal[a]);
+      }
     }
-    boxes_.push_back(box);
+    boxes_.push_back(box), normals_.push_back(normals);
   }
 }
 
@@ -53,6 +70,32 @@ TargetBox GroupBoxes::box_of(std::size_t begin, std::size_t end) const {
     } else {
       box.grow(points_[i].position);
     }
+  }
+  return box;
+}
+
+bool may_be_open(const NormalBox& normals, float open_from) {
+  float sq_most = 0.0f;
+  for (int a = 0; a < 3; ++a) {
+    const float most = std::max(0.0f, std::abs(normals.middle[a]) - normals.half[a]);
+    sq_most += most * most;
+  }
+  return sq_most > open_from * open_from;
+}
+
+NormalBox GroupBoxes::normals_of(std::size_t begin, std::size_t end) const {
+  const std::size_t first = (begin - begin_) / kLanes, last = (end - 1 - begin_) / kLanes;
+  Normals all = normals_[first];
+  for (std::size_t g = first + 1; g <= last; ++g) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      all.min[a] = std::min(all.min[a], normals_[g].min[a]);
+      all.max[a] = std::max(all.max[a], normals_[g].max[a]);
+    }
+  }
+  NormalBox box;
+  for (std::size_t a = 0; a < 3; ++a) {
+    box.middle[a] = 0.5f * (all.min[a] + all.max[a]);
+    box.half[a] = 0.5f * (all.max[a] - all.min[a]);
   }
   return box;
 }
@@ -90,7 +133,7 @@ void gather(Block& block, std::size_t begin, std::size_t end, const TargetBox& b
 }
 
 Sources choose_part(Block& block, std::size_t depth, const Sources& all, const SourceBox& box,
-                    const Reach& reach, const LaneKernels& kernels) {
+                    const NormalBox& normals, const Reach& reach, const LaneKernels& kernels) {
   Part& part = block.parts[depth];
   part.near.reserve(all.near.count), part.inside.reserve(all.near.count);
   part.inside.view.x = nullptr;  // the indices are enough
@@ -102,9 +145,14 @@ Sources choose_part(Block& block, std::size_t depth, const Sources& all, const S
   }
   Candidates& near = part.near.view;
   Candidates& inside = part.inside.view;
-  if (reach.inside && sq_half < kWidestSummed * kWidestSummed) {
+  const bool gated = reach.open_from > 0.0f;
+  if (sq_half < kWidestSummed * kWidestSummed &&
+      (!gated || may_be_open(normals, reach.open_from))) {
     kernels.split(all.near, box, kReach + reach.margin, inner_reach(block.frame, reach.margin),
                   near, inside);
+    if (gated && inside.count >= kFewestSummed) {
+      keep_open(part, block.frame.sources(), normals, reach.open_from, kernels);
+    }
   }
   if (inside.count >= kFewestSummed) {
     kernels.sum_inside(block.frame.sources(), inside.index, inside.count, part.sums);

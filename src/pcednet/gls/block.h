@@ -10,10 +10,30 @@
 
 namespace pcednet::gls {
 
+/// How sources are chosen: for the points as they are, or in advance for points that will move.
+struct Reach {
+  float margin = 0.0f;  ///< t: gathered beyond the support
+  /// The cosine of normals from which all gates are wide open, 0 without a gate; see open_from().
+  float open_from = 0.0f;
+};
+
+/// Whether some normal can have the cosine to every normal of the box from which gates are open.
+bool may_be_open(const NormalBox& normals, float open_from);
+
+/// The sources that gates may let in, divided.
+struct GatedList {
+  std::vector<std::uint32_t> open, rest;
+
+  void reserve(std::size_t count) {
+    if (open.size() < count) open.resize(count), rest.resize(count);
+  }
+};
+
 /// A part of a block: the sources near it, less those inside the support of its every point, which
 /// are summed up once.
 struct Part {
   CandidateList near, inside;
+  GatedList gated;
   InsideSums sums;
 };
 
@@ -35,13 +55,7 @@ struct Sources {
   SourceBox box;                 ///< where the points may be; beyond, see is_within()
 };
 
-/// How sources are chosen: for the points as they are, or in advance for points that will move.
-struct Reach {
-  float margin = 0.0f;  ///< t: gathered beyond the support
-  bool inside = true;   ///< sum up what is inside the support of every point; not with a gate
-};
-
-/// The boxes of the groups of some points.
+/// The boxes of the groups of some points, and of their normals.
 class GroupBoxes {
  public:
   /// Finds those of the points [begin, end) unless they are known; `begin` is that of a group.
@@ -50,10 +64,18 @@ class GroupBoxes {
   /// Of the points [begin, end), which are covered.
   TargetBox box_of(std::size_t begin, std::size_t end) const;
 
+  /// Of the normals of the groups that these points belong to.
+  NormalBox normals_of(std::size_t begin, std::size_t end) const;
+
  private:
+  struct Normals {
+    std::array<float, 3> min, max;
+  };
+
   std::span<const Voxel> points_;
   std::size_t begin_ = 0, end_ = 0;
   std::vector<TargetBox> boxes_;
+  std::vector<Normals> normals_;
 };
 
 /// The box of all lanes in `targets`, in the frame.
@@ -70,8 +92,9 @@ bool is_within(const SourceBox& box, const SourceBox& gathered, float margin);
 void gather(Block& block, std::size_t begin, std::size_t end, const TargetBox& box,
             const VoxelLevel& level, double t, float margin);
 
-/// The sources of `all` that points in `box` may meet, as the block's part of this depth.
+/// The sources of `all` that points in `box` with normals in `normals` may meet, as the block's
+/// part of this depth.
 Sources choose_part(Block& block, std::size_t depth, const Sources& all, const SourceBox& box,
-                    const Reach& reach, const LaneKernels& kernels);
+                    const NormalBox& normals, const Reach& reach, const LaneKernels& kernels);
 
 }  // namespace pcednet::gls

@@ -35,11 +35,11 @@ void BlockEvaluator::evaluate(std::size_t begin, std::size_t end, std::size_t sc
     return;
   }
   if (!any_wanted(begin, end, wanted)) return;
-  const Visit visit = {
-      {t, options_.detail, options_.projection_steps, kernels_},
-      {.margin = options_.projection_steps > 0 ? kMargin : 0.0f, .inside = !options_.gates.front()},
-      wanted,
-      emit};
+  const Visit visit = {{t, options_.detail, options_.projection_steps, kernels_},
+                       {.margin = options_.projection_steps > 0 ? kMargin : 0.0f,
+                        .open_from = open_from(options_.gates)},
+                       wanted,
+                       emit};
   gather(block_, begin, end, box, pyramid_->levels[pyramid_->level_of[scale]], t,
          visit.reach.margin);
   visit_parts(0, begin, end, {&block_.frame, block_.frame.candidates(), {}, {}}, visit);
@@ -56,8 +56,9 @@ void BlockEvaluator::visit_parts(std::size_t depth, std::size_t begin, std::size
       visit_group({first, last - first}, sources, visit);
     } else {
       const SourceBox box = local_box(block_.frame, boxes_.box_of(first, last));
+      const NormalBox normals = boxes_.normals_of(first, last);
       visit_parts(depth + 1, first, last,
-                  choose_part(block_, depth, sources, box, visit.reach, *kernels_), visit);
+                  choose_part(block_, depth, sources, box, normals, visit.reach, *kernels_), visit);
     }
   }
 }
@@ -65,7 +66,10 @@ void BlockEvaluator::visit_parts(std::size_t depth, std::size_t begin, std::size
 void BlockEvaluator::visit_group(const LaneGroup& group, const Sources& sources,
                                  const Visit& visit) {
   const std::span<const Voxel> points = pyramid_->levels.front().voxels;
-  const Group here = place(points.subspan(group.begin, group.count), block_.frame);
+  const std::size_t end = group.begin + group.count;
+  const Group here = place(points.subspan(group.begin, group.count), block_.frame,
+                           local_box(block_.frame, boxes_.box_of(group.begin, end)),
+                           boxes_.normals_of(group.begin, end));
   const std::span<const Gate> gates = options_.gates;
   const auto fits = std::span(fits_).first(gates.size());
   fit(here, sources, gates, visit.fit, buffers_, fits);

@@ -21,6 +21,12 @@ class CandidateList {
     view.x[i] = source.x, view.y[i] = source.y, view.z[i] = source.z;
     view.index[i] = static_cast<std::uint32_t>(i);
   }
+  /// There must be room.
+  void add(std::uint32_t index, const Source& source) {
+    const std::size_t i = view.count++;
+    view.x[i] = source.x, view.y[i] = source.y, view.z[i] = source.z;
+    view.index[i] = index;
+  }
 
   Candidates view = {};
 

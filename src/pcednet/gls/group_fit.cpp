@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "pcednet/gls/features.h"
 #include "pcednet/gls/lane_recheck.h"
@@ -11,6 +12,9 @@ namespace {
 
 constexpr float kRounding = 0x1p-24f;   // of a float
 constexpr float kSmallestMove = 0.01f;  // of t: after a shorter step the projection ends
+
+/// The same for all gates up to 0.4, so that two of them divide the sources as each alone would.
+constexpr double kLeastOpen = 0.4 + kGateWidth;
 
 /// The sources that a fit reads one by one.
 struct NearSources {
@@ -136,6 +140,32 @@ void settle(const Group& group, const NearSources& near, const Gate& gate, doubl
   }
 }
 
+void sum(const Group& group, const NearSources& near, std::span<const Gate> gates,
+         const LaneKernels& kernels, GatedList& gated, LaneSums (&sums)[2]) {
+  const BlockFrame& frame = *near.all->frame;
+  LaneSources sources = {.all = frame.sources(),
+                         .open = near.chosen.index,
+                         .rest = nullptr,
+                         .open_count = near.chosen.count,
+                         .rest_count = 0,
+                         .points = frame.level().cell == 0.0};
+  if (!gates.front()) return kernels.sum(sources, group.targets, nullptr, 0, sums);
+  const float open = open_from(gates);
+  if (may_be_open(group.normals, open)) {
+    gated.reserve(near.chosen.count);
+    sources.open = gated.open.data(), sources.rest = gated.rest.data();
+    sources.open_count =
+        kernels.part_open(sources.all, near.chosen.index, near.chosen.count, group.normals, open,
+                          gated.open.data(), gated.rest.data());
+  } else {
+    std::swap(sources.open, sources.rest);
+    sources.open_count = 0;
+  }
+  sources.rest_count = near.chosen.count - sources.open_count;
+  const LaneGate both[2] = {lane_gate(gates.front()), lane_gate(gates.back())};
+  kernels.sum(sources, group.targets, both, gates.size(), sums);
+}
+
 /// How far each lane goes in one step, and whether it goes at all.
 struct Moves {
   std::array<std::array<float, 3>, kLanes> by;  ///< in t
@@ -173,6 +203,7 @@ Group moved(const Group& group, const Moves& moves) {
       next.offsets[lane][a] += moves.by[lane][a];
     }
   }
+  next.box = box_of(next.targets);
   return next;
 }
 
@@ -183,8 +214,7 @@ void copy_lane(const Group& from, std::size_t lane, Group& to) {
 }
 
 /// The sources around points that have moved: those at hand, or else newly gathered.
-Sources sources_at(const LaneTargets& targets, const Sources& at_hand, double t, BlockFrame& own) {
-  const SourceBox box = box_of(targets);
+Sources sources_at(const SourceBox& box, const Sources& at_hand, double t, BlockFrame& own) {
   if (is_within(box, at_hand.box, kMargin)) return at_hand;
   const BlockFrame& frame = *at_hand.frame;
   TargetBox there;
@@ -212,9 +242,17 @@ void measure_tau(const Group& group, GroupFit& fit) {
 
 }  // namespace
 
-Group place(std::span<const Voxel> points, const BlockFrame& frame) {
-  Group group;
-  group.points = points;
+float open_from(std::span<const Gate> gates) {
+  if (!gates.front()) return 0.0f;
+  constexpr double kSlack = 1e-4;  // for rounding
+  double from = kLeastOpen;
+  for (const Gate& gate : gates) from = std::max(from, *gate + kGateWidth);
+  return static_cast<float>(from + kSlack);
+}
+
+Group place(std::span<const Voxel> points, const BlockFrame& frame, const SourceBox& box,
+            const NormalBox& normals) {
+  Group group = {.points = points, .targets = {}, .box = box, .normals = normals};
   LaneTargets& targets = group.targets;
   for (std::size_t lane = 0; lane < kLanes; ++lane) {
     const Voxel& point = points[std::min(lane, points.size() - 1)];
@@ -235,25 +273,16 @@ void fit(const Group& group, const Sources& sources, std::span<const Gate> gates
   buffers.near.reserve(sources.near.count);
   Candidates& chosen = buffers.near.view;
   chosen.x = nullptr;  // the indices are enough
-  const SourceBox box = box_of(group.targets);
-  kernels.select(sources.near, box, kReach, chosen);
-  const Source* all = sources.frame->sources();
-  const bool points = sources.frame->level().cell == 0.0;
+  kernels.select(sources.near, group.box, kReach, chosen);
   LaneSums sums[2];
-  if (gates.size() == 2) {
-    kernels.sum_both(all, chosen.index, chosen.count, group.targets,
-                     {lane_gate(gates[0]), lane_gate(gates[1])}, points, sums);
-  } else {
-    kernels.sum(all, chosen.index, chosen.count, group.targets, lane_gate(gates[0]), points,
-                sums[0]);
-  }
+  sum(group, {&sources, chosen}, gates, kernels, buffers.gated, sums);
   for (std::size_t g = 0; g < gates.size(); ++g) {
     for (const Part& part : sources.summed) {
       if (part.inside.view.count > 0) kernels.add_inside(part.sums, group.targets, sums[g]);
     }
     const NearSources near = {&sources, chosen};
     find_status(group, near, sums[g].u, gates[g], options, buffers, fits[g]);
-    kernels.solve(sums[g], options.detail, rounding_at(box), fits[g].fits);
+    kernels.solve(sums[g], options.detail, rounding_at(group.box), fits[g].fits);
     settle(group, near, gates[g], options.t, buffers, fits[g]);
   }
 }
@@ -266,7 +295,7 @@ void project(Group group, const Sources& sources, const Gate& gate, const FitOpt
   const std::size_t lanes = group.points.size();
   for (int i = 0; i < options.projection_steps && choose(moves, fit, lanes); ++i) {
     const Group there = moved(group, moves);
-    gls::fit(there, sources_at(there.targets, sources, options.t, buffers.own), {&gate, 1}, options,
+    gls::fit(there, sources_at(there.box, sources, options.t, buffers.own), {&gate, 1}, options,
              buffers, {&next, 1});
     for (std::size_t lane = 0; lane < lanes; ++lane) {
       if (!moves.on[lane]) continue;

@@ -21,6 +21,8 @@ struct LaneGroup {
 struct Group {
   std::span<const Voxel> points;
   LaneTargets targets;
+  SourceBox box;                                          ///< of the targets
+  NormalBox normals;                                      ///< theirs
   std::array<std::array<float, 3>, kLanes> offsets = {};  ///< from the points, in t
 };
 
@@ -44,6 +46,7 @@ struct FitOptions {
 /// What fitting needs room for.
 struct FitBuffers {
   CandidateList near;
+  GatedList gated;
   std::vector<std::uint32_t> voxels;
   BlockFrame own;  ///< of a group whose points left what its block gathered
 };
@@ -51,8 +54,12 @@ struct FitBuffers {
 /// t: what must be gathered beyond the support for points that project() moves.
 inline constexpr float kMargin = 0.25f;
 
-/// `points` where they are, at most kLanes of them.
-Group place(std::span<const Voxel> points, const BlockFrame& frame);
+/// The cosine of normals from which all of these gates are wide open; 0 for no gate.
+float open_from(std::span<const Gate> gates);
+
+/// `points` where they are, at most kLanes of them, and their boxes.
+Group place(std::span<const Voxel> points, const BlockFrame& frame, const SourceBox& box,
+            const NormalBox& normals);
 
 /// Fits every lane with every gate, one or two: fits[i] with gates[i].
 void fit(const Group& group, const Sources& sources, std::span<const Gate> gates,

@@ -23,6 +23,11 @@ struct SourceBox {
   float min[3], max[3];
 };
 
+/// A box that holds some normals.
+struct NormalBox {
+  float middle[3], half[3];
+};
+
 /// Candidate sources: their numbers and, for the test of reach, their positions again.
 struct Candidates {
   float *x, *y, *z;
@@ -39,6 +44,15 @@ struct LaneTargets {
 struct LaneGate {
   bool enabled = false;
   float threshold = 0.0f;
+};
+
+/// The sources of a neighbourhood by number: those that let every gate open for every target, and
+/// the rest, whose gates are evaluated. Without a gate all are open.
+struct LaneSources {
+  const Source* all;
+  const std::uint32_t *open, *rest;
+  std::size_t open_count, rest_count;
+  bool points;  ///< all are single points with normals
 };
 
 /// The sums of a neighbourhood over u = gate count (1 - r^2) and over w = u (1 - r^2), support
@@ -102,13 +116,16 @@ struct LaneKernels {
   /// As select(), but moves those whose every point of `box` is nearer than `inner` to `inside`.
   void (*split)(const Candidates& in, const SourceBox& box, float reach, float inner,
                 Candidates& out, Candidates& inside);
-  /// Sums over sources[indices[0 .. count)); `points` says that all are single points with normals.
-  void (*sum)(const Source* sources, const std::uint32_t* indices, std::size_t count,
-              const LaneTargets& targets, const LaneGate& gate, bool points, LaneSums& sums);
-  /// What sum() gives for either gate, both enabled, to the same bits.
-  void (*sum_both)(const Source* sources, const std::uint32_t* indices, std::size_t count,
-                   const LaneTargets& targets, const LaneGate (&gates)[2], bool points,
-                   LaneSums (&sums)[2]);
+  /// Moves those of indices[0 .. count) whose normal has a cosine of `least` or more to every
+  /// normal in the box to `open`, which may be `indices`, and the others to `rest`; returns how
+  /// many are open.
+  std::size_t (*part_open)(const Source* sources, const std::uint32_t* indices, std::size_t count,
+                           const NormalBox& normals, float least, std::uint32_t* open,
+                           std::uint32_t* rest);
+  /// Sums for each of up to two gates, all enabled; for none, sums[0]. With two gates each has the
+  /// same bits as alone.
+  void (*sum)(const LaneSources& sources, const LaneTargets& targets, const LaneGate* gates,
+              std::size_t gate_count, LaneSums* sums);
   /// Sums over sources[indices[0 .. count)) about sums.centre.
   void (*sum_inside)(const Source* sources, const std::uint32_t* indices, std::size_t count,
                      InsideSums& sums);
