@@ -70,7 +70,7 @@ FastScaleSpace::FastScaleSpace(OrientedPoints points, const ScaleSpaceOptions& o
     throw Error(ErrorKind::kUsage, "the fast engine reconstructs with algebraic spheres only");
   }
   Stage stage(progress, "prepare", 3);
-  const std::vector<std::uint32_t> curve = point_order(points);
+  std::vector<std::uint32_t> curve = point_order(points);
   stage.advance();
   order_ = curve;
   arrange_in_groups(points.positions, order_);
@@ -80,6 +80,7 @@ FastScaleSpace::FastScaleSpace(OrientedPoints points, const ScaleSpaceOptions& o
   pyramid_ = make_pyramid(points.positions, points.normals, order_, unit_);
   stage.advance();
   find_scales(points, curve);
+  std::vector<std::uint32_t>().swap(curve);  // before the levels take their memory
   stage.advance();
   std::vector<double> scaled = scales_;
   for (double& scale : scaled) scale *= unit_;

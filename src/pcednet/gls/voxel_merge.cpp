@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "pcednet/core/parallel.h"
 #include "pcednet/gls/normal_spread.h"
@@ -241,11 +242,20 @@ void for_blocks(const std::vector<Voxel>& from, const Grid& grid, Crowd crowd,
   }
 }
 
-/// The voxels of the blocks that begin within [begin, end).
-std::vector<Voxel> merge_stretch(const std::vector<Voxel>& from, const Grid& grid, Crowd crowd,
-                                 std::span<const Keyed> keyed, std::size_t begin, std::size_t end) {
-  std::vector<Voxel> to;
-  to.reserve((end - begin) / 2);
+/// How many voxels the blocks that begin within [begin, end) become.
+std::size_t count_voxels(const std::vector<Voxel>& from, const Grid& grid, Crowd crowd,
+                         std::span<const Keyed> keyed, std::size_t begin, std::size_t end) {
+  std::size_t count = 0;
+  for_blocks(from, grid, crowd, keyed, begin, end,
+             [&](std::span<const Keyed>, std::span<const std::uint32_t>, const BlockPlan& plan) {
+               count += plan.count();
+             });
+  return count;
+}
+
+/// Writes them.
+void merge_stretch(const std::vector<Voxel>& from, const Grid& grid, Crowd crowd,
+                   std::span<const Keyed> keyed, std::size_t begin, std::size_t end, Voxel* to) {
   std::vector<VoxelSums> sums;
   for_blocks(from, grid, crowd, keyed, begin, end,
              [&](std::span<const Keyed> members, std::span<const std::uint32_t> voxel_of,
@@ -254,9 +264,8 @@ std::vector<Voxel> merge_stretch(const std::vector<Voxel>& from, const Grid& gri
                for (std::size_t i = 0; i < members.size(); ++i) {
                  if (voxel_of[i] != kNone) sums[voxel_of[i]].add(from[members[i].index]);
                }
-               for (const VoxelSums& sum : sums) to.push_back(sum.voxel());
+               for (const VoxelSums& sum : sums) *to++ = sum.voxel();
              });
-  return to;
 }
 
 /// MergeForecast, each number summed over `points`.
@@ -309,19 +318,16 @@ std::vector<Voxel> merge_voxels(const std::vector<Voxel>& from, const MergeCells
   });
   spatial::sort_by_key(keyed, grid.key_bits());
 
-  std::vector<std::vector<Voxel>> stretches((keyed.size() + kStretch - 1) / kStretch);
+  // Planned twice, which costs less than to hold the voxels of all stretches beside the result.
+  std::vector<std::size_t> first((keyed.size() + kStretch - 1) / kStretch + 1);
   parallel_blocks(keyed.size(), kStretch, [&](std::size_t begin, std::size_t end) {
-    stretches[begin / kStretch] = merge_stretch(from, grid, cells.crowd, keyed, begin, end);
+    first[begin / kStretch + 1] = count_voxels(from, grid, cells.crowd, keyed, begin, end);
   });
-  keyed = {};
-  std::size_t count = 0;
-  for (const auto& stretch : stretches) count += stretch.size();
-  std::vector<Voxel> to;
-  to.reserve(count);
-  for (auto& stretch : stretches) {
-    to.insert(to.end(), stretch.begin(), stretch.end());
-    stretch = {};
-  }
+  std::partial_sum(first.begin(), first.end(), first.begin());
+  std::vector<Voxel> to(first.back());
+  parallel_blocks(keyed.size(), kStretch, [&](std::size_t begin, std::size_t end) {
+    merge_stretch(from, grid, cells.crowd, keyed, begin, end, &to[first[begin / kStretch]]);
+  });
   return to;
 }
 
