@@ -32,10 +32,9 @@ float inner_reach(const BlockFrame& frame, float margin) {
 void keep_open(Part& part, const Source* sources, const NormalBox& normals, float open_from,
                const LaneKernels& kernels) {
   Candidates& inside = part.inside.view;
-  part.gated.reserve(inside.count);
-  const std::uint32_t* rest = part.gated.rest.data();
+  std::uint32_t* const rest = part.gated.rest.make(inside.count);
   const std::size_t open = kernels.part_open(sources, inside.index, inside.count, normals,
-                                             open_from, inside.index, part.gated.rest.data());
+                                             open_from, inside.index, rest);
   for (std::size_t j = 0; j < inside.count - open; ++j) part.near.add(rest[j], sources[rest[j]]);
   inside.count = open;
 }
@@ -122,14 +121,17 @@ bool is_within(const SourceBox& box, const SourceBox& gathered, float margin) {
   return true;
 }
 
-void gather(Block& block, std::size_t begin, std::size_t end, const TargetBox& box,
-            const VoxelLevel& level, double t, float margin) {
+bool gather(Block& block, std::size_t begin, std::size_t end, const TargetBox& box,
+            const VoxelLevel& level, double t, float margin, std::size_t most) {
   const float reach = kReach + margin;
   const bool again =
       begin == block.begin && end == block.end && block.frame.holds(level, reach * t);
-  if (again) return block.frame.rescale(t);
-  block.frame.gather(level, box, box.centre(), t, reach);
+  if (again) {
+    block.frame.rescale(t);
+    return true;
+  }
   block.begin = begin, block.end = end;
+  return block.frame.gather(level, box, box.centre(), t, reach, most);
 }
 
 Sources choose_part(Block& block, std::size_t depth, const Sources& all, const SourceBox& box,

@@ -22,11 +22,7 @@ bool may_be_open(const NormalBox& normals, float open_from);
 
 /// The sources that gates may let in, divided.
 struct GatedList {
-  std::vector<std::uint32_t> open, rest;
-
-  void reserve(std::size_t count) {
-    if (open.size() < count) open.resize(count), rest.resize(count);
-  }
+  Room<std::uint32_t> open, rest;
 };
 
 /// A part of a block: the sources near it, less those inside the support of its every point, which
@@ -89,8 +85,9 @@ bool is_within(const SourceBox& box, const SourceBox& gathered, float margin);
 
 /// Gathers for the points [begin, end), whose box is given, what `level` holds within the support
 /// of scale t. A level that served a larger scale of the same block before is not searched again.
-void gather(Block& block, std::size_t begin, std::size_t end, const TargetBox& box,
-            const VoxelLevel& level, double t, float margin);
+/// False, and nothing is gathered, if that is more than `most`.
+bool gather(Block& block, std::size_t begin, std::size_t end, const TargetBox& box,
+            const VoxelLevel& level, double t, float margin, std::size_t most);
 
 /// The sources of `all` that points in `box` with normals in `normals` may meet, as the block's
 /// part of this depth.

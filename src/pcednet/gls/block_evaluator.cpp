@@ -1,6 +1,7 @@
 #include "pcednet/gls/block_evaluator.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace pcednet::gls {
 namespace {
@@ -9,6 +10,8 @@ namespace {
 constexpr std::array<std::size_t, Block::kDepth> kParts = {64 * kLanes, 8 * kLanes, 2 * kLanes,
                                                            kLanes};
 constexpr double kWidestBlock = 64;  // t: float then gives coordinates to 2e-6
+/// Those of a compact block are a fifth; a block that the curve scatters is divided.
+constexpr std::size_t kMostSources = 8 * 4096;
 
 bool any_wanted(std::size_t begin, std::size_t end, const BlockEvaluator::Wanted& wanted) {
   for (std::size_t first = begin; first < end; first += kLanes) {
@@ -28,11 +31,7 @@ void BlockEvaluator::evaluate(std::size_t begin, std::size_t end, std::size_t sc
   boxes_.cover(pyramid_->levels.front().voxels, begin, end);
   const TargetBox box = boxes_.box_of(begin, end);
   if (box.longest_side() > kWidestBlock * t && end - begin > 1) {
-    const std::size_t groups = (end - begin + kLanes - 1) / kLanes;
-    const std::size_t half = begin + (groups > 1 ? groups / 2 * kLanes : (end - begin) / 2);
-    evaluate(begin, half, scale, t, wanted, emit);
-    evaluate(half, end, scale, t, wanted, emit);
-    return;
+    return evaluate_halves(begin, end, scale, t, wanted, emit);
   }
   if (!any_wanted(begin, end, wanted)) return;
   const Visit visit = {{t, options_.detail, options_.projection_steps, kernels_},
@@ -40,9 +39,20 @@ void BlockEvaluator::evaluate(std::size_t begin, std::size_t end, std::size_t sc
                         .open_from = open_from(options_.gates)},
                        wanted,
                        emit};
-  gather(block_, begin, end, box, pyramid_->levels[pyramid_->level_of[scale]], t,
-         visit.reach.margin);
+  const bool divisible = end - begin > kParts.front();
+  const bool gathered = gather(block_, begin, end, box, pyramid_->levels[pyramid_->level_of[scale]],
+                               t, visit.reach.margin,
+                               divisible ? kMostSources : std::numeric_limits<std::size_t>::max());
+  if (!gathered) return evaluate_halves(begin, end, scale, t, wanted, emit);
   visit_parts(0, begin, end, {&block_.frame, block_.frame.candidates(), {}, {}}, visit);
+}
+
+void BlockEvaluator::evaluate_halves(std::size_t begin, std::size_t end, std::size_t scale,
+                                     double t, const Wanted& wanted, const Emit& emit) {
+  const std::size_t groups = (end - begin + kLanes - 1) / kLanes;
+  const std::size_t half = begin + (groups > 1 ? groups / 2 * kLanes : (end - begin) / 2);
+  evaluate(begin, half, scale, t, wanted, emit);
+  evaluate(half, end, scale, t, wanted, emit);
 }
 
 /// Describes the points [begin, end) from `sources`.

@@ -40,6 +40,8 @@ class BlockEvaluator {
     const Emit& emit;
   };
 
+  void evaluate_halves(std::size_t begin, std::size_t end, std::size_t scale, double t,
+                       const Wanted& wanted, const Emit& emit);
   void visit_parts(std::size_t depth, std::size_t begin, std::size_t end, const Sources& sources,
                    const Visit& visit);
   void visit_group(const LaneGroup& group, const Sources& sources, const Visit& visit);

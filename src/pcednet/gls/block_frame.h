@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -12,6 +14,27 @@ namespace pcednet::gls {
 
 /// t: the support, and what rounding may add.
 inline constexpr float kReach = 1.00001f;
+
+/// Room for values that are written before they are read: it grows without keeping or clearing
+/// them.
+template <typename Value>
+class Room {
+ public:
+  /// Of `count` values at least.
+  Value* make(std::size_t count) {
+    if (size_ < count) {
+      size_ = count + count / 2;
+      values_ = std::make_unique_for_overwrite<Value[]>(size_);
+    }
+    return values_.get();
+  }
+  Value* data() { return values_.get(); }
+  const Value* data() const { return values_.get(); }
+
+ private:
+  std::size_t size_ = 0;
+  std::unique_ptr<Value[]> values_;
+};
 
 /// Owns the arrays of Candidates, of which the kernels fill as many as they find.
 class CandidateList {
@@ -31,8 +54,8 @@ class CandidateList {
   Candidates view = {};
 
  private:
-  std::vector<float> x_, y_, z_;
-  std::vector<std::uint32_t> index_;
+  Room<float> x_, y_, z_;
+  Room<std::uint32_t> index_;
 };
 
 /// An axis-aligned box of evaluation points.
@@ -53,9 +76,10 @@ struct TargetBox {
 class BlockFrame {
  public:
   /// Gathers every voxel of `level` closer than `reach` t to `box`, and some more. `box` must be
-  /// within 32 t of `origin` for coordinates to be good to 2e-6.
-  void gather(const VoxelLevel& level, const TargetBox& box, const Vec3& origin, double t,
-              float reach);
+  /// within 32 t of `origin` for coordinates to be good to 2e-6. False, and nothing is gathered, if
+  /// these are more than `most`.
+  bool gather(const VoxelLevel& level, const TargetBox& box, const Vec3& origin, double t,
+              float reach, std::size_t most = std::numeric_limits<std::size_t>::max());
 
   /// Changes the scale of what was gathered; `reach` t must not grow.
   void rescale(double t);
@@ -71,14 +95,14 @@ class BlockFrame {
   const Source* sources() const { return sources_.data(); }
 
   /// The voxel of the level that source `i` is.
-  std::uint32_t voxel(std::uint32_t i) const { return entries_[i].voxel; }
+  std::uint32_t voxel(std::uint32_t i) const { return entries_.data()[i].voxel; }
 
   /// A position in the frame.
   Vec3 local(const Vec3& position) const { return (position - origin_) * inverse_t_; }
 
  private:
   struct Entry {
-    Vec3 position;  ///< from the origin
+    double position[3];  ///< from the origin
     float qq, qn;
     std::uint32_t voxel;
   };
@@ -87,8 +111,8 @@ class BlockFrame {
   Vec3 origin_ = Vec3::Zero();
   double inverse_t_ = 1.0, reach_ = 0.0;
   std::vector<std::uint32_t> runs_;
-  std::vector<Source> sources_;
-  std::vector<Entry> entries_;
+  Room<Source> sources_;
+  Room<Entry> entries_;
   CandidateList candidates_;
 };
 

@@ -152,11 +152,11 @@ void sum(const Group& group, const NearSources& near, std::span<const Gate> gate
   if (!gates.front()) return kernels.sum(sources, group.targets, nullptr, 0, sums);
   const float open = open_from(gates);
   if (may_be_open(group.normals, open)) {
-    gated.reserve(near.chosen.count);
-    sources.open = gated.open.data(), sources.rest = gated.rest.data();
-    sources.open_count =
-        kernels.part_open(sources.all, near.chosen.index, near.chosen.count, group.normals, open,
-                          gated.open.data(), gated.rest.data());
+    std::uint32_t* const opened = gated.open.make(near.chosen.count);
+    std::uint32_t* const rest = gated.rest.make(near.chosen.count);
+    sources.open_count = kernels.part_open(sources.all, near.chosen.index, near.chosen.count,
+                                           group.normals, open, opened, rest);
+    sources.open = opened, sources.rest = rest;
   } else {
     std::swap(sources.open, sources.rest);
     sources.open_count = 0;
