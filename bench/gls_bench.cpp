@@ -42,16 +42,10 @@ std::vector<std::uint32_t> sample(const Space& space, std::size_t stretch, std::
 template <typename Space>
 void describe(const Space& space, const std::vector<std::uint32_t>& targets) {
   const std::size_t cells = targets.size() * space.scales().size();
-  std::vector<float> out(cells * static_cast<std::size_t>(feature_count(space.options().features)));
+  std::vector<float> out(cells * static_cast<std::size_t>(column_count(space.options())));
   std::vector<FitStatus> status(cells);
   space.describe(targets, std::span<float>(out), status);
   benchmark::DoNotOptimize(out.data());
-}
-
-ScaleSpaceOptions options_of(Reconstruction reconstruction) {
-  ScaleSpaceOptions options;
-  options.reconstruction = reconstruction;
-  return options;
 }
 
 double cpu_seconds() {
@@ -82,10 +76,10 @@ void build(benchmark::State& state, const std::string& name) {
 }
 
 void describe_cloud(benchmark::State& state, const std::string& name,
-                    Reconstruction reconstruction) {
+                    const ScaleSpaceOptions& options) {
   set_thread_count(1);
   const auto count = static_cast<std::size_t>(state.range(0));
-  const FastScaleSpace space(points_of(cloud_of(name, count)), options_of(reconstruction));
+  const FastScaleSpace space(points_of(cloud_of(name, count)), options);
   const auto targets = sample(space, kBlock, std::max<std::size_t>(1, count / 100000));
   const double start = cpu_seconds();
   for (auto _ : state) describe(space, targets);
@@ -93,7 +87,7 @@ void describe_cloud(benchmark::State& state, const std::string& name,
   const double points = static_cast<double>(targets.size());
   state.counters["s_per_point"] = benchmark::Counter(
       points, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
-  if (reconstruction != Reconstruction::kSphere) return;
+  if (options.reconstruction != Reconstruction::kSphere || options.side_gate) return;
   const double each = spent / (points * static_cast<double>(state.iterations()));
   state.counters["exact_over_fast"] = exact_cost(name, count) / each;
 }
@@ -139,7 +133,15 @@ void Sums(benchmark::State& state) {
 
 BENCHMARK(Sums)->Arg(0)->Arg(1)->Arg(2)->Unit(benchmark::kMicrosecond);
 
-/// Every kind of cloud: Build/NAME/POINTS and Describe/NAME/POINTS.
+/// The gates of the model cad.
+const ScaleSpaceOptions kTwoGates = {.side_gate = 0.4, .second_gate = -0.3};
+const ScaleSpaceOptions kProjected = [] {
+  ScaleSpaceOptions options;
+  options.reconstruction = Reconstruction::kSphereMls;
+  return options;
+}();
+
+/// Every kind of cloud: Build/NAME/POINTS, Describe/NAME/POINTS and DescribeTwoGates/NAME/POINTS.
 const bool registered = [] {
   for (const bench::CloudKind& kind : bench::cloud_kinds()) {
     const std::string name = kind.name;
@@ -147,14 +149,15 @@ const bool registered = [] {
       benchmark::RegisterBenchmark(("Build/" + name).c_str(), build, name)
           ->Arg(count)
           ->Unit(benchmark::kMillisecond);
-      benchmark::RegisterBenchmark(("Describe/" + name).c_str(), describe_cloud, name,
-                                   Reconstruction::kSphere)
-          ->Arg(count)
-          ->Unit(benchmark::kMillisecond);
+      for (const auto& [what, options] : {std::pair("Describe/", ScaleSpaceOptions{}),
+                                          std::pair("DescribeTwoGates/", kTwoGates)}) {
+        benchmark::RegisterBenchmark((what + name).c_str(), describe_cloud, name, options)
+            ->Arg(count)
+            ->Unit(benchmark::kMillisecond);
+      }
     }
   }
-  benchmark::RegisterBenchmark("DescribeProjected/scene", describe_cloud, "scene",
-                               Reconstruction::kSphereMls)
+  benchmark::RegisterBenchmark("DescribeProjected/scene", describe_cloud, "scene", kProjected)
       ->Arg(100'000)
       ->Unit(benchmark::kMillisecond);
   return true;

@@ -10,7 +10,8 @@ namespace {
 constexpr std::array<std::size_t, Block::kDepth> kParts = {64 * kLanes, 8 * kLanes, 2 * kLanes,
                                                            kLanes};
 constexpr double kWidestBlock = 64;  // t: float then gives coordinates to 2e-6
-/// Those of a compact block are a fifth; a block that the curve scatters is divided.
+constexpr double kCompactBlock = 4;  // t: no larger than what every point meets
+/// Five times those of most blocks: one that the curve scatters is divided.
 constexpr std::size_t kMostSources = 8 * 4096;
 
 bool any_wanted(std::size_t begin, std::size_t end, const BlockEvaluator::Wanted& wanted) {
@@ -39,10 +40,10 @@ void BlockEvaluator::evaluate(std::size_t begin, std::size_t end, std::size_t sc
                         .open_from = open_from(options_.gates)},
                        wanted,
                        emit};
-  const bool divisible = end - begin > kParts.front();
+  const bool scattered = end - begin > 1 && box.longest_side() > kCompactBlock * t;
   const bool gathered = gather(block_, begin, end, box, pyramid_->levels[pyramid_->level_of[scale]],
                                t, visit.reach.margin,
-                               divisible ? kMostSources : std::numeric_limits<std::size_t>::max());
+                               scattered ? kMostSources : std::numeric_limits<std::size_t>::max());
   if (!gathered) return evaluate_halves(begin, end, scale, t, wanted, emit);
   visit_parts(0, begin, end, {&block_.frame, block_.frame.candidates(), {}, {}}, visit);
 }
