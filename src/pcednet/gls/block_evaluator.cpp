@@ -67,11 +67,16 @@ void BlockEvaluator::visit_parts(std::size_t depth, std::size_t begin, std::size
       visit_group({first, last - first}, sources, visit);
     } else {
       const SourceBox box = local_box(block_.frame, boxes_.box_of(first, last));
-      const NormalBox normals = boxes_.normals_of(first, last);
+      const NormalBox normals = normals_of(first, last, visit);
       visit_parts(depth + 1, first, last,
                   choose_part(block_, depth, sources, box, normals, visit.reach, *kernels_), visit);
     }
   }
+}
+
+/// Those of the points, if there are gates.
+NormalBox BlockEvaluator::normals_of(std::size_t begin, std::size_t end, const Visit& visit) const {
+  return visit.reach.open_from > 0.0f ? boxes_.normals_of(begin, end) : NormalBox{};
 }
 
 void BlockEvaluator::visit_group(const LaneGroup& group, const Sources& sources,
@@ -80,7 +85,7 @@ void BlockEvaluator::visit_group(const LaneGroup& group, const Sources& sources,
   const std::size_t end = group.begin + group.count;
   const Group here = place(points.subspan(group.begin, group.count), block_.frame,
                            local_box(block_.frame, boxes_.box_of(group.begin, end)),
-                           boxes_.normals_of(group.begin, end));
+                           normals_of(group.begin, end, visit));
   const std::span<const Gate> gates = options_.gates;
   const auto fits = std::span(fits_).first(gates.size());
   fit(here, sources, gates, visit.fit, buffers_, fits);

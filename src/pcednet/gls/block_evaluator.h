@@ -44,6 +44,7 @@ class BlockEvaluator {
                        const Wanted& wanted, const Emit& emit);
   void visit_parts(std::size_t depth, std::size_t begin, std::size_t end, const Sources& sources,
                    const Visit& visit);
+  NormalBox normals_of(std::size_t begin, std::size_t end, const Visit& visit) const;
   void visit_group(const LaneGroup& group, const Sources& sources, const Visit& visit);
 
   const VoxelPyramid* pyramid_;
