@@ -134,11 +134,11 @@ TEST(Scene, TakesOnePointDuplicatesAndCloudsWithoutNormals) {
   EXPECT_EQ(make_scene(cloud, 9).shown.size(), 9u);
 }
 
-TEST(Scene, PacksFourClassesInAByte) {
-  const std::vector<std::uint8_t> classes = {2, 0, 1, 255, 7, 1};
+TEST(Scene, PacksTwoClassesInAByte) {
+  const std::vector<std::uint8_t> classes = {2, 3, 1, 255, 7, 1};
   const std::vector<std::size_t> shown = {0, 2, 1, 3, 5};
   EXPECT_EQ(decode(pack_classes(classes, shown)),
-            (std::vector<std::uint8_t>{2 | 1 << 2 | 0 << 4 | 3 << 6, 1}));
+            (std::vector<std::uint8_t>{2 | 1 << 4, 3 | 4 << 4, 1}));
 }
 
 }  // namespace

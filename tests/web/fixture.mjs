@@ -11,7 +11,7 @@ function random(seed) {
   };
 }
 
-/** Points on the faces of a unit cube with labels by their distance to its edges. */
+/** Points on the faces of a unit cube with labels by their distance to its edges; in the middles of the faces boundary. */
 function cube(points, seed) {
   const next = random(seed);
   return Array.from({ length: points }, () => {
@@ -21,7 +21,7 @@ function cube(points, seed) {
     const away = p.map((c) => Math.min(c, 1 - c)).sort((a, b) => a - b)[1];
     const normal = [0, 0, 0];
     normal[axis] = 2 * p[axis] - 1;
-    return { p, normal, label: away < 0.03 ? 2 : away < 0.08 ? 1 : 0 };
+    return { p, normal, label: away < 0.03 ? 2 : away < 0.08 ? 1 : away > 0.38 ? 3 : 0 };
   });
 }
 

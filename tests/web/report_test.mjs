@@ -229,7 +229,8 @@ test("draws the clouds in the colours of their classes", async () => {
   assert.ok((await page.locator(".label").count()) >= 3);
   for (const panel of [0, 1, 2]) {
     const shares = await seen(page, panel);
-    for (const colour of ["red", "yellow", "pale"]) assert.ok(shares[colour] > 0.004, `panel ${panel}: ${colour}`);
+    for (const colour of ["red", "yellow", "pale", "blue"])
+      assert.ok(shares[colour] > 0.004, `panel ${panel}: ${colour}`);
   }
   await choose(".gallery", "colour-blind safe");
   const safe = await seen(page, 0);

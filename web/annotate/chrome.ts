@@ -1,5 +1,6 @@
 // What frames the view: the bar above, the tools beside, words over it.
 
+import { BOUNDARY } from "../shared/colours";
 import { h } from "../shared/dom";
 import type { Client, Saved } from "./client";
 import { isRamp, paletteOf, rampEnds, rampStops, FEATURE_NAMES } from "./colouring";
@@ -132,10 +133,11 @@ export function legend(store: AppStore): HTMLElement {
       element.append(h("span", { class: "scale" }, low, bar, high));
     } else if (mode === "labels" || mode === "prediction") {
       element.append(
-        ...paletteOf(store.now).map(({ name, colour }) => {
+        ...paletteOf(store.now).flatMap(({ name, colour }, id) => {
+          if (id === BOUNDARY && mode === "labels") return []; // nobody paints it
           const swatch = h("span", { class: "swatch" });
           swatch.style.background = colour;
-          return h("span", { class: "entry" }, swatch, name);
+          return [h("span", { class: "entry" }, swatch, name)];
         }),
       );
     }

@@ -1,6 +1,6 @@
 // From what the page is set to show to what the points look like.
 
-import { BOUNDARY_COLOUR, CLASS_PALETTES, type Meaning } from "../shared/colours";
+import { CLASS_PALETTES, NO_LABEL, type Meaning } from "../shared/colours";
 import type { LineLook } from "./line_layer";
 import type { Appearance } from "./painter";
 import { rampBytes, STOPS, type RampName } from "./ramp";
@@ -12,7 +12,7 @@ export const paletteOf = (state: Pick<State, "safePalette">): Meaning[] =>
 
 /** The colour a tool paints with; the eraser's is that of no label. */
 export const paintColour = (state: Pick<State, "safePalette" | "paintClass">): string =>
-  paletteOf(state)[state.paintClass === NO_CLASS ? 3 : state.paintClass].colour;
+  paletteOf(state)[state.paintClass === NO_CLASS ? NO_LABEL : state.paintClass].colour;
 
 /** What a feature of the method is called. */
 export const FEATURE_NAMES: Record<string, string> = {
@@ -53,12 +53,7 @@ export function appearanceOf(state: State, background: string): Appearance {
 }
 
 export const lineLookOf = (state: State, chosen: number | null): LineLook => ({
-  palette: [
-    ...paletteOf(state)
-      .slice(0, 3)
-      .map((meaning) => meaning.colour),
-    BOUNDARY_COLOUR,
-  ],
+  palette: paletteOf(state).map((meaning) => meaning.colour),
   chosen,
 });
 

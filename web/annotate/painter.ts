@@ -25,7 +25,7 @@ export type Layer = "labels" | "prediction" | "values";
 export interface Appearance {
   mode: "labels" | "rgb" | "normals" | "prediction" | "ramp";
   paintOnTop: boolean;
-  /** Three classes and none. */
+  /** As CLASS_PALETTES. */
   palette: string[];
   ramp: Uint8Array;
   hidden: ReadonlySet<number>;
@@ -73,7 +73,7 @@ export class Painter {
       uniforms: {
         mode: { value: 0 },
         paint: { value: true },
-        palette: { value: [0, 1, 2, 3].map(() => new Vector3()) },
+        palette: { value: [0, 1, 2, 3, 4].map(() => new Vector3()) },
         ramp: { value: this.ramp },
         hidden: { value: new Vector3() },
         clipped: { value: false },

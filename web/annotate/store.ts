@@ -48,7 +48,7 @@ export interface State {
   runs: Run[];
   training: Training | null;
   /** Shares of the classes in the prediction. */
-  predicted: Vec3 | null;
+  predicted: number[] | null;
   uncertain: Uncertain | null;
   predictionVersion: number;
   lines: Lines;

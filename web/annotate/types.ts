@@ -100,7 +100,8 @@ export interface TrainingEvent {
 export interface PredictionEvent {
   prediction_version: number;
   run: number;
-  counts: Vec3;
+  /** By class, boundary too. */
+  counts: number[];
   seconds_train: number | null;
   seconds_classify: number | null;
   held_out_accuracy: number | null;

@@ -1,6 +1,6 @@
 // The clouds: truth and methods side by side, turned together.
 
-import { CLASS_PALETTES, ERROR_PALETTE, type Meaning } from "../shared/colours";
+import { BOUNDARY, CLASS_PALETTES, ERROR_PALETTE, NO_LABEL, type Meaning } from "../shared/colours";
 import { bytesOf, classesOf, positionsOf } from "../shared/decode";
 import { dropdown, h, segmented } from "../shared/dom";
 import { PointViewer, type Place } from "../shared/viewer";
@@ -32,7 +32,7 @@ const MOST_PANELS = 12;
 export function agreement(truth: Uint8Array, said: Uint8Array, positive: string): Uint8Array {
   const isEdge = (label: number): boolean => label === 2 || (positive === "edge" && label === 1);
   return truth.map((label, i) => {
-    if (label === 3) return 4;
+    if (label === NO_LABEL) return 4;
     const wanted = isEdge(label);
     return isEdge(said[i]) ? (wanted ? 1 : 2) : wanted ? 3 : 0;
   });
@@ -263,11 +263,16 @@ class Gallery {
   }
 
   private drawKey(meanings: Meaning[], positive: string): void {
-    const { scene, truth } = this.exhibit;
-    const unlabelled = truth.includes(3);
+    const { scene, truth, predictions } = this.exhibit;
+    const absent = [
+      ...(truth.includes(NO_LABEL) ? [] : ["no label"]),
+      ...([truth, ...predictions.map((p) => p.classes)].some((classes) => classes.includes(BOUNDARY))
+        ? []
+        : ["boundary"]),
+    ];
     this.key.replaceChildren(
       ...meanings
-        .filter((m) => unlabelled || m.name !== "no label")
+        .filter((m) => !absent.includes(m.name))
         .map((m) => h("span", {}, h("span", { class: "swatch", style: `background:${m.colour}` }), m.name)),
     );
     const sampled =

@@ -5,25 +5,30 @@ export interface Meaning {
   colour: string;
 }
 
-/** By class: 0 non-edge, 1 smooth-edge, 2 sharp-edge, 3 unlabelled. */
+/** Where the surface ends. */
+export const BOUNDARY = 3;
+
+/** What stands for no class in CLASS_PALETTES. */
+export const NO_LABEL = 4;
+
+/** By class: 0 non-edge, 1 smooth-edge, 2 sharp-edge, 3 boundary; then NO_LABEL. */
 export const CLASS_PALETTES: Record<"paper" | "safe", Meaning[]> = {
   paper: [
     { name: "non-edge", colour: "#ffffff" },
     { name: "smooth edge", colour: "#ffc45d" },
     { name: "sharp edge", colour: "#a80000" },
+    { name: "boundary", colour: "#0052a5" },
     { name: "no label", colour: "#8f96a0" },
   ],
-  // Told apart by lightness alone as well: white, orange, dark blue.
+  // Told apart by lightness alone as well: white, orange, green, dark blue.
   safe: [
     { name: "non-edge", colour: "#ffffff" },
     { name: "smooth edge", colour: "#f5a300" },
     { name: "sharp edge", colour: "#003f8a" },
+    { name: "boundary", colour: "#1a9e77" },
     { name: "no label", colour: "#8f96a0" },
   ],
 };
-
-/** Of lines where a surface ends. */
-export const BOUNDARY_COLOUR = "#0052a5";
 
 /** Agreement about the positive class, safe for the colour-blind: right is grey, wrong is coloured. */
 export const ERROR_PALETTE: Meaning[] = [

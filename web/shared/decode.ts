@@ -15,10 +15,10 @@ export function positionsOf(base64: string): Uint16Array {
   return numbers;
 }
 
-/** A class a point: 0 non-edge, 1 smooth-edge, 2 sharp-edge, 3 unlabelled. */
+/** A class a point, as CLASS_PALETTES has them. */
 export function classesOf(base64: string, count: number): Uint8Array {
   const bytes = bytesOf(base64);
   const classes = new Uint8Array(count);
-  for (let i = 0; i < count; ++i) classes[i] = (bytes[i >> 2] >> (2 * (i & 3))) & 3;
+  for (let i = 0; i < count; ++i) classes[i] = (bytes[i >> 1] >> (4 * (i & 1))) & 15;
   return classes;
 }

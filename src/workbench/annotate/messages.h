@@ -81,7 +81,7 @@ struct EpochDone {
 };
 struct Predicted {
   int prediction_version = 0, run = 0;
-  Counts counts = {};
+  std::array<std::size_t, 4> counts = {};  ///< points by class
   RunFacts facts = {};
 };
 struct LinesChanged {

@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "pcednet/core/error.h"
+#include "pcednet/detect/boundary.h"
+#include "pcednet/detect/decide.h"
 #include "pcednet/formats/read_cloud.h"
 #include "pcednet/gls/scales.h"
 #include "pcednet/spatial/curve_order.h"
@@ -16,7 +18,7 @@ namespace pcednet::annotate {
 std::shared_ptr<const Scene> load_scene(const std::filesystem::path& input,
                                         const Progress* progress) {
   auto scene = std::make_shared<Scene>();
-  Stage stage(progress, "read", 4);
+  Stage stage(progress, "read", 5);
   auto loaded = formats::read_cloud(input);
   stage.advance();
   scene->cloud = std::move(loaded.cloud);
@@ -25,6 +27,9 @@ std::shared_ptr<const Scene> load_scene(const std::filesystem::path& input,
   scene->prepared = detect::prepare(scene->cloud, {}, progress);
   scene->bounds = bounding_box(scene->cloud.positions);
   scene->origin = scene->bounds.centre();
+  stage.advance();
+  const Progress quiet = without_report(progress);
+  scene->boundary = detect::find_boundary(scene->prepared, &quiet);
   stage.advance();
   std::vector<Vec3> ordered;
   for (const std::uint32_t i : spatial::curve_order(scene->cloud.positions)) {
@@ -48,7 +53,9 @@ std::shared_ptr<const Prediction> predict(const Scene& scene, const Described& d
   auto prediction = std::make_shared<Prediction>();
   prediction->result = detect::classify(described.cloud, scene.cloud.positions, model);
   prediction->model = std::move(model);
-  const auto& result = prediction->result;
+  auto& result = prediction->result;
+  for (const std::uint32_t i : scene.boundary) result.classes[i] = kBoundary;
+  result.counts = detect::count_classes(result.classes);
   prediction->confidence.resize(result.classes.size());
   for (std::size_t i = 0; i < result.classes.size(); ++i) {
     const float sharp = result.p_sharp[i], smooth = result.p_smooth[i];
@@ -57,6 +64,7 @@ std::shared_ptr<const Prediction> predict(const Scene& scene, const Described& d
     prediction->confidence[i] = c == kSharpEdge    ? sharp
                                 : c == kSmoothEdge ? smooth
                                 : c == kNonEdge    ? non_edge
+                                : c == kBoundary   ? 1.0f
                                                    : 0.0f;
   }
   return prediction;

@@ -23,6 +23,7 @@ struct Scene {
   BoundingBox bounds = {};
   Vec3 origin = Vec3::Zero();  ///< what local coordinates are relative to
   std::vector<double> scales = {};
+  std::vector<std::uint32_t> boundary = {};  ///< detect::find_boundary()
   Layout layout = {};
   std::unique_ptr<const Selector> selector = {};
 
@@ -33,12 +34,13 @@ struct Scene {
 std::shared_ptr<const Scene> load_scene(const std::filesystem::path& input,
                                         const Progress* progress = nullptr);
 
-/// A model's answer for a cloud.
+/// A model's answer for a cloud, with its boundary.
 struct Prediction {
   detect::EdgeModel model = {};
   detect::Classification result = {};
-  std::vector<float> confidence =
-      {};  ///< the probability of the chosen class; 0 where there is none
+  /// The probability of the chosen class; 1 of boundary, which no network decides; 0 where there is
+  /// no class.
+  std::vector<float> confidence = {};
 };
 std::shared_ptr<const Prediction> predict(const Scene& scene, const Described& described,
                                           detect::EdgeModel model);

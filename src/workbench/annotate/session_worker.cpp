@@ -314,7 +314,7 @@ void Session::State::show_model(const std::string& name) {
 void Session::State::show(Run run) {
   const auto& counts = run.prediction->result.counts;
   Predicted predicted{.run = run.record.number,
-                      .counts = {counts.non_edge, counts.smooth, counts.sharp},
+                      .counts = {counts.non_edge, counts.smooth, counts.sharp, counts.boundary},
                       .facts = run.record.facts};
   runs.show(std::move(run));
   predicted.prediction_version = runs.version();

@@ -95,11 +95,10 @@ Scene make_scene(const PointCloud& cloud, std::size_t count, const Progress* pro
 
 std::string pack_classes(std::span<const std::uint8_t> classes,
                          std::span<const std::size_t> shown) {
-  std::vector<std::uint8_t> bytes((shown.size() + 3) / 4);
+  std::vector<std::uint8_t> bytes((shown.size() + 1) / 2);
   for (std::size_t k = 0; k < shown.size(); ++k) {
-    const unsigned edge_class = classes[shown[k]];
-    const unsigned code = edge_class == kBoundary ? 0u : std::min(edge_class, 3u);
-    bytes[k / 4] |= static_cast<std::uint8_t>(code << 2 * (k % 4));
+    const unsigned code = std::min<unsigned>(classes[shown[k]], kBoundary + 1u);
+    bytes[k / 2] |= static_cast<std::uint8_t>(code << 4 * (k % 2));
   }
   return encode_base64(bytes);
 }

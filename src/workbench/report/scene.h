@@ -27,8 +27,8 @@ struct Scene {
 /// Throws Error(kInsufficient) if no point is finite.
 Scene make_scene(const PointCloud& cloud, std::size_t count, const Progress* progress = nullptr);
 
-/// The classes of the `shown` points, boundary as non-edge, 2 bits a point, the first in the lowest
-/// bits of a byte; 3 is unlabelled. Base64.
+/// The classes of the `shown` points, 4 bits a point, the first in the lower ones of a byte; 4 is
+/// unlabelled. Base64.
 std::string pack_classes(std::span<const std::uint8_t> classes, std::span<const std::size_t> shown);
 
 }  // namespace pcednet::report
