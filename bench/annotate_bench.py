@@ -33,9 +33,9 @@ def main():
         server.post("/api/stroke", brush("a", 2, EDGE, 0.02))
         print(f"{'a stroke':24} {1000 * (time.monotonic() - begin):6.1f} ms")
         counts = server.post("/api/stroke", brush("b", 0, FACE, 0.05))["counts"]
-        run = server.until("/api/runs", lambda runs: len(runs) > 0)[-1]
+        run = server.until("/api/runs", lambda runs: any(r["run"] > 0 for r in runs))[-1]
         print(f"painted {counts}")
-        print(f"{'train':24} {run['seconds_train']:6.2f} s")
+        print(f"{'adapt the model':24} {run['seconds_train']:6.2f} s")
         print(f"{'classify':24} {run['seconds_classify']:6.2f} s")
         server.end()
 

@@ -151,7 +151,7 @@ await page.mouse.down();
 await page.mouse.move(x + 60, y, { steps: 5 });
 const trained = performance.now();
 await page.mouse.up();
-await page.waitForFunction(() => annotator.store.now.runs.some((run) => run.current));
+await page.waitForFunction(() => annotator.store.now.runs.some((run) => run.current && run.run > 0));
 await settled();
 tell("stroke to a new prediction shown", seconds(performance.now() - trained));
 await state("predicted");

@@ -8,7 +8,7 @@ import unittest
 
 import numpy as np
 
-from annotate_support import AnnotateTest, Drip, EDGE, FACE, brush
+from annotate_support import AnnotateTest, Drip, EDGE, FACE, Server, brush
 from support import read_ply, run, write_ply
 
 
@@ -82,7 +82,8 @@ class AnnotateSession(AnnotateTest):
         self.paint_edge_and_face(server)
         runs = self.train(server, 1)
         self.assertTrue(runs[0]["current"])
-        self.assertGreater(runs[0]["held_out_accuracy"], 0.9)
+        runs = server.until("/api/runs", lambda r: r[0]["held_out"])
+        self.assertEqual(runs[0]["held_out"], {"strokes": 2, "accuracy": None, "start": None})
         # What is painted after the run does not belong to its model.
         server.post("/api/stroke", brush("more", 1, [(0.5, 0.4, 0.4)], radius=0.1))
         for what in ("model", "project", "cloud"):
@@ -136,14 +137,16 @@ class AnnotateSession(AnnotateTest):
         server.kill()
         server = self.serve()
         server.open()
-        self.assertEqual(server.get("/api/runs"), runs)
+        self.assertEqual([{**r, "held_out": None} for r in server.get("/api/runs")],
+                         [{**r, "held_out": None} for r in runs])
         self.assertEqual([r["current"] for r in runs], [False, True])
         server.until("/api/session", lambda s: s["prediction_version"] == 1)
         self.assertEqual(server.request("/api/download/model")[2], second)
         server.post("/api/runs/1/restore")
         server.until("/api/runs", lambda r: r[0]["current"])
         self.assertEqual(server.request("/api/download/model")[2], first)
-        self.assertEqual(server.get("/api/runs")[0], {**runs[0], "current": True})
+        self.assertEqual({**server.get("/api/runs")[0], "held_out": None},
+                         {**runs[0], "current": True, "held_out": None})
         # The journal says so too: the next start shows it, the command line trains it.
         server.post("/api/save", {"what": "project"})
         run("train", "--project", self.folder / "cube_annotation.json", "-o",
@@ -155,6 +158,59 @@ class AnnotateSession(AnnotateTest):
         self.assertTrue(server.get("/api/runs")[0]["current"])
         server.until("/api/session", lambda s: s["prediction_version"] == 1)
         self.assertEqual(server.request("/api/download/model")[2], first)
+
+    def test_starts_from_the_default_model_and_keeps_its_context_network(self):
+        server = self.serve("--model", "scan")
+        server.open()
+        self.assertEqual(server.get("/api/session")["settings"]["start"], "scan")
+        self.assertEqual(server.until("/api/runs", lambda r: len(r) == 1)[0]["run"], 0)
+        server.post("/api/save", {"what": "cloud"})
+        rows, _ = read_ply(self.folder / "cube_annotated.ply")
+        run("classify", self.cloud, "-o", self.folder / "scan.ply", "--model", "scan")
+        other, _ = read_ply(self.folder / "scan.ply")
+        for field in ("scalar_edge_class", "scalar_p_sharp", "label"):
+            np.testing.assert_array_equal(rows[field], other[field])
+        # One stroke of one class is enough.
+        server.post("/api/stroke", brush("face", 0, FACE, radius=0.15))
+        runs = server.until("/api/runs", lambda r: len(r) == 2 and r[1]["current"])
+        self.assertEqual((runs[1]["start"], runs[1]["classes"]), ("scan", 3))
+        for what in ("model", "project", "cloud"):
+            server.post("/api/save", {"what": what, "overwrite": True})
+        run("train", "--project", self.folder / "cube_annotation.json", "-o",
+            self.folder / "again.safetensors")
+        model = self.folder / "cube.safetensors"
+        self.assertEqual((self.folder / "again.safetensors").read_bytes(), model.read_bytes())
+        self.assertIn(b"context.", model.read_bytes())
+        rows, _ = read_ply(self.folder / "cube_annotated.ply")
+        run("classify", self.cloud, "-o", self.folder / "by_model.ply", "--model", model)
+        other, _ = read_ply(self.folder / "by_model.ply")
+        for field in ("scalar_edge_class", "scalar_p_sharp", "scalar_p_smooth", "label"):
+            np.testing.assert_array_equal(rows[field], other[field])
+        # Without any stroke it is the start again; the other model at once when it is chosen.
+        server.post("/api/undo")
+        server.until("/api/runs", lambda r: r[0]["current"])
+        server.post("/api/settings", {"start": "worn"})
+        server.until("/api/runs", lambda r: r[0]["current"] and r[0]["start"] == "worn")
+
+    def test_an_older_project_keeps_its_start_unless_another_is_asked_for(self):
+        server = self.quiet()
+        server.post("/api/stroke", brush("edge", 2, EDGE))
+        server.kill()
+        for options, start in (((), "random"), (("--model", "scan"), "scan")):
+            self.servers.append(Server(self.cloud, *options))
+            server = self.servers[-1]
+            self.assertEqual(server.open()["settings"]["start"], start)
+            server.kill()
+
+    def test_judges_by_whole_strokes(self):
+        server = self.quiet()
+        for k, z in enumerate((-0.3, 0.3)):
+            server.post("/api/stroke", brush(f"e{k}", 2, [(0.5, 0.5, z)], radius=0.05))
+            server.post("/api/stroke", brush(f"f{k}", 0, [(0.5, z, z)], radius=0.1))
+        self.train(server, 1)
+        held = server.until("/api/runs", lambda r: r[0]["held_out"])[0]["held_out"]
+        self.assertEqual((held["strokes"], held["start"]), (4, None))
+        self.assertGreater(held["accuracy"], 0.6)
 
     def find_lines(self, server, version):
         """Finds lines and waits for that version of them, which it returns."""

@@ -155,6 +155,10 @@ class AnnotateTest(CliTest):
         super().tearDown()
 
     def serve(self, *options, environment=None):
+        """An annotator that starts a new project from nothing, unless it is given a model."""
+        is_new = not list(self.folder.glob("*.journal"))
+        if is_new and "--model" not in options:
+            options += ("--model", "none")
         self.servers.append(Server(self.cloud, *options, environment=environment))
         return self.servers[-1]
 

@@ -113,7 +113,7 @@ async function stroke(key, places) {
 
 before(async () => {
   writeRoof(input, roof());
-  server = await serve();
+  server = await serve(["--model", "none"]);
   browser = await launch();
   page = await open();
 });

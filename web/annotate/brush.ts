@@ -8,6 +8,9 @@ import type { Stage } from "./stage";
 import { activeClip, type AppStore } from "./store";
 import { NO_CLASS, type Vec3 } from "./types";
 
+/** The radius of the smallest brush. */
+export const LEAST_SPACINGS = 0.5;
+
 export class Brush {
   private centres: Vec3[] | null = null;
   private last: [number, number] = [0, 0];
@@ -93,6 +96,6 @@ export class Brush {
     const { session, radius } = this.store.now;
     if (!session) return;
     const most = boxDiagonal(session.bounds) / 4;
-    this.store.set({ radius: Math.min(Math.max(radius * factor, session.spacing), most) });
+    this.store.set({ radius: Math.min(Math.max(radius * factor, session.spacing * LEAST_SPACINGS), most) });
   }
 }

@@ -156,13 +156,12 @@ export function curtain(store: AppStore, client: Client): HTMLElement {
     h("span", {}, "Another window is painting this cloud; this one is read-only. "),
     button("Take over", () => client.takeOver()),
   );
-  const lost = h(
-    "div",
-    { class: "banner", role: "alert" },
-    "Connection to pcednet lost, retrying. Is the program still running?",
-  );
-  store.watch(["progress", "writer", "connected"], () => {
-    const { progress, writer, connected } = store.now;
+  const lost = h("div", { class: "banner", role: "alert" });
+  store.watch(["progress", "writer", "connected", "restarted"], () => {
+    const { progress, writer, connected, restarted } = store.now;
+    lost.textContent = restarted
+      ? "pcednet was started again: open the address that it printed. All strokes are kept."
+      : "pcednet does not answer. Is the program still running? If it is started again, open the address that it prints.";
     loading.hidden = progress === null;
     other.hidden = writer || progress !== null || !connected;
     lost.hidden = connected;

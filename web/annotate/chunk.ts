@@ -13,6 +13,8 @@ export interface Chunk {
   colours: Uint8Array | null;
   /** Painted class a point; 255 none. */
   labels: Uint8Array;
+  /** The same as the server said last: without strokes that it has not taken. */
+  confirmed: Uint8Array;
   /** Predicted class a point; 255 none. */
   prediction: Uint8Array;
   /** What a ramp colours, a byte a point. */
@@ -38,6 +40,7 @@ export function decodeChunk(info: NodeInfo, bytes: ArrayBuffer, hasColours: bool
     normals: new Int8Array(bytes, 6 * n, 2 * n),
     colours: hasColours ? new Uint8Array(bytes, 8 * n, 3 * n) : null,
     labels: new Uint8Array(n).fill(NO_CLASS),
+    confirmed: new Uint8Array(n).fill(NO_CLASS),
     prediction: new Uint8Array(n).fill(NO_CLASS),
     values: new Uint8Array(n),
   };

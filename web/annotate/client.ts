@@ -2,10 +2,9 @@
 
 import { h } from "../shared/dom";
 import { ApiError, type Api } from "./api";
-import { boxDiagonal } from "./geometry";
 import { LineClient } from "./line_client";
 import type { Stage } from "./stage";
-import type { AppStore } from "./store";
+import type { AppStore, State } from "./store";
 import type {
   DecidedEvent,
   Painted,
@@ -22,6 +21,13 @@ import { WorkQueue } from "./work";
 export type Saved = "cloud" | "model" | "project" | "lines";
 
 export const READ_ONLY = "Another window is painting this cloud. Take over to paint here.";
+
+/** The brush at first: thin enough for an edge. */
+const BRUSH_SPACINGS = 1.75;
+
+/** Why this window cannot paint now; empty if it can. */
+export const refusalOf = ({ writer, connected }: Pick<State, "writer" | "connected">): string =>
+  !connected ? "pcednet does not answer: nothing can be painted." : writer ? "" : READ_ONLY;
 
 export interface Words {
   say(text: string): void;
@@ -47,6 +53,7 @@ export class Client {
       painted: (answer) => this.takePainted(answer),
       failed: (error) => {
         this.words.warn(`The stroke was not applied: ${error.message}`);
+        this.stage.loader.takeBack();
         this.stage.loader.refresh("labels");
       },
       idle: () => this.stage.loader.resume(),
@@ -77,6 +84,7 @@ export class Client {
       labels: (answer: Painted) => this.takePainted(answer),
       training: (event: TrainingEvent) => this.takeTraining(event),
       prediction: (event: PredictionEvent) => this.attempt(this.takePrediction(event)),
+      judged: () => this.attempt(this.refreshRuns()),
       lines: ({ version, searching }) => this.attempt(this.lines.take(version, searching)),
       decided: (event: DecidedEvent) => this.lines.takeDecisions(event),
       writer: ({ window: name }) => store.set({ writer: name === this.api.window }),
@@ -86,7 +94,10 @@ export class Client {
         if (this.opened) this.attempt(this.refreshRuns());
       },
     });
-    this.events.addEventListener("error", () => store.set({ connected: false }));
+    // A source that is closed was refused: another start of the program, with another token, is there now.
+    this.events.addEventListener("error", () =>
+      store.set({ connected: false, restarted: this.events?.readyState === EventSource.CLOSED }),
+    );
     this.events.addEventListener("open", () => {
       if (!this.opened) this.attempt(this.refresh()); // what happened before this was not heard
       if (store.now.connected) return;
@@ -120,7 +131,7 @@ export class Client {
     this.opened = true;
     const predicted = (this.predicted = session.prediction_version > 0 && session.run !== null);
     store.set({
-      radius: Math.max(session.spacing * 6, boxDiagonal(session.bounds) * 0.008),
+      radius: session.spacing * BRUSH_SPACINGS,
       mode: predicted ? "prediction" : session.has_colours ? "rgb" : "labels",
       scale: Math.floor(session.scales.length / 2),
     });
@@ -148,7 +159,7 @@ export class Client {
   private takeTraining(event: TrainingEvent): void {
     const old = this.store.now.training;
     const same = old !== null && old.active && old.run === event.run && event.epoch > (old.epoch.at(-1) ?? 0);
-    const before = same ? old : { epoch: [], loss: [], accuracy: [] };
+    const before = same ? old : { epoch: [], loss: [] };
     this.store.set({
       training: {
         run: event.run,
@@ -156,7 +167,6 @@ export class Client {
         epochs: event.epochs,
         epoch: [...before.epoch, event.epoch],
         loss: [...before.loss, event.loss],
-        accuracy: [...before.accuracy, event.held_out_accuracy],
       },
     });
   }
@@ -179,8 +189,9 @@ export class Client {
 
   /** Whether this window paints; says so if it does not. */
   private mayPaint(): boolean {
-    if (!this.store.now.writer) this.words.warn(READ_ONLY);
-    return this.store.now.writer;
+    const refusal = refusalOf(this.store.now);
+    if (refusal) this.words.warn(refusal);
+    return !refusal;
   }
 
   undo(): void {

@@ -82,7 +82,9 @@ export class Loader {
     await Promise.all(
       layers.map(async (layer) => {
         const bytes = new Uint8Array(await this.api.bytes(`/api/node/${id}/values?${this.query(layer)}`));
-        if (bytes.length === info.points) chunk[layer].set(bytes);
+        if (bytes.length !== info.points) return;
+        chunk[layer].set(bytes);
+        if (layer === "labels") chunk.confirmed.set(bytes);
       }),
     );
     this.chunks.set(id, chunk);
@@ -172,11 +174,23 @@ export class Loader {
       const now = bytes.subarray(at, (at += chunk.info.points));
       const old = chunk[layer];
       if (now.length !== old.length) throw new Error(`node ${chunk.info.id}: ${now.length} values, not ${old.length}`);
+      if (layer === "labels") chunk.confirmed.set(now);
       if (now.every((value, i) => value === old[i])) continue;
       old.set(now);
       changed.push(chunk.info.id);
     }
     if (changed.length > 0) this.on.changed(changed, layer);
+  }
+
+  /** Strokes were lost: the labels are those that the server confirmed. */
+  takeBack(): void {
+    const changed = [...this.chunks.values()].filter((c) => c.labels.some((label, i) => label !== c.confirmed[i]));
+    changed.forEach((chunk) => chunk.labels.set(chunk.confirmed));
+    if (changed.length > 0)
+      this.on.changed(
+        changed.map((c) => c.info.id),
+        "labels",
+      );
   }
 
   /** Strokes are done: labels may be fetched again. */

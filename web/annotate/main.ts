@@ -5,7 +5,7 @@ import { h } from "../shared/dom";
 import { Api } from "./api";
 import { Brush } from "./brush";
 import { curtain, header, legend, presser, toolbar } from "./chrome";
-import { Client, READ_ONLY, type Saved } from "./client";
+import { Client, refusalOf, type Saved } from "./client";
 import { appearanceOf, lineLookOf, paintColour, valuesQuery } from "./colouring";
 import { bindKeys, commandsOf } from "./commands";
 import { boxDiagonal } from "./geometry";
@@ -48,7 +48,7 @@ function open(page: HTMLElement): void {
   const brush: Brush = new Brush(stage, store, client);
   const outline = new Outline(stage, store, client, overlay);
   const pointer: Pointer = new Pointer(stage, store, brush, outline, overlay, {
-    refused: () => notices.warn(READ_ONLY),
+    refused: () => notices.warn(refusalOf(store.now)),
     colour: () => paintColour(store.now),
   });
 

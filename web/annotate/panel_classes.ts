@@ -1,7 +1,7 @@
 // The classes: which one is painted, how many points have it, which are hidden; and the brush.
 
 import { h } from "../shared/dom";
-import type { Brush } from "./brush";
+import { LEAST_SPACINGS, type Brush } from "./brush";
 import { paletteOf } from "./colouring";
 import { toggled } from "./commands";
 import { boxDiagonal } from "./geometry";
@@ -55,7 +55,7 @@ export function classesPanel(store: AppStore, brush: Brush): HTMLElement {
   const size = slider("Brush", 0, 1, 0.001, (at) => {
     const { session } = store.now;
     if (!session) return;
-    const [low, high] = [session.spacing, boxDiagonal(session.bounds) / 4];
+    const [low, high] = [session.spacing * LEAST_SPACINGS, boxDiagonal(session.bounds) / 4];
     brush.grow((low * (high / low) ** at) / store.now.radius);
   });
   const protect = checkbox("Protect painted points", "P", (on) => store.set({ protect: on }));
@@ -65,7 +65,7 @@ export function classesPanel(store: AppStore, brush: Brush): HTMLElement {
     protect.set(store.now.protect);
     front.set(store.now.frontOnly);
     if (!session) return;
-    const [low, high] = [session.spacing, boxDiagonal(session.bounds) / 4];
+    const [low, high] = [session.spacing * LEAST_SPACINGS, boxDiagonal(session.bounds) / 4];
     size.set(Math.log(radius / low) / Math.log(high / low), length(radius));
   });
   return section(

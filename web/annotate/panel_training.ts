@@ -8,15 +8,10 @@ import { button, buttons, checkbox, list, section } from "./panel";
 import type { AppStore } from "./store";
 import type { Run, Start } from "./types";
 
-const STARTS: { value: Start; label: string }[] = [
-  { value: "random", label: "random weights" },
-  { value: "general", label: "model general" },
-  { value: "scan", label: "model scan" },
-  { value: "cad", label: "model cad" },
-  { value: "worn", label: "model worn" },
-];
+/** What a start is called; a model file without its folder. */
+const startName = (start: Start): string => (start === "random" ? "nothing" : `model ${start.split("/").at(-1)}`);
 
-/** Loss and accuracy by epoch. */
+/** The loss by epoch. */
 function curves(store: AppStore): HTMLElement {
   const place = h("div", { class: "curves" });
   let drawn = 0;
@@ -31,10 +26,7 @@ function curves(store: AppStore): HTMLElement {
         height: 104,
         xLabel: "",
         yLabel: "",
-        lines: [
-          { name: "loss", colour: "#8b8f97", y: training.loss, dashed: true },
-          { name: "held-out accuracy", colour: "#b5342b", y: training.accuracy },
-        ],
+        lines: [{ name: "loss", colour: "#b5342b", y: training.loss }],
       }),
     );
   };
@@ -44,20 +36,23 @@ function curves(store: AppStore): HTMLElement {
   return place;
 }
 
-/** A model file is known by its name without the folder. */
-const startName = (start: Start): string =>
-  STARTS.find(({ value }) => value === start)?.label ?? `model ${start.split("/").at(-1)}`;
+/** How right the run is on strokes that it was not trained on. */
+function heldOut({ held_out: held, start }: Run): string {
+  if (!held) return "";
+  if (held.accuracy === null) return "Not enough strokes to tell how right it is: two of each class are needed.";
+  const before = held.start === null ? "" : `; ${startName(start)}: ${percent(held.start)}`;
+  return `Right on held-out strokes: ${percent(held.accuracy)}${before}.`;
+}
 
 /** How the training stands, in one line. */
 function summary(store: AppStore): string {
   const { training, runs, counts, settings } = store.now;
   const last = runs.find((run) => run.current);
   if (training?.active) return `Run ${training.run}: epoch ${training.epoch.at(-1)} of ${training.epochs}`;
-  if (last?.run === 0) return `${startName(last.start)}: classified in ${seconds(last.seconds_classify ?? 0)}`;
+  if (last?.run === 0) return `This is what ${startName(last.start)} finds. Paint where it is wrong.`;
   if (last) {
-    const held = last.held_out_accuracy === null ? "" : `, held-out accuracy ${percent(last.held_out_accuracy)}`;
-    const took = last.seconds_train === null ? "" : `, ${seconds(last.seconds_train + (last.seconds_classify ?? 0))}`;
-    return `Run ${last.run}${held}${took}`;
+    const took = last.seconds_train === null ? "" : `: ${seconds(last.seconds_train + (last.seconds_classify ?? 0))}`;
+    return `Run ${last.run}${took}. ${heldOut(last)}`;
   }
   const lacking = counts.filter((n, id) => n > 0 && (id !== 1 || settings.classes === 3)).length < 2;
   const then = settings.auto ? "training starts automatically" : "then train";
@@ -78,7 +73,15 @@ export function trainingPanel(store: AppStore, client: Client): HTMLElement {
     ],
     (chosen) => client.setSettings({ classes: chosen }),
   );
-  const start = list("Start from", STARTS, (chosen) => client.setSettings({ start: chosen }));
+  const start = h("div", {});
+  const showStarts = (): void => {
+    const { session, settings } = store.now;
+    const names = [...new Set(["random", ...(session?.starts ?? []), settings.start])];
+    const choices = names.map((value) => ({ value, label: startName(value) }));
+    const picker = list("Start from", choices, (chosen) => client.setSettings({ start: chosen }));
+    picker.set(settings.start);
+    start.replaceChildren(picker.element);
+  };
   store.watch(["training", "runs", "counts", "settings"], () => {
     const { training } = store.now;
     const active = training?.active ?? false;
@@ -91,8 +94,9 @@ export function trainingPanel(store: AppStore, client: Client): HTMLElement {
     const { settings } = store.now;
     auto.set(settings.auto);
     classes.set(settings.classes);
-    start.set(settings.start);
+    start.querySelectorAll("option").forEach((option) => (option.selected = option.text === startName(settings.start)));
   });
+  store.watch(["session"], showStarts);
   return section(
     "Training",
     true,
@@ -102,7 +106,7 @@ export function trainingPanel(store: AppStore, client: Client): HTMLElement {
     h("div", { class: "buttons" }, train, cancel),
     auto.element,
     classes.element,
-    start.element,
+    start,
   );
 }
 
@@ -120,7 +124,8 @@ export function uncertainPanel(store: AppStore, next: () => void): HTMLElement {
 }
 
 function runRow(run: Run, client: Client): HTMLElement {
-  const held = run.held_out_accuracy === null ? "–" : percent(run.held_out_accuracy);
+  const accuracy = run.held_out?.accuracy ?? null;
+  const held = accuracy === null ? "–" : percent(accuracy);
   return h(
     "tr",
     { class: run.current && "current" },

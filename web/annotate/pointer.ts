@@ -5,6 +5,7 @@ import { Fingers } from "./fingers";
 import type { Outline } from "./outline";
 import type { Overlay } from "./overlay";
 import type { Stage } from "./stage";
+import { refusalOf } from "./client";
 import type { AppStore } from "./store";
 import type { Vec3 } from "./types";
 
@@ -85,7 +86,7 @@ export class Pointer {
     this.setByKeys(false);
     this.last = [x, y];
     this.drag = this.dragOf(event);
-    if (this.drag === "paint" && !this.store.now.writer) {
+    if (this.drag === "paint" && refusalOf(this.store.now)) {
       this.drag = null;
       this.on.refused();
     }
@@ -176,7 +177,7 @@ export class Pointer {
 
   /** A dab of the brush at the middle of the view. */
   dab(): void {
-    if (!this.store.now.writer) return this.on.refused();
+    if (refusalOf(this.store.now)) return this.on.refused();
     if (!this.byKeys) this.setByKeys(true);
     this.brush.press(this.stage.width / 2, this.stage.height / 2);
     this.brush.release();

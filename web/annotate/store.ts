@@ -12,7 +12,6 @@ export interface Training {
   epochs: number;
   epoch: number[];
   loss: (number | null)[];
-  accuracy: (number | null)[];
 }
 
 export interface Clip {
@@ -24,6 +23,8 @@ export interface State {
   session: Session | null;
   progress: { stage: string; fraction: number } | null;
   connected: boolean;
+  /** Another start of the program answers, which does not know this page. */
+  restarted: boolean;
   writer: boolean;
   tool: Tool;
   /** 0, 1, 2, or 255: the eraser. */
@@ -63,6 +64,7 @@ export const initialState: State = {
   session: null,
   progress: { stage: "Connecting", fraction: 0 },
   connected: true,
+  restarted: false,
   writer: false,
   tool: "brush",
   paintClass: 2,

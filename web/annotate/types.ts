@@ -24,7 +24,17 @@ export interface ClassInfo {
   count: number;
 }
 
-export type Start = "random" | "general" | "scan" | "cad" | "worn";
+/** "random", or a model's name. */
+export type Start = string;
+
+/** How a run does on strokes that it was not trained on. */
+export interface HeldOut {
+  strokes: number;
+  /** Null: too few strokes to tell. */
+  accuracy: number | null;
+  /** That of the model that it started from. */
+  start: number | null;
+}
 
 export interface Settings {
   classes: 2 | 3;
@@ -38,7 +48,8 @@ export interface Run {
   seconds_train: number | null;
   seconds_classify: number | null;
   loss: number | null;
-  held_out_accuracy: number | null;
+  /** Null as long as it is not known. */
+  held_out: HeldOut | null;
   painted: number | null;
   start: Start;
   classes: number | null;
@@ -61,6 +72,8 @@ export interface Session {
   scales: number[];
   classes: ClassInfo[];
   settings: Settings;
+  /** What settings.start may be besides "random". */
+  starts: Start[];
   nodes: NodeInfo[];
   strokes: number;
   undo: number;
@@ -94,7 +107,6 @@ export interface TrainingEvent {
   epoch: number;
   epochs: number;
   loss: number;
-  held_out_accuracy: number | null;
 }
 
 export interface PredictionEvent {
@@ -104,7 +116,6 @@ export interface PredictionEvent {
   counts: number[];
   seconds_train: number | null;
   seconds_classify: number | null;
-  held_out_accuracy: number | null;
 }
 
 export type Decision = "open" | "accepted" | "rejected";

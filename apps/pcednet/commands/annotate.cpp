@@ -21,8 +21,12 @@ namespace fs = std::filesystem;
 /// A browser opens when the input is found to be sound, or when that takes longer than this.
 constexpr std::chrono::seconds kPatience{3};
 
+/// Starts from nothing.
+constexpr const char* kNoModel = "none";
+
 struct AnnotateArguments {
-  std::string input, project, model;
+  std::string input, project, model = kDefaultModel;
+  bool is_model_given = false;
   int port = 0;
   bool no_browser = false;
 };
@@ -73,7 +77,12 @@ annotate::SessionOptions session_options(const AnnotateArguments& arguments, con
   options.input = input;
   if (!arguments.project.empty()) options.project = fs::absolute(arguments.project);
   options.cache_folder = input.parent_path() / ".pcednet";
-  options.model = arguments.model;
+  options.model = arguments.model == kNoModel ? "" : arguments.model;
+  options.is_model_wanted = arguments.is_model_given;
+  for (const auto& [name, path] : shipped_models()) options.starts.push_back(name);
+  if (!options.model.empty() && !shipped_models().contains(options.model)) {
+    options.starts.push_back(options.model);
+  }
   options.overwrite = common.overwrite_files;
   options.load_model = [given = arguments.model](const std::string& name) {
     return detect::load_model(name == given ? find_model(given) : find_shipped(name));
@@ -129,19 +138,26 @@ void add_annotate(CLI::App& app, Common& common) {
       app, common, "annotate", "Paint edges in the browser, train on them, review their lines",
       "pcednet annotate scan.ply                       opens the browser\n"
       "pcednet annotate scan.ply --no-browser --port 8080\n"
-      "pcednet annotate scan.ply --model scan          starts with a model's labels\n"
+      "pcednet annotate scan.ply --model general       corrects another model\n"
+      "pcednet annotate scan.ply --model none          starts from nothing\n"
       "pcednet train --project scan_annotation.json -o my.safetensors   the same model again");
   command->add_option("input", arguments->input, "Point file")->required();
   command->add_option("--project", arguments->project,
                       "Project file, with its journal beside it (default: <stem>_annotation.json "
                       "beside the input)");
-  command->add_option("--model", arguments->model,
-                      "Shipped model or model file whose labels are shown first");
+  command
+      ->add_option("--model", arguments->model,
+                   "Shipped model or model file to correct: its labels are shown first, training "
+                   "starts from it; none: from nothing")
+      ->capture_default_str();
   command->add_option("--port", arguments->port, "Port of 127.0.0.1 (0: any free port)")
       ->capture_default_str()
       ->check(CLI::Range(0, 65535));
   command->add_flag("--no-browser", arguments->no_browser, "Print the address only");
-  command->callback([arguments, &common] { annotate_cloud(*arguments, common); });
+  command->callback([arguments, command, &common] {
+    arguments->is_model_given = command->count("--model") > 0;
+    annotate_cloud(*arguments, common);
+  });
 }
 
 }  // namespace pcednet::app

@@ -21,7 +21,6 @@ using SamplesByClass = std::vector<std::vector<std::uint32_t>>;
 // Independent streams of the caller's seed.
 enum Stream : std::uint64_t { kSplitStream = 1, kSampleStream = 2 };
 
-constexpr double kHeldOut = 0.1;                // of every class, to judge the epochs by
 constexpr std::size_t kFewestToSplit = 20;      // samples of a class
 constexpr std::size_t kMostToValidate = 50000;  // of a class: judging stays cheap beside learning
 
@@ -36,6 +35,7 @@ void check_options(const TrainOptions& o) {
   };
   need(o.learning_rate > 0.0, "the learning rate must be positive");
   need(o.momentum >= 0.0 && o.momentum < 1.0, "the momentum must be in [0, 1)");
+  need(o.held_out >= 0.0 && o.held_out < 1.0, "the share held out must be in [0, 1)");
   need(o.epochs > 0 && o.batch > 0, "at least one epoch and batches of one sample are needed");
   need(o.most_per_epoch > 0 && o.least_per_epoch <= o.most_per_epoch,
        "the least samples per epoch exceed the most");
@@ -74,15 +74,16 @@ std::vector<std::uint32_t> concatenate(const SamplesByClass& samples, std::size_
   return all;
 }
 
-/// Takes kHeldOut of every class out of `samples`; nothing if a class is too small for that.
-SamplesByClass split_off(SamplesByClass& samples, Random random) {
+/// Takes `share` of every class out of `samples`; nothing if a class is too small for that.
+SamplesByClass split_off(SamplesByClass& samples, double share, Random random) {
   SamplesByClass kept(samples.size());
+  if (share == 0.0) return kept;
   for (const auto& of_class : samples) {
     if (of_class.size() < kFewestToSplit) return kept;
   }
   for (std::size_t c = 0; c < samples.size(); ++c) {
     random.shuffle(std::span(samples[c]));
-    const auto count = static_cast<std::size_t>(kHeldOut * static_cast<double>(samples[c].size()));
+    const auto count = static_cast<std::size_t>(share * static_cast<double>(samples[c].size()));
     kept[c].assign(samples[c].end() - static_cast<std::ptrdiff_t>(count), samples[c].end());
     samples[c].resize(samples[c].size() - count);
   }
@@ -185,13 +186,13 @@ TrainResult train(const Architecture& architecture, const TrainingSet& set,
   check_options(options);
   SamplesByClass samples = sort_by_class(architecture, set);
   for (std::size_t c = 0; c < samples.size(); ++c) {
-    if (samples[c].empty()) {
+    if (samples[c].empty() && set.targets.empty()) {
       throw Error(ErrorKind::kInsufficient,
                   fmt::format("no sample of class {} to train on", name_of_class(options, c)));
     }
   }
-  const std::vector<std::uint32_t> validation =
-      concatenate(split_off(samples, Random(options.seed, kSplitStream)), kMostToValidate);
+  const std::vector<std::uint32_t> validation = concatenate(
+      split_off(samples, options.held_out, Random(options.seed, kSplitStream)), kMostToValidate);
 
   Trainer trainer(make_model(architecture, set, options), set, std::move(samples), options);
   TrainResult result;

@@ -26,6 +26,7 @@ struct TrainOptions {
   /// at most so many samples.
   std::size_t least_per_epoch = 1 << 14, most_per_epoch = 1 << 20;
 
+  double held_out = 0.1;    ///< of every class, to judge the epochs by; 0: the last one is the best
   bool standardise = true;  ///< measure the inputs' range; otherwise they are taken as they are
   SignRule sign_rule = {};
   std::vector<std::string> class_names = {};  ///< one per class, or empty
@@ -37,7 +38,7 @@ struct TrainOptions {
 /// What the paper did: SGD with momentum, batches of 100, rate 0.01, 40 epochs, raw inputs.
 TrainOptions paper_recipe();
 
-/// How an epoch ended, judged by a tenth of every class that is held out. Validation numbers are
+/// How an epoch ended, judged by a part of every class that is held out. Validation numbers are
 /// macro averages (the mean over the classes of each class's mean). With fewer than 20 samples of a
 /// class nothing is held out: they are 0, and the last epoch counts as the best.
 struct EpochReport {
@@ -61,7 +62,7 @@ struct TrainResult {
 /// When `progress` asks to stop, the best model so far is returned, marked as cancelled. The result
 /// depends on the arguments alone: the same bytes for any number of threads.
 /// Throws Error(kUsage) if sizes, labels or options do not fit, Error(kInsufficient) naming a class
-/// without samples.
+/// without samples, unless targets are given.
 TrainResult train(const Architecture& architecture, const TrainingSet& set,
                   const TrainOptions& options = {},
                   const std::function<void(const EpochReport&)>& on_epoch = {},

@@ -63,6 +63,12 @@ void describe_scene(const Scene& scene, Json& json) {
   json["nodes"] = nodes_of(scene);
 }
 
+Json json_of(const HeldOut& held_out) {
+  return {{"strokes", held_out.strokes},
+          {"accuracy", optional_number(held_out.accuracy)},
+          {"start", optional_number(held_out.start)}};
+}
+
 Json json_of(const RunView& view) {
   const RunRecord& run = view.record;
   const RunFacts& facts = run.facts;
@@ -70,7 +76,7 @@ Json json_of(const RunView& view) {
           {"seconds_train", optional_number(facts.seconds_train)},
           {"seconds_classify", optional_number(facts.seconds_classify)},
           {"loss", optional_number(facts.loss)},
-          {"held_out_accuracy", optional_number(facts.held_out_accuracy)},
+          {"held_out", view.held_out ? json_of(*view.held_out) : Json()},
           {"painted", optional_number(facts.painted)},
           {"start", run.settings.start},
           {"classes", optional_number(facts.classes)},
@@ -102,11 +108,7 @@ Json json_of(const Problem& problem) {
 }
 
 Json json_of(const EpochDone& done) {
-  return {{"run", done.run},
-          {"epoch", done.epoch},
-          {"epochs", done.epochs},
-          {"loss", done.loss},
-          {"held_out_accuracy", optional_number(done.held_out_accuracy)}};
+  return {{"run", done.run}, {"epoch", done.epoch}, {"epochs", done.epochs}, {"loss", done.loss}};
 }
 
 Json json_of(const Predicted& predicted) {
@@ -114,8 +116,11 @@ Json json_of(const Predicted& predicted) {
           {"run", predicted.run},
           {"counts", predicted.counts},
           {"seconds_train", optional_number(predicted.facts.seconds_train)},
-          {"seconds_classify", optional_number(predicted.facts.seconds_classify)},
-          {"held_out_accuracy", optional_number(predicted.facts.held_out_accuracy)}};
+          {"seconds_classify", optional_number(predicted.facts.seconds_classify)}};
+}
+
+Json json_of(const Judged& judged) {
+  return {{"run", judged.run}, {"held_out", json_of(judged.held_out)}};
 }
 
 Json json_of(const LinesChanged& changed) {
@@ -139,6 +144,7 @@ struct EventName {
   const char* operator()(const EpochDone&) const { return "training"; }
   const char* operator()(const Painted&) const { return "labels"; }
   const char* operator()(const Predicted&) const { return "prediction"; }
+  const char* operator()(const Judged&) const { return "judged"; }
   const char* operator()(const LinesChanged&) const { return "lines"; }
   const char* operator()(const LinesDecided&) const { return "decided"; }
   const char* operator()(const WriterChanged&) const { return "writer"; }
@@ -257,6 +263,7 @@ std::string to_json(const Summary& summary, bool is_writer) {
                {"features", Json::array()},
                {"classes", classes_of(summary.counts)},
                {"settings", Json::parse(to_line(summary.settings))},
+               {"starts", summary.starts},
                {"strokes", summary.undo},
                {"undo", summary.undo},
                {"redo", summary.redo},

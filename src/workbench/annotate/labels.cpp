@@ -24,6 +24,17 @@ std::span<const std::uint32_t> Labels::paint(std::uint8_t edge_class,
   return done_.back().points;
 }
 
+std::vector<std::uint32_t> Labels::strokes() const {
+  std::vector<std::uint32_t> strokes(classes_.size(), kNoStroke);
+  for (std::size_t step = 0; step < done_.size(); ++step) {
+    const bool paints = done_[step].after != kUnlabelled;
+    for (const std::uint32_t point : done_[step].points) {
+      strokes[point] = paints ? static_cast<std::uint32_t>(step) : kNoStroke;
+    }
+  }
+  return strokes;
+}
+
 std::span<const std::uint32_t> Labels::undo() {
   if (done_.empty()) return {};
   undone_.push_back(std::move(done_.back()));

@@ -10,6 +10,8 @@
 
 namespace pcednet::annotate {
 
+inline constexpr std::uint32_t kNoStroke = 0xffffffff;
+
 /// The painted classes of a cloud's points, with every change that can be taken back.
 /// What changes them returns the points concerned, which stay until the next change.
 class Labels {
@@ -21,6 +23,9 @@ class Labels {
   std::size_t painted() const { return counts_[0] + counts_[1] + counts_[2]; }
   std::size_t undo_steps() const { return done_.size(); }
   std::size_t redo_steps() const { return undone_.size(); }
+
+  /// The number of the step that painted each point, from 0; kNoStroke for those not painted.
+  std::vector<std::uint32_t> strokes() const;
 
   /// Gives the points a class (kUnlabelled: none); a step that can be taken back even if nothing
   /// changes.

@@ -3,15 +3,23 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 
 #include "pcednet/core/error.h"
+#include "pcednet/core/stopwatch.h"
 #include "pcednet/formats/read_cloud.h"
 
 namespace pcednet::annotate {
 namespace {
 
+/// Rounds of training: fewer than for a data set, as the painted points are few and the user waits.
+constexpr int kEpochs = 20;
+
 /// However much is painted, a training takes no longer than this many samples a round.
 constexpr std::size_t kMostPerEpoch = 1 << 15;
+
+/// The bias of an output that no input can make up for.
+constexpr float kNever = -1e4f;
 
 detect::Samples painted_samples(const Described& described, std::span<const std::uint8_t> labels) {
   const auto& [points, order, values] = described.cloud;
@@ -43,56 +51,59 @@ int classes_to_learn(std::span<const std::uint8_t> labels, const Settings& setti
   return settings.classes == 3 && smooth ? 3 : 2;
 }
 
+void check_can_learn(std::span<const std::uint8_t> labels, const Settings& settings) {
+  if (settings.start == kRandomStart) {
+    classes_to_learn(labels, settings);
+  } else if (std::none_of(labels.begin(), labels.end(), [](auto c) { return c <= kSharpEdge; })) {
+    throw Error(ErrorKind::kInsufficient, "paint some points first");
+  }
+}
+
 gls::ScaleSpaceOptions descriptor_of(const detect::EdgeModel* start) {
   return start ? start->descriptor : gls::ScaleSpaceOptions{};
 }
 
-detect::EdgeModel with_classes(const detect::EdgeModel& model, int classes) {
-  if (static_cast<int>(model.classes.size()) == classes) return model;
-  if (model.classes.size() != 3 || classes != 2) {
-    throw Error(ErrorKind::kModelMismatch, fmt::format("{}: has {} classes, {} are wanted",
-                                                       model.name, model.classes.size(), classes));
-  }
-  detect::EdgeModel fewer = model;
-  fewer.classes = {kNonEdge, kSharpEdge};
-  auto& network = fewer.network.network;
-  network.architecture.classes = 2;
-  const auto& names = model.network.class_names;
-  if (names.size() == 3) fewer.network.class_names = {names[0], names[2]};
-  const nn::Layer last = nn::make_plan(model.network.network.architecture).layers.back();
-  auto& parameters = network.parameters;
-  const auto at = [&](std::size_t i) {
-    return parameters.begin() + static_cast<std::ptrdiff_t>(i);
-  };
-  // The biases follow their weights, which have a row per output.
-  const std::size_t row = (last.bias - last.weight) / 3;
-  parameters.erase(at(last.bias + 1));
-  parameters.erase(at(last.weight + row), at(last.weight + 2 * row));
-  nn::check_consistent(fewer.network);
-  return fewer;
+detect::EdgeModel with_classes(detect::EdgeModel model, int classes) {
+  if (classes == 3 || model.classes.size() != 3) return model;
+  auto& network = (model.context ? *model.context : model.network).network;
+  network.parameters[nn::make_plan(network.architecture).layers.back().bias + kSmoothEdge] = kNever;
+  return model;
 }
 
-detect::TrainedModel learn(const std::string& name, const Described& described,
-                           std::span<const std::uint8_t> labels, const Settings& settings,
-                           const detect::EdgeModel* start,
-                           const std::function<void(const nn::EpochReport&)>& on_epoch,
-                           const Progress* progress) {
-  const int classes = classes_to_learn(labels, settings);
-  const detect::Samples samples = painted_samples(described, labels);
+int epochs_of(const Start* start) {
+  if (!start) return kEpochs;
+  return start->model.context ? 2 * kAdaptEpochs : kAdaptEpochs;
+}
+
+Adapted learn(const std::string& name, const Subject& subject, std::span<const std::uint8_t> labels,
+              const Settings& settings, const Start* start,
+              const std::function<void(const nn::EpochReport&)>& on_epoch,
+              const Progress* progress) {
+  if (start) {
+    std::vector<std::uint8_t> wanted(labels.begin(), labels.end());
+    if (settings.classes == 2) std::replace(wanted.begin(), wanted.end(), kSmoothEdge, kNonEdge);
+    return adapt(name, *start, subject, wanted, settings.seed, on_epoch, progress);
+  }
   detect::TrainOptions options;
-  options.architecture.classes = classes;
+  options.architecture.classes = classes_to_learn(labels, settings);
   options.training.seed = settings.seed;
   options.training.epochs = kEpochs;
   options.training.most_per_epoch = kMostPerEpoch;
-  std::optional<detect::EdgeModel> from;
-  if (start) {
-    from = with_classes(*start, classes);
-    options.architecture = from->network.network.architecture;
-    options.training.start = &from->network;
-    // A smaller step: what the model knows is to be adapted, not forgotten.
-    options.training.learning_rate *= 0.3;
-  }
-  return detect::train(name, samples, options, on_epoch, progress);
+  Adapted learnt;
+  auto trained = detect::train(
+      name, painted_samples(subject.described, labels), options,
+      [&](const nn::EpochReport& report) {
+        learnt.loss = report.training_loss;
+        if (on_epoch) on_epoch(report);
+      },
+      progress);
+  learnt.cancelled = trained.cancelled || trained.epochs == 0;
+  learnt.model = std::move(trained.model);
+  if (learnt.cancelled) return learnt;
+  Stopwatch watch;
+  learnt.found = detect::classify(subject.described.cloud, subject.positions, learnt.model);
+  learnt.seconds_classify = watch.lap();
+  return learnt;
 }
 
 detect::TrainedModel learn_project(
@@ -115,13 +126,26 @@ detect::TrainedModel learn_project(
     settings = end.run->settings;
     end.labels = labels_of(*end.run, project.records, project.input.points);
   }
-  std::optional<detect::EdgeModel> start;
-  if (settings.start != kRandomStart) start = load_start(settings.start);
+  std::optional<detect::EdgeModel> model;
+  if (settings.start != kRandomStart) {
+    model = with_classes(load_start(settings.start), settings.classes);
+  }
   const detect::PreparedCloud prepared = detect::prepare(loaded.cloud, {}, progress);
   const auto described =
-      describe_once(prepared, descriptor_of(start ? &*start : nullptr), {}, progress);
-  return learn(input.stem().string(), *described, end.labels.classes(), settings,
-               start ? &*start : nullptr, on_epoch, progress);
+      describe_once(prepared, descriptor_of(model ? &*model : nullptr), {}, progress);
+  const Subject subject{*described, prepared.positions, prepared.curve};
+  std::optional<Start> start;
+  if (model) start = make_start(std::move(*model), subject);
+  int epochs = 0;
+  Adapted learnt = learn(
+      input.stem().string(), subject, end.labels.classes(), settings, start ? &*start : nullptr,
+      [&](const nn::EpochReport& report) {
+        epochs = report.epoch;
+        if (on_epoch) on_epoch(report);
+      },
+      progress);
+  if (start && learnt.cancelled) throw Error(ErrorKind::kCancelled, "stopped by the user");
+  return {.model = std::move(learnt.model), .cancelled = learnt.cancelled, .epochs = epochs};
 }
 
 }  // namespace pcednet::annotate

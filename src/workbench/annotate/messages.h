@@ -8,6 +8,7 @@
 #include <variant>
 #include <vector>
 
+#include "workbench/annotate/held_out.h"
 #include "workbench/annotate/line_review.h"
 #include "workbench/annotate/scene.h"
 
@@ -29,6 +30,7 @@ struct Painted {
 struct RunView {
   RunRecord record = {};
   bool is_current = false;
+  std::optional<HeldOut> held_out = {};
 };
 
 /// Where a session stands.
@@ -39,7 +41,8 @@ struct Summary {
   Counts counts = {};
   std::size_t undo = 0, redo = 0;
   Settings settings = {};
-  std::optional<RunView> run = {};  ///< the current one
+  std::vector<std::string> starts = {};  ///< that settings may name
+  std::optional<RunView> run = {};       ///< the current one
   int prediction_version = 0, labels_version = 0;
 };
 
@@ -77,12 +80,15 @@ struct Problem {
 struct EpochDone {
   int run = 0, epoch = 0, epochs = 0;
   double loss = 0;
-  std::optional<double> held_out_accuracy = {};
 };
 struct Predicted {
   int prediction_version = 0, run = 0;
   std::array<std::size_t, 4> counts = {};  ///< points by class
   RunFacts facts = {};
+};
+struct Judged {
+  int run = 0;
+  HeldOut held_out = {};
 };
 struct LinesChanged {
   int version = 0;
@@ -95,7 +101,7 @@ struct FileSaved {
   std::string path = {};
   std::uintmax_t bytes = 0;
 };
-using Event = std::variant<StageProgress, Ready, Problem, EpochDone, Painted, Predicted,
+using Event = std::variant<StageProgress, Ready, Problem, EpochDone, Painted, Predicted, Judged,
                            LinesChanged, LinesDecided, WriterChanged, FileSaved>;
 
 }  // namespace pcednet::annotate

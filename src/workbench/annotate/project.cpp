@@ -81,7 +81,6 @@ Json json_of(const RunRecord& run) {
   tell("painted", facts.painted);
   tell("classes", facts.classes);
   tell("loss", facts.loss);
-  tell("held_out_accuracy", facts.held_out_accuracy);
   tell("seconds_train", facts.seconds_train);
   tell("seconds_classify", facts.seconds_classify);
   if (!facts.time.empty()) json["time"] = facts.time;
@@ -102,7 +101,6 @@ RunRecord run_of(const Json& json) {
   learn("painted", run.facts.painted);
   learn("classes", run.facts.classes);
   learn("loss", run.facts.loss);
-  learn("held_out_accuracy", run.facts.held_out_accuracy);
   learn("seconds_train", run.facts.seconds_train);
   learn("seconds_classify", run.facts.seconds_classify);
   if (json.contains("time")) run.facts.time = json.at("time").get<std::string>();

@@ -39,8 +39,7 @@ Settings changed(Settings settings, const SettingsChange& change);
 struct RunFacts {
   std::optional<std::size_t> painted = {};  ///< points
   std::optional<int> classes = {};
-  std::optional<double> loss = {}, held_out_accuracy = {}, seconds_train = {},
-                        seconds_classify = {};
+  std::optional<double> loss = {}, seconds_train = {}, seconds_classify = {};
   std::string time = {};  ///< ISO 8601, UTC
 };
 

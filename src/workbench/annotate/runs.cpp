@@ -51,19 +51,24 @@ void Runs::show(Run run) {
   ++version_;
 }
 
+void Runs::judge(int number, const HeldOut& held_out) {
+  if (find(number)) position_of(runs_, number)->held_out = held_out;
+}
+
 void Runs::stop_awaiting() {
   if (!prediction()) shown_.reset();
 }
 
 std::vector<RunView> Runs::views() const {
   std::vector<RunView> views;
-  for (const Run& run : runs_) views.push_back({run.record, run.record.number == shown_});
+  for (const Run& run : runs_)
+    views.push_back({run.record, run.record.number == shown_, run.held_out});
   return views;
 }
 
 std::optional<RunView> Runs::shown_view() const {
   const Run* run = shown();
-  return run ? std::optional(RunView{run->record, true}) : std::nullopt;
+  return run ? std::optional(RunView{run->record, true, run->held_out}) : std::nullopt;
 }
 
 }  // namespace pcednet::annotate

@@ -14,6 +14,7 @@ struct Run {
   RunRecord record = {};
   std::shared_ptr<const Prediction> prediction = {};  ///< null unless it is shown
   std::optional<detect::EdgeModel> model = {};        ///< none as long as an earlier start made it
+  std::optional<HeldOut> held_out = {};               ///< none as long as it is not known
 };
 
 /// The runs of a session by ascending number. The one that is shown is the only one with a
@@ -41,6 +42,9 @@ class Runs {
 
   /// Shows a run, which must have a prediction, in the place of the one of its number.
   void show(Run run);
+
+  /// Says how the run of that number did on strokes held out, if there is one.
+  void judge(int number, const HeldOut& held_out);
 
   /// Shows a run that was remembered and is being trained again.
   void await(int number) { shown_ = number; }

@@ -48,10 +48,10 @@ std::shared_ptr<const Scene> load_scene(const std::filesystem::path& input,
   return scene;
 }
 
-std::shared_ptr<const Prediction> predict(const Scene& scene, const Described& described,
-                                          detect::EdgeModel model) {
+std::shared_ptr<const Prediction> make_prediction(const Scene& scene, detect::EdgeModel model,
+                                                  detect::Classification found) {
   auto prediction = std::make_shared<Prediction>();
-  prediction->result = detect::classify(described.cloud, scene.cloud.positions, model);
+  prediction->result = std::move(found);
   prediction->model = std::move(model);
   auto& result = prediction->result;
   for (const std::uint32_t i : scene.boundary) result.classes[i] = kBoundary;

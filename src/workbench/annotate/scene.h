@@ -42,8 +42,10 @@ struct Prediction {
   /// no class.
   std::vector<float> confidence = {};
 };
-std::shared_ptr<const Prediction> predict(const Scene& scene, const Described& described,
-                                          detect::EdgeModel model);
+
+/// Of what `model` found in the scene's cloud.
+std::shared_ptr<const Prediction> make_prediction(const Scene& scene, detect::EdgeModel model,
+                                                  detect::Classification found);
 
 /// 0 ... 1 as 0 ... 255.
 std::uint8_t byte_of(float share);

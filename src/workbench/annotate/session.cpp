@@ -18,7 +18,7 @@ using Lock = std::unique_lock<std::mutex>;
 namespace {
 
 /// Training waits so long for the next stroke.
-constexpr std::chrono::milliseconds kPause{500};
+constexpr std::chrono::milliseconds kPause{150};
 
 /// The nodes that hold the points, ascending.
 std::vector<std::uint32_t> nodes_with(std::span<const std::uint32_t> points, const Layout& layout) {
@@ -85,6 +85,7 @@ void Session::State::interrupt() {
   orders.restore.reset();
   orders.asked_for = false;
   orders.find_lines = false;
+  orders.judge = false;
   set_searching(false);
   runs.stop_awaiting();
   changed.notify_all();
@@ -92,7 +93,7 @@ void Session::State::interrupt() {
 
 /// After a change of what is to be learnt.
 void Session::State::schedule() {
-  if (painting->settings().automatic) {
+  if (painting->settings().automatic || painting->labels().painted() == 0) {
     interrupt();
     orders.train_at = std::chrono::steady_clock::now() + kPause;
   } else if (!orders.asked_for) {
@@ -174,7 +175,7 @@ void Session::train_now() {
   const Lock lock(state_->mutex);
   State& s = *state_;
   s.check_ready();
-  classes_to_learn(s.painting->labels().classes(), s.painting->settings());
+  check_can_learn(s.painting->labels().classes(), s.painting->settings());
   s.interrupt();
   s.orders.train_at = std::chrono::steady_clock::now();
   s.orders.asked_for = true;

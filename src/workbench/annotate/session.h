@@ -16,7 +16,9 @@ struct SessionOptions {
   std::filesystem::path input = {};
   std::filesystem::path project = {};       ///< empty: see default_project()
   std::filesystem::path cache_folder = {};  ///< empty: descriptions are not kept
-  std::string model = {};                   ///< to classify with at once; empty: none
+  std::string model = {};                   ///< that a new project starts from; empty: none
+  bool is_model_wanted = false;             ///< an older project starts from it from now on, too
+  std::vector<std::string> starts = {};     ///< models that the page may start from, for its list
   bool overwrite = false;                   ///< saving replaces files without being asked to
   /// The model behind `model` or a name of Settings::start, which the page gives: throws, and opens
   /// no file, for any that it may not have.

@@ -26,6 +26,7 @@ struct Orders {
   std::optional<std::chrono::steady_clock::time_point> train_at = {};
   bool asked_for = false;           ///< by the user: an error if it cannot be done
   bool find_lines = false;          ///< once there is nothing else to do
+  bool judge = false;               ///< the run that is shown, after all else
   std::optional<int> restore = {};  ///< a run
   std::uint64_t generation = 0;
   bool stopping = false;
@@ -56,6 +57,11 @@ struct Session::State {
   std::map<std::string, Painted> answers = {};  ///< to strokes, by their ids
   int labels_version = 0;
 
+  /// What was started from last; of the worker's thread alone.
+  std::shared_ptr<const Start> start = {};
+  std::string start_name = {};
+  int start_classes = 0;
+
   Runs runs = {};
   mutable UncertainRanking uncertain = {};
   LineReview review = {};
@@ -71,10 +77,14 @@ struct Session::State {
   void train_once(std::uint64_t mine);
   void restore_once(int number, std::uint64_t mine);
   void find_lines_once(std::uint64_t mine);
+  void judge_once(std::uint64_t mine);
   bool train(Run& run, std::span<const std::uint8_t> painted_classes, std::uint64_t mine);
   bool train_again(Run& run, std::uint64_t mine);
   void classify(Run& run, std::uint64_t mine);
-  void show_model(const std::string& name);
+  void show_start(const Settings& settings, std::uint64_t mine);
+  std::shared_ptr<const Start> start_of(const Settings& settings, std::uint64_t mine);
+  Subject subject_of(const Described& rows) const;
+  gls::ScaleSpaceOptions first_descriptor() const;
   std::shared_ptr<const Described> description(const gls::ScaleSpaceOptions& descriptor,
                                                std::uint64_t of_generation);
 
@@ -89,6 +99,7 @@ struct Session::State {
   Painted standing() const;
   void interrupt();
   void schedule();
+  void choose_start();
   void remember_runs();
   std::vector<std::uint32_t> points_of(const std::vector<std::size_t>& nodes) const;
 };

@@ -16,7 +16,8 @@ Summary Session::summary() const {
   const State& s = *state_;
   Summary summary = {.name = s.options.input.stem().string(),
                      .file = s.options.input.filename().string(),
-                     .stage = s.loading.stage};
+                     .stage = s.loading.stage,
+                     .starts = s.options.starts};
   if (!s.loading.is_done) return summary;
   summary.scene = s.scene;
   summary.counts = s.painting->labels().counts();

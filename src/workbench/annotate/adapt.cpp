@@ -1,0 +1,211 @@
+#include "workbench/annotate/adapt.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <optional>
+
+#include "pcednet/core/blocks.h"
+#include "pcednet/core/random.h"
+#include "pcednet/core/stopwatch.h"
+#include "pcednet/detect/context.h"
+#include "pcednet/detect/decide.h"
+#include "pcednet/detect/describe.h"
+#include "pcednet/detect/outputs.h"
+#include "pcednet/nn/predict.h"
+
+namespace pcednet::annotate {
+namespace {
+
+constexpr std::uint64_t kKeptStream = 5;  // of the seed
+constexpr double kRate = 0.006;
+constexpr std::size_t kPerEpoch = 1 << 13;
+// However much is painted, a training takes no longer.
+constexpr std::size_t kFewestUnpainted = 2000, kMostUnpainted = 16000, kMostPainted = 16000;
+constexpr double kLeastPainted = 0.3;  // share of the painted among the samples
+constexpr float kPlain = 0.05f;        // so sure to be no edge; half of the kept points are others
+
+/// Rows of one network's input, with the points that they describe.
+struct Rows {
+  std::span<const std::uint32_t> points;
+  std::size_t width = 0;
+  std::function<void(std::size_t row, float* values)> read;
+};
+
+/// What a network learns from.
+struct Lesson {
+  std::vector<float> values = {}, targets = {};
+  std::vector<std::uint8_t> outputs = {};
+};
+
+float target_of(std::uint8_t edge_class, const detect::Classification& answer, std::uint32_t i) {
+  if (edge_class == kSharpEdge) return answer.p_sharp[i];
+  if (edge_class == kSmoothEdge) return answer.p_smooth[i];
+  return 1.0f - answer.p_sharp[i] - answer.p_smooth[i];
+}
+
+/// The first `count` of `rows` in random order.
+void choose(std::vector<std::size_t>& rows, std::size_t count, Random& random) {
+  random.shuffle(std::span(rows));
+  rows.resize(std::min(rows.size(), count));
+}
+
+class LessonWriter {
+ public:
+  LessonWriter(const Start& start, std::span<const std::uint8_t> labels, std::uint64_t seed)
+      : start_(start), labels_(labels), seed_(seed) {}
+
+  Lesson write(const Rows& rows) const {
+    std::vector<std::size_t> painted, plain, others;
+    const detect::Classification& answer = start_.answer;
+    for (std::size_t row = 0; row < rows.points.size(); ++row) {
+      const std::uint32_t i = rows.points[row];
+      if (labels_[i] == kLeftOut) continue;
+      const bool is_plain = answer.p_sharp[i] + answer.p_smooth[i] < kPlain;
+      (labels_[i] != kUnlabelled ? painted : is_plain ? plain : others).push_back(row);
+    }
+    Random random(seed_, kKeptStream);
+    const std::size_t kept = std::clamp(painted.size(), kFewestUnpainted, kMostUnpainted);
+    choose(painted, kMostPainted, random);
+    choose(plain, kept / 2, random);
+    choose(others, kept / 2, random);
+    Lesson lesson;
+    const auto unpainted = static_cast<double>(plain.size() + others.size());
+    const double wanted = kLeastPainted / (1 - kLeastPainted) * unpainted;
+    const double copies = painted.empty() ? 0 : wanted / static_cast<double>(painted.size());
+    for (int k = 0; k < std::max(1, static_cast<int>(std::lround(copies))); ++k) {
+      for (const std::size_t row : painted) add_painted(rows, row, lesson);
+    }
+    for (const auto* some : {&plain, &others}) {
+      for (const std::size_t row : *some) add_kept(rows, row, lesson);
+    }
+    return lesson;
+  }
+
+ private:
+  void add_row(const Rows& rows, std::size_t row, std::uint8_t edge_class, Lesson& lesson) const {
+    lesson.values.resize(lesson.values.size() + rows.width);
+    rows.read(row, &*lesson.values.end() - rows.width);
+    lesson.outputs.push_back(detect::output_of(edge_class, start_.model.classes));
+  }
+
+  void add_painted(const Rows& rows, std::size_t row, Lesson& lesson) const {
+    add_row(rows, row, labels_[rows.points[row]], lesson);
+    for (std::size_t c = 0; c < start_.model.classes.size(); ++c) {
+      lesson.targets.push_back(static_cast<float>(c == lesson.outputs.back()));
+    }
+  }
+
+  void add_kept(const Rows& rows, std::size_t row, Lesson& lesson) const {
+    const std::uint32_t i = rows.points[row];
+    add_row(rows, row, start_.answer.classes[i], lesson);
+    for (const std::uint8_t c : start_.model.classes) {
+      lesson.targets.push_back(target_of(c, start_.answer, i));
+    }
+  }
+
+  const Start& start_;
+  std::span<const std::uint8_t> labels_;
+  std::uint64_t seed_;
+};
+
+nn::TrainResult train(const nn::Model& from, const Lesson& lesson, std::uint64_t seed,
+                      const std::function<void(const nn::EpochReport&)>& on_epoch,
+                      const Progress* progress) {
+  nn::TrainOptions options;
+  options.seed = seed;
+  options.learning_rate = kRate;
+  options.epochs = kAdaptEpochs;
+  options.balance = 0;
+  options.held_out = 0;
+  options.start = &from;
+  options.least_per_epoch = options.most_per_epoch = kPerEpoch;
+  return nn::train(from.network.architecture, {lesson.values, lesson.outputs, lesson.targets},
+                   options, on_epoch, progress);
+}
+
+Rows rows_of(const detect::DescribedCloud& cloud) {
+  const std::size_t width = cloud.order.empty() ? 0 : cloud.values.size() / cloud.order.size();
+  return {cloud.order, width, [&cloud, width](std::size_t row, float* values) {
+            std::copy_n(cloud.values.begin() + static_cast<std::ptrdiff_t>(row * width), width,
+                        values);
+          }};
+}
+
+Rows rows_of(const detect::ContextMatrix& matrix) {
+  return {matrix.points(), matrix.width(), [&matrix](std::size_t row, float* values) {
+            matrix.describe(row, row + 1, {values, matrix.width()});
+          }};
+}
+
+/// As detect::apply_context(), with a matrix that is there already.
+void decide_again(const nn::Model& context, const std::vector<std::uint8_t>& classes,
+                  const detect::ContextMatrix& matrix, detect::Classification& found) {
+  const auto points = matrix.points();
+  std::vector<float> rows(std::min(detect::kBlock, points.size()) * matrix.width());
+  for_each_block(points.size(), detect::kBlock, [&](std::size_t begin, std::size_t end) {
+    const auto some = std::span(rows).first((end - begin) * matrix.width());
+    matrix.describe(begin, end, some);
+    detect::decide(points.subspan(begin, end - begin), nn::predict(context, some), classes, found);
+  });
+}
+
+}  // namespace
+
+Start make_start(detect::EdgeModel model, const Subject& subject) {
+  Start start{.model = std::move(model)};
+  start.answer = detect::classify(subject.described.cloud, subject.positions, start.model);
+  return start;
+}
+
+Adapted adapt(const std::string& name, const Start& start, const Subject& subject,
+              std::span<const std::uint8_t> labels, std::uint64_t seed,
+              const std::function<void(const nn::EpochReport&)>& on_epoch,
+              const Progress* progress) {
+  Adapted adapted{.model = start.model};
+  detect::EdgeModel& model = adapted.model;
+  const LessonWriter writer(start, labels, seed);
+  int epochs_before = 0;
+  const auto learn = [&](nn::Model& network, const Rows& rows) {
+    const Lesson lesson = writer.write(rows);
+    if (lesson.outputs.empty()) return;
+    nn::TrainResult result = train(
+        network, lesson, seed,
+        [&](nn::EpochReport report) {
+          report.epoch += epochs_before;
+          adapted.loss = report.training_loss;
+          if (on_epoch) on_epoch(report);
+        },
+        progress);
+    epochs_before += kAdaptEpochs;
+    adapted.cancelled = adapted.cancelled || result.cancelled;
+    network = std::move(result.best);
+    network.metadata = {{"adapted_from", start.model.name},
+                        {"training_samples", std::to_string(lesson.outputs.size())}};
+  };
+  learn(model.network, rows_of(subject.described.cloud));
+  model.name = name;
+  model.seed = seed;
+  if (adapted.cancelled) return adapted;
+  std::optional<nn::Model> context = std::exchange(model.context, {});
+  Stopwatch watch;
+  adapted.found = detect::classify(subject.described.cloud, subject.positions, model);
+  adapted.seconds_classify = watch.lap();
+  if (context) {
+    throw_if_cancelled(progress);
+    watch.lap();
+    const detect::ContextMatrix matrix(subject.positions, subject.curve, adapted.found,
+                                       static_cast<int>(model.classes.size()));
+    adapted.seconds_classify += watch.lap();
+    learn(*context, rows_of(matrix));
+    if (adapted.cancelled) return adapted;
+    watch.lap();
+    decide_again(*context, model.classes, matrix, adapted.found);
+    adapted.seconds_classify += watch.lap();
+    model.context = std::move(context);
+  }
+  adapted.found.counts = detect::count_classes(adapted.found.classes);
+  return adapted;
+}
+
+}  // namespace pcednet::annotate

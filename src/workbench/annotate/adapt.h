@@ -1,0 +1,58 @@
+#pragma once
+
+#include <functional>
+#include <span>
+#include <string>
+
+#include "pcednet/core/progress.h"
+#include "pcednet/detect/classify.h"
+#include "pcednet/nn/train.h"
+#include "workbench/annotate/described.h"
+
+namespace pcednet::annotate {
+
+/// A cloud to learn from; all is only looked at.
+struct Subject {
+  const Described& described;
+  std::span<const Vec3> positions;
+  std::span<const std::uint32_t> curve;  ///< spatial::curve_order() of the positions
+};
+
+/// A model to start from and what it finds in the subject.
+struct Start {
+  detect::EdgeModel model = {};
+  detect::Classification answer = {};
+};
+
+/// `model`, and its answer for a cloud that was described as it wants it.
+Start make_start(detect::EdgeModel model, const Subject& subject);
+
+/// A label that training must not see: the point is not painted, nor does the start's answer for it
+/// say anything.
+inline constexpr std::uint8_t kLeftOut = 254;
+
+/// Epochs of each of the two networks; what adapt() reports counts both.
+inline constexpr int kAdaptEpochs = 20;
+
+struct Adapted {
+  detect::EdgeModel model = {};
+  detect::Classification found = {};  ///< what it finds in the subject
+  bool cancelled = false;             ///< nothing else is of use then
+  double loss = 0;                    ///< of the last epoch
+  double seconds_classify = 0;        ///< of the time that it took
+};
+
+/// Teaches a model the painted points without unlearning the rest (self-distillation): the network
+/// trains on the painted points with their labels and on a sample of the others with the start's
+/// own answers as targets; then the context network does, on what the new network finds. So where
+/// nothing was painted the answers stay, unless points of the same description were painted
+/// otherwise.
+///
+/// `labels` has an EdgeClass that can be painted, kUnlabelled or kLeftOut per point. Depends on the
+/// arguments alone, not on the number of threads or the numbering of the points.
+Adapted adapt(const std::string& name, const Start& start, const Subject& subject,
+              std::span<const std::uint8_t> labels, std::uint64_t seed,
+              const std::function<void(const nn::EpochReport&)>& on_epoch = {},
+              const Progress* progress = nullptr);
+
+}  // namespace pcednet::annotate

@@ -1,0 +1,95 @@
+#include "workbench/annotate/held_out.h"
+
+#include <algorithm>
+#include <array>
+#include <map>
+
+#include "pcednet/core/error.h"
+
+namespace pcednet::annotate {
+namespace {
+
+constexpr std::uint32_t kMostParts = 4;  // trainings
+
+/// The class of every stroke of which something is left, by its number.
+std::map<std::uint32_t, std::uint8_t> classes_of(std::span<const std::uint32_t> strokes,
+                                                 std::span<const std::uint8_t> labels) {
+  std::map<std::uint32_t, std::uint8_t> classes;
+  std::uint32_t last = kNoStroke;
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    if (strokes[i] == kNoStroke || strokes[i] == last) continue;
+    classes[last = strokes[i]] = labels[i];
+  }
+  return classes;
+}
+
+/// The part that each stroke is in: the strokes of a class go round. Empty if they are too few.
+std::map<std::uint32_t, std::uint32_t> parts_of(
+    const std::map<std::uint32_t, std::uint8_t>& classes) {
+  std::array<std::uint32_t, 3> count = {};
+  for (const auto& [stroke, edge_class] : classes) ++count[edge_class];
+  const auto painted = 3 - std::count(count.begin(), count.end(), 0u);
+  if (painted < 2 || std::count(count.begin(), count.end(), 1u) > 0) return {};
+  const auto most = std::min(kMostParts, *std::max_element(count.begin(), count.end()));
+  std::map<std::uint32_t, std::uint32_t> parts;
+  std::array<std::uint32_t, 3> next = {};
+  for (const auto& [stroke, edge_class] : classes) parts[stroke] = next[edge_class]++ % most;
+  return parts;
+}
+
+/// Right answers and all, by the true class.
+struct Tally {
+  std::array<double, 3> right = {}, all = {};
+
+  void add(std::uint8_t truth, std::uint8_t answer) {
+    ++all[truth];
+    if (truth == answer) ++right[truth];
+  }
+  double accuracy() const {
+    double sum = 0, classes = 0;
+    for (std::size_t c = 0; c < all.size(); ++c) {
+      if (all[c] == 0) continue;
+      sum += right[c] / all[c];
+      ++classes;
+    }
+    return sum / classes;
+  }
+};
+
+}  // namespace
+
+HeldOut hold_out(const Subject& subject, const Labels& labels, const Settings& settings,
+                 const Start* start, const Progress* progress) {
+  const std::vector<std::uint32_t> strokes = labels.strokes();
+  std::vector<std::uint8_t> truth = labels.classes();
+  if (settings.classes == 2 || (start && start->model.classes.size() == 2)) {
+    std::replace(truth.begin(), truth.end(), kSmoothEdge, kNonEdge);
+  }
+  const auto classes = classes_of(strokes, truth);
+  const auto parts = parts_of(classes);
+  HeldOut held_out{.strokes = classes.size()};
+  if (parts.empty()) return held_out;
+  std::uint32_t count = 0;
+  for (const auto& [stroke, part] : parts) count = std::max(count, part + 1);
+  Tally tally, of_start;
+  for (std::uint32_t part = 0; part < count; ++part) {
+    std::vector<std::uint8_t> shown = truth;
+    std::vector<std::uint32_t> asked;
+    for (std::size_t i = 0; i < shown.size(); ++i) {
+      if (strokes[i] == kNoStroke || parts.at(strokes[i]) != part) continue;
+      shown[i] = kLeftOut;
+      asked.push_back(static_cast<std::uint32_t>(i));
+    }
+    const Adapted learnt = learn("", subject, shown, settings, start, {}, progress);
+    if (learnt.cancelled) throw Error(ErrorKind::kCancelled, "cancelled");
+    for (const std::uint32_t i : asked) {
+      tally.add(truth[i], learnt.found.classes[i]);
+      if (start) of_start.add(truth[i], start->answer.classes[i]);
+    }
+  }
+  held_out.accuracy = tally.accuracy();
+  if (start) held_out.start = of_start.accuracy();
+  return held_out;
+}
+
+}  // namespace pcednet::annotate

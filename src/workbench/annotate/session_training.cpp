@@ -1,0 +1,213 @@
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <ctime>
+#include <utility>
+
+#include "pcednet/core/error.h"
+#include "pcednet/core/stopwatch.h"
+#include "workbench/annotate/learn.h"
+#include "workbench/annotate/session_state.h"
+
+namespace pcednet::annotate {
+namespace {
+
+using Lock = std::unique_lock<std::mutex>;
+
+std::string now_as_text() {
+  return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
+}
+
+}  // namespace
+
+/// What a training under `settings` starts from; null: random weights.
+std::shared_ptr<const Start> Session::State::start_of(const Settings& settings,
+                                                      std::uint64_t mine) {
+  if (settings.start == kRandomStart) return {};
+  if (start && start_name == settings.start && start_classes == settings.classes) return start;
+  detect::EdgeModel model = with_classes(options.load_model(settings.start), settings.classes);
+  const auto rows = description(model.descriptor, mine);
+  start = std::make_shared<const Start>(make_start(std::move(model), subject_of(*rows)));
+  start_name = settings.start;
+  start_classes = settings.classes;
+  return start;
+}
+
+Subject Session::State::subject_of(const Described& rows) const {
+  return {rows, scene->cloud.positions, scene->prepared.curve};
+}
+
+/// Gives `run` its model and prediction, from the points painted and the settings of its record.
+/// False if it was cancelled.
+bool Session::State::train(Run& run, std::span<const std::uint8_t> painted_classes,
+                           std::uint64_t mine) {
+  RunFacts& facts = run.record.facts;
+  const Settings& its = run.record.settings;
+  const auto from = start_of(its, mine);
+  const auto rows = description(descriptor_of(from ? &from->model : nullptr), mine);
+  const Progress cancel = {.report = {}, .cancelled = [&] { return is_void(mine); }};
+  const auto on_epoch = [&](const nn::EpochReport& report) {
+    emit(EpochDone{.run = run.record.number,
+                   .epoch = report.epoch,
+                   .epochs = epochs_of(from.get()),
+                   .loss = report.training_loss});
+  };
+  Stopwatch watch;
+  Adapted learnt = learn(options.input.stem().string(), subject_of(*rows), painted_classes, its,
+                         from.get(), on_epoch, &cancel);
+  if (learnt.cancelled) return false;
+  facts.seconds_train = watch.lap() - learnt.seconds_classify;
+  facts.seconds_classify = learnt.seconds_classify;
+  facts.loss = learnt.loss;
+  facts.classes = static_cast<int>(learnt.model.classes.size());
+  run.prediction = make_prediction(*scene, learnt.model, std::move(learnt.found));
+  run.model = std::move(learnt.model);
+  return true;
+}
+
+void Session::State::train_once(std::uint64_t mine) {
+  Run run;
+  std::vector<std::uint8_t> painted_classes;
+  bool asked = false;
+  {
+    const Lock lock(mutex);
+    asked = std::exchange(orders.asked_for, false);
+    painted_classes = painting->labels().classes();
+    run.record = {.number = painting->next_run(),
+                  .records = painting->records().size(),
+                  .settings = painting->settings()};
+    run.record.facts.painted = painting->labels().painted();
+  }
+  try {
+    check_can_learn(painted_classes, run.record.settings);
+  } catch (const Error&) {
+    if (asked) throw;
+    // Not yet: the user is still painting. The start has an answer even to nothing.
+    if (run.record.settings.start != kRandomStart) show_start(run.record.settings, mine);
+    return;
+  }
+  if (!train(run, painted_classes, mine)) return;
+  run.record.facts.time = now_as_text();
+  const Lock lock(mutex);
+  if (orders.generation != mine || orders.stopping) return;
+  Record record;
+  record.kind = Record::Kind::kRun;
+  record.run = run.record;
+  painting->add(std::move(record));
+  show(std::move(run));
+}
+
+/// Gives a run of an earlier start the model that it had then.
+bool Session::State::train_again(Run& run, std::uint64_t mine) {
+  const RunFacts then = run.record.facts;
+  try {
+    std::optional<Labels> its;
+    {
+      const Lock lock(mutex);
+      its = labels_of(run.record, painting->records(), scene->input.points);
+    }
+    if (!train(run, its->classes(), mine)) return false;
+    run.record.facts.painted = its->painted();
+  } catch (const Error& error) {
+    if (error.kind() == ErrorKind::kCancelled) throw;
+    throw Error(error.kind(),
+                fmt::format("run {} cannot be trained again: {}", run.record.number, error.what()));
+  }
+  if (!then.painted) return true;  // of the first version: nothing was known of it
+  if (then.loss != run.record.facts.loss) {
+    emit(
+        Problem{fmt::format("run {} cannot be reproduced exactly: another version of pcednet or of "
+                            "its start model made it",
+                            run.record.number)});
+  }
+  run.record.facts = then;
+  return true;
+}
+
+/// Classifies with a model that was trained before.
+void Session::State::classify(Run& run, std::uint64_t mine) {
+  const auto rows = description(run.model->descriptor, mine);
+  Stopwatch watch;
+  auto found = detect::classify(rows->cloud, scene->cloud.positions, *run.model);
+  if (!run.record.facts.seconds_classify) run.record.facts.seconds_classify = watch.lap();
+  run.prediction = make_prediction(*scene, *run.model, std::move(found));
+}
+
+void Session::State::restore_once(int number, std::uint64_t mine) {
+  Run run;
+  {
+    const Lock lock(mutex);
+    run = *runs.find(number);
+  }
+  try {
+    if (number == 0) return show_start(run.record.settings, mine);
+    if (run.model) {
+      classify(run, mine);
+    } else if (!train_again(run, mine)) {
+      return;
+    }
+  } catch (...) {
+    const Lock lock(mutex);
+    if (orders.generation == mine) runs.stop_awaiting();  // nor can it be made again
+    throw;
+  }
+  const Lock lock(mutex);
+  if (orders.generation != mine || orders.stopping) return;
+  if (number != painting->shown_run()) {
+    Record record;
+    record.kind = Record::Kind::kRestore;
+    record.run.number = number;
+    painting->add(std::move(record));
+  }
+  show(std::move(run));
+}
+
+/// Shows what the start itself finds: a run without training, number 0.
+void Session::State::show_start(const Settings& settings, std::uint64_t mine) {
+  Stopwatch watch;
+  const auto from = start_of(settings, mine);
+  Run run{.record = {.number = 0, .records = 0, .settings = settings}};
+  run.record.facts = {.painted = 0,
+                      .classes = static_cast<int>(from->model.classes.size()),
+                      .seconds_train = 0,
+                      .seconds_classify = watch.lap(),
+                      .time = now_as_text()};
+  run.model = from->model;
+  run.prediction = make_prediction(*scene, from->model, from->answer);
+  const Lock lock(mutex);
+  if (orders.generation != mine || orders.stopping) return;
+  show(std::move(run));
+}
+
+void Session::State::show(Run run) {
+  const auto& counts = run.prediction->result.counts;
+  Predicted predicted{.run = run.record.number,
+                      .counts = {counts.non_edge, counts.smooth, counts.sharp, counts.boundary},
+                      .facts = run.record.facts};
+  orders.judge = run.record.number > 0 && !run.held_out;
+  runs.show(std::move(run));
+  predicted.prediction_version = runs.version();
+  emit(predicted);
+}
+
+/// Says how the run that is shown does on strokes held out, once there is nothing else to do.
+void Session::State::judge_once(std::uint64_t mine) {
+  RunRecord record;
+  std::optional<Labels> its;
+  {
+    const Lock lock(mutex);
+    const Run* shown = runs.shown();
+    if (!shown || shown->record.number == 0 || shown->held_out) return;
+    record = shown->record;
+    its = labels_of(record, painting->records(), scene->input.points);
+  }
+  const auto from = start_of(record.settings, mine);
+  const auto rows = description(descriptor_of(from ? &from->model : nullptr), mine);
+  const Progress cancel = {.report = {}, .cancelled = [&] { return is_void(mine); }};
+  const HeldOut held_out = hold_out(subject_of(*rows), *its, record.settings, from.get(), &cancel);
+  const Lock lock(mutex);
+  runs.judge(record.number, held_out);
+  emit(Judged{record.number, held_out});
+}
+
+}  // namespace pcednet::annotate

@@ -1,0 +1,172 @@
+// The annotator that corrects a model: what a new user sees first, how strokes are judged, and what the page says when
+// the program is gone. Environment as annotate_test.mjs; SCREENSHOT_START, if set, is where a picture of the start goes.
+import assert from "node:assert/strict";
+import { spawn } from "node:child_process";
+import { once } from "node:events";
+import fs from "node:fs";
+import os from "node:os";
+import path from "node:path";
+import { after, before, test } from "node:test";
+
+import { roof, writeRoof } from "./annotate_cloud.mjs";
+import { launch } from "./browser.mjs";
+
+const folder = fs.mkdtempSync(path.join(os.tmpdir(), "pcednet-start-"));
+const input = path.join(folder, "roof.ply");
+let browser, page, server;
+
+/** Starts the program, without --model; its process and the address that it prints. */
+function serve(...words) {
+  return new Promise((done, fail) => {
+    const program = spawn(process.env.PCEDNET, ["annotate", input, "--no-browser", ...words]);
+    let text = "";
+    program.stdout.on("data", (data) => {
+      text += data;
+      const address = /http:\/\/127\.0\.0\.1:(\d+)\/\?token=\S+/.exec(text);
+      if (address) done({ program, address: address[0], port: address[1] });
+    });
+    program.on("exit", (code) => fail(new Error(`pcednet annotate ended with ${code}`)));
+  });
+}
+
+async function kill() {
+  const ended = once(server.program, "exit");
+  server.program.kill("SIGKILL");
+  await ended;
+}
+
+const settled = () =>
+  page.waitForFunction(
+    () => annotator.store.now.progress === null && annotator.stage.isSettled && !annotator.client.isBusy,
+  );
+
+const shown = (run) => page.waitForFunction((n) => annotator.store.now.runs.some((r) => r.current && r.run === n), run);
+
+/** Shares of the page's points predicted as 0, 1, 2, 3. */
+const predicted = () =>
+  page.evaluate(() => {
+    const count = [0, 0, 0, 0];
+    let all = 0;
+    for (const { prediction } of annotator.stage.chunks) prediction.forEach((c) => (c < 4 && ++count[c], ++all));
+    return count.map((n) => n / all);
+  });
+
+/** A stroke of the brush round a place of the cloud, by the page's own means. */
+async function paint(id, edgeClass, centre, radius = 0.05) {
+  await page.evaluate(
+    ([name, c, p, r]) => {
+      const { origin } = annotator.store.now.session;
+      annotator.client.paint({
+        id: name,
+        tool: "brush",
+        class: c,
+        centres: [p.map((x, i) => x - origin[i])],
+        radius: r,
+        protect: false,
+        hidden: [],
+        clip: null,
+      });
+    },
+    [id, edgeClass, centre, radius],
+  );
+  await settled();
+}
+
+before(async () => {
+  writeRoof(input, roof());
+  server = await serve();
+  browser = await launch();
+  page = await browser.newPage({ viewport: { width: 1280, height: 720 } });
+  page.setDefaultTimeout(120_000);
+  await page.goto(server.address);
+  await settled();
+});
+
+after(async () => {
+  await browser?.close();
+  server?.program.kill("SIGKILL");
+  fs.rmSync(folder, { recursive: true, force: true });
+});
+
+test("shows at once what the default model finds, boundary too", async () => {
+  await shown(0);
+  await page.getByText("This is what model scan finds. Paint where it is wrong.").waitFor();
+  await page.waitForFunction(() => annotator.stage.chunks.some((c) => c.prediction.includes(3)));
+  const shares = await predicted();
+  assert.ok(shares[0] > 0.5 && shares[2] > 0.02 && shares[3] > 0.005, `${shares}`);
+  assert.equal(
+    await page.getByRole("combobox", { name: "Start from" }).locator(":checked").textContent(),
+    "model scan",
+  );
+  assert.ok((await page.locator(".legend").textContent()).includes("boundary"));
+  await settled();
+  if (process.env.SCREENSHOT_START) await page.screenshot({ path: process.env.SCREENSHOT_START });
+});
+
+test("begins with a brush thin enough for an edge, which may be made thinner", async () => {
+  const inSpacings = () => page.evaluate(() => annotator.store.now.radius / annotator.store.now.session.spacing);
+  const first = await inSpacings();
+  assert.ok(first >= 1.5 && first <= 2, `${first}`);
+  for (let i = 0; i < 12; ++i) await page.keyboard.press("[");
+  assert.ok((await inSpacings()) < 0.75);
+  await page.evaluate((r) => annotator.store.set({ radius: r * annotator.store.now.session.spacing }), first);
+});
+
+test("shows another model's answer as soon as it is chosen, without a stroke", async () => {
+  const start = page.getByRole("combobox", { name: "Start from" });
+  await start.selectOption({ label: "model worn" });
+  await page.getByText("This is what model worn finds.").waitFor();
+  await start.selectOption({ label: "model scan" });
+  await page.getByText("This is what model scan finds.").waitFor();
+});
+
+test("learns from one stroke, and says that this is too little to tell how right it is", async () => {
+  const before = await predicted();
+  await paint("a", 0, [0.2, 0.7, 0.6], 0.1);
+  await shown(1);
+  await page.getByText("Not enough strokes to tell how right it is").waitFor();
+  await settled();
+  const now = await predicted();
+  before.forEach((share, c) => assert.ok(Math.abs(share - now[c]) < 0.05, `class ${c}: ${share}, then ${now[c]}`));
+});
+
+test("judges by whole strokes once there are two of two classes", async () => {
+  await paint("b", 0, [1.6, 0.7, 0.6], 0.1);
+  await paint("c", 2, [1, 0, 0.6], 0.02);
+  await paint("d", 2, [1.6, 0, 0.6], 0.02);
+  await page.getByText(/Right on held-out strokes: [\d.]+ %; model scan: [\d.]+ %\./).waitFor();
+});
+
+test("takes back what the program never got, and says so", async () => {
+  await settled();
+  const labels = () =>
+    page.evaluate(() => annotator.stage.chunks.reduce((n, c) => n + c.labels.filter((l) => l < 3).length, 0));
+  const kept = await labels();
+  await page.evaluate(() => annotator.stage.camera.fit(true));
+  await settled();
+  const box = await page.locator("canvas").first().boundingBox();
+  await page.evaluate(() => annotator.store.set({ radius: 0.1, paintClass: 1, tool: "brush" }));
+  const middle = [box.x + box.width / 2, box.y + box.height / 2];
+  await page.mouse.move(...middle);
+  await page.mouse.down();
+  await kill(); // in the middle of the stroke
+  await page.mouse.move(middle[0] + 20, middle[1], { steps: 3 });
+  assert.ok((await labels()) > kept, "the stroke is drawn");
+  await page.mouse.up();
+  await page.getByText("The stroke was not applied").waitFor();
+  assert.equal(await labels(), kept);
+  await page.getByText("pcednet does not answer. Is the program still running?").waitFor();
+  await page.mouse.down();
+  await page.mouse.up();
+  await page.getByText("pcednet does not answer: nothing can be painted.").waitFor();
+  assert.equal(await labels(), kept);
+});
+
+test("says that the program was started again, and its new address shows all strokes", async () => {
+  server = await serve("--port", server.port);
+  await page.getByText("pcednet was started again: open the address that it printed.").waitFor();
+  await page.goto(server.address);
+  await settled();
+  assert.equal(await page.evaluate(() => annotator.store.now.undo), 4);
+  await page.waitForFunction(() => annotator.store.now.writer);
+});
