@@ -202,6 +202,20 @@ class AnnotateSession(AnnotateTest):
             self.assertEqual(server.open()["settings"]["start"], start)
             server.kill()
 
+    def test_saves_a_las_cloud_as_las(self):
+        las = self.folder / "cube.las"
+        run("convert", self.cloud, "-o", las)
+        self.servers.append(Server(las, "--model", "none"))
+        server = self.servers[-1]
+        server.open()
+        server.post("/api/settings", {"auto": False})
+        counts = server.post("/api/stroke", brush("edge", 2, EDGE, radius=0.05))["counts"]
+        saved = server.post("/api/save", {"what": "cloud"})["path"]
+        self.assertEqual(saved, str(self.folder / "cube_annotated.las"))
+        run("convert", saved, "-o", self.folder / "back.ply")
+        rows, _ = read_ply(self.folder / "back.ply")
+        self.assertEqual(int((rows["scalar_painted_label"] == 2).sum()), counts[2])
+
     def test_judges_by_whole_strokes(self):
         server = self.quiet()
         for k, z in enumerate((-0.3, 0.3)):

@@ -103,6 +103,40 @@ test("shows at once what the default model finds, boundary too", async () => {
   if (process.env.SCREENSHOT_START) await page.screenshot({ path: process.env.SCREENSHOT_START });
 });
 
+test("darkens what lies behind with eye-dome lighting, and nothing else", async () => {
+  /** The first pixel, which is background, and the mean brightness of all others of another colour. */
+  const look = () =>
+    page.evaluate(async () => {
+      const image = await createImageBitmap(await annotator.stage.picture());
+      const context = new OffscreenCanvas(image.width, image.height).getContext("2d");
+      context.drawImage(image, 0, 0);
+      const { data } = context.getImageData(0, 0, image.width, image.height);
+      const first = [...data.slice(0, 3)];
+      let sum = 0,
+        points = 0;
+      for (let i = 0; i < data.length; i += 4) {
+        if (first.every((c, k) => c === data[i + k])) continue;
+        sum += data[i] + data[i + 1] + data[i + 2];
+        points += 1;
+      }
+      return { first, points, mean: sum / points };
+    });
+  const press = async () => {
+    await page.keyboard.press("i");
+    await page.waitForTimeout(50);
+    await settled();
+  };
+  assert.equal(await page.getByRole("checkbox", { name: "Eye-dome lighting" }).isChecked(), false, "without a card");
+  const plain = await look();
+  await press();
+  const lit = await look();
+  assert.deepEqual(lit.first, plain.first);
+  assert.ok(Math.abs(lit.points / plain.points - 1) < 0.02, `${lit.points} points, ${plain.points} before`);
+  assert.ok(lit.mean < 0.98 * plain.mean && lit.mean > 0.7 * plain.mean, `${lit.mean}, ${plain.mean} before`);
+  await press();
+  assert.deepEqual(await look(), plain);
+});
+
 test("begins with a brush thin enough for an edge, which may be made thinner", async () => {
   const inSpacings = () => page.evaluate(() => annotator.store.now.radius / annotator.store.now.session.spacing);
   const first = await inSpacings();
@@ -122,8 +156,16 @@ test("shows another model's answer as soon as it is chosen, without a stroke", a
 
 test("learns from one stroke, and says that this is too little to tell how right it is", async () => {
   const before = await predicted();
+  const hint = page.getByText("Paint where the prediction is wrong.");
+  assert.ok(await hint.isVisible());
+  await page.getByRole("checkbox", { name: "Train after each stroke" }).uncheck();
+  await page.waitForFunction(() => !annotator.store.now.settings.auto);
   await paint("a", 0, [0.2, 0.7, 0.6], 0.1);
+  assert.ok(await hint.isHidden(), "nobody who paints needs it");
+  await page.getByText("prediction, out of date").waitFor();
+  await page.getByRole("checkbox", { name: "Train after each stroke" }).check();
   await shown(1);
+  await page.getByText("prediction, out of date").waitFor({ state: "detached" });
   await page.getByText("Not enough strokes to tell how right it is").waitFor();
   await settled();
   const now = await predicted();

@@ -118,13 +118,15 @@ export function header(store: AppStore, save: (what: Saved) => void, client: Cli
 /** What the colours mean. */
 export function legend(store: AppStore): HTMLElement {
   const element = h("div", { class: "legend" });
-  store.watch(["mode", "feature", "scale", "safePalette", "session", "paintOnTop"], () => {
+  store.watch(["mode", "feature", "scale", "safePalette", "session", "paintOnTop", "outOfDate"], () => {
     const { mode, session, feature, scale } = store.now;
     let title = MODES.find((m) => m.mode === mode)!.name;
     if (mode === "feature" && session) {
       const name = session.features[feature];
       title = `${FEATURE_NAMES[name] ?? name}, radius ${length(session.scales[scale] ?? 0)}`;
     }
+    const depends = ["prediction", "confidence", "p_sharp"].includes(mode);
+    if (depends && store.now.outOfDate) title += ", out of date";
     element.replaceChildren(h("b", {}, title));
     if (isRamp(mode)) {
       const bar = h("span", { class: "ramp" });
@@ -141,6 +143,18 @@ export function legend(store: AppStore): HTMLElement {
         }),
       );
     }
+  });
+  return element;
+}
+
+/** What to do first, until there is a stroke. */
+export function hint(store: AppStore): HTMLElement {
+  const element = h("p", { class: "hint" });
+  store.watch(["progress", "undo", "writer", "counts", "runs"], () => {
+    const { progress, undo, writer, counts, runs } = store.now;
+    element.hidden = progress !== null || !writer || undo > 0 || counts.some((n) => n > 0);
+    const what = runs.length > 0 ? "Paint where the prediction is wrong" : "Paint some points of each class";
+    element.textContent = `${what}. Right button: orbit. Wheel: zoom. ?: all keys.`;
   });
   return element;
 }

@@ -153,6 +153,7 @@ export class Client {
 
   private takePainted(answer: Painted): void {
     this.store.set({ counts: answer.counts, undo: answer.undo, redo: answer.redo });
+    if (answer.nodes.length > 0) this.store.set({ outOfDate: true });
     this.stage.loader.refresh("labels", answer.nodes);
   }
 
@@ -176,7 +177,12 @@ export class Client {
     const first = !this.predicted;
     this.predicted = true;
     this.endTraining();
-    store.set({ predicted: event.counts, uncertain: null, predictionVersion: event.prediction_version });
+    store.set({
+      predicted: event.counts,
+      uncertain: null,
+      predictionVersion: event.prediction_version,
+      outOfDate: false,
+    });
     this.stage.loader.refresh("prediction");
     if (["confidence", "p_sharp"].includes(store.now.mode)) this.stage.loader.refresh("values");
     if (first && ["labels", "rgb"].includes(store.now.mode)) store.set({ mode: "prediction" });

@@ -49,6 +49,7 @@ export function appearanceOf(state: State, background: string): Appearance {
     clip: activeClip(state),
     pointSize: state.pointSize,
     background,
+    eyeDome: state.eyeDome,
   };
 }
 

@@ -135,6 +135,7 @@ function colourCommands({ store }: Hands): Command[] {
     command(["Shift+M"], "previous colouring", () => step(-1)),
     command([","], "smaller scale of the feature", () => scale(-1)),
     command(["."], "larger scale of the feature", () => scale(1)),
+    command(["I"], "eye-dome lighting", () => store.set({ eyeDome: !store.now.eyeDome })),
     command(["O"], "painted points on top", () => store.set({ paintOnTop: !store.now.paintOnTop })),
     command(["{"], "smaller points", () => size(1 / 1.15)),
     command(["}"], "larger points", () => size(1.15)),

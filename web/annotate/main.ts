@@ -4,7 +4,7 @@ import "./style.css";
 import { h } from "../shared/dom";
 import { Api } from "./api";
 import { Brush } from "./brush";
-import { curtain, header, legend, presser, toolbar } from "./chrome";
+import { curtain, header, hint, legend, presser, toolbar } from "./chrome";
 import { Client, refusalOf, type Saved } from "./client";
 import { appearanceOf, lineLookOf, paintColour, valuesQuery } from "./colouring";
 import { bindKeys, commandsOf } from "./commands";
@@ -44,6 +44,7 @@ function open(page: HTMLElement): void {
     isPainting: () => brush.isDown || client.isBusy,
   });
   client.stage = stage;
+  store.set({ eyeDome: !stage.isSoftware }); // a pass over all pixels costs a graphics card nothing
   const overlay: Overlay = new Overlay(stage);
   const brush: Brush = new Brush(stage, store, client);
   const outline = new Outline(stage, store, client, overlay);
@@ -95,7 +96,7 @@ function open(page: HTMLElement): void {
   bindKeys(commands, () => document.querySelector("dialog[open]") !== null || store.now.progress !== null);
   bindSpace(pointer);
 
-  place.append(overlay.element, legend(store), curtain(store, client), notices.element);
+  place.append(overlay.element, hint(store), legend(store), curtain(store, client), notices.element);
   page.replaceChildren(
     header(store, (what) => void save(what), client),
     toolbar(store, press),
@@ -114,7 +115,7 @@ function open(page: HTMLElement): void {
     help,
   );
 
-  store.watch(["mode", "paintOnTop", "safePalette", "hidden", "clip", "pointSize"], () =>
+  store.watch(["mode", "paintOnTop", "safePalette", "hidden", "clip", "pointSize", "eyeDome"], () =>
     stage.setAppearance(appearanceOf(store.now, css("--stage"))),
   );
   store.watch(["mode", "feature", "scale"], () => stage.loader.setValues(valuesQuery(store.now)));

@@ -15,6 +15,7 @@ import {
 } from "three";
 import { rgbOf } from "../shared/colours";
 import type { Chunk } from "./chunk";
+import { EyeDome } from "./eye_dome";
 import { LineLayer } from "./line_layer";
 import { FRAGMENT, VERTEX } from "./shaders";
 import type { Box } from "./types";
@@ -32,6 +33,8 @@ export interface Appearance {
   clip: Box | null;
   pointSize: number;
   background: string;
+  /** With eye-dome lighting. */
+  eyeDome: boolean;
 }
 
 const MODES = ["labels", "rgb", "normals", "prediction", "ramp"];
@@ -48,6 +51,10 @@ function isSoftware(renderer: WebGLRenderer): boolean {
 export class Painter {
   readonly renderer: WebGLRenderer;
   readonly ratio: number;
+  /** WebGL is drawn by the processor. */
+  readonly isSoftware: boolean;
+  private eyeDome: EyeDome | null = null;
+  private background: [number, number, number] = [0, 0, 0];
   readonly lines: LineLayer;
   private readonly scene = new Scene();
   private readonly onCard = new Map<number, Points>();
@@ -62,7 +69,8 @@ export class Painter {
     // What was drawn stays, so that a view at rest is filled in over several frames.
     this.renderer = new WebGLRenderer({ canvas, antialias: false, preserveDrawingBuffer: true });
     this.renderer.autoClear = false;
-    this.ratio = isSoftware(this.renderer) ? 1 : Math.min(window.devicePixelRatio, 2);
+    this.isSoftware = isSoftware(this.renderer);
+    this.ratio = this.isSoftware ? 1 : Math.min(window.devicePixelRatio, 2);
     this.renderer.setPixelRatio(this.ratio);
     this.lines = new LineLayer(this.ratio);
     this.ramp.minFilter = this.ramp.magFilter = NearestFilter;
@@ -90,6 +98,7 @@ export class Painter {
   resize(width: number, height: number): void {
     this.renderer.setSize(width, height, false);
     this.size = [width * this.ratio, height * this.ratio];
+    this.eyeDome?.resize(...this.size);
   }
 
   setAppearance(look: Appearance): void {
@@ -108,7 +117,15 @@ export class Painter {
     u.size.value = look.pointSize;
     u.least.value = 1.5 * this.ratio;
     this.lines.setClip(look.clip);
+    this.background = rgbOf(look.background);
     this.renderer.setClearColor(new Color(look.background));
+    if (look.eyeDome && !this.eyeDome) {
+      this.eyeDome = new EyeDome(this.renderer, this.ratio);
+      this.eyeDome.resize(...this.size);
+    } else if (!look.eyeDome) {
+      this.eyeDome?.dispose();
+      this.eyeDome = null;
+    }
   }
 
   setSpacings(spacings: Map<number, Float32Array>): void {
@@ -116,7 +133,9 @@ export class Painter {
   }
 
   clear(): void {
+    this.eyeDome?.begin();
     this.renderer.clear();
+    this.renderer.setRenderTarget(null);
   }
 
   /** Draws the first points of each chunk over what there is; the milliseconds it took, or none for a first time. */
@@ -129,7 +148,9 @@ export class Painter {
       return object;
     });
     const start = performance.now();
+    this.eyeDome?.begin();
     this.renderer.render(this.scene, camera);
+    this.eyeDome?.show(camera, this.background);
     const gl = this.renderer.getContext();
     gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4)); // waits until it is drawn
     return this.fresh ? null : performance.now() - start;

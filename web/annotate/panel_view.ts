@@ -14,6 +14,7 @@ export function viewPanel(store: AppStore): HTMLElement {
   const scale = slider("Scale", 0, 15, 1, (value) => store.set({ scale: value }));
   const size = slider("Point size", 0.3, 6, 0.05, (value) => store.set({ pointSize: value }));
   const onTop = checkbox("Painted points on top", "O", (on) => store.set({ paintOnTop: on }));
+  const eyeDome = checkbox("Eye-dome lighting", "I", (on) => store.set({ eyeDome: on }));
   const palette = buttons(
     "Palette",
     [
@@ -46,12 +47,13 @@ export function viewPanel(store: AppStore): HTMLElement {
     features.set(feature);
     scale.set(store.now.scale, length(session?.scales[store.now.scale] ?? 0));
   });
-  store.watch(["pointSize", "paintOnTop", "safePalette"], () => {
+  store.watch(["pointSize", "paintOnTop", "safePalette", "eyeDome"], () => {
     size.set(store.now.pointSize, `×${store.now.pointSize.toFixed(1)}`);
     onTop.set(store.now.paintOnTop);
     palette.set(store.now.safePalette);
+    eyeDome.set(store.now.eyeDome);
   });
-  return section("View", true, lists, scale.element, size.element, onTop.element, palette.element);
+  return section("View", true, lists, scale.element, size.element, onTop.element, eyeDome.element, palette.element);
 }
 
 /** A box that is in use: all of the cloud at first. */

@@ -80,7 +80,7 @@ export class Stage {
     const old = this.look;
     this.look = look;
     this.painter.setAppearance(look);
-    const same = (["paintOnTop", "hidden", "clip", "pointSize", "background"] as const).every(
+    const same = (["paintOnTop", "hidden", "clip", "pointSize", "background", "eyeDome"] as const).every(
       (key) => old?.[key] === look[key],
     );
     if (same && old.mode !== "labels" && look.mode !== "labels") this.recolour();
@@ -90,6 +90,11 @@ export class Stage {
   setLines(lines: Line[], look: LineLook, spacing: number): void {
     this.painter.lines.setLines(lines, look, spacing);
     this.redraw();
+  }
+
+  /** Is every pixel the processor's work here? */
+  get isSoftware(): boolean {
+    return this.painter.isSoftware;
   }
 
   private resize(): void {

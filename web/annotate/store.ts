@@ -41,6 +41,7 @@ export interface State {
   paintOnTop: boolean;
   safePalette: boolean;
   pointSize: number;
+  eyeDome: boolean;
   counts: Vec3;
   undo: number;
   redo: number;
@@ -52,6 +53,8 @@ export interface State {
   predicted: number[] | null;
   uncertain: Uncertain | null;
   predictionVersion: number;
+  /** Strokes that the prediction does not know yet. */
+  outOfDate: boolean;
   lines: Lines;
   /** The number of the line that is looked at. */
   line: number | null;
@@ -79,6 +82,7 @@ export const initialState: State = {
   paintOnTop: true,
   safePalette: false,
   pointSize: 1.7,
+  eyeDome: false,
   counts: [0, 0, 0],
   undo: 0,
   redo: 0,
@@ -89,6 +93,7 @@ export const initialState: State = {
   predicted: null,
   uncertain: null,
   predictionVersion: 0,
+  outOfDate: false,
   lines: { version: 0, prediction_version: 0, searching: false, lines: [] },
   line: null,
   showLines: true,

@@ -1,4 +1,6 @@
 #include <fmt/format.h>
+#include <unistd.h>
+
 #include <chrono>
 #include <cstdio>
 #include <fstream>
@@ -71,6 +73,12 @@ annotate::SessionOptions session_options(const AnnotateArguments& arguments, con
                 fmt::format("{}: {}", arguments.input,
                             fs::is_directory(input, ignored) ? "is a folder; give one point file"
                                                              : "no such file"));
+  }
+  if (arguments.project.empty() && ::access(input.parent_path().c_str(), W_OK) != 0) {
+    throw Error(
+        ErrorKind::kFailure,
+        fmt::format("{}: the folder cannot be written; --project FILE keeps the strokes elsewhere",
+                    input.parent_path().string()));
   }
   check_writable(arguments.project, Overwrite::kYes);
   annotate::SessionOptions options;

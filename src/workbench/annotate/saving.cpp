@@ -32,9 +32,13 @@ bool is_drawing(const fs::path& name) {
   });
 }
 
-const char* ending_of(Saved what) {
+/// What comes after the input's stem. A LAS cloud stays one, as other programs of its user want it.
+std::string ending_of(Saved what, const fs::path& input) {
   if (what == Saved::kModel) return ".safetensors";
-  return what == Saved::kLines ? "_lines.dxf" : "_annotated.ply";
+  if (what == Saved::kLines) return "_lines.dxf";
+  const formats::Format* format = formats::find_format(input);
+  const bool stays = format && format->name == "LAS" && format->is_written();
+  return "_annotated" + (stays ? input.extension().string() : ".ply");
 }
 
 bool fits(Saved what, const fs::path& name) {
@@ -62,7 +66,7 @@ fs::path saving_path(Saved what, const std::string& name, const fs::path& input,
   fs::path path = input.parent_path() / name;
   if (name.empty()) {
     if (what == Saved::kProject) return project;
-    path /= input.stem().string() + ending_of(what);
+    path /= input.stem().string() + ending_of(what, input);
   }
   for (const fs::path& kept : {input, journal_of(project), project}) {
     std::error_code error;
