@@ -197,6 +197,30 @@ TEST(Train, ContinuesFromAModel) {
   EXPECT_THROW(train({}, {}, options), Error);
 }
 
+TEST(Train, HoldsNothingOutWhenAskedTo) {
+  const Labelled data = rising_features(600, 3);
+  const TrainOptions options = {.epochs = 2, .least_per_epoch = 1, .held_out = 0};
+  const TrainResult result = train(kSmall, data.set(), options);
+  EXPECT_EQ(result.best_epoch, 2);
+  for (const EpochReport& report : result.history) EXPECT_TRUE(report.validation_confusion.empty());
+}
+
+TEST(Train, LearnsAClassFromTargetsAlone) {
+  // No sample is labelled 2, but what should be of it is probably so.
+  Labelled data = rising_features(2000, 3);
+  const std::vector<std::uint8_t> truth = data.labels;
+  std::vector<float> targets;
+  for (std::uint8_t& label : data.labels) {
+    for (const std::uint8_t c : {0, 1, 2}) targets.push_back(c == label ? 0.8f : 0.1f);
+    if (label == 2) label = 0;
+  }
+  const TrainOptions options = {.epochs = 20, .balance = 0, .held_out = 0};
+  const Model model =
+      train(kSmall, {.samples = data.samples, .labels = data.labels, .targets = targets}, options)
+          .best;
+  EXPECT_GT(share_right(model, {data.samples, truth}), 0.95);
+}
+
 TEST(Train, NamesAClassWithoutSamples) {
   Labelled data = rising_features(200, 1);
   for (std::uint8_t& label : data.labels) label = label == 2 ? kIgnoredLabel : label;
