@@ -179,6 +179,20 @@ test("judges by whole strokes once there are two of two classes", async () => {
   await page.getByText(/Right on held-out strokes: [\d.]+ %; model scan: [\d.]+ %\./).waitFor();
 });
 
+test("accepts what is predicted at an uncertain place", async () => {
+  await page.keyboard.press("n");
+  await page.waitForFunction(() => annotator.store.now.uncertain?.rank === 1);
+  await page.getByText(/Place 1 of \d+: [a-z -]+, confidence [\d.]+ %/).waitFor();
+  const before = await page.evaluate(() => {
+    const { counts, uncertain } = annotator.store.now;
+    return { painted: counts[0] + counts[1] + counts[2], of: uncertain.prediction, counts };
+  });
+  await page.getByRole("button", { name: "It is right" }).click();
+  await page.waitForFunction((was) => annotator.store.now.counts[was.of] > was.counts[was.of], before);
+  await page.keyboard.press("Control+z");
+  await page.waitForFunction((n) => annotator.store.now.counts.reduce((a, b) => a + b) === n, before.painted);
+});
+
 test("takes back what the program never got, and says so", async () => {
   await settled();
   const labels = () =>

@@ -393,6 +393,10 @@ test("goes to an uncertain place", async () => {
   await page.waitForFunction(() => annotator.store.now.uncertain?.rank === 1);
   await page.keyboard.press("n");
   await page.waitForFunction(() => annotator.store.now.uncertain?.rank === 2);
+  await page.keyboard.press("Shift+N");
+  await page.waitForFunction(() => annotator.store.now.uncertain?.rank === 1);
+  await page.keyboard.press("Shift+N");
+  await page.waitForFunction(() => annotator.store.now.uncertain?.rank === annotator.store.now.uncertain.of);
 });
 
 test("saves beside the input and says where", async () => {

@@ -242,10 +242,10 @@ export class Client {
     this.attempt(this.api.post(`/api/window/${this.api.window}/take`).then(() => this.store.set({ writer: true })));
   }
 
-  /** The next place where the network is unsure, round to the first after the last. */
-  async nextUncertain(): Promise<Uncertain | null> {
+  /** The next place where the network is unsure, or the one before, round and round. */
+  async stepUncertain(by: 1 | -1): Promise<Uncertain | null> {
     const last = this.store.now.uncertain;
-    const after = last && last.rank < last.of ? last.rank : 0;
+    const after = last ? (last.rank - 1 + by + last.of) % last.of : 0;
     try {
       const place = await this.api.get<Uncertain>(`/api/uncertain?after=${after}`);
       this.store.set({ uncertain: place });

@@ -27,7 +27,8 @@ export interface Hands {
   pointer: Pointer;
   reviewer: Reviewer;
   toggleClip(): void;
-  nextUncertain(): void;
+  stepUncertain(by: 1 | -1): void;
+  acceptUncertain(): void;
   save(): void;
   screenshot(): void;
   help(): void;
@@ -166,7 +167,9 @@ export function commandsOf(hands: Hands): Command[] {
     ...classCommands(hands),
     ...viewCommands(hands),
     ...colourCommands(hands),
-    command(["N"], "next uncertain place", "Training", hands.nextUncertain),
+    command(["N"], "next uncertain place", "Training", () => hands.stepUncertain(1)),
+    command(["Shift+N"], "previous uncertain place", "Training", () => hands.stepUncertain(-1)),
+    command(["Y"], "the prediction at the uncertain place is right", "Training", hands.acceptUncertain),
     command(["T"], "train now", "Training", () => client.train()),
     command(["Escape"], "cancel the outline, the training or the search for lines", "Training", () => {
       if (outline.isOpen) outline.cancel();

@@ -20,7 +20,9 @@ import {
 
 /** Pixels to the neighbours that are looked at, and how dark a step of depth makes. */
 const REACH = 1.4;
-const STRENGTH = 0.35;
+const STRENGTH = 100;
+/** No step counts for more: gaps between points are no cliffs. */
+const MOST = 0.02;
 
 const VERTEX = `
 varying vec2 at;
@@ -54,9 +56,9 @@ void main() {
   for (int i = 0; i < 8; ++i) {
     float angle = 0.7853981634 * float(i);
     float other = texture2D(depths, at + pixel * vec2(cos(angle), sin(angle))).r;
-    sum += max(0.0, own - away(min(other, 0.999999)));
+    sum += clamp(own - away(min(other, 0.999999)), 0.0, ${MOST});
   }
-  gl_FragColor = vec4(texture2D(picture, at).rgb * exp(-300.0 * ${STRENGTH} * sum / 8.0), 1.0);
+  gl_FragColor = vec4(texture2D(picture, at).rgb * exp(-${STRENGTH.toFixed(1)} * sum / 8.0), 1.0);
 }`;
 
 /** Gathers what is drawn and shows it with the lighting. */

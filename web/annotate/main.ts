@@ -8,7 +8,6 @@ import { curtain, header, hint, legend, presser, toolbar } from "./chrome";
 import { Client, refusalOf, type Saved } from "./client";
 import { appearanceOf, lineLookOf, paintColour, valuesQuery } from "./colouring";
 import { bindKeys, commandsOf } from "./commands";
-import { boxDiagonal } from "./geometry";
 import { Outline } from "./outline";
 import { Overlay } from "./overlay";
 import { classesPanel } from "./panel_classes";
@@ -22,6 +21,9 @@ import { activeClip, initialState, Store, type State } from "./store";
 import { ask, helpDialog, Notices } from "./words";
 
 const css = (name: string): string => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+
+/** How near the view goes to an uncertain place. */
+const VISIT_SPACINGS = 100;
 
 function open(page: HTMLElement): void {
   const store = new Store<State>(initialState);
@@ -66,16 +68,30 @@ function open(page: HTMLElement): void {
     h("a", { href: address, download: `${store.now.session?.name ?? "cloud"}.png` }).click();
     window.setTimeout(() => URL.revokeObjectURL(address), 10_000);
   };
-  const nextUncertain = async (): Promise<void> => {
-    const place = await client.nextUncertain();
+  const stepUncertain = async (by: 1 | -1): Promise<void> => {
+    const place = await client.stepUncertain(by);
     const { session } = store.now;
     if (!place || !session) return;
-    stage.camera.visit(
-      place.position,
-      place.normal,
-      Math.max(session.spacing * 150, boxDiagonal(session.bounds) * 0.05),
-    );
+    stage.camera.visit(place.position, place.normal, session.spacing * VISIT_SPACINGS);
     overlay.setMark(place.position);
+  };
+  /** Paints the place with its own prediction and goes on. */
+  const acceptUncertain = (): void => {
+    const { uncertain, session } = store.now;
+    const refusal = refusalOf(store.now);
+    if (refusal) return notices.warn(refusal);
+    if (!uncertain || !session) return;
+    client.paint({
+      id: crypto.randomUUID(),
+      tool: "brush",
+      class: uncertain.prediction,
+      centres: [uncertain.position],
+      radius: session.spacing * 0.5,
+      protect: false,
+      hidden: [],
+      clip: null,
+    });
+    void stepUncertain(1);
   };
   const commands = commandsOf({
     store,
@@ -86,7 +102,8 @@ function open(page: HTMLElement): void {
     pointer,
     reviewer,
     toggleClip: () => store.set({ clip: toggledClip(store.now) }),
-    nextUncertain: () => void nextUncertain(),
+    stepUncertain: (by) => void stepUncertain(by),
+    acceptUncertain,
     save: () => void save("project"),
     screenshot: () => void screenshot(),
     help: () => help.showModal(),
@@ -107,7 +124,7 @@ function open(page: HTMLElement): void {
       classesPanel(store, brush),
       viewPanel(store),
       trainingPanel(store, client),
-      uncertainPanel(store, () => void nextUncertain()),
+      uncertainPanel(store, (by) => void stepUncertain(by), acceptUncertain),
       linesPanel(store, client, reviewer),
       clipPanel(store, () => store.now.session && boxAround(stage.camera.target, store.now.session.bounds)),
       runsPanel(store, client),

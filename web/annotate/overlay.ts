@@ -20,13 +20,16 @@ const EDGES = [
   [3, 7],
 ];
 
+/** The corners of a square, so that it is no brush. */
+const MARK = "M-18 -10v-8h8M10 -18h8v8M18 10v8h-8M-10 18h-8v-8";
+
 export class Overlay {
   private readonly ring = svg("circle", { class: "ring" });
   private readonly core = svg("circle", { class: "core", r: 1.5 });
   private readonly outline = svg("path", { class: "outline" });
   private readonly box = svg("path", { class: "box" });
   private readonly cross = svg("path", { class: "cross" });
-  private readonly mark = svg("circle", { class: "mark", r: 16 });
+  private readonly mark = svg("path", { class: "mark", d: MARK });
   readonly element = svg(
     "svg",
     { class: "overlay", "aria-hidden": "true" },
@@ -97,8 +100,7 @@ export class Overlay {
     const at = this.place && this.toScreen(this.place);
     this.show(this.mark, !!at);
     if (at) {
-      this.mark.setAttribute("cx", String(at.x));
-      this.mark.setAttribute("cy", String(at.y));
+      this.mark.setAttribute("transform", `translate(${at.x} ${at.y})`);
     }
     const [x, y] = [this.stage.width / 2, this.stage.height / 2];
     this.cross.setAttribute("d", `M${x - 12} ${y}h8m8 0h8M${x} ${y - 12}v8m0 8v8`);

@@ -3,6 +3,7 @@
 import { h } from "../shared/dom";
 import { linePlot } from "../shared/lines";
 import type { Client } from "./client";
+import { paletteOf } from "./colouring";
 import { count, percent, seconds } from "./format";
 import { button, buttons, checkbox, list, section } from "./panel";
 import type { AppStore } from "./store";
@@ -110,17 +111,21 @@ export function trainingPanel(store: AppStore, client: Client): HTMLElement {
   );
 }
 
-export function uncertainPanel(store: AppStore, next: () => void): HTMLElement {
+export function uncertainPanel(store: AppStore, step: (by: 1 | -1) => void, accept: () => void): HTMLElement {
+  const right = button("It is right", accept, "Y");
   const words = h("p", { class: "summary", role: "status" });
   store.watch(["uncertain", "runs"], () => {
     const { uncertain: place, runs } = store.now;
     words.textContent = place
-      ? `Place ${count(place.rank)} of ${count(place.of)}, confidence ${percent(place.confidence)}. Paint its true class.`
+      ? `Place ${count(place.rank)} of ${count(place.of)}: ${paletteOf(store.now)[place.prediction].name}, ` +
+        `confidence ${percent(place.confidence)}. Paint its true class, or say that it is right.`
       : runs.length > 0
         ? "Places of lowest confidence first."
         : "Available once there is a prediction.";
+    right.disabled = !place;
   });
-  return section("Uncertain places", true, words, h("div", { class: "buttons" }, button("Next place", next, "N")));
+  const steps = [button("Previous", () => step(-1), "⇧N"), button("Next", () => step(1), "N")];
+  return section("Uncertain places", true, words, h("div", { class: "buttons" }, ...steps, right));
 }
 
 function runRow(run: Run, client: Client): HTMLElement {

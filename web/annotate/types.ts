@@ -99,6 +99,8 @@ export interface Uncertain {
   position: Vec3;
   normal: Vec3;
   confidence: number;
+  /** Class. */
+  prediction: number;
   of: number;
 }
 

@@ -293,6 +293,7 @@ std::string to_json(const UncertainPlace& place) {
                   {"position", json_of(place.position)},
                   {"normal", json_of(place.normal)},
                   {"confidence", place.confidence},
+                  {"prediction", place.prediction},
                   {"of", place.of}});
 }
 

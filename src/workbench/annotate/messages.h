@@ -51,6 +51,7 @@ struct UncertainPlace {
   std::size_t rank = 0, of = 0;  ///< from 1
   Vec3 position = Vec3::Zero(), normal = Vec3::Zero();
   float confidence = 0;
+  std::uint8_t prediction = kUnlabelled;
 };
 
 /// A point of the cloud and what is known of it.

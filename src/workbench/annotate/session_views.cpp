@@ -110,7 +110,8 @@ UncertainPlace Session::uncertain(std::size_t after) const {
           .of = places.size(),
           .position = scene.cloud.positions[point] - scene.origin,
           .normal = scene.prepared.normals[point],
-          .confidence = prediction->confidence[point]};
+          .confidence = prediction->confidence[point],
+          .prediction = prediction->result.classes[point]};
 }
 
 PointView Session::pick(const Vec3& local_origin, const Vec3& direction, double radius) const {
