@@ -90,8 +90,11 @@ TEST_F(Adapting, FollowsThePaintWhereItContradicts) {
     paint({-1, 1, z}, 0.25, none, labels);
   }
   const Adapted adapted = adapt("a", start_, subject(), labels, 1);
-  EXPECT_GT(share(labels, kNonEdge, adapted.found.classes, kNonEdge), 0.9);
-  EXPECT_LT(share(labels, kNonEdge, before, kNonEdge), 0.7);
+  // The painted balls hold flat surface too, which both know.
+  const double wrong_before = 1 - share(labels, kNonEdge, before, kNonEdge);
+  const double wrong = 1 - share(labels, kNonEdge, adapted.found.classes, kNonEdge);
+  EXPECT_GT(wrong_before, 0.3);
+  EXPECT_LT(wrong, wrong_before / 2);
 }
 
 TEST_F(Adapting, IsTheSameForAnyNumberingOfThePoints) {
