@@ -233,6 +233,9 @@ TEST(TrueCurves, RotateWithTheirCentres) {
   EXPECT_NEAR(lines::angle_of(turned), lines::angle_of(arc), 1e-12);
 }
 
+/// The first kind with faces above others.
+constexpr int kFacesAbove = 11;
+
 TEST(Roofs, HaveCreasesAndAnOutline) {
   for (int kind = 0; kind < kRoofKinds; ++kind) {
     Random random(1, static_cast<std::uint64_t>(kind));
@@ -246,9 +249,9 @@ TEST(Roofs, HaveCreasesAndAnOutline) {
       EXPECT_GT(normal.z(), 0.1) << roof_kind_name(kind);
       for (std::size_t i = 0; i < face.size(); ++i) {
         EXPECT_LT(std::abs(normal.dot(corner(i) - corner(0))), 1e-12) << roof_kind_name(kind);
-        // Convex.
+        // Convex, or straight where a corner of another face is.
         EXPECT_GT((corner(i + 1) - corner(i)).cross(corner(i + 2) - corner(i + 1)).dot(normal),
-                  0.0);
+                  -1e-9);
       }
     }
     const std::vector<Curve> curves = lines_of(roof);
@@ -257,11 +260,30 @@ TEST(Roofs, HaveCreasesAndAnOutline) {
       creases += curve.edge_class == kSharpEdge;
       outline += curve.edge_class == kBoundary;
     }
+    EXPECT_GE(outline, 4u);
     // Euler's formula for a surface with one outline.
+    if (kind >= kFacesAbove) continue;
     EXPECT_EQ(roof.corners.size() + roof.faces.size(), creases + outline + 1)
         << roof_kind_name(kind);
-    EXPECT_GE(outline, 4u);
   }
+}
+
+TEST(Roofs, ShowTheUpperFaceWhereTwoAreAboveEachOther) {
+  const auto counts = [](int kind) {
+    Random random(2, static_cast<std::uint64_t>(kind));
+    std::pair<std::size_t, std::size_t> count;  // creases, outline
+    for (const Curve& curve : lines_of(random_roof(kind, random))) {
+      ++(curve.edge_class == kSharpEdge ? count.first : count.second);
+    }
+    return count;
+  };
+  ASSERT_STREQ(roof_kind_name(kFacesAbove), "tee");
+  // Ridge, ridge of the wing, two valleys; without the eaves under the wing.
+  EXPECT_EQ(counts(kFacesAbove), std::pair(std::size_t{4}, std::size_t{11}));
+  ASSERT_STREQ(roof_kind_name(kFacesAbove + 1), "dormer");
+  EXPECT_EQ(counts(kFacesAbove + 1), std::pair(std::size_t{4}, std::size_t{10}));
+  ASSERT_STREQ(roof_kind_name(kFacesAbove + 2), "levels");
+  EXPECT_EQ(counts(kFacesAbove + 2), std::pair(std::size_t{0}, std::size_t{7}));
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "workbench/shapes/acquisition.h"
 #include "workbench/shapes/cad_parts.h"
@@ -101,15 +102,31 @@ GeneratedCloud generate_part(const LineRecipe& recipe, std::uint64_t seed) {
   return {recipe.name, std::move(cloud), rotated(std::move(curves), rotation)};
 }
 
+/// Straight rows over the roof, as of a scanner: points are moved across to the nearest one and
+/// keep their height, which is what an error of position in flight does to slopes.
+void move_to_rows(std::vector<Vec3>& positions, double spacing, Random& random) {
+  constexpr double kApart[] = {0.7, 1.3};  // in spacings
+  const double angle = random.index(2) ? 0.0 : random.uniform(0.0, std::numbers::pi);
+  const double apart = spacing * random.uniform(kApart[0], kApart[1]);
+  const Vec3 across(std::cos(angle), std::sin(angle), 0.0);
+  for (Vec3& position : positions) {
+    const double place = across.dot(position) / apart;
+    position += (std::round(place) - place) * apart * across;
+  }
+}
+
 /// As published roofs are: drawn with replacement, so that a third of the points are copies.
 GeneratedCloud generate_roof(const LineRecipe& recipe, std::uint64_t seed) {
   constexpr double kNoise = 0.005, kDrawnPerPoint = 1.3;
   Random random(seed, 95000 + 100 * static_cast<std::uint64_t>(recipe.family) + recipe.part);
   const Polyhedron roof = random_roof(recipe.family, random);
   const auto drawn = static_cast<std::size_t>(kDrawnPerPoint * static_cast<double>(recipe.points));
-  SurfaceSamples samples = sample_surface(make_shape(roof), {.points = drawn}, random);
   const double spacing =
       std::sqrt(surface_area(make_shape(roof)) / static_cast<double>(recipe.points));
+  const SampleOptions options{
+      .points = drawn, .keep = [&](const Vec3& place) { return is_seen(roof, place) ? 1.0 : 0.0; }};
+  SurfaceSamples samples = sample_surface(make_shape(roof), options, random);
+  if (recipe.kind == LineRecipe::Kind::kFlownRoof) move_to_rows(samples.positions, spacing, random);
   add_noise(samples.positions, kNoise, random);
   GeneratedCloud result = {recipe.name, {}, lines_of(roof)};
   PointCloud& cloud = result.cloud;
@@ -133,7 +150,7 @@ GeneratedCloud generate_roof(const LineRecipe& recipe, std::uint64_t seed) {
 }  // namespace
 
 std::vector<LineRecipe> line_recipes() {
-  constexpr std::uint64_t kParts = 2, kRoofs = 2;
+  constexpr std::uint64_t kParts = 2;
   using Kind = LineRecipe::Kind;
   std::vector<LineRecipe> recipes;
   for (const auto& [kind, suffix] : {std::pair(Kind::kClean, ""), std::pair(Kind::kNoisy, "_noisy"),
@@ -145,18 +162,19 @@ std::vector<LineRecipe> line_recipes() {
       }
     }
   }
-  for (std::uint64_t part = 0; part < kRoofs; ++part) {
-    for (int kind = 0; kind < kRoofKinds; ++kind) {
-      recipes.push_back(
-          {fmt::format("roof_{}_{}", roof_kind_name(kind), part), Kind::kRoof, kind, part, 1024});
+  for (const auto& [kind, part] : {std::pair(Kind::kRoof, 0), std::pair(Kind::kFlownRoof, 1)}) {
+    for (int family = 0; family < kRoofKinds; ++family) {
+      recipes.push_back({fmt::format("roof_{}_{}", roof_kind_name(family), part), kind, family,
+                         static_cast<std::uint64_t>(part), 1024});
     }
   }
   return recipes;
 }
 
 GeneratedCloud generate(const LineRecipe& recipe, std::uint64_t seed) {
-  return recipe.kind == LineRecipe::Kind::kRoof ? generate_roof(recipe, seed)
-                                                : generate_part(recipe, seed);
+  const bool roof =
+      recipe.kind == LineRecipe::Kind::kRoof || recipe.kind == LineRecipe::Kind::kFlownRoof;
+  return roof ? generate_roof(recipe, seed) : generate_part(recipe, seed);
 }
 
 }  // namespace pcednet::shapes
