@@ -15,6 +15,7 @@
 #include "pcednet/lines/finish.h"
 #include "pcednet/lines/ordered_points.h"
 #include "pcednet/lines/piece.h"
+#include "pcednet/lines/plane_edges.h"
 #include "pcednet/lines/refine.h"
 #include "pcednet/lines/split.h"
 #include "pcednet/lines/strings.h"
@@ -94,6 +95,13 @@ std::vector<Curve> find_lines(const EdgePoints& points, const LineOptions& optio
   check(points, options);
   const OrderedPoints cloud(points);
   const Sampling sampling = measure_sampling(cloud);
+  const Limits limits = limits_of(options, sampling);
+  if (options.boundaries) {
+    if (auto pieces = find_plane_edges(cloud, sampling, progress)) {
+      if (options.regularise) regularise(*pieces);
+      return finish(std::move(*pieces), {limits.min_length, limits.tolerance, 0.0, true});
+    }
+  }
   std::vector<Crease> creases = find_creases(cloud, sampling, progress);
   if (options.boundaries) {
     const std::vector<Crease> boundaries = find_boundaries(cloud, progress);
@@ -101,7 +109,6 @@ std::vector<Curve> find_lines(const EdgePoints& points, const LineOptions& optio
   }
   if (creases.empty()) return {};
 
-  const Limits limits = limits_of(options, sampling);
   creases = smoothed(creases, limits.smooth_within, progress);
   const std::vector<Chain> chains = trace(creases, limits.gap, sampling.noise, progress);
   std::vector<Piece> pieces = split_chains(chains, limits.tolerance, progress);

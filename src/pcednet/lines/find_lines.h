@@ -37,6 +37,9 @@ struct EdgePoints {
 /// 3. A chain is split into the few segments and arcs that explain it.
 /// 4. Curves are prolonged to the corners in which they meet.
 ///
+/// With boundaries, a roof is found as its planes instead: see find_plane_edges(). Gap, angle and
+/// tolerance are not used there.
+///
 /// The result is the same for any number of threads and any order of the points. Throws
 /// Error(kUsage) if an option is negative or not finite, or if the spans differ in length.
 std::vector<Curve> find_lines(const EdgePoints& points, const LineOptions& options = {},

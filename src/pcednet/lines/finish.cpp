@@ -16,6 +16,8 @@ namespace {
 constexpr double kLoose[] = {8.0, 24.0};     ///< length of a piece that no corner holds
 constexpr double kHeldOnce[] = {4.0, 12.0};  ///< and of one that ends free
 
+constexpr double kExactReach = 5.0, kExactTolerance = 0.6;  ///< of corners of exact pieces
+
 /// Edge points per spacing: shorter pieces with fewer are kept only if corners hold both ends.
 constexpr double kFewEdgePoints = 0.1, kLongAnyway = 15.0;
 
@@ -128,8 +130,12 @@ EdgeClass class_of(const Piece& piece, double noise) {
 }
 
 std::vector<Curve> finish(std::vector<Piece> pieces, const FinishOptions& options) {
-  Corners corners = find_corners(pieces, options.noise);
-  if (drop_loose(pieces, corners, options.noise)) corners = find_corners(pieces, options.noise);
+  const auto meet = [&] {
+    return options.exact ? find_corners(pieces, kExactReach, kExactTolerance)
+                         : find_corners(pieces, options.noise);
+  };
+  Corners corners = meet();
+  if (drop_loose(pieces, corners, options.noise)) corners = meet();
   std::vector<Curve> curves;
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     std::array<Vec3, 2> ends = pieces[i].ends;

@@ -8,9 +8,10 @@
 namespace pcednet::lines {
 
 struct FinishOptions {
-  double min_length;  ///< shorter curves are left out
-  double tolerance;   ///< in spacings
-  double noise;       ///< in spacings
+  double min_length;   ///< shorter curves are left out
+  double tolerance;    ///< in spacings
+  double noise;        ///< in spacings
+  bool exact = false;  ///< pieces are where planes of many points meet: corners are near their ends
 };
 
 /// The class of the edge that the piece is of: kSmoothEdge if the surfaces beside it bend into it

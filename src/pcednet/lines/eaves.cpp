@@ -1,0 +1,246 @@
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "pcednet/lines/outline.h"
+#include "pcednet/lines/plane_edges.h"
+#include "pcednet/lines/support_line.h"
+
+namespace pcednet::lines {
+namespace {
+
+// In spacings.
+constexpr double kDisc = 2.5;    ///< radius that rolls around a face
+constexpr double kByFold = 1.3;  ///< of outline points from a fold: it ends the face there
+constexpr double kLeastLength = 2.0;
+constexpr double kLongFold = 5.0;  ///< that gives its direction to outlines
+constexpr double kCoverAhead = 1.2, kCoverReach = 1.0, kCoverHeight = 0.7;
+
+constexpr double kAlongPlane = 0.05;  ///< sine of a direction to a plane that it is taken to be in
+constexpr double kTowards = 0.6;      ///< cosine between the ways out of a face and to a fold
+constexpr double kSameLine = 0.8;     ///< cosine of directions that are tried
+constexpr double kEmptyArea = 0.8;    ///< beyond the last points along a line, in squared spacings
+
+using Vec2 = Eigen::Vector2d;
+
+/// The plane of a face with coordinates.
+struct Chart {
+  Vec3 origin, x, y;
+
+  explicit Chart(const Face& face)
+      : origin(face.point), x(face.normal.unitOrthogonal()), y(face.normal.cross(x)) {}
+  Vec2 flat(const Vec3& place) const { return turned(place - origin); }
+  Vec2 turned(const Vec3& direction) const { return {x.dot(direction), y.dot(direction)}; }
+  Vec3 place(const Vec2& at) const { return origin + direction(at); }
+  Vec3 direction(const Vec2& to) const { return to.x() * x + to.y() * y; }
+};
+
+/// A straight part of the outline of a face.
+struct Eave {
+  std::uint32_t face;
+  std::vector<Vec2> points;
+  SupportLine line;
+
+  Vec2 along() const { return {-line.normal.y(), line.normal.x()}; }
+  double length() const { return (points.back() - points.front()).norm(); }
+};
+
+/// The points of each face.
+std::vector<std::vector<std::uint32_t>> points_of(const Faces& faces) {
+  std::vector<std::vector<std::uint32_t>> points(faces.faces.size());
+  for (std::uint32_t i = 0; i < faces.of_points.size(); ++i) {
+    if (faces.of_points[i] != kNoFace) points[faces.of_points[i]].push_back(i);
+  }
+  return points;
+}
+
+class Outlines {
+ public:
+  Outlines(const OrderedPoints& cloud, const Faces& faces, double spacing,
+           const std::vector<Fold>& folds, const spatial::KdTree& plan);
+
+  void add(std::uint32_t face, const std::vector<std::uint32_t>& points);
+  std::vector<Eave> found;
+
+ private:
+  bool is_at_fold(std::uint32_t face, const Vec3& place, const Vec3& outward) const;
+  bool is_foot(std::uint32_t face, const Vec3& place, const Vec3& outward) const;
+  void add_chain(std::uint32_t face, const std::vector<Vec2>& chain,
+                 const std::vector<bool>& taken);
+  void add_run(std::uint32_t face, const std::vector<Vec2>& run);
+
+  const OrderedPoints& cloud_;
+  const Faces& faces_;
+  double spacing_;
+  struct FoldSide {
+    const Piece* fold;
+    Vec3 inward;  ///< into the face
+  };
+  std::vector<std::vector<FoldSide>> folds_of_;  ///< of each face
+  const spatial::KdTree& plan_;
+};
+
+Outlines::Outlines(const OrderedPoints& cloud, const Faces& faces, double spacing,
+                   const std::vector<Fold>& folds, const spatial::KdTree& plan)
+    : cloud_(cloud), faces_(faces), spacing_(spacing), folds_of_(faces.faces.size()), plan_(plan) {
+  for (const Fold& fold : folds) {
+    folds_of_[fold.face].push_back({&fold.piece, fold.piece.middle().side_a});
+    folds_of_[fold.other].push_back({&fold.piece, fold.piece.middle().side_b});
+  }
+}
+
+/// Whether the face ends at a fold in this direction.
+bool Outlines::is_at_fold(std::uint32_t face, const Vec3& place, const Vec3& outward) const {
+  return std::any_of(folds_of_[face].begin(), folds_of_[face].end(), [&](const FoldSide& side) {
+    if (outward.dot(side.inward) > -kTowards) return false;
+    const Piece* fold = side.fold;
+    const Vec3 offset = place - fold->ends[0];
+    const Vec3 along = fold->ends[1] - fold->ends[0];
+    const double part = std::clamp(offset.dot(along) / along.squaredNorm(), 0.0, 1.0);
+    return (offset - part * along).norm() < kByFold * spacing_;
+  });
+}
+
+/// Whether another face begins above the place: it is at the foot of a step.
+bool Outlines::is_foot(std::uint32_t face, const Vec3& place, const Vec3& outward) const {
+  const Vec3 ahead = in_plan(outward);
+  if (ahead.norm() < 0.2) return false;  // a wall
+  std::vector<spatial::Neighbour> near;
+  plan_.within_unsorted(in_plan(place) + kCoverAhead * spacing_ * ahead.normalized(),
+                        kCoverReach * spacing_, near);
+  return std::any_of(near.begin(), near.end(), [&](const spatial::Neighbour& other) {
+    return faces_.of_points[other.index] != face &&
+           cloud_.position(other.index).z() > place.z() + kCoverHeight * spacing_;
+  });
+}
+
+/// The parts of a chain that are not taken. It is a loop; without taken points it begins at a
+/// corner: at its point farthest from the middle.
+void Outlines::add_chain(std::uint32_t face, const std::vector<Vec2>& chain,
+                         const std::vector<bool>& taken) {
+  const std::size_t count = chain.size();
+  Vec2 middle = Vec2::Zero();
+  for (const Vec2& at : chain) middle += at / static_cast<double>(count);
+  std::size_t start = 0;
+  double farthest = -1.0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double away =
+        taken[i] ? std::numeric_limits<double>::max() : (chain[i] - middle).squaredNorm();
+    if (away > farthest) farthest = away, start = i;
+  }
+  std::vector<Vec2> run;
+  for (std::size_t k = 0; k <= count; ++k) {
+    const std::size_t i = (start + k) % count;
+    if (!taken[i]) run.push_back(chain[i]);
+    if ((taken[i] || k == count) && !run.empty()) add_run(face, std::exchange(run, {}));
+  }
+}
+
+void Outlines::add_run(std::uint32_t face, const std::vector<Vec2>& run) {
+  for (SupportLine line : straight_parts(run, spacing_)) {
+    const auto begin = run.begin();
+    Eave eave{face,
+              {begin + static_cast<std::ptrdiff_t>(line.first),
+               begin + static_cast<std::ptrdiff_t>(line.last) + 1},
+              line};
+    eave.line.last -= eave.line.first;
+    eave.line.first = 0;
+    if (eave.length() > kLeastLength * spacing_) found.push_back(std::move(eave));
+  }
+}
+
+void Outlines::add(std::uint32_t face, const std::vector<std::uint32_t>& points) {
+  const Chart chart(faces_.faces[face]);
+  std::vector<Vec2> flat;
+  for (const std::uint32_t point : points) flat.push_back(chart.flat(cloud_.position(point)));
+  for (const auto& outline : outlines(flat, kDisc * spacing_)) {
+    std::vector<Vec2> chain;
+    std::vector<bool> taken;
+    for (const OutlinePoint& point : outline) {
+      const Vec3 place = chart.place(flat[point.index]);
+      chain.push_back(flat[point.index]);
+      const Vec3 outward = chart.direction(point.outward);
+      taken.push_back(is_at_fold(face, place, outward) || is_foot(face, place, outward));
+    }
+    add_chain(face, chain, taken);
+  }
+}
+
+/// The best line of a direction parallel or orthogonal to one of `directions`, if there is one.
+SupportLine aligned(const Eave& eave, const Face& face, const std::vector<Vec3>& directions,
+                    double spacing) {
+  const Chart chart(face);
+  std::optional<SupportLine> best;
+  double least = kSameLine;
+  for (const Vec3& direction : directions) {
+    for (const bool crosswise : {false, true}) {
+      if (!crosswise && std::abs(direction.dot(face.normal)) > kAlongPlane) continue;
+      const Vec3 own = crosswise ? Vec3(face.normal.cross(direction)) : direction;
+      if (own.norm() < 0.2) continue;
+      const Vec2 along = chart.turned(own).normalized();
+      const double cosine = along.dot(eave.along());
+      if (std::abs(cosine) < least) continue;
+      const Vec2 normal = std::copysign(1.0, cosine) * Vec2(along.y(), -along.x());
+      const auto line = turned(eave.line, normal, eave.points, spacing);
+      if (line) best = line, least = std::abs(cosine);
+    }
+  }
+  return best.value_or(eave.line);
+}
+
+/// Turns outlines in the directions of folds, and of longer outlines, where points allow it.
+void align(std::vector<Eave>& eaves, const Faces& faces, double spacing,
+           const std::vector<Fold>& folds) {
+  std::vector<Vec3> directions;
+  for (const Fold& fold : folds) {
+    if (length_of(fold.piece) > kLongFold * spacing) directions.push_back(fold.piece.fit.direction);
+  }
+  std::stable_sort(eaves.begin(), eaves.end(),
+                   [](const Eave& a, const Eave& b) { return a.length() > b.length(); });
+  for (Eave& eave : eaves) {
+    const Face& face = faces.faces[eave.face];
+    eave.line = aligned(eave, face, directions, spacing);
+    directions.push_back(Chart(face).direction(eave.along()));
+  }
+}
+
+Piece edge_of(const Eave& eave, const Faces& faces, double spacing) {
+  const Chart chart(faces.faces[eave.face]);
+  const double offset =
+      eave.line.offset + kEmptyArea * spacing * spacing / std::max(eave.length(), spacing);
+  const Vec3 along = chart.direction(eave.along());
+  const Vec3 inward = -chart.direction(eave.line.normal);
+  Piece piece;
+  for (const Vec2& point : eave.points) {
+    const Vec2 on = point + (offset - eave.line.normal.dot(point)) * eave.line.normal;
+    piece.nodes.push_back({.at = chart.place(on),
+                           .along = along,
+                           .side_a = inward,
+                           .side_b = inward,
+                           .spacing = spacing,
+                           .edge_points = 1.0,
+                           .probability = 1.0,
+                           .boundary = 1.0});
+  }
+  piece.fit = {CurveKind::kSegment, piece.nodes.front().at, along, 0.0, 0.0};
+  piece.ends = {piece.nodes.front().at, piece.nodes.back().at};
+  return piece;
+}
+
+}  // namespace
+
+std::vector<Piece> find_eaves(const OrderedPoints& cloud, const Faces& faces, double spacing,
+                              const std::vector<Fold>& folds, const spatial::KdTree& plan) {
+  Outlines outlines(cloud, faces, spacing, folds, plan);
+  const auto points = points_of(faces);
+  for (std::uint32_t face = 0; face < points.size(); ++face) outlines.add(face, points[face]);
+  align(outlines.found, faces, spacing, folds);
+  std::vector<Piece> edges;
+  for (const Eave& eave : outlines.found) edges.push_back(edge_of(eave, faces, spacing));
+  return edges;
+}
+
+}  // namespace pcednet::lines

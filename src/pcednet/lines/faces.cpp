@@ -1,0 +1,347 @@
+#include "pcednet/lines/faces.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <set>
+#include <utility>
+
+#include "pcednet/core/median.h"
+#include "pcednet/core/parallel.h"
+
+namespace pcednet::lines {
+namespace {
+
+constexpr std::size_t kOthers = 16, kLocal = 8;
+constexpr std::size_t kLeastSeed = 6, kLeastPoints = 10;
+constexpr std::size_t kMostFaces = 100;
+constexpr int kGrowths = 3, kChoices = 4;
+constexpr double kQuietShare =
+    0.7;  ///< quantile of what is called noise: slopes have more than levels
+constexpr double kReach[] = {0.1, 4.0};  ///< of a plane: spacings at least, times the noise
+constexpr double kOwnReach = 5.0;        ///< in the median distance of a face's points
+constexpr double kLeastWidth = 0.35;     ///< of a face, standard deviation in spacings
+constexpr double kNeighbourly = 0.5;     ///< price of a face that none of the others has
+constexpr double kFlat = 0.01;           ///< spacings: such faces are plane
+constexpr double kMostBend = 0.1;        ///< share of their heights that a parabola explains,
+constexpr double kByChance = 6.0;        ///< and more of few points, where chance does
+constexpr double kOnePlane = 1.25;       ///< residual of two faces as one, in theirs
+
+/// Sums over points, from which their plane follows.
+struct Sums {
+  Vec3 origin = Vec3::Zero();
+  double count = 0.0;
+  Vec3 first = Vec3::Zero();
+  Mat3 second = Mat3::Zero();
+
+  void add(const Vec3& place) {
+    const Vec3 offset = place - origin;
+    count += 1.0;
+    first += offset;
+    second += offset * offset.transpose();
+  }
+  void add(const Sums& other) {  // with the same origin
+    count += other.count;
+    first += other.first;
+    second += other.second;
+  }
+};
+
+struct Fitted {
+  Vec3 point, normal;
+  double residual, width;  ///< standard deviations across the plane, and along its shorter side
+};
+
+Fitted fit_plane(const Sums& sums) {
+  const Vec3 mean = sums.first / sums.count;
+  Eigen::SelfAdjointEigenSolver<Mat3> solver;
+  solver.computeDirect(sums.second / sums.count - mean * mean.transpose());
+  const auto deviation = [&](int i) { return std::sqrt(std::max(solver.eigenvalues()[i], 0.0)); };
+  return {sums.origin + mean, solver.eigenvectors().col(0).normalized(), deviation(0),
+          deviation(1)};
+}
+
+/// Neighbours, and how flat the nearest of them lie.
+std::vector<double> look_around(const OrderedPoints& cloud, Faces& result,
+                                const Progress* progress) {
+  result.others_of_each = cloud.available(kOthers);
+  result.others.resize(cloud.size() * result.others_of_each);
+  std::vector<std::uint32_t> points(cloud.size());
+  std::iota(points.begin(), points.end(), 0u);
+  std::vector<double> residuals(cloud.size());
+  Stage stage(progress, "faces", points.size());
+  cloud.for_each_neighbourhood(points, kOthers, stage,
+                               [&](std::size_t i, std::span<const spatial::Neighbour> others) {
+                                 Sums sums{.origin = cloud.position(i)};
+                                 sums.add(cloud.position(i));
+                                 for (std::size_t k = 0; k < others.size(); ++k) {
+                                   result.others[i * result.others_of_each + k] = others[k].index;
+                                   if (k < kLocal) sums.add(cloud.position(others[k].index));
+                                 }
+                                 residuals[i] = fit_plane(sums).residual;
+                               });
+  return residuals;
+}
+
+class Growing {
+ public:
+  Growing(const OrderedPoints& cloud, double spacing, Faces& result)
+      : cloud_(cloud), spacing_(spacing), result_(result), seen_(cloud.size(), 0) {}
+
+  void try_at(std::uint32_t seed);
+
+ private:
+  bool is_free(std::uint32_t i) const { return result_.of_points[i] == kNoFace; }
+  void spread(std::uint32_t seed, Fitted& plane);
+
+  const OrderedPoints& cloud_;
+  double spacing_;
+  Faces& result_;
+  std::vector<std::uint32_t> seen_;  ///< in which spread() a point was last seen
+  std::uint32_t spreads_ = 0;
+  std::vector<std::uint32_t> members_;
+};
+
+/// The free points that hang together with the seed within reach of the plane, which follows them.
+void Growing::spread(std::uint32_t seed, Fitted& plane) {
+  ++spreads_;
+  members_ = {seed};
+  seen_[seed] = spreads_;
+  Sums sums{.origin = cloud_.position(seed)};
+  sums.add(cloud_.position(seed));
+  double next_fit = 2.0 * kLeastSeed;
+  for (std::size_t k = 0; k < members_.size(); ++k) {
+    for (const std::uint32_t other : result_.near(members_[k])) {
+      if (seen_[other] == spreads_ || !is_free(other)) continue;
+      const Vec3& place = cloud_.position(other);
+      if (std::abs(plane.normal.dot(place - plane.point)) > result_.within) continue;
+      seen_[other] = spreads_;
+      members_.push_back(other);
+      sums.add(place);
+    }
+    if (sums.count >= next_fit) {
+      plane = fit_plane(sums);
+      next_fit = 1.5 * sums.count;
+    }
+  }
+  if (sums.count >= kLeastSeed) plane = fit_plane(sums);
+}
+
+void Growing::try_at(std::uint32_t seed) {
+  if (!is_free(seed)) return;
+  Sums sums{.origin = cloud_.position(seed)};
+  sums.add(cloud_.position(seed));
+  for (const std::uint32_t other : result_.near(seed)) {
+    if (is_free(other) && sums.count <= kLocal) sums.add(cloud_.position(other));
+  }
+  if (sums.count < kLeastSeed) return;
+  Fitted plane = fit_plane(sums);
+  if (plane.residual > 0.5 * result_.within || plane.width < 0.5 * kLeastWidth * spacing_) return;
+  for (int growth = 0; growth < kGrowths; ++growth) {
+    spread(seed, plane);
+    if (members_.size() < kLeastPoints) return;
+  }
+  if (plane.width < kLeastWidth * spacing_) return;
+  for (const std::uint32_t member : members_) {
+    result_.of_points[member] = static_cast<std::uint32_t>(result_.faces.size());
+  }
+  result_.faces.push_back({plane.point, plane.normal, members_.size()});
+}
+
+/// The face of least distance and most neighbours among those beside the point.
+std::uint32_t choice_of(const OrderedPoints& cloud, const Faces& faces, std::uint32_t point) {
+  std::uint32_t best = kNoFace;
+  double least = std::numeric_limits<double>::infinity();
+  const auto near = faces.near(point);
+  const auto consider = [&](std::uint32_t face) {
+    if (face == kNoFace) return;
+    const double part =
+        std::abs(faces.faces[face].height(cloud.position(point))) / faces.faces[face].within;
+    if (part > 1.0) return;
+    std::size_t same = 0;
+    for (const std::uint32_t other : near) same += faces.of_points[other] == face;
+    const double price = part * part + kNeighbourly * (1.0 - static_cast<double>(same) /
+                                                                 static_cast<double>(near.size()));
+    if (price < least || (price == least && face < best)) {
+      least = price;
+      best = face;
+    }
+  };
+  consider(faces.of_points[point]);
+  for (const std::uint32_t other : near) consider(faces.of_points[other]);
+  return best;
+}
+
+void choose(const OrderedPoints& cloud, Faces& faces) {
+  std::vector<std::uint32_t> chosen(cloud.size());
+  parallel_blocks(cloud.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      chosen[i] = choice_of(cloud, faces, static_cast<std::uint32_t>(i));
+    }
+  });
+  faces.of_points = std::move(chosen);
+}
+
+std::vector<Sums> sums_of(const OrderedPoints& cloud, const Faces& faces) {
+  std::vector<Sums> sums(faces.faces.size());
+  for (Sums& of_face : sums) of_face.origin = cloud.position(0);
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    if (faces.of_points[i] != kNoFace) sums[faces.of_points[i]].add(cloud.position(i));
+  }
+  return sums;
+}
+
+/// Planes of least squares; faces with too few points go.
+void refit(Faces& faces, const std::vector<Sums>& sums) {
+  std::vector<std::uint32_t> number(faces.faces.size(), kNoFace);
+  std::vector<Face> kept;
+  for (std::size_t f = 0; f < sums.size(); ++f) {
+    if (sums[f].count < kLeastPoints) continue;
+    number[f] = static_cast<std::uint32_t>(kept.size());
+    const Fitted plane = fit_plane(sums[f]);
+    kept.push_back({plane.point, plane.normal, static_cast<std::size_t>(sums[f].count)});
+  }
+  faces.faces = std::move(kept);
+  for (std::uint32_t& face : faces.of_points) face = face == kNoFace ? kNoFace : number[face];
+}
+
+/// Slopes may be noisier than levels: every face gets a reach of its own.
+void measure_noise(const OrderedPoints& cloud, Faces& faces, double least) {
+  std::vector<std::vector<double>> heights(faces.faces.size());
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const std::uint32_t f = faces.of_points[i];
+    if (f != kNoFace) heights[f].push_back(std::abs(faces.faces[f].height(cloud.position(i))));
+  }
+  for (std::size_t f = 0; f < heights.size(); ++f) {
+    const double typical = heights[f].empty() ? 0.0 : upper_median(std::move(heights[f]));
+    faces.faces[f].within = std::clamp(kOwnReach * typical, least, faces.within);
+  }
+}
+
+/// Pairs of faces with points beside each other.
+std::set<std::pair<std::uint32_t, std::uint32_t>> pairs_of(const Faces& faces) {
+  std::set<std::pair<std::uint32_t, std::uint32_t>> pairs;
+  for (std::size_t i = 0; i < faces.of_points.size(); ++i) {
+    const std::uint32_t own = faces.of_points[i];
+    if (own == kNoFace) continue;
+    for (const std::uint32_t other : faces.near(i)) {
+      const std::uint32_t face = faces.of_points[other];
+      if (face != kNoFace && face != own) pairs.insert(std::minmax(own, face));
+    }
+  }
+  return pairs;
+}
+
+/// Unites faces that one plane explains nearly as well.
+void unite(const OrderedPoints& cloud, Faces& faces) {
+  std::vector<Sums> sums = sums_of(cloud, faces);
+  std::vector<std::uint32_t> into(faces.faces.size());
+  std::iota(into.begin(), into.end(), 0u);
+  const auto root = [&](std::uint32_t face) {
+    while (into[face] != face) face = into[face];
+    return face;
+  };
+  const double floor = 0.1 * faces.within;
+  for (const auto& [one, other] : pairs_of(faces)) {
+    const std::uint32_t a = std::min(root(one), root(other)), b = std::max(root(one), root(other));
+    if (a == b) continue;
+    const double of_a = fit_plane(sums[a]).residual, of_b = fit_plane(sums[b]).residual;
+    Sums both = sums[a];
+    both.add(sums[b]);
+    const double apart =
+        std::sqrt((of_a * of_a * sums[a].count + of_b * of_b * sums[b].count) / both.count);
+    if (fit_plane(both).residual > kOnePlane * std::max(apart, floor)) continue;
+    sums[a] = both;
+    sums[b] = {};
+    into[b] = a;
+  }
+  for (std::uint32_t& face : faces.of_points) face = face == kNoFace ? kNoFace : root(face);
+  refit(faces, sums);
+}
+
+/// Heights of points over a plane, and the squares of their coordinates in it.
+struct Bend {
+  double count = 0.0, height = 0.0, sq_height = 0.0;
+  Vec3 squares = Vec3::Zero(), both = Vec3::Zero();
+  Mat3 products = Mat3::Zero();
+
+  void add(double x, double y, double h) {
+    const Vec3 square(x * x, x * y, y * y);
+    count += 1.0;
+    height += h;
+    sq_height += h * h;
+    squares += square;
+    both += h * square;
+    products += square * square.transpose();
+  }
+  double variance() const { return sq_height / count - (height / count) * (height / count); }
+  /// The share of the variance of heights that a parabola explains.
+  double explained() const {
+    const Vec3 mean = squares / count, with = both / count - height / count * mean;
+    const Mat3 covariance = products / count - mean * mean.transpose();
+    return with.dot(covariance.ldlt().solve(with)) / variance();
+  }
+};
+
+/// The points of faces, those that are parts of a curved surface left out.
+double plane_share(const OrderedPoints& cloud, const Faces& faces, double spacing) {
+  std::vector<Bend> bends(faces.faces.size());
+  std::vector<std::pair<Vec3, Vec3>> axes;
+  for (const Face& face : faces.faces) {
+    const Vec3 x = face.normal.unitOrthogonal();
+    axes.emplace_back(x, face.normal.cross(x));
+  }
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const std::uint32_t f = faces.of_points[i];
+    if (f == kNoFace) continue;
+    const auto near = faces.near(i).first(kLocal);
+    if (!std::all_of(near.begin(), near.end(),
+                     [&](std::uint32_t other) { return faces.of_points[other] == f; })) {
+      continue;  // it may be of the face beside
+    }
+    const Vec3 offset = (cloud.position(i) - faces.faces[f].point) / spacing;
+    bends[f].add(axes[f].first.dot(offset), axes[f].second.dot(offset),
+                 faces.faces[f].normal.dot(offset));
+  }
+  double plane = 0.0;
+  for (std::size_t f = 0; f < bends.size(); ++f) {
+    const Bend& bend = bends[f];
+    if (bend.count < static_cast<double>(kLocal)) continue;
+    const double chance = kByChance / bend.count;
+    if (bend.variance() < kFlat * kFlat || bend.explained() < kMostBend + chance) {
+      plane += static_cast<double>(faces.faces[f].count);
+    }
+  }
+  return plane / static_cast<double>(cloud.size());
+}
+
+}  // namespace
+
+Faces find_faces(const OrderedPoints& cloud, const Sampling& sampling, const Progress* progress) {
+  Faces faces;
+  faces.of_points.assign(cloud.size(), kNoFace);
+  if (cloud.size() <= kLocal) return faces;
+  const std::vector<double> residuals = look_around(cloud, faces, progress);
+  std::vector<std::uint32_t> seeds(cloud.size());
+  std::iota(seeds.begin(), seeds.end(), 0u);
+  std::stable_sort(seeds.begin(), seeds.end(),
+                   [&](std::uint32_t a, std::uint32_t b) { return residuals[a] < residuals[b]; });
+  const auto quiet = static_cast<std::size_t>(kQuietShare * static_cast<double>(seeds.size()));
+  faces.within = std::max(kReach[0] * sampling.spacing, kReach[1] * residuals[seeds[quiet]]);
+  Growing growing(cloud, sampling.spacing, faces);
+  for (const std::uint32_t seed : seeds) {
+    growing.try_at(seed);
+    if (faces.faces.size() > kMostFaces) return {};
+  }
+  for (int round = 0; round < kChoices; ++round) {
+    unite(cloud, faces);
+    measure_noise(cloud, faces, kReach[0] * sampling.spacing);
+    choose(cloud, faces);
+    refit(faces, sums_of(cloud, faces));
+  }
+  faces.share = plane_share(cloud, faces, sampling.spacing);
+  return faces;
+}
+
+}  // namespace pcednet::lines

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "pcednet/core/vec3.h"
+#include "pcednet/lines/crease.h"
+#include "pcednet/lines/ordered_points.h"
+
+namespace pcednet::lines {
+
+inline constexpr std::uint32_t kNoFace = std::numeric_limits<std::uint32_t>::max();
+
+/// A plane part of the surface.
+struct Face {
+  Vec3 point, normal;   ///< the sign of the normal is arbitrary
+  std::size_t count;    ///< of its points
+  double within = 0.0;  ///< largest distance of its points, by how far most of them are
+
+  double height(const Vec3& place) const { return normal.dot(place - point); }
+};
+
+/// A cloud as plane faces.
+struct Faces {
+  std::vector<Face> faces;
+  std::vector<std::uint32_t> of_points;  ///< of each point, or kNoFace
+  std::vector<std::uint32_t> others;     ///< the nearest others of each point, row after row
+  std::size_t others_of_each = 0;
+  double within = 0.0;  ///< largest distance of a point to any face
+  double share = 0.0;   ///< of the points that have a face, one that is no part of a curved surface
+
+  std::span<const std::uint32_t> near(std::size_t point) const {
+    return std::span(others).subspan(point * others_of_each, others_of_each);
+  }
+};
+
+/// Grows faces from the flattest points over their neighbours, lets every point choose among the
+/// faces beside it, and unites those that one plane explains. No faces at all, and a share of 0, if
+/// there are more than a hundred: a surface of that many parts is not plane.
+Faces find_faces(const OrderedPoints& cloud, const Sampling& sampling, const Progress* progress);
+
+}  // namespace pcednet::lines

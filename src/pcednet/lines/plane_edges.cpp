@@ -1,0 +1,56 @@
+#include "pcednet/lines/plane_edges.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace pcednet::lines {
+namespace {
+
+constexpr double kPlanePart = 0.9;
+constexpr std::size_t kMostPoints = 1 << 17;
+constexpr std::size_t kSamples = 4000;
+constexpr double kAboveOthers = 0.03;  ///< largest share of points above or below others
+
+// In spacings.
+constexpr double kBesideInPlan = 0.3, kAbove = 3.0;
+
+spatial::KdTree plan_of(const OrderedPoints& cloud) {
+  std::vector<Vec3> places;
+  for (std::size_t i = 0; i < cloud.size(); ++i) places.push_back(in_plan(cloud.position(i)));
+  return spatial::KdTree(places);
+}
+
+/// Whether few points have others straight above or below them.
+bool is_seen_from_above(const OrderedPoints& cloud, double spacing, const spatial::KdTree& plan) {
+  const std::size_t step = std::max<std::size_t>(1, cloud.size() / kSamples);
+  std::size_t seen = 0, above = 0;
+  std::vector<spatial::Neighbour> near;
+  for (std::size_t i = 0; i < cloud.size(); i += step) {
+    plan.within_unsorted(in_plan(cloud.position(i)), kBesideInPlan * spacing, near);
+    ++seen;
+    above += std::any_of(near.begin(), near.end(), [&](const spatial::Neighbour& other) {
+      return std::abs(cloud.position(other.index).z() - cloud.position(i).z()) > kAbove * spacing;
+    });
+  }
+  return static_cast<double>(above) <= kAboveOthers * static_cast<double>(seen);
+}
+
+}  // namespace
+
+std::optional<std::vector<Piece>> find_plane_edges(const OrderedPoints& cloud,
+                                                   const Sampling& sampling,
+                                                   const Progress* progress) {
+  const double spacing = sampling.spacing;
+  if (!(spacing > 0.0) || cloud.size() > kMostPoints) return std::nullopt;
+  const spatial::KdTree plan = plan_of(cloud);
+  if (!is_seen_from_above(cloud, spacing, plan)) return std::nullopt;
+  const Faces faces = find_faces(cloud, sampling, progress);
+  if (faces.share < kPlanePart) return std::nullopt;
+  std::vector<Fold> folds = find_folds(cloud, faces, spacing);
+  std::vector<Piece> pieces = find_eaves(cloud, faces, spacing, folds, plan);
+  for (Fold& fold : folds) pieces.push_back(std::move(fold.piece));
+  return pieces;
+}
+
+}  // namespace pcednet::lines

@@ -1,0 +1,138 @@
+#include "pcednet/lines/support_line.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace pcednet::lines {
+namespace {
+
+constexpr double kPrice = 10.0;
+constexpr double kMostEmpty = 7.0;       ///< more points that a turned line leaves empty
+constexpr double kBreakOff = 0.25;       ///< spacings from the chord at which a line may break
+constexpr std::size_t kMostBreaks = 64;  ///< that a line runs over
+
+using Points = std::span<const Eigen::Vector2d>;
+
+double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
+
+/// To the right of the direction.
+Eigen::Vector2d outward_of(const Eigen::Vector2d& along) {
+  return {along.y(), -along.x()};
+}
+
+/// The line without points beyond it that leaves the least area empty: the side of the convex hull
+/// in the middle of the points.
+SupportLine supported(Points outline, std::size_t first, std::size_t last) {
+  const Eigen::Vector2d along = (outline[last] - outline[first]).stableNormalized();
+  const Eigen::Vector2d outward = outward_of(along);
+  std::vector<Eigen::Vector2d> points;  // (along, outward)
+  for (std::size_t i = first; i <= last; ++i) {
+    const Eigen::Vector2d offset = outline[i] - outline[first];
+    points.emplace_back(offset.dot(along), offset.dot(outward));
+  }
+  std::sort(points.begin(), points.end(), [](const auto& a, const auto& b) {
+    return std::pair(a.x(), a.y()) < std::pair(b.x(), b.y());
+  });
+  const double middle = 0.5 * (points.front().x() + points.back().x());
+  std::vector<Eigen::Vector2d> hull;  // its outer side
+  for (const Eigen::Vector2d& point : points) {
+    while (hull.size() > 1 &&
+           cross(hull.back() - hull[hull.size() - 2], point - hull.back()) >= 0.0) {
+      hull.pop_back();
+    }
+    hull.push_back(point);
+  }
+  std::size_t i = 1;
+  while (i + 1 < hull.size() && hull[i].x() < middle) ++i;
+  SupportLine line{first, last, outward, hull.front().y()};
+  if (hull.size() > 1) {
+    const Eigen::Vector2d side = (hull[i] - hull[i - 1]).stableNormalized();
+    line.normal = (side.x() * outward - side.y() * along).stableNormalized();
+  }
+  line.offset = -std::numeric_limits<double>::infinity();
+  for (std::size_t k = first; k <= last; ++k) {
+    line.offset = std::max(line.offset, line.normal.dot(outline[k]));
+  }
+  return line;
+}
+
+/// Between the line and the outline, along which it is measured, so that sides count, too.
+double empty_area(const SupportLine& line, Points outline) {
+  double area = 0.0;
+  for (std::size_t i = line.first; i < line.last; ++i) {
+    const double depth = line.offset - 0.5 * line.normal.dot(outline[i] + outline[i + 1]);
+    area += depth * (outline[i + 1] - outline[i]).norm();
+  }
+  return area;
+}
+
+/// The points at which the outline turns (Douglas and Peucker), and its ends.
+std::vector<std::size_t> breaks_of(Points outline, double spacing) {
+  std::vector<std::pair<std::size_t, std::size_t>> open = {{0, outline.size() - 1}};
+  std::vector<std::size_t> breaks = {0};
+  while (!open.empty()) {
+    const auto [a, b] = open.back();
+    open.pop_back();
+    const Eigen::Vector2d along = (outline[b] - outline[a]).stableNormalized();
+    double farthest = kBreakOff * spacing;
+    std::size_t split = a;
+    for (std::size_t i = a + 1; i < b; ++i) {
+      const Eigen::Vector2d offset = outline[i] - outline[a];
+      const double away = along.isZero(0.0) ? offset.norm() : std::abs(cross(along, offset));
+      if (away > farthest) farthest = away, split = i;
+    }
+    if (split == a) {
+      breaks.push_back(b);
+    } else {
+      open.push_back({split, b});
+      open.push_back({a, split});
+    }
+  }
+  return breaks;
+}
+
+}  // namespace
+
+std::vector<SupportLine> straight_parts(Points outline, double spacing) {
+  if (outline.size() < 2) return {};
+  const std::vector<std::size_t> breaks = breaks_of(outline, spacing);
+  struct Best {
+    double cost = std::numeric_limits<double>::infinity();
+    std::size_t from = 0;
+    SupportLine line;
+  };
+  std::vector<Best> best(breaks.size());
+  best[0].cost = 0.0;
+  for (std::size_t to = 1; to < breaks.size(); ++to) {
+    for (std::size_t from = to > kMostBreaks ? to - kMostBreaks : 0; from < to; ++from) {
+      if (outline[breaks[from]] == outline[breaks[to]]) continue;  // all of a loop
+      const SupportLine line = supported(outline, breaks[from], breaks[to]);
+      const double empty = empty_area(line, outline) / (spacing * spacing);
+      const double cost = best[from].cost + kPrice + empty;
+      if (cost < best[to].cost) best[to] = {cost, from, line};
+    }
+  }
+  std::vector<SupportLine> lines;
+  for (std::size_t at = breaks.size() - 1; at > 0; at = best[at].from) {
+    lines.push_back(best[at].line);
+  }
+  std::reverse(lines.begin(), lines.end());
+  return lines;
+}
+
+std::optional<SupportLine> turned(const SupportLine& line, const Eigen::Vector2d& normal,
+                                  Points outline, double spacing) {
+  SupportLine other{line.first, line.last, normal, -std::numeric_limits<double>::infinity()};
+  for (std::size_t i = line.first; i <= line.last; ++i) {
+    other.offset = std::max(other.offset, normal.dot(outline[i]));
+  }
+  const double more = empty_area(other, outline) - empty_area(line, outline);
+  if (more > kMostEmpty * spacing * spacing) return std::nullopt;
+  return other;
+}
+
+}  // namespace pcednet::lines

@@ -1,0 +1,315 @@
+#include "pcednet/lines/plane_edges.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <numeric>
+#include <set>
+
+#include "pcednet/core/parallel.h"
+#include "pcednet/core/random.h"
+#include "pcednet/lines/find_lines.h"
+#include "pcednet/lines/outline.h"
+#include "pcednet/lines/support_line.h"
+
+namespace pcednet::lines {
+namespace {
+
+using Vec2 = Eigen::Vector2d;
+
+/// Points without labels, normals up.
+struct PlainCloud {
+  std::vector<Vec3> positions = {};
+  std::vector<Vec3> normals = {};
+  std::vector<std::uint8_t> classes = {};
+
+  void add(const Vec3& position) {
+    positions.push_back(position);
+    normals.push_back(Vec3::UnitZ());
+    classes.push_back(kNonEdge);
+  }
+  EdgePoints points() const { return {positions, normals, classes}; }
+};
+
+std::vector<Curve> roof_lines(const PlainCloud& cloud) {
+  return find_lines(cloud.points(), {.boundaries = true});
+}
+
+constexpr double kLength = 10.0, kWidth = 6.0;
+
+/// Points uniform in plan on a hip roof of this slope, with noise: z is the slope times the
+/// distance to the nearest eaves.
+PlainCloud hip_roof(std::size_t points, double slope, double noise) {
+  Random random(11);
+  PlainCloud cloud;
+  for (std::size_t i = 0; i < points; ++i) {
+    const double x = random.uniform(0.0, kLength), y = random.uniform(0.0, kWidth);
+    const double inside = std::min({x, kLength - x, y, kWidth - y});
+    cloud.add({x, y, slope * inside + noise * random.normal()});
+  }
+  return cloud;
+}
+
+std::vector<Vec3> hip_corners(double slope) {
+  const double half = 0.5 * kWidth, z = slope * half;
+  return {{0, 0, 0},      {kLength, 0, 0}, {kLength, kWidth, 0},
+          {0, kWidth, 0}, {half, half, z}, {kLength - half, half, z}};
+}
+
+/// Each place that ends of curves share, and how many do.
+std::map<std::vector<double>, int> corners_of(const std::vector<Curve>& curves) {
+  std::map<std::vector<double>, int> corners;
+  for (const Curve& curve : curves) {
+    for (const Vec3& end : {curve.points.front(), curve.points.back()}) {
+      ++corners[{end.x(), end.y(), end.z()}];
+    }
+  }
+  return corners;
+}
+
+TEST(PlaneEdges, DrawASparseHipRoofWithItsSixCorners) {
+  for (const double slope : {0.15, 0.5, 1.5}) {  // from 9 degrees
+    const auto curves = roof_lines(hip_roof(700, slope, 0.005));
+    ASSERT_EQ(curves.size(), 9u) << slope;
+    EXPECT_EQ(std::count_if(curves.begin(), curves.end(),
+                            [](const Curve& curve) { return curve.edge_class == kBoundary; }),
+              4);
+    const auto corners = corners_of(curves);
+    ASSERT_EQ(corners.size(), 6u) << slope;
+    for (const auto& [at, curves_there] : corners) {
+      EXPECT_EQ(curves_there, 3);
+      double nearest = std::numeric_limits<double>::infinity();
+      for (const Vec3& corner : hip_corners(slope)) {
+        nearest = std::min(nearest, (corner - Vec3(at[0], at[1], at[2])).norm());
+      }
+      EXPECT_LT(nearest, 0.15) << slope;  // half a spacing
+    }
+  }
+}
+
+TEST(PlaneEdges, KeepTheirDihedralAngle) {
+  const double slope = 0.5;
+  for (const Curve& curve : roof_lines(hip_roof(700, slope, 0.005))) {
+    if (curve.edge_class != kSharpEdge) continue;
+    const bool ridge = std::abs(curve.points[0].z() - curve.points[1].z()) < 0.1;
+    const double cosine = (ridge ? 1.0 - slope * slope : 1.0) / (1.0 + slope * slope);
+    EXPECT_NEAR(curve.dihedral_angle, std::acos(cosine), 0.02);
+  }
+}
+
+bool same_lines(const std::vector<Curve>& a, const std::vector<Curve>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const Curve& x, const Curve& y) {
+    return x.points == y.points && x.edge_class == y.edge_class && x.support == y.support &&
+           x.confidence == y.confidence && x.dihedral_angle == y.dihedral_angle;
+  });
+}
+
+TEST(PlaneEdges, AreTheSameForAnyThreadsAndOrderAndSignsOfNormals) {
+  const PlainCloud cloud = hip_roof(1500, 0.4, 0.01);
+  set_thread_count(1);
+  const auto expected = roof_lines(cloud);
+  set_thread_count(3);
+  EXPECT_TRUE(same_lines(roof_lines(cloud), expected));
+  Random random(5);
+  std::vector<std::size_t> order(cloud.positions.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  for (std::size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[random.index(i)]);
+  PlainCloud shuffled;
+  for (const std::size_t i : order) {
+    shuffled.add(cloud.positions[i]);
+    if (random.index(2) == 0) shuffled.normals.back() *= -1.0;
+  }
+  EXPECT_TRUE(same_lines(roof_lines(shuffled), expected));
+  set_thread_count(0);
+}
+
+TEST(PlaneEdges, FollowTheCloudToANationalGrid) {
+  const PlainCloud cloud = hip_roof(700, 0.5, 0.005);
+  const Vec3 grid(2600000.0, 1200000.0, 400.0);
+  PlainCloud moved;
+  for (const Vec3& position : cloud.positions) moved.add(position + grid);
+  const auto near = roof_lines(cloud), far = roof_lines(moved);
+  ASSERT_EQ(near.size(), far.size());
+  for (std::size_t i = 0; i < near.size(); ++i) {
+    EXPECT_LT((near[i].points[0] + grid - far[i].points[0]).norm(), 1e-6);
+    EXPECT_LT((near[i].points[1] + grid - far[i].points[1]).norm(), 1e-6);
+  }
+}
+
+TEST(PlaneEdges, AreForSurfacesSeenFromAbove) {
+  PlainCloud cloud = hip_roof(700, 0.5, 0.005);
+  const auto found = [&] {
+    const OrderedPoints points(cloud.points());
+    return find_plane_edges(points, measure_sampling(points), nullptr).has_value();
+  };
+  EXPECT_TRUE(found());
+  for (std::size_t i = 0; i < 700; ++i) {  // a floor
+    cloud.add({cloud.positions[i].y() / kWidth * kLength, cloud.positions[i].x() / kLength * kWidth,
+               -5.0});
+  }
+  EXPECT_FALSE(found());
+}
+
+TEST(PlaneEdges, OfAStepAreTheUpperOnes) {
+  Random random(3);
+  PlainCloud cloud;
+  for (int i = 0; i < 900; ++i) {
+    const double x = random.uniform(0.0, 10.0);
+    cloud.add({x, random.uniform(0.0, 6.0), x < 5.0 ? 0.0 : 2.0});
+  }
+  std::size_t upper = 0;
+  for (const Curve& curve : roof_lines(cloud)) {
+    const Vec3 middle = 0.5 * (curve.points[0] + curve.points[1]);
+    if (std::abs(middle.x() - 5.0) > 1.0) continue;
+    EXPECT_NEAR(middle.z(), 2.0, 0.01);
+    ++upper;
+  }
+  EXPECT_EQ(upper, 1u);
+}
+
+/// The share of a cloud of plane faces, as found.
+double share_of(const PlainCloud& cloud) {
+  const OrderedPoints points(cloud.points());
+  return find_faces(points, measure_sampling(points), nullptr).share;
+}
+
+TEST(Faces, AreNotThePartsOfACurvedSurface) {
+  for (const std::size_t count : {1000u, 20000u}) {
+    Random random(4);
+    PlainCloud sphere;
+    for (std::size_t i = 0; i < count; ++i) {
+      sphere.add(Vec3(random.normal(), random.normal(), random.normal()).normalized());
+    }
+    EXPECT_LT(share_of(sphere), 0.2) << count;
+    PlainCloud cylinder;
+    for (std::size_t i = 0; i < count; ++i) {
+      const double angle = random.uniform(0.0, 2.0 * std::numbers::pi);
+      cylinder.add({std::cos(angle), std::sin(angle), random.uniform(0.0, 3.0)});
+    }
+    EXPECT_LT(share_of(cylinder), 0.5) << count;
+    EXPECT_GT(share_of(hip_roof(count, 0.4, 0.01)), 0.98) << count;
+  }
+}
+
+TEST(Faces, AreNotThePartsOfHills) {
+  for (const std::size_t count : {700u, 2000u, 10000u}) {
+    for (const double noise : {0.0, 0.05, 0.2}) {  // spacings
+      Random random(count);
+      PlainCloud hills;
+      for (std::size_t i = 0; i < count; ++i) {
+        const double x = random.uniform(), y = random.uniform();
+        hills.add({x, y,
+                   0.06 * std::sin(6.0 * x) * std::cos(8.0 * y) +
+                       noise * random.normal() / std::sqrt(static_cast<double>(count))});
+      }
+      EXPECT_LT(share_of(hills), 0.9) << count << " points, noise " << noise;
+    }
+  }
+}
+
+TEST(Faces, HaveThePointsOfTheirPlanes) {
+  const PlainCloud cloud = hip_roof(1000, 0.4, 0.0);
+  const OrderedPoints points(cloud.points());
+  const Faces faces = find_faces(points, measure_sampling(points), nullptr);
+  ASSERT_EQ(faces.faces.size(), 4u);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    ASSERT_NE(faces.of_points[i], kNoFace);
+    EXPECT_LE(std::abs(faces.faces[faces.of_points[i]].height(points.position(i))), faces.within);
+  }
+}
+
+TEST(Faces, AreNoneOfTooFewPoints) {
+  for (const std::size_t count : {0u, 1u, 5u, 9u}) {
+    EXPECT_EQ(share_of(hip_roof(count, 0.4, 0.0)), 0.0);
+    EXPECT_TRUE(roof_lines(hip_roof(count, 0.4, 0.0)).empty());
+  }
+  PlainCloud row;
+  for (int i = 0; i < 100; ++i) row.add({0.1 * i, 0.0, 0.0});
+  EXPECT_EQ(share_of(row), 0.0);
+}
+
+std::vector<Vec2> points_in_rectangle(std::size_t count, double width, double height) {
+  Random random(7);
+  std::vector<Vec2> points;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double x = random.uniform(0.0, width);
+    points.emplace_back(x, random.uniform(0.0, height));
+  }
+  return points;
+}
+
+TEST(Outlines, AreTheEdgesOfTheAlphaShape) {
+  const double radius = 0.8;
+  const std::vector<Vec2> points = points_in_rectangle(150, 10.0, 6.0);
+  // By definition: a disc through both points, on the right of the way from a to b, holds none.
+  std::set<std::pair<std::size_t, std::size_t>> expected, found;
+  for (std::size_t a = 0; a < points.size(); ++a) {
+    for (std::size_t b = 0; b < points.size(); ++b) {
+      const Vec2 way = points[b] - points[a];
+      if (a == b || way.norm() >= 2.0 * radius) continue;
+      const Vec2 right = Vec2(way.y(), -way.x()).normalized();
+      const Vec2 centre = 0.5 * (points[a] + points[b]) +
+                          std::sqrt(radius * radius - 0.25 * way.squaredNorm()) * right;
+      bool empty = true;
+      for (std::size_t i = 0; i < points.size(); ++i) {
+        empty = empty && (i == a || i == b || (points[i] - centre).norm() > radius);
+      }
+      if (empty) expected.emplace(a, b);
+    }
+  }
+  for (const auto& chain : outlines(points, radius)) {
+    for (std::size_t i = 0; i < chain.size(); ++i) {
+      found.emplace(chain[i].index, chain[(i + 1) % chain.size()].index);
+      EXPECT_NEAR(chain[i].outward.norm(), 1.0, 1e-12);
+    }
+  }
+  EXPECT_GT(expected.size(), 30u);
+  EXPECT_EQ(found, expected);
+}
+
+TEST(Outlines, AreNoneOfLonelyPoints) {
+  EXPECT_TRUE(outlines({}, 1.0).empty());
+  EXPECT_TRUE(outlines(std::vector<Vec2>{{0, 0}}, 1.0).empty());
+  EXPECT_TRUE(outlines(std::vector<Vec2>{{0, 0}, {5, 0}}, 1.0).empty());
+}
+
+TEST(StraightParts, AreTheSidesOfARectangle) {
+  const std::vector<Vec2> points = points_in_rectangle(600, 10.0, 6.0);
+  const double spacing = std::sqrt(0.1);
+  std::vector<Vec2> outline;
+  for (const auto& chain : outlines(points, 2.5 * spacing)) {
+    if (chain.size() < 20) continue;
+    ASSERT_TRUE(outline.empty());
+    // From its point nearest to a corner, and back to it.
+    std::size_t start = 0;
+    for (std::size_t i = 0; i < chain.size(); ++i) {
+      if (points[chain[i].index].norm() < points[chain[start].index].norm()) start = i;
+    }
+    for (std::size_t k = 0; k <= chain.size(); ++k) {
+      outline.push_back(points[chain[(start + k) % chain.size()].index]);
+    }
+  }
+  const auto lines = straight_parts(outline, spacing);
+  ASSERT_EQ(lines.size(), 4u);
+  const Vec2 normals[] = {{0, -1}, {1, 0}, {0, 1}, {-1, 0}};
+  const double offsets[] = {0.0, 10.0, 6.0, 0.0};
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_GT(lines[i].normal.dot(normals[i]), 0.995);
+    for (std::size_t k = lines[i].first; k <= lines[i].last; ++k) {
+      EXPECT_LE(lines[i].normal.dot(outline[k]), lines[i].offset);
+    }
+    const auto exact = turned(lines[i], normals[i], outline, spacing);
+    ASSERT_TRUE(exact);
+    EXPECT_NEAR(exact->offset, offsets[i], 0.3 * spacing);
+    EXPECT_LE(exact->offset, offsets[i]);
+    const Vec2 aside = (normals[i] + 0.2 * Vec2(-normals[i].y(), normals[i].x())).normalized();
+    EXPECT_FALSE(turned(lines[i], aside, outline, spacing));
+  }
+}
+
+}  // namespace
+}  // namespace pcednet::lines
