@@ -15,7 +15,7 @@ const folder = fs.mkdtempSync(path.join(os.tmpdir(), "pcednet-start-"));
 const input = path.join(folder, "roof.ply");
 let browser, page, server;
 
-/** Starts the program, without --model; its process and the address that it prints. */
+/** Starts the program; its process and the address that it prints. */
 function serve(...words) {
   return new Promise((done, fail) => {
     const program = spawn(process.env.PCEDNET, ["annotate", input, "--no-browser", ...words]);
@@ -74,7 +74,7 @@ async function paint(id, edgeClass, centre, radius = 0.05) {
 
 before(async () => {
   writeRoof(input, roof());
-  server = await serve();
+  server = await serve("--model", "scan");
   browser = await launch();
   page = await browser.newPage({ viewport: { width: 1280, height: 720 } });
   page.setDefaultTimeout(120_000);
@@ -88,7 +88,7 @@ after(async () => {
   fs.rmSync(folder, { recursive: true, force: true });
 });
 
-test("shows at once what the default model finds, boundary too", async () => {
+test("shows at once what the model finds, boundary too", async () => {
   await shown(0);
   await page.getByText("This is what model scan finds. Paint where it is wrong.").waitFor();
   await page.waitForFunction(() => annotator.stage.chunks.some((c) => c.prediction.includes(3)));

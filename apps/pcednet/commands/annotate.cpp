@@ -146,7 +146,7 @@ void add_annotate(CLI::App& app, Common& common) {
       app, common, "annotate", "Paint edges in the browser, train on them, review their lines",
       "pcednet annotate scan.ply                       opens the browser\n"
       "pcednet annotate scan.ply --no-browser --port 8080\n"
-      "pcednet annotate scan.ply --model general       corrects another model\n"
+      "pcednet annotate scan.ply --model scan          corrects another model\n"
       "pcednet annotate scan.ply --model none          starts from nothing\n"
       "pcednet train --project scan_annotation.json -o my.safetensors   the same model again");
   command->add_option("input", arguments->input, "Point file")->required();
