@@ -10,6 +10,7 @@
 
 #include "pcednet/core/median.h"
 #include "pcednet/lines/local_planes.h"
+#include "pcednet/lines/noisy_wedge.h"
 #include "pcednet/lines/ordered_points.h"
 
 namespace pcednet::lines {
@@ -22,6 +23,12 @@ constexpr double kLeastAngle = 20.0 * std::numbers::pi / 180.0;
 /// wide enough, sharp-edge may be a single row.
 constexpr std::size_t kWithSharp = 9, kWithSmooth = 3;
 constexpr double kMostNoise = 0.7;  ///< in spacings: more is no surface
+
+/// With more noise (in spacings) wedges are fitted to all points around, from this many down: the
+/// fewer, the less of other edges is among them.
+constexpr double kNoisy = 0.2;
+constexpr std::size_t kNoisyNeighbours[] = {80, 56, 40, 28};
+constexpr double kNoiseOfPlanes = 1.2;  ///< measured noise is too low: planes of few points bend
 
 /// Of points to be tried beside those of an edge class; the second is added per spacing of noise.
 constexpr double kLeastProbability[] = {0.1, 0.9};
@@ -84,6 +91,7 @@ namespace {
 struct Tolerances {
   double plane;  ///< from a plane to its points
   double first;  ///< from a crease to the nearest points of a side
+  double noise;
 };
 
 /// The wedge that two planes make at the edge point, which is the origin; all in spacings.
@@ -96,7 +104,7 @@ struct Wedge {
 /// none if they are on both sides, too few, or all far from it: beyond a chamfer or a fillet.
 std::optional<Vec3> side_of(const LocalPlane& plane, const Vec3& at, const Vec3& along,
                             const NearPoints& points, const Tolerances& within) {
-  const auto [tolerance, first] = within;
+  const double tolerance = within.plane, first = within.first;
   const Vec3 side = along.cross(plane.normal).normalized();
   double before = 0.0, after = 0.0, nearest = kSideReach;
   for (std::size_t i = 0; i < points.count; ++i) {
@@ -163,8 +171,19 @@ double bend_of(const Wedge& wedge, const NearPoints& points, double tolerance) {
   return 0.5 * (a + b);
 }
 
-/// The best wedge of all pairs of planes.
+std::optional<Wedge> noisy_wedge(const NearPoints& points, double noise) {
+  for (const std::size_t count : kNoisyNeighbours) {
+    const auto halves = fit_half_planes(points, count, kNoiseOfPlanes * noise);
+    if (halves) return Wedge{halves->at, halves->along, halves->side_a, halves->side_b, 0.0};
+  }
+  return std::nullopt;
+}
+
+/// In noise one of all points, otherwise the best wedge of all pairs of planes.
 std::optional<Wedge> best_wedge(const NearPoints& points, const Tolerances& within) {
+  if (within.noise > kNoisy) {
+    if (auto wedge = noisy_wedge(points, within.noise)) return wedge;
+  }
   std::vector<LocalPlane> planes;
   find_planes(points, within.plane, planes);
   std::optional<Wedge> best;
@@ -249,7 +268,8 @@ std::vector<Crease> find_creases(const OrderedPoints& cloud, const Sampling& sam
   const std::vector<std::uint32_t> points = points_near_edges(cloud, sampling.noise, progress);
   const auto others = static_cast<std::size_t>(39.0 + 80.0 * sampling.noise);
   const Tolerances within = {.plane = 0.3 + 1.1 * sampling.noise,
-                             .first = 2.0 + 2.0 * sampling.noise};
+                             .first = 2.0 + 2.0 * sampling.noise,
+                             .noise = sampling.noise};
   Stage stage(progress, "creases", points.size());
   return creases_at(cloud, points, others, stage,
                     [&](std::uint32_t point, std::span<const spatial::Neighbour> near) {
