@@ -36,8 +36,8 @@ NearPoints noisy_points(std::uint64_t seed, const Height& height) {
   return points;
 }
 
-TEST(NoisyWedge, FindsAnEdgeOfFortyDegreesInNoiseOfHalfASpacing) {
-  const double slope = std::tan(20.0 * std::numbers::pi / 180.0);
+TEST(NoisyWedge, FindsAnEdgeOfSixtyDegreesInNoiseOfHalfASpacing) {
+  const double slope = std::tan(30.0 * std::numbers::pi / 180.0);
   int found = 0;
   for (std::uint64_t seed = 0; seed < 50; ++seed) {
     const auto points = noisy_points(seed, [&](double u) { return -slope * std::abs(u); });
@@ -64,7 +64,7 @@ TEST(NoisyWedge, FindsNoneOnAPlane) {
   EXPECT_LE(found, 5);
 }
 
-TEST(NoisyWedge, FindsFewerOnACylinder) {
+TEST(NoisyWedge, FindsFewOnACylinder) {
   constexpr double kRadius = 8.0;
   int found = 0;
   for (std::uint64_t seed = 0; seed < 50; ++seed) {
@@ -72,7 +72,7 @@ TEST(NoisyWedge, FindsFewerOnACylinder) {
         noisy_points(seed, [](double u) { return std::sqrt(kRadius * kRadius - u * u) - kRadius; });
     found += fit_half_planes(points, kPoints, kNoise).has_value();
   }
-  EXPECT_LE(found, 25);
+  EXPECT_LE(found, 15);
 }
 
 TEST(NoisyWedge, NeedsPoints) {

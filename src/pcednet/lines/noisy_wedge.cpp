@@ -18,6 +18,7 @@ constexpr int kDirections = 10;
 constexpr std::size_t kCuts = 9;  ///< of each direction
 constexpr int kImprovements = 4;
 constexpr double kMostOutliers = 0.12;   ///< share of the points
+constexpr double kPrice = 4.0;           ///< in squared standard deviations: of the choice of a cut
 constexpr double kMostMeanSquare = 1.7;  ///< of the distances, in squared standard deviations
 
 // In spacings.
@@ -264,7 +265,7 @@ bool explain(const HalfPlanes& halves, const NearPoints& points, std::size_t cou
   const double all = static_cast<double>(count);
   return std::min(on_a, on_b) >= kFewestOfSide && all - on_a - on_b <= kMostOutliers * all &&
          error <= kMostMeanSquare * sq_noise * all &&
-         error <= error_of_quadric(points, count, frame, noise);
+         error + kPrice * sq_noise <= error_of_quadric(points, count, frame, noise);
 }
 
 }  // namespace
