@@ -324,6 +324,18 @@ class AnnotateSession(AnnotateTest):
             self.assertEqual(int((rows["scalar_painted_label"] == 2).sum()), counts[2], name)
         server.post("/api/save", {"what": "cloud", "name": "painted.e57"}, expect=400)
 
+    def test_shows_the_scales_of_the_start(self):
+        for model, scales in (("none", 16), ("general", 8)):
+            server = self.serve("--model", model)
+            server.open()
+            session = server.get("/api/session")
+            self.assertEqual(len(session["scales"]), scales)
+            self.assertEqual(session["scales"], sorted(session["scales"]))
+            last = f"/api/node/0/values?of=feature&feature=1&scale={scales - 1}"
+            self.assertEqual(server.request(last)[0], 200)
+            self.assertEqual(server.request(last.replace(str(scales - 1), str(scales)))[0], 404)
+            server.end()
+
     def test_takes_no_cache_that_is_damaged(self):
         server = self.quiet()
         values = server.request("/api/node/0/values?of=feature&feature=1&scale=8")[2]

@@ -41,6 +41,8 @@ export class Client {
   private opened = false;
   /** A prediction was shown before. */
   private predicted = false;
+  /** The start whose description the session told of. */
+  private described = "";
   stage!: Stage;
 
   constructor(
@@ -118,6 +120,7 @@ export class Client {
       undo: session.undo,
       redo: session.redo,
       predictionVersion: session.prediction_version,
+      scale: Math.max(0, Math.min(store.now.scale, session.scales.length - 1)),
       counts: [0, 1, 2].map((id) => session.classes.find((c) => c.id === id)?.count ?? 0) as [number, number, number],
     });
     if (session.state !== "ready") {
@@ -127,6 +130,7 @@ export class Client {
     const runs = await this.api.get<Run[]>("/api/runs");
     store.set({ runs, progress: null });
     await this.lines.refresh();
+    this.described = session.settings.start;
     if (this.opened) return;
     this.opened = true;
     const predicted = (this.predicted = session.prediction_version > 0 && session.run !== null);
@@ -186,7 +190,9 @@ export class Client {
     this.stage.loader.refresh("prediction");
     if (["confidence", "p_sharp"].includes(store.now.mode)) this.stage.loader.refresh("values");
     if (first && ["labels", "rgb"].includes(store.now.mode)) store.set({ mode: "prediction" });
-    await this.refreshRuns();
+    if (store.now.settings.start === this.described) await this.refreshRuns();
+    else await this.refresh(); // other scales
+    if (store.now.mode === "feature") this.stage.loader.refresh("values");
   }
 
   paint(stroke: Stroke): void {

@@ -37,7 +37,6 @@ export function viewPanel(store: AppStore): HTMLElement {
       names.map((name, i) => ({ value: i, label: FEATURE_NAMES[name] ?? name })),
       (feature) => store.set({ feature }),
     );
-    scale.element.querySelector("input")!.max = String((store.now.session?.scales.length ?? 1) - 1);
     lists.replaceChildren(colours.element, features.element);
   });
   store.watch(["mode", "feature", "scale", "session"], () => {
@@ -45,6 +44,7 @@ export function viewPanel(store: AppStore): HTMLElement {
     features.element.hidden = scale.element.hidden = mode !== "feature";
     colours.set(mode);
     features.set(feature);
+    scale.element.querySelector("input")!.max = String(Math.max(session?.scales.length ?? 1, 1) - 1);
     scale.set(store.now.scale, length(session?.scales[store.now.scale] ?? 0));
   });
   store.watch(["pointSize", "paintOnTop", "safePalette", "eyeDome"], () => {

@@ -19,7 +19,9 @@ DescribedCloud describe(const PreparedCloud& cloud, const gls::ScaleSpaceOptions
   const gls::ScaleSpace space({cloud.positions, cloud.normals, cloud.curve}, descriptor,
                               &cancel_only);
   const auto order = space.order();
-  DescribedCloud described{.points = cloud.positions.size(), .order = {order.begin(), order.end()}};
+  DescribedCloud described{.points = cloud.positions.size(),
+                           .order = {order.begin(), order.end()},
+                           .scales = {space.scales().begin(), space.scales().end()}};
   described.values.resize(order.size() * row_width(descriptor));
   describe(space, order, described.values, progress);
   return described;

@@ -16,11 +16,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The beginning of a file; the rows' points and their values follow.
+/// The beginning of a file; the scales, the rows' points and their values follow.
 struct Header {
-  std::array<char, 8> magic = {'p', 'c', 'e', 'd', 'd', 's', 'c', '1'};
+  std::array<char, 8> magic = {'p', 'c', 'e', 'd', 'd', 's', 'c', '2'};
   std::array<std::uint64_t, 2> key = {}, content = {};
-  std::uint64_t points = 0, rows = 0, width = 0;
+  std::uint64_t points = 0, scales = 0, rows = 0, width = 0;
 };
 
 /// All that decides the description.
@@ -38,6 +38,7 @@ std::array<std::uint64_t, 2> key_of(const detect::PreparedCloud& cloud,
 
 std::array<std::uint64_t, 2> content_of(const detect::DescribedCloud& cloud) {
   return Digest()
+      .add_values(std::span<const double>(cloud.scales))
       .add_values(std::span<const std::uint32_t>(cloud.order))
       .add_values(std::span<const float>(cloud.values))
       .lanes();
@@ -49,20 +50,24 @@ bool read_cache(const fs::path& path, const Header& wanted, detect::DescribedClo
   Header header;
   if (!file.read(reinterpret_cast<char*>(&header), sizeof header)) return false;
   if (header.magic != wanted.magic || header.key != wanted.key || header.points != wanted.points ||
-      header.width != wanted.width || header.rows > header.points) {
+      header.scales != wanted.scales || header.width != wanted.width ||
+      header.rows > header.points) {
     return false;
   }
   std::error_code error;
-  if (fs::file_size(path, error) != sizeof header + header.rows * 4 * (1 + header.width)) {
+  if (fs::file_size(path, error) !=
+      sizeof header + 8 * header.scales + header.rows * 4 * (1 + header.width)) {
     return false;
   }
   cloud.points = header.points;
+  cloud.scales.resize(header.scales);
   cloud.order.resize(header.rows);
   cloud.values.resize(header.rows * header.width);
   const auto read = [&](auto& values) {
     file.read(reinterpret_cast<char*>(values.data()),
               static_cast<std::streamsize>(values.size() * sizeof values[0]));
   };
+  read(cloud.scales);
   read(cloud.order);
   read(cloud.values);
   return file && content_of(cloud) == header.content;
@@ -74,6 +79,7 @@ void write_cache(const fs::path& path, Header header, const detect::DescribedClo
   fs::create_directories(path.parent_path());
   OutputFile file(path, Overwrite::kYes);
   file.write(std::as_bytes(std::span(&header, 1)));
+  file.write(std::as_bytes(std::span(cloud.scales)));
   file.write(std::as_bytes(std::span(cloud.order)));
   file.write(std::as_bytes(std::span(cloud.values)));
   file.commit();
@@ -89,6 +95,7 @@ std::shared_ptr<const Described> describe_once(const detect::PreparedCloud& clou
   Header header;
   header.key = key_of(cloud, descriptor);
   header.points = cloud.positions.size();
+  header.scales = static_cast<std::uint64_t>(descriptor.scales);
   header.width = static_cast<std::uint64_t>(descriptor.scales) *
                  static_cast<std::uint64_t>(gls::column_count(descriptor));
   const fs::path file = folder / fmt::format("{:016x}.description", header.key[0]);

@@ -56,10 +56,9 @@ void describe_scene(const Scene& scene, Json& json) {
   json["origin"] = json_of(scene.origin);
   json["bounds"] = {{"min", json_of(scene.bounds.min - scene.origin)},
                     {"max", json_of(scene.bounds.max - scene.origin)}};
-  json["spacing"] = scene.spacing();
+  json["spacing"] = scene.spacing;
   json["has_colours"] = !scene.cloud.colours.empty();
   json["normals"] = scene.prepared.made.empty() ? "file" : "estimated";
-  json["scales"] = scene.scales;
   json["nodes"] = nodes_of(scene);
 }
 
@@ -258,12 +257,12 @@ std::string to_json(const Summary& summary, bool is_writer) {
                {"normals", "file"},
                {"state", summary.scene ? "ready" : "loading"},
                {"stage", summary.stage},
-               {"scales", Json::array()},
                {"nodes", Json::array()},
                {"features", Json::array()},
                {"classes", classes_of(summary.counts)},
                {"settings", Json::parse(to_line(summary.settings))},
                {"starts", summary.starts},
+               {"scales", summary.scales},
                {"strokes", summary.undo},
                {"undo", summary.undo},
                {"redo", summary.redo},

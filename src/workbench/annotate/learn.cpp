@@ -22,7 +22,7 @@ constexpr std::size_t kMostPerEpoch = 1 << 15;
 constexpr float kNever = -1e4f;
 
 detect::Samples painted_samples(const Described& described, std::span<const std::uint8_t> labels) {
-  const auto& [points, order, values] = described.cloud;
+  const auto& [points, order, values, scales] = described.cloud;
   const std::size_t width = order.empty() ? 0 : values.size() / order.size();
   detect::Samples samples{.descriptor = described.descriptor, .clouds = 1, .points = points};
   for (std::size_t row = 0; row < order.size(); ++row) {

@@ -49,7 +49,7 @@ std::vector<lines::Curve> accepted_curves(const LineReview& review) {
 }
 
 CurveView view_of(const lines::Curve& curve, const Scene& scene) {
-  CurveView view{.path = lines::sampled(curve, kDrawnTolerance * scene.spacing())};
+  CurveView view{.path = lines::sampled(curve, kDrawnTolerance * scene.spacing)};
   view.middle = middle_of(view.path);
   std::vector<spatial::Neighbour> near;
   scene.selector->tree().nearest(view.middle, kNormalsAround, near);

@@ -42,6 +42,7 @@ struct Summary {
   std::size_t undo = 0, redo = 0;
   Settings settings = {};
   std::vector<std::string> starts = {};  ///< that settings may name
+  std::vector<double> scales = {};       ///< of the description, as lengths; none while loading
   std::optional<RunView> run = {};       ///< the current one
   int prediction_version = 0, labels_version = 0;
 };

@@ -36,14 +36,15 @@ std::shared_ptr<const Scene> load_scene(const std::filesystem::path& input,
     ordered.push_back(scene->cloud.positions[i]);
   }
   const auto range = gls::scale_range(ordered, spatial::KdTree(ordered), {});
-  scene->scales = gls::sample_scales(range, gls::ScaleSpaceOptions{}.scales);
-  if (const auto note = gls::note_on({}, scene->scales, ordered); !note.empty()) {
+  scene->spacing = range.s_min;
+  const auto scales = gls::sample_scales(range, gls::ScaleSpaceOptions{}.scales);
+  if (const auto note = gls::note_on({}, scales, ordered); !note.empty()) {
     scene->warnings.push_back(note);
   }
   stage.advance();
-  scene->layout = make_layout(scene->cloud.positions, scene->spacing());
+  scene->layout = make_layout(scene->cloud.positions, scene->spacing);
   scene->selector = std::make_unique<Selector>(scene->cloud.positions, scene->prepared.normals,
-                                               scene->origin, scene->spacing());
+                                               scene->origin, scene->spacing);
   stage.advance();
   return scene;
 }

@@ -21,13 +21,11 @@ struct Scene {
   std::vector<std::string> warnings = {};
   detect::PreparedCloud prepared = {};
   BoundingBox bounds = {};
-  Vec3 origin = Vec3::Zero();  ///< what local coordinates are relative to
-  std::vector<double> scales = {};
+  Vec3 origin = Vec3::Zero();                ///< what local coordinates are relative to
+  double spacing = 0.0;                      ///< the mean one
   std::vector<std::uint32_t> boundary = {};  ///< detect::find_boundary()
   Layout layout = {};
   std::unique_ptr<const Selector> selector = {};
-
-  double spacing() const { return scales.front(); }
 };
 
 /// Reads and prepares a cloud. Throws what reading and preparing throw.

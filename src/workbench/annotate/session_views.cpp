@@ -20,6 +20,7 @@ Summary Session::summary() const {
                      .starts = s.options.starts};
   if (!s.loading.is_done) return summary;
   summary.scene = s.scene;
+  summary.scales = s.described->cloud.scales;
   summary.counts = s.painting->labels().counts();
   summary.undo = s.painting->labels().undo_steps();
   summary.redo = s.painting->labels().redo_steps();
@@ -97,7 +98,7 @@ UncertainPlace Session::uncertain(std::size_t after) const {
   auto& [version, places] = s.uncertain;
   if (version != s.runs.version()) {
     // Places are as far apart as a look at one of them reaches.
-    const double apart = std::max(10 * scene.spacing(), 0.02 * scene.bounds.diagonal());
+    const double apart = std::max(10 * scene.spacing, 0.02 * scene.bounds.diagonal());
     places = rank_uncertain(scene.cloud.positions, scene.selector->tree(), prediction->confidence,
                             apart);
     version = s.runs.version();
