@@ -135,7 +135,7 @@ void run(const std::string& model_file, std::uint64_t seed, const std::vector<st
 }  // namespace pcednet::annotate
 
 int main(int count, char** arguments) {
-  std::string model = PCEDNET_SOURCE_DIR "/models/scan.safetensors";
+  std::string model = PCEDNET_SOURCE_DIR "/models/general.safetensors";
   std::uint64_t seed = 1;
   std::vector<std::string> files;
   for (int i = 1; i < count; ++i) {
