@@ -208,9 +208,7 @@ void ContextMatrix::describe_point(std::size_t place, std::span<const spatial::N
 }
 
 void apply_context(const nn::Model& network, const std::vector<std::uint8_t>& classes,
-                   std::span<const Vec3> positions, std::span<const std::uint32_t> curve,
-                   Classification& result, const Progress* progress) {
-  const ContextMatrix matrix(positions, curve, result, static_cast<int>(classes.size()));
+                   const ContextMatrix& matrix, Classification& result, const Progress* progress) {
   const auto points = matrix.points();
   std::vector<float> rows(std::min(kBlock, points.size()) * matrix.width());
   Stage stage(progress, "context", points.size());
@@ -220,6 +218,13 @@ void apply_context(const nn::Model& network, const std::vector<std::uint8_t>& cl
     decide(points.subspan(begin, end - begin), nn::predict(network, some), classes, result);
     stage.advance(end - begin);
   });
+}
+
+void apply_context(const nn::Model& network, const std::vector<std::uint8_t>& classes,
+                   std::span<const Vec3> positions, std::span<const std::uint32_t> curve,
+                   Classification& result, const Progress* progress) {
+  const ContextMatrix matrix(positions, curve, result, static_cast<int>(classes.size()));
+  apply_context(network, classes, matrix, result, progress);
 }
 
 }  // namespace pcednet::detect

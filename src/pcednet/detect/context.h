@@ -70,7 +70,12 @@ class ContextMatrix {
   std::optional<spatial::NeighbourSearch> search_;
 };
 
-/// Lets the second network decide, in place of what was found. `positions` are those that were
+/// Lets the second network decide, in place of what was found.
+void apply_context(const nn::Model& network, const std::vector<std::uint8_t>& classes,
+                   const ContextMatrix& matrix, Classification& result,
+                   const Progress* progress = nullptr);
+
+/// The same with the matrix of what was found. `positions` are those that were
 /// classified, `curve` their spatial::curve_order(). The result does not depend on threads or on
 /// the order of the points.
 void apply_context(const nn::Model& network, const std::vector<std::uint8_t>& classes,

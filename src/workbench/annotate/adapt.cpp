@@ -5,14 +5,12 @@
 #include <numeric>
 #include <optional>
 
-#include "pcednet/core/blocks.h"
 #include "pcednet/core/random.h"
 #include "pcednet/core/stopwatch.h"
 #include "pcednet/detect/context.h"
 #include "pcednet/detect/decide.h"
 #include "pcednet/detect/describe.h"
 #include "pcednet/detect/outputs.h"
-#include "pcednet/nn/predict.h"
 
 namespace pcednet::annotate {
 namespace {
@@ -138,18 +136,6 @@ Rows rows_of(const detect::ContextMatrix& matrix) {
           }};
 }
 
-/// As detect::apply_context(), with a matrix that is there already.
-void decide_again(const nn::Model& context, const std::vector<std::uint8_t>& classes,
-                  const detect::ContextMatrix& matrix, detect::Classification& found) {
-  const auto points = matrix.points();
-  std::vector<float> rows(std::min(detect::kBlock, points.size()) * matrix.width());
-  for_each_block(points.size(), detect::kBlock, [&](std::size_t begin, std::size_t end) {
-    const auto some = std::span(rows).first((end - begin) * matrix.width());
-    matrix.describe(begin, end, some);
-    detect::decide(points.subspan(begin, end - begin), nn::predict(context, some), classes, found);
-  });
-}
-
 }  // namespace
 
 Start make_start(detect::EdgeModel model, const Subject& subject) {
@@ -200,7 +186,7 @@ Adapted adapt(const std::string& name, const Start& start, const Subject& subjec
     learn(*context, rows_of(matrix));
     if (adapted.cancelled) return adapted;
     watch.lap();
-    decide_again(*context, model.classes, matrix, adapted.found);
+    detect::apply_context(*context, model.classes, matrix, adapted.found);
     adapted.seconds_classify += watch.lap();
     model.context = std::move(context);
   }
