@@ -9,6 +9,7 @@
 
 #include "pcednet/core/median.h"
 #include "pcednet/core/parallel.h"
+#include "pcednet/lines/local_planes.h"
 
 namespace pcednet::lines {
 namespace {
@@ -28,24 +29,13 @@ constexpr double kMostBend = 0.1;        ///< share of their heights that a para
 constexpr double kByChance = 6.0;        ///< and more of few points, where chance does
 constexpr double kOnePlane = 1.25;       ///< residual of two faces as one, in theirs
 
-/// Sums over points, from which their plane follows.
+/// Of points about an origin near them.
 struct Sums {
   Vec3 origin = Vec3::Zero();
-  double count = 0.0;
-  Vec3 first = Vec3::Zero();
-  Mat3 second = Mat3::Zero();
+  Moments moments = {};
 
-  void add(const Vec3& place) {
-    const Vec3 offset = place - origin;
-    count += 1.0;
-    first += offset;
-    second += offset * offset.transpose();
-  }
-  void add(const Sums& other) {  // with the same origin
-    count += other.count;
-    first += other.first;
-    second += other.second;
-  }
+  void add(const Vec3& place) { moments.add(place - origin); }
+  double count() const { return moments.weight; }
 };
 
 struct Fitted {
@@ -54,12 +44,11 @@ struct Fitted {
 };
 
 Fitted fit_plane(const Sums& sums) {
-  const Vec3 mean = sums.first / sums.count;
   Eigen::SelfAdjointEigenSolver<Mat3> solver;
-  solver.computeDirect(sums.second / sums.count - mean * mean.transpose());
+  solver.computeDirect(sums.moments.covariance());
   const auto deviation = [&](int i) { return std::sqrt(std::max(solver.eigenvalues()[i], 0.0)); };
-  return {sums.origin + mean, solver.eigenvectors().col(0).normalized(), deviation(0),
-          deviation(1)};
+  return {sums.origin + sums.moments.mean(), solver.eigenvectors().col(0).normalized(),
+          deviation(0), deviation(1)};
 }
 
 /// Neighbours, and how flat the nearest of them lie.
@@ -120,12 +109,12 @@ void Growing::spread(std::uint32_t seed, Fitted& plane) {
       members_.push_back(other);
       sums.add(place);
     }
-    if (sums.count >= next_fit) {
+    if (sums.count() >= next_fit) {
       plane = fit_plane(sums);
-      next_fit = 1.5 * sums.count;
+      next_fit = 1.5 * sums.count();
     }
   }
-  if (sums.count >= kLeastSeed) plane = fit_plane(sums);
+  if (sums.count() >= kLeastSeed) plane = fit_plane(sums);
 }
 
 void Growing::try_at(std::uint32_t seed) {
@@ -133,9 +122,9 @@ void Growing::try_at(std::uint32_t seed) {
   Sums sums{.origin = cloud_.position(seed)};
   sums.add(cloud_.position(seed));
   for (const std::uint32_t other : result_.near(seed)) {
-    if (is_free(other) && sums.count <= kLocal) sums.add(cloud_.position(other));
+    if (is_free(other) && sums.count() <= kLocal) sums.add(cloud_.position(other));
   }
-  if (sums.count < kLeastSeed) return;
+  if (sums.count() < kLeastSeed) return;
   Fitted plane = fit_plane(sums);
   if (plane.residual > 0.5 * result_.within || plane.width < 0.5 * kLeastWidth * spacing_) return;
   for (int growth = 0; growth < kGrowths; ++growth) {
@@ -197,10 +186,10 @@ void refit(Faces& faces, const std::vector<Sums>& sums) {
   std::vector<std::uint32_t> number(faces.faces.size(), kNoFace);
   std::vector<Face> kept;
   for (std::size_t f = 0; f < sums.size(); ++f) {
-    if (sums[f].count < kLeastPoints) continue;
+    if (sums[f].count() < kLeastPoints) continue;
     number[f] = static_cast<std::uint32_t>(kept.size());
     const Fitted plane = fit_plane(sums[f]);
-    kept.push_back({plane.point, plane.normal, static_cast<std::size_t>(sums[f].count)});
+    kept.push_back({plane.point, plane.normal, static_cast<std::size_t>(sums[f].count())});
   }
   faces.faces = std::move(kept);
   for (std::uint32_t& face : faces.of_points) face = face == kNoFace ? kNoFace : number[face];
@@ -248,9 +237,9 @@ void unite(const OrderedPoints& cloud, Faces& faces) {
     if (a == b) continue;
     const double of_a = fit_plane(sums[a]).residual, of_b = fit_plane(sums[b]).residual;
     Sums both = sums[a];
-    both.add(sums[b]);
+    both.moments.add(sums[b].moments);
     const double apart =
-        std::sqrt((of_a * of_a * sums[a].count + of_b * of_b * sums[b].count) / both.count);
+        std::sqrt((of_a * of_a * sums[a].count() + of_b * of_b * sums[b].count()) / both.count());
     if (fit_plane(both).residual > kOnePlane * std::max(apart, floor)) continue;
     sums[a] = both;
     sums[b] = {};

@@ -54,27 +54,16 @@ int support_of(const LocalPlane& plane, const NearPoints& points, const Tests& t
 /// The plane of least squares of the points near `plane`; weights fall to 0 at `reach`.
 LocalPlane refit(const LocalPlane& plane, const NearPoints& points, const Tests& tests,
                  double reach) {
-  double sum = 0.0;
-  Vec3 mean = Vec3::Zero();
-  Mat3 products = Mat3::Zero();
+  Moments moments;
   for (std::size_t i = 0; i < points.count; ++i) {
     const Vec3 offset = points.offset(i);
     const double part = plane(offset) / reach;
     if (part * part >= 1.0) continue;
     if (!(std::abs(plane.normal.dot(points.normal(i))) > tests.least_cosine[i])) continue;
-    const double weight = (1.0 - part * part) * (1.0 - part * part);
-    sum += weight;
-    mean += weight * offset;
-    products += weight * offset * offset.transpose();
+    moments.add(offset, (1.0 - part * part) * (1.0 - part * part));
   }
-  if (sum < 3.0) return plane;
-  mean /= sum;
-  const Mat3 covariance = products / sum - mean * mean.transpose();
-  Eigen::SelfAdjointEigenSolver<Mat3> solver;
-  solver.computeDirect(covariance);
-  if (!(solver.eigenvalues()[1] > 0.04)) return plane;  // a row of points has many planes
-  const Vec3 normal = solver.eigenvectors().col(0).normalized();
-  return {normal, normal.dot(mean), plane.support};
+  const auto refitted = plane_of(moments, 3.0, 0.04);
+  return refitted ? LocalPlane{refitted->normal, refitted->distance, plane.support} : plane;
 }
 
 /// Points with a normal, those surest not to be of an edge first.
@@ -123,6 +112,16 @@ void NearPoints::add(const Vec3& offset, const Vec3& normal, double probability)
   normal_z[count] = normal.z();
   edginess[count] = probability;
   ++count;
+}
+
+std::optional<LocalPlane> plane_of(const Moments& moments, double least_weight,
+                                   double least_width) {
+  if (moments.weight < least_weight) return std::nullopt;
+  Eigen::SelfAdjointEigenSolver<Mat3> solver;
+  solver.computeDirect(moments.covariance());
+  if (!(solver.eigenvalues()[1] > least_width)) return std::nullopt;
+  const Vec3 normal = solver.eigenvectors().col(0).normalized();
+  return LocalPlane{normal, normal.dot(moments.mean()), 0};
 }
 
 void find_planes(const NearPoints& points, double tolerance, std::vector<LocalPlane>& planes) {

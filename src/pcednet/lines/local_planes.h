@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "pcednet/core/vec3.h"
@@ -30,6 +31,30 @@ struct LocalPlane {
 
   double operator()(const Vec3& x) const { return normal.dot(x) - distance; }
 };
+
+/// Sums over weighted points, of which their plane of least squares follows.
+struct Moments {
+  double weight = 0.0;
+  Vec3 sum = Vec3::Zero();
+  Mat3 products = Mat3::Zero();
+
+  void add(const Vec3& p, double w = 1.0) {
+    weight += w;
+    sum += w * p;
+    products += w * p * p.transpose();
+  }
+  void add(const Moments& other) {
+    weight += other.weight;
+    sum += other.sum;
+    products += other.products;
+  }
+  Vec3 mean() const { return sum / weight; }
+  Mat3 covariance() const { return products / weight - mean() * mean().transpose(); }
+};
+
+/// Their plane; none if they are of less weight than `least_weight`, or in a row, which has many:
+/// if the variance along their shorter side is not above `least_width`.
+std::optional<LocalPlane> plane_of(const Moments& moments, double least_weight, double least_width);
 
 /// The planes that explain the points, the one with most support first, at most four. A point is on
 /// a plane if it is nearer than `tolerance`.

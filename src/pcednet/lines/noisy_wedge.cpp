@@ -41,39 +41,14 @@ struct Frame {
   }
 };
 
-/// Weighted points, for the plane of least squares across it.
-struct Moments {
-  double weight = 0.0;
-  Vec3 sum = Vec3::Zero();
-  Mat3 products = Mat3::Zero();
-
-  void add(const Vec3& p, double w) {
-    weight += w;
-    sum += w * p;
-    products += w * p * p.transpose();
-  }
-  Vec3 mean() const { return sum / weight; }
-  Mat3 covariance() const { return products / weight - mean() * mean().transpose(); }
-};
-
 Frame frame_of(const NearPoints& points, std::size_t count) {
   Moments moments;
-  for (std::size_t i = 0; i < count; ++i) moments.add(points.offset(i), 1.0);
+  for (std::size_t i = 0; i < count; ++i) moments.add(points.offset(i));
   Eigen::SelfAdjointEigenSolver<Mat3> solver;
   solver.computeDirect(moments.covariance());
   const Vec3 z = solver.eigenvectors().col(0).normalized();
   const Vec3 x = solver.eigenvectors().col(2).normalized();
   return {moments.mean(), x, z.cross(x), z};
-}
-
-std::optional<LocalPlane> plane_of(const Moments& moments) {
-  constexpr double kLeastWeight = 4.0, kLeastWidth = 0.15;  // a row of points has many planes
-  if (moments.weight < kLeastWeight) return std::nullopt;
-  Eigen::SelfAdjointEigenSolver<Mat3> solver;
-  solver.computeDirect(moments.covariance());
-  if (!(solver.eigenvalues()[1] > kLeastWidth)) return std::nullopt;
-  const Vec3 normal = solver.eigenvectors().col(0).normalized();
-  return LocalPlane{normal, normal.dot(moments.mean()), 0};
 }
 
 /// Sums over points (u, v, h) for heights h that are linear in u and v.
@@ -216,7 +191,9 @@ std::optional<HalfPlanes> improved(const HalfPlanes& halves, const NearPoints& p
     const double part = sq_distance / (reach * reach);
     if (part < 1.0) (is_a ? a : b).add(points.offset(i), (1.0 - part) * (1.0 - part));
   }
-  const auto plane_a = plane_of(a), plane_b = plane_of(b);
+  constexpr double kLeastWeight = 4.0, kLeastWidth = 0.15;
+  const auto plane_a = plane_of(a, kLeastWeight, kLeastWidth);
+  const auto plane_b = plane_of(b, kLeastWeight, kLeastWidth);
   if (!plane_a || !plane_b) return std::nullopt;
   return half_planes(*plane_a, *plane_b, a.mean(), b.mean());
 }
