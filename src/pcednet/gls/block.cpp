@@ -50,12 +50,16 @@ void GroupBoxes::cover(std::span<const Voxel> points, std::size_t begin, std::si
     Normals normals = {points[first].normal, points[first].normal};
     for (std::size_t i = first + 1; i < std::min(first + kLanes, end); ++i) {
       box.grow(points[i].position);
-      for (std::size_t a = 0; a < 3; ++a) {
-        normals.min[a] = std::min(normals.min[a], points[i].normal[a]);
-        normals.max[a] = std::max(normals.max[a], points[i].normal[a]);
-      }
+      normals.grow({points[i].normal, points[i].normal});
     }
     boxes_.push_back(box), normals_.push_back(normals);
+  }
+}
+
+void GroupBoxes::Normals::grow(const Normals& other) {
+  for (std::size_t a = 0; a < 3; ++a) {
+    min[a] = std::min(min[a], other.min[a]);
+    max[a] = std::max(max[a], other.max[a]);
   }
 }
 
@@ -85,12 +89,7 @@ bool may_be_open(const NormalBox& normals, float open_from) {
 NormalBox GroupBoxes::normals_of(std::size_t begin, std::size_t end) const {
   const std::size_t first = (begin - begin_) / kLanes, last = (end - 1 - begin_) / kLanes;
   Normals all = normals_[first];
-  for (std::size_t g = first + 1; g <= last; ++g) {
-    for (std::size_t a = 0; a < 3; ++a) {
-      all.min[a] = std::min(all.min[a], normals_[g].min[a]);
-      all.max[a] = std::max(all.max[a], normals_[g].max[a]);
-    }
-  }
+  for (std::size_t g = first + 1; g <= last; ++g) all.grow(normals_[g]);
   NormalBox box;
   for (std::size_t a = 0; a < 3; ++a) {
     box.middle[a] = 0.5f * (all.min[a] + all.max[a]);

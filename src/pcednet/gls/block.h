@@ -66,6 +66,8 @@ class GroupBoxes {
  private:
   struct Normals {
     std::array<float, 3> min, max;
+
+    void grow(const Normals& other);
   };
 
   std::span<const Voxel> points_;

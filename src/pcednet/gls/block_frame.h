@@ -47,7 +47,7 @@ class CandidateList {
   /// There must be room.
   void add(std::uint32_t index, const Source& source) {
     const std::size_t i = view.count++;
-    view.x[i] = source.x, view.y[i] = source.y, view.z[i] = source.z;
+    set(i, source);
     view.index[i] = index;
   }
 
