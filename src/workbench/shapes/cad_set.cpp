@@ -106,7 +106,7 @@ void wear_off(MeshVertices& vertices, const SolidSamples& samples,
 
 MeshStyle random_mesh_style(Random& random, double least, double most) {
   MeshStyle style;
-  style.points = static_cast<std::size_t>(size_between(random, least, most));
+  style.points = points_between(random, least, most);
   style.plane_growth = random.uniform(0.0, 0.6);
   style.plane_limit = random.uniform(1.0, 6.0);
   style.curved_spacing = random.uniform(0.6, 1.4);
@@ -142,7 +142,7 @@ std::vector<CadRecipe> worn_recipes(std::uint64_t seed) {
     Random random(seed, 19000 + i);
     recipe.name = "worn_" + recipe.name;
     recipe.mesh = random.index(4) != 0;
-    recipe.style.points = static_cast<std::size_t>(size_between(random, 3000, 12000));
+    recipe.style.points = points_between(random, 3000, 12000);
     recipe.style.plane_limit = random.index(2) ? 1.0 : random.uniform(1.0, 3.0);
     recipe.style.curved_spacing = 1.0;
     recipe.style.smooth_borders = false;

@@ -25,6 +25,14 @@ double size_between(Random& random, double low, double high) {
   return low * std::pow(high / low, random.uniform());
 }
 
+std::size_t points_between(Random& random, double low, double high) {
+  return static_cast<std::size_t>(size_between(random, low, high));
+}
+
+Vec3 any_direction(Random& random) {
+  return Vec3(random.normal(), random.normal(), random.normal()).normalized();
+}
+
 CornerShape any_shape(Random& random) {
   const std::size_t i = random.index(4);
   return i < 2 ? CornerShape::kSharp : i == 2 ? CornerShape::kFillet : CornerShape::kChamfer;

@@ -16,6 +16,10 @@ bool chance(Random& random, double p);
 
 /// Log-uniform between the bounds.
 double size_between(Random& random, double low, double high);
+std::size_t points_between(Random& random, double low, double high);
+
+/// A unit vector of any direction.
+Vec3 any_direction(Random& random);
 
 CornerShape any_shape(Random& random);
 

@@ -19,7 +19,7 @@ void add_ground(Scene& scene, Random& random) {
 void add_bush(Scene& scene, Random& random, const Vec3& centre, double radius) {
   const int leaves = static_cast<int>(400.0 * radius * radius) + 100;
   for (int i = 0; i < leaves; ++i) {
-    const Vec3 out = Vec3(random.normal(), random.normal(), random.normal()).normalized();
+    const Vec3 out = any_direction(random);
     scene.foliage.push_back(centre + radius * std::cbrt(random.uniform(0.2, 1.0)) * out);
   }
 }

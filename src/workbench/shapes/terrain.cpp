@@ -23,10 +23,6 @@ using View = TerrainRecipe::View;
 constexpr double kHalf = 40.0, kNearest = 2.0;  // metres: of the square, and of the tripod's view
 constexpr double kTwoPi = 2.0 * std::numbers::pi;
 
-Vec3 any_direction(Random& random) {
-  return Vec3(random.normal(), random.normal(), random.normal()).normalized();
-}
-
 /// Waves of every length from 30 metres to a decimetre.
 class Ground {
  public:
@@ -97,14 +93,12 @@ House random_house(View view, const Ground& ground, Random& random) {
   Vec3 foot = ground.at(x, y);
   if (view == View::kTripod) {
     solid = cube();
-    solid.faces.erase(
-        std::remove_if(solid.faces.begin(), solid.faces.end(),
-                       [&](const std::vector<int>& face) {
-                         return std::all_of(face.begin(), face.end(), [&](int corner) {
-                           return solid.corners[static_cast<std::size_t>(corner)].z() < 0;
-                         });
-                       }),
-        solid.faces.end());
+    const auto is_low = [&](int corner) {
+      return solid.corners[static_cast<std::size_t>(corner)].z() < 0;
+    };
+    std::erase_if(solid.faces, [&](const std::vector<int>& face) {
+      return std::all_of(face.begin(), face.end(), is_low);
+    });
     const Vec3 size(random.uniform(1, 6), random.uniform(1, 6), random.uniform(0.5, 6));
     for (Vec3& corner : solid.corners) corner = corner.cwiseProduct(size);
   } else {
@@ -233,10 +227,8 @@ std::vector<std::uint8_t> labels_of(const Land& land) {
 
 std::vector<Vec3> disturbed(std::vector<Vec3> normals, Random& random) {
   constexpr double kNoise = 0.2;
-  for (Vec3& normal : normals) {
-    normal += kNoise * Vec3(random.normal(), random.normal(), random.normal());
-    normal.normalize();
-  }
+  add_noise(normals, kNoise, random);
+  for (Vec3& normal : normals) normal.normalize();
   return normals;
 }
 
@@ -251,7 +243,7 @@ std::vector<TerrainRecipe> terrain_recipes(std::uint64_t seed) {
     const char* name = std::array{"tripod", "airborne", "drone"}[i % 3];
     recipes.push_back({.name = fmt::format("terrain_{}_{}", name, i / 3),
                        .view = view,
-                       .points = static_cast<std::size_t>(size_between(random, 8000, 50000)),
+                       .points = points_between(random, 8000, 50000),
                        .leaves = random.uniform(0.05, 0.6),
                        .houses = static_cast<int>(random.index(6)),
                        .given_normals = i % 5 == 4});

@@ -14,10 +14,6 @@ namespace {
 constexpr std::uint64_t kFirstPart = 20;  // after those of other sets
 constexpr int kPartsPerFamily = 10, kSparseParts = 6;
 
-std::size_t points_between(Random& random, double least, double most) {
-  return static_cast<std::size_t>(size_between(random, least, most));
-}
-
 CadRecipe varied_part(int family, int number, std::uint64_t seed) {
   Random random(seed, 39000 + static_cast<std::uint64_t>(100 * number + family));
   CadRecipe recipe;

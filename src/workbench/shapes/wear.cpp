@@ -7,6 +7,7 @@
 #include "pcednet/core/parallel.h"
 #include "pcednet/normals/prepare.h"
 #include "pcednet/spatial/kd_tree.h"
+#include "workbench/shapes/part_pieces.h"
 
 namespace pcednet::shapes {
 namespace {
@@ -58,7 +59,7 @@ void wear_off(MeshVertices& vertices, const SurfaceSamples& surface, std::span<c
 }
 
 Mat3 gaussian_rotation(Random& random) {
-  const Vec3 x = Vec3(random.normal(), random.normal(), random.normal()).normalized();
+  const Vec3 x = any_direction(random);
   const Vec3 y = x.cross(Vec3(random.normal(), random.normal(), random.normal())).normalized();
   Mat3 rotation;
   rotation << x, y, x.cross(y);
