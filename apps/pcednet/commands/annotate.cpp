@@ -87,8 +87,9 @@ annotate::SessionOptions session_options(const AnnotateArguments& arguments, con
   options.cache_folder = input.parent_path() / ".pcednet";
   options.model = arguments.model == kNoModel ? "" : arguments.model;
   options.is_model_wanted = arguments.is_model_given;
-  for (const auto& [name, path] : shipped_models()) options.starts.push_back(name);
-  if (!options.model.empty() && !shipped_models().contains(options.model)) {
+  const auto shipped = shipped_models();
+  for (const auto& [name, path] : shipped) options.starts.push_back(name);
+  if (!options.model.empty() && !shipped.contains(options.model)) {
     options.starts.push_back(options.model);
   }
   options.overwrite = common.overwrite_files;
