@@ -13,8 +13,10 @@ namespace pcednet::lines {
 namespace {
 
 // In spacings; the second number is added per spacing of noise.
-constexpr double kLoose[] = {8.0, 24.0};     ///< length of a piece that no corner holds
-constexpr double kHeldOnce[] = {4.0, 12.0};  ///< and of one that ends free
+constexpr double kLoose[] = {12.0, 24.0};     ///< length of a piece that no corner holds
+constexpr double kHeldOnce[] = {10.0, 12.0};  ///< and of one that ends free
+
+constexpr int kDropRounds = 2;  ///< those that hung on a dropped piece are loose now
 
 constexpr double kExactReach = 5.0, kExactTolerance = 0.6;  ///< of corners of exact pieces
 
@@ -94,14 +96,29 @@ bool has_few_edge_points(const Piece& piece) {
   return length < kLongAnyway && edge_points < kFewEdgePoints * length;
 }
 
+/// Whether ends of two or more pieces share each corner; an end may also stop at the inside of a
+/// piece, which does not hold it.
+std::vector<bool> shared_corners(const Corners& corners) {
+  std::vector<std::size_t> ends(corners.places.size());
+  for (const auto& own : corners.of_ends) {
+    for (const std::size_t corner : own) {
+      if (corner != Corners::kNoCorner) ++ends[corner];
+    }
+  }
+  std::vector<bool> shared;
+  for (const std::size_t count : ends) shared.push_back(count >= 2);
+  return shared;
+}
+
 /// True if a piece was dropped.
 bool drop_loose(std::vector<Piece>& pieces, const Corners& corners, double noise) {
+  const std::vector<bool> shared = shared_corners(corners);
   std::size_t i = 0;
   return std::erase_if(pieces, [&](const Piece& piece) {
            const auto& own = corners.of_ends[i++];
            if (piece.closed) return false;
-           const auto held = std::count_if(own.begin(), own.end(), [](std::size_t corner) {
-             return corner != Corners::kNoCorner;
+           const auto held = std::count_if(own.begin(), own.end(), [&](std::size_t corner) {
+             return corner != Corners::kNoCorner && shared[corner];
            });
            if (held == 2) return false;
            if (has_few_edge_points(piece)) return true;
@@ -135,7 +152,9 @@ std::vector<Curve> finish(std::vector<Piece> pieces, const FinishOptions& option
                          : find_corners(pieces, options.noise);
   };
   Corners corners = meet();
-  if (drop_loose(pieces, corners, options.noise)) corners = meet();
+  for (int round = 0; round < kDropRounds && drop_loose(pieces, corners, options.noise); ++round) {
+    corners = meet();
+  }
   std::vector<Curve> curves;
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     std::array<Vec3, 2> ends = pieces[i].ends;
