@@ -23,6 +23,9 @@ constexpr double kExactReach = 5.0, kExactTolerance = 0.6;  ///< of corners of e
 /// Edge points per spacing: shorter pieces with fewer are kept only if corners hold both ends.
 constexpr double kFewEdgePoints = 0.1, kLongAnyway = 15.0;
 
+/// With noise beyond kLittleNoise, all pieces need edge points: so many more per spacing of noise.
+constexpr double kLittleNoise = 0.1, kPointsForNoise = 1.5;
+
 /// Surfaces that bend by more are rounded at the edge unless as many of its points are sharp-edge.
 constexpr double kBend = 0.08, kFewSharp = 0.1;
 constexpr double kStrongBend = 0.16, kSomeSharp = 0.3;
@@ -88,12 +91,17 @@ Curve curve_of(const Piece& piece, const std::array<Vec3, 2>& ends, const Finish
   return curve;
 }
 
-/// Whether the piece is short and hangs on points that are nearly all of no edge class.
-bool has_few_edge_points(const Piece& piece) {
-  const double length = length_of(piece) / piece.spacing();
+double edge_points_per_spacing(const Piece& piece) {
   double edge_points = 0.0;
   for (const ChainNode& node : piece.nodes) edge_points += node.edge_points;
-  return length < kLongAnyway && edge_points < kFewEdgePoints * length;
+  return edge_points * piece.spacing() / length_of(piece);
+}
+
+/// Whether the points that the piece hangs on are nearly all of no edge class.
+bool has_few_edge_points(const Piece& piece, double noise, bool held) {
+  const double found = edge_points_per_spacing(piece);
+  if (found < kPointsForNoise * (noise - kLittleNoise)) return true;
+  return !held && found < kFewEdgePoints && length_of(piece) < kLongAnyway * piece.spacing();
 }
 
 /// Whether ends of two or more pieces share each corner; an end may also stop at the inside of a
@@ -120,8 +128,8 @@ bool drop_loose(std::vector<Piece>& pieces, const Corners& corners, double noise
            const auto held = std::count_if(own.begin(), own.end(), [&](std::size_t corner) {
              return corner != Corners::kNoCorner && shared[corner];
            });
+           if (has_few_edge_points(piece, noise, held == 2)) return true;
            if (held == 2) return false;
-           if (has_few_edge_points(piece)) return true;
            const double* least = held == 0 ? kLoose : kHeldOnce;
            return length_of(piece) < (least[0] + least[1] * noise) * piece.spacing();
          }) > 0;
