@@ -12,10 +12,10 @@
 namespace pcednet::lines {
 namespace {
 
-// In spacings; the second number is added per spacing of noise.
-constexpr double kLoose[] = {12.0, 24.0};     ///< length of a piece that no corner holds
-constexpr double kHeldOnce[] = {10.0, 12.0};  ///< and of one that ends free
-
+// The length of a piece that no corner holds, and of one that ends free, in spacings; the second
+// number is added per spacing of noise. An end at the inside of a piece is free unless exact.
+constexpr double kLoose[] = {12.0, 24.0}, kHeldOnce[] = {10.0, 12.0};
+constexpr double kExactLoose = 8.0, kExactHeldOnce = 4.0;
 constexpr int kDropRounds = 2;  ///< those that hung on a dropped piece are loose now
 
 constexpr double kExactReach = 5.0, kExactTolerance = 0.6;  ///< of corners of exact pieces
@@ -104,34 +104,38 @@ bool has_few_edge_points(const Piece& piece, double noise, bool held) {
   return !held && found < kFewEdgePoints && length_of(piece) < kLongAnyway * piece.spacing();
 }
 
-/// Whether ends of two or more pieces share each corner; an end may also stop at the inside of a
-/// piece, which does not hold it.
-std::vector<bool> shared_corners(const Corners& corners) {
+/// Of a piece of which corners hold so many ends, in spacings.
+double least_length(std::ptrdiff_t held, const FinishOptions& options) {
+  if (held == 2) return 0.0;
+  if (options.exact) return held == 0 ? kExactLoose : kExactHeldOnce;
+  const double* least = held == 0 ? kLoose : kHeldOnce;
+  return least[0] + least[1] * options.noise;
+}
+
+/// How many pieces end in each corner.
+std::vector<std::size_t> ends_in(const Corners& corners) {
   std::vector<std::size_t> ends(corners.places.size());
   for (const auto& own : corners.of_ends) {
     for (const std::size_t corner : own) {
       if (corner != Corners::kNoCorner) ++ends[corner];
     }
   }
-  std::vector<bool> shared;
-  for (const std::size_t count : ends) shared.push_back(count >= 2);
-  return shared;
+  return ends;
 }
 
 /// True if a piece was dropped.
-bool drop_loose(std::vector<Piece>& pieces, const Corners& corners, double noise) {
-  const std::vector<bool> shared = shared_corners(corners);
+bool drop_loose(std::vector<Piece>& pieces, const Corners& corners, const FinishOptions& options) {
+  const std::vector<std::size_t> ends = ends_in(corners);
+  const std::size_t to_hold = options.exact ? 1 : 2;
   std::size_t i = 0;
   return std::erase_if(pieces, [&](const Piece& piece) {
            const auto& own = corners.of_ends[i++];
            if (piece.closed) return false;
            const auto held = std::count_if(own.begin(), own.end(), [&](std::size_t corner) {
-             return corner != Corners::kNoCorner && shared[corner];
+             return corner != Corners::kNoCorner && ends[corner] >= to_hold;
            });
-           if (has_few_edge_points(piece, noise, held == 2)) return true;
-           if (held == 2) return false;
-           const double* least = held == 0 ? kLoose : kHeldOnce;
-           return length_of(piece) < (least[0] + least[1] * noise) * piece.spacing();
+           if (has_few_edge_points(piece, options.noise, held == 2)) return true;
+           return length_of(piece) < least_length(held, options) * piece.spacing();
          }) > 0;
 }
 
@@ -160,7 +164,7 @@ std::vector<Curve> finish(std::vector<Piece> pieces, const FinishOptions& option
                          : find_corners(pieces, options.noise);
   };
   Corners corners = meet();
-  for (int round = 0; round < kDropRounds && drop_loose(pieces, corners, options.noise); ++round) {
+  for (int round = 0; round < kDropRounds && drop_loose(pieces, corners, options); ++round) {
     corners = meet();
   }
   std::vector<Curve> curves;
