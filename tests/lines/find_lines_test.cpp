@@ -198,6 +198,29 @@ TEST(FindLines, RegulariseMakesRightAnglesExact) {
   }
 }
 
+TEST(FindLines, CanBeLookedAtStepByStep) {
+  const Cloud cloud = cube(20000);
+  const auto at = [&](LineStage stage) { return lines_of(cloud, {.stage = stage}); };
+  const auto edges = static_cast<std::size_t>(
+      std::count(cloud.classes.begin(), cloud.classes.end(), std::uint8_t{kSharpEdge}));
+  const std::vector<Curve> creases = at(LineStage::kCreases);
+  EXPECT_GT(creases.size(), edges / 2);
+  EXPECT_LT(creases.size(), cloud.positions.size() / 2);
+  for (const Curve& crease : creases) {
+    EXPECT_EQ(crease.kind, CurveKind::kSegment);
+    EXPECT_LT(length_of(crease), 4.0 * cloud.spacing);
+  }
+  const std::vector<Curve> chains = at(LineStage::kChains), pieces = at(LineStage::kPieces);
+  EXPECT_GE(chains.size(), 4u);
+  for (const Curve& chain : chains) EXPECT_EQ(chain.kind, CurveKind::kPolyline);
+  EXPECT_EQ(pieces.size(), 12u);
+  for (const Curve& piece : pieces) {
+    EXPECT_EQ(piece.kind, CurveKind::kSegment);
+    EXPECT_NEAR(length_of(piece), 1.0, 10.0 * cloud.spacing);
+    EXPECT_NE(length_of(piece), length_of(at(LineStage::kCurves).front())) << "it met no corner";
+  }
+}
+
 TEST(FindLines, LeaveOutWhatIsTooShort) {
   const Cloud cloud = cube(3000);
   EXPECT_TRUE(lines_of(cloud, {.min_length = 1.1}).empty());

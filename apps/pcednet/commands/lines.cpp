@@ -235,6 +235,11 @@ void add_line_options(CLI::App& command, lines::LineOptions& options) {
   command.add_flag("--boundaries", options.boundaries,
                    "Also draw where the surface ends, on a layer of its own; --class with boundary "
                    "does the same");
+  using enum lines::LineStage;
+  add_choice(command, "--stage", options.stage,
+             {{"creases", kCreases}, {"chains", kChains}, {"pieces", kPieces}, {"curves", kCurves}},
+             "Stop after a step and draw what it found: a short segment for each edge point, these "
+             "in order, segments and arcs before they meet, or the finished curves");
 }
 
 void add_drawing_options(CLI::App& command, LinesArguments& arguments) {

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <functional>
+#include <numbers>
 #include <optional>
 #include <span>
 #include <vector>
@@ -25,6 +28,12 @@ struct Crease {
   float bend = 0.0f;     ///< of the surfaces beside it into the wedge, in spacings; 0: plane
   EdgeClass edge_class;  ///< of the edge point
 };
+
+/// The angle between the normals of two surfaces that leave their edge in these directions,
+/// radians.
+inline double dihedral_angle(const Vec3& side_a, const Vec3& side_b) {
+  return std::numbers::pi - std::acos(std::clamp(side_a.dot(side_b), -1.0, 1.0));
+}
 
 /// Spacing and noise of a cloud, from points off its edges; from all points if none is off.
 struct Sampling {

@@ -88,6 +88,38 @@ std::vector<Piece> take_smooth(std::vector<Piece>& pieces, double noise) {
   return taken;
 }
 
+std::vector<Curve> drawn(const std::vector<Crease>& creases) {
+  std::vector<Curve> curves;
+  for (const Crease& crease : creases) {
+    const Vec3 half = 0.5 * crease.spacing * crease.along;
+    curves.push_back({.kind = CurveKind::kSegment,
+                      .edge_class = crease.edge_class == kNonEdge ? kSmoothEdge : crease.edge_class,
+                      .points = {crease.at - half, crease.at + half},
+                      .confidence = crease.probability,
+                      .dihedral_angle = dihedral_angle(crease.side_a, crease.side_b),
+                      .support = 1});
+  }
+  return curves;
+}
+
+std::vector<Curve> drawn(std::span<const Piece> pieces, const FinishOptions& options) {
+  std::vector<Curve> curves;
+  for (const Piece& piece : pieces) curves.push_back(curve_of(piece, options));
+  return curves;
+}
+
+std::vector<Curve> drawn(const std::vector<Chain>& chains, const FinishOptions& options) {
+  std::vector<Piece> pieces;
+  for (const Chain& chain : chains) {
+    if (chain.nodes.size() < kLeastNodes) continue;
+    pieces.push_back({.fit = {.kind = CurveKind::kPolyline},
+                      .nodes = chain.nodes,
+                      .ends = {chain.nodes.front().at, chain.nodes.back().at},
+                      .closed = chain.closed});
+  }
+  return drawn(std::span<const Piece>(pieces), options);
+}
+
 }  // namespace
 
 std::vector<Curve> find_lines(const EdgePoints& points, const LineOptions& options,
@@ -99,7 +131,9 @@ std::vector<Curve> find_lines(const EdgePoints& points, const LineOptions& optio
   if (options.boundaries) {
     if (auto pieces = find_plane_edges(cloud, sampling, progress)) {
       if (options.regularise) regularise(*pieces);
-      return finish(std::move(*pieces), {limits.min_length, limits.tolerance, 0.0, true});
+      const FinishOptions exact = {limits.min_length, limits.tolerance, 0.0, true};
+      if (options.stage != LineStage::kCurves) return drawn(std::span(*pieces), exact);
+      return finish(std::move(*pieces), exact);
     }
   }
   std::vector<Crease> creases = find_creases(cloud, sampling, progress);
@@ -108,9 +142,12 @@ std::vector<Curve> find_lines(const EdgePoints& points, const LineOptions& optio
     creases.insert(creases.end(), boundaries.begin(), boundaries.end());
   }
   if (creases.empty()) return {};
+  if (options.stage == LineStage::kCreases) return drawn(creases);
 
+  const FinishOptions finish_options = {limits.min_length, limits.tolerance, sampling.noise};
   creases = smoothed(creases, limits.smooth_within, progress);
   const std::vector<Chain> chains = trace(creases, limits.gap, sampling.noise, progress);
+  if (options.stage == LineStage::kChains) return drawn(chains, finish_options);
   std::vector<Piece> pieces = split_chains(chains, limits.tolerance, progress);
   join_pieces(pieces, limits.gap, limits.tolerance);
   complete_circles(pieces, limits.tolerance);
@@ -118,8 +155,8 @@ std::vector<Curve> find_lines(const EdgePoints& points, const LineOptions& optio
   string_together(pieces, limits.gap, limits.angle);
   refine(pieces, cloud, sampling, progress);
   if (options.regularise) regularise(pieces);
+  if (options.stage == LineStage::kPieces) return drawn(std::span(pieces), finish_options);
 
-  const FinishOptions finish_options = {limits.min_length, limits.tolerance, sampling.noise};
   const std::vector<Piece> smooth = take_smooth(pieces, sampling.noise);
   std::vector<Curve> curves = finish(std::move(pieces), finish_options);
   for (Curve& curve : finish(smooth, finish_options)) curves.push_back(std::move(curve));

@@ -9,6 +9,14 @@
 
 namespace pcednet::lines {
 
+/// The steps of find_lines(), each to be looked at alone.
+enum class LineStage : std::uint8_t {
+  kCreases,  ///< a segment of one spacing for each point that may be of an edge; none of roofs
+  kChains,   ///< creases in their order, as polylines; none of roofs
+  kPieces,   ///< segments, arcs and circles, before they meet in corners
+  kCurves,   ///< the result
+};
+
 /// Lengths are in the unit of the cloud; those that are 0 come from the spacing of the points.
 struct LineOptions {
   double min_length = 0.0;  ///< shorter curves are left out; 0: 3 spacings
@@ -17,6 +25,7 @@ struct LineOptions {
   double tolerance = 0.0;   ///< of the points to a curve; 0: 0.2 spacings, more with noise
   bool regularise = false;  ///< turns nearly parallel and nearly orthogonal segments so
   bool boundaries = false;  ///< also lines where the sampled surface ends
+  LineStage stage = LineStage::kCurves;  ///< the step whose curves are returned
 };
 
 /// The points and what is known of each, in any order. The spans are equally long; the

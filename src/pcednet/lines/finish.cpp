@@ -40,8 +40,7 @@ double mean_of(const Piece& piece, double ChainNode::*value) {
 double mean_dihedral(const Piece& piece) {
   double sum = 0.0;
   for (const ChainNode& node : piece.nodes) {
-    const double inside = std::acos(std::clamp(node.side_a.dot(node.side_b), -1.0, 1.0));
-    sum += std::numbers::pi - inside;
+    sum += dihedral_angle(node.side_a, node.side_b);
   }
   return sum / static_cast<double>(piece.nodes.size());
 }
@@ -79,7 +78,8 @@ void set_shape(Curve& curve, const Piece& piece, const std::array<Vec3, 2>& ends
   }
 }
 
-Curve curve_of(const Piece& piece, const std::array<Vec3, 2>& ends, const FinishOptions& options) {
+Curve curve_between(const Piece& piece, const std::array<Vec3, 2>& ends,
+                    const FinishOptions& options) {
   Curve curve{.edge_class = class_of(piece, options.noise)};
   set_shape(curve, piece, ends, options.tolerance);
   curve.dihedral_angle = mean_dihedral(piece);
@@ -158,6 +158,10 @@ EdgeClass class_of(const Piece& piece, double noise) {
   return rounded ? kSmoothEdge : kSharpEdge;
 }
 
+Curve curve_of(const Piece& piece, const FinishOptions& options) {
+  return curve_between(piece, piece.ends, options);
+}
+
 std::vector<Curve> finish(std::vector<Piece> pieces, const FinishOptions& options) {
   const auto meet = [&] {
     return options.exact ? find_corners(pieces, kExactReach, kExactTolerance)
@@ -174,7 +178,7 @@ std::vector<Curve> finish(std::vector<Piece> pieces, const FinishOptions& option
       const std::size_t corner = corners.of_ends[i][side];
       if (corner != Corners::kNoCorner) ends[side] = corners.places[corner];
     }
-    Curve curve = curve_of(pieces[i], ends, options);
+    Curve curve = curve_between(pieces[i], ends, options);
     if (is_sound(curve) && length_of(curve) >= options.min_length) {
       curves.push_back(std::move(curve));
     }

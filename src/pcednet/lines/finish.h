@@ -18,6 +18,9 @@ struct FinishOptions {
 /// and few of its points are sharp-edge.
 EdgeClass class_of(const Piece& piece, double noise);
 
+/// The piece between its own ends.
+Curve curve_of(const Piece& piece, const FinishOptions& options);
+
 /// Prolongs the pieces to their corners, drops loose short ones, and makes curves of the others.
 std::vector<Curve> finish(std::vector<Piece> pieces, const FinishOptions& options);
 
