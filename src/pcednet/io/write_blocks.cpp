@@ -7,8 +7,12 @@
 
 namespace pcednet::io {
 
-void write_blocks(OutputFile& file, std::size_t count,
-                  const std::function<void(std::size_t, std::size_t, std::string&)>& encode) {
+void write_blocks(OutputFile& file, std::size_t count, const EncodePoints& encode) {
+  write_blocks([&](std::string_view bytes) { file.write(bytes); }, count, encode);
+}
+
+void write_blocks(const std::function<void(std::string_view)>& write, std::size_t count,
+                  const EncodePoints& encode) {
   constexpr std::size_t kBlock = 8192;
   constexpr std::size_t kBlocksAtOnce = 32;
   std::array<std::string, kBlocksAtOnce> buffers;
@@ -18,7 +22,7 @@ void write_blocks(OutputFile& file, std::size_t count,
     parallel_blocks(points, kBlock, [&](std::size_t begin, std::size_t end) {
       encode(start + begin, start + end, buffers[begin / kBlock]);
     });
-    for (const std::string& buffer : buffers) file.write(buffer);
+    for (const std::string& buffer : buffers) write(buffer);
   }
 }
 

@@ -3,14 +3,19 @@
 #include <cstddef>
 #include <functional>
 #include <string>
+#include <string_view>
 
 #include "pcednet/core/output_file.h"
 
 namespace pcednet::io {
 
-/// Writes `count` points block by block: `encode(begin, end, out)` appends the bytes of [begin,
-/// end) to `out`, on all threads; blocks reach the file in order.
-void write_blocks(OutputFile& file, std::size_t count,
-                  const std::function<void(std::size_t, std::size_t, std::string&)>& encode);
+/// Appends the bytes of the points [begin, end) to `out`.
+using EncodePoints = std::function<void(std::size_t begin, std::size_t end, std::string& out)>;
+
+/// Writes `count` points block by block: they are encoded on all threads, and reach the file in
+/// order.
+void write_blocks(OutputFile& file, std::size_t count, const EncodePoints& encode);
+void write_blocks(const std::function<void(std::string_view)>& write, std::size_t count,
+                  const EncodePoints& encode);
 
 }  // namespace pcednet::io

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <map>
 #include <set>
@@ -103,7 +104,9 @@ class LayoutBuilder {
       }
       return true;
     }
-    if (add_normal(field) || add_label(field) || add_attribute(field)) return true;
+    if (add_normal(field) || add_label(field) || add_attribute(field) || add_angle(field)) {
+      return true;
+    }
     // Formats without returns in their source have one per pulse.
     static constexpr std::byte kOne{1};
     const bool counts = field.name == "ReturnNumber" || field.name == "NumberOfReturns";
@@ -176,6 +179,16 @@ class LayoutBuilder {
     }
     layout_.columns.push_back({field, reinterpret_cast<const std::byte*>(cloud_.labels.data()), 1});
     return has_label_ = true;
+  }
+
+  /// That of formats 6 to 10 from that of 0 to 5.
+  bool add_angle(const LasField& field) {
+    if (!choices_.promoted || field.name != "ScanAngle") return false;
+    const Attribute* rank = find_unused("ScanAngleRank", {"", ScalarType::kInt8}, 1);
+    if (!rank) return false;
+    used_.insert(rank);
+    layout_.columns.push_back({field, rank->bytes.data(), 1, LasColumn::Scale::kAngle});
+    return true;
   }
 
   void add_new() {
@@ -272,6 +285,13 @@ void write_scaled(const LasColumn& column, const std::byte* from, char* to) {
   if (column.scale == LasColumn::Scale::kColour) {
     const auto wide = static_cast<std::uint16_t>(std::to_integer<unsigned>(*from) * 257U);
     std::memcpy(to, &wide, sizeof wide);
+    return;
+  }
+  if (column.scale == LasColumn::Scale::kAngle) {
+    constexpr double kDegreesPerStep = 0.006;
+    const double degrees = static_cast<std::int8_t>(std::to_integer<unsigned>(*from));
+    const auto steps = static_cast<std::int16_t>(std::lround(degrees / kDegreesPerStep));
+    std::memcpy(to, &steps, sizeof steps);
     return;
   }
   double number = 0.0;

@@ -28,13 +28,14 @@ LoadedCloud read_las(const InputFile& file);
 /// For open_parts().
 std::unique_ptr<PartReader> open_las_parts(std::unique_ptr<InputFile> file, std::size_t most);
 
-/// Writes LAS, or LAZ if `path` ends in .laz.
+/// Writes LAS, or LAZ if `path` ends in .laz, or COPC 1.0 if it ends in .copc.laz.
 ///
 /// A cloud that was read from LAS gets back version, point format, scale, offset, records and
 /// fields, its integers bit for bit, without the extra bytes that it lost on its way; another
 /// becomes LAS 1.4, point format 6, or 7 with colours, in steps of a power of ten of at most 0.1
-/// mm. Further attributes become extra bytes: scalar_edge_class, scalar_p_sharp and scalar_p_smooth
-/// as edge_class, p_sharp and p_smooth. append() throws Error(kInsufficient) for positions that are
+/// mm. COPC is always LAS 1.4 of point format 6, 7 or 8, its points in an order of their own.
+/// Further attributes become extra bytes: scalar_edge_class, scalar_p_sharp and scalar_p_smooth as
+/// edge_class, p_sharp and p_smooth. append() throws Error(kInsufficient) for positions that are
 /// not finite, Error(kFailure) for a number that its field cannot hold; both name the point.
 std::unique_ptr<PartWriter> create_las_parts(const std::filesystem::path& path,
                                              const PartOutline& outline,
@@ -45,6 +46,6 @@ std::unique_ptr<PartWriter> create_las_parts(const std::filesystem::path& path,
 CoordinateSystem las_coordinate_system(const PointCloud& cloud);
 
 /// What create_las_parts does not keep of `cloud`, one sentence part each.
-std::vector<std::string> las_losses(const PointCloud& cloud);
+std::vector<std::string> las_losses(const std::filesystem::path& path, const PointCloud& cloud);
 
 }  // namespace pcednet::io

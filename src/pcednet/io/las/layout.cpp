@@ -9,6 +9,7 @@
 #include "pcednet/cloud/bounding_box.h"
 #include "pcednet/core/error.h"
 #include "pcednet/io/las/comments.h"
+#include "pcednet/io/las/copc.h"
 #include "pcednet/io/las/las.h"
 #include "pcednet/io/las/records.h"
 
@@ -134,14 +135,7 @@ bool labels_are_classes(const PartOutline& outline) {
   return same;
 }
 
-}  // namespace
-
-double las_step(const LasFile& file, std::size_t axis, double coordinate) {
-  const double step = std::round((coordinate - file.offset(axis)) / file.scale(axis));
-  return step >= INT32_MIN && step <= INT32_MAX ? step : NAN;
-}
-
-LasChoices las_choices(const PartOutline& outline) {
+LasChoices choices_of(const PartOutline& outline) {
   LasChoices choices{.file = attached_las_file(*outline.first),
                      .new_colours = !outline.is_las && colours_are_new(outline),
                      .label_is_class = labels_are_classes(outline)};
@@ -157,8 +151,21 @@ LasChoices las_choices(const PartOutline& outline) {
   return choices;
 }
 
-std::vector<std::string> las_losses(const PointCloud& cloud) {
-  return las_losses(cloud, las_choices(outline_of(cloud)));
+}  // namespace
+
+double las_step(const LasFile& file, std::size_t axis, double coordinate) {
+  const double step = std::round((coordinate - file.offset(axis)) / file.scale(axis));
+  return step >= INT32_MIN && step <= INT32_MAX ? step : NAN;
+}
+
+LasChoices las_choices(const std::filesystem::path& path, const PartOutline& outline) {
+  LasChoices choices = choices_of(outline);
+  if (is_copc_name(path)) choose_copc(choices, *outline.first);
+  return choices;
+}
+
+std::vector<std::string> las_losses(const std::filesystem::path& path, const PointCloud& cloud) {
+  return las_losses(cloud, las_choices(path, outline_of(cloud)));
 }
 
 std::vector<std::string> las_losses(const PointCloud& first, const LasChoices& choices) {
@@ -170,6 +177,7 @@ std::vector<std::string> las_losses(const PointCloud& first, const LasChoices& c
   if (!choices.exact) {
     losses.push_back(fmt::format("digits of positions beyond steps of {}", file.scale(0)));
   }
+  if (choices.lost_time_offset) losses.emplace_back("the offset of all times, which LAS 1.5 has");
   const auto standard = las_standard_fields(file.point_format());
   const bool has_colours = std::any_of(standard.begin(), standard.end(),
                                        [](const LasField& f) { return f.name == "Red"; });

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 #include <vector>
 
 #include "pcednet/io/las/file.h"
@@ -10,11 +11,11 @@ namespace pcednet::io {
 
 /// A field of the records to write, and where its numbers come from.
 struct LasColumn {
-  enum class Scale { kNone, kColour, kNormal };
+  enum class Scale { kNone, kColour, kNormal, kAngle };
   LasField field = {};
   const std::byte* first = nullptr;  ///< what point 0 gets
   std::size_t stride = 0;            ///< bytes from point to point; 0: all get the same
-  Scale scale = Scale::kNone;        ///< bytes times 257, or unit normals
+  Scale scale = Scale::kNone;        ///< bytes times 257, unit normals, whole degrees
 };
 
 /// What all points together decide.
@@ -22,9 +23,11 @@ struct LasChoices {
   LasFile file = {};            ///< version, point format, scale, offset; all records
   bool new_colours = false;     ///< the colours are not those of Red, Green and Blue
   bool label_is_class = false;  ///< the labels say nothing that scalar_edge_class does not
-  bool exact = true;            ///< every coordinate comes back as it is
+  bool promoted = false;        ///< the point format is not that of the input
+  bool lost_time_offset = false;
+  bool exact = true;  ///< every coordinate comes back as it is
 };
-LasChoices las_choices(const PartOutline& outline);
+LasChoices las_choices(const std::filesystem::path& path, const PartOutline& outline);
 
 /// What LAS loses of the cloud; see losses().
 std::vector<std::string> las_losses(const PointCloud& first, const LasChoices& choices);

@@ -2,14 +2,15 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "pcednet/core/output_file.h"
 #include "pcednet/io/input_file.h"
 #include "pcednet/io/las/file.h"
+#include "pcednet/io/write_blocks.h"
 
 namespace pcednet::io {
 
@@ -82,33 +83,44 @@ class LazReader {
   std::size_t record_length_ = 0;
 };
 
+/// How many points a chunk has: all the same, but for the last, or as the table says of each.
+enum class LazChunks { kEqual, kVariable };
+
 /// Adds the record that says how the points will be compressed.
-void add_laz_record(LasFile& file);
+void add_laz_record(LasFile& file, LazChunks chunks = LazChunks::kEqual);
 
 /// Writes the compressed points with their chunk table.
 class LazPointWriter {
  public:
   /// The points begin at `offset` of the file, where `out` must stand; `out` must outlive it.
-  LazPointWriter(OutputFile& out, const LasFile& file, std::uint64_t offset);
+  LazPointWriter(OutputFile& out, const LasFile& file, std::uint64_t offset,
+                 LazChunks chunks = LazChunks::kEqual);
 
-  /// Takes `count` more points; `encode` appends the records of a range of them.
-  void append(std::size_t count,
-              const std::function<void(std::size_t, std::size_t, std::string&)>& encode);
+  /// Takes `count` more points, for equal chunks.
+  void append(std::size_t count, const EncodePoints& encode);
+
+  /// Writes the records of each as a chunk, for variable ones, which it compresses on all threads.
+  /// Returns the bytes of each.
+  std::vector<std::size_t> write_chunks(const std::vector<std::span<std::byte>>& rows);
+
+  /// Where the next chunk will begin.
+  std::uint64_t place() const { return offset_ + bytes_; }
 
   /// Returns the bytes that points and table take.
   std::uint64_t finish();
 
  private:
-  void write_chunk(const std::string& chunk);
-  std::string compress(std::string& rows) const;
+  void write_chunk(const std::string& chunk, std::size_t points);
+  std::string compress(std::span<std::byte> rows) const;
+  std::string chunk_table() const;
 
   OutputFile& out_;
   std::vector<LazItem> items_;
-  bool layered_;
+  bool layered_, variable_;
   std::size_t stride_;
   std::uint64_t offset_, bytes_ = 0;
-  std::string waiting_ = {};  ///< records of a chunk that is not full
-  std::vector<std::size_t> sizes_ = {};
+  std::string waiting_ = {};                           ///< records of a chunk that is not full
+  std::vector<std::size_t> sizes_ = {}, points_ = {};  ///< of the chunks
 };
 
 namespace laz {

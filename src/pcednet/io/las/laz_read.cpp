@@ -10,7 +10,7 @@ namespace pcednet::io {
 namespace {
 
 constexpr unsigned kUnchunked = 1, kChunked = 2, kLayered = 3;
-constexpr std::uint64_t kVariable = UINT32_MAX;
+constexpr std::uint64_t kVariable = laz_record::kVariableSize;
 constexpr std::uint64_t kSymbolsPerByte = 1024;
 
 /// Whether so many bytes of a chunk may stand for so many symbols: the adaptive models do not get

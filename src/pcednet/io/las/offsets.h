@@ -28,7 +28,7 @@ inline constexpr std::size_t kLeastBytes = 227, kBytes13 = 235, kBytes14 = 375, 
 
 /// Bits of the point format's byte: LASzip sets the upper two.
 inline constexpr unsigned kFormatBits = 0x3F, kCompressedBits = 0xC0, kCompressedBit = 0x80;
-inline constexpr unsigned kWktBit = 16;  ///< of the global encoding
+inline constexpr unsigned kWktBit = 16, kTimeOffsetBit = 64;  ///< of the global encoding
 }  // namespace las_header
 
 /// A variable length record, before its data; the description ends it.
@@ -51,11 +51,22 @@ inline constexpr std::size_t kCompressor = 0, kCoder = 2, kMajorVersion = 4, kMi
                              kChunkSize = 12, kSpecialCount = 16, kSpecialOffset = 24,
                              kItemCount = 32, kItems = 34;
 inline constexpr std::size_t kItemType = 0, kItemSize = 2, kItemVersion = 4, kItemBytes = 6;
+inline constexpr std::uint32_t kVariableSize = UINT32_MAX;  ///< the chunk table says each size
 }  // namespace laz_record
 
 /// The chunk table behind the compressed points.
 namespace laz_table {
 inline constexpr std::size_t kVersion = 0, kChunkCount = 4, kChunks = 8;
+}
+
+/// The record of COPC 1.0 that must be the first, and an entry of the hierarchy.
+namespace copc_info {
+inline constexpr std::size_t kCentre = 0, kHalfSide = 24, kSpacing = 32, kHierarchy = 40,
+                             kHierarchyBytes = 48, kFirstTime = 56, kLastTime = 64, kBytes = 160;
+}
+namespace copc_entry {
+inline constexpr std::size_t kDepth = 0, kCell = 4, kPlace = 16, kChunkBytes = 24, kPoints = 28,
+                             kBytes = 32;
 }
 
 /// Whose records are known here: user id and record id.
@@ -66,6 +77,7 @@ struct LasRecordKind {
 inline constexpr LasRecordKind kWktRecord{"LASF_Projection", 2112},
     kGeoKeysRecord{"LASF_Projection", 34735}, kGeoTextRecord{"LASF_Projection", 34737},
     kExtraBytesRecord{"LASF_Spec", 4}, kWaveformsRecord{"LASF_Spec", 65535},
-    kLaszipRecord{"laszip encoded", 22204}, kCommentsRecord{"pcednet", 1};
+    kLaszipRecord{"laszip encoded", 22204}, kCopcInfoRecord{"copc", 1},
+    kCopcHierarchyRecord{"copc", 1000}, kCommentsRecord{"pcednet", 1};
 
 }  // namespace pcednet::io

@@ -8,6 +8,7 @@
 #include "pcednet/cloud/bounding_box.h"
 #include "pcednet/core/error.h"
 #include "pcednet/core/output_file.h"
+#include "pcednet/io/las/copc.h"
 #include "pcednet/io/las/las.h"
 #include "pcednet/io/las/layout.h"
 #include "pcednet/io/las/laz.h"
@@ -72,8 +73,12 @@ struct Summary {
   BoundingBox bounds = {};
   double least_time = INFINITY, most_time = -INFINITY;
 
+  bool timed() const { return least_time <= most_time; }
+  double first() const { return timed() ? least_time : 0.0; }
+  double last() const { return timed() ? most_time : 0.0; }
+
   void add(const PointCloud& part, const LasFile& file) {
-    const Attribute* times = file.has_time_range() ? find_attribute(part, "GpsTime") : nullptr;
+    const Attribute* times = find_attribute(part, "GpsTime");
     for (std::size_t i = 0; times && i < part.size(); ++i) {
       least_time = std::min(least_time, times->value(i));
       most_time = std::max(most_time, times->value(i));
@@ -122,20 +127,20 @@ void update_header(LasFile& file, const Summary& summary, std::uint64_t count,
     put_number(header, las_header::kByReturn64 + 8 * r, summary.by_return[r]);
   }
   if (!file.has_time_range()) return;
-  const bool timed = summary.least_time <= summary.most_time;
-  put_number(header, las_header::kLastTime, timed ? summary.most_time : 0.0);
-  put_number(header, las_header::kFirstTime, timed ? summary.least_time : 0.0);
+  put_number(header, las_header::kLastTime, summary.last());
+  put_number(header, las_header::kFirstTime, summary.first());
 }
 
 class LasPartWriter : public PartWriter {
  public:
   LasPartWriter(const std::filesystem::path& path, const PartOutline& outline,
                 const WriteOptions& options)
-      : path_(path), options_(options), choices_(las_choices(outline)) {
+      : path_(path), options_(options), choices_(las_choices(path, outline)) {
     losses = las_losses(*outline.first, choices_);
     file_ = las_layout(*outline.first, options, choices_).file;
+    const bool is_copc = is_copc_name(path);
     const bool compress = lower_case(path.extension().string()) == ".laz";
-    if (compress) add_laz_record(file_);
+    if (compress) add_laz_record(file_, is_copc ? LazChunks::kVariable : LazChunks::kEqual);
     const std::string records = las_record_bytes(file_.records, false) + file_.before_points;
     points_offset_ = file_.header.size() + records.size();
     if (points_offset_ > UINT32_MAX) {
@@ -144,7 +149,11 @@ class LasPartWriter : public PartWriter {
     }
     out_.emplace(path, options.overwrite);
     out_->write(file_.header + records);  // the header is written again at the end
-    if (compress) compressed_.emplace(*out_, file_, points_offset_);
+    if (is_copc) {
+      copc_.emplace(*out_, path, file_, points_offset_);
+    } else if (compress) {
+      compressed_.emplace(*out_, file_, points_offset_);
+    }
     // What each part is laid out by needs no other records.
     std::erase_if(choices_.file.records, [](const auto& r) { return !r.is(kExtraBytesRecord); });
     choices_.file.extended_records.clear();
@@ -161,7 +170,9 @@ class LasPartWriter : public PartWriter {
     const auto encode_points = [&](std::size_t begin, std::size_t end, std::string& bytes) {
       encode(path_, part, layout, count_, begin, end, bytes);
     };
-    if (compressed_) {
+    if (copc_) {
+      copc_->append(part.size(), encode_points);
+    } else if (compressed_) {
       compressed_->append(part.size(), encode_points);
     } else {
       write_blocks(*out_, part.size(), encode_points);
@@ -172,10 +183,14 @@ class LasPartWriter : public PartWriter {
 
   void commit() override {
     std::uint64_t end = points_offset_ + count_ * file_.record_length();
-    if (compressed_) end = points_offset_ + compressed_->finish();
+    if (copc_) {
+      end = finish_copc();
+    } else if (compressed_) {
+      end = points_offset_ + compressed_->finish();
+    }
     update_header(file_, summary_, count_, points_offset_);
     std::string& header = file_.header;
-    if (compressed_) {
+    if (copc_ || compressed_) {
       put_number(header, las_header::kPointFormat,
                  static_cast<std::uint8_t>(file_.point_format() | las_header::kCompressedBit));
     }
@@ -187,6 +202,18 @@ class LasPartWriter : public PartWriter {
   }
 
  private:
+  /// Writes the points and the record about them, and returns where they end.
+  std::uint64_t finish_copc() {
+    const std::uint64_t end = points_offset_ + copc_->finish(summary_.bounds);
+    auto& extended = file_.extended_records;
+    extended.insert(extended.begin(),
+                    new_record(kCopcHierarchyRecord, "COPC hierarchy", copc_->hierarchy()));
+    const std::string info =
+        copc_->info(end + las_record::kExtendedHeadBytes, summary_.first(), summary_.last());
+    out_->write_at(las_header::kBytes14 + las_record::kHeadBytes, std::as_bytes(std::span(info)));
+    return end;
+  }
+
   std::filesystem::path path_;
   WriteOptions options_;
   LasChoices choices_;
@@ -195,6 +222,7 @@ class LasPartWriter : public PartWriter {
   Summary summary_ = {};
   std::optional<OutputFile> out_ = {};
   std::optional<LazPointWriter> compressed_ = {};
+  std::optional<CopcPointWriter> copc_ = {};
 };
 
 }  // namespace
