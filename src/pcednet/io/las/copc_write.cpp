@@ -29,6 +29,27 @@ std::array<double, 3> position_of(const LasFile& file, const std::byte* row) {
   return position;
 }
 
+/// A number that orders as the time does, NaN at the ends.
+std::uint64_t order_of_time(const std::byte* row) {
+  constexpr std::size_t kGpsTime = 22, kSign = 63;
+  std::uint64_t bits = 0;
+  std::memcpy(&bits, row + kGpsTime, sizeof bits);
+  return bits >> kSign ? ~bits : bits | std::uint64_t{1} << kSign;
+}
+
+/// The order in which points were measured compresses best.
+void sort_by_time(std::span<std::byte> rows, std::size_t stride) {
+  const std::vector<std::byte> before(rows.begin(), rows.end());
+  std::vector<std::pair<std::uint64_t, const std::byte*>> order(rows.size() / stride);
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    order[i] = {order_of_time(&before[i * stride]), &before[i * stride]};
+  }
+  std::sort(order.begin(), order.end());  // where times are equal, by place
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    std::memcpy(&rows[i * stride], order[i].second, stride);
+  }
+}
+
 }  // namespace
 
 CopcPointWriter::CopcPointWriter(OutputFile& out, const std::filesystem::path& path,
@@ -103,6 +124,8 @@ void CopcPointWriter::write_nodes(const spatial::DetailTree& tree) {
       rows_of_nodes.push_back(std::span(window).subspan(at, bytes));
       at += bytes;
     }
+    parallel_blocks(rows_of_nodes.size(), 1,
+                    [&](std::size_t n, std::size_t) { sort_by_time(rows_of_nodes[n], stride_); });
     write_chunks_of(std::span(tree.nodes).subspan(first, last - first), rows_of_nodes);
   }
 }
