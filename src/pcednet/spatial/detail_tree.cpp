@@ -13,6 +13,7 @@ namespace pcednet::spatial {
 namespace {
 
 constexpr int kKeyBits = 21, kGridBits = 7, kLeastGridBits = 5;
+constexpr std::size_t kMostTogether = std::size_t{1} << 20;
 constexpr std::uint32_t kNobody = std::numeric_limits<std::uint32_t>::max();
 
 /// Every third bit, the lowest first: undoes spread_bits.
@@ -140,10 +141,10 @@ class Builder {
     const auto owner = static_cast<std::uint32_t>(number);
     if (cell.left <= options_.most || cell.depth == kKeyBits) {
       keep_first(cell, owner, cell.left);
-    } else if (cell.depth + kGridBits > kKeyBits) {
-      keep_first(cell, owner, options_.most);
+    } else if (cell.depth + kLeastGridBits > kKeyBits) {
+      keep_first(cell, owner, std::max(options_.most, kMostTogether));
     } else {
-      int grid_bits = kGridBits;
+      int grid_bits = std::min(kGridBits, kKeyBits - cell.depth);
       while (grid_bits > kLeastGridBits && voxels(cell, grid_bits) > options_.most) --grid_bits;
       thin(cell, owner, grid_bits);
     }

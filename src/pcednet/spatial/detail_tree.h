@@ -37,8 +37,8 @@ struct DetailTree {
 
 /// A node of more than `most` points keeps the one nearest to the centre of each voxel that has
 /// any, of 128 voxels a side (64 or 32 where that would be more than `most`), and hands the rest to
-/// its children. Only points closer together than 2^-14 of the cube make nodes without an even
-/// sample: `most` of them each, and all at depth 21.
+/// its children. More than `most` points closer together than 2^-16 of the cube make nodes without
+/// an even sample: 2^20 of them each, and all that are left at depth 21.
 ///
 /// The tree does not depend on the number of threads, nor on the order of the points as long as
 /// those of equal key and tie may stand for one another. Takes 20 bytes a point, 16 of which are

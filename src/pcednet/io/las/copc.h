@@ -27,8 +27,8 @@ void choose_copc(LasChoices& choices, const PointCloud& first);
 /// Writes points as COPC: an octree of levels of detail (see spatial::DetailTree), one chunk a
 /// node.
 ///
-/// Points wait in a scratch file beside the output until all are known. Memory is 24 bytes a point,
-/// and 256 MiB. The bytes are the same for any number of threads and any order of the points.
+/// Points wait in a scratch file beside the output until all are known. Memory is 20 bytes a point
+/// and 200 MB. The bytes are the same for any number of threads and any order of the points.
 class CopcPointWriter {
  public:
   /// The points begin at `offset` of the file `path`, where `out` must stand; `out` and `file` must
@@ -56,8 +56,7 @@ class CopcPointWriter {
   };
   std::vector<spatial::TreePoint> tree_points() const;
   void write_nodes(const spatial::DetailTree& tree);
-  void write_chunks_of(std::span<const spatial::DetailNode> nodes,
-                       const std::vector<std::span<std::byte>>& rows_of_nodes);
+  std::size_t write_chunks(std::span<const spatial::DetailNode> nodes, std::span<std::byte> rows);
   void gather(const std::vector<std::uint32_t>& places, std::size_t begin,
               std::vector<std::byte>& window) const;
   std::size_t points() const { return waiting_.size() / stride_; }

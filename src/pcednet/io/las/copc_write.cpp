@@ -16,8 +16,9 @@ namespace {
 constexpr std::size_t kRowsAtOnce = 32768;
 constexpr double kCellsPerSide = 1 << 21;       // of the keys of spatial::TreePoint
 constexpr double kVoxelsPerSide = 128.0;        // of a node of spatial::DetailTree
-constexpr std::size_t kLeastWindow = 1U << 28;  // bytes of rows in memory at once
-constexpr std::size_t kWindowPerPoint = 16;     // what the points of the tree took
+constexpr std::size_t kLeastWindow = 1U << 27;  // bytes of rows in memory at once
+constexpr std::size_t kChunksAtOnce = 32;
+constexpr std::size_t kWindowPerPoint = 16;  // what the points of the tree took
 
 std::array<double, 3> position_of(const LasFile& file, const std::byte* row) {
   std::array<double, 3> position = {};
@@ -117,21 +118,25 @@ void CopcPointWriter::write_nodes(const spatial::DetailTree& tree) {
     std::vector<std::byte> window(count * stride_);
     gather(tree.places, written, window);
     written += count;
-    std::vector<std::span<std::byte>> rows_of_nodes;
-    std::size_t at = 0;
-    for (std::size_t n = first; n < last; ++n) {
-      const std::size_t bytes = tree.nodes[n].points * stride_;
-      rows_of_nodes.push_back(std::span(window).subspan(at, bytes));
-      at += bytes;
+    std::span<std::byte> rest = window;
+    for (std::size_t n = first; n < last; n += kChunksAtOnce) {
+      const std::size_t nodes = std::min(kChunksAtOnce, last - n);
+      rest = rest.subspan(write_chunks(std::span(tree.nodes).subspan(n, nodes), rest));
     }
-    parallel_blocks(rows_of_nodes.size(), 1,
-                    [&](std::size_t n, std::size_t) { sort_by_time(rows_of_nodes[n], stride_); });
-    write_chunks_of(std::span(tree.nodes).subspan(first, last - first), rows_of_nodes);
   }
 }
 
-void CopcPointWriter::write_chunks_of(std::span<const spatial::DetailNode> nodes,
-                                      const std::vector<std::span<std::byte>>& rows_of_nodes) {
+/// A chunk for each node, of the rows at the beginning of `rows`; how many bytes these are.
+std::size_t CopcPointWriter::write_chunks(std::span<const spatial::DetailNode> nodes,
+                                          std::span<std::byte> rows) {
+  std::vector<std::span<std::byte>> rows_of_nodes;
+  std::size_t taken = 0;
+  for (const spatial::DetailNode& node : nodes) {
+    rows_of_nodes.push_back(rows.subspan(taken, node.points * stride_));
+    taken += rows_of_nodes.back().size();
+  }
+  parallel_blocks(nodes.size(), 1,
+                  [&](std::size_t n, std::size_t) { sort_by_time(rows_of_nodes[n], stride_); });
   std::uint64_t place = chunks_.place();
   const std::vector<std::size_t> sizes = chunks_.write_chunks(rows_of_nodes);
   for (std::size_t n = 0; n < nodes.size(); ++n) {
@@ -146,6 +151,7 @@ void CopcPointWriter::write_chunks_of(std::span<const spatial::DetailNode> nodes
     hierarchy_ += entry;
     place += sizes[n];
   }
+  return taken;
 }
 
 std::uint64_t CopcPointWriter::finish(const BoundingBox& bounds) {

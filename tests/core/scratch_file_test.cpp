@@ -1,0 +1,54 @@
+#include "pcednet/core/scratch_file.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <string>
+
+#include "support/expect_error.h"
+
+namespace pcednet {
+namespace {
+
+namespace fs = std::filesystem;
+
+class ScratchFiles : public ::testing::Test {
+ protected:
+  void SetUp() override { fs::create_directories(folder); }
+  void TearDown() override { fs::remove_all(folder); }
+  fs::path folder =
+      fs::temp_directory_path() / ("pcednet-scratch-files-" + std::to_string(getpid()));
+};
+
+std::string text_of(const ScratchFile& file, std::uint64_t offset, std::size_t count) {
+  std::string text(count, '?');
+  file.read(offset, std::as_writable_bytes(std::span(text)));
+  return text;
+}
+
+TEST_F(ScratchFiles, GiveBackWhatWasWritten) {
+  ScratchFile file(folder / "out.laz"), other(folder / "out.laz");
+  file.write("abc");
+  other.write("x");
+  file.write("defgh");
+  EXPECT_EQ(file.size(), 8U);
+  EXPECT_EQ(text_of(file, 0, 8), "abcdefgh");
+  EXPECT_EQ(text_of(file, 2, 3), "cde");
+  EXPECT_EQ(text_of(other, 0, 1), "x");
+}
+
+TEST_F(ScratchFiles, HaveNoName) {
+  ScratchFile file(folder / "out.laz");
+  file.write("abc");
+  EXPECT_TRUE(fs::is_empty(folder));
+}
+
+TEST_F(ScratchFiles, NeedTheFolderAndGiveNoMoreThanTheyHold) {
+  EXPECT_ERROR(ErrorKind::kFailure, ScratchFile(folder / "nowhere" / "out.laz"));
+  ScratchFile file(folder / "out.laz");
+  file.write("abc");
+  EXPECT_ERROR(ErrorKind::kFailure, text_of(file, 1, 3));
+}
+
+}  // namespace
+}  // namespace pcednet
