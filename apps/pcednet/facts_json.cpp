@@ -76,6 +76,7 @@ ordered_json json_of(const io::LasFacts& las) {
   return {{"version", fmt::format("1.{}", las.minor_version)},
           {"point_format", las.point_format},
           {"compressed", las.compressed},
+          {"copc", las.copc},
           {"system", las.system},
           {"software", las.software},
           {"created_day", las.created_day},

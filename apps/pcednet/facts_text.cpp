@@ -115,8 +115,11 @@ void add(const io::LasFacts& las, Lines& lines) {
   const auto add_known = [&](const char* name, const std::string& text) {
     if (!text.empty()) lines.add(name, text);
   };
-  lines.add("version", fmt::format("LAS 1.{}, point format {}{}", las.minor_version,
-                                   las.point_format, las.compressed ? ", LASzip" : ""));
+  lines.add("version",
+            fmt::format("LAS 1.{}, point format {}{}", las.minor_version, las.point_format,
+                        las.copc         ? ", COPC"
+                        : las.compressed ? ", LASzip"
+                                         : ""));
   lines.add("made by", fmt::format("{} / {}, day {} of {}", las.system, las.software,
                                    las.created_day, las.created_year));
   lines.add("scale", spelled_list(las.scale));

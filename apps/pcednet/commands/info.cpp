@@ -11,6 +11,7 @@
 #include "facts.h"
 #include "pcednet/core/error.h"
 #include "pcednet/core/output_file.h"
+#include "pcednet/formats/virtual_cloud.h"
 
 namespace pcednet::app {
 namespace {
@@ -19,7 +20,7 @@ using nlohmann::ordered_json;
 
 struct InfoRequest {
   std::vector<std::string> inputs;
-  std::string json;
+  std::string json, vpc;
 };
 
 void write_json(const InfoRequest& request, const ordered_json& files, const Common& common) {
@@ -33,7 +34,29 @@ void write_json(const InfoRequest& request, const ordered_json& files, const Com
   }
 }
 
+/// Reads headers alone.
+void list_files(const InfoRequest& request, const Common& common) {
+  check_writable(request.vpc, common.overwrite());
+  const Progress progress = console_progress(common);
+  const Inputs inputs = find_inputs(request.inputs);
+  Batch batch(inputs);
+  std::vector<formats::VirtualFile> files;
+  for (const std::filesystem::path& path : inputs.files) {
+    throw_if_cancelled(&progress);
+    batch.run(path, [&] { files.push_back(formats::virtual_file(path)); });
+  }
+  batch.finish();
+  for (const std::string& remark :
+       formats::write_virtual_cloud(request.vpc, files, common.overwrite())) {
+    warn(request.vpc + ": " + remark);
+  }
+  std::uint64_t points = 0;
+  for (const formats::VirtualFile& file : files) points += file.points;
+  say(fmt::format("{}: {} files, {} points", request.vpc, files.size(), points));
+}
+
 void info(const InfoRequest& request, const Common& common) {
+  if (!request.vpc.empty()) return list_files(request, common);
   if (request.json != "-") check_writable(request.json, common.overwrite());
   const Progress progress = console_progress(common);
   const Inputs inputs = find_inputs(request.inputs);
@@ -62,12 +85,17 @@ void add_info(CLI::App& app, Common& common) {
   CLI::App* command = add_command(app, common, "info", "Describe point files",
                                   "pcednet info scan.ply\n"
                                   "pcednet info folder/ --json report.json\n"
-                                  "pcednet info scan.ply --json -");
+                                  "pcednet info scan.ply --json -\n"
+                                  "pcednet info tiles/ --vpc city.vpc");
   auto request = std::make_shared<InfoRequest>();
   command->add_option("inputs", request->inputs, "Point files or folders of point files")
       ->required();
   command->add_option("--json", request->json,
                       "Write the result as JSON to this file; - for standard output only");
+  command->add_option("--vpc", request->vpc,
+                      "Instead of describing them, list LAS, LAZ and COPC files in a virtual point "
+                      "cloud for QGIS; only their headers are read");
+  command->get_option("--json")->excludes(command->get_option("--vpc"));
   command->callback([request, &common] { info(*request, common); });
 }
 

@@ -62,7 +62,7 @@ int epsg_of(const WktNode& node) {
 }  // namespace
 
 CoordinateSystem coordinate_system_of_wkt(std::string_view wkt) {
-  CoordinateSystem system{.epsg = 0, .wkt = std::string(trim(wkt)), .in_metres = false};
+  CoordinateSystem system{.epsg = 0, .wkt = std::string(trim(wkt))};
   int whole = 0, horizontal = 0;
   bool metres = false, other_lengths = false;
   visit_wkt(wkt, [&](const std::vector<WktNode>& open) {

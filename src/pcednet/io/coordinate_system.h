@@ -10,6 +10,7 @@ struct CoordinateSystem {
   int epsg = 0;            ///< its code; 0: unknown
   std::string wkt = {};    ///< its definition (OGC 01-009 or 18-010); may be empty
   bool in_metres = false;  ///< all its lengths, as far as said
+  int vertical_epsg = 0;   ///< code of the heights where `epsg` is not of them too; 0: unknown
 };
 
 /// The system that a definition describes: its code is that of its outermost AUTHORITY or ID of

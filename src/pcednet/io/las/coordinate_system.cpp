@@ -10,7 +10,7 @@ namespace {
 
 // GeoTIFF keys, and the values that say nothing.
 constexpr std::uint16_t kGeographicType = 2048, kProjectedType = 3072, kProjectedUnit = 3076,
-                        kVerticalUnit = 4099;
+                        kVerticalType = 4096, kVerticalUnit = 4099;
 constexpr int kMetre = 9001, kUserDefined = 32767;
 
 /// The keys whose value stands with them, which codes do.
@@ -35,14 +35,14 @@ CoordinateSystem coordinate_system_of_keys(std::string_view data) {
   };
   CoordinateSystem system;
   system.epsg = value(kProjectedType, value(kGeographicType, 0));
+  system.vertical_epsg = value(kVerticalType, 0);
   system.in_metres = value(kProjectedUnit, 0) == kMetre && value(kVerticalUnit, kMetre) == kMetre;
   return system;
 }
 
 }  // namespace
 
-CoordinateSystem las_coordinate_system(const PointCloud& cloud) {
-  const LasFile file = attached_las_file(cloud);
+CoordinateSystem coordinate_system_of(const LasFile& file) {
   CoordinateSystem system;
   for (const auto* records : {&file.records, &file.extended_records}) {
     for (const LasRecord& record : *records) {
@@ -51,6 +51,10 @@ CoordinateSystem las_coordinate_system(const PointCloud& cloud) {
     }
   }
   return system;
+}
+
+CoordinateSystem las_coordinate_system(const PointCloud& cloud) {
+  return coordinate_system_of(attached_las_file(cloud));
 }
 
 }  // namespace pcednet::io

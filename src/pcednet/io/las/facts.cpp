@@ -1,6 +1,9 @@
 #include "pcednet/io/las/facts.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <utility>
 
 namespace pcednet::io {
 namespace {
@@ -32,7 +35,40 @@ std::map<int, std::size_t> counts_of(const PointCloud& points, const char* name)
   return counts;
 }
 
+/// Whether the record that COPC requires comes first, which read_las_file leaves out.
+bool begins_with_copc_record(const InputFile& file) {
+  const std::string head =
+      file.text(las_header::kBytes14, las_record::kHeadBytes).substr(las_record::kUserId);
+  return until_zero(head.substr(0, las_record::kUserIdBytes)) == kCopcInfoRecord.user_id;
+}
+
 }  // namespace
+
+LasOutline las_outline(const InputFile& file) {
+  std::vector<std::string> warnings;
+  const LasFile las = read_las_file(file, warnings);
+  LasOutline outline{
+      .points = las.point_count(),
+      .compressed = las.compressed(),
+      .copc = las.compressed() && begins_with_copc_record(file),
+      .created_day = number_at<std::uint16_t>(las.header, las_header::kCreationDay),
+      .created_year = number_at<std::uint16_t>(las.header, las_header::kCreationYear),
+      .coordinate_system = coordinate_system_of(las),
+      .fields = las_standard_fields(las.point_format())};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::size_t at = las_header::kBounds + 16 * axis;
+    outline.bounds.max[static_cast<int>(axis)] = number_at<double>(las.header, at);
+    outline.bounds.min[static_cast<int>(axis)] = number_at<double>(las.header, at + 8);
+  }
+  if (!outline.bounds.min.allFinite() || !outline.bounds.max.allFinite()) {
+    throw unreadable(file.path(),
+                     fmt::format("byte {}: bounds that are not numbers", las_header::kBounds));
+  }
+  for (LasField& field : las_extra_fields(las, warnings)) {
+    outline.fields.push_back(std::move(field));
+  }
+  return outline;
+}
 
 LasFacts las_facts(const InputFile& file, const PointCloud& points) {
   std::vector<std::string> warnings;  // read_las() gives them
@@ -40,6 +76,7 @@ LasFacts las_facts(const InputFile& file, const PointCloud& points) {
   LasFacts facts{.minor_version = las.minor_version(),
                  .point_format = las.point_format(),
                  .compressed = las.compressed(),
+                 .copc = las.compressed() && begins_with_copc_record(file),
                  .system = text_at(las.header, las_header::kSystem),
                  .software = text_at(las.header, las_header::kSoftware),
                  .created_day = number_at<std::uint16_t>(las.header, las_header::kCreationDay),

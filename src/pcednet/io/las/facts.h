@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "pcednet/cloud/bounding_box.h"
+#include "pcednet/io/coordinate_system.h"
 #include "pcednet/io/input_file.h"
 #include "pcednet/io/las/file.h"
 
@@ -23,7 +25,7 @@ struct LasFacts {
 
   unsigned minor_version = 0;  ///< of LAS 1
   unsigned point_format = 0;
-  bool compressed = false;
+  bool compressed = false, copc = false;
   std::string system, software;
   unsigned created_day = 0, created_year = 0;
   std::array<double, 3> scale = {}, offset = {};
@@ -32,6 +34,19 @@ struct LasFacts {
   std::vector<std::string> extra_bytes;
   std::map<int, std::size_t> points_by_return, points_by_class;
 };
+
+/// What the header and the records of a LAS or LAZ file say of its points.
+struct LasOutline {
+  std::uint64_t points = 0;
+  BoundingBox bounds = {};
+  bool compressed = false, copc = false;
+  unsigned created_day = 0, created_year = 0;  ///< 0: not said
+  CoordinateSystem coordinate_system = {};
+  std::vector<LasField> fields = {};  ///< X, Y and Z first, extra bytes last
+};
+
+/// Reads no points. Throws Error(kUnreadable) as read_las, also for bounds that are not numbers.
+LasOutline las_outline(const InputFile& file);
 
 /// Reads the header and the records; the points are those that read_las gives. Throws as it.
 LasFacts las_facts(const InputFile& file, const PointCloud& points);

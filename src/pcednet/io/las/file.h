@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "pcednet/cloud/point_cloud.h"
+#include "pcednet/io/coordinate_system.h"
 #include "pcednet/io/input_file.h"
 #include "pcednet/io/las/offsets.h"
 
@@ -121,6 +122,9 @@ LasFile read_las_file(const InputFile& file, std::vector<std::string>& warnings)
 
 /// Where the points must end at the latest: at the records behind them, or with the file.
 std::uint64_t las_points_limit(const InputFile& file, const LasFile& las);
+
+/// That of its WKT, otherwise of its GeoTIFF keys.
+CoordinateSystem coordinate_system_of(const LasFile& file);
 
 /// Makes the header say that the extended records begin at `begin`; false if it has no place for
 /// that.

@@ -170,14 +170,13 @@ std::vector<std::string> las_losses(const std::filesystem::path& path, const Poi
 
 std::vector<std::string> las_losses(const PointCloud& first, const LasChoices& choices) {
   const LasFile& file = choices.file;
-  std::vector<std::string> losses;
+  std::vector<std::string> losses = choices.losses;
   if (!first.comments.empty() && !las_comment_record(first.comments)) {
     losses.emplace_back("comments of more than 64 KiB");
   }
   if (!choices.exact) {
     losses.push_back(fmt::format("digits of positions beyond steps of {}", file.scale(0)));
   }
-  if (choices.lost_time_offset) losses.emplace_back("the offset of all times, which LAS 1.5 has");
   const auto standard = las_standard_fields(file.point_format());
   const bool has_colours = std::any_of(standard.begin(), standard.end(),
                                        [](const LasField& f) { return f.name == "Red"; });

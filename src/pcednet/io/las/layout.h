@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "pcednet/io/las/file.h"
@@ -20,12 +21,12 @@ struct LasColumn {
 
 /// What all points together decide.
 struct LasChoices {
-  LasFile file = {};            ///< version, point format, scale, offset; all records
-  bool new_colours = false;     ///< the colours are not those of Red, Green and Blue
-  bool label_is_class = false;  ///< the labels say nothing that scalar_edge_class does not
-  bool promoted = false;        ///< the point format is not that of the input
-  bool lost_time_offset = false;
-  bool exact = true;  ///< every coordinate comes back as it is
+  LasFile file = {};                     ///< version, point format, scale, offset; all records
+  bool new_colours = false;              ///< the colours are not those of Red, Green and Blue
+  bool label_is_class = false;           ///< the labels say nothing that scalar_edge_class does not
+  bool promoted = false;                 ///< the point format is not that of the input
+  bool exact = true;                     ///< every coordinate comes back as it is
+  std::vector<std::string> losses = {};  ///< what else the version does not hold
 };
 LasChoices las_choices(const std::filesystem::path& path, const PartOutline& outline);
 

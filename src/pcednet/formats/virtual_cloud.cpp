@@ -1,0 +1,202 @@
+#include "pcednet/formats/virtual_cloud.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "pcednet/core/error.h"
+#include "pcednet/formats/format.h"
+#include "pcednet/io/las/facts.h"
+#include "pcednet/io/projection.h"
+
+namespace pcednet::formats {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::ordered_json;
+using Ring = std::vector<std::array<double, 2>>;
+
+const char* stac_type(ScalarType type) {
+  switch (type) {
+    case ScalarType::kFloat32:
+    case ScalarType::kFloat64:
+      return "floating";
+    case ScalarType::kInt8:
+    case ScalarType::kInt16:
+    case ScalarType::kInt32:
+    case ScalarType::kInt64:
+      return "signed";
+    default:
+      return "unsigned";
+  }
+}
+
+/// The fields of a LAS record by PDAL's names and types.
+std::vector<VirtualFile::Field> fields_of(const std::vector<io::LasField>& fields) {
+  std::vector<VirtualFile::Field> named;
+  for (const io::LasField& field : fields) {
+    const bool is_axis = field.name == "X" || field.name == "Y" || field.name == "Z";
+    const bool is_angle = field.name == "ScanAngle" || field.name == "ScanAngleRank";
+    if (is_axis) {
+      named.push_back({field.name, ScalarType::kFloat64});
+    } else if (is_angle) {
+      named.push_back({"ScanAngleRank", ScalarType::kFloat32});
+    } else {
+      const bool ours = field.name.starts_with("scalar_");
+      named.push_back({ours ? field.name.substr(7) : field.name, field.type});
+    }
+  }
+  return named;
+}
+
+Ring corners_of(const BoundingBox& box) {
+  return {{box.min.x(), box.min.y()},
+          {box.max.x(), box.min.y()},
+          {box.max.x(), box.max.y()},
+          {box.min.x(), box.max.y()},
+          {box.min.x(), box.min.y()}};
+}
+
+ordered_json polygon(const Ring& ring) {
+  return {{"type", "Polygon"}, {"coordinates", ordered_json::array({ring})}};
+}
+
+ordered_json box_around(const Ring& ring, const BoundingBox& heights) {
+  const auto [west, east] = std::minmax_element(ring.begin(), ring.end());
+  const auto by_latitude = [](const auto& a, const auto& b) { return a[1] < b[1]; };
+  const auto [south, north] = std::minmax_element(ring.begin(), ring.end(), by_latitude);
+  return {(*west)[0], (*south)[1], heights.min.z(), (*east)[0], (*north)[1], heights.max.z()};
+}
+
+/// The day as STAC writes it; null if there is none such.
+ordered_json day_of(const VirtualFile& file) {
+  using namespace std::chrono;
+  if (file.created_year == 0 || file.created_day == 0 || file.created_day > 366) return nullptr;
+  const sys_days first = year(static_cast<int>(file.created_year)) / January / 1;
+  const year_month_day date(first + days(file.created_day - 1));
+  return fmt::format("{:04}-{:02}-{:02}T00:00:00Z", static_cast<int>(date.year()),
+                     static_cast<unsigned>(date.month()), static_cast<unsigned>(date.day()));
+}
+
+/// As a URL relative to the folder, which readers know by its beginning "./".
+std::string reference_to(const fs::path& file, const fs::path& folder) {
+  std::error_code fault;
+  const fs::path relative = fs::relative(file, folder, fault);
+  if (fault || relative.empty()) return fs::absolute(file).generic_string();
+  return "./" + relative.generic_string();
+}
+
+ordered_json properties_of(const VirtualFile& file, const std::string& definition) {
+  ordered_json schemas = ordered_json::array();
+  for (const VirtualFile::Field& field : file.fields) {
+    schemas.push_back(
+        {{"name", field.name}, {"size", size_of(field.type)}, {"type", stac_type(field.type)}});
+  }
+  const BoundingBox& box = file.bounds;
+  // Not proj:epsg: QGIS takes its number for one of its own.
+  return {{"datetime", day_of(file)},
+          {"pc:count", file.points},
+          {"pc:type", "lidar"},
+          {"pc:encoding", file.encoding},
+          {"pc:schemas", std::move(schemas)},
+          {"proj:wkt2", definition},
+          {"proj:geometry", polygon(corners_of(box))},
+          {"proj:bbox",
+           {box.min.x(), box.min.y(), box.min.z(), box.max.x(), box.max.y(), box.max.z()}}};
+}
+
+ordered_json item_of(const VirtualFile& file, const std::string& id, const fs::path& folder) {
+  Ring ring = corners_of(file.bounds);
+  const auto on_earth = io::to_wgs84(file.coordinate_system, ring);
+  std::string definition;
+  if (on_earth) {
+    ring = *on_earth;
+    definition = io::definition_of(file.coordinate_system, io::WktVersion::k2);
+  }
+  return {
+      {"type", "Feature"},
+      {"stac_version", "1.0.0"},
+      {"stac_extensions",
+       {"https://stac-extensions.github.io/pointcloud/v1.0.0/schema.json",
+        "https://stac-extensions.github.io/projection/v1.1.0/schema.json"}},
+      {"id", id},
+      {"geometry", polygon(ring)},
+      {"bbox", box_around(ring, file.bounds)},
+      {"properties", properties_of(file, definition)},
+      {"links", ordered_json::array()},
+      {"assets",
+       {{"data",
+         {{"href", reference_to(file.path, folder)}, {"roles", ordered_json::array({"data"})}}}}}};
+}
+
+std::vector<std::string> remarks_on(std::span<const VirtualFile> files, std::size_t empty,
+                                    const ordered_json& items) {
+  std::vector<std::string> remarks;
+  if (empty > 0)
+    remarks.push_back(fmt::format("{} of {} files have no points", empty, files.size()));
+  std::set<std::string> systems;
+  for (const ordered_json& item : items) systems.insert(item["properties"]["proj:wkt2"]);
+  if (systems.size() > 1) {
+    remarks.emplace_back("the files are not all of one coordinate system: QGIS takes the first");
+  }
+  const bool named = std::any_of(files.begin(), files.end(), [](const VirtualFile& file) {
+    return file.coordinate_system.epsg > 0 || !file.coordinate_system.wkt.empty();
+  });
+  if (named && systems.count("") > 0) {
+    remarks.emplace_back(io::has_projections()
+                             ? "PROJ does not know the coordinate system: it is left out"
+                             : "made without PROJ: the coordinate system is left out");
+  }
+  return remarks;
+}
+
+}  // namespace
+
+VirtualFile virtual_file(const fs::path& path) {
+  const io::InputFile file(path);
+  if (format_of(file).name != "LAS") {
+    throw Error(ErrorKind::kInsufficient,
+                path.string() + ": a virtual point cloud is of LAS, LAZ and COPC files");
+  }
+  const io::LasOutline las = io::las_outline(file);
+  return {.path = path,
+          .points = las.points,
+          .bounds = las.bounds,
+          .coordinate_system = las.coordinate_system,
+          .encoding = las.copc         ? "copc"
+                      : las.compressed ? "laz"
+                                       : "las",
+          .created_day = las.created_day,
+          .created_year = las.created_year,
+          .fields = fields_of(las.fields)};
+}
+
+std::vector<std::string> write_virtual_cloud(const fs::path& path,
+                                             std::span<const VirtualFile> files,
+                                             Overwrite overwrite) {
+  const fs::path folder = fs::absolute(path).parent_path();
+  ordered_json items = ordered_json::array();
+  std::set<std::string> ids;
+  for (const VirtualFile& file : files) {
+    if (file.points == 0) continue;
+    const std::string stem = file.path.stem().string();
+    std::string id = stem;
+    for (int i = 2; !ids.insert(id).second; ++i) id = fmt::format("{}-{}", stem, i);
+    items.push_back(item_of(file, id, folder));
+  }
+  if (items.empty()) {
+    throw Error(ErrorKind::kInsufficient, path.string() + ": none of its files has points");
+  }
+  std::vector<std::string> remarks = remarks_on(files, files.size() - items.size(), items);
+  const ordered_json whole = {{"type", "FeatureCollection"}, {"features", std::move(items)}};
+  // Names of files need not be UTF-8.
+  write_text_file(path, whole.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n",
+                  overwrite);
+  return remarks;
+}
+
+}  // namespace pcednet::formats

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "pcednet/cloud/bounding_box.h"
+#include "pcednet/cloud/point_cloud.h"
+#include "pcednet/core/output_file.h"
+#include "pcednet/io/coordinate_system.h"
+
+namespace pcednet::formats {
+
+/// What a virtual point cloud says of one of its files.
+struct VirtualFile {
+  struct Field {
+    std::string name;  ///< as PDAL names it
+    ScalarType type = ScalarType::kFloat64;
+  };
+
+  std::filesystem::path path;
+  std::uint64_t points = 0;
+  BoundingBox bounds = {};
+  io::CoordinateSystem coordinate_system = {};
+  std::string encoding = "?";                  ///< "las", "laz" or "copc"
+  unsigned created_day = 0, created_year = 0;  ///< 0: not known
+  std::vector<Field> fields = {};
+};
+
+/// Reads the header of a LAS, LAZ or COPC file, not its points. Throws Error(kUnreadable) as
+/// read_cloud, Error(kInsufficient) for another format.
+VirtualFile virtual_file(const std::filesystem::path& path);
+
+/// Writes a virtual point cloud (.vpc), as QGIS and pdal_wrench read it: a STAC ItemCollection with
+/// one item per file, which it names relative to its own folder. Files without points are left out.
+/// Returns what its reader should know, one sentence each.
+///
+/// Outlines are in WGS 84 where PROJ knows the system; otherwise in the coordinates of the files,
+/// and the system is left out, because QGIS would take the outline for one in WGS 84 then.
+/// Throws Error(kInsufficient) if no file has points, Error(kUsage) and Error(kFailure) as
+/// OutputFile.
+std::vector<std::string> write_virtual_cloud(const std::filesystem::path& path,
+                                             std::span<const VirtualFile> files,
+                                             Overwrite overwrite = Overwrite::kNo);
+
+}  // namespace pcednet::formats

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pcednet/io/coordinate_system.h"
+
+namespace pcednet::io {
+
+/// Whether this build has PROJ; without it the functions below know nothing.
+bool has_projections();
+
+enum class WktVersion { k1, k2 };  ///< OGC 01-009, as LAS takes it; ISO 19162:2019
+
+/// The definition of a system on one line: of its WKT, otherwise of its codes. Empty if PROJ does
+/// not know it.
+std::string definition_of(const CoordinateSystem& system, WktVersion version);
+
+/// Points (x, y) of a system as (longitude, latitude) of WGS 84, in degrees. None if PROJ does not
+/// know the system, or one of them has no place there.
+std::optional<std::vector<std::array<double, 2>>> to_wgs84(
+    const CoordinateSystem& system, std::vector<std::array<double, 2>> points);
+
+}  // namespace pcednet::io
