@@ -33,6 +33,7 @@ convert "$corpus/pcd/ascii.pcd" --ascii
 convert "$corpus/obj/seed.obj"
 convert "$corpus/las/seed.las"
 convert "$corpus/las/seed.laz"
+convert "$corpus/las/seed.copc.laz"
 for kind in las laz; do  # and with a header that counts no points
   cp "$corpus/las/seed.$kind" "$corpus/las/unfinished.$kind"
   head -c 8 /dev/zero | dd of="$corpus/las/unfinished.$kind" bs=1 seek=247 conv=notrunc 2>/dev/null
@@ -42,7 +43,8 @@ convert "$corpus/xyz/seed.pts"
 # Ours are too large to begin with: six numbers, whose header has 0166 (118) bytes.
 printf '\223NUMPY\001\000\166\000%-117s\n%48s' \
   "{'descr': '<f8', 'fortran_order': False, 'shape': (2, 3), }" '' >"$corpus/npy/seed.npy"
-cp "$corpus/ply/binary.ply" "$corpus/las/seed.las" "$corpus/las/seed.laz" "$corpus/parts"
+cp "$corpus/ply/binary.ply" "$corpus/las/seed.las" "$corpus/las/seed.laz" \
+  "$corpus/las/seed.copc.laz" "$corpus/parts"
 cp models/*.safetensors "$corpus/model"
 printf '%s\n' 'curves:' '- sharp: true' '  type: Line' '  vert_indices: [0, 1, 2]' \
   >"$corpus/features/seed.yml"

@@ -41,6 +41,25 @@ class Info(CliTest):
         self.assertIn("b.ply", files[0]["error"])
         self.assertEqual(files[1]["points"], 100)
 
+    def test_lists_files_in_a_virtual_point_cloud_by_their_headers(self):
+        p, n, _ = cube(300)
+        write_ply(self.folder / "a.ply", p, n)
+        tiles = self.folder / "tiles"
+        tiles.mkdir()
+        for name in ("a.laz", "b.copc.laz"):
+            run("convert", self.folder / "a.ply", "-o", tiles / name)
+        whole = (tiles / "a.laz").read_bytes()
+        (tiles / "a.laz").write_bytes(whole[:-200])  # damaged points do not matter
+        made = run("info", tiles, "--vpc", self.folder / "all.vpc")
+        self.assertIn("2 files, 600 points", made.stderr)
+        items = json.loads((self.folder / "all.vpc").read_text())["features"]
+        self.assertEqual([item["assets"]["data"]["href"] for item in items],
+                         ["./tiles/a.laz", "./tiles/b.copc.laz"])
+        self.assertEqual([item["properties"]["pc:count"] for item in items], [300, 300])
+        run("info", tiles, "--vpc", self.folder / "all.vpc", expect=2)
+        run("info", self.folder / "a.ply", "--vpc", self.folder / "b.vpc", expect=4)
+        self.assertFalse((self.folder / "b.vpc").exists())
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -8,8 +8,9 @@ namespace pcednet::formats {
 namespace {
 
 TEST(Formats, AreListedByTheirExtensions) {
-  EXPECT_EQ(extensions_read(), ".ply .pcd .las .laz .e57 .obj .xyz .txt .asc .pts .csv");
-  EXPECT_EQ(extensions_written(" or "), ".ply .pcd .las .laz .obj .xyz .txt .asc .pts or .csv");
+  EXPECT_EQ(extensions_read(), ".ply .pcd .las .laz .copc.laz .e57 .obj .xyz .txt .asc .pts .csv");
+  EXPECT_EQ(extensions_written(" or "),
+            ".ply .pcd .las .laz .copc.laz .obj .xyz .txt .asc .pts or .csv");
 }
 
 TEST(Formats, AreFoundByTheExtensionInAnyCase) {

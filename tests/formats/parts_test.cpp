@@ -95,7 +95,7 @@ TEST_P(Parts, WriteTheBytesOfTheWhole) {
   const PointCloud whole = formats::read_cloud(file).cloud;
   const auto reader = formats::open_parts(file, 35'000);
   ASSERT_TRUE(reader);
-  for (const char* name : {"o.ply", "o.las", "o.laz", "o.csv", "o.xyz", "o.pts"}) {
+  for (const char* name : {"o.ply", "o.las", "o.laz", "o.copc.laz", "o.csv", "o.xyz", "o.pts"}) {
     const auto lost = copy(*reader, scratch.path(name));
     const auto expected = scratch.path(std::string("whole_") + name);
     formats::write_cloud(expected, whole);
@@ -105,7 +105,7 @@ TEST_P(Parts, WriteTheBytesOfTheWhole) {
   EXPECT_FALSE(formats::create_parts(scratch.path("o.pcd"), {whole.size(), &whole, {}, false}, {}));
 }
 
-INSTANTIATE_TEST_SUITE_P(Formats, Parts, ::testing::Values("ply", "las", "laz"));
+INSTANTIATE_TEST_SUITE_P(Formats, Parts, ::testing::Values("ply", "las", "laz", "copc.laz"));
 
 TEST(PartChoices, AreMadeByAllPoints) {
   const Scratch scratch;

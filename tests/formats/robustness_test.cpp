@@ -53,6 +53,9 @@ std::vector<Example> examples(const Scratch& scratch) {
     formats::write_cloud(scratch.path(name), cloud, {.overwrite = Overwrite::kYes, .ascii = ascii});
     return bytes_of(scratch.path(name));
   };
+  const std::string las = las_bytes({3, 2, las_test_rows(3, 5)});
+  formats::write_cloud(scratch.path("b.copc.laz"), scratch.read("b.las", las).cloud,
+                       {.overwrite = Overwrite::kYes});
   // Six literal bytes, then runs: x y z of four points, all bytes 7.
   const std::string lzf("\x05\7\7\7\7\7\7\xE0\x21\x00", 10);
   const std::string compressed =
@@ -76,7 +79,8 @@ std::vector<Example> examples(const Scratch& scratch) {
       {"a.csv", written("a.csv", false), false},
       {"a.pts", written("a.pts", false), false},
       {"a.e57", e57_example(), true},
-      {"a.las", las_bytes({3, 2, las_test_rows(3, 5)}), true},
+      {"a.las", las, true},
+      {"a.copc.laz", bytes_of(scratch.path("b.copc.laz")), false},
   };
 }
 
@@ -214,7 +218,7 @@ TEST(WriteCloud, LeavesNothingBehindWhenTheDiskTakesNoMore) {
   ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &old_limit), 0);
   const rlimit small = {100000, old_limit.rlim_max};
   ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
-  for (const char* name : {"a.ply", "a.pcd", "a.obj", "a.csv", "a.las", "a.laz"}) {
+  for (const char* name : {"a.ply", "a.pcd", "a.obj", "a.csv", "a.las", "a.laz", "a.copc.laz"}) {
     const auto path = scratch.path(name);
     const std::string message =
         error_of(ErrorKind::kFailure, [&] { formats::write_cloud(path, cloud); });

@@ -9,6 +9,8 @@
 #include "pcednet/core/parallel.h"
 #include "pcednet/formats/write_cloud.h"
 #include "pcednet/io/las/facts.h"
+#include "pcednet/io/las/las.h"
+#include "pcednet/io/projection.h"
 
 namespace pcednet::io {
 namespace {
@@ -178,6 +180,7 @@ TEST(Copc, HoldsTheBoundsTheTimesAndTheRecords) {
   EXPECT_NEAR(2 * copc.half_side, side, 0.01);
   EXPECT_DOUBLE_EQ(copc.spacing, copc.half_side / 64);
   std::vector<std::string> users;
+  EXPECT_TRUE(las_facts(InputFile(scratch.path("a.copc.laz")), back).copc);
   const InputFile file(scratch.path("a.copc.laz"));
   for (const LasFacts::Record& record : las_facts(file, back).records) {
     users.push_back(record.user_id);
@@ -293,6 +296,34 @@ TEST(Copc, NamesTheTimeOffsetThatItCannotHold) {
   const auto lost = formats::losses("a.copc.laz", scratch.read("in.las", bytes).cloud);
   ASSERT_EQ(lost.size(), 1U);
   EXPECT_TRUE(contains(lost[0], "offset of all times"));
+}
+
+// GeoTIFF keys name systems by codes, COPC takes definitions.
+TEST(Copc, NamesTheCoordinateSystemInWkt) {
+  const Scratch scratch;
+  LasTestFile file = file_of(1, 2, 100);
+  std::string keys;
+  for (const int number : {1, 1, 0, 1, 3072, 0, 1, 25832}) {
+    keys += packed(static_cast<std::uint16_t>(number));
+  }
+  file.records = {{"LASF_Projection", 34735, keys}};
+  const PointCloud cloud = scratch.read("in.las", las_bytes(file)).cloud;
+  const CoordinateSystem system = las_coordinate_system(copied(scratch, cloud));
+  EXPECT_EQ(system.epsg, 25832);
+  EXPECT_EQ(system.wkt.starts_with("PROJCS[\"ETRS89 / UTM zone 32N\""), has_projections());
+  EXPECT_EQ(formats::losses("a.copc.laz", cloud).empty(), has_projections());
+  const bool wkt_bit = (parse(bytes_of(scratch.path("a.copc.laz"))).encoding & 16U) != 0;
+  EXPECT_EQ(wkt_bit, has_projections());
+
+  set_number<std::uint16_t>(keys, 14, 20);  // no code that there is
+  file.records = {{"LASF_Projection", 34735, keys}};
+  const PointCloud unknown = scratch.read("in.las", las_bytes(file)).cloud;
+  EXPECT_EQ(formats::losses("a.copc.laz", unknown).size(), 1U);
+
+  file.records = {{"LASF_Projection", 2112, std::string("PROJCS[\"mine\"]") + '\0'}};
+  const PointCloud own = scratch.read("in.las", las_bytes(file)).cloud;
+  EXPECT_EQ(las_coordinate_system(copied(scratch, own)).wkt, "PROJCS[\"mine\"]");
+  EXPECT_TRUE(formats::losses("a.copc.laz", own).empty());
 }
 
 TEST(Copc, BecomesPlainLasAgain) {

@@ -1,0 +1,47 @@
+#include "pcednet/io/projection.h"
+
+#include <gtest/gtest.h>
+
+namespace pcednet::io {
+namespace {
+
+using Points = std::vector<std::array<double, 2>>;
+
+// What must hold with PROJ, and what without.
+TEST(Projections, DefineASystemByItsCodes) {
+  const std::string old = definition_of({.epsg = 25832}, WktVersion::k1),
+                    now = definition_of({.epsg = 25832}, WktVersion::k2);
+  EXPECT_EQ(old.starts_with("PROJCS["), has_projections()) << old;
+  EXPECT_EQ(now.starts_with("PROJCRS["), has_projections()) << now;
+  EXPECT_EQ(old.find('\n'), std::string::npos);
+  EXPECT_EQ(coordinate_system_of_wkt(old).epsg, has_projections() ? 25832 : 0);
+  EXPECT_EQ(coordinate_system_of_wkt(now).epsg, has_projections() ? 25832 : 0);
+  const std::string both = definition_of({.epsg = 25832, .vertical_epsg = 7837}, WktVersion::k1);
+  EXPECT_EQ(both.starts_with("COMPD_CS["), has_projections()) << both;
+}
+
+TEST(Projections, KnowNothingOfNoSystemOrOfNonsense) {
+  for (const CoordinateSystem& system :
+       {CoordinateSystem{}, CoordinateSystem{.epsg = 1}, CoordinateSystem{.wkt = "PROJCS[\"x\"]"},
+        CoordinateSystem{.wkt = std::string(10000, '[')},
+        CoordinateSystem{.wkt = "+proj=pipeline +step +proj=cart"}}) {
+    EXPECT_EQ(definition_of(system, WktVersion::k2), "") << system.wkt;
+    EXPECT_FALSE(to_wgs84(system, {{0.0, 0.0}})) << system.wkt;
+  }
+}
+
+// The meridian's arc to 50 degrees north on GRS 80 is 5540847.042 m long; UTM scales it by 0.9996.
+TEST(Projections, FindPlacesOnEarth) {
+  const auto found = to_wgs84({.epsg = 25832}, Points{{500000.0, 0.9996 * 5540847.042}});
+  ASSERT_EQ(found.has_value(), has_projections());
+  if (!found) return;
+  EXPECT_NEAR((*found)[0][0], 9.0, 1e-8);
+  EXPECT_NEAR((*found)[0][1], 50.0, 1e-7);
+  const auto east_first = to_wgs84({.epsg = 4258}, Points{{9.0, 50.0}});
+  ASSERT_TRUE(east_first);
+  EXPECT_NEAR((*east_first)[0][0], 9.0, 1e-6);
+  EXPECT_FALSE(to_wgs84({.epsg = 25832}, Points{{1e300, 1e300}}));
+}
+
+}  // namespace
+}  // namespace pcednet::io
