@@ -17,14 +17,15 @@ for model in ${*:-general scan cad worn}; do
   case $model in
   general)
     clouds=
-    for set in default:1 default:2 default:3 scan:1 scan:2 scan:3 scan:4 cad:1 cad:2 cad:3 cad:4 \
-      worn:1 worn:2 varied:1 varied:2 varied:3; do
+    for set in default:1 default:2 default:3 default:4 default:6 default:7 \
+      scan:1 scan:2 scan:3 scan:4 cad:1 cad:2 cad:3 cad:4 cad:6 cad:7 \
+      worn:1 worn:2 worn:3 worn:4 varied:1 varied:2 varied:3 varied:4; do  # seed 5 is for comparing
       generate "${set%:*}" "${set#*:}"
       clouds="$clouds $folder/${set%:*}${set#*:}"
     done
     # shellcheck disable=SC2086  # one argument for each folder
     $pcednet train $clouds -o models/general.safetensors --natural --scales 8 --s-max-ratio 8 \
-      --gate 0.4 --second-gate -0.3 --width 32 --distil 2 --context --keep-orientation --seed 1 --overwrite
+      --gate 0.4 --second-gate -0.3 --width 40 --distil 2 --context --keep-orientation --seed 1 --overwrite
     ;;
   scan)
     generate default 1
