@@ -31,8 +31,8 @@ struct NormalsRequest {
 };
 
 /// New normals, or those of the cloud with new signs.
-normals::PreparedNormals prepare(const NormalsRequest& request, const PointCloud& cloud,
-                                 const Progress& progress) {
+normals::PreparedNormals make_normals(const NormalsRequest& request, const PointCloud& cloud,
+                                      const Progress& progress) {
   const normals::PrepareOptions options = {request.neighbours, request.eye()};
   if (request.keep && !cloud.has_normals()) {
     throw Error(
@@ -79,7 +79,7 @@ void run(const NormalsRequest& request, const Common& common) {
   if (cloud.empty()) {
     throw Error(ErrorKind::kInsufficient, request.input + ": has no points");
   }
-  normals::PreparedNormals prepared = prepare(request, cloud, console_progress(common));
+  normals::PreparedNormals prepared = make_normals(request, cloud, console_progress(common));
   if (const auto scanners = scanner_of_points(cloud);
       !request.keep && !request.eye() && !scanners.empty()) {
     const std::size_t faced = normals::face_viewpoints(cloud.positions, prepared.normals, scanners);

@@ -12,6 +12,7 @@
 #include "pcednet/cloud/point_cloud.h"
 #include "pcednet/core/parallel.h"
 #include "pcednet/detect/decide.h"
+#include "pcednet/detect/part_of_cloud.h"
 #include "pcednet/spatial/neighbour_search.h"
 #include "pcednet/spatial/opening.h"
 
@@ -252,7 +253,8 @@ std::vector<RimPoint> rims_at(const DistinctPoints& points, const spatial::Neigh
 std::vector<RimPoint> find_rims(const DistinctPoints& points, const Progress* progress) {
   const spatial::NeighbourSearch search(points.positions);
   if (search.available(kNeighbours) < kLeastNeighbours) return {};
-  const bool whole = points.positions.size() <= kMostWhole;
+  const PartOfCloud* part = points.cloud.part;
+  const bool whole = (part ? part->points : points.positions.size()) <= kMostWhole;
   std::vector<std::uint32_t> todo;
   for (std::size_t i = 0; i < points.positions.size(); ++i) {
     if (whole || i % kStride < kTried) todo.push_back(static_cast<std::uint32_t>(i));

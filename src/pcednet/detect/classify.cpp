@@ -7,6 +7,7 @@
 #include "pcednet/detect/context.h"
 #include "pcednet/detect/decide.h"
 #include "pcednet/detect/describe.h"
+#include "pcednet/detect/part_of_cloud.h"
 #include "pcednet/nn/predict.h"
 #include "pcednet/spatial/curve_order.h"
 
@@ -29,12 +30,23 @@ Classification decide_rows(std::size_t points, std::span<const std::uint32_t> or
   return found;
 }
 
+/// The points of `order` that are to get a label in `part`.
+std::vector<std::uint32_t> wanted_of(std::span<const std::uint32_t> order,
+                                     const PartOfCloud& part) {
+  std::vector<std::uint32_t> wanted(order.begin(), order.end());
+  std::erase_if(wanted, [&](std::uint32_t i) { return part.wanted[i] == 0; });
+  return wanted;
+}
+
 /// Holds the scale space no longer than it is needed.
 Classification describe_and_decide(const PreparedCloud& cloud, const EdgeModel& model,
                                    const Progress* progress) {
-  const gls::ScaleSpace space({cloud.positions, cloud.normals, cloud.curve}, model.descriptor,
-                              progress);
-  const auto order = space.order();
+  const gls::PyramidPlan* whole = cloud.part ? &cloud.part->pyramid : nullptr;
+  const gls::ScaleSpace space({cloud.positions, cloud.normals, cloud.curve, whole},
+                              model.descriptor, progress);
+  std::vector<std::uint32_t> wanted;
+  if (cloud.part) wanted = wanted_of(space.order(), *cloud.part);
+  const auto order = cloud.part ? std::span<const std::uint32_t>(wanted) : space.order();
   const std::size_t width = row_width(model.descriptor);
   std::vector<float> rows(std::min(kBlock, order.size()) * width);
   const Progress cancel_only = without_report(progress);

@@ -32,11 +32,14 @@ struct Oriented {
 };
 
 /// Estimates the normals that are missing and orients all.
-Oriented complete_and_orient(const PointCloud& cloud, std::span<const std::uint32_t> curve,
+Oriented complete_and_orient(const PointCloud& cloud, const PreparedCloud& prepared,
                              const Progress* progress) {
   const std::vector<Vec3> scanners = scanner_of_points(cloud);
   const auto is_known = [](const Vec3& place) { return place.allFinite(); };
-  normals::PrepareOptions options = {.count_turned = cloud.has_normals(), .curve = curve};
+  normals::PrepareOptions options = {.neighbours = static_cast<int>(prepared.decision.neighbours),
+                                     .count_turned = cloud.has_normals(),
+                                     .curve = prepared.curve,
+                                     .exact_planes = prepared.decision.exact_planes};
   // Where every point has a scanner the costly search for consistent signs is not needed.
   if (!scanners.empty() && std::all_of(scanners.begin(), scanners.end(), is_known)) {
     options.viewpoint = scanners.front();
@@ -72,13 +75,14 @@ std::string describe(const Oriented& oriented) {
 
 void use(Oriented&& oriented, const std::string& note, PreparedCloud& prepared) {
   prepared.notes.push_back(note);
+  prepared.decision = {true, oriented.found.neighbours, oriented.found.exact_planes};
   prepared.made = std::move(oriented.found.normals);
   prepared.normals = prepared.made;
 }
 
 void estimate(PreparedCloud& prepared, const PointCloud& cloud, const std::string& why,
               const Progress* progress) {
-  Oriented oriented = complete_and_orient(cloud, prepared.curve, progress);
+  Oriented oriented = complete_and_orient(cloud, prepared, progress);
   const std::string note = fmt::format("{}: estimated from the {} nearest points and {}", why,
                                        oriented.found.neighbours, describe(oriented));
   use(std::move(oriented), note, prepared);
@@ -104,7 +108,7 @@ void orient_mixed(PreparedCloud& prepared, const PointCloud& cloud, const Progre
     return;
   }
   if (pairs.one_sidedness(cloud.positions, cloud.normals) > kWalls) return;
-  Oriented oriented = complete_and_orient(cloud, prepared.curve, progress);
+  Oriented oriented = complete_and_orient(cloud, prepared, progress);
   const std::size_t turned = count_turned(cloud, oriented);
   if (pairs.opposed(oriented.found.normals) * kMended > opposed) return;
   if (turned * kShareToOrient < cloud.size()) return;
@@ -139,6 +143,11 @@ PreparedCloud prepare(const PointCloud& cloud, const PrepareOptions& options,
         std::count_if(prepared.normals.begin(), prepared.normals.end(), is_usable));
   };
   std::size_t usable = count_usable();
+  if (options.decided) {
+    prepared.decision = *options.decided;
+    if (options.decided->made) estimate(prepared, cloud, "normals as decided", progress);
+    return prepared;
+  }
   if (usable < finite && finite - usable >= finite / kShareToEstimate) {
     estimate(prepared, cloud,
              !cloud.has_normals() ? "no normals in the file"

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -10,18 +11,30 @@
 
 namespace pcednet::detect {
 
+/// What all points of a cloud together decide of their normals.
+struct NormalsDecision {
+  bool made = false;  ///< those missing are estimated and all oriented; otherwise used as they are
+  std::size_t neighbours = 0;  ///< of each point, where they are made
+  bool exact_planes = false;   ///< see normals::NeighbourChoice
+};
+
 struct PrepareOptions {
   bool keep_orientation = false;  ///< use the cloud's normals even if their signs are mixed
+  std::optional<NormalsDecision> decided = {};  ///< by the cloud that this one is part of
 };
+
+struct PartOfCloud;
 
 /// What the descriptors need of a cloud, and what had to be done to get it.
 struct PreparedCloud {
-  std::span<const Vec3> positions;   ///< the cloud's own
-  std::span<const Vec3> normals;     ///< the cloud's own, or `made`; unit or (0,0,0)
-  std::vector<std::uint32_t> curve;  ///< spatial::curve_order() of the positions
-  std::vector<Vec3> made;            ///< empty when the cloud's normals are used as they are
-  std::vector<std::string> notes;    ///< what the user should be told, one sentence each
-  bool reoriented = false;           ///< the signs of the cloud's normals were mixed
+  std::span<const Vec3> positions;    ///< the cloud's own
+  std::span<const Vec3> normals;      ///< the cloud's own, or `made`; unit or (0,0,0)
+  std::vector<std::uint32_t> curve;   ///< spatial::curve_order() of the positions
+  std::vector<Vec3> made;             ///< empty when the cloud's normals are used as they are
+  std::vector<std::string> notes;     ///< what the user should be told, one sentence each
+  bool reoriented = false;            ///< the signs of the cloud's normals were mixed
+  NormalsDecision decision = {};      ///< what was decided, or given
+  const PartOfCloud* part = nullptr;  ///< for classify() and find_boundary(); must outlive both
 };
 
 /// Makes `cloud` ready for description; it must outlive the result. Where one point in a hundred or
@@ -31,10 +44,10 @@ struct PreparedCloud {
 /// Normals of mixed signs are oriented likewise: where more flat pairs of neighbours oppose than
 /// the border of a patch makes, not as the two sides of thin walls do, orientation leaves less than
 /// a quarter of them, and it turns one normal in fifty or more against the rest of its surface. A
-/// cloud whose normals all point inwards is not mixed.
+/// cloud whose normals all point inwards is not mixed. What is decided already is only done.
 ///
 /// Throws Error(kInsufficient) for a cloud without a finite point, or without any normal that could
-/// be used or found.
+/// be used or found, unless that is decided.
 PreparedCloud prepare(const PointCloud& cloud, const PrepareOptions& options = {},
                       const Progress* progress = nullptr);
 

@@ -77,15 +77,20 @@ FastScaleSpace::FastScaleSpace(OrientedPoints points, const ScaleSpaceOptions& o
   place_ = places_in(order_, points.positions.size());
   share_places(points, curve, place_);
   unit_ = unit_for(bounding_box(points.positions));
-  pyramid_ = make_pyramid(points.positions, points.normals, order_, unit_);
+  pyramid_ = make_pyramid(points.positions, points.normals, order_, unit_, points.whole);
   stage.advance();
   find_scales(points, curve);
   std::vector<std::uint32_t>().swap(curve);  // before the levels take their memory
   stage.advance();
   std::vector<double> scaled = scales_;
   for (double& scale : scaled) scale *= unit_;
-  add_levels(pyramid_, scaled, {.eps = options.eps, .gated = options.side_gate.has_value()},
+  add_levels(pyramid_, scaled,
+             {.eps = options.eps, .gated = options.side_gate.has_value(), .whole = points.whole},
              progress);
+}
+
+PyramidPlan FastScaleSpace::pyramid_plan() const {
+  return {pyramid_.origin / unit_, pyramid_.side / unit_, pyramid_.plan};
 }
 
 void FastScaleSpace::find_scales(OrientedPoints points, std::span<const std::uint32_t> curve) {

@@ -41,6 +41,9 @@ class FastScaleSpace {
   /// The support radii, smallest first.
   const std::vector<double>& scales() const { return scales_; }
 
+  /// What these points decided of the voxels; for a part of a cloud, what the whole decided.
+  PyramidPlan pyramid_plan() const;
+
   /// The finite points in the order in which it is best to ask for them: along a curve, so that a
   /// stretch of 4096 that starts at a multiple of 4096 is evaluated together. Fewer than 16 at a
   /// time cost as much as 16.

@@ -7,6 +7,7 @@
 
 #include "pcednet/cloud/point_cloud.h"
 #include "pcednet/core/vec3.h"
+#include "pcednet/gls/pyramid_plan.h"
 #include "pcednet/gls/scale_space_options.h"
 
 namespace pcednet::gls {
@@ -17,6 +18,7 @@ struct OrientedPoints {
   std::span<const Vec3> positions;
   std::span<const Vec3> normals;
   std::span<const std::uint32_t> curve = {};  ///< spatial::curve_order() of the positions, if known
+  const PyramidPlan* whole = nullptr;  ///< of the cloud that they are part of; fast engine only
 };
 
 /// Throws Error(kUsage) for options out of range, for arrays of different sizes and for usable

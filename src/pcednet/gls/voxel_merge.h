@@ -6,14 +6,6 @@
 
 namespace pcednet::gls {
 
-/// What becomes of blocks of 8 x 8 x 8 cells that are filled with normals of every direction
-/// (leaves, noise), of which a neighbourhood holds ten times as many voxels as of a surface.
-enum class Crowd {
-  kKeep,         ///< nothing: they are voxels as elsewhere
-  kMerge,        ///< 3 x 3 x 3 voxels, fewer to a neighbourhood than a surface has
-  kMergeByAxis,  ///< one per 4 x 4 x 4 cells, axis and sign: for a gate, which looks at directions
-};
-
 /// The cells that voxels are merged into. Coordinates are at least those of `origin` and at most
 /// `side` more.
 struct MergeCells {

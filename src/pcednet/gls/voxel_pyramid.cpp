@@ -18,6 +18,20 @@ constexpr double kWorthwhileMerge = 1.6;
 /// gate every source costs more.
 constexpr double kCrowded = 9.0, kCrowdedGated = 8.0;
 
+/// How the level of a scale is to come from the level before; `crowd`: how that one did.
+PyramidPlan::Level plan_level(const std::vector<Voxel>& finer, MergeCells cells, bool gated,
+                              Crowd& crowd) {
+  cells.crowd = crowd;
+  MergeForecast forecast = forecast_merge(finer, cells);
+  if (forecast.filling > (gated ? kCrowdedGated : kCrowded)) {
+    cells.crowd = gated ? Crowd::kMergeByAxis : Crowd::kMerge;
+    // Voxels without axes do not tell how far they fill space: they are merged on.
+    if (!gated) crowd = Crowd::kMerge;
+    forecast = forecast_merge(finer, cells);
+  }
+  return {forecast.merged >= kWorthwhileMerge, cells.crowd};
+}
+
 void add_boxes(VoxelLevel& level, const Vec3& origin) {
   level.boxes = spatial::BoxTree(level.voxels.size(), origin,
                                  [&](std::size_t i) { return level.voxels[i].position; });
@@ -26,7 +40,8 @@ void add_boxes(VoxelLevel& level, const Vec3& origin) {
 }  // namespace
 
 VoxelPyramid make_pyramid(std::span<const Vec3> positions, std::span<const Vec3> normals,
-                          std::span<const std::uint32_t> order, double unit) {
+                          std::span<const std::uint32_t> order, double unit,
+                          const PyramidPlan* whole) {
   VoxelPyramid pyramid;
   VoxelLevel& points = pyramid.levels.emplace_back();
   points.voxels.resize(order.size());
@@ -51,9 +66,10 @@ VoxelPyramid make_pyramid(std::span<const Vec3> positions, std::span<const Vec3>
   if (order.empty()) return pyramid;
   auto [min, max] = corners.front();
   for (const auto& [low, high] : corners) min = min.cwiseMin(low), max = max.cwiseMax(high);
-  pyramid.origin = min;
-  pyramid.side = (max - min).maxCoeff();
-  add_boxes(points, pyramid.origin);
+  pyramid.corner = min;
+  pyramid.origin = whole ? Vec3(whole->corner * unit) : min;
+  pyramid.side = whole ? whole->side * unit : (max - min).maxCoeff();
+  add_boxes(points, pyramid.corner);
   return pyramid;
 }
 
@@ -62,26 +78,23 @@ void add_levels(VoxelPyramid& pyramid, std::span<const double> scales, const Lev
   Stage stage(progress, "resolutions", scales.size());
   pyramid.levels.reserve(1 + scales.size());
   Crowd crowd = Crowd::kKeep;
-  for (const double scale : scales) {
+  for (std::size_t i = 0; i < scales.size(); ++i) {
     MergeCells cells = {.origin = pyramid.origin,
                         .side = pyramid.side,
-                        .edge = options.eps * scale,
-                        .crowd = crowd};
+                        .edge = options.eps * scales[i],
+                        .crowd = {}};
     const std::vector<Voxel>& finer = pyramid.levels.back().voxels;
-    MergeForecast forecast = forecast_merge(finer, cells);
-    if (forecast.filling > (options.gated ? kCrowdedGated : kCrowded)) {
-      cells.crowd = options.gated ? Crowd::kMergeByAxis : Crowd::kMerge;
-      // Voxels without axes do not tell how far they fill space: they are merged on.
-      if (!options.gated) crowd = Crowd::kMerge;
-      forecast = forecast_merge(finer, cells);
-    }
-    if (forecast.merged >= kWorthwhileMerge) {
+    const PyramidPlan::Level plan = options.whole ? options.whole->levels.at(i)
+                                                  : plan_level(finer, cells, options.gated, crowd);
+    if (plan.merges) {
+      cells.crowd = plan.crowd;
       VoxelLevel& level = pyramid.levels.emplace_back();
       level.cell = cells.edge;
       level.voxels = merge_voxels(finer, cells);
       for (const Voxel& voxel : level.voxels) level.most_qq = std::max(level.most_qq, voxel.qq);
-      add_boxes(level, pyramid.origin);
+      add_boxes(level, pyramid.corner);
     }
+    pyramid.plan.push_back(plan);
     pyramid.level_of.push_back(pyramid.levels.size() - 1);
     stage.advance();
   }

@@ -8,6 +8,7 @@
 #include "pcednet/core/progress.h"
 #include "pcednet/core/vec3.h"
 #include "pcednet/gls/neighbourhood.h"
+#include "pcednet/gls/pyramid_plan.h"
 #include "pcednet/spatial/box_tree.h"
 
 namespace pcednet::gls {
@@ -36,20 +37,25 @@ struct VoxelLevel {
 /// The cloud at falling resolutions; the same for any numbering of the points, and under a flip of
 /// all normals the same but for the sign of every mean normal and qn.
 struct VoxelPyramid {
-  Vec3 origin = Vec3::Zero();         ///< the lower corner of the cloud's box
-  double side = 0.0;                  ///< its longest side
-  std::vector<VoxelLevel> levels;     ///< from fine to coarse; the first holds the points
-  std::vector<std::size_t> level_of;  ///< the level that serves each scale
+  Vec3 origin = Vec3::Zero();            ///< the lower corner of the cloud's box, or of the whole's
+  double side = 0.0;                     ///< its longest side
+  Vec3 corner = Vec3::Zero();            ///< of these points alone
+  std::vector<VoxelLevel> levels;        ///< from fine to coarse; the first holds the points
+  std::vector<std::size_t> level_of;     ///< the level that serves each scale
+  std::vector<PyramidPlan::Level> plan;  ///< how each scale came to it
 };
 
 /// The first level: the points numbered `order`, which must be finite, each as a voxel of its own,
-/// in that order. Coordinates are multiplied by `unit`.
+/// in that order. Coordinates are multiplied by `unit`, those of `whole` as well, which is the plan
+/// of the cloud that the points are part of.
 VoxelPyramid make_pyramid(std::span<const Vec3> positions, std::span<const Vec3> normals,
-                          std::span<const std::uint32_t> order, double unit);
+                          std::span<const std::uint32_t> order, double unit,
+                          const PyramidPlan* whole = nullptr);
 
 struct LevelOptions {
   double eps = 0.1;
-  bool gated = false;  ///< the sums will look at the direction of each normal
+  bool gated = false;                  ///< the sums will look at the direction of each normal
+  const PyramidPlan* whole = nullptr;  ///< decides which levels there are, and how they merge
 };
 
 /// Adds levels so that scale t reads voxels of cells of edge at most eps t; a level that would

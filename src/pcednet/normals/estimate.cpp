@@ -52,20 +52,22 @@ std::vector<Vec3> estimate_normals(const NeighbourGraph& graph, const Progress* 
   return normals;
 }
 
-NeighbourGraph make_estimation_graph(std::span<const Vec3> positions, int neighbours,
-                                     const Progress* progress,
+NeighbourGraph make_estimation_graph(std::span<const Vec3> positions,
+                                     const EstimateOptions& options, const Progress* progress,
                                      std::span<const std::uint32_t> curve) {
+  const int neighbours = options.neighbours;
   if (neighbours < 0 || neighbours == 1) {
     throw Error(
         ErrorKind::kUsage,
         fmt::format("normals need at least 2 neighbours, or 0 to choose; not {}", neighbours));
   }
-  return make_neighbour_graph(positions, static_cast<std::size_t>(neighbours), progress, curve);
+  return make_neighbour_graph(positions, static_cast<std::size_t>(neighbours), progress, curve,
+                              options.exact_planes);
 }
 
 std::vector<Vec3> estimate_normals(std::span<const Vec3> positions, const EstimateOptions& options,
                                    const Progress* progress) {
-  const NeighbourGraph graph = make_estimation_graph(positions, options.neighbours, progress);
+  const NeighbourGraph graph = make_estimation_graph(positions, options, progress);
   const std::vector<Vec3> of_points = estimate_normals(graph, progress);
   std::vector<Vec3> normals(positions.size(), Vec3::Zero());
   for (std::size_t i = 0; i < positions.size(); ++i) {

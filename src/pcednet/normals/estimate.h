@@ -11,13 +11,14 @@
 namespace pcednet::normals {
 
 struct EstimateOptions {
-  int neighbours = 0;  ///< distinct points around each point; 0: see choose_neighbours()
+  int neighbours = 0;         ///< distinct points around each point; 0: see choose_neighbours()
+  bool exact_planes = false;  ///< where `neighbours` are given, see NeighbourChoice
 };
 
 /// The graph for estimate_normals(), see make_neighbour_graph(). Throws the errors of
 /// estimate_normals().
-NeighbourGraph make_estimation_graph(std::span<const Vec3> positions, int neighbours,
-                                     const Progress* progress,
+NeighbourGraph make_estimation_graph(std::span<const Vec3> positions,
+                                     const EstimateOptions& options, const Progress* progress,
                                      std::span<const std::uint32_t> curve = {});
 
 /// The unit normal of the surface at every point, its sign arbitrary (see orient.h).

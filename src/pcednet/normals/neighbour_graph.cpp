@@ -58,8 +58,8 @@ void compare_with_reach(const Vec3* points, const double* sq_reach, std::size_t 
 }  // namespace
 
 NeighbourGraph make_neighbour_graph(std::span<const Vec3> positions, std::size_t count,
-                                    const Progress* progress,
-                                    std::span<const std::uint32_t> curve) {
+                                    const Progress* progress, std::span<const std::uint32_t> curve,
+                                    bool exact_planes) {
   NeighbourGraph graph;
   graph.order.assign(curve.begin(), curve.end());
   if (curve.empty()) graph.order = spatial::curve_order(positions);
@@ -69,7 +69,7 @@ NeighbourGraph make_neighbour_graph(std::span<const Vec3> positions, std::size_t
   Stage stage(progress, "neighbours", points);
   const spatial::NeighbourSearch search(graph.points);
   const NeighbourChoice choice =
-      count > 0 ? NeighbourChoice{count, false} : choose_neighbours(graph.points, search);
+      count > 0 ? NeighbourChoice{count, exact_planes} : choose_neighbours(graph.points, search);
   graph.fitted = search.available(choice.neighbours);
   graph.has_exact_planes = choice.has_exact_planes;
   graph.degree = choice.has_exact_planes ? std::max(graph.fitted, kExactNeighbours) : graph.fitted;

@@ -32,10 +32,12 @@ struct NeighbourGraph {
 
 /// `degree` becomes `count`, or less if there are too few distinct points; for `count` 0,
 /// choose_neighbours() chooses it. `curve` is spatial::curve_order() of the positions; if
-/// empty, it is computed. At most 2^32 - 1 positions.
+/// empty, it is computed. `exact_planes` becomes has_exact_planes where `count` is given. At most
+/// 2^32 - 1 positions.
 NeighbourGraph make_neighbour_graph(std::span<const Vec3> positions, std::size_t count,
                                     const Progress* progress,
-                                    std::span<const std::uint32_t> curve = {});
+                                    std::span<const std::uint32_t> curve = {},
+                                    bool exact_planes = false);
 
 /// The undirected graph: for every point its neighbours and the points that have it as a neighbour,
 /// each once.

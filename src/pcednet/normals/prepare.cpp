@@ -36,11 +36,12 @@ OrientOptions orientation_on(const NeighbourGraph& graph, const PrepareOptions& 
 PreparedNormals estimate_oriented_normals(std::span<const Vec3> positions,
                                           const PrepareOptions& options, const Progress* progress) {
   check_extent(positions);
-  const NeighbourGraph graph =
-      make_estimation_graph(positions, options.neighbours, progress, options.curve);
+  const NeighbourGraph graph = make_estimation_graph(
+      positions, {options.neighbours, options.exact_planes}, progress, options.curve);
   std::vector<Vec3> of_points = estimate_normals(graph, progress);
   PreparedNormals prepared;
   prepared.neighbours = graph.fitted;
+  prepared.exact_planes = graph.has_exact_planes;
   prepared.orientation = orient_points(graph, of_points, orientation_on(graph, options), progress);
   prepared.normals.resize(positions.size());
   prepared.unusable = count_where(positions.size(), [&](std::size_t i) {
@@ -60,10 +61,11 @@ PreparedNormals complete_and_orient_normals(std::span<const Vec3> positions,
                                             const Progress* progress) {
   check_size(positions, given);
   check_extent(positions);
-  const NeighbourGraph graph =
-      make_estimation_graph(positions, options.neighbours, progress, options.curve);
+  const NeighbourGraph graph = make_estimation_graph(
+      positions, {options.neighbours, options.exact_planes}, progress, options.curve);
   PreparedNormals prepared;
   prepared.neighbours = graph.fitted;
+  prepared.exact_planes = graph.has_exact_planes;
   prepared.normals.assign(given.begin(), given.end());
   if (std::any_of(given.begin(), given.end(), is_missing)) {
     const std::vector<Vec3> of_points = estimate_normals(graph, progress);

@@ -18,6 +18,7 @@ struct PrepareOptions {
   std::optional<Vec3> viewpoint = {};             ///< as in OrientOptions
   bool count_turned = false;                      ///< as in OrientOptions
   std::span<const std::uint32_t> curve = {};  ///< spatial::curve_order() of the positions, if known
+  bool exact_planes = false;                  ///< as in EstimateOptions
 };
 
 struct PreparedNormals {
@@ -25,6 +26,7 @@ struct PreparedNormals {
   std::size_t unusable = 0;    ///< the number of (0,0,0)
   std::size_t estimated = 0;   ///< the number estimated that are not (0,0,0)
   std::size_t neighbours = 0;  ///< of each point, given or chosen
+  bool exact_planes = false;   ///< likewise, see NeighbourChoice
   Orientation orientation;
 };
 

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "pcednet/gls/pyramid_plan.h"
+
+namespace pcednet::detect {
+
+/// A part of a larger cloud whose points are to get the labels that they have there.
+struct PartOfCloud {
+  gls::PyramidPlan pyramid = {};          ///< of the whole
+  std::size_t points = 0;                 ///< of the whole
+  std::vector<std::uint8_t> wanted = {};  ///< 1: gets a label, 0: is there for the others only
+};
+
+}  // namespace pcednet::detect
