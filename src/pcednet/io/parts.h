@@ -27,6 +27,10 @@ class PartReader {
   virtual PointCloud read(std::size_t part) const = 0;
   /// Whether the numbers of a point come from the steps and fields of LAS, so that they fit there.
   virtual bool is_las() const { return false; }
+  /// Whether all colours are below 256: LAS looks at all parts to know, before the first read(),
+  /// unless it is told.
+  virtual bool narrow_colours() const { return false; }
+  virtual void set_narrow_colours(bool) {}
 
   std::vector<std::string> warnings = {};
 };

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <mutex>
 #include <optional>
 #include <utility>
 
@@ -109,21 +110,29 @@ void describe(const LasSource& source, PointCloud& cloud) {
 class LasPartReader : public PartReader {
  public:
   LasPartReader(std::unique_ptr<InputFile> file, std::size_t most)
-      : file_(std::move(file)), source_(*file_, warnings), ends_(source_.cuts(most)) {
-    for (std::size_t part = 0; part < parts() && narrow_; ++part) {
-      const PointCloud points = records(part);
-      if (las_colours(points, true).empty()) break;
-      narrow_ = has_narrow_colours(points);
-    }
-  }
+      : file_(std::move(file)), source_(*file_, warnings), ends_(source_.cuts(most)) {}
 
   std::size_t points() const override { return ends_.empty() ? 0 : ends_.back(); }
   std::size_t parts() const override { return ends_.size(); }
   bool is_las() const override { return true; }
 
+  bool narrow_colours() const override {
+    std::call_once(looked_, [&] {
+      for (std::size_t part = 0; part < parts() && narrow_; ++part) {
+        const PointCloud points = records(part);
+        if (las_colours(points, true).empty()) break;
+        narrow_ = has_narrow_colours(points);
+      }
+    });
+    return narrow_;
+  }
+  void set_narrow_colours(bool narrow) override {
+    std::call_once(looked_, [&] { narrow_ = narrow; });
+  }
+
   PointCloud read(std::size_t part) const override {
     PointCloud cloud = records(part);
-    cloud.colours = las_colours(cloud, narrow_);
+    cloud.colours = las_colours(cloud, narrow_colours());
     if (part == 0) describe(source_, cloud);
     return cloud;
   }
@@ -136,7 +145,8 @@ class LasPartReader : public PartReader {
   std::unique_ptr<InputFile> file_;
   LasSource source_;
   std::vector<std::size_t> ends_;
-  bool narrow_ = true;  ///< all colours are below 256
+  mutable std::once_flag looked_ = {};
+  mutable bool narrow_ = true;  ///< all colours are below 256
 };
 
 }  // namespace
