@@ -11,6 +11,7 @@ namespace pcednet::app {
 
 void add_classify(CLI::App& app, Common& common);
 void add_lines(CLI::App& app, Common& common);
+void add_tiles(CLI::App& app, Common& common);
 void add_train(CLI::App& app, Common& common);
 void add_evaluate(CLI::App& app, Common& common);
 void add_describe(CLI::App& app, Common& common);

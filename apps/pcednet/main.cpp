@@ -32,6 +32,7 @@ int run(int argc, char** argv) {
   // One line per subcommand, in the order of the help.
   add_classify(app, common);
   add_lines(app, common);
+  add_tiles(app, common);
   add_train(app, common);
   add_evaluate(app, common);
   add_describe(app, common);

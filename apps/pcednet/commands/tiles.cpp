@@ -1,0 +1,309 @@
+#include "pcednet/tiles/plan.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "batch.h"
+#include "byte_size.h"
+#include "commands.h"
+#include "models.h"
+#include "pcednet/core/stopwatch.h"
+#include "pcednet/tiles/join.h"
+#include "pcednet/tiles/make_plan.h"
+#include "pcednet/tiles/run_tile.h"
+#include "pcednet/tiles/tile_file.h"
+#include "prepare.h"
+#include "tile_jobs.h"
+
+namespace pcednet::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct PlanArguments {
+  std::vector<std::string> inputs;
+  std::string plan, folder, output, memory = "2G";
+  double tile_length = 0.0;
+  ModelArguments model{.name = kDefaultModel};
+  detect::PrepareOptions preparation;
+};
+
+/// Where the tiles go unless the user says: beside the plan.
+fs::path folder_of(const PlanArguments& arguments) {
+  if (!arguments.folder.empty()) return arguments.folder;
+  const fs::path plan = arguments.plan;
+  return plan.parent_path() / (plan.stem().string() + "_tiles");
+}
+
+void plan_tiles(const PlanArguments& arguments, const Common& common) {
+  check_writable(arguments.plan, common.overwrite());
+  const ModelArguments& model = arguments.model;
+  tiles::PlanRequest request{.inputs = expand_inputs(arguments.inputs),
+                             .folder = folder_of(arguments),
+                             .output = arguments.output,
+                             .model = {.name = model.name,
+                                       .path = find_model(model.name),
+                                       .context = !model.no_context,
+                                       .boundary = !model.no_boundary,
+                                       .exact = model.scales.engine == gls::Engine::kExact},
+                             .tile_length = arguments.tile_length,
+                             .memory = byte_size("--max-memory", arguments.memory),
+                             .keep_orientation = arguments.preparation.keep_orientation};
+  const Progress progress = console_progress(common);
+  const tiles::Plan plan = tiles::make_plan(request, load_model(model), &progress);
+  tiles::write_plan(arguments.plan, plan, common.overwrite());
+  for (const std::string& note : plan.notes) warn(note);
+  say(fmt::format("{}: {} points in {} tiles of length {:g}, buffer {:.4g}", arguments.plan,
+                  plan.points(), plan.tiles.size(), plan.grid.length(), plan.buffer));
+  say(fmt::format("  scales: {:.9g} to {:.9g}", plan.s_min, plan.s_max));
+  say(fmt::format("  the largest tile takes about {} of memory", size_text(plan.memory)));
+  say(fmt::format("  next: pcednet tiles run {}", arguments.plan));
+}
+
+struct RunArguments {
+  std::string plan, memory;
+  std::vector<std::string> tiles;
+  int jobs = 1;
+  bool missing = false;
+};
+
+/// Adds what "7" or "0-15" names.
+void add_numbers(const std::string& text, std::size_t tiles, std::set<std::size_t>& numbers) {
+  const auto refuse = [&] {
+    throw Error(ErrorKind::kUsage, fmt::format("--tile {}: not a tile of 0 to {}, or two with - "
+                                               "between them",
+                                               text, tiles - 1));
+  };
+  std::size_t first = 0, last = 0;
+  const char* const end = text.data() + text.size();
+  auto parsed = std::from_chars(text.data(), end, first);
+  if (parsed.ec != std::errc()) refuse();
+  last = first;
+  if (parsed.ptr != end) {
+    if (*parsed.ptr != '-') refuse();
+    parsed = std::from_chars(parsed.ptr + 1, end, last);
+    if (parsed.ec != std::errc() || parsed.ptr != end) refuse();
+  }
+  if (last < first || last >= tiles) refuse();
+  for (std::size_t id = first; id <= last; ++id) numbers.insert(id);
+}
+
+/// The tiles to run, in order.
+std::vector<std::size_t> chosen_tiles(const RunArguments& arguments, const tiles::Plan& plan) {
+  std::set<std::size_t> chosen;
+  for (const std::string& text : arguments.tiles) add_numbers(text, plan.tiles.size(), chosen);
+  if (arguments.tiles.empty()) {
+    for (std::size_t id = 0; id < plan.tiles.size(); ++id) chosen.insert(chosen.end(), id);
+  }
+  return {chosen.begin(), chosen.end()};
+}
+
+/// How many tiles may be run at a time.
+int jobs_within(const RunArguments& arguments, const tiles::Plan& plan) {
+  if (arguments.memory.empty()) return arguments.jobs;
+  const std::uint64_t most = byte_size("--max-memory", arguments.memory);
+  if (plan.memory > most) {
+    throw Error(ErrorKind::kUsage,
+                fmt::format("--max-memory {}: the largest tile takes about {}; plan smaller ones",
+                            arguments.memory, size_text(plan.memory)));
+  }
+  const std::uint64_t fit = std::max<std::uint64_t>(most / plan.memory, 1);
+  return static_cast<int>(std::min<std::uint64_t>(fit, static_cast<std::uint64_t>(arguments.jobs)));
+}
+
+void run_here(const tiles::Plan& plan, const std::vector<std::size_t>& ids, const Common& common) {
+  const detect::EdgeModel model = tiles::load_planned_model(plan);
+  const Progress progress = console_progress(common);
+  for (const std::size_t id : ids) {
+    throw_if_cancelled(&progress);
+    // Another run may have done it meanwhile.
+    if (!common.overwrite_files && tiles::state_of(plan, id) == tiles::TileState::kDone) continue;
+    Stopwatch watch;
+    tiles::run_tile(plan, id, model, &progress);
+    say(fmt::format("tile {}: {} points, {:.1f} s -> {}", id, plan.tiles[id].points, watch.lap(),
+                    plan.tiles[id].output.string()));
+  }
+}
+
+void run_tiles(const RunArguments& arguments, const Common& common) {
+  const tiles::Plan plan = tiles::read_plan(arguments.plan);
+  std::vector<std::size_t> ids = chosen_tiles(arguments, plan);
+  const std::size_t all = ids.size();
+  if (!common.overwrite_files) {
+    std::erase_if(
+        ids, [&](std::size_t id) { return tiles::state_of(plan, id) == tiles::TileState::kDone; });
+  }
+  const int jobs = jobs_within(arguments, plan);
+  for (const std::size_t id : ids) make_folder(plan.tiles[id].output.parent_path());
+  if (jobs > 1 && ids.size() > 1) {
+    tiles::load_planned_model(plan);  // refuses before any process starts
+    run_tile_jobs({.plan = arguments.plan,
+                   .tiles = ids,
+                   .jobs = jobs,
+                   .threads = common.threads,
+                   .redo = common.overwrite_files},
+                  console_progress(common));
+  } else if (!ids.empty()) {
+    run_here(plan, ids, common);
+  }
+  say(fmt::format("{} tiles run, {} were done", ids.size(), all - ids.size()));
+}
+
+struct StatusArguments {
+  std::string plan, json;
+  bool verify = false;
+};
+
+constexpr std::array<const char*, 3> kStates = {"missing", "damaged", "done"};
+
+struct Group {
+  std::vector<std::size_t> ids = {};
+  std::size_t points = 0;
+};
+
+std::string status_text(const tiles::Plan& plan, const std::array<Group, 3>& groups) {
+  std::string text = fmt::format("{}: {} points in {} tiles\n", plan.path.string(), plan.points(),
+                                 plan.tiles.size());
+  for (const std::size_t state : {2, 0, 1}) {
+    const Group& group = groups[state];
+    text += fmt::format("  {:<8} {:>6} tiles, {:>12} points", kStates[state], group.ids.size(),
+                        group.points);
+    if (state != 2 && !group.ids.empty()) text += ": " + tiles::list_of(group.ids);
+    text += "\n";
+  }
+  return text;
+}
+
+nlohmann::ordered_json status_json(const tiles::Plan& plan, const std::array<Group, 3>& groups) {
+  nlohmann::ordered_json json = {{"plan", plan.path.string()},
+                                 {"digest", plan.digest},
+                                 {"points", plan.points()},
+                                 {"tiles", plan.tiles.size()},
+                                 {"done_points", groups[2].points}};
+  for (const std::size_t state : {2, 0, 1}) json[kStates[state]] = groups[state].ids;
+  return json;
+}
+
+void show_status(const StatusArguments& arguments, const Common& common) {
+  const tiles::Plan plan = tiles::read_plan(arguments.plan);
+  const Progress progress = console_progress(common);
+  std::array<Group, 3> groups;
+  for (std::size_t id = 0; id < plan.tiles.size(); ++id) {
+    throw_if_cancelled(&progress);
+    Group& group = groups[static_cast<std::size_t>(tiles::state_of(plan, id, arguments.verify))];
+    group.ids.push_back(id);
+    group.points += plan.tiles[id].points;
+  }
+  const std::string json = status_json(plan, groups).dump(1) + "\n";
+  fmt::print("{}", arguments.json == "-" ? json : status_text(plan, groups));
+  if (!arguments.json.empty() && arguments.json != "-") {
+    write_text_file(arguments.json, json, common.overwrite());
+  }
+}
+
+void join_tiles(const std::string& plan_path, const std::string& output, const Common& common) {
+  check_writable(output, common.overwrite());
+  const tiles::Plan plan = tiles::read_plan(plan_path);
+  const Progress progress = console_progress(common);
+  const tiles::Joined joined = tiles::join(plan, output, common.overwrite(), &progress);
+  for (const std::string& loss : joined.losses) warn(output + " does not keep: " + loss);
+  say(fmt::format("{}: {} points of {} tiles", output, joined.points, plan.tiles.size()));
+}
+
+void add_plan(CLI::App& tiles, Common& common) {
+  auto arguments = std::make_shared<PlanArguments>();
+  CLI::App* command = add_command(
+      tiles, common, "plan", "Decide how to classify point files tile by tile",
+      "pcednet tiles plan city/ -o city.json\n"
+      "pcednet tiles plan city/ -o city.json --max-memory 1G       memory of one tile\n"
+      "pcednet tiles plan a.laz b.laz -o ab.json --tile 250 --output {XLEFT}_{YBOTTOM}.laz");
+  command->add_option("inputs", arguments->inputs, "LAS, LAZ and binary PLY files, or folders")
+      ->required();
+  command->add_option("-o,--plan", arguments->plan, "The plan, a JSON file")->required();
+  command
+      ->add_option("--tile", arguments->tile_length,
+                   "Length of a tile, in the unit of the points (0: the largest for the memory)")
+      ->capture_default_str()
+      ->check(CLI::NonNegativeNumber);
+  command
+      ->add_option("--max-memory", arguments->memory,
+                   "Memory that one tile may take, such as 500M or 2G")
+      ->capture_default_str();
+  command->add_option("--out-dir", arguments->folder,
+                      "Folder for the tiles (default: <plan>_tiles beside the plan)");
+  command->add_option("--output", arguments->output,
+                      "Names of the tiles, with {ID}, {COLUMN}, {ROW}, {XLEFT}, {XRIGHT}, "
+                      "{YBOTTOM}, {YTOP} (default: {ID}.laz, or {ID}.ply for PLY)");
+  add_model_options(*command, arguments->model);
+  add_prepare_options(*command, arguments->preparation);
+  command->callback([arguments, &common] { plan_tiles(*arguments, common); });
+}
+
+void add_run(CLI::App& tiles, Common& common) {
+  auto arguments = std::make_shared<RunArguments>();
+  CLI::App* command = add_command(
+      tiles, common, "run", "Classify the tiles of a plan that are not done",
+      "pcednet tiles run city.json                     all that is missing or damaged\n"
+      "pcednet tiles run city.json --jobs 4 --threads 2\n"
+      "pcednet tiles run city.json --tile 17           one tile, as a job of a cluster\n"
+      "pcednet tiles run city.json --tile 0-99 --overwrite         again");
+  command->add_option("plan", arguments->plan, "The plan")->required();
+  command->add_option("--tile", arguments->tiles,
+                      "Number of a tile, or two with - between them; several times for more");
+  command->add_flag("--missing", arguments->missing,
+                    "Only what is missing or damaged, which is the default");
+  command->get_option("--missing")->excludes("--overwrite");
+  command->add_option("--jobs", arguments->jobs, "Tiles at a time, each in its own process")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1024));
+  command->add_option("--max-memory", arguments->memory,
+                      "Memory for all jobs together, such as 8G: fewer at a time if need be");
+  command->callback([arguments, &common] { run_tiles(*arguments, common); });
+}
+
+void add_status(CLI::App& tiles, Common& common) {
+  auto arguments = std::make_shared<StatusArguments>();
+  CLI::App* command = add_command(tiles, common, "status", "Show which tiles of a plan are done",
+                                  "pcednet tiles status city.json\n"
+                                  "pcednet tiles status city.json --verify    digests as well\n"
+                                  "pcednet tiles status city.json --json -");
+  command->add_option("plan", arguments->plan, "The plan")->required();
+  command->add_flag("--verify", arguments->verify, "Read every tile and compare its SHA-256");
+  command->add_option("--json", arguments->json,
+                      "Write the result as JSON to this file; - for standard output only");
+  command->callback([arguments, &common] { show_status(*arguments, common); });
+}
+
+void add_join(CLI::App& tiles, Common& common) {
+  auto plan = std::make_shared<std::string>();
+  auto output = std::make_shared<std::string>();
+  CLI::App* command = add_command(tiles, common, "join", "Write the tiles of a plan into one file",
+                                  "pcednet tiles join city.json -o city.laz");
+  command->add_option("plan", *plan, "The plan")->required();
+  command->add_option("-o,--output", *output, "Output file: .laz, .las or .ply")->required();
+  command->callback([plan, output, &common] { join_tiles(*plan, *output, common); });
+}
+
+}  // namespace
+
+void add_tiles(CLI::App& app, Common& common) {
+  CLI::App* tiles = app.add_subcommand(
+      "tiles",
+      "Classify clouds beyond memory, tile by tile\n\nExamples:\n"
+      "  pcednet tiles plan city/ -o city.json    reads all files once or twice\n"
+      "  pcednet tiles run city.json --jobs 4     may be stopped, killed and run again\n"
+      "  pcednet tiles status city.json\n"
+      "  pcednet tiles join city.json -o city.laz\n");
+  tiles->require_subcommand(1);
+  add_plan(*tiles, common);
+  add_run(*tiles, common);
+  add_status(*tiles, common);
+  add_join(*tiles, common);
+}
+
+}  // namespace pcednet::app

@@ -1,0 +1,107 @@
+#include "tile_jobs.h"
+
+#include <fmt/format.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <map>
+#include <string>
+
+#include "common.h"
+#include "pcednet/core/error.h"
+#include "pcednet/tiles/join.h"
+
+namespace pcednet::app {
+namespace {
+
+pid_t start(const TileJobs& jobs, std::size_t tile) {
+  std::vector<std::string> words = {"pcednet",    "tiles",
+                                    "run",        jobs.plan,
+                                    "--tile",     std::to_string(tile),
+                                    "--threads",  std::to_string(jobs.threads),
+                                    "--progress", "none"};
+  if (jobs.redo) words.emplace_back("--overwrite");
+  std::vector<char*> arguments;
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  pid_t child = 0;
+  const int failed =
+      posix_spawn(&child, "/proc/self/exe", nullptr, nullptr, arguments.data(), environ);
+  if (failed != 0) {
+    throw Error(ErrorKind::kFailure,
+                fmt::format("cannot start a process: {}", std::strerror(failed)));
+  }
+  return child;
+}
+
+/// Processes at work, each on a tile.
+class Running {
+ public:
+  Running() = default;
+  Running(const Running&) = delete;
+  Running& operator=(const Running&) = delete;
+  ~Running() {
+    stop();
+    while (!tiles_.empty()) wait();
+  }
+
+  std::size_t size() const { return tiles_.size(); }
+  void add(pid_t child, std::size_t tile) { tiles_[child] = tile; }
+  void stop() const {
+    for (const auto& [child, tile] : tiles_) kill(child, SIGTERM);
+  }
+
+  struct Ended {
+    std::size_t tile = 0;
+    int code = 0;
+  };
+  /// The next that ends; none after a signal.
+  std::vector<Ended> wait() {
+    int status = 0;
+    const pid_t child = waitpid(-1, &status, 0);
+    const auto found = tiles_.find(child);
+    if (found == tiles_.end()) {
+      if (child < 0 && errno == ECHILD) tiles_.clear();
+      return {};
+    }
+    const Ended ended = {found->second, WIFEXITED(status) ? WEXITSTATUS(status) : 1};
+    tiles_.erase(found);
+    return {ended};
+  }
+
+ private:
+  std::map<pid_t, std::size_t> tiles_ = {};
+};
+
+}  // namespace
+
+void run_tile_jobs(const TileJobs& jobs, const Progress& progress) {
+  Running running;
+  std::vector<std::size_t> failed;
+  int code = 0;
+  Stage stage(&progress, "tiles", jobs.tiles.size());
+  for (std::size_t next = 0; next < jobs.tiles.size() || running.size() > 0;) {
+    throw_if_cancelled(&progress);
+    if (next < jobs.tiles.size() && running.size() < static_cast<std::size_t>(jobs.jobs)) {
+      const std::size_t tile = jobs.tiles[next++];
+      running.add(start(jobs, tile), tile);
+      continue;
+    }
+    for (const auto& [tile, its_code] : running.wait()) {
+      stage.advance();
+      if (its_code == 0) continue;
+      failed.push_back(tile);
+      if (code == 0) code = its_code;
+    }
+  }
+  if (failed.empty()) return;
+  throw Error(static_cast<ErrorKind>(code),
+              fmt::format("{} of {} tiles failed, for the reasons above: {}", failed.size(),
+                          jobs.tiles.size(), tiles::list_of(failed)));
+}
+
+}  // namespace pcednet::app

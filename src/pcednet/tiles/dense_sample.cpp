@@ -1,0 +1,109 @@
+#include "pcednet/tiles/dense_sample.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "pcednet/gls/fast_scale_space.h"
+#include "pcednet/tiles/inputs.h"
+
+namespace pcednet::tiles {
+namespace {
+
+constexpr std::size_t kCubes = 64;
+constexpr std::size_t kDensePoints = 1'000'000;  ///< about so many in all cubes
+
+bool holds(const BoundingBox& box, const Vec3& p) {
+  return (p.array() >= box.min.array()).all() && (p.array() <= box.max.array()).all();
+}
+
+bool meet(const BoundingBox& a, const BoundingBox& b) {
+  return (a.min.array() <= b.max.array()).all() && (b.min.array() <= a.max.array()).all();
+}
+
+std::vector<BoundingBox> cubes_around(std::span<const Vec3> centres, double half_side) {
+  std::vector<BoundingBox> cubes;
+  for (const Vec3& centre : centres) {
+    cubes.push_back({centre - Vec3::Constant(half_side), centre + Vec3::Constant(half_side)});
+  }
+  return cubes;
+}
+
+/// Cubes of one size that hold some kDensePoints together, as far as the sample tells.
+std::vector<BoundingBox> choose_cubes(std::span<const Vec3> sample, const Plan& plan) {
+  std::vector<Vec3> centres;
+  for (std::size_t i = 0; i < kCubes; ++i) {
+    centres.push_back(sample[(2 * i + 1) * sample.size() / (2 * kCubes)]);
+  }
+  const double share = static_cast<double>(kDensePoints) / static_cast<double>(plan.points());
+  const auto wanted = static_cast<std::size_t>(share * static_cast<double>(sample.size()));
+  double least = 0.0, most = (plan.box.max - plan.box.min).maxCoeff();
+  for (int step = 0; step < 20; ++step) {
+    const double half_side = 0.5 * (least + most);
+    const auto cubes = cubes_around(centres, half_side);
+    const auto inside =
+        static_cast<std::size_t>(std::count_if(sample.begin(), sample.end(), [&](const Vec3& p) {
+          return std::any_of(cubes.begin(), cubes.end(),
+                             [&](const BoundingBox& cube) { return holds(cube, p); });
+        }));
+    (inside > wanted ? most : least) = half_side;
+  }
+  return cubes_around(centres, most);
+}
+
+void append_inside(const PointCloud& part, std::span<const BoundingBox> cubes, PointCloud& to) {
+  for (std::size_t i = 0; i < part.size(); ++i) {
+    const bool inside =
+        cubes.empty() || std::any_of(cubes.begin(), cubes.end(), [&](const BoundingBox& cube) {
+          return holds(cube, part.positions[i]);
+        });
+    if (!inside) continue;
+    to.positions.push_back(part.positions[i]);
+    if (part.has_normals()) to.normals.push_back(part.normals[i]);
+  }
+}
+
+}  // namespace
+
+PointCloud read_dense_sample(std::span<const Vec3> sample, const Plan& plan,
+                             const Progress* progress) {
+  std::vector<BoundingBox> cubes;
+  if (sample.size() < plan.points()) cubes = choose_cubes(sample, plan);
+  PointCloud dense;
+  Stage stage(progress, "dense sample", plan.points());
+  for (const PlannedInput& input : plan.inputs) {
+    const auto reader = open_planned(input);
+    for (std::size_t c = 0; c < input.chunks.size(); ++c) {
+      const Chunk& chunk = input.chunks[c];
+      const bool is_read =
+          cubes.empty() || std::any_of(cubes.begin(), cubes.end(), [&](const BoundingBox& cube) {
+            return meet(cube, chunk.box);
+          });
+      if (is_read) {
+        const PointCloud part = read_chunk(*reader, input, c);
+        if (c == 0 && plan.inputs.size() == 1) dense.scanners = part.scanners;
+        append_inside(part, cubes, dense);
+      }
+      stage.advance(chunk.points);
+    }
+  }
+  return dense;
+}
+
+void decide(const PointCloud& dense, const detect::EdgeModel& model,
+            const detect::PrepareOptions& options, Plan& plan, const Progress* progress) {
+  const detect::PreparedCloud prepared = detect::prepare(dense, options, progress);
+  plan.normals = prepared.decision;
+  plan.notes.insert(plan.notes.end(), prepared.notes.begin(), prepared.notes.end());
+  plan.pyramid.corner = plan.box.min;
+  plan.pyramid.side = (plan.box.max - plan.box.min).maxCoeff();
+  const bool spheres = model.descriptor.reconstruction == gls::Reconstruction::kSphere ||
+                       model.descriptor.reconstruction == gls::Reconstruction::kSphereMls;
+  if (plan.model.exact || !spheres) return;
+  gls::ScaleSpaceOptions descriptor = model.descriptor;
+  descriptor.s_min = plan.s_min, descriptor.s_max = plan.s_max;
+  const gls::FastScaleSpace space({prepared.positions, prepared.normals, prepared.curve},
+                                  descriptor, progress);
+  plan.pyramid.levels = space.pyramid_plan().levels;
+}
+
+}  // namespace pcednet::tiles

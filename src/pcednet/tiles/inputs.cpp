@@ -1,0 +1,240 @@
+#include "pcednet/tiles/inputs.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "pcednet/core/digest.h"
+#include "pcednet/core/error.h"
+#include "pcednet/formats/format.h"
+#include "pcednet/io/las/file.h"
+#include "pcednet/io/las/las.h"
+
+namespace pcednet::tiles {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// All that the file says of the points of a part.
+std::string digest_of(const PointCloud& part) {
+  Digest digest;
+  digest.add(std::as_bytes(std::span(part.positions)));
+  digest.add_values(std::span<const std::uint8_t>(part.labels));
+  for (const auto* columns : {&part.stored_normals, &part.attributes}) {
+    for (const Attribute& column : *columns) digest.add(column.name).add(column.bytes);
+  }
+  digest.add(std::as_bytes(std::span(part.colours)));
+  return digest.hex();
+}
+
+[[noreturn]] void changed(const fs::path& path, const std::string& what) {
+  throw Error(ErrorKind::kUnreadable,
+              fmt::format("{}: has changed since the plan: {}; plan again", path.string(), what));
+}
+
+Chunk chunk_of(const PointCloud& part, std::string digest) {
+  const auto finite = std::count_if(part.positions.begin(), part.positions.end(),
+                                    [](const Vec3& p) { return p.allFinite(); });
+  return {.points = part.size(),
+          .not_finite = part.size() - static_cast<std::size_t>(finite),
+          .box = bounding_box(part.positions),
+          .digest = std::move(digest)};
+}
+
+/// The columns of a cloud, as text to compare.
+std::string columns_of(const PointCloud& cloud) {
+  std::string text =
+      fmt::format("{}{}{}", cloud.has_normals() ? "normals, " : "",
+                  cloud.colours.empty() ? "" : "colours, ", cloud.has_labels() ? "labels, " : "");
+  for (const Attribute& attribute : cloud.attributes) {
+    text += fmt::format("{} ({} of {} bytes), ", attribute.name, attribute.components,
+                        size_of(attribute.type));
+  }
+  return text.empty() ? "positions only" : text.substr(0, text.size() - 2);
+}
+
+void check_agree(const IndexedInput& a, const IndexedInput& b) {
+  const std::string names = a.input.path.string() + " and " + b.input.path.string();
+  if (a.columns != b.columns) {
+    throw Error(ErrorKind::kUsage,
+                fmt::format("{} have different columns: {}; {}. Convert them to one form first, or "
+                            "plan them one by one",
+                            names, a.columns, b.columns));
+  }
+  const auto first = io::las_coordinate_system(a.outline);
+  const auto other = io::las_coordinate_system(b.outline);
+  if (first.epsg != other.epsg || (first.epsg == 0 && first.wkt != other.wkt)) {
+    throw Error(ErrorKind::kUsage, names + " have different coordinate systems");
+  }
+}
+
+/// Whether the scale steps of a file are at places where those of another are.
+bool fits_steps(const io::LasFile& file, const io::LasFile& into) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double steps = (file.offset(axis) - into.offset(axis)) / into.scale(axis);
+    const double ratio = file.scale(axis) / into.scale(axis);
+    if (std::abs(steps - std::round(steps)) > 1e-3 || std::abs(ratio - std::round(ratio)) > 1e-9) {
+      return false;
+    }
+  }
+  return true;
+}
+
+/// `part` without its points.
+PointCloud without_points(PointCloud part) {
+  part.positions.clear(), part.normals.clear(), part.colours.clear(), part.labels.clear();
+  for (auto* columns : {&part.stored_normals, &part.attributes}) {
+    for (Attribute& column : *columns) column.bytes.clear();
+  }
+  return part;
+}
+
+template <typename T>
+void append_rows(const std::vector<T>& from, std::span<const std::uint32_t> chosen,
+                 std::vector<T>& to) {
+  if (from.empty()) return;
+  to.reserve(to.size() + chosen.size());
+  for (const std::uint32_t i : chosen) to.push_back(from[i]);
+}
+
+void append_rows(const std::vector<Attribute>& from, std::span<const std::uint32_t> chosen,
+                 std::vector<Attribute>& to) {
+  for (std::size_t a = 0; a < std::min(from.size(), to.size()); ++a) {
+    const std::size_t stride = from[a].stride();
+    std::size_t end = to[a].bytes.size();
+    to[a].bytes.resize(end + chosen.size() * stride);
+    for (const std::uint32_t i : chosen) {
+      std::copy_n(from[a].bytes.data() + i * stride, stride, to[a].bytes.data() + end);
+      end += stride;
+    }
+  }
+}
+
+}  // namespace
+
+std::unique_ptr<io::PartReader> open_chunks(const fs::path& path) {
+  auto file = std::make_unique<io::InputFile>(path);
+  const formats::Format& format = formats::format_of(*file);
+  const bool in_chunks = format.name == "LAS" || format.name == "PLY";
+  auto reader = in_chunks ? format.open_parts(std::move(file), kChunkPoints) : nullptr;
+  if (reader) return reader;
+  throw Error(ErrorKind::kUsage,
+              fmt::format("{}: tiles are read from LAS, LAZ and binary PLY without lists; "
+                          "pcednet convert writes these",
+                          path.string()));
+}
+
+std::unique_ptr<io::PartReader> open_planned(const PlannedInput& input) {
+  if (std::error_code error; fs::exists(input.path, error)) {
+    const std::uint64_t bytes = fs::file_size(input.path, error);
+    if (!error && bytes != input.bytes) {
+      changed(input.path, fmt::format("{} bytes instead of {}", bytes, input.bytes));
+    }
+  }
+  auto reader = open_chunks(input.path);
+  if (reader->points() != input.points() || reader->parts() != input.chunks.size()) {
+    changed(input.path, fmt::format("{} points instead of {}", reader->points(), input.points()));
+  }
+  reader->set_narrow_colours(input.narrow_colours);
+  return reader;
+}
+
+PointCloud read_chunk(const io::PartReader& reader, const PlannedInput& input, std::size_t chunk) {
+  PointCloud part = reader.read(chunk);
+  if (digest_of(part) != input.chunks[chunk].digest) {
+    changed(input.path, fmt::format("other points in chunk {}", chunk));
+  }
+  io::PartTally known;
+  io::finish_part(part, known);
+  return part;
+}
+
+IndexedInput index_input(const fs::path& path, const Progress* progress,
+                         std::vector<std::string>& notes,
+                         const std::function<void(const PointCloud&)>& see) {
+  const auto reader = open_chunks(path);
+  IndexedInput indexed;
+  indexed.input = {.path = path,
+                   .bytes = fs::file_size(path),
+                   .narrow_colours = reader->narrow_colours(),
+                   .chunks = {}};
+  io::PartTally tally;
+  Stage stage(progress, "index", reader->points());
+  for (std::size_t p = 0; p < reader->parts(); ++p) {
+    PointCloud part = reader->read(p);
+    std::string digest = digest_of(part);
+    io::finish_part(part, tally);
+    check_extent(part.positions);
+    indexed.input.chunks.push_back(chunk_of(part, std::move(digest)));
+    see(part);
+    stage.advance(part.size());
+    if (p == 0) indexed.columns = columns_of(part);
+    if (p == 0) indexed.outline = without_points(std::move(part));
+  }
+  for (const auto& warnings : {reader->warnings, io::warnings_of(tally)}) {
+    for (const std::string& warning : warnings) {
+      notes.push_back(fmt::format("{}: {}", path.string(), warning));
+    }
+  }
+  return indexed;
+}
+
+void settle_columns(const std::vector<IndexedInput>& inputs, Plan& plan) {
+  bool scanners = false, besides = false;
+  std::vector<io::LasFile> las;
+  for (const IndexedInput& input : inputs) {
+    const PointCloud& outline = input.outline;
+    check_agree(inputs.front(), input);
+    scanners = scanners || !outline.scanners.empty();
+    besides = besides || !std::all_of(outline.foreign_elements.begin(),
+                                      outline.foreign_elements.end(), io::is_las_element);
+    io::LasFile file = io::attached_las_file(outline);
+    if (!file.header.empty()) las.push_back(std::move(file));
+  }
+  if (scanners && inputs.size() > 1) {
+    plan.notes.emplace_back(
+        "several inputs: the places of their scanners do not orient the normals");
+  }
+  if (besides) plan.notes.emplace_back("other elements than points, such as faces, are left out");
+  if (las.size() < inputs.size()) return;
+  const io::LasFile& finest = *std::min_element(
+      las.begin(), las.end(),
+      [](const io::LasFile& a, const io::LasFile& b) { return a.scale(0) < b.scale(0); });
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    plan.las_steps.insert(plan.las_steps.end(), {finest.scale(axis), finest.offset(axis)});
+  }
+  const auto fits = [&](const io::LasFile& file) { return fits_steps(file, finest); };
+  if (std::all_of(las.begin(), las.end(), fits)) return;
+  plan.notes.push_back(fmt::format(
+      "the inputs have different scales and offsets: coordinates are rounded to steps of {:g}",
+      finest.scale(0)));
+}
+
+PointCloud outline_of(const Plan& plan) {
+  const PlannedInput& input = plan.inputs.front();
+  PointCloud outline = without_points(read_chunk(*open_planned(input), input, 0));
+  std::erase_if(outline.foreign_elements,
+                [](const ForeignElement& element) { return !io::is_las_element(element); });
+  if (plan.las_steps.size() != 6) return outline;
+  io::LasFile file = io::attached_las_file(outline);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double* const steps = &plan.las_steps[2 * axis];
+    io::put_number(file.header, io::las_header::kScales + 8 * axis, steps[0]);
+    io::put_number(file.header, io::las_header::kOffsets + 8 * axis, steps[1]);
+  }
+  std::erase_if(outline.foreign_elements, io::is_las_element);
+  io::attach_las_file(outline, file);
+  return outline;
+}
+
+void append_points(const PointCloud& from, std::span<const std::uint32_t> chosen, PointCloud& to) {
+  append_rows(from.positions, chosen, to.positions);
+  append_rows(from.normals, chosen, to.normals);
+  append_rows(from.colours, chosen, to.colours);
+  append_rows(from.labels, chosen, to.labels);
+  append_rows(from.stored_normals, chosen, to.stored_normals);
+  append_rows(from.attributes, chosen, to.attributes);
+}
+
+}  // namespace pcednet::tiles

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "pcednet/cloud/point_cloud.h"
+#include "pcednet/core/progress.h"
+#include "pcednet/io/parts.h"
+#include "pcednet/tiles/plan.h"
+
+namespace pcednet::tiles {
+
+/// Points of a chunk, as far as the file has chunks of its own: LAZ is read in its own.
+inline constexpr std::size_t kChunkPoints = 50'000;
+
+/// An input, or a tile, that is read chunk by chunk: LAS, LAZ and binary PLY. Throws what
+/// formats::open_parts() throws, and Error(kUsage) for other formats.
+std::unique_ptr<io::PartReader> open_chunks(const std::filesystem::path& path);
+
+/// The same for an input of a plan. Throws Error(kUnreadable) if it is not the file that was
+/// planned, as far as its size and chunks tell.
+std::unique_ptr<io::PartReader> open_planned(const PlannedInput& input);
+
+/// A chunk of a planned input, finished. Throws Error(kUnreadable) if it has changed since.
+PointCloud read_chunk(const io::PartReader& reader, const PlannedInput& input, std::size_t chunk);
+
+struct IndexedInput {
+  PlannedInput input;
+  PointCloud outline;   ///< its columns, and what it says beside points, without points
+  std::string columns;  ///< as text, to compare
+};
+
+/// Reads the whole file and lists its chunks; `see` gets each, finished.
+IndexedInput index_input(const std::filesystem::path& path, const Progress* progress,
+                         std::vector<std::string>& notes,
+                         const std::function<void(const PointCloud&)>& see);
+
+/// Throws Error(kUsage) if the inputs have different columns or coordinate systems. Chooses the
+/// plan's las_steps, the finest of the inputs, and notes what the tiles cannot keep.
+void settle_columns(const std::vector<IndexedInput>& inputs, Plan& plan);
+
+/// What the tiles get beside points, from the first input, and their columns.
+PointCloud outline_of(const Plan& plan);
+
+/// Appends the points numbered `chosen`; columns that only `from` has are left out unless `to` has
+/// no points yet.
+void append_points(const PointCloud& from, std::span<const std::uint32_t> chosen, PointCloud& to);
+
+}  // namespace pcednet::tiles

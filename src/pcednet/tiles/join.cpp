@@ -1,0 +1,111 @@
+#include "pcednet/tiles/join.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "pcednet/core/error.h"
+#include "pcednet/formats/write_cloud.h"
+#include "pcednet/io/parts.h"
+#include "pcednet/tiles/inputs.h"
+#include "pcednet/tiles/tile_file.h"
+
+namespace pcednet::tiles {
+namespace {
+
+/// All chunks of all tiles, one after the other.
+class TileStream {
+ public:
+  explicit TileStream(const Plan& plan) : plan_(plan) {
+    narrow_ = std::all_of(plan.inputs.begin(), plan.inputs.end(),
+                          [](const PlannedInput& input) { return input.narrow_colours; });
+  }
+
+  /// Calls `visit` until it returns false.
+  void each(const std::function<bool(const PointCloud&)>& visit) const {
+    for (const Tile& tile : plan_.tiles) {
+      const auto reader = open_chunks(tile.output);
+      reader->set_narrow_colours(narrow_);
+      for (std::size_t p = 0; p < reader->parts(); ++p) {
+        PointCloud part = reader->read(p);
+        io::PartTally known;
+        io::finish_part(part, known);
+        if (!visit(part)) return;
+      }
+    }
+  }
+
+ private:
+  const Plan& plan_;
+  bool narrow_ = false;
+};
+
+void check_all_done(const Plan& plan) {
+  std::vector<std::size_t> undone;
+  for (std::size_t id = 0; id < plan.tiles.size(); ++id) {
+    if (state_of(plan, id) != TileState::kDone) undone.push_back(id);
+  }
+  if (undone.empty()) return;
+  throw Error(ErrorKind::kInsufficient,
+              fmt::format("{}: {} of {} tiles are missing or damaged: {}", plan.path.string(),
+                          undone.size(), plan.tiles.size(), list_of(undone)));
+}
+
+}  // namespace
+
+std::string list_of(const std::vector<std::size_t>& numbers) {
+  constexpr std::size_t kMost = 20;
+  std::string text;
+  std::size_t ranges = 0;
+  for (std::size_t i = 0; i < numbers.size();) {
+    std::size_t end = i + 1;
+    while (end < numbers.size() && numbers[end] == numbers[end - 1] + 1) ++end;
+    if (++ranges > kMost) return text + ", ...";
+    text += fmt::format("{}{}", text.empty() ? "" : ", ", numbers[i]);
+    if (end - i > 1) text += fmt::format(" to {}", numbers[end - 1]);
+    i = end;
+  }
+  return text;
+}
+
+Joined join(const Plan& plan, const std::filesystem::path& path, Overwrite overwrite,
+            const Progress* progress) {
+  check_all_done(plan);
+  const TileStream tiles(plan);
+  PointCloud first;
+  tiles.each([&](const PointCloud& part) {
+    first = part;
+    return false;
+  });
+  const bool is_las = !plan.las_steps.empty();
+  const bool to_ply = path.extension() == ".ply";
+  io::PartOutline outline{.points = plan.points(), .first = &first, .is_las = is_las};
+  outline.each_part = [&](const auto& visit) {
+    // The steps and columns of tiles made of LAS are the same in all.
+    if (is_las && !to_ply)
+      visit(first);
+    else
+      tiles.each(visit);
+  };
+  const auto writer = formats::create_parts(path, outline, {.overwrite = overwrite});
+  if (!writer) {
+    throw Error(ErrorKind::kUsage,
+                fmt::format("{}: tiles are joined as .laz, .las or .ply", path.string()));
+  }
+  Joined joined{.points = 0, .losses = writer->losses};
+  Stage stage(progress, "join", plan.points());
+  tiles.each([&](const PointCloud& part) {
+    writer->append(part);
+    joined.points += part.size();
+    stage.advance(part.size());
+    return true;
+  });
+  if (joined.points != plan.points()) {
+    throw Error(ErrorKind::kFailure, fmt::format("{}: the tiles have {} points, the inputs {}",
+                                                 path.string(), joined.points, plan.points()));
+  }
+  writer->commit();
+  return joined;
+}
+
+}  // namespace pcednet::tiles

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "pcednet/core/output_file.h"
+#include "pcednet/core/progress.h"
+#include "pcednet/tiles/plan.h"
+
+namespace pcednet::tiles {
+
+struct Joined {
+  std::size_t points = 0;
+  std::vector<std::string> losses;  ///< what the format does not keep, one sentence part each
+};
+
+/// Writes all tiles into one file, tile after tile, in memory that does not grow with them. Throws
+/// Error(kInsufficient) unless all tiles are done, Error(kFailure) if their points are not those
+/// planned, what OutputFile throws, and Error(kUsage) for another format than .laz, .las and .ply.
+Joined join(const Plan& plan, const std::filesystem::path& path, Overwrite overwrite,
+            const Progress* progress = nullptr);
+
+/// "0, 3, 5 to 9": at most the first of them.
+std::string list_of(const std::vector<std::size_t>& numbers);
+
+}  // namespace pcednet::tiles

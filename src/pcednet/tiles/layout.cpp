@@ -1,0 +1,192 @@
+#include "pcednet/tiles/layout.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "pcednet/core/error.h"
+#include "pcednet/io/text_scan.h"
+
+namespace pcednet::tiles {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kCellsAlong = 512;
+constexpr std::size_t kMostTiles = 1'000'000;
+
+/// The program with its model, and bytes per point: see docs/large.md for how they were measured.
+constexpr std::uint64_t kFixedBytes = 150'000'000, kBytesPerPoint = 600;
+
+/// Sums of counts over rectangles of cells.
+class SummedCounts {
+ public:
+  explicit SummedCounts(const CellCounts& counts) {
+    for (const auto& [cell, count] : counts.cells()) {
+      left_ = std::min(left_, cell.first), bottom_ = std::min(bottom_, cell.second);
+      right_ = std::max(right_, cell.first + 1), top_ = std::max(top_, cell.second + 1);
+    }
+    if (counts.cells().empty()) left_ = bottom_ = right_ = top_ = 0;
+    sums_.assign((columns() + 1) * (rows() + 1), 0);
+    for (const auto& [cell, count] : counts.cells()) {
+      sums_[place(cell.first + 1, cell.second + 1)] += count;
+    }
+    for (std::int64_t x = left_; x <= right_; ++x) {
+      for (std::int64_t y = bottom_ + 1; y <= top_; ++y)
+        sums_[place(x, y)] += sums_[place(x, y - 1)];
+    }
+    for (std::int64_t x = left_ + 1; x <= right_; ++x) {
+      for (std::int64_t y = bottom_; y <= top_; ++y) sums_[place(x, y)] += sums_[place(x - 1, y)];
+    }
+  }
+
+  std::int64_t left() const { return left_; }
+  std::int64_t right() const { return right_; }
+  std::int64_t bottom() const { return bottom_; }
+  std::int64_t top() const { return top_; }
+
+  /// Over the cells [x0, x1) x [y0, y1).
+  std::uint64_t sum(std::int64_t x0, std::int64_t y0, std::int64_t x1, std::int64_t y1) const {
+    x0 = std::clamp(x0, left_, right_), x1 = std::clamp(x1, left_, right_);
+    y0 = std::clamp(y0, bottom_, top_), y1 = std::clamp(y1, bottom_, top_);
+    return sums_[place(x1, y1)] - sums_[place(x0, y1)] - sums_[place(x1, y0)] +
+           sums_[place(x0, y0)];
+  }
+
+ private:
+  std::size_t columns() const { return static_cast<std::size_t>(right_ - left_); }
+  std::size_t rows() const { return static_cast<std::size_t>(top_ - bottom_); }
+  std::size_t place(std::int64_t x, std::int64_t y) const {
+    return static_cast<std::size_t>(x - left_) * (rows() + 1) +
+           static_cast<std::size_t>(y - bottom_);
+  }
+
+  std::int64_t left_ = INT64_MAX, bottom_ = INT64_MAX, right_ = INT64_MIN, top_ = INT64_MIN;
+  std::vector<std::uint64_t> sums_ = {};
+};
+
+std::uint64_t most_in(const SummedCounts& sums, const Grid& grid, double buffer) {
+  const auto around = static_cast<std::int64_t>(std::ceil(buffer / grid.cell));
+  std::uint64_t most = 0;
+  for (auto c = grid.core_of_cell(sums.left()); c * grid.across < sums.right(); ++c) {
+    for (auto r = grid.core_of_cell(sums.bottom()); r * grid.across < sums.top(); ++r) {
+      const std::int64_t x = c * grid.across, y = r * grid.across;
+      most = std::max(most, sums.sum(x - around, y - around, x + grid.across + around,
+                                     y + grid.across + around));
+    }
+  }
+  return most;
+}
+
+std::string replaced(std::string text, const std::string& what, const std::string& by) {
+  for (std::size_t at; (at = text.find(what)) != std::string::npos;) {
+    text.replace(at, what.size(), by);
+  }
+  return text;
+}
+
+std::string name_of(std::size_t id, std::size_t tiles, const Tile& tile, const Grid& grid,
+                    std::string name) {
+  const std::size_t digits = std::to_string(tiles - 1).size();
+  name = replaced(name, "{ID}", fmt::format("{:0{}}", id, digits));
+  name = replaced(name, "{COLUMN}", std::to_string(tile.column));
+  name = replaced(name, "{ROW}", std::to_string(tile.row));
+  const auto edge = [&](std::int64_t core) { return fmt::format("{:.12g}", grid.edge(core)); };
+  name = replaced(name, "{XLEFT}", edge(tile.column));
+  name = replaced(name, "{XRIGHT}", edge(tile.column + 1));
+  name = replaced(name, "{YBOTTOM}", edge(tile.row));
+  return replaced(name, "{YTOP}", edge(tile.row + 1));
+}
+
+void check_template(const std::string& output) {
+  const std::string extension = io::lower_case(fs::path(output).extension().string());
+  if (extension != ".laz" && extension != ".las" && extension != ".ply") {
+    throw Error(ErrorKind::kUsage,
+                fmt::format("--output {}: tiles are written as .laz, .las or .ply", output));
+  }
+  if (fs::path(output).has_parent_path()) {
+    throw Error(ErrorKind::kUsage,
+                fmt::format("--output {}: a name without folders; see --out-dir", output));
+  }
+}
+
+}  // namespace
+
+void CellCounts::add(std::span<const Vec3> positions) {
+  std::array<std::int64_t, 2> last = {};
+  std::uint64_t* count = nullptr;
+  for (const Vec3& position : positions) {
+    if (!position.allFinite()) {
+      ++not_finite_;
+      continue;
+    }
+    const auto cell = grid_.cell_of(position);
+    if (!count || cell != last) count = &cells_[{cell[0], cell[1]}];
+    last = cell;
+    ++*count;
+  }
+}
+
+double cell_length(const BoundingBox& box) {
+  if (box.empty()) return 1.0;
+  const double side = std::max(box.max.x() - box.min.x(), box.max.y() - box.min.y());
+  const double least = std::max(side, 1e-3) / kCellsAlong;
+  const double power = std::pow(10.0, std::floor(std::log10(least)));
+  for (const double factor : {1.0, 2.0, 5.0}) {
+    if (factor * power >= least) return factor * power;
+  }
+  return 10.0 * power;
+}
+
+std::uint64_t memory_for(std::uint64_t points) {
+  return kFixedBytes + kBytesPerPoint * points;
+}
+
+std::uint64_t most_points(const CellCounts& counts, const Grid& grid, double buffer) {
+  return most_in(SummedCounts(counts), grid, buffer);
+}
+
+Grid choose_grid(const CellCounts& counts, double cell, double buffer, std::uint64_t memory) {
+  const SummedCounts sums(counts);
+  const std::int64_t all = std::max(sums.right() - sums.left(), sums.top() - sums.bottom());
+  const auto least = static_cast<std::int64_t>(std::ceil(buffer / cell));
+  // Cores begin at multiples of their length, so that one core may hold all only if it is longer.
+  for (std::int64_t across = 2 * std::max<std::int64_t>(all, 1); across > least; --across) {
+    const Grid grid{cell, across};
+    if (memory_for(most_in(sums, grid, buffer)) <= memory) return grid;
+  }
+  return {cell, std::max<std::int64_t>(least, 1)};
+}
+
+std::vector<Tile> lay_out(const CellCounts& counts, const Grid& grid, const fs::path& folder,
+                          const std::string& output) {
+  check_template(output);
+  std::map<std::pair<std::int64_t, std::int64_t>, std::uint64_t> cores;
+  for (const auto& [cell, count] : counts.cells()) {
+    cores[{grid.core_of_cell(cell.first), grid.core_of_cell(cell.second)}] += count;
+  }
+  if (cores.empty()) cores[{0, 0}] = 0;
+  if (cores.size() > kMostTiles) {
+    throw Error(ErrorKind::kUsage,
+                fmt::format("{} tiles of length {:g}: at most {}; choose a larger --tile",
+                            cores.size(), grid.length(), kMostTiles));
+  }
+  cores.begin()->second += counts.not_finite();
+  std::vector<Tile> tiles;
+  for (const auto& [core, count] : cores) tiles.push_back({core.first, core.second, count, {}});
+  std::set<std::string> names;
+  for (std::size_t id = 0; id < tiles.size(); ++id) {
+    const std::string name = name_of(id, tiles.size(), tiles[id], grid, output);
+    if (!names.insert(name).second) {
+      throw Error(ErrorKind::kUsage,
+                  fmt::format("--output {}: two tiles would be named {}; {{ID}} tells them apart",
+                              output, name));
+    }
+    tiles[id].output = folder / name;
+  }
+  return tiles;
+}
+
+}  // namespace pcednet::tiles

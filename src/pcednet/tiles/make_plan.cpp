@@ -1,0 +1,147 @@
+#include "pcednet/tiles/make_plan.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "pcednet/core/error.h"
+#include "pcednet/core/sha256.h"
+#include "pcednet/core/version.h"
+#include "pcednet/tiles/dense_sample.h"
+#include "pcednet/tiles/inputs.h"
+#include "pcednet/tiles/layout.h"
+#include "pcednet/tiles/sample.h"
+
+namespace pcednet::tiles {
+namespace {
+
+/// Of as many points at most the plan is exact: it decides what the whole cloud in memory would.
+constexpr std::size_t kSampled = 2'000'000;
+
+/// Distances to the k-th nearest in terms of Spacing::wide, the mean distance to the 10 nearest:
+/// some sqrt(k / 10) on a surface, where the tenth is at 1.5 times the mean.
+double reach_of(std::size_t neighbours, const Spacing& spacing) {
+  return 1.5 * spacing.wide * std::sqrt(static_cast<double>(neighbours) / 10.0);
+}
+
+constexpr std::size_t kContextNeighbours = 32;
+constexpr std::size_t kBoundaryNeighbours = 24, kBoundarySteps = 4;
+constexpr std::size_t kNormalSteps = 4;  ///< a sign is decided with neighbours of neighbours
+
+/// How far around a core points decide on the points in it.
+void set_buffer(const detect::EdgeModel& model, const Spacing& spacing, Plan& plan) {
+  // Voxels are an eps of the scale, and where a level merges crowds, blocks of 8 cells are.
+  const bool crowded = std::any_of(plan.pyramid.levels.begin(), plan.pyramid.levels.end(),
+                                   [](const auto& l) { return l.crowd != gls::Crowd::kKeep; });
+  const double cells = model.descriptor.eps * plan.s_max * (crowded ? 10.0 : 2.0);
+  const bool moves = model.descriptor.reconstruction == gls::Reconstruction::kSphereMls ||
+                     model.descriptor.reconstruction == gls::Reconstruction::kPlaneMls;
+  const double described = plan.s_max * (moves ? 2.0 : 1.0) + cells;
+  const double normals =
+      plan.normals.made
+          ? kNormalSteps * reach_of(std::max<std::size_t>(plan.normals.neighbours, 16), spacing)
+          : 0.0;
+  plan.reach = plan.model.context && model.context ? reach_of(kContextNeighbours, spacing) : 0.0;
+  const double boundary =
+      plan.model.boundary ? kBoundarySteps * reach_of(kBoundaryNeighbours, spacing) : 0.0;
+  plan.buffer = std::max(plan.reach + described, boundary) + normals;
+}
+
+/// How many times the average point is read, when each tile reads the chunks that it meets.
+double times_read(const Plan& plan) {
+  const auto cores = [&](double from, double to) {
+    const auto core = [&](double at) {
+      return plan.grid.core_of_cell(static_cast<std::int64_t>(std::floor(at / plan.grid.cell)));
+    };
+    return static_cast<double>(core(to + plan.buffer) - core(from - plan.buffer) + 1);
+  };
+  double sum = 0.0;
+  for (const PlannedInput& input : plan.inputs) {
+    for (const Chunk& chunk : input.chunks) {
+      if (chunk.box.empty()) continue;
+      const double tiles =
+          cores(chunk.box.min.x(), chunk.box.max.x()) * cores(chunk.box.min.y(), chunk.box.max.y());
+      sum += static_cast<double>(chunk.points) *
+             std::min(tiles, static_cast<double>(plan.tiles.size()));
+    }
+  }
+  return sum / static_cast<double>(plan.points());
+}
+
+/// Refuses to read everything for nearly every tile.
+void check_order(const Plan& plan) {
+  constexpr double kMostTimes = 8.0, kFewPoints = 5e7;
+  const double times = times_read(plan);
+  if (times <= kMostTimes || times * static_cast<double>(plan.points()) <= kFewPoints) return;
+  throw Error(ErrorKind::kUsage,
+              fmt::format("the points of the inputs are in no order in space: {} tiles would read "
+                          "each point {:.0f} times. Choose a larger --tile, or give --sort FOLDER "
+                          "for copies of the inputs in order",
+                          plan.tiles.size(), times));
+}
+
+/// The inputs of the plan, and a sample of their points.
+Sample index_inputs(const PlanRequest& request, Plan& plan, const Progress* progress) {
+  Sample sample(kSampled);
+  std::vector<IndexedInput> indexed;
+  for (const auto& path : request.inputs) {
+    indexed.push_back(index_input(path, progress, plan.notes,
+                                  [&](const PointCloud& part) { sample.add(part.positions); }));
+    for (const Chunk& chunk : indexed.back().input.chunks) {
+      plan.box.min = plan.box.min.cwiseMin(chunk.box.min);
+      plan.box.max = plan.box.max.cwiseMax(chunk.box.max);
+    }
+  }
+  if (sample.seen() == 0) {
+    throw Error(ErrorKind::kInsufficient, "the inputs have no point with a finite position");
+  }
+  settle_columns(indexed, plan);
+  for (IndexedInput& input : indexed) plan.inputs.push_back(std::move(input.input));
+  return sample;
+}
+
+/// The length of the cells in which points are counted: the tiles are a whole number of them.
+double counting_cell(const PlanRequest& request, const BoundingBox& box) {
+  if (request.tile_length == 0.0) return cell_length(box);
+  double cell = request.tile_length;  // halves of it are exact
+  while (cell > cell_length(box)) cell *= 0.5;
+  return cell;
+}
+
+Grid grid_of(const PlanRequest& request, const CellCounts& counts, double cell, double buffer) {
+  if (request.tile_length == 0.0) return choose_grid(counts, cell, buffer, request.memory);
+  return {cell, static_cast<std::int64_t>(std::llround(request.tile_length / cell))};
+}
+
+}  // namespace
+
+Plan make_plan(const PlanRequest& request, const detect::EdgeModel& model,
+               const Progress* progress) {
+  Plan plan{.version = kVersion, .model = request.model};
+  plan.model.sha256 = sha256_of_file(request.model.path);
+
+  Sample some = index_inputs(request, plan, progress);
+  const bool is_all = some.is_all();
+  const std::vector<Vec3> sample = some.take();
+  const double cell = counting_cell(request, plan.box);
+  CellCounts counts(cell);
+  const Spacing spacing =
+      find_spacing({sample, is_all}, plan, gls::given_range(model.descriptor), counts, progress);
+  plan.s_min = spacing.range.s_min, plan.s_max = spacing.range.s_max;
+
+  const PointCloud dense = read_dense_sample(sample, plan, progress);
+  decide(dense, model, {.keep_orientation = request.keep_orientation}, plan, progress);
+
+  set_buffer(model, spacing, plan);
+  plan.grid = grid_of(request, counts, cell, plan.buffer);
+  plan.tiles = lay_out(counts, plan.grid, request.folder,
+                       !request.output.empty()  ? request.output
+                       : plan.las_steps.empty() ? "{ID}.ply"
+                                                : "{ID}.laz");
+  plan.memory = memory_for(most_points(counts, plan.grid, plan.buffer));
+  check_order(plan);
+  return plan;
+}
+
+}  // namespace pcednet::tiles

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "pcednet/core/progress.h"
+#include "pcednet/detect/model.h"
+#include "pcednet/tiles/plan.h"
+
+namespace pcednet::tiles {
+
+struct PlanRequest {
+  std::vector<std::filesystem::path> inputs;
+  std::filesystem::path folder;  ///< for the tiles
+  std::string output;            ///< names of the tiles, see lay_out(); empty: by the inputs
+  PlannedModel model;            ///< its digest is found here
+  double tile_length = 0.0;      ///< 0: the largest that `memory` allows
+  std::uint64_t memory = std::uint64_t{2} << 30;  ///< bytes that one tile may take
+  bool keep_orientation = false;
+};
+
+/// Plans the tiles of the inputs, which are read twice where they are many points, in memory that
+/// does not grow with them. `model` is what the request names, with the bounds of the scales that
+/// are given.
+///
+/// Throws Error(kUnreadable) for inputs that cannot be read, Error(kUsage) for inputs that do not
+/// fit together, Error(kInsufficient) for no finite point or no range of scales.
+Plan make_plan(const PlanRequest& request, const detect::EdgeModel& model,
+               const Progress* progress = nullptr);
+
+}  // namespace pcednet::tiles

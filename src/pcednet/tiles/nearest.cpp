@@ -1,0 +1,90 @@
+#include "pcednet/tiles/nearest.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "pcednet/core/parallel.h"
+
+namespace pcednet::tiles {
+namespace {
+
+/// A key of the cell of edge 2^size; different cells may have the same, which costs time only.
+std::uint64_t key_of(int size, const std::array<std::int64_t, 3>& cell) {
+  std::uint64_t key = static_cast<std::uint64_t>(size + 4096);
+  for (const std::int64_t c : cell) {
+    key = (key ^ static_cast<std::uint64_t>(c)) * 0x9e3779b97f4a7c15u;
+    key ^= key >> 29;
+  }
+  return key;
+}
+
+std::int64_t cell_along(double coordinate, int size) {
+  return static_cast<std::int64_t>(std::floor(std::ldexp(coordinate, -size)));
+}
+
+double sq_distance(const Vec3& a, const Vec3& b) {
+  const Vec3 d = a - b;
+  return d.x() * d.x() + d.y() * d.y() + d.z() * d.z();
+}
+
+}  // namespace
+
+NearestInStream::NearestInStream(std::vector<Vec3> places, std::span<const double> reach)
+    : places_(std::move(places)) {
+  Row none;
+  none.fill(std::numeric_limits<double>::infinity());
+  nearest_.assign(places_.size(), none);
+  for (std::uint32_t p = 0; p < places_.size(); ++p) {
+    const double far = std::max(reach[p], 1e-100);
+    sq_reach_.push_back(reach[p] * reach[p]);
+    const int size = std::ilogb(far) + 1;
+    if (std::find(sizes_.begin(), sizes_.end(), size) == sizes_.end()) sizes_.push_back(size);
+    std::array<std::int64_t, 3> low, high;
+    for (std::size_t a = 0; a < 3; ++a) {
+      const double at = places_[p][static_cast<int>(a)];
+      low[a] = cell_along(at - far, size), high[a] = cell_along(at + far, size);
+    }
+    for (std::int64_t x = low[0]; x <= high[0]; ++x) {
+      for (std::int64_t y = low[1]; y <= high[1]; ++y) {
+        for (std::int64_t z = low[2]; z <= high[2]; ++z) {
+          cells_[key_of(size, {x, y, z})].push_back(p);
+        }
+      }
+    }
+  }
+}
+
+void NearestInStream::look_around(const Vec3& point, std::vector<Found>& found) const {
+  if (!point.allFinite()) return;
+  for (const int size : sizes_) {
+    const auto cell =
+        cells_.find(key_of(size, {cell_along(point.x(), size), cell_along(point.y(), size),
+                                  cell_along(point.z(), size)}));
+    if (cell == cells_.end()) continue;
+    for (const std::uint32_t place : cell->second) {
+      const double sq = sq_distance(point, places_[place]);
+      if (sq <= sq_reach_[place] && sq < nearest_[place].back()) found.push_back({place, sq});
+    }
+  }
+}
+
+void NearestInStream::add(std::span<const Vec3> points) {
+  constexpr std::size_t kTogether = 4096;
+  std::vector<std::vector<Found>> found((points.size() + kTogether - 1) / kTogether);
+  parallel_blocks(points.size(), kTogether, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) look_around(points[i], found[begin / kTogether]);
+  });
+  for (const std::vector<Found>& some : found) {
+    for (const auto& [place, sq] : some) {
+      Row& row = nearest_[place];
+      if (!(sq < row.back())) continue;
+      const auto at = std::upper_bound(row.begin(), row.end(), sq);
+      std::copy_backward(at, row.end() - 1, row.end());
+      *at = sq;
+    }
+  }
+}
+
+}  // namespace pcednet::tiles

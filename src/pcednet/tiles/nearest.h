@@ -1,0 +1,41 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+#include "pcednet/core/vec3.h"
+#include "pcednet/gls/scales.h"
+
+namespace pcednet::tiles {
+
+/// The exact nearest points of some places in a stream of points that is never held.
+class NearestInStream {
+ public:
+  /// `reach`: a distance within which each place has its nearest ones.
+  NearestInStream(std::vector<Vec3> places, std::span<const double> reach);
+
+  void add(std::span<const Vec3> points);
+
+  /// The squared distances of the nearest points to a place, ascending; infinite where there are
+  /// fewer.
+  std::span<const double> of(std::size_t place) const { return nearest_[place]; }
+
+ private:
+  using Row = std::array<double, gls::kSpacingNeighbours>;
+  struct Found {
+    std::uint32_t place;
+    double sq_distance;
+  };
+  void look_around(const Vec3& point, std::vector<Found>& found) const;
+
+  std::vector<Vec3> places_;
+  std::vector<double> sq_reach_;
+  std::vector<Row> nearest_;
+  std::vector<int> sizes_ = {};  ///< of the cells in use, as powers of two
+  std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> cells_ = {};
+};
+
+}  // namespace pcednet::tiles

@@ -1,0 +1,248 @@
+#include "pcednet/tiles/plan.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <numeric>
+
+#include "pcednet/core/error.h"
+#include "pcednet/core/sha256.h"
+#include "pcednet/core/version.h"
+#include "pcednet/io/input_file.h"
+
+namespace pcednet::tiles {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+constexpr const char* kFormat = "pcednet-tiles-1";
+constexpr std::array<const char*, 3> kCrowds = {"keep", "merge", "merge by axis"};
+
+/// Tells paths in files from paths in this process.
+class Paths {
+ public:
+  explicit Paths(const fs::path& plan)
+      : folder_(fs::absolute(plan).lexically_normal().parent_path()) {}
+
+  std::string written(const fs::path& path) const {
+    const fs::path full = fs::absolute(path).lexically_normal();
+    const fs::path relative = full.lexically_relative(folder_);
+    const bool is_below = !relative.empty() && *relative.begin() != "..";
+    return (is_below ? relative : full).string();
+  }
+  fs::path read(const std::string& text) const { return folder_ / text; }
+
+ private:
+  fs::path folder_;
+};
+
+json json_of(const Vec3& v) {
+  return {v.x(), v.y(), v.z()};
+}
+
+Vec3 vec3_of(const json& j) {
+  return {j.at(0).get<double>(), j.at(1).get<double>(), j.at(2).get<double>()};
+}
+
+json json_of(const BoundingBox& box) {
+  if (box.empty()) return nullptr;
+  return {box.min.x(), box.min.y(), box.min.z(), box.max.x(), box.max.y(), box.max.z()};
+}
+
+BoundingBox box_in(const json& j) {
+  if (j.is_null()) return {};
+  BoundingBox box;
+  for (std::size_t a = 0; a < 3; ++a) {
+    box.min[static_cast<int>(a)] = j.at(a).get<double>();
+    box.max[static_cast<int>(a)] = j.at(3 + a).get<double>();
+  }
+  return box;
+}
+
+/// A list with an element on each line, so that a person can read the file.
+std::string list_of(const std::vector<std::string>& elements, const char* indent) {
+  std::string text = "[";
+  for (const std::string& element : elements) {
+    text += fmt::format("{}\n{}{}", text.size() > 1 ? "," : "", indent, element);
+  }
+  return text + "]";
+}
+
+std::string text_of(const PlannedInput& input, const Paths& paths) {
+  std::vector<std::string> chunks;
+  for (const Chunk& chunk : input.chunks) {
+    chunks.push_back(json{chunk.points, chunk.not_finite, json_of(chunk.box), chunk.digest}.dump());
+  }
+  return fmt::format(
+      "{{\"path\":{},\"bytes\":{},\"points\":{},\"narrow_colours\":{},\"chunks\":{}}}",
+      json(paths.written(input.path)).dump(), input.bytes, input.points(), input.narrow_colours,
+      list_of(chunks, "   "));
+}
+
+PlannedInput input_of(const json& j, const Paths& paths) {
+  PlannedInput input{.path = paths.read(j.at("path")),
+                     .bytes = j.at("bytes"),
+                     .narrow_colours = j.at("narrow_colours"),
+                     .chunks = {}};
+  for (const json& chunk : j.at("chunks")) {
+    input.chunks.push_back({.points = chunk.at(0),
+                            .not_finite = chunk.at(1),
+                            .box = box_in(chunk.at(2)),
+                            .digest = chunk.at(3)});
+  }
+  return input;
+}
+
+std::string text_of(std::size_t id, const Tile& tile, const Plan& plan, const Paths& paths) {
+  const double left = plan.grid.edge(tile.column), bottom = plan.grid.edge(tile.row);
+  const double length = plan.grid.length();
+  // The corners are for readers; column and row decide.
+  return fmt::format(
+      "{{\"id\":{},\"column\":{},\"row\":{},\"core\":{},\"points\":{},\"output\":{}}}", id,
+      tile.column, tile.row, json{left, bottom, left + length, bottom + length}.dump(), tile.points,
+      json(paths.written(tile.output)).dump());
+}
+
+json json_of(const PlannedModel& model, const Paths& paths) {
+  return {{"name", model.name},       {"path", paths.written(model.path)}, {"sha256", model.sha256},
+          {"context", model.context}, {"boundary", model.boundary},        {"exact", model.exact}};
+}
+
+PlannedModel model_of(const json& j, const Paths& paths) {
+  return {.name = j.at("name"),
+          .path = paths.read(j.at("path")),
+          .sha256 = j.at("sha256"),
+          .context = j.at("context"),
+          .boundary = j.at("boundary"),
+          .exact = j.at("exact")};
+}
+
+json json_of(const gls::PyramidPlan& pyramid) {
+  json levels = json::array();
+  for (const auto& level : pyramid.levels) {
+    levels.push_back({level.merges, kCrowds[static_cast<std::size_t>(level.crowd)]});
+  }
+  return {{"corner", json_of(pyramid.corner)}, {"side", pyramid.side}, {"levels", levels}};
+}
+
+gls::PyramidPlan pyramid_of(const json& j) {
+  gls::PyramidPlan pyramid{.corner = vec3_of(j.at("corner")), .side = j.at("side")};
+  for (const json& level : j.at("levels")) {
+    const std::string name = level.at(1);
+    const auto found = std::find(kCrowds.begin(), kCrowds.end(), name);
+    pyramid.levels.push_back({level.at(0), static_cast<gls::Crowd>(found - kCrowds.begin())});
+  }
+  return pyramid;
+}
+
+std::string text_of(const Plan& plan, const Paths& paths) {
+  std::vector<std::string> inputs, tiles;
+  for (const PlannedInput& input : plan.inputs) inputs.push_back(text_of(input, paths));
+  for (std::size_t id = 0; id < plan.tiles.size(); ++id) {
+    tiles.push_back(text_of(id, plan.tiles[id], plan, paths));
+  }
+  const auto& normals = plan.normals;
+  const std::vector<std::pair<const char*, std::string>> members = {
+      {"format", json(kFormat).dump()},
+      {"program", json(plan.version).dump()},
+      {"points", json(plan.points()).dump()},
+      {"box", json_of(plan.box).dump()},
+      {"las_steps", json(plan.las_steps).dump()},
+      {"model", json_of(plan.model, paths).dump()},
+      {"scales", json{{"s_min", plan.s_min}, {"s_max", plan.s_max}}.dump()},
+      {"normals", json{{"made", normals.made},
+                       {"neighbours", normals.neighbours},
+                       {"exact_planes", normals.exact_planes}}
+                      .dump()},
+      {"pyramid", json_of(plan.pyramid).dump()},
+      {"cell", json(plan.grid.cell).dump()},
+      {"cells_across", json(plan.grid.across).dump()},
+      {"buffer", json(plan.buffer).dump()},
+      {"reach", json(plan.reach).dump()},
+      {"memory", json(plan.memory).dump()},
+      {"notes", json(plan.notes).dump()},
+      {"tiles", list_of(tiles, "  ")},
+      {"inputs", list_of(inputs, "  ")}};
+  std::string text;
+  for (const auto& [name, value] : members) {
+    text += fmt::format("{}\n \"{}\": {}", text.empty() ? "{" : ",", name, value);
+  }
+  return text + "\n}\n";
+}
+
+Plan plan_of(const json& j, const Paths& paths) {
+  Plan plan;
+  plan.version = j.at("program");
+  plan.box = box_in(j.at("box"));
+  plan.las_steps = j.at("las_steps").get<std::vector<double>>();
+  plan.model = model_of(j.at("model"), paths);
+  plan.s_min = j.at("scales").at("s_min");
+  plan.s_max = j.at("scales").at("s_max");
+  const json& normals = j.at("normals");
+  plan.normals = {normals.at("made"), normals.at("neighbours"), normals.at("exact_planes")};
+  plan.pyramid = pyramid_of(j.at("pyramid"));
+  plan.grid = {j.at("cell"), j.at("cells_across")};
+  plan.buffer = j.at("buffer");
+  plan.reach = j.at("reach");
+  plan.memory = j.at("memory");
+  plan.notes = j.at("notes").get<std::vector<std::string>>();
+  for (const json& input : j.at("inputs")) plan.inputs.push_back(input_of(input, paths));
+  for (const json& tile : j.at("tiles")) {
+    plan.tiles.push_back(
+        {tile.at("column"), tile.at("row"), tile.at("points"), paths.read(tile.at("output"))});
+  }
+  return plan;
+}
+
+}  // namespace
+
+std::size_t PlannedInput::points() const {
+  return std::accumulate(chunks.begin(), chunks.end(), std::size_t{0},
+                         [](std::size_t sum, const Chunk& chunk) { return sum + chunk.points; });
+}
+
+std::size_t Plan::points() const {
+  return std::accumulate(
+      inputs.begin(), inputs.end(), std::size_t{0},
+      [](std::size_t sum, const PlannedInput& input) { return sum + input.points(); });
+}
+
+BoundingBox Plan::box_of(const Tile& tile, double around) const {
+  BoundingBox found = box;
+  const double left = grid.edge(tile.column), bottom = grid.edge(tile.row);
+  found.min.x() = left - around, found.max.x() = left + grid.length() + around;
+  found.min.y() = bottom - around, found.max.y() = bottom + grid.length() + around;
+  return found;
+}
+
+void write_plan(const fs::path& path, const Plan& plan, Overwrite overwrite) {
+  write_text_file(path, text_of(plan, Paths(path)), overwrite);
+}
+
+Plan read_plan(const fs::path& path) {
+  const std::string text = io::InputFile(path).text();
+  Plan plan;
+  try {
+    const json j = json::parse(text);
+    if (j.at("format") != kFormat) throw std::runtime_error("another format");
+    const std::string version = j.at("program");
+    if (version != kVersion) {
+      throw Error(ErrorKind::kUsage,
+                  fmt::format("{}: planned by pcednet {}, and this is {}: tiles of both could "
+                              "differ. Plan again, or run the other version",
+                              path.string(), version, kVersion));
+    }
+    plan = plan_of(j, Paths(path));
+  } catch (const Error&) {
+    throw;
+  } catch (const std::exception& error) {
+    throw Error(ErrorKind::kUnreadable,
+                fmt::format("{}: not a plan of tiles: {}", path.string(), error.what()));
+  }
+  plan.path = path;
+  plan.digest = Sha256().add(text).hex();
+  return plan;
+}
+
+}  // namespace pcednet::tiles

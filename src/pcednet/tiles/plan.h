@@ -1,0 +1,83 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "pcednet/cloud/bounding_box.h"
+#include "pcednet/core/output_file.h"
+#include "pcednet/detect/prepare.h"
+#include "pcednet/gls/pyramid_plan.h"
+#include "pcednet/tiles/grid.h"
+
+namespace pcednet::tiles {
+
+/// Points of an input that are read together.
+struct Chunk {
+  std::size_t points = 0;
+  std::size_t not_finite = 0;  ///< positions among them
+  BoundingBox box = {};        ///< of the finite ones
+  std::string digest = {};     ///< of all that the file says of the points
+};
+
+struct PlannedInput {
+  std::filesystem::path path;
+  std::uint64_t bytes = 0;
+  bool narrow_colours = false;  ///< see io::PartReader
+  std::vector<Chunk> chunks;
+
+  std::size_t points() const;
+};
+
+/// The model, and how it is used.
+struct PlannedModel {
+  std::string name = {};            ///< as the user gave it
+  std::filesystem::path path = {};  ///< of the file
+  std::string sha256 = {};          ///< of its bytes
+  bool context = true;              ///< the context network decides in the end
+  bool boundary = true;             ///< points where the surface ends get that class
+  bool exact = false;               ///< the exact engine describes
+};
+
+struct Tile {
+  std::int64_t column = 0, row = 0;  ///< of its core
+  std::size_t points = 0;            ///< in its core
+  std::filesystem::path output = {};
+};
+
+/// All that has to be the same for every tile of a cloud, and what the tiles are.
+struct Plan {
+  std::filesystem::path path = {};  ///< of its file
+  std::string digest = {};          ///< SHA-256 of its file
+  std::string version = {};         ///< of the program that made it
+  std::vector<PlannedInput> inputs = {};
+  /// Scale and offset of x, y and z in the tiles, where all inputs are LAS or LAZ; otherwise empty.
+  std::vector<double> las_steps = {};
+  BoundingBox box = {};  ///< of all finite points
+  PlannedModel model = {};
+  double s_min = 0.0, s_max = 0.0;
+  detect::NormalsDecision normals = {};
+  gls::PyramidPlan pyramid = {};  ///< without levels for the exact engine
+  Grid grid = {};
+  double buffer = 0.0;  ///< points so far around a core are read with it
+  double reach = 0.0;   ///< points so far around it are described with it, for the context network
+  std::uint64_t memory = 0;             ///< bytes that the largest tile is expected to take
+  std::vector<Tile> tiles = {};         ///< those with points; a tile's number is its place
+  std::vector<std::string> notes = {};  ///< what the user should be told, one sentence each
+
+  std::size_t points() const;
+  /// The part of the plane that the core of a tile and `around` it take, without bounds in z.
+  BoundingBox box_of(const Tile& tile, double around) const;
+};
+
+/// Writes a plan as JSON. Paths of files in or below the folder of `path` are written relative to
+/// it, so that a folder can be moved as a whole.
+void write_plan(const std::filesystem::path& path, const Plan& plan, Overwrite overwrite);
+
+/// Throws Error(kUnreadable) for what is not a plan, Error(kUsage) for one of another version of
+/// the program, whose tiles could differ.
+Plan read_plan(const std::filesystem::path& path);
+
+}  // namespace pcednet::tiles

@@ -1,0 +1,162 @@
+#include "pcednet/tiles/run_tile.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "pcednet/core/error.h"
+#include "pcednet/core/sha256.h"
+#include "pcednet/detect/boundary.h"
+#include "pcednet/detect/classify.h"
+#include "pcednet/detect/decide.h"
+#include "pcednet/detect/part_of_cloud.h"
+#include "pcednet/detect/result_cloud.h"
+#include "pcednet/formats/write_cloud.h"
+#include "pcednet/io/parts.h"
+#include "pcednet/tiles/inputs.h"
+#include "pcednet/tiles/tile_file.h"
+
+namespace pcednet::tiles {
+namespace {
+
+bool is_in(const BoundingBox& box, const Vec3& p) {
+  return box.min.x() <= p.x() && p.x() <= box.max.x() && box.min.y() <= p.y() &&
+         p.y() <= box.max.y();
+}
+
+bool meets(const BoundingBox& box, const BoundingBox& other) {
+  return box.min.x() <= other.max.x() && other.min.x() <= box.max.x() &&
+         box.min.y() <= other.max.y() && other.min.y() <= box.max.y();
+}
+
+/// Which points of a part are in the core of a tile, and which around it.
+struct Chosen {
+  std::vector<std::uint32_t> core, around;
+};
+
+Chosen choose(const PointCloud& part, const Plan& plan, std::size_t tile, const BoundingBox& box) {
+  const Tile& wanted = plan.tiles[tile];
+  Chosen chosen;
+  for (std::uint32_t i = 0; i < part.size(); ++i) {
+    const Vec3& position = part.positions[i];
+    if (!position.allFinite()) {
+      if (tile == 0) chosen.core.push_back(i);
+    } else if (plan.grid.core_of(position) == std::array{wanted.column, wanted.row}) {
+      chosen.core.push_back(i);
+    } else if (is_in(box, position)) {
+      chosen.around.push_back(i);
+    }
+  }
+  return chosen;
+}
+
+/// Positions and normals only.
+void append_seen(const PointCloud& part, std::span<const std::uint32_t> chosen, PointCloud& to) {
+  for (const std::uint32_t i : chosen) {
+    to.positions.push_back(part.positions[i]);
+    if (part.has_normals()) to.normals.push_back(part.normals[i]);
+  }
+}
+
+void add_core(const PointCloud& core, PointCloud& all) {
+  all.positions.insert(all.positions.begin(), core.positions.begin(), core.positions.end());
+  all.normals.insert(all.normals.begin(), core.normals.begin(), core.normals.end());
+  all.scanners = core.scanners;
+}
+
+detect::PartOfCloud part_of(const Plan& plan, std::size_t tile, const TileCloud& points) {
+  detect::PartOfCloud part{.pyramid = plan.pyramid, .points = plan.points(), .wanted = {}};
+  part.wanted.assign(points.all.size(), 1);
+  const BoundingBox near = plan.box_of(plan.tiles[tile], plan.reach);
+  for (std::size_t i = points.core.size(); i < part.wanted.size(); ++i) {
+    part.wanted[i] = is_in(near, points.all.positions[i]) ? 1 : 0;
+  }
+  return part;
+}
+
+void keep_first(std::size_t points, detect::PreparedCloud& prepared,
+                detect::Classification& found) {
+  if (!prepared.made.empty()) prepared.made.resize(points);
+  found.classes.resize(points);
+  found.p_sharp.resize(points);
+  found.p_smooth.resize(points);
+  found.counts = detect::count_classes(found.classes);
+}
+
+/// Classifies the core, and puts what was found into it. Returns whether normals were made.
+bool classify(const Plan& plan, std::size_t tile, const detect::EdgeModel& model, TileCloud& points,
+              detect::ClassCounts& counts, const Progress* progress) {
+  detect::PreparedCloud prepared;
+  detect::Classification found = detect::nothing_found(points.core.size());
+  const auto is_finite = [](const Vec3& p) { return p.allFinite(); };
+  if (std::any_of(points.all.positions.begin(), points.all.positions.end(), is_finite)) {
+    const detect::PartOfCloud part = part_of(plan, tile, points);
+    prepared = detect::prepare(points.all, {.decided = plan.normals}, progress);
+    prepared.part = &part;
+    found = detect::classify(prepared, model, progress);
+    if (plan.model.boundary) detect::mark_boundary(prepared, found, progress);
+  }
+  keep_first(points.core.size(), prepared, found);
+  points.all = {};
+  counts = found.counts;
+  detect::add_result(points.core, prepared, found, model);
+  return !prepared.made.empty();
+}
+
+}  // namespace
+
+TileCloud read_tile(const Plan& plan, std::size_t tile, const Progress* progress) {
+  const BoundingBox box = plan.box_of(plan.tiles[tile], plan.buffer);
+  TileCloud points{.core = outline_of(plan), .all = {}};
+  for (const PlannedInput& input : plan.inputs) {
+    std::unique_ptr<io::PartReader> reader;
+    for (std::size_t c = 0; c < input.chunks.size(); ++c) {
+      const Chunk& chunk = input.chunks[c];
+      if (!meets(chunk.box, box) && !(tile == 0 && chunk.not_finite > 0)) continue;
+      throw_if_cancelled(progress);
+      if (!reader) reader = open_planned(input);
+      const PointCloud part = read_chunk(*reader, input, c);
+      const Chosen chosen = choose(part, plan, tile, box);
+      append_points(part, chosen.core, points.core);
+      append_seen(part, chosen.around, points.all);
+    }
+  }
+  if (plan.inputs.size() > 1) points.core.scanners.clear();
+  add_core(points.core, points.all);
+  if (points.core.size() == plan.tiles[tile].points) return points;
+  throw Error(ErrorKind::kFailure,
+              fmt::format("tile {}: {} points instead of the {} that were planned", tile,
+                          points.core.size(), plan.tiles[tile].points));
+}
+
+detect::EdgeModel load_planned_model(const Plan& plan) {
+  if (sha256_of_file(plan.model.path) != plan.model.sha256) {
+    throw Error(ErrorKind::kModelMismatch,
+                fmt::format("{}: not the model that the tiles were planned with",
+                            plan.model.path.string()));
+  }
+  detect::EdgeModel model = detect::load_model(plan.model.path);
+  if (!plan.model.context) model.context.reset();
+  model.descriptor.s_min = plan.s_min;
+  model.descriptor.s_max = plan.s_max;
+  model.descriptor.engine = plan.model.exact ? gls::Engine::kExact : gls::Engine::kFast;
+  return model;
+}
+
+void run_tile(const Plan& plan, std::size_t tile, const detect::EdgeModel& model,
+              const Progress* progress) {
+  const std::filesystem::path& path = plan.tiles[tile].output;
+  TileCloud points = read_tile(plan, tile, progress);
+  detect::ClassCounts counts;
+  const bool made_normals = classify(plan, tile, model, points, counts, progress);
+  io::PartOutline outline = io::outline_of(points.core);
+  outline.is_las = !plan.las_steps.empty();
+  const auto writer = formats::create_parts(
+      path, outline, {.overwrite = Overwrite::kYes, .new_normals = !made_normals});
+  writer->append(points.core);
+  writer->commit();
+  write_record(path,
+               {.plan = plan.digest, .tile = tile, .points = points.core.size(), .counts = counts});
+}
+
+}  // namespace pcednet::tiles

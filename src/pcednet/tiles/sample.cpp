@@ -1,0 +1,108 @@
+#include "pcednet/tiles/sample.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "pcednet/core/random.h"
+#include "pcednet/spatial/curve_order.h"
+#include "pcednet/spatial/kd_tree.h"
+#include "pcednet/tiles/inputs.h"
+#include "pcednet/tiles/nearest.h"
+
+namespace pcednet::tiles {
+namespace {
+
+/// Reads every point once.
+void stream_points(const Plan& plan, const Progress* progress,
+                   const std::function<void(std::span<const Vec3>)>& see) {
+  Stage stage(progress, "spacing", plan.points());
+  for (const PlannedInput& input : plan.inputs) {
+    const auto reader = open_planned(input);
+    for (std::size_t chunk = 0; chunk < input.chunks.size(); ++chunk) {
+      const PointCloud part = reader->read(chunk);
+      see(part.positions);
+      stage.advance(part.size());
+    }
+  }
+}
+
+/// Mean distances to the nearest others of positions at equal steps of the sample.
+std::vector<double> spacings_from(const SampledPoints& sample, const Plan& plan, CellCounts& counts,
+                                  const Progress* progress) {
+  const spatial::KdTree tree(sample.positions);
+  const auto nearest = [&](std::size_t place) {
+    std::vector<spatial::Neighbour> found;
+    tree.nearest(sample.positions[place], gls::kSpacingNeighbours, found);
+    std::vector<double> sq_distances;
+    for (const auto& neighbour : found) sq_distances.push_back(neighbour.sq_distance);
+    return sq_distances;
+  };
+  const std::size_t points = sample.positions.size();
+  if (sample.is_all) {
+    counts.add(sample.positions);
+    counts.add_not_finite(plan.points() - points);
+    return gls::sampled_spacings(
+        points, [&](std::size_t place) { return gls::mean_distance(nearest(place)); });
+  }
+  const auto reach = gls::sampled_spacings(
+      points, [&](std::size_t place) { return std::sqrt(nearest(place).back()) * (1.0 + 1e-12); });
+  std::vector<Vec3> places;
+  for (std::size_t i = 0; i < reach.size(); ++i) {
+    places.push_back(sample.positions[i * points / reach.size()]);
+  }
+  NearestInStream stream(std::move(places), reach);
+  stream_points(plan, progress, [&](std::span<const Vec3> positions) {
+    stream.add(positions);
+    counts.add(positions);
+  });
+  std::vector<double> spacings;
+  for (std::size_t i = 0; i < reach.size(); ++i) {
+    spacings.push_back(gls::mean_distance(stream.of(i)));
+  }
+  return spacings;
+}
+
+}  // namespace
+
+void Sample::add(std::span<const Vec3> positions) {
+  for (const Vec3& position : positions) {
+    if (!position.allFinite()) continue;
+    const std::uint64_t number = Random(1, seen_++).next();
+    if (number > limit_) continue;
+    chosen_.emplace_back(number, position);
+    if (chosen_.size() >= 2 * most_) keep_smallest();
+  }
+}
+
+void Sample::keep_smallest() {
+  if (chosen_.size() <= most_) return;
+  const auto end = chosen_.begin() + static_cast<std::ptrdiff_t>(most_);
+  std::nth_element(chosen_.begin(), end - 1, chosen_.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  limit_ = (end - 1)->first;
+  chosen_.erase(end, chosen_.end());
+}
+
+std::vector<Vec3> Sample::take() {
+  keep_smallest();
+  std::vector<Vec3> positions;
+  positions.reserve(chosen_.size());
+  for (const auto& [number, position] : chosen_) positions.push_back(position);
+  std::vector<std::pair<std::uint64_t, Vec3>>().swap(chosen_);
+  return spatial::in_order(positions, spatial::curve_order(positions));
+}
+
+Spacing find_spacing(const SampledPoints& sample, const Plan& plan, const gls::ScaleRange& given,
+                     CellCounts& counts, const Progress* progress) {
+  const std::vector<double> spacings = spacings_from(sample, plan, counts, progress);
+  std::vector<Vec3> positions(sample.positions.begin(), sample.positions.end());
+  if (!sample.is_all) positions.insert(positions.end(), {plan.box.min, plan.box.max});
+  Spacing spacing{.range = gls::scale_range(positions, given, [&] { return spacings; })};
+  std::vector<double> sorted = spacings;
+  std::sort(sorted.begin(), sorted.end());
+  if (!sorted.empty()) spacing.wide = sorted[(sorted.size() - 1) - sorted.size() / 1000];
+  return spacing;
+}
+
+}  // namespace pcednet::tiles

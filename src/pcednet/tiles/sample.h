@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "pcednet/core/progress.h"
+#include "pcednet/gls/scales.h"
+#include "pcednet/tiles/layout.h"
+#include "pcednet/tiles/plan.h"
+
+namespace pcednet::tiles {
+
+/// Finite positions chosen at random from a stream, all of them while they are few: those of the
+/// smallest random numbers, which depend on a point's place in the stream alone.
+class Sample {
+ public:
+  explicit Sample(std::size_t most) : most_(most) {}
+
+  void add(std::span<const Vec3> positions);
+
+  /// The positions along a curve; call it once, last.
+  std::vector<Vec3> take();
+
+  std::size_t seen() const { return seen_; }
+  /// Whether nothing was left out.
+  bool is_all() const { return seen_ <= most_; }
+
+ private:
+  void keep_smallest();
+
+  std::size_t most_, seen_ = 0;
+  std::uint64_t limit_ = UINT64_MAX;  ///< larger numbers need not be kept
+  std::vector<std::pair<std::uint64_t, Vec3>> chosen_ = {};
+};
+
+struct SampledPoints {
+  std::span<const Vec3> positions;  ///< in curve order
+  bool is_all = false;              ///< there are no others
+};
+
+/// How far apart the points of a cloud are.
+struct Spacing {
+  gls::ScaleRange range;
+  double wide = 0.0;  ///< of all mean distances to the 10 nearest others, one in a thousand is more
+};
+
+/// The range of scales as gls::scale_range() gives it to a cloud in memory: from 16384 positions at
+/// equal steps along the curve, with the mean distances to their 10 nearest others in the whole
+/// cloud. Where the sample is not all of the cloud, the positions are taken from it, and all inputs
+/// are read once for the distances. Every position goes into `counts`.
+Spacing find_spacing(const SampledPoints& sample, const Plan& plan, const gls::ScaleRange& given,
+                     CellCounts& counts, const Progress* progress);
+
+}  // namespace pcednet::tiles

@@ -1,0 +1,72 @@
+#include "pcednet/tiles/tile_file.h"
+
+#include <nlohmann/json.hpp>
+
+#include "pcednet/core/error.h"
+#include "pcednet/core/sha256.h"
+#include "pcednet/io/input_file.h"
+
+namespace pcednet::tiles {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+constexpr const char* kRecordFormat = "pcednet-tile-1";
+
+fs::path record_path(const fs::path& tile) {
+  return tile.string() + ".json";
+}
+
+}  // namespace
+
+void write_record(const fs::path& tile, TileRecord record) {
+  record.bytes = fs::file_size(tile);
+  record.sha256 = sha256_of_file(tile);
+  const json j = {{"format", kRecordFormat},
+                  {"plan", record.plan},
+                  {"tile", record.tile},
+                  {"points", record.points},
+                  {"bytes", record.bytes},
+                  {"sha256", record.sha256},
+                  {"non_edge", record.counts.non_edge},
+                  {"smooth_edge", record.counts.smooth},
+                  {"sharp_edge", record.counts.sharp},
+                  {"boundary", record.counts.boundary},
+                  {"unlabelled", record.counts.unlabelled}};
+  write_text_file(record_path(tile), j.dump(1) + "\n", Overwrite::kYes);
+}
+
+std::optional<TileRecord> read_record(const fs::path& tile) {
+  try {
+    const json j = json::parse(io::InputFile(record_path(tile)).text());
+    if (j.at("format") != kRecordFormat) return std::nullopt;
+    return TileRecord{.plan = j.at("plan"),
+                      .tile = j.at("tile"),
+                      .points = j.at("points"),
+                      .bytes = j.at("bytes"),
+                      .sha256 = j.at("sha256"),
+                      .counts = {j.at("non_edge"), j.at("smooth_edge"), j.at("sharp_edge"),
+                                 j.at("boundary"), j.at("unlabelled")}};
+  } catch (const json::exception&) {
+    return std::nullopt;
+  } catch (const Error&) {
+    return std::nullopt;
+  }
+}
+
+TileState state_of(const Plan& plan, std::size_t tile, bool look_inside) {
+  const fs::path& path = plan.tiles[tile].output;
+  std::error_code error;
+  const std::uint64_t bytes = fs::file_size(path, error);
+  if (error) return TileState::kMissing;
+  const auto record = read_record(path);
+  if (!record) return TileState::kMissing;
+  const bool fits = record->plan == plan.digest && record->tile == tile &&
+                    record->points == plan.tiles[tile].points && record->bytes == bytes;
+  if (!fits) return TileState::kDamaged;
+  if (look_inside && sha256_of_file(path) != record->sha256) return TileState::kDamaged;
+  return TileState::kDone;
+}
+
+}  // namespace pcednet::tiles
