@@ -135,5 +135,46 @@ TEST(VoxelPyramid, LeavesOutPointsWithoutNormal) {
   }
 }
 
+TEST(VoxelPyramid, OfAPartHasTheVoxelsOfTheWholeAwayFromItsRim) {
+  const test::Cloud cloud = test::cube(40000, 3, 0.01, 0.2);
+  const std::vector<double> scales = {0.03, 0.06, 0.12, 0.24};
+  const VoxelPyramid whole = pyramid_of(cloud, scales);
+  test::Cloud part;
+  for (std::size_t i = 0; i < cloud.positions.size(); ++i) {
+    if (cloud.positions[i].x() > -0.1) part.add(cloud.positions[i], cloud.normals[i]);
+  }
+  const PyramidPlan plan = {whole.origin, whole.side, whole.plan};
+  VoxelPyramid pyramid =
+      make_pyramid(part.positions, part.normals, point_order(part.points()), 1.0, &plan);
+  add_levels(pyramid, scales, {.eps = 0.2, .whole = &plan});
+  ASSERT_EQ(pyramid.level_of, whole.level_of);
+  using Key = std::array<float, 3>;
+  for (std::size_t l = 1; l < pyramid.levels.size(); ++l) {
+    // Blocks of 8 cells are merged together or not.
+    const double inside = -0.1 + 10.0 * whole.levels[l].cell;
+    std::map<Key, float> expected, found;
+    const auto list = [&](const VoxelLevel& level, std::map<Key, float>& to) {
+      for (const Voxel& v : level.voxels) {
+        const Vec3& p = v.position;
+        // To float: sums in another order.
+        const Key key = {static_cast<float>(p.x()), static_cast<float>(p.y()),
+                         static_cast<float>(p.z())};
+        if (p.x() > inside) to[key] = v.count;
+      }
+    };
+    list(whole.levels[l], expected);
+    list(pyramid.levels[l], found);
+    std::size_t same = 0;
+    for (const auto& [key, count] : expected) {
+      const auto at = found.find(key);
+      same += at != found.end() && at->second == count;
+    }
+    EXPECT_EQ(found.size(), expected.size());
+    // A coordinate may round to the float beside.
+    EXPECT_GE(static_cast<double>(same), 0.999 * static_cast<double>(expected.size()));
+    EXPECT_GT(expected.size(), 0u);
+  }
+}
+
 }  // namespace
 }  // namespace pcednet::gls

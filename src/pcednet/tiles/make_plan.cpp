@@ -27,7 +27,8 @@ double reach_of(std::size_t neighbours, const Spacing& spacing) {
 
 constexpr std::size_t kContextNeighbours = 32;
 constexpr std::size_t kBoundaryNeighbours = 24, kBoundarySteps = 4;
-constexpr std::size_t kNormalSteps = 4;  ///< a sign is decided with neighbours of neighbours
+/// The sign of a normal is decided by what it is connected with.
+constexpr std::size_t kNormalSteps = 16;
 
 /// How far around a core points decide on the points in it.
 void set_buffer(const detect::EdgeModel& model, const Spacing& spacing, Plan& plan) {

@@ -10,16 +10,6 @@
 namespace pcednet::tiles {
 namespace {
 
-/// A key of the cell of edge 2^size; different cells may have the same, which costs time only.
-std::uint64_t key_of(int size, const std::array<std::int64_t, 3>& cell) {
-  std::uint64_t key = static_cast<std::uint64_t>(size + 4096);
-  for (const std::int64_t c : cell) {
-    key = (key ^ static_cast<std::uint64_t>(c)) * 0x9e3779b97f4a7c15u;
-    key ^= key >> 29;
-  }
-  return key;
-}
-
 std::int64_t cell_along(double coordinate, int size) {
   return static_cast<std::int64_t>(std::floor(std::ldexp(coordinate, -size)));
 }
@@ -49,19 +39,28 @@ NearestInStream::NearestInStream(std::vector<Vec3> places, std::span<const doubl
     for (std::int64_t x = low[0]; x <= high[0]; ++x) {
       for (std::int64_t y = low[1]; y <= high[1]; ++y) {
         for (std::int64_t z = low[2]; z <= high[2]; ++z) {
-          cells_[key_of(size, {x, y, z})].push_back(p);
+          cells_[{size, {x, y, z}}].push_back(p);
         }
       }
     }
   }
 }
 
+std::size_t NearestInStream::CellHash::operator()(const Cell& cell) const {
+  std::uint64_t key = 0x9e3779b97f4a7c15u * static_cast<std::uint64_t>(cell.size + 4096);
+  for (const std::int64_t c : cell.place) {
+    key = (key ^ static_cast<std::uint64_t>(c)) * 0x9e3779b97f4a7c15u;
+    key ^= key >> 29;
+  }
+  return key;
+}
+
 void NearestInStream::look_around(const Vec3& point, std::vector<Found>& found) const {
   if (!point.allFinite()) return;
   for (const int size : sizes_) {
-    const auto cell =
-        cells_.find(key_of(size, {cell_along(point.x(), size), cell_along(point.y(), size),
-                                  cell_along(point.z(), size)}));
+    const auto cell = cells_.find(
+        {size,
+         {cell_along(point.x(), size), cell_along(point.y(), size), cell_along(point.z(), size)}});
     if (cell == cells_.end()) continue;
     for (const std::uint32_t place : cell->second) {
       const double sq = sq_distance(point, places_[place]);

@@ -29,13 +29,21 @@ class NearestInStream {
     std::uint32_t place;
     double sq_distance;
   };
+  struct Cell {
+    int size;  ///< its edge is 2^size
+    std::array<std::int64_t, 3> place;
+    bool operator==(const Cell&) const = default;
+  };
+  struct CellHash {
+    std::size_t operator()(const Cell& cell) const;
+  };
   void look_around(const Vec3& point, std::vector<Found>& found) const;
 
   std::vector<Vec3> places_;
   std::vector<double> sq_reach_;
   std::vector<Row> nearest_;
   std::vector<int> sizes_ = {};  ///< of the cells in use, as powers of two
-  std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> cells_ = {};
+  std::unordered_map<Cell, std::vector<std::uint32_t>, CellHash> cells_ = {};
 };
 
 }  // namespace pcednet::tiles

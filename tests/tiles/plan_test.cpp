@@ -1,0 +1,125 @@
+#include "pcednet/tiles/plan.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "pcednet/core/version.h"
+#include "pcednet/tiles/tile_file.h"
+#include "support/expect_error.h"
+
+namespace pcednet::tiles {
+namespace {
+
+namespace fs = std::filesystem;
+
+class PlanFile : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::temp_directory_path() / ("pcednet_plan_" + std::to_string(getpid()));
+    fs::create_directories(folder_ / "tiles");
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  Plan some_plan() const {
+    Plan plan{.version = kVersion};
+    plan.inputs = {{folder_ / "in/a.laz", 1234, true, {{50000, 0, {{0, 1, 2}, {3, 4, 5.1}}, "d1"}}},
+                   {"/elsewhere/b.laz", 99, false, {{10, 10, {}, "d2"}, {1, 0, {}, "d3"}}}};
+    plan.las_steps = {0.01, 0, 0.01, 0, 0.01, 0.1};
+    plan.box = {{0, 1, 2}, {3, 4, 0.1 + 0.2}};
+    plan.model = {"general", "/models/general.safetensors", "abc", false, true, true};
+    plan.s_min = 0.1, plan.s_max = 1.0 / 3.0;
+    plan.normals = {true, 24, true};
+    plan.pyramid = {{0, 1, 2}, 3.0, {{false, gls::Crowd::kKeep}, {true, gls::Crowd::kMergeByAxis}}};
+    plan.grid = {0.1, 7};
+    plan.buffer = 0.7, plan.reach = 0.3, plan.memory = 5'000'000'000;
+    plan.tiles = {{0, -1, 50001, folder_ / "tiles/0.laz"}, {1, -1, 10, folder_ / "tiles/1.laz"}};
+    plan.notes = {"a note with \"quotes\""};
+    return plan;
+  }
+
+  fs::path folder_;
+};
+
+TEST_F(PlanFile, ComesBackAsItWas) {
+  const Plan plan = some_plan();
+  write_plan(folder_ / "p.json", plan, Overwrite::kNo);
+  const Plan back = read_plan(folder_ / "p.json");
+  ASSERT_EQ(back.inputs.size(), 2u);
+  EXPECT_EQ(back.inputs[0].path, plan.inputs[0].path);
+  EXPECT_EQ(back.inputs[1].path, plan.inputs[1].path);
+  EXPECT_EQ(back.inputs[0].bytes, 1234u);
+  EXPECT_TRUE(back.inputs[0].narrow_colours);
+  EXPECT_EQ(back.inputs[0].chunks[0].box.max, plan.inputs[0].chunks[0].box.max);
+  EXPECT_TRUE(back.inputs[1].chunks[0].box.empty());
+  EXPECT_EQ(back.inputs[1].chunks[0].not_finite, 10u);
+  EXPECT_EQ(back.inputs[1].chunks[1].digest, "d3");
+  EXPECT_EQ(back.points(), 50011u);
+  EXPECT_EQ(back.las_steps, plan.las_steps);
+  EXPECT_EQ(back.box.max, plan.box.max);
+  EXPECT_EQ(back.model.path, plan.model.path);
+  EXPECT_FALSE(back.model.context);
+  EXPECT_TRUE(back.model.exact);
+  EXPECT_EQ(back.s_max, 1.0 / 3.0);
+  EXPECT_EQ(back.normals.neighbours, 24u);
+  EXPECT_TRUE(back.normals.made && back.normals.exact_planes);
+  EXPECT_EQ(back.pyramid.levels, plan.pyramid.levels);
+  EXPECT_EQ(back.grid.length(), plan.grid.length());
+  EXPECT_EQ(back.memory, plan.memory);
+  EXPECT_EQ(back.tiles[0].row, -1);
+  EXPECT_EQ(back.tiles[1].output, plan.tiles[1].output);
+  EXPECT_EQ(back.notes, plan.notes);
+  // The same plan has the same bytes.
+  write_plan(folder_ / "again.json", back, Overwrite::kNo);
+  EXPECT_EQ(read_plan(folder_ / "again.json").digest, back.digest);
+}
+
+TEST_F(PlanFile, KeepsPathsBelowItRelative) {
+  write_plan(folder_ / "p.json", some_plan(), Overwrite::kNo);
+  const auto json = nlohmann::json::parse(std::ifstream(folder_ / "p.json"));
+  EXPECT_EQ(json["inputs"][0]["path"], "in/a.laz");
+  EXPECT_EQ(json["inputs"][1]["path"], "/elsewhere/b.laz");
+  EXPECT_EQ(json["tiles"][0]["output"], "tiles/0.laz");
+}
+
+TEST_F(PlanFile, IsRefusedWhereItIsNone) {
+  const fs::path path = folder_ / "p.json";
+  EXPECT_ERROR(ErrorKind::kUnreadable, read_plan(path));
+  write_plan(path, some_plan(), Overwrite::kNo);
+  std::stringstream text;
+  text << std::ifstream(path).rdbuf();
+  const std::string whole = text.str();
+  for (std::size_t size = 0; size + 3 < whole.size(); size += 37) {
+    std::ofstream(path) << whole.substr(0, size);
+    EXPECT_ERROR(ErrorKind::kUnreadable, read_plan(path));
+  }
+  auto other = nlohmann::json::parse(whole);
+  other["program"] = "0.0.1";
+  std::ofstream(path) << other;
+  EXPECT_ERROR(ErrorKind::kUsage, read_plan(path));
+}
+
+TEST_F(PlanFile, KnowsWhichTilesAreDone) {
+  write_plan(folder_ / "p.json", some_plan(), Overwrite::kNo);
+  const Plan plan = read_plan(folder_ / "p.json");
+  const fs::path tile = plan.tiles[0].output;
+  EXPECT_EQ(state_of(plan, 0), TileState::kMissing);
+  std::ofstream(tile) << "some points";
+  EXPECT_EQ(state_of(plan, 0), TileState::kMissing);  // without a record it is not finished
+  write_record(tile, {.plan = plan.digest, .tile = 0, .points = 50001});
+  EXPECT_EQ(state_of(plan, 0, true), TileState::kDone);
+  std::ofstream(tile) << "same length";
+  EXPECT_EQ(state_of(plan, 0), TileState::kDone);
+  EXPECT_EQ(state_of(plan, 0, true), TileState::kDamaged);
+  std::ofstream(tile) << "shorter";
+  EXPECT_EQ(state_of(plan, 0), TileState::kDamaged);
+  write_record(tile, {.plan = "that of another plan", .tile = 0, .points = 50001});
+  EXPECT_EQ(state_of(plan, 0), TileState::kDamaged);
+  std::ofstream(tile.string() + ".json") << "{\"half a rec";
+  EXPECT_EQ(state_of(plan, 0), TileState::kMissing);
+}
+
+}  // namespace
+}  // namespace pcednet::tiles
