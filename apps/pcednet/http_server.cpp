@@ -268,7 +268,7 @@ asio::awaitable<void> HttpServer::Impl::stream_events(beast::tcp_stream& stream)
   http::response_serializer<http::empty_body> writer(head);
   stream.expires_after(kEventTime);
   co_await http::async_write_header(stream, writer, use_awaitable);
-  for (std::string text = ": welcome\n\n"; true; text = events->take(next)) {
+  for (std::string text = "retry: 1000\n\n"; true; text = events->take(next)) {
     if (text.empty()) {
       boost::system::error_code cancelled;
       news.expires_after(kQuietTime);

@@ -138,6 +138,30 @@ half.rename({str(given)!r})
             self.assertEqual(server.end()[0], 0)
             self.assertEqual(list(runtime.iterdir()), [])
 
+    def test_keeps_its_address_for_a_new_start_where_nobody_else_can_read_it(self):
+        kept = self.folder / "cube_annotation.json.address"
+        server = self.quiet()
+        first, window = (server.port, server.token), server.window
+        self.assertEqual(kept.stat().st_mode & 0o777, 0o600)
+        server.kill()
+        server = self.serve()
+        server.window = window
+        session = server.until("/api/session", lambda s: s["state"] == "ready")
+        self.assertEqual((server.port, server.token), first)
+        self.assertFalse(session["known"] or session["writer"], "a window of the earlier start")
+        server.post("/api/undo", expect=409)
+        server.open()
+        self.assertTrue(server.get("/api/session")["known"])
+        # A file that others may read, or one that is too old, is of no use.
+        for spoil in (lambda: kept.chmod(0o644), lambda: os.utime(kept, (0, 0)),
+                      lambda: kept.write_text(f"{server.port} abc\n")):
+            last = server.token
+            server.end()
+            spoil()
+            server = self.serve()
+            server.open()
+            self.assertNotEqual(server.token, last)
+
     def test_saves_under_plain_names_only(self):
         server = self.quiet()
         server.post("/api/stroke", brush("a", 2, EDGE))

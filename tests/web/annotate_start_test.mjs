@@ -193,34 +193,66 @@ test("accepts what is predicted at an uncertain place", async () => {
   await page.waitForFunction((n) => annotator.store.now.counts.reduce((a, b) => a + b) === n, before.painted);
 });
 
-test("takes back what the program never got, and says so", async () => {
-  await settled();
-  const labels = () =>
-    page.evaluate(() => annotator.stage.chunks.reduce((n, c) => n + c.labels.filter((l) => l < 3).length, 0));
-  const kept = await labels();
+const painted = () =>
+  page.evaluate(() => annotator.stage.chunks.reduce((n, c) => n + c.labels.filter((l) => l < 3).length, 0));
+
+/** Where a stroke of the mouse begins. */
+async function aim() {
   await page.evaluate(() => annotator.stage.camera.fit(true));
   await settled();
   const box = await page.locator("canvas").first().boundingBox();
   await page.evaluate(() => annotator.store.set({ radius: 0.1, paintClass: 1, tool: "brush" }));
-  const middle = [box.x + box.width / 2, box.y + box.height / 2];
+  return [box.x + box.width / 2, box.y + box.height / 2];
+}
+
+test("loses no stroke and goes on by itself when the program is killed and started again", async () => {
+  await settled();
+  const kept = await painted();
+  const eye = () => page.evaluate(() => [...annotator.stage.camera.view.matrix]);
+  const middle = await aim();
   await page.mouse.move(...middle);
   await page.mouse.down();
   await kill(); // in the middle of the stroke
   await page.mouse.move(middle[0] + 20, middle[1], { steps: 3 });
-  assert.ok((await labels()) > kept, "the stroke is drawn");
+  const drawn = await painted();
+  assert.ok(drawn > kept, "the stroke is drawn");
   await page.mouse.up();
-  await page.getByText("The stroke was not applied").waitFor();
-  assert.equal(await labels(), kept);
-  await page.getByText("pcednet does not answer. Is the program still running?").waitFor();
+  await page.getByText("Start it again as before, and this page goes on. One stroke waits.").waitFor();
+  assert.equal(await painted(), drawn);
+  const view = await eye();
   await page.mouse.down();
   await page.mouse.up();
   await page.getByText("pcednet does not answer: nothing can be painted.").waitFor();
-  assert.equal(await labels(), kept);
+  const before = server.address;
+  server = await serve();
+  assert.equal(server.address, before);
+  await page.waitForFunction(() => annotator.store.now.undo === 5 && annotator.store.now.connected);
+  await settled();
+  assert.deepEqual(await eye(), view, "the view is as it was");
+  assert.equal(await painted(), drawn);
+  assert.ok(await page.evaluate(() => annotator.store.now.writer));
+  await page.waitForFunction(() => annotator.store.now.runs.some((r) => r.current && r.run > 1));
+  await page.keyboard.press("Control+z");
+  await page.waitForFunction(() => annotator.store.now.undo === 4);
+  await settled();
+  assert.equal(await painted(), kept);
 });
 
-test("says that the program was started again, and its new address shows all strokes", async () => {
+test("takes back what the program never got if it starts at another address, and says so", async () => {
+  await settled();
+  const kept = await painted();
+  const middle = await aim();
+  await page.mouse.move(...middle);
+  await page.mouse.down();
+  await kill();
+  fs.rmSync(path.join(folder, "roof_annotation.json.address"));
+  await page.mouse.move(middle[0] + 20, middle[1], { steps: 3 });
+  assert.ok((await painted()) > kept, "the stroke is drawn");
+  await page.mouse.up();
   server = await serve("--port", server.port);
   await page.getByText("pcednet was started again: open the address that it printed.").waitFor();
+  await page.getByText("The stroke was not applied").waitFor();
+  assert.equal(await painted(), kept);
   await page.goto(server.address);
   await settled();
   assert.equal(await page.evaluate(() => annotator.store.now.undo), 4);

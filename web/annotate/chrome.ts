@@ -171,11 +171,12 @@ export function curtain(store: AppStore, client: Client): HTMLElement {
     button("Take over", () => client.takeOver()),
   );
   const lost = h("div", { class: "banner", role: "alert" });
-  store.watch(["progress", "writer", "connected", "restarted"], () => {
-    const { progress, writer, connected, restarted } = store.now;
+  store.watch(["progress", "writer", "connected", "restarted", "waiting"], () => {
+    const { progress, writer, connected, restarted, waiting } = store.now;
+    const strokes = waiting === 1 ? " One stroke waits." : waiting > 1 ? ` ${waiting} strokes wait.` : "";
     lost.textContent = restarted
       ? "pcednet was started again: open the address that it printed. All strokes are kept."
-      : "pcednet does not answer. Is the program still running? If it is started again, open the address that it prints.";
+      : `pcednet does not answer. Is the program still running? Start it again as before, and this page goes on.${strokes}`;
     loading.hidden = progress === null;
     other.hidden = writer || progress !== null || !connected;
     lost.hidden = connected;

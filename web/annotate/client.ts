@@ -39,6 +39,10 @@ export class Client {
   readonly lines: LineClient;
   private events: EventSource | null = null;
   private opened = false;
+  /** The program is computing what it needs to answer. */
+  private loading = true;
+  /** Events were not heard for a while. */
+  private missed = false;
   /** A prediction was shown before. */
   private predicted = false;
   /** The start whose description the session told of. */
@@ -58,6 +62,8 @@ export class Client {
         this.stage.loader.takeBack();
         this.stage.loader.refresh("labels");
       },
+      waits: (waiting) => this.store.set({ waiting }),
+      isOpen: () => this.store.now.connected && !this.loading,
       idle: () => this.stage.loader.resume(),
     });
   }
@@ -68,18 +74,30 @@ export class Client {
 
   /** Opens this window at the server; reports what goes wrong. */
   async start(): Promise<void> {
+    await this.enter();
+    this.listen();
+    await this.refresh();
+  }
+
+  private async enter(): Promise<void> {
     const { window: name, writer } = await this.api.post<{ window: string; writer: boolean }>("/api/window");
     this.api.window = name;
     this.store.set({ writer });
-    this.listen();
+  }
+
+  /** The program answers again, or another start of it does. */
+  private async returned(): Promise<void> {
+    const { store } = this;
+    this.missed = true;
     await this.refresh();
+    store.set({ connected: true });
   }
 
   private listen(): void {
     const { store } = this;
     this.events = this.api.events({
       progress: ({ stage, fraction }) => {
-        if (!this.opened) store.set({ progress: { stage, fraction } });
+        if (this.loading) store.set({ progress: { stage, fraction } });
         else this.lines.takeStage(stage, fraction);
       },
       ready: () => this.attempt(this.refresh()),
@@ -97,16 +115,14 @@ export class Client {
       },
     });
     // A source that is closed was refused: another start of the program, with another token, is there now.
-    this.events.addEventListener("error", () =>
-      store.set({ connected: false, restarted: this.events?.readyState === EventSource.CLOSED }),
-    );
+    this.events.addEventListener("error", () => {
+      const restarted = this.events?.readyState === EventSource.CLOSED;
+      if (restarted) this.queue.giveUp();
+      store.set({ connected: false, restarted });
+    });
     this.events.addEventListener("open", () => {
       if (!this.opened) this.attempt(this.refresh()); // what happened before this was not heard
-      if (store.now.connected) return;
-      store.set({ connected: true });
-      this.attempt(this.refresh());
-      this.stage.loader.refresh("labels");
-      if (store.now.runs.length > 0) this.stage.loader.refresh("prediction");
+      if (!store.now.connected) this.attempt(this.returned());
     });
   }
 
@@ -114,6 +130,14 @@ export class Client {
   private async refresh(): Promise<void> {
     const session = await this.api.get<Session>("/api/session");
     const { store } = this;
+    if (!session.known) await this.enter();
+    this.loading = session.state !== "ready";
+    if (this.loading) {
+      if (!store.now.progress?.fraction) store.set({ progress: { stage: session.stage, fraction: 0 } });
+      return;
+    }
+    // Another version of the program may cut the cloud in other parts.
+    if (this.opened && JSON.stringify(store.now.session?.nodes) !== JSON.stringify(session.nodes)) location.reload();
     store.set({
       session,
       settings: session.settings,
@@ -123,15 +147,14 @@ export class Client {
       scale: Math.max(0, Math.min(store.now.scale, session.scales.length - 1)),
       counts: [0, 1, 2].map((id) => session.classes.find((c) => c.id === id)?.count ?? 0) as [number, number, number],
     });
-    if (session.state !== "ready") {
-      if (!store.now.progress?.fraction) store.set({ progress: { stage: session.stage, fraction: 0 } });
-      return;
-    }
     const runs = await this.api.get<Run[]>("/api/runs");
     store.set({ runs, progress: null });
     await this.lines.refresh();
     this.described = session.settings.start;
-    if (this.opened) return;
+    if (this.opened) {
+      if (this.missed) this.catchUp();
+      return;
+    }
     this.opened = true;
     const predicted = (this.predicted = session.prediction_version > 0 && session.run !== null);
     store.set({
@@ -140,6 +163,12 @@ export class Client {
       scale: Math.floor(session.scales.length / 2),
     });
     this.stage.open(session, predicted);
+  }
+
+  private catchUp(): void {
+    this.missed = false;
+    this.stage.loader.refresh("labels");
+    if (this.store.now.predictionVersion > 0) this.stage.loader.refresh("prediction");
   }
 
   private async refreshRuns(): Promise<void> {

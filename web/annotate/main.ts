@@ -148,6 +148,7 @@ function open(page: HTMLElement): void {
     stage.setAppearance(appearanceOf(store.now, css("--stage"))),
   );
   addEventListener("pagehide", () => api.leave());
+  addEventListener("beforeunload", (event) => store.now.waiting > 0 && event.preventDefault());
   addEventListener("pageshow", ({ persisted }) => persisted && location.reload()); // it has left before
   client.start().catch((error: Error) => {
     store.set({ progress: { stage: `Cannot open the cloud: ${error.message}.`, fraction: 0 } });

@@ -25,6 +25,8 @@ export interface State {
   connected: boolean;
   /** Another start of the program answers, which does not know this page. */
   restarted: boolean;
+  /** Strokes that wait for the program to come back. */
+  waiting: number;
   writer: boolean;
   tool: Tool;
   /** 0, 1, 2, or 255: the eraser. */
@@ -68,6 +70,7 @@ export const initialState: State = {
   progress: { stage: "Connecting", fraction: 0 },
   connected: true,
   restarted: false,
+  waiting: 0,
   writer: false,
   tool: "brush",
   paintClass: 2,

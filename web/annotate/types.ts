@@ -80,6 +80,8 @@ export interface Session {
   redo: number;
   run: Run | number | null;
   writer: boolean;
+  /** Whether this start of the program knows the window. */
+  known: boolean;
   prediction_version: number;
   labels_version: number;
 }

@@ -10,10 +10,12 @@
 #include "browser.h"
 #include "commands.h"
 #include "http_server.h"
+#include "kept_address.h"
 #include "models.h"
 #include "pcednet/core/error.h"
 #include "web_pages.h"
 #include "workbench/annotate/api.h"
+#include "workbench/annotate/saving.h"
 
 namespace pcednet::app {
 namespace {
@@ -22,6 +24,9 @@ namespace fs = std::filesystem;
 
 /// A browser opens when the input is found to be sound, or when that takes longer than this.
 constexpr std::chrono::seconds kPatience{3};
+
+/// How often the address is said to be in use.
+constexpr std::chrono::minutes kTouch{1};
 
 /// Starts from nothing.
 constexpr const char* kNoModel = "none";
@@ -105,6 +110,24 @@ annotate::SessionOptions session_options(const AnnotateArguments& arguments, con
   return options;
 }
 
+/// A server where the page of an earlier start may still be open, or else at a new address.
+struct Place {
+  std::unique_ptr<HttpServer> server = {};
+  std::string token = {};
+  bool is_old = false;
+};
+
+Place find_place(int wanted_port, const std::optional<Address>& old) {
+  if (old && (wanted_port == 0 || wanted_port == old->port)) {
+    try {
+      return {std::make_unique<HttpServer>(old->port), old->token, true};
+    } catch (const Error&) {
+      if (wanted_port != 0) throw;  // another program is there
+    }
+  }
+  return {std::make_unique<HttpServer>(wanted_port), make_token()};
+}
+
 void annotate_cloud(const AnnotateArguments& arguments, const Common& common) {
   std::string_view page = annotate_page();
   if (page.empty()) {
@@ -115,22 +138,33 @@ void annotate_cloud(const AnnotateArguments& arguments, const Common& common) {
   }
   annotate::Events events;
   const auto options = session_options(arguments, common, events);
-  auto bound = std::make_unique<HttpServer>(arguments.port);
-  const std::string token = make_token();
+  const KeptAddress kept(options.project.empty() ? annotate::default_project(options.input)
+                                                 : options.project);
+  Place place = find_place(arguments.port, kept.read());
   annotate::Session session(options);
-  annotate::Api api(session, events, token, bound->port());
-  const auto server = std::move(bound);  // goes before what it asks for answers
+  annotate::Api api(session, events, place.token, place.server->port());
+  const auto server = std::move(place.server);  // goes before what it asks for answers
   server->start(api, events, page);
-  const std::string url = fmt::format("http://127.0.0.1:{}/?token={}", server->port(), token);
+  const std::string url = fmt::format("http://127.0.0.1:{}/?token={}", server->port(), place.token);
   fmt::print("{}\n", url);
   std::fflush(stdout);
   std::unique_ptr<BrowserTab> tab;
-  bool is_browser_wanted = !arguments.no_browser;
-  const auto opening = std::chrono::steady_clock::now() + kPatience;
+  bool is_browser_wanted = !arguments.no_browser, is_kept = false;
+  auto now = std::chrono::steady_clock::now();
+  const auto opening = now + kPatience;
+  auto touching = now + kTouch;
   const auto cancelled = console_progress(common).cancelled;
-  while (!cancelled()) {
+  for (; !cancelled(); now = std::chrono::steady_clock::now()) {
     const bool is_accepted = session.is_accepted();  // throws what went wrong with loading
-    if (is_browser_wanted && (is_accepted || std::chrono::steady_clock::now() > opening)) {
+    if (is_accepted && !is_kept) kept.write({server->port(), place.token});
+    is_kept = is_accepted;
+    if (now > touching) {
+      kept.touch();
+      touching = now + kTouch;
+    }
+    // A page that is still open comes by itself.
+    if (place.is_old && api.was_opened()) is_browser_wanted = false;
+    if (is_browser_wanted && ((is_accepted && !place.is_old) || now > opening)) {
       tab = open_browser(url);
       is_browser_wanted = false;
     }

@@ -246,7 +246,7 @@ Stroke read(const Json& json) {
 
 }  // namespace
 
-std::string to_json(const Summary& summary, bool is_writer) {
+std::string to_json(const Summary& summary, Asking window) {
   Json json = {{"name", summary.name},
                {"file", summary.file},
                {"points", 0},
@@ -267,7 +267,8 @@ std::string to_json(const Summary& summary, bool is_writer) {
                {"undo", summary.undo},
                {"redo", summary.redo},
                {"run", summary.run ? json_of(*summary.run) : Json()},
-               {"writer", is_writer},
+               {"writer", window.is_writer},
+               {"known", window.is_open},
                {"prediction_version", summary.prediction_version},
                {"labels_version", summary.labels_version}};
   if (summary.scene) describe_scene(*summary.scene, json);

@@ -12,7 +12,12 @@ namespace pcednet::annotate {
 // What goes to a page and comes from it, as docs/annotate.md describes. Files have a text of their
 // own: see project.h.
 
-std::string to_json(const Summary& summary, bool is_writer);
+/// A window that asks.
+struct Asking {
+  bool is_writer = false;
+  bool is_open = false;  ///< at this start of the program
+};
+std::string to_json(const Summary& summary, Asking window);
 std::string to_json(std::span<const RunView> runs);
 std::string to_json(const Painted& painted);
 std::string to_json(const UncertainPlace& place);

@@ -93,12 +93,13 @@ Response binary(const Bytes& bytes, std::map<std::string, std::string> headers =
           .headers = std::move(headers)};
 }
 
-bool is_writer(const Call& call) {
-  return call.windows.is_writer(value_of(call.request.headers, "x-window"));
+Asking window_of(const Call& call) {
+  const std::string name = value_of(call.request.headers, "x-window");
+  return {.is_writer = call.windows.is_writer(name), .is_open = call.windows.is_open(name)};
 }
 
 Response get_session(const Call& call) {
-  return json_response(to_json(call.session.summary(), is_writer(call)));
+  return json_response(to_json(call.session.summary(), window_of(call)));
 }
 
 Response get_runs(const Call& call) {
@@ -299,7 +300,7 @@ Response answer(Call call) {
     if (route.method != call.request.method) continue;
     const auto name = match(call.request.path, route.path);
     if (!name) continue;
-    if (route.is_writers && !is_writer(call)) {
+    if (route.is_writers && !window_of(call).is_writer) {
       throw Error(ErrorKind::kInsufficient, "another window is painting");
     }
     call.name = *name;

@@ -3,17 +3,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 
 #include "workbench/annotate/not_found.h"
 
 namespace pcednet::annotate {
-namespace {
 
-std::string name_of(int number) {
-  return number > 0 ? fmt::format("w{}", number) : "";
+Windows::Windows()
+    : start_(fmt::format("{:x}", std::chrono::system_clock::now().time_since_epoch().count())) {}
+
+std::string Windows::name_of(int number) const {
+  return number > 0 ? fmt::format("w{}-{}", number, start_) : "";
 }
-
-}  // namespace
 
 Windows::Opened Windows::open() {
   const std::lock_guard lock(mutex_);
@@ -39,6 +40,12 @@ std::optional<std::string> Windows::leave(const std::string& window) {
 bool Windows::is_writer(const std::string& window) const {
   const std::lock_guard lock(mutex_);
   return writer_ > 0 && window == name_of(writer_);
+}
+
+bool Windows::is_open(const std::string& window) const {
+  const std::lock_guard lock(mutex_);
+  return std::any_of(open_.begin(), open_.end(),
+                     [&](int number) { return name_of(number) == window; });
 }
 
 bool Windows::was_any_opened() const {

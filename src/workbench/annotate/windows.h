@@ -11,6 +11,8 @@ namespace pcednet::annotate {
 /// thread.
 class Windows {
  public:
+  Windows();
+
   struct Opened {
     std::string name = {};
     bool is_writer = false;
@@ -26,11 +28,16 @@ class Windows {
   std::optional<std::string> leave(const std::string& window);
 
   bool is_writer(const std::string& window) const;
+
+  /// Whether it was opened here: a window of an earlier start of the program has another name.
+  bool is_open(const std::string& window) const;
   bool was_any_opened() const;
 
  private:
+  std::string name_of(int number) const;
   int number_of(const std::string& window) const;
 
+  const std::string start_;
   mutable std::mutex mutex_;
   std::set<int> open_;
   int writer_ = 0;  ///< 0: none
