@@ -31,7 +31,7 @@ struct Labelled {
   std::shared_ptr<const Described> described = {};
   double spacing = 0;
 
-  Subject subject() const { return {*described, cloud.positions, prepared.curve}; }
+  Subject subject() const { return {{{*described, cloud.positions, prepared.curve}}}; }
 };
 
 /// After so many strokes as kStrokes has; none where training was not possible yet.

@@ -36,7 +36,7 @@ class Adapting : public testing::Test {
     start_ = make_start(std::move(model), subject());
   }
 
-  Subject subject() const { return {*described_, cloud_.positions, prepared_.curve}; }
+  Subject subject() const { return {{{*described_, cloud_.positions, prepared_.curve}}}; }
 
   /// Gives the points within `reach` of `centre` the class that `classes` has for them.
   void paint(const Vec3& centre, double reach, const std::vector<std::uint8_t>& classes,

@@ -139,7 +139,7 @@ class JournalTest : public testing::Test {
       std::filesystem::path(testing::TempDir()) /
       ("pcednet_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()) +
        ".journal");
-  const InputIdentity input_ = {.name = "a.ply", .digest = "d", .points = 100};
+  const Inputs input_ = {{.name = "a.ply", .digest = "d", .points = 100}};
   std::vector<Record> records_ = {
       {.kind = Record::Kind::kStroke, .id = "s\"1", .edge_class = 2, .points = {0, 7, 99}},
       {.kind = Record::Kind::kUndo},
@@ -182,9 +182,9 @@ TEST_F(JournalTest, RefusesWhatIsDamagedOrOfAnotherInput) {
   }
   std::vector<Record> found;
   EXPECT_ERROR(ErrorKind::kInsufficient,
-               Journal(path_, {.name = "b", .digest = "e", .points = 100}, found));
+               Journal(path_, {{.name = "b", .digest = "e", .points = 100}}, found));
   EXPECT_ERROR(ErrorKind::kUnreadable,
-               Journal(path_, {.name = "a", .digest = "d", .points = 99}, found));
+               Journal(path_, {{.name = "a", .digest = "d", .points = 99}}, found));
   for (const char* line :
        {R"({"stroke":"x","class":3,"points":[]})", R"([1])", "{}", "",
         R"({"stroke":"x","class":1,"points":[5,0]})", R"({"stroke":"x","class":1,"points":[-1]})",

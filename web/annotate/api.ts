@@ -22,6 +22,8 @@ async function failure(answer: Response): Promise<ApiError> {
 export class Api {
   /** This window's name at the server; what changes anything needs it. */
   window = "";
+  /** The cloud that is looked at. */
+  cloud = 0;
 
   constructor(private readonly token: string) {}
 
@@ -29,7 +31,7 @@ export class Api {
     const headers: Record<string, string> = { "X-Pcednet-Token": this.token };
     if (this.window) headers["X-Window"] = this.window;
     if (options.body) headers["Content-Type"] = "application/json";
-    const answer = await fetch(path, { ...options, headers, cache: "no-store" });
+    const answer = await fetch(options.method ? path : this.inView(path), { ...options, headers, cache: "no-store" });
     if (!answer.ok) throw await failure(answer);
     return answer;
   }
@@ -46,6 +48,10 @@ export class Api {
     return (await this.ask(path)).arrayBuffer();
   }
 
+  private inView(path: string): string {
+    return this.cloud === 0 ? path : `${path}${path.includes("?") ? "&" : "?"}cloud=${this.cloud}`;
+  }
+
   /** The window closes: another one may paint. */
   leave(): void {
     if (this.window) navigator.sendBeacon(this.address(`/api/window/${this.window}/leave`));
@@ -53,7 +59,8 @@ export class Api {
 
   /** An address that a link or an event source can open. */
   address(path: string): string {
-    return `${path}${path.includes("?") ? "&" : "?"}token=${encodeURIComponent(this.token)}`;
+    const whole = this.inView(path);
+    return `${whole}${whole.includes("?") ? "&" : "?"}token=${encodeURIComponent(this.token)}`;
   }
 
   /** Calls `on[name]` for each event; reconnects by itself and then calls `on.open`. */

@@ -93,6 +93,9 @@ export function header(store: AppStore, save: (what: Saved) => void, client: Cli
       what,
     ),
   );
+  store.watch(["clouds"], () => {
+    saves[2].textContent = store.now.clouds.length > 1 ? "Save clouds" : "Save cloud";
+  });
   store.watch(["saving", "writer", "progress", "runs"], () =>
     saves.forEach((b, i) => {
       b.disabled =

@@ -39,6 +39,8 @@ export class Client {
   readonly lines: LineClient;
   private events: EventSource | null = null;
   private opened = false;
+  /** Of any cloud: what the user chose since then stays. */
+  private wasOpened = false;
   /** The program is computing what it needs to answer. */
   private loading = true;
   /** Events were not heard for a while. */
@@ -56,7 +58,13 @@ export class Client {
   ) {
     this.lines = new LineClient(api, store, words, () => this.mayPaint());
     this.queue = new WorkQueue(api, {
-      painted: (answer) => this.takePainted(answer),
+      painted: (answer) => {
+        this.takePainted(answer);
+        const { cloud, clouds } = this.store.now;
+        if (answer.cloud !== cloud && answer.nodes.length > 0) {
+          this.words.say(`That was in ${clouds[answer.cloud].file}.`);
+        }
+      },
       failed: (error) => {
         this.words.warn(`The stroke was not applied: ${error.message}`);
         this.stage.loader.takeBack();
@@ -140,6 +148,8 @@ export class Client {
     if (this.opened && JSON.stringify(store.now.session?.nodes) !== JSON.stringify(session.nodes)) location.reload();
     store.set({
       session,
+      clouds: session.clouds,
+      cloud: session.cloud,
       settings: session.settings,
       undo: session.undo,
       redo: session.redo,
@@ -157,12 +167,16 @@ export class Client {
     }
     this.opened = true;
     const predicted = (this.predicted = session.prediction_version > 0 && session.run !== null);
+    const usual = predicted ? "prediction" : session.has_colours ? "rgb" : "labels";
+    const first = !this.wasOpened;
+    this.wasOpened = true;
     store.set({
       radius: session.spacing * BRUSH_SPACINGS,
-      mode: predicted ? "prediction" : session.has_colours ? "rgb" : "labels",
+      mode: first || (store.now.mode === "rgb" && !session.has_colours) ? usual : store.now.mode,
       scale: Math.floor(session.scales.length / 2),
     });
     this.stage.open(session, predicted);
+    if (store.now.mode === "feature") this.stage.loader.refresh("values");
   }
 
   private catchUp(): void {
@@ -185,9 +199,14 @@ export class Client {
   }
 
   private takePainted(answer: Painted): void {
-    this.store.set({ counts: answer.counts, undo: answer.undo, redo: answer.redo });
+    const { counts, cloud } = this.store.now;
+    const more = answer.counts.reduce((sum, n, id) => sum + n - counts[id], 0);
+    const clouds = this.store.now.clouds.map((its, k) =>
+      k === answer.cloud && more !== 0 ? { ...its, painted: its.painted + more } : its,
+    );
+    this.store.set({ clouds, counts: answer.counts, undo: answer.undo, redo: answer.redo });
     if (answer.nodes.length > 0) this.store.set({ outOfDate: true });
-    this.stage.loader.refresh("labels", answer.nodes);
+    if (answer.cloud === cloud) this.stage.loader.refresh("labels", answer.nodes);
   }
 
   private takeTraining(event: TrainingEvent): void {
@@ -225,7 +244,22 @@ export class Client {
   }
 
   paint(stroke: Stroke): void {
-    this.queue.stroke(stroke);
+    this.queue.stroke({ ...stroke, cloud: this.store.now.cloud });
+  }
+
+  /** Looks at another cloud. */
+  look(cloud: number): void {
+    const { store } = this;
+    if (cloud === store.now.cloud || !store.now.clouds[cloud] || store.now.progress) return;
+    this.api.cloud = cloud;
+    store.set({
+      uncertain: null,
+      clip: null,
+      progress: { stage: `Opening ${store.now.clouds[cloud].file}`, fraction: 0 },
+    });
+    this.stage.close();
+    this.opened = false;
+    this.attempt(this.refresh());
   }
 
   /** Whether this window paints; says so if it does not. */
@@ -292,17 +326,17 @@ export class Client {
   }
 
   /** The path it went to; null if refused. `confirm` is asked before an older file of ours is replaced. */
-  async save(what: Saved, confirm: (words: string) => Promise<boolean>): Promise<string | null> {
+  async save(what: Saved, cloud: number, confirm: (words: string) => Promise<boolean>): Promise<string | null> {
     this.store.set({ saving: true });
     try {
-      return (await this.api.post<{ path: string }>("/api/save", { what })).path;
+      return (await this.api.post<{ path: string }>("/api/save", { what, cloud })).path;
     } catch (error) {
       const taken = error instanceof ApiError && error.status === 409 && error.message.endsWith(" exists");
       if (!taken || !(await confirm((error as Error).message))) {
         if (!taken) this.words.warn((error as Error).message);
         return null;
       }
-      return await this.api.post<{ path: string }>("/api/save", { what, overwrite: true }).then(
+      return await this.api.post<{ path: string }>("/api/save", { what, cloud, overwrite: true }).then(
         ({ path }) => path,
         (problem: Error) => {
           this.words.warn(problem.message);

@@ -156,6 +156,10 @@ function lineCommands({ store, reviewer }: Hands): Command[] {
 
 export function commandsOf(hands: Hands): Command[] {
   const { client, outline, store } = hands;
+  const stepCloud = (by: number): void => {
+    const { cloud, clouds } = store.now;
+    client.look((cloud + by + clouds.length) % clouds.length);
+  };
   const command = (keys: string[], name: string, group: Command["group"], run: () => void): Command => ({
     keys,
     name,
@@ -176,6 +180,8 @@ export function commandsOf(hands: Hands): Command[] {
       else if (store.now.training?.active || store.now.lines.searching) client.cancel();
     }),
     ...lineCommands(hands),
+    command(["PageDown"], "next cloud", "File", () => stepCloud(1)),
+    command(["PageUp"], "previous cloud", "File", () => stepCloud(-1)),
     command(["Ctrl+S"], "save the project", "File", hands.save),
     command(["Shift+S"], "screenshot", "File", hands.screenshot),
     command(["?"], "show these keys", "File", hands.help),

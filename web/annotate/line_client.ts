@@ -16,7 +16,9 @@ export class LineClient {
   ) {}
 
   async refresh(): Promise<void> {
-    const lines = await this.api.get<Lines>("/api/lines");
+    const found = await this.api.get<Lines>("/api/lines");
+    // Those of another cloud are shown there.
+    const lines = (found.cloud ?? 0) === this.store.now.cloud ? found : { ...found, version: 0, lines: [] };
     const isSame = lines.version === this.store.now.lines.version;
     this.store.set({ lines, ...(isSame ? {} : { line: null, showLines: true }) });
   }
@@ -27,7 +29,8 @@ export class LineClient {
     this.store.set({ lines: { ...lines, searching }, searchStage: "" });
     if (version === lines.version) return;
     await this.refresh();
-    if (this.store.now.lines.lines.length > 0) return;
+    const now = this.store.now.lines;
+    if (now.lines.length > 0 || (now.cloud ?? 0) !== this.store.now.cloud) return;
     this.words.warn("No lines found: the prediction has no edge that is long enough.");
   }
 
@@ -45,7 +48,8 @@ export class LineClient {
 
   find(): void {
     if (!this.mayPaint()) return;
-    this.api.post("/api/lines/find").catch((error: Error) => this.words.warn(error.message));
+    const { cloud } = this.store.now;
+    this.api.post("/api/lines/find", { cloud }).catch((error: Error) => this.words.warn(error.message));
   }
 
   /** Whether the server took the decision; says why if it did not. */

@@ -25,7 +25,7 @@ export class Loader {
   private hasPrediction = false;
   private valuesOf: string | null = null;
   private wanted: number[] = [];
-  private readonly loading = new Set<number>();
+  private loading = new Set<number>();
   private readonly stale: Record<Layer, Set<number>> = { labels: new Set(), prediction: new Set(), values: new Set() };
   private readonly refreshing: Record<Layer, boolean> = { labels: false, prediction: false, values: false };
   private kept = 0;
@@ -36,6 +36,17 @@ export class Loader {
     private readonly api: Api,
     private readonly on: LoaderEvents,
   ) {}
+
+  /** Forgets the cloud, and what is still on its way. */
+  reset(): void {
+    for (const id of this.chunks.keys()) this.on.dropped(id);
+    this.chunks.clear();
+    this.nodes = new Map();
+    this.loading = new Set();
+    this.wanted = [];
+    this.kept = 0;
+    Object.values(this.stale).forEach((ids) => ids.clear());
+  }
 
   setNodes(nodes: ReadonlyMap<number, NodeInfo>, hasColours: boolean, hasPrediction: boolean): void {
     this.nodes = nodes;
@@ -62,18 +73,20 @@ export class Loader {
   private pump(): void {
     while (this.loading.size < AT_ONCE && this.wanted.length > 0) {
       const id = this.wanted.shift()!;
-      this.loading.add(id);
+      const { loading } = this;
+      loading.add(id);
       this.load(id)
         .catch((error) => this.on.failed(error))
         .finally(() => {
-          this.loading.delete(id);
+          loading.delete(id);
           this.pump();
         });
     }
   }
 
   private async load(id: number): Promise<void> {
-    const info = this.nodes.get(id)!;
+    const { nodes } = this;
+    const info = nodes.get(id)!;
     const chunk = decodeChunk(info, await this.api.bytes(`/api/node/${id}/points`), this.hasColours);
     const layers: Layer[] = ["labels"];
     if (this.hasPrediction) layers.push("prediction");
@@ -87,6 +100,7 @@ export class Loader {
         if (layer === "labels") chunk.confirmed.set(bytes);
       }),
     );
+    if (nodes !== this.nodes) return; // of a cloud that is not looked at any more
     this.chunks.set(id, chunk);
     this.kept += info.points;
     this.evict();
@@ -138,7 +152,9 @@ export class Loader {
         const batch = this.batch(layer);
         if (batch.length === 0) return;
         const query = this.query(layer);
+        const { nodes } = this;
         const bytes = await this.api.bytes(`/api/values?${query}&nodes=${batch.map((c) => c.info.id).join(",")}`);
+        if (nodes !== this.nodes) continue;
         const usable = layer === "labels" ? !this.on.isPainting() : this.query(layer) === query;
         if (usable) this.take(layer, batch, new Uint8Array(bytes));
         else batch.forEach((c) => this.stale[layer].add(c.info.id));

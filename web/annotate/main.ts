@@ -10,6 +10,7 @@ import { appearanceOf, lineLookOf, paintColour, valuesQuery } from "./colouring"
 import { bindKeys, commandsOf } from "./commands";
 import { Outline } from "./outline";
 import { Overlay } from "./overlay";
+import { cloudsPanel } from "./panel_clouds";
 import { classesPanel } from "./panel_classes";
 import { runsPanel, trainingPanel, uncertainPanel } from "./panel_training";
 import { boxAround, clipPanel, toggledClip, viewPanel } from "./panel_view";
@@ -58,8 +59,11 @@ function open(page: HTMLElement): void {
   const reviewer = new Reviewer(stage, store, client.lines);
 
   const save = async (what: Saved): Promise<void> => {
-    const path = await client.save(what, (problem) => ask(`${problem}. Replace the file?`, "Replace"));
-    if (path) notices.say(`Saved ${path}`);
+    const clouds = what === "cloud" ? store.now.clouds.map((_, k) => k) : [0];
+    for (const cloud of clouds) {
+      const path = await client.save(what, cloud, (problem) => ask(`${problem}. Replace the file?`, "Replace"));
+      if (path) notices.say(`Saved ${path}`);
+    }
   };
   const screenshot = async (): Promise<void> => {
     const blob = await stage.picture();
@@ -121,6 +125,7 @@ function open(page: HTMLElement): void {
     h(
       "aside",
       { "aria-label": "Settings" },
+      cloudsPanel(store, client),
       classesPanel(store, brush),
       viewPanel(store),
       trainingPanel(store, client),

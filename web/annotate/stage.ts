@@ -74,6 +74,15 @@ export class Stage {
     this.camera.setBounds(bounds);
     this.resize();
     this.camera.fit(true);
+    this.redraw();
+  }
+
+  /** Until another cloud is opened. */
+  close(): void {
+    this.bounds = null;
+    this.takes = [];
+    this.touched.clear();
+    this.loader.reset();
   }
 
   setAppearance(look: Appearance): void {

@@ -1,6 +1,6 @@
 // What the page shows, in one place; those who show it watch it.
 
-import type { Box, Lines, Run, Session, Settings, Uncertain, Vec3 } from "./types";
+import type { Box, CloudInfo, Lines, Run, Session, Settings, Uncertain, Vec3 } from "./types";
 
 export type Tool = "navigate" | "brush" | "lasso" | "polygon";
 export type ColourMode = "rgb" | "normals" | "labels" | "prediction" | "confidence" | "p_sharp" | "feature";
@@ -21,6 +21,9 @@ export interface Clip {
 
 export interface State {
   session: Session | null;
+  clouds: CloudInfo[];
+  /** The number of the cloud that is looked at. */
+  cloud: number;
   progress: { stage: string; fraction: number } | null;
   connected: boolean;
   /** Another start of the program answers, which does not know this page. */
@@ -67,6 +70,8 @@ export interface State {
 
 export const initialState: State = {
   session: null,
+  clouds: [],
+  cloud: 0,
   progress: { stage: "Connecting", fraction: 0 },
   connected: true,
   restarted: false,
@@ -97,7 +102,7 @@ export const initialState: State = {
   uncertain: null,
   predictionVersion: 0,
   outOfDate: false,
-  lines: { version: 0, prediction_version: 0, searching: false, lines: [] },
+  lines: { version: 0, prediction_version: 0, searching: false, cloud: 0, lines: [] },
   line: null,
   showLines: true,
   searchStage: "",

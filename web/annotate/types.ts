@@ -57,9 +57,19 @@ export interface Run {
   time: string;
 }
 
+/** One of the clouds that are trained on together. */
+export interface CloudInfo {
+  file: string;
+  points: number;
+  painted: number;
+}
+
 export interface Session {
   name: string;
   file: string;
+  clouds: CloudInfo[];
+  /** The number of the one that the rest is about. */
+  cloud: number;
   points: number;
   origin: Vec3;
   bounds: Box;
@@ -89,6 +99,7 @@ export interface Session {
 /** The answer to a stroke, an undo, a redo. */
 export interface Painted {
   changed?: number;
+  cloud: number;
   counts: Vec3;
   labels_version: number;
   nodes: number[];
@@ -145,6 +156,8 @@ export interface Lines {
   version: number;
   prediction_version: number;
   searching: boolean;
+  /** Left out: the first. */
+  cloud?: number;
   lines: Line[];
 }
 
@@ -157,6 +170,8 @@ export interface DecidedEvent {
 
 interface StrokeCommon {
   id: string;
+  /** Its number; left out where there is one. */
+  cloud?: number;
   /** 255 erases. */
   class: number;
   protect: boolean;

@@ -15,6 +15,7 @@
 #include "pcednet/core/error.h"
 #include "web_pages.h"
 #include "workbench/annotate/api.h"
+#include "workbench/annotate/painting.h"
 #include "workbench/annotate/saving.h"
 
 namespace pcednet::app {
@@ -32,7 +33,8 @@ constexpr std::chrono::minutes kTouch{1};
 constexpr const char* kNoModel = "none";
 
 struct AnnotateArguments {
-  std::string input, project, model = kDefaultModel;
+  std::vector<std::string> inputs;
+  std::string project, model = kDefaultModel;
   bool is_model_given = false;
   int port = 0;
   bool no_browser = false;
@@ -69,16 +71,44 @@ fs::path find_shipped(const std::string& name) {
                                              names_of(models)));
 }
 
-annotate::SessionOptions session_options(const AnnotateArguments& arguments, const Common& common,
-                                         annotate::Events& events) {
-  const fs::path input = fs::absolute(arguments.input);
+fs::path sound_input(const std::string& given) {
   std::error_code ignored;
-  if (!fs::is_regular_file(input, ignored)) {
+  if (!fs::is_regular_file(given, ignored)) {
     throw Error(ErrorKind::kUnreadable,
-                fmt::format("{}: {}", arguments.input,
-                            fs::is_directory(input, ignored) ? "is a folder; give one point file"
+                fmt::format("{}: {}", given,
+                            fs::is_directory(given, ignored) ? "is a folder; give point files"
                                                              : "no such file"));
   }
+  return fs::absolute(given);
+}
+
+/// The inputs after the first: those given, then those that the project had besides.
+std::vector<fs::path> further_inputs(const std::vector<fs::path>& given, const fs::path& project) {
+  std::vector<fs::path> all = given;
+  const annotate::Inputs known = annotate::inputs_of_project(project);
+  for (std::size_t k = given.size(); k < known.size(); ++k) {
+    all.push_back(sound_input((given.front().parent_path() / known[k].name).string()));
+  }
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    for (std::size_t i = 0; i < k; ++i) {
+      const auto saved = [&](std::size_t one) {
+        return annotate::saving_path(annotate::Saved::kCloud, {}, all, one, project);
+      };
+      std::error_code ignored;
+      if (fs::equivalent(all[i], all[k], ignored) || saved(i) == saved(k)) {
+        throw Error(ErrorKind::kUsage, fmt::format("{} and {}: would be saved under one name",
+                                                   all[i].string(), all[k].string()));
+      }
+    }
+  }
+  return {all.begin() + 1, all.end()};
+}
+
+annotate::SessionOptions session_options(const AnnotateArguments& arguments, const Common& common,
+                                         annotate::Events& events) {
+  std::vector<fs::path> inputs;
+  for (const std::string& given : arguments.inputs) inputs.push_back(sound_input(given));
+  const fs::path input = inputs.front();
   if (arguments.project.empty() && ::access(input.parent_path().c_str(), W_OK) != 0) {
     throw Error(
         ErrorKind::kFailure,
@@ -89,6 +119,8 @@ annotate::SessionOptions session_options(const AnnotateArguments& arguments, con
   annotate::SessionOptions options;
   options.input = input;
   if (!arguments.project.empty()) options.project = fs::absolute(arguments.project);
+  options.further = further_inputs(
+      inputs, options.project.empty() ? annotate::default_project(input) : options.project);
   options.cache_folder = input.parent_path() / ".pcednet";
   options.model = arguments.model == kNoModel ? "" : arguments.model;
   options.is_model_wanted = arguments.is_model_given;
@@ -180,14 +212,18 @@ void add_annotate(CLI::App& app, Common& common) {
   CLI::App* command = add_command(
       app, common, "annotate", "Paint edges in the browser, train on them, review their lines",
       "pcednet annotate scan.ply                       opens the browser\n"
+      "pcednet annotate scan.ply hall.las              trains on several together\n"
       "pcednet annotate scan.ply --no-browser --port 8080\n"
       "pcednet annotate scan.ply --model scan          corrects another model\n"
       "pcednet annotate scan.ply --model none          starts from nothing\n"
       "pcednet train --project scan_annotation.json -o my.safetensors   the same model again");
-  command->add_option("input", arguments->input, "Point file")->required();
+  command
+      ->add_option("inputs", arguments->inputs,
+                   "Point files; more than one are trained on together")
+      ->required();
   command->add_option("--project", arguments->project,
                       "Project file, with its journal beside it (default: <stem>_annotation.json "
-                      "beside the input)");
+                      "beside the first input)");
   command
       ->add_option("--model", arguments->model,
                    "Shipped model or model file to correct: its labels are shown first, training "

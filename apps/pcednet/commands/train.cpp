@@ -56,14 +56,20 @@ detect::TrainedModel train_project(const TrainArguments& arguments, const Common
                                    const Progress& progress) {
   const std::filesystem::path file = arguments.project;
   const annotate::Project project = annotate::read_project(file);
-  if (arguments.inputs.size() > 1) {
-    throw Error(ErrorKind::kUsage, "train: a project has one input");
+  const std::size_t clouds = project.inputs.size();
+  std::vector<std::filesystem::path> inputs(arguments.inputs.begin(), arguments.inputs.end());
+  if (inputs.size() > clouds) {
+    throw Error(ErrorKind::kUsage, clouds == 1
+                                       ? "train: a project has one input"
+                                       : fmt::format("train: the project has {} inputs", clouds));
   }
-  const std::filesystem::path input = arguments.inputs.empty()
-                                          ? file.parent_path() / project.input.name
-                                          : std::filesystem::path(arguments.inputs.front());
+  // Those not given are beside the project, or where they were as seen from the first.
+  if (inputs.empty()) inputs.push_back(file.parent_path() / project.inputs.front().name);
+  for (std::size_t k = inputs.size(); k < clouds; ++k) {
+    inputs.push_back(inputs.front().parent_path() / project.inputs[k].name);
+  }
   return annotate::learn_project(
-      project, input, [](const std::string& name) { return detect::load_model(find_model(name)); },
+      project, inputs, [](const std::string& name) { return detect::load_model(find_model(name)); },
       common.progress == "none" ? decltype(&print_epoch)(nullptr) : print_epoch, &progress);
 }
 

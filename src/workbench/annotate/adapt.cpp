@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <numeric>
 #include <optional>
 
@@ -22,13 +23,6 @@ constexpr std::size_t kPerEpoch = 1 << 13;
 constexpr std::size_t kFewestUnpainted = 2000, kMostUnpainted = 16000, kMostPainted = 16000;
 constexpr double kLeastPainted = 0.3;  // share of the painted among the samples
 constexpr float kPlain = 0.05f;        // so sure to be no edge; half of the kept points are others
-
-/// Rows of one network's input, with the points that they describe.
-struct Rows {
-  std::span<const std::uint32_t> points;
-  std::size_t width = 0;
-  std::function<void(std::size_t row, float* values)> read;
-};
 
 /// What a network learns from.
 struct Lesson {
@@ -122,25 +116,44 @@ nn::TrainResult train(const nn::Model& from, const Lesson& lesson, std::uint64_t
                    options, on_epoch, progress);
 }
 
-Rows rows_of(const detect::DescribedCloud& cloud) {
-  const std::size_t width = cloud.order.empty() ? 0 : cloud.values.size() / cloud.order.size();
-  return {cloud.order, width, [&cloud, width](std::size_t row, float* values) {
-            std::copy_n(cloud.values.begin() + static_cast<std::ptrdiff_t>(row * width), width,
-                        values);
-          }};
-}
+/// The second look at clouds of which the first found something.
+class SecondLook {
+ public:
+  SecondLook(const Subject& subject, std::span<const detect::Classification> found, int classes)
+      : firsts_(first_points(subject)) {
+    for (std::size_t k = 0; k < subject.clouds.size(); ++k) {
+      const auto& [described, positions, curve] = subject.clouds[k];
+      matrices_.emplace_back(positions, curve, found[k], classes);
+    }
+  }
 
-Rows rows_of(const detect::ContextMatrix& matrix) {
-  return {matrix.points(), matrix.width(), [&matrix](std::size_t row, float* values) {
-            matrix.describe(row, row + 1, {values, matrix.width()});
-          }};
-}
+  Rows rows() const {
+    std::vector<CloudRows> clouds;
+    for (const detect::ContextMatrix& matrix : matrices_) {
+      clouds.push_back({matrix.points(), [&matrix](std::size_t row, float* values) {
+                          matrix.describe(row, row + 1, {values, matrix.width()});
+                        }});
+    }
+    return joined_rows(std::move(clouds), firsts_, matrices_.front().width());
+  }
+
+  void apply(const nn::Model& context, const detect::EdgeModel& model,
+             std::span<detect::Classification> found) const {
+    for (std::size_t k = 0; k < found.size(); ++k) {
+      detect::apply_context(context, model.classes, matrices_[k], found[k]);
+    }
+  }
+
+ private:
+  std::vector<std::uint32_t> firsts_;
+  std::deque<detect::ContextMatrix> matrices_ = {};
+};
 
 }  // namespace
 
 Start make_start(detect::EdgeModel model, const Subject& subject) {
   Start start{.model = std::move(model)};
-  start.answer = detect::classify(subject.described.cloud, subject.positions, start.model);
+  start.answer = classify(subject, start.model);
   return start;
 }
 
@@ -169,27 +182,30 @@ Adapted adapt(const std::string& name, const Start& start, const Subject& subjec
     network.metadata = {{"adapted_from", start.model.name},
                         {"training_samples", std::to_string(lesson.outputs.size())}};
   };
-  learn(model.network, rows_of(subject.described.cloud));
+  learn(model.network, described_rows(subject));
   model.name = name;
   model.seed = seed;
   if (adapted.cancelled) return adapted;
   std::optional<nn::Model> context = std::exchange(model.context, {});
   Stopwatch watch;
-  adapted.found = detect::classify(subject.described.cloud, subject.positions, model);
+  std::vector<detect::Classification> found;
+  for (const auto& [described, positions, curve] : subject.clouds) {
+    found.push_back(detect::classify(described.cloud, positions, model));
+  }
   adapted.seconds_classify = watch.lap();
   if (context) {
     throw_if_cancelled(progress);
     watch.lap();
-    const detect::ContextMatrix matrix(subject.positions, subject.curve, adapted.found,
-                                       static_cast<int>(model.classes.size()));
+    const SecondLook second(subject, found, static_cast<int>(model.classes.size()));
     adapted.seconds_classify += watch.lap();
-    learn(*context, rows_of(matrix));
+    learn(*context, second.rows());
     if (adapted.cancelled) return adapted;
     watch.lap();
-    detect::apply_context(*context, model.classes, matrix, adapted.found);
+    second.apply(*context, model, found);
     adapted.seconds_classify += watch.lap();
     model.context = std::move(context);
   }
+  adapted.found = joined(std::move(found));
   adapted.found.counts = detect::count_classes(adapted.found.classes);
   return adapted;
 }

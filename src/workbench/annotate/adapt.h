@@ -5,18 +5,10 @@
 #include <string>
 
 #include "pcednet/core/progress.h"
-#include "pcednet/detect/classify.h"
 #include "pcednet/nn/train.h"
-#include "workbench/annotate/described.h"
+#include "workbench/annotate/subject.h"
 
 namespace pcednet::annotate {
-
-/// A cloud to learn from; all is only looked at.
-struct Subject {
-  const Described& described;
-  std::span<const Vec3> positions;
-  std::span<const std::uint32_t> curve;  ///< spatial::curve_order() of the positions
-};
 
 /// A model to start from and what it finds in the subject.
 struct Start {
@@ -24,7 +16,7 @@ struct Start {
   detect::Classification answer = {};
 };
 
-/// `model`, and its answer for a cloud that was described as it wants it.
+/// `model`, and its answer for clouds that were described as it wants them.
 Start make_start(detect::EdgeModel model, const Subject& subject);
 
 /// A label that training must not see: the point is not painted, nor does the start's answer for it

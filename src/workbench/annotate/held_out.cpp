@@ -61,7 +61,11 @@ struct Tally {
 HeldOut hold_out(const Subject& subject, const Labels& labels, const Settings& settings,
                  const Start* start, const Progress* progress) {
   const std::vector<std::uint32_t> strokes = labels.strokes();
+  // Clouds that joined later are not part of it.
+  std::size_t points = 0;
+  for (const SubjectCloud& cloud : subject.clouds) points += cloud.positions.size();
   std::vector<std::uint8_t> truth = labels.classes();
+  truth.resize(points);
   if (settings.classes == 2 || (start && start->model.classes.size() == 2)) {
     std::replace(truth.begin(), truth.end(), kSmoothEdge, kNonEdge);
   }

@@ -11,25 +11,37 @@
 #include <iterator>
 
 #include "pcednet/core/error.h"
+#include "pcednet/core/output_file.h"
 
 namespace pcednet::annotate {
 
-Journal::Journal(std::filesystem::path path, const InputIdentity& input,
-                 std::vector<Record>& records)
+Journal::Journal(std::filesystem::path path, const Inputs& inputs, std::vector<Record>& records)
     : path_(std::move(path)) {
-  file_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
-  if (file_ < 0) fail("cannot be opened");
   try {
-    // Two annotators of one project would write between each other's lines.
-    if (::flock(file_, LOCK_EX | LOCK_NB) != 0) {
-      throw Error(ErrorKind::kFailure,
-                  fmt::format("{}: another annotator has it open", path_.string()));
-    }
-    read(input, records);
+    open();
+    read(inputs, records);
   } catch (...) {
     ::close(file_);
     throw;
   }
+}
+
+void Journal::open() {
+  file_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+  if (file_ < 0) fail("cannot be opened");
+  // Two annotators of one project would write between each other's lines.
+  if (::flock(file_, LOCK_EX | LOCK_NB) != 0) {
+    throw Error(ErrorKind::kFailure,
+                fmt::format("{}: another annotator has it open", path_.string()));
+  }
+}
+
+/// Replaces the file at once: the old one or the new one is there at any moment.
+void Journal::rewrite(const std::string& text) {
+  write_text_file(path_, text, Overwrite::kYes);
+  ::close(file_);
+  open();
+  size_ = text.size();
 }
 
 Journal::~Journal() {
@@ -41,22 +53,25 @@ void Journal::fail(const char* what) const {
               fmt::format("{}: {}: {}", path_.string(), what, std::strerror(errno)));
 }
 
-void Journal::read(const InputIdentity& input, std::vector<Record>& records) {
+void Journal::read(const Inputs& inputs, std::vector<Record>& records) {
   std::ifstream stream(path_, std::ios::binary);
   const std::string text(std::istreambuf_iterator<char>(stream), {});
   std::vector<Record> found;
-  std::size_t lines = 0;
+  Inputs known;
+  std::size_t lines = 0, head = 0;
   for (std::size_t end; (end = text.find('\n', size_)) != std::string::npos; size_ = end + 1) {
     const std::string_view line = std::string_view(text).substr(size_, end - size_);
     try {
       if (++lines > 1) {
-        found.push_back(parse_record(line, input.points));
+        found.push_back(parse_record(line, points_of(std::span(inputs).first(known.size()))));
         continue;
       }
-      if (parse_input(line).digest != input.digest) {
+      known = parse_inputs(line);
+      head = end + 1;
+      if (!begins_with(inputs, known)) {
         throw Error(ErrorKind::kInsufficient,
                     fmt::format("{}: of another input than {}; move it away to begin anew",
-                                path_.string(), input.name));
+                                path_.string(), inputs.front().name));
       }
     } catch (const Error& error) {
       if (error.kind() == ErrorKind::kInsufficient) throw;
@@ -65,12 +80,15 @@ void Journal::read(const InputIdentity& input, std::vector<Record>& records) {
     }
   }
   if (::ftruncate(file_, static_cast<off_t>(size_)) != 0) fail("cannot be mended");
+  if (lines > 0 && known.size() < inputs.size()) {
+    rewrite(to_line(inputs) + "\n" + text.substr(head, size_ - head));
+  }
   if (::lseek(file_, 0, SEEK_END) < 0) fail("cannot be appended to");
   if (lines > 0) {
     records = std::move(found);
     return;
   }
-  write_line(to_line(input));
+  write_line(to_line(inputs));
   for (const Record& record : records) append(record);
 }
 

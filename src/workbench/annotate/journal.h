@@ -8,13 +8,14 @@
 namespace pcednet::annotate {
 
 /// A file that gains a line per record and so survives the end of the program at any moment: its
-/// first line names the input, a last line without its end is dropped.
+/// first line names the inputs, a last line without its end is dropped.
 class Journal {
  public:
   /// Opens the journal at `path`, or begins one that holds `records`. `records` becomes what the
-  /// journal holds. Throws Error(kUnreadable), naming the line, if it is damaged before its end,
-  /// Error(kInsufficient) if it is of another input, Error(kFailure) if it cannot be written.
-  Journal(std::filesystem::path path, const InputIdentity& input, std::vector<Record>& records);
+  /// journal holds. A journal of the first inputs becomes one of all `inputs`. Throws
+  /// Error(kUnreadable), naming the line, if it is damaged before its end, Error(kInsufficient) if
+  /// it is of other inputs, Error(kFailure) if it cannot be written.
+  Journal(std::filesystem::path path, const Inputs& inputs, std::vector<Record>& records);
   ~Journal();
   Journal(const Journal&) = delete;
   Journal& operator=(const Journal&) = delete;
@@ -23,7 +24,9 @@ class Journal {
   void append(const Record& record);
 
  private:
-  void read(const InputIdentity& input, std::vector<Record>& records);
+  void open();
+  void read(const Inputs& inputs, std::vector<Record>& records);
+  void rewrite(const std::string& text);
   void write_line(const std::string& line);
   [[noreturn]] void fail(const char* what) const;
 

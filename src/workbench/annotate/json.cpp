@@ -37,6 +37,14 @@ Json classes_of(const Counts& counts) {
   return classes;
 }
 
+Json clouds_of(const Summary& summary) {
+  Json clouds = Json::array();
+  for (const auto& [file, points, painted] : summary.clouds) {
+    clouds.push_back({{"file", file}, {"points", points}, {"painted", painted}});
+  }
+  return clouds;
+}
+
 Json nodes_of(const Scene& scene) {
   Json nodes = Json::array();
   for (std::size_t i = 0; i < scene.layout.nodes.size(); ++i) {
@@ -87,7 +95,7 @@ Json json_of(const Painted& painted) {
   return {{"stroke", painted.stroke}, {"changed", painted.changed},
           {"counts", painted.counts}, {"labels_version", painted.labels_version},
           {"nodes", painted.nodes},   {"undo", painted.undo},
-          {"redo", painted.redo}};
+          {"redo", painted.redo},     {"cloud", painted.cloud}};
 }
 
 Json json_of(const FileSaved& saved) {
@@ -182,6 +190,13 @@ std::uint8_t edge_class(const Json& value) {
   return static_cast<std::uint8_t>(c);
 }
 
+std::size_t cloud_in(const Json& json) {
+  const auto found = json.find("cloud");
+  if (found == json.end()) return 0;
+  if (!found->is_number_unsigned()) throw Error(ErrorKind::kUsage, "cloud: a number from 0");
+  return found->get<std::size_t>();
+}
+
 bool flag(const Json& json, const char* name) {
   const auto found = json.find(name);
   if (found == json.end() || found->is_null()) return false;
@@ -225,6 +240,7 @@ Stroke read(const Json& json) {
   need(!stroke.id.empty() && stroke.id.size() <= kLongestId, "id: 1 to 128 characters");
   stroke.edge_class = edge_class(json.at("class"));
   stroke.protect = flag(json, "protect");
+  stroke.cloud = cloud_in(json);
   if (const auto hidden = json.find("hidden"); hidden != json.end() && !hidden->is_null()) {
     need(hidden->is_array() && hidden->size() <= 4, "hidden: a list of classes");
     for (const Json& c : *hidden) stroke.hidden.push_back(edge_class(c));
@@ -249,6 +265,8 @@ Stroke read(const Json& json) {
 std::string to_json(const Summary& summary, Asking window) {
   Json json = {{"name", summary.name},
                {"file", summary.file},
+               {"clouds", clouds_of(summary)},
+               {"cloud", summary.cloud},
                {"points", 0},
                {"origin", {0, 0, 0}},
                {"bounds", {{"min", {0, 0, 0}}, {"max", {0, 0, 0}}}},
@@ -335,11 +353,20 @@ Stroke parse_stroke(std::string_view text) {
   }
 }
 
+std::size_t parse_cloud(std::string_view text) {
+  try {
+    return cloud_in(Json::parse(text));
+  } catch (const Json::exception& error) {
+    throw Error(ErrorKind::kUsage, fmt::format("cloud: {}", error.what()));
+  }
+}
+
 SaveRequest parse_save(std::string_view text) {
   try {
     const Json json = Json::parse(text);
     return {.what = json.at("what").get<std::string>(),
             .name = json.value("name", std::string()),
+            .cloud = cloud_in(json),
             .overwrite = json.value("overwrite", false)};
   } catch (const Json::exception& error) {
     throw Error(ErrorKind::kUsage, fmt::format("save: {}", error.what()));

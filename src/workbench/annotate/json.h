@@ -47,8 +47,12 @@ LinesDecided parse_decision(std::string_view json);
 /// A wish to save; an empty name is the usual one.
 struct SaveRequest {
   std::string what = {}, name = {};
+  std::size_t cloud = 0;
   bool overwrite = false;
 };
+
+/// The cloud that a request names; 0 if it names none. Throws Error(kUsage).
+std::size_t parse_cloud(std::string_view json);
 
 /// Throws Error(kUsage) that says what is wrong with it.
 SaveRequest parse_save(std::string_view json);

@@ -21,16 +21,17 @@ constexpr std::size_t kMostPerEpoch = 1 << 15;
 /// The bias of an output that no input can make up for.
 constexpr float kNever = -1e4f;
 
-detect::Samples painted_samples(const Described& described, std::span<const std::uint8_t> labels) {
-  const auto& [points, order, values, scales] = described.cloud;
-  const std::size_t width = order.empty() ? 0 : values.size() / order.size();
-  detect::Samples samples{.descriptor = described.descriptor, .clouds = 1, .points = points};
-  for (std::size_t row = 0; row < order.size(); ++row) {
-    const std::uint8_t label = labels[order[row]];
+detect::Samples painted_samples(const Subject& subject, std::span<const std::uint8_t> labels) {
+  detect::Samples samples{.descriptor = subject.clouds.front().described.descriptor,
+                          .clouds = subject.clouds.size()};
+  for (const SubjectCloud& one : subject.clouds) samples.points += one.described.cloud.points;
+  const Rows rows = described_rows(subject);
+  for (std::size_t row = 0; row < rows.points.size(); ++row) {
+    const std::uint8_t label = labels[rows.points[row]];
     if (label > kSharpEdge) continue;
     samples.labels.push_back(label);
-    const auto first = values.begin() + static_cast<std::ptrdiff_t>(row * width);
-    samples.values.insert(samples.values.end(), first, first + static_cast<std::ptrdiff_t>(width));
+    samples.values.resize(samples.values.size() + rows.width);
+    rows.read(row, &*samples.values.end() - rows.width);
   }
   return samples;
 }
@@ -91,7 +92,7 @@ Adapted learn(const std::string& name, const Subject& subject, std::span<const s
   options.training.most_per_epoch = kMostPerEpoch;
   Adapted learnt;
   auto trained = detect::train(
-      name, painted_samples(subject.described, labels), options,
+      name, painted_samples(subject, labels), options,
       [&](const nn::EpochReport& report) {
         learnt.loss = report.training_loss;
         if (on_epoch) on_epoch(report);
@@ -101,44 +102,69 @@ Adapted learn(const std::string& name, const Subject& subject, std::span<const s
   learnt.model = std::move(trained.model);
   if (learnt.cancelled) return learnt;
   Stopwatch watch;
-  learnt.found = detect::classify(subject.described.cloud, subject.positions, learnt.model);
+  learnt.found = classify(subject, learnt.model);
   learnt.seconds_classify = watch.lap();
   return learnt;
 }
 
-detect::TrainedModel learn_project(
-    const Project& project, const std::filesystem::path& input,
-    const std::function<detect::EdgeModel(const std::string& name)>& load_start,
-    const std::function<void(const nn::EpochReport&)>& on_epoch, const Progress* progress) {
-  if (digest_of_file(input) != project.input.digest) {
+namespace {
+
+/// A project's cloud, as far as learning needs it.
+struct ProjectCloud {
+  PointCloud cloud = {};
+  detect::PreparedCloud prepared = {};
+  std::shared_ptr<const Described> described = {};
+};
+
+PointCloud read_input(const InputIdentity& its, const std::filesystem::path& input) {
+  if (digest_of_file(input) != its.digest) {
     throw Error(ErrorKind::kInsufficient,
                 fmt::format("{}: not the file that the project is about", input.string()));
   }
-  const auto loaded = formats::read_cloud(input);
-  if (loaded.cloud.size() != project.input.points) {
+  auto loaded = formats::read_cloud(input);
+  if (loaded.cloud.size() != its.points) {
     throw Error(ErrorKind::kInsufficient,
                 fmt::format("{}: {} points where the project has {}", input.string(),
-                            loaded.cloud.size(), project.input.points));
+                            loaded.cloud.size(), its.points));
   }
-  Replayed end = replay(project.records, project.input.points);
+  return std::move(loaded.cloud);
+}
+
+}  // namespace
+
+detect::TrainedModel learn_project(
+    const Project& project, std::span<const std::filesystem::path> inputs,
+    const std::function<detect::EdgeModel(const std::string& name)>& load_start,
+    const std::function<void(const nn::EpochReport&)>& on_epoch, const Progress* progress) {
+  const std::size_t points = points_of(project.inputs);
+  Replayed end = replay(project.records, points);
   Settings settings = end.settings;
+  std::size_t clouds = project.inputs.size();
   if (end.run) {
     settings = end.run->settings;
-    end.labels = labels_of(*end.run, project.records, project.input.points);
+    clouds = std::min(clouds, end.run->clouds);
+    end.labels = labels_of(*end.run, project.records, points);
   }
   std::optional<detect::EdgeModel> model;
   if (settings.start != kRandomStart) {
     model = with_classes(load_start(settings.start), settings.classes);
   }
-  const detect::PreparedCloud prepared = detect::prepare(loaded.cloud, {}, progress);
-  const auto described =
-      describe_once(prepared, descriptor_of(model ? &*model : nullptr), {}, progress);
-  const Subject subject{*described, prepared.positions, prepared.curve};
+  std::vector<ProjectCloud> all(clouds);
+  Subject subject;
+  for (std::size_t k = 0; k < clouds; ++k) {
+    all[k].cloud = read_input(project.inputs[k], inputs[k]);
+    all[k].prepared = detect::prepare(all[k].cloud, {}, progress);
+    all[k].described =
+        describe_once(all[k].prepared, descriptor_of(model ? &*model : nullptr), {}, progress);
+    subject.clouds.push_back({*all[k].described, all[k].prepared.positions, all[k].prepared.curve});
+  }
   std::optional<Start> start;
   if (model) start = make_start(std::move(*model), subject);
   int epochs = 0;
+  const std::size_t seen = points_of(std::span(project.inputs).first(clouds));
   Adapted learnt = learn(
-      input.stem().string(), subject, end.labels.classes(), settings, start ? &*start : nullptr,
+      inputs.front().stem().string(), subject, std::span(end.labels.classes()).first(seen),
+      settings, start ? &*start : nullptr,
       [&](const nn::EpochReport& report) {
         epochs = report.epoch;
         if (on_epoch) on_epoch(report);

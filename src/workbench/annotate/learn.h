@@ -37,10 +37,10 @@ Adapted learn(const std::string& name, const Subject& subject, std::span<const s
               const Progress* progress = nullptr);
 
 /// The model of a project's chosen run, or if it has none of its last labels, as the annotator
-/// saves it. `load_start` gives the model of a name. Throws Error(kInsufficient) if `input` is not
-/// the project's, and as labels_of().
+/// saves it; `inputs` are the project's. `load_start` gives the model of a name. Throws
+/// Error(kInsufficient) if an input is not the project's, and as labels_of().
 detect::TrainedModel learn_project(
-    const Project& project, const std::filesystem::path& input,
+    const Project& project, std::span<const std::filesystem::path> inputs,
     const std::function<detect::EdgeModel(const std::string& name)>& load_start,
     const std::function<void(const nn::EpochReport&)>& on_epoch = {},
     const Progress* progress = nullptr);

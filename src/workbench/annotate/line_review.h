@@ -16,6 +16,7 @@ enum class Decision : std::uint8_t { kOpen, kAccepted, kRejected };
 struct LineReview {
   int version = 0;             ///< how often lines were found
   int prediction_version = 0;  ///< of the prediction that they were found in
+  std::size_t cloud = 0;       ///< and of which cloud
   bool is_searching = false;
   std::shared_ptr<const std::vector<lines::Curve>> curves = {};  ///< null before the first time
   std::vector<Decision> decisions = {};                          ///< one per curve

@@ -56,6 +56,7 @@ std::string to_json(const LinesView& view) {
                {"prediction_version", review.prediction_version},
                {"searching", review.is_searching},
                {"lines", Json::array()}};
+  if (review.cloud > 0) json["cloud"] = review.cloud;
   for (std::size_t i = 0; i < review.decisions.size(); ++i) {
     json["lines"].push_back(line_of((*review.curves)[i], review.decisions[i], *view.scene));
   }

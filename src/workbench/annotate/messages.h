@@ -21,6 +21,7 @@ using Counts = std::array<std::size_t, 3>;
 struct Painted {
   std::size_t stroke = 0;   ///< how many strokes count now; 0 for one of an earlier start
   std::size_t changed = 0;  ///< points
+  std::size_t cloud = 0;    ///< that they are of
   Counts counts = {};       ///< of all labels
   int labels_version = 0;
   std::vector<std::uint32_t> nodes = {};  ///< those whose labels are others now, ascending
@@ -33,9 +34,17 @@ struct RunView {
   std::optional<HeldOut> held_out = {};
 };
 
+/// One of a session's clouds.
+struct CloudView {
+  std::string file = {};
+  std::size_t points = 0, painted = 0;
+};
+
 /// Where a session stands.
 struct Summary {
   std::string name = {}, file = {};         ///< of the input, without and with its extension
+  std::vector<CloudView> clouds = {};       ///< all; none while loading
+  std::size_t cloud = 0;                    ///< the one that the rest is about
   std::string stage = {};                   ///< of loading and training
   std::shared_ptr<const Scene> scene = {};  ///< null while loading
   Counts counts = {};

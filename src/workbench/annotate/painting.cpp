@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <fstream>
 
 #include "pcednet/core/error.h"
 
@@ -11,13 +12,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::vector<Record> records_of(const fs::path& path, const InputIdentity& input) {
+std::vector<Record> records_of(const fs::path& path, const Inputs& inputs) {
   if (!fs::exists(path)) return {};
   Project project = read_project(path);
-  if (project.input.digest != input.digest) {
+  if (!begins_with(inputs, project.inputs)) {
     throw Error(ErrorKind::kInsufficient,
                 fmt::format("{}: a project of {}, not of this {}", path.string(),
-                            project.input.name, input.name));
+                            project.inputs.front().name, inputs.front().name));
   }
   return std::move(project.records);
 }
@@ -28,12 +29,18 @@ fs::path journal_of(fs::path project) {
   return project += ".journal";
 }
 
-Painting::Painting(const fs::path& project, const InputIdentity& input)
-    : now_{.labels = Labels(input.points)} {
-  const std::vector<Record> saved = records_of(project, input);
+Inputs inputs_of_project(const fs::path& project) {
+  std::ifstream journal(journal_of(project));
+  if (std::string line; std::getline(journal, line)) return parse_inputs(line);
+  return fs::exists(project) ? read_project(project).inputs : Inputs();
+}
+
+Painting::Painting(const fs::path& project, const Inputs& inputs)
+    : now_{.labels = Labels(points_of(inputs))} {
+  const std::vector<Record> saved = records_of(project, inputs);
   records_ = saved;
   const fs::path path = journal_of(project);
-  journal_ = std::make_unique<Journal>(path, input, records_);
+  journal_ = std::make_unique<Journal>(path, inputs, records_);
   for (std::size_t i = 0; i < std::min(saved.size(), records_.size()); ++i) {
     if (to_line(saved[i]) != to_line(records_[i])) {
       throw Error(ErrorKind::kInsufficient, fmt::format("{} and {} disagree: move one of them away",

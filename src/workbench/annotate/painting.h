@@ -12,14 +12,19 @@ namespace pcednet::annotate {
 /// `<project>.journal`.
 std::filesystem::path journal_of(std::filesystem::path project);
 
+/// The inputs that the journal of a project, or else the project, is about; none if neither is
+/// there. Throws Error(kUnreadable).
+Inputs inputs_of_project(const std::filesystem::path& project);
+
 /// What happened to a cloud so far, and where it led: labels and settings are always what replaying
 /// the records gives, and every record is in the journal.
 class Painting {
  public:
   /// Puts together what the project at `project` (which need not be there) and its journal
-  /// remember. Throws Error(kInsufficient) if one of them is of another input than `input` or says
+  /// remember; `inputs` may go on after theirs. Throws Error(kInsufficient) if one of them is of
+  /// other inputs or says
   /// something else than the other, and as read_project() and Journal.
-  Painting(const std::filesystem::path& project, const InputIdentity& input);
+  Painting(const std::filesystem::path& project, const Inputs& inputs);
 
   const Labels& labels() const { return now_.labels; }
   const Settings& settings() const { return now_.settings; }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <numeric>
 
 #include "pcednet/core/digest.h"
 #include "pcednet/core/error.h"
@@ -18,6 +19,7 @@ using Json = nlohmann::json;
 using Kind = Record::Kind;
 
 constexpr const char* kFormat = "pcednet-annotation-1";
+constexpr const char* kSeveralFormat = "pcednet-annotation-2";  // of several inputs
 constexpr int kMostRuns = 1'000'000'000;
 
 [[noreturn]] void refuse(const std::string& why) {
@@ -78,6 +80,7 @@ Json json_of(const RunRecord& run) {
   const auto tell = [&](const char* name, const auto& fact) {
     if (fact) json[name] = *fact;
   };
+  if (run.clouds > 1) json["clouds"] = run.clouds;
   tell("painted", facts.painted);
   tell("classes", facts.classes);
   tell("loss", facts.loss);
@@ -103,6 +106,8 @@ RunRecord run_of(const Json& json) {
   learn("loss", run.facts.loss);
   learn("seconds_train", run.facts.seconds_train);
   learn("seconds_classify", run.facts.seconds_classify);
+  if (json.contains("clouds")) run.clouds = json.at("clouds").get<std::size_t>();
+  if (run.clouds < 1) refuse("a run on no cloud");
   if (json.contains("time")) run.facts.time = json.at("time").get<std::string>();
   return run;
 }
@@ -149,15 +154,34 @@ Json json_of(const InputIdentity& input) {
   return {{"name", input.name}, {"digest", input.digest}, {"points", input.points}};
 }
 
+InputIdentity input_of(const Json& json) {
+  return {.name = json.at("name").get<std::string>(),
+          .digest = json.at("digest").get<std::string>(),
+          .points = json.at("points").get<std::size_t>()};
+}
+
 /// Of a project or of the first line of a journal.
-InputIdentity input_of(const Json& file) {
-  if (file.at("format") != kFormat) refuse(fmt::format("not of the format {}", kFormat));
-  const Json& json = file.at("input");
-  InputIdentity input{.name = json.at("name").get<std::string>(),
-                      .digest = json.at("digest").get<std::string>(),
-                      .points = json.at("points").get<std::size_t>()};
-  if (input.points > 0xffffffffu) refuse("more points than 32 bits can count");
-  return input;
+Inputs inputs_of(const Json& file) {
+  const Json& format = file.at("format");
+  Inputs inputs;
+  if (format == kFormat) {
+    inputs.push_back(input_of(file.at("input")));
+  } else if (format == kSeveralFormat) {
+    for (const Json& json : file.at("inputs")) inputs.push_back(input_of(json));
+    if (inputs.empty()) refuse("no input");
+  } else {
+    refuse(fmt::format("not of the format {} or {}", kFormat, kSeveralFormat));
+  }
+  if (points_of(inputs) > 0xfffffff0u) refuse("more points than 32 bits can count");
+  return inputs;
+}
+
+/// The file's format and its inputs, by their names.
+Json head_of(const Inputs& inputs) {
+  if (inputs.size() == 1) return {{"format", kFormat}, {"input", json_of(inputs.front())}};
+  Json list = Json::array();
+  for (const InputIdentity& input : inputs) list.push_back(json_of(input));
+  return {{"format", kSeveralFormat}, {"inputs", std::move(list)}};
 }
 
 /// Runs `read`; whatever it throws becomes Error(kUnreadable).
@@ -174,6 +198,18 @@ auto strictly(Read&& read) {
 
 }  // namespace
 
+std::size_t points_of(std::span<const InputIdentity> inputs) {
+  return std::accumulate(
+      inputs.begin(), inputs.end(), std::size_t{0},
+      [](std::size_t sum, const InputIdentity& input) { return sum + input.points; });
+}
+
+bool begins_with(std::span<const InputIdentity> inputs, std::span<const InputIdentity> known) {
+  return known.size() <= inputs.size() &&
+         std::equal(known.begin(), known.end(), inputs.begin(),
+                    [](const auto& a, const auto& b) { return a.digest == b.digest; });
+}
+
 std::string digest_of_file(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   if (!file) refuse(fmt::format("{}: cannot be read", path.string()));
@@ -189,16 +225,16 @@ std::string to_line(const Record& record) {
   return json_of(record).dump();
 }
 
-std::string to_line(const InputIdentity& input) {
-  return Json{{"format", kFormat}, {"input", json_of(input)}}.dump();
+std::string to_line(const Inputs& inputs) {
+  return head_of(inputs).dump();
 }
 
 Record parse_record(std::string_view line, std::size_t points) {
   return strictly([&] { return record_of(Json::parse(line), points); });
 }
 
-InputIdentity parse_input(std::string_view line) {
-  return strictly([&] { return input_of(Json::parse(line)); });
+Inputs parse_inputs(std::string_view line) {
+  return strictly([&] { return inputs_of(Json::parse(line)); });
 }
 
 std::string to_line(const Settings& settings) {
@@ -229,9 +265,10 @@ Project read_project(const std::filesystem::path& path) {
   try {
     return strictly([&] {
       const Json json = Json::parse(text);
-      Project project{.input = input_of(json), .records = {}};
+      Project project{.inputs = inputs_of(json), .records = {}};
+      const std::size_t points = points_of(project.inputs);
       for (const Json& record : json.at("records")) {
-        project.records.push_back(record_of(record, project.input.points));
+        project.records.push_back(record_of(record, points));
       }
       return project;
     });
@@ -241,11 +278,13 @@ Project read_project(const std::filesystem::path& path) {
 }
 
 void write_project(const std::filesystem::path& path, const Project& project, Overwrite overwrite) {
-  const Replayed end = replay(project.records, project.input.points);
+  const Replayed end = replay(project.records, points_of(project.inputs));
+  const Json head = head_of(project.inputs);
+  const char* name = project.inputs.size() == 1 ? "input" : "inputs";
   std::string text = fmt::format(
-      "{{\"format\":\"{}\",\"version\":\"{}\",\n\"input\":{},\n\"settings\":{},\n\"run\":{},\n"
+      "{{\"format\":{},\"version\":\"{}\",\n\"{}\":{},\n\"settings\":{},\n\"run\":{},\n"
       "\"records\":[",
-      kFormat, kVersion, json_of(project.input).dump(), json_of(end.settings).dump(),
+      head.at("format").dump(), kVersion, name, head.at(name).dump(), json_of(end.settings).dump(),
       end.run ? std::to_string(end.run->number) : "null");
   for (std::size_t i = 0; i < project.records.size(); ++i) {
     text += (i == 0 ? "\n" : ",\n") + to_line(project.records[i]);

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -49,6 +50,7 @@ struct RunRecord {
   std::size_t records = 0;
   Settings settings = {};
   RunFacts facts = {};
+  std::size_t clouds = 1;  ///< the first so many inputs; others joined later
 };
 
 /// One thing that happened. A stroke is kept as the points that it changed, so that replaying it
@@ -65,27 +67,34 @@ struct Record {
 
 /// The input that records are about.
 struct InputIdentity {
-  std::string name = {};    ///< without its folder
+  std::string name = {};    ///< without its folder; of a further input as seen from the first's
   std::string digest = {};  ///< of the file's bytes
   std::size_t points = 0;
   bool operator==(const InputIdentity&) const = default;
 };
 
+/// Those of a project: its points are numbered through one input after the other.
+using Inputs = std::vector<InputIdentity>;
+std::size_t points_of(std::span<const InputIdentity> inputs);
+
+/// Whether `inputs` begins with the files of `known`, which others may follow.
+bool begins_with(std::span<const InputIdentity> inputs, std::span<const InputIdentity> known);
+
 /// The digest of a file's bytes. Throws Error(kUnreadable).
 std::string digest_of_file(const std::filesystem::path& path);
 
 struct Project {
-  InputIdentity input = {};
+  Inputs inputs = {};
   std::vector<Record> records = {};
 };
 
-/// One line of JSON, without its end; the input's is the first line of a journal.
+/// One line of JSON, without its end; that of the inputs is the first line of a journal.
 std::string to_line(const Record& record);
-std::string to_line(const InputIdentity& input);
+std::string to_line(const Inputs& inputs);
 
 /// Read what to_line() writes. Throw Error(kUnreadable) that says what is wrong.
 Record parse_record(std::string_view line, std::size_t points);
-InputIdentity parse_input(std::string_view line);
+Inputs parse_inputs(std::string_view line);
 
 /// The settings as a record has them.
 std::string to_line(const Settings& settings);

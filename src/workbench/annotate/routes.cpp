@@ -57,6 +57,10 @@ Number asked_number(const Call& call, const char* name) {
   return text.empty() ? Number{} : number_of<Number>(text, name);
 }
 
+std::size_t cloud_of(const Call& call) {
+  return asked_number<std::size_t>(call, "cloud");
+}
+
 Saved saved_of(const std::string& what) {
   if (what == "cloud") return Saved::kCloud;
   if (what == "model") return Saved::kModel;
@@ -99,7 +103,7 @@ Asking window_of(const Call& call) {
 }
 
 Response get_session(const Call& call) {
-  return json_response(to_json(call.session.summary(), window_of(call)));
+  return json_response(to_json(call.session.summary(cloud_of(call)), window_of(call)));
 }
 
 Response get_runs(const Call& call) {
@@ -107,7 +111,8 @@ Response get_runs(const Call& call) {
 }
 
 Response get_uncertain(const Call& call) {
-  return json_response(to_json(call.session.uncertain(asked_number<std::size_t>(call, "after"))));
+  return json_response(
+      to_json(call.session.uncertain(asked_number<std::size_t>(call, "after"), cloud_of(call))));
 }
 
 Response get_pick(const Call& call) {
@@ -117,13 +122,13 @@ Response get_pick(const Call& call) {
     throw Error(ErrorKind::kUsage, "a direction that is not 0 and a radius above 0 are wanted");
   }
   const Vec3 origin = vector_of(asked(call, "origin"), "origin");
-  return json_response(to_json(call.session.pick(origin, direction, radius)));
+  return json_response(to_json(call.session.pick(origin, direction, radius, cloud_of(call))));
 }
 
 Response values_of_nodes(const Call& call, const std::vector<std::size_t>& nodes) {
   const auto [bytes, version] =
       call.session.values(shown_of(asked(call, "of")), nodes, asked_number<int>(call, "feature"),
-                          asked_number<int>(call, "scale"));
+                          asked_number<int>(call, "scale"), cloud_of(call));
   return binary(bytes, {{"X-Version", std::to_string(version)}});
 }
 
@@ -136,14 +141,14 @@ Response get_node_values(const Call& call) {
 }
 
 Response get_node_points(const Call& call) {
-  return binary(call.session.node_points(number_of<std::size_t>(call.name, "node")));
+  return binary(
+      call.session.node_points(number_of<std::size_t>(call.name, "node"), cloud_of(call)));
 }
 
 /// Lines may be asked for in any of their formats.
-std::string wanted_name(const Call& call) {
+std::string wanted_name(const Call& call, const std::filesystem::path& usual) {
   const std::string format = asked(call, "format");
-  if (format.empty()) return {};
-  return call.session.options().input.stem().string() + "_lines." + format;
+  return format.empty() ? "" : usual.stem().string() + "." + format;
 }
 
 Response get_lines(const Call& call) {
@@ -152,7 +157,9 @@ Response get_lines(const Call& call) {
 
 Response get_download(const Call& call) {
   const Saved what = saved_of(call.name);
-  const auto target = call.session.target(what, wanted_name(call));
+  const std::size_t cloud = what == Saved::kLines ? call.session.cloud_of_lines() : cloud_of(call);
+  const auto usual = call.session.target(what, {}, cloud);
+  const auto target = call.session.target(what, wanted_name(call, usual), cloud);
   std::string folder =
       (std::filesystem::temp_directory_path() / "pcednet-download-XXXXXX").string();
   if (!::mkdtemp(folder.data())) throw Error(ErrorKind::kFailure, folder + ": cannot be made");
@@ -162,7 +169,7 @@ Response get_download(const Call& call) {
     std::filesystem::remove_all(folder, error);
   });
   const auto file = std::filesystem::path(folder) / target.filename();
-  call.session.save(what, file, Overwrite::kNo);
+  call.session.save(what, file, Overwrite::kNo, cloud);
   std::ifstream stream(file, std::ios::binary);
   return binary(std::string(std::istreambuf_iterator<char>(stream), {}),
                 {{"Content-Disposition", attachment(target.filename().string())}});
@@ -202,7 +209,7 @@ Response change_settings(const Call& call) {
 }
 
 Response find_lines(const Call& call) {
-  call.session.find_lines();
+  call.session.find_lines(parse_cloud(call.request.body));
   return json_response("{}");
 }
 
@@ -227,15 +234,17 @@ Response restore(const Call& call) {
 }
 
 Response save(const Call& call) {
-  const SaveRequest wanted = parse_save(call.request.body);
+  SaveRequest wanted = parse_save(call.request.body);
   const Saved what = saved_of(wanted.what);
-  const auto path = call.session.target(what, wanted.name);
+  if (what == Saved::kLines) wanted.cloud = call.session.cloud_of_lines();
+  const auto path = call.session.target(what, wanted.name, wanted.cloud);
   const bool overwrite = wanted.overwrite || call.session.options().overwrite;
   std::error_code error;
   if (!overwrite && std::filesystem::exists(path, error)) {
     throw Error(ErrorKind::kInsufficient, path.string() + " exists");
   }
-  const auto bytes = call.session.save(what, path, overwrite ? Overwrite::kYes : Overwrite::kNo);
+  const auto bytes =
+      call.session.save(what, path, overwrite ? Overwrite::kYes : Overwrite::kNo, wanted.cloud);
   const FileSaved saved{path.string(), bytes};
   call.events.add(saved);
   return json_response(to_json(saved));

@@ -25,22 +25,22 @@ const Run* Runs::find(int number) const {
   return found != runs_.end() && found->record.number == number ? &*found : nullptr;
 }
 
-std::shared_ptr<const Prediction> Runs::prediction() const {
+std::shared_ptr<const Prediction> Runs::prediction(std::size_t cloud) const {
   const Run* run = shown();
-  return run ? run->prediction : nullptr;
+  return run && cloud < run->predictions.size() ? run->predictions[cloud] : nullptr;
 }
 
-std::shared_ptr<const Prediction> Runs::settled_prediction() const {
+std::shared_ptr<const Prediction> Runs::settled_prediction(std::size_t cloud) const {
   const Run* run = shown();
-  if (run && !run->prediction) {
+  if (run && run->predictions.empty()) {
     throw Error(ErrorKind::kInsufficient,
                 fmt::format("run {} is being trained again: wait for it", run->record.number));
   }
-  return prediction();
+  return prediction(cloud);
 }
 
 void Runs::show(Run run) {
-  for (Run& other : runs_) other.prediction.reset();
+  for (Run& other : runs_) other.predictions.clear();
   shown_ = run.record.number;
   const auto place = position_of(runs_, *shown_);
   if (find(*shown_)) {
@@ -56,7 +56,7 @@ void Runs::judge(int number, const HeldOut& held_out) {
 }
 
 void Runs::stop_awaiting() {
-  if (!prediction()) shown_.reset();
+  if (!prediction(0)) shown_.reset();
 }
 
 std::vector<RunView> Runs::views() const {

@@ -9,12 +9,15 @@
 
 namespace pcednet::annotate {
 
+/// What is found in each cloud.
+using Predictions = std::vector<std::shared_ptr<const Prediction>>;
+
 /// A training and its outcome.
 struct Run {
   RunRecord record = {};
-  std::shared_ptr<const Prediction> prediction = {};  ///< null unless it is shown
-  std::optional<detect::EdgeModel> model = {};        ///< none as long as an earlier start made it
-  std::optional<HeldOut> held_out = {};               ///< none as long as it is not known
+  Predictions predictions = {};                 ///< one per cloud; none unless it is shown
+  std::optional<detect::EdgeModel> model = {};  ///< none as long as an earlier start made it
+  std::optional<HeldOut> held_out = {};         ///< none as long as it is not known
 };
 
 /// The runs of a session by ascending number. The one that is shown is the only one with a
@@ -31,11 +34,11 @@ class Runs {
   /// The run that is shown, or null.
   const Run* shown() const { return shown_ ? find(*shown_) : nullptr; }
 
-  /// What `shown` predicts, or null.
-  std::shared_ptr<const Prediction> prediction() const;
+  /// What `shown` predicts for a cloud, or null.
+  std::shared_ptr<const Prediction> prediction(std::size_t cloud) const;
 
   /// The same, but throws Error(kInsufficient) if that run is being trained again.
-  std::shared_ptr<const Prediction> settled_prediction() const;
+  std::shared_ptr<const Prediction> settled_prediction(std::size_t cloud) const;
 
   /// How many predictions there were.
   int version() const { return version_; }

@@ -55,8 +55,10 @@ fs::path default_project(const fs::path& input) {
   return input.parent_path() / (input.stem().string() + "_annotation.json");
 }
 
-fs::path saving_path(Saved what, const std::string& name, const fs::path& input,
-                     const fs::path& project) {
+fs::path saving_path(Saved what, const std::string& name, std::span<const fs::path> inputs,
+                     std::size_t cloud, const fs::path& project) {
+  const bool has_own = what == Saved::kCloud || what == Saved::kLines;
+  const fs::path& input = inputs[has_own ? cloud : 0];
   if (!name.empty() && !(is_plain(name) && fits(what, name))) {
     throw Error(ErrorKind::kUsage,
                 fmt::format("name: a file name without folder, ending in {} for a cloud, "
@@ -68,7 +70,9 @@ fs::path saving_path(Saved what, const std::string& name, const fs::path& input,
     if (what == Saved::kProject) return project;
     path /= input.stem().string() + ending_of(what, input);
   }
-  for (const fs::path& kept : {input, journal_of(project), project}) {
+  std::vector<fs::path> all_kept(inputs.begin(), inputs.end());
+  all_kept.insert(all_kept.end(), {journal_of(project), project});
+  for (const fs::path& kept : all_kept) {
     std::error_code error;
     if ((what != Saved::kProject || kept != project) && fs::equivalent(path, kept, error)) {
       throw Error(ErrorKind::kUsage,

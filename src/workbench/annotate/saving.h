@@ -16,10 +16,10 @@ enum class Saved { kCloud, kModel, kProject, kLines };
 std::filesystem::path default_project(const std::filesystem::path& input);
 
 /// Where `what` goes: `name` or the usual one, beside the input. Throws Error(kUsage) unless `name`
-/// is empty or a plain file name of `what` that is neither the input, its journal nor another's
-/// project.
+/// is empty or a plain file name of `what` that is neither an input, the journal nor another's
+/// project. A cloud goes beside its own input, the rest beside the first.
 std::filesystem::path saving_path(Saved what, const std::string& name,
-                                  const std::filesystem::path& input,
+                                  std::span<const std::filesystem::path> inputs, std::size_t cloud,
                                   const std::filesystem::path& project);
 
 /// Writes curves found in a cloud, with its coordinate system.

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <set>
 
 #include "pcednet/core/error.h"
@@ -21,11 +22,12 @@ namespace {
 constexpr std::chrono::milliseconds kPause{150};
 
 /// The nodes that hold the points, ascending.
-std::vector<std::uint32_t> nodes_with(std::span<const std::uint32_t> points, const Layout& layout) {
+std::vector<std::uint32_t> nodes_with(std::span<const std::uint32_t> points, std::size_t first,
+                                      const Layout& layout) {
   std::set<std::uint32_t> nodes;
   std::uint32_t last = kNoNode;
   for (const std::uint32_t point : points) {
-    const std::uint32_t node = layout.node_of[point];
+    const std::uint32_t node = layout.node_of[point - first];
     if (node != last && node != kNoNode) nodes.insert(last = node);
   }
   return {nodes.begin(), nodes.end()};
@@ -78,13 +80,24 @@ void Session::State::check_ready() const {
   if (!loading.is_done) throw Error(ErrorKind::kInsufficient, "the cloud is still being loaded");
 }
 
+void Session::State::check_cloud(std::size_t cloud) const {
+  check_ready();
+  if (cloud >= scenes.size()) throw NotFound(fmt::format("there is no cloud {}", cloud));
+}
+
+/// The cloud's own of something that all points have.
+std::span<const std::uint8_t> Session::State::part(std::span<const std::uint8_t> all,
+                                                   std::size_t cloud) const {
+  return all.subspan(firsts[cloud], scenes[cloud]->cloud.size());
+}
+
 /// Ends what the worker does and forgets what it was asked to do.
 void Session::State::interrupt() {
   ++orders.generation;
   orders.train_at.reset();
   orders.restore.reset();
   orders.asked_for = false;
-  orders.find_lines = false;
+  orders.find_lines.reset();
   orders.judge = false;
   set_searching(false);
   runs.stop_awaiting();
@@ -119,7 +132,11 @@ Painted Session::State::answer_to(std::span<const std::uint32_t> points) {
   Painted painted = standing();
   painted.stroke = painted.undo;
   painted.changed = points.size();
-  painted.nodes = nodes_with(points, scene->layout);
+  if (!points.empty()) {  // all of one cloud
+    const auto next = std::upper_bound(firsts.begin(), firsts.end(), points.front());
+    painted.cloud = static_cast<std::size_t>(next - firsts.begin()) - 1;
+    painted.nodes = nodes_with(points, firsts[painted.cloud], scenes[painted.cloud]->layout);
+  }
   if (!points.empty()) emit(painted);
   return painted;
 }
@@ -127,13 +144,15 @@ Painted Session::State::answer_to(std::span<const std::uint32_t> points) {
 Painted Session::paint(const Stroke& stroke) {
   const Lock lock(state_->mutex);
   State& s = *state_;
-  s.check_ready();
+  s.check_cloud(stroke.cloud);
   if (const auto found = s.answers.find(stroke.id); found != s.answers.end()) return found->second;
-  const auto prediction = s.runs.prediction();
+  const auto prediction = s.runs.prediction(stroke.cloud);
   auto points =
-      points_to_change(s.scene->selector->select(stroke), stroke, s.painting->labels().classes(),
+      points_to_change(s.scenes[stroke.cloud]->selector->select(stroke), stroke,
+                       s.part(s.painting->labels().classes(), stroke.cloud),
                        prediction ? std::span<const std::uint8_t>(prediction->result.classes)
                                   : std::span<const std::uint8_t>());
+  for (std::uint32_t& point : points) point += static_cast<std::uint32_t>(s.firsts[stroke.cloud]);
   std::span<const std::uint32_t> changed;
   if (!points.empty()) {
     changed = s.painting->add(
@@ -195,29 +214,35 @@ void Session::restore(int run) {
   s.orders.restore = run;
 }
 
-fs::path Session::target(Saved what, const std::string& name) const {
-  return saving_path(what, name, state_->options.input, state_->options.project);
+fs::path Session::target(Saved what, const std::string& name, std::size_t cloud) const {
+  std::vector<fs::path> inputs = {state_->options.input};
+  inputs.insert(inputs.end(), state_->options.further.begin(), state_->options.further.end());
+  if (cloud >= inputs.size()) throw NotFound(fmt::format("there is no cloud {}", cloud));
+  return saving_path(what, name, inputs, cloud, state_->options.project);
 }
 
-std::uintmax_t Session::save(Saved what, const fs::path& path, Overwrite overwrite) const {
+std::uintmax_t Session::save(Saved what, const fs::path& path, Overwrite overwrite,
+                             std::size_t cloud) const {
   Lock lock(state_->mutex);
   const State& s = *state_;
-  s.check_ready();
-  const auto scene = s.scene;
+  s.check_cloud(cloud);
+  const auto scene = s.scenes[cloud];
   if (what == Saved::kProject) {
-    const Project project{.input = scene->input, .records = s.painting->records()};
+    const Project project{.inputs = s.inputs(), .records = s.painting->records()};
     lock.unlock();  // writing takes its time
     write_project(path, project, overwrite);
     return fs::file_size(path);
   }
   if (what == Saved::kLines) {
     const auto accepted = accepted_curves(s.review);
+    const auto of_lines = s.scenes[s.review.cloud];
     lock.unlock();
-    write_lines(path, accepted, scene->cloud, overwrite);
+    write_lines(path, accepted, of_lines->cloud, overwrite);
     return fs::file_size(path);
   }
-  const auto prediction = s.runs.settled_prediction();
-  const auto labels = s.painting->labels().classes();
+  const auto prediction = s.runs.settled_prediction(cloud);
+  const auto its = s.part(s.painting->labels().classes(), cloud);
+  const std::vector<std::uint8_t> labels(its.begin(), its.end());
   lock.unlock();
   if (what == Saved::kModel) {
     if (!prediction)

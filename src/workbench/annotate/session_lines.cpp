@@ -9,17 +9,22 @@ using Lock = std::unique_lock<std::mutex>;
 LinesView Session::lines() const {
   const Lock lock(state_->mutex);
   state_->check_ready();
-  return {state_->review, state_->scene};
+  return {state_->review, state_->scenes[state_->review.cloud]};
 }
 
-void Session::find_lines() {
+std::size_t Session::cloud_of_lines() const {
+  const Lock lock(state_->mutex);
+  return state_->review.cloud;
+}
+
+void Session::find_lines(std::size_t cloud) {
   const Lock lock(state_->mutex);
   State& s = *state_;
-  s.check_ready();
-  if (!s.runs.settled_prediction()) {
+  s.check_cloud(cloud);
+  if (!s.runs.settled_prediction(cloud)) {
     throw Error(ErrorKind::kInsufficient, "there is no prediction yet: paint and train");
   }
-  s.orders.find_lines = true;
+  s.orders.find_lines = cloud;
   s.set_searching(true);
   s.changed.notify_all();
 }
@@ -37,29 +42,31 @@ void Session::State::set_searching(bool on) {
   emit(LinesChanged{.version = review.version, .is_searching = on});
 }
 
-void Session::State::find_lines_once(std::uint64_t mine) {
+void Session::State::find_lines_once(std::size_t cloud, std::uint64_t mine) {
   std::shared_ptr<const Prediction> prediction;
   int version = 0;
   {
     const Lock lock(mutex);
-    prediction = runs.prediction();
+    prediction = runs.prediction(cloud);
     version = runs.version();
   }
   try {
     const Progress reporter = progress(mine);
+    const detect::PreparedCloud& prepared = scenes[cloud]->prepared;
     auto curves = std::make_shared<std::vector<lines::Curve>>(
-        lines::find_lines({.positions = scene->prepared.positions,
-                           .normals = scene->prepared.normals,
+        lines::find_lines({.positions = prepared.positions,
+                           .normals = prepared.normals,
                            .classes = prediction->result.classes,
                            .p_sharp = prediction->result.p_sharp,
                            .p_smooth = prediction->result.p_smooth,
-                           .curve = scene->prepared.curve},
+                           .curve = prepared.curve},
                           {}, &reporter));
     const Lock lock(mutex);
     if (orders.generation != mine || orders.stopping) return;
     review.decisions.assign(curves->size(), Decision::kOpen);
     review.curves = std::move(curves);
     review.prediction_version = version;
+    review.cloud = cloud;
     ++review.version;
     set_searching(false);
   } catch (...) {

@@ -24,17 +24,18 @@ struct Loading {
 /// What the worker is to do next. Work that began under an older generation is void.
 struct Orders {
   std::optional<std::chrono::steady_clock::time_point> train_at = {};
-  bool asked_for = false;           ///< by the user: an error if it cannot be done
-  bool find_lines = false;          ///< once there is nothing else to do
-  bool judge = false;               ///< the run that is shown, after all else
-  std::optional<int> restore = {};  ///< a run
+  bool asked_for = false;                      ///< by the user: an error if it cannot be done
+  std::optional<std::size_t> find_lines = {};  ///< in a cloud, once there is nothing else to do
+  bool judge = false;                          ///< the run that is shown, after all else
+  std::optional<int> restore = {};             ///< a run
   std::uint64_t generation = 0;
   bool stopping = false;
 };
 
-/// The points that rank_uncertain() found for a version of the prediction.
+/// The points that rank_uncertain() found for a version of a cloud's prediction.
 struct UncertainRanking {
   int version = -1;
+  std::size_t cloud = 0;
   std::vector<std::uint32_t> points = {};
 };
 
@@ -50,8 +51,9 @@ struct Session::State {
   Orders orders = {};
 
   // There once loading is done.
-  std::shared_ptr<const Scene> scene = {};
-  std::shared_ptr<const Described> described = {};  ///< as the last model wanted it
+  std::vector<std::shared_ptr<const Scene>> scenes = {};  ///< one per cloud
+  std::vector<std::size_t> firsts = {};  ///< and the number of its first point in all
+  std::vector<std::shared_ptr<const Described>> described = {};  ///< as the last model wanted it
   std::optional<Painting> painting = {};
 
   std::map<std::string, Painted> answers = {};  ///< to strokes, by their ids
@@ -61,6 +63,7 @@ struct Session::State {
   std::shared_ptr<const Start> start = {};
   std::string start_name = {};
   int start_classes = 0;
+  std::size_t start_clouds = 0;
 
   Runs runs = {};
   mutable UncertainRanking uncertain = {};
@@ -76,23 +79,30 @@ struct Session::State {
   void open_project();
   void train_once(std::uint64_t mine);
   void restore_once(int number, std::uint64_t mine);
-  void find_lines_once(std::uint64_t mine);
+  void find_lines_once(std::size_t cloud, std::uint64_t mine);
   void judge_once(std::uint64_t mine);
   bool train(Run& run, std::span<const std::uint8_t> painted_classes, std::uint64_t mine);
   bool train_again(Run& run, std::uint64_t mine);
   void classify(Run& run, std::uint64_t mine);
   void show_start(const Settings& settings, std::uint64_t mine);
-  std::shared_ptr<const Start> start_of(const Settings& settings, std::uint64_t mine);
-  Subject subject_of(const Described& rows) const;
+  std::shared_ptr<const Start> start_of(const Settings& settings, std::size_t clouds,
+                                        std::uint64_t mine);
+  Subject subject_of(std::span<const std::shared_ptr<const Described>> rows) const;
+  Predictions predictions_of(const detect::EdgeModel& model, const detect::Classification& found,
+                             std::uint64_t mine);
+  std::span<const std::uint8_t> part(std::span<const std::uint8_t> all, std::size_t cloud) const;
+  Inputs inputs() const;
+  std::filesystem::path input_of(std::size_t cloud) const;
   gls::ScaleSpaceOptions first_descriptor() const;
-  std::shared_ptr<const Described> description(const gls::ScaleSpaceOptions& descriptor,
-                                               std::uint64_t of_generation);
+  std::vector<std::shared_ptr<const Described>> descriptions(
+      const gls::ScaleSpaceOptions& descriptor, std::size_t clouds, std::uint64_t of_generation);
 
   // With the mutex.
   bool is_training_due() const;
   void wait_for_orders(std::unique_lock<std::mutex>& lock);
   std::function<void()> next_work();
   void check_ready() const;
+  void check_cloud(std::size_t cloud) const;
   void show(Run run);
   void set_searching(bool on);
   Painted answer_to(std::span<const std::uint32_t> points);
@@ -101,7 +111,8 @@ struct Session::State {
   void schedule();
   void choose_start();
   void remember_runs();
-  std::vector<std::uint32_t> points_of(const std::vector<std::size_t>& nodes) const;
+  std::vector<std::uint32_t> points_of(const std::vector<std::size_t>& nodes,
+                                       std::size_t cloud) const;
 };
 
 }  // namespace pcednet::annotate

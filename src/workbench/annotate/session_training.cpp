@@ -21,20 +21,46 @@ std::string now_as_text() {
 }  // namespace
 
 /// What a training under `settings` starts from; null: random weights.
-std::shared_ptr<const Start> Session::State::start_of(const Settings& settings,
+std::shared_ptr<const Start> Session::State::start_of(const Settings& settings, std::size_t clouds,
                                                       std::uint64_t mine) {
   if (settings.start == kRandomStart) return {};
-  if (start && start_name == settings.start && start_classes == settings.classes) return start;
+  if (start && start_name == settings.start && start_classes == settings.classes &&
+      start_clouds == clouds) {
+    return start;
+  }
   detect::EdgeModel model = with_classes(options.load_model(settings.start), settings.classes);
-  const auto rows = description(model.descriptor, mine);
-  start = std::make_shared<const Start>(make_start(std::move(model), subject_of(*rows)));
+  const auto rows = descriptions(model.descriptor, clouds, mine);
+  start = std::make_shared<const Start>(make_start(std::move(model), subject_of(rows)));
   start_name = settings.start;
   start_classes = settings.classes;
+  start_clouds = clouds;
   return start;
 }
 
-Subject Session::State::subject_of(const Described& rows) const {
-  return {rows, scene->cloud.positions, scene->prepared.curve};
+Subject Session::State::subject_of(std::span<const std::shared_ptr<const Described>> rows) const {
+  Subject subject;
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    subject.clouds.push_back({*rows[k], scenes[k]->cloud.positions, scenes[k]->prepared.curve});
+  }
+  return subject;
+}
+
+/// What `model` predicts: `found` in the first clouds, all that it says of the others.
+Predictions Session::State::predictions_of(const detect::EdgeModel& model,
+                                           const detect::Classification& found,
+                                           std::uint64_t mine) {
+  Predictions predictions;
+  std::vector<std::shared_ptr<const Described>> rows;
+  for (std::size_t k = 0; k < scenes.size(); ++k) {
+    const std::size_t points = scenes[k]->cloud.size();
+    const bool is_known = firsts[k] < found.classes.size();
+    if (!is_known && rows.empty()) rows = descriptions(model.descriptor, scenes.size(), mine);
+    predictions.push_back(make_prediction(
+        *scenes[k], model,
+        is_known ? part_of(found, firsts[k], points)
+                 : detect::classify(rows[k]->cloud, scenes[k]->cloud.positions, model)));
+  }
+  return predictions;
 }
 
 /// Gives `run` its model and prediction, from the points painted and the settings of its record.
@@ -43,9 +69,11 @@ bool Session::State::train(Run& run, std::span<const std::uint8_t> painted_class
                            std::uint64_t mine) {
   RunFacts& facts = run.record.facts;
   const Settings& its = run.record.settings;
-  const auto from = start_of(its, mine);
-  const auto rows = description(descriptor_of(from ? &from->model : nullptr), mine);
+  const std::size_t clouds = std::min(run.record.clouds, scenes.size());
+  const auto from = start_of(its, clouds, mine);
+  const auto rows = descriptions(descriptor_of(from ? &from->model : nullptr), clouds, mine);
   const Progress cancel = {.report = {}, .cancelled = [&] { return is_void(mine); }};
+  painted_classes = painted_classes.first(firsts[clouds - 1] + scenes[clouds - 1]->cloud.size());
   const auto on_epoch = [&](const nn::EpochReport& report) {
     emit(EpochDone{.run = run.record.number,
                    .epoch = report.epoch,
@@ -53,14 +81,14 @@ bool Session::State::train(Run& run, std::span<const std::uint8_t> painted_class
                    .loss = report.training_loss});
   };
   Stopwatch watch;
-  Adapted learnt = learn(options.input.stem().string(), subject_of(*rows), painted_classes, its,
+  Adapted learnt = learn(options.input.stem().string(), subject_of(rows), painted_classes, its,
                          from.get(), on_epoch, &cancel);
   if (learnt.cancelled) return false;
   facts.seconds_train = watch.lap() - learnt.seconds_classify;
   facts.seconds_classify = learnt.seconds_classify;
   facts.loss = learnt.loss;
   facts.classes = static_cast<int>(learnt.model.classes.size());
-  run.prediction = make_prediction(*scene, learnt.model, std::move(learnt.found));
+  run.predictions = predictions_of(learnt.model, learnt.found, mine);
   run.model = std::move(learnt.model);
   return true;
 }
@@ -75,7 +103,8 @@ void Session::State::train_once(std::uint64_t mine) {
     painted_classes = painting->labels().classes();
     run.record = {.number = painting->next_run(),
                   .records = painting->records().size(),
-                  .settings = painting->settings()};
+                  .settings = painting->settings(),
+                  .clouds = scenes.size()};
     run.record.facts.painted = painting->labels().painted();
   }
   try {
@@ -104,7 +133,7 @@ bool Session::State::train_again(Run& run, std::uint64_t mine) {
     std::optional<Labels> its;
     {
       const Lock lock(mutex);
-      its = labels_of(run.record, painting->records(), scene->input.points);
+      its = labels_of(run.record, painting->records(), annotate::points_of(inputs()));
     }
     if (!train(run, its->classes(), mine)) return false;
     run.record.facts.painted = its->painted();
@@ -126,11 +155,11 @@ bool Session::State::train_again(Run& run, std::uint64_t mine) {
 
 /// Classifies with a model that was trained before.
 void Session::State::classify(Run& run, std::uint64_t mine) {
-  const auto rows = description(run.model->descriptor, mine);
+  const auto rows = descriptions(run.model->descriptor, scenes.size(), mine);
   Stopwatch watch;
-  auto found = detect::classify(rows->cloud, scene->cloud.positions, *run.model);
+  const auto found = annotate::classify(subject_of(rows), *run.model);
   if (!run.record.facts.seconds_classify) run.record.facts.seconds_classify = watch.lap();
-  run.prediction = make_prediction(*scene, *run.model, std::move(found));
+  run.predictions = predictions_of(*run.model, found, mine);
 }
 
 void Session::State::restore_once(int number, std::uint64_t mine) {
@@ -165,7 +194,7 @@ void Session::State::restore_once(int number, std::uint64_t mine) {
 /// Shows what the start itself finds: a run without training, number 0.
 void Session::State::show_start(const Settings& settings, std::uint64_t mine) {
   Stopwatch watch;
-  const auto from = start_of(settings, mine);
+  const auto from = start_of(settings, scenes.size(), mine);
   Run run{.record = {.number = 0, .records = 0, .settings = settings}};
   run.record.facts = {.painted = 0,
                       .classes = static_cast<int>(from->model.classes.size()),
@@ -173,17 +202,19 @@ void Session::State::show_start(const Settings& settings, std::uint64_t mine) {
                       .seconds_classify = watch.lap(),
                       .time = now_as_text()};
   run.model = from->model;
-  run.prediction = make_prediction(*scene, from->model, from->answer);
+  run.predictions = predictions_of(from->model, from->answer, mine);
   const Lock lock(mutex);
   if (orders.generation != mine || orders.stopping) return;
   show(std::move(run));
 }
 
 void Session::State::show(Run run) {
-  const auto& counts = run.prediction->result.counts;
-  Predicted predicted{.run = run.record.number,
-                      .counts = {counts.non_edge, counts.smooth, counts.sharp, counts.boundary},
-                      .facts = run.record.facts};
+  Predicted predicted{.run = run.record.number, .facts = run.record.facts};
+  for (const auto& prediction : run.predictions) {
+    const auto& counts = prediction->result.counts;
+    const std::array its = {counts.non_edge, counts.smooth, counts.sharp, counts.boundary};
+    for (std::size_t c = 0; c < its.size(); ++c) predicted.counts[c] += its[c];
+  }
   orders.judge = run.record.number > 0 && !run.held_out;
   runs.show(std::move(run));
   predicted.prediction_version = runs.version();
@@ -199,12 +230,13 @@ void Session::State::judge_once(std::uint64_t mine) {
     const Run* shown = runs.shown();
     if (!shown || shown->record.number == 0 || shown->held_out) return;
     record = shown->record;
-    its = labels_of(record, painting->records(), scene->input.points);
+    its = labels_of(record, painting->records(), annotate::points_of(inputs()));
   }
-  const auto from = start_of(record.settings, mine);
-  const auto rows = description(descriptor_of(from ? &from->model : nullptr), mine);
+  const std::size_t clouds = std::min(record.clouds, scenes.size());
+  const auto from = start_of(record.settings, clouds, mine);
+  const auto rows = descriptions(descriptor_of(from ? &from->model : nullptr), clouds, mine);
   const Progress cancel = {.report = {}, .cancelled = [&] { return is_void(mine); }};
-  const HeldOut held_out = hold_out(subject_of(*rows), *its, record.settings, from.get(), &cancel);
+  const HeldOut held_out = hold_out(subject_of(rows), *its, record.settings, from.get(), &cancel);
   const Lock lock(mutex);
   runs.judge(record.number, held_out);
   emit(Judged{record.number, held_out});

@@ -11,16 +11,25 @@ namespace pcednet::annotate {
 
 using Lock = std::unique_lock<std::mutex>;
 
-Summary Session::summary() const {
+Summary Session::summary(std::size_t cloud) const {
   const Lock lock(state_->mutex);
   const State& s = *state_;
-  Summary summary = {.name = s.options.input.stem().string(),
-                     .file = s.options.input.filename().string(),
+  if (cloud > s.options.further.size()) throw NotFound(fmt::format("there is no cloud {}", cloud));
+  Summary summary = {.name = s.input_of(cloud).stem().string(),
+                     .file = s.input_of(cloud).filename().string(),
+                     .cloud = cloud,
                      .stage = s.loading.stage,
                      .starts = s.options.starts};
   if (!s.loading.is_done) return summary;
-  summary.scene = s.scene;
-  summary.scales = s.described->cloud.scales;
+  summary.scene = s.scenes[cloud];
+  summary.scales = s.described[cloud]->cloud.scales;
+  for (std::size_t k = 0; k < s.scenes.size(); ++k) {
+    const auto labels = s.part(s.painting->labels().classes(), k);
+    const auto none = std::count(labels.begin(), labels.end(), kUnlabelled);
+    summary.clouds.push_back({.file = s.input_of(k).filename().string(),
+                              .points = labels.size(),
+                              .painted = labels.size() - static_cast<std::size_t>(none)});
+  }
   summary.counts = s.painting->labels().counts();
   summary.undo = s.painting->labels().undo_steps();
   summary.redo = s.painting->labels().redo_steps();
@@ -36,12 +45,12 @@ std::vector<RunView> Session::runs() const {
   return state_->runs.views();
 }
 
-std::vector<std::byte> Session::node_points(std::size_t node) const {
+std::vector<std::byte> Session::node_points(std::size_t node, std::size_t cloud) const {
   std::shared_ptr<const Scene> scene;
   {
     const Lock lock(state_->mutex);
-    state_->check_ready();
-    scene = state_->scene;
+    state_->check_cloud(cloud);
+    scene = state_->scenes[cloud];
   }
   if (node >= scene->layout.nodes.size()) {
     throw NotFound(fmt::format("there is no node {}", node));
@@ -50,8 +59,9 @@ std::vector<std::byte> Session::node_points(std::size_t node) const {
                        scene->prepared.normals, scene->cloud.colours);
 }
 
-std::vector<std::uint32_t> Session::State::points_of(const std::vector<std::size_t>& ids) const {
-  const Layout& layout = scene->layout;
+std::vector<std::uint32_t> Session::State::points_of(const std::vector<std::size_t>& ids,
+                                                     std::size_t cloud) const {
+  const Layout& layout = scenes[cloud]->layout;
   std::vector<std::uint32_t> points;
   for (const std::size_t id : ids) {
     if (id >= layout.nodes.size() || points.size() > 2 * layout.order.size()) {
@@ -65,15 +75,18 @@ std::vector<std::uint32_t> Session::State::points_of(const std::vector<std::size
 }
 
 Session::Values Session::values(Shown what, const std::vector<std::size_t>& nodes, int feature,
-                                int scale) const {
+                                int scale, std::size_t cloud) const {
   const Lock lock(state_->mutex);
   const State& s = *state_;
-  s.check_ready();
-  const std::vector<std::uint32_t> points = s.points_of(nodes);
-  if (what == Shown::kFeature) return {feature_bytes(*s.described, points, feature, scale), 0};
-  const auto prediction = s.runs.prediction();
+  s.check_cloud(cloud);
+  const std::vector<std::uint32_t> points = s.points_of(nodes, cloud);
+  if (what == Shown::kFeature) {
+    return {feature_bytes(*s.described[cloud], points, feature, scale), 0};
+  }
+  const auto prediction = s.runs.prediction(cloud);
+  const auto labels = s.part(s.painting->labels().classes(), cloud);
   const auto value = [&](std::uint32_t i) -> std::uint8_t {
-    if (what == Shown::kLabels) return s.painting->labels().classes()[i];
+    if (what == Shown::kLabels) return labels[i];
     if (what == Shown::kPrediction)
       return prediction ? prediction->result.classes[i] : std::uint8_t{kUnlabelled};
     if (!prediction) return 0;
@@ -86,17 +99,18 @@ Session::Values Session::values(Shown what, const std::vector<std::size_t>& node
   return values;
 }
 
-UncertainPlace Session::uncertain(std::size_t after) const {
+UncertainPlace Session::uncertain(std::size_t after, std::size_t cloud) const {
   const Lock lock(state_->mutex);
   const State& s = *state_;
-  s.check_ready();
-  const auto prediction = s.runs.prediction();
+  s.check_cloud(cloud);
+  const auto prediction = s.runs.prediction(cloud);
   if (!prediction) {
     throw Error(ErrorKind::kInsufficient, "there is no prediction yet: paint and train");
   }
-  const Scene& scene = *s.scene;
-  auto& [version, places] = s.uncertain;
-  if (version != s.runs.version()) {
+  const Scene& scene = *s.scenes[cloud];
+  auto& [version, of, places] = s.uncertain;
+  if (version != s.runs.version() || of != cloud) {
+    of = cloud;
     // Places are as far apart as a look at one of them reaches.
     const double apart = std::max(10 * scene.spacing, 0.02 * scene.bounds.diagonal());
     places = rank_uncertain(scene.cloud.positions, scene.selector->tree(), prediction->confidence,
@@ -115,11 +129,12 @@ UncertainPlace Session::uncertain(std::size_t after) const {
           .prediction = prediction->result.classes[point]};
 }
 
-PointView Session::pick(const Vec3& local_origin, const Vec3& direction, double radius) const {
+PointView Session::pick(const Vec3& local_origin, const Vec3& direction, double radius,
+                        std::size_t cloud) const {
   const Lock lock(state_->mutex);
   const State& s = *state_;
-  s.check_ready();
-  const Scene& scene = *s.scene;
+  s.check_cloud(cloud);
+  const Scene& scene = *s.scenes[cloud];
   const auto found =
       annotate::pick(scene.cloud.positions, local_origin + scene.origin, direction, radius);
   if (!found) throw NotFound("no point is near that ray");
@@ -127,9 +142,9 @@ PointView Session::pick(const Vec3& local_origin, const Vec3& direction, double 
   PointView view{.point = point,
                  .position = scene.cloud.positions[point] - scene.origin,
                  .normal = scene.prepared.normals[point],
-                 .label = s.painting->labels().classes()[point],
+                 .label = s.part(s.painting->labels().classes(), cloud)[point],
                  .distance = found->distance};
-  if (const auto prediction = s.runs.prediction()) {
+  if (const auto prediction = s.runs.prediction(cloud)) {
     const float sharp = prediction->result.p_sharp[point];
     const float smooth = prediction->result.p_smooth[point];
     view.prediction = prediction->result.classes[point];

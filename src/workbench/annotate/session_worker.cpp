@@ -75,7 +75,9 @@ std::function<void()> Session::State::next_work() {
     orders.train_at.reset();
     return [this, mine] { train_once(mine); };
   }
-  if (std::exchange(orders.find_lines, false)) return [this, mine] { find_lines_once(mine); };
+  if (const auto cloud = std::exchange(orders.find_lines, {})) {
+    return [this, mine, which = *cloud] { find_lines_once(which, mine); };
+  }
   orders.judge = false;
   return [this, mine] { judge_once(mine); };
 }
@@ -97,13 +99,18 @@ void Session::State::load() {
                                const Lock lock(mutex);
                                return orders.stopping;
                              }};
-  auto loaded = load_scene(options.input, &reporter);
-  {
+  for (std::size_t k = 0; k <= options.further.size(); ++k) {
+    auto loaded = load_scene(input_of(k), &reporter);
     const Lock lock(mutex);
-    scene = std::move(loaded);
+    firsts.push_back(k == 0 ? 0 : firsts.back() + scenes.back()->cloud.size());
+    scenes.push_back(std::move(loaded));
   }
   open_project();
-  auto first = describe_once(scene->prepared, first_descriptor(), options.cache_folder, &reporter);
+  std::vector<std::shared_ptr<const Described>> first;
+  const gls::ScaleSpaceOptions descriptor = first_descriptor();
+  for (const auto& scene : scenes) {
+    first.push_back(describe_once(scene->prepared, descriptor, options.cache_folder, &reporter));
+  }
   {
     const Lock lock(mutex);
     described = std::move(first);
@@ -112,8 +119,12 @@ void Session::State::load() {
   }
   changed.notify_all();
   emit(Ready{});
-  for (const auto* notes : {&scene->warnings, &scene->prepared.notes}) {
-    for (const std::string& note : *notes) emit(Problem{note});
+  for (const auto& scene : scenes) {
+    for (const auto* notes : {&scene->warnings, &scene->prepared.notes}) {
+      for (const std::string& note : *notes) {
+        emit(Problem{scenes.size() > 1 ? scene->input.name + ": " + note : note});
+      }
+    }
   }
 }
 
@@ -139,7 +150,7 @@ void Session::State::choose_start() {
 }
 
 void Session::State::open_project() {
-  Painting opened(options.project, scene->input);
+  Painting opened(options.project, inputs());
   const Lock lock(mutex);
   painting = std::move(opened);
   labels_version = painting->records().empty() ? 0 : 1;
@@ -165,19 +176,36 @@ void Session::State::remember_runs() {
   if (is_due && !painting->is_trained()) orders.train_at = std::chrono::steady_clock::now();
 }
 
-std::shared_ptr<const Described> Session::State::description(
-    const gls::ScaleSpaceOptions& descriptor, std::uint64_t of_generation) {
-  std::shared_ptr<const Described> known;
+/// Those of the first so many clouds.
+std::vector<std::shared_ptr<const Described>> Session::State::descriptions(
+    const gls::ScaleSpaceOptions& descriptor, std::size_t clouds, std::uint64_t of_generation) {
+  std::vector<std::shared_ptr<const Described>> wanted;
   {
     const Lock lock(mutex);
-    known = described;
+    wanted.assign(described.begin(), described.begin() + static_cast<std::ptrdiff_t>(clouds));
   }
-  if (known->descriptor == descriptor) return known;
   const Progress reporter = progress(of_generation);
-  auto other = describe_once(scene->prepared, descriptor, options.cache_folder, &reporter);
-  const Lock lock(mutex);
-  described = other;
-  return other;
+  for (std::size_t k = 0; k < clouds; ++k) {
+    if (wanted[k]->descriptor == descriptor) continue;
+    wanted[k] = describe_once(scenes[k]->prepared, descriptor, options.cache_folder, &reporter);
+    const Lock lock(mutex);
+    described[k] = wanted[k];
+  }
+  return wanted;
+}
+
+std::filesystem::path Session::State::input_of(std::size_t cloud) const {
+  return cloud == 0 ? options.input : options.further[cloud - 1];
+}
+
+/// A further input is named as seen from the first, unless it is far away.
+Inputs Session::State::inputs() const {
+  Inputs all;
+  for (std::size_t k = 0; k < scenes.size(); ++k) {
+    all.push_back(scenes[k]->input);
+    if (k > 0) all[k].name = input_of(k).lexically_proximate(options.input.parent_path()).string();
+  }
+  return all;
 }
 
 }  // namespace pcednet::annotate

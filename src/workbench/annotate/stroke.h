@@ -17,6 +17,7 @@ enum class Tool { kBrush, kPolygon };
 struct Stroke {
   std::string id = {};  ///< the window's own name for it
   Tool tool = Tool::kBrush;
+  std::size_t cloud = 0;
   std::uint8_t edge_class = kUnlabelled;  ///< EdgeClass; kUnlabelled erases
   bool protect = false;                   ///< points that have a label keep it
   std::vector<std::uint8_t> hidden = {};  ///< points of these classes are not painted

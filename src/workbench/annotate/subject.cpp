@@ -1,0 +1,89 @@
+#include "workbench/annotate/subject.h"
+
+#include <algorithm>
+
+#include "pcednet/detect/decide.h"
+#include "pcednet/detect/describe.h"
+
+namespace pcednet::annotate {
+
+std::vector<std::uint32_t> first_points(const Subject& subject) {
+  std::vector<std::uint32_t> firsts;
+  std::size_t next = 0;
+  for (const SubjectCloud& cloud : subject.clouds) {
+    firsts.push_back(static_cast<std::uint32_t>(next));
+    next += cloud.positions.size();
+  }
+  return firsts;
+}
+
+detect::Classification joined(std::vector<detect::Classification> found) {
+  if (found.size() == 1) return std::move(found.front());
+  detect::Classification all;
+  const auto append = [](auto& to, const auto& from) {
+    to.insert(to.end(), from.begin(), from.end());
+  };
+  for (const detect::Classification& one : found) {
+    append(all.classes, one.classes);
+    append(all.p_sharp, one.p_sharp);
+    append(all.p_smooth, one.p_smooth);
+  }
+  all.counts = detect::count_classes(all.classes);
+  return all;
+}
+
+detect::Classification part_of(const detect::Classification& found, std::size_t first,
+                               std::size_t count) {
+  if (count == found.classes.size()) return found;
+  const auto cut = [&](const auto& all) {
+    const auto begin = all.begin() + static_cast<std::ptrdiff_t>(first);
+    return std::decay_t<decltype(all)>(begin, begin + static_cast<std::ptrdiff_t>(count));
+  };
+  detect::Classification part;
+  part.classes = cut(found.classes);
+  part.p_sharp = cut(found.p_sharp);
+  part.p_smooth = cut(found.p_smooth);
+  part.counts = detect::count_classes(part.classes);
+  return part;
+}
+
+detect::Classification classify(const Subject& subject, const detect::EdgeModel& model) {
+  std::vector<detect::Classification> found;
+  for (const auto& [described, positions, curve] : subject.clouds) {
+    found.push_back(detect::classify(described.cloud, positions, model));
+  }
+  return joined(std::move(found));
+}
+
+Rows joined_rows(std::vector<CloudRows> clouds, std::span<const std::uint32_t> firsts,
+                 std::size_t width) {
+  Rows rows{.width = width};
+  std::vector<std::size_t> ends;
+  for (std::size_t k = 0; k < clouds.size(); ++k) {
+    for (const std::uint32_t i : clouds[k].points) rows.points.push_back(firsts[k] + i);
+    ends.push_back(rows.points.size());
+  }
+  rows.read = [clouds = std::move(clouds), ends](std::size_t row, float* values) {
+    const auto k =
+        static_cast<std::size_t>(std::upper_bound(ends.begin(), ends.end(), row) - ends.begin());
+    clouds[k].read(row - (k == 0 ? 0 : ends[k - 1]), values);
+  };
+  return rows;
+}
+
+Rows described_rows(const Subject& subject) {
+  std::size_t width = 0;
+  std::vector<CloudRows> clouds;
+  for (const SubjectCloud& one : subject.clouds) {
+    const detect::DescribedCloud& cloud = one.described.cloud;
+    const std::size_t its = cloud.order.empty() ? 0 : cloud.values.size() / cloud.order.size();
+    width = std::max(width, its);
+    clouds.push_back({cloud.order, [&cloud, its](std::size_t row, float* values) {
+                        std::copy_n(cloud.values.begin() + static_cast<std::ptrdiff_t>(row * its),
+                                    its, values);
+                      }});
+  }
+  return joined_rows(std::move(clouds), first_points(subject), width);
+}
+
+}  // namespace pcednet::annotate

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "pcednet/detect/classify.h"
+#include "workbench/annotate/described.h"
+
+namespace pcednet::annotate {
+
+/// A cloud to learn from; all is only looked at.
+struct SubjectCloud {
+  const Described& described;
+  std::span<const Vec3> positions;
+  std::span<const std::uint32_t> curve;  ///< spatial::curve_order() of the positions
+};
+
+/// Clouds to learn from together, all described in the same way. Points are numbered through one
+/// cloud after the other; so are labels and what is found.
+struct Subject {
+  std::vector<SubjectCloud> clouds;
+};
+
+/// A number per cloud: that of its first point.
+std::vector<std::uint32_t> first_points(const Subject& subject);
+
+/// What was found in each cloud, as one.
+detect::Classification joined(std::vector<detect::Classification> found);
+
+/// `count` points of what was found, from `first` on.
+detect::Classification part_of(const detect::Classification& found, std::size_t first,
+                               std::size_t count);
+
+/// What `model` finds in the clouds.
+detect::Classification classify(const Subject& subject, const detect::EdgeModel& model);
+
+/// Rows of one network's input, with the points that they describe, numbered through the clouds.
+struct Rows {
+  std::vector<std::uint32_t> points = {};
+  std::size_t width = 0;
+  std::function<void(std::size_t row, float* values)> read = {};
+};
+
+/// The rows of the clouds' descriptions.
+Rows described_rows(const Subject& subject);
+
+/// Rows of one cloud: their points, numbered from 0, and what reads one.
+struct CloudRows {
+  std::span<const std::uint32_t> points = {};
+  std::function<void(std::size_t row, float* values)> read = {};
+};
+Rows joined_rows(std::vector<CloudRows> clouds, std::span<const std::uint32_t> firsts,
+                 std::size_t width);
+
+}  // namespace pcednet::annotate

@@ -1,0 +1,158 @@
+#!/usr/bin/env python3
+"""Several clouds in one project of `pcednet annotate`."""
+import json
+import pathlib
+import shutil
+import unittest
+
+import numpy as np
+
+import support
+from annotate_support import EDGE, FACE, AnnotateTest, Server, brush
+from support import read_ply, run, write_ply
+
+
+class AnnotateClouds(AnnotateTest):
+    """The cube, and a second one, larger and elsewhere, in a folder beside it."""
+
+    def setUp(self):
+        super().setUp()
+        positions, normals, _ = support.cube(15000, seed=2)
+        self.other = self.folder / "more" / "hall.ply"
+        self.other.parent.mkdir()
+        write_ply(self.other, 3 * positions + 100, normals)
+        self.project = self.folder / "cube_annotation.json"
+
+    def both(self, *options):
+        self.servers.append(Server(self.cloud, str(self.other), *options))
+        server = self.servers[-1]
+        server.open()
+        return server
+
+    def quiet_both(self, *options):
+        server = self.both("--model", "none", *options)
+        server.post("/api/settings", {"auto": False})
+        return server
+
+    def paint_both(self, server):
+        """An edge in one cloud, a face in the other."""
+        first = server.post("/api/stroke", brush("edge", 2, EDGE, radius=0.05))
+        second = server.post("/api/stroke", brush("face", 0, 3 * np.array(FACE), radius=0.45, cloud=1))
+        return first, second
+
+    def values(self, server, of, cloud):
+        nodes = server.get(f"/api/session?cloud={cloud}")["nodes"]
+        names = ",".join(str(node["id"]) for node in nodes)
+        return np.frombuffer(
+            server.request(f"/api/values?of={of}&nodes={names}&cloud={cloud}")[2], np.uint8)
+
+    def test_shows_paints_and_takes_back_in_each(self):
+        server = self.quiet_both()
+        sessions = [server.get(f"/api/session?cloud={k}") for k in (0, 1)]
+        self.assertEqual([s["file"] for s in sessions], ["cube.ply", "hall.ply"])
+        self.assertEqual([s["points"] for s in sessions], [20000, 15000])
+        self.assertGreater(sessions[1]["spacing"], 2 * sessions[0]["spacing"])
+        self.assertEqual(server.request("/api/session?cloud=2")[0], 404)
+        first, second = self.paint_both(server)
+        self.assertEqual((first["cloud"], second["cloud"]), (0, 1))
+        self.assertEqual(second["counts"], [second["changed"], 0, first["changed"]])
+        painted = [c["painted"] for c in server.get("/api/session?cloud=1")["clouds"]]
+        self.assertEqual(painted, [first["changed"], second["changed"]])
+        for cloud, label, answer in ((0, 2, first), (1, 0, second)):
+            labels = self.values(server, "labels", cloud)
+            self.assertEqual(set(labels), {label, 255})
+            self.assertEqual((labels == label).sum(), answer["changed"])
+        undone = server.post("/api/undo")
+        self.assertEqual((undone["cloud"], undone["undo"]), (1, 1))
+        self.assertEqual(set(self.values(server, "labels", 1)), {255})
+        server.post("/api/stroke", brush("x", 2, EDGE, cloud=2), expect=404)
+        server.post("/api/stroke", brush("y", 2, EDGE, cloud=-1), expect=400)
+
+    def test_trains_one_model_on_all_and_saves_each(self):
+        server = self.quiet_both()
+        server.post("/api/stroke", brush("edge", 2, EDGE, radius=0.05))
+        server.post("/api/train", expect=409)  # sharp-edge alone
+        server.post("/api/stroke", brush("face", 0, 3 * np.array(FACE), radius=0.45, cloud=1))
+        self.train(server, 1)
+        for cloud in (0, 1):
+            found = self.values(server, "prediction", cloud)
+            self.assertTrue(0.01 < (found == 2).mean() < 0.4, f"{(found == 2).mean()}")
+        saved = [pathlib.Path(server.post("/api/save", {"what": "cloud", "cloud": k})["path"])
+                 for k in (0, 1)]
+        self.assertEqual(saved, [self.folder / "cube_annotated.ply",
+                                 self.other.parent / "hall_annotated.ply"])
+        model = pathlib.Path(server.post("/api/save", {"what": "model"})["path"])
+        server.post("/api/save", {"what": "project"})
+        server.post("/api/lines/find", {"cloud": 1})
+        lines = server.until("/api/lines", lambda lines: lines["version"] == 1)
+        self.assertEqual(lines["cloud"], 1)
+        self.assertEqual(server.end()[0], 0)
+
+        # The same model on the command line; it finds the same in each cloud.
+        project = json.loads(self.project.read_text())
+        self.assertEqual(project["format"], "pcednet-annotation-2")
+        self.assertEqual([i["name"] for i in project["inputs"]], ["cube.ply", "more/hall.ply"])
+        again = self.folder / "again.safetensors"
+        for threads in (1, 2):
+            run("train", "--project", self.project, "-o", again, "--overwrite", "--threads",
+                        threads)
+            self.assertEqual(again.read_bytes(), model.read_bytes())
+        for cloud, file in zip((self.cloud, self.other), saved):
+            out = self.folder / "out.ply"
+            run("classify", cloud, "--model", again, "-o", out, "--overwrite")
+            columns = [read_ply(f)[0]["scalar_edge_class"] for f in (out, file)]
+            np.testing.assert_array_equal(*columns)
+
+        # Moved elsewhere, the inputs are given.
+        moved = self.folder / "moved.ply"
+        shutil.copy(self.other, moved)
+        shutil.rmtree(self.other.parent)
+        run("train", "--project", self.project, self.cloud, moved, "-o", again, "--overwrite")
+        self.assertEqual(again.read_bytes(), model.read_bytes())
+
+    def test_survives_being_killed_and_opens_all_again_by_the_first(self):
+        server = self.quiet_both()
+        self.paint_both(server)
+        before = [self.values(server, "labels", k) for k in (0, 1)]
+        server.kill()
+        server = self.serve()  # names the first alone
+        server.open()
+        self.assertEqual([c["file"] for c in server.get("/api/session")["clouds"]],
+                         ["cube.ply", "hall.ply"])
+        for cloud in (0, 1):
+            np.testing.assert_array_equal(self.values(server, "labels", cloud), before[cloud])
+
+    def test_a_cloud_may_join_later_and_earlier_runs_stay_as_they_were(self):
+        server = self.quiet()
+        self.paint_edge_and_face(server)
+        self.train(server, 1)
+        model = server.request("/api/download/model")[2]
+        first_journal = (self.folder / "cube_annotation.json.journal").read_text()
+        self.assertIn('"pcednet-annotation-1"', first_journal)
+        server.kill()
+        server = self.both()
+        server.until("/api/session", lambda s: s["prediction_version"] > 0)
+        self.assertEqual(server.request("/api/download/model")[2], model)
+        self.assertGreater((self.values(server, "prediction", 1) == 2).sum(), 100)
+        journal = (self.folder / "cube_annotation.json.journal").read_text()
+        self.assertEqual(journal.splitlines()[1:], first_journal.splitlines()[1:])
+        self.assertIn('"pcednet-annotation-2"', journal.splitlines()[0])
+        server.post("/api/stroke", brush("more", 0, 3 * np.array(FACE), radius=0.3, cloud=1))
+        self.train(server, 2)
+        both = server.request("/api/download/model")[2]
+        self.assertNotEqual(both, model)
+        for run, wanted in ((1, model), (2, both)):
+            server.post(f"/api/runs/{run}/restore")
+            server.until("/api/runs", lambda runs: [r["run"] for r in runs if r["current"]] == [run])
+            self.assertEqual(server.request("/api/download/model")[2], wanted)
+
+    def test_refuses_inputs_that_cannot_be_told_apart(self):
+        twin = self.folder / "cube.pcd"
+        run("convert", self.cloud, "-o", twin)
+        for more in (self.cloud, twin):
+            done = run("annotate", self.cloud, more, "--no-browser", expect=2)
+            self.assertIn("would be saved under one name", done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()

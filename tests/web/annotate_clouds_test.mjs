@@ -1,0 +1,125 @@
+// Two clouds trained on together, in the browser. Environment as annotate_test.mjs; SCREENSHOT_CLOUDS, if set, is where
+// a picture goes.
+import assert from "node:assert/strict";
+import { spawn } from "node:child_process";
+import fs from "node:fs";
+import os from "node:os";
+import path from "node:path";
+import { after, before, test } from "node:test";
+
+import { roof, writeRoof } from "./annotate_cloud.mjs";
+import { launch } from "./browser.mjs";
+
+const folder = fs.mkdtempSync(path.join(os.tmpdir(), "pcednet-clouds-"));
+const inputs = ["roof.ply", "barn.ply"].map((name) => path.join(folder, name));
+const complaints = [];
+let browser, page, program;
+
+const settled = () =>
+  page.waitForFunction(
+    () => annotator.store.now.progress === null && annotator.stage.isSettled && !annotator.client.isBusy,
+  );
+const state = (name) => page.evaluate((key) => annotator.store.now[key], name);
+const looksAt = (file) => page.waitForFunction((name) => annotator.store.now.session?.file === name, file);
+
+/** A dab in the middle of the view with the mouse. */
+async function dab(key) {
+  await page.evaluate(() => annotator.stage.camera.fit(true));
+  await settled();
+  const box = await page.locator("canvas").first().boundingBox();
+  await page.keyboard.press(key);
+  await page.mouse.click(box.x + box.width / 2, box.y + box.height / 2);
+  await settled();
+}
+
+before(async () => {
+  writeRoof(inputs[0], roof());
+  // The other is half as large, far away and thinner.
+  writeRoof(
+    inputs[1],
+    roof()
+      .filter((_, i) => i % 2 === 0)
+      .map((point) => ({ ...point, p: point.p.map((c) => c / 2 + 50) })),
+  );
+  const address = await new Promise((done, fail) => {
+    program = spawn(process.env.PCEDNET, ["annotate", ...inputs, "--no-browser"]);
+    program.stdout.on("data", (data) => done(String(data).trim()));
+    program.on("exit", (code) => fail(new Error(`pcednet annotate ended with ${code}`)));
+  });
+  browser = await launch();
+  page = await browser.newPage({ viewport: { width: 1280, height: 720 } });
+  page.setDefaultTimeout(120_000);
+  page.on("pageerror", (e) => complaints.push(e.message));
+  await page.goto(address);
+  await settled();
+  await page.waitForFunction(() => annotator.store.now.runs.some((run) => run.current));
+});
+
+after(async () => {
+  await browser?.close();
+  program?.kill("SIGKILL");
+  fs.rmSync(folder, { recursive: true, force: true });
+});
+
+test("lists both and shows what the model finds in each", async () => {
+  const names = await page.locator(".clouds .name").allTextContents();
+  assert.deepEqual(names, ["roof.ply", "barn.ply"]);
+  const sharp = () =>
+    page.evaluate(() => annotator.stage.chunks.reduce((n, c) => n + c.prediction.filter((p) => p === 2).length, 0));
+  await settled();
+  const first = await sharp();
+  await page.getByRole("radio", { name: "barn.ply" }).check({ force: true });
+  await looksAt("barn.ply");
+  await settled();
+  const points = await page.evaluate(() => annotator.stage.chunks.reduce((n, c) => n + c.labels.length, 0));
+  assert.equal(points, await page.evaluate(() => annotator.store.now.session.points));
+  assert.ok(first > 500 && (await sharp()) > 200);
+  assert.equal(await page.locator("h1").textContent(), "barn");
+  if (process.env.SCREENSHOT_CLOUDS) await page.screenshot({ path: process.env.SCREENSHOT_CLOUDS });
+});
+
+test("paints in each; one model learns from both, and the one in view shows it", async () => {
+  await page.getByRole("checkbox", { name: "Train after each stroke" }).uncheck();
+  await dab("1");
+  const [there] = [await state("counts")];
+  assert.ok(there[0] > 0);
+  await page.keyboard.press("PageDown");
+  await looksAt("roof.ply");
+  await settled();
+  assert.deepEqual(await state("counts"), there, "counts are of all clouds");
+  const labels = () =>
+    page.evaluate(() => annotator.stage.chunks.reduce((n, c) => n + c.labels.filter((l) => l < 3).length, 0));
+  assert.equal(await labels(), 0, "nothing is painted here");
+  await dab("2");
+  const both = await state("clouds");
+  assert.ok(
+    both.every(({ painted }) => painted > 0),
+    JSON.stringify(both),
+  );
+  assert.equal(await labels(), both[0].painted);
+  await page.getByRole("button", { name: "Train now" }).click();
+  await page.waitForFunction(() => annotator.store.now.runs.some((run) => run.current && run.run === 1));
+  const run = (await state("runs")).find(({ current }) => current);
+  assert.equal(run.painted, both[0].painted + both[1].painted);
+});
+
+test("takes a stroke in the other cloud back, and says where it was", async () => {
+  await page.keyboard.press("PageUp");
+  await looksAt("barn.ply");
+  await settled();
+  await page.keyboard.press("Control+z");
+  await page.getByText("That was in roof.ply.").waitFor();
+  await page.waitForFunction(() => annotator.store.now.clouds[0].painted === 0);
+  assert.ok((await state("clouds"))[1].painted > 0);
+});
+
+test("saves each beside its input", async () => {
+  await page.waitForFunction(() => !annotator.store.now.training?.active);
+  await page.getByRole("button", { name: "Save clouds" }).click();
+  for (const name of ["roof_annotated.ply", "barn_annotated.ply"]) {
+    await page.locator(".notice", { hasText: name }).waitFor();
+    assert.ok(fs.statSync(path.join(folder, name)).size > 0);
+  }
+});
+
+test("complained of nothing", () => assert.deepEqual(complaints, []));
