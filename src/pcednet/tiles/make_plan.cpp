@@ -6,12 +6,12 @@
 #include <cmath>
 
 #include "pcednet/core/error.h"
-#include "pcednet/core/sha256.h"
 #include "pcednet/core/version.h"
 #include "pcednet/tiles/dense_sample.h"
 #include "pcednet/tiles/inputs.h"
 #include "pcednet/tiles/layout.h"
 #include "pcednet/tiles/sample.h"
+#include "pcednet/tiles/sha256.h"
 
 namespace pcednet::tiles {
 namespace {

@@ -6,9 +6,9 @@
 #include <numeric>
 
 #include "pcednet/core/error.h"
-#include "pcednet/core/sha256.h"
 #include "pcednet/core/version.h"
 #include "pcednet/io/input_file.h"
+#include "pcednet/tiles/sha256.h"
 
 namespace pcednet::tiles {
 namespace {

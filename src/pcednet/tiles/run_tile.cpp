@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "pcednet/core/error.h"
-#include "pcednet/core/sha256.h"
 #include "pcednet/detect/boundary.h"
 #include "pcednet/detect/classify.h"
 #include "pcednet/detect/decide.h"
@@ -14,6 +13,7 @@
 #include "pcednet/formats/write_cloud.h"
 #include "pcednet/io/parts.h"
 #include "pcednet/tiles/inputs.h"
+#include "pcednet/tiles/sha256.h"
 #include "pcednet/tiles/tile_file.h"
 
 namespace pcednet::tiles {

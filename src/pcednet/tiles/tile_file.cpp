@@ -3,8 +3,8 @@
 #include <nlohmann/json.hpp>
 
 #include "pcednet/core/error.h"
-#include "pcednet/core/sha256.h"
 #include "pcednet/io/input_file.h"
+#include "pcednet/tiles/sha256.h"
 
 namespace pcednet::tiles {
 namespace {

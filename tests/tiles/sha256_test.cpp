@@ -1,10 +1,10 @@
-#include "pcednet/core/sha256.h"
+#include "pcednet/tiles/sha256.h"
 
 #include <gtest/gtest.h>
 
 #include <string>
 
-namespace pcednet {
+namespace pcednet::tiles {
 namespace {
 
 TEST(Sha256, GivesTheDigestsOfTheStandard) {
@@ -26,4 +26,4 @@ TEST(Sha256, DoesNotDependOnThePieces) {
 }
 
 }  // namespace
-}  // namespace pcednet
+}  // namespace pcednet::tiles

@@ -1,19 +1,22 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
-#include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
 
-namespace pcednet {
+struct evp_md_ctx_st;
 
-/// SHA-256 (FIPS 180-4), for files whose digest others check with their own tools. Bytes added in
-/// pieces count as one message.
+namespace pcednet::tiles {
+
+/// SHA-256, for files whose digest others check with their own tools. Bytes added in pieces count
+/// as one message.
 class Sha256 {
  public:
+  Sha256();
+
   Sha256& add(std::span<const std::byte> bytes);
   Sha256& add(std::string_view text) { return add(std::as_bytes(std::span(text))); }
 
@@ -21,15 +24,13 @@ class Sha256 {
   std::string hex();
 
  private:
-  void block(const std::byte* bytes);
-
-  std::array<std::uint32_t, 8> state_ = {0x6a09e667, 0xbb67ae85, 0x3c6ef372, 0xa54ff53a,
-                                         0x510e527f, 0x9b05688c, 0x1f83d9ab, 0x5be0cd19};
-  std::array<std::byte, 64> waiting_ = {};
-  std::uint64_t bytes_ = 0;
+  struct Free {
+    void operator()(evp_md_ctx_st* context) const;
+  };
+  std::unique_ptr<evp_md_ctx_st, Free> context_;
 };
 
 /// That of a file's bytes. Throws Error(kUnreadable) if it cannot be read.
 std::string sha256_of_file(const std::filesystem::path& path);
 
-}  // namespace pcednet
+}  // namespace pcednet::tiles
