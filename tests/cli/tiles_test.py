@@ -149,6 +149,22 @@ class Tiles(CliTest):
         said = run("tiles", "plan", self.folder / "in", "-o", self.folder / "q.json", expect=2)
         self.assertIn("different columns", said.stderr)
 
+    def test_inputs_in_random_order_can_be_sorted_first(self):
+        p, n = field(3, 600)
+        p[::700] = np.nan
+        order = np.random.default_rng(4).permutation(len(p))
+        write_ply(self.folder / "a.ply", p[order], n[order])
+        plan, content = self.make_plan(self.folder / "a.ply", "--sort", self.folder / "sorted",
+                                       tile=1.0)
+        self.assertEqual(len(content["inputs"]), len(content["tiles"]))
+        self.assertEqual(len(list((self.folder / "sorted").iterdir())), len(content["tiles"]))
+        run("tiles", "run", plan)
+        rows = self.check_whole(plan, self.folder / "a.ply")
+        run("classify", self.folder / "a.ply", "-o", self.folder / "whole.ply")
+        whole = sorted_rows(self.folder / "whole.ply")
+        self.assertEqual(rows.dtype, whole.dtype)
+        self.assertGreater(np.mean(rows["scalar_edge_class"] == whole["scalar_edge_class"]), 0.9999)
+
     def test_points_that_are_not_finite_stay(self):
         p, n = field(3, 300)
         p[::500] = np.nan

@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 
 struct PlanArguments {
   std::vector<std::string> inputs;
-  std::string plan, folder, output, memory = "2G";
+  std::string plan, folder, output, sorted, memory = "2G";
   double tile_length = 0.0;
   ModelArguments model{.name = kDefaultModel};
   detect::PrepareOptions preparation;
@@ -53,7 +53,8 @@ void plan_tiles(const PlanArguments& arguments, const Common& common) {
                                        .exact = model.scales.engine == gls::Engine::kExact},
                              .tile_length = arguments.tile_length,
                              .memory = byte_size("--max-memory", arguments.memory),
-                             .keep_orientation = arguments.preparation.keep_orientation};
+                             .keep_orientation = arguments.preparation.keep_orientation,
+                             .sorted = arguments.sorted};
   const Progress progress = console_progress(common);
   const tiles::Plan plan = tiles::make_plan(request, load_model(model), &progress);
   tiles::write_plan(arguments.plan, plan, common.overwrite());
@@ -239,6 +240,9 @@ void add_plan(CLI::App& tiles, Common& common) {
   command->add_option("--output", arguments->output,
                       "Names of the tiles, with {ID}, {COLUMN}, {ROW}, {XLEFT}, {XRIGHT}, "
                       "{YBOTTOM}, {YTOP} (default: {ID}.laz, or {ID}.ply for PLY)");
+  command->add_option("--sort", arguments->sorted,
+                      "Folder for copies of the inputs with their points in order, for inputs in "
+                      "random order");
   add_model_options(*command, arguments->model);
   add_prepare_options(*command, arguments->preparation);
   command->callback([arguments, &common] { plan_tiles(*arguments, common); });

@@ -12,6 +12,7 @@
 #include "pcednet/tiles/layout.h"
 #include "pcednet/tiles/sample.h"
 #include "pcednet/tiles/sha256.h"
+#include "pcednet/tiles/sort_inputs.h"
 
 namespace pcednet::tiles {
 namespace {
@@ -141,7 +142,11 @@ Plan make_plan(const PlanRequest& request, const detect::EdgeModel& model,
                        : plan.las_steps.empty() ? "{ID}.ply"
                                                 : "{ID}.laz");
   plan.memory = memory_for(most_points(counts, plan.grid, plan.buffer));
-  check_order(plan);
+  if (request.sorted.empty()) {
+    check_order(plan);
+  } else {
+    sort_inputs(request.sorted, plan, progress);
+  }
   return plan;
 }
 

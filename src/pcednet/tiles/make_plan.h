@@ -18,12 +18,14 @@ struct PlanRequest {
   double tile_length = 0.0;      ///< 0: the largest that `memory` allows
   std::uint64_t memory = std::uint64_t{2} << 30;  ///< bytes that one tile may take
   bool keep_orientation = false;
+  std::filesystem::path sorted;  ///< folder for copies of the inputs in order; empty: none
 };
 
 /// Plans the tiles of the inputs, which are read twice where they are many points, in memory that
 /// does not grow with them. `model` is what the request names, with the bounds of the scales that
 /// are given.
 ///
+/// Inputs whose points are in no order in space are refused unless there is a folder for copies.
 /// Throws Error(kUnreadable) for inputs that cannot be read, Error(kUsage) for inputs that do not
 /// fit together, Error(kInsufficient) for no finite point or no range of scales.
 Plan make_plan(const PlanRequest& request, const detect::EdgeModel& model,

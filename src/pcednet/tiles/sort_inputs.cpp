@@ -1,0 +1,153 @@
+#include "pcednet/tiles/sort_inputs.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <deque>
+#include <map>
+#include <numeric>
+
+#include "pcednet/core/blocks.h"
+#include "pcednet/formats/write_cloud.h"
+#include "pcednet/io/parts.h"
+#include "pcednet/spatial/curve_order.h"
+#include "pcednet/tiles/inputs.h"
+
+namespace pcednet::tiles {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kOpenFiles = 256;
+
+/// The files of the copies: LAS and PLY, which are read from any place.
+fs::path copy_path(const fs::path& folder, const Plan& plan, std::size_t tile, const char* prefix) {
+  const std::size_t digits = std::to_string(plan.tiles.size() - 1).size();
+  return folder /
+         fmt::format("{}{:0{}}{}", prefix, tile, digits, plan.las_steps.empty() ? ".ply" : ".las");
+}
+
+/// A file that points are appended to; it is created with the first of them.
+class Copy {
+ public:
+  Copy(fs::path path, const Plan& plan, std::size_t points)
+      : path_(std::move(path)), is_las_(!plan.las_steps.empty()), points_(points) {}
+
+  void append(const PointCloud& some) {
+    if (!writer_) {
+      first_ = some;
+      writer_ = formats::create_parts(path_,
+                                      {.points = points_,
+                                       .first = &first_,
+                                       .each_part = [this](const auto& visit) { visit(first_); },
+                                       .is_las = is_las_},
+                                      {.overwrite = Overwrite::kYes});
+    }
+    writer_->append(some);
+  }
+  void commit() { writer_->commit(); }
+
+ private:
+  fs::path path_;
+  bool is_las_;
+  std::size_t points_;
+  PointCloud first_ = {};
+  std::unique_ptr<io::PartWriter> writer_ = {};
+};
+
+/// The tile of every point of a part.
+class TileFinder {
+ public:
+  explicit TileFinder(const Plan& plan) : grid_(plan.grid) {
+    for (std::size_t id = 0; id < plan.tiles.size(); ++id) {
+      tiles_[{plan.tiles[id].column, plan.tiles[id].row}] = id;
+    }
+  }
+  std::size_t operator()(const Vec3& position) const {
+    return position.allFinite() ? tiles_.at(grid_.core_of(position)) : 0;
+  }
+
+ private:
+  Grid grid_;
+  std::map<std::array<std::int64_t, 2>, std::size_t> tiles_ = {};
+};
+
+/// Writes the points of the tiles [begin, end) to a file each, in the order of the inputs.
+void scatter(const fs::path& folder, const Plan& plan, std::size_t begin, std::size_t end,
+             const Progress* progress) {
+  const PointCloud outline = outline_of(plan);
+  std::deque<Copy> copies;  // stay where they are
+  for (std::size_t id = begin; id < end; ++id) {
+    copies.emplace_back(copy_path(folder, plan, id, "unsorted_"), plan, plan.tiles[id].points);
+  }
+  const TileFinder tile_of(plan);
+  Stage stage(progress, "sort", plan.points());
+  for (const PlannedInput& input : plan.inputs) {
+    const auto reader = open_planned(input);
+    for (std::size_t c = 0; c < input.chunks.size(); ++c) {
+      const PointCloud part = read_chunk(*reader, input, c);
+      std::vector<std::vector<std::uint32_t>> chosen(copies.size());
+      for (std::uint32_t i = 0; i < part.size(); ++i) {
+        const std::size_t id = tile_of(part.positions[i]);
+        if (id >= begin && id < end) chosen[id - begin].push_back(i);
+      }
+      for (std::size_t k = 0; k < copies.size(); ++k) {
+        if (chosen[k].empty()) continue;
+        PointCloud some = outline;
+        append_points(part, chosen[k], some);
+        copies[k].append(some);
+      }
+      stage.advance(part.size());
+    }
+  }
+  for (Copy& copy : copies) copy.commit();
+}
+
+/// Writes the points of a scattered file along the curve, those that are not finite last.
+void sort_file(const fs::path& from, const fs::path& to, const Plan& plan) {
+  const auto reader = open_chunks(from);
+  reader->set_narrow_colours(plan.inputs.front().narrow_colours);
+  const PointCloud outline = outline_of(plan);
+  PointCloud all = outline;
+  for (std::size_t p = 0; p < reader->parts(); ++p) {
+    PointCloud part = reader->read(p);
+    io::PartTally known;
+    io::finish_part(part, known);
+    std::vector<std::uint32_t> every(part.size());
+    std::iota(every.begin(), every.end(), 0u);
+    append_points(part, every, all);
+  }
+  std::vector<std::uint32_t> order = spatial::curve_order(all.positions);
+  for (std::uint32_t i = 0; i < all.size(); ++i) {
+    if (!all.positions[i].allFinite()) order.push_back(i);
+  }
+  Copy copy(to, plan, all.size());
+  for_each_block(order.size(), kChunkPoints, [&](std::size_t begin, std::size_t end) {
+    PointCloud some = outline;
+    append_points(all, std::span(order).subspan(begin, end - begin), some);
+    copy.append(some);
+  });
+  copy.commit();
+  fs::remove(from);
+}
+
+}  // namespace
+
+void sort_inputs(const fs::path& folder, Plan& plan, const Progress* progress) {
+  make_folder(folder);
+  for_each_block(plan.tiles.size(), kOpenFiles, [&](std::size_t begin, std::size_t end) {
+    scatter(folder, plan, begin, end, progress);
+  });
+  std::vector<PlannedInput> sorted;
+  for (std::size_t id = 0; id < plan.tiles.size(); ++id) {
+    throw_if_cancelled(progress);
+    const fs::path path = copy_path(folder, plan, id, "");
+    sort_file(copy_path(folder, plan, id, "unsorted_"), path, plan);
+    std::vector<std::string> known;
+    sorted.push_back(index_input(path, progress, known, [](const PointCloud&) {}).input);
+    sorted.back().narrow_colours = plan.inputs.front().narrow_colours;
+  }
+  plan.inputs = std::move(sorted);
+}
+
+}  // namespace pcednet::tiles
