@@ -68,23 +68,18 @@ PointCloud read_dense_sample(std::span<const Vec3> sample, const Plan& plan,
                              const Progress* progress) {
   std::vector<BoundingBox> cubes;
   if (sample.size() < plan.points()) cubes = choose_cubes(sample, plan);
+  const auto is_wanted = [&](const Chunk& chunk) {
+    return cubes.empty() || std::any_of(cubes.begin(), cubes.end(), [&](const BoundingBox& cube) {
+             return meet(cube, chunk.box);
+           });
+  };
   PointCloud dense;
-  Stage stage(progress, "dense sample", plan.points());
+  if (plan.inputs.size() == 1) dense.scanners = outline_of(plan).scanners;
+  Stage stage(progress, "dense sample", plan.inputs.size());
   for (const PlannedInput& input : plan.inputs) {
-    const auto reader = open_planned(input);
-    for (std::size_t c = 0; c < input.chunks.size(); ++c) {
-      const Chunk& chunk = input.chunks[c];
-      const bool is_read =
-          cubes.empty() || std::any_of(cubes.begin(), cubes.end(), [&](const BoundingBox& cube) {
-            return meet(cube, chunk.box);
-          });
-      if (is_read) {
-        const PointCloud part = read_chunk(*reader, input, c);
-        if (c == 0 && plan.inputs.size() == 1) dense.scanners = part.scanners;
-        append_inside(part, cubes, dense);
-      }
-      stage.advance(chunk.points);
-    }
+    for_each_chunk(input, is_wanted, progress,
+                   [&](const PointCloud& part) { append_inside(part, cubes, dense); });
+    stage.advance();
   }
   return dense;
 }

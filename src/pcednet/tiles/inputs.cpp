@@ -4,9 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
+#include "pcednet/core/blocks.h"
 #include "pcednet/core/digest.h"
 #include "pcednet/core/error.h"
+#include "pcednet/core/parallel.h"
 #include "pcednet/formats/format.h"
 #include "pcednet/io/las/file.h"
 #include "pcednet/io/las/las.h"
@@ -111,6 +114,22 @@ void append_rows(const std::vector<Attribute>& from, std::span<const std::uint32
   }
 }
 
+/// Reads several parts at a time, and uses them one by one in their order.
+void read_in_turn(std::span<const std::size_t> parts,
+                  const std::function<PointCloud(std::size_t)>& read,
+                  const std::function<void(PointCloud&)>& use) {
+  const auto together = static_cast<std::size_t>(2 * thread_count());
+  for_each_block(parts.size(), together, [&](std::size_t begin, std::size_t end) {
+    std::vector<PointCloud> some(end - begin);
+    parallel_blocks(some.size(), 1,
+                    [&](std::size_t i, std::size_t) { some[i] = read(parts[begin + i]); });
+    for (PointCloud& part : some) {
+      use(part);
+      part = {};
+    }
+  });
+}
+
 }  // namespace
 
 std::unique_ptr<io::PartReader> open_chunks(const fs::path& path) {
@@ -150,6 +169,22 @@ PointCloud read_chunk(const io::PartReader& reader, const PlannedInput& input, s
   return part;
 }
 
+void for_each_chunk(const PlannedInput& input, const std::function<bool(const Chunk&)>& is_wanted,
+                    const Progress* progress, const std::function<void(PointCloud&)>& use) {
+  std::vector<std::size_t> wanted;
+  for (std::size_t c = 0; c < input.chunks.size(); ++c) {
+    if (is_wanted(input.chunks[c])) wanted.push_back(c);
+  }
+  if (wanted.empty()) return;
+  const auto reader = open_planned(input);
+  read_in_turn(
+      wanted, [&](std::size_t c) { return read_chunk(*reader, input, c); },
+      [&](PointCloud& part) {
+        throw_if_cancelled(progress);
+        use(part);
+      });
+}
+
 IndexedInput index_input(const fs::path& path, const Progress* progress,
                          std::vector<std::string>& notes,
                          const std::function<void(const PointCloud&)>& see) {
@@ -161,17 +196,22 @@ IndexedInput index_input(const fs::path& path, const Progress* progress,
                    .chunks = {}};
   io::PartTally tally;
   Stage stage(progress, "index", reader->points());
-  for (std::size_t p = 0; p < reader->parts(); ++p) {
-    PointCloud part = reader->read(p);
+  std::vector<std::size_t> parts(reader->parts());
+  std::iota(parts.begin(), parts.end(), std::size_t{0});
+  const auto take = [&](PointCloud& part) {
     std::string digest = digest_of(part);
     io::finish_part(part, tally);
     check_extent(part.positions);
-    indexed.input.chunks.push_back(chunk_of(part, std::move(digest)));
     see(part);
     stage.advance(part.size());
-    if (p == 0) indexed.columns = columns_of(part);
-    if (p == 0) indexed.outline = without_points(std::move(part));
-  }
+    const bool is_first = indexed.input.chunks.empty();
+    indexed.input.chunks.push_back(chunk_of(part, std::move(digest)));
+    if (!is_first) return;
+    indexed.columns = columns_of(part);
+    indexed.outline = without_points(std::move(part));
+  };
+  read_in_turn(
+      parts, [&](std::size_t p) { return reader->read(p); }, take);
   for (const auto& warnings : {reader->warnings, io::warnings_of(tally)}) {
     for (const std::string& warning : warnings) {
       notes.push_back(fmt::format("{}: {}", path.string(), warning));

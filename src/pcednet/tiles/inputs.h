@@ -26,6 +26,11 @@ std::unique_ptr<io::PartReader> open_planned(const PlannedInput& input);
 /// A chunk of a planned input, finished. Throws Error(kUnreadable) if it has changed since.
 PointCloud read_chunk(const io::PartReader& reader, const PlannedInput& input, std::size_t chunk);
 
+/// Calls `use` with every chunk of a planned input that is wanted, in order; several are read at a
+/// time. Throws what open_planned() and read_chunk() throw.
+void for_each_chunk(const PlannedInput& input, const std::function<bool(const Chunk&)>& is_wanted,
+                    const Progress* progress, const std::function<void(PointCloud&)>& use);
+
 struct IndexedInput {
   PlannedInput input;
   PointCloud outline;   ///< its columns, and what it says beside points, without points

@@ -20,16 +20,17 @@ namespace {
 /// Of as many points at most the plan is exact: it decides what the whole cloud in memory would.
 constexpr std::size_t kSampled = 2'000'000;
 
-/// Distances to the k-th nearest in terms of Spacing::wide, the mean distance to the 10 nearest:
-/// some sqrt(k / 10) on a surface, where the tenth is at 1.5 times the mean.
-double reach_of(std::size_t neighbours, const Spacing& spacing) {
-  return 1.5 * spacing.wide * std::sqrt(static_cast<double>(neighbours) / 10.0);
+/// The distance to the k-th nearest other, from the mean distance to the 10 nearest: some
+/// sqrt(k / 10) on a surface, where the tenth is at 1.5 times the mean.
+double reach_of(std::size_t neighbours, double mean_distance) {
+  return 1.5 * mean_distance * std::sqrt(static_cast<double>(neighbours) / 10.0);
 }
 
 constexpr std::size_t kContextNeighbours = 32;
-constexpr std::size_t kBoundaryNeighbours = 24, kBoundarySteps = 4;
-/// The sign of a normal is decided by what it is connected with.
-constexpr std::size_t kNormalSteps = 16;
+constexpr std::size_t kBoundaryNeighbours = 24, kBoundaryRounds = 3;
+constexpr std::size_t kExactPlanes = 16;  ///< neighbours that planes of the normals may take
+/// The sign of a normal is decided by what it is connected with, mean distances around it.
+constexpr double kSignReach = 64.0;
 
 /// How far around a core points decide on the points in it.
 void set_buffer(const detect::EdgeModel& model, const Spacing& spacing, Plan& plan) {
@@ -40,13 +41,15 @@ void set_buffer(const detect::EdgeModel& model, const Spacing& spacing, Plan& pl
   const bool moves = model.descriptor.reconstruction == gls::Reconstruction::kSphereMls ||
                      model.descriptor.reconstruction == gls::Reconstruction::kPlaneMls;
   const double described = plan.s_max * (moves ? 2.0 : 1.0) + cells;
+  const std::size_t fitted = std::max(plan.normals.neighbours, kExactPlanes);
   const double normals =
-      plan.normals.made
-          ? kNormalSteps * reach_of(std::max<std::size_t>(plan.normals.neighbours, 16), spacing)
-          : 0.0;
-  plan.reach = plan.model.context && model.context ? reach_of(kContextNeighbours, spacing) : 0.0;
-  const double boundary =
-      plan.model.boundary ? kBoundarySteps * reach_of(kBoundaryNeighbours, spacing) : 0.0;
+      plan.normals.made ? reach_of(fitted, spacing.wide) + kSignReach * spacing.median : 0.0;
+  const double boundary = plan.model.boundary
+                              ? reach_of(kBoundaryNeighbours, spacing.wide) +
+                                    kBoundaryRounds * reach_of(kBoundaryNeighbours, spacing.median)
+                              : 0.0;
+  plan.reach =
+      plan.model.context && model.context ? reach_of(kContextNeighbours, spacing.wide) : 0.0;
   plan.buffer = std::max(plan.reach + described, boundary) + normals;
 }
 

@@ -109,17 +109,14 @@ TileCloud read_tile(const Plan& plan, std::size_t tile, const Progress* progress
   const BoundingBox box = plan.box_of(plan.tiles[tile], plan.buffer);
   TileCloud points{.core = outline_of(plan), .all = {}};
   for (const PlannedInput& input : plan.inputs) {
-    std::unique_ptr<io::PartReader> reader;
-    for (std::size_t c = 0; c < input.chunks.size(); ++c) {
-      const Chunk& chunk = input.chunks[c];
-      if (!meets(chunk.box, box) && !(tile == 0 && chunk.not_finite > 0)) continue;
-      throw_if_cancelled(progress);
-      if (!reader) reader = open_planned(input);
-      const PointCloud part = read_chunk(*reader, input, c);
+    const auto is_wanted = [&](const Chunk& chunk) {
+      return meets(chunk.box, box) || (tile == 0 && chunk.not_finite > 0);
+    };
+    for_each_chunk(input, is_wanted, progress, [&](const PointCloud& part) {
       const Chosen chosen = choose(part, plan, tile, box);
       append_points(part, chosen.core, points.core);
       append_seen(part, chosen.around, points.all);
-    }
+    });
   }
   if (plan.inputs.size() > 1) points.core.scanners.clear();
   add_core(points.core, points.all);

@@ -18,12 +18,12 @@ void stream_points(const Plan& plan, const Progress* progress,
                    const std::function<void(std::span<const Vec3>)>& see) {
   Stage stage(progress, "spacing", plan.points());
   for (const PlannedInput& input : plan.inputs) {
-    const auto reader = open_planned(input);
-    for (std::size_t chunk = 0; chunk < input.chunks.size(); ++chunk) {
-      const PointCloud part = reader->read(chunk);
+    const auto use = [&](const PointCloud& part) {
       see(part.positions);
       stage.advance(part.size());
-    }
+    };
+    for_each_chunk(
+        input, [](const Chunk&) { return true; }, progress, use);
   }
 }
 
@@ -101,6 +101,7 @@ Spacing find_spacing(const SampledPoints& sample, const Plan& plan, const gls::S
   Spacing spacing{.range = gls::scale_range(positions, given, [&] { return spacings; })};
   std::vector<double> sorted = spacings;
   std::sort(sorted.begin(), sorted.end());
+  if (!sorted.empty()) spacing.median = sorted[sorted.size() / 2];
   if (!sorted.empty()) spacing.wide = sorted[(sorted.size() - 1) - sorted.size() / 1000];
   return spacing;
 }

@@ -43,7 +43,9 @@ struct SampledPoints {
 /// How far apart the points of a cloud are.
 struct Spacing {
   gls::ScaleRange range;
-  double wide = 0.0;  ///< of all mean distances to the 10 nearest others, one in a thousand is more
+  // Of the mean distances to the 10 nearest others:
+  double median = 0.0;
+  double wide = 0.0;  ///< one in a thousand is more
 };
 
 /// The range of scales as gls::scale_range() gives it to a cloud in memory: from 16384 positions at

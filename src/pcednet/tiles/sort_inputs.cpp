@@ -83,9 +83,7 @@ void scatter(const fs::path& folder, const Plan& plan, std::size_t begin, std::s
   const TileFinder tile_of(plan);
   Stage stage(progress, "sort", plan.points());
   for (const PlannedInput& input : plan.inputs) {
-    const auto reader = open_planned(input);
-    for (std::size_t c = 0; c < input.chunks.size(); ++c) {
-      const PointCloud part = read_chunk(*reader, input, c);
+    const auto use = [&](const PointCloud& part) {
       std::vector<std::vector<std::uint32_t>> chosen(copies.size());
       for (std::uint32_t i = 0; i < part.size(); ++i) {
         const std::size_t id = tile_of(part.positions[i]);
@@ -98,7 +96,9 @@ void scatter(const fs::path& folder, const Plan& plan, std::size_t begin, std::s
         copies[k].append(some);
       }
       stage.advance(part.size());
-    }
+    };
+    for_each_chunk(
+        input, [](const Chunk&) { return true; }, progress, use);
   }
   for (Copy& copy : copies) copy.commit();
 }
