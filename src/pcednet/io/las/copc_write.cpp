@@ -165,7 +165,8 @@ std::uint64_t CopcPointWriter::finish(const BoundingBox& bounds) {
   }
   cube_.corner = bounds.min.array() - step;
   cube_.side = (bounds.max - bounds.min).maxCoeff() + 2.0 * step;
-  write_nodes(spatial::make_detail_tree(tree_points()));
+  const spatial::DetailTree tree = spatial::make_detail_tree(tree_points());
+  write_nodes(tree);
   return chunks_.finish();
 }
 
