@@ -24,7 +24,7 @@ const looksAt = (file) => page.waitForFunction((name) => annotator.store.now.ses
 
 /** A dab in the middle of the view with the mouse. */
 async function dab(key) {
-  await page.evaluate(() => annotator.stage.camera.fit(true));
+  await page.evaluate(() => annotator.stage.fit("first"));
   await settled();
   const box = await page.locator("canvas").first().boundingBox();
   await page.keyboard.press(key);

@@ -198,7 +198,7 @@ const painted = () =>
 
 /** Where a stroke of the mouse begins. */
 async function aim() {
-  await page.evaluate(() => annotator.stage.camera.fit(true));
+  await page.evaluate(() => annotator.stage.fit("first"));
   await settled();
   const box = await page.locator("canvas").first().boundingBox();
   await page.evaluate(() => annotator.store.set({ radius: 0.1, paintClass: 1, tool: "brush" }));

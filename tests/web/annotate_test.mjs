@@ -426,7 +426,7 @@ test("saves beside the input and says where", async () => {
 });
 
 test("finds lines, goes through them, and downloads those that are accepted", async () => {
-  await page.evaluate(() => annotator.stage.camera.fit(true));
+  await page.evaluate(() => annotator.stage.fit("first"));
   await settled(page);
   /** Pixels of the canvas that are red, or whose blue is that of the line looked at. */
   const coloured = () =>
@@ -510,7 +510,7 @@ test("finds lines, goes through them, and downloads those that are accepted", as
     found.map((line) => (line === rejected ? "rejected" : "accepted")),
   );
   await second.close();
-  await page.evaluate(() => annotator.stage.camera.fit(true));
+  await page.evaluate(() => annotator.stage.fit("first"));
   await settled(page);
   if (process.env.SCREENSHOT_LINES) {
     await page.getByRole("button", { name: "GeoJSON" }).scrollIntoViewIfNeeded();

@@ -11,7 +11,21 @@ const { build } = createRequire(path.join(web, "package.json"))("esbuild");
 const { outputFiles } = await build({
   stdin: {
     resolveDir: path.join(web, "annotate"),
-    contents: ["geometry", "detail", "chunk", "paint", "ramp", "budget", "commands", "fingers", "format", "reviewer"]
+    contents: [
+      "geometry",
+      "detail",
+      "chunk",
+      "paint",
+      "ramp",
+      "budget",
+      "commands",
+      "fingers",
+      "format",
+      "reviewer",
+      "clip_handles",
+      "measure",
+      "store",
+    ]
       .map((name) => `export * as ${name} from "./${name}";`)
       .join(""),
   },
@@ -20,9 +34,21 @@ const { outputFiles } = await build({
   format: "esm",
   platform: "node",
 });
-const { geometry, detail, chunk, paint, ramp, budget, commands, fingers, format, reviewer } = await import(
-  `data:text/javascript;base64,${Buffer.from(outputFiles[0].contents).toString("base64")}`
-);
+const {
+  geometry,
+  detail,
+  chunk,
+  paint,
+  ramp,
+  budget,
+  commands,
+  fingers,
+  format,
+  reviewer,
+  clip_handles,
+  measure,
+  store,
+} = await import(`data:text/javascript;base64,${Buffer.from(outputFiles[0].contents).toString("base64")}`);
 
 /** Numbers in 0..1 by a linear congruential generator. */
 function random(seed) {
@@ -385,4 +411,37 @@ test("goes through lines round the end, and to those that are undecided", () => 
   assert.equal(nextOpen(lines("accepted", "open"), 1), null); // itself does not count
   assert.equal(nextOpen(lines("accepted"), 0), null);
   assert.deepEqual(countDecisions(lines("open", "rejected", "open")), { open: 2, accepted: 0, rejected: 1 });
+});
+
+test("a face of the clipping box moves along its axis, and stops at the opposite one", () => {
+  const box = { min: [0, 0, 0], max: [2, 4, 6] };
+  assert.deepEqual(clip_handles.faceMiddle(box, { axis: 1, side: "max" }), [1, 4, 3]);
+  assert.deepEqual(clip_handles.moved(box, { axis: 0, side: "min" }, 0.5).min, [0.5, 0, 0]);
+  assert.deepEqual(clip_handles.moved(box, { axis: 0, side: "min" }, 9).min, [2, 0, 0]);
+  assert.deepEqual(clip_handles.moved(box, { axis: 2, side: "max" }, -9).max, [2, 4, 0]);
+  assert.deepEqual(box, { min: [0, 0, 0], max: [2, 4, 6] });
+});
+
+test("a slice lies within the cloud and steps by its thickness", () => {
+  const bounds = { min: [0, 0, 0], max: [10, 20, 30] };
+  assert.deepEqual(clip_handles.sliceOf(bounds, 1, 5, 0.1), { min: [0, 4, 0], max: [10, 6, 30] });
+  const last = clip_handles.sliceOf(bounds, 1, 500, 0.1);
+  assert.deepEqual(last, { min: [0, 18, 0], max: [10, 20, 30] });
+  assert.deepEqual(clip_handles.stepped(last, bounds, -2), { min: [0, 14, 0], max: [10, 16, 30] });
+});
+
+test("a clipping box as large as the cloud cuts nothing off, a smaller one what lies outside", () => {
+  const bounds = { min: [0, 0, 0], max: [10, 10, 0] };
+  const clip = { on: true, box: { min: [0, 2, 0], max: [10, 10, 0] } };
+  const { min, max } = store.activeClip({ clip, session: { bounds, spacing: 1 } });
+  assert.ok(min[0] < 0 && min[1] === 2 && min[2] < 0 && max[0] > 10 && max[1] > 10 && max[2] > 0);
+  assert.equal(store.activeClip({ clip: { ...clip, on: false }, session: { bounds, spacing: 1 } }), null);
+});
+
+test("a measured distance names its parts along the axes", () => {
+  const words = measure.distanceWords([
+    [0, 0, 0],
+    [3, -4, 12],
+  ]);
+  assert.equal(words, "13 (Δx 3, Δy -4, Δz 12)");
 });

@@ -14,6 +14,7 @@ const TOOLS: { tool: Tool; icon: IconName; name: string; key: string }[] = [
   { tool: "brush", icon: "brush", name: "Brush", key: "B" },
   { tool: "lasso", icon: "lasso", name: "Lasso", key: "L" },
   { tool: "polygon", icon: "polygon", name: "Polygon", key: "G" },
+  { tool: "measure", icon: "measure", name: "Measure a distance", key: "U" },
   { tool: "navigate", icon: "navigate", name: "Navigate", key: "V" },
 ];
 

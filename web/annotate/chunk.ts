@@ -51,6 +51,16 @@ export function pointAt({ info: { centre, half }, positions }: Chunk, i: number)
   return [0, 1, 2].map((axis) => centre[axis] - half + positions[3 * i + axis] * step) as Vec3;
 }
 
+const MOST_PLACES = 20_000;
+
+/** Some of its points: x, y, z, x, y, z, ... */
+export function placesOf(chunk: Chunk): number[] {
+  const step = Math.max(1, Math.ceil(chunk.info.points / MOST_PLACES));
+  const places: number[] = [];
+  for (let i = 0; i < chunk.info.points; i += step) places.push(...pointAt(chunk, i));
+  return places;
+}
+
 export const normalAt = ({ normals }: Chunk, i: number): Vec3 =>
   octahedral(normals[2 * i] / 127, normals[2 * i + 1] / 127);
 

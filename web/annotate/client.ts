@@ -255,6 +255,7 @@ export class Client {
     store.set({
       uncertain: null,
       clip: null,
+      measured: [],
       progress: { stage: `Opening ${store.now.clouds[cloud].file}`, fraction: 0 },
     });
     this.stage.close();

@@ -27,6 +27,9 @@ export interface Hands {
   pointer: Pointer;
   reviewer: Reviewer;
   toggleClip(): void;
+  /** Moves a slice by so many of its thicknesses. */
+  slice(by: number): void;
+  clearMeasure(): void;
   stepUncertain(by: 1 | -1): void;
   acceptUncertain(): void;
   save(): void;
@@ -58,10 +61,18 @@ export function toggled(set: ReadonlySet<number>, item: number): Set<number> {
 const TURN = 0.12;
 const SLIDE = 60;
 
-function viewCommands({ stage: { camera }, toggleClip }: Hands): Command[] {
+function viewCommands({ store, stage, slice, toggleClip }: Hands): Command[] {
+  const { camera } = stage;
   const command = (keys: string[], name: string, run: () => void): Command => ({ keys, name, group: "View", run });
   return [
-    command(["F", "Home"], "fit the cloud to the view", () => camera.fit(true)),
+    command(["F", "Home"], "fit the cloud to the view", () => stage.fit("first")),
+    command(["Z"], "from above", () => stage.fit("top")),
+    command(["Shift+Z"], "from below", () => stage.fit("bottom")),
+    command(["W"], "from the front", () => stage.fit("front")),
+    command(["Shift+W"], "from the back", () => stage.fit("back")),
+    command(["Q"], "from the right", () => stage.fit("right")),
+    command(["Shift+Q"], "from the left", () => stage.fit("left")),
+    command(["Shift+F"], "orthographic or perspective", () => store.set({ orthographic: !store.now.orthographic })),
     command(["ArrowLeft"], "orbit left", () => camera.turn(-TURN, 0, camera.target)),
     command(["ArrowRight"], "orbit right", () => camera.turn(TURN, 0, camera.target)),
     command(["ArrowUp"], "orbit up", () => camera.turn(0, -TURN, camera.target)),
@@ -74,6 +85,8 @@ function viewCommands({ stage: { camera }, toggleClip }: Hands): Command[] {
     command(["-"], "zoom out", () => camera.approach(1.2, camera.target)),
     command(["R"], "roll", () => camera.roll(Math.PI / 12)),
     command(["C"], "clipping box", toggleClip),
+    command(["<"], "slice: one thickness back", () => slice(-1)),
+    command([">"], "slice: one thickness on", () => slice(1)),
   ];
 }
 
@@ -89,6 +102,7 @@ function toolCommands({ store, brush, outline, pointer, client }: Hands): Comman
     tool("L", "lasso", "lasso"),
     tool("G", "polygon: click the corners, Enter closes it", "polygon"),
     tool("V", "navigate: the left button orbits", "navigate"),
+    tool("U", "measure a distance: click two points", "measure"),
     command(["["], "smaller brush", () => brush.grow(1 / 1.2)),
     command(["]"], "larger brush", () => brush.grow(1.2)),
     command(["Enter"], "paint at the centre of the view; close the polygon", () =>
@@ -175,8 +189,9 @@ export function commandsOf(hands: Hands): Command[] {
     command(["Shift+N"], "previous uncertain place", "Training", () => hands.stepUncertain(-1)),
     command(["Y"], "the prediction at the uncertain place is right", "Training", hands.acceptUncertain),
     command(["T"], "train now", "Training", () => client.train()),
-    command(["Escape"], "cancel the outline, the training or the search for lines", "Training", () => {
+    command(["Escape"], "cancel the outline, the measurement, the training or the search for lines", "Training", () => {
       if (outline.isOpen) outline.cancel();
+      else if (store.now.measured.length > 0) hands.clearMeasure();
       else if (store.now.training?.active || store.now.lines.searching) client.cancel();
     }),
     ...lineCommands(hands),

@@ -36,6 +36,7 @@ uniform sampler2D picture;
 uniform sampler2D depths;
 uniform vec2 pixel;
 uniform vec2 range;       // the camera's near and far
+uniform float stretch;    // how much farther away than in perspective
 uniform vec3 background;
 varying vec2 at;
 
@@ -56,7 +57,7 @@ void main() {
   for (int i = 0; i < 8; ++i) {
     float angle = 0.7853981634 * float(i);
     float other = texture2D(depths, at + pixel * vec2(cos(angle), sin(angle))).r;
-    sum += clamp(own - away(min(other, 0.999999)), 0.0, ${MOST});
+    sum += clamp((own - away(min(other, 0.999999))) * stretch, 0.0, ${MOST});
   }
   gl_FragColor = vec4(texture2D(picture, at).rgb * exp(-${STRENGTH.toFixed(1)} * sum / 8.0), 1.0);
 }`;
@@ -73,6 +74,7 @@ export class EyeDome {
       depths: { value: null },
       pixel: { value: new Vector2() },
       range: { value: new Vector2() },
+      stretch: { value: 1 },
       background: { value: new Vector3() },
     },
   });
@@ -111,9 +113,10 @@ export class EyeDome {
   }
 
   /** Shows what was gathered; the depths too, so that lines can be drawn into it. */
-  show(camera: PerspectiveCamera, background: [number, number, number]): void {
+  show(camera: PerspectiveCamera, stretch: number, background: [number, number, number]): void {
     const u = this.material.uniforms;
     u.range.value.set(camera.near, camera.far);
+    u.stretch.value = stretch;
     u.background.value.set(...background);
     this.renderer.setRenderTarget(null);
     this.renderer.clearDepth();

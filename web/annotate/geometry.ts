@@ -84,4 +84,8 @@ export function thin(polygon: [number, number][], step: number): [number, number
 
 export const boxCentre = (box: Box): Vec3 => box.min.map((low, i) => (low + box.max[i]) / 2) as Vec3;
 
+/** The eight corners: x, y, z, x, y, z, ... */
+export const boxCorners = ({ min, max }: Box): number[] =>
+  Array.from({ length: 8 }, (_, k) => [0, 1, 2].map((i) => ((k >> i) & 1 ? max : min)[i])).flat();
+
 export const boxDiagonal = (box: Box): number => Math.hypot(...box.min.map((low, i) => box.max[i] - low));

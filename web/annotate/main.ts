@@ -5,15 +5,17 @@ import { h } from "../shared/dom";
 import { Api } from "./api";
 import { Brush } from "./brush";
 import { curtain, header, hint, legend, presser, toolbar } from "./chrome";
+import { ClipHandles, stepped } from "./clip_handles";
 import { Client, refusalOf, type Saved } from "./client";
 import { appearanceOf, lineLookOf, paintColour, valuesQuery } from "./colouring";
 import { bindKeys, commandsOf } from "./commands";
+import { Measure } from "./measure";
 import { Outline } from "./outline";
 import { Overlay } from "./overlay";
 import { cloudsPanel } from "./panel_clouds";
 import { classesPanel } from "./panel_classes";
 import { runsPanel, trainingPanel, uncertainPanel } from "./panel_training";
-import { boxAround, clipPanel, toggledClip, viewPanel } from "./panel_view";
+import { clipPanel, toggledClip, viewPanel } from "./panel_view";
 import { linesPanel } from "./panel_lines";
 import { Pointer } from "./pointer";
 import { Reviewer } from "./reviewer";
@@ -52,10 +54,13 @@ function open(page: HTMLElement): void {
   const brush: Brush = new Brush(stage, store, client);
   const outline = new Outline(stage, store, client, overlay);
   const pointer: Pointer = new Pointer(stage, store, brush, outline, overlay, {
+    measured: (place) => measure.add(place),
     refused: () => notices.warn(refusalOf(store.now)),
     colour: () => paintColour(store.now),
   });
 
+  const measure = new Measure(overlay, store);
+  new ClipHandles(overlay, store);
   const reviewer = new Reviewer(stage, store, client.lines);
 
   const save = async (what: Saved): Promise<void> => {
@@ -106,6 +111,11 @@ function open(page: HTMLElement): void {
     pointer,
     reviewer,
     toggleClip: () => store.set({ clip: toggledClip(store.now) }),
+    slice: (by) => {
+      const { clip, session } = store.now;
+      if (clip?.on && session) store.set({ clip: { on: true, box: stepped(clip.box, session.bounds, by) } });
+    },
+    clearMeasure: () => store.set({ measured: [] }),
     stepUncertain: (by) => void stepUncertain(by),
     acceptUncertain,
     save: () => void save("project"),
@@ -127,11 +137,11 @@ function open(page: HTMLElement): void {
       { "aria-label": "Settings" },
       cloudsPanel(store, client),
       classesPanel(store, brush),
-      viewPanel(store),
+      viewPanel(store, stage),
       trainingPanel(store, client),
       uncertainPanel(store, (by) => void stepUncertain(by), acceptUncertain),
       linesPanel(store, client, reviewer),
-      clipPanel(store, () => store.now.session && boxAround(stage.camera.target, store.now.session.bounds)),
+      clipPanel(store, stage, press),
       runsPanel(store, client),
     ),
     help,
@@ -149,9 +159,13 @@ function open(page: HTMLElement): void {
   store.watch(["uncertain"], () => {
     if (!store.now.uncertain) overlay.setMark(null);
   });
-  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () =>
-    stage.setAppearance(appearanceOf(store.now, css("--stage"))),
-  );
+  const repaint = (): void => stage.setAppearance(appearanceOf(store.now, css("--stage")));
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", repaint);
+  store.watch(["theme"], () => {
+    document.documentElement.dataset.theme = store.now.theme;
+    repaint();
+  });
+  store.watch(["orthographic"], () => stage.camera.setOrthographic(store.now.orthographic));
   addEventListener("pagehide", () => api.leave());
   addEventListener("beforeunload", (event) => store.now.waiting > 0 && event.preventDefault());
   addEventListener("pageshow", ({ persisted }) => persisted && location.reload()); // it has left before

@@ -1,7 +1,7 @@
 // What lies over the points without drawing them again: the brush's ring, outlines, the box, marks.
 
 import { svg } from "../shared/dom";
-import { project } from "./geometry";
+import { boxCorners, project } from "./geometry";
 import type { Stage } from "./stage";
 import type { Box, Vec3 } from "./types";
 
@@ -30,21 +30,27 @@ export class Overlay {
   private readonly box = svg("path", { class: "box" });
   private readonly cross = svg("path", { class: "cross" });
   private readonly mark = svg("path", { class: "mark", d: MARK });
+  private readonly pivot = svg("path", { class: "pivot", d: "M-7 0h14M0 -7v14M-4 0a4 4 0 1 0 8 0a4 4 0 1 0 -8 0" });
+  /** What else lies over the points and moves with the view. */
+  readonly followers: (() => void)[] = [];
   readonly element = svg(
     "svg",
     { class: "overlay", "aria-hidden": "true" },
     this.box,
     this.outline,
     this.mark,
+    this.pivot,
     this.cross,
     this.ring,
     this.core,
   );
   private clip: Box | null = null;
   private place: Vec3 | null = null;
+  private turnsAbout: Vec3 | null = null;
 
   constructor(private readonly stage: Stage) {
-    for (const part of [this.ring, this.core, this.mark, this.cross]) part.setAttribute("visibility", "hidden");
+    for (const part of [this.ring, this.core, this.mark, this.pivot, this.cross])
+      part.setAttribute("visibility", "hidden");
   }
 
   private show(part: SVGElement, on: boolean): void {
@@ -90,6 +96,12 @@ export class Overlay {
     this.follow();
   }
 
+  /** What the view turns about, while it does. */
+  setPivot(place: Vec3 | null): void {
+    this.turnsAbout = place;
+    this.follow();
+  }
+
   setClip(clip: Box | null): void {
     this.clip = clip;
     this.follow();
@@ -97,20 +109,23 @@ export class Overlay {
 
   /** After the view has moved. */
   follow(): void {
-    const at = this.place && this.toScreen(this.place);
-    this.show(this.mark, !!at);
-    if (at) {
-      this.mark.setAttribute("transform", `translate(${at.x} ${at.y})`);
+    for (const [part, where] of [
+      [this.mark, this.place],
+      [this.pivot, this.turnsAbout],
+    ] as const) {
+      const at = where && this.toScreen(where);
+      this.show(part, !!at);
+      if (at) part.setAttribute("transform", `translate(${at.x} ${at.y})`);
     }
+    this.followers.forEach((follow) => follow());
     const [x, y] = [this.stage.width / 2, this.stage.height / 2];
     this.cross.setAttribute("d", `M${x - 12} ${y}h8m8 0h8M${x} ${y - 12}v8m0 8v8`);
     this.box.setAttribute("d", this.clip ? this.boxPath(this.clip) : "");
   }
 
   private boxPath({ min, max }: Box): string {
-    const corners = Array.from({ length: 8 }, (_, k) =>
-      this.toScreen([k & 1 ? max[0] : min[0], k & 2 ? max[1] : min[1], k & 4 ? max[2] : min[2]]),
-    );
+    const places = boxCorners({ min, max });
+    const corners = Array.from({ length: 8 }, (_, k) => this.toScreen(places.slice(3 * k, 3 * k + 3) as Vec3));
     return EDGES.map(([a, b]) => {
       const [from, to] = [corners[a], corners[b]];
       return from && to ? `M${from.x.toFixed(1)} ${from.y.toFixed(1)}L${to.x.toFixed(1)} ${to.y.toFixed(1)}` : "";

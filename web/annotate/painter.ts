@@ -139,7 +139,12 @@ export class Painter {
   }
 
   /** Draws the first points of each chunk over what there is; the milliseconds it took, or none for a first time. */
-  draw(takes: { chunk: Chunk; points: number }[], camera: PerspectiveCamera, pixels: number): number | null {
+  draw(
+    takes: { chunk: Chunk; points: number }[],
+    camera: PerspectiveCamera,
+    pixels: number,
+    stretch: number,
+  ): number | null {
     this.fresh = false;
     this.material.uniforms.pixels.value = pixels * this.ratio;
     this.scene.children = takes.map(({ chunk, points }) => {
@@ -150,7 +155,7 @@ export class Painter {
     const start = performance.now();
     this.eyeDome?.begin();
     this.renderer.render(this.scene, camera);
-    this.eyeDome?.show(camera, this.background);
+    this.eyeDome?.show(camera, stretch, this.background);
     const gl = this.renderer.getContext();
     gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4)); // waits until it is drawn
     return this.fresh ? null : performance.now() - start;

@@ -3,13 +3,26 @@
 import { h } from "../shared/dom";
 import { FEATURE_NAMES } from "./colouring";
 import { MODES, modesOf } from "./commands";
+import type { Press } from "./chrome";
+import { sliceOf } from "./clip_handles";
 import { boxDiagonal } from "./geometry";
 import { coordinate, length } from "./format";
 import { button, buttons, checkbox, list, section, slider, type Picker } from "./panel";
-import type { AppStore, Clip, ColourMode } from "./store";
+import type { Side } from "./camera";
+import type { Stage } from "./stage";
+import type { AppStore, Clip, ColourMode, Theme } from "./store";
 import type { Box } from "./types";
 
-export function viewPanel(store: AppStore): HTMLElement {
+const SIDES: [Side, string][] = [
+  ["top", "Z"],
+  ["front", "W"],
+  ["right", "Q"],
+  ["bottom", "⇧Z"],
+  ["back", "⇧W"],
+  ["left", "⇧Q"],
+];
+
+export function viewPanel(store: AppStore, stage: Stage): HTMLElement {
   const lists = h("div", {}); // what this cloud offers
   const scale = slider("Scale", 0, 15, 1, (value) => store.set({ scale: value }));
   const size = slider("Point size", 0.3, 6, 0.05, (value) => store.set({ pointSize: value }));
@@ -22,6 +35,17 @@ export function viewPanel(store: AppStore): HTMLElement {
       { value: true, label: "colour-blind" },
     ],
     (safePalette) => store.set({ safePalette }),
+  );
+  const theme = buttons<Theme>(
+    "Page",
+    (["system", "light", "dark"] as Theme[]).map((value) => ({ value, label: value })),
+    (chosen) => store.set({ theme: chosen }),
+  );
+  const flat = checkbox("Orthographic", "⇧F", (orthographic) => store.set({ orthographic }));
+  const sides = h(
+    "div",
+    { class: "sides", role: "group", "aria-label": "Look from" },
+    ...SIDES.map(([side, key]) => button(side, () => stage.fit(side), key)),
   );
   let colours: Picker<ColourMode>;
   let features: Picker<number>;
@@ -47,13 +71,27 @@ export function viewPanel(store: AppStore): HTMLElement {
     scale.element.querySelector("input")!.max = String(Math.max(session?.scales.length ?? 1, 1) - 1);
     scale.set(store.now.scale, length(session?.scales[store.now.scale] ?? 0));
   });
-  store.watch(["pointSize", "paintOnTop", "safePalette", "eyeDome"], () => {
+  store.watch(["pointSize", "paintOnTop", "safePalette", "eyeDome", "theme", "orthographic"], () => {
+    theme.set(store.now.theme);
+    flat.set(store.now.orthographic);
     size.set(store.now.pointSize, `×${store.now.pointSize.toFixed(1)}`);
     onTop.set(store.now.paintOnTop);
     palette.set(store.now.safePalette);
     eyeDome.set(store.now.eyeDome);
   });
-  return section("View", true, lists, scale.element, size.element, onTop.element, eyeDome.element, palette.element);
+  return section(
+    "View",
+    true,
+    lists,
+    scale.element,
+    size.element,
+    onTop.element,
+    eyeDome.element,
+    flat.element,
+    sides,
+    palette.element,
+    theme.element,
+  );
 }
 
 /** A box that is in use: all of the cloud at first. */
@@ -62,7 +100,16 @@ export function toggledClip({ clip, session }: { clip: Clip | null; session: { b
   return session ? { on: true, box: structuredClone(session.bounds) } : null;
 }
 
-export function clipPanel(store: AppStore, around: () => Box | null): HTMLElement {
+/** A slice is this part of the cloud's extent. */
+const SLICE = 0.04;
+
+export function clipPanel(store: AppStore, stage: Stage, press: Press): HTMLElement {
+  const around = (): Box | null => store.now.session && boxAround(stage.camera.target, store.now.session.bounds);
+  const slice = (axis: number): void => {
+    const { session } = store.now;
+    if (!session) return;
+    store.set({ clip: { on: true, box: sliceOf(session.bounds, axis, stage.camera.target[axis], SLICE) } });
+  };
   const use = checkbox("Show only the points in the box", "C", () => store.set({ clip: toggledClip(store.now) }));
   const change =
     (side: "min" | "max", axis: number) =>
@@ -101,6 +148,14 @@ export function clipPanel(store: AppStore, around: () => Box | null): HTMLElemen
     false,
     use.element,
     ...sides.map((side) => side.slider.element),
+    h("p", { class: "summary" }, "Or drag the dots on its faces. Slices across an axis:"),
+    h(
+      "div",
+      { class: "buttons" },
+      ...["x", "y", "z"].map((name, axis) => button(`Slice ${name}`, () => slice(axis))),
+      button("Back", () => press("<"), "<"),
+      button("On", () => press(">"), ">"),
+    ),
     h(
       "div",
       { class: "buttons" },

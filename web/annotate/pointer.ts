@@ -16,6 +16,8 @@ const WHEEL_PAUSE_MS = 250;
 export interface PointerEvents {
   /** Painting was tried where another window paints. */
   refused(): void;
+  /** A point was clicked to measure from or to. */
+  measured(place: Vec3): void;
   colour(): string;
 }
 
@@ -86,7 +88,7 @@ export class Pointer {
     this.setByKeys(false);
     this.last = [x, y];
     this.drag = this.dragOf(event);
-    if (this.drag === "paint" && refusalOf(this.store.now)) {
+    if (this.drag === "paint" && this.store.now.tool !== "measure" && refusalOf(this.store.now)) {
       this.drag = null;
       this.on.refused();
     }
@@ -94,6 +96,9 @@ export class Pointer {
     this.pointer = event.pointerId;
     this.stage.canvas.setPointerCapture(event.pointerId);
     if (this.drag !== "paint") this.pivot = this.pivotAt(x, y);
+    if (this.drag === "turn") this.overlay.setPivot(this.pivot);
+    if (this.drag !== "paint") return this.hoverSoon();
+    if (this.store.now.tool === "measure") this.measureAt(x, y);
     else if (this.store.now.tool === "brush") this.brush.press(x, y);
     else this.outline.press(x, y, this.store.now.tool === "lasso");
     this.hoverSoon();
@@ -113,6 +118,7 @@ export class Pointer {
   }
 
   private abandon(): void {
+    if (this.store.now.tool === "measure") return;
     if (this.brush.isDown) this.brush.cancel();
     else if (this.store.now.tool === "lasso") this.outline.cancel();
     else this.outline.shorten();
@@ -158,10 +164,16 @@ export class Pointer {
     if (this.drag === "paint") {
       if (event.type === "pointercancel") this.abandon();
       else if (this.brush.isDown) this.brush.release();
-      else this.outline.release();
+      else if (this.store.now.tool !== "measure") this.outline.release();
     }
     this.drag = null;
+    this.overlay.setPivot(null);
     this.hoverSoon();
+  }
+
+  private measureAt(x: number, y: number): void {
+    const picked = this.stage.pick(x, y);
+    if (picked) this.on.measured(picked.position);
   }
 
   private wheel(event: WheelEvent): void {

@@ -21,6 +21,7 @@ uniform float spacings[8];
 uniform float size;       // of a point, in spacings
 uniform float least;      // of a point, in pixels
 varying vec3 colour;
+varying float rim;
 
 ${UNFOLD}
 bool isHidden(float c) {
@@ -50,12 +51,15 @@ void main() {
   int octant = (position.x >= 0.5 ? 1 : 0) + (position.y >= 0.5 ? 2 : 0) + (position.z >= 0.5 ? 4 : 0);
   float wide = size * spacings[octant] * pixels / -seen.z;
   gl_PointSize = clamp(wide * (painted ? 1.3 : 1.0), painted ? least + 1.0 : least, 48.0);
+  rim = painted && mode != 0 && gl_PointSize > 6.0 ? 1.0 : 0.0;
 }`;
 
 export const FRAGMENT = `
 varying vec3 colour;
+varying float rim;
 void main() {
   vec2 p = gl_PointCoord - 0.5;
-  if (dot(p, p) > 0.25) discard;
-  gl_FragColor = vec4(colour, 1.0);
+  float away = dot(p, p);
+  if (away > 0.25) discard;
+  gl_FragColor = vec4(rim > 0.5 && away > 0.16 ? vec3(0.1, 0.42, 0.95) : colour, 1.0);
 }`;

@@ -2,9 +2,10 @@
 
 import type { Api } from "./api";
 import { Budget } from "./budget";
-import { Camera } from "./camera";
-import { pick, type Chunk, type Picked, type Visibility } from "./chunk";
+import { Camera, type Side } from "./camera";
+import { pick, placesOf, type Chunk, type Picked, type Visibility } from "./chunk";
 import { drawnSpacings, selectNodes, withSpacings, type Take } from "./detail";
+import { boxCorners as corners } from "./geometry";
 import { Loader } from "./loader";
 import { Painter, type Appearance, type Layer } from "./painter";
 import type { LineLook } from "./line_layer";
@@ -29,6 +30,7 @@ export class Stage {
   private bounds: Box | null = null;
   private takes: Take[] = [];
   private next = 0;
+  private awaitsFirst = false;
   private stale = true;
   private readonly touched = new Set<number>();
   private frame = 0;
@@ -51,6 +53,8 @@ export class Stage {
     });
     this.loader = new Loader(api, {
       arrived: ({ info }) => {
+        if (info.id === 0 && this.awaitsFirst) this.fit("first"); // on the cloud itself, not on its box
+        this.awaitsFirst = false;
         this.touched.add(info.id);
         this.redrawSoon();
         this.schedule();
@@ -73,8 +77,16 @@ export class Stage {
     this.bounds = bounds;
     this.camera.setBounds(bounds);
     this.resize();
-    this.camera.fit(true);
+    this.awaitsFirst = true;
+    this.camera.fit("first", corners(bounds));
     this.redraw();
+  }
+
+  /** All of the cloud, as far as its coarsest points show it. */
+  fit(from: Side | "first" | "here"): void {
+    const first = this.loader.chunks.get(0);
+    if (first) this.camera.fit(from, placesOf(first));
+    else if (this.bounds) this.camera.fit(from, corners(this.bounds));
   }
 
   /** Until another cloud is opened. */
@@ -156,7 +168,7 @@ export class Stage {
     const isFirst = this.stale;
     if (isFirst) this.begin();
     const todo = this.nextTakes();
-    const milliseconds = this.painter.draw(todo, this.camera.three, this.camera.pixels);
+    const milliseconds = this.painter.draw(todo, this.camera.three, this.camera.pixels, this.camera.stretch);
     if (milliseconds !== null)
       this.budget.learn(
         todo.reduce((sum, take) => sum + take.points, 0),

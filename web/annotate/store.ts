@@ -2,8 +2,10 @@
 
 import type { Box, CloudInfo, Lines, Run, Session, Settings, Uncertain, Vec3 } from "./types";
 
-export type Tool = "navigate" | "brush" | "lasso" | "polygon";
+export type Tool = "navigate" | "brush" | "lasso" | "polygon" | "measure";
 export type ColourMode = "rgb" | "normals" | "labels" | "prediction" | "confidence" | "p_sharp" | "feature";
+
+export type Theme = "system" | "light" | "dark";
 
 /** The curves of the run that is under way or was last. */
 export interface Training {
@@ -47,6 +49,10 @@ export interface State {
   safePalette: boolean;
   pointSize: number;
   eyeDome: boolean;
+  orthographic: boolean;
+  theme: Theme;
+  /** The places between which a distance is measured: none, one or two. */
+  measured: Vec3[];
   counts: Vec3;
   undo: number;
   redo: number;
@@ -91,6 +97,9 @@ export const initialState: State = {
   safePalette: false,
   pointSize: 1.7,
   eyeDome: false,
+  orthographic: false,
+  theme: "system",
+  measured: [],
   counts: [0, 0, 0],
   undo: 0,
   redo: 0,
@@ -129,5 +138,16 @@ export class Store<T extends object> {
 
 export type AppStore = Store<State>;
 
-/** The clip box if it is in use. */
-export const activeClip = ({ clip }: State): Box | null => (clip?.on ? clip.box : null);
+/** The clip box if it is in use; a face that is on the cloud's bounds cuts nothing off, however coordinates are rounded. */
+export function activeClip({ clip, session }: Pick<State, "clip" | "session">): Box | null {
+  if (!clip?.on || !session) return null;
+  const { min, max } = structuredClone(clip.box);
+  const { bounds } = session;
+  for (let axis = 0; axis < 3; ++axis) {
+    const extent = bounds.max[axis] - bounds.min[axis];
+    const room = 0.01 * Math.max(extent, session.spacing);
+    if (min[axis] <= bounds.min[axis]) min[axis] -= room;
+    if (max[axis] >= bounds.max[axis]) max[axis] += room;
+  }
+  return { min, max };
+}
