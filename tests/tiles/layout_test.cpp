@@ -41,18 +41,22 @@ TEST(Layout, ChoosesTheLargestTilesThatFitTheMemory) {
   EXPECT_DOUBLE_EQ(cell, 0.2);
   CellCounts counts(cell);
   counts.add(positions);
-  const std::uint64_t memory = memory_for(10000);
-  const Grid grid = choose_grid(counts, cell, buffer, memory);
+  const std::uint64_t memory = memory_for(10000, {});
+  const Grid grid = choose_grid(counts, cell, {buffer, memory});
   const auto tiles = lay_out(counts, grid, "", "{ID}.las");
   EXPECT_LE(fullest(positions, grid, buffer, tiles), 10000u);
   EXPECT_GT(fullest(positions, grid, buffer, tiles), 8000u);
-  EXPECT_LE(memory_for(most_points(counts, grid, buffer)), memory);
+  EXPECT_LE(memory_for(most_points(counts, grid, buffer), {}), memory);
   // With memory for all there is one tile, whatever its core begins at.
   EXPECT_EQ(
-      lay_out(counts, choose_grid(counts, cell, buffer, memory_for(40000)), "", "{ID}.las").size(),
+      lay_out(counts, choose_grid(counts, cell, {buffer, memory_for(40000, {})}), "", "{ID}.las")
+          .size(),
       1u);
+  // Normals that are made take memory.
+  const detect::NormalsDecision made = {.made = true, .neighbours = 48};
+  EXPECT_LT(choose_grid(counts, cell, {buffer, memory, made}).length(), grid.length());
   // Cores are never smaller than the buffer is wide.
-  EXPECT_GE(choose_grid(counts, cell, buffer, 1).length(), buffer);
+  EXPECT_GE(choose_grid(counts, cell, {buffer, 1}).length(), buffer);
 }
 
 TEST(Layout, NamesTheTilesByTheirTemplate) {

@@ -17,8 +17,10 @@ namespace fs = std::filesystem;
 constexpr double kCellsAlong = 512;
 constexpr std::size_t kMostTiles = 1'000'000;
 
-/// The program with its model, and bytes per point: see docs/large.md for how they were measured.
-constexpr std::uint64_t kFixedBytes = 150'000'000, kBytesPerPoint = 600;
+// The program with its model and what it reads at a time, and bytes per point: docs/large.md says
+// what was measured.
+constexpr std::uint64_t kFixedBytes = 100'000'000, kBytesPerPoint = 300;
+constexpr std::uint64_t kNormalBytes = 150, kNeighbourBytes = 10;
 
 /// Sums of counts over rectangles of cells.
 class SummedCounts {
@@ -140,22 +142,24 @@ double cell_length(const BoundingBox& box) {
   return 10.0 * power;
 }
 
-std::uint64_t memory_for(std::uint64_t points) {
-  return kFixedBytes + kBytesPerPoint * points;
+std::uint64_t memory_for(std::uint64_t points, const detect::NormalsDecision& normals) {
+  const std::uint64_t made = normals.made ? kNormalBytes + kNeighbourBytes * normals.neighbours : 0;
+  return kFixedBytes + (kBytesPerPoint + made) * points;
 }
 
 std::uint64_t most_points(const CellCounts& counts, const Grid& grid, double buffer) {
   return most_in(SummedCounts(counts), grid, buffer);
 }
 
-Grid choose_grid(const CellCounts& counts, double cell, double buffer, std::uint64_t memory) {
+Grid choose_grid(const CellCounts& counts, double cell, const TileLimits& limits) {
   const SummedCounts sums(counts);
   const std::int64_t all = std::max(sums.right() - sums.left(), sums.top() - sums.bottom());
-  const auto least = static_cast<std::int64_t>(std::ceil(buffer / cell));
+  const auto least = static_cast<std::int64_t>(std::ceil(limits.buffer / cell));
   // Cores begin at multiples of their length, so that one core may hold all only if it is longer.
   for (std::int64_t across = 2 * std::max<std::int64_t>(all, 1); across > least; --across) {
     const Grid grid{cell, across};
-    if (memory_for(most_in(sums, grid, buffer)) <= memory) return grid;
+    const std::uint64_t points = most_in(sums, grid, limits.buffer);
+    if (memory_for(points, limits.normals) <= limits.memory) return grid;
   }
   return {cell, std::max<std::int64_t>(least, 1)};
 }

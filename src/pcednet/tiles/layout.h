@@ -36,12 +36,19 @@ double cell_length(const BoundingBox& box);
 /// The most points in a core and its buffer, for cores of so many cells.
 std::uint64_t most_points(const CellCounts& counts, const Grid& grid, double buffer);
 
-/// The largest cores of which none takes more than `memory` bytes with its buffer; at least as long
-/// as the buffer is wide.
-Grid choose_grid(const CellCounts& counts, double cell, double buffer, std::uint64_t memory);
+/// Bytes that a tile of so many points, buffer included, takes while it is run: normals that are
+/// made take most.
+std::uint64_t memory_for(std::uint64_t points, const detect::NormalsDecision& normals);
 
-/// Bytes that a tile of so many points, buffer included, takes while it is run.
-std::uint64_t memory_for(std::uint64_t points);
+struct TileLimits {
+  double buffer = 0.0;
+  std::uint64_t memory = 0;
+  detect::NormalsDecision normals = {};
+};
+
+/// The largest cores of which none takes more than the memory with its buffer; at least as long as
+/// the buffer is wide.
+Grid choose_grid(const CellCounts& counts, double cell, const TileLimits& limits);
 
 /// The tiles with points, column by column, named by `output`: a template with {ID}, {COLUMN},
 /// {ROW}, {XLEFT}, {XRIGHT}, {YBOTTOM} and {YTOP}. Points that are not finite are in the first.

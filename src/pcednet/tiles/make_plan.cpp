@@ -114,8 +114,10 @@ double counting_cell(const PlanRequest& request, const BoundingBox& box) {
   return cell;
 }
 
-Grid grid_of(const PlanRequest& request, const CellCounts& counts, double cell, double buffer) {
-  if (request.tile_length == 0.0) return choose_grid(counts, cell, buffer, request.memory);
+Grid grid_of(const PlanRequest& request, const CellCounts& counts, double cell, const Plan& plan) {
+  if (request.tile_length == 0.0) {
+    return choose_grid(counts, cell, {plan.buffer, request.memory, plan.normals});
+  }
   return {cell, static_cast<std::int64_t>(std::llround(request.tile_length / cell))};
 }
 
@@ -139,12 +141,12 @@ Plan make_plan(const PlanRequest& request, const detect::EdgeModel& model,
   decide(dense, model, {.keep_orientation = request.keep_orientation}, plan, progress);
 
   set_buffer(model, spacing, plan);
-  plan.grid = grid_of(request, counts, cell, plan.buffer);
+  plan.grid = grid_of(request, counts, cell, plan);
   plan.tiles = lay_out(counts, plan.grid, request.folder,
                        !request.output.empty()  ? request.output
                        : plan.las_steps.empty() ? "{ID}.ply"
                                                 : "{ID}.laz");
-  plan.memory = memory_for(most_points(counts, plan.grid, plan.buffer));
+  plan.memory = memory_for(most_points(counts, plan.grid, plan.buffer), plan.normals);
   if (request.sorted.empty()) {
     check_order(plan);
   } else {
