@@ -132,6 +132,7 @@ void add_convert(CLI::App& app, Common& common) {
   CLI::App* command = add_command(app, common, "convert", "Convert a point file to another format",
                                   "pcednet convert scan.xyz -o scan.ply\n"
                                   "pcednet convert scan.ply -o scan.pcd\n"
+                                  "pcednet convert scan.laz -o scan.copc.laz\n"
                                   "pcednet convert scan.ply -o readable.ply --ascii\n"
                                   "pcednet convert part.obj -o part.ply --sample 100000\n"
                                   "pcednet convert scan.ply -o worse.ply --noise 0.004 --seed 7");

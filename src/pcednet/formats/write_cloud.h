@@ -15,8 +15,8 @@ struct PartOutline;
 
 namespace pcednet::formats {
 
-/// Writes `cloud` in the format that the extension names: .ply, .pcd, .las, .laz, .obj, or text
-/// (.xyz, .txt, .asc, .pts, .csv). The file appears under its name only when it is complete.
+/// Writes `cloud` as the extension says: .ply, .pcd, .las, .laz, .copc.laz (in its own order),
+/// .obj, or text (.xyz, .txt, .asc, .pts, .csv). The file gets its name only when it is complete.
 ///
 /// Throws Error(kUsage) for another extension or an existing file, Error(kFailure) when the disk
 /// takes no more or the cloud's vectors differ in length.

@@ -336,6 +336,20 @@ TEST(Copc, BecomesPlainLasAgain) {
   EXPECT_EQ(bytes.size(), las_bytes(file).size());
 }
 
+// Such as a program leaves that unpacks COPC without knowing it.
+TEST(Copc, ReplacesTheIndexOfAnotherFile) {
+  const Scratch scratch;
+  LasTestFile file = file_of(6, 4, 100);
+  file.records.push_back({"copc", 1, std::string(160, 'i')});
+  file.extended.push_back({"copc", 1000, std::string(32, 'h')});
+  const PointCloud back = copied(scratch, scratch.read("in.las", las_bytes(file)).cloud);
+  EXPECT_EQ(back.size(), 100U);
+  const std::string bytes = bytes_of(scratch.path("a.copc.laz"));
+  EXPECT_EQ(parse(bytes).nodes.size(), 1U);
+  EXPECT_EQ(bytes.find(std::string(160, 'i')), std::string::npos);
+  EXPECT_EQ(bytes.find(std::string(32, 'h')), std::string::npos);
+}
+
 TEST(Copc, LeavesNoFileBehindWhenAPointIsRefused) {
   const Scratch scratch;
   PointCloud cloud = street(10);

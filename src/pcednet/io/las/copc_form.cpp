@@ -71,6 +71,11 @@ void choose_copc(LasChoices& choices, const PointCloud& first) {
   put_number(file.header, las_header::kPointFormat, static_cast<std::uint8_t>(format));
   put_number(file.header, las_header::kRecordLength,
              static_cast<std::uint16_t>(las_format_bytes(format) + extra));
+  const auto is_copc = [](const LasRecord& record) {
+    return record.user_id == kCopcInfoRecord.user_id;
+  };
+  std::erase_if(file.records, is_copc);  // of another file that became LAS
+  std::erase_if(file.extended_records, is_copc);
   file.records.insert(file.records.begin(), new_record(kCopcInfoRecord, "COPC info",
                                                        std::string(copc_info::kBytes, '\0')));
   choices.promoted = before != format;

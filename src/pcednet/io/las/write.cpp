@@ -79,6 +79,7 @@ struct Summary {
 
   void add(const PointCloud& part, const LasFile& file) {
     const Attribute* times = find_attribute(part, "GpsTime");
+    if (times && times->type != ScalarType::kFloat64) times = nullptr;  // not that of LAS
     for (std::size_t i = 0; times && i < part.size(); ++i) {
       least_time = std::min(least_time, times->value(i));
       most_time = std::max(most_time, times->value(i));
