@@ -286,6 +286,76 @@ for (const [name, options] of [
   });
 }
 
+test("draws a line in the legend as in the plot, and error bars within its axes", async () => {
+  const markers = page.locator("#experiment-0 .uplot").first().locator(".u-series .u-marker");
+  const styles = await markers.evaluateAll((all) => all.map((m) => getComputedStyle(m).borderTopStyle));
+  assert.deepEqual(styles.slice(-2), ["solid", "dashed"], "training, held out");
+  // Nothing of the lines' colour below the axis of the second plot, whose first error bar is the longest.
+  const below = await page
+    .locator("#experiment-0 .uplot")
+    .nth(1)
+    .evaluate((plot) => {
+      const canvas = plot.querySelector("canvas");
+      const over = plot.querySelector(".u-over");
+      const scale = canvas.height / canvas.getBoundingClientRect().height;
+      const bottom = Math.ceil((over.offsetTop + over.offsetHeight) * scale) + 2;
+      const { data } = canvas.getContext("2d").getImageData(0, bottom, canvas.width, canvas.height - bottom);
+      let coloured = 0;
+      for (let i = 0; i < data.length; i += 4) coloured += Number(data[i + 3] > 0 && data[i + 2] > data[i] + 60);
+      return coloured;
+    });
+  assert.equal(below, 0);
+});
+
+test("puts the comparison of methods first, with a row for each in its charts, and the user's title and date", async () => {
+  const other = fs.mkdtempSync(path.join(os.tmpdir(), "pcednet-report-more-"));
+  const long = "A method with a name that is far longer than the margin of any chart";
+  const both = (study) =>
+    study.results.flatMap((r) => (r.set === "default" ? [r, { ...r, positive: "sharp", clouds: r.clouds }] : [r]));
+  const additions = { ...scales, experiment: "additions", title: "Additions" };
+  const mixed = { ...methods, variants: methods.variants.map((v) => (v.id === "ca" ? { ...v, title: long } : v)) };
+  // On two of the three clouds this one does better: that is no comparison.
+  const part = methods.results.find((r) => r.variant === "ca" && r.set === "default");
+  mixed.variants.push({ ...methods.variants[0], id: "part", title: "Part" });
+  mixed.results = [
+    ...both(methods),
+    { ...part, variant: "part", clouds: part.clouds.slice(0, 2), median: { ...part.median, mcc: 0.99 } },
+  ];
+  for (const study of [additions, mixed]) {
+    fs.writeFileSync(path.join(other, `${study.experiment}.json`), JSON.stringify(study));
+  }
+  const made = path.join(other, "made.html");
+  const words = ["--clouds-per-set", "0", "--title", "Old town <1>", "--date", "May 2027"];
+  assert.equal(pcednet(other, "-o", made, ...words).code, 0);
+  const opened = await browser.newPage({ viewport: { width: 1280, height: 800 } });
+  await opened.goto(pathToFileURL(made).href);
+  assert.deepEqual(await opened.locator("main h2").allTextContents(), [methods.title, "Additions"]);
+  assert.equal(await opened.locator("h1").textContent(), "Old town <1>");
+  assert.match(await opened.locator(".masthead p").textContent(), /^May 2027 · /);
+  const section = opened.locator("main section.experiment").first();
+  const seconds = section.locator("section.part", { has: opened.getByRole("heading", { name: "Seconds" }) });
+  const rows = await seconds.locator(".row-name").allTextContents();
+  assert.equal(rows.length, 4, "each method once, though it is scored twice");
+  for (const name of await section.locator(".row-name").all()) {
+    const [left, wide] = await name.evaluate((text) => [text.getBBox().x, text.getComputedTextLength()]);
+    assert.ok(left >= 0 && wide > 0, `${await name.textContent()} begins at ${left}`);
+  }
+  assert.ok((await section.locator(".row-name title").allTextContents()).includes(long), "the whole name on hovering");
+  const best = await section.locator(".part table").first().locator("td.best").locator("xpath=..").allTextContents();
+  assert.ok(best.length > 0 && best.every((row) => !row.startsWith("Part")), best.join("; "));
+  await opened.close();
+  fs.rmSync(other, { recursive: true, force: true });
+});
+
+test("shows the titles of the clouds on a ground of their own", async () => {
+  const ground = await page
+    .locator(".label p")
+    .first()
+    .evaluate((p) => getComputedStyle(p).backgroundColor);
+  const [red, green, blue, cover] = ground.match(/[\d.]+/g).map(Number);
+  assert.ok(Math.max(red, green, blue) < 60 && cover > 0.7, ground);
+});
+
 test("asked for nothing and complained of nothing", () => {
   assert.deepEqual(complaints, []);
 });

@@ -1,11 +1,11 @@
 // What methods cost: seconds and joules, a row a method, on a logarithmic scale.
 
 import { h, svg } from "../shared/dom";
+import { roomFor, rowName } from "./marks";
 import { plainTable } from "./scores_table";
 import { costOf, formatCost, titleOf, type Group } from "./study";
 
-const WIDTH = 460;
-const NAME = 150;
+const WIDTH = 500;
 const ROW = 26;
 
 export const STAGES = ["normals", "describe", "describe_training", "train", "classify"];
@@ -40,16 +40,21 @@ function decades(values: number[]): [number, number] {
   return [low, Math.max(low + 1, Math.ceil(Math.max(...logs)))];
 }
 
-/** A dot for each stage that took time; null if none did. */
-export function costPlot(groups: Group[], names: string[], unit: string): HTMLElement | null {
-  const rows = groups
+/** A row for each method: what it costs is the same for any positive class. */
+const onePerVariant = (groups: Group[]): Group[] =>
+  groups.filter((group, i) => groups.findIndex((other) => other.index === group.index) === i);
+
+/** A dot for each stage that took time; null if none did. The axis is that of `all`, so that plots can be compared. */
+export function costPlot(groups: Group[], all: Group[], names: string[], unit: string): HTMLElement | null {
+  const rows = onePerVariant(groups)
     .map((group) => ({ group, costs: names.map((name) => ({ name, spread: costOf(group, name) })) }))
     .filter(({ costs }) => costs.some(({ spread }) => spread && spread.mean > 0));
-  const values = rows.flatMap(({ costs }) => costs.map(({ spread }) => spread?.mean ?? 0)).filter((v) => v > 0);
-  if (values.length === 0) return null;
+  if (rows.length === 0) return null;
+  const values = all.flatMap((group) => names.map((name) => costOf(group, name)?.mean ?? 0)).filter((v) => v > 0);
+  const room = roomFor(rows.map(({ group }) => titleOf(group.variant)));
   const used = names.filter((name) => rows.some(({ group }) => (costOf(group, name)?.mean ?? 0) > 0));
   const [low, high] = decades(values);
-  const x = (v: number): number => NAME + ((Math.log10(v) - low) / (high - low)) * (WIDTH - NAME - 20);
+  const x = (v: number): number => room + ((Math.log10(v) - low) / (high - low)) * (WIDTH - room - 20);
   const height = rows.length * ROW + 30;
   const ticks = Array.from({ length: high - low + 1 }, (_, k) => low + k);
   const plot = svg(
@@ -70,7 +75,7 @@ export function costPlot(groups: Group[], names: string[], unit: string): HTMLEl
       return svg(
         "g",
         {},
-        svg("text", { x: NAME - 10, y: y + 4, "text-anchor": "end", class: "row-name" }, titleOf(group.variant)),
+        rowName(titleOf(group.variant), room - 10, y + 4),
         svg("line", { x1: Math.min(...places), x2: Math.max(...places), y1: y, y2: y, class: "base" }),
         ...known.map(({ name, spread }) =>
           svg(
@@ -109,7 +114,7 @@ export function costTable(caption: string, groups: Group[]): HTMLElement {
   return plainTable(
     caption,
     ["Method", ...names.map((n) => costName(n) + (n === "joules" ? "" : ", s"))],
-    groups.map((group) => [
+    onePerVariant(groups).map((group) => [
       titleOf(group.variant),
       ...names.map((name) => {
         const spread = costOf(group, name);

@@ -41,6 +41,12 @@ export function learningCurves(study: Study): HTMLElement[] {
   return plots.flatMap(([yLabel, quantities]) => {
     const lines = linesOf(study, quantities, epochs);
     if (lines.length === 0) return [];
-    return [h("figure", { class: "wide" }, linePlot({ x: epochs, lines, xLabel: "epoch", yLabel }))];
+    return [
+      h(
+        "figure",
+        { class: "wide" },
+        linePlot({ x: epochs, lines, xLabel: "epoch", yLabel, scores: yLabel.startsWith("MCC") }),
+      ),
+    ];
   });
 }

@@ -4,6 +4,7 @@ import { seriesColour } from "../shared/colours";
 import { h, svg } from "../shared/dom";
 import { densityOf, filledAbove } from "./density";
 import { gallery } from "./look";
+import { roomFor, rowName } from "./marks";
 import {
   METRIC_NAMES,
   cloudsOf,
@@ -17,6 +18,8 @@ import {
 
 const SIDE = 190;
 const PAD = { left: 26, right: 8, top: 8, bottom: 24 };
+/** Room for the names of the axes. */
+const NAMES = 12;
 const INNER = SIDE - PAD.left - PAD.right;
 const GRID = 41;
 const MARGIN = 0.1;
@@ -44,7 +47,14 @@ function frame(): SVGElement[] {
       String(t).replace("0.", "."),
     ),
   ]);
+  const [middle, side] = [PAD.left + INNER / 2, PAD.top + INNER / 2];
   return [
+    svg("text", { x: middle, y: SIDE + 6, "text-anchor": "middle", class: "tick" }, "precision"),
+    svg(
+      "text",
+      { x: -2, y: side, "text-anchor": "middle", class: "tick", transform: `rotate(-90 -2 ${side})` },
+      "recall",
+    ),
     svg("rect", { x: PAD.left, y: PAD.top, width: INNER, height: INNER, class: "frame" }),
     ...[0.2, 0.4, 0.6, 0.8].flatMap((f) => [
       svg("path", { d: isoF1(f), class: "iso" }),
@@ -91,7 +101,7 @@ export function scatterPanels(groups: Group[], mixed: boolean): HTMLElement {
         svg(
           "svg",
           {
-            viewBox: `0 0 ${SIDE} ${SIDE}`,
+            viewBox: `${-NAMES} 0 ${SIDE + NAMES} ${SIDE + NAMES}`,
             role: "img",
             "aria-label": `${name}: recall over precision of ${clouds.length} clouds`,
           },
@@ -127,16 +137,17 @@ export function scatterPanels(groups: Group[], mixed: boolean): HTMLElement {
 
 const BINS = 25;
 const ROW = 34;
-const WIDTH = 460;
+const WIDTH = 500;
 
 /** A histogram over the clouds for each method, with the median as a stroke. */
 export function histograms(groups: Group[], metric: Metric, mixed: boolean): HTMLElement {
   const values = groups.map((g) => cloudsOf(g).map((c) => c[metric]));
   const low = Math.min(0, ...values.flat().map((v) => Math.floor(v * 5) / 5));
-  const name = 150;
+  const titles = groups.map((g) => titleOf(g.variant) + (mixed ? `, ${positiveName(g.positive)}` : ""));
+  const name = roomFor(titles);
   const inner = WIDTH - name - 14;
   const x = (value: number): number => name + ((value - low) / (1 - low)) * inner;
-  const height = groups.length * ROW + 24;
+  const height = groups.length * ROW + 36;
   const ticks = Array.from({ length: Math.round((1 - low) * 5) + 1 }, (_, k) => low + k / 5);
   const lines = groups.map((group, row) => {
     const counts = new Array<number>(BINS).fill(0);
@@ -146,11 +157,11 @@ export function histograms(groups: Group[], metric: Metric, mixed: boolean): HTM
     const sorted = [...values[row]].sort((a, b) => a - b);
     const middle = sorted.length / 2;
     const median = (sorted[Math.floor(middle)] + sorted[Math.ceil(middle) - 1]) / 2;
-    const title = titleOf(group.variant) + (mixed ? `, ${positiveName(group.positive)}` : "");
+    const title = titles[row];
     return svg(
       "g",
       {},
-      svg("text", { x: name - 10, y: base - 4, "text-anchor": "end", class: "row-name" }, title),
+      rowName(title, name - 10, base - 4),
       svg("line", { x1: name, x2: WIDTH - 14, y1: base, y2: base, class: "base" }),
       ...counts.map(
         (count, bin) =>
@@ -187,13 +198,14 @@ export function histograms(groups: Group[], metric: Metric, mixed: boolean): HTM
       "svg",
       { viewBox: `0 0 ${WIDTH} ${height}`, role: "img", "aria-label": `${METRIC_NAMES[metric]} over the clouds` },
       ...ticks.flatMap((t) => [
-        svg("line", { x1: x(t), x2: x(t), y1: 4, y2: height - 22, class: "rule" }),
+        svg("line", { x1: x(t), x2: x(t), y1: 4, y2: height - 34, class: "rule" }),
         svg(
           "text",
-          { x: x(t), y: height - 8, "text-anchor": "middle", class: "tick" },
+          { x: x(t), y: height - 20, "text-anchor": "middle", class: "tick" },
           String(Number(t.toFixed(1))).replace("0.", "."),
         ),
       ]),
+      svg("text", { x: name + inner / 2, y: height - 5, "text-anchor": "middle", class: "tick" }, METRIC_NAMES[metric]),
       ...lines,
     ),
   );

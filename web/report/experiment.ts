@@ -55,8 +55,8 @@ function onSet(study: Study, groups: Group[], set: string, statistic: Statistic)
   const mixed = new Set(own.map((g) => g.positive)).size > 1;
   const size = study.sets.find((s) => s.name === set)?.clouds.length ?? 0;
   const sweeps = typeof study.x_label === "string";
-  const seconds = costPlot(own, STAGES, "seconds");
-  const joules = costPlot(own, ["joules"], "joules per 1000 points");
+  const seconds = costPlot(own, groups, STAGES, "seconds");
+  const joules = costPlot(own, groups, ["joules"], "joules per 1000 points");
   const counts = mixed ? "" : ` Positive class: ${positiveName(own[0]?.positive ?? "sharp")}.`;
   return [
     own.some((g) => g.results.some((r) => r[statistic]))
@@ -64,7 +64,7 @@ function onSet(study: Study, groups: Group[], set: string, statistic: Statistic)
           "Scores",
           `${size} clouds; ${
             statistic === "median" ? "the median of each score" : "the scores of the pooled counts"
-          }.${counts} The best of each column is marked. Open a row to ` +
+          }.${counts} The best of each column${mixed ? " is marked, for each positive class" : " is marked"}. Open a row to ` +
             `see its clouds.${seedsNote(own)}${sourcesOf(study)}`,
           setTable(study, groups, set, statistic),
         )
@@ -86,7 +86,8 @@ function onSet(study: Study, groups: Group[], set: string, statistic: Statistic)
               "Histogram over the clouds; the line marks the median.",
               histograms(scored, "mcc", mixed),
             ),
-          seconds && part("Seconds", "Total over the clouds of the set, logarithmic scale.", seconds),
+          seconds &&
+            part("Seconds", "Total over the clouds of the set, logarithmic scale, the same for every set.", seconds),
           joules && part("Joules per 1000 points", "Logarithmic scale.", joules),
         )
       : null,

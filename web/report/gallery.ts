@@ -9,6 +9,7 @@ import {
   formatCount,
   formatScore,
   positiveName,
+  shownOrder,
   titleOf,
   type PackedScene,
   type Report,
@@ -88,7 +89,8 @@ class Gallery {
     this.viewer = new PointViewer(this.canvas);
     this.viewer.setBackground("#59616c");
     this.scene = report.scenes[0];
-    this.study = this.scene.predictions[0].study;
+    const shown = new Set(this.scene.predictions.map((p) => p.study));
+    this.study = shownOrder(report.studies).find((i) => shown.has(i))!;
     this.element.append(
       h("h2", { id: "clouds-title" }, "The clouds"),
       h(
@@ -247,14 +249,13 @@ class Gallery {
       ...shown.map((p) => (errors ? agreement(truth, p.classes, p.positive) : p.classes)),
     ]);
     this.labels.replaceChildren(
-      h("div", { class: "label" }, h("b", {}, "Truth")),
+      h("div", { class: "label" }, h("p", {}, h("b", {}, "Truth"))),
       ...shown.map(({ title, result }) => {
         const mcc = result?.clouds.find((c) => c.name === scene.cloud)?.mcc;
         return h(
           "div",
           { class: "label" },
-          h("b", {}, title),
-          mcc !== undefined && h("span", {}, ` MCC ${formatScore(mcc)}`),
+          h("p", { title }, h("b", {}, title), mcc !== undefined && h("span", {}, ` MCC ${formatScore(mcc)}`)),
         );
       }),
     );

@@ -4,26 +4,25 @@ import "./style.css";
 import { h } from "../shared/dom";
 import { experimentSection } from "./experiment";
 import { gallery } from "./gallery";
-import type { Report } from "./study";
+import { shownOrder, type Report } from "./study";
 
 function masthead(report: Report): HTMLElement {
   const { studies } = report;
+  const usual = studies.length === 1 ? studies[0].title : "Edge detection in point clouds: a study";
   const facts = [
+    report.date,
     [...new Set(studies.map((s) => s.version).filter(Boolean))].map((v) => `pcednet ${v}`).join(", "),
     [...new Set(studies.map((s) => s.machine).filter(Boolean))].join("; "),
   ].filter(Boolean);
-  return h(
-    "header",
-    { class: "masthead" },
-    h("h1", {}, studies.length === 1 ? studies[0].title : "Edge detection in point clouds: a study"),
-    h("p", {}, facts.join(" · ")),
-  );
+  return h("header", { class: "masthead" }, h("h1", {}, report.title || usual), h("p", {}, facts.join(" · ")));
 }
 
 function show(report: Report): void {
   const page = document.getElementById("page")!;
   const clouds = gallery(report);
-  const sections = report.studies.map((study, i) => experimentSection(study, i));
+  const order = shownOrder(report.studies);
+  const sections = order.map((i) => experimentSection(report.studies[i], i));
+  if (report.title) document.title = report.title;
   const link = (section: HTMLElement, name: string): HTMLElement =>
     h("li", {}, h("a", { href: `#${section.id}` }, name));
   page.replaceChildren(
@@ -34,7 +33,7 @@ function show(report: Report): void {
         "ul",
         {},
         clouds && link(clouds, "Clouds"),
-        ...sections.map((section, i) => link(section, report.studies[i].title)),
+        ...sections.map((section, i) => link(section, report.studies[order[i]].title)),
       ),
     ),
     h(

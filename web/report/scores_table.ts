@@ -86,13 +86,15 @@ function scoreCell(spread: Spread | null, best: boolean, room: boolean): HTMLTab
   );
 }
 
-/** The largest mean among groups that are comparable: of the same positive class. */
-function isBest(groups: Group[], group: Group, statistic: Statistic, metric: Metric): boolean {
-  const rivals = groups.filter((g) => g.set === group.set && g.positive === group.positive);
-  if (rivals.length < 2) return false;
-  const shown = (g: Group): string => formatScore(scoreOf(g, statistic, metric)?.mean ?? -2);
-  const largest = Math.max(...rivals.map((g) => Number(shown(g))));
-  return Number(shown(group)) === largest;
+/** The largest mean among groups that are comparable: of the same positive class, on as many clouds. */
+export function isBest(groups: Group[], group: Group, statistic: Statistic, metric: Metric): boolean {
+  const clouds = (g: Group): number => Math.min(...g.results.map((r) => r.clouds.length));
+  const mean = (g: Group): number => scoreOf(g, statistic, metric)?.mean ?? -Infinity;
+  const same = groups.filter((g) => g.set === group.set && g.positive === group.positive && mean(g) > -Infinity);
+  const most = Math.max(...same.map(clouds));
+  const rivals = same.filter((g) => clouds(g) === most);
+  if (rivals.length < 2 || !rivals.includes(group)) return false;
+  return rivals.every((g) => mean(g) <= mean(group));
 }
 
 const plainCell = (text: string, room: boolean): HTMLTableCellElement =>
@@ -147,7 +149,9 @@ function publishedLine(
 
 /** All scores of every variant on `set`; a row opens into its clouds. */
 export function setTable(study: Study, groups: Group[], set: string, statistic: Statistic): HTMLElement {
-  const rows = groups.filter((g) => g.set === set && g.results.some((r) => r[statistic]));
+  const scored = groups.filter((g) => g.set === set && g.results.some((r) => r[statistic]));
+  const classes = [...new Set(scored.map((g) => g.positive))];
+  const rows = classes.flatMap((positive) => scored.filter((g) => g.positive === positive)); // rivals together
   const mixed = new Set(rows.map((g) => g.positive)).size > 1;
   const counted = rows.some((g) => typeof g.variant.parameters === "number");
   const room = haveSpread(rows);
@@ -234,6 +238,8 @@ export function overviewTable(study: Study, groups: Group[], statistic: Statisti
       rows.push({ group: members[0], label, bySet: new Map(members.map((g) => [g.set, g])) });
     }
   }
+  const classes = [...new Set(rows.map((row) => row.group.positive))];
+  rows.sort((a, b) => classes.indexOf(a.group.positive) - classes.indexOf(b.group.positive)); // rivals together
   const room = haveSpread(groups);
   const columns: Column<Row>[] = [
     {

@@ -84,8 +84,17 @@ export interface PackedScene {
 
 export interface Report {
   schema: string;
+  /** Of the page, as its maker wished; empty: none. */
+  title?: string;
+  date?: string;
   studies: Study[];
   scenes: PackedScene[];
+}
+
+/** The numbers of the studies as they are shown: the comparison of methods first. */
+export function shownOrder(studies: Study[]): number[] {
+  const isLater = (i: number): number => Number(studies[i].experiment !== "methods");
+  return studies.map((_, i) => i).sort((a, b) => isLater(a) - isLater(b) || a - b);
 }
 
 export interface Spread {

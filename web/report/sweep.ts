@@ -85,6 +85,7 @@ function plotOf(study: Study, groups: Group[], statistic: Statistic, measure: Me
     height: 320,
     xLabel: study.x_label!,
     yLabel: nameOf(measure) + (isCost ? "" : ` (${statistic})`),
+    scores: !isCost,
     logX: spreads(x),
     logY: isCost && values.length > 0 && spreads(values),
   });

@@ -25,7 +25,22 @@ export interface LinePlot {
   logY?: boolean;
   points?: boolean;
   height?: number;
+  /** y is a score: written as in tables, .87. */
+  scores?: boolean;
 }
+
+/** Steps of an axis of whole numbers. */
+const WHOLE = [1, 2, 5].flatMap((n) => [0, 1, 2, 3, 4, 5].map((e) => n * 10 ** e)).sort((a, b) => a - b);
+
+/** The lowest and the highest that is drawn, error bars too. */
+function extent(lines: Line[]): [number, number] {
+  const ends = lines.flatMap(({ y, error }) =>
+    y.flatMap((v, i) => (v === null ? [] : [v - (error?.[i] ?? 0), v + (error?.[i] ?? 0)])),
+  );
+  return ends.length > 0 ? [Math.min(...ends), Math.max(...ends)] : [0, 1];
+}
+
+const score = (v: number): string => String(Number(v.toPrecision(6))).replace(/^(-?)0\./, "$1.");
 
 const css = (name: string): string => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
@@ -86,7 +101,11 @@ function options(plot: LinePlot, width: number): uPlot.Options {
     // Ticks where there are data, unless they crowd.
     xAxis.splits = () => plot.x;
     xAxis.filter = (_, splits) => splits;
+  } else if (plot.x.every(Number.isInteger)) {
+    xAxis.incrs = WHOLE;
   }
+  const yAxis = axis(plot.yLabel, plot.yLabel ? 46 : 30);
+  if (plot.scores) yAxis.values = (_, splits) => splits.map((v) => (v === null ? "" : score(v)));
   return {
     width,
     height: plot.height ?? 260,
@@ -99,9 +118,11 @@ function options(plot: LinePlot, width: number): uPlot.Options {
             ? [min / (max / min) ** 0.04, max * (max / min) ** 0.04]
             : [min - 0.03 * (max - min || 1), max + 0.03 * (max - min || 1)],
       },
-      y: { distr: plot.logY ? 3 : 1 },
+      y: plot.logY ? { distr: 3 } : { range: () => uPlot.rangeNum(...extent(plot.lines), 0.1, true) },
     },
-    axes: [xAxis, axis(plot.yLabel, plot.yLabel ? 46 : 30)],
+    axes: [xAxis, yAxis],
+    // As the line is drawn.
+    legend: { markers: { width: 2, dash: (u, i) => (u.series[i].dash ? "dashed" : "solid") } },
     series: [
       { label: plot.xLabel, value: (_, v) => (v === null ? "" : compact(v)) },
       ...plot.lines.map(

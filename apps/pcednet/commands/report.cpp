@@ -52,7 +52,8 @@ void add_report(CLI::App& app, Common& common) {
   CLI::App* command =
       add_command(app, common, "report", "Make one web page of the studies in a folder",
                   "pcednet report study/ -o report.html\n"
-                  "pcednet report study/ --clouds-per-set 9 --points 100000 --overwrite");
+                  "pcednet report study/ --clouds-per-set 9 --points 100000 --overwrite\n"
+                  "pcednet report study/ --title 'Facades of the old town' --date 'May 2027'");
   command->add_option("folder", arguments->folder, "Folder written by `pcednet study`")->required();
   command->add_option("-o,--output", arguments->output, "Output page; it needs no other file")
       ->capture_default_str();
@@ -66,6 +67,9 @@ void add_report(CLI::App& app, Common& common) {
                    "Points to show per cloud; larger clouds are sampled")
       ->capture_default_str()
       ->check(CLI::Range(1, 10000000));
+  command->add_option("--title", arguments->merge.title,
+                      "Title of the page (default: that of the only study, or a general one)");
+  command->add_option("--date", arguments->merge.date, "Date of the page, in your own words");
   command->add_option("--json", arguments->json, "Also write the data of the page to this file");
   command->callback([arguments, &common] { make_report(*arguments, common); });
 }

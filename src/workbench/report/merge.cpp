@@ -275,9 +275,11 @@ MergedStudies merge_studies(const fs::path& folder, const MergeOptions& options,
   MergedStudies merged{.studies = studies.texts.size(),
                        .scenes = scenes.size(),
                        .warnings = std::move(studies.warnings)};
-  const Json whole = {{"schema", "pcednet-report-1"},
-                      {"studies", std::move(studies.texts)},
-                      {"scenes", std::move(scenes)}};
+  Json whole = {{"schema", "pcednet-report-1"},
+                {"studies", std::move(studies.texts)},
+                {"scenes", std::move(scenes)}};
+  if (!options.title.empty()) whole["title"] = options.title;
+  if (!options.date.empty()) whole["date"] = options.date;
   // Names in foreign files need not be UTF-8.
   merged.json = whole.dump(-1, ' ', false, Json::error_handler_t::replace);
   return merged;

@@ -15,6 +15,7 @@ struct MergeOptions {
   std::size_t clouds_per_set =
       4;  ///< the first so many of each set, of those with predictions; 0: none
   std::size_t points_per_cloud = 30000;  ///< of a larger cloud, a sample
+  std::string title = {}, date = {};     ///< of the page; empty: left out
 };
 
 /// Error(kUnreadable) for the file of a cloud, which MergeOptions::clouds_per_set 0 does without.
