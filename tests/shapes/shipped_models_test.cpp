@@ -30,9 +30,9 @@
 // So few parts differ more from seed to seed than good models from bad ones. That is why the floors
 // hold for the clouds of seed 5 alone: they are three times the standard deviation over training
 // seeds (docs/accuracy.md: .0025 of `scan`, .0056 of `cad`, .011 with noise, .0064 of `worn`) below
-// its column. Who trains the models anew may have to measure them again. The models of the table were
-// trained before today's; today's `cad` has a median of .823 here, though .865 (.833 before) on all
-// clouds of seed 5.
+// its column. Who trains the models anew may have to measure them again. The models of the table
+// were trained before today's; today's `cad` has a median of .823 here, though .865 (.833 before)
+// on all clouds of seed 5.
 
 namespace pcednet::shapes {
 namespace {
