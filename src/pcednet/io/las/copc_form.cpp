@@ -13,11 +13,11 @@ bool has_field(unsigned format, const char* name) {
                      [&](const LasField& f) { return f.name == name; });
 }
 
-/// Of those of COPC, the one that has the colours of `format`, or of the cloud.
+/// Of those of COPC, the one that has the colours of `format`.
 unsigned copc_format(unsigned format, const PointCloud& first) {
-  const Attribute* infrared = find_attribute(first, "Infrared");
   if (has_field(format, "Infrared")) return 8;
-  if (!has_field(format, "Red") && first.colours.empty()) return 6;
+  if (!has_field(format, "Red")) return 6;
+  const Attribute* infrared = find_attribute(first, "Infrared");
   return infrared && infrared->type == ScalarType::kUint16 ? 8 : 7;
 }
 

@@ -181,8 +181,8 @@ std::vector<std::string> las_losses(const PointCloud& first, const LasChoices& c
   const bool has_colours = std::any_of(standard.begin(), standard.end(),
                                        [](const LasField& f) { return f.name == "Red"; });
   if (!first.colours.empty() && !has_colours) {
-    losses.push_back(
-        fmt::format("colours: the input's point format {} has none", file.point_format()));
+    losses.push_back(fmt::format("colours: {}point format {} has none",
+                                 choices.promoted ? "" : "the input's ", file.point_format()));
   }
   return losses;
 }
