@@ -28,10 +28,14 @@ class PublishedScores(CliTest):
 
     def test_of_the_shipped_models_are_those_of_the_readme(self):
         # Three times the spread over training seeds (docs/accuracy.md) below what README.md says.
-        for name, least, *model in (("default", 0.917, "scan", "--positive", "edge"),
+        for name, least, *model in (("default", 0.914, "general", "--positive", "edge"),
+                                    ("abc", 0.981, "general"),
+                                    ("abc_noise", 0.776, "general"),
+                                    ("shrec", 0.495, "general"),
+                                    ("default", 0.917, "scan", "--positive", "edge"),
                                     ("abc", 0.986, "cad"),
-                                    ("abc_noise", 0.784, "cad"),
-                                    ("shrec", 0.518, "worn")):
+                                    ("abc_noise", 0.758, "cad"),
+                                    ("shrec", 0.508, "worn")):
             if (DATA / name).is_dir():
                 self.assertGreaterEqual(self.median(DATA / name, "--model", *model)["mcc"], least,
                                         name)
