@@ -445,3 +445,11 @@ test("a measured distance names its parts along the axes", () => {
   ]);
   assert.equal(words, "13 (Δx 3, Δy -4, Δz 12)");
 });
+
+test("the places to frame are the first points of a node, which are spread over all of it", () => {
+  const n = 30_000;
+  const positions = Uint16Array.from({ length: 3 * n }, (_, i) => (Math.floor(i / 3) % 2 === 0 ? 0 : 65535));
+  const places = chunk.placesOf({ info: { points: n, centre: [0, 0, 0], half: 1 }, positions });
+  assert.deepEqual([...new Set(places)].sort(), [-1, 1]);
+  assert.ok(places.length > 1000 && places.length < 3 * n);
+});

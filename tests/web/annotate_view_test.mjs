@@ -59,7 +59,7 @@ const look = () =>
       box.right = Math.max(box.right, x / image.width);
       box.top = Math.min(box.top, y / image.height);
       box.bottom = Math.max(box.bottom, y / image.height);
-      if (data[i] < 60 && data[i + 2] > 200) rims += 1;
+      if (data[i + 2] > 200 && data[i + 2] - data[i] > 80) rims += 1;
     }
     return { first, points, box, rims };
   });

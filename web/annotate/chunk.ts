@@ -53,11 +53,10 @@ export function pointAt({ info: { centre, half }, positions }: Chunk, i: number)
 
 const MOST_PLACES = 20_000;
 
-/** Some of its points: x, y, z, x, y, z, ... */
+/** Some of its points, spread evenly as any first ones are: x, y, z, x, y, z, ... */
 export function placesOf(chunk: Chunk): number[] {
-  const step = Math.max(1, Math.ceil(chunk.info.points / MOST_PLACES));
   const places: number[] = [];
-  for (let i = 0; i < chunk.info.points; i += step) places.push(...pointAt(chunk, i));
+  for (let i = 0; i < Math.min(chunk.info.points, MOST_PLACES); ++i) places.push(...pointAt(chunk, i));
   return places;
 }
 

@@ -61,5 +61,5 @@ void main() {
   vec2 p = gl_PointCoord - 0.5;
   float away = dot(p, p);
   if (away > 0.25) discard;
-  gl_FragColor = vec4(rim > 0.5 && away > 0.16 ? vec3(0.1, 0.42, 0.95) : colour, 1.0);
+  gl_FragColor = vec4(rim > 0.5 && away > 0.19 ? mix(colour, vec3(0.1, 0.42, 0.95), 0.6) : colour, 1.0);
 }`;

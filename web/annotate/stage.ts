@@ -53,8 +53,10 @@ export class Stage {
     });
     this.loader = new Loader(api, {
       arrived: ({ info }) => {
-        if (info.id === 0 && this.awaitsFirst) this.fit("first"); // on the cloud itself, not on its box
-        this.awaitsFirst = false;
+        if (info.id === 0 && this.awaitsFirst) {
+          this.awaitsFirst = false;
+          this.fit("first"); // on the cloud itself, not on its box
+        }
         this.touched.add(info.id);
         this.redrawSoon();
         this.schedule();
