@@ -21,11 +21,22 @@ const settled = () =>
   );
 const state = (name) => page.evaluate((key) => annotator.store.now[key], name);
 
-/** After a key: the flight is over, all is drawn. */
+/** The flight is over, all is drawn. */
+async function arrived() {
+  const place = () => page.evaluate(() => [annotator.stage.width, ...annotator.stage.camera.view.matrix].join());
+  let before,
+    now = await place();
+  do {
+    before = now;
+    await page.waitForTimeout(450);
+    await settled();
+    now = await place();
+  } while (now !== before);
+}
+
 async function press(key) {
   await page.keyboard.press(key);
-  await page.waitForTimeout(450);
-  await settled();
+  await arrived();
 }
 
 /** Pixels of the canvas where places of the cloud are drawn. */
@@ -94,6 +105,7 @@ test("frames the cloud itself: whole, in the middle, as large as there is room",
     [700, 900],
   ]) {
     await page.setViewportSize({ width, height });
+    await arrived();
     await press("f");
     const { box } = await look();
     const [across, down] = [box.right - box.left, box.bottom - box.top];

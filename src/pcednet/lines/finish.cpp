@@ -14,9 +14,9 @@ namespace {
 
 // The length of a piece that no corner holds, and of one that ends free, in spacings; the second
 // number is added per spacing of noise. An end at the inside of a piece is free unless exact.
-constexpr double kLoose[] = {12.0, 24.0}, kHeldOnce[] = {10.0, 12.0};
+constexpr double kLoose[] = {8.0, 24.0}, kHeldOnce[] = {5.0, 12.0};
 constexpr double kExactLoose = 8.0, kExactHeldOnce = 4.0;
-constexpr int kDropRounds = 2;  ///< those that hung on a dropped piece are loose now
+constexpr int kDropRounds = 3;  ///< those that hung on a dropped piece are loose now
 
 constexpr double kExactReach = 5.0, kExactTolerance = 0.6;  ///< of corners of exact pieces
 
