@@ -3,6 +3,7 @@
 engines_test.py ENGINE exits with 77 (skipped) where the engine is not installed. Slurm gets two nodes
 of one processor and loses one of them and a task; root must start it.
 """
+import importlib.util
 import json
 import os
 import pathlib
@@ -137,7 +138,7 @@ class Engine(CliTest):
     def check_joined(self, joined):
         """The same bytes as of the tiles that no engine ran."""
         run("tiles", "run", self.plan, "--overwrite")
-        run("tiles", "join", self.plan, "-o", self.folder / "expected.ply")
+        run("tiles", "join", self.plan, "-o", self.folder / "expected.ply", "--overwrite")
         self.assertEqual(joined.read_bytes(), (self.folder / "expected.ply").read_bytes())
 
 
@@ -199,13 +200,61 @@ class Slurm(Engine):
         self.check_joined(joined)
 
 
-ENGINES = {
-    "slurm": (Slurm, lambda: os.geteuid() == 0 and has("slurmctld", "slurmd", "munged")),
-}
+class Snakemake(Engine):
+    def start(self, *options):
+        command = ["snakemake", "--snakefile", EXAMPLES / "Snakefile", "--cores", 2, "--keep-going",
+                   "--retries", 3, "--rerun-incomplete", *options,
+                   "--config", f"plan={self.plan}", f"out={self.folder / 'joined.ply'}"]
+        with open(self.folder / "snakemake.log", "a") as log:
+            return subprocess.Popen(list(map(str, command)), stdout=log, stderr=log,
+                                    cwd=self.folder, env=self.environment)
+
+    def expect(self, code, *options):
+        self.assertEqual(self.start(*options).wait(120), code, self.logs())
+
+    def test_a_killed_task_and_a_killed_snakemake_lose_nothing(self):
+        (self.folder / "hold").write_text("2 5")
+        first = self.start()
+        os.kill(self.held(2)[0], signal.SIGKILL)
+        task, _, _ = self.held(5)
+        for pid in (first.pid, task):
+            os.kill(pid, signal.SIGKILL)
+        first.wait()
+        self.assertFalse((self.folder / "joined.ply").exists())
+        self.expect(0, "--unlock")
+        self.expect(0)
+        self.check_joined(self.folder / "joined.ply")
+        # A mark of a tile that is no longer there does not count.
+        tile = json.loads(self.plan.read_text())["tiles"][3]["output"]
+        (self.folder / tile).unlink()
+        self.expect(0)
+        self.check_joined(self.folder / "joined.ply")
+
+
+class Dask(Engine):
+    def test_a_killed_task_and_a_killed_worker_lose_nothing(self):
+        (self.folder / "hold").write_text("2 5")
+        joined = self.folder / "joined.ply"
+        with open(self.folder / "dask.log", "w") as log:
+            dask = subprocess.Popen([sys.executable, EXAMPLES / "dask_tiles.py", self.plan, joined],
+                                    stdout=log, stderr=log, env=self.environment)
+        os.kill(self.held(2)[0], signal.SIGKILL)
+        task, worker, _ = self.held(5)
+        for pid in (worker, task):
+            os.kill(pid, signal.SIGKILL)
+        self.assertEqual(dask.wait(120), 0, self.logs())
+        self.check_joined(joined)
 
 
 def has(*programs):
     return all(map(shutil.which, programs))
+
+
+ENGINES = {
+    "slurm": (Slurm, lambda: os.geteuid() == 0 and has("slurmctld", "slurmd", "munged")),
+    "snakemake": (Snakemake, lambda: has("snakemake")),
+    "dask": (Dask, lambda: importlib.util.find_spec("distributed")),
+}
 
 
 if __name__ == "__main__":
