@@ -132,6 +132,32 @@ class Tiles(CliTest):
         self.assertGreater(np.mean(out["scalar_edge_class"] == whole["scalar_edge_class"]), 0.9999)
         self.assertTrue((self.folder / "p_tiles/100_100.laz").exists())
 
+    def test_tiles_are_listed_in_a_virtual_point_cloud(self):
+        p, n = field(3, 300)
+        write_ply(self.folder / "a.ply", p, n)
+        run("convert", self.folder / "a.ply", "-o", self.folder / "a.laz")
+        plan, content = self.make_plan(self.folder / "a.laz", tile=1.0)
+        vpc = self.folder / "a.vpc"
+        said = run("tiles", "join", plan, "--vpc", vpc, expect=4).stderr
+        self.assertIn("tiles are missing or damaged: 0 to", said)
+        self.assertFalse(vpc.exists())
+        run("tiles", "run", plan)
+        run("tiles", "join", plan, "--vpc", vpc, "-o", self.folder / "joined.laz")
+        self.assertTrue((self.folder / "joined.laz").exists())
+        listed = {}
+        for item in json.loads(vpc.read_text())["features"]:
+            listed[item["assets"]["data"]["href"]] = item["properties"]["pc:count"]
+        self.assertEqual(listed, {"./" + t["output"]: t["points"] for t in content["tiles"]})
+        before = vpc.read_bytes()
+        run("info", self.folder / "p_tiles", "--vpc", self.folder / "b.vpc")
+        self.assertEqual((self.folder / "b.vpc").read_bytes(), before)
+        run("tiles", "join", plan, "--vpc", vpc, expect=2)  # exists
+        self.assertIn("needs -o FILE, --vpc FILE", run("tiles", "join", plan, expect=2).stderr)
+        plan, _ = self.make_plan(self.folder / "a.ply", tile=1.0)
+        run("tiles", "run", plan)
+        said = run("tiles", "join", plan, "--vpc", self.folder / "c.vpc", expect=4).stderr
+        self.assertIn("of LAS, LAZ and COPC files", said)
+
     def test_several_inputs_are_one_cloud(self):
         p, n = field(3, 600)
         half = p[:, 0] < 1.2

@@ -13,6 +13,7 @@
 #include "commands.h"
 #include "models.h"
 #include "pcednet/core/stopwatch.h"
+#include "pcednet/formats/virtual_cloud.h"
 #include "pcednet/tiles/join.h"
 #include "pcednet/tiles/make_plan.h"
 #include "pcednet/tiles/run_tile.h"
@@ -207,13 +208,37 @@ void show_status(const StatusArguments& arguments, const Common& common) {
   }
 }
 
-void join_tiles(const std::string& plan_path, const std::string& output, const Common& common) {
-  check_writable(output, common.overwrite());
-  const tiles::Plan plan = tiles::read_plan(plan_path);
+struct JoinArguments {
+  std::string plan, output, vpc;
+};
+
+void join_into_file(const tiles::Plan& plan, const std::string& output, const Common& common) {
   const Progress progress = console_progress(common);
   const tiles::Joined joined = tiles::join(plan, output, common.overwrite(), &progress);
   for (const std::string& loss : joined.losses) warn(output + " does not keep: " + loss);
   say(fmt::format("{}: {} points of {} tiles", output, joined.points, plan.tiles.size()));
+}
+
+/// Reads the headers of the tiles alone.
+void list_tiles(const tiles::Plan& plan, const std::string& vpc, const Common& common) {
+  tiles::check_all_done(plan);
+  std::vector<formats::VirtualFile> files;
+  for (const tiles::Tile& tile : plan.tiles) files.push_back(formats::virtual_file(tile.output));
+  for (const std::string& remark : formats::write_virtual_cloud(vpc, files, common.overwrite())) {
+    warn(vpc + ": " + remark);
+  }
+  say(fmt::format("{}: {} points of {} tiles", vpc, plan.points(), files.size()));
+}
+
+void join_tiles(const JoinArguments& arguments, const Common& common) {
+  if (arguments.output.empty() && arguments.vpc.empty()) {
+    throw Error(ErrorKind::kUsage, "tiles join: needs -o FILE, --vpc FILE or both");
+  }
+  if (!arguments.output.empty()) check_writable(arguments.output, common.overwrite());
+  if (!arguments.vpc.empty()) check_writable(arguments.vpc, common.overwrite());
+  const tiles::Plan plan = tiles::read_plan(arguments.plan);
+  if (!arguments.vpc.empty()) list_tiles(plan, arguments.vpc, common);
+  if (!arguments.output.empty()) join_into_file(plan, arguments.output, common);
 }
 
 void add_plan(CLI::App& tiles, Common& common) {
@@ -284,13 +309,16 @@ void add_status(CLI::App& tiles, Common& common) {
 }
 
 void add_join(CLI::App& tiles, Common& common) {
-  auto plan = std::make_shared<std::string>();
-  auto output = std::make_shared<std::string>();
-  CLI::App* command = add_command(tiles, common, "join", "Write the tiles of a plan into one file",
-                                  "pcednet tiles join city.json -o city.laz");
-  command->add_option("plan", *plan, "The plan")->required();
-  command->add_option("-o,--output", *output, "Output file: .laz, .las or .ply")->required();
-  command->callback([plan, output, &common] { join_tiles(*plan, *output, common); });
+  auto arguments = std::make_shared<JoinArguments>();
+  CLI::App* command =
+      add_command(tiles, common, "join", "Write the tiles of a plan into one file, or list them",
+                  "pcednet tiles join city.json -o city.laz\n"
+                  "pcednet tiles join city.json --vpc city.vpc     a list of the tiles, for QGIS");
+  command->add_option("plan", arguments->plan, "The plan")->required();
+  command->add_option("-o,--output", arguments->output, "Output file: .laz, .las or .ply");
+  command->add_option("--vpc", arguments->vpc,
+                      "Virtual point cloud that lists the tiles, which stay where they are");
+  command->callback([arguments, &common] { join_tiles(*arguments, common); });
 }
 
 }  // namespace

@@ -40,17 +40,6 @@ class TileStream {
   bool narrow_ = false;
 };
 
-void check_all_done(const Plan& plan) {
-  std::vector<std::size_t> undone;
-  for (std::size_t id = 0; id < plan.tiles.size(); ++id) {
-    if (state_of(plan, id) != TileState::kDone) undone.push_back(id);
-  }
-  if (undone.empty()) return;
-  throw Error(ErrorKind::kInsufficient,
-              fmt::format("{}: {} of {} tiles are missing or damaged: {}", plan.path.string(),
-                          undone.size(), plan.tiles.size(), list_of(undone)));
-}
-
 }  // namespace
 
 std::string list_of(const std::vector<std::size_t>& numbers) {
@@ -66,6 +55,17 @@ std::string list_of(const std::vector<std::size_t>& numbers) {
     i = end;
   }
   return text;
+}
+
+void check_all_done(const Plan& plan) {
+  std::vector<std::size_t> undone;
+  for (std::size_t id = 0; id < plan.tiles.size(); ++id) {
+    if (state_of(plan, id) != TileState::kDone) undone.push_back(id);
+  }
+  if (undone.empty()) return;
+  throw Error(ErrorKind::kInsufficient,
+              fmt::format("{}: {} of {} tiles are missing or damaged: {}", plan.path.string(),
+                          undone.size(), plan.tiles.size(), list_of(undone)));
 }
 
 Joined join(const Plan& plan, const std::filesystem::path& path, Overwrite overwrite,

@@ -16,8 +16,12 @@ struct Joined {
   std::vector<std::string> losses;  ///< what the format does not keep, one sentence part each
 };
 
+/// Throws Error(kInsufficient) with the numbers of the tiles that are missing or damaged, if any
+/// are.
+void check_all_done(const Plan& plan);
+
 /// Writes all tiles into one file, tile after tile, in memory that does not grow with them. Throws
-/// Error(kInsufficient) unless all tiles are done, Error(kFailure) if their points are not those
+/// as check_all_done, Error(kFailure) if their points are not those
 /// planned, what OutputFile throws, and Error(kUsage) for another format than .laz, .las and .ply.
 Joined join(const Plan& plan, const std::filesystem::path& path, Overwrite overwrite,
             const Progress* progress = nullptr);
