@@ -231,6 +231,19 @@ class Snakemake(Engine):
         self.check_joined(self.folder / "joined.ply")
 
 
+class Parallel(Engine):
+    def test_a_killed_task_is_run_again(self):
+        (self.folder / "hold").write_text("2 5")
+        with open(self.folder / "parallel.log", "w") as log:
+            parallel = subprocess.Popen([EXAMPLES / "parallel.sh", self.plan], stdout=log, stderr=log,
+                                        env=self.environment)
+        for tile in (2, 5):
+            os.kill(self.held(tile)[0], signal.SIGKILL)
+        self.assertEqual(parallel.wait(120), 0, self.logs())
+        run("tiles", "join", self.plan, "-o", self.folder / "joined.ply")
+        self.check_joined(self.folder / "joined.ply")
+
+
 class Dask(Engine):
     def test_a_killed_task_and_a_killed_worker_lose_nothing(self):
         (self.folder / "hold").write_text("2 5")
@@ -251,6 +264,7 @@ def has(*programs):
 
 
 ENGINES = {
+    "parallel": (Parallel, lambda: has("parallel")),
     "slurm": (Slurm, lambda: os.geteuid() == 0 and has("slurmctld", "slurmd", "munged")),
     "snakemake": (Snakemake, lambda: has("snakemake")),
     "dask": (Dask, lambda: importlib.util.find_spec("distributed")),
