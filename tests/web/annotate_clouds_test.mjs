@@ -1,19 +1,18 @@
 // Two clouds trained on together, in the browser. Environment as annotate_test.mjs; SCREENSHOT_CLOUDS, if set, is where
 // a picture goes.
 import assert from "node:assert/strict";
-import { spawn } from "node:child_process";
 import fs from "node:fs";
 import os from "node:os";
 import path from "node:path";
 import { after, before, test } from "node:test";
 
 import { roof, writeRoof } from "./annotate_cloud.mjs";
-import { launch } from "./browser.mjs";
+import { launch, serve } from "./browser.mjs";
 
 const folder = fs.mkdtempSync(path.join(os.tmpdir(), "pcednet-clouds-"));
 const inputs = ["roof.ply", "barn.ply"].map((name) => path.join(folder, name));
 const complaints = [];
-let browser, page, program;
+let browser, page, server;
 
 const settled = () =>
   page.waitForFunction(
@@ -41,23 +40,19 @@ before(async () => {
       .filter((_, i) => i % 2 === 0)
       .map((point) => ({ ...point, p: point.p.map((c) => c / 2 + 50) })),
   );
-  const address = await new Promise((done, fail) => {
-    program = spawn(process.env.PCEDNET, ["annotate", ...inputs, "--no-browser"]);
-    program.stdout.on("data", (data) => done(String(data).trim()));
-    program.on("exit", (code) => fail(new Error(`pcednet annotate ended with ${code}`)));
-  });
+  server = await serve(inputs);
   browser = await launch();
   page = await browser.newPage({ viewport: { width: 1280, height: 720 } });
   page.setDefaultTimeout(120_000);
   page.on("pageerror", (e) => complaints.push(e.message));
-  await page.goto(address);
+  await page.goto(server.address);
   await settled();
   await page.waitForFunction(() => annotator.store.now.runs.some((run) => run.current));
 });
 
 after(async () => {
   await browser?.close();
-  program?.kill("SIGKILL");
+  server?.program.kill("SIGKILL");
   fs.rmSync(folder, { recursive: true, force: true });
 });
 

@@ -1,7 +1,6 @@
 // The annotator that corrects a model: what a new user sees first, how strokes are judged, and what the page says when
 // the program is gone. Environment as annotate_test.mjs; SCREENSHOT_START, if set, is where a picture of the start goes.
 import assert from "node:assert/strict";
-import { spawn } from "node:child_process";
 import { once } from "node:events";
 import fs from "node:fs";
 import os from "node:os";
@@ -9,25 +8,11 @@ import path from "node:path";
 import { after, before, test } from "node:test";
 
 import { roof, writeRoof } from "./annotate_cloud.mjs";
-import { launch } from "./browser.mjs";
+import { launch, serve } from "./browser.mjs";
 
 const folder = fs.mkdtempSync(path.join(os.tmpdir(), "pcednet-start-"));
 const input = path.join(folder, "roof.ply");
 let browser, page, server;
-
-/** Starts the program; its process and the address that it prints. */
-function serve(...words) {
-  return new Promise((done, fail) => {
-    const program = spawn(process.env.PCEDNET, ["annotate", input, "--no-browser", ...words]);
-    let text = "";
-    program.stdout.on("data", (data) => {
-      text += data;
-      const address = /http:\/\/127\.0\.0\.1:(\d+)\/\?token=\S+/.exec(text);
-      if (address) done({ program, address: address[0], port: address[1] });
-    });
-    program.on("exit", (code) => fail(new Error(`pcednet annotate ended with ${code}`)));
-  });
-}
 
 async function kill() {
   const ended = once(server.program, "exit");
@@ -74,7 +59,7 @@ async function paint(id, edgeClass, centre, radius = 0.05) {
 
 before(async () => {
   writeRoof(input, roof());
-  server = await serve("--model", "scan");
+  server = await serve([input, "--model", "scan"]);
   browser = await launch();
   page = await browser.newPage({ viewport: { width: 1280, height: 720 } });
   page.setDefaultTimeout(120_000);
@@ -230,7 +215,7 @@ test("loses no stroke and goes on by itself when the program is killed and start
   await page.mouse.up();
   await page.getByText("pcednet does not answer: nothing can be painted.").waitFor();
   const before = server.address;
-  server = await serve();
+  server = await serve([input]);
   assert.equal(server.address, before);
   await page.waitForFunction(() => annotator.store.now.undo === 5 && annotator.store.now.connected);
   await settled();
@@ -255,7 +240,7 @@ test("takes back what the program never got if it starts at another address, and
   await page.mouse.move(middle[0] + 20, middle[1], { steps: 3 });
   assert.ok((await painted()) > kept, "the stroke is drawn");
   await page.mouse.up();
-  server = await serve("--port", server.port);
+  server = await serve([input, "--port", server.port]);
   await page.getByText("pcednet was started again: open the address that it printed.").waitFor();
   await page.getByText("The stroke was not applied").waitFor();
   await expectPainted(kept);

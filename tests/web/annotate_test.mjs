@@ -2,7 +2,7 @@
 // Environment: PCEDNET the program, PCEDNET_SOURCE_DIR the repository, CHROMIUM the browser;
 // SCREENSHOT, SCREENSHOT_PHONE and SCREENSHOT_LINES, if set, are where pictures of the page go.
 import assert from "node:assert/strict";
-import { spawn, spawnSync } from "node:child_process";
+import { spawnSync } from "node:child_process";
 import { once } from "node:events";
 import fs from "node:fs";
 import os from "node:os";
@@ -11,7 +11,7 @@ import { after, before, test } from "node:test";
 import { pathToFileURL } from "node:url";
 
 import { painted, readPly, roof, writeRoof } from "./annotate_cloud.mjs";
-import { launch } from "./browser.mjs";
+import { launch, serve } from "./browser.mjs";
 
 const LEAST_MCC = 0.6; // of the prediction from a few strokes, against the true labels
 const folder = fs.mkdtempSync(path.join(os.tmpdir(), "pcednet-annotate-"));
@@ -24,28 +24,9 @@ function pcednet(...words) {
   assert.equal(done.status, 0, `pcednet ${words.join(" ")}: ${done.stderr}`);
 }
 
-/** Starts the server; its process and the address that it prints. `environment`: that opens a browser. */
-function serve(words = [], environment) {
-  return new Promise((done, fail) => {
-    const browser = environment ? [] : ["--no-browser"];
-    const process_ = spawn(process.env.PCEDNET, ["annotate", input, ...browser, ...words], {
-      env: { ...process.env, ...environment },
-    });
-    let text = "",
-      errors = "";
-    process_.stdout.on("data", (data) => {
-      text += data;
-      const address = /http:\/\/127\.0\.0\.1:\d+\/\?token=\S+/.exec(text);
-      if (address) done({ process: process_, address: address[0] });
-    });
-    process_.stderr.on("data", (data) => (errors += data));
-    process_.on("exit", (code) => fail(new Error(`pcednet annotate ended with ${code}: ${errors}`)));
-  });
-}
-
 async function stop() {
-  const ended = once(server.process, "exit");
-  server.process.kill("SIGINT");
+  const ended = once(server.program, "exit");
+  server.program.kill("SIGINT");
   await ended;
 }
 
@@ -113,14 +94,14 @@ async function stroke(key, places) {
 
 before(async () => {
   writeRoof(input, roof());
-  server = await serve(["--model", "none"]);
+  server = await serve([input, "--model", "none"]);
   browser = await launch();
   page = await open();
 });
 
 after(async () => {
   await browser?.close();
-  server?.process.kill("SIGKILL");
+  server?.program.kill("SIGKILL");
   fs.rmSync(folder, { recursive: true, force: true });
 });
 
@@ -553,7 +534,7 @@ test("opens the project as it was left, in a browser that the desktop starts", a
   const programs = path.join(folder, "bin");
   fs.mkdirSync(programs);
   fs.writeFileSync(path.join(programs, "xdg-open"), `#!/bin/sh\nprintf %s "$1" > ${folder}/given\n`, { mode: 0o755 });
-  server = await serve(["--project", saved.project], {
+  server = await serve([input, "--project", saved.project], {
     PATH: `${programs}:${process.env.PATH}`,
     XDG_RUNTIME_DIR: folder,
   });

@@ -1,19 +1,18 @@
 // How the annotator shows a cloud: framing, views along the axes, orthographic, the clipping box, slices, measuring,
 // painted points, dark and light. Environment as annotate_test.mjs.
 import assert from "node:assert/strict";
-import { spawn } from "node:child_process";
 import fs from "node:fs";
 import os from "node:os";
 import path from "node:path";
 import { after, before, test } from "node:test";
 
 import { roof, writeRoof } from "./annotate_cloud.mjs";
-import { launch } from "./browser.mjs";
+import { launch, serve } from "./browser.mjs";
 
 const folder = fs.mkdtempSync(path.join(os.tmpdir(), "pcednet-view-"));
 const input = path.join(folder, "roof.ply");
 const complaints = [];
-let browser, page, program;
+let browser, page, server;
 
 const settled = () =>
   page.waitForFunction(
@@ -77,16 +76,12 @@ const look = () =>
 
 before(async () => {
   writeRoof(input, roof());
-  const address = await new Promise((done, fail) => {
-    program = spawn(process.env.PCEDNET, ["annotate", input, "--no-browser"]);
-    program.stdout.on("data", (data) => done(String(data).trim()));
-    program.on("exit", (code) => fail(new Error(`pcednet annotate ended with ${code}`)));
-  });
+  server = await serve([input]);
   browser = await launch();
   page = await browser.newPage({ viewport: { width: 1280, height: 720 } });
   page.setDefaultTimeout(120_000);
   page.on("pageerror", (e) => complaints.push(e.message));
-  await page.goto(address);
+  await page.goto(server.address);
   await settled();
   await page.waitForFunction(() => annotator.store.now.runs.some((run) => run.current));
   await page.getByRole("checkbox", { name: "Train after each stroke" }).uncheck();
@@ -95,7 +90,7 @@ before(async () => {
 
 after(async () => {
   await browser?.close();
-  program?.kill("SIGKILL");
+  server?.program.kill("SIGKILL");
   fs.rmSync(folder, { recursive: true, force: true });
 });
 

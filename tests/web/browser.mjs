@@ -1,5 +1,6 @@
 // Headless Chromium with WebGL in software. Environment: PCEDNET_SOURCE_DIR, whose web/ folder holds
 // playwright-core, and CHROMIUM, the browser.
+import { spawn } from "node:child_process";
 import { createRequire } from "node:module";
 import path from "node:path";
 
@@ -9,5 +10,26 @@ export function launch() {
   return require("playwright-core").chromium.launch({
     executablePath: process.env.CHROMIUM,
     args: ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
+  });
+}
+
+/**
+ * Starts `pcednet annotate` with these words; its process, and the address and port that it prints. Without an
+ * environment for it, it opens no browser.
+ */
+export function serve(words, environment) {
+  return new Promise((done, fail) => {
+    const program = spawn(process.env.PCEDNET, ["annotate", ...words, ...(environment ? [] : ["--no-browser"])], {
+      env: { ...process.env, ...environment },
+    });
+    let text = "",
+      errors = "";
+    program.stdout.on("data", (data) => {
+      text += data;
+      const address = /http:\/\/127\.0\.0\.1:(\d+)\/\?token=\S+/.exec(text);
+      if (address) done({ program, address: address[0], port: address[1] });
+    });
+    program.stderr.on("data", (data) => (errors += data));
+    program.on("exit", (code) => fail(new Error(`pcednet annotate ended with ${code}: ${errors}`)));
   });
 }

@@ -14,6 +14,12 @@ struct BoundingBox {
 
   bool empty() const { return !(min.x() <= max.x()); }
   Vec3 centre() const { return min + 0.5 * (max - min); }
+  bool holds(const Vec3& p) const {
+    return (p.array() >= min.array()).all() && (p.array() <= max.array()).all();
+  }
+  bool meets(const BoundingBox& other) const {
+    return (min.array() <= other.max.array()).all() && (other.min.array() <= max.array()).all();
+  }
   double diagonal() const { return empty() ? 0.0 : (max - min).norm(); }
 };
 

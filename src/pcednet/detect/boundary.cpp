@@ -19,7 +19,7 @@
 namespace pcednet::detect {
 namespace {
 
-constexpr std::size_t kNeighbours = 24, kLeastNeighbours = 12;
+constexpr std::size_t kNeighbours = kBoundaryNeighbours, kLeastNeighbours = 12;
 /// Of more points than this the first kTried of every kStride along the curve are tried at first,
 /// then all around those found: a rim is a line of points.
 constexpr std::size_t kMostWhole = std::size_t{1} << 17;
@@ -43,7 +43,6 @@ constexpr double kAgreement = 0.8;  ///< mean cosine between the neighbours' nor
 constexpr double kOpposed = 0.2;    ///< share of neighbours that face the other way
 
 // Of the neighbours that a point of the rim needs along it; lengths in spacings.
-constexpr int kRounds = 3;
 constexpr double kSameSide = 0.5;  ///< cosine between the open directions
 constexpr double kLeastAlong = 0.3;
 constexpr double kAcross = 0.7;  ///< and as much per length along the rim
@@ -302,7 +301,7 @@ bool goes_on(const RimPoint& rim, const DistinctPoints& points, std::span<const 
 /// Removes points whose rim does not go on, and the ends that this leaves.
 void remove_isolated(const DistinctPoints& points, std::vector<RimPoint>& rims) {
   std::vector<std::uint32_t> rim_of(points.positions.size(), kNone);
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < kBoundaryRounds; ++round) {
     for (std::size_t i = 0; i < rims.size(); ++i) {
       rim_of[rims[i].point] = static_cast<std::uint32_t>(i);
     }

@@ -9,6 +9,11 @@
 
 namespace pcednet::detect {
 
+/// How many nearest others of a point are looked at, and how often what was found there is looked
+/// at again around it.
+inline constexpr std::size_t kBoundaryNeighbours = 24;
+inline constexpr int kBoundaryRounds = 3;
+
 /// The points where the sampled surface ends, ascending: eaves, the rims of holes and fragments.
 ///
 /// Such a point has its 24 nearest others on one side. They lie in a plane, or a gently bent sheet,

@@ -12,12 +12,9 @@ namespace {
 constexpr std::size_t kCubes = 64;
 constexpr std::size_t kDensePoints = 1'000'000;  ///< about so many in all cubes
 
-bool holds(const BoundingBox& box, const Vec3& p) {
-  return (p.array() >= box.min.array()).all() && (p.array() <= box.max.array()).all();
-}
-
-bool meet(const BoundingBox& a, const BoundingBox& b) {
-  return (a.min.array() <= b.max.array()).all() && (b.min.array() <= a.max.array()).all();
+bool any_holds(std::span<const BoundingBox> cubes, const Vec3& p) {
+  return std::any_of(cubes.begin(), cubes.end(),
+                     [&](const BoundingBox& cube) { return cube.holds(p); });
 }
 
 std::vector<BoundingBox> cubes_around(std::span<const Vec3> centres, double half_side) {
@@ -40,26 +37,20 @@ std::vector<BoundingBox> choose_cubes(std::span<const Vec3> sample, const Plan& 
   for (int step = 0; step < 20; ++step) {
     const double half_side = 0.5 * (least + most);
     const auto cubes = cubes_around(centres, half_side);
-    const auto inside =
-        static_cast<std::size_t>(std::count_if(sample.begin(), sample.end(), [&](const Vec3& p) {
-          return std::any_of(cubes.begin(), cubes.end(),
-                             [&](const BoundingBox& cube) { return holds(cube, p); });
-        }));
+    const auto inside = static_cast<std::size_t>(std::count_if(
+        sample.begin(), sample.end(), [&](const Vec3& p) { return any_holds(cubes, p); }));
     (inside > wanted ? most : least) = half_side;
   }
   return cubes_around(centres, most);
 }
 
+/// All points if there are no cubes.
 void append_inside(const PointCloud& part, std::span<const BoundingBox> cubes, PointCloud& to) {
-  for (std::size_t i = 0; i < part.size(); ++i) {
-    const bool inside =
-        cubes.empty() || std::any_of(cubes.begin(), cubes.end(), [&](const BoundingBox& cube) {
-          return holds(cube, part.positions[i]);
-        });
-    if (!inside) continue;
-    to.positions.push_back(part.positions[i]);
-    if (part.has_normals()) to.normals.push_back(part.normals[i]);
+  std::vector<std::uint32_t> inside;
+  for (std::uint32_t i = 0; i < part.size(); ++i) {
+    if (cubes.empty() || any_holds(cubes, part.positions[i])) inside.push_back(i);
   }
+  append_surface(part, inside, to);
 }
 
 }  // namespace
@@ -70,7 +61,7 @@ PointCloud read_dense_sample(std::span<const Vec3> sample, const Plan& plan,
   if (sample.size() < plan.points()) cubes = choose_cubes(sample, plan);
   const auto is_wanted = [&](const Chunk& chunk) {
     return cubes.empty() || std::any_of(cubes.begin(), cubes.end(), [&](const BoundingBox& cube) {
-             return meet(cube, chunk.box);
+             return cube.meets(chunk.box);
            });
   };
   PointCloud dense;

@@ -159,6 +159,13 @@ std::unique_ptr<io::PartReader> open_planned(const PlannedInput& input) {
   return reader;
 }
 
+PointCloud read_finished(const io::PartReader& reader, std::size_t chunk) {
+  PointCloud part = reader.read(chunk);
+  io::PartTally known;
+  io::finish_part(part, known);
+  return part;
+}
+
 PointCloud read_chunk(const io::PartReader& reader, const PlannedInput& input, std::size_t chunk) {
   PointCloud part = reader.read(chunk);
   if (digest_of(part) != input.chunks[chunk].digest) {
@@ -268,9 +275,13 @@ PointCloud outline_of(const Plan& plan) {
   return outline;
 }
 
-void append_points(const PointCloud& from, std::span<const std::uint32_t> chosen, PointCloud& to) {
+void append_surface(const PointCloud& from, std::span<const std::uint32_t> chosen, PointCloud& to) {
   append_rows(from.positions, chosen, to.positions);
   append_rows(from.normals, chosen, to.normals);
+}
+
+void append_points(const PointCloud& from, std::span<const std::uint32_t> chosen, PointCloud& to) {
+  append_surface(from, chosen, to);
   append_rows(from.colours, chosen, to.colours);
   append_rows(from.labels, chosen, to.labels);
   append_rows(from.stored_normals, chosen, to.stored_normals);

@@ -49,6 +49,12 @@ void settle_columns(const std::vector<IndexedInput>& inputs, Plan& plan);
 /// What the tiles get beside points, from the first input, and their columns.
 PointCloud outline_of(const Plan& plan);
 
+/// Chunk `chunk` of a file that is not an input of the plan, finished.
+PointCloud read_finished(const io::PartReader& reader, std::size_t chunk);
+
+/// Appends positions and normals, if there are any, of the points numbered `chosen`.
+void append_surface(const PointCloud& from, std::span<const std::uint32_t> chosen, PointCloud& to);
+
 /// Appends the points numbered `chosen`; columns that only `from` has are left out unless `to` has
 /// no points yet.
 void append_points(const PointCloud& from, std::span<const std::uint32_t> chosen, PointCloud& to);

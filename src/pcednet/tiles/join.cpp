@@ -27,10 +27,7 @@ class TileStream {
       const auto reader = open_chunks(tile.output);
       reader->set_narrow_colours(narrow_);
       for (std::size_t p = 0; p < reader->parts(); ++p) {
-        PointCloud part = reader->read(p);
-        io::PartTally known;
-        io::finish_part(part, known);
-        if (!visit(part)) return;
+        if (!visit(read_finished(*reader, p))) return;
       }
     }
   }

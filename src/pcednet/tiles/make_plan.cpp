@@ -7,6 +7,9 @@
 
 #include "pcednet/core/error.h"
 #include "pcednet/core/version.h"
+#include "pcednet/detect/boundary.h"
+#include "pcednet/detect/context.h"
+#include "pcednet/normals/exact_planes.h"
 #include "pcednet/tiles/dense_sample.h"
 #include "pcednet/tiles/inputs.h"
 #include "pcednet/tiles/layout.h"
@@ -26,9 +29,6 @@ double reach_of(std::size_t neighbours, double mean_distance) {
   return 1.5 * mean_distance * std::sqrt(static_cast<double>(neighbours) / 10.0);
 }
 
-constexpr std::size_t kContextNeighbours = 32;
-constexpr std::size_t kBoundaryNeighbours = 24, kBoundaryRounds = 3;
-constexpr std::size_t kExactPlanes = 16;  ///< neighbours that planes of the normals may take
 /// The sign of a normal is decided by what it is connected with, mean distances around it.
 constexpr double kSignReach = 64.0;
 
@@ -41,15 +41,17 @@ void set_buffer(const detect::EdgeModel& model, const Spacing& spacing, Plan& pl
   const bool moves = model.descriptor.reconstruction == gls::Reconstruction::kSphereMls ||
                      model.descriptor.reconstruction == gls::Reconstruction::kPlaneMls;
   const double described = plan.s_max * (moves ? 2.0 : 1.0) + cells;
-  const std::size_t fitted = std::max(plan.normals.neighbours, kExactPlanes);
+  const std::size_t fitted = std::max(plan.normals.neighbours, normals::kExactNeighbours);
   const double normals =
       plan.normals.made ? reach_of(fitted, spacing.wide) + kSignReach * spacing.median : 0.0;
-  const double boundary = plan.model.boundary
-                              ? reach_of(kBoundaryNeighbours, spacing.wide) +
-                                    kBoundaryRounds * reach_of(kBoundaryNeighbours, spacing.median)
-                              : 0.0;
-  plan.reach =
-      plan.model.context && model.context ? reach_of(kContextNeighbours, spacing.wide) : 0.0;
+  const double boundary =
+      plan.model.boundary
+          ? reach_of(detect::kBoundaryNeighbours, spacing.wide) +
+                detect::kBoundaryRounds * reach_of(detect::kBoundaryNeighbours, spacing.median)
+          : 0.0;
+  plan.reach = plan.model.context && model.context
+                   ? reach_of(static_cast<std::size_t>(detect::kContextSizes.back()), spacing.wide)
+                   : 0.0;
   plan.buffer = std::max(plan.reach + described, boundary) + normals;
 }
 

@@ -19,16 +19,6 @@
 namespace pcednet::tiles {
 namespace {
 
-bool is_in(const BoundingBox& box, const Vec3& p) {
-  return box.min.x() <= p.x() && p.x() <= box.max.x() && box.min.y() <= p.y() &&
-         p.y() <= box.max.y();
-}
-
-bool meets(const BoundingBox& box, const BoundingBox& other) {
-  return box.min.x() <= other.max.x() && other.min.x() <= box.max.x() &&
-         box.min.y() <= other.max.y() && other.min.y() <= box.max.y();
-}
-
 /// Which points of a part are in the core of a tile, and which around it.
 struct Chosen {
   std::vector<std::uint32_t> core, around;
@@ -43,19 +33,11 @@ Chosen choose(const PointCloud& part, const Plan& plan, std::size_t tile, const 
       if (tile == 0) chosen.core.push_back(i);
     } else if (plan.grid.core_of(position) == std::array{wanted.column, wanted.row}) {
       chosen.core.push_back(i);
-    } else if (is_in(box, position)) {
+    } else if (box.holds(position)) {
       chosen.around.push_back(i);
     }
   }
   return chosen;
-}
-
-/// Positions and normals only.
-void append_seen(const PointCloud& part, std::span<const std::uint32_t> chosen, PointCloud& to) {
-  for (const std::uint32_t i : chosen) {
-    to.positions.push_back(part.positions[i]);
-    if (part.has_normals()) to.normals.push_back(part.normals[i]);
-  }
 }
 
 void add_core(const PointCloud& core, PointCloud& all) {
@@ -69,7 +51,7 @@ detect::PartOfCloud part_of(const Plan& plan, std::size_t tile, const TileCloud&
   part.wanted.assign(points.all.size(), 1);
   const BoundingBox near = plan.box_of(plan.tiles[tile], plan.reach);
   for (std::size_t i = points.core.size(); i < part.wanted.size(); ++i) {
-    part.wanted[i] = is_in(near, points.all.positions[i]) ? 1 : 0;
+    part.wanted[i] = near.holds(points.all.positions[i]) ? 1 : 0;
   }
   return part;
 }
@@ -110,12 +92,12 @@ TileCloud read_tile(const Plan& plan, std::size_t tile, const Progress* progress
   TileCloud points{.core = outline_of(plan), .all = {}};
   for (const PlannedInput& input : plan.inputs) {
     const auto is_wanted = [&](const Chunk& chunk) {
-      return meets(chunk.box, box) || (tile == 0 && chunk.not_finite > 0);
+      return box.meets(chunk.box) || (tile == 0 && chunk.not_finite > 0);
     };
     for_each_chunk(input, is_wanted, progress, [&](const PointCloud& part) {
       const Chosen chosen = choose(part, plan, tile, box);
       append_points(part, chosen.core, points.core);
-      append_seen(part, chosen.around, points.all);
+      append_surface(part, chosen.around, points.all);
     });
   }
   if (plan.inputs.size() > 1) points.core.scanners.clear();

@@ -73,9 +73,8 @@ class TileFinder {
 };
 
 /// Writes the points of the tiles [begin, end) to a file each, in the order of the inputs.
-void scatter(const fs::path& folder, const Plan& plan, std::size_t begin, std::size_t end,
-             const Progress* progress) {
-  const PointCloud outline = outline_of(plan);
+void scatter(const fs::path& folder, const Plan& plan, const PointCloud& outline, std::size_t begin,
+             std::size_t end, const Progress* progress) {
   std::deque<Copy> copies;  // stay where they are
   for (std::size_t id = begin; id < end; ++id) {
     copies.emplace_back(copy_path(folder, plan, id, "unsorted_"), plan, plan.tiles[id].points);
@@ -104,15 +103,13 @@ void scatter(const fs::path& folder, const Plan& plan, std::size_t begin, std::s
 }
 
 /// Writes the points of a scattered file along the curve, those that are not finite last.
-void sort_file(const fs::path& from, const fs::path& to, const Plan& plan) {
+void sort_file(const fs::path& from, const fs::path& to, const Plan& plan,
+               const PointCloud& outline) {
   const auto reader = open_chunks(from);
   reader->set_narrow_colours(plan.inputs.front().narrow_colours);
-  const PointCloud outline = outline_of(plan);
   PointCloud all = outline;
   for (std::size_t p = 0; p < reader->parts(); ++p) {
-    PointCloud part = reader->read(p);
-    io::PartTally known;
-    io::finish_part(part, known);
+    const PointCloud part = read_finished(*reader, p);
     std::vector<std::uint32_t> every(part.size());
     std::iota(every.begin(), every.end(), 0u);
     append_points(part, every, all);
@@ -135,14 +132,15 @@ void sort_file(const fs::path& from, const fs::path& to, const Plan& plan) {
 
 void sort_inputs(const fs::path& folder, Plan& plan, const Progress* progress) {
   make_folder(folder);
+  const PointCloud outline = outline_of(plan);
   for_each_block(plan.tiles.size(), kOpenFiles, [&](std::size_t begin, std::size_t end) {
-    scatter(folder, plan, begin, end, progress);
+    scatter(folder, plan, outline, begin, end, progress);
   });
   std::vector<PlannedInput> sorted;
   for (std::size_t id = 0; id < plan.tiles.size(); ++id) {
     throw_if_cancelled(progress);
     const fs::path path = copy_path(folder, plan, id, "");
-    sort_file(copy_path(folder, plan, id, "unsorted_"), path, plan);
+    sort_file(copy_path(folder, plan, id, "unsorted_"), path, plan, outline);
     std::vector<std::string> known;
     sorted.push_back(index_input(path, progress, known, [](const PointCloud&) {}).input);
     sorted.back().narrow_colours = plan.inputs.front().narrow_colours;
