@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "pcednet/core/random.h"
+#include "pcednet/core/run_with_threads.h"
 #include "support/expect_error.h"
 
 namespace pcednet {
@@ -115,6 +116,33 @@ TEST_F(ParallelBlocks, RunAtTheSameTime) {
     met += both || std::thread::hardware_concurrency() == 1;
   });
   EXPECT_EQ(met, 2);
+}
+
+/// How many threads take the blocks of parallel_blocks() under a bound.
+std::size_t threads_under(int bound) {
+  std::mutex mutex;
+  std::set<std::thread::id> threads;
+  run_with_threads(bound, [&] {
+    parallel_blocks(2000, 1, [&](std::size_t, std::size_t) {
+      const std::lock_guard lock(mutex);
+      threads.insert(std::this_thread::get_id());
+    });
+  });
+  return threads.size();
+}
+
+TEST_F(ParallelBlocks, KeepTheBoundOfTheirOwnCaller) {
+  set_thread_count(4);
+  std::vector<std::size_t> used(2);
+  {
+    std::jthread one([&] { used[0] = threads_under(1); });
+    std::jthread two([&] { used[1] = threads_under(2); });
+  }
+  EXPECT_EQ(used[0], 1U);
+  EXPECT_LE(used[1], 2U);
+  EXPECT_GE(threads_under(0), 1U);
+  EXPECT_ERROR(ErrorKind::kUsage,
+               run_with_threads(1, [] { throw Error(ErrorKind::kUsage, "as it came"); }));
 }
 
 }  // namespace

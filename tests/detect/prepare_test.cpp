@@ -5,6 +5,7 @@
 #include <string>
 
 #include "pcednet/core/random.h"
+#include "support/expect_error.h"
 
 namespace pcednet::detect {
 namespace {
@@ -136,6 +137,27 @@ TEST(Prepare, SaysFromHowManyPointsItEstimates) {
   for (Vec3& p : cloud.positions) p *= 1.0 + 0.015 * random.normal();
   EXPECT_NE(prepare(cloud).notes.at(0).find("estimated from the 48 nearest points"),
             std::string::npos);
+}
+
+TEST(Prepare, TakesArraysAsItTakesClouds) {
+  for (const std::size_t nth : {2U, 200U}) {
+    const PointCloud cloud = sphere(4000, nth);
+    const PreparedCloud of_cloud = prepare(cloud);
+    const PreparedCloud of_arrays = prepare(PointArrays{cloud.positions, cloud.normals});
+    EXPECT_EQ(of_arrays.positions.data(), cloud.positions.data());
+    EXPECT_EQ(of_arrays.made, of_cloud.made);
+    EXPECT_EQ(of_arrays.notes, of_cloud.notes);
+  }
+  const PointCloud cloud = sphere(4000, 2);
+  EXPECT_EQ(prepare(PointArrays{cloud.positions}).made.size(), 4000U);
+  EXPECT_ERROR(ErrorKind::kUsage,
+               prepare(PointArrays{cloud.positions, std::span(cloud.normals).first(3)}));
+
+  PointCloud scanned = cloud;
+  scanned.scanners = {{5, 5, 5}};
+  const std::vector<Vec3> scanners(cloud.size(), scanned.scanners.front());
+  EXPECT_EQ(prepare(PointArrays{cloud.positions, cloud.normals, scanners}).made,
+            prepare(scanned).made);
 }
 
 }  // namespace

@@ -3,9 +3,12 @@
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <memory>
+
+#include "pcednet/core/run_with_threads.h"
 
 namespace pcednet {
 namespace {
@@ -24,6 +27,11 @@ void set_thread_count(int threads) {
 int thread_count() {
   return static_cast<int>(
       tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
+}
+
+void run_with_threads(int threads, const std::function<void()>& work) {
+  if (threads <= 0) return work();
+  tbb::task_arena(threads).execute(work);
 }
 
 void parallel_blocks(std::size_t count, std::size_t block,

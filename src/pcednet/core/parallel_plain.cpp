@@ -8,12 +8,14 @@
 #include <vector>
 
 #include "pcednet/core/parallel.h"
+#include "pcednet/core/run_with_threads.h"
 
 namespace pcednet {
 namespace {
 
 std::atomic<int> wanted_threads = 0;
 thread_local bool is_worker = false;
+thread_local int own_threads = 0;  // of run_with_threads()
 
 }  // namespace
 
@@ -22,8 +24,18 @@ void set_thread_count(int threads) {
 }
 
 int thread_count() {
+  if (own_threads > 0) return own_threads;
   if (wanted_threads > 0) return wanted_threads;
   return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+}
+
+void run_with_threads(int threads, const std::function<void()>& work) {
+  struct Bound {
+    int before;
+    ~Bound() { own_threads = before; }
+  } const bound{own_threads};
+  if (threads > 0) own_threads = threads;
+  work();
 }
 
 void parallel_blocks(std::size_t count, std::size_t block,

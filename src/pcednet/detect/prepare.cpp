@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "pcednet/cloud/bounding_box.h"
 #include "pcednet/core/error.h"
@@ -26,15 +27,26 @@ constexpr double kWalls = 0.3;  // of one_sidedness()
 constexpr std::size_t kMended = 4;
 constexpr std::size_t kShareToOrient = 50;
 
+/// A cloud, as far as it is looked at.
+struct Points {
+  std::span<const Vec3> positions;
+  std::span<const Vec3> normals;                ///< may be empty
+  std::function<std::vector<Vec3>()> scanners;  ///< of every point, or of none
+
+  std::size_t size() const { return positions.size(); }
+  bool empty() const { return positions.empty(); }
+  bool has_normals() const { return !normals.empty(); }
+};
+
 struct Oriented {
   normals::PreparedNormals found;
   std::size_t faced;  ///< turned towards their scanner
 };
 
 /// Estimates the normals that are missing and orients all.
-Oriented complete_and_orient(const PointCloud& cloud, const PreparedCloud& prepared,
+Oriented complete_and_orient(const Points& cloud, const PreparedCloud& prepared,
                              const Progress* progress) {
-  const std::vector<Vec3> scanners = scanner_of_points(cloud);
+  const std::vector<Vec3> scanners = cloud.scanners();
   const auto is_known = [](const Vec3& place) { return place.allFinite(); };
   normals::PrepareOptions options = {.neighbours = static_cast<int>(prepared.decision.neighbours),
                                      .count_turned = cloud.has_normals(),
@@ -80,7 +92,7 @@ void use(Oriented&& oriented, const std::string& note, PreparedCloud& prepared) 
   prepared.normals = prepared.made;
 }
 
-void estimate(PreparedCloud& prepared, const PointCloud& cloud, const std::string& why,
+void estimate(PreparedCloud& prepared, const Points& cloud, const std::string& why,
               const Progress* progress) {
   Oriented oriented = complete_and_orient(cloud, prepared, progress);
   const std::string note = fmt::format("{}: estimated from the {} nearest points and {}", why,
@@ -89,7 +101,7 @@ void estimate(PreparedCloud& prepared, const PointCloud& cloud, const std::strin
 }
 
 /// The points that have another sign than before, or than most of their part before.
-std::size_t count_turned(const PointCloud& cloud, const Oriented& oriented) {
+std::size_t count_turned(const Points& cloud, const Oriented& oriented) {
   if (oriented.faced < cloud.size()) return oriented.found.orientation.turned;
   std::size_t turned = 0;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
@@ -99,7 +111,7 @@ std::size_t count_turned(const PointCloud& cloud, const Oriented& oriented) {
 }
 
 /// Orients the cloud's normals if their signs are mixed, see the header.
-void orient_mixed(PreparedCloud& prepared, const PointCloud& cloud, const Progress* progress) {
+void orient_mixed(PreparedCloud& prepared, const Points& cloud, const Progress* progress) {
   const normals::FlatPairs pairs(cloud.positions, cloud.normals, prepared.curve);
   const std::size_t opposed = pairs.opposed(cloud.normals);
   const double border = kBorder / std::sqrt(static_cast<double>(cloud.size()));
@@ -119,11 +131,8 @@ void orient_mixed(PreparedCloud& prepared, const PointCloud& cloud, const Progre
   prepared.reoriented = true;
 }
 
-}  // namespace
-
-PreparedCloud prepare(const PointCloud& cloud, const PrepareOptions& options,
-                      const Progress* progress) {
-  check_consistent(cloud);
+PreparedCloud prepare_points(const Points& cloud, const PrepareOptions& options,
+                             const Progress* progress) {
   if (cloud.empty()) throw Error(ErrorKind::kInsufficient, "the cloud has no points");
   PreparedCloud prepared;
   prepared.curve = spatial::curve_order(cloud.positions);
@@ -170,6 +179,27 @@ PreparedCloud prepare(const PointCloud& cloud, const PrepareOptions& options,
                     finite - usable, cloud.size()));
   }
   return prepared;
+}
+
+}  // namespace
+
+PreparedCloud prepare(const PointCloud& cloud, const PrepareOptions& options,
+                      const Progress* progress) {
+  check_consistent(cloud);
+  return prepare_points(
+      {cloud.positions, cloud.normals, [&cloud] { return scanner_of_points(cloud); }}, options,
+      progress);
+}
+
+PreparedCloud prepare(const PointArrays& cloud, const PrepareOptions& options,
+                      const Progress* progress) {
+  for (const auto vectors : {cloud.normals, cloud.scanners}) {
+    if (!vectors.empty()) normals::check_size(cloud.positions, vectors);
+  }
+  const auto scanners = [&cloud] {
+    return std::vector<Vec3>(cloud.scanners.begin(), cloud.scanners.end());
+  };
+  return prepare_points({cloud.positions, cloud.normals, scanners}, options, progress);
 }
 
 }  // namespace pcednet::detect

@@ -51,4 +51,15 @@ struct PreparedCloud {
 PreparedCloud prepare(const PointCloud& cloud, const PrepareOptions& options = {},
                       const Progress* progress = nullptr);
 
+/// The points of a cloud in arrays that belong to someone else: a vector per point, or none.
+struct PointArrays {
+  std::span<const Vec3> positions;
+  std::span<const Vec3> normals = {};   ///< unit or (0,0,0)
+  std::span<const Vec3> scanners = {};  ///< the place that saw the point, NaN where unknown
+};
+
+/// The same for arrays, which must outlive the result. Throws Error(kUsage) if their sizes differ.
+PreparedCloud prepare(const PointArrays& cloud, const PrepareOptions& options = {},
+                      const Progress* progress = nullptr);
+
 }  // namespace pcednet::detect
