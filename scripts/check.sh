@@ -9,7 +9,7 @@
 # Installs what is missing. About an hour on two cores; each check leaves its build in build/.
 set -eu
 cd "$(dirname "$0")/.."
-scripts/setup.sh test web check
+scripts/setup.sh test python web check
 [ $# -gt 0 ] || set -- format gcc clang tidy address threads
 
 # build PRESET: configures and builds it.
@@ -32,7 +32,10 @@ for check; do
       scripts/build_web.sh
       (cd web && npm run --silent check)
       ;;
-    gcc) build dev ;;
+    gcc)
+      cmake --preset dev -DPCEDNET_PYTHON_MODULE=ON >/dev/null
+      build dev
+      ;;
     clang)
       cmake --preset clang >/dev/null
       cmake --build --preset clang --target rooms

@@ -2,7 +2,7 @@
 # Installs what is missing, builds, and runs the whole test suite.
 set -eu
 cd "$(dirname "$0")/.."
-scripts/setup.sh test web
+scripts/setup.sh test python web
 
 echo "== web pages"
 scripts/build_web.sh
@@ -12,7 +12,7 @@ echo "== other readers, from npm"
   echo "not installed: their tests are skipped, which fails in the end"
 
 echo "== release build"
-cmake --preset release -DPCEDNET_TESTS=ON
+cmake --preset release -DPCEDNET_TESTS=ON -DPCEDNET_PYTHON_MODULE=ON
 cmake --build --preset release
 
 echo "== a few seconds of fuzzing"

@@ -31,7 +31,7 @@ int thread_count() {
 
 void run_with_threads(int threads, const std::function<void()>& work) {
   if (threads <= 0) return work();
-  tbb::task_arena(threads).execute(work);
+  tbb::task_arena(std::min(threads, thread_count())).execute(work);
 }
 
 void parallel_blocks(std::size_t count, std::size_t block,

@@ -1,0 +1,26 @@
+"""Edges in 3D point clouds.
+
+>>> import pcednet
+>>> result = pcednet.classify(xyz)                     # (n, 3) positions of any kind
+>>> sharp = xyz[result.labels == 2]
+>>> pcednet.lines(xyz, result).write("edges.dxf")
+
+Arrays go in and come out whole, in the input's order. Work is done on every core without Python's
+lock; Ctrl-C stops it; what deserves a look is a warning.
+"""
+
+from ._clouds import Cloud, generate, read, write
+from ._core import Curve, __version__
+from ._lines import Lines, lines
+from ._models import (Model, Result, Scores, classify, describe, estimate_normals, evaluate,
+                      shipped_models, train)
+from .errors import (Error, ExistsError, FailureError, InsufficientError, MissingFileError,
+                     ModelError, PcednetWarning, UnreadableError, UsageError)
+
+NON_EDGE, SMOOTH_EDGE, SHARP_EDGE, BOUNDARY, UNLABELLED = 0, 1, 2, 3, 255
+
+__all__ = ["classify", "describe", "train", "evaluate", "estimate_normals", "lines", "generate",
+           "read", "write", "shipped_models", "Model", "Result", "Cloud", "Curve", "Lines",
+           "Scores", "NON_EDGE", "SMOOTH_EDGE", "SHARP_EDGE", "BOUNDARY", "UNLABELLED", "Error",
+           "UsageError", "ExistsError", "UnreadableError", "MissingFileError",
+           "InsufficientError", "ModelError", "FailureError", "PcednetWarning", "__version__"]

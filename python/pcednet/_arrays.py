@@ -1,0 +1,158 @@
+"""From what callers have to the arrays that the extension takes."""
+
+import contextlib
+import os
+import sys
+import warnings
+
+import numpy as np
+
+from .errors import PcednetWarning, UsageError
+
+CLASSES = {"non-edge": 0, "smooth-edge": 1, "sharp-edge": 2, "boundary": 3, "unlabelled": 255}
+SHORT = {"plain": 0, "smooth": 1, "sharp": 2}
+
+
+def numbers(values, name):
+    """`values` as an array of real numbers, of whatever type; masked ones become NaN."""
+    if isinstance(values, np.ma.MaskedArray):
+        values = values.astype(np.float64).filled(np.nan)
+    try:
+        array = np.asarray(values)
+        if array.dtype == object or array.dtype.kind in "US":
+            array = array.astype(np.float64)
+    except (TypeError, ValueError) as error:
+        raise UsageError(f"{name}: not an array of numbers: {error}") from None
+    if array.dtype.kind not in "fiub":
+        raise UsageError(f"{name}: real numbers are needed, not {array.dtype}")
+    return array
+
+
+def vectors(values, name, rows=None):
+    """`values` as (n, 3) float64, without a copy where they are so already."""
+    array = numbers(values, name)
+    if array.size == 0 and array.ndim <= 2:
+        array = array.reshape(0, 3)
+    if array.ndim != 2 or array.shape[1] != 3:
+        raise UsageError(f"{name}: shape (n, 3) is needed, not {array.shape}")
+    if rows is not None and len(array) != rows:
+        raise UsageError(f"{name}: {len(array)} rows for {rows} points")
+    return np.require(array, np.float64, ["C", "A"])
+
+
+def optional_vectors(values, name, rows):
+    return None if values is None else vectors(values, name, rows)
+
+
+def scanners(places, rows):
+    """The place that saw each point, from one place for all or one for each; None if unknown."""
+    if places is None:
+        return None
+    array = numbers(places, "viewpoint")
+    if array.shape == (3,):
+        array = np.broadcast_to(array, (rows, 3))
+    array = vectors(array, "viewpoint", rows)
+    return array if np.isfinite(array).all(axis=1).any() else None
+
+
+def class_number(name):
+    """The number of a class from its name or number."""
+    if isinstance(name, str):
+        for known, number in {**CLASSES, **SHORT}.items():
+            if name == known:
+                return number
+        raise UsageError(f"class {name!r}: there are {', '.join(CLASSES)}")
+    number = int(name)
+    if number not in CLASSES.values():
+        raise UsageError(f"class {number}: there are {', '.join(map(str, CLASSES.values()))}")
+    return number
+
+
+def labels(values, rows, name="labels"):
+    """One class per point as (n,) uint8: from an array of classes (-1 and 255 are unlabelled), or
+    from a dict that gives the indices, or the mask, of the points of each class."""
+    if isinstance(values, dict):
+        array = np.full(rows, 255, np.uint8)
+        for key, some in values.items():
+            array[indices(some, rows, f"{name}[{key!r}]")] = class_number(key)
+        return array
+    array = numbers(values, name)
+    if array.ndim == 2 and 1 in array.shape:
+        array = array.reshape(-1)
+    if array.shape != (rows,):
+        raise UsageError(f"{name}: shape ({rows},) is needed, not {array.shape}")
+    if array.dtype == np.uint8:
+        return np.require(array, np.uint8, ["C", "A"])
+    wrong = ~np.isin(array, [-1, 0, 1, 2, 3, 255])
+    if wrong.any():
+        raise UsageError(f"{name}: {array[wrong][0]} is no class: 0 non-edge, 1 smooth-edge, "
+                         "2 sharp-edge, 3 boundary, 255 or -1 unlabelled")
+    return np.where(array == -1, 255, array).astype(np.uint8)
+
+
+def indices(some, rows, name):
+    array = np.asarray(some)
+    if array.dtype == bool:
+        if array.shape != (rows,):
+            raise UsageError(f"{name}: a mask of {array.shape} for {rows} points")
+        return array
+    if array.size == 0:
+        return np.zeros(0, np.int64)
+    if array.dtype.kind not in "iu" or array.ndim != 1:
+        raise UsageError(f"{name}: indices of points, or a mask, are needed")
+    if array.min() < 0 or array.max() >= rows:
+        raise UsageError(f"{name}: indices from 0 to {rows - 1} are possible")
+    return array
+
+
+def probabilities(values, rows, name):
+    if values is None:
+        return None
+    array = numbers(values, name)
+    if array.shape != (rows,):
+        raise UsageError(f"{name}: shape ({rows},) is needed, not {array.shape}")
+    return np.require(array, np.float32, ["C", "A"])
+
+
+def thread_count(threads):
+    if threads != int(threads) or not 0 <= threads <= 4096:
+        raise UsageError(f"threads: 0 (every core) to 4096, not {threads}")
+    return int(threads)
+
+
+@contextlib.contextmanager
+def reporting(progress):
+    """What the extension calls with (stage, fraction): `progress` itself, or what moves a bar in
+    tqdm's way. A class is made a bar of its own."""
+    if progress is None:
+        yield None
+        return
+    made = progress(total=100) if isinstance(progress, type) else None
+    bar = progress if made is None else made
+    if not (hasattr(bar, "update") and hasattr(bar, "total")):
+        if not callable(bar):
+            raise UsageError("progress: a function of (stage, fraction) or a bar of tqdm is needed")
+        yield bar
+        return
+
+    def move(stage, fraction):
+        bar.total = bar.total or 100
+        if hasattr(bar, "set_description"):
+            bar.set_description(stage, refresh=False)
+        bar.update(fraction * bar.total - bar.n)
+
+    try:
+        yield move
+    finally:
+        if made is not None:
+            made.close()
+
+
+def warn(notes):
+    """Each note as a warning at the line that called pcednet."""
+    package = os.path.dirname(__file__) + os.sep
+    depth, frame = 1, sys._getframe()
+    while frame is not None and frame.f_code.co_filename.startswith(package):
+        depth, frame = depth + 1, frame.f_back
+    for note in notes:
+        warnings.warn(note, PcednetWarning, stacklevel=depth)

@@ -1,0 +1,281 @@
+"""Clouds of points with their fields, in memory and in files."""
+
+import os
+
+import numpy as np
+
+from . import _arrays, _core
+from .errors import MissingFileError, UsageError
+
+
+class Cloud:
+    """The points of a file, or of arrays, with all their fields.
+
+    Wherever a function takes `xyz` it takes a Cloud as well, and uses its normals and scanners.
+
+    Parameters
+    ----------
+    xyz : array_like, (n, 3)
+        Positions. Kept as float64; files get float32 only where these are float32.
+    normals : array_like, (n, 3), optional
+        Of any length; files hold unit normals.
+    colours : array_like, (n, 3) uint8, optional
+    labels : array_like, (n,), optional
+        0 non-edge, 1 smooth-edge, 2 sharp-edge, 3 boundary, 255 unlabelled.
+    attributes : dict of str to array_like, (n,) or (n, k), optional
+        Other numbers of the points, by name.
+    name : str, optional
+
+    Attributes
+    ----------
+    xyz, normals, colours, labels, attributes, name
+        As the parameters; what is not known is None. Arrays may be changed in place or replaced.
+    comments : list of str
+    scanners : ndarray, (m, 3)
+        Where the scanners of an E57 stood; the attribute ``scan`` says which saw a point.
+    curves : list of Curve
+        The true edges of a generated cloud.
+    """
+
+    def __init__(self, xyz, normals=None, colours=None, labels=None, attributes=None, name=""):
+        self._is_float32 = getattr(xyz, "dtype", None) == np.float32
+        self._kept, self._kept_rows = None, 0
+        self.xyz = _arrays.vectors(xyz, "xyz")
+        self.normals = normals
+        self.colours = colours
+        self.labels = labels
+        self.attributes = dict(attributes or {})
+        self.comments = []
+        self.scanners = np.zeros((0, 3))
+        self.curves = []
+        self.name = name
+
+    @classmethod
+    def _of(cls, parts, name):
+        cloud = cls(parts["xyz"], parts["normals"], parts["colours"], parts["labels"],
+                    parts["attributes"], name)
+        cloud.comments, cloud.scanners = parts["comments"], parts["scanners"]
+        cloud._is_float32 = parts["is_float32"]
+        cloud._kept, cloud._kept_rows = parts["kept"], len(cloud)
+        return cloud
+
+    def __len__(self):
+        return len(self.xyz)
+
+    def __array__(self, dtype=None):
+        return np.asarray(self.xyz, dtype)
+
+    def __getitem__(self, name):
+        """The attribute `name`."""
+        return self.attributes[name]
+
+    def __setitem__(self, name, values):
+        self.attributes[name] = values
+
+    def __repr__(self):
+        fields = [name for name in ("normals", "colours", "labels")
+                  if getattr(self, name) is not None] + list(self.attributes)
+        return f"<Cloud {self.name!r}: {len(self)} points; {', '.join(fields) or 'no fields'}>"
+
+    def viewpoint(self):
+        """The place that saw each point, (n, 3) float64 with NaN where unknown; None if no
+        scanner is known."""
+        known = _arrays.vectors(self.scanners, "scanners")
+        scan = self.attributes.get("scan")
+        if not np.isfinite(known).all(axis=1).any() or (scan is None and len(known) > 1):
+            return None
+        scan = np.zeros(len(self)) if scan is None else np.asarray(scan, np.float64)
+        inside = (scan >= 0) & (scan < len(known))
+        places = np.full((len(self), 3), np.nan)
+        places[inside] = known[scan[inside].astype(np.int64)]
+        return places
+
+    def select(self, points):
+        """The Cloud of some points.
+
+        Parameters
+        ----------
+        points : array_like
+            Indices, or a mask of (n,) bool.
+
+        Returns
+        -------
+        Cloud
+            Without what belongs to the whole file: its records, faces and stored normals.
+        """
+        chosen = _arrays.indices(points, len(self), "points")
+        part = Cloud(self.xyz[chosen], name=self.name)
+        part._is_float32 = self._is_float32
+        for name in ("normals", "colours", "labels"):
+            values = getattr(self, name)
+            setattr(part, name, None if values is None else np.asarray(values)[chosen])
+        part.attributes = {name: np.asarray(values)[chosen]
+                           for name, values in self.attributes.items()}
+        part.comments, part.scanners = list(self.comments), self.scanners
+        return part
+
+
+def points_of(xyz, normals=None, viewpoint=None):
+    """Positions, normals and scanners of a call, from arrays or from a Cloud."""
+    if isinstance(xyz, Cloud):
+        normals = xyz.normals if normals is None else normals
+        viewpoint = xyz.viewpoint() if viewpoint is None else viewpoint
+        xyz = xyz.xyz
+    positions = _arrays.vectors(xyz, "xyz")
+    return (positions, _arrays.optional_vectors(normals, "normals", len(positions)),
+            _arrays.scanners(viewpoint, len(positions)))
+
+
+def existing(path):
+    path = os.fspath(path)
+    if not os.path.exists(path):
+        raise MissingFileError(f"{path}: no such file")
+    return path
+
+
+def read(path):
+    """Read a point file: PLY, PCD, OBJ, LAS, LAZ, COPC, E57 or text.
+
+    Parameters
+    ----------
+    path : str or path-like
+
+    Returns
+    -------
+    Cloud
+        In the order of the file. Normals are made unit, ``(0, 0, 0)`` where unusable.
+
+    Raises
+    ------
+    MissingFileError
+        There is no such file.
+    UnreadableError
+        It is truncated or not of a known format; the message has the line or byte.
+    InsufficientError
+        What it holds are not points with x, y and z.
+
+    Warns
+    -----
+    PcednetWarning
+        What the reader noticed, such as positions that are not finite.
+    """
+    path = existing(path)
+    parts, notes = _core.read(path)
+    _arrays.warn(f"{path}: {note}" for note in notes)
+    return Cloud._of(parts, os.path.splitext(os.path.basename(path))[0])
+
+
+def _parts_of(cloud):
+    rows = len(cloud)
+    colours = cloud.colours
+    if colours is not None:
+        colours = _arrays.numbers(colours, "colours")
+        if colours.dtype != np.uint8 or colours.shape != (rows, 3):
+            raise UsageError(f"colours: uint8 of shape ({rows}, 3) are needed, not {colours.dtype} "
+                             f"of {colours.shape}")
+        colours = np.require(colours, requirements=["C", "A"])
+    attributes = {}
+    for name, values in cloud.attributes.items():
+        array = _arrays.numbers(values, f"attribute {name}")
+        if array.ndim not in (1, 2) or len(array) != rows:
+            raise UsageError(f"attribute {name}: shape ({rows},) or ({rows}, k) is needed, not "
+                             f"{array.shape}")
+        wanted = {"b": np.dtype(np.uint8)}.get(array.dtype.kind, array.dtype.newbyteorder("="))
+        wanted = np.dtype(np.float32) if wanted == np.float16 else wanted
+        attributes[str(name)] = np.require(array, wanted, ["C", "A"])
+    return {"xyz": _arrays.vectors(cloud.xyz, "xyz"),
+            "normals": _arrays.optional_vectors(cloud.normals, "normals", rows),
+            "colours": colours,
+            "labels": None if cloud.labels is None else _arrays.labels(cloud.labels, rows),
+            "attributes": attributes, "comments": [str(line) for line in cloud.comments],
+            "scanners": _arrays.vectors(cloud.scanners, "scanners"),
+            "kept": cloud._kept if rows == cloud._kept_rows else None, "is_float32": cloud._is_float32}
+
+
+def write(path, xyz, result=None, *, normals=None, colours=None, labels=None, attributes=None,
+          class_colours=False, ascii=False, overwrite=False):
+    """Write a point file in the format of its extension: .ply, .pcd, .las, .laz, .copc.laz, .obj,
+    .xyz, .txt, .asc, .pts or .csv.
+
+    The file gets its name only when it is complete.
+
+    Parameters
+    ----------
+    path : str or path-like
+    xyz : Cloud or array_like, (n, 3)
+        The points. A Cloud that was read keeps everything that its file held, coordinates bit for
+        bit. From an array, float32 coordinates are written as float32, others as float64.
+    result : Result, optional
+        Adds class and probabilities, under the names that ``pcednet classify`` gives them.
+    normals, colours, labels, attributes : optional
+        With an array of points: as in Cloud.
+    class_colours : bool
+        Colour the points by class even if they have colours.
+    ascii : bool
+        Numbers as text in formats that have both.
+    overwrite : bool
+        Replace an existing file.
+
+    Raises
+    ------
+    ExistsError
+        The file exists and `overwrite` is False.
+    UsageError
+        Another extension, or arrays that do not fit together.
+    FailureError
+        The disk takes no more, or the folder is not there.
+
+    Warns
+    -----
+    PcednetWarning
+        What the format cannot hold.
+    """
+    if isinstance(xyz, Cloud):
+        if any(part is not None for part in (normals, colours, labels, attributes)):
+            raise UsageError("write: set the fields of the Cloud instead")
+        cloud = xyz
+    else:
+        cloud = Cloud(xyz, normals, colours, labels, attributes)
+    parts = None
+    if result is not None:
+        if len(result.labels) != len(cloud):
+            raise UsageError(f"result: of {len(result.labels)} points, the cloud has {len(cloud)}")
+        parts = result._parts()
+    path = os.fspath(path)
+    losses = _core.write(path, _parts_of(cloud), parts, class_colours, ascii, overwrite)
+    _arrays.warn(f"{path} does not keep: {loss}" for loss in losses)
+
+
+def generate(name="default", seed=1, only=""):
+    """Labelled clouds of generated shapes, those that the shipped models are trained on.
+
+    Parameters
+    ----------
+    name : {'default', 'cad', 'worn', 'scan', 'varied', 'lines', 'sample'}
+        The set, as in ``pcednet generate``; ``'sample'`` is the building of the demo.
+    seed : int
+    only : str
+        Only the clouds with this in their names.
+
+    Yields
+    ------
+    Cloud
+        With ``name``, ``labels``, mostly ``normals``, and the true edges as ``curves``. Each is
+        made when it is asked for.
+
+    Raises
+    ------
+    UsageError
+        There is no such set, or no such cloud in it.
+    """
+    recipes = [recipe for recipe in _core.recipes(name, seed) if only in recipe.name]
+    if not recipes:
+        raise UsageError(f"generate: no cloud of {name} has {only!r} in its name")
+    return (_made(recipe) for recipe in recipes)
+
+
+def _made(recipe):
+    parts, curves = recipe.make()
+    cloud = Cloud._of(parts, recipe.name)
+    cloud.curves = curves
+    return cloud

@@ -1,0 +1,140 @@
+"""Edges as curves."""
+
+import os
+
+from . import _arrays, _clouds, _core
+from ._models import Result, classify
+from .errors import UsageError
+
+_SHORT = {1: "smooth", 2: "sharp", 3: "boundary"}
+_KINDS = ("segment", "arc", "circle", "polyline")
+
+
+class Lines(list):
+    """A list of Curve, in the unit and place of the cloud they were found in."""
+
+    kept = None
+
+    @property
+    def length(self):
+        """The length of all curves together."""
+        return sum(curve.length for curve in self)
+
+    def write(self, path, *, epsg=None, unit=None, tolerance=0.0, dxf_version="2000", view="top",
+              overwrite=False):
+        """Write the curves as the extension says: .dxf, .gpkg, .geojson, .obj, .ply or .svg.
+
+        Parameters
+        ----------
+        path : str or path-like
+        epsg : int, optional
+            Code of the coordinate system, for GeoPackage and GeoJSON. Unless given, that of the
+            LAS file that the cloud was read from.
+        unit : {'none', 'mm', 'cm', 'm', 'in', 'ft'}, optional
+            DXF: of the coordinates.
+        tolerance : float
+            How far the polylines that stand for arcs may be from them, in formats without arcs;
+            0: a thousandth of the radius.
+        dxf_version : {'2000', 'r12'}
+        view : {'top', 'front', 'side'}
+            SVG: where it is seen from.
+        overwrite : bool
+            Replace an existing file.
+
+        Raises
+        ------
+        ExistsError
+            The file exists and `overwrite` is False.
+        UsageError
+            Another extension.
+        """
+        settings = {"epsg": epsg, "unit": unit, "tolerance": float(tolerance),
+                    "dxf_version": str(dxf_version), "view": view, "overwrite": bool(overwrite)}
+        _core.write_lines(os.fspath(path), list(self), settings, self.kept)
+
+    def __repr__(self):
+        return f"<Lines: {len(self)} curves, length {self.length:.6g}>"
+
+
+def lines(xyz, labels=None, normals=None, *, p_sharp=None, p_smooth=None,
+          classes=("sharp", "boundary"), kinds=_KINDS, boundaries=False, min_length=0.0, gap=0.0,
+          angle=30.0, tolerance=0.0, regularise=False, min_confidence=0.0, stage="curves",
+          viewpoint=None, threads=0, progress=None):
+    """Draw the edges as curves that meet in corners: segments, arcs, circles and polylines.
+
+    The curves are those of ``pcednet lines``.
+
+    Parameters
+    ----------
+    xyz : array_like, (n, 3), or Cloud
+    labels : Result or array_like (n,), optional
+        A Result brings its normals and probabilities. None classifies the points first.
+    normals : array_like, (n, 3), optional
+        With an array of labels. Estimated if missing.
+    p_sharp, p_smooth : array_like, (n,), optional
+        With an array of labels: probabilities, for the curves' confidences.
+    classes : sequence of {'sharp', 'smooth', 'boundary'}
+        The classes to draw.
+    kinds : sequence of {'segment', 'arc', 'circle', 'polyline'}
+    boundaries : bool
+        Also draw where the surface ends, as on roofs.
+    min_length, gap, tolerance : float
+        In the unit of the cloud: leave out shorter curves; bridge gaps up to it; how far points
+        may be from their curve. 0: from the spacing.
+    angle : float
+        Degrees: curves are split where they bend by more.
+    regularise : bool
+        Make nearly parallel and nearly right angles exactly so.
+    min_confidence : float
+        Leave out curves whose points are edges with a lower mean probability.
+    stage : {'curves', 'pieces', 'chains', 'creases'}
+        Stop after a step and return what it found.
+    viewpoint, threads, progress
+        As in :func:`classify`.
+
+    Returns
+    -------
+    Lines
+        A list of Curve with ``write(path)``.
+
+    Raises
+    ------
+    UsageError, InsufficientError, KeyboardInterrupt
+        As :func:`classify`.
+    """
+    classes, kinds = _some(classes, _SHORT.values(), "classes"), _some(kinds, _KINDS, "kinds")
+    if labels is None:
+        labels = classify(xyz, normals, viewpoint=viewpoint, threads=threads, progress=progress)
+    positions, given, scanners = _clouds.points_of(xyz, normals, viewpoint)
+    rows = len(positions)
+    prepared = isinstance(labels, Result)
+    if prepared:
+        given = _arrays.vectors(labels.normals, "normals", rows)
+        p_sharp, p_smooth, labels = labels.p_sharp, labels.p_smooth, labels.labels
+    if p_sharp is None:
+        p_smooth = None
+    elif p_smooth is None:
+        p_smooth = [0.0] * rows
+    settings = {"min_length": float(min_length), "gap": float(gap), "angle": float(angle),
+                "tolerance": float(tolerance), "regularise": bool(regularise),
+                "boundaries": bool(boundaries), "stage": stage}
+    with _arrays.reporting(progress) as report:
+        curves, notes = _core.find_lines(
+            positions, given, scanners, prepared, _arrays.labels(labels, rows),
+            _arrays.probabilities(p_sharp, rows, "p_sharp"),
+            _arrays.probabilities(p_smooth, rows, "p_smooth"), settings, report,
+            _arrays.thread_count(threads))
+    _arrays.warn(notes)
+    found = Lines(curve for curve in curves
+                  if _SHORT[curve.label] in classes and curve.kind in kinds
+                  and curve.confidence >= min_confidence)
+    found.kept = xyz._kept if isinstance(xyz, _clouds.Cloud) else None
+    return found
+
+
+def _some(names, known, what):
+    names = [names] if isinstance(names, str) else list(names)
+    for name in names:
+        if name not in known:
+            raise UsageError(f"{what}: {name!r}: there are {', '.join(known)}")
+    return names

@@ -1,0 +1,102 @@
+#include "pcednet/detect/classify.h"
+
+#include <pybind11/stl.h>
+
+#include <algorithm>
+
+#include "bindings.h"
+#include "input_cloud.h"
+#include "models.h"
+#include "pcednet/core/blocks.h"
+#include "pcednet/detect/boundary.h"
+#include "pcednet/detect/describe.h"
+
+namespace pcednet::python {
+namespace {
+
+/// The normals of a prepared cloud as an array; those of the cloud itself are copied.
+py::array_t<double> normals_of(detect::PreparedCloud& prepared) {
+  if (!prepared.made.empty()) return give(std::move(prepared.made));
+  return give(std::vector<Vec3>(prepared.normals.begin(), prepared.normals.end()));
+}
+
+py::dict classify(const detect::EdgeModel& model, const Array<double>& xyz,
+                  const OptionalArray<double>& normals, const OptionalArray<double>& scanners,
+                  bool boundary, bool keep_orientation, const py::object& progress, int threads) {
+  detect::PreparedCloud prepared;
+  detect::Classification found;
+  std::optional<InputCloud> cloud;
+  run_job({progress, threads}, [&](const Progress* job) {
+    cloud.emplace(xyz, normals, scanners);
+    prepared = cloud->prepare({.keep_orientation = keep_orientation}, job);
+    found = detect::classify(prepared, model, job);
+    if (boundary) detect::mark_boundary(prepared, found, job);
+  });
+  if (!found.note.empty()) prepared.notes.push_back(found.note);
+  py::dict result;
+  result["made_normals"] = !prepared.made.empty();
+  result["normals"] = normals_of(prepared);
+  result["notes"] = prepared.notes;
+  result["scales"] = py::make_tuple(found.s_min, found.s_max);
+  result["labels"] = give(std::move(found.classes));
+  result["p_sharp"] = give(std::move(found.p_sharp));
+  result["p_smooth"] = give(std::move(found.p_smooth));
+  return result;
+}
+
+/// Describes every point into its row of `matrix`, which is all zeros; returns the scales.
+std::vector<double> describe_all(const detect::PreparedCloud& cloud,
+                                 const gls::ScaleSpaceOptions& descriptor,
+                                 std::vector<std::string>& notes, std::span<float> matrix,
+                                 const Progress* progress) {
+  const Progress cancel_only = without_report(progress);
+  const gls::ScaleSpace space({cloud.positions, cloud.normals, cloud.curve}, descriptor,
+                              &cancel_only);
+  const std::size_t width = detect::row_width(descriptor);
+  const auto order = space.order();
+  std::vector<float> rows(std::min(detect::kBlock, order.size()) * width);
+  Stage stage(progress, "describe", order.size());
+  for_each_block(order.size(), detect::kBlock, [&](std::size_t begin, std::size_t end) {
+    const auto points = order.subspan(begin, end - begin);
+    detect::describe(space, points, std::span(rows).first(points.size() * width), &cancel_only);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      std::copy_n(rows.begin() + static_cast<std::ptrdiff_t>(i * width), width,
+                  matrix.begin() + static_cast<std::ptrdiff_t>(points[i] * width));
+    }
+    stage.advance(points.size());
+  });
+  notes = cloud.notes;
+  if (const auto note = gls::note_on(descriptor, space.scales(), cloud.positions); !note.empty()) {
+    notes.push_back(note);
+  }
+  return space.scales();
+}
+
+py::tuple describe(const Array<double>& xyz, const OptionalArray<double>& normals,
+                   const OptionalArray<double>& scanners, bool keep_orientation,
+                   const py::dict& settings, const py::object& progress, int threads) {
+  const gls::ScaleSpaceOptions descriptor = descriptor_of(settings);
+  const auto points = static_cast<py::ssize_t>(vectors(xyz).size());
+  std::vector<float> matrix;
+  std::vector<double> scales;
+  std::vector<std::string> notes;
+  run_job({progress, threads}, [&](const Progress* job) {
+    const InputCloud cloud(xyz, normals, scanners);
+    const auto prepared = cloud.prepare({.keep_orientation = keep_orientation}, job);
+    matrix.resize(prepared.positions.size() * detect::row_width(descriptor));
+    scales = describe_all(prepared, descriptor, notes, matrix, job);
+  });
+  const auto count = static_cast<py::ssize_t>(scales.size());
+  const py::ssize_t columns = gls::column_count(descriptor);
+  return py::make_tuple(give<float>(std::move(matrix), {points, count, columns}),
+                        give(std::move(scales)), notes);
+}
+
+}  // namespace
+
+void add_classify(py::module_& module) {
+  module.def("classify", classify);
+  module.def("describe", describe);
+}
+
+}  // namespace pcednet::python

@@ -1,0 +1,186 @@
+#include "clouds.h"
+
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <cstring>
+#include <optional>
+
+#include "arrays.h"
+#include "bindings.h"
+#include "job.h"
+#include "pcednet/core/error.h"
+#include "pcednet/detect/result_cloud.h"
+#include "pcednet/formats/read_cloud.h"
+#include "pcednet/formats/write_cloud.h"
+
+namespace pcednet::python {
+namespace {
+
+py::array array_of(Attribute&& attribute, std::size_t points) {
+  const auto count = static_cast<py::ssize_t>(points);
+  std::vector<py::ssize_t> shape = {count};
+  if (attribute.components != 1) shape.push_back(static_cast<py::ssize_t>(attribute.components));
+  return visit_scalar(attribute.type, [&](auto zero) -> py::array {
+    return give<decltype(zero)>(std::move(attribute.bytes), shape);
+  });
+}
+
+/// The number type of an array; none if files have none such.
+std::optional<ScalarType> type_of(const py::dtype& dtype) {
+  for (int i = 0; i <= static_cast<int>(ScalarType::kFloat64); ++i) {
+    const auto type = static_cast<ScalarType>(i);
+    const py::dtype known =
+        visit_scalar(type, [](auto zero) { return py::dtype::of<decltype(zero)>(); });
+    if (dtype.kind() == known.kind() && dtype.itemsize() == known.itemsize()) return type;
+  }
+  return std::nullopt;
+}
+
+/// A C-contiguous array of a number type, a row per point.
+Attribute attribute_of(const std::string& name, const py::array& values) {
+  const auto type = type_of(values.dtype());
+  if (!type) {
+    throw Error(ErrorKind::kUsage, "attribute " + name + ": numbers of 8 to 64 bits are possible");
+  }
+  Attribute attribute{name, *type, 1, {}};
+  if (values.ndim() == 2) attribute.components = static_cast<std::size_t>(values.shape(1));
+  attribute.bytes.resize(static_cast<std::size_t>(values.nbytes()));
+  if (!attribute.bytes.empty()) {
+    std::memcpy(attribute.bytes.data(), values.data(), attribute.bytes.size());
+  }
+  return attribute;
+}
+
+std::vector<Vec3> copied(const py::handle& array) {
+  const auto found = vectors(array.cast<Array<double>>());
+  return {found.begin(), found.end()};
+}
+
+/// The other way round from take_apart(); without Kept coordinates are written as `position_type`.
+PointCloud put_together(const py::dict& parts) {
+  PointCloud cloud;
+  if (!parts["kept"].is_none()) {
+    cloud = *parts["kept"].cast<const Kept&>().cloud;
+  } else if (parts["is_float32"].cast<bool>()) {
+    cloud.position_type = ScalarType::kFloat32;
+  }
+  cloud.positions = copied(parts["xyz"]);
+  if (!parts["normals"].is_none()) {
+    cloud.normals = copied(parts["normals"]);
+    if (!normals_are_stored(cloud)) {
+      cloud.stored_normals.clear();
+      make_normals_unit(cloud);
+    }
+  }
+  if (!parts["colours"].is_none()) {
+    const auto colours = parts["colours"].cast<Array<std::uint8_t>>();
+    cloud.colours.resize(static_cast<std::size_t>(colours.size()) / 3);
+    if (colours.size() > 0) std::memcpy(cloud.colours.data(), colours.data(), colours.nbytes());
+  }
+  if (!parts["labels"].is_none()) {
+    const auto labels = parts["labels"].cast<Array<std::uint8_t>>();
+    cloud.labels.assign(labels.data(), labels.data() + labels.size());
+  }
+  for (const auto& [name, values] : parts["attributes"].cast<py::dict>()) {
+    cloud.attributes.push_back(
+        attribute_of(name.cast<std::string>(), py::reinterpret_borrow<py::array>(values)));
+  }
+  cloud.comments = parts["comments"].cast<std::vector<std::string>>();
+  cloud.scanners = copied(parts["scanners"]);
+  return cloud;
+}
+
+py::tuple read(const std::filesystem::path& path) {
+  io::LoadedCloud loaded;
+  run_job({py::none()}, [&](const Progress*) { loaded = formats::read_cloud(path); });
+  return py::make_tuple(take_apart(std::move(loaded.cloud)), loaded.warnings);
+}
+
+/// A result that goes into the cloud as the command line puts it there.
+struct ResultParts {
+  detect::PreparedCloud prepared = {};
+  detect::Classification found = {};
+  const detect::EdgeModel* model = nullptr;
+};
+
+ResultParts result_of(const py::dict& parts) {
+  ResultParts result{.model = parts["model"].cast<const detect::EdgeModel*>()};
+  if (parts["made_normals"].cast<bool>()) result.prepared.made = copied(parts["normals"]);
+  const auto copy = [&](const char* name, auto& values) {
+    using Number = typename std::remove_reference_t<decltype(values)>::value_type;
+    const auto given = parts[name].cast<Array<Number>>();
+    values.assign(given.data(), given.data() + given.size());
+  };
+  copy("labels", result.found.classes);
+  copy("p_sharp", result.found.p_sharp);
+  copy("p_smooth", result.found.p_smooth);
+  const auto scales = parts["scales"].cast<std::pair<double, double>>();
+  std::tie(result.found.s_min, result.found.s_max) = scales;
+  return result;
+}
+
+/// Returns what the format cannot hold.
+std::vector<std::string> write(const std::filesystem::path& path, const py::dict& parts,
+                               const std::optional<py::dict>& result, bool class_colours,
+                               bool ascii, bool overwrite) {
+  PointCloud cloud = put_together(parts);
+  io::WriteOptions options{.overwrite = overwrite ? Overwrite::kYes : Overwrite::kNo,
+                           .ascii = ascii};
+  std::optional<ResultParts> found;
+  if (result) found = result_of(*result);
+  std::vector<std::string> losses;
+  run_job({py::none()}, [&](const Progress*) {
+    if (found) {
+      detect::add_result(cloud, found->prepared, found->found, *found->model,
+                         {.class_colours = class_colours});
+      options.new_normals = found->prepared.made.empty();
+    }
+    check_consistent(cloud);
+    losses = formats::losses(path, cloud);
+    formats::write_cloud(path, cloud, options);
+  });
+  return losses;
+}
+
+}  // namespace
+
+py::dict take_apart(PointCloud&& cloud) {
+  const std::size_t points = cloud.size();
+  py::dict parts, attributes;
+  const auto optional = [](bool there, const auto& make) { return there ? make() : py::none(); };
+  const auto rows = static_cast<py::ssize_t>(points);
+  parts["normals"] =
+      optional(cloud.has_normals(), [&]() -> py::object { return give(std::move(cloud.normals)); });
+  parts["colours"] = optional(!cloud.colours.empty(), [&]() -> py::object {
+    return give<std::uint8_t>(std::move(cloud.colours), {rows, 3});
+  });
+  parts["labels"] =
+      optional(cloud.has_labels(), [&]() -> py::object { return give(std::move(cloud.labels)); });
+  for (Attribute& attribute : cloud.attributes) {
+    const py::str name(attribute.name);
+    attributes[name] = array_of(std::move(attribute), points);
+  }
+  parts["attributes"] = attributes;
+  parts["comments"] = cloud.comments;
+  parts["scanners"] = give(std::move(cloud.scanners));
+  parts["is_float32"] = cloud.position_type == ScalarType::kFloat32;
+  parts["xyz"] = give(std::move(cloud.positions));
+  cloud.positions = {};
+  cloud.normals = {};
+  cloud.colours = {};
+  cloud.labels = {};
+  cloud.attributes = {};
+  cloud.comments = {};
+  cloud.scanners = {};
+  parts["kept"] = Kept{std::make_shared<const PointCloud>(std::move(cloud))};
+  return parts;
+}
+
+void add_clouds(py::module_& module) {
+  py::class_<Kept>(module, "Kept");
+  module.def("read", read);
+  module.def("write", write);
+}
+
+}  // namespace pcednet::python

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include <memory>
+
+#include "pcednet/cloud/point_cloud.h"
+
+namespace pcednet::python {
+
+/// What a cloud of a file has besides its arrays: stored normals, other elements, records of LAS,
+/// the number type of its coordinates.
+struct Kept {
+  std::shared_ptr<const PointCloud> cloud;
+};
+
+/// The arrays of `cloud`, none of them copied, and the rest as Kept.
+pybind11::dict take_apart(PointCloud&& cloud);
+
+}  // namespace pcednet::python

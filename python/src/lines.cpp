@@ -1,0 +1,159 @@
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <array>
+#include <map>
+#include <string>
+
+#include "bindings.h"
+#include "clouds.h"
+#include "input_cloud.h"
+#include "pcednet/core/error.h"
+#include "pcednet/io/drawing/drawing.h"
+#include "pcednet/io/las/las.h"
+#include "pcednet/lines/find_lines.h"
+
+namespace pcednet::python {
+namespace {
+
+using lines::Curve;
+
+/// The value of that name, or an error that lists the names.
+template <typename Value>
+Value named(const std::map<std::string, Value>& values, const std::string& what,
+            const std::string& name) {
+  if (const auto found = values.find(name); found != values.end()) return found->second;
+  std::string names;
+  for (const auto& [known, value] : values) names += (names.empty() ? "" : ", ") + known;
+  throw Error(ErrorKind::kUsage, what + " \"" + name + "\": there are " + names);
+}
+
+lines::LineOptions options_of(const py::dict& settings) {
+  using enum lines::LineStage;
+  lines::LineOptions options;
+  options.min_length = settings["min_length"].cast<double>();
+  options.gap = settings["gap"].cast<double>();
+  options.angle = settings["angle"].cast<double>();
+  options.tolerance = settings["tolerance"].cast<double>();
+  options.regularise = settings["regularise"].cast<bool>();
+  options.boundaries = settings["boundaries"].cast<bool>();
+  options.stage = named<lines::LineStage>(
+      {{"creases", kCreases}, {"chains", kChains}, {"pieces", kPieces}, {"curves", kCurves}},
+      "stage", settings["stage"].cast<std::string>());
+  return options;
+}
+
+/// Curves, and notes on the normals. `prepared` says that the normals come from a classification.
+py::tuple find_lines(const Array<double>& xyz, const OptionalArray<double>& normals,
+                     const OptionalArray<double>& scanners, bool prepared,
+                     const Array<std::uint8_t>& labels, const OptionalArray<float>& p_sharp,
+                     const OptionalArray<float>& p_smooth, const py::dict& settings,
+                     const py::object& progress, int threads) {
+  const lines::LineOptions options = options_of(settings);
+  std::vector<Curve> curves;
+  std::vector<std::string> notes;
+  run_job({progress, threads}, [&](const Progress* job) {
+    const InputCloud cloud(xyz, normals, scanners);
+    lines::EdgePoints points{.positions = cloud.positions(),
+                             .normals = cloud.normals(),
+                             .classes = numbers(labels),
+                             .p_sharp = numbers(p_sharp),
+                             .p_smooth = numbers(p_smooth)};
+    detect::PreparedCloud made;
+    if (!prepared) {
+      made = cloud.prepare({}, job);
+      points.normals = made.normals;
+      points.curve = made.curve;
+      notes = made.notes;
+    }
+    curves = lines::find_lines(points, options, job);
+  });
+  return py::make_tuple(std::move(curves), notes);
+}
+
+io::DrawingOptions drawing_of(const py::dict& settings, const Kept* kept) {
+  using enum io::LengthUnit;
+  io::DrawingOptions options;
+  options.overwrite = settings["overwrite"].cast<bool>() ? Overwrite::kYes : Overwrite::kNo;
+  options.tolerance = settings["tolerance"].cast<double>();
+  options.dxf_version =
+      named<io::DxfVersion>({{"2000", io::DxfVersion::k2000}, {"r12", io::DxfVersion::kR12}},
+                            "dxf_version", settings["dxf_version"].cast<std::string>());
+  options.view = named<io::View>(
+      {{"top", io::View::kTop}, {"front", io::View::kFront}, {"side", io::View::kSide}}, "view",
+      settings["view"].cast<std::string>());
+  if (kept) options.coordinate_system = io::las_coordinate_system(*kept->cloud);
+  if (!settings["epsg"].is_none()) {
+    options.coordinate_system = {.epsg = settings["epsg"].cast<int>()};
+  }
+  if (options.coordinate_system.in_metres) options.unit = kMetre;
+  if (!settings["unit"].is_none()) {
+    options.unit = named<io::LengthUnit>({{"none", kNone},
+                                          {"mm", kMillimetre},
+                                          {"cm", kCentimetre},
+                                          {"m", kMetre},
+                                          {"in", kInch},
+                                          {"ft", kFoot}},
+                                         "unit", settings["unit"].cast<std::string>());
+  }
+  return options;
+}
+
+void write_lines(const std::filesystem::path& path, const std::vector<Curve>& curves,
+                 const py::dict& settings, const std::optional<Kept>& kept) {
+  const io::DrawingOptions options = drawing_of(settings, kept ? &*kept : nullptr);
+  run_job({py::none()}, [&](const Progress*) { io::write_drawing(path, curves, options); });
+}
+
+py::array_t<double> row(const Vec3& place) {
+  return py::array_t<double>(3, place.data());
+}
+
+}  // namespace
+
+void add_lines(py::module_& module) {
+  py::class_<Curve>(module, "Curve", "An edge as a curve, in the unit and place of its cloud.")
+      .def_property_readonly(
+          "kind", [](const Curve& curve) { return lines::name_of(curve.kind); },
+          "``'segment'``, ``'arc'``, ``'circle'`` or ``'polyline'``.")
+      .def_property_readonly(
+          "label", [](const Curve& curve) { return static_cast<int>(curve.edge_class); },
+          "Its class: 1 smooth-edge, 2 sharp-edge, 3 boundary.")
+      .def_property_readonly(
+          "points", [](const Curve& curve) { return give(std::vector<Vec3>(curve.points)); },
+          "(k, 3) float64: both ends of a segment or arc, one point of a circle, the vertices of "
+          "a polyline.")
+      .def_readonly("closed", &Curve::closed, "Whether it returns to its first point.")
+      .def_property_readonly(
+          "centre", [](const Curve& curve) { return row(curve.centre); },
+          "(3,) float64: of an arc or circle.")
+      .def_property_readonly(
+          "axis", [](const Curve& curve) { return row(curve.axis); },
+          "(3,) float64, unit: arcs and circles run counter-clockwise about it.")
+      .def_readonly("radius", &Curve::radius, "Of an arc or circle, else 0.")
+      .def_readonly("confidence", &Curve::confidence,
+                    "Mean probability of its points to be of an edge, 0 to 1.")
+      .def_readonly("dihedral_angle", &Curve::dihedral_angle,
+                    "Mean angle between the normals of its two surfaces, radians; 0: flat.")
+      .def_readonly("support", &Curve::support, "Edge points that it stands for.")
+      .def_property_readonly("length", lines::length_of, "Its length.")
+      .def(
+          "sampled",
+          [](const Curve& curve, double tolerance) {
+            if (!(tolerance > 0.0)) {
+              throw Error(ErrorKind::kUsage, "tolerance: a length above 0 is needed");
+            }
+            return give(lines::sampled(curve, tolerance));
+          },
+          py::arg("tolerance"),
+          "Vertices (k, 3) of a polyline nowhere farther from the curve than `tolerance`.")
+      .def("__repr__", [](const Curve& curve) {
+        return py::str("<Curve {} of class {}, length {:.6g}>")
+            .format(lines::name_of(curve.kind), static_cast<int>(curve.edge_class),
+                    lines::length_of(curve));
+      });
+  module.def("find_lines", find_lines);
+  module.def("write_lines", write_lines);
+}
+
+}  // namespace pcednet::python

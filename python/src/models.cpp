@@ -1,0 +1,136 @@
+#include "models.h"
+
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include "arrays.h"
+#include "bindings.h"
+#include "pcednet/core/error.h"
+#include "pcednet/nn/model_file.h"
+#include "pcednet/nn/predict.h"
+
+namespace pcednet::python {
+namespace {
+
+using detect::EdgeModel;
+
+gls::FeatureSet feature_set_of(int count) {
+  for (const gls::FeatureSet set : gls::feature_sets()) {
+    if (gls::feature_count(set) == count) return set;
+  }
+  throw Error(ErrorKind::kUsage, "features: 28, 7, 6, 4 or 3 numbers per scale are possible");
+}
+
+gls::Reconstruction reconstruction_named(const std::string& name) {
+  if (const auto found = gls::reconstruction_of(name)) return *found;
+  std::string names;
+  for (const std::string_view known : gls::reconstruction_names()) {
+    names += (names.empty() ? "" : ", ") + std::string(known);
+  }
+  throw Error(ErrorKind::kUsage, "reconstruction \"" + name + "\": there are " + names);
+}
+
+py::dict settings_of(const gls::ScaleSpaceOptions& options) {
+  py::dict settings;
+  settings["scales"] = options.scales;
+  settings["features"] = gls::feature_count(options.features);
+  settings["columns"] = gls::column_names(options);
+  settings["reconstruction"] =
+      gls::reconstruction_names()[static_cast<std::size_t>(options.reconstruction)];
+  settings["gate"] = options.side_gate;
+  settings["second_gate"] = options.second_gate;
+  settings["s_max_ratio"] = options.s_max_ratio;
+  return settings;
+}
+
+/// The tensors of a network by the names they have in a file.
+py::dict tensors_of(const nn::Model& model) {
+  py::dict tensors;
+  for (auto& [name, tensor] : nn::to_safetensors(model).tensors) {
+    tensors[py::str(name)] =
+        give<float>(std::vector<float>(tensor.values), {tensor.shape.begin(), tensor.shape.end()});
+  }
+  return tensors;
+}
+
+py::dict facts_of(const nn::Model& model) {
+  py::dict facts;
+  for (const auto& [key, value] : nn::to_safetensors(model).metadata) facts[py::str(key)] = value;
+  return facts;
+}
+
+py::array_t<float> predict(const nn::Model& model, const Array<float>& rows) {
+  std::vector<float> found = nn::predict(model, numbers(rows));
+  const auto classes = static_cast<py::ssize_t>(model.network.architecture.classes);
+  const auto samples = static_cast<py::ssize_t>(found.size()) / classes;
+  return give<float>(std::move(found), {samples, classes});
+}
+
+}  // namespace
+
+gls::ScaleSpaceOptions descriptor_of(const py::dict& settings) {
+  gls::ScaleSpaceOptions options;
+  const auto set = [&](const char* name, auto& value) {
+    if (settings.contains(name)) {
+      value = settings[name].cast<std::remove_reference_t<decltype(value)>>();
+    }
+  };
+  set("scales", options.scales);
+  set("s_min", options.s_min);
+  set("s_max", options.s_max);
+  set("s_max_ratio", options.s_max_ratio);
+  set("gate", options.side_gate);
+  set("second_gate", options.second_gate);
+  set("eps", options.eps);
+  if (settings.contains("features")) {
+    options.features = feature_set_of(settings["features"].cast<int>());
+  }
+  if (settings.contains("reconstruction")) {
+    options.reconstruction = reconstruction_named(settings["reconstruction"].cast<std::string>());
+  }
+  if (settings.contains("exact") && settings["exact"].cast<bool>()) {
+    options.engine = gls::Engine::kExact;
+  }
+  return options;
+}
+
+void add_models(py::module_& module) {
+  py::class_<nn::Model>(module, "Network")
+      .def_property_readonly("tensors", tensors_of)
+      .def_property_readonly("metadata", facts_of)
+      .def_property_readonly("weights",
+                             [](const nn::Model& model) { return model.network.parameters.size(); })
+      .def("predict", predict);
+  py::class_<EdgeModel>(module, "EdgeModel")
+      .def(py::init([](const std::filesystem::path& path) { return detect::load_model(path); }))
+      .def("save",
+           [](const EdgeModel& model, const std::filesystem::path& path, bool overwrite) {
+             detect::save_model(path, model, overwrite ? Overwrite::kYes : Overwrite::kNo);
+           })
+      .def("without_context",
+           [](EdgeModel model) {
+             model.context.reset();
+             return model;
+           })
+      .def("with_scales",
+           [](EdgeModel model, double s_min, double s_max, bool exact) {
+             model.descriptor.s_min = s_min;
+             model.descriptor.s_max = s_max;
+             if (exact) model.descriptor.engine = gls::Engine::kExact;
+             return model;
+           })
+      .def_readwrite("name", &EdgeModel::name)
+      .def_readonly("seed", &EdgeModel::seed)
+      .def_property_readonly("classes",
+                             [](const EdgeModel& model) {
+                               return std::vector<int>(model.classes.begin(), model.classes.end());
+                             })
+      .def_property_readonly("descriptor",
+                             [](const EdgeModel& model) { return settings_of(model.descriptor); })
+      .def_readonly("network", &EdgeModel::network)
+      .def_property_readonly(
+          "context", [](const EdgeModel& model) { return model.context; },
+          py::return_value_policy::copy);
+}
+
+}  // namespace pcednet::python

@@ -1,0 +1,151 @@
+#include "pcednet/detect/train.h"
+
+#include <pybind11/stl.h>
+
+#include <deque>
+
+#include "bindings.h"
+#include "input_cloud.h"
+#include "models.h"
+#include "pcednet/core/error.h"
+#include "workbench/annotate/adapt.h"
+
+namespace pcednet::python {
+namespace {
+
+/// A cloud to learn from, as the package hands it over.
+struct LabelledArrays {
+  std::string name;
+  Array<double> xyz;
+  OptionalArray<double> normals, scanners;
+  Array<std::uint8_t> labels;
+};
+
+std::vector<LabelledArrays> clouds_of(const py::list& list) {
+  std::vector<LabelledArrays> clouds;
+  for (const py::handle entry : list) {
+    const auto cloud = entry.cast<py::tuple>();
+    clouds.push_back({cloud[0].cast<std::string>(), cloud[1].cast<Array<double>>(),
+                      cloud[2].cast<OptionalArray<double>>(),
+                      cloud[3].cast<OptionalArray<double>>(),
+                      cloud[4].cast<Array<std::uint8_t>>()});
+  }
+  return clouds;
+}
+
+/// The clouds prepared, and what they look into.
+struct TrainingClouds {
+  std::deque<InputCloud> inputs;
+  std::vector<detect::TrainingCloud> clouds;
+  std::vector<std::string> notes;
+};
+
+void prepare(const std::vector<LabelledArrays>& arrays, bool keep_orientation,
+             TrainingClouds& prepared, const Progress* progress) {
+  for (const LabelledArrays& one : arrays) {
+    const InputCloud& input = prepared.inputs.emplace_back(one.xyz, one.normals, one.scanners);
+    prepared.clouds.push_back({one.name,
+                               input.prepare({.keep_orientation = keep_orientation}, progress),
+                               numbers(one.labels)});
+    for (const std::string& note : prepared.clouds.back().cloud.notes) {
+      prepared.notes.push_back(one.name + ": " + note);
+    }
+  }
+}
+
+nn::NetworkKind network_named(const std::string& name) {
+  if (name == "pcednet") return nn::NetworkKind::kPcednet;
+  if (name == "fc") return nn::NetworkKind::kFc;
+  if (name == "cnn") return nn::NetworkKind::kCnn;
+  throw Error(ErrorKind::kUsage, "network \"" + name + "\": there are pcednet, fc, cnn");
+}
+
+detect::TrainOptions options_of(const py::dict& settings) {
+  detect::TrainOptions options;
+  const auto recipe = settings["recipe"].cast<std::string>();
+  if (recipe != "adam" && recipe != "paper") {
+    throw Error(ErrorKind::kUsage, "recipe \"" + recipe + "\": there are adam, paper");
+  }
+  if (recipe == "paper") options.training = nn::paper_recipe();
+  options.descriptor = descriptor_of(settings["descriptor"]);
+  options.architecture.kind = network_named(settings["network"].cast<std::string>());
+  options.architecture.classes = settings["classes"].cast<int>();
+  options.context = settings["context"].cast<bool>();
+  options.teachers = settings["distil"].cast<int>();
+  options.training.balance = settings["balance"].cast<double>();
+  options.training.seed = settings["seed"].cast<std::uint64_t>();
+  if (!settings["epochs"].is_none()) options.training.epochs = settings["epochs"].cast<int>();
+  return options;
+}
+
+using History = std::vector<nn::EpochReport>;
+
+py::list list_of(const History& history) {
+  py::list epochs;
+  for (const nn::EpochReport& report : history) {
+    py::dict epoch;
+    epoch["epoch"] = report.epoch;
+    epoch["loss"] = report.training_loss;
+    if (!report.validation_confusion.empty()) {
+      epoch["validation_loss"] = report.validation_loss;
+      epoch["validation_accuracy"] = report.validation_accuracy;
+    }
+    epochs.append(epoch);
+  }
+  return epochs;
+}
+
+py::tuple train(const py::list& clouds, const std::string& name, bool keep_orientation,
+                const py::dict& settings, const py::object& progress, int threads) {
+  const auto arrays = clouds_of(clouds);
+  const detect::TrainOptions options = options_of(settings);
+  TrainingClouds prepared;
+  detect::TrainedModel trained;
+  History history;
+  run_job({progress, threads}, [&](const Progress* job) {
+    prepare(arrays, keep_orientation, prepared, job);
+    trained = detect::train(
+        name, prepared.clouds, options,
+        [&](const nn::EpochReport& report) { history.push_back(report); }, job);
+  });
+  std::vector<std::string>& notes = prepared.notes;
+  notes.insert(notes.end(), trained.notes.begin(), trained.notes.end());
+  if (!trained.no_context.empty()) {
+    notes.push_back("no context network was trained: " + trained.no_context);
+  }
+  return py::make_tuple(std::move(trained.model), list_of(history), notes);
+}
+
+/// What the annotator does with painted points: see annotate::adapt().
+py::tuple adapt(const detect::EdgeModel& model, const py::list& clouds, const std::string& name,
+                bool keep_orientation, std::uint64_t seed, const py::object& progress,
+                int threads) {
+  const auto arrays = clouds_of(clouds);
+  TrainingClouds prepared;
+  annotate::Adapted adapted;
+  History history;
+  run_job({progress, threads}, [&](const Progress* job) {
+    prepare(arrays, keep_orientation, prepared, job);
+    annotate::Subject subject;
+    std::vector<std::shared_ptr<const annotate::Described>> described;
+    std::vector<std::uint8_t> labels;
+    for (const detect::TrainingCloud& one : prepared.clouds) {
+      described.push_back(annotate::describe_once(one.cloud, model.descriptor, {}, job));
+      subject.clouds.push_back({*described.back(), one.cloud.positions, one.cloud.curve});
+      labels.insert(labels.end(), one.labels.begin(), one.labels.end());
+    }
+    adapted = annotate::adapt(
+        name, annotate::make_start(model, subject), subject, labels, seed,
+        [&](const nn::EpochReport& report) { history.push_back(report); }, job);
+  });
+  return py::make_tuple(std::move(adapted.model), list_of(history), prepared.notes);
+}
+
+}  // namespace
+
+void add_train(py::module_& module) {
+  module.def("train", train);
+  module.def("adapt", adapt);
+}
+
+}  // namespace pcednet::python
