@@ -109,6 +109,10 @@ class Model:
             The probability of each of ``classes``; rows sum to 1.
         """
         rows = _arrays.numbers(descriptors, "descriptors")
+        shape = (self.descriptor["scales"], len(self.descriptor["columns"]))
+        if rows.shape[1:] not in (shape, (shape[0] * shape[1],)):
+            raise UsageError(f"descriptors: shape (n, {shape[0]}, {shape[1]}) is needed, not "
+                             f"{rows.shape}")
         return self._core.network.predict(np.require(rows, np.float32, ["C", "A"]))
 
     @property

@@ -1,0 +1,91 @@
+"""pcednet.lines: the curves of the program, as objects and in files."""
+
+import pathlib
+import tempfile
+import unittest
+import warnings
+
+import numpy as np
+
+import pcednet
+from support import cube, run, write_ply
+
+
+class Lines(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        positions, normals, _ = cube(12_000)
+        cls.positions, cls.normals = positions, normals.astype(np.float32)
+        cls.result = pcednet.classify(cls.positions, cls.normals)
+        cls.lines = pcednet.lines(cls.positions, cls.result)
+
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+        warnings.simplefilter("ignore", pcednet.PcednetWarning)
+
+    def path(self, name):
+        return pathlib.Path(self.folder.name) / name
+
+    def test_a_cube_has_twelve_segments(self):
+        self.assertEqual(len(self.lines), 12)
+        self.assertAlmostEqual(self.lines.length, 12, delta=0.05)
+        for curve in self.lines:
+            self.assertEqual((curve.kind, curve.label, curve.closed), ("segment", 2, False))
+            self.assertAlmostEqual(curve.dihedral_angle, np.pi / 2, delta=0.1)
+            self.assertGreater(curve.confidence, 0.5)
+            self.assertGreater(curve.support, 10)
+            ends = curve.points
+            self.assertEqual(ends.shape, (2, 3))
+            self.assertAlmostEqual(np.linalg.norm(ends[1] - ends[0]), curve.length)
+            np.testing.assert_array_equal(curve.sampled(0.01), ends)
+            with self.assertRaises(pcednet.UsageError):
+                curve.sampled(0)
+
+    def test_files_are_those_of_the_program(self):
+        write_ply(self.path("in.ply"), self.positions, self.normals, position_type="double")
+        cloud = pcednet.read(self.path("in.ply"))
+        for options, found in (
+                ([], pcednet.lines(cloud)),
+                (["--class", "sharp,smooth", "--kind", "segment", "--regularise", "--angle", 20],
+                 pcednet.lines(cloud, pcednet.classify(cloud), classes=("sharp", "smooth"),
+                               kinds="segment", regularise=True, angle=20)),
+                (["--stage", "creases", "--min-confidence", "0.8"],
+                 pcednet.lines(cloud, stage="creases", min_confidence=0.8))):
+            for ending in ("dxf", "geojson", "gpkg", "svg", "obj", "ply"):
+                theirs, ours = self.path(f"theirs.{ending}"), self.path(f"ours.{ending}")
+                if ending in ("dxf", "obj") or not options:
+                    run("lines", self.path("in.ply"), "-o", theirs, "--overwrite", *options)
+                    found.write(ours, overwrite=True)
+                    self.assertEqual(ours.read_bytes(), theirs.read_bytes(), ending)
+
+    def test_labels_of_ones_own_are_drawn(self):
+        given = pcednet.lines(self.positions, self.result.labels, self.normals,
+                              p_sharp=self.result.p_sharp, p_smooth=self.result.p_smooth)
+        self.assertEqual(len(given), 12)
+        self.assertEqual(pcednet.lines(self.positions, np.zeros(12_000, np.uint8)), [])
+        with self.assertRaises(pcednet.UsageError):
+            pcednet.lines(self.positions, self.result.labels[1:])
+
+    def test_the_coordinate_system_goes_along(self):
+        found = pcednet.lines(self.positions, self.result)
+        found.write(self.path("a.gpkg"), epsg=25832)
+        self.assertIn(b"25832", self.path("a.gpkg").read_bytes())
+        found.write(self.path("a.dxf"), unit="mm", dxf_version="r12")
+        with self.assertRaises(FileExistsError):
+            found.write(self.path("a.dxf"))
+        for wrong in ({"unit": "mile"}, {"view": "below"}, {"dxf_version": "9"}):
+            with self.assertRaisesRegex(pcednet.UsageError, "there are"):
+                found.write(self.path("b.dxf"), **wrong)
+        with self.assertRaises(pcednet.UsageError):
+            found.write(self.path("b.dwg"))
+
+    def test_wrong_choices_are_refused(self):
+        for wrong in ({"classes": ["crease"]}, {"kinds": "spline"}, {"stage": "end"},
+                      {"gap": -1.0}):
+            with self.assertRaises(pcednet.UsageError):
+                pcednet.lines(self.positions, self.result, **wrong)
+
+
+if __name__ == "__main__":
+    unittest.main()
