@@ -6,7 +6,7 @@ add_library(pcednet_all INTERFACE)
 add_library(pcednet::pcednet ALIAS pcednet_all)
 set_target_properties(pcednet_all PROPERTIES EXPORT_NAME pcednet)
 target_link_libraries(pcednet_all INTERFACE pcednet_detect pcednet_lines)
-install(TARGETS pcednet_all EXPORT pcednetTargets)
+install(TARGETS pcednet_all EXPORT pcednetTargets COMPONENT dev)
 
 # What a program may include: these headers include no others of pcednet, see tests/house.
 set(public_headers
@@ -24,16 +24,17 @@ set(public_headers
   nn/training_set.h)
 foreach(header ${public_headers})
   cmake_path(GET header PARENT_PATH folder)
-  install(FILES src/pcednet/${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/pcednet/${folder})
+  install(FILES src/pcednet/${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/pcednet/${folder}
+          COMPONENT dev)
 endforeach()
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/pcednet)
-install(EXPORT pcednetTargets NAMESPACE pcednet:: DESTINATION ${package_dir})
-install(EXPORT pcednet_formatsTargets NAMESPACE pcednet:: DESTINATION ${package_dir})
+install(EXPORT pcednetTargets NAMESPACE pcednet:: DESTINATION ${package_dir} COMPONENT dev)
+install(EXPORT pcednet_formatsTargets NAMESPACE pcednet:: DESTINATION ${package_dir} COMPONENT dev)
 configure_package_config_file(cmake/pcednetConfig.cmake.in pcednetConfig.cmake
                               INSTALL_DESTINATION ${package_dir})
 write_basic_package_version_file(pcednetConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/pcednetConfig.cmake ${PROJECT_BINARY_DIR}/pcednetConfigVersion.cmake
-        DESTINATION ${package_dir})
-install(DIRECTORY models/ DESTINATION ${CMAKE_INSTALL_DATADIR}/pcednet/models
+        DESTINATION ${package_dir} COMPONENT dev)
+install(DIRECTORY models/ DESTINATION ${CMAKE_INSTALL_DATADIR}/pcednet/models COMPONENT program
         FILES_MATCHING PATTERN "*.safetensors" PATTERN "*.md")

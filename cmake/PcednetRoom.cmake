@@ -13,7 +13,7 @@ function(pcednet_room name)
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${flat})
   set_property(GLOBAL APPEND PROPERTY PCEDNET_ROOMS ${target})
   install(TARGETS ${target} EXPORT ${PCEDNET_COMPONENT}Targets
-          ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+          ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT dev)
 endfunction()
 
 function(workbench_room name)

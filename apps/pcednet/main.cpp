@@ -18,9 +18,9 @@ namespace {
 int run(int argc, char** argv) {
   CLI::App app{
       "pcednet finds edges in 3D point clouds.\n\nExamples:\n"
-      "  pcednet classify scan.ply              labels and confidences in scan_edges.ply\n"
-      "  pcednet classify folder/ --out-dir out every point file of a folder\n"
-      "  pcednet lines scan.ply -o edges.dxf    edges as segments, arcs, circles and polylines\n"
+      "  pcednet classify scan.ply                labels and confidences in scan_edges.ply\n"
+      "  pcednet classify folder/ --out-dir out   every point file of a folder\n"
+      "  pcednet lines scan.ply -o edges.dxf      edges as segments, arcs, circles and polylines\n"
       "  pcednet train painted.ply -o my.safetensors\n"};
   app.formatter(std::make_shared<HelpFormatter>());
   app.set_version_flag("--version", std::string("pcednet ") + kVersion);

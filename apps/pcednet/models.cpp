@@ -1,6 +1,7 @@
 #include "models.h"
 
 #include <fmt/format.h>
+#include <sys/auxv.h>
 
 #include <CLI/CLI.hpp>
 #include <vector>
@@ -16,7 +17,9 @@ namespace fs = std::filesystem;
 /// Folders that may hold the shipped models, the likeliest first.
 std::vector<fs::path> model_folders() {
   std::error_code error;
-  const fs::path program = fs::read_symlink("/proc/self/exe", error);
+  fs::path program = fs::read_symlink("/proc/self/exe", error);
+  // Without /proc, as in a bare chroot, the kernel's word for what was started.
+  if (error) program = reinterpret_cast<const char*>(getauxval(AT_EXECFN));
   return {program.parent_path() / "../share/pcednet/models", PCEDNET_INSTALLED_MODELS,
           PCEDNET_SOURCE_MODELS};
 }
