@@ -3,8 +3,10 @@ reference of the documentation are made, so that these cannot say anything else.
 """
 
 import dataclasses
+import json
 import re
 import subprocess
+import sys
 
 COLUMN = 30  # where the descriptions of the help begin
 
@@ -123,3 +125,7 @@ def experiments(program):
     text = subprocess.run([program, "study", "list"], check=True, capture_output=True,
                           text=True).stdout
     return [line.split()[0] for line in text.splitlines() if line.strip()]
+
+
+if __name__ == "__main__":
+    json.dump(dataclasses.asdict(read_command(sys.argv[1])), sys.stdout)

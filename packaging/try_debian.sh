@@ -6,6 +6,7 @@ set -eu
 debs=${1:?usage: packaging/try_debian.sh FOLDER_OF_DEBS [CLOUD]}
 cloud=${2:-$(dirname "$0")/../examples/building.ply}
 root=$(mktemp -d)
+chmod 755 "$root"
 trap 'rm -rf "$root"' EXIT
 
 debootstrap --variant=minbase bookworm "$root" >"$root.log" || { cat "$root.log"; exit 1; }
