@@ -79,33 +79,57 @@ function resolve(file, link) {
   return null; // a folder: its name, without a link
 }
 
+/** The address of a picture of `file`, and its size, so that the page does not move when it comes. */
+function picture(file, link) {
+  const address = resolve(file, link);
+  const place = path.join(root, path.dirname(file), link);
+  const head = fs.existsSync(place) ? fs.readFileSync(place).subarray(16, 24) : Buffer.alloc(8);
+  return { address, width: head.readUInt32BE(0), height: head.readUInt32BE(4) };
+}
+
 const search = [];
 for (const page of pages.values()) {
-  const { html, headings } = markdown(page.source, (link) => resolve(page.file, link));
+  const { html, headings } = markdown(
+    page.source,
+    (link) => resolve(page.file, link),
+    (link) => picture(page.file, link),
+  );
   Object.assign(page, { html, headings, title: headings[0]?.text ?? page.address });
   anchors.set(page.address, new Set(headings.map((heading) => heading.id)));
   for (const part of html.split(/(?=<h[1-4] id=)/)) {
     const head = /^<h[1-4] id="(.*?)">(.*?)<\/h/s.exec(part);
     const text = textOf(part.replace(/^<h.*?<\/h\d>/s, ""));
-    search.push({ page: page.title, url: page.address + (head ? "#" + head[1] : ""), title: head ? textOf(head[2]) : page.title, text });
+    search.push({
+      page: page.title,
+      url: page.address + (head ? "#" + head[1] : ""),
+      title: head ? textOf(head[2]) : page.title,
+      text,
+    });
   }
 }
 for (const link of wanted) {
-  if (!anchors.get(link.address).has(link.anchor)) errors.push(`${link.from}: no heading #${link.anchor} in ${link.address}`);
+  if (!anchors.get(link.address).has(link.anchor))
+    errors.push(`${link.from}: no heading #${link.anchor} in ${link.address}`);
 }
 
 for (const section of menu) {
-  for (const link of section.links) Object.assign(link, { address: pages.get(link.file).address, title: pages.get(link.file).title });
+  for (const link of section.links)
+    Object.assign(link, { address: pages.get(link.file).address, title: pages.get(link.file).title });
 }
 fs.rmSync(out, { recursive: true, force: true });
 for (const folder of ["images", "source", "assets"]) fs.mkdirSync(path.join(out, folder), { recursive: true });
 const write = (name, text) => fs.writeFileSync(path.join(out, name), text);
 for (const page of pages.values()) write(page.address, layout({ menu, ...page, base: "" }));
 for (const file of sources) {
-  const language = { ".cpp": "cpp", ".h": "cpp", ".inc": "cpp", ".py": "python", ".sh": "sh", ".sbatch": "sh" }[path.extname(file)] ?? "text";
+  const language =
+    { ".cpp": "cpp", ".h": "cpp", ".inc": "cpp", ".py": "python", ".sh": "sh", ".sbatch": "sh" }[path.extname(file)] ??
+    "text";
   const fence = "`````";
   const { html } = markdown(`# ${file}\n\n${fence}${language}\n${read(file)}\n${fence}\n`, () => null);
-  write(`source/${file.replaceAll("/", "-")}.html`, layout({ menu, html, headings: [], title: file, address: "", base: "../" }));
+  write(
+    `source/${file.replaceAll("/", "-")}.html`,
+    layout({ menu, html, headings: [], title: file, address: "", base: "../" }),
+  );
 }
 for (const file of copied) fs.copyFileSync(path.join(root, file), path.join(out, "images", path.basename(file)));
 for (const file of ["style.css", "page.js"]) fs.copyFileSync(path.join(here, file), path.join(out, "assets", file));

@@ -5,7 +5,8 @@ function menuOf(menu, address, base) {
   return menu
     .map(({ title, links }) => {
       const items = links.map(
-        (link) => `<li><a href="${base}${link.address}"${link.address === address ? ' aria-current="page"' : ""}>${escape(link.title)}</a></li>`,
+        (link) =>
+          `<li><a href="${base}${link.address}"${link.address === address ? ' aria-current="page"' : ""}>${escape(link.title)}</a></li>`,
       );
       return `<h2>${escape(title)}</h2><ul>${items.join("")}</ul>`;
     })

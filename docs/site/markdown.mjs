@@ -3,7 +3,8 @@ import hljs from "highlight.js/lib/common";
 import katex from "katex";
 import MarkdownIt from "markdown-it";
 
-const escape = (text) => text.replace(/&/g, "&amp;").replace(/</g, "&lt;").replace(/>/g, "&gt;").replace(/"/g, "&quot;");
+const escape = (text) =>
+  text.replace(/&/g, "&amp;").replace(/</g, "&lt;").replace(/>/g, "&gt;").replace(/"/g, "&quot;");
 
 export function textOf(html) {
   const entities = { "&lt;": "<", "&gt;": ">", "&quot;": '"', "&#39;": "'", "&amp;": "&" };
@@ -16,10 +17,15 @@ export function textOf(html) {
 }
 
 /** The anchor of a heading: lower case, no punctuation, hyphens for spaces. */
-export const slug = (text) => text.toLowerCase().replace(/[^\p{L}\p{N} _-]/gu, "").replace(/ /g, "-");
+export const slug = (text) =>
+  text
+    .toLowerCase()
+    .replace(/[^\p{L}\p{N} _-]/gu, "")
+    .replace(/ /g, "-");
 
 // MathML alone: no fonts, no style sheet; all browsers of today show it.
-const formula = (text, displayMode) => katex.renderToString(text, { displayMode, output: "mathml", throwOnError: true });
+const formula = (text, displayMode) =>
+  katex.renderToString(text, { displayMode, output: "mathml", throwOnError: true });
 
 function highlight(code, language) {
   if (language === "math") return formula(code, true);
@@ -29,13 +35,22 @@ function highlight(code, language) {
 
 /** Code without the indent that all its lines share. */
 function dedent(code) {
-  const indents = code.split("\n").filter((line) => line.trim()).map((line) => /^ */.exec(line)[0].length);
+  const indents = code
+    .split("\n")
+    .filter((line) => line.trim())
+    .map((line) => /^ */.exec(line)[0].length);
   const least = Math.min(...(indents.length ? indents : [0]));
-  return code.split("\n").map((line) => line.slice(least)).join("\n");
+  return code
+    .split("\n")
+    .map((line) => line.slice(least))
+    .join("\n");
 }
 
-/** The page's HTML and headings. resolve(link) is the new address of a link, or null for none. */
-export function markdown(source, resolve) {
+/**
+ * The page's HTML and headings. resolve(link) is the new address of a link, or null for none; picture(link) the
+ * address and size of a PNG.
+ */
+export function markdown(source, resolve, picture) {
   const headings = [];
   const taken = new Map();
   const engine = new MarkdownIt({ html: true, linkify: false, typographer: false });
@@ -54,7 +69,10 @@ export function markdown(source, resolve) {
     return fence(tokens, i);
   };
   rules.heading_open = (tokens, i) => {
-    const text = tokens[i + 1].children.filter((child) => ["text", "code_inline"].includes(child.type)).map((child) => child.content).join("");
+    const text = tokens[i + 1].children
+      .filter((child) => ["text", "code_inline"].includes(child.type))
+      .map((child) => child.content)
+      .join("");
     const plain = slug(text);
     const count = taken.get(plain) ?? 0;
     taken.set(plain, count + 1);
@@ -65,8 +83,8 @@ export function markdown(source, resolve) {
   rules.table_open = () => '<div class="table"><table>\n';
   rules.table_close = () => "</table></div>\n";
   rules.image = (tokens, i, options, env, self) => {
-    const source = resolve(tokens[i].attrGet("src"));
-    return `<a class="picture" href="${source}"><img src="${source}" alt="${escape(self.renderInlineAsText(tokens[i].children, options, env))}" loading="lazy"></a>`;
+    const { address, width, height } = picture(tokens[i].attrGet("src"));
+    return `<a class="picture" href="${address}"><img src="${address}" width="${width}" height="${height}" alt="${escape(self.renderInlineAsText(tokens[i].children, options, env))}" loading="lazy"></a>`;
   };
   const open = [];
   rules.link_open = (tokens, i) => {

@@ -1,21 +1,33 @@
 // Menu on narrow screens, and the search. Plain scripts, so that both work from disk.
 (() => {
   const base = document.body.dataset.base;
-  const menu = document.getElementById("menu"), nav = document.getElementById("nav");
+  const menu = document.getElementById("menu"),
+    nav = document.getElementById("nav");
   menu.addEventListener("click", () => menu.setAttribute("aria-expanded", String(nav.classList.toggle("open"))));
 
-  const input = document.getElementById("search"), results = document.getElementById("results");
+  const input = document.getElementById("search"),
+    results = document.getElementById("results");
+  const unasked = new Set("a an and at be by for from how i in is it my of on or the to what with".split(" "));
   let index;
   const indexed = () => {
     if (index) return index;
     index = new MiniSearch({
-      fields: ["title", "page", "text"], storeFields: ["title", "page", "url", "text"], idField: "url",
+      fields: ["title", "page", "text"],
+      storeFields: ["title", "page", "url", "text"],
+      idField: "url",
       // Options are words, too: --s-max is found as it is and by its parts.
-      tokenize: (text) => text.split(/[\s.,;:()[\]{}"'`|=<>/]+/).flatMap((word) => {
-        const parts = word.split(/[-_]+/).filter(Boolean);
-        return parts.length > 1 ? [word.replace(/^-+/, ""), ...parts] : parts;
-      }),
-      searchOptions: { boost: { title: 4, page: 2 }, prefix: true, fuzzy: (term) => (term.length > 4 ? 0.2 : false), combineWith: "AND" },
+      tokenize: (text) =>
+        text.split(/[\s.,;:()[\]{}"'`|=<>/]+/).flatMap((word) => {
+          const parts = word.split(/[-_]+/).filter(Boolean);
+          return parts.length > 1 ? [word.replace(/^-+/, ""), ...parts] : parts;
+        }),
+      processTerm: (term) => (unasked.has(term.toLowerCase()) ? null : term.toLowerCase()),
+      searchOptions: {
+        boost: { title: 4, page: 2 },
+        prefix: true,
+        fuzzy: (term) => (term.length > 4 ? 0.2 : false),
+        combineWith: "AND",
+      },
     });
     const seen = new Set();
     index.addAll(window.pcednetPages.filter((part) => !seen.has(part.url) && seen.add(part.url)));
@@ -28,7 +40,13 @@
   };
   const marked = (text, terms) => {
     const line = document.createElement("p");
-    const pattern = new RegExp(`(${terms.map((term) => term.replace(/[^\p{L}\p{N}_-]/gu, "")).filter(Boolean).join("|")})`, "giu");
+    const pattern = new RegExp(
+      `(${terms
+        .map((term) => term.replace(/[^\p{L}\p{N}_-]/gu, ""))
+        .filter(Boolean)
+        .join("|")})`,
+      "giu",
+    );
     text.split(pattern).forEach((part, i) => {
       const piece = document.createElement(i % 2 ? "mark" : "span");
       piece.textContent = part;
@@ -65,7 +83,8 @@
       event.preventDefault();
       input.focus();
     }
-    const links = [...results.querySelectorAll("a")], at = links.indexOf(document.activeElement);
+    const links = [...results.querySelectorAll("a")],
+      at = links.indexOf(document.activeElement);
     if (results.hidden || !links.length || (at < 0 && document.activeElement !== input)) return;
     if (event.key === "ArrowDown") links[Math.min(at + 1, links.length - 1)].focus();
     else if (event.key === "ArrowUp") (at > 0 ? links[at - 1] : input).focus();

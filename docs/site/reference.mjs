@@ -22,9 +22,25 @@ function optionRow(option) {
 const everywhere = new Set(["--help", "--threads", "--progress", "--overwrite"]);
 
 function commandText(command, level) {
-  const lines = [`${"#".repeat(level)} ${command.words.join(" ")}`, "", `${command.summary}.`, "", "```sh", command.usage];
-  lines.push(...command.examples.filter((line) => line.startsWith("pcednet")).map((line) => line.replace(/ {3,}(.*)$/, "   # $1")), "```", "");
-  const options = [...command.positionals, ...command.options.filter((option) => level === 1 || !everywhere.has(option.names.at(-1)))];
+  const lines = [
+    `${"#".repeat(level)} ${command.words.join(" ")}`,
+    "",
+    `${command.summary}.`,
+    "",
+    "```sh",
+    command.usage,
+  ];
+  lines.push(
+    ...command.examples
+      .filter((line) => line.startsWith("pcednet"))
+      .map((line) => line.replace(/ {3,}(.*)$/, "   # $1")),
+    "```",
+    "",
+  );
+  const options = [
+    ...command.positionals,
+    ...command.options.filter((option) => level === 1 || !everywhere.has(option.names.at(-1))),
+  ];
   if (options.length) lines.push("| | value | |", "|---|---|---|", ...options.map(optionRow), "");
   return [lines.join("\n"), ...command.commands.map((one) => commandText(one, level + 1))].join("\n");
 }
@@ -59,7 +75,12 @@ function declarations(text) {
     const comment = lines.slice(0, first).map((line) => line.replace(/^\/\/\/ ?/, ""));
     const code = lines.slice(first);
     const inside = blocks.at(-1)?.open ?? 0;
-    const depth = (rows) => rows.join("").replace(/\/\/.*$/gm, "").split("").reduce((sum, c) => sum + (c === "{") - (c === "}"), 0);
+    const depth = (rows) =>
+      rows
+        .join("")
+        .replace(/\/\/.*$/gm, "")
+        .split("")
+        .reduce((sum, c) => sum + (c === "{") - (c === "}"), 0);
     if (inside > 0) {
       blocks.at(-1).code.push("", ...lines);
       blocks.at(-1).open = inside + depth(lines);

@@ -29,7 +29,18 @@ after(async () => {
 
 test("every page of the table is there and none loads anything from elsewhere", () => {
   const names = pages();
-  for (const name of ["index", "contents", "tutorial", "own-definition", "equations", "commands", "cpp", "changelog", "models", "bench"]) {
+  for (const name of [
+    "index",
+    "contents",
+    "tutorial",
+    "own-definition",
+    "equations",
+    "commands",
+    "cpp",
+    "changelog",
+    "models",
+    "bench",
+  ]) {
     assert.ok(names.includes(`${name}.html`), name);
   }
   const all = [...names, ...fs.readdirSync(path.join(site, "source")).map((name) => `source/${name}`)];
@@ -65,9 +76,14 @@ for (const width of [390, 1280]) {
       await tab.goto(address(name));
       const widest = await tab.evaluate(() => document.documentElement.scrollWidth);
       assert.ok(widest <= width, `${name} is ${widest} wide`);
-      const cut = await tab.evaluate(() => [...document.querySelectorAll("img")].filter((i) => i.complete && i.naturalWidth === 0).length);
+      const cut = await tab.evaluate(
+        () => [...document.querySelectorAll("img")].filter((i) => i.complete && i.naturalWidth === 0).length,
+      );
       assert.equal(cut, 0, `${name} lacks pictures`);
-      if (process.env.SCREENSHOTS && ["index.html", "tutorial.html", "equations.html", "commands.html", "gallery.html", "cpp.html"].includes(name)) {
+      if (
+        process.env.SCREENSHOTS &&
+        ["index.html", "tutorial.html", "equations.html", "commands.html", "gallery.html", "cpp.html"].includes(name)
+      ) {
         await tab.screenshot({ path: path.join(process.env.SCREENSHOTS, `${name}-${width}.png`) });
       }
     }
@@ -79,11 +95,19 @@ test("the search finds from disk what is asked, and leads there", async () => {
   const tab = await browser.newPage({ viewport: { width: 1280, height: 844 } });
   const problems = [];
   tab.on("pageerror", (error) => problems.push(error.message));
-  tab.on("request", (request) => request.url().startsWith("file:") || request.url().startsWith("data:") || problems.push(request.url()));
+  tab.on(
+    "request",
+    (request) => request.url().startsWith("file:") || request.url().startsWith("data:") || problems.push(request.url()),
+  );
   await tab.goto(address("tutorial.html"));
-  for (const [words, title] of [["calibration", /Calibration/], ["s-max", /scales|command/i], ["--min-confidence", /lines|confidence/i], ["voxell", /engine|voxel/i]]) {
+  for (const [words, title] of [
+    ["calibration", /Calibration/],
+    ["s-max", /scales|command/i],
+    ["--min-confidence", /lines|confidence/i],
+    ["voxell", /engine|voxel/i],
+  ]) {
     await tab.fill("#search", words);
-    const first = await tab.locator("#results a").first().innerText();
+    const first = await tab.locator("#results a").first().innerText({ timeout: 5000 });
     assert.match(first, title, words);
   }
   await tab.fill("#search", "zzzzqqq");
