@@ -23,9 +23,14 @@ for model in ${*:-general scan cad worn}; do
       generate "${set%:*}" "${set#*:}"
       clouds="$clouds $folder/${set%:*}${set#*:}"
     done
-    # shellcheck disable=SC2086  # one argument for each folder
-    $pcednet train $clouds -o models/general.safetensors --natural --scales 8 --s-max-ratio 8 \
-      --gate 0.4 --second-gate -0.3 --width 40 --distil 2 --context --keep-orientation --seed 1 --overwrite
+    options="--natural --scales 8 --s-max-ratio 8 --gate 0.4 --second-gate -0.3 --width 40 \
+      --distil 2 --context --keep-orientation --seed 1"
+    generate sparse 1
+    # shellcheck disable=SC2086  # several options, one argument for each folder
+    $pcednet train "$folder/sparse1" -o "$folder/sparse.safetensors" $options
+    # shellcheck disable=SC2086
+    $pcednet train $clouds -o models/general.safetensors $options --overwrite \
+      --sparse-model "$folder/sparse.safetensors" --sparse-points 4000
     ;;
   scan)
     generate default 1

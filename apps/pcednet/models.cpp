@@ -67,7 +67,7 @@ void add_model_options(CLI::App& command, ModelArguments& arguments) {
 
 detect::EdgeModel load_model(const ModelArguments& arguments) {
   detect::EdgeModel model = detect::load_model(find_model(arguments.name));
-  if (arguments.no_context) model.context.reset();
+  if (arguments.no_context) detect::drop_context(model);
   model.descriptor.s_min = arguments.scales.s_min;
   model.descriptor.s_max = arguments.scales.s_max;
   model.descriptor.engine = arguments.scales.engine;

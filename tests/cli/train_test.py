@@ -81,6 +81,33 @@ class Train(CliTest):
         # What is sure to be no edge stays as it is.
         self.assertTrue((found["without"][changed] >= 0.01).all())
 
+    def test_joins_the_networks_of_another_model_for_sparse_clouds(self):
+        few = self.train("few.safetensors", "--epochs", 2, "--seed", 5)
+        joined = ["--epochs", 2, "--sparse-model", few, "--sparse-points"]
+        model = self.train("m.safetensors", *joined, 5000)
+        self.assertEqual(tensors(model)[0]["format"], "pcednet-edge-model-3")
+        p, n, _ = cube(seed=9)
+        write_ply(self.folder / "c.ply", p, n)
+        self.assertLess(len(p), 5000)
+        out = run("classify", self.folder / "c.ply", "--model", model).stderr
+        self.assertIn("decided by the networks for clouds of fewer than 5000 points", out)
+        run("classify", self.folder / "c.ply", "-o", self.folder / "few.ply", "--model", few)
+        found, wanted = (read_ply(self.folder / name)[0] for name in ("c_edges.ply", "few.ply"))
+        self.assertTrue((found["scalar_p_sharp"] == wanted["scalar_p_sharp"]).all())
+        alone = self.train("alone.safetensors", "--epochs", 2)
+        model = self.train("m2.safetensors", *joined, len(p))
+        for name, its in (("joined", model), ("alone", alone)):
+            run("classify", self.folder / "c.ply", "-o", self.folder / (name + ".ply"), "--model", its)
+        found, wanted = (read_ply(self.folder / (name + ".ply"))[0] for name in ("joined", "alone"))
+        self.assertTrue((found["scalar_p_sharp"] == wanted["scalar_p_sharp"]).all())
+
+    def test_refuses_networks_for_sparse_clouds_that_want_another_description(self):
+        few = self.train("few.safetensors", "--epochs", 1, "--scales", 8)
+        result = run("train", self.folder / "clouds", "-o", self.folder / "m.safetensors",
+                     "--sparse-model", few, expect=5)
+        self.assertIn("another description of points", result.stderr)
+        self.assertFalse((self.folder / "m.safetensors").exists())
+
     def test_trains_with_two_gates_and_teachers(self):
         options = ["--gate", 0.4, "--second-gate", -0.3, "--distil", 2, "--epochs", 2]
         model = self.train("one.safetensors", *options, "--threads", 1)

@@ -16,6 +16,8 @@
 //     --gate 0.4 --second-gate -0.3 --epochs 40
 //   pcednet train DIR/cube_0.ply DIR/icosahedron_0.ply -o model_2.safetensors --natural --context
 //     --epochs 40
+//   the same with --seed 2 -o few.safetensors, and with
+//     --sparse-model few.safetensors --sparse-points 1000 -o model_3.safetensors
 // and the answers, to descriptors of twelve points of the icosahedron and for the context network
 // to random numbers, by numpy alone, in double precision (the functions of
 // tests/nn/numpy_model.py).
@@ -54,6 +56,10 @@ TEST_P(GoldenModel, GivesItsKnownAnswers) {
   expect_answers(model.network, "");
   ASSERT_EQ(model.context.has_value(), answers_.tensors.contains("context_samples"));
   if (model.context) expect_answers(*model.context, "context_");
+  ASSERT_EQ(model.sparse.has_value(), answers_.tensors.contains("sparse_samples"));
+  if (!model.sparse) return;
+  expect_answers(model.sparse->network, "sparse_");
+  expect_answers(*model.sparse->context, "sparse_context_");
 }
 
 TEST_P(GoldenModel, IsWrittenWithTheSameBytes) {
@@ -68,7 +74,7 @@ TEST_P(GoldenModel, IsWrittenWithTheSameBytes) {
   EXPECT_EQ(written, nn::encode_safetensors(content));
 }
 
-INSTANTIATE_TEST_SUITE_P(OfFormat, GoldenModel, testing::Values("model_1", "model_2"),
+INSTANTIATE_TEST_SUITE_P(OfFormat, GoldenModel, testing::Values("model_1", "model_2", "model_3"),
                          [](const auto& tested) { return tested.param; });
 
 TEST(GoldenModels, SayHowPointsAreDescribed) {
@@ -85,6 +91,7 @@ TEST(GoldenModels, SayHowPointsAreDescribed) {
   EXPECT_FALSE(two.descriptor.side_gate);
   EXPECT_FALSE(two.descriptor.second_gate);
   EXPECT_EQ(two.network.sign_rule.symmetry, nn::Symmetry::kAverage);
+  EXPECT_EQ(load_model(kFolder / "model_3.safetensors").sparse->fewer_than, 1000u);
 }
 
 }  // namespace

@@ -155,7 +155,8 @@ void set_las_classification(const std::string& pairs, const std::vector<std::uin
   set_attribute(cloud, make_attribute("Classification", codes));
 }
 
-void report(const Job& job, const detect::Classification& result, const std::string& seconds) {
+void report(const Job& job, const detect::Classification& result, const detect::EdgeModel& model,
+            const std::string& seconds) {
   const std::size_t points = result.classes.size();
   const auto share = [&](std::size_t count) {
     return 100.0 * static_cast<double>(count) /
@@ -173,6 +174,10 @@ void report(const Job& job, const detect::Classification& result, const std::str
                                     : fmt::format(", {} unlabelled", result.counts.unlabelled)));
   if (result.s_max > 0.0) {  // a method has none
     say(fmt::format("  scales: {:.9g} to {:.9g}", result.s_min, result.s_max));
+  }
+  if (model.sparse && points < model.sparse->fewer_than) {
+    say(fmt::format("  decided by the networks for clouds of fewer than {} points",
+                    model.sparse->fewer_than));
   }
   say("  seconds: " + seconds);
   say(fmt::format("  -> {}", job.output.string()));
@@ -212,7 +217,7 @@ void classify_file(const Job& job, const ClassifyArguments& arguments,
     clock.begin("preview");
     render::write_preview(job.preview, cloud, result.classes, {.overwrite = common.overwrite()});
   }
-  report(job, result, clock.seconds());
+  report(job, result, model, clock.seconds());
 }
 
 void classify(const ClassifyArguments& arguments, const Common& common) {

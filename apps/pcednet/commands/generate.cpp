@@ -13,6 +13,7 @@
 #include "workbench/shapes/line_set.h"
 #include "workbench/shapes/relief_set.h"
 #include "workbench/shapes/scan_set.h"
+#include "workbench/shapes/sparse_set.h"
 #include "workbench/shapes/terrain.h"
 #include "workbench/shapes/varied_set.h"
 
@@ -184,6 +185,17 @@ void add_varied(CLI::App& generate, Common& common) {
       });
 }
 
+void add_sparse(CLI::App& generate, Common& common) {
+  auto set = std::make_shared<SetArguments>();
+  add_set(generate, common, *set, "sparse",
+          "Labelled clouds for training: CAD parts, blocks and roofs of 600 to 5,000 points",
+          "pcednet generate sparse parts/")
+      ->callback([set, &common] {
+        run(set->folder, set->seed, common, shapes::sparse_part_recipes(set->seed),
+            shapes::sparse_shape_recipes(set->seed), shapes::sparse_roof_recipes(set->seed));
+      });
+}
+
 void add_scan(CLI::App& generate, Common& common) {
   auto set = std::make_shared<SetArguments>();
   add_set(generate, common, *set, "scan",
@@ -246,6 +258,7 @@ void add_generate(CLI::App& app, Common& common) {
   add_worn(*generate, common);
   add_scan(*generate, common);
   add_varied(*generate, common);
+  add_sparse(*generate, common);
   add_line_set(*generate, common);
   add_sample(*generate, common);
 }

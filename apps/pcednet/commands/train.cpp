@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <optional>
 
 #include "batch.h"
 #include "commands.h"
@@ -28,6 +29,8 @@ enum class Recipe { kAdam, kPaper };
 struct TrainArguments {
   std::vector<std::string> inputs;
   std::string project, output;
+  std::string sparse_model;          ///< file of the networks for sparse clouds
+  std::size_t sparse_points = 6000;  ///< clouds of fewer are decided by them
   detect::PrepareOptions preparation;
   detect::TrainOptions options;  ///< all but what follows
   Recipe recipe = Recipe::kAdam;
@@ -102,11 +105,17 @@ void train(const TrainArguments& arguments, const Common& common) {
   }
   StageClock clock(console_progress(common));
   clock.begin("read");
-  const auto trained = arguments.project.empty()
-                           ? train_clouds(arguments, common, clock.progress())
-                           : train_project(arguments, common, clock.progress());
+  std::optional<detect::EdgeModel> few;
+  if (!arguments.sparse_model.empty()) {  // refused before the work
+    few = detect::load_model(arguments.sparse_model);
+    const auto classes = static_cast<std::size_t>(arguments.options.architecture.classes);
+    detect::check_fits(*few, arguments.options.descriptor, classes);
+  }
+  auto trained = arguments.project.empty() ? train_clouds(arguments, common, clock.progress())
+                                           : train_project(arguments, common, clock.progress());
   if (trained.epochs == 0)
     throw Error(ErrorKind::kCancelled, "stopped by the user before the end of the first epoch");
+  if (few) detect::join_sparse(trained.model, *few, arguments.sparse_points);
   detect::save_model(arguments.output, trained.model, common.overwrite());
   for (const std::string& note : trained.notes) warn(note);
   if (!trained.no_context.empty()) {
@@ -132,6 +141,17 @@ void add_data_options(CLI::App& command, TrainArguments& arguments) {
                      "beside the project unless given");
   command.add_option("-o,--output", arguments.output, "Output model file")->required();
   add_prepare_options(command, arguments.preparation);
+  command
+      .add_option(
+          "--sparse-model", arguments.sparse_model,
+          "Model file whose networks decide for clouds of few points; trained with the same "
+          "options on such clouds")
+      ->check(CLI::ExistingFile)
+      ->excludes("--project");
+  command
+      .add_option("--sparse-points", arguments.sparse_points,
+                  "Clouds of fewer points are left to the networks of --sparse-model")
+      ->capture_default_str();
 }
 
 void add_network_options(CLI::App& command, detect::TrainOptions& options) {

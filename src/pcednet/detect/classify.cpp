@@ -66,6 +66,10 @@ Classification describe_and_decide(const PreparedCloud& cloud, const EdgeModel& 
 
 Classification classify(const PreparedCloud& cloud, const EdgeModel& model,
                         const Progress* progress) {
+  if (model.sparse) {
+    const std::size_t points = cloud.part ? cloud.part->points : cloud.positions.size();
+    return classify(cloud, suited_to(model, points), progress);
+  }
   Classification found = describe_and_decide(cloud, model, progress);
   if (model.context) {
     apply_context(*model.context, model.classes, cloud.positions, cloud.curve, found, progress);
@@ -76,6 +80,7 @@ Classification classify(const PreparedCloud& cloud, const EdgeModel& model,
 
 Classification classify(const DescribedCloud& cloud, std::span<const Vec3> positions,
                         const EdgeModel& model) {
+  if (model.sparse) return classify(cloud, positions, suited_to(model, cloud.points));
   const std::size_t width = row_width(model.descriptor);
   if (cloud.values.size() != cloud.order.size() * width || positions.size() != cloud.points) {
     throw Error(ErrorKind::kModelMismatch,

@@ -18,7 +18,8 @@ namespace {
 
 constexpr const char* kFormat = "pcednet-edge-model-1";
 constexpr const char* kContextFormat = "pcednet-edge-model-2";  // with a context network
-constexpr std::string_view kContext = "context.";
+constexpr const char* kSparseFormat = "pcednet-edge-model-3";   // with networks for sparse clouds
+constexpr std::string_view kContext = "context.", kSparse = "sparse.";
 const std::array<std::vector<std::uint8_t>, 2> kClassLists = {
     {{kNonEdge, kSmoothEdge, kSharpEdge}, {kNonEdge, kSharpEdge}}};
 
@@ -94,29 +95,34 @@ void put_descriptor(const gls::ScaleSpaceOptions& descriptor,
   }
 }
 
-/// Takes what is named with kContext before it out of `all`, and out of its names.
+/// Takes what is named with `prefix` before it out of `all`, and the prefix off its names.
 template <typename Value>
-std::map<std::string, Value> take_context(std::map<std::string, Value>& all) {
-  std::map<std::string, Value> context;
+std::map<std::string, Value> take_part(std::map<std::string, Value>& all, std::string_view prefix) {
+  std::map<std::string, Value> part;
   for (auto entry = all.begin(); entry != all.end();) {
-    if (entry->first.starts_with(kContext)) {
-      context.emplace(entry->first.substr(kContext.size()), std::move(entry->second));
+    if (entry->first.starts_with(prefix)) {
+      part.emplace(entry->first.substr(prefix.size()), std::move(entry->second));
       entry = all.erase(entry);
     } else {
       ++entry;
     }
   }
-  return context;
+  return part;
 }
 
-/// Puts `part` into `all`, with kContext before the names.
-template <typename Value>
-void add_context(const std::map<std::string, Value>& part, std::map<std::string, Value>& all) {
-  for (const auto& [name, value] : part) all[std::string(kContext) + name] = value;
+nn::Safetensors take_part(nn::Safetensors& all, std::string_view prefix) {
+  return {take_part(all.tensors, prefix), take_part(all.metadata, prefix)};
 }
 
-nn::Model read_context(const std::filesystem::path& path, const nn::Safetensors& content,
-                       std::size_t classes) {
+/// Puts `part` into `all`, with `prefix` before the names.
+void add_part(const nn::Safetensors& part, std::string_view prefix, nn::Safetensors& all) {
+  for (const auto& [name, value] : part.tensors) all.tensors[std::string(prefix) + name] = value;
+  for (const auto& [name, value] : part.metadata) all.metadata[std::string(prefix) + name] = value;
+}
+
+std::optional<nn::Model> read_context(const std::filesystem::path& path,
+                                      const nn::Safetensors& content, std::size_t classes) {
+  if (content.tensors.empty()) return {};
   nn::Model context = nn::from_safetensors(content, path.string() + ": context network");
   const nn::Architecture& its = context.network.architecture;
   const nn::Architecture wanted = context_architecture(static_cast<int>(classes));
@@ -128,36 +134,98 @@ nn::Model read_context(const std::filesystem::path& path, const nn::Safetensors&
   return context;
 }
 
+bool fits(const nn::Model& model, const EdgeModel& its) {
+  const nn::Architecture& network = model.network.architecture;
+  return network.scales == its.descriptor.scales &&
+         network.features == gls::column_count(its.descriptor) &&
+         network.classes == static_cast<int>(its.classes.size());
+}
+
+std::optional<SparseNetworks> read_sparse(const std::filesystem::path& path,
+                                          nn::Safetensors content, const EdgeModel& model) {
+  if (content.tensors.empty()) return {};
+  SparseNetworks sparse;
+  const nn::Safetensors context = take_part(content, kContext);
+  const std::string where = path.string() + ": networks for sparse clouds";
+  sparse.network = nn::from_safetensors(content, where);
+  nn::Metadata metadata(std::move(sparse.network.metadata), where);
+  sparse.fewer_than = metadata.take_number<std::size_t>("fewer_than");
+  if (!fits(sparse.network, model)) metadata.refuse("they do not fit the descriptor and classes");
+  sparse.network.metadata = std::move(metadata.rest());
+  sparse.context = read_context(path, context, model.classes.size());
+  return sparse;
+}
+
+nn::Safetensors to_safetensors(const SparseNetworks& sparse) {
+  nn::Model network = sparse.network;
+  network.metadata["fewer_than"] = std::to_string(sparse.fewer_than);
+  nn::Safetensors content = nn::to_safetensors(network);
+  if (sparse.context) add_part(nn::to_safetensors(*sparse.context), kContext, content);
+  return content;
+}
+
+const char* format_of(bool context, bool sparse) {
+  return sparse ? kSparseFormat : context ? kContextFormat : kFormat;
+}
+
 }  // namespace
+
+EdgeModel suited_to(EdgeModel model, std::size_t points) {
+  if (model.sparse && points < model.sparse->fewer_than) {
+    model.network = std::move(model.sparse->network);
+    model.context = std::move(model.sparse->context);
+  }
+  model.sparse.reset();
+  return model;
+}
+
+void drop_context(EdgeModel& model) {
+  model.context.reset();
+  if (model.sparse) model.sparse->context.reset();
+}
+
+void check_fits(const EdgeModel& few, const gls::ScaleSpaceOptions& descriptor,
+                std::size_t classes) {
+  if (few.descriptor == descriptor && few.classes.size() == classes) return;
+  throw Error(
+      ErrorKind::kModelMismatch,
+      fmt::format("{}: its networks for sparse clouds want another description of points, or "
+                  "other classes",
+                  few.name));
+}
+
+void join_sparse(EdgeModel& model, const EdgeModel& few, std::size_t points) {
+  check_fits(few, model.descriptor, model.classes.size());
+  model.sparse = SparseNetworks{points, few.network, few.context};
+}
 
 EdgeModel load_model(const std::filesystem::path& path) {
   EdgeModel model;
   nn::Safetensors content = nn::read_safetensors(path);
-  const nn::Safetensors context = {take_context(content.tensors), take_context(content.metadata)};
+  nn::Safetensors sparse = take_part(content, kSparse);
+  const nn::Safetensors context = take_part(content, kContext);
   model.network = nn::from_safetensors(content, path.string());
   nn::Metadata metadata(std::move(model.network.metadata), path.string());
-  metadata.take_fixed("format", context.tensors.empty() ? kFormat : kContextFormat);
+  metadata.take_fixed("format", format_of(!context.tensors.empty(), !sparse.tensors.empty()));
   metadata.take_fixed("undefined", "zero");
   metadata.take("version");
   model.name = metadata.take("name");
   model.seed = metadata.take_number<std::uint64_t>("seed");
   model.descriptor = take_descriptor(metadata);
   model.classes = take_classes(metadata);
-  const nn::Architecture& network = model.network.network.architecture;
-  if (network.scales != model.descriptor.scales ||
-      network.features != gls::column_count(model.descriptor) ||
-      network.classes != static_cast<int>(model.classes.size())) {
+  if (!fits(model.network, model)) {
     metadata.refuse("the network does not fit its descriptor and classes");
   }
   model.network.metadata = std::move(metadata.rest());
-  if (!context.tensors.empty()) model.context = read_context(path, context, model.classes.size());
+  model.context = read_context(path, context, model.classes.size());
+  model.sparse = read_sparse(path, std::move(sparse), model);
   return model;
 }
 
 void save_model(const std::filesystem::path& path, const EdgeModel& model, Overwrite overwrite) {
   nn::Model network = model.network;
   auto& metadata = network.metadata;
-  metadata["format"] = model.context ? kContextFormat : kFormat;
+  metadata["format"] = format_of(model.context.has_value(), model.sparse.has_value());
   metadata["version"] = kVersion;
   metadata["undefined"] = "zero";
   metadata["name"] = model.name;
@@ -165,11 +233,8 @@ void save_model(const std::filesystem::path& path, const EdgeModel& model, Overw
   put_descriptor(model.descriptor, metadata);
   metadata["classes"] = text_of(model.classes);
   nn::Safetensors content = nn::to_safetensors(network);
-  if (model.context) {
-    const nn::Safetensors context = nn::to_safetensors(*model.context);
-    add_context(context.tensors, content.tensors);
-    add_context(context.metadata, content.metadata);
-  }
+  if (model.context) add_part(nn::to_safetensors(*model.context), kContext, content);
+  if (model.sparse) add_part(to_safetensors(*model.sparse), kSparse, content);
   nn::write_safetensors(path, content, overwrite);
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -12,16 +13,41 @@
 
 namespace pcednet::detect {
 
+/// What decides in place of a model's own networks, on the same description and for the same
+/// classes, where points are few: walls, steps and holes are then a spacing or two wide.
+struct SparseNetworks {
+  std::size_t fewer_than = 0;  ///< points of a cloud
+  nn::Model network = {};
+  std::optional<nn::Model> context = {};
+};
+
 /// A network with the description of points that it was trained on: all that is needed to classify
 /// a cloud. Where a scale has no fit its features are 0, in training and in use.
 struct EdgeModel {
   std::string name;
   std::uint64_t seed = 0;
-  gls::ScaleSpaceOptions descriptor;      ///< s_min and s_max are each cloud's own
-  std::vector<std::uint8_t> classes;      ///< EdgeClass of every output: {0, 1, 2} or {0, 2}
-  nn::Model network;                      ///< its metadata holds the summary of the training
-  std::optional<nn::Model> context = {};  ///< decides in the end, on a ContextMatrix
+  gls::ScaleSpaceOptions descriptor;          ///< s_min and s_max are each cloud's own
+  std::vector<std::uint8_t> classes;          ///< EdgeClass of every output: {0, 1, 2} or {0, 2}
+  nn::Model network;                          ///< its metadata holds the summary of the training
+  std::optional<nn::Model> context = {};      ///< decides in the end, on a ContextMatrix
+  std::optional<SparseNetworks> sparse = {};  ///< for clouds of few points
 };
+
+/// The model with those networks alone that decide for a cloud of `points`. classify() does this by
+/// itself; it is for those who look at or go on training the networks, or hold parts of a cloud.
+EdgeModel suited_to(EdgeModel model, std::size_t points);
+
+/// Leaves the context networks out: faster, less accurate.
+void drop_context(EdgeModel& model);
+
+/// Throws Error(kModelMismatch) unless the networks of `few` are for that description of points and
+/// that many classes.
+void check_fits(const EdgeModel& few, const gls::ScaleSpaceOptions& descriptor,
+                std::size_t classes);
+
+/// Lets the networks of `few` decide for clouds of fewer than `points` points. Throws what
+/// check_fits() throws.
+void join_sparse(EdgeModel& model, const EdgeModel& few, std::size_t points);
 
 /// Reads a model file. Throws Error(kUnreadable) if there is none, Error(kModelMismatch), naming
 /// file and place, if it is damaged, no model of edges, or for another descriptor than this
@@ -29,7 +55,8 @@ struct EdgeModel {
 EdgeModel load_model(const std::filesystem::path& path);
 
 /// Writes a safetensors file; the same model gives the same bytes. The context network's tensors
-/// and metadata are named as the network's own, with "context." before them.
+/// and metadata are named as the network's own, with "context." before them; those of the networks
+/// for sparse clouds have "sparse." before theirs.
 void save_model(const std::filesystem::path& path, const EdgeModel& model, Overwrite overwrite);
 
 }  // namespace pcednet::detect

@@ -115,7 +115,7 @@ detect::EdgeModel load_planned_model(const Plan& plan) {
                             plan.model.path.string()));
   }
   detect::EdgeModel model = detect::load_model(plan.model.path);
-  if (!plan.model.context) model.context.reset();
+  if (!plan.model.context) detect::drop_context(model);
   model.descriptor.s_min = plan.s_min;
   model.descriptor.s_max = plan.s_max;
   model.descriptor.engine = plan.model.exact ? gls::Engine::kExact : gls::Engine::kFast;

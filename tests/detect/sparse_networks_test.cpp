@@ -1,0 +1,99 @@
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+
+#include "labelled_cube.h"
+#include "pcednet/core/error.h"
+#include "pcednet/detect/classify.h"
+#include "pcednet/detect/part_of_cloud.h"
+#include "pcednet/detect/train.h"
+
+namespace pcednet::detect {
+namespace {
+
+constexpr std::size_t kFewer = 1500;
+
+EdgeModel trained(const std::string& name, std::uint64_t seed, double gate = 0.4) {
+  const PointCloud cloud = cube(2000, seed);
+  TrainOptions options;
+  options.descriptor.scales = 4;
+  options.descriptor.side_gate = gate;
+  options.training.epochs = 2;
+  options.training.seed = seed;
+  options.context = true;
+  return train(name, std::vector<TrainingCloud>{{name, prepare(cloud), cloud.labels}}, options)
+      .model;
+}
+
+struct SparseNetworksTest : testing::Test {
+  static void SetUpTestSuite() {
+    main_ = new EdgeModel(trained("main", 1));
+    few_ = new EdgeModel(trained("few", 2));
+    both_ = new EdgeModel(*main_);
+    join_sparse(*both_, *few_, kFewer);
+  }
+  static void TearDownTestSuite() { delete main_, delete few_, delete both_; }
+
+  static std::vector<float> found_in(const PointCloud& cloud, const EdgeModel& model) {
+    return classify(prepare(cloud), model).p_sharp;
+  }
+
+  static inline EdgeModel *main_, *few_, *both_;
+};
+
+TEST_F(SparseNetworksTest, DecideForCloudsOfFewerPointsAlone) {
+  const PointCloud below = cube(kFewer - 1, 3), at = cube(kFewer, 3);
+  ASSERT_NE(found_in(below, *main_), found_in(below, *few_));
+  EXPECT_EQ(found_in(below, *both_), found_in(below, *few_));
+  EXPECT_EQ(found_in(at, *both_), found_in(at, *main_));
+}
+
+TEST_F(SparseNetworksTest, LeaveAPartOfALargeCloudToTheOthers) {
+  const PointCloud few = cube(kFewer / 2, 3);
+  PreparedCloud part = prepare(few);
+  PartOfCloud of{.points = 10 * kFewer, .wanted = std::vector<std::uint8_t>(few.size(), 1)};
+  part.part = &of;
+  const auto found_with = [&](EdgeModel model) {
+    model.descriptor.engine = gls::Engine::kExact;  // needs no pyramid of the whole
+    return classify(part, model).p_sharp;
+  };
+  EXPECT_EQ(found_with(*both_), found_with(*main_));
+  of.points = kFewer - 1;
+  EXPECT_EQ(found_with(*both_), found_with(*few_));
+}
+
+TEST_F(SparseNetworksTest, StayInTheFile) {
+  const auto path = std::filesystem::path(testing::TempDir()) /
+                    ("pcednet_sparse_" + std::to_string(getpid()) + ".safetensors");
+  save_model(path, *both_, Overwrite::kYes);
+  const EdgeModel read = load_model(path);
+  std::filesystem::remove(path);
+  ASSERT_TRUE(read.sparse);
+  EXPECT_EQ(read.sparse->fewer_than, kFewer);
+  const PointCloud cloud = cube(kFewer - 1, 3), larger = cube(kFewer, 3);
+  EXPECT_EQ(found_in(cloud, read), found_in(cloud, *few_));
+  EXPECT_EQ(found_in(larger, read), found_in(larger, *main_));
+}
+
+TEST_F(SparseNetworksTest, AreLeftWithoutContextNetworkToo) {
+  EdgeModel model = *both_, few = *few_;
+  drop_context(model);
+  drop_context(few);
+  const PointCloud cloud = cube(kFewer - 1, 3);
+  EXPECT_EQ(found_in(cloud, model), found_in(cloud, few));
+}
+
+TEST_F(SparseNetworksTest, AreRefusedIfTheyWantAnotherDescription) {
+  EdgeModel model = *main_;
+  try {
+    join_sparse(model, trained("other", 2, -0.3), kFewer);
+    FAIL() << "joined";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::kModelMismatch);
+  }
+  EXPECT_FALSE(model.sparse);
+}
+
+}  // namespace
+}  // namespace pcednet::detect
