@@ -19,6 +19,7 @@
 
 #include "pcednet/cloud/bounding_box.h"
 #include "pcednet/core/error.h"
+#include "program_folder.h"
 
 extern char** environ;
 
@@ -73,8 +74,7 @@ double positive(double radius, const char* name) {
 }  // namespace
 
 fs::path find_fee() {
-  std::error_code error;
-  std::vector<fs::path> folders = {fs::read_symlink("/proc/self/exe", error).parent_path()};
+  std::vector<fs::path> folders = {program_folder()};
   const char* path = std::getenv("PATH");
   std::istringstream list(path ? path : "");
   for (std::string folder; std::getline(list, folder, ':');) folders.emplace_back(folder);

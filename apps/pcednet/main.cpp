@@ -11,6 +11,7 @@
 #include "pcednet/core/error.h"
 #include "pcednet/core/parallel.h"
 #include "pcednet/core/version.h"
+#include "program_folder.h"
 
 namespace pcednet::app {
 namespace {
@@ -28,6 +29,7 @@ int run(int argc, char** argv) {
   app.fallthrough(false);
   Common common;
   app.parse_complete_callback([&] { set_thread_count(common.threads); });
+  use_own_proj_database();
   install_signal_handlers();
   // One line per subcommand, in the order of the help.
   add_classify(app, common);

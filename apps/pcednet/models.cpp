@@ -1,13 +1,13 @@
 #include "models.h"
 
 #include <fmt/format.h>
-#include <sys/auxv.h>
 
 #include <CLI/CLI.hpp>
 #include <vector>
 
 #include "descriptor_options.h"
 #include "pcednet/core/error.h"
+#include "program_folder.h"
 
 namespace pcednet::app {
 namespace {
@@ -16,11 +16,7 @@ namespace fs = std::filesystem;
 
 /// Folders that may hold the shipped models, the likeliest first.
 std::vector<fs::path> model_folders() {
-  std::error_code error;
-  fs::path program = fs::read_symlink("/proc/self/exe", error);
-  // Without /proc, as in a bare chroot, the kernel's word for what was started.
-  if (error) program = reinterpret_cast<const char*>(getauxval(AT_EXECFN));
-  return {program.parent_path() / "../share/pcednet/models", PCEDNET_INSTALLED_MODELS,
+  return {program_folder() / "../share/pcednet/models", PCEDNET_INSTALLED_MODELS,
           PCEDNET_SOURCE_MODELS};
 }
 

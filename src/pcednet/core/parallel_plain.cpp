@@ -1,5 +1,6 @@
-// parallel.h on plain threads, for ThreadSanitizer (PCEDNET_PLAIN_THREADS, preset threads): TBB of
-// Debian is not instrumented, so that every block it hands over would count as a race.
+// parallel.h on plain threads (PCEDNET_PLAIN_THREADS), for the static program (preset static), as
+// TBB has no static library, and for ThreadSanitizer (preset threads): TBB of Debian is not
+// instrumented, so that every block it hands over would count as a race.
 #include <algorithm>
 #include <atomic>
 #include <exception>
