@@ -14,6 +14,7 @@
 #include "pcednet/formats/write_cloud.h"
 #include "workbench/shapes/cad_set.h"
 #include "workbench/shapes/default_set.h"
+#include "workbench/shapes/sparse_set.h"
 #include "workbench/shapes/terrain.h"
 #include "workbench/shapes/varied_set.h"
 
@@ -106,8 +107,10 @@ TEST(ShippedModels, GeneralFindsEdgesOfAnyCloud) {
   expect_above({.median = .770, .pooled = .750}, Clouds(parts(false), 24), "general", "worn");
   expect_above({.median = .450, .pooled = .520}, Clouds(worn_recipes(kHeldOutSeed), 18), "general",
                "cad");
-  expect_above({.median = .350, .pooled = .350}, Clouds(varied_part_recipes(kHeldOutSeed), 24),
+  expect_above({.median = .450, .pooled = .460}, Clouds(varied_part_recipes(kHeldOutSeed), 24),
                "general", "scan");
+  expect_above({.median = .555, .pooled = .515}, Clouds(sparse_part_recipes(kHeldOutSeed), 48),
+               "general", "worn");
 }
 
 /// The share of the points of rough ground and plants that `model` calls sharp-edge.
