@@ -6,14 +6,14 @@
 set -eu
 cd "$(dirname "$0")/.."
 [ $# -gt 0 ] || set -- deb tar
-scripts/setup.sh web package
+scripts/setup.sh web python package
 scripts/build_web.sh
 out=$PWD/build/packages
 mkdir -p "$out"
 
 pack_deb() {
-  cmake --preset release -DPCEDNET_WEB=ON >/dev/null
-  cmake --build --preset release --target pcednet pcednet_manual
+  cmake --preset release -DPCEDNET_WEB=ON -DPCEDNET_PYTHON_MODULE=ON >/dev/null
+  cmake --build --preset release --target pcednet pcednet_manual _core
   rm -f "$out"/*.deb
   (cd build/release && cpack -G DEB -B "$out" >"$out/cpack.log") || { cat "$out/cpack.log"; exit 1; }
   rm -rf "$out/_CPack_Packages" "$out/cpack.log"
