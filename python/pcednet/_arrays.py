@@ -24,7 +24,8 @@ def numbers(values, name):
     except (TypeError, ValueError) as error:
         raise UsageError(f"{name}: not an array of numbers: {error}") from None
     if array.dtype.kind not in "fiub":
-        raise UsageError(f"{name}: real numbers are needed, not {array.dtype}")
+        complex_too = ". Complex data not supported" if array.dtype.kind == "c" else ""
+        raise UsageError(f"{name}: real numbers are needed, not {array.dtype}{complex_too}")
     return array
 
 

@@ -6,7 +6,7 @@ import tempfile
 
 import numpy as np
 
-from . import _arrays, _clouds, _core
+from . import _arrays, _clouds, _core, _onnx
 from .errors import UsageError
 
 _SHIPPED = pathlib.Path(__file__).parent / "models"
@@ -78,14 +78,38 @@ class Model:
     def save(self, path, *, overwrite=False):
         """Write a model file (safetensors), which ``pcednet classify --model`` takes too.
 
-        The same model gives the same bytes.
+        The same model gives the same bytes. A path that ends in ``.onnx`` gets the first network,
+        without a context network, for other runtimes: input ``descriptors``, (n, scales x
+        columns) float32, the rows that :func:`describe` gives, flattened; output ``probabilities``, (n, classes), equal to
+        :meth:`predict` up to rounding.
+
+        Parameters
+        ----------
+        path : str or path-like
+        overwrite : bool
+            Replace an existing file.
 
         Raises
         ------
         ExistsError
             The file exists and `overwrite` is False.
+        UsageError
+            ONNX: of a CNN, or of a model trained with another symmetry than its average.
         """
-        self._core.save(os.fspath(path), overwrite)
+        path = os.fspath(path)
+        if not path.endswith(".onnx"):
+            self._core.save(path, overwrite)
+            return
+        facts = {"name": self.name, "classes": str(self.classes),
+                 **{key: str(value) for key, value in self.descriptor.items()}}
+        content = _onnx.encode(self._core.network, facts, len(self.classes))
+        _core.write_file(path, content, overwrite)
+
+    @property
+    def tensors(self):
+        """dict of str to ndarray, float32: the weights of the first network by their names in the
+        file, copied."""
+        return self._core.network.tensors
 
     def classify(self, xyz, normals=None, **options):
         """:func:`classify` with this model."""

@@ -95,6 +95,10 @@ gls::ScaleSpaceOptions descriptor_of(const py::dict& settings) {
 }
 
 void add_models(py::module_& module) {
+  module.def("write_file",
+             [](const std::filesystem::path& path, const std::string& bytes, bool overwrite) {
+               write_text_file(path, bytes, overwrite ? Overwrite::kYes : Overwrite::kNo);
+             });
   py::class_<nn::Model>(module, "Network")
       .def_property_readonly("tensors", tensors_of)
       .def_property_readonly("metadata", facts_of)

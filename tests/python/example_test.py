@@ -12,6 +12,11 @@ import numpy as np
 import pcednet
 from support import SOURCE
 
+try:
+    import matplotlib  # noqa: F401: the example draws with it
+except ImportError:
+    sys.exit(77)
+
 
 class Example(unittest.TestCase):
     def test_first_steps(self):
@@ -31,11 +36,6 @@ class Example(unittest.TestCase):
                                     for line in done.stdout.splitlines() if "mcc" in line)
             self.assertGreater(sharp, 0.8)
             self.assertGreater(mine, general + 0.1)
-            try:
-                import matplotlib
-            except ImportError:
-                self.skipTest(f"no matplotlib: {done.stdout.splitlines()[-3]}")
-            self.assertIsNotNone(matplotlib)
             self.assertEqual((out / "precision_recall.png").read_bytes()[1:4], b"PNG")
 
 

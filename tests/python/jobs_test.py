@@ -57,15 +57,6 @@ class Progress(unittest.TestCase):
         pcednet.describe(POSITIONS, NORMALS, progress=Bar)
         self.assertEqual([bar.closed for bar in Bar.made], [True])
 
-    def test_tqdm_takes_it(self):
-        try:
-            from tqdm import tqdm
-        except ImportError:
-            self.skipTest("no tqdm here")
-        with open(os.devnull, "w") as nowhere, tqdm(total=100, file=nowhere) as bar:
-            pcednet.classify(POSITIONS, NORMALS, progress=bar)
-            self.assertIn(bar.desc, ("describe: ", "context: ", "boundary: "))
-
     def test_an_exception_in_it_stops_the_work(self):
         def refuse(stage, fraction):
             if stage == "describe":
