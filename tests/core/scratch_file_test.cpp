@@ -37,6 +37,19 @@ TEST_F(ScratchFiles, GiveBackWhatWasWritten) {
   EXPECT_EQ(text_of(other, 0, 1), "x");
 }
 
+TEST_F(ScratchFiles, AreWrittenAnywhere) {
+  ScratchFile file(folder / "out.laz");
+  const auto write_at = [&](std::uint64_t offset, std::string_view text) {
+    file.write_at(offset, std::as_bytes(std::span(text)));
+  };
+  write_at(4, "ef");
+  EXPECT_EQ(file.size(), 6U);
+  EXPECT_EQ(text_of(file, 0, 6), std::string("\0\0\0\0ef", 6));
+  write_at(1, "bcd");
+  file.write("g");
+  EXPECT_EQ(text_of(file, 1, 6), "bcdefg");
+}
+
 TEST_F(ScratchFiles, HaveNoName) {
   ScratchFile file(folder / "out.laz");
   file.write("abc");

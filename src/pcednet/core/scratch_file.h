@@ -24,6 +24,10 @@ class ScratchFile {
   /// Appends. Throws Error(kFailure) when the disk is full.
   void write(std::string_view bytes);
 
+  /// Writes at an offset, which may lie beyond the end: what is between reads as zeros. From one
+  /// thread at a time. Throws as write() does.
+  void write_at(std::uint64_t offset, std::span<const std::byte> bytes);
+
   /// Fills `bytes` with what stands at `offset`, from any thread. Throws Error(kFailure) if that is
   /// not there.
   void read(std::uint64_t offset, std::span<std::byte> bytes) const;
