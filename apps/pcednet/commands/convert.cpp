@@ -87,7 +87,8 @@ bool convert_in_parts(const ConvertRequest& request, const Common& common) {
                                 .each_part = each_part_of(*reader, first, progress),
                                 .is_las = reader->is_las()};
   const auto writer = formats::create_parts(
-      request.output, outline, {.overwrite = common.overwrite(), .ascii = request.ascii});
+      request.output, outline,
+      {.overwrite = common.overwrite(), .ascii = request.ascii, .progress = &progress});
   if (!writer) return false;
   Stage stage(&progress, "convert", reader->points());
   writer->append(first);
@@ -121,8 +122,9 @@ void convert(const ConvertRequest& request, const Common& common) {
   perturb(request, loaded.cloud);
   throw_if_cancelled(&progress);
   warn_of_losses(request.output, formats::losses(request.output, loaded.cloud));
-  formats::write_cloud(request.output, loaded.cloud,
-                       {.overwrite = common.overwrite(), .ascii = request.ascii});
+  formats::write_cloud(
+      request.output, loaded.cloud,
+      {.overwrite = common.overwrite(), .ascii = request.ascii, .progress = &progress});
   say(fmt::format("{}: {} points", request.output, loaded.cloud.size()));
 }
 

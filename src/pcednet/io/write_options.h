@@ -1,6 +1,7 @@
 #pragma once
 
 #include "pcednet/core/output_file.h"
+#include "pcednet/core/progress.h"
 
 namespace pcednet::io {
 
@@ -8,6 +9,8 @@ struct WriteOptions {
   Overwrite overwrite = Overwrite::kNo;
   bool ascii = false;       ///< numbers as text in formats that have both
   bool new_normals = true;  ///< LAS: normals become extra bytes even where the input had none
+  /// COPC: of the work that is left when all points are known. Null, or outlives the writing.
+  const Progress* progress = nullptr;
 };
 
 }  // namespace pcednet::io

@@ -84,7 +84,8 @@ Joined join(const Plan& plan, const std::filesystem::path& path, Overwrite overw
     else
       tiles.each(visit);
   };
-  const auto writer = formats::create_parts(path, outline, {.overwrite = overwrite});
+  const auto writer =
+      formats::create_parts(path, outline, {.overwrite = overwrite, .progress = progress});
   if (!writer) {
     throw Error(ErrorKind::kUsage,
                 fmt::format("{}: tiles are joined as .laz, .las or .ply", path.string()));

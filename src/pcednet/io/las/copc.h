@@ -8,6 +8,7 @@
 
 #include "pcednet/cloud/bounding_box.h"
 #include "pcednet/core/output_file.h"
+#include "pcednet/core/progress.h"
 #include "pcednet/core/scratch_file.h"
 #include "pcednet/io/las/file.h"
 #include "pcednet/io/las/layout.h"
@@ -40,8 +41,8 @@ class CopcPointWriter {
   void append(std::size_t count, const EncodePoints& encode);
 
   /// Writes them all and returns the bytes that points and table take. `bounds`: of the points, as
-  /// the header has it.
-  std::uint64_t finish(const BoundingBox& bounds);
+  /// the header has it. Throws Error(kCancelled) if `progress`, which may be null, says so.
+  std::uint64_t finish(const BoundingBox& bounds, const Progress* progress);
 
   /// After finish(): the data of the record of the hierarchy, whose first byte will be the file's
   /// byte `place`, and that of the info record.
@@ -54,11 +55,11 @@ class CopcPointWriter {
     Vec3 corner = Vec3::Zero();
     double side = 1.0;
   };
-  std::vector<spatial::TreePoint> tree_points() const;
-  void write_nodes(const spatial::DetailTree& tree);
+  std::vector<spatial::TreePoint> tree_points(const Progress* progress) const;
+  void write_nodes(const spatial::DetailTree& tree, const Progress* progress);
   std::size_t write_chunks(std::span<const spatial::DetailNode> nodes, std::span<std::byte> rows);
   void gather(const std::vector<std::uint32_t>& places, std::size_t begin,
-              std::vector<std::byte>& window) const;
+              std::vector<std::byte>& window, const Progress* progress) const;
   std::size_t points() const { return waiting_.size() / stride_; }
   std::vector<std::byte> rows(std::size_t begin, std::size_t end) const;
 

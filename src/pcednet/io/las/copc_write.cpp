@@ -72,8 +72,9 @@ std::vector<std::byte> CopcPointWriter::rows(std::size_t begin, std::size_t end)
   return bytes;
 }
 
-std::vector<spatial::TreePoint> CopcPointWriter::tree_points() const {
+std::vector<spatial::TreePoint> CopcPointWriter::tree_points(const Progress* progress) const {
   std::vector<spatial::TreePoint> found(points());
+  Stage stage(progress, "octree", points());
   parallel_blocks(points(), kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
     const std::vector<std::byte> block = rows(begin, end);
     for (std::size_t i = begin; i < end; ++i) {
@@ -89,15 +90,17 @@ std::vector<spatial::TreePoint> CopcPointWriter::tree_points() const {
       found[i] = {spatial::morton_code(cell), static_cast<std::uint32_t>(digest),
                   static_cast<std::uint32_t>(i)};
     }
+    stage.advance(end - begin);
   });
   return found;
 }
 
 /// Fills `rows` with those of the places from `begin` on.
 void CopcPointWriter::gather(const std::vector<std::uint32_t>& places, std::size_t begin,
-                             std::vector<std::byte>& window) const {
+                             std::vector<std::byte>& window, const Progress* progress) const {
   const std::size_t count = window.size() / stride_;
   parallel_blocks(points(), kRowsAtOnce, [&](std::size_t first, std::size_t last) {
+    throw_if_cancelled(progress);
     const std::vector<std::byte> block = rows(first, last);
     for (std::size_t i = first; i < last; ++i) {
       if (places[i] < begin || places[i] - begin >= count) continue;
@@ -107,7 +110,8 @@ void CopcPointWriter::gather(const std::vector<std::uint32_t>& places, std::size
 }
 
 /// Node after node, as many at once as their rows fit into a window.
-void CopcPointWriter::write_nodes(const spatial::DetailTree& tree) {
+void CopcPointWriter::write_nodes(const spatial::DetailTree& tree, const Progress* progress) {
+  Stage stage(progress, "compress", points());
   const std::size_t most = std::max(kLeastWindow, kWindowPerPoint * points()) / stride_;
   std::size_t written = 0;
   for (std::size_t first = 0, last = 0; first < tree.nodes.size(); first = last) {
@@ -116,12 +120,14 @@ void CopcPointWriter::write_nodes(const spatial::DetailTree& tree) {
       count += tree.nodes[last++].points;
     } while (last < tree.nodes.size() && count + tree.nodes[last].points <= most);
     std::vector<std::byte> window(count * stride_);
-    gather(tree.places, written, window);
+    gather(tree.places, written, window, progress);
     written += count;
     std::span<std::byte> rest = window;
     for (std::size_t n = first; n < last; n += kChunksAtOnce) {
       const std::size_t nodes = std::min(kChunksAtOnce, last - n);
-      rest = rest.subspan(write_chunks(std::span(tree.nodes).subspan(n, nodes), rest));
+      const std::size_t taken = write_chunks(std::span(tree.nodes).subspan(n, nodes), rest);
+      rest = rest.subspan(taken);
+      stage.advance(taken / stride_);
     }
   }
 }
@@ -154,7 +160,7 @@ std::size_t CopcPointWriter::write_chunks(std::span<const spatial::DetailNode> n
   return taken;
 }
 
-std::uint64_t CopcPointWriter::finish(const BoundingBox& bounds) {
+std::uint64_t CopcPointWriter::finish(const BoundingBox& bounds, const Progress* progress) {
   // The corner is that of the bounds, so that level ground is not cut in its middle; a step all
   // around keeps points inside whatever a reader's rounding does.
   double step = 0.0;
@@ -165,8 +171,8 @@ std::uint64_t CopcPointWriter::finish(const BoundingBox& bounds) {
   }
   cube_.corner = bounds.min.array() - step;
   cube_.side = (bounds.max - bounds.min).maxCoeff() + 2.0 * step;
-  const spatial::DetailTree tree = spatial::make_detail_tree(tree_points());
-  write_nodes(tree);
+  const spatial::DetailTree tree = spatial::make_detail_tree(tree_points(progress));
+  write_nodes(tree, progress);
   return chunks_.finish();
 }
 

@@ -205,7 +205,7 @@ class LasPartWriter : public PartWriter {
  private:
   /// Writes the points and the record about them, and returns where they end.
   std::uint64_t finish_copc() {
-    const std::uint64_t end = points_offset_ + copc_->finish(summary_.bounds);
+    const std::uint64_t end = points_offset_ + copc_->finish(summary_.bounds, options_.progress);
     auto& extended = file_.extended_records;
     extended.insert(extended.begin(),
                     new_record(kCopcHierarchyRecord, "COPC hierarchy", copc_->hierarchy()));
