@@ -7,6 +7,7 @@
 
 #include "common.h"
 #include "pcednet/formats/format.h"
+#include "pcednet/formats/virtual_cloud.h"
 
 namespace pcednet::app {
 namespace {
@@ -40,6 +41,7 @@ std::vector<fs::path> files_of(const std::string& argument) {
   if (status.type() == fs::file_type::not_found) {
     throw Error(ErrorKind::kUnreadable, fmt::format("{}: no such file", argument));
   }
+  if (formats::is_virtual_cloud(argument)) return formats::files_of_virtual_cloud(argument);
   return {argument};
 }
 

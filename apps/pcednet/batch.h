@@ -23,7 +23,8 @@ struct Inputs {
   std::size_t count() const { return files.size() + failures.size(); }
 };
 
-/// Finds every input: a folder stands for every point file in it, in name order. What fails is an
+/// Finds every input: a folder stands for every point file in it, in name order, a virtual point
+/// cloud (.vpc) for the files that it names. What fails is an
 /// Error(kUnreadable) for a path that does not exist or a folder that cannot be read,
 /// Error(kInsufficient) for a folder without point files.
 Inputs find_inputs(const std::vector<std::string>& arguments);

@@ -20,6 +20,14 @@ TEST(Formats, AreFoundByTheExtensionInAnyCase) {
   EXPECT_EQ(find_format("a.stl"), nullptr);
 }
 
+TEST(Formats, GiveWayToTheNameOfAFile) {
+  EXPECT_EQ(stem_of("folder.ply/a.b.laz"), "a.b");
+  EXPECT_EQ(stem_of("a.copc.laz"), "a");
+  EXPECT_EQ(stem_of("b/A.COPC.LAZ"), "A");
+  EXPECT_EQ(stem_of("a.copc.las"), "a.copc");
+  EXPECT_EQ(stem_of("a"), "a");
+}
+
 TEST(Formats, AreWrittenOnlyIfTheyHaveAWriter) {
   EXPECT_EQ(format_for("a.csv").name, "text");
   const auto refusal = [](const char* name) {

@@ -153,6 +153,45 @@ TEST_F(VirtualCloud, IsRefusedForOtherFormatsForNoPointsAndForBoundsThatAreNotNu
                            "odd.las: byte 179"));
 }
 
+TEST_F(VirtualCloud, NamesItsFilesToWhoReadsIt) {
+  const auto a = write_las(scratch, "out/tiles/a b.las", ""), b = write_las(scratch, "b.las", "");
+  write(scratch, {a, b});
+  const auto all = scratch.path("out/all.vpc");
+  ASSERT_TRUE(is_virtual_cloud(all));
+  EXPECT_EQ(files_of_virtual_cloud(all),
+            (std::vector<std::filesystem::path>{a.lexically_normal(), b.lexically_normal()}));
+  // Of other programs: absolute, as a URL, beside data of other roles, without roles.
+  const auto listed = [&](const json& assets) {
+    const json whole = {{"type", "FeatureCollection"},
+                        {"features", json::array({{{"assets", assets}}})}};
+    return files_of_virtual_cloud(scratch.file("out/b.vpc", whole.dump()));
+  };
+  const auto found = std::vector<std::filesystem::path>{b};
+  EXPECT_EQ(listed({{"data", {{"href", b.string()}}}}), found);
+  EXPECT_EQ(listed({{"points", {{"href", "file://" + b.string()}, {"roles", {"data"}}}},
+                    {"overview", {{"href", "c.laz"}, {"roles", {"overview"}}}}}),
+            found);
+}
+
+TEST_F(VirtualCloud, IsRefusedWhereItNamesNoFileThatIsThere) {
+  const auto refusal = [&](ErrorKind kind, const std::string& text) {
+    const auto path = scratch.file("a.vpc", text);
+    return io::error_of(kind, [&] { files_of_virtual_cloud(path); });
+  };
+  const auto naming = [](const std::string& file) {
+    return json{{"features", json::array({{{"assets", {{"data", {{"href", file}}}}}}})}}.dump();
+  };
+  for (const char* text : {"", "{", "[]", "{\"features\": 7}", "LASF"}) {
+    EXPECT_TRUE(io::contains(refusal(ErrorKind::kUnreadable, text), "not a virtual point cloud"));
+  }
+  EXPECT_TRUE(io::contains(refusal(ErrorKind::kUnreadable, naming("./none.laz")), "there is no"));
+  EXPECT_TRUE(io::contains(refusal(ErrorKind::kUnreadable, naming("https://a.b/c.copc.laz")),
+                           "is on the net"));
+  for (const char* text : {"{\"features\": []}", "{\"features\": [7, {}, {\"assets\": 3}]}"}) {
+    EXPECT_TRUE(io::contains(refusal(ErrorKind::kInsufficient, text), "names no point files"));
+  }
+}
+
 // The day that STAC requires comes from the header, where nonsense may stand.
 TEST_F(VirtualCloud, HasNoDayWhereTheHeaderHasNone) {
   VirtualFile file = virtual_file(write_las(scratch, "a.las", ""));

@@ -14,6 +14,7 @@
 #include "pcednet/detect/classify.h"
 #include "pcednet/eval/predictions.h"
 #include "pcednet/eval/report.h"
+#include "pcednet/formats/format.h"
 #include "workbench/truth/read_labelled.h"
 
 namespace pcednet::app {
@@ -65,7 +66,7 @@ Results score_all(const EvaluateArguments& arguments, const Common& common) {
   for (const fs::path& input : expand_inputs(arguments.inputs)) {
     const bool given = !arguments.predictions.empty();
     const fs::path prediction =
-        given ? eval::find_predictions(arguments.predictions, input.stem().string()) : fs::path();
+        given ? eval::find_predictions(arguments.predictions, formats::stem_of(input)) : fs::path();
     if (given && prediction.empty()) {
       warn(fmt::format("{}: no prediction in {}: left out", input.string(), arguments.predictions));
       continue;
@@ -88,7 +89,7 @@ Results score_all(const EvaluateArguments& arguments, const Common& common) {
                     .found;
       }
       results.scores.push_back(
-          {input.stem().string(), eval::count_confusion(truth, found.classes, positive)});
+          {formats::stem_of(input), eval::count_confusion(truth, found.classes, positive)});
       if (arguments.calibration) {
         eval::add_calibration(truth, probabilities(found, positive), positive, results.calibration);
       }

@@ -91,6 +91,13 @@ const Format* find_format(const fs::path& path) {
   return nullptr;
 }
 
+std::string stem_of(const fs::path& path) {
+  const fs::path stem = path.stem();
+  const bool is_copc = io::lower_case(path.extension().string()) == ".laz" &&
+                       io::lower_case(stem.extension().string()) == ".copc";
+  return is_copc ? stem.stem().string() : stem.string();
+}
+
 const Format& format_of(const io::InputFile& file) {
   const std::string start = file.text(0, 16);
   for (const Format& format : all_formats()) {

@@ -53,6 +53,9 @@ const Format& format_for(const std::filesystem::path& path);
 /// The format of that extension, in small letters or capitals; null if there is none.
 const Format* find_format(const std::filesystem::path& path);
 
+/// The name of a file without its folder and extension, of which .copc.laz is one.
+std::string stem_of(const std::filesystem::path& path);
+
 /// The extensions of what is read, or written, such as ".ply .pcd .las"; `last` stands before the
 /// last.
 std::string extensions_read(std::string_view last = " ");

@@ -12,11 +12,13 @@
 #include "pcednet/formats/format.h"
 #include "pcednet/io/las/facts.h"
 #include "pcednet/io/projection.h"
+#include "pcednet/io/text_scan.h"
 
 namespace pcednet::formats {
 namespace {
 
 namespace fs = std::filesystem;
+using nlohmann::json;
 using nlohmann::ordered_json;
 using Ring = std::vector<std::array<double, 2>>;
 
@@ -154,7 +156,61 @@ std::vector<std::string> remarks_on(std::span<const VirtualFile> files, std::siz
   return remarks;
 }
 
+/// The assets of an item that are point data: those of that role, otherwise the one of that name.
+std::vector<std::string> references_in(const json& item) {
+  std::vector<std::string> references;
+  const json assets = item.is_object() ? item.value("assets", json::object()) : json::object();
+  for (const auto& [name, asset] : assets.items()) {
+    const json roles = asset.is_object() ? asset.value("roles", json()) : json();
+    const bool is_data = roles.is_array()
+                             ? std::find(roles.begin(), roles.end(), "data") != roles.end()
+                             : name == "data";
+    if (!is_data || !asset.is_object() || !asset.contains("href")) continue;
+    if (asset["href"].is_string()) references.push_back(asset["href"]);
+  }
+  return references;
+}
+
+/// The file that an item of `cloud` refers to.
+fs::path file_behind(const std::string& reference, const fs::path& cloud) {
+  constexpr std::string_view kFile = "file://";
+  const bool is_file = reference.starts_with(kFile);
+  if (!is_file && reference.find("://") != std::string::npos) {
+    throw io::unreadable(cloud, reference + " is on the net: only files on this machine are read");
+  }
+  const fs::path path =
+      cloud.parent_path() / (is_file ? reference.substr(kFile.size()) : reference);
+  std::error_code error;
+  if (!fs::exists(path, error)) {
+    throw io::unreadable(cloud, fmt::format("names {}, and there is no {}", reference,
+                                            path.lexically_normal().string()));
+  }
+  return path.lexically_normal();
+}
+
 }  // namespace
+
+bool is_virtual_cloud(const fs::path& path) {
+  return io::lower_case(path.extension().string()) == ".vpc";
+}
+
+std::vector<fs::path> files_of_virtual_cloud(const fs::path& path) {
+  const auto whole = json::parse(io::InputFile(path).text(), nullptr, false);
+  const auto items = whole.is_object() ? whole.find("features") : whole.end();
+  if (!whole.is_object() || items == whole.end() || !items->is_array()) {
+    throw io::unreadable(path, "not a virtual point cloud: no JSON with features");
+  }
+  std::vector<fs::path> files;
+  for (const json& item : *items) {
+    for (const std::string& reference : references_in(item)) {
+      files.push_back(file_behind(reference, path));
+    }
+  }
+  if (files.empty()) {
+    throw Error(ErrorKind::kInsufficient, path.string() + ": names no point files");
+  }
+  return files;
+}
 
 VirtualFile virtual_file(const fs::path& path) {
   const io::InputFile file(path);

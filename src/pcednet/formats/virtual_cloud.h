@@ -30,6 +30,14 @@ struct VirtualFile {
   std::vector<Field> fields = {};
 };
 
+/// Whether a file of that name is a virtual point cloud: .vpc, in small letters or capitals.
+bool is_virtual_cloud(const std::filesystem::path& path);
+
+/// The files that a virtual point cloud names, in its order. Throws Error(kUnreadable) for what is
+/// none, for files that are not there and for such as are on the net, Error(kInsufficient) if it
+/// names none.
+std::vector<std::filesystem::path> files_of_virtual_cloud(const std::filesystem::path& path);
+
 /// Reads the header of a LAS, LAZ or COPC file, not its points. Throws Error(kUnreadable) as
 /// read_cloud, Error(kInsufficient) for another format.
 VirtualFile virtual_file(const std::filesystem::path& path);
