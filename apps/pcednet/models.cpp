@@ -61,6 +61,14 @@ void add_model_options(CLI::App& command, ModelArguments& arguments) {
   add_scale_range_options(command, arguments.scales);
 }
 
+tiles::PlannedModel planned_model(const ModelArguments& arguments) {
+  return {.name = arguments.name,
+          .path = find_model(arguments.name),
+          .context = !arguments.no_context,
+          .boundary = !arguments.no_boundary,
+          .exact = arguments.scales.engine == gls::Engine::kExact};
+}
+
 detect::EdgeModel load_model(const ModelArguments& arguments) {
   detect::EdgeModel model = detect::load_model(find_model(arguments.name));
   if (arguments.no_context) detect::drop_context(model);

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "pcednet/detect/model.h"
+#include "pcednet/tiles/plan.h"
 
 namespace CLI {
 class App;
@@ -36,6 +37,9 @@ struct ModelArguments {
 /// Adds --model, --no-context, --no-boundary, --exact, --s-min and --s-max; the last five for a
 /// model alone.
 void add_model_options(CLI::App& command, ModelArguments& arguments);
+
+/// The model as a plan of tiles names it. Throws what find_model() throws.
+tiles::PlannedModel planned_model(const ModelArguments& arguments);
 
 /// Throws what find_model() and detect::load_model() throw.
 detect::EdgeModel load_model(const ModelArguments& arguments);

@@ -47,15 +47,11 @@ void plan_tiles(const PlanArguments& arguments, const Common& common) {
   tiles::PlanRequest request{.inputs = expand_inputs(arguments.inputs),
                              .folder = folder_of(arguments),
                              .output = arguments.output,
-                             .model = {.name = model.name,
-                                       .path = find_model(model.name),
-                                       .context = !model.no_context,
-                                       .boundary = !model.no_boundary,
-                                       .exact = model.scales.engine == gls::Engine::kExact},
+                             .model = planned_model(model),
                              .tile_length = arguments.tile_length,
                              .memory = byte_size("--max-memory", arguments.memory),
                              .keep_orientation = arguments.preparation.keep_orientation,
-                             .sorted = arguments.sorted};
+                             .sort = {.folder = arguments.sorted}};
   const Progress progress = console_progress(common);
   const tiles::Plan plan = tiles::make_plan(request, load_model(model), &progress);
   tiles::write_plan(arguments.plan, plan, common.overwrite());
@@ -248,7 +244,10 @@ void add_plan(CLI::App& tiles, Common& common) {
       "pcednet tiles plan city/ -o city.json\n"
       "pcednet tiles plan city/ -o city.json --max-memory 1G       memory of one tile\n"
       "pcednet tiles plan a.laz b.laz -o ab.json --tile 250 --output {XLEFT}_{YBOTTOM}.laz");
-  command->add_option("inputs", arguments->inputs, "LAS, LAZ and binary PLY files, or folders")
+  command
+      ->add_option("inputs", arguments->inputs,
+                   "LAS, LAZ, COPC and binary PLY files, folders of them, or a "
+                   ".vpc that names some")
       ->required();
   command->add_option("-o,--plan", arguments->plan, "The plan, a JSON file")->required();
   command

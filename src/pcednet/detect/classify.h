@@ -13,6 +13,13 @@ struct DescribedCloud;
 
 struct ClassCounts {
   std::size_t non_edge = 0, smooth = 0, sharp = 0, boundary = 0, unlabelled = 0;
+
+  std::size_t points() const { return non_edge + smooth + sharp + boundary + unlabelled; }
+  ClassCounts& operator+=(const ClassCounts& other) {
+    non_edge += other.non_edge, smooth += other.smooth, sharp += other.sharp;
+    boundary += other.boundary, unlabelled += other.unlabelled;
+    return *this;
+  }
 };
 
 /// What was found, per point of the cloud in its own order.

@@ -69,7 +69,7 @@ PointCloud read_dense_sample(std::span<const Vec3> sample, const Plan& plan,
   Stage stage(progress, "dense sample", plan.inputs.size());
   for (const PlannedInput& input : plan.inputs) {
     for_each_chunk(input, is_wanted, progress,
-                   [&](const PointCloud& part) { append_inside(part, cubes, dense); });
+                   [&](const PointCloud& part, std::size_t) { append_inside(part, cubes, dense); });
     stage.advance();
   }
   return dense;

@@ -84,6 +84,16 @@ bool fits_steps(const io::LasFile& file, const io::LasFile& into) {
   return true;
 }
 
+/// The scale of a file, or the smallest by a power of ten larger in which 32 bits hold the box.
+double scale_within(const io::LasFile& file, std::size_t axis, const BoundingBox& box) {
+  const int a = static_cast<int>(axis);
+  const double farthest =
+      std::max(std::abs(box.min[a] - file.offset(axis)), std::abs(box.max[a] - file.offset(axis)));
+  double scale = file.scale(axis);
+  while (std::isfinite(farthest) && farthest / std::abs(scale) > INT32_MAX) scale *= 10.0;
+  return scale;
+}
+
 /// `part` without its points.
 PointCloud without_points(PointCloud part) {
   part.positions.clear(), part.normals.clear(), part.colours.clear(), part.labels.clear();
@@ -117,15 +127,15 @@ void append_rows(const std::vector<Attribute>& from, std::span<const std::uint32
 /// Reads several parts at a time, and uses them one by one in their order.
 void read_in_turn(std::span<const std::size_t> parts,
                   const std::function<PointCloud(std::size_t)>& read,
-                  const std::function<void(PointCloud&)>& use) {
+                  const std::function<void(PointCloud&, std::size_t part)>& use) {
   const auto together = static_cast<std::size_t>(2 * thread_count());
   for_each_block(parts.size(), together, [&](std::size_t begin, std::size_t end) {
     std::vector<PointCloud> some(end - begin);
     parallel_blocks(some.size(), 1,
                     [&](std::size_t i, std::size_t) { some[i] = read(parts[begin + i]); });
-    for (PointCloud& part : some) {
-      use(part);
-      part = {};
+    for (std::size_t i = 0; i < some.size(); ++i) {
+      use(some[i], parts[begin + i]);
+      some[i] = {};
     }
   });
 }
@@ -177,18 +187,21 @@ PointCloud read_chunk(const io::PartReader& reader, const PlannedInput& input, s
 }
 
 void for_each_chunk(const PlannedInput& input, const std::function<bool(const Chunk&)>& is_wanted,
-                    const Progress* progress, const std::function<void(PointCloud&)>& use) {
-  std::vector<std::size_t> wanted;
-  for (std::size_t c = 0; c < input.chunks.size(); ++c) {
+                    const Progress* progress,
+                    const std::function<void(PointCloud&, std::size_t first)>& use) {
+  std::vector<std::size_t> wanted, first(input.chunks.size());
+  for (std::size_t c = 0, before = 0; c < input.chunks.size(); ++c) {
     if (is_wanted(input.chunks[c])) wanted.push_back(c);
+    first[c] = before;
+    before += input.chunks[c].points;
   }
   if (wanted.empty()) return;
   const auto reader = open_planned(input);
   read_in_turn(
       wanted, [&](std::size_t c) { return read_chunk(*reader, input, c); },
-      [&](PointCloud& part) {
+      [&](PointCloud& part, std::size_t c) {
         throw_if_cancelled(progress);
-        use(part);
+        use(part, first[c]);
       });
 }
 
@@ -205,7 +218,7 @@ IndexedInput index_input(const fs::path& path, const Progress* progress,
   Stage stage(progress, "index", reader->points());
   std::vector<std::size_t> parts(reader->parts());
   std::iota(parts.begin(), parts.end(), std::size_t{0});
-  const auto take = [&](PointCloud& part) {
+  const auto take = [&](PointCloud& part, std::size_t) {
     std::string digest = digest_of(part);
     io::finish_part(part, tally);
     check_extent(part.positions);
@@ -248,14 +261,19 @@ void settle_columns(const std::vector<IndexedInput>& inputs, Plan& plan) {
   const io::LasFile& finest = *std::min_element(
       las.begin(), las.end(),
       [](const io::LasFile& a, const io::LasFile& b) { return a.scale(0) < b.scale(0); });
+  double coarsest = 0.0;
+  bool widened = false;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    plan.las_steps.insert(plan.las_steps.end(), {finest.scale(axis), finest.offset(axis)});
+    const double scale = scale_within(finest, axis, plan.box);
+    plan.las_steps.insert(plan.las_steps.end(), {scale, finest.offset(axis)});
+    widened = widened || scale != finest.scale(axis);
+    coarsest = std::max(coarsest, std::abs(scale));
   }
   const auto fits = [&](const io::LasFile& file) { return fits_steps(file, finest); };
-  if (std::all_of(las.begin(), las.end(), fits)) return;
+  if (!widened && std::all_of(las.begin(), las.end(), fits)) return;
   plan.notes.push_back(fmt::format(
       "the inputs have different scales and offsets: coordinates are rounded to steps of {:g}",
-      finest.scale(0)));
+      coarsest));
 }
 
 PointCloud outline_of(const Plan& plan) {

@@ -26,10 +26,12 @@ std::unique_ptr<io::PartReader> open_planned(const PlannedInput& input);
 /// A chunk of a planned input, finished. Throws Error(kUnreadable) if it has changed since.
 PointCloud read_chunk(const io::PartReader& reader, const PlannedInput& input, std::size_t chunk);
 
-/// Calls `use` with every chunk of a planned input that is wanted, in order; several are read at a
-/// time. Throws what open_planned() and read_chunk() throw.
+/// Calls `use` with every chunk of a planned input that is wanted, in order, and with the number of
+/// its first point in the file; several are read at a time. Throws what open_planned() and
+/// read_chunk() throw.
 void for_each_chunk(const PlannedInput& input, const std::function<bool(const Chunk&)>& is_wanted,
-                    const Progress* progress, const std::function<void(PointCloud&)>& use);
+                    const Progress* progress,
+                    const std::function<void(PointCloud&, std::size_t first)>& use);
 
 struct IndexedInput {
   PlannedInput input;
@@ -43,7 +45,8 @@ IndexedInput index_input(const std::filesystem::path& path, const Progress* prog
                          const std::function<void(const PointCloud&)>& see);
 
 /// Throws Error(kUsage) if the inputs have different columns or coordinate systems. Chooses the
-/// plan's las_steps, the finest of the inputs, and notes what the tiles cannot keep.
+/// plan's las_steps, the finest of the inputs that hold the plan's box, and notes what the tiles
+/// cannot keep.
 void settle_columns(const std::vector<IndexedInput>& inputs, Plan& plan);
 
 /// What the tiles get beside points, from the first input, and their columns.

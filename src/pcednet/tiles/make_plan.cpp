@@ -76,16 +76,64 @@ double times_read(const Plan& plan) {
   return sum / static_cast<double>(plan.points());
 }
 
-/// Refuses to read everything for nearly every tile.
-void check_order(const Plan& plan) {
+/// Whether nearly every tile would read everything.
+bool is_too_often(double times, const Plan& plan) {
   constexpr double kMostTimes = 8.0, kFewPoints = 5e7;
-  const double times = times_read(plan);
-  if (times <= kMostTimes || times * static_cast<double>(plan.points()) <= kFewPoints) return;
+  return times > kMostTimes && times * static_cast<double>(plan.points()) > kFewPoints;
+}
+
+[[noreturn]] void refuse_order(double tiles, double times) {
   throw Error(ErrorKind::kUsage,
-              fmt::format("the points of the inputs are in no order in space: {} tiles would read "
-                          "each point {:.0f} times. Choose a larger --tile, or give --sort FOLDER "
-                          "for copies of the inputs in order",
-                          plan.tiles.size(), times));
+              fmt::format("the points of the inputs are in no order in space: {:.0f} tiles would "
+                          "read each point {:.0f} times. Choose a larger --tile, or give --sort "
+                          "FOLDER for copies of the inputs in order",
+                          tiles, times));
+}
+
+/// The share of the plane of x and y around `whole` that `box` takes.
+double share_of(const BoundingBox& box, const BoundingBox& whole) {
+  double share = 1.0;
+  for (int axis = 0; axis < 2; ++axis) {
+    const double length = whole.max[axis] - whole.min[axis];
+    if (length > 0.0 && !box.empty()) share *= (box.max[axis] - box.min[axis]) / length;
+  }
+  return share;
+}
+
+/// How many tiles there will be at least.
+double least_tiles(const PlanRequest& request, const Plan& plan, std::span<const Vec3> sample) {
+  if (request.tile_length > 0.0) {
+    CellCounts tiles(request.tile_length);
+    tiles.add(sample);
+    return static_cast<double>(tiles.cells().size());
+  }
+  return static_cast<double>(memory_for(plan.points(), {})) / static_cast<double>(request.memory);
+}
+
+/// Refuses before the second reading what would be refused after it.
+void check_order_early(const PlanRequest& request, const Plan& plan, std::span<const Vec3> sample) {
+  if (!request.sort.folder.empty()) return;
+  const auto points = static_cast<double>(plan.points());
+  const double tiles = least_tiles(request, plan, sample);
+  double sum = 0.0;
+  for (const PlannedInput& input : plan.inputs) {
+    for (const Chunk& chunk : input.chunks) {
+      sum += static_cast<double>(chunk.points) * share_of(chunk.box, plan.box);
+    }
+  }
+  const double times = tiles * sum / points;
+  if (is_too_often(times, plan)) refuse_order(tiles, times);
+}
+
+/// Copies the inputs where the request says so; refuses those that need it where it does not.
+void settle_order(const PlanRequest& request, Plan& plan, const Progress* progress) {
+  const double times = times_read(plan);
+  const bool in_order = !is_too_often(times, plan);
+  if (request.sort.folder.empty()) {
+    if (!in_order) refuse_order(static_cast<double>(plan.tiles.size()), times);
+  } else if (!in_order || !request.sort.if_needed) {
+    sort_inputs(request.sort.folder, request.sort.numbered, plan, progress);
+  }
 }
 
 /// The inputs of the plan, and a sample of their points.
@@ -133,6 +181,7 @@ Plan make_plan(const PlanRequest& request, const detect::EdgeModel& model,
   Sample some = index_inputs(request, plan, progress);
   const bool is_all = some.is_all();
   const std::vector<Vec3> sample = some.take();
+  check_order_early(request, plan, sample);
   const double cell = counting_cell(request, plan.box);
   CellCounts counts(cell);
   const Spacing spacing =
@@ -149,11 +198,7 @@ Plan make_plan(const PlanRequest& request, const detect::EdgeModel& model,
                        : plan.las_steps.empty() ? "{ID}.ply"
                                                 : "{ID}.laz");
   plan.memory = memory_for(most_points(counts, plan.grid, plan.buffer), plan.normals);
-  if (request.sorted.empty()) {
-    check_order(plan);
-  } else {
-    sort_inputs(request.sorted, plan, progress);
-  }
+  settle_order(request, plan, progress);
   return plan;
 }
 

@@ -10,6 +10,13 @@
 
 namespace pcednet::tiles {
 
+/// Copies of the inputs whose points are in order in space.
+struct SortRequest {
+  std::filesystem::path folder = {};  ///< for the copies; empty: none are made
+  bool if_needed = false;             ///< only for inputs that would be refused without
+  bool numbered = false;              ///< each point with its number: see kNumberColumn
+};
+
 struct PlanRequest {
   std::vector<std::filesystem::path> inputs;
   std::filesystem::path folder;  ///< for the tiles
@@ -18,14 +25,15 @@ struct PlanRequest {
   double tile_length = 0.0;      ///< 0: the largest that `memory` allows
   std::uint64_t memory = std::uint64_t{2} << 30;  ///< bytes that one tile may take
   bool keep_orientation = false;
-  std::filesystem::path sorted;  ///< folder for copies of the inputs in order; empty: none
+  SortRequest sort = {};
 };
 
 /// Plans the tiles of the inputs, which are read twice where they are many points, in memory that
 /// does not grow with them. `model` is what the request names, with the bounds of the scales that
 /// are given.
 ///
-/// Inputs whose points are in no order in space are refused unless there is a folder for copies.
+/// Inputs whose points are in no order in space are refused, after the first reading if that is
+/// plain by then, unless there is a folder for copies.
 /// Throws Error(kUnreadable) for inputs that cannot be read, Error(kUsage) for inputs that do not
 /// fit together, Error(kInsufficient) for no finite point or no range of scales.
 Plan make_plan(const PlanRequest& request, const detect::EdgeModel& model,

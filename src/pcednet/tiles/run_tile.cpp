@@ -14,6 +14,7 @@
 #include "pcednet/io/parts.h"
 #include "pcednet/tiles/inputs.h"
 #include "pcednet/tiles/sha256.h"
+#include "pcednet/tiles/sort_inputs.h"
 #include "pcednet/tiles/tile_file.h"
 
 namespace pcednet::tiles {
@@ -65,41 +66,55 @@ void keep_first(std::size_t points, detect::PreparedCloud& prepared,
   found.counts = detect::count_classes(found.classes);
 }
 
-/// Classifies the core, and puts what was found into it. Returns whether normals were made.
-bool classify(const Plan& plan, std::size_t tile, const detect::EdgeModel& model, TileCloud& points,
-              detect::ClassCounts& counts, const Progress* progress) {
-  detect::PreparedCloud prepared;
-  detect::Classification found = detect::nothing_found(points.core.size());
-  const auto is_finite = [](const Vec3& p) { return p.allFinite(); };
-  if (std::any_of(points.all.positions.begin(), points.all.positions.end(), is_finite)) {
-    const detect::PartOfCloud part = part_of(plan, tile, points);
-    prepared = detect::prepare(points.all, {.decided = plan.normals}, progress);
-    prepared.part = &part;
-    found = detect::classify(prepared, model, progress);
-    if (plan.model.boundary) detect::mark_boundary(prepared, found, progress);
+/// The numbers that sort_inputs() gave the points, where it did; otherwise as they were read.
+void take_numbers(TileCloud& points) {
+  const Attribute* column = find_attribute(points.core, kNumberColumn);
+  if (!column) return;
+  for (std::size_t i = 0; i < points.numbers.size(); ++i) {
+    points.numbers[i] = static_cast<std::uint64_t>(column->value(i));
   }
-  keep_first(points.core.size(), prepared, found);
-  points.all = {};
-  counts = found.counts;
-  detect::add_result(points.core, prepared, found, model);
-  return !prepared.made.empty();
+  std::erase_if(points.core.attributes, [](const Attribute& a) { return a.name == kNumberColumn; });
 }
 
 }  // namespace
 
+TileFindings classify_tile(const Plan& plan, std::size_t tile, const detect::EdgeModel& model,
+                           TileCloud& points, const Progress* progress) {
+  TileFindings findings{.prepared = {}, .found = detect::nothing_found(points.core.size())};
+  const auto is_finite = [](const Vec3& p) { return p.allFinite(); };
+  if (std::any_of(points.all.positions.begin(), points.all.positions.end(), is_finite)) {
+    const detect::PartOfCloud part = part_of(plan, tile, points);
+    detect::PreparedCloud& prepared = findings.prepared;
+    prepared = detect::prepare(points.all, {.decided = plan.normals}, progress);
+    prepared.part = &part;
+    findings.found = detect::classify(prepared, model, progress);
+    if (plan.model.boundary) detect::mark_boundary(prepared, findings.found, progress);
+    std::vector<Vec3> made = std::move(prepared.made);
+    prepared = {};
+    prepared.made = std::move(made);
+  }
+  keep_first(points.core.size(), findings.prepared, findings.found);
+  points.all = {};
+  return findings;
+}
+
 TileCloud read_tile(const Plan& plan, std::size_t tile, const Progress* progress) {
   const BoundingBox box = plan.box_of(plan.tiles[tile], plan.buffer);
-  TileCloud points{.core = outline_of(plan), .all = {}};
+  TileCloud points{.core = outline_of(plan), .all = {}, .numbers = {}};
+  std::size_t before = 0;
   for (const PlannedInput& input : plan.inputs) {
     const auto is_wanted = [&](const Chunk& chunk) {
       return box.meets(chunk.box) || (tile == 0 && chunk.not_finite > 0);
     };
-    for_each_chunk(input, is_wanted, progress, [&](const PointCloud& part) {
+    for_each_chunk(input, is_wanted, progress, [&](const PointCloud& part, std::size_t first) {
       const Chosen chosen = choose(part, plan, tile, box);
       append_points(part, chosen.core, points.core);
       append_surface(part, chosen.around, points.all);
+      for (const std::uint32_t i : chosen.core) points.numbers.push_back(before + first + i);
     });
+    before += input.points();
   }
+  take_numbers(points);
   if (plan.inputs.size() > 1) points.core.scanners.clear();
   add_core(points.core, points.all);
   if (points.core.size() == plan.tiles[tile].points) return points;
@@ -126,16 +141,18 @@ void run_tile(const Plan& plan, std::size_t tile, const detect::EdgeModel& model
               const Progress* progress) {
   const std::filesystem::path& path = plan.tiles[tile].output;
   TileCloud points = read_tile(plan, tile, progress);
-  detect::ClassCounts counts;
-  const bool made_normals = classify(plan, tile, model, points, counts, progress);
+  const TileFindings findings = classify_tile(plan, tile, model, points, progress);
+  detect::add_result(points.core, findings.prepared, findings.found, model);
   io::PartOutline outline = io::outline_of(points.core);
   outline.is_las = !plan.las_steps.empty();
   const auto writer = formats::create_parts(
-      path, outline, {.overwrite = Overwrite::kYes, .new_normals = !made_normals});
+      path, outline, {.overwrite = Overwrite::kYes, .new_normals = findings.prepared.made.empty()});
   writer->append(points.core);
   writer->commit();
-  write_record(path,
-               {.plan = plan.digest, .tile = tile, .points = points.core.size(), .counts = counts});
+  write_record(path, {.plan = plan.digest,
+                      .tile = tile,
+                      .points = points.core.size(),
+                      .counts = findings.found.counts});
 }
 
 }  // namespace pcednet::tiles

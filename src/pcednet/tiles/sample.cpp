@@ -18,7 +18,7 @@ void stream_points(const Plan& plan, const Progress* progress,
                    const std::function<void(std::span<const Vec3>)>& see) {
   Stage stage(progress, "spacing", plan.points());
   for (const PlannedInput& input : plan.inputs) {
-    const auto use = [&](const PointCloud& part) {
+    const auto use = [&](const PointCloud& part, std::size_t) {
       see(part.positions);
       stage.advance(part.size());
     };

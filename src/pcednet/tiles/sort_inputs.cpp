@@ -72,6 +72,13 @@ class TileFinder {
   std::map<std::array<std::int64_t, 2>, std::size_t> tiles_ = {};
 };
 
+/// The numbers from `first` on as a column, which PLY has as double alone.
+Attribute number_column(std::size_t first, std::size_t points) {
+  std::vector<double> numbers(points);
+  std::iota(numbers.begin(), numbers.end(), static_cast<double>(first));
+  return make_attribute(kNumberColumn, numbers);
+}
+
 /// Writes the points of the tiles [begin, end) to a file each, in the order of the inputs.
 void scatter(const fs::path& folder, const Plan& plan, const PointCloud& outline, std::size_t begin,
              std::size_t end, const Progress* progress) {
@@ -80,9 +87,12 @@ void scatter(const fs::path& folder, const Plan& plan, const PointCloud& outline
     copies.emplace_back(copy_path(folder, plan, id, "unsorted_"), plan, plan.tiles[id].points);
   }
   const TileFinder tile_of(plan);
+  const bool numbered = find_attribute(outline, kNumberColumn) != nullptr;
+  std::size_t before = 0;
   Stage stage(progress, "sort", plan.points());
   for (const PlannedInput& input : plan.inputs) {
-    const auto use = [&](const PointCloud& part) {
+    const auto use = [&](PointCloud& part, std::size_t first) {
+      if (numbered) part.attributes.push_back(number_column(before + first, part.size()));
       std::vector<std::vector<std::uint32_t>> chosen(copies.size());
       for (std::uint32_t i = 0; i < part.size(); ++i) {
         const std::size_t id = tile_of(part.positions[i]);
@@ -98,6 +108,7 @@ void scatter(const fs::path& folder, const Plan& plan, const PointCloud& outline
     };
     for_each_chunk(
         input, [](const Chunk&) { return true; }, progress, use);
+    before += input.points();
   }
   for (Copy& copy : copies) copy.commit();
 }
@@ -130,9 +141,10 @@ void sort_file(const fs::path& from, const fs::path& to, const Plan& plan,
 
 }  // namespace
 
-void sort_inputs(const fs::path& folder, Plan& plan, const Progress* progress) {
+void sort_inputs(const fs::path& folder, bool numbered, Plan& plan, const Progress* progress) {
   make_folder(folder);
-  const PointCloud outline = outline_of(plan);
+  PointCloud outline = outline_of(plan);
+  if (numbered) outline.attributes.push_back(number_column(0, 0));
   for_each_block(plan.tiles.size(), kOpenFiles, [&](std::size_t begin, std::size_t end) {
     scatter(folder, plan, outline, begin, end, progress);
   });

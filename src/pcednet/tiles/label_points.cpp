@@ -1,0 +1,91 @@
+#include "pcednet/tiles/label_points.h"
+
+#include <algorithm>
+#include <cstring>
+#include <numeric>
+#include <vector>
+
+#include "pcednet/detect/decide.h"
+
+namespace pcednet::tiles {
+namespace {
+
+// A point's record: its class, both probabilities, and its normal where some were made.
+constexpr std::size_t kSharpAt = 1, kSmoothAt = 5, kNormalAt = 9,
+                      kBytesOfNormal = 3 * sizeof(double);
+
+template <typename T>
+void put_at(std::byte* place, const T& value) {
+  std::memcpy(place, &value, sizeof value);
+}
+
+template <typename T>
+T get_at(const std::byte* place) {
+  T value;
+  std::memcpy(&value, place, sizeof value);
+  return value;
+}
+
+}  // namespace
+
+PointLabels::PointLabels(const std::filesystem::path& beside, bool normals)
+    : stride_(kNormalAt + (normals ? kBytesOfNormal : 0)), file_(beside) {}
+
+void PointLabels::put(std::span<const std::uint64_t> numbers, const TileFindings& findings) {
+  std::vector<std::uint32_t> order(numbers.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::sort(order.begin(), order.end(),
+            [&](std::uint32_t a, std::uint32_t b) { return numbers[a] < numbers[b]; });
+  std::vector<std::byte> rows(stride_ * order.size());
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    const std::uint32_t i = order[k];
+    std::byte* const row = &rows[k * stride_];
+    put_at(row, findings.found.classes[i]);
+    put_at(row + kSharpAt, findings.found.p_sharp[i]);
+    put_at(row + kSmoothAt, findings.found.p_smooth[i]);
+    if (stride_ == kNormalAt || findings.prepared.made.empty()) continue;
+    std::memcpy(row + kNormalAt, findings.prepared.made[i].data(), kBytesOfNormal);
+  }
+  // Numbers that follow each other are written together.
+  for (std::size_t k = 0, end = 0; k < order.size(); k = end) {
+    for (end = k + 1; end < order.size() && numbers[order[end]] == numbers[order[end - 1]] + 1;) {
+      ++end;
+    }
+    file_.write_at(numbers[order[k]] * stride_,
+                   std::span(rows).subspan(k * stride_, (end - k) * stride_));
+  }
+}
+
+TileFindings PointLabels::get(std::size_t begin, std::size_t end) const {
+  std::vector<std::byte> rows((end - begin) * stride_);
+  file_.read(begin * stride_, rows);
+  TileFindings findings{.prepared = {}, .found = detect::nothing_found(end - begin)};
+  if (stride_ > kNormalAt) findings.prepared.made.resize(end - begin);
+  for (std::size_t i = 0; i < end - begin; ++i) {
+    const std::byte* const row = &rows[i * stride_];
+    findings.found.classes[i] = get_at<std::uint8_t>(row);
+    findings.found.p_sharp[i] = get_at<float>(row + kSharpAt);
+    findings.found.p_smooth[i] = get_at<float>(row + kSmoothAt);
+    if (stride_ == kNormalAt) continue;
+    std::memcpy(findings.prepared.made[i].data(), row + kNormalAt, kBytesOfNormal);
+  }
+  findings.found.counts = detect::count_classes(findings.found.classes);
+  return findings;
+}
+
+detect::ClassCounts label_points(const Plan& plan, const detect::EdgeModel& model,
+                                 PointLabels& labels, const Progress* progress) {
+  detect::ClassCounts counts;
+  const Progress quiet = without_report(progress);
+  Stage stage(progress, "tiles", plan.points());
+  for (std::size_t id = 0; id < plan.tiles.size(); ++id) {
+    TileCloud points = read_tile(plan, id, &quiet);
+    const TileFindings findings = classify_tile(plan, id, model, points, &quiet);
+    labels.put(points.numbers, findings);
+    counts += findings.found.counts;
+    stage.advance(points.core.size());
+  }
+  return counts;
+}
+
+}  // namespace pcednet::tiles
