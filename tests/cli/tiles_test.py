@@ -158,6 +158,39 @@ class Tiles(CliTest):
         said = run("tiles", "join", plan, "--vpc", self.folder / "c.vpc", expect=4).stderr
         self.assertIn("of LAS, LAZ and COPC files", said)
 
+    def test_copc_and_virtual_point_clouds_are_planned(self):
+        p, n = field(3, 600)
+        write_ply(self.folder / "a.ply", p, n)
+        run("convert", self.folder / "a.ply", "-o", self.folder / "a.laz")
+        run("convert", self.folder / "a.laz", "-o", self.folder / "a.ply", "--overwrite")
+        (self.folder / "in").mkdir()
+        rows, _ = read_ply(self.folder / "a.ply")
+        for name, part in (("left", rows["x"] < 1.2), ("right", rows["x"] >= 1.2)):
+            some = np.column_stack([rows[a] for a in "xyz"])[part]
+            normals = np.column_stack([rows["n" + a] for a in "xyz"])[part]
+            write_ply(self.folder / "b.ply", some, normals, position_type="double")
+            run("convert", self.folder / "b.ply", "-o", self.folder / f"in/{name}.copc.laz")
+            (self.folder / "b.ply").unlink()
+        run("info", self.folder / "in", "--vpc", self.folder / "in.vpc")
+        plan, content = self.make_plan(self.folder / "in.vpc", tile=1.0)
+        self.assertEqual([i["path"] for i in content["inputs"]],
+                         ["in/left.copc.laz", "in/right.copc.laz"])
+        # Each file is in the finest steps that hold it, which do not hold both together.
+        self.assertIn("rounded to steps of 1e-08", "".join(content["notes"]))
+        run("tiles", "run", plan)
+        run("tiles", "join", plan, "-o", self.folder / "joined.laz")
+        run("convert", self.folder / "joined.laz", "-o", self.folder / "joined.ply")
+        joined, whole = sorted_rows(self.folder / "joined.ply"), sorted_rows(self.folder / "a.ply")
+        for name in "xyz":
+            np.testing.assert_allclose(joined[name], whole[name], atol=1e-7)
+        # Each file of the list is a point file to other commands, under the name without .copc.
+        run("classify", self.folder / "in.vpc", "--out-dir", self.folder / "out")
+        self.assertEqual(sorted(f.name for f in (self.folder / "out").iterdir()),
+                         ["left_edges.las", "right_edges.las"])
+        (self.folder / "in/left.copc.laz").unlink()
+        said = run("tiles", "plan", self.folder / "in.vpc", "-o", self.folder / "q.json", expect=3).stderr
+        self.assertIn("in.vpc: names ./in/left.copc.laz, and there is no", said)
+
     def test_several_inputs_are_one_cloud(self):
         p, n = field(3, 600)
         half = p[:, 0] < 1.2

@@ -5,6 +5,7 @@
 
 #include "batch.h"
 #include "classify_cloud.h"
+#include "classify_tiles.h"
 #include "commands.h"
 #include "methods.h"
 #include "models.h"
@@ -23,7 +24,7 @@ namespace fs = std::filesystem;
 
 struct ClassifyArguments {
   std::vector<std::string> inputs;
-  std::string output, output_folder, preview, las_classification;
+  std::string output, output_folder, preview, las_classification, memory;
   ModelArguments model{.name = kDefaultModel};
   MethodArguments method;
   detect::PrepareOptions preparation;
@@ -45,14 +46,14 @@ fs::path preview_path(const ClassifyArguments& arguments, const fs::path& input,
   if (!several) return arguments.preview;
   const fs::path pattern = arguments.preview;
   return pattern.parent_path() / fmt::format("{}_{}{}", pattern.stem().string(),
-                                             input.stem().string(), pattern.extension().string());
+                                             formats::stem_of(input), pattern.extension().string());
 }
 
 /// The file for a result unless the user names one: LAS for LAS, PLY for all else.
 std::string output_name(const fs::path& input) {
   const formats::Format* format = formats::find_format(input);
   const bool is_las = format && format->name == "LAS";
-  return input.stem().string() + (is_las ? "_edges.las" : "_edges.ply");
+  return formats::stem_of(input) + (is_las ? "_edges.las" : "_edges.ply");
 }
 
 std::vector<Job> jobs_for(const std::vector<fs::path>& inputs, const ClassifyArguments& arguments) {
@@ -157,7 +158,7 @@ void set_las_classification(const std::string& pairs, const std::vector<std::uin
 
 void report(const Job& job, const detect::Classification& result, const detect::EdgeModel& model,
             const std::string& seconds) {
-  const std::size_t points = result.classes.size();
+  const std::size_t points = result.counts.points();
   const auto share = [&](std::size_t count) {
     return 100.0 * static_cast<double>(count) /
            static_cast<double>(std::max<std::size_t>(points, 1));
@@ -188,8 +189,74 @@ void say_kept(const detect::KeptInput& kept) {
   if (kept.colours) say("  the input's colours are kept; --class-colours replaces them");
 }
 
+/// Puts what was found into the cloud, as the user asked for it.
+detect::KeptInput add_found(const detect::PreparedCloud& prepared,
+                            const detect::Classification& found, const ClassifyArguments& arguments,
+                            const detect::EdgeModel& model, PointCloud& cloud) {
+  const detect::KeptInput kept =
+      detect::add_result(cloud, prepared, found, model, {.class_colours = arguments.class_colours});
+  if (!arguments.las_classification.empty()) {
+    set_las_classification(arguments.las_classification, found.classes, cloud);
+  }
+  return kept;
+}
+
+/// Appends every n-th point of a part, about four million of all, which are enough for a picture.
+void draw_some(const PointCloud& part, std::size_t before, std::size_t all, PointCloud& drawn) {
+  constexpr std::size_t kMost = 4'000'000;
+  const std::size_t step = all / kMost + 1;
+  for (std::size_t i = (step - before % step) % step; i < part.size(); i += step) {
+    drawn.positions.push_back(part.positions[i]);
+    drawn.labels.push_back(part.labels[i]);
+    if (part.has_normals()) drawn.normals.push_back(part.normals[i]);
+  }
+}
+
+void classify_large_file(const Job& job, const ClassifyArguments& arguments, std::uint64_t memory,
+                         const detect::EdgeModel& model, const Common& common) {
+  StageClock clock(console_progress(common));
+  const TiledCloud cloud({.input = job.input,
+                          .output = job.output,
+                          .model = arguments.model,
+                          .preparation = arguments.preparation,
+                          .memory = memory},
+                         model, clock.progress());
+  const detect::Classification result{
+      .counts = cloud.counts(), .s_min = cloud.plan().s_min, .s_max = cloud.plan().s_max};
+  detect::KeptInput kept;
+  PointCloud drawn;
+  const auto add_result = [&](PointCloud& part, const tiles::TileFindings& findings) {
+    detect::Classification found = findings.found;
+    found.s_min = result.s_min, found.s_max = result.s_max;
+    kept = add_found(findings.prepared, found, arguments, model, part);
+  };
+  const auto see = [&](const PointCloud& part, std::size_t before) {
+    if (!job.preview.empty()) draw_some(part, before, cloud.plan().points(), drawn);
+  };
+  write_tiled(job.output, cloud,
+              {.write = {.overwrite = common.overwrite(), .ascii = arguments.ascii},
+               .add_result = add_result,
+               .see = see},
+              clock.progress());
+  say_kept(kept);
+  if (!job.preview.empty()) {
+    clock.begin("preview");
+    render::write_preview(job.preview, drawn, drawn.labels, {.overwrite = common.overwrite()});
+  }
+  report(job, result, clock.seconds());
+}
+
+/// The memory for a tile where there must be tiles.
+std::optional<std::uint64_t> tiles_for(const Job& job, const ClassifyArguments& arguments) {
+  if (!arguments.method.name.empty()) return std::nullopt;
+  return memory_of_tiles(job.input, job.output, memory_limit(arguments.memory));
+}
+
 void classify_file(const Job& job, const ClassifyArguments& arguments,
                    const detect::EdgeModel& model, const Common& common) {
+  if (const auto memory = tiles_for(job, arguments)) {
+    return classify_large_file(job, arguments, *memory, model, common);
+  }
   StageClock clock(console_progress(common));
   const Progress& progress = clock.progress();
   clock.begin("read");
@@ -204,15 +271,12 @@ void classify_file(const Job& job, const ClassifyArguments& arguments,
                                                   .boundary = !arguments.model.no_boundary},
                                                  progress);
   clock.begin("write");
-  say_kept(detect::add_result(cloud, prepared, result, model,
-                              {.class_colours = arguments.class_colours}));
-  if (!arguments.las_classification.empty()) {
-    set_las_classification(arguments.las_classification, result.classes, cloud);
-  }
+  say_kept(add_found(prepared, result, arguments, model, cloud));
   formats::write_cloud(job.output, cloud,
                        {.overwrite = common.overwrite(),
                         .ascii = arguments.ascii,
-                        .new_normals = prepared.made.empty()});
+                        .new_normals = prepared.made.empty(),
+                        .progress = &progress});
   if (!job.preview.empty()) {
     clock.begin("preview");
     render::write_preview(job.preview, cloud, result.classes, {.overwrite = common.overwrite()});
@@ -273,6 +337,7 @@ void add_classify(CLI::App& app, Common& common) {
                  "Leave out inputs whose result exists, as after a stop")
       ->excludes(overwrite);
   add_model_options(*command, arguments->model);
+  add_memory_option(*command, arguments->memory);
   command->add_option("--preview", arguments->preview, "Draw the labelled cloud to this PNG file");
   command->add_flag("--class-colours", arguments->class_colours,
                     "Colour the points by class even if the input has colours");
@@ -280,7 +345,7 @@ void add_classify(CLI::App& app, Common& common) {
   add_method_options(*command, arguments->method);
   add_prepare_options(*command, arguments->preparation);
   for (const char* of_a_model : {"--model", "--no-context", "--no-boundary", "--exact", "--s-min",
-                                 "--s-max", "--keep-orientation"}) {
+                                 "--s-max", "--keep-orientation", "--max-memory"}) {
     command->get_option(of_a_model)->excludes("--method");
   }
   command->callback([arguments, &common] { classify(*arguments, common); });

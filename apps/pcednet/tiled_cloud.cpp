@@ -1,0 +1,126 @@
+#include "tiled_cloud.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+
+#include "byte_size.h"
+#include "common.h"
+#include "free_memory.h"
+#include "pcednet/formats/format.h"
+#include "pcednet/formats/read_cloud.h"
+#include "pcednet/tiles/inputs.h"
+#include "pcednet/tiles/layout.h"
+#include "pcednet/tiles/make_plan.h"
+
+namespace pcednet::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Larger tiles repeat hardly less of their neighbours.
+constexpr std::uint64_t kMostForTile = std::uint64_t{4} << 30;
+
+/// What classifying takes in memory, as far as the first points tell: if there are no normals, as
+/// many neighbours as there may be.
+std::uint64_t memory_in_whole(const io::PartReader& reader) {
+  constexpr std::size_t kMostNeighbours = 48;
+  const PointCloud first = tiles::read_finished(reader, 0);
+  std::size_t columns = 0;
+  for (const Attribute& attribute : first.attributes) columns += attribute.stride();
+  return tiles::memory_for(reader.points(),
+                           {.made = !first.has_normals(), .neighbours = kMostNeighbours}) +
+         columns * reader.points();
+}
+
+bool is_tiled_format(const fs::path& input) {
+  const std::string_view name = formats::format_of(io::InputFile(input)).name;
+  return name == "LAS" || name == "PLY";
+}
+
+tiles::Plan plan_for(const TiledRequest& request, const detect::EdgeModel& model,
+                     const fs::path& sorted, const Progress& progress) {
+  tiles::Plan plan =
+      tiles::make_plan({.inputs = {request.input},
+                        .folder = request.output.parent_path(),
+                        .output = {},
+                        .model = planned_model(request.model),
+                        .memory = request.memory,
+                        .keep_orientation = request.preparation.keep_orientation,
+                        .sort = {.folder = sorted, .if_needed = true, .numbered = true}},
+                       model, &progress);
+  for (const std::string& note : plan.notes) {
+    const std::string name = request.input.string();
+    warn(note.starts_with(name) ? note : name + ": " + note);
+  }
+  return plan;
+}
+
+}  // namespace
+
+void add_memory_option(CLI::App& command, std::string& memory) {
+  command.add_option("--max-memory", memory,
+                     "Memory to stay within, such as 8G: larger clouds are classified tile by tile "
+                     "(default: most of what is free)");
+}
+
+std::uint64_t memory_limit(const std::string& memory) {
+  if (!memory.empty()) return byte_size("--max-memory", memory);
+  return free_memory() / 5 * 4;
+}
+
+std::optional<std::uint64_t> memory_of_tiles(const fs::path& input, const fs::path& output,
+                                             std::uint64_t limit) {
+  const auto reader = formats::open_parts(input, tiles::kChunkPoints);
+  if (!reader) return std::nullopt;
+  const std::uint64_t whole = memory_in_whole(*reader);
+  if (whole <= limit) return std::nullopt;
+  const std::string much =
+      fmt::format("{}: {} points may take {} of memory, more than {}", input.string(),
+                  reader->points(), size_text(whole), size_text(limit));
+  if (!is_tiled_format(input)) {
+    warn(much + "; LAS, LAZ and binary PLY, which pcednet convert writes, are classified in tiles");
+    return std::nullopt;
+  }
+  if (!output.empty() && !formats::format_for(output).create_parts) {
+    warn(much + "; .las, .laz, .ply and text are written in tiles");
+    return std::nullopt;
+  }
+  say(much + ": classified in tiles");
+  return std::min(limit, kMostForTile);
+}
+
+PassingFolder::~PassingFolder() {
+  std::error_code ignored;
+  fs::remove_all(path_, ignored);
+}
+
+TiledCloud::TiledCloud(TiledRequest request, const detect::EdgeModel& model,
+                       const Progress& progress)
+    : request_(std::move(request)),
+      sorted_(fmt::format("{}.sorted-{}", request_.output.string(), getpid())),
+      plan_(plan_for(request_, model, sorted_.path(), progress)),
+      reader_(tiles::open_chunks(request_.input)) {
+  reader_->set_narrow_colours(plan_.inputs.front().narrow_colours);
+  if (request_.given) return;
+  const std::size_t tiles = plan_.tiles.size();
+  say(fmt::format("  {} tile{} of length {:g}, each with {:.4g} around it, of up to {}", tiles,
+                  tiles == 1 ? "" : "s", plan_.grid.length(), plan_.buffer,
+                  size_text(plan_.memory)));
+  labels_.emplace(request_.output, plan_.normals.made);
+  counts_ = tiles::label_points(plan_, tiles::load_planned_model(plan_), *labels_, &progress);
+}
+
+void TiledCloud::each(const Visit& visit) const {
+  std::size_t begin = 0;
+  for (std::size_t p = 0; p < reader_->parts(); ++p) {
+    PointCloud part = tiles::read_finished(*reader_, p);
+    const tiles::TileFindings findings =
+        labels_ ? labels_->get(begin, begin + part.size()) : request_.given(part);
+    begin += part.size();
+    if (!visit(part, findings)) return;
+  }
+}
+
+}  // namespace pcednet::app
