@@ -11,12 +11,14 @@
 #include "batch.h"
 #include "classify_cloud.h"
 #include "commands.h"
+#include "lines_tiles.h"
 #include "models.h"
 #include "pcednet/core/error.h"
 #include "pcednet/formats/labels.h"
 #include "pcednet/io/drawing/drawing.h"
 #include "pcednet/io/drawing/line_classes.h"
 #include "pcednet/io/las/las.h"
+#include "pcednet/tiles/inputs.h"
 #include "prepare.h"
 #include "stage_clock.h"
 #include "workbench/render/preview.h"
@@ -32,7 +34,7 @@ constexpr std::array kKinds = {CurveKind::kSegment, CurveKind::kArc, CurveKind::
                                CurveKind::kPolyline};
 
 struct LinesArguments {
-  std::string input, preview;
+  std::string input, preview, memory;
   std::vector<std::string> outputs, kinds;
   std::vector<std::string> classes = {"sharp", "boundary"};
   bool classify = false;
@@ -46,6 +48,7 @@ struct LinesArguments {
 
 /// What find_lines() takes, and what holds it.
 struct LabelledCloud {
+  PointCloud cloud;
   detect::PreparedCloud prepared;
   std::vector<std::uint8_t> classes;
   std::vector<float> p_sharp, p_smooth;
@@ -90,24 +93,28 @@ void warn_of_other_classes(const std::string& file, const std::vector<std::uint8
                    others));
 }
 
-LabelledCloud with_given_labels(const LinesArguments& arguments, const PointCloud& cloud,
-                                std::vector<std::uint8_t> classes, const Progress& progress) {
+void add_given_labels(const LinesArguments& arguments, std::vector<std::uint8_t> classes,
+                      LabelledCloud& labelled, const Progress& progress) {
   warn_of_other_classes(arguments.input, classes);
-  LabelledCloud labelled{
-      .prepared = prepare(arguments.input, cloud, arguments.preparation, progress),
-      .classes = std::move(classes),
-      .p_sharp = probabilities(cloud, "p_sharp"),
-      .p_smooth = probabilities(cloud, "p_smooth")};
+  const PointCloud& cloud = labelled.cloud;
+  labelled.prepared = prepare(arguments.input, cloud, arguments.preparation, progress);
+  labelled.classes = std::move(classes);
+  labelled.p_sharp = probabilities(cloud, "p_sharp");
+  labelled.p_smooth = probabilities(cloud, "p_smooth");
   if (labelled.p_sharp.empty()) labelled.p_smooth.clear();
   if (!labelled.p_sharp.empty()) labelled.p_smooth.resize(cloud.size());
-  return labelled;
 }
 
-LabelledCloud label(const LinesArguments& arguments, const PointCloud& cloud, StageClock& clock) {
+/// Reads the cloud whole, and classifies it if need be.
+void read_labelled(const LinesArguments& arguments, StageClock& clock, LabelledCloud& labelled) {
+  clock.begin("read");
+  PointCloud& cloud = labelled.cloud;
+  cloud = read_cloud(arguments.input);
+  throw_if_cancelled(&clock.progress());
   std::vector<std::uint8_t> given = formats::labels_of(cloud, arguments.input);
   clock.begin("normals");
   if (!given.empty() && !arguments.classify) {
-    return with_given_labels(arguments, cloud, std::move(given), clock.progress());
+    return add_given_labels(arguments, std::move(given), labelled, clock.progress());
   }
   const detect::EdgeModel model = load_model(arguments.model);
   if (given.empty()) {
@@ -118,10 +125,55 @@ LabelledCloud label(const LinesArguments& arguments, const PointCloud& cloud, St
                                                .preparation = arguments.preparation,
                                                .boundary = !arguments.model.no_boundary},
                                               clock.progress());
-  return {.prepared = std::move(classified.prepared),
-          .classes = std::move(classified.found.classes),
-          .p_sharp = std::move(classified.found.p_sharp),
-          .p_smooth = std::move(classified.found.p_smooth)};
+  labelled.prepared = std::move(classified.prepared);
+  labelled.classes = std::move(classified.found.classes);
+  labelled.p_sharp = std::move(classified.found.p_sharp);
+  labelled.p_smooth = std::move(classified.found.p_smooth);
+}
+
+/// The labels that a part of the cloud carries. Throws Error(kUsage) where its normals are missing:
+/// they belong to the work that is done in tiles.
+tiles::TileFindings given_findings(const LinesArguments& arguments, const PointCloud& part) {
+  tiles::TileFindings findings;
+  findings.found.classes = formats::labels_of(part, arguments.input);
+  findings.found.p_sharp = probabilities(part, "p_sharp");
+  findings.found.p_smooth = probabilities(part, "p_smooth");
+  if (findings.found.p_sharp.empty()) {  // as find_lines() takes classes alone
+    findings.found.p_smooth.clear();
+    for (const std::uint8_t its_class : findings.found.classes) {
+      const bool edge = its_class == kSharpEdge || its_class == kSmoothEdge;
+      findings.found.p_sharp.push_back(edge ? 1.0f : 0.0f);
+    }
+  }
+  findings.found.p_smooth.resize(part.size());
+  if (part.has_normals()) return findings;
+  throw Error(ErrorKind::kUsage,
+              fmt::format("{}: has labels, but no normals: give --classify to find both in tiles",
+                          arguments.input));
+}
+
+/// The same for a cloud beyond memory: its points near edges.
+void read_labelled_in_tiles(const LinesArguments& arguments, std::uint64_t memory,
+                            StageClock& clock, LabelledCloud& labelled) {
+  TiledRequest request{.input = arguments.input,
+                       .output = arguments.outputs.front(),
+                       .model = arguments.model,
+                       .preparation = arguments.preparation,
+                       .memory = memory};
+  const auto first = tiles::read_finished(*tiles::open_chunks(arguments.input), 0);
+  if (!arguments.classify && !formats::labels_of(first, arguments.input).empty()) {
+    request.given = [&](const PointCloud& part) { return given_findings(arguments, part); };
+  }
+  const TiledCloud cloud(std::move(request), load_model(arguments.model), clock.progress());
+  PointsNearEdges near = read_near_edges(cloud, memory_limit(arguments.memory), clock.progress());
+  say(fmt::format("  lines are found from the {} of {} points that are near edges",
+                  near.classes.size(), cloud.plan().points()));
+  labelled.cloud = std::move(near.cloud);
+  labelled.prepared.positions = labelled.cloud.positions;
+  labelled.prepared.normals = labelled.cloud.normals;
+  labelled.classes = std::move(near.classes);
+  labelled.p_sharp = std::move(near.p_sharp);
+  labelled.p_smooth = std::move(near.p_smooth);
 }
 
 /// Leaves what the user asked for; returns how many curves that took away.
@@ -166,10 +218,14 @@ void run(LinesArguments arguments, const Common& common) {
   check_outputs(arguments);
   find_model(arguments.model.name);  // refuses before the work
   StageClock clock(console_progress(common));
-  clock.begin("read");
-  const PointCloud cloud = read_cloud(arguments.input);
-  throw_if_cancelled(&clock.progress());
-  const LabelledCloud labelled = label(arguments, cloud, clock);
+  LabelledCloud labelled;
+  const auto memory = memory_of_tiles(arguments.input, {}, memory_limit(arguments.memory));
+  if (memory) {
+    read_labelled_in_tiles(arguments, *memory, clock, labelled);
+  } else {
+    read_labelled(arguments, clock, labelled);
+  }
+  const PointCloud& cloud = labelled.cloud;
   clock.begin("lines");
   std::vector<Curve> curves;
   with_name_in_errors(arguments.input, [&] {
@@ -309,6 +365,7 @@ void add_lines(CLI::App& app, Common& common) {
   command->add_flag("--classify", arguments->classify,
                     "Classify first even if the points have labels");
   add_model_options(*command, arguments->model);
+  add_memory_option(*command, arguments->memory);
   add_prepare_options(*command, arguments->preparation);
   for (const char* of_a_model :
        {"--model", "--no-context", "--no-boundary", "--exact", "--s-min", "--s-max"}) {

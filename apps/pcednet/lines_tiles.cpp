@@ -1,0 +1,120 @@
+#include "lines_tiles.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <unordered_set>
+
+#include "byte_size.h"
+#include "pcednet/cloud/edge_class.h"
+#include "pcednet/core/error.h"
+#include "pcednet/spatial/morton.h"
+
+namespace pcednet::app {
+namespace {
+
+/// Of the probabilities of both kinds together: find_lines() looks at points from there on.
+constexpr float kLeastProbability = 0.1f;
+constexpr std::uint64_t kBytesPerPoint = 400;  ///< docs/large.md says what was measured
+
+/// Cubes of one size, by their places in a grid that begins one cube before the cloud.
+class Cubes {
+ public:
+  Cubes(const BoundingBox& box, double side)
+      : corner_(box.min.array() - side),
+        side_(std::max(side, (box.max - box.min).maxCoeff() / kMostAlong)) {}
+
+  void add_with_neighbours(const Vec3& position) {
+    const auto place = place_of(position);
+    if (!own_.insert(spatial::morton_code(place)).second) return;
+    for (std::uint32_t x = place[0] - 1; x <= place[0] + 1; ++x) {
+      for (std::uint32_t y = place[1] - 1; y <= place[1] + 1; ++y) {
+        for (std::uint32_t z = place[2] - 1; z <= place[2] + 1; ++z) {
+          all_.insert(spatial::morton_code({x, y, z}));
+        }
+      }
+    }
+  }
+  bool hold(const Vec3& position) const {
+    return all_.contains(spatial::morton_code(place_of(position)));
+  }
+
+ private:
+  static constexpr double kMostAlong = 2'000'000;  // of the 2^21 that a code has room for
+
+  std::array<std::uint32_t, 3> place_of(const Vec3& position) const {
+    std::array<std::uint32_t, 3> place = {};
+    for (int axis = 0; axis < 3; ++axis) {
+      place[static_cast<std::size_t>(axis)] =
+          static_cast<std::uint32_t>(std::floor((position[axis] - corner_[axis]) / side_));
+    }
+    return place;
+  }
+
+  Vec3 corner_;
+  double side_;
+  std::unordered_set<std::uint64_t> own_ = {}, all_ = {};
+};
+
+bool may_be_edge(const detect::Classification& found, std::size_t i) {
+  const std::uint8_t its_class = found.classes[i];
+  return its_class == kSharpEdge || its_class == kSmoothEdge || its_class == kBoundary ||
+         found.p_sharp[i] + found.p_smooth[i] > kLeastProbability;
+}
+
+Cubes cubes_near_edges(const TiledCloud& cloud, const Progress& progress) {
+  const tiles::Plan& plan = cloud.plan();
+  Cubes cubes(plan.box, plan.s_max);
+  Stage stage(&progress, "edges", plan.points());
+  cloud.each([&](const PointCloud& part, const tiles::TileFindings& findings) {
+    for (std::size_t i = 0; i < part.size(); ++i) {
+      const Vec3& position = part.positions[i];
+      if (position.allFinite() && may_be_edge(findings.found, i)) {
+        cubes.add_with_neighbours(position);
+      }
+    }
+    stage.advance(part.size());
+    return true;
+  });
+  return cubes;
+}
+
+void check_memory(std::size_t points, std::uint64_t limit) {
+  if (kBytesPerPoint * points <= limit) return;
+  throw Error(
+      ErrorKind::kFailure,
+      fmt::format("more than {} points are near edges: their lines take more memory than {}. Give "
+                  "a larger --max-memory, or draw the lines tile by tile: pcednet tiles plan, "
+                  "tiles run, then pcednet lines of each tile",
+                  points, size_text(limit)));
+}
+
+}  // namespace
+
+PointsNearEdges read_near_edges(const TiledCloud& cloud, std::uint64_t limit,
+                                const Progress& progress) {
+  const Cubes cubes = cubes_near_edges(cloud, progress);
+  PointsNearEdges near;
+  Stage stage(&progress, "points near edges", cloud.plan().points());
+  cloud.each([&](const PointCloud& part, const tiles::TileFindings& findings) {
+    if (near.cloud.foreign_elements.empty()) near.cloud.foreign_elements = part.foreign_elements;
+    const std::vector<Vec3>& made = findings.prepared.made;
+    const std::vector<Vec3>& normals = made.empty() ? part.normals : made;
+    for (std::size_t i = 0; i < part.size(); ++i) {
+      const Vec3& position = part.positions[i];
+      if (!position.allFinite() || !cubes.hold(position)) continue;
+      near.cloud.positions.push_back(position);
+      near.cloud.normals.push_back(normals.empty() ? Vec3::Zero() : normals[i]);
+      near.classes.push_back(findings.found.classes[i]);
+      near.p_sharp.push_back(findings.found.p_sharp[i]);
+      near.p_smooth.push_back(findings.found.p_smooth[i]);
+    }
+    check_memory(near.classes.size(), limit);
+    stage.advance(part.size());
+    return true;
+  });
+  return near;
+}
+
+}  // namespace pcednet::app

@@ -1,0 +1,154 @@
+"""pcednet classify --max-memory: clouds that memory does not hold, with the result of those that it does."""
+import os
+import resource
+import signal
+import subprocess
+import time
+import unittest
+
+import numpy as np
+
+from support import PROGRAM, CliTest, read_ply, run, write_ply
+from tiles_test import field
+
+CHANCE = ("quality", "scalar_p_sharp", "scalar_p_smooth")  # their last digits may differ
+LABELS = ("label", "scalar_edge_class", "red", "green", "blue")
+
+
+class Large(CliTest):
+    def classified(self, cloud, ending, *options):
+        """In memory and in tiles."""
+        whole, tiled = self.folder / ("whole" + ending), self.folder / ("tiled" + ending)
+        said = run("classify", cloud, "-o", whole, *options).stderr
+        self.assertNotIn("in tiles", said)
+        before = set(os.listdir(self.folder))
+        said = run("classify", cloud, "-o", tiled, "--max-memory", "105M", *options).stderr
+        self.assertRegex(said, r"points may take \d+ MiB of memory, more than 105 MiB: classified in tiles")
+        self.assertRegex(said, r"  \d+ tiles of length")
+        self.assertEqual(set(os.listdir(self.folder)) - before, {tiled.name})
+        return whole, tiled
+
+    def check_equal(self, whole, tiled, least):
+        (whole, head), (tiled, other) = read_ply(whole), read_ply(tiled)
+        self.assertEqual(head, other)
+        labels = whole["label"] == tiled["label"]
+        self.assertGreaterEqual(np.mean(labels), least)
+        self.assertGreater(np.mean(whole["label"] == 2), 0.02)
+        for name in whole.dtype.names:  # in the order of the input, and the colours of the classes
+            if name in LABELS:
+                np.testing.assert_array_equal(whole[name][labels], tiled[name][labels], err_msg=name)
+            elif name in CHANCE:
+                self.assertLess(np.mean(abs(whole[name] - tiled[name]) > 1e-3), 1 - least + 1e-4, name)
+            elif name not in ("nx", "ny", "nz"):
+                np.testing.assert_array_equal(whole[name], tiled[name], err_msg=name)
+        if "nx" in whole.dtype.names:
+            along = sum(whole[name] * tiled[name] for name in ("nx", "ny", "nz"))
+            self.assertGreater(np.mean(along > 0.999), least)
+
+    def test_the_file_is_that_of_the_cloud_in_memory(self):
+        p, n = field()
+        p[7] = np.nan
+        write_ply(self.folder / "a.ply", p, n)
+        self.check_equal(*self.classified(self.folder / "a.ply", ".ply"), 0.9999)
+
+    def test_normals_are_estimated_and_fields_kept(self):
+        p, _ = field(normals=False)
+        write_ply(self.folder / "a.ply", p + np.float32(100), labels=np.arange(len(p)) % 7)
+        run("convert", self.folder / "a.ply", "-o", self.folder / "in.laz")
+        found = self.classified(self.folder / "in.laz", ".laz", "--las-classification", "2=64")
+        plys = []
+        for laz in found:
+            plys.append(laz.with_suffix(".ply"))
+            run("convert", laz, "-o", plys[-1])
+        self.check_equal(*plys, 0.999)
+        rows, _ = read_ply(plys[1])
+        np.testing.assert_array_equal(rows["Classification"] == 64, rows["scalar_edge_class"] == 2)
+
+    def test_a_picture_is_drawn_and_copc_written(self):
+        write_ply(self.folder / "a.ply", *field(3))
+        run("classify", self.folder / "a.ply", "-o", self.folder / "a.copc.laz", "--max-memory", "101M",
+            "--preview", self.folder / "a.png")
+        self.assertGreater((self.folder / "a.png").stat().st_size, 10000)
+        said = run("info", self.folder / "a.copc.laz").stdout
+        self.assertIn("points         45000", said)
+
+    def test_ctrl_c_leaves_nothing(self):
+        write_ply(self.folder / "a.ply", *field())
+        process = subprocess.Popen([PROGRAM, "classify", str(self.folder / "a.ply"), "--max-memory", "105M",
+                                    "--progress", "plain"], stderr=subprocess.PIPE, text=True)
+        for line in process.stderr:
+            if line.startswith("tiles ") and not line.startswith("tiles 0"):
+                break
+        process.send_signal(signal.SIGINT)
+        process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 130)
+        self.assertEqual(os.listdir(self.folder), ["a.ply"])
+
+    def test_a_full_disk_is_said_and_leaves_nothing(self):
+        write_ply(self.folder / "a.ply", *field(3))
+        limit = lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (100_000, 100_000))
+        said = run("classify", self.folder / "a.ply", "--max-memory", "101M", expect=1, preexec_fn=limit).stderr
+        self.assertIn("File too large", said)
+        self.assertEqual(os.listdir(self.folder), ["a.ply"])
+
+    def lines(self, cloud, *options):
+        out = self.folder / "lines.obj"
+        said = run("lines", cloud, "-o", out, "--overwrite", *options).stderr
+        vertices, length, count = [], 0.0, 0
+        for line in out.read_text().splitlines():
+            words = line.split()
+            if words[0] == "v":
+                vertices.append(np.array(words[1:4], float))
+            if words[0] == "l":
+                ends = [vertices[int(w) - 1] for w in words[1:]]
+                length += sum(np.linalg.norm(b - a) for a, b in zip(ends, ends[1:]))
+                count += 1
+        return count, length, said
+
+    def test_lines_come_from_the_points_near_edges(self):
+        write_ply(self.folder / "a.ply", *field())
+        count, length, said = self.lines(self.folder / "a.ply")
+        self.assertNotIn("in tiles", said)
+        self.assertGreater(count, 200)  # 25 boxes
+        for name, options in (("a.ply", []), ("a_edges.ply", [])):
+            if name == "a_edges.ply":
+                run("classify", self.folder / "a.ply")
+            tiled, tiled_length, said = self.lines(self.folder / name, "--max-memory", "105M", *options)
+            self.assertRegex(said, r"lines are found from the \d+ of 125000 points that are near edges")
+            self.assertAlmostEqual(tiled / count, 1, delta=0.02)
+            self.assertAlmostEqual(tiled_length / length, 1, delta=0.01)
+        write_ply(self.folder / "labels.ply", field()[0], labels=np.zeros(125_000, np.uint8))
+        said = run("lines", self.folder / "labels.ply", "-o", self.folder / "b.obj", "--max-memory", "105M",
+                   expect=2).stderr
+        self.assertIn("give --classify", said)
+
+    def test_what_cannot_be_cut_is_said(self):
+        write_ply(self.folder / "a.ply", *field(3))
+        said = run("classify", self.folder / "a.ply", "-o", self.folder / "a.pcd", "--max-memory", "101M").stderr
+        self.assertIn("are written in tiles", said)
+        self.assertIn("more than 101 MiB", said)
+        run("convert", self.folder / "a.ply", "-o", self.folder / "a.pcd", "--overwrite")
+        said = run("classify", self.folder / "a.pcd", "--max-memory", "101M").stderr
+        self.assertNotIn("classified in tiles", said)
+        run("classify", self.folder / "a.ply", "--max-memory", "lots", expect=2)
+        run("classify", self.folder / "a.ply", "--max-memory", "1G", "--method", "fee", expect=2)
+
+    def test_copc_stops_at_the_first_ctrl_c(self):
+        p = np.random.default_rng(1).uniform(0, 100, (1_500_000, 3)).astype(np.float32)
+        write_ply(self.folder / "a.ply", p)
+        process = subprocess.Popen([PROGRAM, "convert", str(self.folder / "a.ply"), "-o",
+                                    str(self.folder / "a.copc.laz"), "--progress", "plain"],
+                                   stderr=subprocess.PIPE, text=True)
+        for line in process.stderr:  # all points are known by then
+            if line.startswith("octree "):
+                break
+        process.send_signal(signal.SIGINT)
+        start = time.monotonic()
+        process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 130)
+        self.assertLess(time.monotonic() - start, 20)
+        self.assertEqual(os.listdir(self.folder), ["a.ply"])
+
+
+if __name__ == "__main__":
+    unittest.main()
