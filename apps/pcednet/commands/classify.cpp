@@ -243,7 +243,7 @@ void classify_large_file(const Job& job, const ClassifyArguments& arguments, std
     clock.begin("preview");
     render::write_preview(job.preview, drawn, drawn.labels, {.overwrite = common.overwrite()});
   }
-  report(job, result, clock.seconds());
+  report(job, result, model, clock.seconds());
 }
 
 /// The memory for a tile where there must be tiles.
