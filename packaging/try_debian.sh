@@ -31,11 +31,15 @@ user 'pcednet --version'
 user 'pcednet classify /tmp/cloud.ply -o edges.ply --preview edges.png'
 user 'pcednet lines edges.ply -o edges.dxf && ls -l'
 user 'pcednet evaluate /tmp/cloud.ply --positive edge'
+if [ -e "$root/usr/lib/python3/dist-packages/pcednet" ]; then
+  user 'python3 -c "import pcednet; print(pcednet.classify(pcednet.read(\"/tmp/cloud.ply\")).counts)"'
+fi
 inside dpkg --audit
 # The desktop's side, and the manual.
 inside apt-get install -y -qq --no-install-recommends shared-mime-info desktop-file-utils man-db xdg-utils libfile-mimeinfo-perl >/dev/null
 user 'cp /tmp/cloud.ply a.ply; printf LASF >b.las; printf LASF >c.laz; printf ASTM-E57 >d.e57; mimetype *.ply *.las *.laz *.e57'
 user 'for type in model/x-ply application/vnd.las application/vnd.laszip model/e57; do xdg-mime query default $type; done'
 user 'man -w pcednet pcednet-classify'
-inside apt-get purge -y -qq pcednet >/dev/null
-inside sh -c '! find / -xdev -path /proc -prune -o -path "*pcednet*" -not -path "/home/*" -not -path "/tmp/*" -not -path "*libpcednet*" -not -path "/usr/include/*" -not -path "/usr/lib/cmake/*" -print | grep .'
+# Nothing stays behind.
+inside apt-get purge -y -qq pcednet libpcednet-dev python3-pcednet >/dev/null
+inside sh -c '! find /usr /etc /var -path "*pcednet*" -not -name "__pycache__" -not -name "*.pyc" | grep .'

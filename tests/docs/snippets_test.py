@@ -47,7 +47,7 @@ def run(code, language, folder):
         folder_of_programs(programs)
     return subprocess.run(shell if language == "sh" else [sys.executable, "-c", code], cwd=folder,
                           env={**os.environ, "PATH": f"{programs}:{os.environ['PATH']}"},
-                          capture_output=True, text=True, timeout=250)
+                          capture_output=True, text=True, timeout=600)
 
 
 def run_page(page):

@@ -86,6 +86,16 @@ class Deb(unittest.TestCase):
         self.assertGreater(len(page), PAGE.stat().st_size // 2)
         self.assertIn("annotate", page)
 
+    def test_python_finds_the_unpacked_module(self):
+        module = self.root / "usr/lib/python3/dist-packages"
+        if not module.exists():
+            self.skipTest("built without PCEDNET_PYTHON_MODULE")
+        code = ("import numpy, pcednet; xyz = numpy.random.default_rng(1).uniform(size=(5000, 3)); "
+                "xyz[:, 2] = abs(xyz[:, 0] - .5); print(pcednet.classify(xyz).counts)")
+        said = run("/usr/bin/python3", "-c", code, cwd=self.folder,
+                   env={"PATH": "/usr/bin", "PYTHONPATH": str(module)}).stdout
+        self.assertRegex(said, r"'sharp-edge': [1-9]")
+
     def test_other_programs_find_the_library(self):
         run("cmake", "-S", packaging.SOURCE / "examples", "-B", self.folder / "example",
             f"-DCMAKE_PREFIX_PATH={self.root}/usr")

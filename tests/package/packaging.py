@@ -24,7 +24,7 @@ def need(*programs):
 
 
 def run(*words, **options):
-    done = subprocess.run([str(w) for w in words], capture_output=True, text=True, timeout=280,
+    done = subprocess.run([str(w) for w in words], capture_output=True, text=True, timeout=600,
                           **options)
     if done.returncode != 0:
         raise AssertionError(f"exit {done.returncode}: {' '.join(map(str, words))}\n"
