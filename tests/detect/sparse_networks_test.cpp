@@ -49,6 +49,20 @@ TEST_F(SparseNetworksTest, DecideForCloudsOfFewerPointsAlone) {
   EXPECT_EQ(found_in(at, *both_), found_in(at, *main_));
 }
 
+TEST_F(SparseNetworksTest, DoNotCountCopies) {
+  PointCloud cloud = cube(kFewer - 1, 3);
+  const PointCloud other = cube(kFewer, 3);
+  cloud.labels.clear();
+  for (std::size_t i = 0; i < kFewer - 1; ++i) {
+    cloud.positions.push_back(cloud.positions[i]);
+    cloud.normals.push_back(cloud.normals[i]);
+  }
+  const Classification found = classify(prepare(cloud), *both_);
+  EXPECT_TRUE(found.sparse);
+  EXPECT_EQ(found.p_sharp, found_in(cloud, *few_));
+  EXPECT_FALSE(classify(prepare(other), *both_).sparse);
+}
+
 TEST_F(SparseNetworksTest, LeaveAPartOfALargeCloudToTheOthers) {
   const PointCloud few = cube(kFewer / 2, 3);
   PreparedCloud part = prepare(few);

@@ -176,7 +176,7 @@ void report(const Job& job, const detect::Classification& result, const detect::
   if (result.s_max > 0.0) {  // a method has none
     say(fmt::format("  scales: {:.9g} to {:.9g}", result.s_min, result.s_max));
   }
-  if (model.sparse && points < model.sparse->fewer_than) {
+  if (result.sparse) {
     say(fmt::format("  decided by the networks for clouds of fewer than {} points",
                     model.sparse->fewer_than));
   }

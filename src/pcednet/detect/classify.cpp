@@ -62,13 +62,32 @@ Classification describe_and_decide(const PreparedCloud& cloud, const EdgeModel& 
   return found;
 }
 
+/// Whether the model's networks for sparse clouds decide. Copies of a point, which are neighbours
+/// on the curve, do not count: they say nothing of the surface.
+bool is_sparse(const EdgeModel& model, std::span<const Vec3> positions,
+               std::span<const std::uint32_t> curve) {
+  std::size_t distinct = 0;
+  for (std::size_t i = 0; i < curve.size() && distinct < model.sparse->fewer_than; ++i) {
+    distinct += i == 0 || positions[curve[i]] != positions[curve[i - 1]];
+  }
+  return distinct < model.sparse->fewer_than;
+}
+
+/// The model with the networks that decide.
+EdgeModel chosen(const EdgeModel& model, bool sparse) {
+  return suited_to(model, sparse ? 0 : model.sparse->fewer_than);
+}
+
 }  // namespace
 
 Classification classify(const PreparedCloud& cloud, const EdgeModel& model,
                         const Progress* progress) {
   if (model.sparse) {
-    const std::size_t points = cloud.part ? cloud.part->points : cloud.positions.size();
-    return classify(cloud, suited_to(model, points), progress);
+    const bool sparse = cloud.part ? cloud.part->points < model.sparse->fewer_than
+                                   : is_sparse(model, cloud.positions, cloud.curve);
+    Classification found = classify(cloud, chosen(model, sparse), progress);
+    found.sparse = sparse;
+    return found;
   }
   Classification found = describe_and_decide(cloud, model, progress);
   if (model.context) {
@@ -80,7 +99,12 @@ Classification classify(const PreparedCloud& cloud, const EdgeModel& model,
 
 Classification classify(const DescribedCloud& cloud, std::span<const Vec3> positions,
                         const EdgeModel& model) {
-  if (model.sparse) return classify(cloud, positions, suited_to(model, cloud.points));
+  if (model.sparse) {
+    const bool sparse = is_sparse(model, positions, cloud.order);
+    Classification found = classify(cloud, positions, chosen(model, sparse));
+    found.sparse = sparse;
+    return found;
+  }
   const std::size_t width = row_width(model.descriptor);
   if (cloud.values.size() != cloud.order.size() * width || positions.size() != cloud.points) {
     throw Error(ErrorKind::kModelMismatch,

@@ -16,7 +16,7 @@ namespace pcednet::detect {
 /// What decides in place of a model's own networks, on the same description and for the same
 /// classes, where points are few: walls, steps and holes are then a spacing or two wide.
 struct SparseNetworks {
-  std::size_t fewer_than = 0;  ///< points of a cloud
+  std::size_t fewer_than = 0;  ///< distinct points of a cloud
   nn::Model network = {};
   std::optional<nn::Model> context = {};
 };
@@ -33,8 +33,8 @@ struct EdgeModel {
   std::optional<SparseNetworks> sparse = {};  ///< for clouds of few points
 };
 
-/// The model with those networks alone that decide for a cloud of `points`. classify() does this by
-/// itself; it is for those who look at or go on training the networks, or hold parts of a cloud.
+/// The model with those networks alone that decide for a cloud of `points` distinct points.
+/// classify() does this by itself; it is for those who look at or go on training the networks.
 EdgeModel suited_to(EdgeModel model, std::size_t points);
 
 /// Leaves the context networks out: faster, less accurate.
