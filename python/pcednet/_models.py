@@ -313,7 +313,7 @@ def classify(xyz, normals=None, *, model="general", threads=0, progress=None, vi
     ModelError, MissingFileError
         The model cannot be used, or there is none of that name.
     KeyboardInterrupt
-        Ctrl-C, within a fraction of a second.
+        Ctrl-C, as soon as the step at work ends.
 
     Warns
     -----
