@@ -34,6 +34,15 @@ std::uint64_t memory_in_whole(const io::PartReader& reader) {
          columns * reader.points();
 }
 
+/// A pipe is read once only; a small file need not be looked into.
+bool is_surely_small(const fs::path& input, std::uint64_t limit) {
+  constexpr std::uint64_t kMostPerByte = 1000;  // of memory per byte of a file
+  std::error_code error;
+  if (!fs::is_regular_file(input, error)) return true;
+  const std::uint64_t bytes = fs::file_size(input, error);
+  return error || bytes < limit / kMostPerByte;
+}
+
 bool is_tiled_format(const fs::path& input) {
   const std::string_view name = formats::format_of(io::InputFile(input)).name;
   return name == "LAS" || name == "PLY";
@@ -72,6 +81,7 @@ std::uint64_t memory_limit(const std::string& memory) {
 
 std::optional<std::uint64_t> memory_of_tiles(const fs::path& input, const fs::path& output,
                                              std::uint64_t limit) {
+  if (is_surely_small(input, limit)) return std::nullopt;
   const auto reader = formats::open_parts(input, tiles::kChunkPoints);
   if (!reader) return std::nullopt;
   const std::uint64_t whole = memory_in_whole(*reader);

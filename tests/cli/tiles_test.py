@@ -224,6 +224,17 @@ class Tiles(CliTest):
         self.assertEqual(rows.dtype, whole.dtype)
         self.assertGreater(np.mean(rows["scalar_edge_class"] == whole["scalar_edge_class"]), 0.9999)
 
+    def test_random_order_is_refused_after_the_first_reading(self):
+        p, n = field()
+        order = np.random.default_rng(4).permutation(len(p))
+        write_ply(self.folder / "a.ply", p[order], n[order])
+        said = run("tiles", "plan", self.folder / "a.ply", "-o", self.folder / "p.json", "--tile", 0.15,
+                   "--progress", "plain", expect=2).stderr
+        self.assertIn("in no order in space", said)
+        self.assertIn("--sort FOLDER", said)
+        self.assertIn("index 100 %", said)
+        self.assertNotIn("dense sample", said)
+
     def test_points_that_are_not_finite_stay(self):
         p, n = field(3, 300)
         p[::500] = np.nan

@@ -107,7 +107,9 @@ double least_tiles(const PlanRequest& request, const Plan& plan, std::span<const
     tiles.add(sample);
     return static_cast<double>(tiles.cells().size());
   }
-  return static_cast<double>(memory_for(plan.points(), {})) / static_cast<double>(request.memory);
+  const std::uint64_t fixed = memory_for(0, {}), for_points = memory_for(plan.points(), {}) - fixed;
+  return static_cast<double>(for_points) /
+         static_cast<double>(std::max(request.memory, fixed + 1) - fixed);
 }
 
 /// Refuses before the second reading what would be refused after it.
