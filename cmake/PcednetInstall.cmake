@@ -11,7 +11,7 @@ install(TARGETS pcednet_all EXPORT pcednetTargets COMPONENT dev)
 # What a program may include: these headers include no others of pcednet, see tests/house.
 set(public_headers
   pcednet.h
-  cloud/attribute.h cloud/point_cloud.h
+  cloud/attribute.h cloud/class_table.h cloud/edge_class.h cloud/point_cloud.h
   core/error.h core/output_file.h core/parallel.h core/progress.h core/vec3.h
   detect/boundary.h detect/classify.h detect/model.h detect/prepare.h detect/result_cloud.h
   detect/train.h

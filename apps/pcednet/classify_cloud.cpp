@@ -25,7 +25,9 @@ ClassifiedCloud classify_cloud(const std::filesystem::path& file, const PointClo
   if (classifier.model) {
     result.prepared = prepare(file, cloud, classifier.preparation, progress);
     result.found = detect::classify(result.prepared, *classifier.model, &progress);
-    if (classifier.boundary) detect::mark_boundary(result.prepared, result.found, &progress);
+    if (classifier.boundary && has_edges(classifier.model->table)) {
+      detect::mark_boundary(result.prepared, result.found, &progress);
+    }
   } else {
     result.found = classify_by_method(cloud, classifier.method, &progress);
   }

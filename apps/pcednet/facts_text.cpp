@@ -4,13 +4,13 @@
 #include <array>
 
 #include "facts.h"
-#include "pcednet/cloud/edge_class.h"
+#include "pcednet/cloud/class_table.h"
 
 namespace pcednet::app {
 namespace {
 
-std::string name_of_class(std::uint8_t label) {
-  if (label < kEdgeClasses.size()) return std::string(kEdgeClasses[label].name);
+std::string name_of_class(std::uint8_t label, const ClassTable& table) {
+  if (label < table.size()) return table[label].name;
   return label == kUnlabelled ? "unlabelled" : fmt::format("class {}", label);
 }
 
@@ -46,10 +46,10 @@ class Lines {
   std::string text_;
 };
 
-std::string text_of(const std::map<std::uint8_t, std::size_t>& labels) {
+std::string text_of(const std::map<std::uint8_t, std::size_t>& labels, const ClassTable& table) {
   std::vector<std::string> parts;
   for (const auto& [label, count] : labels) {
-    parts.push_back(fmt::format("{} {} ({})", count, name_of_class(label), label));
+    parts.push_back(fmt::format("{} {} ({})", count, name_of_class(label, table), label));
   }
   return fmt::format("{}", fmt::join(parts, ", "));
 }
@@ -153,7 +153,8 @@ std::string text_of(const std::filesystem::path& path, const formats::CloudFacts
                        : unusable == 0    ? "yes, made unit"
                                           : fmt::format("yes, made unit; {} unusable", unusable));
   lines.add("colours", facts.has_colours ? "yes" : "no");
-  lines.add("labels", facts.labels.empty() ? "no" : text_of(facts.labels));
+  lines.add("labels",
+            facts.labels.empty() ? "no" : text_of(facts.labels, classes_of(facts.comments)));
   for (const auto& attribute : facts.attributes) lines.add("attribute", text_of(attribute));
   lines.add_all("also", facts.elements);
   lines.add_all("comment", facts.comments);

@@ -98,7 +98,7 @@ TEST(Labels, UndoAndRedoLeadBackAndForth) {
     labels.undo();
     EXPECT_EQ(labels.classes(), states[i]);
   }
-  EXPECT_EQ(labels.counts(), (std::array<std::size_t, 3>{}));
+  EXPECT_EQ(labels.counts(), (std::array<std::size_t, kMostClasses>{}));
   EXPECT_TRUE(labels.undo().empty());
   for (std::size_t i = 1; i <= 20; ++i) {
     labels.redo();

@@ -28,5 +28,33 @@ TEST(Decide, OfTwoClassesTheMoreProbable) {
   EXPECT_EQ(found.classes, (std::vector<std::uint8_t>{kSharpEdge, kNonEdge}));
 }
 
+TEST(Decide, OfOwnClassesTheMostProbable) {
+  EdgeModel model;
+  model.table = parse_classes("ground,wall,pipe,tree");
+  model.classes = {0, 2, 3};
+  Classification found = nothing_found(3, true);
+  decide(std::vector<std::uint32_t>{0, 2}, std::vector<float>{0.3f, 0.45f, 0.25f, 0.2f, 0.2f, 0.6f},
+         model, found);
+  EXPECT_EQ(found.classes, (std::vector<std::uint8_t>{2, kUnlabelled, 3}));
+  EXPECT_EQ(found.p_class, (std::vector<float>{0.45f, 0.0f, 0.6f}));
+  EXPECT_EQ(found.p_sharp, (std::vector<float>(3, 0.0f)));
+}
+
+TEST(Decide, EdgesTogetherAgainstAnOwnClass) {
+  EdgeModel model;
+  model.table = parse_classes("edges,pipe");
+  model.classes = {kNonEdge, kSmoothEdge, kSharpEdge, 4};
+  Classification found = nothing_found(3, true);
+  decide(
+      std::vector<std::uint32_t>{0, 1, 2},
+      std::vector<float>{0.1f, 0.25f, 0.3f, 0.35f,   // an edge, of no kind more probable than pipe
+                         0.2f, 0.05f, 0.1f, 0.65f,   //
+                         0.5f, 0.1f, 0.05f, 0.35f},  //
+      model, found);
+  EXPECT_EQ(found.classes, (std::vector<std::uint8_t>{kSharpEdge, 4, kNonEdge}));
+  EXPECT_EQ(found.p_class, (std::vector<float>{0.3f, 0.65f, 0.5f}));
+  EXPECT_EQ(found.p_sharp, (std::vector<float>{0.3f, 0.1f, 0.05f}));
+}
+
 }  // namespace
 }  // namespace pcednet::detect

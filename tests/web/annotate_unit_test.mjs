@@ -15,6 +15,7 @@ const { outputFiles } = await build({
       "geometry",
       "detail",
       "chunk",
+      "classes",
       "paint",
       "ramp",
       "budget",
@@ -38,6 +39,7 @@ const {
   geometry,
   detail,
   chunk,
+  classes,
   paint,
   ramp,
   budget,
@@ -452,4 +454,55 @@ test("the places to frame are the first points of a node, which are spread over 
   const places = chunk.placesOf({ info: { points: n, centre: [0, 0, 0], half: 1 }, positions });
   assert.deepEqual([...new Set(places)].sort(), [-1, 1]);
   assert.ok(places.length > 1000 && places.length < 3 * n);
+});
+
+const row = (id, name, more = {}) => ({ id, name, colour: [id, 0, 255], count: 0, ...more });
+const edges = ["non-edge", "smooth-edge", "sharp-edge"].map((name, id) => row(id, name));
+
+test("the palette holds the edge classes, own ones, and none", () => {
+  const own = { classes: [row(0, "ground"), row(1, "pipe")], edges: false, safePalette: false };
+  const palette = classes.paletteOf(own);
+  assert.equal(palette.length, classes.NONE + 1);
+  assert.deepEqual(palette[1], { name: "pipe", colour: "#0100ff" });
+  assert.equal(palette[classes.NONE].name, "no label");
+  const both = { classes: [...edges, row(3, "boundary"), row(4, "pipe")], edges: true, safePalette: true };
+  assert.deepEqual(
+    classes
+      .paletteOf(both)
+      .map(({ name }) => name)
+      .slice(0, 5),
+    ["non-edge", "smooth edge", "sharp edge", "boundary", "pipe"],
+  );
+  const safe = classes.paletteOf({
+    ...own,
+    classes: Array.from({ length: 8 }, (_, id) => row(id, `${id}`)),
+    safePalette: true,
+  });
+  assert.equal(new Set(safe.map(({ colour }) => colour)).size, 9, "told apart");
+});
+
+test("keys name the classes that can be painted, without boundary and those removed", () => {
+  const ids = (state) => classes.paintable(state).map(({ id }) => id);
+  assert.deepEqual(ids({ classes: edges, edges: true }), [0, 1, 2]);
+  const all = [...edges, row(3, "boundary"), row(4, "a", { removed: true }), row(5, "b")];
+  assert.deepEqual(ids({ classes: all, edges: true }), [0, 1, 2, 5]);
+  all[4] = row(4, "a", { removed: true, count: 3 }); // undo brought its points back
+  assert.deepEqual(ids({ classes: all, edges: true }), [0, 1, 2, 4, 5]);
+});
+
+test("the editor's rows become a table: any before the first stroke, then with the numbers that there are", () => {
+  const draft = (id, name) => ({ id, name, colour: "#010203" });
+  const names = (table) => table.map(({ name, removed }) => (removed ? `(${name})` : name));
+  const start = { classes: edges, edges: true };
+  assert.deepEqual(names(classes.wantedTable(start, [draft(null, " a "), draft(null, "b")], false, false)), ["a", "b"]);
+  const table = classes.wantedTable(start, [draft(null, "a")], true, true);
+  assert.deepEqual(names(table), ["non-edge", "smooth-edge", "sharp-edge", "boundary", "a"]);
+  const own = { classes: [row(0, "a"), row(1, "b"), row(2, "c")], edges: false };
+  const rows = [draft(0, "soil"), draft(2, "c"), draft(null, "d")];
+  assert.deepEqual(names(classes.wantedTable(own, rows, false, true)), ["soil", "(b)", "c", "d"]);
+  const back = [draft(0, "a"), draft(2, "c"), draft(null, "b")];
+  assert.deepEqual(names(classes.wantedTable(own, back, false, true)), ["a", "b", "c"], "it comes back");
+  const full = { classes: Array.from({ length: 8 }, (_, id) => row(id, `${id}`)), edges: false };
+  const replaced = [...Array.from({ length: 7 }, (_, id) => draft(id, `${id}`)), draft(null, "new")];
+  assert.equal(names(classes.wantedTable(full, replaced, false, true))[7], "new", "in the place of one removed");
 });

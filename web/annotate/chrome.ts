@@ -3,7 +3,8 @@
 import { BOUNDARY } from "../shared/colours";
 import { h } from "../shared/dom";
 import type { Client, Saved } from "./client";
-import { isRamp, paletteOf, rampEnds, rampStops, FEATURE_NAMES } from "./colouring";
+import { NONE, paintable, paletteOf } from "./classes";
+import { isRamp, rampEnds, rampStops, FEATURE_NAMES } from "./colouring";
 import { MODES, type Command } from "./commands";
 import { count, length, stageText } from "./format";
 import { icon, type IconName } from "./icons";
@@ -122,32 +123,38 @@ export function header(store: AppStore, save: (what: Saved) => void, client: Cli
 /** What the colours mean. */
 export function legend(store: AppStore): HTMLElement {
   const element = h("div", { class: "legend" });
-  store.watch(["mode", "feature", "scale", "safePalette", "session", "paintOnTop", "outOfDate"], () => {
-    const { mode, session, feature, scale } = store.now;
-    let title = MODES.find((m) => m.mode === mode)!.name;
-    if (mode === "feature" && session) {
-      const name = session.features[feature];
-      title = `${FEATURE_NAMES[name] ?? name}, radius ${length(session.scales[scale] ?? 0)}`;
-    }
-    const depends = ["prediction", "confidence", "p_sharp"].includes(mode);
-    if (depends && store.now.outOfDate) title += ", out of date";
-    element.replaceChildren(h("b", {}, title));
-    if (isRamp(mode)) {
-      const bar = h("span", { class: "ramp" });
-      bar.style.background = `linear-gradient(to right, ${rampStops(store.now).join(", ")})`;
-      const [low, high] = rampEnds(store.now);
-      element.append(h("span", { class: "scale" }, low, bar, high));
-    } else if (mode === "labels" || mode === "prediction") {
-      element.append(
-        ...paletteOf(store.now).flatMap(({ name, colour }, id) => {
-          if (id === BOUNDARY && mode === "labels") return []; // nobody paints it
-          const swatch = h("span", { class: "swatch" });
-          swatch.style.background = colour;
-          return [h("span", { class: "entry" }, swatch, name)];
-        }),
-      );
-    }
-  });
+  store.watch(
+    ["mode", "feature", "scale", "safePalette", "session", "paintOnTop", "outOfDate", "classes", "edges"],
+    () => {
+      const { mode, session, feature, scale } = store.now;
+      let title = MODES.find((m) => m.mode === mode)!.name;
+      if (mode === "feature" && session) {
+        const name = session.features[feature];
+        title = `${FEATURE_NAMES[name] ?? name}, radius ${length(session.scales[scale] ?? 0)}`;
+      }
+      const depends = ["prediction", "confidence", "p_sharp"].includes(mode);
+      if (depends && store.now.outOfDate) title += ", out of date";
+      element.replaceChildren(h("b", {}, title));
+      if (isRamp(mode)) {
+        const bar = h("span", { class: "ramp" });
+        bar.style.background = `linear-gradient(to right, ${rampStops(store.now).join(", ")})`;
+        const [low, high] = rampEnds(store.now);
+        element.append(h("span", { class: "scale" }, low, bar, high));
+      } else if (mode === "labels" || mode === "prediction") {
+        const ids = [...paintable(store.now).map(({ id }) => id), NONE];
+        if (store.now.edges && mode === "prediction") ids.splice(BOUNDARY, 0, BOUNDARY); // nobody paints it
+        const palette = paletteOf(store.now);
+        element.append(
+          ...ids.map((id) => {
+            const { name, colour } = palette[id];
+            const swatch = h("span", { class: "swatch" });
+            swatch.style.background = colour;
+            return h("span", { class: "entry" }, swatch, name);
+          }),
+        );
+      }
+    },
+  );
   return element;
 }
 

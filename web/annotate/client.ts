@@ -2,11 +2,13 @@
 
 import { h } from "../shared/dom";
 import { ApiError, type Api } from "./api";
+import { paintable, type WantedClass } from "./classes";
 import { LineClient } from "./line_client";
 import type { Stage } from "./stage";
 import type { AppStore, State } from "./store";
 import type {
   DecidedEvent,
+  Classes,
   Painted,
   PredictionEvent,
   Run,
@@ -16,6 +18,7 @@ import type {
   TrainingEvent,
   Uncertain,
 } from "./types";
+import { NO_CLASS } from "./types";
 import { WorkQueue } from "./work";
 
 export type Saved = "cloud" | "model" | "project" | "lines";
@@ -113,6 +116,11 @@ export class Client {
       training: (event: TrainingEvent) => this.takeTraining(event),
       prediction: (event: PredictionEvent) => this.attempt(this.takePrediction(event)),
       judged: () => this.attempt(this.refreshRuns()),
+      classes: (event: Classes) => {
+        const { edges } = store.now;
+        this.takeClasses(event);
+        if (edges !== event.edges) this.attempt(this.beginAnew());
+      },
       lines: ({ version, searching }) => this.attempt(this.lines.take(version, searching)),
       decided: (event: DecidedEvent) => this.lines.takeDecisions(event),
       writer: ({ window: name }) => store.set({ writer: name === this.api.window }),
@@ -155,8 +163,8 @@ export class Client {
       redo: session.redo,
       predictionVersion: session.prediction_version,
       scale: Math.max(0, Math.min(store.now.scale, session.scales.length - 1)),
-      counts: [0, 1, 2].map((id) => session.classes.find((c) => c.id === id)?.count ?? 0) as [number, number, number],
     });
+    this.takeClasses(session);
     const runs = await this.api.get<Run[]>("/api/runs");
     store.set({ runs, progress: null });
     await this.lines.refresh();
@@ -177,6 +185,30 @@ export class Client {
     });
     this.stage.open(session, predicted);
     if (store.now.mode === "feature") this.stage.loader.refresh("values");
+  }
+
+  private takeClasses({ classes, edges }: Classes): void {
+    const { store } = this;
+    const counts = classes.map((one) => one.count);
+    store.set({ classes, edges, counts });
+    const ids = paintable(store.now).map(({ id }) => id);
+    const { paintClass } = store.now;
+    if (paintClass !== NO_CLASS && !ids.includes(paintClass)) store.set({ paintClass: ids[0] });
+  }
+
+  /** Other classes than those of the start, or those again: what it found is of no use. */
+  private async beginAnew(): Promise<void> {
+    const { store } = this;
+    this.predicted = false;
+    if (["prediction", "confidence", "p_sharp"].includes(store.now.mode)) store.set({ mode: "labels" });
+    store.set({ uncertain: null, hidden: new Set(), paintClass: paintable(store.now)[store.now.edges ? 2 : 0].id });
+    await this.refresh();
+    this.stage.loader.refresh("prediction");
+  }
+
+  /** Throws what the program says against it. */
+  async setClasses(classes: WantedClass[]): Promise<void> {
+    await this.api.post("/api/classes", { classes });
   }
 
   private catchUp(): void {

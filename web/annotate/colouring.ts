@@ -1,18 +1,15 @@
 // From what the page is set to show to what the points look like.
 
-import { CLASS_PALETTES, NO_LABEL, type Meaning } from "../shared/colours";
+import { NONE, paletteOf } from "./classes";
 import type { LineLook } from "./line_layer";
 import type { Appearance } from "./painter";
 import { rampBytes, STOPS, type RampName } from "./ramp";
 import { activeClip, type ColourMode, type State } from "./store";
 import { NO_CLASS } from "./types";
 
-export const paletteOf = (state: Pick<State, "safePalette">): Meaning[] =>
-  CLASS_PALETTES[state.safePalette ? "safe" : "paper"];
-
 /** The colour a tool paints with; the eraser's is that of no label. */
-export const paintColour = (state: Pick<State, "safePalette" | "paintClass">): string =>
-  paletteOf(state)[state.paintClass === NO_CLASS ? NO_LABEL : state.paintClass].colour;
+export const paintColour = (state: Pick<State, "classes" | "edges" | "safePalette" | "paintClass">): string =>
+  paletteOf(state)[state.paintClass === NO_CLASS ? NONE : state.paintClass].colour;
 
 /** What a feature of the method is called. */
 export const FEATURE_NAMES: Record<string, string> = {

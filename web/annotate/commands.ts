@@ -1,6 +1,7 @@
 // Everything the page can do, each with a name and keys; the help is made of this list.
 
 import type { Brush } from "./brush";
+import { isOff, MOST_CLASSES, paintable, paletteOf } from "./classes";
 import type { Client } from "./client";
 import type { Outline } from "./outline";
 import type { Pointer } from "./pointer";
@@ -12,7 +13,8 @@ import type { AppStore, ColourMode, Tool } from "./store";
 export interface Command {
   /** As `Ctrl+Shift+Z`; the first is shown on buttons. */
   keys: string[];
-  name: string;
+  /** What it does now; empty if nothing. */
+  readonly name: string;
   group: "Tools" | "Classes" | "View" | "Colours" | "Training" | "Lines" | "File";
   run(): void;
 }
@@ -32,6 +34,7 @@ export interface Hands {
   clearMeasure(): void;
   stepUncertain(by: 1 | -1): void;
   acceptUncertain(): void;
+  editClasses(): void;
   save(): void;
   screenshot(): void;
   help(): void;
@@ -49,7 +52,9 @@ export const MODES: { mode: ColourMode; name: string }[] = [
 
 /** The modes that this cloud has. */
 export function modesOf({ now }: AppStore): ColourMode[] {
-  return MODES.map(({ mode }) => mode).filter((mode) => mode !== "rgb" || now.session?.has_colours);
+  return MODES.map(({ mode }) => mode).filter(
+    (mode) => (mode !== "rgb" || now.session?.has_colours) && (mode !== "p_sharp" || now.edges),
+  );
 }
 
 export function toggled(set: ReadonlySet<number>, item: number): Set<number> {
@@ -116,20 +121,33 @@ function toolCommands({ store, brush, outline, pointer, client }: Hands): Comman
   ];
 }
 
-function classCommands({ store }: Hands): Command[] {
-  const command = (keys: string[], name: string, run: () => void): Command => ({ keys, name, group: "Classes", run });
-  const paint = (id: number) => (): void => {
-    if (id !== 1 || store.now.settings.classes === 3) store.set({ paintClass: id });
-  };
-  const hide = (id: number) => (): void => store.set({ hidden: toggled(store.now.hidden, id) });
+function classCommands({ store, editClasses }: Hands): Command[] {
+  const group = "Classes";
+  /** A command on the class of a key. */
+  const onClass = (index: number, prefix: string, words: string, run: (id: number) => void): Command => ({
+    keys: [`${prefix}${index + 1}`],
+    get name() {
+      const its = paintable(store.now)[index];
+      return its ? `${words} ${paletteOf(store.now)[its.id].name}` : "";
+    },
+    group,
+    run: () => {
+      const its = paintable(store.now)[index];
+      if (its) run(its.id);
+    },
+  });
+  const indices = Array.from({ length: MOST_CLASSES }, (_, index) => index);
   return [
-    command(["1"], "paint non-edge", paint(0)),
-    command(["2"], "paint smooth edge", paint(1)),
-    command(["3"], "paint sharp edge", paint(2)),
-    command(["E", "0"], "erase", paint(NO_CLASS)),
-    command(["Shift+1"], "hide or show non-edge", hide(0)),
-    command(["Shift+2"], "hide or show smooth edge", hide(1)),
-    command(["Shift+3"], "hide or show sharp edge", hide(2)),
+    ...indices.map((index) =>
+      onClass(index, "", "paint", (id) => {
+        if (!isOff(id, store.now)) store.set({ paintClass: id });
+      }),
+    ),
+    { keys: ["E", "0"], name: "erase", group, run: () => store.set({ paintClass: NO_CLASS }) },
+    ...indices.map((index) =>
+      onClass(index, "Shift+", "hide or show", (id) => store.set({ hidden: toggled(store.now.hidden, id) })),
+    ),
+    { keys: ["Shift+E"], name: "edit the classes", group, run: editClasses },
   ];
 }
 

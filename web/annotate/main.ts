@@ -13,6 +13,7 @@ import { Measure } from "./measure";
 import { Outline } from "./outline";
 import { Overlay } from "./overlay";
 import { cloudsPanel } from "./panel_clouds";
+import { editClassesDialog } from "./class_editor";
 import { classesPanel } from "./panel_classes";
 import { runsPanel, trainingPanel, uncertainPanel } from "./panel_training";
 import { clipPanel, toggledClip, viewPanel } from "./panel_view";
@@ -102,6 +103,11 @@ function open(page: HTMLElement): void {
     });
     void stepUncertain(1);
   };
+  const editClasses = (): void => {
+    const refusal = refusalOf(store.now);
+    if (refusal) notices.warn(refusal);
+    else if (store.now.session) editClassesDialog(store.now, (table) => client.setClasses(table));
+  };
   const commands = commandsOf({
     store,
     stage,
@@ -120,7 +126,8 @@ function open(page: HTMLElement): void {
     acceptUncertain,
     save: () => void save("project"),
     screenshot: () => void screenshot(),
-    help: () => help.showModal(),
+    editClasses,
+    help: () => help.open(),
   });
   const help = helpDialog(commands);
   const press = presser(commands);
@@ -136,7 +143,7 @@ function open(page: HTMLElement): void {
       "aside",
       { "aria-label": "Settings" },
       cloudsPanel(store, client),
-      classesPanel(store, brush),
+      classesPanel(store, brush, editClasses),
       viewPanel(store, stage),
       trainingPanel(store, client),
       uncertainPanel(store, (by) => void stepUncertain(by), acceptUncertain),
@@ -144,10 +151,10 @@ function open(page: HTMLElement): void {
       clipPanel(store, stage, press),
       runsPanel(store, client),
     ),
-    help,
+    help.element,
   );
 
-  store.watch(["mode", "paintOnTop", "safePalette", "hidden", "clip", "pointSize", "eyeDome"], () =>
+  store.watch(["mode", "paintOnTop", "safePalette", "hidden", "clip", "pointSize", "eyeDome", "classes", "edges"], () =>
     stage.setAppearance(appearanceOf(store.now, css("--stage"))),
   );
   store.watch(["mode", "feature", "scale"], () => stage.loader.setValues(valuesQuery(store.now)));

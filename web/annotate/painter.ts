@@ -15,6 +15,7 @@ import {
 } from "three";
 import { rgbOf } from "../shared/colours";
 import type { Chunk } from "./chunk";
+import { MOST_CLASSES, NONE } from "./classes";
 import { EyeDome } from "./eye_dome";
 import { LineLayer } from "./line_layer";
 import { FRAGMENT, VERTEX } from "./shaders";
@@ -26,7 +27,7 @@ export type Layer = "labels" | "prediction" | "values";
 export interface Appearance {
   mode: "labels" | "rgb" | "normals" | "prediction" | "ramp";
   paintOnTop: boolean;
-  /** As CLASS_PALETTES. */
+  /** By class, and NONE. */
   palette: string[];
   ramp: Uint8Array;
   hidden: ReadonlySet<number>;
@@ -81,9 +82,9 @@ export class Painter {
       uniforms: {
         mode: { value: 0 },
         paint: { value: true },
-        palette: { value: [0, 1, 2, 3, 4].map(() => new Vector3()) },
+        palette: { value: Array.from({ length: NONE + 1 }, () => new Vector3()) },
         ramp: { value: this.ramp },
-        hidden: { value: new Vector3() },
+        hidden: { value: new Float32Array(MOST_CLASSES) },
         clipped: { value: false },
         clipMin: { value: new Vector3() },
         clipMax: { value: new Vector3() },
@@ -108,7 +109,7 @@ export class Painter {
     look.palette.forEach((colour, i) => u.palette.value[i].set(...rgbOf(colour)));
     (this.ramp.image.data as Uint8Array).set(look.ramp);
     this.ramp.needsUpdate = true;
-    u.hidden.value.set(...[0, 1, 2].map((c) => Number(look.hidden.has(c))));
+    u.hidden.value = Float32Array.from({ length: MOST_CLASSES }, (_, c) => Number(look.hidden.has(c)));
     u.clipped.value = look.clip !== null;
     if (look.clip) {
       u.clipMin.value.set(...look.clip.min);

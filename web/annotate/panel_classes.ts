@@ -2,56 +2,79 @@
 
 import { h } from "../shared/dom";
 import { LEAST_SPACINGS, type Brush } from "./brush";
-import { paletteOf } from "./colouring";
+import { isOff, paintable, paletteOf } from "./classes";
 import { toggled } from "./commands";
 import { boxDiagonal } from "./geometry";
 import { count, length } from "./format";
 import { icon } from "./icons";
-import { checkbox, section, slider } from "./panel";
+import { button, checkbox, section, slider } from "./panel";
 import type { AppStore } from "./store";
 import { NO_CLASS } from "./types";
 
-const KEYS = ["1", "2", "3", "E"];
+/** A row: choose, see, count. It follows the state when asked to. */
+interface Row {
+  element: HTMLElement;
+  follow(): void;
+}
 
-/** A row: choose, see, count. */
-function classRow(store: AppStore, id: number, index: number): HTMLElement {
-  const name = index === 3 ? "eraser" : paletteOf(store.now)[index].name;
+function classRow(store: AppStore, id: number, key: string): Row {
+  const isEraser = id === NO_CLASS;
   const radio = h("input", { type: "radio", name: "class", value: id, onchange: () => store.set({ paintClass: id }) });
   const swatch = h("span", { class: "swatch", "aria-hidden": "true" });
-  if (index === 3) swatch.append(icon("eraser"));
+  if (isEraser) swatch.append(icon("eraser"));
+  const words = h("span", { class: "name" }, "eraser");
   const counter = h("span", { class: "count" });
   const eye = h("button", {
     type: "button",
     class: "eye",
     onclick: () => store.set({ hidden: toggled(store.now.hidden, id) }),
   });
-  const row = h(
+  const element = h(
     "li",
     { class: "class" },
-    h("label", {}, radio, swatch, h("span", { class: "name" }, name), h("kbd", {}, KEYS[index])),
+    h("label", {}, radio, swatch, words, key && h("kbd", {}, key)),
     counter,
-    index < 3 ? eye : h("span", { class: "eye" }),
+    isEraser ? h("span", { class: "eye" }) : eye,
   );
-  store.watch(["paintClass", "counts", "hidden", "safePalette", "settings"], () => {
+  const follow = (): void => {
     const { now } = store;
     radio.checked = now.paintClass === id;
-    radio.disabled = id === 1 && now.settings.classes === 2;
-    row.classList.toggle("off", radio.disabled);
-    if (index < 3) {
-      const hidden = now.hidden.has(id);
-      swatch.style.background = paletteOf(now)[index].colour;
-      counter.textContent = count(now.counts[index]);
-      counter.setAttribute("aria-label", `${now.counts[index]} points painted`);
-      eye.replaceChildren(icon(hidden ? "hidden" : "eye"));
-      eye.setAttribute("aria-pressed", String(hidden));
-      eye.setAttribute("aria-label", `Hide ${name}`);
-      eye.title = `${hidden ? "Show" : "Hide"} ${name} (Shift+${KEYS[index]})`;
-    }
-  });
-  return row;
+    radio.disabled = isOff(id, now);
+    element.classList.toggle("off", radio.disabled);
+    if (isEraser) return;
+    const { name, colour } = paletteOf(now)[id];
+    const hidden = now.hidden.has(id);
+    words.textContent = words.title = name;
+    swatch.style.background = colour;
+    counter.textContent = count(now.counts[id] ?? 0);
+    counter.setAttribute("aria-label", `${now.counts[id] ?? 0} points painted`);
+    eye.replaceChildren(icon(hidden ? "hidden" : "eye"));
+    eye.setAttribute("aria-pressed", String(hidden));
+    eye.setAttribute("aria-label", `Hide ${name}`);
+    eye.title = `${hidden ? "Show" : "Hide"} ${name} (Shift+${key})`;
+  };
+  follow();
+  return { element, follow };
 }
 
-export function classesPanel(store: AppStore, brush: Brush): HTMLElement {
+/** A row for each class and the eraser, as there are. */
+function classRows(store: AppStore): HTMLElement {
+  const list = h("ul", { class: "classes" });
+  let rows: Row[] = [];
+  let shown = "";
+  store.watch(["classes", "edges", "paintClass", "counts", "hidden", "safePalette", "settings"], () => {
+    const ids = paintable(store.now).map(({ id }) => id);
+    if (shown !== ids.join()) {
+      shown = ids.join();
+      rows = [...ids, NO_CLASS].map((id, index) => classRow(store, id, id === NO_CLASS ? "E" : String(index + 1)));
+      list.replaceChildren(...rows.map((row) => row.element));
+    }
+    for (const row of rows) row.follow();
+  });
+  return list;
+}
+
+export function classesPanel(store: AppStore, brush: Brush, edit: () => void): HTMLElement {
   const size = slider("Brush", 0, 1, 0.001, (at) => {
     const { session } = store.now;
     if (!session) return;
@@ -68,10 +91,14 @@ export function classesPanel(store: AppStore, brush: Brush): HTMLElement {
     const [low, high] = [session.spacing * LEAST_SPACINGS, boxDiagonal(session.bounds) / 4];
     size.set(Math.log(radius / low) / Math.log(high / low), length(radius));
   });
+  const change = button("Classes…", edit, "⇧E");
+  change.title = "Add, rename, recolour or remove classes (Shift+E)";
+  store.watch(["writer"], () => (change.disabled = !store.now.writer));
   return section(
     "Paint",
     true,
-    h("ul", { class: "classes" }, ...[0, 1, 2, NO_CLASS].map((id, index) => classRow(store, id, index))),
+    classRows(store),
+    h("div", { class: "buttons" }, change),
     size.element,
     protect.element,
     front.element,

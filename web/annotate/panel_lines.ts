@@ -19,8 +19,9 @@ const plural = (n: number, noun: string): string => `${count(n)} ${noun}${n === 
 
 /** How the search and the decisions stand. */
 function summary(store: AppStore): string {
-  const { lines, searchStage, runs, predictionVersion } = store.now;
+  const { lines, searchStage, runs, predictionVersion, edges } = store.now;
   if (lines.searching) return searchStage || "Finding lines";
+  if (!edges) return "Lines are of edge classes, which this project does not have.";
   if (lines.version === 0) {
     return runs.length > 0
       ? "The predicted edges as segments, arcs and circles."
@@ -73,11 +74,11 @@ export function linesPanel(store: AppStore, client: Client, reviewer: Reviewer):
     h("p", { class: "summary" }, "Download the accepted lines"),
     h("div", { class: "buttons" }, ...downloads),
   );
-  store.watch(["lines", "searchStage", "runs", "predictionVersion", "writer", "training"], () => {
-    const { lines, runs, writer } = store.now;
+  store.watch(["lines", "searchStage", "runs", "predictionVersion", "writer", "training", "edges"], () => {
+    const { lines, runs, writer, edges } = store.now;
     const { open, accepted } = countDecisions(lines.lines);
     words.textContent = summary(store);
-    find.hidden = lines.searching;
+    find.hidden = lines.searching || !edges;
     find.disabled = !writer || runs.length === 0;
     cancel.hidden = !lines.searching;
     review.hidden = lines.lines.length === 0;

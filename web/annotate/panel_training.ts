@@ -3,7 +3,7 @@
 import { h } from "../shared/dom";
 import { linePlot } from "../shared/lines";
 import type { Client } from "./client";
-import { paletteOf } from "./colouring";
+import { isOff, paletteOf } from "./classes";
 import { count, percent, seconds } from "./format";
 import { button, buttons, checkbox, list, section } from "./panel";
 import type { AppStore } from "./store";
@@ -55,7 +55,7 @@ function summary(store: AppStore): string {
     const took = last.seconds_train === null ? "" : `: ${seconds(last.seconds_train + (last.seconds_classify ?? 0))}`;
     return `Run ${last.run}${took}. ${heldOut(last)}`;
   }
-  const lacking = counts.filter((n, id) => n > 0 && (id !== 1 || settings.classes === 3)).length < 2;
+  const lacking = counts.filter((n, id) => n > 0 && !isOff(id, store.now)).length < 2;
   const then = settings.auto ? "training starts automatically" : "then train";
   return lacking ? `Paint points of two classes; ${then}.` : "Not trained yet.";
 }
@@ -75,6 +75,11 @@ export function trainingPanel(store: AppStore, client: Client): HTMLElement {
     (chosen) => client.setSettings({ classes: chosen }),
   );
   const start = h("div", {});
+  const own = h(
+    "p",
+    { class: "summary" },
+    "Shipped models know edges alone: own classes begin with nothing, or with a model of yours.",
+  );
   const showStarts = (): void => {
     const { session, settings } = store.now;
     const names = [...new Set(["random", ...(session?.starts ?? []), settings.start])];
@@ -83,7 +88,7 @@ export function trainingPanel(store: AppStore, client: Client): HTMLElement {
     picker.set(settings.start);
     start.replaceChildren(picker.element);
   };
-  store.watch(["training", "runs", "counts", "settings"], () => {
+  store.watch(["training", "runs", "counts", "settings", "edges"], () => {
     const { training } = store.now;
     const active = training?.active ?? false;
     words.textContent = summary(store);
@@ -98,6 +103,10 @@ export function trainingPanel(store: AppStore, client: Client): HTMLElement {
     start.querySelectorAll("option").forEach((option) => (option.selected = option.text === startName(settings.start)));
   });
   store.watch(["session"], showStarts);
+  store.watch(["edges"], () => {
+    classes.element.hidden = !store.now.edges;
+    own.hidden = store.now.edges;
+  });
   return section(
     "Training",
     true,
@@ -108,6 +117,7 @@ export function trainingPanel(store: AppStore, client: Client): HTMLElement {
     auto.element,
     classes.element,
     start,
+    own,
   );
 }
 

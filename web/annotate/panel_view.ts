@@ -49,7 +49,7 @@ export function viewPanel(store: AppStore, stage: Stage): HTMLElement {
   );
   let colours: Picker<ColourMode>;
   let features: Picker<number>;
-  store.watch(["session"], () => {
+  store.watch(["session", "edges"], () => {
     const names = store.now.session?.features ?? [];
     colours = list(
       "Colour by",
@@ -63,7 +63,7 @@ export function viewPanel(store: AppStore, stage: Stage): HTMLElement {
     );
     lists.replaceChildren(colours.element, features.element);
   });
-  store.watch(["mode", "feature", "scale", "session"], () => {
+  store.watch(["mode", "feature", "scale", "session", "edges"], () => {
     const { session, mode, feature } = store.now;
     features.element.hidden = scale.element.hidden = mode !== "feature";
     colours.set(mode);

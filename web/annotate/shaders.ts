@@ -10,9 +10,9 @@ attribute float said;
 attribute float value;
 uniform int mode;         // 0 labels, 1 rgb, 2 normals, 3 prediction, 4 ramp
 uniform bool paint;       // painted points over everything
-uniform vec3 palette[5];  // by class, and none
+uniform vec3 palette[9];  // by class, and none
 uniform sampler2D ramp;
-uniform vec3 hidden;      // 1 for a class that is hidden
+uniform float hidden[8];  // 1 for a class that is hidden
 uniform bool clipped;
 uniform vec3 clipMin;
 uniform vec3 clipMax;
@@ -25,7 +25,7 @@ varying float rim;
 
 ${UNFOLD}
 bool isHidden(float c) {
-  return (c < 0.5 && hidden.x > 0.5) || (abs(c - 1.0) < 0.5 && hidden.y > 0.5) || (abs(c - 2.0) < 0.5 && hidden.z > 0.5);
+  return c < 7.5 && hidden[int(c + 0.5)] > 0.5;
 }
 
 void main() {
@@ -40,13 +40,13 @@ void main() {
   vec3 normal = unfold(oct);
   float light = abs(dot(normalize(normalMatrix * normal), normalize(vec3(0.25, 0.45, 1.0))));
   float shade = mix(0.55, 1.0, light);
-  bool painted = label < 3.0 && (paint || mode == 0);
+  bool painted = label < 7.5 && (paint || mode == 0);
   if (painted) colour = palette[int(label + 0.5)] * mix(0.86, 1.0, light);
   else if (mode == 1) colour = rgb * mix(0.8, 1.0, light);
   else if (mode == 2) colour = (normal * 0.5 + 0.5) * mix(0.8, 1.0, light);
-  else if (mode == 3 && said < 4.0) colour = palette[int(said + 0.5)] * mix(0.5, 0.92, light);
+  else if (mode == 3 && said < 7.5) colour = palette[int(said + 0.5)] * mix(0.5, 0.92, light);
   else if (mode == 4) colour = texture2D(ramp, vec2((value * 255.0 + 0.5) / 256.0, 0.5)).rgb * mix(0.72, 1.0, light);
-  else colour = palette[4] * shade;
+  else colour = palette[8] * shade;
   gl_Position = projectionMatrix * seen;
   int octant = (position.x >= 0.5 ? 1 : 0) + (position.y >= 0.5 ? 2 : 0) + (position.z >= 0.5 ? 4 : 0);
   float wide = size * spacings[octant] * pixels / -seen.z;

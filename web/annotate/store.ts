@@ -1,6 +1,6 @@
 // What the page shows, in one place; those who show it watch it.
 
-import type { Box, CloudInfo, Lines, Run, Session, Settings, Uncertain, Vec3 } from "./types";
+import type { Box, ClassInfo, CloudInfo, Lines, Run, Session, Settings, Uncertain, Vec3 } from "./types";
 
 export type Tool = "navigate" | "brush" | "lasso" | "polygon" | "measure";
 export type ColourMode = "rgb" | "normals" | "labels" | "prediction" | "confidence" | "p_sharp" | "feature";
@@ -34,7 +34,10 @@ export interface State {
   waiting: number;
   writer: boolean;
   tool: Tool;
-  /** 0, 1, 2, or 255: the eraser. */
+  classes: ClassInfo[];
+  /** The first classes are those of edges. */
+  edges: boolean;
+  /** Of `classes`, or 255: the eraser. */
   paintClass: number;
   /** Of the brush, in units of the cloud. */
   radius: number;
@@ -53,7 +56,8 @@ export interface State {
   theme: Theme;
   /** The places between which a distance is measured: none, one or two. */
   measured: Vec3[];
-  counts: Vec3;
+  /** Painted points by class. */
+  counts: number[];
   undo: number;
   redo: number;
   saving: boolean;
@@ -84,6 +88,8 @@ export const initialState: State = {
   waiting: 0,
   writer: false,
   tool: "brush",
+  classes: [],
+  edges: true,
   paintClass: 2,
   radius: 1,
   protect: false,

@@ -20,8 +20,18 @@ export interface NodeInfo {
 export interface ClassInfo {
   id: number;
   name: string;
+  /** 0 to 255. */
   colour: Vec3;
   count: number;
+  /** By the user: it is there for strokes that undo brings back. */
+  removed?: boolean;
+}
+
+/** The project's classes: all that can be painted; where own classes follow those of edges, boundary too. */
+export interface Classes {
+  classes: ClassInfo[];
+  /** Whether the first are those of edges, of which lines and boundary are. */
+  edges: boolean;
 }
 
 /** "random", or a model's name. */
@@ -64,7 +74,7 @@ export interface CloudInfo {
   painted: number;
 }
 
-export interface Session {
+export interface Session extends Classes {
   name: string;
   file: string;
   clouds: CloudInfo[];
@@ -80,7 +90,6 @@ export interface Session {
   stage: string;
   features: string[];
   scales: number[];
-  classes: ClassInfo[];
   settings: Settings;
   /** What settings.start may be besides "random". */
   starts: Start[];
@@ -100,7 +109,8 @@ export interface Session {
 export interface Painted {
   changed?: number;
   cloud: number;
-  counts: Vec3;
+  /** By class. */
+  counts: number[];
   labels_version: number;
   nodes: number[];
   undo: number;

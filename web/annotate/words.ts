@@ -82,9 +82,26 @@ const list = (title: string, rows: [string[], string][]): HTMLElement =>
     ),
   );
 
-/** The help: what each key and button does. */
-export function helpDialog(commands: Command[]): HTMLDialogElement {
+/** What each key and button does now. */
+function lists(commands: Command[]): HTMLElement[] {
   const groups = [...new Set(commands.map((command) => command.group))];
+  return [
+    ...groups.map((group) =>
+      list(
+        group,
+        commands.filter((c) => c.group === group && c.name).map((c) => [c.keys, c.name]),
+      ),
+    ),
+    list(
+      "Mouse and fingers",
+      MOUSE.map(([key, name]) => [[key], name]),
+    ),
+  ];
+}
+
+/** The help, and what opens it. */
+export function helpDialog(commands: Command[]): { element: HTMLDialogElement; open(): void } {
+  const columns = h("div", { class: "columns" });
   const dialog = h(
     "dialog",
     { class: "help", "aria-labelledby": "help-title" },
@@ -94,23 +111,16 @@ export function helpDialog(commands: Command[]): HTMLDialogElement {
       h("h2", { id: "help-title" }, "Keys"),
       h("button", { class: "plain" }, "Close", h("kbd", {}, "Esc")),
     ),
-    h(
-      "div",
-      { class: "columns" },
-      ...groups.map((group) =>
-        list(
-          group,
-          commands.filter((c) => c.group === group).map((c) => [c.keys, c.name]),
-        ),
-      ),
-      list(
-        "Mouse and fingers",
-        MOUSE.map(([key, name]) => [[key], name]),
-      ),
-    ),
+    columns,
   );
   dialog.addEventListener("click", (event) => {
     if (event.target === dialog) dialog.close();
   });
-  return dialog;
+  return {
+    element: dialog,
+    open: () => {
+      columns.replaceChildren(...lists(commands));
+      dialog.showModal();
+    },
+  };
 }

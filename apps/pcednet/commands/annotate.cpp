@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdio>
 #include <fstream>
+#include <iterator>
 #include <memory>
 #include <thread>
 
@@ -34,7 +35,7 @@ constexpr const char* kNoModel = "none";
 
 struct AnnotateArguments {
   std::vector<std::string> inputs;
-  std::string project, model = kDefaultModel;
+  std::string project, classes, model = kDefaultModel;
   bool is_model_given = false;
   int port = 0;
   bool no_browser = false;
@@ -104,6 +105,15 @@ std::vector<fs::path> further_inputs(const std::vector<fs::path>& given, const f
   return {all.begin() + 1, all.end()};
 }
 
+/// The classes of --classes: as they are, or one a line in a file of that name.
+std::optional<ClassTable> classes_named(const std::string& given) {
+  if (given.empty()) return std::nullopt;
+  std::error_code ignored;
+  if (!fs::is_regular_file(given, ignored)) return parse_classes(given);
+  std::ifstream file(given);
+  return parse_classes(std::string(std::istreambuf_iterator<char>(file), {}));
+}
+
 annotate::SessionOptions session_options(const AnnotateArguments& arguments, const Common& common,
                                          annotate::Events& events) {
   std::vector<fs::path> inputs;
@@ -124,6 +134,7 @@ annotate::SessionOptions session_options(const AnnotateArguments& arguments, con
   options.cache_folder = input.parent_path() / ".pcednet";
   options.model = arguments.model == kNoModel ? "" : arguments.model;
   options.is_model_wanted = arguments.is_model_given;
+  options.classes = classes_named(arguments.classes);
   const auto shipped = shipped_models();
   for (const auto& [name, path] : shipped) options.starts.push_back(name);
   if (!options.model.empty() && !shipped.contains(options.model)) {
@@ -216,6 +227,7 @@ void add_annotate(CLI::App& app, Common& common) {
       "pcednet annotate scan.ply --no-browser --port 8080\n"
       "pcednet annotate scan.ply --model scan          corrects another model\n"
       "pcednet annotate scan.ply --model none          starts from nothing\n"
+      "pcednet annotate scan.ply --classes \"ground, wall, pipe\"    own classes instead of edges\n"
       "pcednet train --project scan_annotation.json -o my.safetensors   the same model again");
   command
       ->add_option("inputs", arguments->inputs,
@@ -229,6 +241,10 @@ void add_annotate(CLI::App& app, Common& common) {
                    "Shipped model or model file to correct: its labels are shown first, training "
                    "starts from it; none: from nothing")
       ->capture_default_str();
+  command->add_option("--classes", arguments->classes,
+                      "Own classes, two to eight: names with commas between, each may be followed "
+                      "by =#rrggbb, or a file of one a line; \"edges, pipe\" adds to the edge "
+                      "classes");
   command->add_option("--port", arguments->port, "Port of 127.0.0.1 (0: any free port)")
       ->capture_default_str()
       ->check(CLI::Range(0, 65535));

@@ -1,6 +1,9 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <memory>
+#include <numeric>
 #include <set>
 
 #include "batch.h"
@@ -128,9 +131,10 @@ Plan plan(const Inputs& inputs, const ClassifyArguments& arguments, const Common
   return plan;
 }
 
-/// Applies --las-classification, pairs class=code with commas between, to the field Classification.
+/// Applies --las-classification, pairs class=code with commas between, to the field Classification;
+/// there are so many classes.
 void set_las_classification(const std::string& pairs, const std::vector<std::uint8_t>& classes,
-                            PointCloud& cloud) {
+                            std::size_t classes_known, PointCloud& cloud) {
   const Attribute* present = find_attribute(cloud, "Classification");
   std::vector<std::uint8_t> codes(cloud.size());
   if (present && present->type == ScalarType::kUint8 && present->components == 1) {
@@ -142,12 +146,13 @@ void set_las_classification(const std::string& pairs, const std::vector<std::uin
     int edge_class = -1, code = -1, used = 0;
     const bool sound = std::sscanf(pair.c_str(), "%d=%d%n", &edge_class, &code, &used) == 2 &&
                        static_cast<std::size_t>(used) == pair.size() && edge_class >= 0 &&
-                       edge_class <= kBoundary && code >= 0 && code <= 255;
+                       static_cast<std::size_t>(edge_class) < classes_known && code >= 0 &&
+                       code <= 255;
     if (!sound) {
       throw Error(ErrorKind::kUsage,
-                  fmt::format("--las-classification: \"{}\" is not class=code, class 0 to 3, code "
+                  fmt::format("--las-classification: \"{}\" is not class=code, class 0 to {}, code "
                               "0 to 255",
-                              pair));
+                              pair, classes_known - 1));
     }
     for (std::size_t i = 0; i < codes.size(); ++i) {
       if (classes[i] == edge_class) codes[i] = static_cast<std::uint8_t>(code);
@@ -156,23 +161,47 @@ void set_las_classification(const std::string& pairs, const std::vector<std::uin
   set_attribute(cloud, make_attribute("Classification", codes));
 }
 
-void report(const Job& job, const detect::Classification& result, const detect::EdgeModel& model,
-            const std::string& seconds) {
-  const std::size_t points = result.counts.points();
-  const auto share = [&](std::size_t count) {
-    return 100.0 * static_cast<double>(count) /
-           static_cast<double>(std::max<std::size_t>(points, 1));
-  };
-  say(fmt::format(
-      "{}: {} points: {} sharp-edge ({:.1f} %), {} smooth-edge ({:.1f} %), {}{} non-edge{}",
-      job.input.string(), points, result.counts.sharp, share(result.counts.sharp),
-      result.counts.smooth, share(result.counts.smooth),
-      result.counts.boundary == 0 ? std::string()
-                                  : fmt::format("{} boundary ({:.1f} %), ", result.counts.boundary,
-                                                share(result.counts.boundary)),
-      result.counts.non_edge,
-      result.counts.unlabelled == 0 ? std::string()
-                                    : fmt::format(", {} unlabelled", result.counts.unlabelled)));
+double percent(std::size_t count, std::size_t points) {
+  return 100.0 * static_cast<double>(count) / static_cast<double>(std::max<std::size_t>(points, 1));
+}
+
+std::string edge_counts(const detect::ClassCounts& counts, std::size_t points) {
+  return fmt::format("{} sharp-edge ({:.1f} %), {} smooth-edge ({:.1f} %), {}{} non-edge",
+                     counts.sharp, percent(counts.sharp, points), counts.smooth,
+                     percent(counts.smooth, points),
+                     counts.boundary == 0 ? std::string()
+                                          : fmt::format("{} boundary ({:.1f} %), ", counts.boundary,
+                                                        percent(counts.boundary, points)),
+                     counts.non_edge);
+}
+
+/// Points of every class.
+using Counts = std::array<std::size_t, 256>;
+
+void count(const std::vector<std::uint8_t>& classes, Counts& counts) {
+  for (const std::uint8_t id : classes) ++counts[id];
+}
+
+/// Every class that a model with own ones found.
+std::string own_counts(const Counts& counts, const ClassTable& table, std::size_t points) {
+  std::string text;
+  for (std::size_t id = 0; id < table.size(); ++id) {
+    if (counts[id] == 0) continue;
+    text += fmt::format("{}{} {} ({:.1f} %)", text.empty() ? "" : ", ", counts[id], table[id].name,
+                        percent(counts[id], points));
+  }
+  return text;
+}
+
+void report(const Job& job, const detect::Classification& result, const Counts& counts,
+            const detect::EdgeModel& model, const std::string& seconds) {
+  const std::size_t points = std::accumulate(counts.begin(), counts.end(), std::size_t{0});
+  say(fmt::format("{}: {} points: {}{}", job.input.string(), points,
+                  has_own_classes(model.table) ? own_counts(counts, model.table, points)
+                                               : edge_counts(result.counts, points),
+                  result.counts.unlabelled == 0
+                      ? std::string()
+                      : fmt::format(", {} unlabelled", result.counts.unlabelled)));
   if (result.s_max > 0.0) {  // a method has none
     say(fmt::format("  scales: {:.9g} to {:.9g}", result.s_min, result.s_max));
   }
@@ -196,7 +225,7 @@ detect::KeptInput add_found(const detect::PreparedCloud& prepared,
   const detect::KeptInput kept =
       detect::add_result(cloud, prepared, found, model, {.class_colours = arguments.class_colours});
   if (!arguments.las_classification.empty()) {
-    set_las_classification(arguments.las_classification, found.classes, cloud);
+    set_las_classification(arguments.las_classification, found.classes, model.table.size(), cloud);
   }
   return kept;
 }
@@ -225,7 +254,9 @@ void classify_large_file(const Job& job, const ClassifyArguments& arguments, std
       .counts = cloud.counts(), .s_min = cloud.plan().s_min, .s_max = cloud.plan().s_max};
   detect::KeptInput kept;
   PointCloud drawn;
+  Counts counts = {};
   const auto add_result = [&](PointCloud& part, const tiles::TileFindings& findings) {
+    count(findings.found.classes, counts);
     detect::Classification found = findings.found;
     found.s_min = result.s_min, found.s_max = result.s_max;
     kept = add_found(findings.prepared, found, arguments, model, part);
@@ -241,9 +272,10 @@ void classify_large_file(const Job& job, const ClassifyArguments& arguments, std
   say_kept(kept);
   if (!job.preview.empty()) {
     clock.begin("preview");
-    render::write_preview(job.preview, drawn, drawn.labels, {.overwrite = common.overwrite()});
+    render::write_preview(job.preview, drawn, drawn.labels,
+                          {.overwrite = common.overwrite(), .table = model.table});
   }
-  report(job, result, model, clock.seconds());
+  report(job, result, counts, model, clock.seconds());
 }
 
 /// The memory for a tile where there must be tiles.
@@ -279,21 +311,24 @@ void classify_file(const Job& job, const ClassifyArguments& arguments,
                         .progress = &progress});
   if (!job.preview.empty()) {
     clock.begin("preview");
-    render::write_preview(job.preview, cloud, result.classes, {.overwrite = common.overwrite()});
+    render::write_preview(job.preview, cloud, result.classes,
+                          {.overwrite = common.overwrite(), .table = model.table});
   }
-  report(job, result, model, clock.seconds());
+  Counts counts = {};
+  count(result.classes, counts);
+  report(job, result, counts, model, clock.seconds());
 }
 
 void classify(const ClassifyArguments& arguments, const Common& common) {
-  PointCloud nothing;
-  if (!arguments.las_classification.empty()) {
-    set_las_classification(arguments.las_classification, {}, nothing);  // refuses before the work
-  }
   detect::EdgeModel model;
   if (arguments.method.name.empty()) {
     model = load_model(arguments.model);
   } else {
     model.name = "none, method " + arguments.method.name;
+  }
+  if (!arguments.las_classification.empty()) {
+    PointCloud nothing;  // refuses before the work
+    set_las_classification(arguments.las_classification, {}, model.table.size(), nothing);
   }
   const Inputs inputs = find_inputs(arguments.inputs);
   Batch batch(inputs);

@@ -12,6 +12,7 @@
 #include "models.h"
 #include "pcednet/core/error.h"
 #include "pcednet/detect/classify.h"
+#include "pcednet/eval/class_report.h"
 #include "pcednet/eval/predictions.h"
 #include "pcednet/eval/report.h"
 #include "pcednet/formats/format.h"
@@ -34,6 +35,7 @@ struct EvaluateArguments {
 struct Results {
   std::vector<eval::CloudScore> scores;
   eval::Calibration calibration;
+  eval::ClassReport classes;  ///< instead of both, where there are own classes
 };
 
 std::vector<std::uint8_t> read_predictions(const fs::path& file, const PointCloud& cloud) {
@@ -63,6 +65,7 @@ Results score_all(const EvaluateArguments& arguments, const Common& common) {
   if (!arguments.model.name.empty()) model = load_model(arguments.model);
 
   Results results;
+  if (model) results.classes.table = model->table;
   for (const fs::path& input : expand_inputs(arguments.inputs)) {
     const bool given = !arguments.predictions.empty();
     const fs::path prediction =
@@ -88,6 +91,12 @@ Results score_all(const EvaluateArguments& arguments, const Common& common) {
                                progress)
                     .found;
       }
+      if (!model && results.classes.clouds == 0) {
+        results.classes.table = classes_of(loaded.cloud.comments);
+      }
+      if (has_own_classes(results.classes.table)) {
+        return eval::add_cloud(truth, found.classes, results.classes);
+      }
       results.scores.push_back(
           {formats::stem_of(input), eval::count_confusion(truth, found.classes, positive)});
       if (arguments.calibration) {
@@ -95,7 +104,7 @@ Results score_all(const EvaluateArguments& arguments, const Common& common) {
       }
     });
   }
-  if (results.scores.empty()) {
+  if (results.scores.empty() && results.classes.clouds == 0) {
     throw Error(ErrorKind::kInsufficient,
                 fmt::format("{}: no prediction for any cloud", arguments.predictions));
   }
@@ -122,13 +131,18 @@ void evaluate(EvaluateArguments arguments, const Common& common) {
   }
   if (arguments.json != "-") check_writable(arguments.json, common.overwrite());
   const Results results = score_all(arguments, common);
+  const bool own = results.classes.clouds > 0;
+  if (own && arguments.calibration) {
+    throw Error(ErrorKind::kUsage, "evaluate: --calibration is for edge classes");
+  }
   const auto json =
-      eval::to_json(results.scores, arguments.calibration ? &results.calibration : nullptr);
+      own ? eval::to_json(results.classes)
+          : eval::to_json(results.scores, arguments.calibration ? &results.calibration : nullptr);
   if (arguments.json == "-") {
     std::cout << json;
     return;
   }
-  std::cout << eval::to_table(results.scores);
+  std::cout << (own ? eval::to_table(results.classes) : eval::to_table(results.scores));
   if (arguments.calibration) std::cout << "\n" << eval::to_table(results.calibration);
   if (!arguments.json.empty()) write_text_file(arguments.json, json, common.overwrite());
 }
@@ -168,8 +182,10 @@ void add_evaluate(CLI::App& app, Common& common) {
     truth->excludes(command->get_option(of_labels));
   }
   command
-      ->add_option("--positive", arguments->positive,
-                   "Classes that count as positive: sharp, edge (sharp and smooth), or boundary")
+      ->add_option(
+          "--positive", arguments->positive,
+          "Classes that count as positive: sharp, edge (sharp and smooth), or boundary; own "
+          "classes are scored one by one")
       ->capture_default_str()
       ->check(CLI::IsMember({"sharp", "edge", "boundary"}));
   command->add_option("--json", arguments->json,

@@ -9,6 +9,7 @@
 #include "batch.h"
 #include "commands.h"
 #include "facts.h"
+#include "model_facts.h"
 #include "pcednet/core/error.h"
 #include "pcednet/core/output_file.h"
 #include "pcednet/formats/virtual_cloud.h"
@@ -69,6 +70,12 @@ void info(const InfoRequest& request, const Common& common) {
   for (const std::filesystem::path& path : inputs.files) {
     throw_if_cancelled(&progress);
     const auto describe = [&] {
+      if (is_model_file(path)) {
+        const detect::EdgeModel model = detect::load_model(path);
+        files.push_back(json_of(path, model));
+        if (request.json != "-") fmt::print("{}", text_of(path, model));
+        return;
+      }
       const formats::CloudFacts facts = formats::cloud_facts(path);
       files.push_back(json_of(path, facts));
       if (request.json != "-") fmt::print("{}", text_of(path, facts));
@@ -82,13 +89,15 @@ void info(const InfoRequest& request, const Common& common) {
 }  // namespace
 
 void add_info(CLI::App& app, Common& common) {
-  CLI::App* command = add_command(app, common, "info", "Describe point files",
+  CLI::App* command = add_command(app, common, "info", "Describe point files and models",
                                   "pcednet info scan.ply\n"
                                   "pcednet info folder/ --json report.json\n"
                                   "pcednet info scan.ply --json -\n"
+                                  "pcednet info my.safetensors     its classes\n"
                                   "pcednet info tiles/ --vpc city.vpc");
   auto request = std::make_shared<InfoRequest>();
-  command->add_option("inputs", request->inputs, "Point files or folders of point files")
+  command
+      ->add_option("inputs", request->inputs, "Point files, folders of point files, or model files")
       ->required();
   command->add_option("--json", request->json,
                       "Write the result as JSON to this file; - for standard output only");

@@ -93,6 +93,13 @@ void warn_of_other_classes(const std::string& file, const std::vector<std::uint8
                    others));
 }
 
+/// Refuses classes that are no edges.
+void check_edges(const std::string& whose, const ClassTable& table) {
+  if (has_edges(table)) return;
+  throw Error(ErrorKind::kUsage, fmt::format("{}: its classes are {}; lines are of edge classes",
+                                             whose, pcednet::names_of(table)));
+}
+
 void add_given_labels(const LinesArguments& arguments, std::vector<std::uint8_t> classes,
                       LabelledCloud& labelled, const Progress& progress) {
   warn_of_other_classes(arguments.input, classes);
@@ -112,11 +119,13 @@ void read_labelled(const LinesArguments& arguments, StageClock& clock, LabelledC
   cloud = read_cloud(arguments.input);
   throw_if_cancelled(&clock.progress());
   std::vector<std::uint8_t> given = formats::labels_of(cloud, arguments.input);
+  if (!arguments.classify) check_edges(arguments.input, classes_of(cloud.comments));
   clock.begin("normals");
   if (!given.empty() && !arguments.classify) {
     return add_given_labels(arguments, std::move(given), labelled, clock.progress());
   }
   const detect::EdgeModel model = load_model(arguments.model);
+  check_edges(arguments.model.name, model.table);
   if (given.empty()) {
     say(fmt::format("{}: no labels: classified by model {}", arguments.input, model.name));
   }

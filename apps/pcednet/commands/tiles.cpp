@@ -53,7 +53,13 @@ void plan_tiles(const PlanArguments& arguments, const Common& common) {
                              .keep_orientation = arguments.preparation.keep_orientation,
                              .sort = {.folder = arguments.sorted}};
   const Progress progress = console_progress(common);
-  const tiles::Plan plan = tiles::make_plan(request, load_model(model), &progress);
+  const detect::EdgeModel loaded = load_model(model);
+  if (has_own_classes(loaded.table)) {
+    throw Error(ErrorKind::kUsage, fmt::format("{}: has own classes ({}); tiles are for models of "
+                                               "edges, classify takes it",
+                                               model.name, pcednet::names_of(loaded.table)));
+  }
+  const tiles::Plan plan = tiles::make_plan(request, loaded, &progress);
   tiles::write_plan(arguments.plan, plan, common.overwrite());
   for (const std::string& note : plan.notes) warn(note);
   say(fmt::format("{}: {} points in {} tiles of length {:g}, buffer {:.4g}", arguments.plan,

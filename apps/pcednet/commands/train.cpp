@@ -76,9 +76,20 @@ detect::TrainedModel train_project(const TrainArguments& arguments, const Common
       common.progress == "none" ? decltype(&print_epoch)(nullptr) : print_epoch, &progress);
 }
 
+/// Clouds with own classes, as the annotator saves them, make a model with these.
+void take_classes(const std::filesystem::path& input, const PointCloud& cloud, bool is_first,
+                  detect::TrainOptions& options) {
+  const ClassTable table = classes_of(cloud.comments);
+  if (is_first) options.table = table;
+  if (table == options.table) return;
+  throw Error(ErrorKind::kInsufficient,
+              fmt::format("{}: its classes are {}, those of the first cloud {}", input.string(),
+                          pcednet::names_of(table), pcednet::names_of(options.table)));
+}
+
 detect::TrainedModel train_clouds(const TrainArguments& arguments, const Common& common,
                                   const Progress& progress) {
-  const auto options = options_of(arguments);
+  auto options = options_of(arguments);
   const auto inputs = expand_inputs(arguments.inputs);
   std::vector<io::LoadedCloud> loaded;
   loaded.reserve(inputs.size());  // the training clouds look into them
@@ -90,6 +101,7 @@ detect::TrainedModel train_clouds(const TrainArguments& arguments, const Common&
     });
     for (const auto& warning : loaded.back().warnings) warn(input.string() + ": " + warning);
     const PointCloud& cloud = loaded.back().cloud;
+    take_classes(input, cloud, loaded.size() == 1, options);
     clouds.push_back(
         {input.string(), prepare(input, cloud, arguments.preparation, progress), cloud.labels});
   }

@@ -334,7 +334,10 @@ std::vector<std::uint32_t> find_boundary(const PreparedCloud& cloud, const Progr
 }
 
 void mark_boundary(const PreparedCloud& cloud, Classification& found, const Progress* progress) {
-  for (const std::uint32_t point : find_boundary(cloud, progress)) found.classes[point] = kBoundary;
+  for (const std::uint32_t point : find_boundary(cloud, progress)) {
+    std::uint8_t& its = found.classes[point];
+    if (its <= kBoundary || its == kUnlabelled) its = kBoundary;
+  }
   found.counts = count_classes(found.classes);
 }
 

@@ -27,8 +27,9 @@ inline constexpr int kBoundaryRounds = 3;
 std::vector<std::uint32_t> find_boundary(const PreparedCloud& cloud,
                                          const Progress* progress = nullptr);
 
-/// Gives the points of find_boundary() the class kBoundary. Their probabilities stay: they say what
-/// the network thought. `found` must be of the cloud.
+/// Gives the points of find_boundary() the class kBoundary, but for those of an own class. Their
+/// probabilities stay: they say what the network thought. `found` must be of the cloud, its classes
+/// of a table that has_edges().
 void mark_boundary(const PreparedCloud& cloud, Classification& found,
                    const Progress* progress = nullptr);
 

@@ -20,11 +20,11 @@ template <typename RowsOf>
 Classification decide_rows(std::size_t points, std::span<const std::uint32_t> order,
                            const RowsOf& rows_of, const EdgeModel& model,
                            const Progress* progress) {
-  Classification found = nothing_found(points);
+  Classification found = nothing_found(points, has_own_classes(model.table));
   Stage stage(progress, "describe", order.size());
   for_each_block(order.size(), kBlock, [&](std::size_t begin, std::size_t end) {
     const auto block = order.subspan(begin, end - begin);
-    decide(block, nn::predict(model.network, rows_of(begin, end)), model.classes, found);
+    decide(block, nn::predict(model.network, rows_of(begin, end)), model, found);
     stage.advance(block.size());
   });
   return found;
@@ -91,7 +91,7 @@ Classification classify(const PreparedCloud& cloud, const EdgeModel& model,
   }
   Classification found = describe_and_decide(cloud, model, progress);
   if (model.context) {
-    apply_context(*model.context, model.classes, cloud.positions, cloud.curve, found, progress);
+    apply_context(model, cloud.positions, cloud.curve, found, progress);
   }
   found.counts = count_classes(found.classes);
   return found;
@@ -117,7 +117,7 @@ Classification classify(const DescribedCloud& cloud, std::span<const Vec3> posit
   Classification found = decide_rows(cloud.points, cloud.order, rows_of, model, nullptr);
   if (model.context) {
     const auto curve = spatial::curve_order(positions);
-    apply_context(*model.context, model.classes, positions, curve, found);
+    apply_context(model, positions, curve, found);
   }
   found.counts = count_classes(found.classes);
   return found;

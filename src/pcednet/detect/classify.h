@@ -24,17 +24,19 @@ struct ClassCounts {
 
 /// What was found, per point of the cloud in its own order.
 struct Classification {
-  std::vector<std::uint8_t> classes = {};  ///< EdgeClass; kUnlabelled: the position is not finite
+  std::vector<std::uint8_t> classes = {};  ///< of the model's table, EdgeClass as a rule;
+                                           ///< kUnlabelled: the position is not finite
   std::vector<float> p_sharp = {};         ///< probability of sharp-edge, 0 where unlabelled
   std::vector<float> p_smooth = {};        ///< of smooth-edge; 0 throughout with a two-class model
-  ClassCounts counts = {};
+  std::vector<float> p_class = {};  ///< of the class itself; empty with edge classes alone
+  ClassCounts counts = {};          ///< of edge classes
   double s_min = 0.0, s_max = 0.0;  ///< the scales of the description; 0 if it was given
   std::string note = {};            ///< for the user, or empty
   bool sparse = false;              ///< the model's networks for sparse clouds decided
 };
 
-/// `points` points that are all unlabelled.
-Classification nothing_found(std::size_t points);
+/// `points` points that are all unlabelled, of a model with own classes or of edges.
+Classification nothing_found(std::size_t points, bool has_own_classes = false);
 
 /// Describes every point at every scale and lets the network decide: the class of the highest
 /// probability. Works block by block: the scale-space matrix is never held whole. If the model has

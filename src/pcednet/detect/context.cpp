@@ -142,11 +142,11 @@ nn::Architecture context_architecture(int classes) {
 }
 
 ContextMatrix::ContextMatrix(std::span<const Vec3> positions, std::span<const std::uint32_t> curve,
-                             const Classification& found, int classes)
+                             const Classification& found, int classes, float least_edge)
     : kinds_(classes - 1) {
   for (const std::uint32_t i : order_of(positions, curve, found)) {
     const float edge = found.p_sharp[i] + found.p_smooth[i];
-    if (edge >= kLeastEdge) {
+    if (edge >= least_edge && found.classes[i] <= kSharpEdge) {
       points_.push_back(i);
       places_.push_back(static_cast<std::uint32_t>(positions_.size()));
     }
@@ -220,11 +220,13 @@ void apply_context(const nn::Model& network, const std::vector<std::uint8_t>& cl
   });
 }
 
-void apply_context(const nn::Model& network, const std::vector<std::uint8_t>& classes,
-                   std::span<const Vec3> positions, std::span<const std::uint32_t> curve,
-                   Classification& result, const Progress* progress) {
-  const ContextMatrix matrix(positions, curve, result, static_cast<int>(classes.size()));
-  apply_context(network, classes, matrix, result, progress);
+void apply_context(const EdgeModel& model, std::span<const Vec3> positions,
+                   std::span<const std::uint32_t> curve, Classification& result,
+                   const Progress* progress) {
+  const std::vector<std::uint8_t> classes = edge_outputs(model);
+  const ContextMatrix matrix(positions, curve, result, static_cast<int>(classes.size()),
+                             model.least_edge);
+  apply_context(*model.context, classes, matrix, result, progress);
 }
 
 }  // namespace pcednet::detect

@@ -19,9 +19,6 @@ constexpr std::array<int, 4> kContextSizes = {4, 8, 16, 32};
 /// The shape of the second network of a model with so many classes.
 nn::Architecture context_architecture(int classes);
 
-/// A point that is so sure to be no edge stays so: most points do, which saves most of the time.
-constexpr float kLeastEdge = 0.01f;
-
 /// Numbers per size and kind of edge, see ContextMatrix.
 constexpr int kContextFeatures = 8;
 
@@ -44,10 +41,10 @@ class ContextMatrix {
   /// Points that `found` leaves unlabelled have no context and are none. `curve` is the
   /// spatial::curve_order() of the positions.
   ContextMatrix(std::span<const Vec3> positions, std::span<const std::uint32_t> curve,
-                const Classification& found, int classes);
+                const Classification& found, int classes, float least_edge = kLeastEdge);
 
-  /// The points to describe, edges of a probability of kLeastEdge or more, in an order that is free
-  /// of their numbering and kind to the caches.
+  /// The points to describe, of a probability of an edge of `least_edge` or more and of no own
+  /// class, in an order that is free of their numbering and kind to the caches.
   std::span<const std::uint32_t> points() const { return points_; }
 
   /// Numbers per row.
@@ -70,16 +67,17 @@ class ContextMatrix {
   std::optional<spatial::NeighbourSearch> search_;
 };
 
-/// Lets the second network decide, in place of what was found.
+/// Lets the second network decide, in place of what was found. `classes` are the edge_outputs() of
+/// its model.
 void apply_context(const nn::Model& network, const std::vector<std::uint8_t>& classes,
                    const ContextMatrix& matrix, Classification& result,
                    const Progress* progress = nullptr);
 
-/// The same with the matrix of what was found. `positions` are those that were
-/// classified, `curve` their spatial::curve_order(). The result does not depend on threads or on
-/// the order of the points.
-void apply_context(const nn::Model& network, const std::vector<std::uint8_t>& classes,
-                   std::span<const Vec3> positions, std::span<const std::uint32_t> curve,
-                   Classification& result, const Progress* progress = nullptr);
+/// The same with the model's context network and the matrix of what was found. `positions` are
+/// those that were classified, `curve` their spatial::curve_order(). The result does not depend on
+/// threads or on the order of the points.
+void apply_context(const EdgeModel& model, std::span<const Vec3> positions,
+                   std::span<const std::uint32_t> curve, Classification& result,
+                   const Progress* progress = nullptr);
 
 }  // namespace pcednet::detect

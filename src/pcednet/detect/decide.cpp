@@ -21,12 +21,48 @@ void decide_point(std::span<const float> probabilities, const std::vector<std::u
   found.classes[point] = !edge ? kNonEdge : sharp >= smooth ? kSharpEdge : kSmoothEdge;
 }
 
+/// The probability of the class that was chosen among those of edges.
+float p_of_edge_class(const Classification& found, std::size_t point) {
+  const float sharp = found.p_sharp[point], smooth = found.p_smooth[point];
+  const std::uint8_t c = found.classes[point];
+  return c == kSharpEdge ? sharp : c == kSmoothEdge ? smooth : 1.0f - sharp - smooth;
+}
+
+/// The same where there are own classes.
+void decide_own(std::span<const float> probabilities, const EdgeModel& model, bool edges,
+                std::size_t point, Classification& found) {
+  float own = -1.0f, non_edge = 0.0f, edge = 0.0f;
+  std::uint8_t best = 0;
+  for (std::size_t c = 0; c < model.classes.size(); ++c) {
+    const std::uint8_t id = model.classes[c];
+    const float p = probabilities[c];
+    if (edges && id <= kSharpEdge) {
+      (id == kNonEdge ? non_edge : edge) += p;
+    } else if (p > own) {
+      own = p;
+      best = id;
+    }
+  }
+  if (edges) decide_point(probabilities, model.classes, point, found);
+  if (edges && own < std::max(non_edge, edge)) {
+    const bool is_edge = edge > non_edge;
+    const bool is_sharp = found.p_sharp[point] >= found.p_smooth[point];
+    found.classes[point] = !is_edge ? kNonEdge : is_sharp ? kSharpEdge : kSmoothEdge;
+    found.p_class[point] =
+        is_edge ? std::max(found.p_sharp[point], found.p_smooth[point]) : non_edge;
+  } else {
+    found.classes[point] = best;
+    found.p_class[point] = own;
+  }
+}
+
 }  // namespace
 
-Classification nothing_found(std::size_t points) {
+Classification nothing_found(std::size_t points, bool has_own_classes) {
   return {.classes = std::vector<std::uint8_t>(points, kUnlabelled),
           .p_sharp = std::vector<float>(points, 0.0f),
-          .p_smooth = std::vector<float>(points, 0.0f)};
+          .p_smooth = std::vector<float>(points, 0.0f),
+          .p_class = std::vector<float>(has_own_classes ? points : 0, 0.0f)};
 }
 
 void decide(std::span<const std::uint32_t> points, std::span<const float> probabilities,
@@ -34,6 +70,18 @@ void decide(std::span<const std::uint32_t> points, std::span<const float> probab
   for (std::size_t i = 0; i < points.size(); ++i) {
     decide_point(probabilities.subspan(i * classes.size(), classes.size()), classes, points[i],
                  found);
+  }
+  if (found.p_class.empty()) return;
+  for (const std::uint32_t i : points) found.p_class[i] = p_of_edge_class(found, i);
+}
+
+void decide(std::span<const std::uint32_t> points, std::span<const float> probabilities,
+            const EdgeModel& model, Classification& found) {
+  if (found.p_class.empty()) return decide(points, probabilities, model.classes, found);
+  const bool edges = has_edges(model.table);
+  const std::size_t outputs = model.classes.size();
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    decide_own(probabilities.subspan(i * outputs, outputs), model, edges, points[i], found);
   }
 }
 

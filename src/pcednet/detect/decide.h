@@ -14,6 +14,11 @@ namespace pcednet::detect {
 void decide(std::span<const std::uint32_t> points, std::span<const float> probabilities,
             const std::vector<std::uint8_t>& classes, Classification& found);
 
+/// The same for the outputs of any model: the most probable class. Edges together stand against
+/// non-edge and each of the model's own classes.
+void decide(std::span<const std::uint32_t> points, std::span<const float> probabilities,
+            const EdgeModel& model, Classification& found);
+
 ClassCounts count_classes(const std::vector<std::uint8_t>& classes);
 
 }  // namespace pcednet::detect

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <array>
+#include <functional>
 #include <map>
 
 #include "pcednet/cloud/point_cloud.h"
@@ -19,6 +21,8 @@ namespace {
 constexpr const char* kFormat = "pcednet-edge-model-1";
 constexpr const char* kContextFormat = "pcednet-edge-model-2";  // with a context network
 constexpr const char* kSparseFormat = "pcednet-edge-model-3";   // with networks for sparse clouds
+constexpr const char* kOwnFormat = "pcednet-class-model-1";     // with own classes
+constexpr const char* kOwnContextFormat = "pcednet-class-model-2";
 constexpr std::string_view kContext = "context.", kSparse = "sparse.";
 const std::array<std::vector<std::uint8_t>, 2> kClassLists = {
     {{kNonEdge, kSmoothEdge, kSharpEdge}, {kNonEdge, kSharpEdge}}};
@@ -45,12 +49,52 @@ gls::Reconstruction take_reconstruction(nn::Metadata& metadata) {
   metadata.refuse_value(key, name);
 }
 
-std::vector<std::uint8_t> take_classes(nn::Metadata& metadata) {
-  const std::string key = "classes", text = metadata.take(key);
-  for (const auto& classes : kClassLists) {
-    if (text == text_of(classes)) return classes;
+const char* format_of(bool has_own_classes, bool has_context, bool is_sparse_too) {
+  if (has_own_classes) return has_context ? kOwnContextFormat : kOwnFormat;
+  if (is_sparse_too) return kSparseFormat;
+  return has_context ? kContextFormat : kFormat;
+}
+
+/// Every line of a text, which ends with one.
+std::vector<std::string> lines_in(const std::string& text) {
+  std::vector<std::string> lines;
+  for (std::size_t begin = 0, end; (end = text.find('\n', begin)) != std::string::npos;) {
+    lines.push_back(text.substr(begin, end - begin));
+    begin = end + 1;
   }
-  metadata.refuse_value(key, text);
+  return lines;
+}
+
+ClassTable take_table(nn::Metadata& metadata) {
+  const std::string key = "class_table", text = metadata.take(key);
+  const auto table = table_of(lines_in(text));
+  if (!table) metadata.refuse_value(key, text);
+  return *table;
+}
+
+void put_table(const ClassTable& table, std::map<std::string, std::string>& metadata) {
+  metadata["class_table"] = fmt::format("{}\n", fmt::join(lines_of(table), "\n"));
+}
+
+/// Whether the numbers may be those of a network's outputs.
+bool are_outputs(const std::vector<std::uint8_t>& classes, const ClassTable& table) {
+  if (!has_own_classes(table)) {
+    return std::find(kClassLists.begin(), kClassLists.end(), classes) != kClassLists.end();
+  }
+  const bool ascends =
+      std::adjacent_find(classes.begin(), classes.end(), std::greater_equal<>()) == classes.end();
+  const bool bounds = has_edges(table) && std::count(classes.begin(), classes.end(), kBoundary) > 0;
+  return classes.size() >= 2 && ascends && classes.back() < table.size() && !bounds;
+}
+
+std::vector<std::uint8_t> take_classes(nn::Metadata& metadata, const ClassTable& table) {
+  const std::string key = "classes", text = metadata.take(key);
+  std::vector<std::uint8_t> classes;
+  for (const char digit : text) {
+    if (digit != ' ') classes.push_back(static_cast<std::uint8_t>(digit - '0'));
+  }
+  if (text != text_of(classes) || !are_outputs(classes, table)) metadata.refuse_value(key, text);
+  return classes;
 }
 
 gls::ScaleSpaceOptions take_descriptor(nn::Metadata& metadata) {
@@ -152,7 +196,7 @@ std::optional<SparseNetworks> read_sparse(const std::filesystem::path& path,
   sparse.fewer_than = metadata.take_number<std::size_t>("fewer_than");
   if (!fits(sparse.network, model)) metadata.refuse("they do not fit the descriptor and classes");
   sparse.network.metadata = std::move(metadata.rest());
-  sparse.context = read_context(path, context, model.classes.size());
+  sparse.context = read_context(path, context, edge_outputs(model).size());
   return sparse;
 }
 
@@ -164,11 +208,14 @@ nn::Safetensors to_safetensors(const SparseNetworks& sparse) {
   return content;
 }
 
-const char* format_of(bool context, bool sparse) {
-  return sparse ? kSparseFormat : context ? kContextFormat : kFormat;
-}
-
 }  // namespace
+
+std::vector<std::uint8_t> edge_outputs(const EdgeModel& model) {
+  if (!has_edges(model.table)) return {};
+  std::vector<std::uint8_t> edges = model.classes;
+  std::erase_if(edges, [](std::uint8_t id) { return id > kSharpEdge; });
+  return edges;
+}
 
 EdgeModel suited_to(EdgeModel model, std::size_t points) {
   if (model.sparse && points < model.sparse->fewer_than) {
@@ -206,18 +253,23 @@ EdgeModel load_model(const std::filesystem::path& path) {
   const nn::Safetensors context = take_part(content, kContext);
   model.network = nn::from_safetensors(content, path.string());
   nn::Metadata metadata(std::move(model.network.metadata), path.string());
-  metadata.take_fixed("format", format_of(!context.tensors.empty(), !sparse.tensors.empty()));
+  if (metadata.has("class_table")) model.table = take_table(metadata);
+  metadata.take_fixed("format", format_of(has_own_classes(model.table), !context.tensors.empty(),
+                                          !sparse.tensors.empty()));
   metadata.take_fixed("undefined", "zero");
   metadata.take("version");
   model.name = metadata.take("name");
   model.seed = metadata.take_number<std::uint64_t>("seed");
   model.descriptor = take_descriptor(metadata);
-  model.classes = take_classes(metadata);
+  model.classes = take_classes(metadata, model.table);
+  if (metadata.has("context_least_edge")) {
+    model.least_edge = metadata.take_number<float>("context_least_edge");
+  }
   if (!fits(model.network, model)) {
     metadata.refuse("the network does not fit its descriptor and classes");
   }
   model.network.metadata = std::move(metadata.rest());
-  model.context = read_context(path, context, model.classes.size());
+  model.context = read_context(path, context, edge_outputs(model).size());
   model.sparse = read_sparse(path, std::move(sparse), model);
   return model;
 }
@@ -225,13 +277,18 @@ EdgeModel load_model(const std::filesystem::path& path) {
 void save_model(const std::filesystem::path& path, const EdgeModel& model, Overwrite overwrite) {
   nn::Model network = model.network;
   auto& metadata = network.metadata;
-  metadata["format"] = format_of(model.context.has_value(), model.sparse.has_value());
+  metadata["format"] =
+      format_of(has_own_classes(model.table), model.context.has_value(), model.sparse.has_value());
   metadata["version"] = kVersion;
   metadata["undefined"] = "zero";
   metadata["name"] = model.name;
   metadata["seed"] = std::to_string(model.seed);
   put_descriptor(model.descriptor, metadata);
   metadata["classes"] = text_of(model.classes);
+  if (has_own_classes(model.table)) put_table(model.table, metadata);
+  if (model.context && model.least_edge != kLeastEdge) {
+    metadata["context_least_edge"] = fmt::format("{}", model.least_edge);
+  }
   nn::Safetensors content = nn::to_safetensors(network);
   if (model.context) add_part(nn::to_safetensors(*model.context), kContext, content);
   if (model.sparse) add_part(to_safetensors(*model.sparse), kSparse, content);

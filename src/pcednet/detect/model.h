@@ -7,11 +7,15 @@
 #include <string>
 #include <vector>
 
+#include "pcednet/cloud/class_table.h"
 #include "pcednet/core/output_file.h"
 #include "pcednet/gls/scale_space_options.h"
 #include "pcednet/nn/model.h"
 
 namespace pcednet::detect {
+
+/// A point that is so sure to be no edge stays so: most points do, which saves most of the time.
+inline constexpr float kLeastEdge = 0.01f;
 
 /// What decides in place of a model's own networks, on the same description and for the same
 /// classes, where points are few: walls, steps and holes are then a spacing or two wide.
@@ -26,12 +30,21 @@ struct SparseNetworks {
 struct EdgeModel {
   std::string name;
   std::uint64_t seed = 0;
-  gls::ScaleSpaceOptions descriptor;          ///< s_min and s_max are each cloud's own
-  std::vector<std::uint8_t> classes;          ///< EdgeClass of every output: {0, 1, 2} or {0, 2}
-  nn::Model network;                          ///< its metadata holds the summary of the training
-  std::optional<nn::Model> context = {};      ///< decides in the end, on a ContextMatrix
+  gls::ScaleSpaceOptions descriptor;  ///< s_min and s_max are each cloud's own
+  /// The class of every output, ascending numbers of `table`. Of edge classes alone {0, 1, 2} or
+  /// {0, 2}, an EdgeClass each.
+  std::vector<std::uint8_t> classes;
+  nn::Model network;                      ///< its metadata holds the summary of the training
+  std::optional<nn::Model> context = {};  ///< decides in the end, on a ContextMatrix
+  ClassTable table = edge_classes();      ///< what `classes` are numbers of
+  /// The context network decides on points of this probability of an edge or more.
+  float least_edge = kLeastEdge;
   std::optional<SparseNetworks> sparse = {};  ///< for clouds of few points
 };
+
+/// Those of `classes` that the context network decides on: the edge classes, none of a table
+/// without them.
+std::vector<std::uint8_t> edge_outputs(const EdgeModel& model);
 
 /// The model with those networks alone that decide for a cloud of `points` distinct points.
 /// classify() does this by itself; it is for those who look at or go on training the networks.

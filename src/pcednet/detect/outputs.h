@@ -2,24 +2,33 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <vector>
 
-#include "pcednet/cloud/point_cloud.h"
+#include "pcednet/cloud/class_table.h"
+#include "pcednet/detect/model.h"
 #include "pcednet/nn/training_set.h"
 
 namespace pcednet::detect {
 
 /// Whether networks learn from points of that label.
-inline bool is_learnt_from(std::uint8_t label) {
-  return label <= kBoundary;
+inline bool is_learnt_from(std::uint8_t label, const ClassTable& table) {
+  return label < table.size();
 }
 
-/// The output of a network that stands for `label`, given the EdgeClass of each. Boundary counts as
-/// non-edge, with two classes smooth-edge as well.
-inline std::uint8_t output_of(std::uint8_t label, const std::vector<std::uint8_t>& classes) {
-  if (!is_learnt_from(label)) return nn::kIgnoredLabel;
+/// The output of the model's network that stands for `label`. Boundary counts as non-edge, with
+/// two edge classes smooth-edge as well.
+inline std::uint8_t output_of(std::uint8_t label, const EdgeModel& model) {
+  if (!is_learnt_from(label, model.table)) return nn::kIgnoredLabel;
+  const auto& classes = model.classes;
   const auto found = std::find(classes.begin(), classes.end(), label);
-  return found == classes.end() ? 0 : static_cast<std::uint8_t>(found - classes.begin());
+  if (found != classes.end()) return static_cast<std::uint8_t>(found - classes.begin());
+  const bool counts_as_non_edge = has_edges(model.table) && label <= kBoundary &&
+                                  !classes.empty() && classes.front() == kNonEdge;
+  return counts_as_non_edge ? 0 : nn::kIgnoredLabel;
+}
+
+/// The output of a context network, which knows the edge classes alone.
+inline std::uint8_t context_output_of(std::uint8_t label, const EdgeModel& model) {
+  return has_edges(model.table) && label > kBoundary ? nn::kIgnoredLabel : output_of(label, model);
 }
 
 }  // namespace pcednet::detect

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "pcednet/cloud/edge_class.h"
 #include "pcednet/core/version.h"
@@ -12,11 +13,8 @@ namespace {
 
 constexpr Rgb kUnlabelledColour = {128, 128, 128};
 
-Rgb colour_of(std::uint8_t edge_class) {
-  return edge_class < kEdgeClasses.size() ? kEdgeClasses[edge_class].colour : kUnlabelledColour;
-}
-
-std::string class_comment() {
+/// The classes in one comment.
+std::string edge_class_comment() {
   std::string comment = "pcednet classes";
   for (const auto& [edge_class, name, colour] : kEdgeClasses) {
     comment += fmt::format(" {} {}", static_cast<int>(edge_class), name);
@@ -35,15 +33,52 @@ void replace_comments(PointCloud& cloud, const EdgeModel& model, const Classific
     cloud.comments.push_back(
         fmt::format("pcednet scales {:.9g} to {:.9g}", result.s_min, result.s_max));
   }
-  cloud.comments.push_back(class_comment());
+  if (has_own_classes(model.table)) {
+    add_class_comments(cloud, model.table);
+  } else {
+    cloud.comments.push_back(edge_class_comment());
+  }
+}
+
+/// Puts what was found under its names, and takes away that of other classes.
+void set_columns(PointCloud& cloud, const Classification& result, const ClassTable& table) {
+  const bool edges = has_edges(table), own = has_own_classes(table);
+  for (const char* stale :
+       {edges ? "" : "scalar_edge_class", edges ? "" : "scalar_p_sharp",
+        edges ? "" : "scalar_p_smooth", edges ? "scalar_class" : "", own ? "" : "scalar_p_class"}) {
+    std::erase_if(cloud.attributes, [&](const Attribute& one) { return one.name == stale; });
+  }
+  if (own) {
+    set_attribute(cloud, make_attribute("quality", result.p_class));
+    set_attribute(cloud,
+                  make_attribute(edges ? "scalar_edge_class" : "scalar_class", result.classes));
+    set_attribute(cloud, make_attribute("scalar_p_class", result.p_class));
+    if (!edges) return;
+  } else {
+    std::vector<float> edge(result.classes.size());
+    for (std::size_t i = 0; i < edge.size(); ++i) edge[i] = result.p_sharp[i] + result.p_smooth[i];
+    set_attribute(cloud, make_attribute("quality", edge));
+    set_attribute(cloud, make_attribute("scalar_edge_class", result.classes));
+  }
+  set_attribute(cloud, make_attribute("scalar_p_sharp", result.p_sharp));
+  set_attribute(cloud, make_attribute("scalar_p_smooth", result.p_smooth));
 }
 
 }  // namespace
 
+void add_class_comments(PointCloud& cloud, const ClassTable& table) {
+  std::erase_if(cloud.comments,
+                [](const std::string& comment) { return comment.starts_with(kClassComment); });
+  for (std::string& line : lines_of(table, kClassComment)) {
+    cloud.comments.push_back(std::move(line));
+  }
+}
+
 KeptInput add_result(PointCloud& cloud, const PreparedCloud& prepared, const Classification& result,
                      const EdgeModel& model, const ResultOptions& options) {
   KeptInput kept;
-  const bool classified_before = find_attribute(cloud, "scalar_edge_class") != nullptr;
+  const bool classified_before = find_attribute(cloud, "scalar_edge_class") != nullptr ||
+                                 find_attribute(cloud, "scalar_class") != nullptr;
   if (cloud.has_labels() && !classified_before) {
     set_attribute(cloud, make_attribute("scalar_input_label", cloud.labels));
     kept.labels = true;
@@ -51,16 +86,14 @@ KeptInput add_result(PointCloud& cloud, const PreparedCloud& prepared, const Cla
   if (!prepared.made.empty()) cloud.normals = prepared.made;
   if (cloud.colours.empty() || options.class_colours) {
     cloud.colours.resize(cloud.size());
-    std::transform(result.classes.begin(), result.classes.end(), cloud.colours.begin(), colour_of);
+    std::transform(result.classes.begin(), result.classes.end(), cloud.colours.begin(),
+                   [&](std::uint8_t id) {
+                     return id < model.table.size() ? model.table[id].colour : kUnlabelledColour;
+                   });
   } else {
     kept.colours = true;
   }
-  std::vector<float> edge(result.classes.size());
-  for (std::size_t i = 0; i < edge.size(); ++i) edge[i] = result.p_sharp[i] + result.p_smooth[i];
-  set_attribute(cloud, make_attribute("quality", edge));
-  set_attribute(cloud, make_attribute("scalar_edge_class", result.classes));
-  set_attribute(cloud, make_attribute("scalar_p_sharp", result.p_sharp));
-  set_attribute(cloud, make_attribute("scalar_p_smooth", result.p_smooth));
+  set_columns(cloud, result, model.table);
   cloud.labels = result.classes;
   replace_comments(cloud, model, result);
   return kept;

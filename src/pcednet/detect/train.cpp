@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <iterator>
+#include <set>
 
-#include "pcednet/cloud/edge_class.h"
 #include "pcednet/core/error.h"
 #include "pcednet/detect/describe.h"
 #include "pcednet/detect/outputs.h"
@@ -15,39 +15,51 @@
 namespace pcednet::detect {
 namespace {
 
-void check_labels(const TrainingCloud& cloud) {
+void check_labels(const TrainingCloud& cloud, const ClassTable& table) {
   if (cloud.labels.size() != cloud.cloud.positions.size()) {
     throw Error(ErrorKind::kInsufficient,
                 fmt::format("{}: {} labels for {} points", cloud.name, cloud.labels.size(),
                             cloud.cloud.positions.size()));
   }
-  if (std::none_of(cloud.labels.begin(), cloud.labels.end(), is_learnt_from)) {
-    throw Error(
-        ErrorKind::kInsufficient,
-        fmt::format("{}: no labelled point (0 non-edge, 1 smooth-edge, 2 sharp-edge, 3 boundary)",
-                    cloud.name));
+  if (std::any_of(cloud.labels.begin(), cloud.labels.end(),
+                  [&](std::uint8_t label) { return is_learnt_from(label, table); })) {
+    return;
   }
+  std::string classes;
+  for (std::size_t id = 0; id < table.size(); ++id) {
+    classes += fmt::format("{}{} {}", id == 0 ? "" : ", ", id, table[id].name);
+  }
+  throw Error(ErrorKind::kInsufficient,
+              fmt::format("{}: no labelled point ({})", cloud.name, classes));
 }
 
 /// The labelled points in the engine's order, which does not depend on how they are numbered.
 std::vector<std::uint32_t> labelled_points(const TrainingCloud& cloud,
-                                           std::span<const std::uint32_t> order) {
+                                           std::span<const std::uint32_t> order,
+                                           const ClassTable& table) {
   std::vector<std::uint32_t> points;
   std::copy_if(order.begin(), order.end(), std::back_inserter(points),
-               [&](std::uint32_t i) { return is_learnt_from(cloud.labels[i]); });
+               [&](std::uint32_t i) { return is_learnt_from(cloud.labels[i], table); });
   return points;
 }
 
-std::vector<std::uint8_t> classes_of(const nn::Architecture& architecture) {
+/// The classes of a network's outputs; of own classes those that points have.
+std::vector<std::uint8_t> classes_of(const nn::Architecture& architecture, const ClassTable& table,
+                                     std::span<const std::uint8_t> labels) {
+  if (has_own_classes(table)) {
+    std::set<std::uint8_t> ids(labels.begin(), labels.end());
+    if (has_edges(table) && ids.erase(kBoundary) > 0) ids.insert(kNonEdge);
+    return {ids.begin(), ids.end()};
+  }
   if (architecture.classes == 2) return {kNonEdge, kSharpEdge};
   if (architecture.classes == 3) return {kNonEdge, kSmoothEdge, kSharpEdge};
   throw Error(ErrorKind::kUsage,
               fmt::format("{} classes: 2 or 3 are possible", architecture.classes));
 }
 
-std::vector<std::string> class_names(const std::vector<std::uint8_t>& classes) {
+std::vector<std::string> class_names(const EdgeModel& model) {
   std::vector<std::string> names;
-  for (const std::uint8_t c : classes) names.emplace_back(kEdgeClasses[c].name);
+  for (const std::uint8_t c : model.classes) names.push_back(model.table[c].name);
   return names;
 }
 
@@ -83,21 +95,22 @@ std::map<std::string, std::string> summary_of(const nn::TrainResult& result,
 }  // namespace
 
 Samples make_samples(std::span<const TrainingCloud> clouds,
-                     const gls::ScaleSpaceOptions& descriptor, const Progress* progress) {
+                     const gls::ScaleSpaceOptions& descriptor, const Progress* progress,
+                     const ClassTable& table) {
   const std::size_t width = row_width(descriptor);
   const Progress cancel_only = without_report(progress);
   Samples samples{.descriptor = descriptor, .clouds = clouds.size()};
   for (const TrainingCloud& cloud : clouds) samples.points += cloud.cloud.positions.size();
   Stage stage(progress, "describe", samples.points);
   for (const TrainingCloud& cloud : clouds) {
-    check_labels(cloud);
+    check_labels(cloud, table);
     const auto positions = cloud.cloud.positions;
     const gls::ScaleSpace space({positions, cloud.cloud.normals, cloud.cloud.curve}, descriptor,
                                 &cancel_only);
     if (const auto note = gls::note_on(descriptor, space.scales(), positions); !note.empty()) {
       samples.notes.push_back(fmt::format("{}: {}", cloud.name, note));
     }
-    const auto points = labelled_points(cloud, space.order());
+    const auto points = labelled_points(cloud, space.order(), table);
     const std::size_t before = samples.values.size();
     samples.values.resize(before + points.size() * width);
     describe(space, points, std::span(samples.values).subspan(before), &cancel_only);
@@ -111,7 +124,7 @@ TrainedModel train(const std::string& name, std::span<const TrainingCloud> cloud
                    const TrainOptions& options,
                    const std::function<void(const nn::EpochReport&)>& on_epoch,
                    const Progress* progress) {
-  const Samples samples = make_samples(clouds, options.descriptor, progress);
+  const Samples samples = make_samples(clouds, options.descriptor, progress, options.table);
   TrainedModel trained = train(name, samples, options, on_epoch, progress);
   trained.notes = samples.notes;
   if (options.context) add_context(trained, clouds, options, on_epoch, progress);
@@ -126,9 +139,11 @@ TrainedModel train(const std::string& name, const Samples& samples, const TrainO
   model.name = name;
   model.seed = options.training.seed;
   model.descriptor = samples.descriptor;
-  model.classes = classes_of(options.architecture);
+  model.table = options.table;
+  model.classes = classes_of(options.architecture, options.table, samples.labels);
 
   nn::Architecture architecture = options.architecture;
+  architecture.classes = static_cast<int>(model.classes.size());
   architecture.scales = model.descriptor.scales;
   architecture.features = gls::column_count(model.descriptor);
   // Twice as many numbers are no reason for twice as many neurons.
@@ -138,10 +153,10 @@ TrainedModel train(const std::string& name, const Samples& samples, const TrainO
 
   nn::TrainOptions training = options.training;
   training.sign_rule = sign_rule(model.descriptor, options.symmetry);
-  training.class_names = class_names(model.classes);
+  training.class_names = class_names(model);
   std::vector<std::uint8_t> outputs;
   for (const std::uint8_t label : samples.labels) {
-    outputs.push_back(output_of(label, model.classes));
+    outputs.push_back(output_of(label, model));
   }
   nn::TrainResult result = nn::distil(architecture, {samples.values, outputs}, training,
                                       options.teachers, on_epoch, progress);

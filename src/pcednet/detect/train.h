@@ -14,13 +14,16 @@ namespace pcednet::detect {
 struct TrainingCloud {
   std::string name;
   PreparedCloud cloud;
-  std::span<const std::uint8_t> labels;  ///< EdgeClass per point; kUnlabelled is left out,
-                                         ///< kBoundary counts as kNonEdge
+  std::span<const std::uint8_t> labels;  ///< of the options' table per point; kUnlabelled is left
+                                         ///< out, kBoundary counts as kNonEdge
 };
 
 struct TrainOptions {
   gls::ScaleSpaceOptions descriptor;
   nn::Architecture architecture;  ///< scales and features are set from `descriptor`
+  /// What labels are numbers of. With own classes the network has an output for each that points
+  /// have, whatever the architecture says.
+  ClassTable table = edge_classes();
   nn::TrainOptions training;      ///< sign rule and class names are set from the rest
   nn::Symmetry symmetry = nn::Symmetry::kAverage;  ///< flipped normals change no answer
   int teachers = 0;      ///< networks to train first and to learn from, see nn::distil()
@@ -32,7 +35,7 @@ struct TrainOptions {
 struct Samples {
   gls::ScaleSpaceOptions descriptor = {};
   std::vector<float> values = {};         ///< samples x scales x features
-  std::vector<std::uint8_t> labels = {};  ///< EdgeClass
+  std::vector<std::uint8_t> labels = {};  ///< of the table that they are learnt under
   std::size_t clouds = 0, points = 0;     ///< that they are of
   std::vector<std::string> notes = {};    ///< what the user should be told, one sentence each
 };
@@ -40,7 +43,8 @@ struct Samples {
 /// Describes every labelled point.
 /// Throws Error(kInsufficient), naming the cloud, if it has no labelled point.
 Samples make_samples(std::span<const TrainingCloud> clouds,
-                     const gls::ScaleSpaceOptions& descriptor, const Progress* progress = nullptr);
+                     const gls::ScaleSpaceOptions& descriptor, const Progress* progress = nullptr,
+                     const ClassTable& table = edge_classes());
 
 /// Describes the clouds and trains a network on them. `name` goes into the model. The same clouds,
 /// options and seed give the same bytes, whatever the number of threads. With two classes,

@@ -25,13 +25,13 @@ ContextSamples make_samples(const EdgeModel& model, std::span<const TrainingClou
   for (const TrainingCloud& cloud : clouds) {
     const auto found = classify(cloud.cloud, model, &cancel_only);
     const ContextMatrix matrix(cloud.cloud.positions, cloud.cloud.curve, found,
-                               static_cast<int>(model.classes.size()));
+                               static_cast<int>(edge_outputs(model).size()));
     const std::size_t count = matrix.points().size();
     const std::size_t before = samples.values.size();
     samples.values.resize(before + count * matrix.width());
     matrix.describe(0, count, std::span(samples.values).subspan(before));
     for (const std::uint32_t i : matrix.points()) {
-      samples.outputs.push_back(output_of(cloud.labels[i], model.classes));
+      samples.outputs.push_back(context_output_of(cloud.labels[i], model));
     }
     stage.advance(cloud.labels.size());
   }
@@ -43,10 +43,12 @@ nn::TrainResult train_context(const EdgeModel& model, std::span<const TrainingCl
                               const std::function<void(const nn::EpochReport&)>& on_epoch,
                               const Progress* progress) {
   const ContextSamples samples = make_samples(model, clouds, progress);
-  const auto architecture = context_architecture(static_cast<int>(model.classes.size()));
+  const std::size_t classes = edge_outputs(model).size();
+  const auto architecture = context_architecture(static_cast<int>(classes));
   nn::TrainOptions training = options.training;
   training.sign_rule = {};
   training.class_names = model.network.class_names;
+  training.class_names.resize(classes);
   training.start = nullptr;
   return nn::distil(architecture, {samples.values, samples.outputs}, training, options.teachers,
                     on_epoch, progress);
@@ -59,6 +61,10 @@ void add_context(TrainedModel& trained, std::span<const TrainingCloud> clouds,
                  const std::function<void(const nn::EpochReport&)>& on_epoch,
                  const Progress* progress) {
   if (trained.cancelled) return;
+  if (edge_outputs(trained.model).size() < 2) {
+    trained.no_context = "context is of edge classes";
+    return;
+  }
   try {
     nn::TrainResult context = train_context(trained.model, clouds, options, on_epoch, progress);
     trained.cancelled = context.cancelled;

@@ -11,6 +11,23 @@
 namespace pcednet::eval {
 namespace {
 
+/// Counts points of which `is` says whether their class is positive.
+template <typename IsPositive>
+ConfusionCounts count_points(std::span<const std::uint8_t> truth,
+                             std::span<const std::uint8_t> predicted, const IsPositive& is_one) {
+  if (truth.size() != predicted.size()) {
+    throw Error(ErrorKind::kInsufficient, fmt::format("{} predicted classes for {} labelled points",
+                                                      predicted.size(), truth.size()));
+  }
+  ConfusionCounts counts;
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    if (truth[i] == kUnlabelled) continue;
+    const bool is = is_one(truth[i]), said = is_one(predicted[i]);
+    ++(is ? (said ? counts.tp : counts.fn) : (said ? counts.fp : counts.tn));
+  }
+  return counts;
+}
+
 double ratio(double numerator, double denominator) {
   return denominator == 0.0 ? 0.0 : numerator / denominator;
 }
@@ -39,18 +56,13 @@ ConfusionCounts& ConfusionCounts::operator+=(const ConfusionCounts& other) {
 
 ConfusionCounts count_confusion(std::span<const std::uint8_t> truth,
                                 std::span<const std::uint8_t> predicted, Positive positive) {
-  if (truth.size() != predicted.size()) {
-    throw Error(ErrorKind::kInsufficient, fmt::format("{} predicted classes for {} labelled points",
-                                                      predicted.size(), truth.size()));
-  }
-  ConfusionCounts counts;
-  for (std::size_t i = 0; i < truth.size(); ++i) {
-    if (truth[i] == kUnlabelled) continue;
-    const bool is = is_positive(truth[i], positive);
-    const bool said = is_positive(predicted[i], positive);
-    ++(is ? (said ? counts.tp : counts.fn) : (said ? counts.fp : counts.tn));
-  }
-  return counts;
+  return count_points(truth, predicted,
+                      [&](std::uint8_t label) { return is_positive(label, positive); });
+}
+
+ConfusionCounts count_confusion(std::span<const std::uint8_t> truth,
+                                std::span<const std::uint8_t> predicted, std::uint8_t positive) {
+  return count_points(truth, predicted, [&](std::uint8_t label) { return label == positive; });
 }
 
 Scores scores_of(const ConfusionCounts& counts) {

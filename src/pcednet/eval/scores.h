@@ -30,6 +30,10 @@ bool is_positive(std::uint8_t label, Positive positive);
 ConfusionCounts count_confusion(std::span<const std::uint8_t> truth,
                                 std::span<const std::uint8_t> predicted, Positive positive);
 
+/// The same with `positive` alone as the positive class, of any table.
+ConfusionCounts count_confusion(std::span<const std::uint8_t> truth,
+                                std::span<const std::uint8_t> predicted, std::uint8_t positive);
+
 /// The scores of Himeur et al. 2021, appendix B. A score whose denominator is zero is 0.
 struct Scores {
   double precision = 0, recall = 0, mcc = 0, f1 = 0, accuracy = 0, iou = 0;

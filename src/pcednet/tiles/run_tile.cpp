@@ -63,6 +63,7 @@ void keep_first(std::size_t points, detect::PreparedCloud& prepared,
   found.classes.resize(points);
   found.p_sharp.resize(points);
   found.p_smooth.resize(points);
+  found.p_class.resize(std::min(points, found.p_class.size()));
   found.counts = detect::count_classes(found.classes);
 }
 

@@ -40,8 +40,10 @@ struct Adapted {
 /// nothing was painted the answers stay, unless points of the same description were painted
 /// otherwise.
 ///
-/// `labels` has an EdgeClass that can be painted, kUnlabelled or kLeftOut per point. Depends on the
-/// arguments alone, not on the number of threads or the numbering of the points.
+/// `labels` has a class of the subject's table that can be painted, kUnlabelled or kLeftOut per
+/// point; the start's classes are the first of the table, and for those that it does not know the
+/// network gets outputs. Depends on the arguments alone, not on the number of threads or the
+/// numbering of the points.
 Adapted adapt(const std::string& name, const Start& start, const Subject& subject,
               std::span<const std::uint8_t> labels, std::uint64_t seed,
               const std::function<void(const nn::EpochReport&)>& on_epoch = {},

@@ -26,20 +26,20 @@ std::map<std::uint32_t, std::uint8_t> classes_of(std::span<const std::uint32_t> 
 /// The part that each stroke is in: the strokes of a class go round. Empty if they are too few.
 std::map<std::uint32_t, std::uint32_t> parts_of(
     const std::map<std::uint32_t, std::uint8_t>& classes) {
-  std::array<std::uint32_t, 3> count = {};
+  std::array<std::uint32_t, kMostClasses> count = {};
   for (const auto& [stroke, edge_class] : classes) ++count[edge_class];
-  const auto painted = 3 - std::count(count.begin(), count.end(), 0u);
+  const auto painted = std::ssize(count) - std::count(count.begin(), count.end(), 0u);
   if (painted < 2 || std::count(count.begin(), count.end(), 1u) > 0) return {};
   const auto most = std::min(kMostParts, *std::max_element(count.begin(), count.end()));
   std::map<std::uint32_t, std::uint32_t> parts;
-  std::array<std::uint32_t, 3> next = {};
+  std::array<std::uint32_t, kMostClasses> next = {};
   for (const auto& [stroke, edge_class] : classes) parts[stroke] = next[edge_class]++ % most;
   return parts;
 }
 
 /// Right answers and all, by the true class.
 struct Tally {
-  std::array<double, 3> right = {}, all = {};
+  std::array<double, kMostClasses> right = {}, all = {};
 
   void add(std::uint8_t truth, std::uint8_t answer) {
     ++all[truth];
@@ -66,7 +66,9 @@ HeldOut hold_out(const Subject& subject, const Labels& labels, const Settings& s
   for (const SubjectCloud& cloud : subject.clouds) points += cloud.positions.size();
   std::vector<std::uint8_t> truth = labels.classes();
   truth.resize(points);
-  if (settings.classes == 2 || (start && start->model.classes.size() == 2)) {
+  const bool has_smooth =
+      settings.classes == 3 && !(start && detect::edge_outputs(start->model).size() == 2);
+  if (has_edges(subject.table) && !has_smooth) {
     std::replace(truth.begin(), truth.end(), kSmoothEdge, kNonEdge);
   }
   const auto classes = classes_of(strokes, truth);

@@ -29,12 +29,19 @@ std::string text_of(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-Json classes_of(const Counts& counts) {
-  Json classes = Json::array();
-  for (const auto& [id, name, colour] : std::span(kEdgeClasses).first(counts.size())) {
-    classes.push_back({{"id", id}, {"name", name}, {"colour", colour}, {"count", counts[id]}});
+Json classes_of(const ProjectClasses& classes, const Counts& counts) {
+  Json list = Json::array();
+  for (std::size_t id = 0; id < counts.size(); ++id) {
+    const auto& [name, colour] = classes.table[id];
+    list.push_back({{"id", id}, {"name", name}, {"colour", colour}, {"count", counts[id]}});
+    if (classes.removed.contains(static_cast<std::uint8_t>(id))) list.back()["removed"] = true;
   }
-  return classes;
+  return list;
+}
+
+Json json_of(const ClassesChanged& changed) {
+  return {{"classes", classes_of(changed.classes, changed.counts)},
+          {"edges", changed.classes.has_edges()}};
 }
 
 Json clouds_of(const Summary& summary) {
@@ -145,6 +152,7 @@ Json json_of(const WriterChanged& changed) {
 }
 
 struct EventName {
+  const char* operator()(const ClassesChanged&) const { return "classes"; }
   const char* operator()(const StageProgress&) const { return "progress"; }
   const char* operator()(const Ready&) const { return "ready"; }
   const char* operator()(const Problem&) const { return "problem"; }
@@ -186,7 +194,8 @@ Vec3 vector(const Json& value, const char* what) {
 
 std::uint8_t edge_class(const Json& value) {
   const auto c = value.is_number_integer() ? value.get<std::int64_t>() : -1;
-  need((c >= kNonEdge && c <= kSharpEdge) || c == kUnlabelled, "the class is 0, 1, 2 or 255");
+  need((c >= 0 && c < static_cast<std::int64_t>(kMostClasses)) || c == kUnlabelled,
+       "a class is 0 to 7, or 255");
   return static_cast<std::uint8_t>(c);
 }
 
@@ -242,7 +251,7 @@ Stroke read(const Json& json) {
   stroke.protect = flag(json, "protect");
   stroke.cloud = cloud_in(json);
   if (const auto hidden = json.find("hidden"); hidden != json.end() && !hidden->is_null()) {
-    need(hidden->is_array() && hidden->size() <= 4, "hidden: a list of classes");
+    need(hidden->is_array() && hidden->size() <= kMostClasses + 1, "hidden: a list of classes");
     for (const Json& c : *hidden) stroke.hidden.push_back(edge_class(c));
   }
   if (const auto clip = json.find("clip"); clip != json.end() && !clip->is_null()) {
@@ -277,7 +286,8 @@ std::string to_json(const Summary& summary, Asking window) {
                {"stage", summary.stage},
                {"nodes", Json::array()},
                {"features", Json::array()},
-               {"classes", classes_of(summary.counts)},
+               {"classes", classes_of(summary.classes, summary.counts)},
+               {"edges", summary.classes.has_edges()},
                {"settings", Json::parse(to_line(summary.settings))},
                {"starts", summary.starts},
                {"scales", summary.scales},
@@ -322,7 +332,12 @@ std::string to_json(const PointView& point) {
                   {"label", point.label},
                   {"prediction", point.prediction},
                   {"p", point.probabilities ? Json(*point.probabilities) : Json::array()},
+                  {"p_class", optional_number(point.p_class)},
                   {"distance", point.distance}});
+}
+
+std::string to_json(const ClassesChanged& changed) {
+  return text_of(json_of(changed));
 }
 
 std::string to_json(const FileSaved& saved) {

@@ -24,6 +24,7 @@ std::string to_json(const UncertainPlace& place);
 std::string to_json(const PointView& point);
 std::string to_json(const FileSaved& saved);
 std::string to_json(const LinesView& lines);
+std::string to_json(const ClassesChanged& changed);
 
 /// "open", "accepted" or "rejected".
 const char* decision_name(Decision decision);

@@ -1,6 +1,7 @@
 #include "workbench/annotate/labels.h"
 
 #include <algorithm>
+#include <numeric>
 
 namespace pcednet::annotate {
 
@@ -9,6 +10,10 @@ void Labels::set(std::uint32_t point, std::uint8_t edge_class) {
   if (label < counts_.size()) --counts_[label];
   label = edge_class;
   if (label < counts_.size()) ++counts_[label];
+}
+
+std::size_t Labels::painted() const {
+  return std::accumulate(counts_.begin(), counts_.end(), std::size_t{0});
 }
 
 std::span<const std::uint32_t> Labels::paint(std::uint8_t edge_class,

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "pcednet/cloud/class_table.h"
 #include "workbench/annotate/stroke.h"
 
 namespace pcednet::annotate {
@@ -19,8 +20,8 @@ class Labels {
   explicit Labels(std::size_t points) : classes_(points, kUnlabelled) {}
 
   const std::vector<std::uint8_t>& classes() const { return classes_; }
-  std::array<std::size_t, 3> counts() const { return counts_; }
-  std::size_t painted() const { return counts_[0] + counts_[1] + counts_[2]; }
+  std::array<std::size_t, kMostClasses> counts() const { return counts_; }
+  std::size_t painted() const;
   std::size_t undo_steps() const { return done_.size(); }
   std::size_t redo_steps() const { return undone_.size(); }
 
@@ -46,7 +47,7 @@ class Labels {
   void set(std::uint32_t point, std::uint8_t edge_class);
 
   std::vector<std::uint8_t> classes_;
-  std::array<std::size_t, 3> counts_ = {};
+  std::array<std::size_t, kMostClasses> counts_ = {};
   std::vector<Step> done_, undone_;
 };
 

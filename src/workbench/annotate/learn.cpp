@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <set>
 
 #include "pcednet/core/error.h"
 #include "pcednet/core/stopwatch.h"
@@ -18,9 +19,6 @@ constexpr int kEpochs = 20;
 /// However much is painted, a training takes no longer than this many samples a round.
 constexpr std::size_t kMostPerEpoch = 1 << 15;
 
-/// The bias of an output that no input can make up for.
-constexpr float kNever = -1e4f;
-
 detect::Samples painted_samples(const Subject& subject, std::span<const std::uint8_t> labels) {
   detect::Samples samples{.descriptor = subject.clouds.front().described.descriptor,
                           .clouds = subject.clouds.size()};
@@ -28,7 +26,7 @@ detect::Samples painted_samples(const Subject& subject, std::span<const std::uin
   const Rows rows = described_rows(subject);
   for (std::size_t row = 0; row < rows.points.size(); ++row) {
     const std::uint8_t label = labels[rows.points[row]];
-    if (label > kSharpEdge) continue;
+    if (label >= subject.table.size()) continue;
     samples.labels.push_back(label);
     samples.values.resize(samples.values.size() + rows.width);
     rows.read(row, &*samples.values.end() - rows.width);
@@ -52,23 +50,24 @@ int classes_to_learn(std::span<const std::uint8_t> labels, const Settings& setti
   return settings.classes == 3 && smooth ? 3 : 2;
 }
 
-void check_can_learn(std::span<const std::uint8_t> labels, const Settings& settings) {
-  if (settings.start == kRandomStart) {
+void check_can_learn(std::span<const std::uint8_t> labels, const Settings& settings,
+                     const ClassTable& table) {
+  if (settings.start == kRandomStart && !has_own_classes(table)) {
     classes_to_learn(labels, settings);
-  } else if (std::none_of(labels.begin(), labels.end(), [](auto c) { return c <= kSharpEdge; })) {
-    throw Error(ErrorKind::kInsufficient, "paint some points first");
+    return;
   }
+  std::set<std::uint8_t> painted;
+  for (const std::uint8_t label : labels) {
+    if (label < table.size()) painted.insert(label);
+  }
+  if (settings.start == kRandomStart && painted.size() < 2) {
+    throw Error(ErrorKind::kInsufficient, "paint points of two classes first");
+  }
+  if (painted.empty()) throw Error(ErrorKind::kInsufficient, "paint some points first");
 }
 
 gls::ScaleSpaceOptions descriptor_of(const detect::EdgeModel* start) {
   return start ? start->descriptor : gls::ScaleSpaceOptions{};
-}
-
-detect::EdgeModel with_classes(detect::EdgeModel model, int classes) {
-  if (classes == 3 || model.classes.size() != 3) return model;
-  auto& network = (model.context ? *model.context : model.network).network;
-  network.parameters[nn::make_plan(network.architecture).layers.back().bias + kSmoothEdge] = kNever;
-  return model;
 }
 
 int epochs_of(const Start* start) {
@@ -80,19 +79,26 @@ Adapted learn(const std::string& name, const Subject& subject, std::span<const s
               const Settings& settings, const Start* start,
               const std::function<void(const nn::EpochReport&)>& on_epoch,
               const Progress* progress) {
-  if (start) {
-    std::vector<std::uint8_t> wanted(labels.begin(), labels.end());
-    if (settings.classes == 2) std::replace(wanted.begin(), wanted.end(), kSmoothEdge, kNonEdge);
-    return adapt(name, *start, subject, wanted, settings.seed, on_epoch, progress);
+  const ClassTable& table = subject.table;
+  const bool own = has_own_classes(table);
+  std::vector<std::uint8_t> wanted(labels.begin(), labels.end());
+  if (settings.classes == 2 && has_edges(table) && (start || own)) {
+    std::replace(wanted.begin(), wanted.end(), kSmoothEdge, kNonEdge);
   }
+  if (start) return adapt(name, *start, subject, wanted, settings.seed, on_epoch, progress);
   detect::TrainOptions options;
-  options.architecture.classes = classes_to_learn(labels, settings);
+  options.table = table;
+  if (own) {
+    check_can_learn(wanted, settings, table);
+  } else {
+    options.architecture.classes = classes_to_learn(labels, settings);
+  }
   options.training.seed = settings.seed;
   options.training.epochs = kEpochs;
   options.training.most_per_epoch = kMostPerEpoch;
   Adapted learnt;
   auto trained = detect::train(
-      name, painted_samples(subject, labels), options,
+      name, painted_samples(subject, wanted), options,
       [&](const nn::EpochReport& report) {
         learnt.loss = report.training_loss;
         if (on_epoch) on_epoch(report);
@@ -148,9 +154,10 @@ detect::TrainedModel learn_project(
   std::optional<detect::EdgeModel> model;
   if (settings.start != kRandomStart) {
     model = with_classes(load_start(settings.start), settings.classes);
+    check_start(*model, settings.start, end.classes.table);
   }
   std::vector<ProjectCloud> all(clouds);
-  Subject subject;
+  Subject subject{.clouds = {}, .table = end.classes.table};
   for (std::size_t k = 0; k < clouds; ++k) {
     all[k].cloud = read_input(project.inputs[k], inputs[k]);
     all[k].prepared = detect::prepare(all[k].cloud, {}, progress);

@@ -14,8 +14,8 @@
 
 namespace pcednet::annotate {
 
-/// Points by class that can be painted: kNonEdge, kSmoothEdge, kSharpEdge.
-using Counts = std::array<std::size_t, 3>;
+/// Painted points by class, see counts_of().
+using Counts = std::vector<std::size_t>;
 
 /// The outcome of a stroke, an undo or a redo.
 struct Painted {
@@ -48,6 +48,7 @@ struct Summary {
   std::string stage = {};                   ///< of loading and training
   std::shared_ptr<const Scene> scene = {};  ///< null while loading
   Counts counts = {};
+  ProjectClasses classes = {};
   std::size_t undo = 0, redo = 0;
   Settings settings = {};
   std::vector<std::string> starts = {};  ///< that settings may name
@@ -69,8 +70,9 @@ struct PointView {
   std::uint32_t point = 0;
   Vec3 position = Vec3::Zero(), normal = Vec3::Zero();
   std::uint8_t label = kUnlabelled, prediction = kUnlabelled;
-  std::optional<std::array<float, 3>> probabilities = {};  ///< by class
-  double distance = 0;                                     ///< from the eye
+  std::optional<std::array<float, 3>> probabilities = {};  ///< by edge class
+  std::optional<float> p_class = {};  ///< of the prediction, where there are own classes
+  double distance = 0;                ///< from the eye
 };
 
 /// The lines and the scene that they are in.
@@ -94,12 +96,16 @@ struct EpochDone {
 };
 struct Predicted {
   int prediction_version = 0, run = 0;
-  std::array<std::size_t, 4> counts = {};  ///< points by class
+  std::vector<std::size_t> counts = {};  ///< points by class
   RunFacts facts = {};
 };
 struct Judged {
   int run = 0;
   HeldOut held_out = {};
+};
+struct ClassesChanged {
+  ProjectClasses classes = {};
+  Counts counts = {};
 };
 struct LinesChanged {
   int version = 0;
@@ -113,6 +119,6 @@ struct FileSaved {
   std::uintmax_t bytes = 0;
 };
 using Event = std::variant<StageProgress, Ready, Problem, EpochDone, Painted, Predicted, Judged,
-                           LinesChanged, LinesDecided, WriterChanged, FileSaved>;
+                           ClassesChanged, LinesChanged, LinesDecided, WriterChanged, FileSaved>;
 
 }  // namespace pcednet::annotate

@@ -69,8 +69,11 @@ int Painting::shown_run() const {
 }
 
 bool Painting::is_trained() const {
-  return !records_.empty() && (records_.back().kind == Record::Kind::kRun ||
-                               records_.back().kind == Record::Kind::kRestore);
+  const auto last = std::find_if(records_.rbegin(), records_.rend(), [](const Record& record) {
+    return record.kind != Record::Kind::kClasses;  // names and colours are not learnt
+  });
+  return last != records_.rend() &&
+         (last->kind == Record::Kind::kRun || last->kind == Record::Kind::kRestore);
 }
 
 }  // namespace pcednet::annotate

@@ -28,6 +28,7 @@ class Painting {
 
   const Labels& labels() const { return now_.labels; }
   const Settings& settings() const { return now_.settings; }
+  const ProjectClasses& classes() const { return now_.classes; }
   const std::vector<Record>& records() const { return records_; }
   const Replayed& now() const { return now_; }
 

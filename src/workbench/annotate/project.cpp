@@ -112,6 +112,31 @@ RunRecord run_of(const Json& json) {
   return run;
 }
 
+Json json_of(const ProjectClasses& classes) {
+  Json list = Json::array();
+  for (std::size_t id = 0; id < classes.table.size(); ++id) {
+    const PointClass& one = classes.table[id];
+    list.push_back({{"name", one.name}, {"colour", text_of(one.colour)}});
+    if (classes.removed.contains(static_cast<std::uint8_t>(id))) list.back()["removed"] = true;
+  }
+  return list;
+}
+
+ProjectClasses classes_in(const Json& list) {
+  ProjectClasses classes{.table = {}};
+  if (!list.is_array() || list.size() > kMostClasses) check_classes(ClassTable(kMostClasses + 1));
+  for (const Json& json : list) {
+    const auto colour = colour_of(json.at("colour").get<std::string>());
+    if (!colour) throw Error(ErrorKind::kUsage, "classes: a colour is #rrggbb");
+    if (json.value("removed", false)) {
+      classes.removed.insert(static_cast<std::uint8_t>(classes.table.size()));
+    }
+    classes.table.push_back({json.at("name").get<std::string>(), *colour});
+  }
+  check_classes(classes.table);
+  return classes;
+}
+
 Json json_of(const Record& record) {
   switch (record.kind) {
     case Kind::kStroke:
@@ -123,6 +148,8 @@ Json json_of(const Record& record) {
       return {{"redo", true}};
     case Kind::kSettings:
       return {{"settings", json_of(record.settings)}};
+    case Kind::kClasses:
+      return {{"table", json_of(record.classes)}};
     case Kind::kRun:
       return json_of(record.run);
     case Kind::kRestore:
@@ -134,15 +161,19 @@ Json json_of(const Record& record) {
 Record record_of(const Json& json, std::size_t points) {
   if (json.contains("stroke")) {
     const int edge_class = json.at("class").get<int>();
-    if ((edge_class < kNonEdge || edge_class > kSharpEdge) && edge_class != kUnlabelled) {
-      refuse("a stroke of no class");
-    }
+    const bool is_class = edge_class >= 0 && edge_class < static_cast<int>(kMostClasses);
+    if (!is_class && edge_class != kUnlabelled) refuse("a stroke of no class");
     return {.id = json.at("stroke").get<std::string>(),
             .edge_class = static_cast<std::uint8_t>(edge_class),
             .points = points_of(json.at("points"), points)};
   }
   if (json.contains("undo")) return {.kind = Kind::kUndo};
   if (json.contains("redo")) return {.kind = Kind::kRedo};
+  if (json.contains("table")) {
+    Record record{.kind = Kind::kClasses};
+    record.classes = classes_in(json.at("table"));
+    return record;
+  }
   if (json.contains("run")) return {.kind = Kind::kRun, .run = run_of(json)};
   if (json.contains("restore")) {
     return {.kind = Kind::kRestore, .run = {.number = json.at("restore").get<int>()}};
@@ -241,6 +272,18 @@ std::string to_line(const Settings& settings) {
   return json_of(settings).dump();
 }
 
+std::string to_line(const ProjectClasses& classes) {
+  return json_of(classes).dump();
+}
+
+ProjectClasses parse_classes_change(std::string_view text) {
+  try {
+    return classes_in(Json::parse(text).at("classes"));
+  } catch (const Json::exception& error) {
+    throw Error(ErrorKind::kUsage, fmt::format("classes: {}", error.what()));
+  }
+}
+
 SettingsChange parse_settings_change(std::string_view text) {
   try {
     return settings_change_of(Json::parse(text));
@@ -295,6 +338,10 @@ void write_project(const std::filesystem::path& path, const Project& project, Ov
 std::span<const std::uint32_t> replay(const Record& record, Replayed& now) {
   switch (record.kind) {
     case Kind::kStroke:
+      if (!now.classes.may_paint(record.edge_class) && record.edge_class != kUnlabelled) {
+        refuse(fmt::format("a stroke of class {}, which the project has not", record.edge_class));
+      }
+      if (record.edge_class != kUnlabelled) now.ever_painted.insert(record.edge_class);
       return now.labels.paint(record.edge_class, record.points);
     case Kind::kUndo:
       return now.labels.undo();
@@ -302,6 +349,9 @@ std::span<const std::uint32_t> replay(const Record& record, Replayed& now) {
       return now.labels.redo();
     case Kind::kSettings:
       now.settings = record.settings;
+      return {};
+    case Kind::kClasses:
+      now.classes = record.classes;
       return {};
     case Kind::kRun:
       now.run = now.runs[record.run.number] = record.run;

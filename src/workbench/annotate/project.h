@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "pcednet/core/output_file.h"
+#include "workbench/annotate/classes.h"
 #include "workbench/annotate/labels.h"
 
 namespace pcednet::annotate {
@@ -56,14 +57,21 @@ struct RunRecord {
 /// One thing that happened. A stroke is kept as the points that it changed, so that replaying it
 /// needs neither the view nor the prediction of the moment.
 struct Record {
-  enum class Kind { kStroke, kUndo, kRedo, kSettings, kRun, kRestore };
+  enum class Kind { kStroke, kUndo, kRedo, kSettings, kClasses, kRun, kRestore };
   Kind kind = Kind::kStroke;
   std::string id = {};  ///< of a stroke
   std::uint8_t edge_class = kUnlabelled;
   std::vector<std::uint32_t> points = {};  ///< ascending
   Settings settings = {};
+  ProjectClasses classes = {};
   RunRecord run = {};  ///< of kRestore the number alone
 };
+
+/// A project's classes as a record has them.
+std::string to_line(const ProjectClasses& classes);
+
+/// Reads `{"classes": [...]}` of the page. Throws Error(kUsage) that says what is wrong.
+ProjectClasses parse_classes_change(std::string_view json);
 
 /// The input that records are about.
 struct InputIdentity {
@@ -110,8 +118,10 @@ void write_project(const std::filesystem::path& path, const Project& project, Ov
 struct Replayed {
   Labels labels;
   Settings settings = {};
-  std::map<int, RunRecord> runs = {};  ///< all, by their numbers
-  std::optional<RunRecord> run = {};   ///< the one that was shown last
+  ProjectClasses classes = {};
+  std::set<std::uint8_t> ever_painted = {};  ///< classes of strokes, those taken back too
+  std::map<int, RunRecord> runs = {};        ///< all, by their numbers
+  std::optional<RunRecord> run = {};         ///< the one that was shown last
 };
 Replayed replay(std::span<const Record> records, std::size_t points);
 

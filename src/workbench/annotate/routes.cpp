@@ -208,6 +208,11 @@ Response change_settings(const Call& call) {
   return json_response(to_line(call.session.change_settings(change)));
 }
 
+Response change_classes(const Call& call) {
+  return json_response(
+      to_json(call.session.change_classes(parse_classes_change(call.request.body))));
+}
+
 Response find_lines(const Call& call) {
   call.session.find_lines(parse_cloud(call.request.body));
   return json_response("{}");
@@ -273,6 +278,7 @@ constexpr Route kRoutes[] = {
     {"POST", "/api/undo", undo, true},
     {"POST", "/api/redo", redo, true},
     {"POST", "/api/settings", change_settings, true},
+    {"POST", "/api/classes", change_classes, true},
     {"POST", "/api/save", save, true},
     {"POST", "/api/lines/find", find_lines, true},
     {"POST", "/api/lines/decide", decide, true},

@@ -55,6 +55,13 @@ void Runs::judge(int number, const HeldOut& held_out) {
   if (find(number)) position_of(runs_, number)->held_out = held_out;
 }
 
+void Runs::forget_start() {
+  if (!find(0)) return;
+  runs_.erase(runs_.begin());
+  if (shown_ == 0) shown_.reset();
+  ++version_;
+}
+
 void Runs::stop_awaiting() {
   if (!prediction(0)) shown_.reset();
 }

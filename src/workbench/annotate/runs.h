@@ -52,6 +52,9 @@ class Runs {
   /// Shows a run that was remembered and is being trained again.
   void await(int number) { shown_ = number; }
 
+  /// Forgets what a start found.
+  void forget_start();
+
   /// Shows no run rather than one that is not being trained again after all.
   void stop_awaiting();
 

@@ -9,6 +9,7 @@
 #include "pcednet/formats/format.h"
 #include "pcednet/io/drawing/drawing.h"
 #include "pcednet/io/las/las.h"
+#include "workbench/annotate/outputs.h"
 #include "workbench/annotate/painting.h"
 
 namespace pcednet::annotate {
@@ -91,16 +92,18 @@ void write_lines(const std::filesystem::path& path, std::span<const lines::Curve
 }
 
 PointCloud saved_cloud(const Scene& scene, const std::vector<std::uint8_t>& labels,
-                       const Prediction* prediction) {
+                       const ClassTable& table, const Prediction* prediction) {
   PointCloud cloud = scene.cloud;
   if (prediction) {
-    detect::add_result(cloud, scene.prepared, prediction->result, prediction->model);
+    detect::add_result(cloud, scene.prepared, prediction->result,
+                       with_names(prediction->model, table));
   } else {
     if (cloud.has_labels()) {
       set_attribute(cloud, make_attribute("scalar_input_label", cloud.labels));
     }
     cloud.labels = labels;
   }
+  if (has_own_classes(table)) detect::add_class_comments(cloud, table);
   set_attribute(cloud, make_attribute("scalar_painted_label", labels));
   return cloud;
 }

@@ -27,7 +27,8 @@ void write_lines(const std::filesystem::path& path, std::span<const lines::Curve
                  const PointCloud& cloud, Overwrite overwrite);
 
 /// The cloud as it is saved: with its painted labels and, if there is a prediction, with that.
+/// Own classes go into its comments.
 PointCloud saved_cloud(const Scene& scene, const std::vector<std::uint8_t>& labels,
-                       const Prediction* prediction);
+                       const ClassTable& table, const Prediction* prediction);
 
 }  // namespace pcednet::annotate

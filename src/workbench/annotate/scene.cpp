@@ -55,18 +55,24 @@ std::shared_ptr<const Prediction> make_prediction(const Scene& scene, detect::Ed
   prediction->result = std::move(found);
   prediction->model = std::move(model);
   auto& result = prediction->result;
-  for (const std::uint32_t i : scene.boundary) result.classes[i] = kBoundary;
+  const bool own = !result.p_class.empty(), edges = has_edges(prediction->model.table);
+  if (edges) {
+    for (const std::uint32_t i : scene.boundary) {
+      if (result.classes[i] <= kSharpEdge) result.classes[i] = kBoundary;
+    }
+  }
   result.counts = detect::count_classes(result.classes);
   prediction->confidence.resize(result.classes.size());
   for (std::size_t i = 0; i < result.classes.size(); ++i) {
     const float sharp = result.p_sharp[i], smooth = result.p_smooth[i];
     const float non_edge = 1.0f - sharp - smooth;
     const std::uint8_t c = result.classes[i];
-    prediction->confidence[i] = c == kSharpEdge    ? sharp
-                                : c == kSmoothEdge ? smooth
-                                : c == kNonEdge    ? non_edge
-                                : c == kBoundary   ? 1.0f
-                                                   : 0.0f;
+    prediction->confidence[i] = edges && c == kBoundary ? 1.0f
+                                : own                   ? result.p_class[i]
+                                : c == kSharpEdge       ? sharp
+                                : c == kSmoothEdge      ? smooth
+                                : c == kNonEdge         ? non_edge
+                                                        : 0.0f;
   }
   return prediction;
 }

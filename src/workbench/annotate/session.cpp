@@ -117,7 +117,7 @@ void Session::State::schedule() {
 /// An answer to a request that changes nothing.
 Painted Session::State::standing() const {
   const Labels& labels = painting->labels();
-  return {.counts = labels.counts(),
+  return {.counts = counts_of(labels.counts(), painting->classes()),
           .labels_version = labels_version,
           .undo = labels.undo_steps(),
           .redo = labels.redo_steps()};
@@ -145,6 +145,10 @@ Painted Session::paint(const Stroke& stroke) {
   const Lock lock(state_->mutex);
   State& s = *state_;
   s.check_cloud(stroke.cloud);
+  if (stroke.edge_class != kUnlabelled && !s.painting->classes().may_paint(stroke.edge_class)) {
+    throw Error(ErrorKind::kUsage,
+                fmt::format("stroke: {} is no class that this project paints", stroke.edge_class));
+  }
   if (const auto found = s.answers.find(stroke.id); found != s.answers.end()) return found->second;
   const auto prediction = s.runs.prediction(stroke.cloud);
   auto points =
@@ -182,7 +186,9 @@ Settings Session::change_settings(const SettingsChange& change) {
   State& s = *state_;
   s.check_ready();
   const Settings wanted = annotate::changed(s.painting->settings(), change);
-  if (wanted.start != kRandomStart) s.options.load_model(wanted.start);
+  if (wanted.start != kRandomStart) {
+    check_start(s.options.load_model(wanted.start), wanted.start, s.painting->classes().table);
+  }
   if (wanted != s.painting->settings()) {
     s.painting->add({.kind = Record::Kind::kSettings, .settings = wanted});
     s.schedule();
@@ -190,11 +196,42 @@ Settings Session::change_settings(const SettingsChange& change) {
   return wanted;
 }
 
+ClassesChanged Session::change_classes(const ProjectClasses& wanted) {
+  const Lock lock(state_->mutex);
+  State& s = *state_;
+  s.check_ready();
+  const bool had_edges = s.painting->classes().has_edges();
+  check_change(s.painting->classes(), wanted, s.painting->labels().counts(),
+               s.painting->now().ever_painted);
+  if (wanted != s.painting->classes()) {
+    s.painting->add({.kind = Record::Kind::kClasses, .classes = wanted});
+    if (had_edges != wanted.has_edges()) s.begin_anew();
+  }
+  ClassesChanged changed{.classes = wanted,
+                         .counts = counts_of(s.painting->labels().counts(), wanted)};
+  s.emit(changed);
+  return changed;
+}
+
+/// After a change to classes that the start does not know, or back: nothing is painted yet.
+void Session::State::begin_anew() {
+  interrupt();
+  Settings settings = painting->settings();
+  settings.start =
+      options.model.empty() || !begins_from(options.model) ? kRandomStart : options.model;
+  if (settings != painting->settings()) {
+    painting->add({.kind = Record::Kind::kSettings, .settings = settings});
+  }
+  runs.forget_start();
+  schedule();
+}
+
 void Session::train_now() {
   const Lock lock(state_->mutex);
   State& s = *state_;
   s.check_ready();
-  check_can_learn(s.painting->labels().classes(), s.painting->settings());
+  check_can_learn(s.painting->labels().classes(), s.painting->settings(),
+                  s.painting->classes().table);
   s.interrupt();
   s.orders.train_at = std::chrono::steady_clock::now();
   s.orders.asked_for = true;
@@ -242,15 +279,16 @@ std::uintmax_t Session::save(Saved what, const fs::path& path, Overwrite overwri
   }
   const auto prediction = s.runs.settled_prediction(cloud);
   const auto its = s.part(s.painting->labels().classes(), cloud);
+  const ProjectClasses classes = s.painting->classes();
   const std::vector<std::uint8_t> labels(its.begin(), its.end());
   lock.unlock();
   if (what == Saved::kModel) {
     if (!prediction)
       throw Error(ErrorKind::kInsufficient, "there is no model yet: paint and train");
-    detect::save_model(path, prediction->model, overwrite);
+    detect::save_model(path, with_names(prediction->model, classes.table), overwrite);
   } else {
     check_writable(path, overwrite);
-    formats::write_cloud(path, saved_cloud(*scene, labels, prediction.get()),
+    formats::write_cloud(path, saved_cloud(*scene, labels, classes.table, prediction.get()),
                          {.overwrite = overwrite});
   }
   return fs::file_size(path);

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,9 +19,10 @@ struct SessionOptions {
   std::filesystem::path project = {};               ///< empty: see default_project()
   std::filesystem::path cache_folder = {};          ///< empty: descriptions are not kept
   std::string model = {};                           ///< that a new project starts from; empty: none
-  bool is_model_wanted = false;          ///< an older project starts from it from now on, too
-  std::vector<std::string> starts = {};  ///< models that the page may start from, for its list
-  bool overwrite = false;                ///< saving replaces files without being asked to
+  bool is_model_wanted = false;            ///< an older project starts from it from now on, too
+  std::optional<ClassTable> classes = {};  ///< of a new project, or to add to an older one
+  std::vector<std::string> starts = {};    ///< models that the page may start from, for its list
+  bool overwrite = false;                  ///< saving replaces files without being asked to
   /// The model behind `model` or a name of Settings::start, which the page gives: throws, and opens
   /// no file, for any that it may not have.
   std::function<detect::EdgeModel(const std::string& name)> load_model = {};
@@ -70,6 +72,8 @@ class Session {
   Painted undo();
   Painted redo();
   Settings change_settings(const SettingsChange& change);
+  /// See check_change().
+  ClassesChanged change_classes(const ProjectClasses& wanted);
   void train_now();
   void cancel();
   std::vector<RunView> runs() const;

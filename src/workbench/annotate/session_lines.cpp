@@ -24,6 +24,10 @@ void Session::find_lines(std::size_t cloud) {
   if (!s.runs.settled_prediction(cloud)) {
     throw Error(ErrorKind::kInsufficient, "there is no prediction yet: paint and train");
   }
+  if (!s.painting->classes().has_edges()) {
+    throw Error(ErrorKind::kInsufficient,
+                "lines are of edges, which this project's classes are not");
+  }
   s.orders.find_lines = cloud;
   s.set_searching(true);
   s.changed.notify_all();
@@ -53,10 +57,14 @@ void Session::State::find_lines_once(std::size_t cloud, std::uint64_t mine) {
   try {
     const Progress reporter = progress(mine);
     const detect::PreparedCloud& prepared = scenes[cloud]->prepared;
+    std::vector<std::uint8_t> edges = prediction->result.classes;
+    for (std::uint8_t& id : edges) {
+      if (id > kBoundary && id != kUnlabelled) id = kNonEdge;
+    }
     auto curves = std::make_shared<std::vector<lines::Curve>>(
         lines::find_lines({.positions = prepared.positions,
                            .normals = prepared.normals,
-                           .classes = prediction->result.classes,
+                           .classes = edges,
                            .p_sharp = prediction->result.p_sharp,
                            .p_smooth = prediction->result.p_smooth,
                            .curve = prepared.curve},

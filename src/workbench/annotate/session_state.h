@@ -91,6 +91,7 @@ struct Session::State {
   Predictions predictions_of(const detect::EdgeModel& model, const detect::Classification& found,
                              std::uint64_t mine);
   std::span<const std::uint8_t> part(std::span<const std::uint8_t> all, std::size_t cloud) const;
+  ClassTable table() const;
   Inputs inputs() const;
   std::filesystem::path input_of(std::size_t cloud) const;
   gls::ScaleSpaceOptions first_descriptor() const;
@@ -109,7 +110,10 @@ struct Session::State {
   Painted standing() const;
   void interrupt();
   void schedule();
-  void choose_start();
+  void begin_anew();
+  void choose_classes();
+  void choose_start(bool is_new);
+  bool begins_from(const std::string& model) const;
   void remember_runs();
   std::vector<std::uint32_t> points_of(const std::vector<std::size_t>& nodes,
                                        std::size_t cloud) const;

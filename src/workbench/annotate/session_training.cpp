@@ -29,6 +29,7 @@ std::shared_ptr<const Start> Session::State::start_of(const Settings& settings, 
     return start;
   }
   detect::EdgeModel model = with_classes(options.load_model(settings.start), settings.classes);
+  check_start(model, settings.start, table());
   const auto rows = descriptions(model.descriptor, clouds, mine);
   start = std::make_shared<const Start>(make_start(std::move(model), subject_of(rows)));
   start_name = settings.start;
@@ -38,11 +39,16 @@ std::shared_ptr<const Start> Session::State::start_of(const Settings& settings, 
 }
 
 Subject Session::State::subject_of(std::span<const std::shared_ptr<const Described>> rows) const {
-  Subject subject;
+  Subject subject{.clouds = {}, .table = table()};
   for (std::size_t k = 0; k < rows.size(); ++k) {
     subject.clouds.push_back({*rows[k], scenes[k]->cloud.positions, scenes[k]->prepared.curve});
   }
   return subject;
+}
+
+ClassTable Session::State::table() const {
+  const Lock lock(mutex);
+  return painting->classes().table;
 }
 
 /// What `model` predicts: `found` in the first clouds, all that it says of the others.
@@ -108,7 +114,7 @@ void Session::State::train_once(std::uint64_t mine) {
     run.record.facts.painted = painting->labels().painted();
   }
   try {
-    check_can_learn(painted_classes, run.record.settings);
+    check_can_learn(painted_classes, run.record.settings, table());
   } catch (const Error&) {
     if (asked) throw;
     // Not yet: the user is still painting. The start has an answer even to nothing.
@@ -210,10 +216,11 @@ void Session::State::show_start(const Settings& settings, std::uint64_t mine) {
 
 void Session::State::show(Run run) {
   Predicted predicted{.run = run.record.number, .facts = run.record.facts};
+  predicted.counts.resize(painting->classes().table.size());
   for (const auto& prediction : run.predictions) {
-    const auto& counts = prediction->result.counts;
-    const std::array its = {counts.non_edge, counts.smooth, counts.sharp, counts.boundary};
-    for (std::size_t c = 0; c < its.size(); ++c) predicted.counts[c] += its[c];
+    for (const std::uint8_t id : prediction->result.classes) {
+      if (id < predicted.counts.size()) ++predicted.counts[id];
+    }
   }
   orders.judge = run.record.number > 0 && !run.held_out;
   runs.show(std::move(run));

@@ -30,7 +30,11 @@ Summary Session::summary(std::size_t cloud) const {
                               .points = labels.size(),
                               .painted = labels.size() - static_cast<std::size_t>(none)});
   }
-  summary.counts = s.painting->labels().counts();
+  summary.classes = s.painting->classes();
+  if (summary.classes.has_own()) {
+    std::erase_if(summary.starts, [&](const std::string& name) { return !s.begins_from(name); });
+  }
+  summary.counts = counts_of(s.painting->labels().counts(), summary.classes);
   summary.undo = s.painting->labels().undo_steps();
   summary.redo = s.painting->labels().redo_steps();
   summary.settings = s.painting->settings();
@@ -148,7 +152,11 @@ PointView Session::pick(const Vec3& local_origin, const Vec3& direction, double 
     const float sharp = prediction->result.p_sharp[point];
     const float smooth = prediction->result.p_smooth[point];
     view.prediction = prediction->result.classes[point];
-    view.probabilities = {1.0f - sharp - smooth, smooth, sharp};
+    if (prediction->result.p_class.empty()) {
+      view.probabilities = {1.0f - sharp - smooth, smooth, sharp};
+    } else {
+      view.p_class = prediction->result.p_class[point];
+    }
   }
   return view;
 }

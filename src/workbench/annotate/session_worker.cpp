@@ -1,6 +1,7 @@
 #include <utility>
 
 #include "pcednet/core/error.h"
+#include "workbench/annotate/outputs.h"
 #include "workbench/annotate/session_state.h"
 
 namespace pcednet::annotate {
@@ -140,13 +141,37 @@ gls::ScaleSpaceOptions Session::State::first_descriptor() const {
 
 /// A new project starts from the model of the options; that of an older one is replaced only if the
 /// user says so.
-void Session::State::choose_start() {
-  const bool is_new = painting->records().empty();
+void Session::State::choose_start(bool is_new) {
   if (!is_new && !options.is_model_wanted) return;
   Settings wanted = painting->settings();
   wanted.start = options.model.empty() ? kRandomStart : options.model;
+  if (!begins_from(wanted.start)) {
+    if (options.is_model_wanted) {
+      check_start(options.load_model(wanted.start), wanted.start, painting->classes().table);
+    }
+    wanted.start = kRandomStart;
+  }
   if (wanted == painting->settings()) return;
   painting->add({.kind = Record::Kind::kSettings, .settings = wanted});
+}
+
+/// Whether training may start from that model, or from nothing.
+bool Session::State::begins_from(const std::string& model) const {
+  return model == kRandomStart || can_start(options.load_model(model), painting->classes().table);
+}
+
+/// A project has the classes that the user names, a new one otherwise those of its model.
+void Session::State::choose_classes() {
+  const ProjectClasses& now = painting->classes();
+  ProjectClasses wanted = now;
+  if (options.classes) {
+    wanted = wanted_classes(now, *options.classes);
+  } else if (painting->records().empty() && !options.model.empty()) {
+    wanted = {.table = options.load_model(options.model).table};
+  }
+  if (wanted == now) return;
+  check_change(now, wanted, painting->labels().counts(), painting->now().ever_painted);
+  painting->add({.kind = Record::Kind::kClasses, .classes = wanted});
 }
 
 void Session::State::open_project() {
@@ -159,7 +184,9 @@ void Session::State::open_project() {
     Painted& answer = answers[record.id] = standing();
     answer.changed = record.points.size();
   }
-  choose_start();
+  const bool is_new = painting->records().empty();
+  choose_classes();
+  choose_start(is_new);
   remember_runs();
   loading.is_accepted = true;
 }

@@ -18,7 +18,7 @@ struct Stroke {
   std::string id = {};  ///< the window's own name for it
   Tool tool = Tool::kBrush;
   std::size_t cloud = 0;
-  std::uint8_t edge_class = kUnlabelled;  ///< EdgeClass; kUnlabelled erases
+  std::uint8_t edge_class = kUnlabelled;  ///< of the project's classes; kUnlabelled erases
   bool protect = false;                   ///< points that have a label keep it
   std::vector<std::uint8_t> hidden = {};  ///< points of these classes are not painted
   std::optional<BoundingBox> clip = {};   ///< only points within it are painted

@@ -27,6 +27,7 @@ detect::Classification joined(std::vector<detect::Classification> found) {
     append(all.classes, one.classes);
     append(all.p_sharp, one.p_sharp);
     append(all.p_smooth, one.p_smooth);
+    append(all.p_class, one.p_class);
   }
   all.counts = detect::count_classes(all.classes);
   return all;
@@ -43,6 +44,7 @@ detect::Classification part_of(const detect::Classification& found, std::size_t 
   part.classes = cut(found.classes);
   part.p_sharp = cut(found.p_sharp);
   part.p_smooth = cut(found.p_smooth);
+  if (!found.p_class.empty()) part.p_class = cut(found.p_class);
   part.counts = detect::count_classes(part.classes);
   return part;
 }

@@ -18,9 +18,10 @@ struct SubjectCloud {
 };
 
 /// Clouds to learn from together, all described in the same way. Points are numbered through one
-/// cloud after the other; so are labels and what is found.
+/// cloud after the other; so are labels and what is found. Labels are numbers of `table`.
 struct Subject {
   std::vector<SubjectCloud> clouds;
+  ClassTable table = edge_classes();
 };
 
 /// A number per cloud: that of its first point.

@@ -62,7 +62,8 @@ void write_preview(const std::filesystem::path& png, const PointCloud& cloud,
   check(png, cloud, classes, options);
   OutputFile file(png, options.overwrite);
   UnitBox box;
-  const std::vector<Surfel> surfels = make_surfels(cloud, classes, kMostSurfels, &box);
+  const std::vector<Surfel> surfels =
+      make_surfels(cloud, classes, kMostSurfels, &box, options.table);
   if (surfels.empty()) {
     throw Error(ErrorKind::kInsufficient,
                 fmt::format("{}: nothing to draw: the cloud has no finite point", png.string()));

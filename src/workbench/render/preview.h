@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 
+#include "pcednet/cloud/class_table.h"
 #include "pcednet/cloud/point_cloud.h"
 #include "pcednet/core/output_file.h"
 #include "pcednet/core/vec3.h"
@@ -19,13 +20,13 @@ struct PreviewOptions {
   /// best_direction().
   std::optional<Vec3> view_direction = std::nullopt;
   Overwrite overwrite = Overwrite::kNo;
+  ClassTable table = edge_classes();  ///< what classes are numbers of, and their colours
 };
 
 /// Writes a shaded picture of the cloud as a PNG.
 ///
-/// `classes` holds one EdgeClass per point, drawn white, yellow, dark red and blue (other values
-/// grey).
-/// If it is empty, points have the colours of the cloud, or white if it has none. Points that are
+/// `classes` holds one class per point, drawn in its colour (values that are none grey); an
+/// EdgeClass white, yellow, dark red or blue. If it is empty, points have the colours of the cloud, or white if it has none. Points that are
 /// not finite, far outliers, and strays (see make_surfels()) are skipped. Of more than four million
 /// points every n-th is drawn. `curves`, in the place of the cloud, are drawn over it: see
 /// draw_curves(). The picture does not depend on the position of the cloud nor on the number of

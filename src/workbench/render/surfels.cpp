@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "pcednet/cloud/bounding_box.h"
-#include "pcednet/cloud/edge_class.h"
 #include "pcednet/core/parallel.h"
 #include "pcednet/spatial/curve_order.h"
 #include "workbench/render/near_points.h"
@@ -97,8 +96,8 @@ bool usable(const Vec3& normal) {
   return std::abs(normal.squaredNorm() - 1.0) < 0.5;
 }
 
-Rgb class_colour(std::uint8_t edge_class) {
-  return edge_class < kEdgeClasses.size() ? kEdgeClasses[edge_class].colour : kUnlabelledColour;
+Rgb class_colour(std::uint8_t id, const ClassTable& table) {
+  return id < table.size() ? table[id].colour : kUnlabelledColour;
 }
 
 /// The radius that closes the surface around a point.
@@ -183,7 +182,7 @@ UnitBox fill_unit_box(std::vector<Surfel>& surfels) {
 }  // namespace
 
 std::vector<Surfel> make_surfels(const PointCloud& cloud, std::span<const std::uint8_t> classes,
-                                 std::size_t max_count, UnitBox* box) {
+                                 std::size_t max_count, UnitBox* box, const ClassTable& table) {
   Points points = finite_points(cloud, max_count);
   if (points.positions.empty()) return {};
   remove_outliers(points);
@@ -191,6 +190,7 @@ std::vector<Surfel> make_surfels(const PointCloud& cloud, std::span<const std::u
   const UnitBox all = move_into_unit_box(points.positions);
   const std::vector<NearPoints> near = near_points(points.positions);
 
+  const bool edges = !classes.empty() && has_edges(table);
   std::vector<Surfel> surfels(points.positions.size());
   parallel_blocks(surfels.size(), kBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
@@ -201,11 +201,10 @@ std::vector<Surfel> make_surfels(const PointCloud& cloud, std::span<const std::u
       surfel.normal = cloud.has_normals() && usable(cloud.normals[source])
                           ? Vector3f(cloud.normals[source].normalized().cast<float>())
                           : fitted_normal(points.positions, i, near[i]);
-      surfel.colour = !classes.empty()         ? class_colour(classes[source])
+      surfel.colour = !classes.empty()         ? class_colour(classes[source], table)
                       : !cloud.colours.empty() ? cloud.colours[source]
                                                : kEdgeClasses[kNonEdge].colour;
-      surfel.edge =
-          !classes.empty() && classes[source] != kNonEdge && classes[source] < kEdgeClasses.size();
+      surfel.edge = edges && classes[source] != kNonEdge && classes[source] < kEdgeClasses.size();
     }
   });
   smooth(surfels, near);

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "pcednet/cloud/class_table.h"
 #include "pcednet/cloud/point_cloud.h"
 
 namespace pcednet::render {
@@ -34,8 +35,10 @@ struct UnitBox {
 /// The radius follows the local density. If the density is even except at few points, these are
 /// strays: noise that would hide the rest. Points without a normal get one fitted to their
 /// neighbours. `classes` as in write_preview(). Of more than `max_count` points every n-th is
-/// taken. `box`, if given, becomes the place of the result in the cloud.
+/// taken. `box`, if given, becomes the place of the result in the cloud. `table` is what classes
+/// are numbers of.
 std::vector<Surfel> make_surfels(const PointCloud& cloud, std::span<const std::uint8_t> classes,
-                                 std::size_t max_count, UnitBox* box = nullptr);
+                                 std::size_t max_count, UnitBox* box = nullptr,
+                                 const ClassTable& table = edge_classes());
 
 }  // namespace pcednet::render

@@ -37,7 +37,8 @@ std::string text_of(const nn::TrainOptions& options) {
 }  // namespace
 
 std::string text_of(const detect::TrainOptions& options) {
-  const auto& [descriptor, architecture, training, symmetry, teachers, context] = options;
+  const auto& [descriptor, architecture, table, training, symmetry, teachers, context] = options;
+  static_cast<void>(table);  // a study is of edge classes
   return fmt::format("{}, {}, {}, symmetry {}, teachers {}{}", gls::text_of(descriptor),
                      text_of(architecture), text_of(training), static_cast<int>(symmetry), teachers,
                      context ? ", context" : "");

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "pcednet/cloud/class_table.h"
+#include "pcednet/eval/scores.h"
+
+namespace pcednet::eval {
+
+/// How a prediction with any classes does, summed over clouds: every class against all others.
+struct ClassReport {
+  ClassTable table = {};
+  std::vector<ConfusionCounts> counts = {};  ///< by class
+  std::size_t clouds = 0, points = 0, right = 0;
+};
+
+/// Adds a cloud, of a class per point in both. A point whose truth is no class of the table is left
+/// out. Throws Error(kInsufficient) if the sizes differ.
+void add_cloud(std::span<const std::uint8_t> truth, std::span<const std::uint8_t> predicted,
+               ClassReport& report);
+
+/// The mean of the scores over the classes that the truth has (macro average).
+Scores mean_scores(const ClassReport& report);
+
+/// {"classes":[{"id","name","points","precision","recall","f1","iou"}],"mean":{...},"accuracy",
+/// "points","clouds"}, indented, with a final newline.
+std::string to_json(const ClassReport& report);
+
+/// A text table: a row per class, then their mean and the accuracy.
+std::string to_table(const ClassReport& report);
+
+}  // namespace pcednet::eval

@@ -1,0 +1,60 @@
+#include "workbench/annotate/classes.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "pcednet/core/error.h"
+
+namespace pcednet::annotate {
+namespace {
+
+[[noreturn]] void refuse(const std::string& why) {
+  throw Error(ErrorKind::kUsage, "classes: " + why);
+}
+
+}  // namespace
+
+std::vector<std::size_t> counts_of(std::span<const std::size_t> counts,
+                                   const ProjectClasses& classes) {
+  const std::size_t size = classes.has_own() ? classes.table.size() : std::size_t{kBoundary};
+  return {counts.begin(), counts.begin() + static_cast<std::ptrdiff_t>(size)};
+}
+
+void check_change(const ProjectClasses& now, const ProjectClasses& wanted,
+                  std::span<const std::size_t> counts, const std::set<std::uint8_t>& ever) {
+  check_classes(wanted.table);
+  for (const std::uint8_t id : wanted.removed) {
+    if (id >= wanted.table.size()) refuse("there is no such class to remove");
+    const std::string& name = wanted.table[id].name;
+    if (wanted.has_edges() && id <= kBoundary) refuse(name + " stays: edges go together");
+    if (counts[id] > 0) refuse(name + " is painted: erase its points before removing it");
+  }
+  if (ever.empty()) return;
+  if (now.has_edges() != wanted.has_edges() || wanted.table.size() < now.table.size()) {
+    refuse(
+        "after the first stroke they can be added to, renamed and removed; --project FILE "
+        "begins another project");
+  }
+  for (const std::uint8_t id : now.removed) {
+    const bool renamed = wanted.table[id].name != now.table[id].name;
+    if (renamed && ever.contains(id) && !wanted.removed.contains(id)) {
+      refuse(now.table[id].name + " was painted before: it can come back, but not as another");
+    }
+  }
+}
+
+ProjectClasses wanted_classes(const ProjectClasses& now, const ClassTable& asked) {
+  const auto same = [](const PointClass& a, const PointClass& b) { return a.name == b.name; };
+  const std::size_t known = now.table.size();
+  if (asked.size() < known ||
+      !std::equal(now.table.begin(), now.table.end(), asked.begin(), same)) {
+    return {.table = asked};
+  }
+  ProjectClasses wanted = now;
+  wanted.table.insert(wanted.table.end(), asked.begin() + static_cast<std::ptrdiff_t>(known),
+                      asked.end());
+  return wanted;
+}
+
+}  // namespace pcednet::annotate

@@ -1,0 +1,202 @@
+// Own classes in the browser. Environment as annotate_test.mjs; SCREENSHOT_CLASSES, if set, is where a picture goes, and
+// SCREENSHOT_EDITOR one of the dialogue.
+import assert from "node:assert/strict";
+import fs from "node:fs";
+import os from "node:os";
+import path from "node:path";
+import { after, before, test } from "node:test";
+
+import { readPly, roof, writeRoof } from "./annotate_cloud.mjs";
+import { launch, serve } from "./browser.mjs";
+
+const folder = fs.mkdtempSync(path.join(os.tmpdir(), "pcednet-classes-"));
+const input = path.join(folder, "roof.ply");
+const complaints = [];
+let browser, page, server;
+
+const settled = () =>
+  page.waitForFunction(
+    () => annotator.store.now.progress === null && annotator.stage.isSettled && !annotator.client.isBusy,
+  );
+const state = (name) => page.evaluate((key) => annotator.store.now[key], name);
+const rows = () => page.locator(".classes:not(.clouds) .name").allTextContents();
+const hasRows = (wanted) =>
+  page.waitForFunction(
+    (n) => document.querySelectorAll(".classes:not(.clouds) .name").length === n,
+    wanted,
+  );
+
+/** Paints along places of the roof, as the page's tools do. */
+async function stroke(id, centres, radius) {
+  const before = await state("undo");
+  await page.evaluate(
+    ([id, centres, radius]) => {
+      const { origin } = annotator.store.now.session;
+      annotator.client.paint({
+        id: crypto.randomUUID(),
+        tool: "brush",
+        class: id,
+        centres: centres.map((c) => c.map((x, axis) => x - origin[axis])),
+        radius,
+        protect: false,
+        hidden: [],
+        clip: null,
+      });
+    },
+    [id, centres, radius],
+  );
+  await page.waitForFunction((was) => annotator.store.now.undo > was, before);
+}
+
+before(async () => {
+  writeRoof(input, roof());
+  server = await serve([input]);
+  browser = await launch();
+  page = await browser.newPage({ viewport: { width: 1280, height: 800 } });
+  page.setDefaultTimeout(120_000);
+  page.on("pageerror", (e) => complaints.push(e.message));
+  await page.goto(server.address);
+  await settled();
+  await page.waitForFunction(() => annotator.store.now.runs.some((run) => run.current));
+});
+
+after(async () => {
+  await browser?.close();
+  server?.program.kill("SIGKILL");
+  fs.rmSync(folder, { recursive: true, force: true });
+});
+
+test("replaces the edge classes by own ones before the first stroke", async () => {
+  assert.deepEqual(await rows(), ["non-edge", "smooth edge", "sharp edge", "eraser"]);
+  await page.getByRole("button", { name: /Classes…/ }).click();
+  const dialog = page.getByRole("dialog", { name: "Classes" });
+  await dialog.waitFor();
+  await dialog.getByRole("checkbox").uncheck();
+  const names = dialog.getByRole("textbox");
+  assert.equal(await names.count(), 2, "two classes at least");
+  await names.nth(0).fill("ground");
+  await names.nth(1).fill("ground");
+  await dialog.getByRole("button", { name: "Use these classes" }).click();
+  await dialog.getByText("Ground is there twice").waitFor();
+  await names.nth(1).fill("side");
+  await dialog.getByRole("button", { name: "Add a class" }).click();
+  await names.nth(2).fill("ledge");
+  await dialog.getByRole("button", { name: "Add a class" }).click();
+  await dialog.getByRole("button", { name: "Remove" }).nth(3).click();
+  await dialog.locator("input[type=color]").nth(2).fill("#c83296");
+  if (process.env.SCREENSHOT_EDITOR) await page.screenshot({ path: process.env.SCREENSHOT_EDITOR });
+  await dialog.getByRole("button", { name: "Use these classes" }).click();
+  await page.waitForFunction(() => annotator.store.now.classes.length === 3 && !annotator.store.now.edges);
+  await hasRows(4);
+  assert.deepEqual(await rows(), ["ground", "side", "ledge", "eraser"]);
+});
+
+test("then begins with nothing and says where edges are needed", async () => {
+  await page.waitForFunction(
+    () => annotator.store.now.runs.length === 0 && annotator.store.now.settings.start === "random",
+  );
+  await settled();
+  assert.equal(await state("mode"), "labels");
+  await page.getByText("Shipped models know edges alone").waitFor();
+  await page.getByText("Lines are of edge classes, which this project does not have.").waitFor();
+  const options = await page.getByLabel("Start from").locator("option").allTextContents();
+  assert.deepEqual(options, ["nothing"]);
+  const modes = await page.getByLabel("Colour by").locator("option").allTextContents();
+  assert.ok(!modes.includes("probability of a sharp edge"));
+});
+
+test("paints them by their keys, trains, and shows their colours", async () => {
+  await page.keyboard.press("3");
+  assert.equal(await state("paintClass"), 2);
+  await page.keyboard.press("4");
+  assert.equal(await state("paintClass"), 2, "there is no fourth class");
+  await page.getByRole("checkbox", { name: "Train after each stroke" }).uncheck();
+  await stroke(
+    0,
+    [
+      [1.6, 0.7, 0.6],
+      [1.7, 0.4, 0.6],
+      [0.2, 0.5, 0.6],
+      [0.8, 0.7, 1.1],
+    ],
+    0.1,
+  );
+  await stroke(
+    1,
+    [
+      [1, 0, 0.3],
+      [1.6, 0, 0.3],
+      [0, 0.7, 0.3],
+      [0.7, 0.3, 0.85],
+    ],
+    0.1,
+  );
+  await stroke(
+    2,
+    [
+      [0.6, 0, 0.6],
+      [1, 0, 0.6],
+      [1.4, 0, 0.6],
+      [0, 0.6, 0.6],
+    ],
+    0.04,
+  );
+  const counts = await state("counts");
+  assert.ok(
+    counts.every((n) => n > 20),
+    `${counts}`,
+  );
+  await page.getByRole("button", { name: "Train now" }).click();
+  await page.waitForFunction(() => annotator.store.now.runs.some((run) => run.current && run.run === 1));
+  await page.waitForFunction(() => annotator.store.now.mode === "prediction");
+  await settled();
+  const shares = await page.evaluate(() => {
+    const said = annotator.stage.chunks.flatMap((c) => [...c.prediction]);
+    return [0, 1, 2].map((id) => said.filter((s) => s === id).length / said.length);
+  });
+  assert.ok(
+    shares[0] + shares[1] > 0.6 && shares[2] > 0.02 && shares[2] < 0.35,
+    `flat and upright need not differ, ledges do: ${shares}`,
+  );
+  const legend = await page.locator(".legend .entry").allTextContents();
+  assert.deepEqual(legend, ["ground", "side", "ledge", "no label"]);
+  if (process.env.SCREENSHOT_CLASSES) await page.screenshot({ path: process.env.SCREENSHOT_CLASSES });
+});
+
+test("renames, adds and removes what is not painted", async () => {
+  await page.keyboard.press("Shift+E");
+  const dialog = page.getByRole("dialog", { name: "Classes" });
+  assert.ok(await dialog.getByRole("checkbox").isDisabled(), "edges stay out");
+  assert.ok(await dialog.getByRole("button", { name: "Remove" }).first().isDisabled(), "it is painted");
+  await dialog.getByRole("textbox").nth(2).fill("rim");
+  await dialog.getByRole("button", { name: "Add a class" }).click();
+  await dialog.getByRole("textbox").nth(3).fill("pipe");
+  await dialog.getByRole("button", { name: "Use these classes" }).click();
+  await hasRows(5);
+  assert.deepEqual(await rows(), ["ground", "side", "rim", "pipe", "eraser"]);
+  assert.equal((await state("runs")).length, 1, "names need no training");
+  await page.keyboard.press("Shift+E");
+  await dialog.getByRole("button", { name: "Remove" }).nth(3).click();
+  await dialog.getByRole("button", { name: "Use these classes" }).click();
+  await hasRows(4);
+  // The eye of a class hides its points, and the keys say their names.
+  await page.keyboard.press("Shift+3");
+  assert.deepEqual(await page.evaluate(() => [...annotator.store.now.hidden]), [2]);
+  await page.keyboard.press("Shift+3");
+  await page.keyboard.press("?");
+  await page.getByText("paint rim").waitFor();
+  await page.keyboard.press("Escape");
+});
+
+test("saves the cloud with their names", async () => {
+  await page.getByRole("button", { name: "Save cloud" }).click();
+  await page.locator(".notice", { hasText: "roof_annotated.ply" }).waitFor();
+  const saved = path.join(folder, "roof_annotated.ply");
+  const head = fs.readFileSync(saved).subarray(0, 2000).toString("latin1");
+  assert.match(head, /comment pcednet class 2 #c83296 rim\n/);
+  const counts = await state("counts");
+  const painted = readPly(saved).column("scalar_painted_label");
+  assert.equal(painted.filter((label) => label === 2).length, counts[2]);
+});
+
+test("has no complaints", () => assert.deepEqual(complaints, []));
