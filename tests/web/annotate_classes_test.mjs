@@ -21,10 +21,7 @@ const settled = () =>
 const state = (name) => page.evaluate((key) => annotator.store.now[key], name);
 const rows = () => page.locator(".classes:not(.clouds) .name").allTextContents();
 const hasRows = (wanted) =>
-  page.waitForFunction(
-    (n) => document.querySelectorAll(".classes:not(.clouds) .name").length === n,
-    wanted,
-  );
+  page.waitForFunction((n) => document.querySelectorAll(".classes:not(.clouds) .name").length === n, wanted);
 
 /** Paints along places of the roof, as the page's tools do. */
 async function stroke(id, centres, radius) {
@@ -72,15 +69,15 @@ test("replaces the edge classes by own ones before the first stroke", async () =
   const dialog = page.getByRole("dialog", { name: "Classes" });
   await dialog.waitFor();
   await dialog.getByRole("checkbox").uncheck();
-  const names = dialog.getByRole("textbox");
+  const names = dialog.getByLabel("Name of the class");
   assert.equal(await names.count(), 2, "two classes at least");
-  await names.nth(0).fill("ground");
-  await names.nth(1).fill("ground");
+  await names.nth(0).fill("face");
+  await names.nth(1).fill("face");
   await dialog.getByRole("button", { name: "Use these classes" }).click();
-  await dialog.getByText("Ground is there twice").waitFor();
-  await names.nth(1).fill("side");
+  await dialog.getByText("Face is there twice").waitFor();
+  await names.nth(1).fill("ledge");
   await dialog.getByRole("button", { name: "Add a class" }).click();
-  await names.nth(2).fill("ledge");
+  await names.nth(2).fill("corner");
   await dialog.getByRole("button", { name: "Add a class" }).click();
   await dialog.getByRole("button", { name: "Remove" }).nth(3).click();
   await dialog.locator("input[type=color]").nth(2).fill("#c83296");
@@ -88,7 +85,7 @@ test("replaces the edge classes by own ones before the first stroke", async () =
   await dialog.getByRole("button", { name: "Use these classes" }).click();
   await page.waitForFunction(() => annotator.store.now.classes.length === 3 && !annotator.store.now.edges);
   await hasRows(4);
-  assert.deepEqual(await rows(), ["ground", "side", "ledge", "eraser"]);
+  assert.deepEqual(await rows(), ["face", "ledge", "corner", "eraser"]);
 });
 
 test("then begins with nothing and says where edges are needed", async () => {
@@ -111,35 +108,40 @@ test("paints them by their keys, trains, and shows their colours", async () => {
   await page.keyboard.press("4");
   assert.equal(await state("paintClass"), 2, "there is no fourth class");
   await page.getByRole("checkbox", { name: "Train after each stroke" }).uncheck();
+  const [left, right, front, back] = [0.1, 1.9, 0.1, 1.3]; // of the lower roof, beside its edges
   await stroke(
     0,
     [
-      [1.6, 0.7, 0.6],
-      [1.7, 0.4, 0.6],
-      [0.2, 0.5, 0.6],
-      [0.8, 0.7, 1.1],
+      [left, 0.5, 0.6],
+      [right, 0.5, 0.6],
+      [1, front, 0.6],
+      [1.6, back, 0.6],
+      [1, 0, 0.3],
+      [0, 0.7, 0.3],
     ],
-    0.1,
+    0.05,
   );
   await stroke(
     1,
-    [
-      [1, 0, 0.3],
-      [1.6, 0, 0.3],
-      [0, 0.7, 0.3],
-      [0.7, 0.3, 0.85],
-    ],
-    0.1,
-  );
-  await stroke(
-    2,
     [
       [0.6, 0, 0.6],
       [1, 0, 0.6],
       [1.4, 0, 0.6],
       [0, 0.6, 0.6],
+      [0.8, 0.3, 1.1],
+      [0.8, 0.3, 0.6],
     ],
     0.04,
+  );
+  await stroke(
+    2,
+    [
+      [0, 0, 0.6],
+      [2, 0, 0.6],
+      [0.4, 0.3, 1.1],
+      [1.2, 0.3, 1.1],
+    ],
+    0.05,
   );
   const counts = await state("counts");
   assert.ok(
@@ -154,12 +156,9 @@ test("paints them by their keys, trains, and shows their colours", async () => {
     const said = annotator.stage.chunks.flatMap((c) => [...c.prediction]);
     return [0, 1, 2].map((id) => said.filter((s) => s === id).length / said.length);
   });
-  assert.ok(
-    shares[0] + shares[1] > 0.6 && shares[2] > 0.02 && shares[2] < 0.35,
-    `flat and upright need not differ, ledges do: ${shares}`,
-  );
+  assert.ok(shares[0] > 0.5 && shares[1] > 0.03 && shares[2] > 0.001 && shares[2] < 0.1, `${shares}`);
   const legend = await page.locator(".legend .entry").allTextContents();
-  assert.deepEqual(legend, ["ground", "side", "ledge", "no label"]);
+  assert.deepEqual(legend, ["face", "ledge", "corner", "no label"]);
   if (process.env.SCREENSHOT_CLASSES) await page.screenshot({ path: process.env.SCREENSHOT_CLASSES });
 });
 
@@ -168,12 +167,12 @@ test("renames, adds and removes what is not painted", async () => {
   const dialog = page.getByRole("dialog", { name: "Classes" });
   assert.ok(await dialog.getByRole("checkbox").isDisabled(), "edges stay out");
   assert.ok(await dialog.getByRole("button", { name: "Remove" }).first().isDisabled(), "it is painted");
-  await dialog.getByRole("textbox").nth(2).fill("rim");
+  await dialog.getByLabel("Name of the class").nth(2).fill("tip");
   await dialog.getByRole("button", { name: "Add a class" }).click();
-  await dialog.getByRole("textbox").nth(3).fill("pipe");
+  await dialog.getByLabel("Name of the class").nth(3).fill("pipe");
   await dialog.getByRole("button", { name: "Use these classes" }).click();
   await hasRows(5);
-  assert.deepEqual(await rows(), ["ground", "side", "rim", "pipe", "eraser"]);
+  assert.deepEqual(await rows(), ["face", "ledge", "tip", "pipe", "eraser"]);
   assert.equal((await state("runs")).length, 1, "names need no training");
   await page.keyboard.press("Shift+E");
   await dialog.getByRole("button", { name: "Remove" }).nth(3).click();
@@ -184,7 +183,7 @@ test("renames, adds and removes what is not painted", async () => {
   assert.deepEqual(await page.evaluate(() => [...annotator.store.now.hidden]), [2]);
   await page.keyboard.press("Shift+3");
   await page.keyboard.press("?");
-  await page.getByText("paint rim").waitFor();
+  await page.getByText("paint tip").waitFor();
   await page.keyboard.press("Escape");
 });
 
@@ -193,7 +192,7 @@ test("saves the cloud with their names", async () => {
   await page.locator(".notice", { hasText: "roof_annotated.ply" }).waitFor();
   const saved = path.join(folder, "roof_annotated.ply");
   const head = fs.readFileSync(saved).subarray(0, 2000).toString("latin1");
-  assert.match(head, /comment pcednet class 2 #c83296 rim\n/);
+  assert.match(head, /comment pcednet class 2 #c83296 tip\n/);
   const counts = await state("counts");
   const painted = readPly(saved).column("scalar_painted_label");
   assert.equal(painted.filter((label) => label === 2).length, counts[2]);

@@ -110,8 +110,8 @@ export function editClassesDialog(state: State, save: (table: WantedClass[]) => 
       ),
     ),
   );
-  for (const { id, name, colour, count: painted } of ownClasses(state)) {
-    addRow({ id, name, colour: hexOf(colour) }, painted);
+  for (const { id, name, colour } of ownClasses(state)) {
+    addRow({ id, name, colour: hexOf(colour) }, state.counts[id]);
   }
   follow();
   dialog.addEventListener("close", () => dialog.remove());

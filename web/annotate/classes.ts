@@ -42,8 +42,8 @@ export const ownClasses = ({ classes, edges }: Pick<State, "classes" | "edges">)
   classes.filter(({ id, removed }) => !removed && (!edges || id >= EDGE_CLASSES));
 
 /** The classes that can be painted, in the order of their keys 1, 2, ... */
-export const paintable = ({ classes, edges }: Pick<State, "classes" | "edges">): ClassInfo[] =>
-  classes.filter(({ id, removed, count }) => (!removed || count > 0) && !(edges && id === BOUNDARY));
+export const paintable = ({ classes, edges, counts }: Pick<State, "classes" | "edges" | "counts">): ClassInfo[] =>
+  classes.filter(({ id, removed }) => (!removed || counts[id] > 0) && !(edges && id === BOUNDARY));
 
 /** Smooth edges cannot be told from the rest by a model of two classes. */
 export const isOff = (id: number, { edges, settings }: Pick<State, "edges" | "settings">): boolean =>
