@@ -126,6 +126,10 @@ test("on a phone the menu opens and leads to other pages", async () => {
   await tab.goto(address("tutorial.html"));
   assert.equal(await tab.locator("#nav").isVisible(), false);
   await tab.click("#menu");
+  assert.equal((await tab.locator("#nav").boundingBox()).y, 52, "below the head");
+  await tab.click("#menu");
+  assert.equal(await tab.locator("#nav").isVisible(), false);
+  await tab.click("#menu");
   if (process.env.SCREENSHOTS) await tab.screenshot({ path: path.join(process.env.SCREENSHOTS, "menu-390.png") });
   await tab.click("#nav a[href='gallery.html']");
   await tab.waitForURL(/gallery\.html/);
