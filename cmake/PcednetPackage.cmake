@@ -4,9 +4,10 @@
 set(folder ${PROJECT_SOURCE_DIR}/packaging)
 set(share ${CMAKE_INSTALL_DATADIR})
 set(made ${PROJECT_BINARY_DIR}/packaging)
-# Made by the program just built, so that they say what it does. Only packages need them.
+# Made by the program just built, so that they say what it does. Only packages need them; a program
+# for the thread sanitizer does not run as it is.
 find_package(Python3 COMPONENTS Interpreter)
-if(Python3_FOUND)
+if(Python3_FOUND AND CMAKE_BUILD_TYPE STREQUAL "Release")
   string(TIMESTAMP today "%Y-%m-%d" UTC)
   file(GLOB sources CONFIGURE_DEPENDS ${folder}/*.py ${PROJECT_SOURCE_DIR}/models/*.safetensors)
   add_custom_command(
