@@ -113,21 +113,27 @@ TiledCloud::TiledCloud(TiledRequest request, const detect::EdgeModel& model,
       plan_(plan_for(request_, model, sorted_.path(), progress)),
       reader_(tiles::open_chunks(request_.input)) {
   reader_->set_narrow_colours(plan_.inputs.front().narrow_colours);
-  if (request_.given) return;
+  if (request_.given && !plan_.normals.made) return;
   const std::size_t tiles = plan_.tiles.size();
   say(fmt::format("  {} tile{} of length {:g}, each with {:.4g} around it, of up to {}", tiles,
                   tiles == 1 ? "" : "s", plan_.grid.length(), plan_.buffer,
                   size_text(plan_.memory)));
   labels_.emplace(request_.output, plan_.normals.made);
-  counts_ = tiles::label_points(plan_, tiles::load_planned_model(plan_), *labels_, &progress);
+  if (request_.given) {
+    tiles::label_points(plan_, nullptr, *labels_, &progress);
+  } else {
+    const detect::EdgeModel planned = tiles::load_planned_model(plan_);
+    counts_ = tiles::label_points(plan_, &planned, *labels_, &progress);
+  }
 }
 
 void TiledCloud::each(const Visit& visit) const {
   std::size_t begin = 0;
   for (std::size_t p = 0; p < reader_->parts(); ++p) {
     PointCloud part = tiles::read_finished(*reader_, p);
-    const tiles::TileFindings findings =
-        labels_ ? labels_->get(begin, begin + part.size()) : request_.given(part);
+    tiles::TileFindings findings;
+    if (labels_) findings = labels_->get(begin, begin + part.size());
+    if (request_.given) findings.found = request_.given(part);
     begin += part.size();
     if (!visit(part, findings)) return;
   }

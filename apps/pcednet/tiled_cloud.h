@@ -54,11 +54,11 @@ struct TiledRequest {
   detect::PrepareOptions preparation;
   std::uint64_t memory = 0;  ///< for a tile
   /// What is known of a part's points already; empty: the model finds it.
-  std::function<tiles::TileFindings(const PointCloud& part)> given = {};
+  std::function<detect::Classification(const PointCloud& part)> given = {};
 };
 
-/// A cloud whose points are classified in the memory of one tile, then read part by part with what
-/// was found. What it keeps on the disk is gone with it.
+/// A cloud whose points get normals, if need be, and labels in the memory of one tile, then read
+/// part by part with what was found. What it keeps on the disk is gone with it.
 class TiledCloud {
  public:
   /// Does the work, and says what the tiles are. Throws what make_plan() and label_points() throw.

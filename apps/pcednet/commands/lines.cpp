@@ -140,25 +140,21 @@ void read_labelled(const LinesArguments& arguments, StageClock& clock, LabelledC
   labelled.p_smooth = std::move(classified.found.p_smooth);
 }
 
-/// The labels that a part of the cloud carries. Throws Error(kUsage) where its normals are missing:
-/// they belong to the work that is done in tiles.
-tiles::TileFindings given_findings(const LinesArguments& arguments, const PointCloud& part) {
-  tiles::TileFindings findings;
-  findings.found.classes = formats::labels_of(part, arguments.input);
-  findings.found.p_sharp = probabilities(part, "p_sharp");
-  findings.found.p_smooth = probabilities(part, "p_smooth");
-  if (findings.found.p_sharp.empty()) {  // as find_lines() takes classes alone
-    findings.found.p_smooth.clear();
-    for (const std::uint8_t its_class : findings.found.classes) {
+/// The labels that a part of the cloud carries.
+detect::Classification given_labels(const LinesArguments& arguments, const PointCloud& part) {
+  detect::Classification found;
+  found.classes = formats::labels_of(part, arguments.input);
+  found.p_sharp = probabilities(part, "p_sharp");
+  found.p_smooth = probabilities(part, "p_smooth");
+  if (found.p_sharp.empty()) {  // as find_lines() takes classes alone
+    found.p_smooth.clear();
+    for (const std::uint8_t its_class : found.classes) {
       const bool edge = its_class == kSharpEdge || its_class == kSmoothEdge;
-      findings.found.p_sharp.push_back(edge ? 1.0f : 0.0f);
+      found.p_sharp.push_back(edge ? 1.0f : 0.0f);
     }
   }
-  findings.found.p_smooth.resize(part.size());
-  if (part.has_normals()) return findings;
-  throw Error(ErrorKind::kUsage,
-              fmt::format("{}: has labels, but no normals: give --classify to find both in tiles",
-                          arguments.input));
+  found.p_smooth.resize(part.size());
+  return found;
 }
 
 /// The same for a cloud beyond memory: its points near edges.
@@ -171,7 +167,8 @@ void read_labelled_in_tiles(const LinesArguments& arguments, std::uint64_t memor
                        .memory = memory};
   const auto first = tiles::read_finished(*tiles::open_chunks(arguments.input), 0);
   if (!arguments.classify && !formats::labels_of(first, arguments.input).empty()) {
-    request.given = [&](const PointCloud& part) { return given_findings(arguments, part); };
+    request.preparation.keep_orientation = true;  // lines do not depend on signs
+    request.given = [&](const PointCloud& part) { return given_labels(arguments, part); };
   }
   const TiledCloud cloud(std::move(request), load_model(arguments.model), clock.progress());
   PointsNearEdges near = read_near_edges(cloud, memory_limit(arguments.memory), clock.progress());

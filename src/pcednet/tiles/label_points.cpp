@@ -73,7 +73,7 @@ TileFindings PointLabels::get(std::size_t begin, std::size_t end) const {
   return findings;
 }
 
-detect::ClassCounts label_points(const Plan& plan, const detect::EdgeModel& model,
+detect::ClassCounts label_points(const Plan& plan, const detect::EdgeModel* model,
                                  PointLabels& labels, const Progress* progress) {
   detect::ClassCounts counts;
   const Progress quiet = without_report(progress);

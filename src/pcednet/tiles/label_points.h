@@ -29,9 +29,10 @@ class PointLabels {
   ScratchFile file_;
 };
 
-/// Classifies all points tile after tile, in the memory of one, and counts what was found. Throws
-/// what read_tile() throws, and Error(kFailure) for a full disk.
-detect::ClassCounts label_points(const Plan& plan, const detect::EdgeModel& model,
+/// Classifies all points tile after tile, in the memory of one, and counts what was found; without
+/// a model only makes their normals. Throws what read_tile() throws, and Error(kFailure) for a full
+/// disk.
+detect::ClassCounts label_points(const Plan& plan, const detect::EdgeModel* model,
                                  PointLabels& labels, const Progress* progress = nullptr);
 
 }  // namespace pcednet::tiles

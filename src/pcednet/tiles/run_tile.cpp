@@ -79,7 +79,7 @@ void take_numbers(TileCloud& points) {
 
 }  // namespace
 
-TileFindings classify_tile(const Plan& plan, std::size_t tile, const detect::EdgeModel& model,
+TileFindings classify_tile(const Plan& plan, std::size_t tile, const detect::EdgeModel* model,
                            TileCloud& points, const Progress* progress) {
   TileFindings findings{.prepared = {}, .found = detect::nothing_found(points.core.size())};
   const auto is_finite = [](const Vec3& p) { return p.allFinite(); };
@@ -88,8 +88,8 @@ TileFindings classify_tile(const Plan& plan, std::size_t tile, const detect::Edg
     detect::PreparedCloud& prepared = findings.prepared;
     prepared = detect::prepare(points.all, {.decided = plan.normals}, progress);
     prepared.part = &part;
-    findings.found = detect::classify(prepared, model, progress);
-    if (plan.model.boundary) detect::mark_boundary(prepared, findings.found, progress);
+    if (model) findings.found = detect::classify(prepared, *model, progress);
+    if (model && plan.model.boundary) detect::mark_boundary(prepared, findings.found, progress);
     std::vector<Vec3> made = std::move(prepared.made);
     prepared = {};
     prepared.made = std::move(made);
@@ -142,7 +142,7 @@ void run_tile(const Plan& plan, std::size_t tile, const detect::EdgeModel& model
               const Progress* progress) {
   const std::filesystem::path& path = plan.tiles[tile].output;
   TileCloud points = read_tile(plan, tile, progress);
-  const TileFindings findings = classify_tile(plan, tile, model, points, progress);
+  const TileFindings findings = classify_tile(plan, tile, &model, points, progress);
   detect::add_result(points.core, findings.prepared, findings.found, model);
   io::PartOutline outline = io::outline_of(points.core);
   outline.is_las = !plan.las_steps.empty();

@@ -32,8 +32,9 @@ TileCloud read_tile(const Plan& plan, std::size_t tile, const Progress* progress
 /// The model of a plan, used as planned. Throws Error(kModelMismatch) if the file is another.
 detect::EdgeModel load_planned_model(const Plan& plan);
 
-/// Classifies the core of a tile. Leaves `points.all` empty.
-TileFindings classify_tile(const Plan& plan, std::size_t tile, const detect::EdgeModel& model,
+/// Classifies the core of a tile; without a model only makes its normals. Leaves `points.all`
+/// empty.
+TileFindings classify_tile(const Plan& plan, std::size_t tile, const detect::EdgeModel* model,
                            TileCloud& points, const Progress* progress = nullptr);
 
 /// Classifies a tile and writes it, then its record. Whoever else does the same at the same time
