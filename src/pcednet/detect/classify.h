@@ -28,11 +28,11 @@ struct Classification {
                                            ///< kUnlabelled: the position is not finite
   std::vector<float> p_sharp = {};         ///< probability of sharp-edge, 0 where unlabelled
   std::vector<float> p_smooth = {};        ///< of smooth-edge; 0 throughout with a two-class model
-  std::vector<float> p_class = {};  ///< of the class itself; empty with edge classes alone
-  ClassCounts counts = {};          ///< of edge classes
-  double s_min = 0.0, s_max = 0.0;  ///< the scales of the description; 0 if it was given
-  std::string note = {};            ///< for the user, or empty
-  bool sparse = false;              ///< the model's networks for sparse clouds decided
+  std::vector<float> p_class = {};         ///< of the class itself; empty with edge classes alone
+  ClassCounts counts = {};                 ///< of edge classes
+  double s_min = 0.0, s_max = 0.0;         ///< the scales of the description; 0 if it was given
+  std::string note = {};                   ///< for the user, or empty
+  bool sparse = false;                     ///< the model's networks for sparse clouds decided
 };
 
 /// `points` points that are all unlabelled, of a model with own classes or of edges.

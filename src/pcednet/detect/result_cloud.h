@@ -24,7 +24,8 @@ void add_class_comments(PointCloud& cloud, const ClassTable& table);
 ///     label               the class again, for CGAL and others
 ///
 /// With own classes quality and scalar_p_class are the probability of the class; where none of the
-/// classes are edges, scalar_class takes the place of scalar_edge_class and of p_sharp and p_smooth.
+/// classes are edges, scalar_class takes the place of scalar_edge_class and of p_sharp and
+/// p_smooth.
 ///
 /// with the colours of the paper where the cloud has none, normals that were estimated, and
 /// comments on version and model. Labels that the cloud had move to scalar_input_label. Returns

@@ -24,7 +24,7 @@ struct TrainOptions {
   /// What labels are numbers of. With own classes the network has an output for each that points
   /// have, whatever the architecture says.
   ClassTable table = edge_classes();
-  nn::TrainOptions training;      ///< sign rule and class names are set from the rest
+  nn::TrainOptions training;  ///< sign rule and class names are set from the rest
   nn::Symmetry symmetry = nn::Symmetry::kAverage;  ///< flipped normals change no answer
   int teachers = 0;      ///< networks to train first and to learn from, see nn::distil()
   bool context = false;  ///< train a context network too, where clouds are given

@@ -26,11 +26,11 @@ struct PreviewOptions {
 /// Writes a shaded picture of the cloud as a PNG.
 ///
 /// `classes` holds one class per point, drawn in its colour (values that are none grey); an
-/// EdgeClass white, yellow, dark red or blue. If it is empty, points have the colours of the cloud, or white if it has none. Points that are
-/// not finite, far outliers, and strays (see make_surfels()) are skipped. Of more than four million
-/// points every n-th is drawn. `curves`, in the place of the cloud, are drawn over it: see
-/// draw_curves(). The picture does not depend on the position of the cloud nor on the number of
-/// threads.
+/// EdgeClass white, yellow, dark red or blue. If it is empty, points have the colours of the cloud,
+/// or white if it has none. Points that are not finite, far outliers, and strays (see
+/// make_surfels()) are skipped. Of more than four million points every n-th is drawn. `curves`, in
+/// the place of the cloud, are drawn over it: see draw_curves(). The picture does not depend on the
+/// position of the cloud nor on the number of threads.
 ///
 /// Throws Error(kInsufficient) if no point is finite, Error(kUsage) on a size out of range, a
 /// direction that is zero or not finite, or an existing file that may not be overwritten, and
