@@ -171,7 +171,8 @@ void Session::State::choose_classes() {
   }
   if (wanted == now) return;
   check_change(now, wanted, painting->labels().counts(), painting->now().ever_painted);
-  painting->add({.kind = Record::Kind::kClasses, .classes = wanted});
+  Record record{.kind = Record::Kind::kClasses, .classes = std::move(wanted)};
+  painting->add(std::move(record));
 }
 
 void Session::State::open_project() {
