@@ -74,6 +74,8 @@ TEST(ProjectClasses, AreARecordOfTheirOwn) {
   EXPECT_EQ(end.ever_painted, (std::set<std::uint8_t>{2}));
   const Record of_removed{.id = "t", .edge_class = 1, .points = {3}};
   EXPECT_ERROR(ErrorKind::kUnreadable, replay(std::vector{record, of_removed}, 10));
+  const Record of_boundary{.id = "u", .edge_class = kBoundary, .points = {3}};
+  EXPECT_ERROR(ErrorKind::kUnreadable, replay(std::vector{of_boundary}, 10));
   EXPECT_ERROR(ErrorKind::kUnreadable, parse_record(R"({"table":[{"name":"a"}]})", 10));
   EXPECT_ERROR(ErrorKind::kUnreadable,
                parse_record(R"({"table":[{"name":"a","colour":"#000000"}]})", 10));

@@ -186,7 +186,7 @@ TEST_F(JournalTest, RefusesWhatIsDamagedOrOfAnotherInput) {
   EXPECT_ERROR(ErrorKind::kUnreadable,
                Journal(path_, {{.name = "a", .digest = "d", .points = 99}}, found));
   for (const char* line :
-       {R"({"stroke":"x","class":3,"points":[]})", R"([1])", "{}", "",
+       {R"({"stroke":"x","class":8,"points":[]})", R"([1])", "{}", "",
         R"({"stroke":"x","class":1,"points":[5,0]})", R"({"stroke":"x","class":1,"points":[-1]})",
         R"({"stroke":"x","class":1,"points":[18446744073709551615,2]})"}) {
     EXPECT_ERROR(ErrorKind::kUnreadable, parse_record(line, 100)) << line;

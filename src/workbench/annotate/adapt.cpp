@@ -25,7 +25,10 @@ constexpr std::size_t kPerEpoch = 1 << 13;
 // However much is painted, a training takes no longer.
 constexpr std::size_t kFewestUnpainted = 2000, kMostUnpainted = 16000, kMostPainted = 16000;
 constexpr double kLeastPainted = 0.3;  // share of the painted among the samples
-constexpr float kPlain = 0.05f;        // so sure to be no edge; half of the kept points are others
+// The same where some are of a class that the start does not know: it takes all other points of
+// that class for something else.
+constexpr double kLeastPaintedOfNew = 0.7;
+constexpr float kPlain = 0.05f;  // so sure to be no edge; half of the kept points are others
 
 // The context network looks again at points of this probability: below it hardly ever changes an
 // answer, and an adapted network leaves many points there.
@@ -82,7 +85,8 @@ class LessonWriter {
     choose(others, kept / 2, random);
     Lesson lesson;
     const auto unpainted = static_cast<double>(plain.size() + others.size());
-    const double wanted = kLeastPainted / (1 - kLeastPainted) * unpainted;
+    const double share = has_new_outputs() ? kLeastPaintedOfNew : kLeastPainted;
+    const double wanted = share / (1 - share) * unpainted;
     const double copies = painted.empty() ? 0 : wanted / static_cast<double>(painted.size());
     for (int k = 0; k < std::max(1, static_cast<int>(std::lround(copies))); ++k) {
       for (const std::size_t row : painted) add_painted(rows, row, lesson);
@@ -93,6 +97,10 @@ class LessonWriter {
   }
 
  private:
+  bool has_new_outputs() const {
+    return !is_context_ && model_.classes.size() > start_.model.classes.size();
+  }
+
   bool is_own(std::uint8_t label) const {
     return label != kUnlabelled && label > kBoundary && has_edges(model_.table);
   }
