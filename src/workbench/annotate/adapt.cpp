@@ -27,7 +27,7 @@ constexpr std::size_t kFewestUnpainted = 2000, kMostUnpainted = 16000, kMostPain
 constexpr double kLeastPainted = 0.3;  // share of the painted among the samples
 // The same where some are of a class that the start does not know: it takes all other points of
 // that class for something else.
-constexpr double kLeastPaintedOfNew = 0.7;
+constexpr double kLeastPaintedOfNew = 0.5;
 constexpr float kPlain = 0.05f;  // so sure to be no edge; half of the kept points are others
 
 // The context network looks again at points of this probability: below it hardly ever changes an
