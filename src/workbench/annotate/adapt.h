@@ -24,7 +24,7 @@ Start make_start(detect::EdgeModel model, const Subject& subject);
 inline constexpr std::uint8_t kLeftOut = 254;
 
 /// Epochs of each of the two networks; what adapt() reports counts both.
-inline constexpr int kAdaptEpochs = 20;
+inline constexpr int kAdaptEpochs = 15;
 
 struct Adapted {
   detect::EdgeModel model = {};
