@@ -63,6 +63,15 @@ TEST_F(SparseNetworksTest, DoNotCountCopies) {
   EXPECT_FALSE(classify(prepare(other), *both_).sparse);
 }
 
+TEST_F(SparseNetworksTest, LeaveACloudOfGivenScalesToTheOthers) {
+  const PointCloud below = cube(kFewer - 1, 3);
+  EdgeModel model = *both_;
+  model.descriptor.s_max = 0.5;
+  EXPECT_TRUE(classify(prepare(below), model).sparse);
+  model.descriptor.s_min = 0.05;
+  EXPECT_FALSE(classify(prepare(below), model).sparse);
+}
+
 TEST_F(SparseNetworksTest, LeaveAPartOfALargeCloudToTheOthers) {
   const PointCloud few = cube(kFewer / 2, 3);
   PreparedCloud part = prepare(few);

@@ -63,9 +63,11 @@ Classification describe_and_decide(const PreparedCloud& cloud, const EdgeModel& 
 }
 
 /// Whether the model's networks for sparse clouds decide. Copies of a point, which are neighbours
-/// on the curve, do not count: they say nothing of the surface.
+/// on the curve, do not count: they say nothing of the surface. A cloud whose scales are given is a
+/// piece of a larger one.
 bool is_sparse(const EdgeModel& model, std::span<const Vec3> positions,
                std::span<const std::uint32_t> curve) {
+  if (model.descriptor.s_min > 0.0 && model.descriptor.s_max > 0.0) return false;
   std::size_t distinct = 0;
   for (std::size_t i = 0; i < curve.size() && distinct < model.sparse->fewer_than; ++i) {
     distinct += i == 0 || positions[curve[i]] != positions[curve[i - 1]];

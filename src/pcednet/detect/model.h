@@ -18,7 +18,8 @@ namespace pcednet::detect {
 inline constexpr float kLeastEdge = 0.01f;
 
 /// What decides in place of a model's own networks, on the same description and for the same
-/// classes, where points are few: walls, steps and holes are then a spacing or two wide.
+/// classes, where points are few, so that walls, steps and holes are a spacing or two wide, unless
+/// s_min and s_max are both given.
 struct SparseNetworks {
   std::size_t fewer_than = 0;  ///< distinct points of a cloud
   nn::Model network = {};
