@@ -256,12 +256,12 @@ void classify_large_file(const Job& job, const ClassifyArguments& arguments, std
   PointCloud drawn;
   Counts counts = {};
   const auto add_result = [&](PointCloud& part, const tiles::TileFindings& findings) {
-    count(findings.found.classes, counts);
     detect::Classification found = findings.found;
     found.s_min = result.s_min, found.s_max = result.s_max;
     kept = add_found(findings.prepared, found, arguments, model, part);
   };
   const auto see = [&](const PointCloud& part, std::size_t before) {
+    count(part.labels, counts);
     if (!job.preview.empty()) draw_some(part, before, cloud.plan().points(), drawn);
   };
   write_tiled(job.output, cloud,
