@@ -123,7 +123,7 @@ class Training(unittest.TestCase):
                                                     normals=self.normals, threads=1)
         after = model.classify(self.positions, self.normals)
         self.assertEqual((model.name, model.has_context), ("mine", True))
-        self.assertEqual(len(model.history), 40)
+        self.assertEqual(len(model.history), 30)  # twice 15 epochs
         np.testing.assert_array_equal(
             after.p_sharp, again.classify(self.positions, self.normals).p_sharp)
         flat = self.labels == 0
