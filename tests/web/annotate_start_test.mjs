@@ -181,6 +181,16 @@ test("accepts what is predicted at an uncertain place", async () => {
 const painted = () =>
   page.evaluate(() => annotator.stage.chunks.reduce((n, c) => n + c.labels.filter((l) => l < 3).length, 0));
 
+/** Painted points once all answers of the program have come. */
+async function finallyPainted() {
+  let before = -1;
+  for (let now = await painted(); now !== before; now = await painted()) {
+    before = now;
+    await page.waitForTimeout(1000);
+  }
+  return before;
+}
+
 /** Where a stroke of the mouse begins. */
 async function aim() {
   await page.evaluate(() => annotator.stage.fit("first"));
@@ -198,7 +208,7 @@ async function expectPainted(points) {
 
 test("loses no stroke and goes on by itself when the program is killed and started again", async () => {
   await settled();
-  const kept = await painted();
+  const kept = await finallyPainted();
   const eye = () => page.evaluate(() => [...annotator.stage.camera.view.matrix]);
   const middle = await aim();
   await page.mouse.move(...middle);
@@ -231,7 +241,7 @@ test("loses no stroke and goes on by itself when the program is killed and start
 
 test("takes back what the program never got if it starts at another address, and says so", async () => {
   await settled();
-  const kept = await painted();
+  const kept = await finallyPainted();
   const middle = await aim();
   await page.mouse.move(...middle);
   await page.mouse.down();
