@@ -9,11 +9,13 @@ Arrays go in and come out whole, in the input's order. Work is done on every cor
 lock; Ctrl-C stops it; what deserves a look is a warning.
 """
 
+from ._classify import Result, classify, describe, estimate_normals
 from ._clouds import Cloud, generate, read, write
 from ._core import Curve, __version__
 from ._lines import Lines, lines
-from ._models import (Model, Result, Scores, classify, describe, estimate_normals, evaluate,
-                      shipped_models, train)
+from ._models import Model, shipped_models
+from ._scores import Scores, evaluate
+from ._train import train
 from .errors import (Error, ExistsError, FailureError, InsufficientError, MissingFileError,
                      ModelError, PcednetWarning, UnreadableError, UsageError)
 

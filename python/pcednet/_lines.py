@@ -3,7 +3,7 @@
 import os
 
 from . import _arrays, _clouds, _core
-from ._models import Result, classify
+from ._classify import Result, classify
 from .errors import UsageError
 
 _SHORT = {1: "smooth", 2: "sharp", 3: "boundary"}

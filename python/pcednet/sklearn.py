@@ -6,7 +6,8 @@ from sklearn.base import BaseEstimator, ClassifierMixin
 from sklearn.utils.validation import check_is_fitted
 
 from . import _arrays
-from ._models import classify, train
+from ._classify import classify
+from ._train import train
 from .errors import UsageError
 
 __all__ = ["EdgeClassifier"]

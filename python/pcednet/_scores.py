@@ -1,0 +1,49 @@
+"""Scores of labels."""
+
+from . import _arrays, _clouds, _core
+from ._classify import Result
+
+
+class Scores:
+    """The scores of Himeur et al. 2021, appendix B; one whose denominator is zero is 0.
+
+    Attributes
+    ----------
+    precision, recall, mcc, f1, accuracy, iou : float
+    tp, fp, tn, fn : int
+    """
+
+    def __init__(self, values):
+        self.__dict__.update(values)
+
+    def __repr__(self):
+        return "<Scores: " + ", ".join(
+            f"{name} {value:.3f}" if isinstance(value, float) else f"{name} {value}"
+            for name, value in self.__dict__.items()) + ">"
+
+
+def evaluate(truth, predicted, positive="sharp"):
+    """Score predicted classes against true ones.
+
+    Parameters
+    ----------
+    truth : array_like, (n,), or Cloud
+        Points of the class 255 (or -1) are left out.
+    predicted : array_like, (n,), or Result
+    positive : {'sharp', 'edge', 'boundary'}
+        The classes that count as positive; ``'edge'`` is sharp-edge and smooth-edge.
+
+    Returns
+    -------
+    Scores
+
+    Raises
+    ------
+    UsageError
+        Different numbers of points, or numbers that are no class.
+    """
+    truth = truth.labels if isinstance(truth, _clouds.Cloud) else truth
+    predicted = predicted.labels if isinstance(predicted, Result) else predicted
+    rows = len(_arrays.numbers(truth, "truth").reshape(-1))
+    return Scores(_core.evaluate(_arrays.labels(truth, rows, "truth"),
+                                 _arrays.labels(predicted, rows, "predicted"), positive))

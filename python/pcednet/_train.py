@@ -1,0 +1,119 @@
+"""Training, from nothing and from a model."""
+
+import numpy as np
+
+from . import _arrays, _classify, _clouds, _core, _models
+from .errors import UsageError
+
+_DESCRIPTOR = ("scales", "features", "reconstruction", "gate", "second_gate", "exact", "eps", "s_min",
+               "s_max", "s_max_ratio")
+
+
+def _descriptor(options):
+    for name in options:
+        if name not in _DESCRIPTOR:
+            raise TypeError(f"unexpected keyword argument {name!r}; a descriptor has "
+                            f"{', '.join(_DESCRIPTOR)}")
+    return {name: value for name, value in options.items()
+            if value is not None or name in ("gate", "second_gate")}
+
+
+def train(clouds, labels=None, *, normals=None, start=None, name="model", classes=3, seed=1,
+          epochs=None, context=False, balance=1.0, distil=0, recipe="adam", network="pcednet",
+          threads=0, progress=None, keep_orientation=False, **descriptor):
+    """Train a model on labelled points.
+
+    With ``start`` a model that exists learns the labelled points without unlearning the rest: what
+    the annotator does with a few strokes. Otherwise a new network is trained, for which the labels
+    must cover all that it is to know.
+
+    Parameters
+    ----------
+    clouds : array_like (n, 3), Cloud, or list of these
+    labels : array_like or dict, or a list of one per cloud
+        The class of every point: 0 non-edge, 1 smooth-edge, 2 sharp-edge, 3 boundary (learnt as
+        non-edge), 255 or -1 not to learn from. Or a dict from class, by number or name, to indices
+        or a mask: ``{"sharp-edge": painted, "non-edge": others}``. None: those of the Clouds.
+    normals : array_like (n, 3), or a list of one per cloud, optional
+    start : str, path-like or Model, optional
+        What to start from, such as ``"general"``. Only `name` and `seed` apply besides.
+    name : str
+        Goes into the model.
+    classes : {3, 2}
+        2: sharp-edge and all other points.
+    seed : int
+        The same input and seed give the same model, for any number of threads.
+    epochs : int, optional
+        40 unless given.
+    context : bool
+        Also train a context network.
+    balance : float
+        0 (natural class frequencies, fewer false edges) to 1 (equal frequencies).
+    distil : int
+        Train this many networks first and learn their mean.
+    recipe : {'adam', 'paper'}
+    network : {'pcednet', 'fc', 'cnn'}
+    threads, progress, keep_orientation
+        As in :func:`classify`.
+    **descriptor
+        ``scales``, ``features``, ... as in :func:`describe`.
+
+    Returns
+    -------
+    Model
+        Its ``history`` has the epochs.
+
+    Raises
+    ------
+    UsageError
+        Arrays or options that do not fit.
+    InsufficientError
+        A cloud without a labelled point, or a class without points.
+    KeyboardInterrupt
+        Ctrl-C.
+    """
+    several = isinstance(clouds, (list, tuple)) and not _is_points(clouds)
+    clouds = list(clouds) if several else [clouds]
+    labels = _one_each(labels, clouds, several, "labels")
+    normals = _one_each(normals, clouds, several, "normals")
+    arrays = [_labelled(k, *one) for k, one in enumerate(zip(clouds, normals, labels))]
+    if not arrays:
+        raise UsageError("train: no clouds")
+    settings = {"descriptor": _descriptor(descriptor), "classes": int(classes), "seed": int(seed),
+                "epochs": epochs, "context": bool(context), "balance": float(balance),
+                "distil": int(distil), "recipe": recipe, "network": network}
+    with _arrays.reporting(progress) as report:
+        if start is None:
+            core, history, notes = _core.train(arrays, name, bool(keep_orientation), settings,
+                                               report, _arrays.thread_count(threads))
+        else:
+            core, history, notes = _core.adapt(_models.model_of(start)._core, arrays, name,
+                                               bool(keep_orientation), int(seed), report,
+                                               _arrays.thread_count(threads))
+    _arrays.warn(_classify.worded(notes))
+    return _models.Model(core, history)
+
+
+def _is_points(clouds):
+    """Whether a list is one cloud written as rows of three numbers."""
+    return len(clouds) > 0 and all(np.ndim(row) == 1 and np.size(row) == 3 for row in clouds)
+
+
+def _one_each(values, clouds, several, name):
+    if values is None:
+        return [None] * len(clouds)
+    if not several:
+        return [values]
+    if not isinstance(values, (list, tuple)) or len(values) != len(clouds):
+        raise UsageError(f"{name}: a list of one per cloud is needed, for {len(clouds)} clouds")
+    return values
+
+
+def _labelled(number, cloud, normals, labels):
+    positions, given, scanners = _clouds.points_of(cloud, normals)
+    name = getattr(cloud, "name", "") or f"cloud {number}"
+    if labels is None:
+        labels = getattr(cloud, "labels", None)
+    if labels is None:
+        raise UsageError(f"{name}: has no labels")
+    return name, positions, given, scanners, _arrays.labels(labels, len(positions))
