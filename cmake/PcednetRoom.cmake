@@ -33,6 +33,7 @@ function(pcednet_make_room name wing)
     $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_compile_features(${target} PUBLIC cxx_std_20)
   pcednet_compile_options(${target})
+  pcednet_precompile(${target} pcednet_core)
   string(REPLACE "/" "_" used_rooms "${room_USES}")
   foreach(used ${used_rooms})
     target_link_libraries(${target} PUBLIC pcednet_${used})
@@ -48,4 +49,18 @@ function(pcednet_compile_options target)
   # -Wno-restrict: GCC 12 warns of std::string's own code (GCC bug 105329).
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wshadow -Wnon-virtual-dtor
     $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict> -ffp-contract=off $<$<BOOL:${PCEDNET_WARNINGS_AS_ERRORS}>:-Werror>)
+endfunction()
+
+# pcednet_precompile(TARGET OWNER header...): with PCEDNET_PRECOMPILE the headers that nearly every
+# source includes are parsed once, by OWNER, for all targets that are compiled as it is. What OWNER
+# adds to the common ones follows it.
+function(pcednet_precompile target owner)
+  if(NOT PCEDNET_PRECOMPILE)
+    return()
+  elseif(target STREQUAL owner)
+    target_precompile_headers(${target} PRIVATE <Eigen/Geometry> <fmt/format.h> <algorithm> <filesystem>
+      <functional> <map> <memory> <numeric> <optional> <span> <string> <vector> ${ARGN})
+  else()
+    target_precompile_headers(${target} REUSE_FROM ${owner})
+  endif()
 endfunction()

@@ -262,7 +262,8 @@ TEST(ClassifyEdges, LeavesWhatHasNoPlaceUnlabelledAndKeepsOldLabels) {
 }
 
 TEST(PrepareCloud, RefusesWhatHasNoSurface) {
-  EXPECT_THROW(prepare(PointCloud{}), Error);
+  const PointCloud empty;
+  EXPECT_THROW(prepare(empty), Error);
   PointCloud line;
   for (int i = 0; i < 50; ++i) line.positions.emplace_back(i, 0, 0);
   EXPECT_THROW(prepare(line), Error);

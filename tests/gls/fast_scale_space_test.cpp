@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "gls/fast_clouds.h"
+#include "gls/variants.h"
 #include "pcednet/core/error.h"
 #include "pcednet/core/parallel.h"
 #include "pcednet/gls/engine.h"
@@ -16,51 +17,16 @@
 namespace pcednet::gls {
 namespace {
 
-struct Variant {
-  const char* name;
-  Reconstruction reconstruction;
-  std::optional<double> gate;
-};
+const test::Variant kFastVariants[] = {{"Sphere", Reconstruction::kSphere, {}},
+                                       {"Gated", Reconstruction::kSphere, 0.1},
+                                       {"Projected", Reconstruction::kSphereMls, {}},
+                                       {"GatedAndProjected", Reconstruction::kSphereMls, -0.2}};
 
-const Variant kVariants[] = {{"Sphere", Reconstruction::kSphere, {}},
-                             {"Gated", Reconstruction::kSphere, 0.1},
-                             {"Projected", Reconstruction::kSphereMls, {}},
-                             {"GatedAndProjected", Reconstruction::kSphereMls, -0.2}};
-
-ScaleSpaceOptions options_of(const Variant& variant, FeatureSet features) {
-  ScaleSpaceOptions options;
-  options.features = features;
-  options.reconstruction = variant.reconstruction;
-  options.side_gate = variant.gate;
-  return options;
-}
-
-void expect_same_bits(const test::Matrix<float>& a, const test::Matrix<float>& b) {
-  ASSERT_EQ(a.features.size(), b.features.size());
-  EXPECT_EQ(std::memcmp(a.features.data(), b.features.data(), a.features.size() * sizeof(float)),
-            0);
-  EXPECT_EQ(a.status, b.status);
-}
-
-/// A noisy cube in which every hundredth point has a twin with another normal, a twin with the same
-/// normal, an unusable normal, or no position.
-test::Cloud awkward_cloud(std::size_t count) {
-  test::Cloud cloud = test::cube(count, 21, 0.005, 0.2);
-  test::Stream stream(22);
-  for (std::size_t i = 0; i + 60 < count; i += 100) {
-    cloud.add(cloud.positions[i], stream.direction());
-    cloud.add(cloud.positions[i + 20], cloud.normals[i + 20]);
-    cloud.normals[i + 40] = Vec3(0, 0, 0);
-    cloud.positions[i + 60].y() = std::numeric_limits<double>::quiet_NaN();
-  }
-  return cloud;
-}
-
-class FastScaleSpaceInvariance : public testing::TestWithParam<Variant> {};
+class FastScaleSpaceInvariance : public testing::TestWithParam<test::Variant> {};
 
 TEST_P(FastScaleSpaceInvariance, SameBitsForAnyNumbering) {
-  const test::Cloud cloud = awkward_cloud(6000);
-  const ScaleSpaceOptions options = options_of(GetParam(), FeatureSet::kAll28);
+  const test::Cloud cloud = test::awkward_cloud(6000);
+  const ScaleSpaceOptions options = test::options_of(GetParam(), FeatureSet::kAll28);
   const FastScaleSpace space(cloud.points(), options);
   const auto expected = test::describe(space, test::all_targets(cloud.positions.size()));
   auto order = test::all_targets(cloud.positions.size());
@@ -72,7 +38,7 @@ TEST_P(FastScaleSpaceInvariance, SameBitsForAnyNumbering) {
   for (std::uint32_t i = 0; i < order.size(); ++i) back[order[i]] = i;
   const FastScaleSpace other(shuffled.points(), options);
   EXPECT_EQ(space.scales(), other.scales());
-  expect_same_bits(expected, test::describe(other, back));
+  test::expect_same_bits(expected, test::describe(other, back));
 }
 
 TEST_P(FastScaleSpaceInvariance, SameBitsForPointsThatAreEqual) {
@@ -80,7 +46,7 @@ TEST_P(FastScaleSpaceInvariance, SameBitsForPointsThatAreEqual) {
   test::Cloud cloud = test::cube(6000, 23, 0.005, 0.2);
   for (std::size_t i = 0; i < 6000; i += 3) cloud.add(cloud.positions[i], cloud.normals[i]);
   for (int i = 0; i < 5000; ++i) cloud.add(cloud.positions[1], cloud.normals[1]);
-  ScaleSpaceOptions options = options_of(GetParam(), FeatureSet::kInvariant7);
+  ScaleSpaceOptions options = test::options_of(GetParam(), FeatureSet::kInvariant7);
   options.s_min = 0.02;
   const auto matrix = test::describe(FastScaleSpace(cloud.points(), options),
                                      test::all_targets(cloud.positions.size()));
@@ -95,20 +61,20 @@ TEST_P(FastScaleSpaceInvariance, SameBitsForPointsThatAreEqual) {
 }
 
 TEST_P(FastScaleSpaceInvariance, SameBitsOnAnyNumberOfThreads) {
-  const test::Cloud cloud = awkward_cloud(6000);
-  const ScaleSpaceOptions options = options_of(GetParam(), FeatureSet::kPaper6);
+  const test::Cloud cloud = test::awkward_cloud(6000);
+  const ScaleSpaceOptions options = test::options_of(GetParam(), FeatureSet::kPaper6);
   const auto targets = test::all_targets(cloud.positions.size());
   set_thread_count(1);
   const auto one = test::describe(FastScaleSpace(cloud.points(), options), targets);
   set_thread_count(5);
   const auto five = test::describe(FastScaleSpace(cloud.points(), options), targets);
   set_thread_count(0);
-  expect_same_bits(one, five);
+  test::expect_same_bits(one, five);
 }
 
 TEST_P(FastScaleSpaceInvariance, SameBitsForAnyChoiceOfTargets) {
-  const test::Cloud cloud = awkward_cloud(6000);
-  const FastScaleSpace space(cloud.points(), options_of(GetParam(), FeatureSet::kPaper6));
+  const test::Cloud cloud = test::awkward_cloud(6000);
+  const FastScaleSpace space(cloud.points(), test::options_of(GetParam(), FeatureSet::kPaper6));
   const auto all = test::describe(space, test::all_targets(cloud.positions.size()));
   const std::vector<std::uint32_t> some = {4000, 17, 60, 5999, 17, 2345};
   const auto few = test::describe(space, some);
@@ -122,8 +88,8 @@ TEST_P(FastScaleSpaceInvariance, SameBitsForAnyChoiceOfTargets) {
 }
 
 TEST_P(FastScaleSpaceInvariance, TurningTheNormalsNegatesAllButPhi) {
-  test::Cloud cloud = awkward_cloud(6000);
-  const ScaleSpaceOptions options = options_of(GetParam(), FeatureSet::kInvariant7);
+  test::Cloud cloud = test::awkward_cloud(6000);
+  const ScaleSpaceOptions options = test::options_of(GetParam(), FeatureSet::kInvariant7);
   const auto targets = test::all_targets(cloud.positions.size());
   const auto before = test::describe(FastScaleSpace(cloud.points(), options), targets);
   for (Vec3& n : cloud.normals) n = -n;
@@ -137,9 +103,9 @@ TEST_P(FastScaleSpaceInvariance, TurningTheNormalsNegatesAllButPhi) {
 
 TEST_P(FastScaleSpaceInvariance, StaysTheSameFarFromTheOrigin) {
   // Coordinates on a grid of 2^-20 stay exact a million away, so that only the arithmetic can tell.
-  test::Cloud cloud = awkward_cloud(6000);
+  test::Cloud cloud = test::awkward_cloud(6000);
   for (Vec3& p : cloud.positions) p = (p * 0x1p20).array().round().matrix() * 0x1p-20;
-  ScaleSpaceOptions options = options_of(GetParam(), FeatureSet::kInvariant7);
+  ScaleSpaceOptions options = test::options_of(GetParam(), FeatureSet::kInvariant7);
   const auto targets = test::all_targets(cloud.positions.size());
   const auto before = test::describe(FastScaleSpace(cloud.points(), options), targets);
   for (Vec3& p : cloud.positions) p += Vec3(0x1p20, -0x1p20, 0x1p19);
@@ -155,13 +121,13 @@ TEST_P(FastScaleSpaceInvariance, StaysTheSameFarFromTheOrigin) {
   EXPECT_LE(differences[differences.size() * 999 / 1000], 1e-4f);
 }
 
-INSTANTIATE_TEST_SUITE_P(Variants, FastScaleSpaceInvariance, testing::ValuesIn(kVariants),
+INSTANTIATE_TEST_SUITE_P(Variants, FastScaleSpaceInvariance, testing::ValuesIn(kFastVariants),
                          [](const auto& instance) { return std::string(instance.param.name); });
 
 TEST(FastScaleSpace, AgreesBetweenVectorCodes) {
-  const test::Cloud cloud = awkward_cloud(6000);
-  for (const Variant& variant : kVariants) {
-    const ScaleSpaceOptions options = options_of(variant, FeatureSet::kInvariant7);
+  const test::Cloud cloud = test::awkward_cloud(6000);
+  for (const test::Variant& variant : kFastVariants) {
+    const ScaleSpaceOptions options = test::options_of(variant, FeatureSet::kInvariant7);
     const auto targets = test::all_targets(cloud.positions.size());
     const auto expected = test::describe(
         FastScaleSpace(cloud.points(), options, all_lane_kernels().front()), targets);
@@ -208,8 +174,8 @@ TEST(FastScaleSpace, AgreesWithTheExactEngineOnDegenerateFits) {
     cloud.add({0, 3, 0}, Vec3(0, 0, i % 2 ? 1 : -1));
     cloud.add({0.002 * i, 0, 3}, Vec3::UnitZ());
   }
-  for (const Variant& variant : kVariants) {
-    ScaleSpaceOptions options = options_of(variant, FeatureSet::kInvariant7);
+  for (const test::Variant& variant : kFastVariants) {
+    ScaleSpaceOptions options = test::options_of(variant, FeatureSet::kInvariant7);
     const FastScaleSpace fast(cloud.points(), options);
     const ExactScaleSpace exact(cloud.points(), options);
     std::vector<std::uint32_t> targets;

@@ -24,11 +24,11 @@ struct Sample {
 
 /// A neighbourhood at t = 1: the sums of LaneSums in its order and the sizes of their terms, and
 /// the fit in double.
-struct Neighbourhood {
+struct SummedSamples {
   std::array<double, kSums> sums = {}, sizes = {};
   MomentSet moments;
 
-  explicit Neighbourhood(const std::vector<Sample>& samples) {
+  explicit SummedSamples(const std::vector<Sample>& samples) {
     for (const Sample& s : samples) add(s);
     moments.count = static_cast<std::uint32_t>(samples.size());
   }
@@ -65,7 +65,7 @@ struct Neighbourhood {
 };
 
 /// The sums in float, each off by up to kRounding of the sizes of its terms.
-LaneSums rounded(const std::array<Neighbourhood, kLanes>& all, test::Stream& stream) {
+LaneSums rounded(const std::array<SummedSamples, kLanes>& all, test::Stream& stream) {
   float rows[kSums][kLanes];
   for (std::size_t lane = 0; lane < kLanes; ++lane) {
     for (std::size_t k = 0; k < kSums; ++k) {
@@ -175,13 +175,13 @@ TEST_P(LaneJudgement, LetsThroughWhatRoundingCannotSpoil) {
   test::Stream stream(71);
   std::size_t sound = 0, refused = 0;
   for (int round = 0; round < 400; ++round) {
-    std::vector<Neighbourhood> drawn;
+    std::vector<SummedSamples> drawn;
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
       // From unharmed to hopeless: strengths down to 1e-8.
       drawn.emplace_back(GetParam().draw(stream, std::pow(10.0, -8.0 * stream.uniform())));
     }
     const auto all = [&]<std::size_t... i>(std::index_sequence<i...>) {
-      return std::array<Neighbourhood, kLanes>{drawn[i]...};
+      return std::array<SummedSamples, kLanes>{drawn[i]...};
     }
     (std::make_index_sequence<kLanes>());
     LaneFits fits = {};
@@ -219,9 +219,9 @@ TEST_P(LaneJudgement, LetsThroughWhatRoundingCannotSpoil) {
 
 /// The verdict of each kernel on a neighbourhood.
 std::vector<float> verdicts_on(const std::vector<Sample>& samples) {
-  const Neighbourhood drawn(samples);
+  const SummedSamples drawn(samples);
   const auto all = [&]<std::size_t... i>(std::index_sequence<i...>) {
-    return std::array<Neighbourhood, kLanes>{((void)i, drawn)...};
+    return std::array<SummedSamples, kLanes>{((void)i, drawn)...};
   }
   (std::make_index_sequence<kLanes>());
   test::Stream stream(73);
@@ -248,7 +248,7 @@ TEST(LaneVerdict, IsVoidWhereBothSidesOfALeafAreSeen) {
     const Vec3 y = in_ball(stream), n = (Vec3(0, 0, 5) + stream.direction()).normalized();
     samples.push_back({y, n}), samples.push_back({y, -n});
   }
-  ASSERT_EQ(Neighbourhood(samples).fit().status, FitStatus::kUndefined);
+  ASSERT_EQ(SummedSamples(samples).fit().status, FitStatus::kUndefined);
   for (const float verdict : verdicts_on(samples)) EXPECT_EQ(verdict, kVoid);
 }
 

@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "gls/test_clouds.h"
+#include "gls/variants.h"
 #include "pcednet/core/error.h"
 #include "pcednet/core/parallel.h"
 #include "support/expect_error.h"
@@ -18,13 +19,7 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-struct Variant {
-  const char* name;
-  Reconstruction reconstruction;
-  std::optional<double> gate;
-};
-
-const Variant kVariants[] = {
+const test::Variant kVariants[] = {
     {"Sphere", Reconstruction::kSphere, {}},
     {"GatedSphere", Reconstruction::kSphere, 0.1},
     {"SphereMls", Reconstruction::kSphereMls, {}},
@@ -33,39 +28,9 @@ const Variant kVariants[] = {
     {"PlaneMls", Reconstruction::kPlaneMls, {}},
 };
 
-bool is_plane(const Variant& variant) {
+bool is_plane(const test::Variant& variant) {
   return variant.reconstruction == Reconstruction::kCovariancePlane ||
          variant.reconstruction == Reconstruction::kPlaneMls;
-}
-
-ScaleSpaceOptions options_of(const Variant& variant, FeatureSet features) {
-  ScaleSpaceOptions options;
-  options.features = features;
-  options.reconstruction = variant.reconstruction;
-  options.side_gate = variant.gate;
-  return options;
-}
-
-/// A noisy cube in which every hundredth point has a twin with another normal, a twin with the same
-/// normal, an unusable normal, or no position.
-test::Cloud awkward_cloud(std::size_t count) {
-  test::Cloud cloud = test::cube(count, 21, 0.005, 0.2);
-  test::Stream stream(22);
-  for (std::size_t i = 0; i + 60 < count; i += 100) {
-    cloud.add(cloud.positions[i], stream.direction());
-    cloud.add(cloud.positions[i + 20], cloud.normals[i + 20]);
-    cloud.normals[i + 40] = i % 200 ? Vec3(0, 0, 0) : Vec3(0, kNan, 1);
-    cloud.positions[i + 60].y() = i % 200 ? kNan : std::numeric_limits<double>::infinity();
-  }
-  return cloud;
-}
-
-template <typename Number>
-void expect_same_bits(const test::Matrix<Number>& a, const test::Matrix<Number>& b) {
-  ASSERT_EQ(a.features.size(), b.features.size());
-  EXPECT_EQ(std::memcmp(a.features.data(), b.features.data(), a.features.size() * sizeof(Number)),
-            0);
-  EXPECT_EQ(a.status, b.status);
 }
 
 /// `tolerance` times the value where that is above 1.
@@ -79,11 +44,11 @@ void expect_near(const test::Matrix<double>& a, const test::Matrix<double>& b, d
   EXPECT_LE(worst, tolerance);
 }
 
-class ScaleSpaceInvariance : public testing::TestWithParam<Variant> {};
+class ScaleSpaceInvariance : public testing::TestWithParam<test::Variant> {};
 
 TEST_P(ScaleSpaceInvariance, SameBitsForAnyNumbering) {
-  const test::Cloud cloud = awkward_cloud(1500);
-  const ScaleSpaceOptions options = options_of(GetParam(), FeatureSet::kAll28);
+  const test::Cloud cloud = test::awkward_cloud(1500);
+  const ScaleSpaceOptions options = test::options_of(GetParam(), FeatureSet::kAll28);
   const auto expected = test::describe(cloud, options);
   auto order = test::all_targets(cloud.positions.size());
   test::Stream stream(5);
@@ -95,23 +60,23 @@ TEST_P(ScaleSpaceInvariance, SameBitsForAnyNumbering) {
   EXPECT_EQ(space.scales(), ExactScaleSpace(cloud.points(), options).scales());
   std::vector<std::uint32_t> back(order.size());
   for (std::uint32_t i = 0; i < order.size(); ++i) back[order[i]] = i;
-  expect_same_bits(expected, test::describe(space, back));
+  test::expect_same_bits(expected, test::describe(space, back));
 }
 
 TEST_P(ScaleSpaceInvariance, SameBitsOnAnyNumberOfThreads) {
-  const test::Cloud cloud = awkward_cloud(1500);
-  const ScaleSpaceOptions options = options_of(GetParam(), FeatureSet::kPaper6);
+  const test::Cloud cloud = test::awkward_cloud(1500);
+  const ScaleSpaceOptions options = test::options_of(GetParam(), FeatureSet::kPaper6);
   set_thread_count(1);
   const auto one = test::describe<float>(cloud, options);
   set_thread_count(5);
   const auto five = test::describe<float>(cloud, options);
   set_thread_count(0);
-  expect_same_bits(one, five);
+  test::expect_same_bits(one, five);
 }
 
 TEST_P(ScaleSpaceInvariance, TurningTheNormalsNegatesAllButPhi) {
-  test::Cloud cloud = awkward_cloud(1500);
-  const ScaleSpaceOptions options = options_of(GetParam(), FeatureSet::kInvariant7);
+  test::Cloud cloud = test::awkward_cloud(1500);
+  const ScaleSpaceOptions options = test::options_of(GetParam(), FeatureSet::kInvariant7);
   const auto before = test::describe(cloud, options);
   for (Vec3& n : cloud.normals) n = -n;
   const auto after = test::describe(cloud, options);
@@ -123,8 +88,8 @@ TEST_P(ScaleSpaceInvariance, TurningTheNormalsNegatesAllButPhi) {
 }
 
 TEST_P(ScaleSpaceInvariance, TurnsWithTheCloud) {
-  test::Cloud cloud = awkward_cloud(1500);
-  ScaleSpaceOptions options = options_of(GetParam(), FeatureSet::kInvariant7);
+  test::Cloud cloud = test::awkward_cloud(1500);
+  ScaleSpaceOptions options = test::options_of(GetParam(), FeatureSet::kInvariant7);
   options.s_min = 0.05, options.s_max = 0.2;  // the bounding box does not turn
   const auto before = test::describe(cloud, options);
   const Mat3 rotation = Eigen::AngleAxisd(0.7, Vec3(1, -2, 3).normalized()).toRotationMatrix();
@@ -138,9 +103,9 @@ TEST_P(ScaleSpaceInvariance, TurnsWithTheCloud) {
 
 TEST_P(ScaleSpaceInvariance, SameBitsWhenMovedExactly) {
   // Coordinates on a grid of 2^-20 stay exact 2^24 away: a twin of a cloud in a national grid.
-  test::Cloud cloud = awkward_cloud(1500);
+  test::Cloud cloud = test::awkward_cloud(1500);
   for (Vec3& p : cloud.positions) p = (p * 0x1p20).array().round().matrix() * 0x1p-20;
-  const ScaleSpaceOptions options = options_of(GetParam(), FeatureSet::kAll28);
+  const ScaleSpaceOptions options = test::options_of(GetParam(), FeatureSet::kAll28);
   const auto before = test::describe(cloud, options);
   const bool moves_points = projects(GetParam().reconstruction);
   for (Vec3& p : cloud.positions) p += Vec3(0x1p24, -0x1p23, 0x1p22);
@@ -150,13 +115,13 @@ TEST_P(ScaleSpaceInvariance, SameBitsWhenMovedExactly) {
   if (moves_points) {
     expect_near(before, after, 1e-8);
   } else {
-    expect_same_bits(before, after);
+    test::expect_same_bits(before, after);
   }
 }
 
 TEST_P(ScaleSpaceInvariance, HoldsTenMillionUnitsAway) {
-  test::Cloud cloud = awkward_cloud(1500);
-  ScaleSpaceOptions options = options_of(GetParam(), FeatureSet::kPaper6);
+  test::Cloud cloud = test::awkward_cloud(1500);
+  ScaleSpaceOptions options = test::options_of(GetParam(), FeatureSet::kPaper6);
   options.s_min = 0.06, options.s_max = 0.2;
   const auto before = test::describe(cloud, options);
   for (Vec3& p : cloud.positions) p += Vec3(1e7, -1e7, 1e7);
@@ -165,19 +130,20 @@ TEST_P(ScaleSpaceInvariance, HoldsTenMillionUnitsAway) {
 }
 
 TEST_P(ScaleSpaceInvariance, IsFreeOfUnits) {
-  test::Cloud cloud = awkward_cloud(1500);
-  const ScaleSpaceOptions options = options_of(GetParam(), FeatureSet::kAll28);
+  test::Cloud cloud = test::awkward_cloud(1500);
+  const ScaleSpaceOptions options = test::options_of(GetParam(), FeatureSet::kAll28);
   const auto before = test::describe(cloud, options);
   test::Cloud larger = cloud, tiny = cloud;
   for (Vec3& p : larger.positions) p *= 1000.0 / 3.0;
   expect_near(before, test::describe(larger, options), 1e-8);
   for (Vec3& p : tiny.positions) p *= 0x1p-40;
-  expect_same_bits(before, test::describe(tiny, options));
+  test::expect_same_bits(before, test::describe(tiny, options));
 }
 
 TEST_P(ScaleSpaceInvariance, NeverLeavesANumberThatIsNotFinite) {
-  const test::Cloud cloud = awkward_cloud(1500);
-  const auto matrix = test::describe<float>(cloud, options_of(GetParam(), FeatureSet::kAll28));
+  const test::Cloud cloud = test::awkward_cloud(1500);
+  const auto matrix =
+      test::describe<float>(cloud, test::options_of(GetParam(), FeatureSet::kAll28));
   for (const float f : matrix.features) ASSERT_TRUE(std::isfinite(f));
   for (std::size_t i = 0; i < matrix.status.size(); ++i) {
     ASSERT_LE(matrix.status[i], FitStatus::kUndefined);
@@ -190,7 +156,7 @@ INSTANTIATE_TEST_SUITE_P(Variants, ScaleSpaceInvariance, testing::ValuesIn(kVari
                          [](const auto& variant) { return std::string(variant.param.name); });
 
 TEST(ScaleSpace, SmallerFeatureSetsAreColumnsOfTheLargest) {
-  const test::Cloud cloud = awkward_cloud(800);
+  const test::Cloud cloud = test::awkward_cloud(800);
   ScaleSpaceOptions options;
   options.features = FeatureSet::kAll28;
   const auto all = test::describe(cloud, options);
@@ -216,7 +182,7 @@ TEST(ScaleSpace, SmallerFeatureSetsAreColumnsOfTheLargest) {
 }
 
 TEST(ScaleSpace, GivesOnePointTheSameRowAloneAndAmongOthers) {
-  const test::Cloud cloud = awkward_cloud(800);
+  const test::Cloud cloud = test::awkward_cloud(800);
   const ExactScaleSpace space(cloud.points(), {});
   const auto all = test::describe(space, test::all_targets(cloud.positions.size()));
   const std::vector<std::uint32_t> some = {700, 3, 3, 250};
@@ -239,9 +205,9 @@ test::Cloud square_with_a_point_above(double height) {
 }
 
 TEST(ScaleSpace, DescribesAPointOfUnusableNormalByItsNeighbours) {
-  for (const Variant& variant : kVariants) {
+  for (const test::Variant& variant : kVariants) {
     const test::Cloud cloud = square_with_a_point_above(0.02);
-    ScaleSpaceOptions options = options_of(variant, FeatureSet::kInvariant7);
+    ScaleSpaceOptions options = test::options_of(variant, FeatureSet::kInvariant7);
     options.s_min = 0.05;
     const ExactScaleSpace space(cloud.points(), options);
     const auto matrix = test::describe(space, {0});
@@ -372,13 +338,14 @@ TEST(ScaleSpace, GateHidesTheFarSideOfAThinWall) {
 }
 
 TEST(ScaleSpace, GateOfAPointWithoutNormalIsOpen) {
-  test::Cloud cloud = awkward_cloud(800);
+  test::Cloud cloud = test::awkward_cloud(800);
   ScaleSpaceOptions options;
   options.s_min = 0.05, options.s_max = 0.2;
   const std::vector<std::uint32_t> without_normal = {40, 140};
   const auto open = test::describe(ExactScaleSpace(cloud.points(), options), without_normal);
   options.side_gate = 0.1;
-  expect_same_bits(open, test::describe(ExactScaleSpace(cloud.points(), options), without_normal));
+  test::expect_same_bits(open,
+                         test::describe(ExactScaleSpace(cloud.points(), options), without_normal));
 }
 
 TEST(ScaleSpace, SurvivesPilesAndLinesOfPoints) {
@@ -390,8 +357,8 @@ TEST(ScaleSpace, SurvivesPilesAndLinesOfPoints) {
     cloud.add({0, 3, 0}, Vec3(0, 0, i % 2 ? 1 : -1));
     cloud.add({0.002 * i, 0, 3}, Vec3::UnitZ());
   }
-  for (const Variant& variant : kVariants) {
-    const ExactScaleSpace space(cloud.points(), options_of(variant, FeatureSet::kAll28));
+  for (const test::Variant& variant : kVariants) {
+    const ExactScaleSpace space(cloud.points(), test::options_of(variant, FeatureSet::kAll28));
     const auto matrix = test::describe(space, {first, first + 1, first + 2});
     for (const double f : matrix.features) ASSERT_TRUE(std::isfinite(f)) << variant.name;
     for (std::size_t s = 0; s < 16; ++s) {

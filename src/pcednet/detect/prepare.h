@@ -50,6 +50,8 @@ struct PreparedCloud {
 /// be used or found, unless that is decided.
 PreparedCloud prepare(const PointCloud& cloud, const PrepareOptions& options = {},
                       const Progress* progress = nullptr);
+PreparedCloud prepare(PointCloud&& cloud, const PrepareOptions& options = {},
+                      const Progress* progress = nullptr) = delete;
 
 /// The points of a cloud in arrays that belong to someone else: a vector per point, or none.
 struct PointArrays {

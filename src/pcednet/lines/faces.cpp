@@ -20,14 +20,14 @@ constexpr std::size_t kMostFaces = 100;
 constexpr int kGrowths = 3, kChoices = 4;
 constexpr double kQuietShare =
     0.7;  ///< quantile of what is called noise: slopes have more than levels
-constexpr double kReach[] = {0.1, 4.0};  ///< of a plane: spacings at least, times the noise
-constexpr double kOwnReach = 5.0;        ///< in the median distance of a face's points
-constexpr double kLeastWidth = 0.35;     ///< of a face, standard deviation in spacings
-constexpr double kNeighbourly = 0.5;     ///< price of a face that none of the others has
-constexpr double kFlat = 0.01;           ///< spacings: such faces are plane
-constexpr double kMostBend = 0.1;        ///< share of their heights that a parabola explains,
-constexpr double kByChance = 6.0;        ///< and more of few points, where chance does
-constexpr double kOnePlane = 1.25;       ///< residual of two faces as one, in theirs
+constexpr double kPlaneReach[] = {0.1, 4.0};  ///< of a plane: spacings at least, times the noise
+constexpr double kOwnReach = 5.0;             ///< in the median distance of a face's points
+constexpr double kLeastWidth = 0.35;          ///< of a face, standard deviation in spacings
+constexpr double kNeighbourly = 0.5;          ///< price of a face that none of the others has
+constexpr double kFlat = 0.01;                ///< spacings: such faces are plane
+constexpr double kMostBend = 0.1;             ///< share of their heights that a parabola explains,
+constexpr double kByChance = 6.0;             ///< and more of few points, where chance does
+constexpr double kOnePlane = 1.25;            ///< residual of two faces as one, in theirs
 
 /// Of points about an origin near them.
 struct Sums {
@@ -317,7 +317,8 @@ Faces find_faces(const OrderedPoints& cloud, const Sampling& sampling, const Pro
   std::stable_sort(seeds.begin(), seeds.end(),
                    [&](std::uint32_t a, std::uint32_t b) { return residuals[a] < residuals[b]; });
   const auto quiet = static_cast<std::size_t>(kQuietShare * static_cast<double>(seeds.size()));
-  faces.within = std::max(kReach[0] * sampling.spacing, kReach[1] * residuals[seeds[quiet]]);
+  faces.within =
+      std::max(kPlaneReach[0] * sampling.spacing, kPlaneReach[1] * residuals[seeds[quiet]]);
   Growing growing(cloud, sampling.spacing, faces);
   for (const std::uint32_t seed : seeds) {
     growing.try_at(seed);
@@ -325,7 +326,7 @@ Faces find_faces(const OrderedPoints& cloud, const Sampling& sampling, const Pro
   }
   for (int round = 0; round < kChoices; ++round) {
     unite(cloud, faces);
-    measure_noise(cloud, faces, kReach[0] * sampling.spacing);
+    measure_noise(cloud, faces, kPlaneReach[0] * sampling.spacing);
     choose(cloud, faces);
     refit(faces, sums_of(cloud, faces));
   }

@@ -8,7 +8,7 @@
 namespace pcednet::lines {
 namespace {
 
-constexpr double kPrice = 10.0;
+constexpr double kPieceCost = 10.0;
 constexpr double kMostEmpty = 7.0;       ///< more points that a turned line leaves empty
 constexpr double kBreakOff = 0.25;       ///< spacings from the chord at which a line may break
 constexpr std::size_t kMostBreaks = 64;  ///< that a line runs over
@@ -112,7 +112,7 @@ std::vector<SupportLine> straight_parts(Points outline, double spacing) {
       if (outline[breaks[from]] == outline[breaks[to]]) continue;  // all of a loop
       const SupportLine line = supported(outline, breaks[from], breaks[to]);
       const double empty = empty_area(line, outline) / (spacing * spacing);
-      const double cost = best[from].cost + kPrice + empty;
+      const double cost = best[from].cost + kPieceCost + empty;
       if (cost < best[to].cost) best[to] = {cost, from, line};
     }
   }

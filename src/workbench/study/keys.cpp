@@ -12,7 +12,7 @@ namespace {
 // The structured bindings below name every member, so that a new one does not compile before it
 // has its place in the text.
 
-std::string text_of(const nn::Architecture& architecture) {
+std::string text_of_network(const nn::Architecture& architecture) {
   const auto& [kind, scales, features, classes, width, hidden] = architecture;
   // Scales and features are the descriptor's.
   static_cast<void>(scales), static_cast<void>(features);
@@ -20,7 +20,7 @@ std::string text_of(const nn::Architecture& architecture) {
                      width, hidden);
 }
 
-std::string text_of(const nn::TrainOptions& options) {
+std::string text_of_training(const nn::TrainOptions& options) {
   const auto& [optimiser, learning_rate, anneal, momentum, epochs, batch, balance, least_per_epoch,
                most_per_epoch, held_out, standardise, sign_rule, class_names, start, seed] =
       options;
@@ -40,8 +40,8 @@ std::string text_of(const detect::TrainOptions& options) {
   const auto& [descriptor, architecture, table, training, symmetry, teachers, context] = options;
   static_cast<void>(table);  // a study is of edge classes
   return fmt::format("{}, {}, {}, symmetry {}, teachers {}{}", gls::text_of(descriptor),
-                     text_of(architecture), text_of(training), static_cast<int>(symmetry), teachers,
-                     context ? ", context" : "");
+                     text_of_network(architecture), text_of_training(training),
+                     static_cast<int>(symmetry), teachers, context ? ", context" : "");
 }
 
 std::string text_of(const Treatment& treatment) {
