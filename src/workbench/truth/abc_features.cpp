@@ -132,7 +132,7 @@ fs::path find_abc_features(const fs::path& mesh) {
   replace(name, "_trimesh_", "_features_");
   std::vector<fs::path> candidates = {mesh.parent_path() / (name + ".yml")};
   for (const char* folder : {"obj", "stl2"}) {
-    std::string parent = "/" + mesh.parent_path().string() + "/";
+    std::string parent = fmt::format("/{}/", mesh.parent_path().string());
     if (!replace(parent, fmt::format("/{}/", folder), "/feat/")) continue;
     candidates.push_back(fs::path(parent.substr(1)) / (name + ".yml"));
   }
