@@ -143,7 +143,7 @@ std::size_t face_viewpoints(std::span<const Vec3> positions, std::span<Vec3> nor
   return faced;
 }
 
-Orientation orient_points(const NeighbourGraph& graph, std::span<Vec3> normals,
+Orientation orient_points(NeighbourGraph& graph, std::span<Vec3> normals,
                           const OrientOptions& options, const Progress* progress) {
   check(options);
   if (options.viewpoint) {
@@ -154,6 +154,8 @@ Orientation orient_points(const NeighbourGraph& graph, std::span<Vec3> normals,
   }
   Stage stage(progress, "orientation", 4);
   const Adjacency links = make_adjacency(graph, static_cast<std::size_t>(options.neighbours));
+  std::vector<std::uint32_t>().swap(graph.neighbours);
+  graph.degree = graph.fitted = 0;
   stage.advance();
   const SignVotes votes(graph.points, normals, links);
   Signs signs = contract(votes);
@@ -169,7 +171,7 @@ Orientation orient_points(const NeighbourGraph& graph, std::span<Vec3> normals,
   return orientation;
 }
 
-Orientation orient_normals(const NeighbourGraph& graph, std::span<const Vec3> positions,
+Orientation orient_normals(NeighbourGraph& graph, std::span<const Vec3> positions,
                            std::span<Vec3> normals, const OrientOptions& options,
                            const Progress* progress) {
   check(options);
@@ -193,7 +195,7 @@ Orientation orient_normals(std::span<const Vec3> positions, std::span<Vec3> norm
   check(options);
   check_size(positions, normals);
   const std::size_t count = options.viewpoint ? 1 : static_cast<std::size_t>(options.neighbours);
-  const NeighbourGraph graph = make_neighbour_graph(positions, count, progress);
+  NeighbourGraph graph = make_neighbour_graph(positions, count, progress);
   return orient_normals(graph, positions, normals, options, progress);
 }
 

@@ -36,7 +36,7 @@ OrientOptions orientation_on(const NeighbourGraph& graph, const PrepareOptions& 
 PreparedNormals estimate_oriented_normals(std::span<const Vec3> positions,
                                           const PrepareOptions& options, const Progress* progress) {
   check_extent(positions);
-  const NeighbourGraph graph = make_estimation_graph(
+  NeighbourGraph graph = make_estimation_graph(
       positions, {options.neighbours, options.exact_planes}, progress, options.curve);
   std::vector<Vec3> of_points = estimate_normals(graph, progress);
   PreparedNormals prepared;
@@ -61,7 +61,7 @@ PreparedNormals complete_and_orient_normals(std::span<const Vec3> positions,
                                             const Progress* progress) {
   check_size(positions, given);
   check_extent(positions);
-  const NeighbourGraph graph = make_estimation_graph(
+  NeighbourGraph graph = make_estimation_graph(
       positions, {options.neighbours, options.exact_planes}, progress, options.curve);
   PreparedNormals prepared;
   prepared.neighbours = graph.fitted;
