@@ -41,8 +41,9 @@ Answered random_answers(std::size_t points) {
 
 /// A row per point, zeros where there is none.
 std::vector<std::vector<float>> rows_of(const Answered& answered, int classes = 3) {
-  const ContextMatrix matrix(answered.positions, spatial::curve_order(answered.positions),
-                             answered.found, classes);
+  const ContextPlaces places(answered.positions, spatial::curve_order(answered.positions),
+                             answered.found);
+  const ContextMatrix matrix(places, answered.found, classes);
   std::vector<float> values(matrix.points().size() * matrix.width());
   matrix.describe(0, matrix.points().size(), values);
   std::vector<std::vector<float>> rows(answered.positions.size());

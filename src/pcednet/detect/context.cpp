@@ -20,26 +20,7 @@ namespace {
 constexpr double kReach = 1.2;    // the weight falls to nothing at so many r^2
 constexpr double kLittle = 1e-3;  // added to sums of probabilities, that they can be divided by
 constexpr double kSurest = 1e-6;  // probabilities nearer to 0 or 1 say no more
-
-/// The points that have a class, along a curve. Of points at one place the surer ones come first,
-/// whatever their numbers, so that it is the same for any numbering which of them are nearest.
-std::vector<std::uint32_t> order_of(std::span<const Vec3> positions,
-                                    std::span<const std::uint32_t> curve,
-                                    const Classification& found) {
-  std::vector<std::uint32_t> order(curve.begin(), curve.end());
-  std::erase_if(order, [&](std::uint32_t i) { return found.classes[i] == kUnlabelled; });
-  const auto surer = [&](std::uint32_t a, std::uint32_t b) {
-    return std::tie(found.p_sharp[a], found.p_smooth[a]) >
-           std::tie(found.p_sharp[b], found.p_smooth[b]);
-  };
-  for (auto first = order.begin(); first != order.end();) {
-    const auto last = std::find_if(
-        first + 1, order.end(), [&](std::uint32_t i) { return positions[i] != positions[*first]; });
-    if (last - first > 1) std::stable_sort(first, last, surer);
-    first = last;
-  }
-  return order;
-}
+constexpr std::size_t kPart = 1 << 15;  // points of a task
 
 /// Sums over the nearest points, of which every size of neighbourhood takes some more. y is a
 /// position as seen from the point, d its square.
@@ -141,27 +122,59 @@ nn::Architecture context_architecture(int classes) {
           .classes = classes};
 }
 
-ContextMatrix::ContextMatrix(std::span<const Vec3> positions, std::span<const std::uint32_t> curve,
-                             const Classification& found, int classes, float least_edge)
-    : kinds_(classes - 1) {
-  for (const std::uint32_t i : order_of(positions, curve, found)) {
-    const float edge = found.p_sharp[i] + found.p_smooth[i];
-    if (edge >= least_edge && found.classes[i] <= kSharpEdge) {
-      points_.push_back(i);
-      places_.push_back(static_cast<std::uint32_t>(positions_.size()));
-    }
-    positions_.push_back(positions[i]);
-    probabilities_.push_back({found.p_sharp[i], edge});
+ContextPlaces::ContextPlaces(std::span<const Vec3> positions, std::span<const std::uint32_t> curve,
+                             const Classification& found)
+    : order_(curve.begin(), curve.end()) {
+  std::erase_if(order_, [&](std::uint32_t i) { return found.classes[i] == kUnlabelled; });
+  positions_.resize(order_.size());
+  parallel_blocks(order_.size(), kPart, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) positions_[i] = positions[order_[i]];
+  });
+  for (std::size_t first = 0, last = 0; first < order_.size(); first = last) {
+    for (last = first + 1; last < order_.size() && positions_[last] == positions_[first];) ++last;
+    if (last - first == 1) continue;
+    copies_.push_back({static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(last)});
   }
   search_.emplace(positions_);
 }
 
+std::vector<std::uint32_t> ContextPlaces::order(const Classification& found) const {
+  std::vector<std::uint32_t> order = order_;
+  const auto surer = [&](std::uint32_t a, std::uint32_t b) {
+    return std::tie(found.p_sharp[a], found.p_smooth[a]) >
+           std::tie(found.p_sharp[b], found.p_smooth[b]);
+  };
+  for (const auto& [first, last] : copies_) {
+    std::stable_sort(order.begin() + first, order.begin() + last, surer);
+  }
+  return order;
+}
+
+ContextMatrix::ContextMatrix(const ContextPlaces& places, const Classification& found, int classes,
+                             float least_edge)
+    : around_(&places), kinds_(classes - 1) {
+  const std::vector<std::uint32_t> order = places.order(found);
+  probabilities_.resize(order.size());
+  parallel_blocks(order.size(), kPart, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t place = begin; place < end; ++place) {
+      const float sharp = found.p_sharp[order[place]];
+      probabilities_[place] = {sharp, sharp + found.p_smooth[order[place]]};
+    }
+  });
+  for (std::size_t place = 0; place < order.size(); ++place) {
+    if (probabilities_[place][1] < least_edge) continue;
+    if (found.classes[order[place]] > kSharpEdge) continue;
+    points_.push_back(order[place]);
+    places_.push_back(static_cast<std::uint32_t>(place));
+  }
+}
+
 void ContextMatrix::describe(std::size_t begin, std::size_t end, std::span<float> rows) const {
-  const std::size_t count = search_->available(kContextSizes.back());
+  const std::size_t count = around_->search().available(kContextSizes.back());
   parallel_blocks(end - begin, 1024, [&](std::size_t first, std::size_t last) {
     const auto places = std::span(places_).subspan(begin + first, last - first);
     std::vector<spatial::Neighbour> near(places.size() * count);
-    search_->nearest_others(places, count, near);
+    around_->search().nearest_others(places, count, near);
     for (std::size_t i = 0; i < places.size(); ++i) {
       describe_point(places[i], std::span(near).subspan(i * count, count),
                      rows.data() + (first + i) * width());
@@ -182,8 +195,8 @@ void ContextMatrix::describe_point(std::size_t place, std::span<const spatial::N
     std::size_t taken = 0;
     for (std::size_t size = 0; size < kSizes; ++size) {
       const std::size_t end = std::min(near.size(), static_cast<std::size_t>(kContextSizes[size]));
-      add_nearest(near.subspan(taken, end - taken), positions_.data(), probabilities_.data(), kind,
-                  place, sums);
+      add_nearest(near.subspan(taken, end - taken), around_->positions().data(),
+                  probabilities_.data(), kind, place, sums);
       if (end > 0) sq_r = near[end - 1].sq_distance;
       taken = end;
       const std::size_t lane = kind * kSizes + size;
@@ -224,8 +237,8 @@ void apply_context(const EdgeModel& model, std::span<const Vec3> positions,
                    std::span<const std::uint32_t> curve, Classification& result,
                    const Progress* progress) {
   const std::vector<std::uint8_t> classes = edge_outputs(model);
-  const ContextMatrix matrix(positions, curve, result, static_cast<int>(classes.size()),
-                             model.least_edge);
+  const ContextPlaces places(positions, curve, result);
+  const ContextMatrix matrix(places, result, static_cast<int>(classes.size()), model.least_edge);
   apply_context(*model.context, classes, matrix, result, progress);
 }
 

@@ -22,6 +22,30 @@ nn::Architecture context_architecture(int classes);
 /// Numbers per size and kind of edge, see ContextMatrix.
 constexpr int kContextFeatures = 8;
 
+/// The points of a cloud that have a class, for ContextMatrix: what does not depend on what a
+/// network found, so that it is made once for many networks.
+class ContextPlaces {
+ public:
+  /// Points that `found` leaves unlabelled have no place. `curve` is the spatial::curve_order() of
+  /// the positions.
+  ContextPlaces(std::span<const Vec3> positions, std::span<const std::uint32_t> curve,
+                const Classification& found);
+
+  /// The points by place, along the curve. Among points at one position the surer ones come first,
+  /// whatever their numbers, so that it is the same for any numbering which of them are nearest.
+  std::vector<std::uint32_t> order(const Classification& found) const;
+
+  std::span<const Vec3> positions() const { return positions_; }  ///< by place
+  const spatial::NeighbourSearch& search() const { return *search_; }
+
+ private:
+  std::vector<std::uint32_t> order_;
+  std::vector<std::array<std::uint32_t, 2>> copies_ =
+      {};  ///< first and last of those at a position
+  std::vector<Vec3> positions_;
+  std::optional<spatial::NeighbourSearch> search_ = {};
+};
+
 /// What a network found around each point, for a second network to decide with: edges are lines and
 /// bands, which the description of one point does not show.
 ///
@@ -38,10 +62,9 @@ constexpr int kContextFeatures = 8;
 /// None depends on the cloud's units, place or orientation.
 class ContextMatrix {
  public:
-  /// Points that `found` leaves unlabelled have no context and are none. `curve` is the
-  /// spatial::curve_order() of the positions.
-  ContextMatrix(std::span<const Vec3> positions, std::span<const std::uint32_t> curve,
-                const Classification& found, int classes, float least_edge = kLeastEdge);
+  /// `found` has a class for the points of `places`, which must outlive this.
+  ContextMatrix(const ContextPlaces& places, const Classification& found, int classes,
+                float least_edge = kLeastEdge);
 
   /// The points to describe, of a probability of an edge of `least_edge` or more and of no own
   /// class, in an order that is free of their numbering and kind to the caches.
@@ -60,11 +83,10 @@ class ContextMatrix {
   void describe_point(std::size_t place, std::span<const spatial::Neighbour> near,
                       float* row) const;
 
+  const ContextPlaces* around_;
   int kinds_;
-  std::vector<Vec3> positions_;                      ///< of all that have a class, along a curve
-  std::vector<std::array<float, 2>> probabilities_;  ///< theirs, of sharp-edge and of any edge
-  std::vector<std::uint32_t> points_, places_;       ///< to describe; where they are in these lists
-  std::optional<spatial::NeighbourSearch> search_;
+  std::vector<std::array<float, 2>> probabilities_;  ///< by place, of sharp-edge and of any edge
+  std::vector<std::uint32_t> points_, places_;       ///< to describe, and their places
 };
 
 /// Lets the second network decide, in place of what was found. `classes` are the edge_outputs() of

@@ -3,9 +3,19 @@
 #include <algorithm>
 
 #include "pcednet/cloud/point_cloud.h"
+#include "pcednet/core/parallel.h"
 
 namespace pcednet::detect {
 namespace {
+
+/// Calls work(row, point) for every point and its place among them.
+template <typename Work>
+void for_each_in_parallel(std::span<const std::uint32_t> points, const Work& work) {
+  constexpr std::size_t kAnswers = 1 << 12;
+  parallel_blocks(points.size(), kAnswers, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t row = begin; row < end; ++row) work(row, points[row]);
+  });
+}
 
 /// Writes the network's answer for one point.
 void decide_point(std::span<const float> probabilities, const std::vector<std::uint8_t>& classes,
@@ -67,12 +77,11 @@ Classification nothing_found(std::size_t points, bool has_own_classes) {
 
 void decide(std::span<const std::uint32_t> points, std::span<const float> probabilities,
             const std::vector<std::uint8_t>& classes, Classification& found) {
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    decide_point(probabilities.subspan(i * classes.size(), classes.size()), classes, points[i],
-                 found);
-  }
-  if (found.p_class.empty()) return;
-  for (const std::uint32_t i : points) found.p_class[i] = p_of_edge_class(found, i);
+  const std::size_t outputs = classes.size();
+  for_each_in_parallel(points, [&](std::size_t row, std::uint32_t i) {
+    decide_point(probabilities.subspan(row * outputs, outputs), classes, i, found);
+    if (!found.p_class.empty()) found.p_class[i] = p_of_edge_class(found, i);
+  });
 }
 
 void decide(std::span<const std::uint32_t> points, std::span<const float> probabilities,
@@ -80,9 +89,9 @@ void decide(std::span<const std::uint32_t> points, std::span<const float> probab
   if (found.p_class.empty()) return decide(points, probabilities, model.classes, found);
   const bool edges = has_edges(model.table);
   const std::size_t outputs = model.classes.size();
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    decide_own(probabilities.subspan(i * outputs, outputs), model, edges, points[i], found);
-  }
+  for_each_in_parallel(points, [&](std::size_t row, std::uint32_t i) {
+    decide_own(probabilities.subspan(row * outputs, outputs), model, edges, i, found);
+  });
 }
 
 ClassCounts count_classes(const std::vector<std::uint8_t>& classes) {

@@ -10,7 +10,8 @@ namespace pcednet::detect {
 
 /// Writes a network's answers for `points` into `found`: an edge where sharp-edge and smooth-edge
 /// together are more probable than non-edge, of the more probable kind. `probabilities` has a row
-/// for each of them, a number for each of `classes`, the EdgeClass of the network's outputs.
+/// for each of them, each of which comes once, a number for each of `classes`, the EdgeClass of the
+/// network's outputs.
 void decide(std::span<const std::uint32_t> points, std::span<const float> probabilities,
             const std::vector<std::uint8_t>& classes, Classification& found);
 

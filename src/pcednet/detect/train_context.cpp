@@ -24,8 +24,8 @@ ContextSamples make_samples(const EdgeModel& model, std::span<const TrainingClou
   ContextSamples samples;
   for (const TrainingCloud& cloud : clouds) {
     const auto found = classify(cloud.cloud, model, &cancel_only);
-    const ContextMatrix matrix(cloud.cloud.positions, cloud.cloud.curve, found,
-                               static_cast<int>(edge_outputs(model).size()));
+    const ContextPlaces places(cloud.cloud.positions, cloud.cloud.curve, found);
+    const ContextMatrix matrix(places, found, static_cast<int>(edge_outputs(model).size()));
     const std::size_t count = matrix.points().size();
     const std::size_t before = samples.values.size();
     samples.values.resize(before + count * matrix.width());

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <deque>
 #include <numeric>
 #include <optional>
 
+#include "pcednet/core/parallel.h"
 #include "pcednet/core/random.h"
 #include "pcednet/core/stopwatch.h"
 #include "pcednet/detect/context.h"
@@ -28,7 +28,8 @@ constexpr double kLeastPainted = 0.3;  // share of the painted among the samples
 // The same where some are of a class that the start does not know: it takes all other points of
 // that class for something else.
 constexpr double kLeastPaintedOfNew = 0.5;
-constexpr float kPlain = 0.05f;  // so sure to be no edge; half of the kept points are others
+constexpr float kPlain = 0.05f;         // so sure to be no edge; half of the kept points are others
+constexpr std::size_t kPart = 1 << 15;  // rows of a task
 
 // The context network looks again at points of this probability: below it hardly ever changes an
 // answer, and an adapted network leaves many points there.
@@ -70,33 +71,75 @@ class LessonWriter {
   }
 
   Lesson write(const Rows& rows) const {
-    std::vector<std::size_t> painted, plain, others;
-    const detect::Classification& answer = start_.answer;
-    for (std::size_t row = 0; row < rows.points.size(); ++row) {
-      const std::uint32_t i = rows.points[row];
-      if (labels_[i] == kLeftOut || (is_context_ && is_own(labels_[i]))) continue;
-      const bool is_plain = doubt_of(answer, i) < kPlain;
-      (labels_[i] != kUnlabelled ? painted : is_plain ? plain : others).push_back(row);
-    }
+    auto [painted, plain, others] = sorted_rows(rows);
     Random random(seed_, kKeptStream);
     const std::size_t kept = std::clamp(painted.size(), kFewestUnpainted, kMostUnpainted);
     choose(painted, kMostPainted, random);
     choose(plain, kept / 2, random);
     choose(others, kept / 2, random);
-    Lesson lesson;
     const auto unpainted = static_cast<double>(plain.size() + others.size());
     const double share = has_new_outputs() ? kLeastPaintedOfNew : kLeastPainted;
     const double wanted = share / (1 - share) * unpainted;
     const double copies = painted.empty() ? 0 : wanted / static_cast<double>(painted.size());
+    std::vector<std::size_t> chosen;
     for (int k = 0; k < std::max(1, static_cast<int>(std::lround(copies))); ++k) {
-      for (const std::size_t row : painted) add_painted(rows, row, lesson);
+      chosen.insert(chosen.end(), painted.begin(), painted.end());
     }
-    add_kept(rows, plain, lesson);
-    add_kept(rows, others, lesson);
+    const std::size_t first_kept = chosen.size();
+    chosen.insert(chosen.end(), plain.begin(), plain.end());
+    chosen.insert(chosen.end(), others.begin(), others.end());
+    Lesson lesson = read(rows, chosen, first_kept);
+    add_painted_targets(lesson, first_kept);
+    add_kept_targets(rows, std::span(chosen).subspan(first_kept), lesson);
     return lesson;
   }
 
  private:
+  struct SortedRows {
+    std::vector<std::size_t> painted = {}, plain = {}, others = {};
+  };
+
+  SortedRows sorted_rows(const Rows& rows) const {
+    enum Kind : std::uint8_t { kOut, kPainted, kIsPlain, kOther };
+    std::vector<std::uint8_t> kinds(rows.points.size());
+    parallel_blocks(kinds.size(), kPart, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t row = begin; row < end; ++row) {
+        const std::uint32_t i = rows.points[row];
+        const std::uint8_t label = labels_[i];
+        const bool out = label == kLeftOut || (is_context_ && is_own(label));
+        const bool is_plain = doubt_of(start_.answer, i) < kPlain;
+        kinds[row] = out ? kOut : label != kUnlabelled ? kPainted : is_plain ? kIsPlain : kOther;
+      }
+    });
+    SortedRows sorted;
+    for (std::size_t row = 0; row < kinds.size(); ++row) {
+      if (kinds[row] == kPainted) sorted.painted.push_back(row);
+      if (kinds[row] == kIsPlain) sorted.plain.push_back(row);
+      if (kinds[row] == kOther) sorted.others.push_back(row);
+    }
+    return sorted;
+  }
+
+  /// Values and outputs of the chosen rows, of which those from `first_kept` on are not painted.
+  Lesson read(const Rows& rows, std::span<const std::size_t> chosen, std::size_t first_kept) const {
+    Lesson lesson{.values = std::vector<float>(chosen.size() * rows.width),
+                  .outputs = std::vector<std::uint8_t>(chosen.size())};
+    constexpr std::size_t kRows = 512;
+    parallel_blocks(chosen.size(), kRows, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k) {
+        std::ranges::copy(rows.row(chosen[k]),
+                          lesson.values.begin() + static_cast<std::ptrdiff_t>(k * rows.width));
+        const std::uint32_t i = rows.points[chosen[k]];
+        const std::uint8_t its = k < first_kept ? labels_[i] : start_.answer.classes[i];
+        // An answer of another class than the context network's is no more than nearest to
+        // non-edge.
+        const std::uint8_t output = detect::output_of(its, model_);
+        lesson.outputs[k] = output < classes_.size() ? output : std::uint8_t{0};
+      }
+    });
+    return lesson;
+  }
+
   bool has_new_outputs() const {
     return !is_context_ && model_.classes.size() > start_.model.classes.size();
   }
@@ -105,35 +148,26 @@ class LessonWriter {
     return label != kUnlabelled && label > kBoundary && has_edges(model_.table);
   }
 
-  void add_row(const Rows& rows, std::size_t row, std::uint8_t its, Lesson& lesson) const {
-    lesson.values.resize(lesson.values.size() + rows.width);
-    rows.read(row, &*lesson.values.end() - rows.width);
-    // An answer of another class than the context network's is no more than nearest to non-edge.
-    const std::uint8_t output = detect::output_of(its, model_);
-    lesson.outputs.push_back(output < classes_.size() ? output : std::uint8_t{0});
-  }
-
-  void add_painted(const Rows& rows, std::size_t row, Lesson& lesson) const {
-    add_row(rows, row, labels_[rows.points[row]], lesson);
-    for (std::size_t c = 0; c < classes_.size(); ++c) {
-      lesson.targets.push_back(static_cast<float>(c == lesson.outputs.back()));
+  void add_painted_targets(Lesson& lesson, std::size_t painted) const {
+    for (std::size_t k = 0; k < painted; ++k) {
+      for (std::size_t c = 0; c < classes_.size(); ++c) {
+        lesson.targets.push_back(static_cast<float>(c == lesson.outputs[k]));
+      }
     }
   }
 
-  /// Points with the start's answer.
-  void add_kept(const Rows& rows, const std::vector<std::size_t>& some, Lesson& lesson) const {
-    const std::size_t before = lesson.values.size();
-    for (const std::size_t row : some) {
-      add_row(rows, row, start_.answer.classes[rows.points[row]], lesson);
-    }
+  /// The start's answers for the rows `kept`, which are the last of the lesson.
+  void add_kept_targets(const Rows& rows, std::span<const std::size_t> kept, Lesson& lesson) const {
     std::vector<float> said;
-    if (has_own_)
-      said = nn::predict(start_.model.network, std::span(lesson.values).subspan(before));
+    if (has_own_) {
+      said = nn::predict(start_.model.network,
+                         std::span(lesson.values).last(kept.size() * rows.width));
+    }
     const std::size_t outputs = start_.model.classes.size();
-    for (std::size_t k = 0; k < some.size(); ++k) {
+    for (std::size_t k = 0; k < kept.size(); ++k) {
       const auto own =
           has_own_ ? std::span(said).subspan(k * outputs, outputs) : std::span<float>();
-      add_targets(rows.points[some[k]], own, lesson);
+      add_targets(rows.points[kept[k]], own, lesson);
     }
   }
 
@@ -177,39 +211,38 @@ nn::TrainResult train(const nn::Model& from, const Lesson& lesson, std::uint64_t
                    options, on_epoch, progress);
 }
 
-/// The second look at clouds of which the first found something.
+/// The second look at clouds of which the first found something: all that the context network sees.
 class SecondLook {
  public:
-  SecondLook(const Subject& subject, std::span<const detect::Classification> found,
-             const detect::EdgeModel& model)
-      : firsts_(first_points(subject)), classes_(detect::edge_outputs(model)) {
-    for (std::size_t k = 0; k < subject.clouds.size(); ++k) {
-      const auto& [described, positions, curve] = subject.clouds[k];
-      matrices_.emplace_back(positions, curve, found[k], static_cast<int>(classes_.size()),
-                             model.least_edge);
+  SecondLook(std::span<const detect::ContextPlaces> places,
+             std::span<const detect::Classification> found, const detect::EdgeModel& model)
+      : classes_(detect::edge_outputs(model)), values_(places.size()) {
+    for (std::size_t k = 0; k < places.size(); ++k) {
+      const auto& matrix = matrices_.emplace_back(
+          places[k], found[k], static_cast<int>(classes_.size()), model.least_edge);
+      values_[k].resize(matrix.points().size() * matrix.width());
+      matrix.describe(0, matrix.points().size(), values_[k]);
     }
   }
 
-  Rows rows() const {
+  Rows rows(std::span<const std::uint32_t> firsts) const {
     std::vector<CloudRows> clouds;
-    for (const detect::ContextMatrix& matrix : matrices_) {
-      clouds.push_back({matrix.points(), [&matrix](std::size_t row, float* values) {
-                          matrix.describe(row, row + 1, {values, matrix.width()});
-                        }});
+    for (std::size_t k = 0; k < matrices_.size(); ++k) {
+      clouds.push_back({matrices_[k].points(), values_[k]});
     }
-    return joined_rows(std::move(clouds), firsts_, matrices_.front().width());
+    return joined_rows(std::move(clouds), firsts, matrices_.front().width());
   }
 
   void apply(const nn::Model& context, std::span<detect::Classification> found) const {
     for (std::size_t k = 0; k < found.size(); ++k) {
-      detect::apply_context(context, classes_, matrices_[k], found[k]);
+      detect::decide(matrices_[k].points(), nn::predict(context, values_[k]), classes_, found[k]);
     }
   }
 
  private:
-  std::vector<std::uint32_t> firsts_;
   std::vector<std::uint8_t> classes_;
-  std::deque<detect::ContextMatrix> matrices_ = {};
+  std::vector<detect::ContextMatrix> matrices_ = {};
+  std::vector<std::vector<float>> values_;  ///< of the matrices
 };
 
 }  // namespace
@@ -218,7 +251,18 @@ Start make_start(detect::EdgeModel model, const Subject& subject) {
   std::size_t most = 0;  // points of a cloud
   for (const auto& cloud : subject.clouds) most = std::max(most, cloud.positions.size());
   Start start{.model = detect::suited_to(std::move(model), most)};
-  start.answer = classify(subject, start.model);
+  std::optional<nn::Model> context = std::exchange(start.model.context, {});
+  std::vector<detect::Classification> found = classify_each(subject, start.model);
+  if (context) {
+    for (std::size_t k = 0; k < found.size(); ++k) {
+      const auto& [described, positions, curve] = subject.clouds[k];
+      start.places.emplace_back(positions, curve, found[k]);
+    }
+    SecondLook(start.places, found, start.model).apply(*context, found);
+  }
+  start.model.context = std::move(context);
+  start.answer = joined(std::move(found));
+  start.answer.counts = detect::count_classes(start.answer.classes);
   return start;
 }
 
@@ -253,17 +297,14 @@ Adapted adapt(const std::string& name, const Start& start, const Subject& subjec
   if (adapted.cancelled) return adapted;
   std::optional<nn::Model> context = std::exchange(model.context, {});
   Stopwatch watch;
-  std::vector<detect::Classification> found;
-  for (const auto& [described, positions, curve] : subject.clouds) {
-    found.push_back(detect::classify(described.cloud, positions, model));
-  }
+  std::vector<detect::Classification> found = classify_each(subject, model);
   adapted.seconds_classify = watch.lap();
   if (context) {
     throw_if_cancelled(progress);
     watch.lap();
-    const SecondLook second(subject, found, model);
+    const SecondLook second(start.places, found, model);
     adapted.seconds_classify += watch.lap();
-    learn(*context, second.rows(), true);
+    learn(*context, second.rows(first_points(subject)), true);
     if (adapted.cancelled) return adapted;
     watch.lap();
     second.apply(*context, found);

@@ -3,8 +3,10 @@
 #include <functional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "pcednet/core/progress.h"
+#include "pcednet/detect/context.h"
 #include "pcednet/nn/train.h"
 #include "workbench/annotate/subject.h"
 
@@ -14,6 +16,7 @@ namespace pcednet::annotate {
 struct Start {
   detect::EdgeModel model = {};
   detect::Classification answer = {};
+  std::vector<detect::ContextPlaces> places = {};  ///< one per cloud, if there is a context network
 };
 
 /// `model`, and its answer for clouds that were described as it wants them.

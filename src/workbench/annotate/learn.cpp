@@ -28,8 +28,8 @@ detect::Samples painted_samples(const Subject& subject, std::span<const std::uin
     const std::uint8_t label = labels[rows.points[row]];
     if (label >= subject.table.size()) continue;
     samples.labels.push_back(label);
-    samples.values.resize(samples.values.size() + rows.width);
-    rows.read(row, &*samples.values.end() - rows.width);
+    const std::span<const float> values = rows.row(row);
+    samples.values.insert(samples.values.end(), values.begin(), values.end());
   }
   return samples;
 }

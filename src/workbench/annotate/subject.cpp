@@ -49,27 +49,35 @@ detect::Classification part_of(const detect::Classification& found, std::size_t 
   return part;
 }
 
-detect::Classification classify(const Subject& subject, const detect::EdgeModel& model) {
+std::vector<detect::Classification> classify_each(const Subject& subject,
+                                                  const detect::EdgeModel& model) {
   std::vector<detect::Classification> found;
   for (const auto& [described, positions, curve] : subject.clouds) {
     found.push_back(detect::classify(described.cloud, positions, model));
   }
-  return joined(std::move(found));
+  return found;
+}
+
+detect::Classification classify(const Subject& subject, const detect::EdgeModel& model) {
+  return joined(classify_each(subject, model));
+}
+
+std::span<const float> Rows::row(std::size_t row) const {
+  const auto k =
+      static_cast<std::size_t>(std::upper_bound(ends.begin(), ends.end(), row) - ends.begin());
+  return clouds[k].values.subspan((row - (k == 0 ? 0 : ends[k - 1])) * width, width);
 }
 
 Rows joined_rows(std::vector<CloudRows> clouds, std::span<const std::uint32_t> firsts,
                  std::size_t width) {
   Rows rows{.width = width};
-  std::vector<std::size_t> ends;
+  std::size_t end = 0;
+  for (const CloudRows& cloud : clouds) rows.ends.push_back(end += cloud.points.size());
+  rows.points.reserve(end);
   for (std::size_t k = 0; k < clouds.size(); ++k) {
     for (const std::uint32_t i : clouds[k].points) rows.points.push_back(firsts[k] + i);
-    ends.push_back(rows.points.size());
   }
-  rows.read = [clouds = std::move(clouds), ends](std::size_t row, float* values) {
-    const auto k =
-        static_cast<std::size_t>(std::upper_bound(ends.begin(), ends.end(), row) - ends.begin());
-    clouds[k].read(row - (k == 0 ? 0 : ends[k - 1]), values);
-  };
+  rows.clouds = std::move(clouds);
   return rows;
 }
 
@@ -78,12 +86,8 @@ Rows described_rows(const Subject& subject) {
   std::vector<CloudRows> clouds;
   for (const SubjectCloud& one : subject.clouds) {
     const detect::DescribedCloud& cloud = one.described.cloud;
-    const std::size_t its = cloud.order.empty() ? 0 : cloud.values.size() / cloud.order.size();
-    width = std::max(width, its);
-    clouds.push_back({cloud.order, [&cloud, its](std::size_t row, float* values) {
-                        std::copy_n(cloud.values.begin() + static_cast<std::ptrdiff_t>(row * its),
-                                    its, values);
-                      }});
+    if (!cloud.order.empty()) width = cloud.values.size() / cloud.order.size();
+    clouds.push_back({cloud.order, cloud.values});
   }
   return joined_rows(std::move(clouds), first_points(subject), width);
 }

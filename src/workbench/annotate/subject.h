@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <span>
 #include <vector>
 
@@ -34,25 +33,35 @@ detect::Classification joined(std::vector<detect::Classification> found);
 detect::Classification part_of(const detect::Classification& found, std::size_t first,
                                std::size_t count);
 
-/// What `model` finds in the clouds.
+/// What `model` finds in each cloud.
+std::vector<detect::Classification> classify_each(const Subject& subject,
+                                                  const detect::EdgeModel& model);
+
+/// The same as one.
 detect::Classification classify(const Subject& subject, const detect::EdgeModel& model);
 
-/// Rows of one network's input, with the points that they describe, numbered through the clouds.
+/// What describes points of one cloud for a network: a row of numbers for each of the points, which
+/// are numbered from 0.
+struct CloudRows {
+  std::span<const std::uint32_t> points = {};
+  std::span<const float> values = {};
+};
+
+/// Rows of several clouds, with the points that they describe, numbered through the clouds.
 struct Rows {
   std::vector<std::uint32_t> points = {};
   std::size_t width = 0;
-  std::function<void(std::size_t row, float* values)> read = {};
+  std::vector<CloudRows> clouds = {};
+  std::vector<std::size_t> ends = {};  ///< of the clouds' rows
+
+  std::span<const float> row(std::size_t row) const;
 };
+
+/// `firsts` are the first_points(); the values must outlive the result.
+Rows joined_rows(std::vector<CloudRows> clouds, std::span<const std::uint32_t> firsts,
+                 std::size_t width);
 
 /// The rows of the clouds' descriptions.
 Rows described_rows(const Subject& subject);
-
-/// Rows of one cloud: their points, numbered from 0, and what reads one.
-struct CloudRows {
-  std::span<const std::uint32_t> points = {};
-  std::function<void(std::size_t row, float* values)> read = {};
-};
-Rows joined_rows(std::vector<CloudRows> clouds, std::span<const std::uint32_t> firsts,
-                 std::size_t width);
 
 }  // namespace pcednet::annotate
