@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include "pcednet/core/error.h"
@@ -101,6 +102,38 @@ TEST(Kernels, TransposeAnyNumberOfInputs) {
       for (int u = 0; u < inputs; ++u) {
         ASSERT_EQ(table.row(u)[p], samples[static_cast<std::size_t>(p * inputs + u)]);
       }
+    }
+  }
+}
+
+TEST(Kernels, ShareTheProductsOfMirroredInputs) {
+  constexpr int kLanes = 64, kInputs = 10, kMostOutputs = 17;  // tiles of 6, 4, 2 and 1
+  const std::vector<std::uint8_t> odd = {1, 0, 1, 1, 0, 1, 1, 1, 0, 1};
+  const std::vector<float> parameters = random_numbers(kMostOutputs * (kInputs + 1), 2);
+  const std::vector<float> inputs = random_numbers(kInputs * kLanes, 3);
+  for (const auto level : {VectorLevel::kBaseline, VectorLevel::kAvx2, VectorLevel::kAvx512}) {
+    if (level > vector_level()) continue;
+    const Kernels& its = kernels(level);
+    for (const int outputs : {13, 16, kMostOutputs}) {
+      AffineMap map{
+          .outputs = outputs, .segments = 2, .length = 4, .weight_output_stride = kInputs};
+      map.weight_segment_stride = 5;
+      map.bias = kMostOutputs * kInputs;
+      map.in_row = 1;
+      map.in_segment_rows = 5;
+      map.out_row = kInputs;
+      LaneTable plain(kInputs + outputs, kLanes);
+      std::copy(inputs.begin(), inputs.end(), plain.row(0));
+      const SignPattern signs = {odd.data(), kInputs, 0, 1};
+      its.mirror(signs, plain.row(0), kLanes);
+      LaneTable shared = plain;
+      its.forward(map, parameters.data(), plain.row(0), kLanes);
+      its.forward_mirrored(map, signs, parameters.data(), shared.row(0), kLanes);
+      EXPECT_NE(plain.row(kInputs)[0], 0.0f);
+      EXPECT_EQ(std::memcmp(plain.row(0), shared.row(0),
+                            sizeof(float) * kLanes * static_cast<std::size_t>(kInputs + outputs)),
+                0)
+          << outputs;
     }
   }
 }

@@ -26,7 +26,14 @@ void Evaluator::run(const float* const* rows, LaneTable& table) const {
   if (rule.symmetry == Symmetry::kCanonical) kernels_->orient(signs, data, lanes);
   const float* parameters = model_->network.parameters.data();
   for (const Layer& layer : plan_.layers) {
-    for (const AffineMap& map : layer.maps) kernels_->forward(map, parameters, data, lanes);
+    const bool mirrored = paired() && &layer == &plan_.layers.front();
+    for (const AffineMap& map : layer.maps) {
+      if (mirrored) {
+        kernels_->forward_mirrored(map, signs, parameters, data, lanes);
+      } else {
+        kernels_->forward(map, parameters, data, lanes);
+      }
+    }
     kernels_->activate(layer.activation, table.row(layer.out_row), layer.out_rows, lanes);
   }
 }

@@ -68,6 +68,11 @@ struct Kernels {
   void (*orient)(const SignPattern& signs, float* table, int lanes);
 
   void (*forward)(const AffineMap& map, const float* parameters, float* table, int lanes);
+
+  /// The same for inputs that mirror() has made, with three operations in place of four: the
+  /// products of the second half are those of the first, or their negatives.
+  void (*forward_mirrored)(const AffineMap& map, const SignPattern& signs, const float* parameters,
+                           float* table, int lanes);
   void (*activate)(Activation activation, float* rows, int count, int lanes);
 
   /// Replaces the rows (logits) by class probabilities. With `paired`, the logits are first
