@@ -14,15 +14,19 @@
 namespace pcednet::detect {
 namespace {
 
+/// Points that are classified at once where their descriptions are there: few pauses for all
+/// threads, and cancelled soon.
+constexpr std::size_t kDescribedBlock = 8 * kBlock;
+
 /// Classifies the points `order` of a cloud of `points`, whose descriptions rows_of(begin, end)
-/// gives block by block.
+/// gives for so many at a time.
 template <typename RowsOf>
 Classification decide_rows(std::size_t points, std::span<const std::uint32_t> order,
-                           const RowsOf& rows_of, const EdgeModel& model,
+                           std::size_t at_a_time, const RowsOf& rows_of, const EdgeModel& model,
                            const Progress* progress) {
   Classification found = nothing_found(points, has_own_classes(model.table));
   Stage stage(progress, "describe", order.size());
-  for_each_block(order.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+  for_each_block(order.size(), at_a_time, [&](std::size_t begin, std::size_t end) {
     const auto block = order.subspan(begin, end - begin);
     decide(block, nn::predict(model.network, rows_of(begin, end)), model, found);
     stage.advance(block.size());
@@ -55,7 +59,8 @@ Classification describe_and_decide(const PreparedCloud& cloud, const EdgeModel& 
     describe(space, order.subspan(begin, end - begin), some, &cancel_only);
     return some;
   };
-  Classification found = decide_rows(cloud.positions.size(), order, rows_of, model, progress);
+  Classification found =
+      decide_rows(cloud.positions.size(), order, kBlock, rows_of, model, progress);
   found.s_min = space.scales().front();
   found.s_max = space.scales().back();
   found.note = gls::note_on(model.descriptor, space.scales(), cloud.positions);
@@ -100,10 +105,10 @@ Classification classify(const PreparedCloud& cloud, const EdgeModel& model,
 }
 
 Classification classify(const DescribedCloud& cloud, std::span<const Vec3> positions,
-                        const EdgeModel& model) {
+                        const EdgeModel& model, const Progress* progress) {
   if (model.sparse) {
     const bool sparse = is_sparse(model, positions, cloud.order);
-    Classification found = classify(cloud, positions, chosen(model, sparse));
+    Classification found = classify(cloud, positions, chosen(model, sparse), progress);
     found.sparse = sparse;
     return found;
   }
@@ -116,10 +121,11 @@ Classification classify(const DescribedCloud& cloud, std::span<const Vec3> posit
   const auto rows_of = [&](std::size_t begin, std::size_t end) {
     return std::span(cloud.values).subspan(begin * width, (end - begin) * width);
   };
-  Classification found = decide_rows(cloud.points, cloud.order, rows_of, model, nullptr);
+  Classification found =
+      decide_rows(cloud.points, cloud.order, kDescribedBlock, rows_of, model, progress);
   if (model.context) {
     const auto curve = spatial::curve_order(positions);
-    apply_context(model, positions, curve, found);
+    apply_context(model, positions, curve, found, progress);
   }
   found.counts = count_classes(found.classes);
   return found;

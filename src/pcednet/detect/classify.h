@@ -48,6 +48,6 @@ Classification classify(const PreparedCloud& cloud, const EdgeModel& model,
 /// The same for a cloud that has been described as the model wants it. Throws Error(kModelMismatch)
 /// if the rows are not of the model's size, or the positions not the cloud's.
 Classification classify(const DescribedCloud& cloud, std::span<const Vec3> positions,
-                        const EdgeModel& model);
+                        const EdgeModel& model, const Progress* progress = nullptr);
 
 }  // namespace pcednet::detect

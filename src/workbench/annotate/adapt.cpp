@@ -297,7 +297,7 @@ Adapted adapt(const std::string& name, const Start& start, const Subject& subjec
   if (adapted.cancelled) return adapted;
   std::optional<nn::Model> context = std::exchange(model.context, {});
   Stopwatch watch;
-  std::vector<detect::Classification> found = classify_each(subject, model);
+  std::vector<detect::Classification> found = classify_each(subject, model, progress);
   adapted.seconds_classify = watch.lap();
   if (context) {
     throw_if_cancelled(progress);

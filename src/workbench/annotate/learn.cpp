@@ -108,7 +108,7 @@ Adapted learn(const std::string& name, const Subject& subject, std::span<const s
   learnt.model = std::move(trained.model);
   if (learnt.cancelled) return learnt;
   Stopwatch watch;
-  learnt.found = classify(subject, learnt.model);
+  learnt.found = classify(subject, learnt.model, progress);
   learnt.seconds_classify = watch.lap();
   return learnt;
 }

@@ -18,8 +18,9 @@ using Lock = std::unique_lock<std::mutex>;
 
 namespace {
 
-/// Training waits so long for the next stroke.
-constexpr std::chrono::milliseconds kPause{150};
+/// Training waits so long for the next stroke: longer than an undo key that is held down takes to
+/// repeat itself. Strokes of the mouse follow each other more slowly; they cancel a training.
+constexpr std::chrono::milliseconds kPause{50};
 
 /// The nodes that hold the points, ascending.
 std::vector<std::uint32_t> nodes_with(std::span<const std::uint32_t> points, std::size_t first,

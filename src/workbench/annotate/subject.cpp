@@ -50,16 +50,19 @@ detect::Classification part_of(const detect::Classification& found, std::size_t 
 }
 
 std::vector<detect::Classification> classify_each(const Subject& subject,
-                                                  const detect::EdgeModel& model) {
+                                                  const detect::EdgeModel& model,
+                                                  const Progress* progress) {
+  const Progress cancel_only = without_report(progress);
   std::vector<detect::Classification> found;
   for (const auto& [described, positions, curve] : subject.clouds) {
-    found.push_back(detect::classify(described.cloud, positions, model));
+    found.push_back(detect::classify(described.cloud, positions, model, &cancel_only));
   }
   return found;
 }
 
-detect::Classification classify(const Subject& subject, const detect::EdgeModel& model) {
-  return joined(classify_each(subject, model));
+detect::Classification classify(const Subject& subject, const detect::EdgeModel& model,
+                                const Progress* progress) {
+  return joined(classify_each(subject, model, progress));
 }
 
 std::span<const float> Rows::row(std::size_t row) const {

@@ -33,12 +33,14 @@ detect::Classification joined(std::vector<detect::Classification> found);
 detect::Classification part_of(const detect::Classification& found, std::size_t first,
                                std::size_t count);
 
-/// What `model` finds in each cloud.
+/// What `model` finds in each cloud. Throws Error(kCancelled) if `progress` says so.
 std::vector<detect::Classification> classify_each(const Subject& subject,
-                                                  const detect::EdgeModel& model);
+                                                  const detect::EdgeModel& model,
+                                                  const Progress* progress = nullptr);
 
 /// The same as one.
-detect::Classification classify(const Subject& subject, const detect::EdgeModel& model);
+detect::Classification classify(const Subject& subject, const detect::EdgeModel& model,
+                                const Progress* progress = nullptr);
 
 /// What describes points of one cloud for a network: a row of numbers for each of the points, which
 /// are numbered from 0.
