@@ -2,66 +2,19 @@
 // SCREENSHOT_EDITOR one of the dialogue.
 import assert from "node:assert/strict";
 import fs from "node:fs";
-import os from "node:os";
 import path from "node:path";
-import { after, before, test } from "node:test";
+import { test } from "node:test";
 
-import { readPly, roof, writeRoof } from "./annotate_cloud.mjs";
-import { launch, serve } from "./browser.mjs";
+import { readPly } from "./annotate_cloud.mjs";
+import { complainedOfNothing, openAnnotator } from "./annotator.mjs";
 
-const folder = fs.mkdtempSync(path.join(os.tmpdir(), "pcednet-classes-"));
-const input = path.join(folder, "roof.ply");
-const complaints = [];
-let browser, page, server;
+const its = openAnnotator("classes", { height: 800, ready: () => (page = its.page) });
+const { folder, paint, settled, state } = its;
+let page;
 
-const settled = () =>
-  page.waitForFunction(
-    () => annotator.store.now.progress === null && annotator.stage.isSettled && !annotator.client.isBusy,
-  );
-const state = (name) => page.evaluate((key) => annotator.store.now[key], name);
 const rows = () => page.locator(".classes:not(.clouds) .name").allTextContents();
 const hasRows = (wanted) =>
   page.waitForFunction((n) => document.querySelectorAll(".classes:not(.clouds) .name").length === n, wanted);
-
-/** Paints along places of the roof, as the page's tools do. */
-async function stroke(id, centres, radius) {
-  const before = await state("undo");
-  await page.evaluate(
-    ([id, centres, radius]) => {
-      const { origin } = annotator.store.now.session;
-      annotator.client.paint({
-        id: crypto.randomUUID(),
-        tool: "brush",
-        class: id,
-        centres: centres.map((c) => c.map((x, axis) => x - origin[axis])),
-        radius,
-        protect: false,
-        hidden: [],
-        clip: null,
-      });
-    },
-    [id, centres, radius],
-  );
-  await page.waitForFunction((was) => annotator.store.now.undo > was, before);
-}
-
-before(async () => {
-  writeRoof(input, roof());
-  server = await serve([input]);
-  browser = await launch();
-  page = await browser.newPage({ viewport: { width: 1280, height: 800 } });
-  page.setDefaultTimeout(120_000);
-  page.on("pageerror", (e) => complaints.push(e.message));
-  await page.goto(server.address);
-  await settled();
-  await page.waitForFunction(() => annotator.store.now.runs.some((run) => run.current));
-});
-
-after(async () => {
-  await browser?.close();
-  server?.program.kill("SIGKILL");
-  fs.rmSync(folder, { recursive: true, force: true });
-});
 
 test("replaces the edge classes by own ones before the first stroke", async () => {
   assert.deepEqual(await rows(), ["non-edge", "smooth edge", "sharp edge", "eraser"]);
@@ -109,7 +62,7 @@ test("paints them by their keys, trains, and shows their colours", async () => {
   assert.equal(await state("paintClass"), 2, "there is no fourth class");
   await page.getByRole("checkbox", { name: "Train after each stroke" }).uncheck();
   const [left, right, front, back] = [0.1, 1.9, 0.1, 1.3]; // of the lower roof, beside its edges
-  await stroke(
+  await paint(
     0,
     [
       [left, 0.5, 0.6],
@@ -121,7 +74,7 @@ test("paints them by their keys, trains, and shows their colours", async () => {
     ],
     0.05,
   );
-  await stroke(
+  await paint(
     1,
     [
       [0.6, 0, 0.6],
@@ -133,7 +86,7 @@ test("paints them by their keys, trains, and shows their colours", async () => {
     ],
     0.04,
   );
-  await stroke(
+  await paint(
     2,
     [
       [0, 0, 0.6],
@@ -198,4 +151,4 @@ test("saves the cloud with their names", async () => {
   assert.equal(painted.filter((label) => label === 2).length, counts[2]);
 });
 
-test("has no complaints", () => assert.deepEqual(complaints, []));
+complainedOfNothing(its);

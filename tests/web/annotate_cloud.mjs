@@ -83,12 +83,12 @@ export function roof() {
   return points;
 }
 
-export function writeRoof(file, points) {
+export function writeRoof(file, points, type = "float") {
   const head = [
     "ply",
     "format ascii 1.0",
     `element vertex ${points.length}`,
-    ...["x", "y", "z", "nx", "ny", "nz"].map((name) => `property float ${name}`),
+    ...["x", "y", "z", "nx", "ny", "nz"].map((name) => `property ${type} ${name}`),
     "end_header",
   ];
   fs.writeFileSync(

@@ -2,24 +2,29 @@
 // a picture goes.
 import assert from "node:assert/strict";
 import fs from "node:fs";
-import os from "node:os";
 import path from "node:path";
-import { after, before, test } from "node:test";
+import { test } from "node:test";
 
 import { roof, writeRoof } from "./annotate_cloud.mjs";
-import { launch, serve } from "./browser.mjs";
+import { complainedOfNothing, openAnnotator } from "./annotator.mjs";
 
-const folder = fs.mkdtempSync(path.join(os.tmpdir(), "pcednet-clouds-"));
-const inputs = ["roof.ply", "barn.ply"].map((name) => path.join(folder, name));
-const complaints = [];
-let browser, page, server;
+const its = openAnnotator("clouds", { prepare: writesTwo, ready: () => (page = its.page) });
+const { folder, settled, state } = its;
+let page;
 
-const settled = () =>
-  page.waitForFunction(
-    () => annotator.store.now.progress === null && annotator.stage.isSettled && !annotator.client.isBusy,
-  );
-const state = (name) => page.evaluate((key) => annotator.store.now[key], name);
 const looksAt = (file) => page.waitForFunction((name) => annotator.store.now.session?.file === name, file);
+
+/** The second is half as large, far away and thinner. */
+function writesTwo(folder) {
+  const inputs = ["roof.ply", "barn.ply"].map((name) => path.join(folder, name));
+  writeRoof(inputs[0], roof());
+  const second = roof().filter((_, i) => i % 2 === 0);
+  writeRoof(
+    inputs[1],
+    second.map((point) => ({ ...point, p: point.p.map((c) => c / 2 + 50) })),
+  );
+  return inputs;
+}
 
 /** A dab in the middle of the view with the mouse. */
 async function dab(key) {
@@ -30,31 +35,6 @@ async function dab(key) {
   await page.mouse.click(box.x + box.width / 2, box.y + box.height / 2);
   await settled();
 }
-
-before(async () => {
-  writeRoof(inputs[0], roof());
-  // The other is half as large, far away and thinner.
-  writeRoof(
-    inputs[1],
-    roof()
-      .filter((_, i) => i % 2 === 0)
-      .map((point) => ({ ...point, p: point.p.map((c) => c / 2 + 50) })),
-  );
-  server = await serve(inputs);
-  browser = await launch();
-  page = await browser.newPage({ viewport: { width: 1280, height: 720 } });
-  page.setDefaultTimeout(120_000);
-  page.on("pageerror", (e) => complaints.push(e.message));
-  await page.goto(server.address);
-  await settled();
-  await page.waitForFunction(() => annotator.store.now.runs.some((run) => run.current));
-});
-
-after(async () => {
-  await browser?.close();
-  server?.program.kill("SIGKILL");
-  fs.rmSync(folder, { recursive: true, force: true });
-});
 
 test("lists both and shows what the model finds in each", async () => {
   const names = await page.locator(".clouds .name").allTextContents();
@@ -117,4 +97,4 @@ test("saves each beside its input", async () => {
   }
 });
 
-test("complained of nothing", () => assert.deepEqual(complaints, []));
+complainedOfNothing(its);

@@ -3,29 +3,29 @@
 import assert from "node:assert/strict";
 import { once } from "node:events";
 import fs from "node:fs";
-import os from "node:os";
 import path from "node:path";
-import { after, before, test } from "node:test";
+import { test } from "node:test";
 
 import { roof, writeRoof } from "./annotate_cloud.mjs";
-import { launch, serve } from "./browser.mjs";
+import { complainedOfNothing, openAnnotator } from "./annotator.mjs";
+import { serve } from "./browser.mjs";
 
-const folder = fs.mkdtempSync(path.join(os.tmpdir(), "pcednet-start-"));
+const its = openAnnotator("start", {
+  prepare: (folder) => {
+    writeRoof(path.join(folder, "roof.ply"), roof());
+    return [path.join(folder, "roof.ply"), "--model", "scan"];
+  },
+  ready: () => (page = its.page),
+});
+const { folder, paint, settled, shown } = its;
 const input = path.join(folder, "roof.ply");
-let browser, page, server;
+let page;
 
 async function kill() {
-  const ended = once(server.program, "exit");
-  server.program.kill("SIGKILL");
+  const ended = once(its.server.program, "exit");
+  its.server.program.kill("SIGKILL");
   await ended;
 }
-
-const settled = () =>
-  page.waitForFunction(
-    () => annotator.store.now.progress === null && annotator.stage.isSettled && !annotator.client.isBusy,
-  );
-
-const shown = (run) => page.waitForFunction((n) => annotator.store.now.runs.some((r) => r.current && r.run === n), run);
 
 /** Shares of the page's points predicted as 0, 1, 2, 3. */
 const predicted = () =>
@@ -35,43 +35,6 @@ const predicted = () =>
     for (const { prediction } of annotator.stage.chunks) prediction.forEach((c) => (c < 4 && ++count[c], ++all));
     return count.map((n) => n / all);
   });
-
-/** A stroke of the brush round a place of the cloud, by the page's own means. */
-async function paint(id, edgeClass, centre, radius = 0.05) {
-  await page.evaluate(
-    ([name, c, p, r]) => {
-      const { origin } = annotator.store.now.session;
-      annotator.client.paint({
-        id: name,
-        tool: "brush",
-        class: c,
-        centres: [p.map((x, i) => x - origin[i])],
-        radius: r,
-        protect: false,
-        hidden: [],
-        clip: null,
-      });
-    },
-    [id, edgeClass, centre, radius],
-  );
-  await settled();
-}
-
-before(async () => {
-  writeRoof(input, roof());
-  server = await serve([input, "--model", "scan"]);
-  browser = await launch();
-  page = await browser.newPage({ viewport: { width: 1280, height: 720 } });
-  page.setDefaultTimeout(120_000);
-  await page.goto(server.address);
-  await settled();
-});
-
-after(async () => {
-  await browser?.close();
-  server?.program.kill("SIGKILL");
-  fs.rmSync(folder, { recursive: true, force: true });
-});
 
 test("shows at once what the model finds, boundary too", async () => {
   await shown(0);
@@ -145,7 +108,7 @@ test("learns from one stroke, and says that this is too little to tell how right
   assert.ok(await hint.isVisible());
   await page.getByRole("checkbox", { name: "Train after each stroke" }).uncheck();
   await page.waitForFunction(() => !annotator.store.now.settings.auto);
-  await paint("a", 0, [0.2, 0.7, 0.6], 0.1);
+  await paint(0, [[0.2, 0.7, 0.6]], 0.1);
   assert.ok(await hint.isHidden(), "nobody who paints needs it");
   await page.getByText("prediction, out of date").waitFor();
   await page.getByRole("checkbox", { name: "Train after each stroke" }).check();
@@ -158,9 +121,9 @@ test("learns from one stroke, and says that this is too little to tell how right
 });
 
 test("judges by whole strokes once there are two of two classes", async () => {
-  await paint("b", 0, [1.6, 0.7, 0.6], 0.1);
-  await paint("c", 2, [1, 0, 0.6], 0.02);
-  await paint("d", 2, [1.6, 0, 0.6], 0.02);
+  await paint(0, [[1.6, 0.7, 0.6]], 0.1);
+  await paint(2, [[1, 0, 0.6]], 0.02);
+  await paint(2, [[1.6, 0, 0.6]], 0.02);
   await page.getByText(/Right on held-out strokes: [\d.]+ %; model scan: [\d.]+ %\./).waitFor();
 });
 
@@ -224,9 +187,9 @@ test("loses no stroke and goes on by itself when the program is killed and start
   await page.mouse.down();
   await page.mouse.up();
   await page.getByText("pcednet does not answer: nothing can be painted.").waitFor();
-  const before = server.address;
-  server = await serve([input]);
-  assert.equal(server.address, before);
+  const before = its.server.address;
+  its.server = await serve([input]);
+  assert.equal(its.server.address, before);
   await page.waitForFunction(() => annotator.store.now.undo === 5 && annotator.store.now.connected);
   await settled();
   assert.deepEqual(await eye(), view, "the view is as it was");
@@ -250,12 +213,14 @@ test("takes back what the program never got if it starts at another address, and
   await page.mouse.move(middle[0] + 20, middle[1], { steps: 3 });
   assert.ok((await painted()) > kept, "the stroke is drawn");
   await page.mouse.up();
-  server = await serve([input, "--port", server.port]);
+  its.server = await serve([input, "--port", its.server.port]);
   await page.getByText("pcednet was started again: open the address that it printed.").waitFor();
   await page.getByText("The stroke was not applied").waitFor();
   await expectPainted(kept);
-  await page.goto(server.address);
+  await page.goto(its.server.address);
   await settled();
   assert.equal(await page.evaluate(() => annotator.store.now.undo), 4);
   await page.waitForFunction(() => annotator.store.now.writer);
 });
+
+complainedOfNothing(its);

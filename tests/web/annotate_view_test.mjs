@@ -1,24 +1,19 @@
 // How the annotator shows a cloud: framing, views along the axes, orthographic, the clipping box, slices, measuring,
 // painted points, dark and light. Environment as annotate_test.mjs.
 import assert from "node:assert/strict";
-import fs from "node:fs";
-import os from "node:os";
-import path from "node:path";
-import { after, before, test } from "node:test";
+import { test } from "node:test";
 
-import { roof, writeRoof } from "./annotate_cloud.mjs";
-import { launch, serve } from "./browser.mjs";
+import { complainedOfNothing, openAnnotator } from "./annotator.mjs";
 
-const folder = fs.mkdtempSync(path.join(os.tmpdir(), "pcednet-view-"));
-const input = path.join(folder, "roof.ply");
-const complaints = [];
-let browser, page, server;
-
-const settled = () =>
-  page.waitForFunction(
-    () => annotator.store.now.progress === null && annotator.stage.isSettled && !annotator.client.isBusy,
-  );
-const state = (name) => page.evaluate((key) => annotator.store.now[key], name);
+const its = openAnnotator("view", {
+  ready: async () => {
+    page = its.page;
+    await page.getByRole("checkbox", { name: "Train after each stroke" }).uncheck();
+    await settled();
+  },
+});
+const { settled, state } = its;
+let page;
 
 /** The flight is over, all is drawn. */
 async function arrived() {
@@ -73,26 +68,6 @@ const look = () =>
     }
     return { first, points, box, rims };
   });
-
-before(async () => {
-  writeRoof(input, roof());
-  server = await serve([input]);
-  browser = await launch();
-  page = await browser.newPage({ viewport: { width: 1280, height: 720 } });
-  page.setDefaultTimeout(120_000);
-  page.on("pageerror", (e) => complaints.push(e.message));
-  await page.goto(server.address);
-  await settled();
-  await page.waitForFunction(() => annotator.store.now.runs.some((run) => run.current));
-  await page.getByRole("checkbox", { name: "Train after each stroke" }).uncheck();
-  await settled();
-});
-
-after(async () => {
-  await browser?.close();
-  server?.program.kill("SIGKILL");
-  fs.rmSync(folder, { recursive: true, force: true });
-});
 
 test("frames the cloud itself: whole, in the middle, as large as there is room", async () => {
   for (const [width, height] of [
@@ -277,4 +252,4 @@ test("is light or dark as the user likes", async () => {
   await page.getByRole("radio", { name: "system" }).check({ force: true });
 });
 
-test("complained of nothing", () => assert.deepEqual(complaints, []));
+complainedOfNothing(its);
