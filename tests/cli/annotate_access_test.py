@@ -259,6 +259,8 @@ half.rename({str(given)!r})
 
     def test_says_what_is_wrong_and_ends(self):
         self.assertIn("no such file", run("annotate", self.folder / "none.ply", expect=3).stderr)
+        self.assertIn("is a folder; give point files",
+                      run("annotate", self.folder, "--no-browser", expect=3).stderr)
         (self.folder / "bad.ply").write_text("ply\nrubbish\n")
         for _ in range(20):  # told to stop while its server is still starting
             run("annotate", self.folder / "bad.ply", "--no-browser", expect=3)
@@ -268,6 +270,15 @@ half.rename({str(given)!r})
         server.open()
         code, errors = server.end()
         self.assertEqual((code, "ready" in errors), (0, True))
+
+    def test_says_where_strokes_may_go_if_the_folder_cannot_be_written(self):
+        self.folder.chmod(0o555)
+        # Root may do everything, and becomes somebody else.
+        somebody = (lambda: os.setuid(65534)) if os.getuid() == 0 else None
+        errors = run("annotate", self.cloud, "--no-browser", expect=1, preexec_fn=somebody).stderr
+        self.assertIn("the folder cannot be written; --project FILE keeps the strokes elsewhere",
+                      errors)
+        self.folder.chmod(0o755)
 
 
 if __name__ == "__main__":

@@ -365,31 +365,73 @@ test("still paints after a reload, and in another window once the first is close
   page = second;
 });
 
-test("fits a phone: the cloud has room, no button is cut off", async () => {
-  await page.setViewportSize({ width: 390, height: 844 });
-  const { canvas, cut } = await page.evaluate(() => {
-    const { width, height } = annotator.stage.canvas.getBoundingClientRect();
-    const names = [...document.querySelectorAll("header button, aside button, aside input")]
-      .filter((e) => e.checkVisibility() && e.getBoundingClientRect().right > innerWidth)
-      .map((e) => e.textContent || e.type);
-    return { canvas: { width, height }, cut: names };
+for (const [name, width, height, room] of [
+  ["phone", 390, 844, 300],
+  ["tablet", 768, 1024, 450],
+]) {
+  test(`fits a ${name}: the cloud has room, nothing is cut off`, async () => {
+    await page.setViewportSize({ width, height });
+    await settled(page);
+    const { canvas, cut } = await page.evaluate(() => {
+      const closed = [...document.querySelectorAll("aside details:not([open])")];
+      for (const section of closed) section.open = true;
+      const { width, height } = annotator.stage.canvas.getBoundingClientRect();
+      const names = [...document.querySelectorAll("header button, aside *")]
+        .filter((e) => e.checkVisibility())
+        .filter((e) => e.getBoundingClientRect().right > innerWidth || e.getBoundingClientRect().left < 0)
+        .map((e) => `${e.tagName} ${e.textContent}`);
+      for (const section of closed) section.open = false;
+      return { canvas: { width, height }, cut: names };
+    });
+    assert.deepEqual(cut, []);
+    assert.ok(canvas.width > room && canvas.height > 350, JSON.stringify(canvas));
+    // What does not fit below can be scrolled to.
+    const last = page.locator("aside button:visible, aside input:visible").last();
+    await last.scrollIntoViewIfNeeded();
+    const box = await last.boundingBox();
+    assert.ok(box.y >= 0 && box.y + box.height <= height, JSON.stringify(box));
+    await page.evaluate(() => document.querySelector("aside").scrollTo(0, 0));
+    if (name === "phone" && process.env.SCREENSHOT_PHONE) {
+      await page.screenshot({ path: process.env.SCREENSHOT_PHONE });
+    }
+    await page.setViewportSize({ width: 1280, height: 720 });
+    await settled(page);
   });
-  assert.deepEqual(cut, []);
-  assert.ok(canvas.width > 300 && canvas.height > 350, JSON.stringify(canvas));
-  if (process.env.SCREENSHOT_PHONE) await page.screenshot({ path: process.env.SCREENSHOT_PHONE });
-  await page.setViewportSize({ width: 1280, height: 720 });
-  await settled(page);
-});
+}
 
-test("goes to an uncertain place", async () => {
+test("goes near an uncertain place, marks it, and back", async () => {
+  await page.keyboard.press("f");
+  await page.waitForTimeout(500); // the flight
+  const rank = (wanted) =>
+    page.waitForFunction(
+      (n) => annotator.store.now.uncertain?.rank === (n ?? annotator.store.now.uncertain?.of),
+      wanted,
+    );
+  const away = () =>
+    page.evaluate(() => {
+      const { eye } = annotator.stage.camera.view;
+      return Math.hypot(...annotator.store.now.uncertain.position.map((c, i) => c - eye[i]));
+    });
+  const mark = page.locator(".mark");
+  assert.equal(await mark.getAttribute("visibility"), "hidden");
+  const far = await page.evaluate(() => Math.hypot(...annotator.stage.camera.view.eye));
   await page.keyboard.press("n");
-  await page.waitForFunction(() => annotator.store.now.uncertain?.rank === 1);
+  await rank(1);
+  await page.waitForTimeout(500); // the flight
+  await settled(page);
+  assert.ok((await away()) < 0.6 * far, `${await away()} of ${far}`);
+  assert.equal(await mark.getAttribute("visibility"), "visible");
+  assert.ok(
+    (await mark.getAttribute("class")) !== (await page.locator(".overlay circle").first().getAttribute("class")),
+  );
+  const [at, view] = [await mark.boundingBox(), await page.locator("canvas").first().boundingBox()];
+  assert.ok(Math.abs(at.x + at.width / 2 - view.x - view.width / 2) < 0.1 * view.width, "it is in the middle");
   await page.keyboard.press("n");
-  await page.waitForFunction(() => annotator.store.now.uncertain?.rank === 2);
+  await rank(2);
   await page.keyboard.press("Shift+N");
-  await page.waitForFunction(() => annotator.store.now.uncertain?.rank === 1);
+  await rank(1);
   await page.keyboard.press("Shift+N");
-  await page.waitForFunction(() => annotator.store.now.uncertain?.rank === annotator.store.now.uncertain.of);
+  await rank(null);
 });
 
 test("saves beside the input and says where", async () => {

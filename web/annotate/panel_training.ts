@@ -175,7 +175,7 @@ export function runsPanel(store: AppStore, client: Client): HTMLElement {
   const body = h("tbody", {});
   const table = h(
     "table",
-    {},
+    { class: "runs" },
     h(
       "thead",
       {},

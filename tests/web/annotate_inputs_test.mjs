@@ -1,0 +1,87 @@
+// Inputs that are not everyday clouds: LAS in a national grid, three points. Environment as annotator.mjs.
+import assert from "node:assert/strict";
+import { spawnSync } from "node:child_process";
+import fs from "node:fs";
+import path from "node:path";
+import { test } from "node:test";
+
+import { roof, writeRoof } from "./annotate_cloud.mjs";
+import { complainedOfNothing, openAnnotator } from "./annotator.mjs";
+import { serve } from "./browser.mjs";
+
+const PLACE = [652000, 5412000, 300];
+const its = openAnnotator("inputs", { prepare: writesGrid, ready: () => (page = its.page) });
+const { folder, paint, settled, state } = its;
+let page;
+
+/** The roof somewhere in Europe, as LAS. */
+function writesGrid(folder) {
+  const [written, input] = ["grid.ply", "grid.las"].map((name) => path.join(folder, name));
+  const there = roof().map((point) => ({ ...point, p: point.p.map((c, axis) => c + PLACE[axis]) }));
+  writeRoof(written, there, "double");
+  const done = spawnSync(process.env.PCEDNET, ["convert", written, "-o", input], { encoding: "utf8" });
+  assert.equal(done.status, 0, done.stderr);
+  return [input];
+}
+
+test("tells the coordinates of a national grid apart in the clipping box", async () => {
+  const panel = page.locator("details.section", { hasText: "Clipping box" });
+  await panel.locator("summary").click();
+  const limits = async (axis) => {
+    const read = async (side) => {
+      const row = panel.locator("label", { hasText: `${axis} ${side}` });
+      return Number((await row.textContent()).replace(`${axis} ${side}`, ""));
+    };
+    return [await read("from"), await read("to")];
+  };
+  const size = [2, 1.4, 1.1];
+  for (const [i, axis] of ["x", "y", "z"].entries()) {
+    const [from, to] = await limits(axis);
+    assert.ok(Math.abs(from - PLACE[i]) < 0.02, `${axis} from ${from}`);
+    assert.ok(Math.abs(to - PLACE[i] - size[i]) < 0.02, `${axis} to ${to}`);
+  }
+  await page.getByRole("slider", { name: "x from" }).press("End");
+  await settled();
+  const [moved, end] = await limits("x");
+  assert.ok(moved > PLACE[0] + 1.9 && moved <= end, `${moved} to ${end}`);
+  await page.getByRole("button", { name: "Reset", exact: true }).click();
+  await settled();
+});
+
+test("saves LAS as LAS, with what was painted", async () => {
+  await page.getByRole("checkbox", { name: "Train after each stroke" }).uncheck();
+  await paint(2, [[1, 0, 0.6].map((c, axis) => c + PLACE[axis])], 0.05);
+  const painted = (await state("counts"))[2];
+  assert.ok(painted > 5);
+  await page.getByRole("button", { name: "Save cloud" }).click();
+  await page.locator(".notice", { hasText: "grid_annotated.las" }).waitFor();
+  const saved = path.join(folder, "grid_annotated.las");
+  assert.equal(fs.readFileSync(saved).subarray(0, 4).toString(), "LASF");
+  const told = spawnSync(process.env.PCEDNET, ["info", saved], { encoding: "utf8" });
+  assert.match(told.stdout, /painted_label/);
+});
+
+test("opens three points and asks for no option that it lacks", async () => {
+  const input = path.join(folder, "three.ply");
+  writeRoof(
+    input,
+    [
+      [0, 0, 0],
+      [1, 0, 0],
+      [0, 1, 0],
+    ].map((p) => ({ p, n: [0, 0, 1] })),
+  );
+  const { program, address } = await serve([input]);
+  try {
+    const few = await its.browser.newPage();
+    await few.goto(address);
+    await few.getByText("This is what model general finds.").waitFor();
+    assert.match(await few.locator("header").textContent(), /3 points/);
+    assert.doesNotMatch(await few.locator("body").innerText(), /s_min|s_max|NaN|undefined/);
+    await few.close();
+  } finally {
+    program.kill("SIGKILL");
+  }
+});
+
+complainedOfNothing(its);
