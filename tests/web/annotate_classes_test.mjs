@@ -124,12 +124,14 @@ test("renames, adds and removes what is not painted", async () => {
   await dialog.getByRole("button", { name: "Add a class" }).click();
   await dialog.getByLabel("Name of the class").nth(3).fill("pipe");
   await dialog.getByRole("button", { name: "Use these classes" }).click();
+  await dialog.waitFor({ state: "hidden" });
   await hasRows(5);
   assert.deepEqual(await rows(), ["face", "ledge", "tip", "pipe", "eraser"]);
   assert.equal((await state("runs")).length, 1, "names need no training");
   await page.keyboard.press("Shift+E");
   await dialog.getByRole("button", { name: "Remove" }).nth(3).click();
   await dialog.getByRole("button", { name: "Use these classes" }).click();
+  await dialog.waitFor({ state: "hidden" });
   await hasRows(4);
   // The eye of a class hides its points, and the keys say their names.
   await page.keyboard.press("Shift+3");

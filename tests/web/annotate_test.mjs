@@ -359,7 +359,10 @@ test("still paints after a reload, and in another window once the first is close
   const second = await open();
   assert.equal(await second.evaluate(() => annotator.store.now.writer), false);
   await second.keyboard.press("Control+z");
-  await second.getByText("Take over to paint here.").waitFor();
+  const refusal = second.locator(".notice", { hasText: "Take over to paint here." });
+  await refusal.waitFor();
+  const [{ y: legend }, notice] = [await second.locator(".legend").boundingBox(), await refusal.boundingBox()];
+  assert.ok(notice.y + notice.height <= legend, "a notice leaves the legend free");
   await page.close({ runBeforeUnload: true });
   await second.waitForFunction(() => annotator.store.now.writer);
   page = second;
@@ -392,6 +395,10 @@ for (const [name, width, height, room] of [
     assert.ok(box.y >= 0 && box.y + box.height <= height, JSON.stringify(box));
     await page.evaluate(() => document.querySelector("aside").scrollTo(0, 0));
     if (name === "phone" && process.env.SCREENSHOT_PHONE) {
+      await page.evaluate(() => document.querySelectorAll(".notice").forEach((notice) => notice.remove()));
+      await page.evaluate(() => annotator.stage.fit("first"));
+      await page.waitForTimeout(500); // the flight
+      await settled(page);
       await page.screenshot({ path: process.env.SCREENSHOT_PHONE });
     }
     await page.setViewportSize({ width: 1280, height: 720 });

@@ -134,7 +134,8 @@ function open(page: HTMLElement): void {
   bindKeys(commands, () => document.querySelector("dialog[open]") !== null || store.now.progress !== null);
   bindSpace(pointer);
 
-  place.append(overlay.element, hint(store), legend(store), curtain(store, client), notices.element);
+  const foot = h("div", { class: "foot" }, notices.element, legend(store));
+  place.append(overlay.element, hint(store), curtain(store, client), foot);
   page.replaceChildren(
     header(store, (what) => void save(what), client),
     toolbar(store, press),
