@@ -1,6 +1,7 @@
 // Inputs that are not everyday clouds: LAS in a national grid, three points. Environment as annotator.mjs.
 import assert from "node:assert/strict";
 import { spawnSync } from "node:child_process";
+import { once } from "node:events";
 import fs from "node:fs";
 import path from "node:path";
 import { test } from "node:test";
@@ -61,27 +62,66 @@ test("saves LAS as LAS, with what was painted", async () => {
   assert.match(told.stdout, /painted_label/);
 });
 
-test("opens three points and asks for no option that it lacks", async () => {
+/** Serves three points while `look` runs. */
+async function withThree(words, look) {
   const input = path.join(folder, "three.ply");
+  const corners = [
+    [0, 0, 0],
+    [1, 0, 0],
+    [0, 1, 0],
+  ];
   writeRoof(
     input,
-    [
-      [0, 0, 0],
-      [1, 0, 0],
-      [0, 1, 0],
-    ].map((p) => ({ p, n: [0, 0, 1] })),
+    corners.map((p) => ({ p, n: [0, 0, 1] })),
   );
-  const { program, address } = await serve([input]);
+  const { program, address } = await serve([input, ...words]);
+  const few = await its.browser.newPage();
   try {
-    const few = await its.browser.newPage();
+    await look(few, address);
+  } finally {
+    await few.close();
+    const ended = once(program, "exit");
+    program.kill("SIGKILL");
+    await ended;
+  }
+}
+
+test("opens three points and asks for no option that it lacks", () =>
+  withThree([], async (few, address) => {
     await few.goto(address);
     await few.getByText("This is what model general finds.").waitFor();
     assert.match(await few.locator("header").textContent(), /3 points/);
     assert.doesNotMatch(await few.locator("body").innerText(), /s_min|s_max|NaN|undefined/);
-    await few.close();
-  } finally {
-    program.kill("SIGKILL");
-  }
-});
+  }));
+
+test("shows a prediction that comes while the page opens", () =>
+  withThree(["--model", "none", "--project", path.join(folder, "opening.json")], async (few, address) => {
+    const { origin, searchParams } = new URL(address);
+    const headers = { "X-Pcednet-Token": searchParams.get("token"), "Content-Type": "application/json" };
+    const ask = async (place, body) => {
+      const answer = await fetch(`${origin}/api/${place}`, body && { method: "POST", headers, body });
+      return answer.json();
+    };
+    let release, asked;
+    const released = new Promise((done) => (release = done));
+    const first = new Promise((done) => (asked = done));
+    await few.route("**/api/session", async (route) => {
+      const response = await route.fetch();
+      if ((await response.json()).state === "ready") {
+        asked();
+        await released;
+      }
+      await route.fulfill({ response });
+    });
+    await few.goto(address);
+    await first;
+    headers["X-Window"] = (await ask("window", "{}")).window;
+    await ask(`window/${headers["X-Window"]}/take`, "{}");
+    await ask("settings", JSON.stringify({ start: "general" }));
+    await few.waitForFunction(() => annotator.store.now.predictionVersion > 0); // the page hears of it
+    release();
+    await few.waitForFunction(() => annotator.stage.chunks.some((c) => c.prediction.some((said) => said < 3)));
+    assert.equal(await few.evaluate(() => annotator.store.now.mode), "prediction");
+  }));
 
 complainedOfNothing(its);

@@ -174,7 +174,8 @@ export class Client {
       return;
     }
     this.opened = true;
-    const predicted = (this.predicted = session.prediction_version > 0 && session.run !== null);
+    // A prediction may have come after the session was asked for.
+    const predicted = (this.predicted ||= session.prediction_version > 0 && session.run !== null);
     const usual = predicted ? "prediction" : session.has_colours ? "rgb" : "labels";
     const first = !this.wasOpened;
     this.wasOpened = true;
