@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "pcednet/gls/fast_scale_space.h"
+#include "pcednet/spatial/curve_order.h"
 #include "pcednet/tiles/inputs.h"
 
 namespace pcednet::tiles {
@@ -11,6 +12,10 @@ namespace {
 
 constexpr std::size_t kCubes = 64;
 constexpr std::size_t kDensePoints = 1'000'000;  ///< about so many in all cubes
+
+// Orienting estimated normals takes most memory of all that a plan does. It is done in batches of
+// many stretches of the curve: the first decides how many neighbours there are.
+constexpr std::size_t kBatchPoints = 300'000, kStretches = 16;
 
 bool any_holds(std::span<const BoundingBox> cubes, const Vec3& p) {
   return std::any_of(cubes.begin(), cubes.end(),
@@ -53,6 +58,42 @@ void append_inside(const PointCloud& part, std::span<const BoundingBox> cubes, P
   append_surface(part, inside, to);
 }
 
+/// Points that are prepared together.
+std::vector<std::vector<std::uint32_t>> batches_of(std::span<const Vec3> positions) {
+  const std::vector<std::uint32_t> curve = spatial::curve_order(positions);
+  std::vector<std::vector<std::uint32_t>> batches((curve.size() - 1) / kBatchPoints + 1);
+  const std::size_t stretches = kStretches * batches.size();
+  for (std::size_t s = 0; s < stretches; ++s) {
+    const auto at = [&](std::size_t stretch) {
+      return curve.begin() + static_cast<std::ptrdiff_t>(stretch * curve.size() / stretches);
+    };
+    auto& batch = batches[s % batches.size()];
+    batch.insert(batch.end(), at(s), at(s + 1));
+  }
+  return batches;
+}
+
+void note(const detect::PreparedCloud& prepared, Plan& plan) {
+  plan.normals = prepared.decision;
+  plan.notes.insert(plan.notes.end(), prepared.notes.begin(), prepared.notes.end());
+}
+
+/// What prepare() does with points without normals; the batches do not know of each other's signs.
+std::vector<Vec3> estimate_in_batches(const PointCloud& dense, detect::PrepareOptions options,
+                                      Plan& plan, const Progress* progress) {
+  std::vector<Vec3> normals(dense.size(), Vec3::Zero());
+  for (const std::vector<std::uint32_t>& batch : batches_of(dense.positions)) {
+    PointCloud points;
+    points.scanners = dense.scanners;
+    append_surface(dense, batch, points);
+    const detect::PreparedCloud prepared = detect::prepare(points, options, progress);
+    if (!options.decided) note(prepared, plan);
+    options.decided = plan.normals;
+    for (std::size_t i = 0; i < batch.size(); ++i) normals[batch[i]] = prepared.normals[i];
+  }
+  return normals;
+}
+
 }  // namespace
 
 PointCloud read_dense_sample(std::span<const Vec3> sample, const Plan& plan,
@@ -77,9 +118,15 @@ PointCloud read_dense_sample(std::span<const Vec3> sample, const Plan& plan,
 
 void decide(const PointCloud& dense, const detect::EdgeModel& model,
             const detect::PrepareOptions& options, Plan& plan, const Progress* progress) {
-  const detect::PreparedCloud prepared = detect::prepare(dense, options, progress);
-  plan.normals = prepared.decision;
-  plan.notes.insert(plan.notes.end(), prepared.notes.begin(), prepared.notes.end());
+  detect::PreparedCloud prepared;
+  std::vector<Vec3> estimated;
+  if (!dense.has_normals() && dense.size() > kBatchPoints) {
+    estimated = estimate_in_batches(dense, options, plan, progress);
+    prepared.normals = estimated;
+  } else {
+    prepared = detect::prepare(dense, options, progress);
+    note(prepared, plan);
+  }
   plan.pyramid.corner = plan.box.min;
   plan.pyramid.side = (plan.box.max - plan.box.min).maxCoeff();
   const bool spheres = model.descriptor.reconstruction == gls::Reconstruction::kSphere ||
@@ -87,8 +134,8 @@ void decide(const PointCloud& dense, const detect::EdgeModel& model,
   if (plan.model.exact || !spheres) return;
   gls::ScaleSpaceOptions descriptor = model.descriptor;
   descriptor.s_min = plan.s_min, descriptor.s_max = plan.s_max;
-  const gls::FastScaleSpace space({prepared.positions, prepared.normals, prepared.curve},
-                                  descriptor, progress);
+  const gls::FastScaleSpace space({dense.positions, prepared.normals, prepared.curve}, descriptor,
+                                  progress);
   plan.pyramid.levels = space.pyramid_plan().levels;
 }
 
