@@ -24,7 +24,7 @@ ordered_json json_of(const formats::AttributeFacts& attribute) {
   ordered_json described = {{"name", attribute.name},
                             {"type", name_of(attribute.type)},
                             {"components", attribute.components}};
-  if (attribute.has_numbers) {
+  if (attribute.has_numbers()) {
     described["min"] = attribute.least;
     described["max"] = attribute.largest;
   }
@@ -108,6 +108,7 @@ ordered_json json_of(const std::filesystem::path& path, const formats::CloudFact
                        {"format", facts.format},
                        {"points", facts.points},
                        {"position_type", name_of(facts.position_type)}};
+  if (facts.read < facts.points) file["points_read"] = facts.read;
   if (!facts.bounds.empty()) {
     file["bounds"] = {{"min", json_of(facts.bounds.min)}, {"max", json_of(facts.bounds.max)}};
   }

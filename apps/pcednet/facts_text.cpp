@@ -57,7 +57,7 @@ std::string text_of(const std::map<std::uint8_t, std::size_t>& labels, const Cla
 std::string text_of(const formats::AttributeFacts& attribute) {
   std::string text = fmt::format("{} {}", name_of(attribute.type), attribute.name);
   if (attribute.components > 1) text += fmt::format(" x {}", attribute.components);
-  if (!attribute.has_numbers) return text;
+  if (!attribute.has_numbers()) return text;
   const bool narrow = attribute.type == ScalarType::kFloat32;
   const auto number = [&](double value) {
     return narrow ? fmt::format("{}", static_cast<float>(value)) : fmt::format("{}", value);
@@ -65,11 +65,11 @@ std::string text_of(const formats::AttributeFacts& attribute) {
   return text + ", " + number(attribute.least) + " to " + number(attribute.largest);
 }
 
-std::string text_of(const Defects& defects) {
+std::string text_of(const Defects& defects, bool in_parts) {
   const std::pair<std::size_t, const char*> counts[] = {
       {defects.positions, "positions not finite"},
       {defects.normals, "normals unusable"},
-      {defects.duplicates, "duplicate positions"}};
+      {defects.duplicates, in_parts ? "duplicate positions or more" : "duplicate positions"}};
   std::vector<std::string> parts;
   for (const auto& [count, name] : counts) {
     if (count != 0) parts.push_back(fmt::format("{} {}", count, name));
@@ -139,6 +139,11 @@ std::string text_of(const std::filesystem::path& path, const formats::CloudFacts
   Lines lines(path.string());
   lines.add("format", std::string(facts.format));
   lines.add("points", fmt::format("{}", facts.points));
+  if (facts.read < facts.points) {
+    lines.add("read", fmt::format("{}, a sample: counts and ranges below are of these. --all "
+                                  "reads every point",
+                                  facts.read));
+  }
   lines.add("position type", name_of(facts.position_type));
   if (!facts.bounds.empty()) {
     lines.add("least x y z", plain(facts.bounds.min));
@@ -147,6 +152,9 @@ std::string text_of(const std::filesystem::path& path, const formats::CloudFacts
   if (facts.spacing) {
     lines.add("mean spacing", fmt::format("{:.6g}", facts.spacing->mean));
     lines.add("median spacing", fmt::format("{:.6g}", facts.spacing->median));
+  }
+  if (!facts.spacing && facts.read < facts.points) {
+    lines.add("spacing", "not known: parts of the file lie in one another. --all finds it");
   }
   const std::size_t unusable = facts.defects.normals;
   lines.add("normals", !facts.has_normals ? "no"
@@ -158,7 +166,7 @@ std::string text_of(const std::filesystem::path& path, const formats::CloudFacts
   for (const auto& attribute : facts.attributes) lines.add("attribute", text_of(attribute));
   lines.add_all("also", facts.elements);
   lines.add_all("comment", facts.comments);
-  lines.add("defects", text_of(facts.defects));
+  lines.add("defects", text_of(facts.defects, facts.parts > 0));
   lines.add_all("problem", facts.problems);
   if (facts.e57) add(*facts.e57, lines);
   if (facts.las) add(*facts.las, lines);

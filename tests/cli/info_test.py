@@ -1,10 +1,12 @@
 """`pcednet info`: spacing, problems, folders with files that cannot be read."""
 import json
+import signal
+import subprocess
 import unittest
 
 import numpy as np
 
-from support import CliTest, cube, run, write_ply
+from support import PROGRAM, CliTest, cube, run, write_ply
 
 
 class Info(CliTest):
@@ -40,6 +42,43 @@ class Info(CliTest):
         files = self.info(self.folder, expect=3)
         self.assertIn("b.ply", files[0]["error"])
         self.assertEqual(files[1]["points"], 100)
+
+    def test_a_sample_is_read_of_a_large_file_unless_all_are_asked_for(self):
+        side = np.arange(128.0)  # two million points and more
+        grid = np.stack(np.meshgrid(side, side, side, indexing="ij"), -1).reshape(-1, 3) * 0.25
+        grid[1] = grid[0]
+        labels = (grid[:, 0] > 15).astype(np.uint8)
+        random = np.random.default_rng(3).permutation(len(grid))
+        for name, order in (("slabs", slice(None)), ("random", random)):
+            write_ply(self.folder / "a.ply", grid[order], labels=labels[order])
+            part, = self.info(self.folder / "a.ply")
+            self.assertEqual((part["points"], part["points_read"]), (len(grid), 800000))
+            self.assertEqual(sum(part["labels"].values()), 800000)
+            if name == "slabs":
+                self.assertEqual(part["median_spacing"], 0.25)
+            else:
+                self.assertNotIn("median_spacing", part)
+            said = run("info", self.folder / "a.ply").stdout
+            self.assertRegex(said, r"read +800000, a sample: .* --all reads every point")
+            whole, = self.info(self.folder / "a.ply", "--all")
+            self.assertNotIn("points_read", whole)
+            self.assertEqual(whole["median_spacing"], 0.25)
+            self.assertEqual(whole["labels"]["1"], int(labels.sum()))
+            self.assertEqual(whole["bounds"], {"min": [0, 0, 0], "max": [31.75] * 3})
+            self.assertEqual(whole["defects"]["duplicate_positions"], 1 if name == "slabs" else 0)
+        run("convert", self.folder / "a.ply", "-o", self.folder / "a.laz")
+        part, = self.info(self.folder / "a.laz")
+        self.assertEqual((part["bounds"]["max"], part["points"]), ([31.75] * 3, len(grid)))
+        self.assertEqual(sum(part["las"]["points_by_return"].values()), part["points_read"])
+
+    def test_ctrl_c_ends_a_long_reading(self):
+        write_ply(self.folder / "a.ply", np.random.default_rng(3).random((2_100_000, 3)))
+        process = subprocess.Popen([PROGRAM, "info", str(self.folder / "a.ply"), "--all", "--threads", "1",
+                                    "--progress", "plain"], stderr=subprocess.PIPE, stdout=subprocess.PIPE)
+        self.assertIn(b"read", process.stderr.readline())
+        process.send_signal(signal.SIGINT)
+        said = process.communicate(timeout=60)
+        self.assertEqual((process.returncode, said[0]), (130, b""))
 
     def test_lists_files_in_a_virtual_point_cloud_by_their_headers(self):
         p, n, _ = cube(300)

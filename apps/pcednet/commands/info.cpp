@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <csignal>
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -13,6 +14,7 @@
 #include "pcednet/core/error.h"
 #include "pcednet/core/output_file.h"
 #include "pcednet/formats/virtual_cloud.h"
+#include "pcednet/tiles/large_facts.h"
 
 namespace pcednet::app {
 namespace {
@@ -22,6 +24,7 @@ using nlohmann::ordered_json;
 struct InfoRequest {
   std::vector<std::string> inputs;
   std::string json, vpc;
+  bool all = false;
 };
 
 void write_json(const InfoRequest& request, const ordered_json& files, const Common& common) {
@@ -56,6 +59,25 @@ void list_files(const InfoRequest& request, const Common& common) {
   say(fmt::format("{}: {} files, {} points", request.vpc, files.size(), points));
 }
 
+/// While there is one, Ctrl-C ends the program at once, which is right where nothing is written.
+class EndsAtOnce {
+ public:
+  EndsAtOnce() : before_(std::signal(SIGINT, SIG_DFL)) {}
+  EndsAtOnce(const EndsAtOnce&) = delete;
+  EndsAtOnce& operator=(const EndsAtOnce&) = delete;
+  ~EndsAtOnce() { std::signal(SIGINT, before_); }
+
+ private:
+  void (*before_)(int);
+};
+
+formats::CloudFacts facts_of(const std::filesystem::path& path, bool all,
+                             const Progress& progress) {
+  if (auto facts = tiles::large_facts(path, {.all = all}, &progress)) return std::move(*facts);
+  const EndsAtOnce reading;
+  return formats::cloud_facts(path);
+}
+
 void info(const InfoRequest& request, const Common& common) {
   if (!request.vpc.empty()) return list_files(request, common);
   if (request.json != "-") check_writable(request.json, common.overwrite());
@@ -76,7 +98,7 @@ void info(const InfoRequest& request, const Common& common) {
         if (request.json != "-") fmt::print("{}", text_of(path, model));
         return;
       }
-      const formats::CloudFacts facts = formats::cloud_facts(path);
+      const formats::CloudFacts facts = facts_of(path, request.all, progress);
       files.push_back(json_of(path, facts));
       if (request.json != "-") fmt::print("{}", text_of(path, facts));
     };
@@ -89,18 +111,23 @@ void info(const InfoRequest& request, const Common& common) {
 }  // namespace
 
 void add_info(CLI::App& app, Common& common) {
-  CLI::App* command = add_command(app, common, "info", "Describe point files and models",
-                                  "pcednet info scan.ply\n"
-                                  "pcednet info folder/ --json report.json\n"
-                                  "pcednet info scan.ply --json -\n"
-                                  "pcednet info my.safetensors     its classes\n"
-                                  "pcednet info tiles/ --vpc city.vpc");
+  CLI::App* command =
+      add_command(app, common, "info", "Describe point files and models",
+                  "pcednet info scan.ply\n"
+                  "pcednet info folder/ --json report.json\n"
+                  "pcednet info scan.ply --json -\n"
+                  "pcednet info city.laz --all     counts every point of a large file\n"
+                  "pcednet info my.safetensors     its classes\n"
+                  "pcednet info tiles/ --vpc city.vpc");
   auto request = std::make_shared<InfoRequest>();
   command
       ->add_option("inputs", request->inputs, "Point files, folders of point files, or model files")
       ->required();
   command->add_option("--json", request->json,
                       "Write the result as JSON to this file; - for standard output only");
+  command->add_flag("--all", request->all,
+                    "Read all points of LAS, LAZ and binary PLY files of more than two million, "
+                    "not a sample of them");
   command->add_option("--vpc", request->vpc,
                       "Instead of describing them, list LAS, LAZ and COPC files in a virtual point "
                       "cloud for QGIS; only their headers are read");

@@ -37,22 +37,69 @@ std::optional<SampledSpacing> find_spacing(const PointCloud& cloud) {
   return SampledSpacing{sum / static_cast<double>(sample * kNeighbours), nearest[sample / 2]};
 }
 
-/// What may surprise, one sentence each.
-std::vector<std::string> find_problems(const io::LoadedCloud& loaded, const CloudFacts& facts) {
-  const PointCloud& cloud = loaded.cloud;
+void add_values(const Attribute& attribute, std::size_t points, AttributeFacts& facts) {
+  for (std::size_t i = 0; i < points; ++i) {
+    for (std::size_t c = 0; c < attribute.components; ++c) {
+      const double value = attribute.value(i, c);
+      facts.least = std::fmin(facts.least, value);
+      facts.largest = std::fmax(facts.largest, value);
+    }
+  }
+}
+
+void add_in_common(const PointCloud& part, CloudFacts& facts) {
+  facts.position_type = part.position_type;
+  facts.has_normals = part.has_normals();
+  facts.has_colours = !part.colours.empty();
+  facts.comments = part.comments;
+  for (const Attribute& attribute : part.attributes) {
+    facts.attributes.push_back({attribute.name, attribute.type, attribute.components});
+  }
+  for (const ForeignElement& element : part.foreign_elements) {
+    facts.elements.push_back(element.header.substr(0, element.header.find('\n')));
+  }
+}
+
+}  // namespace
+
+CloudFacts facts_of_header(const io::InputFile& file) {
+  CloudFacts facts{.format = format_of(file).name};
+  if (facts.format == "E57") facts.e57 = io::read_e57_document(io::E57Pages(file));
+  if (facts.format == "LAS") facts.las = io::las_facts(file);
+  return facts;
+}
+
+void add_part(const PointCloud& part, CloudFacts& facts) {
+  if (facts.read == 0) add_in_common(part, facts);
+  facts.read += part.size();
+  const BoundingBox box = bounding_box(part.positions);
+  facts.bounds.min = facts.bounds.min.cwiseMin(box.min);
+  facts.bounds.max = facts.bounds.max.cwiseMax(box.max);
+  for (const std::uint8_t label : part.labels) ++facts.labels[label];
+  for (std::size_t a = 0; a < std::min(part.attributes.size(), facts.attributes.size()); ++a) {
+    add_values(part.attributes[a], part.size(), facts.attributes[a]);
+  }
+  const Defects defects = find_defects(part);
+  facts.defects.positions += defects.positions;
+  facts.defects.normals += defects.normals;
+  facts.defects.duplicates += defects.duplicates;
+  if (facts.las) io::count_points(part, *facts.las);
+}
+
+std::vector<std::string> find_problems(const CloudFacts& facts) {
   const Defects& defects = facts.defects;
   std::vector<std::string> problems;
   const auto add = [&](std::size_t count, const char* what) {
-    if (count > 0) problems.push_back(fmt::format("{} of {} {}", count, cloud.size(), what));
+    if (count > 0) problems.push_back(fmt::format("{} of {} {}", count, facts.read, what));
   };
-  if (cloud.empty()) problems.emplace_back("no points");
+  if (facts.points == 0) problems.emplace_back("no points");
   add(defects.positions, "points have no finite position: kept, not labelled");
   add(defects.duplicates, "points lie exactly on another one");
-  if (!cloud.empty() && !cloud.has_normals()) {
+  if (facts.points > 0 && !facts.has_normals) {
     problems.emplace_back("no normals: they will be estimated");
   }
   add(defects.normals, "normals are zero or not finite");
-  add(loaded.rescaled_normals, "normals are not of unit length: made so");
+  add(facts.rescaled_normals, "normals are not of unit length: made so");
   if (!facts.bounds.empty() && facts.spacing) {
     const double largest =
         std::max(facts.bounds.min.cwiseAbs().maxCoeff(), facts.bounds.max.cwiseAbs().maxCoeff());
@@ -68,44 +115,15 @@ std::vector<std::string> find_problems(const io::LoadedCloud& loaded, const Clou
   return problems;
 }
 
-AttributeFacts facts_of(const Attribute& attribute, std::size_t points) {
-  double least = INFINITY, largest = -INFINITY;
-  for (std::size_t i = 0; i < points; ++i) {
-    for (std::size_t c = 0; c < attribute.components; ++c) {
-      const double value = attribute.value(i, c);
-      least = std::fmin(least, value);
-      largest = std::fmax(largest, value);
-    }
-  }
-  return {attribute.name, attribute.type, attribute.components, least, largest, least <= largest};
-}
-
-}  // namespace
-
 CloudFacts cloud_facts(const std::filesystem::path& path) {
   const io::LoadedCloud loaded = read_cloud(path);
-  const PointCloud& cloud = loaded.cloud;
-  const io::InputFile file(path);
-  CloudFacts facts{.format = format_of(file).name,
-                   .points = cloud.size(),
-                   .position_type = cloud.position_type,
-                   .bounds = bounding_box(cloud.positions),
-                   .spacing = find_spacing(cloud),
-                   .has_normals = cloud.has_normals(),
-                   .has_colours = !cloud.colours.empty(),
-                   .comments = cloud.comments,
-                   .defects = find_defects(cloud),
-                   .warnings = loaded.warnings};
-  for (const std::uint8_t label : cloud.labels) ++facts.labels[label];
-  for (const Attribute& attribute : cloud.attributes) {
-    facts.attributes.push_back(facts_of(attribute, cloud.size()));
-  }
-  for (const ForeignElement& element : cloud.foreign_elements) {
-    facts.elements.push_back(element.header.substr(0, element.header.find('\n')));
-  }
-  facts.problems = find_problems(loaded, facts);
-  if (facts.format == "E57") facts.e57 = io::read_e57_document(io::E57Pages(file));
-  if (facts.format == "LAS") facts.las = io::las_facts(file, cloud);
+  CloudFacts facts = facts_of_header(io::InputFile(path));
+  facts.points = loaded.cloud.size();
+  add_part(loaded.cloud, facts);
+  facts.spacing = find_spacing(loaded.cloud);
+  facts.rescaled_normals = loaded.rescaled_normals;
+  facts.warnings = loaded.warnings;
+  facts.problems = find_problems(facts);
   return facts;
 }
 

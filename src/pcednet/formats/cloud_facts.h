@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -26,14 +27,19 @@ struct AttributeFacts {
   std::string name;
   ScalarType type = ScalarType::kFloat64;
   std::size_t components = 1;
-  double least = 0.0, largest = 0.0;  ///< NaN left out
-  bool has_numbers = false;           ///< otherwise these mean nothing
+  double least = INFINITY, largest = -INFINITY;  ///< NaN left out
+
+  bool has_numbers() const { return least <= largest; }
 };
 
-/// What a point file holds.
+/// What a point file holds. What is counted and measured is that of the points that were read.
 struct CloudFacts {
   std::string_view format;  ///< its Format's name
   std::size_t points = 0;
+  std::size_t read = 0;  ///< fewer than `points` where a sample was
+  /// That were read one by one, of a file that need not fit into memory: copies in two of them are
+  /// no duplicates. 0: the file was read as one.
+  std::size_t parts = 0;
   ScalarType position_type = ScalarType::kFloat64;
   BoundingBox bounds = {};
   std::optional<SampledSpacing> spacing = {};  ///< none unless eleven points are finite
@@ -43,13 +49,23 @@ struct CloudFacts {
   std::vector<std::string> comments = {};
   std::vector<std::string> elements = {};  ///< foreign ones, by the first lines of their headers
   Defects defects = {};
+  std::size_t rescaled_normals = 0;
   std::vector<std::string> problems = {};  ///< what may surprise, one sentence each
   std::optional<io::E57Document> e57 = {};
   std::optional<io::LasFacts> las = {};
   std::vector<std::string> warnings = {};  ///< of read_cloud
 };
 
-/// Reads the file. Throws as read_cloud.
+/// Reads the whole file. Throws as read_cloud.
 CloudFacts cloud_facts(const std::filesystem::path& path);
+
+/// What the file says beside its points. Throws as read_cloud.
+CloudFacts facts_of_header(const io::InputFile& file);
+
+/// Adds what is counted of a finished part; the first one also tells what all have in common.
+void add_part(const PointCloud& part, CloudFacts& facts);
+
+/// What may surprise in facts that are complete otherwise.
+std::vector<std::string> find_problems(const CloudFacts& facts);
 
 }  // namespace pcednet::formats

@@ -124,7 +124,8 @@ void append_rows(const std::vector<Attribute>& from, std::span<const std::uint32
   }
 }
 
-/// Reads several parts at a time, and uses them one by one in their order.
+}  // namespace
+
 void read_in_turn(std::span<const std::size_t> parts,
                   const std::function<PointCloud(std::size_t)>& read,
                   const std::function<void(PointCloud&, std::size_t part)>& use) {
@@ -139,8 +140,6 @@ void read_in_turn(std::span<const std::size_t> parts,
     }
   });
 }
-
-}  // namespace
 
 std::unique_ptr<io::PartReader> open_chunks(const fs::path& path) {
   auto file = std::make_unique<io::InputFile>(path);

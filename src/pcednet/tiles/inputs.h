@@ -33,6 +33,11 @@ void for_each_chunk(const PlannedInput& input, const std::function<bool(const Ch
                     const Progress* progress,
                     const std::function<void(PointCloud&, std::size_t first)>& use);
 
+/// Reads several parts at a time, and uses them one by one in their order.
+void read_in_turn(std::span<const std::size_t> parts,
+                  const std::function<PointCloud(std::size_t)>& read,
+                  const std::function<void(PointCloud&, std::size_t part)>& use);
+
 struct IndexedInput {
   PlannedInput input;
   PointCloud outline;   ///< its columns, and what it says beside points, without points

@@ -180,9 +180,9 @@ TEST(Copc, HoldsTheBoundsTheTimesAndTheRecords) {
   EXPECT_NEAR(2 * copc.half_side, side, 0.01);
   EXPECT_DOUBLE_EQ(copc.spacing, copc.half_side / 64);
   std::vector<std::string> users;
-  EXPECT_TRUE(las_facts(InputFile(scratch.path("a.copc.laz")), back).copc);
+  EXPECT_TRUE(las_facts(InputFile(scratch.path("a.copc.laz"))).copc);
   const InputFile file(scratch.path("a.copc.laz"));
-  for (const LasFacts::Record& record : las_facts(file, back).records) {
+  for (const LasFacts::Record& record : las_facts(file).records) {
     users.push_back(record.user_id);
   }
   EXPECT_EQ(users, (std::vector<std::string>{"somebody", "laszip encoded", "somebody"}));

@@ -27,12 +27,10 @@ std::string coordinate_system(const LasFile& file) {
 }
 
 /// How many points have each value of a field.
-std::map<int, std::size_t> counts_of(const PointCloud& points, const char* name) {
-  std::map<int, std::size_t> counts;
+void count_values(const PointCloud& points, const char* name, std::map<int, std::size_t>& counts) {
   const Attribute* field = find_attribute(points, name);
-  if (!field) return counts;
+  if (!field) return;
   for (std::size_t i = 0; i < points.size(); ++i) ++counts[static_cast<int>(field->value(i))];
-  return counts;
 }
 
 /// Whether the record that COPC requires comes first, which read_las_file leaves out.
@@ -70,7 +68,7 @@ LasOutline las_outline(const InputFile& file) {
   return outline;
 }
 
-LasFacts las_facts(const InputFile& file, const PointCloud& points) {
+LasFacts las_facts(const InputFile& file) {
   std::vector<std::string> warnings;  // read_las() gives them
   const LasFile las = read_las_file(file, warnings);
   LasFacts facts{.minor_version = las.minor_version(),
@@ -86,8 +84,8 @@ LasFacts las_facts(const InputFile& file, const PointCloud& points) {
                  .coordinate_system = coordinate_system(las),
                  .records = {},
                  .extra_bytes = {},
-                 .points_by_return = counts_of(points, "ReturnNumber"),
-                 .points_by_class = counts_of(points, "Classification")};
+                 .points_by_return = {},
+                 .points_by_class = {}};
   for (const auto* records : {&las.records, &las.extended_records}) {
     for (const LasRecord& record : *records) {
       facts.records.push_back(
@@ -98,6 +96,11 @@ LasFacts las_facts(const InputFile& file, const PointCloud& points) {
     facts.extra_bytes.push_back(field.name);
   }
   return facts;
+}
+
+void count_points(const PointCloud& points, LasFacts& facts) {
+  count_values(points, "ReturnNumber", facts.points_by_return);
+  count_values(points, "Classification", facts.points_by_class);
 }
 
 }  // namespace pcednet::io

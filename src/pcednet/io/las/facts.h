@@ -48,7 +48,10 @@ struct LasOutline {
 /// Reads no points. Throws Error(kUnreadable) as read_las, also for bounds that are not numbers.
 LasOutline las_outline(const InputFile& file);
 
-/// Reads the header and the records; the points are those that read_las gives. Throws as it.
-LasFacts las_facts(const InputFile& file, const PointCloud& points);
+/// Reads the header and the records, no points. Throws as read_las.
+LasFacts las_facts(const InputFile& file);
+
+/// Counts points that read_las, or a part of it, gives.
+void count_points(const PointCloud& points, LasFacts& facts);
 
 }  // namespace pcednet::io

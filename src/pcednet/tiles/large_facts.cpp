@@ -1,0 +1,182 @@
+#include "pcednet/tiles/large_facts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "pcednet/formats/format.h"
+#include "pcednet/spatial/kd_tree.h"
+#include "pcednet/tiles/inputs.h"
+#include "pcednet/tiles/nearest.h"
+#include "pcednet/tiles/sample.h"
+
+namespace pcednet::tiles {
+namespace {
+
+using formats::CloudFacts;
+using formats::SampledSpacing;
+
+constexpr std::size_t kParts = 16;           ///< of a sample
+constexpr std::size_t kPlaces = 2000;        ///< that the spacing is measured at
+constexpr std::size_t kPositions = 500'000;  ///< to bound how far the nearest points are
+
+/// The boxes of that many parts hold the average place of the cloud at most, for the spacing within
+/// a part to be that of the cloud.
+constexpr double kMostCover = 2.0;
+
+/// Squared distances to the nearest points of some places, the first of them to the place itself.
+class Distances {
+ public:
+  void add(std::span<const double> sq_distances) {
+    if (sq_distances.size() < gls::kSpacingNeighbours || std::isinf(sq_distances.back())) return;
+    for (const double sq : sq_distances) sum_ += std::sqrt(sq);
+    nearest_.push_back(std::sqrt(sq_distances[1]));
+  }
+
+  std::optional<SampledSpacing> spacing() {
+    if (nearest_.empty()) return std::nullopt;
+    const auto middle = nearest_.begin() + static_cast<std::ptrdiff_t>(nearest_.size() / 2);
+    std::nth_element(nearest_.begin(), middle, nearest_.end());
+    const auto count = static_cast<double>(nearest_.size() * (gls::kSpacingNeighbours - 1));
+    return SampledSpacing{sum_ / count, *middle};
+  }
+
+ private:
+  double sum_ = 0.0;
+  std::vector<double> nearest_ = {};
+};
+
+/// The squared distances at `places` places of the points, at equal steps.
+template <typename Use>
+void measure(std::span<const Vec3> points, std::size_t places, const Use& use) {
+  const spatial::KdTree tree(points);
+  std::vector<spatial::Neighbour> found;
+  std::vector<double> sq_distances;
+  for (std::size_t i = 0; i < std::min(places, points.size()); ++i) {
+    const Vec3& place = points[i * points.size() / std::min(places, points.size())];
+    if (!place.allFinite()) continue;
+    tree.nearest(place, gls::kSpacingNeighbours, found);
+    sq_distances.clear();
+    for (const auto& neighbour : found) sq_distances.push_back(neighbour.sq_distance);
+    use(place, std::span<const double>(sq_distances));
+  }
+}
+
+/// Reads parts of a file, finished.
+void read_parts(const io::PartReader& reader, std::span<const std::size_t> parts, const char* stage,
+                const Progress* progress, const std::function<void(const PointCloud&)>& see,
+                io::PartTally& tally) {
+  Stage steps(progress, stage, parts.size());
+  read_in_turn(
+      parts, [&](std::size_t part) { return reader.read(part); },
+      [&](PointCloud& part, std::size_t) {
+        io::finish_part(part, tally);
+        see(part);
+        steps.advance();
+      });
+}
+
+std::vector<std::size_t> chosen_parts(std::size_t parts, bool all) {
+  std::vector<std::size_t> chosen(all ? parts : kParts);
+  std::iota(chosen.begin(), chosen.end(), std::size_t{0});
+  if (all) return chosen;
+  for (std::size_t& part : chosen) part = part * parts / kParts;  // the first has the comments
+  return chosen;
+}
+
+/// The share of the box of the cloud that a box takes, seen along the axis where it is least.
+double share_of(const BoundingBox& box, const BoundingBox& whole) {
+  Vec3 shares = Vec3::Ones();
+  for (int axis = 0; axis < 3; ++axis) {
+    const double length = whole.max[axis] - whole.min[axis];
+    if (length > 0.0 && !box.empty()) shares[axis] = (box.max[axis] - box.min[axis]) / length;
+  }
+  return std::min({shares.x() * shares.y(), shares.y() * shares.z(), shares.z() * shares.x()});
+}
+
+/// The spacing of all points, which are read once more.
+std::optional<SampledSpacing> spacing_of_all(const io::PartReader& reader, Sample& sample,
+                                             const Progress* progress) {
+  const std::vector<Vec3> positions = sample.take();
+  std::vector<Vec3> places;
+  std::vector<double> reach;
+  measure(positions, kPlaces, [&](const Vec3& place, std::span<const double> sq_distances) {
+    places.push_back(place);
+    reach.push_back(std::sqrt(sq_distances.back()) * (1.0 + 1e-12));
+  });
+  NearestInStream stream(std::move(places), reach);
+  io::PartTally known;
+  read_parts(
+      reader, chosen_parts(reader.parts(), true), "spacing", progress,
+      [&](const PointCloud& part) { stream.add(part.positions); }, known);
+  Distances distances;
+  for (std::size_t i = 0; i < reach.size(); ++i) distances.add(stream.of(i));
+  return distances.spacing();
+}
+
+/// Normals that are all unusable are none, as for read_cloud.
+void settle(const io::PartTally& tally, CloudFacts& facts) {
+  for (std::string& warning : io::warnings_of(tally)) facts.warnings.push_back(std::move(warning));
+  if (tally.unusable_normals == tally.points) facts.has_normals = false, facts.defects.normals = 0;
+  facts.rescaled_normals = tally.rescaled_normals;
+}
+
+/// From a sample of the parts. `whole`: of all points, empty where the file does not say.
+void add_sample(const io::PartReader& reader, const BoundingBox& whole, CloudFacts& facts,
+                const Progress* progress) {
+  Distances distances;
+  std::vector<BoundingBox> boxes;
+  io::PartTally tally;
+  const auto see = [&](const PointCloud& part) {
+    formats::add_part(part, facts);
+    boxes.push_back(bounding_box(part.positions));
+    measure(part.positions, kPlaces / kParts,
+            [&](const Vec3&, std::span<const double> found) { distances.add(found); });
+  };
+  read_parts(reader, chosen_parts(reader.parts(), false), "sample", progress, see, tally);
+  settle(tally, facts);
+  if (!whole.empty()) facts.bounds = whole;
+  double cover = 0.0;
+  for (const BoundingBox& box : boxes) cover += share_of(box, facts.bounds);
+  cover *= static_cast<double>(reader.parts()) / static_cast<double>(boxes.size());
+  if (cover <= kMostCover) facts.spacing = distances.spacing();
+}
+
+void add_all(const io::PartReader& reader, CloudFacts& facts, const Progress* progress) {
+  Sample sample(kPositions);
+  io::PartTally tally;
+  const auto see = [&](const PointCloud& part) {
+    formats::add_part(part, facts);
+    sample.add(part.positions);
+  };
+  read_parts(reader, chosen_parts(reader.parts(), true), "read", progress, see, tally);
+  settle(tally, facts);
+  facts.spacing = spacing_of_all(reader, sample, progress);
+}
+
+}  // namespace
+
+std::optional<CloudFacts> large_facts(const std::filesystem::path& path,
+                                      const FactsOptions& options, const Progress* progress) {
+  auto file = std::make_unique<io::InputFile>(path);
+  const io::InputFile& bytes = *file;
+  const formats::Format& format = formats::format_of(bytes);
+  if (format.name != "LAS" && format.name != "PLY") return std::nullopt;
+  const auto reader = format.open_parts(std::move(file), kChunkPoints);
+  if (!reader || reader->points() <= options.large || reader->parts() < 2 * kParts) {
+    return std::nullopt;
+  }
+  reader->set_narrow_colours(true);  // the depth of the colours is no fact
+  CloudFacts facts = formats::facts_of_header(bytes);
+  facts.points = reader->points(), facts.parts = reader->parts();
+  facts.warnings = reader->warnings;
+  if (options.all) {
+    add_all(*reader, facts, progress);
+  } else {
+    add_sample(*reader, facts.las ? io::las_outline(bytes).bounds : BoundingBox{}, facts, progress);
+  }
+  facts.problems = formats::find_problems(facts);
+  return facts;
+}
+
+}  // namespace pcednet::tiles
