@@ -155,7 +155,9 @@ void run_tiles(const RunArguments& arguments, const Common& common) {
   } else if (!ids.empty()) {
     run_here(plan, ids, common);
   }
-  say(fmt::format("{} tiles run, {} were done", ids.size(), all - ids.size()));
+  if (all == 1 && ids.size() == 1) return;  // said by the tile
+  say(fmt::format("{} tile{} run, {} were done", ids.size(), ids.size() == 1 ? "" : "s",
+                  all - ids.size()));
 }
 
 struct StatusArguments {
