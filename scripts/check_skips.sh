@@ -7,7 +7,7 @@ grep -q '^Total Test time' "$log" || { echo "check_skips.sh: $log is no log of c
 
 # They need the authors' data beside this folder, or programs that scripts/setup.sh clients installs;
 # Slurm's daemons need root.
-clients='cloudcompare|meshlab|pcl|gdal|snakemake'
+clients='cloudcompare|meshlab|pcl|gdal|qgis'
 [ "$(id -u)" = 0 ] || clients="$clients|slurm"
 may_be_skipped="EqualsTheWholeFilesWhereTheyAre|^Cli\.published_scores_test\$|^Clients\.($clients)\$"
 

@@ -11,6 +11,9 @@ echo "== other readers, from npm"
 (cd tests/clients && npm ci --no-audit --no-fund --silent) ||
   echo "not installed: their tests are skipped, which fails in the end"
 
+echo "== Snakemake"
+scripts/unpack_snakemake.sh || echo "not unpacked: its test is skipped, which fails in the end"
+
 echo "== release build"
 cmake --preset release -DPCEDNET_TESTS=ON -DPCEDNET_PYTHON_MODULE=ON
 cmake --build --preset release
