@@ -118,6 +118,10 @@ TiledCloud::TiledCloud(TiledRequest request, const detect::EdgeModel& model,
   say(fmt::format("  {} tile{} of length {:g}, each with {:.4g} around it, of up to {}", tiles,
                   tiles == 1 ? "" : "s", plan_.grid.length(), plan_.buffer,
                   size_text(plan_.memory)));
+  if (plan_.memory > request_.memory) {
+    warn(fmt::format("that is more than {}: no tile is shorter than its buffer",
+                     size_text(request_.memory)));
+  }
   labels_.emplace(request_.output, plan_.normals.made);
   if (request_.given) {
     tiles::label_points(plan_, nullptr, *labels_, &progress);

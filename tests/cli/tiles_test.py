@@ -253,6 +253,7 @@ class Tiles(CliTest):
         run("tiles", "run", plan, "--tile", "0", "--tile", "2-4")
         state = self.status(plan)
         self.assertEqual(state["done"], [0, 2, 3, 4])
+        self.assertIn(f"  next: pcednet tiles run {plan}\n", run("tiles", "status", plan).stdout)
         said = run("tiles", "join", plan, "-o", self.folder / "j.ply", expect=4).stderr
         self.assertIn("missing or damaged: 1, 5 to ", said)
         self.assertFalse((self.folder / "j.ply").exists())
@@ -276,6 +277,8 @@ class Tiles(CliTest):
         state = self.status(plan)
         self.assertEqual((state["missing"], state["damaged"]), ([0, 2], [1]))
         self.assertEqual(self.status(plan, "--verify")["damaged"], [1, 3])
+        self.assertIn("run %s --tile 1 --tile 3 --overwrite" % plan,
+                      run("tiles", "status", plan, "--verify").stdout)
         run("tiles", "run", plan, "--missing")
         run("tiles", "run", plan, "--tile", 3, "--overwrite")
         self.assertEqual([f.read_bytes() for f in files], before)
@@ -355,6 +358,8 @@ class Tiles(CliTest):
             if content is not None:
                 cloud.write_bytes(content)
             self.assertIn(words, run("tiles", "run", plan, expect=code).stderr)
+        said = run("tiles", "run", plan, "--jobs", 2, expect=3).stderr
+        self.assertEqual(said.count("small.ply: No such file"), 1)
         self.assertEqual(self.status(plan)["done"], [])
         cloud.write_bytes(before)
         model = self.folder / "m.safetensors"
@@ -378,6 +383,8 @@ class Tiles(CliTest):
         (self.folder / "no.json").write_text("{}")
         for command in ("run", "status"):
             run("tiles", command, self.folder / "no.json", expect=3)
+        said = run("tiles", "run", self.folder / "small.ply", expect=3).stderr
+        self.assertIn("not a plan of tiles: byte 1 is not JSON", said)
         self.assertIn("Examples", run("tiles", "run", "--help").stdout)
 
     def text_cloud(self):

@@ -66,6 +66,11 @@ void plan_tiles(const PlanArguments& arguments, const Common& common) {
                   plan.points(), plan.tiles.size(), plan.grid.length(), plan.buffer));
   say(fmt::format("  scales: {:.9g} to {:.9g}", plan.s_min, plan.s_max));
   say(fmt::format("  the largest tile takes about {} of memory", size_text(plan.memory)));
+  if (plan.memory > request.memory) {
+    warn(fmt::format("that is more than --max-memory {}: {}", arguments.memory,
+                     arguments.tile_length > 0.0 ? "--tile is that long"
+                                                 : "no tile is shorter than its buffer"));
+  }
   say(fmt::format("  next: pcednet tiles run {}", arguments.plan));
 }
 
@@ -117,7 +122,10 @@ int jobs_within(const RunArguments& arguments, const tiles::Plan& plan) {
                             arguments.memory, size_text(plan.memory)));
   }
   const std::uint64_t fit = std::max<std::uint64_t>(most / plan.memory, 1);
-  return static_cast<int>(std::min<std::uint64_t>(fit, static_cast<std::uint64_t>(arguments.jobs)));
+  if (fit >= static_cast<std::uint64_t>(arguments.jobs)) return arguments.jobs;
+  say(fmt::format("{} at a time instead of {}: a tile takes up to {}", fit, arguments.jobs,
+                  size_text(plan.memory)));
+  return static_cast<int>(fit);
 }
 
 void run_here(const tiles::Plan& plan, const std::vector<std::size_t>& ids, const Common& common) {
@@ -145,7 +153,8 @@ void run_tiles(const RunArguments& arguments, const Common& common) {
   const int jobs = jobs_within(arguments, plan);
   for (const std::size_t id : ids) make_folder(plan.tiles[id].output.parent_path());
   if (jobs > 1 && ids.size() > 1) {
-    tiles::load_planned_model(plan);  // refuses before any process starts
+    tiles::load_planned_model(plan);  // refuses before any process starts, as does what follows
+    for (const tiles::PlannedInput& input : plan.inputs) tiles::check_size(input);
     run_tile_jobs({.plan = arguments.plan,
                    .tiles = ids,
                    .jobs = jobs,
@@ -172,7 +181,19 @@ struct Group {
   std::size_t points = 0;
 };
 
-std::string status_text(const tiles::Plan& plan, const std::array<Group, 3>& groups) {
+/// The command that brings the plan on. Damage that digests alone show is run again by number only.
+std::string next_step(const tiles::Plan& plan, const std::array<Group, 3>& groups, bool verify) {
+  const std::string path = plan.path.string();
+  std::string damaged;
+  if (verify) {
+    for (const std::size_t id : groups[1].ids) damaged += fmt::format(" --tile {}", id);
+  }
+  if (!damaged.empty()) return fmt::format("run {}{} --overwrite", path, damaged);
+  const bool done = groups[0].ids.empty() && groups[1].ids.empty();
+  return done ? fmt::format("join {} -o OUT.laz", path) : "run " + path;
+}
+
+std::string status_text(const tiles::Plan& plan, const std::array<Group, 3>& groups, bool verify) {
   std::string text = fmt::format("{}: {} points in {} tiles\n", plan.path.string(), plan.points(),
                                  plan.tiles.size());
   for (const std::size_t state : {2, 0, 1}) {
@@ -182,7 +203,7 @@ std::string status_text(const tiles::Plan& plan, const std::array<Group, 3>& gro
     if (state != 2 && !group.ids.empty()) text += ": " + tiles::list_of(group.ids);
     text += "\n";
   }
-  return text;
+  return text + "  next: pcednet tiles " + next_step(plan, groups, verify) + "\n";
 }
 
 nlohmann::ordered_json status_json(const tiles::Plan& plan, const std::array<Group, 3>& groups) {
@@ -206,7 +227,7 @@ void show_status(const StatusArguments& arguments, const Common& common) {
     group.points += plan.tiles[id].points;
   }
   const std::string json = status_json(plan, groups).dump(1) + "\n";
-  fmt::print("{}", arguments.json == "-" ? json : status_text(plan, groups));
+  fmt::print("{}", arguments.json == "-" ? json : status_text(plan, groups, arguments.verify));
   if (!arguments.json.empty() && arguments.json != "-") {
     write_text_file(arguments.json, json, common.overwrite());
   }
@@ -322,7 +343,8 @@ void add_join(CLI::App& tiles, Common& common) {
                   "pcednet tiles join city.json -o city.laz\n"
                   "pcednet tiles join city.json --vpc city.vpc     a list of the tiles, for QGIS");
   command->add_option("plan", arguments->plan, "The plan")->required();
-  command->add_option("-o,--output", arguments->output, "Output file: .laz, .las or .ply");
+  command->add_option("-o,--output", arguments->output,
+                      "Output file: .laz, .copc.laz, .las or .ply");
   command->add_option("--vpc", arguments->vpc,
                       "Virtual point cloud that lists the tiles, which stay where they are");
   command->callback([arguments, &common] { join_tiles(*arguments, common); });

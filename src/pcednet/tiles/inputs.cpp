@@ -153,13 +153,15 @@ std::unique_ptr<io::PartReader> open_chunks(const fs::path& path) {
                           path.string()));
 }
 
-std::unique_ptr<io::PartReader> open_planned(const PlannedInput& input) {
-  if (std::error_code error; fs::exists(input.path, error)) {
-    const std::uint64_t bytes = fs::file_size(input.path, error);
-    if (!error && bytes != input.bytes) {
-      changed(input.path, fmt::format("{} bytes instead of {}", bytes, input.bytes));
-    }
+void check_size(const PlannedInput& input) {
+  const std::uint64_t bytes = io::InputFile(input.path).size();
+  if (bytes != input.bytes) {
+    changed(input.path, fmt::format("{} bytes instead of {}", bytes, input.bytes));
   }
+}
+
+std::unique_ptr<io::PartReader> open_planned(const PlannedInput& input) {
+  check_size(input);
   auto reader = open_chunks(input.path);
   if (reader->points() != input.points() || reader->parts() != input.chunks.size()) {
     changed(input.path, fmt::format("{} points instead of {}", reader->points(), input.points()));

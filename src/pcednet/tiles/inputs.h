@@ -23,6 +23,9 @@ std::unique_ptr<io::PartReader> open_chunks(const std::filesystem::path& path);
 /// planned, as far as its size and chunks tell.
 std::unique_ptr<io::PartReader> open_planned(const PlannedInput& input);
 
+/// Throws Error(kUnreadable) if an input of a plan is not there, or has another size.
+void check_size(const PlannedInput& input);
+
 /// A chunk of a planned input, finished. Throws Error(kUnreadable) if it has changed since.
 PointCloud read_chunk(const io::PartReader& reader, const PlannedInput& input, std::size_t chunk);
 

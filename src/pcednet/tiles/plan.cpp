@@ -236,6 +236,9 @@ Plan read_plan(const fs::path& path) {
     plan = plan_of(j, Paths(path));
   } catch (const Error&) {
     throw;
+  } catch (const nlohmann::json::parse_error& error) {
+    throw Error(ErrorKind::kUnreadable, fmt::format("{}: not a plan of tiles: byte {} is not JSON",
+                                                    path.string(), error.byte));
   } catch (const std::exception& error) {
     throw Error(ErrorKind::kUnreadable,
                 fmt::format("{}: not a plan of tiles: {}", path.string(), error.what()));
