@@ -190,7 +190,9 @@ std::string next_step(const tiles::Plan& plan, const std::array<Group, 3>& group
   }
   if (!damaged.empty()) return fmt::format("run {}{} --overwrite", path, damaged);
   const bool done = groups[0].ids.empty() && groups[1].ids.empty();
-  return done ? fmt::format("join {} -o OUT.laz", path) : "run " + path;
+  if (!done) return "run " + path;
+  const fs::path like = plan.tiles.front().output;
+  return fmt::format("join {} -o OUT{}", path, like.extension().string());
 }
 
 std::string status_text(const tiles::Plan& plan, const std::array<Group, 3>& groups, bool verify) {
