@@ -85,7 +85,7 @@ std::vector<std::size_t> chosen_parts(std::size_t parts, bool all) {
 }
 
 /// The share of the box of the cloud that a box takes, seen along the axis where it is least.
-double share_of(const BoundingBox& box, const BoundingBox& whole) {
+double least_share_of(const BoundingBox& box, const BoundingBox& whole) {
   Vec3 shares = Vec3::Ones();
   for (int axis = 0; axis < 3; ++axis) {
     const double length = whole.max[axis] - whole.min[axis];
@@ -137,7 +137,7 @@ void add_sample(const io::PartReader& reader, const BoundingBox& whole, CloudFac
   settle(tally, facts);
   if (!whole.empty()) facts.bounds = whole;
   double cover = 0.0;
-  for (const BoundingBox& box : boxes) cover += share_of(box, facts.bounds);
+  for (const BoundingBox& box : boxes) cover += least_share_of(box, facts.bounds);
   cover *= static_cast<double>(reader.parts()) / static_cast<double>(boxes.size());
   if (cover <= kMostCover) facts.spacing = distances.spacing();
 }
