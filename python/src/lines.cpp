@@ -28,7 +28,7 @@ Value named(const std::map<std::string, Value>& values, const std::string& what,
   throw Error(ErrorKind::kUsage, what + " \"" + name + "\": there are " + names);
 }
 
-lines::LineOptions options_of(const py::dict& settings) {
+lines::LineOptions line_options_of(const py::dict& settings) {
   using enum lines::LineStage;
   lines::LineOptions options;
   options.min_length = settings["min_length"].cast<double>();
@@ -49,7 +49,7 @@ py::tuple find_lines(const Array<double>& xyz, const OptionalArray<double>& norm
                      const Array<std::uint8_t>& labels, const OptionalArray<float>& p_sharp,
                      const OptionalArray<float>& p_smooth, const py::dict& settings,
                      const py::object& progress, int threads) {
-  const lines::LineOptions options = options_of(settings);
+  const lines::LineOptions options = line_options_of(settings);
   std::vector<Curve> curves;
   std::vector<std::string> notes;
   run_job({progress, threads}, [&](const Progress* job) {

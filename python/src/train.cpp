@@ -60,7 +60,7 @@ nn::NetworkKind network_named(const std::string& name) {
   throw Error(ErrorKind::kUsage, "network \"" + name + "\": there are pcednet, fc, cnn");
 }
 
-detect::TrainOptions options_of(const py::dict& settings) {
+detect::TrainOptions training_options_of(const py::dict& settings) {
   detect::TrainOptions options;
   const auto recipe = settings["recipe"].cast<std::string>();
   if (recipe != "adam" && recipe != "paper") {
@@ -98,7 +98,7 @@ py::list list_of(const History& history) {
 py::tuple train(const py::list& clouds, const std::string& name, bool keep_orientation,
                 const py::dict& settings, const py::object& progress, int threads) {
   const auto arrays = clouds_of(clouds);
-  const detect::TrainOptions options = options_of(settings);
+  const detect::TrainOptions options = training_options_of(settings);
   TrainingClouds prepared;
   detect::TrainedModel trained;
   History history;
