@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Times `pcednet annotate` on a noisy cube: loading, a stroke, training, classifying.
 
-    bench/annotate_bench.py build/release/bin/pcednet [POINTS]
+    bench/annotate_bench.py build/release/bin/pcednet [POINTS [MODEL]]
 """
 import os
 import pathlib
@@ -24,12 +24,13 @@ def processor_time(server):
 
 def main():
     points = int(sys.argv[2]) if len(sys.argv) > 2 else 1_000_000
+    model = ["--model", sys.argv[3]] if len(sys.argv) > 3 else []
     with tempfile.TemporaryDirectory() as folder:
         file = pathlib.Path(folder) / "cube.ply"
         write_ply(file, *cube(points, noise=0.0005)[:2])
         for name in ("load, the first time", "load, described before"):
             begin = time.monotonic()
-            server = Server(file)
+            server = Server(file, *model)
             server.open()
             print(f"{name:24} {time.monotonic() - begin:6.2f} s")
             if name.endswith("before"):
