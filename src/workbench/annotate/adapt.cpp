@@ -254,11 +254,14 @@ Start make_start(detect::EdgeModel model, const Subject& subject) {
   std::optional<nn::Model> context = std::exchange(start.model.context, {});
   std::vector<detect::Classification> found = classify_each(subject, start.model);
   if (context) {
+    const std::vector<std::uint8_t> classes = detect::edge_outputs(start.model);
     for (std::size_t k = 0; k < found.size(); ++k) {
       const auto& [described, positions, curve] = subject.clouds[k];
-      start.places.emplace_back(positions, curve, found[k]);
+      const auto& places = start.places.emplace_back(positions, curve, found[k]);
+      const detect::ContextMatrix matrix(places, found[k], static_cast<int>(classes.size()),
+                                         start.model.least_edge);
+      detect::apply_context(*context, classes, matrix, found[k]);
     }
-    SecondLook(start.places, found, start.model).apply(*context, found);
   }
   start.model.context = std::move(context);
   start.answer = joined(std::move(found));
