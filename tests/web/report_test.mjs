@@ -317,8 +317,10 @@ test("puts the comparison of methods first, with a row for each in its charts, a
   // On two of the three clouds this one does better: that is no comparison.
   const part = methods.results.find((r) => r.variant === "ca" && r.set === "default");
   mixed.variants.push({ ...methods.variants[0], id: "part", title: "Part" });
+  const slower = ({ seconds }) => Object.fromEntries(Object.entries(seconds).map(([stage, s]) => [stage, 1000 * s]));
   mixed.results = [
     ...both(methods),
+    ...methods.results.filter((r) => r.set === "cad").map((r) => ({ ...r, seconds: slower(r) })),
     { ...part, variant: "part", clouds: part.clouds.slice(0, 2), median: { ...part.median, mcc: 0.99 } },
   ];
   for (const study of [additions, mixed]) {
@@ -342,6 +344,11 @@ test("puts the comparison of methods first, with a row for each in its charts, a
   }
   assert.ok((await section.locator(".row-name title").allTextContents()).includes(long), "the whole name on hovering");
   const best = await section.locator(".part table").first().locator("td.best").locator("xpath=..").allTextContents();
+  const axis = () => seconds.locator('svg[aria-label="seconds, logarithmic"] .tick').allTextContents();
+  const ofDefault = await axis();
+  await section.getByRole("radio", { name: "cad", exact: true }).check();
+  assert.ok(ofDefault.length > 4, `it reaches to the slower set: ${ofDefault}`);
+  assert.deepEqual(await axis(), ofDefault, "one axis for all sets");
   assert.ok(best.length > 0 && best.every((row) => !row.startsWith("Part")), best.join("; "));
   await opened.close();
   fs.rmSync(other, { recursive: true, force: true });
