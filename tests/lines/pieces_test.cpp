@@ -94,6 +94,57 @@ TEST(Circles, StayOpenWhereAnotherEdgeEndsOrTooLittleIsThere) {
   EXPECT_FALSE(quarter[0].closed);
 }
 
+/// The nodes of a regular polygon's sides as pieces: chords, turned as the circle within if `turn`.
+std::vector<Piece> ring_of(double radius, int sides, bool turn) {
+  std::vector<Piece> pieces;
+  const auto at = [&](double t) { return Vec3(std::cos(t), std::sin(t), 0); };
+  for (int i = 0; i < sides; ++i) {
+    const double from = 2.0 * std::numbers::pi * i / sides;
+    const double to = from + 2.0 * std::numbers::pi / sides;
+    const Vec3 chord = (at(to) - at(from)).normalized(), out = at(0.5 * (from + to));
+    Piece piece;
+    for (const double part : {0.15, 0.5, 0.85}) {
+      const Vec3 round = at(from + part * (to - from));
+      const Vec3 on_chord = radius * (at(from) + part * (at(to) - at(from)));
+      piece.nodes.push_back({.at = turn ? Vec3(radius * round) : on_chord,
+                             .along = turn ? Vec3(-round.y(), round.x(), 0) : chord,
+                             .side_a = turn ? round : out,
+                             .side_b = Vec3::UnitZ(),
+                             .spacing = 1.0});
+    }
+    piece.fit = fit_segment(piece.nodes);
+    piece.ends = {piece.nodes.front().at, piece.nodes.back().at};
+    pieces.push_back(piece);
+  }
+  return pieces;
+}
+
+TEST(Circles, ThatAreSmallAreFoundInShortSegments) {
+  std::vector<Piece> pieces = ring_of(3.0, 6, true);
+  pieces.push_back(straight({20, 0, 0}, {30, 0, 0}));
+  complete_circles(pieces, kWithin);
+  ASSERT_EQ(pieces.size(), 2u);
+  EXPECT_FALSE(pieces[0].closed);  // the segment beside
+  EXPECT_TRUE(pieces[1].closed);
+  EXPECT_NEAR(pieces[1].fit.radius, 3.0, 1e-9);
+  EXPECT_LT(pieces[1].fit.point.norm(), 1e-9);
+}
+
+TEST(Circles, AreNotPutInPlaceOfPolygons) {
+  std::vector<Piece> square = ring_of(4.0, 4, false);
+  complete_circles(square, kWithin);
+  EXPECT_EQ(square.size(), 4u);
+
+  std::vector<Piece> prism = ring_of(3.0, 6, true);  // seen as round, but edges end on it
+  for (int i = 0; i < 6; ++i) {
+    const double t = 2.0 * std::numbers::pi * i / 6;
+    const Vec3 corner(3.0 * std::cos(t), 3.0 * std::sin(t), 0);
+    prism.push_back(straight(corner, corner + Vec3(0, 0, 6), Vec3::UnitX(), Vec3::UnitY()));
+  }
+  complete_circles(prism, kWithin);
+  EXPECT_EQ(prism.size(), 12u);
+}
+
 TEST(Strings, JoinWhatContinuesButNotALongLineAndALongArc) {
   std::vector<Piece> bent = {straight({0, 0, 0}, {10, 0, 0}), straight({11, 0, 0}, {20, 1.5, 0})};
   string_together(bent, 3.0, 0.5);

@@ -2,8 +2,10 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <span>
 
 #include "pcednet/spatial/kd_tree.h"
 
@@ -15,6 +17,16 @@ constexpr std::size_t kLeastArc = 5;     ///< nodes
 constexpr double kSmallestRadius = 1.2;  ///< in spacings
 constexpr double kMostOpen = 0.55;       ///< of a circle that is to be closed
 constexpr double kBlocking = 2.5;        ///< spacings from the end of a piece to a gap
+
+// Of small circles, which are found in pieces that fit none of them alone; in spacings.
+constexpr double kLargestSmall = 5.0;                ///< radius
+constexpr double kLeastApart = 1.5, kOnSmall = 0.7;  ///< of two nodes; of a node from a circle
+constexpr double kBesideSmall = 1.2, kAcross = 1.5;  ///< of nodes that belong to a circle
+constexpr double kMostTurn = 0.28, kTurnBySpacing = 0.78;  ///< sine between node and circle
+constexpr double kSmallError = 0.3;                        ///< root mean square of the nodes
+constexpr std::size_t kSectors = 12, kLeastSectors = 8;
+constexpr std::size_t kLeastAcross = 3;  ///< nodes of a piece that ends on a polygon
+constexpr std::size_t kMostAcross = 1;   ///< pieces that end on a circle
 
 /// The pieces as they are at first, by their first nodes and by their ends.
 struct Index {
@@ -157,9 +169,152 @@ std::optional<Piece> completed(const std::vector<Piece>& pieces, const Index& in
   return whole;
 }
 
+/// The circle through two nodes that has the first one's direction there; nothing if it is not
+/// small or the second has another direction or wedge.
+std::optional<Fit> small_circle(const ChainNode& a, const ChainNode& b) {
+  const Vec3 offset = b.at - a.at, across = offset - offset.dot(a.along) * a.along;
+  const double apart = across.norm(), spacing = a.spacing;
+  if (offset.norm() < kLeastApart * spacing || !(apart > 0.0)) return std::nullopt;
+  const double radius = offset.squaredNorm() / (2.0 * apart);
+  if (radius > kLargestSmall * spacing || radius < kSmallestRadius * spacing) return std::nullopt;
+  const Vec3 inward = across / apart;
+  return Fit{CurveKind::kArc, a.at + radius * inward, a.along.cross(inward), radius, 0.0};
+}
+
+bool lies_on(const Fit& circle, const ChainNode& like, const ChainNode& node) {
+  return (nearest_on(circle, node.at) - node.at).norm() < kOnSmall * node.spacing &&
+         std::abs(tangent_at(circle, node.at).dot(node.along)) > 0.8 &&
+         same_wedge(circle, like, node);
+}
+
+/// A small circle and the nodes on it.
+struct SmallCircle {
+  Fit fit;
+  std::vector<ChainNode> nodes;
+  std::size_t sectors = 0;  ///< of kSectors equal ones, those with nodes
+};
+
+SmallCircle nodes_on(const Fit& circle, const ChainNode& like,
+                     std::span<const ChainNode* const> near) {
+  SmallCircle found{.fit = circle, .nodes = {}};
+  const Vec3 x = circle.direction.unitOrthogonal();
+  std::array<bool, kSectors> seen = {};
+  for (const ChainNode* node : near) {
+    if (!lies_on(circle, like, *node)) continue;
+    const double turn = angle_at(circle, x, node->at) / kWholeTurn + 0.5;
+    const auto sector = static_cast<std::size_t>(turn * static_cast<double>(kSectors));
+    seen[std::min(sector, kSectors - 1)] = true;
+    found.nodes.push_back(*node);
+  }
+  found.sectors = static_cast<std::size_t>(std::count(seen.begin(), seen.end(), true));
+  return found;
+}
+
+/// Whether the nodes turn as the circle does: those of a polygon keep to its sides. The fewer
+/// nodes, the less certain their directions are.
+bool turns(const SmallCircle& circle) {
+  double sum = 0.0;
+  for (const ChainNode& node : circle.nodes) {
+    sum += tangent_at(circle.fit, node.at).cross(node.along).squaredNorm();
+  }
+  const double sine = std::sqrt(sum / static_cast<double>(circle.nodes.size()));
+  const double radius = circle.fit.radius / circle.nodes.front().spacing;
+  return sine < std::max(kMostTurn, kTurnBySpacing / radius);
+}
+
+/// The circle through `node` that explains the most of the nodes near it, fitted to them.
+std::optional<SmallCircle> best_small_circle(const ChainNode& node,
+                                             std::span<const ChainNode* const> near) {
+  SmallCircle best;
+  for (const ChainNode* other : near) {
+    const auto circle = small_circle(node, *other);
+    if (!circle || !lies_on(*circle, node, *other)) continue;
+    SmallCircle found = nodes_on(*circle, node, near);
+    const bool more = found.sectors > best.sectors ||
+                      (found.sectors == best.sectors && found.nodes.size() > best.nodes.size());
+    if (more) best = std::move(found);
+  }
+  for (int round = 0; round < 2; ++round) {
+    if (best.sectors + 1 < kLeastSectors) return std::nullopt;
+    sort_about_axis(best.fit, best.nodes);
+    const Fit fit = fit_arc(best.nodes);
+    if (fit.kind != CurveKind::kArc) return std::nullopt;
+    best = nodes_on(fit, node, near);
+  }
+  const bool small = best.fit.radius < 1.2 * kLargestSmall * node.spacing &&
+                     best.fit.radius > kSmallestRadius * node.spacing;
+  if (!small || best.sectors < kLeastSectors || best.fit.error > kSmallError || !turns(best)) {
+    return std::nullopt;
+  }
+  return best;
+}
+
+/// Whether the piece is of the circle, or of what is seen of its wall.
+bool belongs_to(const Fit& circle, const Piece& piece) {
+  std::size_t beside = 0;
+  for (const ChainNode& node : piece.nodes) {
+    const Vec3 offset = node.at - circle.point;
+    const double height = offset.dot(circle.direction);
+    const double out = (offset - height * circle.direction).norm() - circle.radius;
+    beside += std::abs(height) < kBesideSmall * node.spacing && out < kBesideSmall * node.spacing;
+  }
+  return 5 * beside >= 3 * piece.nodes.size();
+}
+
+/// Whether pieces across the circle end on it: it is a polygon.
+bool is_polygon(const Fit& circle, const std::vector<Piece>& pieces,
+                const std::vector<std::size_t>& near) {
+  std::size_t across = 0;
+  for (const std::size_t j : near) {
+    const Piece& piece = pieces[j];
+    if (piece.closed || piece.nodes.size() < kLeastAcross || belongs_to(circle, piece)) continue;
+    for (const std::size_t side : {0, 1}) {
+      const Vec3& end = piece.ends[side];
+      across += (nearest_on(circle, end) - end).norm() < kAcross * piece.spacing() &&
+                std::abs(outward(piece, side).dot(circle.direction)) > 0.8;
+    }
+  }
+  return across > kMostAcross;
+}
+
+/// Puts circles in place of the pieces that are of small ones.
+void find_small_circles(std::vector<Piece>& pieces) {
+  std::vector<Piece> circles;
+  std::vector<std::uint8_t> gone(pieces.size(), 0);
+  const NodeIndex index(pieces);
+  std::vector<spatial::Neighbour> found;
+  for (const std::size_t i : longest_first(pieces)) {
+    const Piece& piece = pieces[i];
+    const double reach = 2.0 * (kLargestSmall + 1.0) * piece.spacing();
+    if (gone[i] || piece.closed || length_of(piece) > std::numbers::pi * reach) continue;
+    index.tree.within(piece.middle().at, reach, found);
+    std::vector<const ChainNode*> near;
+    std::vector<std::size_t> of_pieces;
+    for (const auto& other : found) {
+      const std::size_t j = index.piece[other.index];
+      if (gone[j] || pieces[j].closed) continue;
+      near.push_back(index.nodes[other.index]);
+      of_pieces.push_back(j);
+    }
+    const auto circle = best_small_circle(piece.middle(), near);
+    if (!circle) continue;
+    std::sort(of_pieces.begin(), of_pieces.end());
+    of_pieces.erase(std::unique(of_pieces.begin(), of_pieces.end()), of_pieces.end());
+    if (is_polygon(circle->fit, pieces, of_pieces)) continue;
+    Piece whole{.fit = circle->fit, .nodes = circle->nodes, .ends = {}, .closed = true};
+    sort_about_axis(whole.fit, whole.nodes);
+    whole.ends = {whole.nodes.front().at, whole.nodes.front().at};
+    for (const std::size_t j : of_pieces) gone[j] = belongs_to(whole.fit, pieces[j]);
+    circles.push_back(std::move(whole));
+  }
+  erase_marked(pieces, gone);
+  pieces.insert(pieces.end(), circles.begin(), circles.end());
+}
+
 }  // namespace
 
 void complete_circles(std::vector<Piece>& pieces, double tolerance) {
+  find_small_circles(pieces);
   const Index index(pieces);
   std::vector<std::uint8_t> gone(pieces.size(), 0);
   std::vector<std::size_t> joined;
