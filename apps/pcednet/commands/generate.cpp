@@ -196,6 +196,16 @@ void add_sparse(CLI::App& generate, Common& common) {
       });
 }
 
+void add_drawn(CLI::App& generate, Common& common) {
+  auto set = std::make_shared<SetArguments>();
+  add_set(generate, common, *set, "drawn",
+          "Labelled clouds for training: CAD parts of 6,000 to 40,000 points drawn by area, clean",
+          "pcednet generate drawn parts/")
+      ->callback([set, &common] {
+        run(set->folder, set->seed, common, shapes::drawn_part_recipes(set->seed));
+      });
+}
+
 void add_scan(CLI::App& generate, Common& common) {
   auto set = std::make_shared<SetArguments>();
   add_set(generate, common, *set, "scan",
@@ -259,6 +269,7 @@ void add_generate(CLI::App& app, Common& common) {
   add_scan(*generate, common);
   add_varied(*generate, common);
   add_sparse(*generate, common);
+  add_drawn(*generate, common);
   add_line_set(*generate, common);
   add_sample(*generate, common);
 }

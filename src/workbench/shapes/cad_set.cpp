@@ -114,6 +114,27 @@ MeshStyle random_mesh_style(Random& random, double least, double most) {
   return style;
 }
 
+CadRecipe drawn_part(const std::string& set, int family, int number, std::uint64_t first_part,
+                     Random& random) {
+  CadRecipe recipe;
+  recipe.name = fmt::format("{}_{}_{}", set, part_family_name(family), number);
+  recipe.family = family;
+  recipe.part = first_part + static_cast<std::uint64_t>(number);
+  recipe.estimated = true;
+  recipe.inward = random.index(2) == 1;
+  recipe.mesh = false;
+  return recipe;
+}
+
+std::vector<CadRecipe> parts_of_each_family(int parts,
+                                            const std::function<CadRecipe(int, int)>& make) {
+  std::vector<CadRecipe> recipes;
+  for (int number = 0; number < parts; ++number) {
+    for (int family = 0; family < kPartFamilies; ++family) recipes.push_back(make(family, number));
+  }
+  return recipes;
+}
+
 std::vector<CadRecipe> cad_recipes(std::uint64_t seed) {
   constexpr int kPartsPerFamily = 7;
   std::vector<CadRecipe> recipes;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -33,6 +34,14 @@ struct CadRecipe {
 /// A mesh of `least` to `most` vertices, small numbers as likely as large ones, with planes meshed
 /// more or less coarsely.
 MeshStyle random_mesh_style(Random& random, double least, double most);
+
+/// A part drawn by area, with normals estimated from what there is.
+CadRecipe drawn_part(const std::string& set, int family, int number, std::uint64_t first_part,
+                     Random& random);
+
+/// `parts` of each family, as make(family, number) has them.
+std::vector<CadRecipe> parts_of_each_family(int parts,
+                                            const std::function<CadRecipe(int, int)>& make);
 
 /// The recipes of `pcednet generate cad`.
 std::vector<CadRecipe> cad_recipes(std::uint64_t seed);

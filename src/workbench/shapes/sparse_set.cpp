@@ -21,11 +21,7 @@ constexpr std::uint64_t kFirstPart = 1000;  // after those of other sets
 /// at most kFew points, else most points would be those of large clouds.
 CadRecipe sparse_part(int family, int number, std::uint64_t seed) {
   Random random(seed, 139000 + static_cast<std::uint64_t>(100 * number + family));
-  CadRecipe recipe;
-  recipe.name = fmt::format("sparse_{}_{}", part_family_name(family), number);
-  recipe.family = family;
-  recipe.part = kFirstPart + static_cast<std::uint64_t>(number);
-  recipe.inward = random.index(2) == 1;
+  CadRecipe recipe = drawn_part("sparse", family, number, kFirstPart, random);
   recipe.mesh = number % 5 == 4;
   recipe.even = !recipe.mesh && number % 5 != 0;
   recipe.estimated = !recipe.mesh || random.index(2) == 1;
@@ -52,12 +48,9 @@ Recipe sparse_blocks(std::size_t number, std::uint64_t seed) {
 std::vector<CadRecipe> sparse_part_recipes(std::uint64_t seed) {
   constexpr int kPartsPerFamily = 80;
   constexpr std::size_t kWorn = 48;
-  std::vector<CadRecipe> recipes;
-  for (int number = 0; number < kPartsPerFamily; ++number) {
-    for (int family = 0; family < kPartFamilies; ++family) {
-      recipes.push_back(sparse_part(family, number, seed));
-    }
-  }
+  std::vector<CadRecipe> recipes = parts_of_each_family(
+      kPartsPerFamily,
+      [seed](int family, int number) { return sparse_part(family, number, seed); });
   std::vector<CadRecipe> worn = worn_recipes(seed + 2000);
   worn.resize(std::min(worn.size(), kWorn));
   for (CadRecipe& recipe : worn) {

@@ -16,13 +16,7 @@ constexpr int kPartsPerFamily = 10, kSparseParts = 6;
 
 CadRecipe varied_part(int family, int number, std::uint64_t seed) {
   Random random(seed, 39000 + static_cast<std::uint64_t>(100 * number + family));
-  CadRecipe recipe;
-  recipe.name = fmt::format("varied_{}_{}", part_family_name(family), number);
-  recipe.family = family;
-  recipe.part = kFirstPart + static_cast<std::uint64_t>(number);
-  recipe.estimated = true;
-  recipe.inward = random.index(2) == 1;
-  recipe.mesh = false;
+  CadRecipe recipe = drawn_part("varied", family, number, kFirstPart, random);
   recipe.even = number % 2 == 1 && number < kPartsPerFamily - 1;
   if (number < kSparseParts) {
     recipe.style.points = points_between(random, 700, 2000);
@@ -43,13 +37,20 @@ CadRecipe varied_part(int family, int number, std::uint64_t seed) {
 }  // namespace
 
 std::vector<CadRecipe> varied_part_recipes(std::uint64_t seed) {
-  std::vector<CadRecipe> recipes;
-  for (int number = 0; number < kPartsPerFamily; ++number) {
-    for (int family = 0; family < kPartFamilies; ++family) {
-      recipes.push_back(varied_part(family, number, seed));
-    }
-  }
-  return recipes;
+  return parts_of_each_family(kPartsPerFamily, [seed](int family, int number) {
+    return varied_part(family, number, seed);
+  });
+}
+
+std::vector<CadRecipe> drawn_part_recipes(std::uint64_t seed) {
+  constexpr int kParts = 12;
+  constexpr std::uint64_t kFirstDrawn = 300;
+  return parts_of_each_family(kParts, [seed](int family, int number) {
+    Random random(seed, 179000 + static_cast<std::uint64_t>(100 * number + family));
+    CadRecipe recipe = drawn_part("drawn", family, number, kFirstDrawn, random);
+    recipe.style.points = points_between(random, 6000, 40000);
+    return recipe;
+  });
 }
 
 std::vector<Recipe> thinned_recipes(std::uint64_t seed) {
