@@ -81,30 +81,42 @@ class Train(CliTest):
         # What is sure to be no edge stays as it is.
         self.assertTrue((found["without"][changed] >= 0.01).all())
 
-    def test_joins_the_networks_of_another_model_for_sparse_clouds(self):
+    def test_joins_the_networks_of_another_model_for_clouds_of_a_kind(self):
         few = self.train("few.safetensors", "--epochs", 2, "--seed", 5)
-        joined = ["--epochs", 2, "--sparse-model", few, "--sparse-points"]
-        model = self.train("m.safetensors", *joined, 5000)
+        joined = ["--epochs", 2, "--expert", few]
+        model = self.train("m.safetensors", *joined, "below=5000")
         self.assertEqual(tensors(model)[0]["format"], "pcednet-edge-model-3")
         p, n, _ = cube(seed=9)
         write_ply(self.folder / "c.ply", p, n)
         self.assertLess(len(p), 5000)
         out = run("classify", self.folder / "c.ply", "--model", model).stderr
-        self.assertIn("decided by the networks for clouds of fewer than 5000 points", out)
+        self.assertIn("decided by the networks for such clouds: below=5000", out)
         run("classify", self.folder / "c.ply", "-o", self.folder / "few.ply", "--model", few)
         found, wanted = (read_ply(self.folder / name)[0] for name in ("c_edges.ply", "few.ply"))
         self.assertTrue((found["scalar_p_sharp"] == wanted["scalar_p_sharp"]).all())
         alone = self.train("alone.safetensors", "--epochs", 2)
-        model = self.train("m2.safetensors", *joined, len(p))
+        model = self.train("m2.safetensors", *joined, f"below={len(p)}")
         for name, its in (("joined", model), ("alone", alone)):
             run("classify", self.folder / "c.ply", "-o", self.folder / (name + ".ply"), "--model", its)
         found, wanted = (read_ply(self.folder / (name + ".ply"))[0] for name in ("joined", "alone"))
         self.assertTrue((found["scalar_p_sharp"] == wanted["scalar_p_sharp"]).all())
 
-    def test_refuses_networks_for_sparse_clouds_that_want_another_description(self):
+    def test_learns_from_clouds_of_a_kind_alone(self):
+        plain = tensors(self.train("p.safetensors", "--epochs", 1))[0]
+        kept = tensors(self.train("k.safetensors", "--epochs", 1, "--only", "given"))[0]
+        self.assertEqual(kept["training_clouds"], plain["training_clouds"])
+        result = run("train", self.folder / "clouds", "-o", self.folder / "m.safetensors",
+                     "--only", "estimated", expect=4)
+        self.assertIn("no cloud is of the kind --only estimated", result.stderr)
+        made = tensors(self.train("n.safetensors", "--epochs", 1, "--no-normals", "--only",
+                                  "estimated"))[0]
+        self.assertEqual(made["training_clouds"], plain["training_clouds"])
+        self.train("bad.safetensors", "--only", "sparse", expect=2)
+
+    def test_refuses_experts_that_want_another_description(self):
         few = self.train("few.safetensors", "--epochs", 1, "--scales", 8)
         result = run("train", self.folder / "clouds", "-o", self.folder / "m.safetensors",
-                     "--sparse-model", few, expect=5)
+                     "--expert", few, "below=9", expect=5)
         self.assertIn("another description of points", result.stderr)
         self.assertFalse((self.folder / "m.safetensors").exists())
 

@@ -6,6 +6,7 @@
 #include "labelled_cube.h"
 #include "pcednet/core/error.h"
 #include "pcednet/detect/classify.h"
+#include "pcednet/detect/describe.h"
 #include "pcednet/detect/part_of_cloud.h"
 #include "pcednet/detect/train.h"
 
@@ -26,12 +27,12 @@ EdgeModel trained(const std::string& name, std::uint64_t seed, double gate = 0.4
       .model;
 }
 
-struct SparseNetworksTest : testing::Test {
+struct ExpertsTest : testing::Test {
   static void SetUpTestSuite() {
     main_ = new EdgeModel(trained("main", 1));
     few_ = new EdgeModel(trained("few", 2));
     both_ = new EdgeModel(*main_);
-    join_sparse(*both_, *few_, kFewer);
+    join_expert(*both_, *few_, {.below = kFewer});
   }
   static void TearDownTestSuite() { delete main_, delete few_, delete both_; }
 
@@ -42,14 +43,14 @@ struct SparseNetworksTest : testing::Test {
   static inline EdgeModel *main_, *few_, *both_;
 };
 
-TEST_F(SparseNetworksTest, DecideForCloudsOfFewerPointsAlone) {
+TEST_F(ExpertsTest, DecideForCloudsOfFewerPointsAlone) {
   const PointCloud below = cube(kFewer - 1, 3), at = cube(kFewer, 3);
   ASSERT_NE(found_in(below, *main_), found_in(below, *few_));
   EXPECT_EQ(found_in(below, *both_), found_in(below, *few_));
   EXPECT_EQ(found_in(at, *both_), found_in(at, *main_));
 }
 
-TEST_F(SparseNetworksTest, DoNotCountCopies) {
+TEST_F(ExpertsTest, DoNotCountCopies) {
   PointCloud cloud = cube(kFewer - 1, 3);
   const PointCloud other = cube(kFewer, 3);
   cloud.labels.clear();
@@ -58,21 +59,21 @@ TEST_F(SparseNetworksTest, DoNotCountCopies) {
     cloud.normals.push_back(cloud.normals[i]);
   }
   const Classification found = classify(prepare(cloud), *both_);
-  EXPECT_TRUE(found.sparse);
+  EXPECT_EQ(found.expert, CloudKind{.below = kFewer});
   EXPECT_EQ(found.p_sharp, found_in(cloud, *few_));
-  EXPECT_FALSE(classify(prepare(other), *both_).sparse);
+  EXPECT_FALSE(classify(prepare(other), *both_).expert);
 }
 
-TEST_F(SparseNetworksTest, LeaveACloudOfGivenScalesToTheOthers) {
+TEST_F(ExpertsTest, LeaveACloudOfGivenScalesToTheOthers) {
   const PointCloud below = cube(kFewer - 1, 3);
   EdgeModel model = *both_;
   model.descriptor.s_max = 0.5;
-  EXPECT_TRUE(classify(prepare(below), model).sparse);
+  EXPECT_TRUE(classify(prepare(below), model).expert);
   model.descriptor.s_min = 0.05;
-  EXPECT_FALSE(classify(prepare(below), model).sparse);
+  EXPECT_FALSE(classify(prepare(below), model).expert);
 }
 
-TEST_F(SparseNetworksTest, LeaveAPartOfALargeCloudToTheOthers) {
+TEST_F(ExpertsTest, LeaveAPartOfALargeCloudToTheOthers) {
   const PointCloud few = cube(kFewer / 2, 3);
   PreparedCloud part = prepare(few);
   PartOfCloud of{.points = 10 * kFewer, .wanted = std::vector<std::uint8_t>(few.size(), 1)};
@@ -86,20 +87,56 @@ TEST_F(SparseNetworksTest, LeaveAPartOfALargeCloudToTheOthers) {
   EXPECT_EQ(found_with(*both_), found_with(*few_));
 }
 
-TEST_F(SparseNetworksTest, StayInTheFile) {
+TEST_F(ExpertsTest, StayInTheFile) {
   const auto path = std::filesystem::path(testing::TempDir()) /
-                    ("pcednet_sparse_" + std::to_string(getpid()) + ".safetensors");
+                    ("pcednet_experts_" + std::to_string(getpid()) + ".safetensors");
   save_model(path, *both_, Overwrite::kYes);
   const EdgeModel read = load_model(path);
   std::filesystem::remove(path);
-  ASSERT_TRUE(read.sparse);
-  EXPECT_EQ(read.sparse->fewer_than, kFewer);
+  ASSERT_EQ(read.experts.size(), 1u);
+  EXPECT_EQ(read.experts[0].kind, CloudKind{.below = kFewer});
   const PointCloud cloud = cube(kFewer - 1, 3), larger = cube(kFewer, 3);
   EXPECT_EQ(found_in(cloud, read), found_in(cloud, *few_));
   EXPECT_EQ(found_in(larger, read), found_in(larger, *main_));
 }
 
-TEST_F(SparseNetworksTest, AreLeftWithoutContextNetworkToo) {
+TEST_F(ExpertsTest, TheFirstWhoseKindACloudIsOfDecides) {
+  EdgeModel model = *main_;
+  join_expert(model, *few_, {.below = kFewer, .estimated = true});
+  join_expert(model, *main_, {.below = kFewer});
+  PointCloud cloud = cube(kFewer - 1, 3);
+  EXPECT_EQ(classify(prepare(cloud), model).expert, CloudKind{.below = kFewer});
+  EXPECT_EQ(found_in(cloud, model), found_in(cloud, *main_));
+  cloud.normals.clear();
+  EXPECT_EQ(found_in(cloud, model), found_in(cloud, *few_));
+}
+
+TEST_F(ExpertsTest, DecideAlikeForADescribedCloud) {
+  EdgeModel model = *main_;
+  join_expert(model, *few_, {.below = kFewer, .estimated = true});
+  PointCloud cloud = cube(kFewer - 1, 3);
+  cloud.normals.clear();
+  const PreparedCloud prepared = prepare(cloud);
+  const DescribedCloud described = describe(prepared, model.descriptor);
+  EXPECT_EQ(classify(described, cloud.positions, model).p_sharp, found_in(cloud, *few_));
+}
+
+TEST_F(ExpertsTest, OfSeveralKindsStayInTheFile) {
+  EdgeModel model = *main_;
+  join_expert(model, *few_, {.below = 10, .estimated = false});
+  join_expert(model, *few_, {.estimated = true, .exact = true});
+  const auto path = std::filesystem::path(testing::TempDir()) /
+                    ("pcednet_kinds_" + std::to_string(getpid()) + ".safetensors");
+  save_model(path, model, Overwrite::kYes);
+  const EdgeModel read = load_model(path);
+  std::filesystem::remove(path);
+  ASSERT_EQ(read.experts.size(), 2u);
+  EXPECT_EQ(read.experts[0].kind, model.experts[0].kind);
+  EXPECT_EQ(read.experts[1].kind, model.experts[1].kind);
+  EXPECT_EQ(read.experts[1].network.network.parameters, few_->network.network.parameters);
+}
+
+TEST_F(ExpertsTest, AreLeftWithoutContextNetworkToo) {
   EdgeModel model = *both_, few = *few_;
   drop_context(model);
   drop_context(few);
@@ -107,15 +144,15 @@ TEST_F(SparseNetworksTest, AreLeftWithoutContextNetworkToo) {
   EXPECT_EQ(found_in(cloud, model), found_in(cloud, few));
 }
 
-TEST_F(SparseNetworksTest, AreRefusedIfTheyWantAnotherDescription) {
+TEST_F(ExpertsTest, AreRefusedIfTheyWantAnotherDescription) {
   EdgeModel model = *main_;
   try {
-    join_sparse(model, trained("other", 2, -0.3), kFewer);
+    join_expert(model, trained("other", 2, -0.3), {.below = kFewer});
     FAIL() << "joined";
   } catch (const Error& error) {
     EXPECT_EQ(error.kind(), ErrorKind::kModelMismatch);
   }
-  EXPECT_FALSE(model.sparse);
+  EXPECT_TRUE(model.experts.empty());
 }
 
 }  // namespace

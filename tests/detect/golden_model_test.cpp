@@ -17,7 +17,8 @@
 //   pcednet train DIR/cube_0.ply DIR/icosahedron_0.ply -o model_2.safetensors --natural --context
 //     --epochs 40
 //   the same with --seed 2 -o few.safetensors, and with
-//     --sparse-model few.safetensors --sparse-points 1000 -o model_3.safetensors
+//     --expert few.safetensors below=1000 -o model_3.safetensors
+//   and with --expert few.safetensors below=1000,estimated -o model_4.safetensors
 // and the answers, to descriptors of twelve points of the icosahedron and for the context network
 // to random numbers, by numpy alone, in double precision (the functions of
 // tests/nn/numpy_model.py).
@@ -56,10 +57,10 @@ TEST_P(GoldenModel, GivesItsKnownAnswers) {
   expect_answers(model.network, "");
   ASSERT_EQ(model.context.has_value(), answers_.tensors.contains("context_samples"));
   if (model.context) expect_answers(*model.context, "context_");
-  ASSERT_EQ(model.sparse.has_value(), answers_.tensors.contains("sparse_samples"));
-  if (!model.sparse) return;
-  expect_answers(model.sparse->network, "sparse_");
-  expect_answers(*model.sparse->context, "sparse_context_");
+  ASSERT_EQ(model.experts.size(), answers_.tensors.contains("sparse_samples") ? 1u : 0u);
+  if (model.experts.empty()) return;
+  expect_answers(model.experts[0].network, "sparse_");
+  expect_answers(*model.experts[0].context, "sparse_context_");
 }
 
 TEST_P(GoldenModel, IsWrittenWithTheSameBytes) {
@@ -74,7 +75,8 @@ TEST_P(GoldenModel, IsWrittenWithTheSameBytes) {
   EXPECT_EQ(written, nn::encode_safetensors(content));
 }
 
-INSTANTIATE_TEST_SUITE_P(OfFormat, GoldenModel, testing::Values("model_1", "model_2", "model_3"),
+INSTANTIATE_TEST_SUITE_P(OfFormat, GoldenModel,
+                         testing::Values("model_1", "model_2", "model_3", "model_4"),
                          [](const auto& tested) { return tested.param; });
 
 TEST(GoldenModels, SayHowPointsAreDescribed) {
@@ -91,7 +93,9 @@ TEST(GoldenModels, SayHowPointsAreDescribed) {
   EXPECT_FALSE(two.descriptor.side_gate);
   EXPECT_FALSE(two.descriptor.second_gate);
   EXPECT_EQ(two.network.sign_rule.symmetry, nn::Symmetry::kAverage);
-  EXPECT_EQ(load_model(kFolder / "model_3.safetensors").sparse->fewer_than, 1000u);
+  EXPECT_EQ(load_model(kFolder / "model_3.safetensors").experts[0].kind, CloudKind{.below = 1000});
+  EXPECT_EQ(load_model(kFolder / "model_4.safetensors").experts[0].kind,
+            (CloudKind{.below = 1000, .estimated = true}));
 }
 
 }  // namespace

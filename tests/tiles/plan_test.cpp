@@ -31,7 +31,7 @@ class PlanFile : public testing::Test {
     plan.box = {{0, 1, 2}, {3, 4, 0.1 + 0.2}};
     plan.model = {"general", "/models/general.safetensors", "abc", false, true, true};
     plan.s_min = 0.1, plan.s_max = 1.0 / 3.0;
-    plan.normals = {true, 24, true};
+    plan.normals = {true, 24, true, true};
     plan.pyramid = {{0, 1, 2}, 3.0, {{false, gls::Crowd::kKeep}, {true, gls::Crowd::kMergeByAxis}}};
     plan.grid = {0.1, 7};
     plan.buffer = 0.7, plan.reach = 0.3, plan.memory = 5'000'000'000;
@@ -64,7 +64,7 @@ TEST_F(PlanFile, ComesBackAsItWas) {
   EXPECT_TRUE(back.model.exact);
   EXPECT_EQ(back.s_max, 1.0 / 3.0);
   EXPECT_EQ(back.normals.neighbours, 24u);
-  EXPECT_TRUE(back.normals.made && back.normals.exact_planes);
+  EXPECT_TRUE(back.normals.made && back.normals.exact_planes && back.normals.exact);
   EXPECT_EQ(back.pyramid.levels, plan.pyramid.levels);
   EXPECT_EQ(back.grid.length(), plan.grid.length());
   EXPECT_EQ(back.memory, plan.memory);

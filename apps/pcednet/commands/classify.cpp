@@ -205,9 +205,8 @@ void report(const Job& job, const detect::Classification& result, const Counts& 
   if (result.s_max > 0.0) {  // a method has none
     say(fmt::format("  scales: {:.9g} to {:.9g}", result.s_min, result.s_max));
   }
-  if (result.sparse) {
-    say(fmt::format("  decided by the networks for clouds of fewer than {} points",
-                    model.sparse->fewer_than));
+  if (result.expert) {
+    say(fmt::format("  decided by the networks for such clouds: {}", text_of(*result.expert)));
   }
   say("  seconds: " + seconds);
   say(fmt::format("  -> {}", job.output.string()));

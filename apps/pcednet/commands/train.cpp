@@ -29,8 +29,9 @@ enum class Recipe { kAdam, kPaper };
 struct TrainArguments {
   std::vector<std::string> inputs;
   std::string project, output;
-  std::string sparse_model;          ///< file of the networks for sparse clouds
-  std::size_t sparse_points = 6000;  ///< clouds of fewer are decided by them
+  std::vector<std::pair<std::string, std::string>> experts;  ///< model files and kinds of clouds
+  std::string only;                                          ///< the kind of clouds to learn from
+  bool no_normals = false;                                   ///< leave out those of the clouds
   detect::PrepareOptions preparation;
   detect::TrainOptions options;  ///< all but what follows
   Recipe recipe = Recipe::kAdam;
@@ -52,6 +53,31 @@ detect::TrainOptions options_of(const TrainArguments& arguments) {
 void print_epoch(const nn::EpochReport& report) {
   say(fmt::format("epoch {:>3}  loss {:.4f}  validation loss {:.4f}  accuracy {:.4f}", report.epoch,
                   report.training_loss, report.validation_loss, report.validation_accuracy));
+}
+
+detect::CloudKind take_kind(const std::string& option, const std::string& text) {
+  if (const auto kind = detect::cloud_kind_of(text)) return *kind;
+  throw Error(ErrorKind::kUsage,
+              fmt::format("{} {}: write given, estimated, exact or below=4000, or several with "
+                          "commas between them",
+                          option, text));
+}
+
+struct Experts {
+  std::vector<detect::EdgeModel> models = {};
+  std::vector<detect::CloudKind> kinds = {};
+};
+
+/// Refuses them before the work.
+Experts read_experts(const TrainArguments& arguments) {
+  Experts experts;
+  for (const auto& [file, kind] : arguments.experts) {
+    experts.models.push_back(detect::load_model(file));
+    experts.kinds.push_back(take_kind("--expert", kind));
+    const auto classes = static_cast<std::size_t>(arguments.options.architecture.classes);
+    detect::check_fits(experts.models.back(), arguments.options.descriptor, classes);
+  }
+  return experts;
 }
 
 /// The model that the annotator saves for a project.
@@ -91,6 +117,8 @@ detect::TrainedModel train_clouds(const TrainArguments& arguments, const Common&
                                   const Progress& progress) {
   auto options = options_of(arguments);
   const auto inputs = expand_inputs(arguments.inputs);
+  const auto only =
+      arguments.only.empty() ? detect::CloudKind{} : take_kind("--only", arguments.only);
   std::vector<io::LoadedCloud> loaded;
   loaded.reserve(inputs.size());  // the training clouds look into them
   std::vector<detect::TrainingCloud> clouds;
@@ -100,10 +128,19 @@ detect::TrainedModel train_clouds(const TrainArguments& arguments, const Common&
       throw_if_cancelled(&progress);
     });
     for (const auto& warning : loaded.back().warnings) warn(input.string() + ": " + warning);
-    const PointCloud& cloud = loaded.back().cloud;
+    PointCloud& cloud = loaded.back().cloud;
+    if (arguments.no_normals) cloud.normals.clear();
     take_classes(input, cloud, loaded.size() == 1, options);
-    clouds.push_back(
-        {input.string(), prepare(input, cloud, arguments.preparation, progress), cloud.labels});
+    auto prepared = prepare(input, cloud, arguments.preparation, progress);
+    if (only.has(detect::facts_of(prepared, options.descriptor))) {
+      clouds.push_back({input.string(), std::move(prepared), cloud.labels});
+    } else {
+      loaded.pop_back();
+    }
+  }
+  if (clouds.empty()) {
+    throw Error(ErrorKind::kInsufficient,
+                fmt::format("train: no cloud is of the kind --only {}", arguments.only));
   }
   return detect::train(std::filesystem::path(arguments.output).stem().string(), clouds, options,
                        common.progress == "none" ? decltype(&print_epoch)(nullptr) : print_epoch,
@@ -117,17 +154,14 @@ void train(const TrainArguments& arguments, const Common& common) {
   }
   StageClock clock(console_progress(common));
   clock.begin("read");
-  std::optional<detect::EdgeModel> few;
-  if (!arguments.sparse_model.empty()) {  // refused before the work
-    few = detect::load_model(arguments.sparse_model);
-    const auto classes = static_cast<std::size_t>(arguments.options.architecture.classes);
-    detect::check_fits(*few, arguments.options.descriptor, classes);
-  }
+  const Experts experts = read_experts(arguments);
   auto trained = arguments.project.empty() ? train_clouds(arguments, common, clock.progress())
                                            : train_project(arguments, common, clock.progress());
   if (trained.epochs == 0)
     throw Error(ErrorKind::kCancelled, "stopped by the user before the end of the first epoch");
-  if (few) detect::join_sparse(trained.model, *few, arguments.sparse_points);
+  for (std::size_t i = 0; i < experts.models.size(); ++i) {
+    detect::join_expert(trained.model, experts.models[i], experts.kinds[i]);
+  }
   detect::save_model(arguments.output, trained.model, common.overwrite());
   for (const std::string& note : trained.notes) warn(note);
   if (!trained.no_context.empty()) {
@@ -153,17 +187,19 @@ void add_data_options(CLI::App& command, TrainArguments& arguments) {
                      "beside the project unless given");
   command.add_option("-o,--output", arguments.output, "Output model file")->required();
   add_prepare_options(command, arguments.preparation);
+  command.add_flag("--no-normals", arguments.no_normals,
+                   "Leave out the clouds' normals: they are estimated, as for clouds without");
   command
-      .add_option(
-          "--sparse-model", arguments.sparse_model,
-          "Model file whose networks decide for clouds of few points; trained with the same "
-          "options on such clouds")
-      ->check(CLI::ExistingFile)
+      .add_option("--only", arguments.only,
+                  "Learn from clouds of this kind alone: given or estimated (normals), exact "
+                  "(points of a model, without noise), below=4000 (points), or several with commas "
+                  "between them")
       ->excludes("--project");
   command
-      .add_option("--sparse-points", arguments.sparse_points,
-                  "Clouds of fewer points are left to the networks of --sparse-model")
-      ->capture_default_str();
+      .add_option("--expert", arguments.experts,
+                  "Model file, trained with the same options, whose networks decide for clouds of "
+                  "a kind, written as for --only; where several could, the first does")
+      ->excludes("--project");
 }
 
 void add_network_options(CLI::App& command, detect::TrainOptions& options) {

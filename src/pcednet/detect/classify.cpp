@@ -67,33 +67,18 @@ Classification describe_and_decide(const PreparedCloud& cloud, const EdgeModel& 
   return found;
 }
 
-/// Whether the model's networks for sparse clouds decide. Copies of a point, which are neighbours
-/// on the curve, do not count: they say nothing of the surface. A cloud whose scales are given is a
-/// piece of a larger one.
-bool is_sparse(const EdgeModel& model, std::span<const Vec3> positions,
-               std::span<const std::uint32_t> curve) {
-  if (model.descriptor.s_min > 0.0 && model.descriptor.s_max > 0.0) return false;
-  std::size_t distinct = 0;
-  for (std::size_t i = 0; i < curve.size() && distinct < model.sparse->fewer_than; ++i) {
-    distinct += i == 0 || positions[curve[i]] != positions[curve[i - 1]];
-  }
-  return distinct < model.sparse->fewer_than;
-}
-
-/// The model with the networks that decide.
-EdgeModel chosen(const EdgeModel& model, bool sparse) {
-  return suited_to(model, sparse ? 0 : model.sparse->fewer_than);
+std::optional<CloudKind> kind_of(const Expert* expert) {
+  return expert ? std::optional(expert->kind) : std::nullopt;
 }
 
 }  // namespace
 
 Classification classify(const PreparedCloud& cloud, const EdgeModel& model,
                         const Progress* progress) {
-  if (model.sparse) {
-    const bool sparse = cloud.part ? cloud.part->points < model.sparse->fewer_than
-                                   : is_sparse(model, cloud.positions, cloud.curve);
-    Classification found = classify(cloud, chosen(model, sparse), progress);
-    found.sparse = sparse;
+  if (!model.experts.empty()) {
+    const CloudFacts facts = facts_of(cloud, model.descriptor);
+    Classification found = classify(cloud, suited_to(model, facts), progress);
+    found.expert = kind_of(expert_for(model, facts));
     return found;
   }
   Classification found = describe_and_decide(cloud, model, progress);
@@ -106,10 +91,9 @@ Classification classify(const PreparedCloud& cloud, const EdgeModel& model,
 
 Classification classify(const DescribedCloud& cloud, std::span<const Vec3> positions,
                         const EdgeModel& model, const Progress* progress) {
-  if (model.sparse) {
-    const bool sparse = is_sparse(model, positions, cloud.order);
-    Classification found = classify(cloud, positions, chosen(model, sparse), progress);
-    found.sparse = sparse;
+  if (!model.experts.empty()) {
+    Classification found = classify(cloud, positions, suited_to(model, cloud.facts), progress);
+    found.expert = kind_of(expert_for(model, cloud.facts));
     return found;
   }
   const std::size_t width = row_width(model.descriptor);

@@ -32,7 +32,7 @@ struct Classification {
   ClassCounts counts = {};                 ///< of edge classes
   double s_min = 0.0, s_max = 0.0;         ///< the scales of the description; 0 if it was given
   std::string note = {};                   ///< for the user, or empty
-  bool sparse = false;                     ///< the model's networks for sparse clouds decided
+  std::optional<CloudKind> expert = {};    ///< the kind of cloud whose expert decided
 };
 
 /// `points` points that are all unlabelled, of a model with own classes or of edges.

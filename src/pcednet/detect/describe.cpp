@@ -21,7 +21,8 @@ DescribedCloud describe(const PreparedCloud& cloud, const gls::ScaleSpaceOptions
   const auto order = space.order();
   DescribedCloud described{.points = cloud.positions.size(),
                            .order = {order.begin(), order.end()},
-                           .scales = {space.scales().begin(), space.scales().end()}};
+                           .scales = {space.scales().begin(), space.scales().end()},
+                           .facts = facts_of(cloud, descriptor)};
   described.values.resize(order.size() * row_width(descriptor));
   describe(space, order, described.values, progress);
   return described;

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "pcednet/detect/cloud_kind.h"
 #include "pcednet/detect/prepare.h"
 #include "pcednet/gls/engine.h"
 
@@ -26,6 +27,7 @@ struct DescribedCloud {
   std::vector<std::uint32_t> order = {};  ///< the point that each row describes
   std::vector<float> values = {};         ///< rows x scales x columns
   std::vector<double> scales = {};        ///< as lengths
+  CloudFacts facts = {};                  ///< of the cloud
 };
 
 /// Describes every point that has a position.

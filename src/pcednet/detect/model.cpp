@@ -20,10 +20,12 @@ namespace {
 
 constexpr const char* kFormat = "pcednet-edge-model-1";
 constexpr const char* kContextFormat = "pcednet-edge-model-2";  // with a context network
-constexpr const char* kSparseFormat = "pcednet-edge-model-3";   // with networks for sparse clouds
+constexpr const char* kSparseFormat = "pcednet-edge-model-3";   // with one expert, for few points
+constexpr const char* kExpertFormat = "pcednet-edge-model-4";   // with experts
 constexpr const char* kOwnFormat = "pcednet-class-model-1";     // with own classes
 constexpr const char* kOwnContextFormat = "pcednet-class-model-2";
 constexpr std::string_view kContext = "context.", kSparse = "sparse.";
+constexpr const char *kFewerThan = "fewer_than", *kKind = "kind";  // of experts
 const std::array<std::vector<std::uint8_t>, 2> kClassLists = {
     {{kNonEdge, kSmoothEdge, kSharpEdge}, {kNonEdge, kSharpEdge}}};
 
@@ -49,10 +51,14 @@ gls::Reconstruction take_reconstruction(nn::Metadata& metadata) {
   metadata.refuse_value(key, name);
 }
 
-const char* format_of(bool has_own_classes, bool has_context, bool is_sparse_too) {
+const char* format_of(bool has_own_classes, bool has_context, const char* with_experts) {
   if (has_own_classes) return has_context ? kOwnContextFormat : kOwnFormat;
-  if (is_sparse_too) return kSparseFormat;
+  if (with_experts) return with_experts;
   return has_context ? kContextFormat : kFormat;
+}
+
+std::string expert_prefix(std::size_t number) {
+  return fmt::format("expert{}.", number + 1);
 }
 
 /// Every line of a text, which ends with one.
@@ -185,27 +191,62 @@ bool fits(const nn::Model& model, const EdgeModel& its) {
          network.classes == static_cast<int>(its.classes.size());
 }
 
-std::optional<SparseNetworks> read_sparse(const std::filesystem::path& path,
-                                          nn::Safetensors content, const EdgeModel& model) {
-  if (content.tensors.empty()) return {};
-  SparseNetworks sparse;
+Expert read_expert(const std::filesystem::path& path, nn::Safetensors content,
+                   const EdgeModel& model) {
+  Expert expert;
   const nn::Safetensors context = take_part(content, kContext);
-  const std::string where = path.string() + ": networks for sparse clouds";
-  sparse.network = nn::from_safetensors(content, where);
-  nn::Metadata metadata(std::move(sparse.network.metadata), where);
-  sparse.fewer_than = metadata.take_number<std::size_t>("fewer_than");
-  if (!fits(sparse.network, model)) metadata.refuse("they do not fit the descriptor and classes");
-  sparse.network.metadata = std::move(metadata.rest());
-  sparse.context = read_context(path, context, edge_outputs(model).size());
-  return sparse;
+  const std::string where = path.string() + ": networks for clouds of a kind";
+  expert.network = nn::from_safetensors(content, where);
+  nn::Metadata metadata(std::move(expert.network.metadata), where);
+  if (metadata.has(kFewerThan)) {
+    expert.kind.below = metadata.take_number<std::size_t>(kFewerThan);
+  } else {
+    const std::string text = metadata.take(kKind);
+    const auto kind = cloud_kind_of(text);
+    if (!kind) metadata.refuse_value(kKind, text);
+    expert.kind = *kind;
+  }
+  if (!fits(expert.network, model)) metadata.refuse("they do not fit the descriptor and classes");
+  expert.network.metadata = std::move(metadata.rest());
+  expert.context = read_context(path, context, edge_outputs(model).size());
+  return expert;
 }
 
-nn::Safetensors to_safetensors(const SparseNetworks& sparse) {
-  nn::Model network = sparse.network;
-  network.metadata["fewer_than"] = std::to_string(sparse.fewer_than);
-  nn::Safetensors content = nn::to_safetensors(network);
-  if (sparse.context) add_part(nn::to_safetensors(*sparse.context), kContext, content);
-  return content;
+/// The experts of a file, as they are in it.
+struct StoredExperts {
+  const char* format = nullptr;  ///< of a file with them; nullptr if there are none
+  std::vector<nn::Safetensors> parts = {};
+};
+
+StoredExperts take_experts(nn::Safetensors& content) {
+  if (nn::Safetensors sparse = take_part(content, kSparse); !sparse.tensors.empty()) {
+    return {kSparseFormat, {std::move(sparse)}};
+  }
+  StoredExperts stored;
+  for (;;) {
+    nn::Safetensors part = take_part(content, expert_prefix(stored.parts.size()));
+    if (part.tensors.empty()) return stored;
+    stored.format = kExpertFormat;
+    stored.parts.push_back(std::move(part));
+  }
+}
+
+/// One expert for clouds of few points of any kind makes a file that earlier versions read.
+StoredExperts to_store(const std::vector<Expert>& experts) {
+  StoredExperts stored;
+  if (experts.empty()) return stored;
+  const CloudKind& first = experts.front().kind;
+  const bool is_sparse = experts.size() == 1 && first == CloudKind{.below = first.below};
+  stored.format = is_sparse ? kSparseFormat : kExpertFormat;
+  for (const Expert& expert : experts) {
+    nn::Model network = expert.network;
+    network.metadata[is_sparse ? kFewerThan : kKind] =
+        is_sparse ? std::to_string(first.below) : text_of(expert.kind);
+    nn::Safetensors part = nn::to_safetensors(network);
+    if (expert.context) add_part(nn::to_safetensors(*expert.context), kContext, part);
+    stored.parts.push_back(std::move(part));
+  }
+  return stored;
 }
 
 }  // namespace
@@ -217,45 +258,49 @@ std::vector<std::uint8_t> edge_outputs(const EdgeModel& model) {
   return edges;
 }
 
-EdgeModel suited_to(EdgeModel model, std::size_t points) {
-  if (model.sparse && points < model.sparse->fewer_than) {
-    model.network = std::move(model.sparse->network);
-    model.context = std::move(model.sparse->context);
+const Expert* expert_for(const EdgeModel& model, const CloudFacts& facts) {
+  const auto found = std::find_if(model.experts.begin(), model.experts.end(),
+                                  [&](const Expert& expert) { return expert.kind.has(facts); });
+  return found == model.experts.end() ? nullptr : &*found;
+}
+
+EdgeModel suited_to(EdgeModel model, const CloudFacts& facts) {
+  if (const Expert* expert = expert_for(model, facts)) {
+    model.network = expert->network;
+    model.context = expert->context;
   }
-  model.sparse.reset();
+  model.experts.clear();
   return model;
 }
 
 void drop_context(EdgeModel& model) {
   model.context.reset();
-  if (model.sparse) model.sparse->context.reset();
+  for (Expert& expert : model.experts) expert.context.reset();
 }
 
-void check_fits(const EdgeModel& few, const gls::ScaleSpaceOptions& descriptor,
+void check_fits(const EdgeModel& expert, const gls::ScaleSpaceOptions& descriptor,
                 std::size_t classes) {
-  if (few.descriptor == descriptor && few.classes.size() == classes) return;
-  throw Error(
-      ErrorKind::kModelMismatch,
-      fmt::format("{}: its networks for sparse clouds want another description of points, or "
-                  "other classes",
-                  few.name));
+  if (expert.descriptor == descriptor && expert.classes.size() == classes) return;
+  throw Error(ErrorKind::kModelMismatch,
+              fmt::format("{}: its networks want another description of points, or other classes",
+                          expert.name));
 }
 
-void join_sparse(EdgeModel& model, const EdgeModel& few, std::size_t points) {
-  check_fits(few, model.descriptor, model.classes.size());
-  model.sparse = SparseNetworks{points, few.network, few.context};
+void join_expert(EdgeModel& model, const EdgeModel& expert, const CloudKind& kind) {
+  check_fits(expert, model.descriptor, model.classes.size());
+  model.experts.push_back({kind, expert.network, expert.context});
 }
 
 EdgeModel load_model(const std::filesystem::path& path) {
   EdgeModel model;
   nn::Safetensors content = nn::read_safetensors(path);
-  nn::Safetensors sparse = take_part(content, kSparse);
+  const StoredExperts experts = take_experts(content);
   const nn::Safetensors context = take_part(content, kContext);
   model.network = nn::from_safetensors(content, path.string());
   nn::Metadata metadata(std::move(model.network.metadata), path.string());
   if (metadata.has("class_table")) model.table = take_table(metadata);
-  metadata.take_fixed("format", format_of(has_own_classes(model.table), !context.tensors.empty(),
-                                          !sparse.tensors.empty()));
+  metadata.take_fixed(
+      "format", format_of(has_own_classes(model.table), !context.tensors.empty(), experts.format));
   metadata.take_fixed("undefined", "zero");
   metadata.take("version");
   model.name = metadata.take("name");
@@ -270,15 +315,18 @@ EdgeModel load_model(const std::filesystem::path& path) {
   }
   model.network.metadata = std::move(metadata.rest());
   model.context = read_context(path, context, edge_outputs(model).size());
-  model.sparse = read_sparse(path, std::move(sparse), model);
+  for (const nn::Safetensors& part : experts.parts) {
+    model.experts.push_back(read_expert(path, part, model));
+  }
   return model;
 }
 
 void save_model(const std::filesystem::path& path, const EdgeModel& model, Overwrite overwrite) {
   nn::Model network = model.network;
   auto& metadata = network.metadata;
+  const StoredExperts experts = to_store(model.experts);
   metadata["format"] =
-      format_of(has_own_classes(model.table), model.context.has_value(), model.sparse.has_value());
+      format_of(has_own_classes(model.table), model.context.has_value(), experts.format);
   metadata["version"] = kVersion;
   metadata["undefined"] = "zero";
   metadata["name"] = model.name;
@@ -291,7 +339,11 @@ void save_model(const std::filesystem::path& path, const EdgeModel& model, Overw
   }
   nn::Safetensors content = nn::to_safetensors(network);
   if (model.context) add_part(nn::to_safetensors(*model.context), kContext, content);
-  if (model.sparse) add_part(to_safetensors(*model.sparse), kSparse, content);
+  const bool is_sparse = experts.format == kSparseFormat;
+  for (std::size_t number = 0; number < experts.parts.size(); ++number) {
+    add_part(experts.parts[number], is_sparse ? std::string(kSparse) : expert_prefix(number),
+             content);
+  }
   nn::write_safetensors(path, content, overwrite);
 }
 

@@ -9,6 +9,7 @@
 
 #include "pcednet/cloud/class_table.h"
 #include "pcednet/core/output_file.h"
+#include "pcednet/detect/cloud_kind.h"
 #include "pcednet/gls/scale_space_options.h"
 #include "pcednet/nn/model.h"
 
@@ -17,11 +18,10 @@ namespace pcednet::detect {
 /// A point that is so sure to be no edge stays so: most points do, which saves most of the time.
 inline constexpr float kLeastEdge = 0.01f;
 
-/// What decides in place of a model's own networks, on the same description and for the same
-/// classes, where points are few, so that walls, steps and holes are a spacing or two wide, unless
-/// s_min and s_max are both given.
-struct SparseNetworks {
-  std::size_t fewer_than = 0;  ///< distinct points of a cloud
+/// What decides for clouds of one kind in place of a model's own networks, on the same description
+/// and for the same classes.
+struct Expert {
+  CloudKind kind = {};
   nn::Model network = {};
   std::optional<nn::Model> context = {};
 };
@@ -40,28 +40,31 @@ struct EdgeModel {
   ClassTable table = edge_classes();      ///< what `classes` are numbers of
   /// The context network decides on points of this probability of an edge or more.
   float least_edge = kLeastEdge;
-  std::optional<SparseNetworks> sparse = {};  ///< for clouds of few points
+  std::vector<Expert> experts = {};  ///< the first whose kind a cloud is of decides
 };
 
 /// Those of `classes` that the context network decides on: the edge classes, none of a table
 /// without them.
 std::vector<std::uint8_t> edge_outputs(const EdgeModel& model);
 
-/// The model with those networks alone that decide for a cloud of `points` distinct points.
-/// classify() does this by itself; it is for those who look at or go on training the networks.
-EdgeModel suited_to(EdgeModel model, std::size_t points);
+/// The expert that decides for such a cloud, or nullptr: the model's own networks do.
+const Expert* expert_for(const EdgeModel& model, const CloudFacts& facts);
+
+/// The model with those networks alone that decide for such a cloud. classify() does this by
+/// itself; it is for those who look at or go on training the networks.
+EdgeModel suited_to(EdgeModel model, const CloudFacts& facts);
 
 /// Leaves the context networks out: faster, less accurate.
 void drop_context(EdgeModel& model);
 
-/// Throws Error(kModelMismatch) unless the networks of `few` are for that description of points and
-/// that many classes.
-void check_fits(const EdgeModel& few, const gls::ScaleSpaceOptions& descriptor,
+/// Throws Error(kModelMismatch) unless the networks of `expert` are for that description of points
+/// and that many classes.
+void check_fits(const EdgeModel& expert, const gls::ScaleSpaceOptions& descriptor,
                 std::size_t classes);
 
-/// Lets the networks of `few` decide for clouds of fewer than `points` points. Throws what
-/// check_fits() throws.
-void join_sparse(EdgeModel& model, const EdgeModel& few, std::size_t points);
+/// Lets the networks of `expert` decide for clouds of a kind, unless an earlier one does. Throws
+/// what check_fits() throws.
+void join_expert(EdgeModel& model, const EdgeModel& expert, const CloudKind& kind);
 
 /// Reads a model file. Throws Error(kUnreadable) if there is none, Error(kModelMismatch), naming
 /// file and place, if it is damaged, no model of edges, or for another descriptor than this
@@ -69,8 +72,8 @@ void join_sparse(EdgeModel& model, const EdgeModel& few, std::size_t points);
 EdgeModel load_model(const std::filesystem::path& path);
 
 /// Writes a safetensors file; the same model gives the same bytes. The context network's tensors
-/// and metadata are named as the network's own, with "context." before them; those of the networks
-/// for sparse clouds have "sparse." before theirs.
+/// and metadata are named as the network's own, with "context." before them; those of the experts
+/// have "expert1.", "expert2." and so on before theirs, and "kind" among their metadata.
 void save_model(const std::filesystem::path& path, const EdgeModel& model, Overwrite overwrite);
 
 }  // namespace pcednet::detect

@@ -8,6 +8,7 @@
 
 #include "pcednet/cloud/bounding_box.h"
 #include "pcednet/core/error.h"
+#include "pcednet/detect/cloud_kind.h"
 #include "pcednet/normals/flat_pairs.h"
 #include "pcednet/normals/prepare.h"
 #include "pcednet/spatial/curve_order.h"
@@ -87,7 +88,8 @@ std::string describe(const Oriented& oriented) {
 
 void use(Oriented&& oriented, const std::string& note, PreparedCloud& prepared) {
   prepared.notes.push_back(note);
-  prepared.decision = {true, oriented.found.neighbours, oriented.found.exact_planes};
+  prepared.decision = {true, oriented.found.neighbours, oriented.found.exact_planes,
+                       prepared.decision.exact};
   prepared.made = std::move(oriented.found.normals);
   prepared.normals = prepared.made;
 }
@@ -158,6 +160,7 @@ PreparedCloud prepare_points(const Points& cloud, const PrepareOptions& options,
     return prepared;
   }
   if (usable < finite && finite - usable >= finite / kShareToEstimate) {
+    prepared.decision.exact = is_exact(cloud.positions, prepared.curve);
     estimate(prepared, cloud,
              !cloud.has_normals() ? "no normals in the file"
              : usable == 0        ? "no normal is usable"

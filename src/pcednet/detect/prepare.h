@@ -16,6 +16,7 @@ struct NormalsDecision {
   bool made = false;  ///< those missing are estimated and all oriented; otherwise used as they are
   std::size_t neighbours = 0;  ///< of each point, where they are made
   bool exact_planes = false;   ///< see normals::NeighbourChoice
+  bool exact = false;          ///< normals were missing, and is_exact() is true of the points
 };
 
 struct PrepareOptions {

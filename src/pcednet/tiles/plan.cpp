@@ -153,7 +153,8 @@ std::string text_of(const Plan& plan, const Paths& paths) {
       {"scales", json{{"s_min", plan.s_min}, {"s_max", plan.s_max}}.dump()},
       {"normals", json{{"made", normals.made},
                        {"neighbours", normals.neighbours},
-                       {"exact_planes", normals.exact_planes}}
+                       {"exact_planes", normals.exact_planes},
+                       {"exact", normals.exact}}
                       .dump()},
       {"pyramid", json_of(plan.pyramid).dump()},
       {"cell", json(plan.grid.cell).dump()},
@@ -180,7 +181,8 @@ Plan plan_of(const json& j, const Paths& paths) {
   plan.s_min = j.at("scales").at("s_min");
   plan.s_max = j.at("scales").at("s_max");
   const json& normals = j.at("normals");
-  plan.normals = {normals.at("made"), normals.at("neighbours"), normals.at("exact_planes")};
+  plan.normals = {normals.at("made"), normals.at("neighbours"), normals.at("exact_planes"),
+                  normals.value("exact", false)};
   plan.pyramid = pyramid_of(j.at("pyramid"));
   plan.grid = {j.at("cell"), j.at("cells_across")};
   plan.buffer = j.at("buffer");

@@ -248,9 +248,11 @@ class SecondLook {
 }  // namespace
 
 Start make_start(detect::EdgeModel model, const Subject& subject) {
-  std::size_t most = 0;  // points of a cloud
-  for (const auto& cloud : subject.clouds) most = std::max(most, cloud.positions.size());
-  Start start{.model = detect::suited_to(std::move(model), most)};
+  const auto largest = std::max_element(
+      subject.clouds.begin(), subject.clouds.end(), [](const auto& a, const auto& b) {
+        return a.described.cloud.facts.points < b.described.cloud.facts.points;
+      });
+  Start start{.model = detect::suited_to(std::move(model), largest->described.cloud.facts)};
   std::optional<nn::Model> context = std::exchange(start.model.context, {});
   std::vector<detect::Classification> found = classify_each(subject, start.model);
   if (context) {

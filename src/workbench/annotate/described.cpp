@@ -108,6 +108,7 @@ std::shared_ptr<const Described> describe_once(const detect::PreparedCloud& clou
     } catch (const fs::filesystem_error&) {
     }
   }
+  described->cloud.facts = detect::facts_of(cloud, descriptor);
   described->row_of.assign(cloud.positions.size(), kNoRow);
   for (std::size_t row = 0; row < described->cloud.order.size(); ++row) {
     const std::uint32_t point = described->cloud.order[row];

@@ -78,7 +78,7 @@ detect::EdgeModel with_classes(detect::EdgeModel model, int classes) {
                        static_cast<std::size_t>(smooth - ids.begin())] = kNever;
   };
   silence(model.network, model.context);
-  if (model.sparse) silence(model.sparse->network, model.sparse->context);
+  for (detect::Expert& expert : model.experts) silence(expert.network, expert.context);
   return model;
 }
 

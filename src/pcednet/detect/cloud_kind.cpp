@@ -1,0 +1,118 @@
+#include "pcednet/detect/cloud_kind.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <charconv>
+#include <utility>
+#include <vector>
+
+#include "pcednet/detect/part_of_cloud.h"
+#include "pcednet/normals/plane_fit.h"
+
+namespace pcednet::detect {
+namespace {
+
+constexpr std::string_view kBelowWord = "below=", kGivenWord = "given",
+                           kEstimatedWord = "estimated", kExactWord = "exact";
+
+bool take_word(std::string_view word, CloudKind& kind) {
+  if (word == kGivenWord || word == kEstimatedWord) {
+    if (kind.estimated) return false;
+    kind.estimated = word == kEstimatedWord;
+    return true;
+  }
+  if (word == kExactWord) return !std::exchange(kind.exact, true);
+  if (!word.starts_with(kBelowWord) || kind.below > 0) return false;
+  const char* end = word.data() + word.size();
+  const auto read = std::from_chars(word.data() + kBelowWord.size(), end, kind.below);
+  return read.ec == std::errc() && read.ptr == end && kind.below > 0;
+}
+
+/// The `wanted` points nearest to that of place `i` of the curve among those around it there,
+/// without copies; fewer if there are not so many.
+std::vector<std::uint32_t> near_on_curve(std::span<const Vec3> positions,
+                                         std::span<const std::uint32_t> curve, std::size_t i,
+                                         std::size_t wanted) {
+  constexpr std::size_t kAround = 32;
+  const Vec3& centre = positions[curve[i]];
+  const auto sq_distance = [&](std::uint32_t point) {
+    return (positions[point] - centre).squaredNorm();
+  };
+  std::vector<std::uint32_t> near;
+  const std::size_t begin = i - std::min(i, kAround);
+  for (std::size_t k = begin; k < std::min(i + kAround, curve.size()); ++k) {
+    const Vec3& position = positions[curve[k]];
+    const bool is_copy = k > begin && position == positions[curve[k - 1]];
+    if (!is_copy && position != centre) near.push_back(curve[k]);
+  }
+  const std::size_t count = std::min(wanted, near.size());
+  std::partial_sort(near.begin(), near.begin() + static_cast<std::ptrdiff_t>(count), near.end(),
+                    [&](auto a, auto b) { return sq_distance(a) < sq_distance(b); });
+  near.resize(count);
+  return near;
+}
+
+}  // namespace
+
+CloudFacts facts_of(const PreparedCloud& cloud, const gls::ScaleSpaceOptions& descriptor) {
+  CloudFacts facts{.estimated = cloud.decision.made && !cloud.reoriented,
+                   .exact = cloud.decision.exact};
+  if (cloud.part) {
+    facts.points = cloud.part->points;
+  } else if (descriptor.s_min <= 0.0 || descriptor.s_max <= 0.0) {
+    facts.points = 0;
+    for (std::size_t i = 0; i < cloud.curve.size(); ++i) {
+      facts.points +=
+          i == 0 || cloud.positions[cloud.curve[i]] != cloud.positions[cloud.curve[i - 1]];
+    }
+  }
+  return facts;
+}
+
+bool CloudKind::has(const CloudFacts& facts) const {
+  return (below == 0 || facts.points < below) &&
+         estimated.value_or(facts.estimated) == facts.estimated && (!exact || facts.exact);
+}
+
+std::string text_of(const CloudKind& kind) {
+  std::vector<std::string> words;
+  if (kind.below > 0) words.push_back(fmt::format("{}{}", kBelowWord, kind.below));
+  if (kind.estimated) words.emplace_back(*kind.estimated ? kEstimatedWord : kGivenWord);
+  if (kind.exact) words.emplace_back(kExactWord);
+  return fmt::format("{}", fmt::join(words, ","));
+}
+
+std::optional<CloudKind> cloud_kind_of(std::string_view text) {
+  CloudKind kind;
+  for (bool is_last = false; !is_last;) {
+    const std::size_t comma = text.find(',');
+    is_last = comma == std::string_view::npos;
+    if (!take_word(text.substr(0, comma), kind)) return {};
+    if (!is_last) text.remove_prefix(comma + 1);
+  }
+  return kind;
+}
+
+bool is_exact(std::span<const Vec3> positions, std::span<const std::uint32_t> curve) {
+  constexpr std::size_t kSamples = 2000, kNear = 12, kShare = 10;
+  constexpr double kThickness = 1e-6;
+  const std::size_t samples = std::min(kSamples, curve.size());
+  std::vector<std::uint32_t> some, neighbours;
+  for (std::size_t s = 0; s < samples; ++s) {
+    const std::size_t i = s * curve.size() / samples;
+    const auto near = near_on_curve(positions, curve, i, kNear);
+    if (near.size() < kNear) continue;
+    some.push_back(curve[i]);
+    neighbours.insert(neighbours.end(), near.begin(), near.end());
+  }
+  std::vector<normals::PlaneFit> fits(some.size());
+  normals::fit_planes(positions, some, neighbours, fits);
+  const auto exact = std::count_if(fits.begin(), fits.end(), [](const normals::PlaneFit& fit) {
+    return !fit.normal.isZero(0.0) && fit.thickness < kThickness;
+  });
+  return !fits.empty() && static_cast<std::size_t>(exact) * kShare >= fits.size();
+}
+
+}  // namespace pcednet::detect

@@ -1,0 +1,69 @@
+#include "pcednet/detect/cloud_kind.h"
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+#include "labelled_cube.h"
+
+namespace pcednet::detect {
+namespace {
+
+TEST(CloudKind, HasTheCloudsOfWhichAllHolds) {
+  const CloudFacts few = {.points = 10, .estimated = true}, many = {.estimated = true};
+  const CloudFacts given = {.points = 10};
+  EXPECT_TRUE(CloudKind{}.has(few) && CloudKind{}.has(given));
+  EXPECT_TRUE((CloudKind{.below = 11}.has(few)));
+  EXPECT_FALSE((CloudKind{.below = 10}.has(few)));
+  EXPECT_FALSE((CloudKind{.below = 11}.has(many)));
+  EXPECT_TRUE((CloudKind{.estimated = true}.has(many)));
+  EXPECT_FALSE((CloudKind{.estimated = true}.has(given)));
+  EXPECT_FALSE((CloudKind{.estimated = false}.has(few)));
+  EXPECT_FALSE((CloudKind{.exact = true}.has(few)));
+  EXPECT_TRUE((CloudKind{.exact = true}.has({.exact = true})));
+}
+
+TEST(CloudKind, IsReadAsItIsWritten) {
+  const CloudKind kind = {.below = 4000, .estimated = true, .exact = true};
+  EXPECT_EQ(text_of(kind), "below=4000,estimated,exact");
+  EXPECT_EQ(cloud_kind_of(text_of(kind)), kind);
+  EXPECT_EQ(cloud_kind_of("exact,given"), (CloudKind{.estimated = false, .exact = true}));
+  for (const char* text : {"", "below", "below=", "below=0", "below=-1", "below=4x", "exact,",
+                           "exact,exact", "given,estimated", "Exact", "below=1,below=2"}) {
+    EXPECT_FALSE(cloud_kind_of(text)) << text;
+  }
+}
+
+TEST(CloudKind, CountsEachPlaceOnce) {
+  PointCloud cloud = cube(500, 1);
+  cloud.labels.clear();
+  for (std::size_t i = 0; i < 500; ++i) {
+    cloud.positions.push_back(cloud.positions[i]);
+    cloud.normals.push_back(cloud.normals[i]);
+  }
+  const PreparedCloud prepared = prepare(cloud);
+  EXPECT_EQ(facts_of(prepared, {}).points, 500u);
+  EXPECT_EQ(facts_of(prepared, {.s_min = 0.1, .s_max = 1.0}).points, CloudFacts{}.points);
+  EXPECT_FALSE(facts_of(prepared, {}).estimated);
+}
+
+TEST(ExactPoints, LieOnPlaneFacesWithoutNoise) {
+  PointCloud cloud = cube(3000, 1);
+  cloud.normals.clear();
+  EXPECT_TRUE(prepare(cloud).decision.exact);
+  for (std::size_t i = 0; i < cloud.positions.size(); ++i) {  // a hundredth of the spacing
+    cloud.positions[i] *= 1.0 + 5e-4 * static_cast<double>(i % 7);
+  }
+  EXPECT_FALSE(prepare(cloud).decision.exact);
+}
+
+TEST(ExactPoints, AreNoFewPointsOrCopiesOfThem) {
+  const std::vector<Vec3> positions(100, Vec3(1.0, 2.0, 3.0));
+  std::vector<std::uint32_t> curve(100);
+  std::iota(curve.begin(), curve.end(), 0u);
+  EXPECT_FALSE(is_exact(positions, curve));
+  EXPECT_FALSE(is_exact({}, {}));
+}
+
+}  // namespace
+}  // namespace pcednet::detect
