@@ -24,13 +24,18 @@ for model in ${*:-general scan cad worn}; do
       clouds="$clouds $folder/${set%:*}${set#*:}"
     done
     options="--natural --scales 8 --s-max-ratio 8 --gate 0.4 --second-gate -0.3 --width 40 \
-      --distil 2 --context --keep-orientation --seed 1"
+      --context --keep-orientation --seed 1"
     generate sparse 1
+    generate drawn 1
     # shellcheck disable=SC2086  # several options, one argument for each folder
-    $pcednet train "$folder/sparse1" -o "$folder/sparse.safetensors" $options
+    $pcednet train "$folder/sparse1" -o "$folder/sparse.safetensors" $options --distil 2
     # shellcheck disable=SC2086
-    $pcednet train $clouds -o models/general.safetensors $options --overwrite \
-      --sparse-model "$folder/sparse.safetensors" --sparse-points 4000
+    $pcednet train "$folder/drawn1" "$folder/default1" "$folder/default2" "$folder/cad1" "$folder/cad2" \
+      -o "$folder/exact.safetensors" $options --epochs 18 --distil 2 --no-normals --only estimated,exact
+    # shellcheck disable=SC2086
+    $pcednet train $clouds -o models/general.safetensors $options --distil 2 --overwrite \
+      --expert "$folder/sparse.safetensors" below=4000,estimated \
+      --expert "$folder/exact.safetensors" estimated,exact
     ;;
   scan)
     generate default 1

@@ -35,7 +35,7 @@ TEST(CloudKind, IsReadAsItIsWritten) {
 }
 
 TEST(CloudKind, CountsEachPlaceOnce) {
-  PointCloud cloud = cube(500, 1);
+  PointCloud cloud = with_own_normals(cube(500, 1));
   cloud.labels.clear();
   for (std::size_t i = 0; i < 500; ++i) {
     cloud.positions.push_back(cloud.positions[i]);
@@ -45,6 +45,16 @@ TEST(CloudKind, CountsEachPlaceOnce) {
   EXPECT_EQ(facts_of(prepared, {}).points, 500u);
   EXPECT_EQ(facts_of(prepared, {.s_min = 0.1, .s_max = 1.0}).points, CloudFacts{}.points);
   EXPECT_FALSE(facts_of(prepared, {}).estimated);
+}
+
+TEST(CloudKind, TakesNormalsThatWereEstimatedBeforeForEstimated) {
+  PointCloud cloud = with_own_normals(cube(600, 1));
+  EXPECT_FALSE(facts_of(prepare(cloud), {}).estimated);
+  cloud.normals.clear();
+  cloud.normals = prepare(cloud).made;
+  const PreparedCloud prepared = prepare(cloud);
+  EXPECT_FALSE(prepared.decision.made);
+  EXPECT_TRUE(facts_of(prepared, {}).estimated);
 }
 
 TEST(ExactPoints, LieOnPlaneFacesWithoutNoise) {

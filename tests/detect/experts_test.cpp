@@ -104,7 +104,7 @@ TEST_F(ExpertsTest, TheFirstWhoseKindACloudIsOfDecides) {
   EdgeModel model = *main_;
   join_expert(model, *few_, {.below = kFewer, .estimated = true});
   join_expert(model, *main_, {.below = kFewer});
-  PointCloud cloud = cube(kFewer - 1, 3);
+  PointCloud cloud = with_own_normals(cube(kFewer - 1, 3));
   EXPECT_EQ(classify(prepare(cloud), model).expert, CloudKind{.below = kFewer});
   EXPECT_EQ(found_in(cloud, model), found_in(cloud, *main_));
   cloud.normals.clear();

@@ -5,10 +5,13 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
+#include <numbers>
 #include <utility>
 #include <vector>
 
 #include "pcednet/detect/part_of_cloud.h"
+#include "pcednet/normals/estimate.h"
 #include "pcednet/normals/plane_fit.h"
 
 namespace pcednet::detect {
@@ -54,6 +57,21 @@ std::vector<std::uint32_t> near_on_curve(std::span<const Vec3> positions,
   return near;
 }
 
+/// Whether the normals are such as would be estimated: those of three points in four turn from them
+/// by less than 5 degrees. Beside edges, those that a cloud had before it was thinned, and those
+/// of a surface, turn by 20 and more.
+bool are_as_estimated(const PreparedCloud& cloud) {
+  const double least_cosine = std::cos(5.0 / 180.0 * std::numbers::pi);
+  const auto estimated = normals::estimate_normals(cloud.positions);
+  std::vector<double> cosines;
+  for (const std::uint32_t i : cloud.curve) {
+    cosines.push_back(std::abs(estimated[i].dot(cloud.normals[i])));
+  }
+  const auto quarter = cosines.begin() + static_cast<std::ptrdiff_t>(cosines.size() / 4);
+  std::nth_element(cosines.begin(), quarter, cosines.end());
+  return quarter != cosines.end() && *quarter > least_cosine;
+}
+
 }  // namespace
 
 CloudFacts facts_of(const PreparedCloud& cloud, const gls::ScaleSpaceOptions& descriptor) {
@@ -68,6 +86,8 @@ CloudFacts facts_of(const PreparedCloud& cloud, const gls::ScaleSpaceOptions& de
           i == 0 || cloud.positions[cloud.curve[i]] != cloud.positions[cloud.curve[i - 1]];
     }
   }
+  constexpr std::size_t kFew = 20000;  // more are left to the same networks in either case
+  if (!facts.estimated && facts.points < kFew) facts.estimated = are_as_estimated(cloud);
   return facts;
 }
 

@@ -15,8 +15,9 @@ namespace pcednet::detect {
 /// What is known of a cloud before its points are classified.
 struct CloudFacts {
   std::size_t points = std::numeric_limits<std::size_t>::max();  ///< distinct; or that many
-  bool estimated = false;  ///< normals were missing, and those it has are made
-  bool exact = false;      ///< likewise, and is_exact() is true of its points
+  bool estimated = false;  ///< normals were missing and are made, or (of fewer than 20,000 points)
+                           ///< the given ones are such as would be made
+  bool exact = false;      ///< normals were missing, and is_exact() is true of its points
 };
 
 /// Copies of a point do not count: they say nothing of the surface. A part of a cloud has the
