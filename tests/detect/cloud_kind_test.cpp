@@ -43,7 +43,9 @@ TEST(CloudKind, CountsEachPlaceOnce) {
   }
   const PreparedCloud prepared = prepare(cloud);
   EXPECT_EQ(facts_of(prepared, {}).points, 500u);
-  EXPECT_EQ(facts_of(prepared, {.s_min = 0.1, .s_max = 1.0}).points, CloudFacts{}.points);
+  gls::ScaleSpaceOptions scales_given;
+  scales_given.s_min = 0.1, scales_given.s_max = 1.0;
+  EXPECT_EQ(facts_of(prepared, scales_given).points, CloudFacts{}.points);
   EXPECT_FALSE(facts_of(prepared, {}).estimated);
 }
 

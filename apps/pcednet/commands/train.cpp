@@ -196,9 +196,11 @@ void add_data_options(CLI::App& command, TrainArguments& arguments) {
                   "between them")
       ->excludes("--project");
   command
-      .add_option("--expert", arguments.experts,
-                  "Model file, trained with the same options, whose networks decide for clouds of "
-                  "a kind, written as for --only; where several could, the first does")
+      .add_option(
+          "--expert", arguments.experts,
+          "FILE KIND: a model file, trained with the same options, whose networks decide "
+          "for clouds of a kind, written as for --only; where several could, the first does")
+      ->type_name("TEXT")
       ->excludes("--project");
 }
 
