@@ -13,7 +13,7 @@ set(public_headers
   pcednet.h
   cloud/attribute.h cloud/class_table.h cloud/edge_class.h cloud/point_cloud.h
   core/error.h core/output_file.h core/parallel.h core/progress.h core/vec3.h
-  detect/boundary.h detect/classify.h detect/model.h detect/prepare.h detect/result_cloud.h
+  detect/boundary.h detect/classify.h detect/cloud_kind.h detect/model.h detect/prepare.h detect/result_cloud.h
   detect/train.h
   eval/scores.h
   formats/read_cloud.h formats/write_cloud.h

@@ -179,8 +179,8 @@ test("erases within a lasso and paints within a polygon, by one stroke each", as
     });
   let before, left, again;
   do {
-    await settled(page);
     before = await moment();
+    await settled(page); // what has arrived by now is drawn
     left = await pixels();
     await page.evaluate(() => annotator.stage.redraw());
     await settled(page);
