@@ -3,14 +3,11 @@
 # program with its web pages, classifies the included sample, draws it, and draws its edges as lines.
 set -eu
 cd "$(dirname "$0")/.."
-scripts/setup.sh
-cmake --preset release >/dev/null
-# The rooms are compiled while npm is installed and makes the pages.
-cmake --build --preset release --target rooms &
-rooms=$!
-scripts/setup.sh web && scripts/build_web.sh ||
+scripts/setup.sh web
+scripts/build_web.sh ||
   echo "demo.sh: no web pages, so annotate and report will not work; scripts/build_web.sh says why" >&2
-wait "$rooms"
+
+cmake --preset release >/dev/null
 cmake --build --preset release
 
 mkdir -p out
