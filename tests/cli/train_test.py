@@ -90,7 +90,7 @@ class Train(CliTest):
         write_ply(self.folder / "c.ply", p, n)
         self.assertLess(len(p), 5000)
         out = run("classify", self.folder / "c.ply", "--model", model).stderr
-        self.assertIn("decided by the networks for such clouds: below=5000", out)
+        self.assertIn("decided by the networks for clouds of the kind below=5000", out)
         run("classify", self.folder / "c.ply", "-o", self.folder / "few.ply", "--model", few)
         found, wanted = (read_ply(self.folder / name)[0] for name in ("c_edges.ply", "few.ply"))
         self.assertTrue((found["scalar_p_sharp"] == wanted["scalar_p_sharp"]).all())

@@ -206,7 +206,8 @@ void report(const Job& job, const detect::Classification& result, const Counts& 
     say(fmt::format("  scales: {:.9g} to {:.9g}", result.s_min, result.s_max));
   }
   if (result.expert) {
-    say(fmt::format("  decided by the networks for such clouds: {}", text_of(*result.expert)));
+    say(fmt::format("  decided by the networks for clouds of the kind {}",
+                    text_of(*result.expert)));
   }
   say("  seconds: " + seconds);
   say(fmt::format("  -> {}", job.output.string()));
