@@ -117,8 +117,8 @@ detect::TrainedModel train_clouds(const TrainArguments& arguments, const Common&
                                   const Progress& progress) {
   auto options = options_of(arguments);
   const auto inputs = expand_inputs(arguments.inputs);
-  const auto only =
-      arguments.only.empty() ? detect::CloudKind{} : take_kind("--only", arguments.only);
+  std::optional<detect::CloudKind> only;
+  if (!arguments.only.empty()) only = take_kind("--only", arguments.only);
   std::vector<io::LoadedCloud> loaded;
   loaded.reserve(inputs.size());  // the training clouds look into them
   std::vector<detect::TrainingCloud> clouds;
@@ -132,7 +132,7 @@ detect::TrainedModel train_clouds(const TrainArguments& arguments, const Common&
     if (arguments.no_normals) cloud.normals.clear();
     take_classes(input, cloud, loaded.size() == 1, options);
     auto prepared = prepare(input, cloud, arguments.preparation, progress);
-    if (only.has(detect::facts_of(prepared, options.descriptor))) {
+    if (!only || only->has(detect::facts_of(prepared, options.descriptor))) {
       clouds.push_back({input.string(), std::move(prepared), cloud.labels});
     } else {
       loaded.pop_back();

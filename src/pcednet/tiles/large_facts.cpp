@@ -7,6 +7,7 @@
 #include "pcednet/formats/format.h"
 #include "pcednet/spatial/kd_tree.h"
 #include "pcednet/tiles/inputs.h"
+#include "pcednet/tiles/layout.h"
 #include "pcednet/tiles/nearest.h"
 #include "pcednet/tiles/sample.h"
 
@@ -85,12 +86,8 @@ std::vector<std::size_t> chosen_parts(std::size_t parts, bool all) {
 }
 
 /// The share of the box of the cloud that a box takes, seen along the axis where it is least.
-double least_share_of(const BoundingBox& box, const BoundingBox& whole) {
-  Vec3 shares = Vec3::Ones();
-  for (int axis = 0; axis < 3; ++axis) {
-    const double length = whole.max[axis] - whole.min[axis];
-    if (length > 0.0 && !box.empty()) shares[axis] = (box.max[axis] - box.min[axis]) / length;
-  }
+double share_of(const BoundingBox& box, const BoundingBox& whole) {
+  const Vec3 shares = shares_of(box, whole);
   return std::min({shares.x() * shares.y(), shares.y() * shares.z(), shares.z() * shares.x()});
 }
 
@@ -137,7 +134,7 @@ void add_sample(const io::PartReader& reader, const BoundingBox& whole, CloudFac
   settle(tally, facts);
   if (!whole.empty()) facts.bounds = whole;
   double cover = 0.0;
-  for (const BoundingBox& box : boxes) cover += least_share_of(box, facts.bounds);
+  for (const BoundingBox& box : boxes) cover += share_of(box, facts.bounds);
   cover *= static_cast<double>(reader.parts()) / static_cast<double>(boxes.size());
   if (cover <= kMostCover) facts.spacing = distances.spacing();
 }

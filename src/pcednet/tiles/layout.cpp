@@ -142,6 +142,15 @@ double cell_length(const BoundingBox& box) {
   return 10.0 * power;
 }
 
+Vec3 shares_of(const BoundingBox& box, const BoundingBox& whole) {
+  Vec3 shares = Vec3::Ones();
+  for (int axis = 0; axis < 3; ++axis) {
+    const double length = whole.max[axis] - whole.min[axis];
+    if (length > 0.0 && !box.empty()) shares[axis] = (box.max[axis] - box.min[axis]) / length;
+  }
+  return shares;
+}
+
 std::uint64_t memory_for(std::uint64_t points, const detect::NormalsDecision& normals) {
   const std::uint64_t made = normals.made ? kNormalBytes + kNeighbourBytes * normals.neighbours : 0;
   return kFixedBytes + (kBytesPerPoint + made) * points;

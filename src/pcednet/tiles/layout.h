@@ -33,6 +33,10 @@ class CellCounts {
 /// of ten, or two or five of them.
 double cell_length(const BoundingBox& box);
 
+/// The share of each side of `whole` that `box` takes; 1 of a side without length, or of an empty
+/// box.
+Vec3 shares_of(const BoundingBox& box, const BoundingBox& whole);
+
 /// The most points in a core and its buffer, for cores of so many cells.
 std::uint64_t most_points(const CellCounts& counts, const Grid& grid, double buffer);
 

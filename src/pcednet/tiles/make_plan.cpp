@@ -90,16 +90,6 @@ bool is_too_often(double times, const Plan& plan) {
                           tiles, times));
 }
 
-/// The share of the plane of x and y around `whole` that `box` takes.
-double share_of(const BoundingBox& box, const BoundingBox& whole) {
-  double share = 1.0;
-  for (int axis = 0; axis < 2; ++axis) {
-    const double length = whole.max[axis] - whole.min[axis];
-    if (length > 0.0 && !box.empty()) share *= (box.max[axis] - box.min[axis]) / length;
-  }
-  return share;
-}
-
 /// How many tiles there will be at least.
 double least_tiles(const PlanRequest& request, const Plan& plan, std::span<const Vec3> sample) {
   if (request.tile_length > 0.0) {
@@ -120,7 +110,8 @@ void check_order_early(const PlanRequest& request, const Plan& plan, std::span<c
   double sum = 0.0;
   for (const PlannedInput& input : plan.inputs) {
     for (const Chunk& chunk : input.chunks) {
-      sum += static_cast<double>(chunk.points) * share_of(chunk.box, plan.box);
+      const Vec3 shares = shares_of(chunk.box, plan.box);
+      sum += static_cast<double>(chunk.points) * (shares.x() * shares.y());
     }
   }
   const double times = tiles * sum / points;

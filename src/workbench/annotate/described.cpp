@@ -100,7 +100,9 @@ std::shared_ptr<const Described> describe_once(const detect::PreparedCloud& clou
                  static_cast<std::uint64_t>(gls::column_count(descriptor));
   const fs::path file = folder / fmt::format("{:016x}.description", header.key[0]);
   described->from_cache = !folder.empty() && read_cache(file, header, described->cloud);
-  if (!described->from_cache) {
+  if (described->from_cache) {
+    described->cloud.facts = detect::facts_of(cloud, descriptor);
+  } else {
     described->cloud = detect::describe(cloud, descriptor, progress);
     try {
       if (!folder.empty()) write_cache(file, header, described->cloud);
@@ -108,7 +110,6 @@ std::shared_ptr<const Described> describe_once(const detect::PreparedCloud& clou
     } catch (const fs::filesystem_error&) {
     }
   }
-  described->cloud.facts = detect::facts_of(cloud, descriptor);
   described->row_of.assign(cloud.positions.size(), kNoRow);
   for (std::size_t row = 0; row < described->cloud.order.size(); ++row) {
     const std::uint32_t point = described->cloud.order[row];
