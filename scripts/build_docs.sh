@@ -7,11 +7,10 @@ cd "$(dirname "$0")/.."
 out=${1:-build/docs}
 pcednet=${PCEDNET:-build/release/bin/pcednet}
 [ -x "$pcednet" ] || { echo "build_docs.sh: no $pcednet; build it, or set PCEDNET" >&2; exit 1; }
-command -v npm >/dev/null || { echo "build_docs.sh: no npm; run scripts/setup.sh web" >&2; exit 1; }
 
 # The lock file, copied when its packages are all there, says whether they are those wanted.
 if ! cmp -s docs/site/package-lock.json docs/site/node_modules/.installed-lock.json; then
-  (cd docs/site && npm ci --no-audit --no-fund --silent && cp package-lock.json node_modules/.installed-lock.json)
+  (cd docs/site && ../../scripts/npm.sh ci --no-audit --no-fund --silent && cp package-lock.json node_modules/.installed-lock.json)
 fi
 commands=$(mktemp)
 trap 'rm -f "$commands"' EXIT

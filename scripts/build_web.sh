@@ -1,10 +1,10 @@
 #!/bin/sh
 # Builds the pages that pcednet carries inside: web/dist/*.html. Configure and build pcednet again
-# afterwards. `scripts/setup.sh web` installs what this needs (Node.js 18 and npm); npm then fetches
-# the libraries that web/package-lock.json names.
+# afterwards. `scripts/setup.sh web` installs what this needs (Node.js 18); npm then fetches the
+# libraries that web/package-lock.json names.
 set -eu
 cd "$(dirname "$0")/../web"
-command -v npm >/dev/null || { echo "build_web.sh: no npm; run scripts/setup.sh web" >&2; exit 1; }
+npm() { ../scripts/npm.sh "$@"; }
 
 # The lock file, copied when its packages are all there, says whether they are those wanted.
 if ! cmp -s package-lock.json node_modules/.installed-lock.json; then

@@ -30,7 +30,7 @@ for check; do
     format)
       python3 tests/house/rules.py style .
       scripts/build_web.sh
-      (cd web && npm run --silent check)
+      (cd web && ../scripts/npm.sh run --silent check)
       ;;
     gcc)
       cmake --preset dev -DPCEDNET_PYTHON_MODULE=ON >/dev/null

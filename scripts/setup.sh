@@ -6,8 +6,8 @@ list="$(dirname "$0")/packages.txt"
 
 missing=""
 for section in build "$@"; do
-  # Node.js and npm of another source do, and would conflict with those of Debian.
-  [ "$section" = web ] && command -v npm >/dev/null && continue
+  # Node.js of another source does, and would conflict with that of Debian.
+  [ "$section" = web ] && command -v node >/dev/null && continue
   wanted=$(sed -n "/^\[$section\]\$/,/^\[/p" "$list" | grep -v '^\[\|^#\|^$') || {
     echo "setup.sh: no section [$section] in $list" >&2
     exit 2

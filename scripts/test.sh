@@ -8,7 +8,7 @@ echo "== web pages"
 scripts/build_web.sh
 
 echo "== other readers, from npm"
-(cd tests/clients && npm ci --no-audit --no-fund --silent) ||
+(cd tests/clients && ../../scripts/npm.sh ci --no-audit --no-fund --silent) ||
   echo "not installed: their tests are skipped, which fails in the end"
 
 echo "== Snakemake"

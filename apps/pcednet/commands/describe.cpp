@@ -34,7 +34,7 @@ struct DescribeArguments {
 
 using StatusCounts = std::array<std::size_t, 3>;
 
-std::string_view name_of(gls::Reconstruction reconstruction) {
+std::string_view reconstruction_name(gls::Reconstruction reconstruction) {
   return gls::reconstruction_names()[static_cast<std::size_t>(reconstruction)];
 }
 
@@ -87,7 +87,7 @@ ordered_json to_json(const DescribeArguments& arguments, const gls::ScaleSpace& 
                        {"points", points},
                        {"scales", space.scales()},
                        {"features", gls::column_names(options)},
-                       {"reconstruction", name_of(options.reconstruction)},
+                       {"reconstruction", reconstruction_name(options.reconstruction)},
                        {"gate", nullptr},
                        {"engine", options.engine == gls::Engine::kExact ? "exact" : "fast"}};
   if (gls::projects(options.reconstruction)) {

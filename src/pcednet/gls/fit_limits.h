@@ -9,4 +9,7 @@ inline constexpr double kSmallestSqSpread = 1e-12;
 /// surface is singled out.
 inline constexpr double kSmallestLength = 1e-4;
 
+/// Of t: after a shorter step the projection on the surface ends.
+inline constexpr double kSmallestMove = 0.01;
+
 }  // namespace pcednet::gls

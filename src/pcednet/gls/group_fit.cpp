@@ -5,13 +5,13 @@
 #include <utility>
 
 #include "pcednet/gls/features.h"
+#include "pcednet/gls/fit_limits.h"
 #include "pcednet/gls/lane_recheck.h"
 
 namespace pcednet::gls {
 namespace {
 
-constexpr float kRounding = 0x1p-24f;   // of a float
-constexpr float kSmallestMove = 0.01f;  // of t: after a shorter step the projection ends
+constexpr float kRounding = 0x1p-24f;  // of a float
 
 /// The same for all gates up to 0.4, so that two of them divide the sources as each alone would.
 constexpr double kLeastOpen = 0.4 + kGateWidth;
@@ -173,7 +173,8 @@ struct Moves {
 
   bool is_short(std::size_t lane) const {
     const auto& m = by[lane];
-    return m[0] * m[0] + m[1] * m[1] + m[2] * m[2] < kSmallestMove * kSmallestMove;
+    constexpr float least = kSmallestMove;
+    return m[0] * m[0] + m[1] * m[1] + m[2] * m[2] < least * least;
   }
 };
 

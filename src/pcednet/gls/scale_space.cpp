@@ -7,6 +7,7 @@
 
 #include "pcednet/core/parallel.h"
 #include "pcednet/gls/descriptor.h"
+#include "pcednet/gls/fit_limits.h"
 #include "pcednet/gls/moments.h"
 #include "pcednet/gls/plane_fit.h"
 #include "pcednet/gls/scales.h"
@@ -14,8 +15,6 @@
 
 namespace pcednet::gls {
 namespace {
-
-constexpr double kSmallestMove = 0.01;  // of t: after a shorter step the projection ends
 
 /// Writes `features` as Numbers; false, with zeros written, if one of them is not finite then.
 template <typename Number>

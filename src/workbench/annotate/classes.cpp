@@ -9,7 +9,7 @@
 namespace pcednet::annotate {
 namespace {
 
-[[noreturn]] void refuse(const std::string& why) {
+[[noreturn]] void refuse_classes(const std::string& why) {
   throw Error(ErrorKind::kUsage, "classes: " + why);
 }
 
@@ -25,21 +25,22 @@ void check_change(const ProjectClasses& now, const ProjectClasses& wanted,
                   std::span<const std::size_t> counts, const std::set<std::uint8_t>& ever) {
   check_classes(wanted.table);
   for (const std::uint8_t id : wanted.removed) {
-    if (id >= wanted.table.size()) refuse("there is no such class to remove");
+    if (id >= wanted.table.size()) refuse_classes("there is no such class to remove");
     const std::string& name = wanted.table[id].name;
-    if (wanted.has_edges() && id <= kBoundary) refuse(name + " stays: edges go together");
-    if (counts[id] > 0) refuse(name + " is painted: erase its points before removing it");
+    if (wanted.has_edges() && id <= kBoundary) refuse_classes(name + " stays: edges go together");
+    if (counts[id] > 0) refuse_classes(name + " is painted: erase its points before removing it");
   }
   if (ever.empty()) return;
   if (now.has_edges() != wanted.has_edges() || wanted.table.size() < now.table.size()) {
-    refuse(
+    refuse_classes(
         "after the first stroke they can be added to, renamed and removed; --project FILE "
         "begins another project");
   }
   for (const std::uint8_t id : now.removed) {
     const bool renamed = wanted.table[id].name != now.table[id].name;
     if (renamed && ever.contains(id) && !wanted.removed.contains(id)) {
-      refuse(now.table[id].name + " was painted before: it can come back, but not as another");
+      refuse_classes(now.table[id].name +
+                     " was painted before: it can come back, but not as another");
     }
   }
 }

@@ -22,7 +22,7 @@ constexpr const char* kFormat = "pcednet-annotation-1";
 constexpr const char* kSeveralFormat = "pcednet-annotation-2";  // of several inputs
 constexpr int kMostRuns = 1'000'000'000;
 
-[[noreturn]] void refuse(const std::string& why) {
+[[noreturn]] void refuse_project(const std::string& why) {
   throw Error(ErrorKind::kUnreadable, why);
 }
 
@@ -64,11 +64,13 @@ std::vector<std::uint32_t> points_of(const Json& steps, std::size_t points) {
   std::vector<std::uint32_t> result;
   std::uint64_t last = 0;
   for (const Json& step : steps) {
-    if (!step.is_number_unsigned()) refuse("a stroke's point is no number");
+    if (!step.is_number_unsigned()) refuse_project("a stroke's point is no number");
     const auto by = step.get<std::uint64_t>();
-    if (by >= points || (by == 0 && !result.empty())) refuse("a stroke's points do not ascend");
+    if (by >= points || (by == 0 && !result.empty()))
+      refuse_project("a stroke's points do not ascend");
     last += by;
-    if (last >= points) refuse(fmt::format("point {} of a stroke: the input has {}", last, points));
+    if (last >= points)
+      refuse_project(fmt::format("point {} of a stroke: the input has {}", last, points));
     result.push_back(static_cast<std::uint32_t>(last));
   }
   return result;
@@ -94,7 +96,7 @@ RunRecord run_of(const Json& json) {
   RunRecord run{.number = json.at("run").get<int>(),
                 .records = json.at("records").get<std::size_t>(),
                 .settings = settings_of(json.at("settings"))};
-  if (run.number < 1 || run.number > kMostRuns) refuse("a run of no number");
+  if (run.number < 1 || run.number > kMostRuns) refuse_project("a run of no number");
   const auto learn = [&]<typename Fact>(const char* name, std::optional<Fact>& fact) {
     // A number that is not finite was written as null.
     if (const auto found = json.find(name); found != json.end() && !found->is_null()) {
@@ -107,7 +109,7 @@ RunRecord run_of(const Json& json) {
   learn("seconds_train", run.facts.seconds_train);
   learn("seconds_classify", run.facts.seconds_classify);
   if (json.contains("clouds")) run.clouds = json.at("clouds").get<std::size_t>();
-  if (run.clouds < 1) refuse("a run on no cloud");
+  if (run.clouds < 1) refuse_project("a run on no cloud");
   if (json.contains("time")) run.facts.time = json.at("time").get<std::string>();
   return run;
 }
@@ -162,7 +164,7 @@ Record record_of(const Json& json, std::size_t points) {
   if (json.contains("stroke")) {
     const int edge_class = json.at("class").get<int>();
     const bool is_class = edge_class >= 0 && edge_class < static_cast<int>(kMostClasses);
-    if (!is_class && edge_class != kUnlabelled) refuse("a stroke of no class");
+    if (!is_class && edge_class != kUnlabelled) refuse_project("a stroke of no class");
     return {.id = json.at("stroke").get<std::string>(),
             .edge_class = static_cast<std::uint8_t>(edge_class),
             .points = points_of(json.at("points"), points)};
@@ -199,11 +201,11 @@ Inputs inputs_of(const Json& file) {
     inputs.push_back(input_of(file.at("input")));
   } else if (format == kSeveralFormat) {
     for (const Json& json : file.at("inputs")) inputs.push_back(input_of(json));
-    if (inputs.empty()) refuse("no input");
+    if (inputs.empty()) refuse_project("no input");
   } else {
-    refuse(fmt::format("not of the format {} or {}", kFormat, kSeveralFormat));
+    refuse_project(fmt::format("not of the format {} or {}", kFormat, kSeveralFormat));
   }
-  if (points_of(inputs) > 0xfffffff0u) refuse("more points than 32 bits can count");
+  if (points_of(inputs) > 0xfffffff0u) refuse_project("more points than 32 bits can count");
   return inputs;
 }
 
@@ -221,9 +223,9 @@ auto strictly(Read&& read) {
   try {
     return read();
   } catch (const Error& error) {
-    refuse(error.what());
+    refuse_project(error.what());
   } catch (const Json::exception& error) {
-    refuse(error.what());
+    refuse_project(error.what());
   }
 }
 
@@ -243,7 +245,7 @@ bool begins_with(std::span<const InputIdentity> inputs, std::span<const InputIde
 
 std::string digest_of_file(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
-  if (!file) refuse(fmt::format("{}: cannot be read", path.string()));
+  if (!file) refuse_project(fmt::format("{}: cannot be read", path.string()));
   std::vector<char> part(std::size_t{1} << 20);
   Digest digest;
   while (file.read(part.data(), static_cast<std::streamsize>(part.size())), file.gcount() > 0) {
@@ -316,7 +318,7 @@ Project read_project(const std::filesystem::path& path) {
       return project;
     });
   } catch (const Error& error) {
-    refuse(fmt::format("{}: no project: {}", path.string(), error.what()));
+    refuse_project(fmt::format("{}: no project: {}", path.string(), error.what()));
   }
 }
 
@@ -339,7 +341,8 @@ std::span<const std::uint32_t> replay(const Record& record, Replayed& now) {
   switch (record.kind) {
     case Kind::kStroke:
       if (!now.classes.may_paint(record.edge_class) && record.edge_class != kUnlabelled) {
-        refuse(fmt::format("a stroke of class {}, which the project has not", record.edge_class));
+        refuse_project(
+            fmt::format("a stroke of class {}, which the project has not", record.edge_class));
       }
       if (record.edge_class != kUnlabelled) now.ever_painted.insert(record.edge_class);
       return now.labels.paint(record.edge_class, record.points);
@@ -377,14 +380,14 @@ Labels labels_of(const RunRecord& run, std::span<const Record> records, std::siz
   });
   const auto before = static_cast<std::size_t>(own - records.begin());
   if (run.records > before) {
-    refuse(fmt::format("run {} was trained on {} records, but only {} are before it", run.number,
-                       run.records, before));
+    refuse_project(fmt::format("run {} was trained on {} records, but only {} are before it",
+                               run.number, run.records, before));
   }
   Labels labels = replay(records.first(run.records), points).labels;
   const std::size_t painted = labels.painted();
   if (run.facts.painted && *run.facts.painted != painted) {
-    refuse(fmt::format("run {} was trained on {} painted points, but its records paint {}",
-                       run.number, *run.facts.painted, painted));
+    refuse_project(fmt::format("run {} was trained on {} painted points, but its records paint {}",
+                               run.number, *run.facts.painted, painted));
   }
   return labels;
 }

@@ -15,13 +15,13 @@ namespace pcednet::shapes {
 namespace {
 
 constexpr double kFewest = 600, kFew = 2000, kMost = 5000;
-constexpr std::uint64_t kFirstPart = 1000;  // after those of other sets
+constexpr std::uint64_t kFirstSparsePart = 1000;  // after those of other sets
 
 /// Three in five are even, one in five vertices of a mesh; one in six has noise. Half of them have
 /// at most kFew points, else most points would be those of large clouds.
 CadRecipe sparse_part(int family, int number, std::uint64_t seed) {
   Random random(seed, 139000 + static_cast<std::uint64_t>(100 * number + family));
-  CadRecipe recipe = drawn_part("sparse", family, number, kFirstPart, random);
+  CadRecipe recipe = drawn_part("sparse", family, number, kFirstSparsePart, random);
   recipe.mesh = number % 5 == 4;
   recipe.even = !recipe.mesh && number % 5 != 0;
   recipe.estimated = !recipe.mesh || random.index(2) == 1;
@@ -56,7 +56,7 @@ std::vector<CadRecipe> sparse_part_recipes(std::uint64_t seed) {
   for (CadRecipe& recipe : worn) {
     Random random(seed, 159000 + recipes.size());
     recipe.name = "sparse_" + recipe.name;
-    recipe.part += kFirstPart - 100;
+    recipe.part += kFirstSparsePart - 100;
     recipe.style.points = points_between(random, kFewest, kMost);
     recipes.push_back(std::move(recipe));
   }
@@ -84,7 +84,7 @@ std::vector<LineRecipe> sparse_roof_recipes(std::uint64_t seed) {
           {.name = fmt::format("sparse_roof_{}_{}", roof_kind_name(kind), number),
            .kind = number % 2 == 0 ? LineRecipe::Kind::kRoof : LineRecipe::Kind::kFlownRoof,
            .family = kind,
-           .part = kFirstPart + static_cast<std::uint64_t>(number),
+           .part = kFirstSparsePart + static_cast<std::uint64_t>(number),
            .points = points_between(random, kFewest, kMost)});
     }
   }

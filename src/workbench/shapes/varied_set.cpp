@@ -11,12 +11,12 @@
 namespace pcednet::shapes {
 namespace {
 
-constexpr std::uint64_t kFirstPart = 20;  // after those of other sets
+constexpr std::uint64_t kFirstVariedPart = 20;  // after those of other sets
 constexpr int kPartsPerFamily = 10, kSparseParts = 6;
 
 CadRecipe varied_part(int family, int number, std::uint64_t seed) {
   Random random(seed, 39000 + static_cast<std::uint64_t>(100 * number + family));
-  CadRecipe recipe = drawn_part("varied", family, number, kFirstPart, random);
+  CadRecipe recipe = drawn_part("varied", family, number, kFirstVariedPart, random);
   recipe.even = number % 2 == 1 && number < kPartsPerFamily - 1;
   if (number < kSparseParts) {
     recipe.style.points = points_between(random, 700, 2000);
