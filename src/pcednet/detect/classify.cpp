@@ -5,6 +5,7 @@
 #include "pcednet/core/blocks.h"
 #include "pcednet/core/error.h"
 #include "pcednet/detect/context.h"
+#include "pcednet/detect/crease_kind.h"
 #include "pcednet/detect/decide.h"
 #include "pcednet/detect/describe.h"
 #include "pcednet/detect/part_of_cloud.h"
@@ -67,8 +68,10 @@ Classification describe_and_decide(const PreparedCloud& cloud, const EdgeModel& 
   return found;
 }
 
-std::optional<CloudKind> kind_of(const Expert* expert) {
-  return expert ? std::optional(expert->kind) : std::nullopt;
+/// Whether the distance to the crease tells sharp-edge from smooth-edge.
+bool is_by_creases(const EdgeModel& model, const Expert* expert) {
+  constexpr std::size_t kWithSmooth = 3;
+  return expert != nullptr && expert->kind.exact && edge_outputs(model).size() == kWithSmooth;
 }
 
 }  // namespace
@@ -77,8 +80,12 @@ Classification classify(const PreparedCloud& cloud, const EdgeModel& model,
                         const Progress* progress) {
   if (!model.experts.empty()) {
     const CloudFacts facts = facts_of(cloud, model.descriptor);
+    const Expert* expert = expert_for(model, facts);
     Classification found = classify(cloud, suited_to(model, facts), progress);
-    found.expert = kind_of(expert_for(model, facts));
+    if (expert) found.expert = expert->kind;
+    if (is_by_creases(model, expert)) {
+      apply_crease_kind(cloud.positions, cloud.curve, found.s_min, found);
+    }
     return found;
   }
   Classification found = describe_and_decide(cloud, model, progress);
@@ -92,8 +99,12 @@ Classification classify(const PreparedCloud& cloud, const EdgeModel& model,
 Classification classify(const DescribedCloud& cloud, std::span<const Vec3> positions,
                         const EdgeModel& model, const Progress* progress) {
   if (!model.experts.empty()) {
+    const Expert* expert = expert_for(model, cloud.facts);
     Classification found = classify(cloud, positions, suited_to(model, cloud.facts), progress);
-    found.expert = kind_of(expert_for(model, cloud.facts));
+    if (expert) found.expert = expert->kind;
+    if (is_by_creases(model, expert)) {
+      apply_crease_kind(positions, spatial::curve_order(positions), cloud.scales.front(), found);
+    }
     return found;
   }
   const std::size_t width = row_width(model.descriptor);

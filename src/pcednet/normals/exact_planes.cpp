@@ -24,6 +24,7 @@ struct Neighbourhood {
   std::array<Vec3, kExactNeighbours> offsets;
   std::size_t count = 0;
   double sq_radius = 0.0;
+  double sq_tolerance = 0.0;  ///< of the distances to a plane
 };
 
 /// A plane through the point.
@@ -38,7 +39,7 @@ struct Plane {
 
 Plane plane_with(const Vec3& normal, const Neighbourhood& around) {
   Plane plane = {.normal = normal};
-  const double sq_tolerance = kTolerance * kTolerance * around.sq_radius;
+  const double sq_tolerance = around.sq_tolerance;
   for (std::size_t k = 0; k < around.count; ++k) {
     const double distance = normal.dot(around.offsets[k]), sq_distance = distance * distance;
     if (sq_distance >= sq_tolerance) continue;
@@ -83,6 +84,25 @@ Planes planes_of(const Neighbourhood& around) {
   return planes;
 }
 
+/// Where `neighbours` lie, and the planes through `point` to a share of the distance to the last;
+/// no planes of fewer neighbours than wanted.
+Planes find_planes(std::span<const Vec3> points, std::size_t point,
+                   std::span<const std::uint32_t> neighbours, double tolerance,
+                   Neighbourhood& around) {
+  around.count = std::min(neighbours.size(), kExactNeighbours);
+  for (std::size_t k = 0; k < around.count; ++k) {
+    around.offsets[k] = points[neighbours[k]] - points[point];
+  }
+  if (around.count < kExactNeighbours) return {};
+  around.sq_radius = around.offsets[around.count - 1].squaredNorm();
+  around.sq_tolerance = tolerance * tolerance * around.sq_radius;
+  return planes_of(around);
+}
+
+bool better(const Plane& a, const Plane& b) {
+  return a.score < b.score;
+}
+
 /// The mean normal of the edge of two faces: all their points lie on one side of the plane across
 /// it, where those of the other bisecting plane lie on both sides.
 Vec3 mean_normal(const Plane& first, const Plane& second, const Neighbourhood& around) {
@@ -102,15 +122,7 @@ Vec3 mean_normal(const Plane& first, const Plane& second, const Neighbourhood& a
 Vec3 exact_normal(std::span<const Vec3> points, std::size_t point,
                   std::span<const std::uint32_t> neighbours) {
   Neighbourhood around;
-  around.count = std::min(neighbours.size(), kExactNeighbours);
-  for (std::size_t k = 0; k < around.count; ++k) {
-    around.offsets[k] = points[neighbours[k]] - points[point];
-  }
-  if (around.count < kExactNeighbours) return Vec3::Zero();
-  around.sq_radius = around.offsets[around.count - 1].squaredNorm();
-
-  const Planes planes = planes_of(around);
-  const auto better = [](const Plane& a, const Plane& b) { return a.score < b.score; };
+  const Planes planes = find_planes(points, point, neighbours, kTolerance, around);
   const auto begin = planes.all.begin(), end = begin + static_cast<std::ptrdiff_t>(planes.count);
   if (begin == end) return Vec3::Zero();
   const Plane& first = *std::max_element(begin, end, better);
@@ -130,6 +142,14 @@ Vec3 exact_normal(std::span<const Vec3> points, std::size_t point,
   std::array<PlaneFit, 1> fit;
   fit_planes(points, some, on_plane, fit);
   return fit[0].normal.isZero(0.0) ? first.normal : fit[0].normal;
+}
+
+Vec3 face_normal(std::span<const Vec3> points, std::size_t point,
+                 std::span<const std::uint32_t> neighbours, double tolerance) {
+  Neighbourhood around;
+  const Planes planes = find_planes(points, point, neighbours, tolerance, around);
+  const auto begin = planes.all.begin(), end = begin + static_cast<std::ptrdiff_t>(planes.count);
+  return begin == end ? Vec3(Vec3::Zero()) : std::max_element(begin, end, better)->normal;
 }
 
 }  // namespace pcednet::normals

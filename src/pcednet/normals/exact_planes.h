@@ -25,4 +25,9 @@ inline constexpr std::size_t kExactNeighbours = 16;
 Vec3 exact_normal(std::span<const Vec3> points, std::size_t point,
                   std::span<const std::uint32_t> neighbours);
 
+/// The normal of the first of these planes alone, for any `tolerance` in place of 0.003: of one
+/// face even where the point is near its edge.
+Vec3 face_normal(std::span<const Vec3> points, std::size_t point,
+                 std::span<const std::uint32_t> neighbours, double tolerance);
+
 }  // namespace pcednet::normals

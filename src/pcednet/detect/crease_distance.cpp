@@ -1,0 +1,211 @@
+#include "pcednet/detect/crease_distance.h"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <limits>
+
+#include "pcednet/core/parallel.h"
+#include "pcednet/normals/exact_planes.h"
+#include "pcednet/spatial/neighbour_search.h"
+
+namespace pcednet::detect {
+namespace {
+
+constexpr std::size_t kNearest = 24;  ///< nearest others among which faces are looked for
+constexpr std::size_t kPointsAtATime = 512;
+constexpr int kOtherFaces = 2;
+
+/// Of a face's plane, over the distance of its last neighbour: the first that finds a plane counts.
+constexpr std::array<double, 4> kTolerances = {0.003, 0.01, 0.03, 0.08};
+
+constexpr double kLeastSine = 0.438;  ///< between the normals of two faces: 26 degrees
+
+// In the unit.
+constexpr double kOnOwnFace = 0.04;    ///< of the points of the point's own face from its plane
+constexpr double kOnOtherFace = 0.08;  ///< of those of another
+constexpr double kHalfWeight = 0.016;  ///< a point so far from another face counts half
+constexpr double kCreaseReach = 2.5;   ///< of the points that count, from the crease
+constexpr double kGap = 1.6;           ///< of the nearest of them
+constexpr double kFarthest = 2.5;      ///< crease
+constexpr double kLeastPoints = 3.0;   ///< of another face
+constexpr double kOnCrease = 0.03;     ///< of the vertices of a mesh from both faces
+constexpr int kLeastVertices = 3;
+
+constexpr float kNoCrease = std::numeric_limits<float>::infinity();
+
+/// The nearest others of a point, as seen from it, in the unit, that are free: on no face found.
+struct NearFaces {
+  std::array<Vec3, kNearest> offsets, normals;
+  std::array<bool, kNearest> free;
+  std::size_t count = 0;
+};
+
+/// Where another face meets the point's own.
+struct CreaseBeside {
+  double distance = 0.0;
+  double points = 0.0;  ///< that the other face explains
+  std::size_t face = kNearest;
+};
+
+/// The crease with the plane through neighbour `face`; of no points if there is none.
+CreaseBeside crease_with(std::size_t face, const Vec3& own, const NearFaces& around) {
+  const Vec3& normal = around.normals[face];
+  const double cosine = normal.dot(own);
+  const double sine = std::sqrt(std::max(0.0, 1.0 - cosine * cosine));
+  const double height = normal.dot(around.offsets[face]);
+  if (normal.isZero(0.0) || !(sine > kLeastSine) || std::abs(height) > kFarthest * sine) return {};
+  const Vec3 foot = height / (sine * sine) * (normal - cosine * own);
+  CreaseBeside crease = {std::abs(height) / sine, 0.0, face};
+  double sq_gap = kCreaseReach * kCreaseReach;
+  for (std::size_t k = 0; k < around.count; ++k) {
+    const double sq_away = (around.offsets[k] - foot).squaredNorm();
+    if (!around.free[k] || sq_away > kCreaseReach * kCreaseReach) continue;
+    const double off = normal.dot(around.offsets[k]) - height;
+    crease.points += 1.0 / (1.0 + off * off / (kHalfWeight * kHalfWeight));
+    if (std::abs(off) < kOnOtherFace) sq_gap = std::min(sq_gap, sq_away);
+  }
+  return sq_gap < kGap * kGap && crease.points >= kLeastPoints ? crease : CreaseBeside{};
+}
+
+/// Whether the crease has vertices of a mesh on it: of points drawn at random hardly any are.
+bool has_vertices(const CreaseBeside& crease, const Vec3& own, const NearFaces& around) {
+  const Vec3 &normal = around.normals[crease.face], place = around.offsets[crease.face];
+  int vertices = crease.distance < kOnCrease ? 1 : 0;
+  for (std::size_t k = 0; k < around.count; ++k) {
+    const Vec3& offset = around.offsets[k];
+    const double off_own = std::abs(own.dot(offset)), off = std::abs(normal.dot(offset - place));
+    vertices += off_own < kOnCrease && off < kOnCrease ? 1 : 0;
+  }
+  return vertices >= kLeastVertices;
+}
+
+/// `own` is the normal of the point's face. Takes the points of the faces found.
+float nearest_crease(const Vec3& own, NearFaces& around) {
+  double nearest = kNoCrease;
+  for (std::size_t k = 0; k < around.count; ++k) {
+    around.free[k] = std::abs(own.dot(around.offsets[k])) > kOnOwnFace;
+  }
+  for (int i = 0; i < kOtherFaces; ++i) {
+    CreaseBeside best;
+    for (std::size_t k = 0; k < around.count; ++k) {
+      if (!around.free[k]) continue;
+      const CreaseBeside crease = crease_with(k, own, around);
+      if (crease.points > best.points) best = crease;
+    }
+    if (best.face == kNearest) break;
+    if (has_vertices(best, own, around)) return kNoCrease;
+    nearest = std::min(nearest, best.distance);
+    const Vec3 &normal = around.normals[best.face], place = around.offsets[best.face];
+    for (std::size_t k = 0; k < around.count; ++k) {
+      if (std::abs(normal.dot(around.offsets[k] - place)) < kOnOtherFace) around.free[k] = false;
+    }
+  }
+  return static_cast<float>(nearest);
+}
+
+/// The points of a cloud by their place on its curve.
+class FacePlaces {
+ public:
+  FacePlaces(std::span<const Vec3> positions, std::span<const std::uint32_t> curve, double unit)
+      : unit_(unit), positions_(along(positions, curve)), search_(positions_) {}
+
+  /// Calls work(k, the nearest others of places[k]) in parallel; places are ascending.
+  template <typename Work>
+  void for_each(std::span<const std::uint32_t> places, std::size_t count, const Work& work) const {
+    const std::size_t others = search_.available(count);
+    parallel_blocks(places.size(), kPointsAtATime, [&](std::size_t begin, std::size_t end) {
+      std::vector<spatial::Neighbour> near((end - begin) * others);
+      search_.nearest_others(places.subspan(begin, end - begin), others, near);
+      for (std::size_t k = begin; k < end; ++k) {
+        work(k, std::span(near).subspan((k - begin) * others, others));
+      }
+    });
+  }
+
+  /// Of the face that each of `places` is on; zero where none was found, and elsewhere.
+  std::vector<Vec3> face_normals(std::span<const std::uint32_t> places) const {
+    std::vector<Vec3> normals(positions_.size(), Vec3::Zero());
+    for_each(places, normals::kExactNeighbours, [&](std::size_t k, auto near) {
+      std::array<std::uint32_t, normals::kExactNeighbours> others;
+      for (std::size_t i = 0; i < near.size(); ++i) others[i] = near[i].index;
+      for (const double tolerance : kTolerances) {
+        Vec3& normal = normals[places[k]];
+        normal = normals::face_normal(positions_, places[k], std::span(others).first(near.size()),
+                                      tolerance);
+        if (!normal.isZero(0.0)) break;
+      }
+    });
+    return normals;
+  }
+
+  NearFaces near_faces(std::uint32_t place, std::span<const spatial::Neighbour> near,
+                       std::span<const Vec3> normals) const {
+    NearFaces around;
+    around.count = near.size();
+    for (std::size_t k = 0; k < near.size(); ++k) {
+      around.offsets[k] = (positions_[near[k].index] - positions_[place]) / unit_;
+      around.normals[k] = normals[near[k].index];
+    }
+    return around;
+  }
+
+ private:
+  static std::vector<Vec3> along(std::span<const Vec3> positions,
+                                 std::span<const std::uint32_t> curve) {
+    std::vector<Vec3> ordered(curve.size());
+    std::transform(curve.begin(), curve.end(), ordered.begin(),
+                   [&](std::uint32_t i) { return positions[i]; });
+    return ordered;
+  }
+
+  double unit_;
+  std::vector<Vec3> positions_;
+  spatial::NeighbourSearch search_;
+};
+
+std::vector<std::uint32_t> places_where(std::span<const std::uint8_t> marks) {
+  std::vector<std::uint32_t> places;
+  for (std::uint32_t place = 0; place < marks.size(); ++place) {
+    if (marks[place] != 0) places.push_back(place);
+  }
+  return places;
+}
+
+/// `places` and their nearest others.
+std::vector<std::uint32_t> with_others(const FacePlaces& cloud,
+                                       std::span<const std::uint32_t> places, std::size_t size) {
+  std::vector<std::uint8_t> marks(size, 0);
+  const auto mark = [&](std::uint32_t place) {
+    std::atomic_ref(marks[place]).store(1, std::memory_order_relaxed);
+  };
+  cloud.for_each(places, kNearest, [&](std::size_t k, auto near) {
+    mark(places[k]);
+    for (const spatial::Neighbour& other : near) mark(other.index);
+  });
+  return places_where(marks);
+}
+
+}  // namespace
+
+std::vector<float> crease_distances(std::span<const Vec3> positions,
+                                    std::span<const std::uint32_t> curve,
+                                    std::span<const std::uint8_t> wanted, double unit) {
+  std::vector<float> distances(positions.size(), kNoCrease);
+  std::vector<std::uint32_t> places;
+  for (std::uint32_t place = 0; place < curve.size(); ++place) {
+    if (wanted[curve[place]] != 0) places.push_back(place);
+  }
+  const FacePlaces cloud(positions, curve, unit);
+  const auto normals = cloud.face_normals(with_others(cloud, places, curve.size()));
+  cloud.for_each(places, kNearest, [&](std::size_t k, auto near) {
+    const Vec3& own = normals[places[k]];
+    if (own.isZero(0.0)) return;
+    NearFaces around = cloud.near_faces(places[k], near, normals);
+    distances[curve[places[k]]] = nearest_crease(own, around);
+  });
+  return distances;
+}
+
+}  // namespace pcednet::detect
