@@ -30,8 +30,8 @@ constexpr double kCreaseReach = 2.5;   ///< of the points that count, from the c
 constexpr double kGap = 1.6;           ///< of the nearest of them
 constexpr double kFarthest = 2.5;      ///< crease
 constexpr double kLeastPoints = 3.0;   ///< of another face
-constexpr double kOnCrease = 0.03;     ///< of the vertices of a mesh from both faces
-constexpr int kLeastVertices = 3;
+constexpr double kOnCrease = 0.02;     ///< of the vertices of a mesh from both faces
+constexpr int kLeastVertices = 2;
 
 constexpr float kNoCrease = std::numeric_limits<float>::infinity();
 

@@ -15,7 +15,7 @@ namespace pcednet::detect {
 /// Faces are those of the 24 nearest others: each has the plane that most of its own 16 nearest lie
 /// on (normals::face_normal). Another face is turned by 26 degrees or more and explains at least
 /// three of the 24 that are not on the point's own face, some of them near the place at which the
-/// two planes meet. The nearer of the two best counts. None does where three points lie on the
+/// two planes meet. The nearer of the two best counts. None does where two points lie on the
 /// crease itself, as vertices of a mesh do: they are the edge, whatever their spacing.
 ///
 /// Normals play no part, nor do threads or the order of the points. `curve` is the
