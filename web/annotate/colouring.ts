@@ -1,11 +1,11 @@
 // From what the page is set to show to what the points look like.
 
+import { PLAIN, type Stroke } from "../shared/line_layer";
 import { NONE, paletteOf } from "./classes";
-import type { LineLook } from "./line_layer";
 import type { Appearance } from "./painter";
 import { rampBytes, STOPS, type RampName } from "./ramp";
 import { activeClip, type ColourMode, type State } from "./store";
-import { NO_CLASS } from "./types";
+import { NO_CLASS, type Line } from "./types";
 
 /** The colour a tool paints with; the eraser's is that of no label. */
 export const paintColour = (state: Pick<State, "classes" | "edges" | "safePalette" | "paintClass">): string =>
@@ -50,10 +50,24 @@ export function appearanceOf(state: State, background: string): Appearance {
   };
 }
 
-export const lineLookOf = (state: State, chosen: number | null): LineLook => ({
-  palette: paletteOf(state).map((meaning) => meaning.colour),
-  chosen,
-});
+const LINE_LOOKS: Record<Line["decision"] | "chosen", Pick<Stroke, "rim" | "widths">> = {
+  open: PLAIN,
+  accepted: { rim: "#2db478", widths: [1.5, 1.5] },
+  rejected: { rim: PLAIN.rim, widths: [0.75, 0] },
+  chosen: { rim: "#18a8ff", widths: [2, 3] },
+};
+const REJECTED = "#8f96a0";
+
+/** How the lines are drawn that are shown now; `line` is the number of the one that is looked at. */
+export function strokesOf(state: State): Stroke[] {
+  if (!state.showLines) return [];
+  const palette = paletteOf(state).map((meaning) => meaning.colour);
+  return state.lines.lines.map(({ path, decision, class: its }, number) => ({
+    path,
+    fill: decision === "rejected" ? REJECTED : palette[its],
+    ...LINE_LOOKS[number === state.line ? "chosen" : decision],
+  }));
+}
 
 /** What the ends of the present ramp mean. */
 export function rampEnds({ mode }: State): [string, string] {

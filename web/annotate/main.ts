@@ -7,7 +7,7 @@ import { Brush } from "./brush";
 import { curtain, header, hint, legend, presser, toolbar } from "./chrome";
 import { ClipHandles, stepped } from "./clip_handles";
 import { Client, refusalOf, type Saved } from "./client";
-import { appearanceOf, lineLookOf, paintColour, valuesQuery } from "./colouring";
+import { appearanceOf, paintColour, strokesOf, valuesQuery } from "./colouring";
 import { bindKeys, commandsOf } from "./commands";
 import { Measure } from "./measure";
 import { Outline } from "./outline";
@@ -159,10 +159,9 @@ function open(page: HTMLElement): void {
     stage.setAppearance(appearanceOf(store.now, css("--stage"))),
   );
   store.watch(["mode", "feature", "scale"], () => stage.loader.setValues(valuesQuery(store.now)));
-  store.watch(["lines", "line", "showLines", "safePalette", "session"], () => {
-    const { lines, line, showLines, session } = store.now;
-    stage.setLines(showLines ? lines.lines : [], lineLookOf(store.now, line), session?.spacing ?? 0);
-  });
+  store.watch(["lines", "line", "showLines", "safePalette", "session"], () =>
+    stage.setLines(strokesOf(store.now), store.now.session?.spacing ?? 0),
+  );
   store.watch(["clip"], () => overlay.setClip(activeClip(store.now)));
   store.watch(["uncertain"], () => {
     if (!store.now.uncertain) overlay.setMark(null);

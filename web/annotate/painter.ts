@@ -14,10 +14,10 @@ import {
   type PerspectiveCamera,
 } from "three";
 import { rgbOf } from "../shared/colours";
+import { LineLayer } from "../shared/line_layer";
 import type { Chunk } from "./chunk";
 import { MOST_CLASSES, NONE } from "./classes";
 import { EyeDome } from "./eye_dome";
-import { LineLayer } from "./line_layer";
 import { FRAGMENT, VERTEX } from "./shaders";
 import type { Box } from "./types";
 

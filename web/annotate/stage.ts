@@ -1,5 +1,6 @@
 // The view: chooses what to draw, draws it over several frames, picks in it.
 
+import type { Stroke } from "../shared/line_layer";
 import type { Api } from "./api";
 import { Budget } from "./budget";
 import { Camera, type Side } from "./camera";
@@ -8,8 +9,7 @@ import { drawnSpacings, selectNodes, withSpacings, type Take } from "./detail";
 import { boxCorners as corners } from "./geometry";
 import { Loader } from "./loader";
 import { Painter, type Appearance, type Layer } from "./painter";
-import type { LineLook } from "./line_layer";
-import type { Box, Line, Session } from "./types";
+import type { Box, Session } from "./types";
 
 const SETTLE_MS = 120;
 const REST_MS = 200;
@@ -110,8 +110,8 @@ export class Stage {
     else this.redraw();
   }
 
-  setLines(lines: Line[], look: LineLook, spacing: number): void {
-    this.painter.lines.setLines(lines, look, spacing);
+  setLines(lines: Stroke[], spacing: number): void {
+    this.painter.lines.setLines(lines, spacing);
     this.redraw();
   }
 

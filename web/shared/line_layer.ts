@@ -10,27 +10,25 @@ import {
   Vector2,
   Vector3,
 } from "three";
-import { rgbOf } from "../shared/colours";
-import type { Box, Line } from "./types";
+import { rgbOf } from "./colours";
 
-export interface LineLook {
-  /** By class: non-edge, smooth edge, sharp edge, boundary. */
-  palette: string[];
-  /** The number of the line that is looked at. */
-  chosen: number | null;
+/** A line, and how it is drawn. */
+export interface Stroke {
+  /** Vertices: x, y, z, x, y, z, ... */
+  path: number[];
+  fill: string;
+  rim: string;
+  /** Half widths in CSS pixels: of the line, and of its rim. */
+  widths: [number, number];
 }
 
-const GREY = "#8f96a0";
-const RIM = "#ffffff";
-const ACCEPTED_RIM = "#2db478";
-const CHOSEN_RIM = "#18a8ff";
-/** Half widths in CSS pixels: of the line, and of its rim. */
-const WIDTHS: Record<Line["decision"], [number, number]> = {
-  open: [1.5, 1],
-  accepted: [1.5, 1.5],
-  rejected: [0.75, 0],
-};
-const CHOSEN_WIDTHS: [number, number] = [2, 3];
+/** How a line is drawn of which there is nothing else to say. */
+export const PLAIN: Pick<Stroke, "rim" | "widths"> = { rim: "#ffffff", widths: [1.5, 1] };
+
+interface Box {
+  min: [number, number, number];
+  max: [number, number, number];
+}
 
 const VERTEX = `
 attribute vec3 from;
@@ -138,31 +136,27 @@ export class LineLayer {
   }
 
   /** Shows these lines from now on; `spacing` is that of the points. */
-  setLines(lines: Line[], look: LineLook, spacing: number): void {
+  setLines(lines: Stroke[], spacing: number): void {
     this.uniforms.spacing.value = spacing;
     this.geometry.dispose();
-    this.geometry = geometryOf(lines, look);
+    this.geometry = geometryOf(lines);
     for (const part of this.parts) part.geometry = this.geometry;
     this.scene.children = lines.length > 0 ? this.parts : [];
   }
 }
 
 /** A rectangle for every piece of every line. */
-function geometryOf(lines: Line[], { palette, chosen }: LineLook): InstancedBufferGeometry {
+function geometryOf(lines: Stroke[]): InstancedBufferGeometry {
   const columns = { from: [], to: [], fill: [], rim: [], widths: [] } as Record<string, number[]>;
-  lines.forEach((line, number) => {
-    const isChosen = number === chosen;
-    const fill = rgbOf(line.decision === "rejected" ? GREY : palette[line.class]);
-    const rim = rgbOf(isChosen ? CHOSEN_RIM : line.decision === "accepted" ? ACCEPTED_RIM : RIM);
-    const widths = isChosen ? CHOSEN_WIDTHS : WIDTHS[line.decision];
-    for (let i = 0; i + 5 < line.path.length; i += 3) {
-      columns.from.push(...line.path.slice(i, i + 3));
-      columns.to.push(...line.path.slice(i + 3, i + 6));
-      columns.fill.push(...fill);
-      columns.rim.push(...rim);
+  for (const { path, fill, rim, widths } of lines) {
+    for (let i = 0; i + 5 < path.length; i += 3) {
+      columns.from.push(...path.slice(i, i + 3));
+      columns.to.push(...path.slice(i + 3, i + 6));
+      columns.fill.push(...rgbOf(fill));
+      columns.rim.push(...rgbOf(rim));
       columns.widths.push(...widths);
     }
-  });
+  }
   const geometry = new InstancedBufferGeometry();
   geometry.setAttribute("position", new Float32BufferAttribute([0, -1, 0, 1, -1, 0, 1, 1, 0, 0, 1, 0], 3));
   geometry.setIndex([0, 1, 2, 0, 2, 3]);
