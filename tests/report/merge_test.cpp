@@ -118,6 +118,23 @@ TEST_F(Merge, SamplesLargeClouds) {
   EXPECT_EQ(merged({.points_per_cloud = 3})["scenes"][0]["shown"], 3);
 }
 
+TEST_F(Merge, HasLinesOfTheTruthAndOfEachPredictionOnDemand) {
+  const Json plain = merged()["scenes"][0];
+  EXPECT_FALSE(plain.contains("lines") || plain["predictions"][0].contains("lines"));
+  PointCloud cloud;  // a right angle
+  for (int i = 0; i < 900; ++i) {
+    const double along = i % 30, away = 0.5 * (i / 30 - 15);
+    cloud.positions.emplace_back(std::max(away, 0.0), along, std::max(-away, 0.0));
+    cloud.normals.push_back(away > 0 ? Vec3::UnitZ() : Vec3::UnitX());
+    cloud.labels.push_back(std::abs(away) < 1.5 ? kSharpEdge : kNonEdge);
+  }
+  formats::write_cloud(folder_ / "cloud.ply", cloud, {.overwrite = Overwrite::kYes});
+  write("predictions/cloud.u8", std::string(900, '\0'));
+  const Json scene = merged({.lines = true})["scenes"][0];
+  EXPECT_EQ(scene["lines"].size(), 1u);
+  EXPECT_EQ(scene["predictions"][0]["lines"], Json::array()) << "it found no edges";
+}
+
 TEST_F(Merge, SharesACloudBetweenStudies) {
   study_["title"] = "Another";
   write("other.json", study_.dump());

@@ -354,6 +354,30 @@ test("puts the comparison of methods first, with a row for each in its charts, a
   fs.rmSync(other, { recursive: true, force: true });
 });
 
+test("draws lines over the clouds, with their number and length, as long as they are wanted", async () => {
+  assert.equal(await page.getByRole("checkbox", { name: "Lines", exact: true }).count(), 0, "none were asked for");
+  const [made, data] = ["lines.html", "lines.json"].map((name) => path.join(folder, name));
+  assert.equal(pcednet(folder, "-o", made, "--lines", "--clouds-per-set", "1", "--json", data).code, 0);
+  const [{ lines, predictions }] = JSON.parse(fs.readFileSync(data)).scenes;
+  assert.equal(lines.length, 12, "a cube");
+  const opened = await browser.newPage({ viewport: { width: 1280, height: 800 } });
+  await opened.goto(pathToFileURL(made).href);
+  const words = await opened.locator(".label p:last-child").allTextContents();
+  assert.match(words[0], /^12 lines, length 1[12]\.\d+$/);
+  assert.ok(words[1].startsWith(`${predictions[0].lines.length} lines, length `), words[1]);
+  const box = opened.getByRole("checkbox", { name: "Lines", exact: true });
+  assert.ok(await box.isChecked());
+  assert.match(await opened.locator(".gallery .key").textContent(), /line of a sharp edge/);
+  await opened.locator(".gallery").getByRole("radio", { name: "errors", exact: true }).check(); // no red points
+  const { red } = await seen(opened, 0);
+  assert.ok(red > 0.01, `${red} of the pixels`);
+  await box.uncheck();
+  assert.ok((await seen(opened, 0)).red < 0.0005);
+  assert.equal(await opened.locator(".label").first().textContent(), "Truth");
+  assert.doesNotMatch(await opened.locator(".gallery .key").textContent(), /line/);
+  await opened.close();
+});
+
 test("shows the titles of the clouds on a ground of their own", async () => {
   const ground = await page
     .locator(".label p")

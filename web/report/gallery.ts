@@ -3,6 +3,7 @@
 import { BOUNDARY, CLASS_PALETTES, ERROR_PALETTE, NO_LABEL, type Meaning } from "../shared/colours";
 import { bytesOf, classesOf, positionsOf } from "../shared/decode";
 import { dropdown, h, segmented } from "../shared/dom";
+import { PLAIN, type Stroke } from "../shared/line_layer";
 import { PointViewer, type Place } from "../shared/viewer";
 import { gallery as door } from "./look";
 import {
@@ -11,6 +12,7 @@ import {
   positiveName,
   shownOrder,
   titleOf,
+  type Line,
   type PackedScene,
   type Report,
   type Result,
@@ -23,7 +25,13 @@ type Palette = "paper" | "safe";
 interface Exhibit {
   scene: PackedScene;
   truth: Uint8Array;
-  predictions: { title: string; result: Result | undefined; positive: string; classes: Uint8Array }[];
+  predictions: {
+    title: string;
+    result: Result | undefined;
+    positive: string;
+    classes: Uint8Array;
+    lines: Line[];
+  }[];
 }
 
 const GAP = 2;
@@ -58,9 +66,23 @@ function exhibitOf(scene: PackedScene, studies: Study[], study: number): Exhibit
           result,
           positive: result?.positive ?? counts,
           classes: classesOf(p.classes, scene.shown),
+          lines: p.lines ?? [],
         };
       }),
   };
+}
+
+const strokesOf = (lines: Line[], palette: Palette): Stroke[] =>
+  lines.map((line) => ({
+    path: line.path.map((x) => x / 65535),
+    fill: CLASS_PALETTES[palette][line.class].colour,
+    ...PLAIN,
+  }));
+
+/** As 12 lines, length 3.14. */
+function lengthText(lines: Line[]): string {
+  const length = lines.reduce((sum, line) => sum + line.length, 0);
+  return `${formatCount(lines.length)} line${lines.length === 1 ? "" : "s"}, length ${Number(length.toPrecision(4))}`;
 }
 
 class Gallery {
@@ -83,6 +105,7 @@ class Gallery {
   private chosen = new Set<string>();
   private mode: Mode = "classes";
   private palette: Palette = "paper";
+  private lines = true;
   private size = 1;
 
   constructor(private readonly report: Report) {
@@ -187,6 +210,23 @@ class Gallery {
         this.drawPanels();
       }),
       this.colours,
+      ...(this.scene.lines
+        ? [
+            h(
+              "label",
+              { class: "check" },
+              h("input", {
+                type: "checkbox",
+                checked: this.lines,
+                onchange: (e: Event) => {
+                  this.lines = (e.target as HTMLInputElement).checked;
+                  this.drawPanels();
+                },
+              }),
+              "Lines",
+            ),
+          ]
+        : []),
       h(
         "label",
         { class: "slider" },
@@ -240,6 +280,7 @@ class Gallery {
   private drawPanels(): void {
     const { truth, predictions, scene } = this.exhibit;
     const shown = predictions.filter((p) => this.chosen.has(p.title));
+    const lines = this.lines && scene.lines ? [scene.lines, ...shown.map((p) => p.lines)] : [];
     const errors = this.mode === "errors";
     const positive = (shown[0] ?? predictions[0]).positive;
     this.colours.hidden = errors; // errors have colours of their own, safe anyway
@@ -248,22 +289,24 @@ class Gallery {
       errors ? agreement(truth, truth, positive) : truth,
       ...shown.map((p) => (errors ? agreement(truth, p.classes, p.positive) : p.classes)),
     ]);
+    this.viewer.setLines(lines.map((those) => strokesOf(those, this.palette)));
     this.labels.replaceChildren(
-      h("div", { class: "label" }, h("p", {}, h("b", {}, "Truth"))),
-      ...shown.map(({ title, result }) => {
+      h("div", { class: "label" }, h("p", {}, h("b", {}, "Truth")), lines[0] && h("p", {}, lengthText(lines[0]))),
+      ...shown.map(({ title, result }, i) => {
         const mcc = result?.clouds.find((c) => c.name === scene.cloud)?.mcc;
         return h(
           "div",
           { class: "label" },
           h("p", { title }, h("b", {}, title), mcc !== undefined && h("span", {}, ` MCC ${formatScore(mcc)}`)),
+          lines[i + 1] && h("p", {}, lengthText(lines[i + 1])),
         );
       }),
     );
-    this.drawKey(errors ? ERROR_PALETTE : CLASS_PALETTES[this.palette], positive);
+    this.drawKey(errors ? ERROR_PALETTE : CLASS_PALETTES[this.palette], positive, lines.flat());
     this.layOut();
   }
 
-  private drawKey(meanings: Meaning[], positive: string): void {
+  private drawKey(meanings: Meaning[], positive: string, lines: Line[]): void {
     const { scene, truth, predictions } = this.exhibit;
     const absent = [
       ...(truth.includes(NO_LABEL) ? [] : ["no label"]),
@@ -275,6 +318,11 @@ class Gallery {
       ...meanings
         .filter((m) => !absent.includes(m.name))
         .map((m) => h("span", {}, h("span", { class: "swatch", style: `background:${m.colour}` }), m.name)),
+      ...CLASS_PALETTES[this.palette]
+        .filter((_, its) => lines.some((line) => line.class === its))
+        .map((m) =>
+          h("span", {}, h("span", { class: "swatch line", style: `background:${m.colour}` }), `line of a ${m.name}`),
+        ),
     );
     const sampled =
       scene.shown < scene.points

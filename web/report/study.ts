@@ -68,6 +68,14 @@ export interface Expected {
   source?: string;
 }
 
+/** An edge as a curve. */
+export interface Line {
+  class: number;
+  length: number;
+  /** Vertices: x, y, z, x, y, z, ...; 65535 is the longest side of the box of the points. */
+  path: number[];
+}
+
 export interface PackedScene {
   set: string;
   cloud: string;
@@ -79,7 +87,9 @@ export interface PackedScene {
   positions: string;
   normals: string;
   truth: string;
-  predictions: { study: number; variant: string; seed: number | null; classes: string }[];
+  /** Of the truth, if the page has lines. */
+  lines?: Line[];
+  predictions: { study: number; variant: string; seed: number | null; classes: string; lines?: Line[] }[];
 }
 
 export interface Report {

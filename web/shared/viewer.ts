@@ -14,6 +14,7 @@ import {
 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { rgbOf, type Meaning } from "./colours";
+import { LineLayer, type Stroke } from "./line_layer";
 import { UNFOLD } from "./unfold";
 
 const MAX_CODES = 8;
@@ -35,8 +36,9 @@ void main() {
   float light = abs(dot(normalize(n), normalize(vec3(0.25, 0.45, 1.0))));
   bool plain = code < 0.5;
   colour = palette[int(code + 0.5)] * mix(plain ? 0.42 : 0.72, 1.0, light);
-  gl_Position = projectionMatrix * seen;
-  if (!plain) gl_Position.z -= 0.0015 * gl_Position.w;  // marks lie on top of the surface
+  // Marks lie on top of the points around them.
+  float lift = plain ? 0.0 : min(size / length(seen.xyz), 0.5);
+  gl_Position = projectionMatrix * vec4(seen.xyz * (1.0 - lift), 1.0);
   gl_PointSize = clamp(size * pixels / -seen.z, 1.5, 64.0);
 }`;
 
@@ -73,6 +75,7 @@ export class PointViewer {
   private readonly scene = new Scene();
   private readonly points: Points;
   private geometries: BufferGeometry[] = [];
+  private readonly layers: LineLayer[] = [];
   private places: Place[] = [];
   private home = new Vector3(0, 0, 1);
   private centre = new Vector3(0.5, 0.5, 0.5);
@@ -82,6 +85,7 @@ export class PointViewer {
   /** Throws if the browser offers no WebGL. */
   constructor(private readonly canvas: HTMLCanvasElement) {
     this.renderer = new WebGLRenderer({ canvas, antialias: true, powerPreference: "low-power" });
+    this.renderer.autoClear = false;
     this.renderer.setScissorTest(true);
     this.material = new ShaderMaterial({
       vertexShader: VERTEX,
@@ -137,6 +141,13 @@ export class PointViewer {
       geometry.setAttribute("code", new BufferAttribute(code, 1));
       return geometry;
     });
+    this.draw();
+  }
+
+  /** The lines of each panel; 1 is the longest side of the box of the points. */
+  setLines(lines: Stroke[][]): void {
+    while (this.layers.length < lines.length) this.layers.push(new LineLayer(this.renderer.getPixelRatio()));
+    this.layers.forEach((layer, i) => layer.setLines(lines[i] ?? [], this.spacing));
     this.draw();
   }
 
@@ -198,10 +209,15 @@ export class PointViewer {
       const bottom = height - place.y - place.height;
       this.renderer.setViewport(place.x, bottom, place.width, place.height);
       this.renderer.setScissor(place.x, bottom, place.width, place.height);
-      this.material.uniforms.pixels.value =
-        (place.height * this.renderer.getPixelRatio()) / (2 * Math.tan((FIELD_OF_VIEW * Math.PI) / 360));
+      const ratio = this.renderer.getPixelRatio();
+      const pixels = (place.height * ratio) / (2 * Math.tan((FIELD_OF_VIEW * Math.PI) / 360));
+      this.material.uniforms.pixels.value = pixels;
       this.points.geometry = geometry;
       this.renderer.render(this.scene, this.camera);
+      const lines = this.layers[i];
+      if (!lines) return;
+      lines.setView(place.width * ratio, place.height * ratio, pixels, this.camera.near);
+      this.renderer.render(lines.scene, this.camera);
     });
   }
 

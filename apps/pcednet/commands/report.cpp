@@ -53,6 +53,7 @@ void add_report(CLI::App& app, Common& common) {
       add_command(app, common, "report", "Make one web page of the studies in a folder",
                   "pcednet report study/ -o report.html\n"
                   "pcednet report study/ --clouds-per-set 9 --points 100000 --overwrite\n"
+                  "pcednet report study/ --lines\n"
                   "pcednet report study/ --title 'Facades of the old town' --date 'May 2027'");
   command->add_option("folder", arguments->folder, "Folder written by `pcednet study`")->required();
   command->add_option("-o,--output", arguments->output, "Output page; it needs no other file")
@@ -67,6 +68,9 @@ void add_report(CLI::App& app, Common& common) {
                    "Points to show per cloud; larger clouds are sampled")
       ->capture_default_str()
       ->check(CLI::Range(1, 10000000));
+  command->add_flag("--lines", arguments->merge.lines,
+                    "Draw edges as lines, too: found in the labels and in every prediction as "
+                    "`pcednet lines` finds them");
   command->add_option("--title", arguments->merge.title,
                       "Title of the page (default: that of the only study, or a general one)");
   command->add_option("--date", arguments->merge.date, "Date of the page, in your own words");

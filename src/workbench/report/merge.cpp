@@ -8,9 +8,11 @@
 #include <optional>
 
 #include "pcednet/core/error.h"
+#include "pcednet/detect/prepare.h"
 #include "pcednet/formats/labels.h"
 #include "pcednet/formats/read_cloud.h"
 #include "pcednet/io/input_file.h"
+#include "workbench/report/drawn_lines.h"
 #include "workbench/report/scene.h"
 
 namespace pcednet::report {
@@ -224,40 +226,52 @@ std::vector<Exhibit> choose_exhibits(const Studies& studies, const fs::path& fol
   return exhibits;
 }
 
-Json predictions_of(const Exhibit& exhibit, const Scene& scene, std::size_t points) {
-  Json predictions = Json::array();
-  for (const Exhibit::Source& source : exhibit.sources) {
-    const auto classes = formats::read_labels(source.predictions);
-    if (classes.size() != points) {
-      throw Error(ErrorKind::kInsufficient,
-                  fmt::format("{}: {} classes, but {} has {} points", source.predictions.string(),
-                              classes.size(), exhibit.file.string(), points));
-    }
-    predictions.push_back({{"study", source.study},
-                           {"variant", source.variant},
-                           {"seed", source.seed},
-                           {"classes", pack_classes(classes, scene.shown)}});
-  }
-  return predictions;
+std::vector<std::uint8_t> read_classes(const fs::path& predictions, const fs::path& cloud,
+                                       std::size_t points) {
+  auto classes = formats::read_labels(predictions);
+  if (classes.size() == points) return classes;
+  throw Error(ErrorKind::kInsufficient,
+              fmt::format("{}: {} classes, but {} has {} points", predictions.string(),
+                          classes.size(), cloud.string(), points));
 }
 
-Json scene_of(const Exhibit& exhibit, std::size_t points_per_cloud, const Progress* progress) {
+/// Advances `stage` by one for the truth and for each prediction.
+Json scene_of(const Exhibit& exhibit, const MergeOptions& options, const Progress* progress,
+              Stage& stage) {
   const auto cloud = formats::read_cloud(exhibit.file).cloud;
-  const Scene scene = make_scene(cloud, points_per_cloud, progress);
+  const Scene scene = make_scene(cloud, options.points_per_cloud, progress);
+  const Progress quiet = without_report(progress);
+  detect::PreparedCloud prepared;
+  if (options.lines) prepared = detect::prepare(cloud, {}, &quiet);
+  const auto add_lines = [&](Json& json, const std::vector<std::uint8_t>& classes) {
+    if (options.lines) json["lines"] = find_drawn_lines(prepared, classes, scene, &quiet);
+    stage.advance();
+  };
   const std::vector<std::uint8_t> truth =
       cloud.has_labels() ? cloud.labels : std::vector<std::uint8_t>(cloud.size(), kUnlabelled);
-  return {{"set", exhibit.set},
-          {"cloud", exhibit.cloud},
-          {"file", exhibit.file.filename().string()},
-          {"points", cloud.size()},
-          {"shown", scene.shown.size()},
-          {"min", scene.min},
-          {"size", scene.size},
-          {"view", scene.view},
-          {"positions", scene.positions},
-          {"normals", scene.normals},
-          {"truth", pack_classes(truth, scene.shown)},
-          {"predictions", predictions_of(exhibit, scene, cloud.size())}};
+  Json json = {{"set", exhibit.set},
+               {"cloud", exhibit.cloud},
+               {"file", exhibit.file.filename().string()},
+               {"points", cloud.size()},
+               {"shown", scene.shown.size()},
+               {"min", scene.min},
+               {"size", scene.size},
+               {"view", scene.view},
+               {"positions", scene.positions},
+               {"normals", scene.normals},
+               {"truth", pack_classes(truth, scene.shown)}};
+  add_lines(json, truth);
+  json["predictions"] = Json::array();
+  for (const Exhibit::Source& source : exhibit.sources) {
+    const auto classes = read_classes(source.predictions, exhibit.file, cloud.size());
+    Json prediction = {{"study", source.study},
+                       {"variant", source.variant},
+                       {"seed", source.seed},
+                       {"classes", pack_classes(classes, scene.shown)}};
+    add_lines(prediction, classes);
+    json["predictions"].push_back(std::move(prediction));
+  }
+  return json;
 }
 
 }  // namespace
@@ -267,10 +281,11 @@ MergedStudies merge_studies(const fs::path& folder, const MergeOptions& options,
   Studies studies = read_studies(folder);
   const auto exhibits = choose_exhibits(studies, folder, options.clouds_per_set);
   Json scenes = Json::array();
-  Stage stage(progress, "clouds", exhibits.size());
+  std::size_t labellings = exhibits.size();
+  for (const Exhibit& exhibit : exhibits) labellings += exhibit.sources.size();
+  Stage stage(progress, "clouds", labellings);
   for (const Exhibit& exhibit : exhibits) {
-    scenes.push_back(scene_of(exhibit, options.points_per_cloud, progress));
-    stage.advance();
+    scenes.push_back(scene_of(exhibit, options, progress, stage));
   }
   MergedStudies merged{.studies = studies.texts.size(),
                        .scenes = scenes.size(),

@@ -15,6 +15,7 @@ struct MergeOptions {
   std::size_t clouds_per_set =
       4;  ///< the first so many of each set, of those with predictions; 0: none
   std::size_t points_per_cloud = 30000;  ///< of a larger cloud, a sample
+  bool lines = false;                    ///< also the lines of the truth and of each prediction
   std::string title = {}, date = {};     ///< of the page; empty: left out
 };
 
@@ -40,7 +41,8 @@ struct MergedStudies {
 /// "positions","normals","truth","predictions":[{"study","variant","seed","classes"}]}, where
 /// "shown" counts points and "study" counts from 0: a cloud file with the predictions that any
 /// study keeps for it, the first seed of each variant. See Scene and pack_classes() for their
-/// encoding.
+/// encoding. With MergeOptions::lines, a scene has the "lines" of its truth and each prediction its
+/// own: see find_drawn_lines().
 ///
 /// A cloud's file is looked for from the working folder, then from `folder`; predictions are
 /// <folder>/<predictions>/<cloud>.u8. Throws Error(kUnreadable) for a file that is missing or is
