@@ -30,6 +30,17 @@ TEST(BoundingBox, OfNothingIsEmptyAndOfOnePointIsNot) {
   EXPECT_EQ(point.centre(), Vec3(7, 8, 9));
 }
 
+TEST(BoundingBox, GrowsByPointsAndBoxes) {
+  BoundingBox box;
+  box.add(BoundingBox());
+  EXPECT_TRUE(box.empty());
+  box.add(Vec3(1, -2, 3));
+  box.add(BoundingBox{{-1, 0, 2}, {0, 4, 2.5}});
+  box.add(BoundingBox());
+  EXPECT_EQ(box.min, Vec3(-1, -2, 2));
+  EXPECT_EQ(box.max, Vec3(1, 4, 3));
+}
+
 TEST(BoundingBox, RefusesCoordinatesWhoseSquaresOverflow) {
   EXPECT_NO_THROW(check_extent({}));
   EXPECT_NO_THROW(check_extent(std::vector<Vec3>{{1e150, -1e150, 0}, {kNan, 1e200, 0}}));

@@ -20,9 +20,7 @@ void check_extent(std::span<const Vec3> positions) {
 BoundingBox bounding_box(std::span<const Vec3> positions) {
   BoundingBox box;
   for (const Vec3& position : positions) {
-    if (!position.allFinite()) continue;
-    box.min = box.min.cwiseMin(position);
-    box.max = box.max.cwiseMax(position);
+    if (position.allFinite()) box.add(position);
   }
   return box;
 }

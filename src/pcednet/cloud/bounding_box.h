@@ -20,6 +20,12 @@ struct BoundingBox {
   bool meets(const BoundingBox& other) const {
     return (min.array() <= other.max.array()).all() && (other.min.array() <= max.array()).all();
   }
+  /// Makes it hold the finite point, or the other box, too.
+  void add(const Vec3& p) { add(BoundingBox{p, p}); }
+  void add(const BoundingBox& other) {
+    min = min.cwiseMin(other.min);
+    max = max.cwiseMax(other.max);
+  }
   double diagonal() const { return empty() ? 0.0 : (max - min).norm(); }
 };
 

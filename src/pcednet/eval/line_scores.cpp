@@ -7,6 +7,7 @@
 #include <map>
 #include <numbers>
 
+#include "pcednet/cloud/bounding_box.h"
 #include "pcednet/core/error.h"
 #include "pcednet/spatial/kd_tree.h"
 
@@ -226,15 +227,12 @@ LineFrame frame_of_cloud(std::span<const Vec3> positions) {
 
 LineFrame frame_of_curves(std::span<const lines::Curve> curves) {
   if (curves.empty()) throw Error(ErrorKind::kInsufficient, "there are no true curves");
-  Vec3 low = curves.front().points.front(), high = low;
+  BoundingBox box;
   for (const lines::Curve& curve : curves) {
     const double tolerance = curve.radius > 0.0 ? 1e-4 * curve.radius : 1.0;
-    for (const Vec3& p : lines::sampled(curve, tolerance)) {
-      low = low.cwiseMin(p);
-      high = high.cwiseMax(p);
-    }
+    for (const Vec3& p : lines::sampled(curve, tolerance)) box.add(p);
   }
-  return {0.5 * (low + high), 0.5 * (high - low).maxCoeff()};
+  return {0.5 * (box.min + box.max), 0.5 * (box.max - box.min).maxCoeff()};
 }
 
 LineScores score_lines(std::span<const lines::Curve> found, std::span<const lines::Curve> truth,

@@ -72,9 +72,7 @@ CloudFacts facts_of_header(const io::InputFile& file) {
 void add_part(const PointCloud& part, CloudFacts& facts) {
   if (facts.read == 0) add_in_common(part, facts);
   facts.read += part.size();
-  const BoundingBox box = bounding_box(part.positions);
-  facts.bounds.min = facts.bounds.min.cwiseMin(box.min);
-  facts.bounds.max = facts.bounds.max.cwiseMax(box.max);
+  facts.bounds.add(bounding_box(part.positions));
   for (const std::uint8_t label : part.labels) ++facts.labels[label];
   for (std::size_t a = 0; a < std::min(part.attributes.size(), facts.attributes.size()); ++a) {
     add_values(part.attributes[a], part.size(), facts.attributes[a]);

@@ -4,6 +4,7 @@
 #include <array>
 #include <limits>
 
+#include "pcednet/cloud/bounding_box.h"
 #include "pcednet/core/parallel.h"
 
 namespace pcednet::spatial {
@@ -11,16 +12,9 @@ namespace {
 
 constexpr std::size_t kLongest = 1024;
 
-struct FlatBox {
-  Vec3 min = Vec3::Constant(std::numeric_limits<double>::infinity());
-  Vec3 max = Vec3::Constant(-std::numeric_limits<double>::infinity());
-
-  void grow(const Vec3& point) {
-    min = min.cwiseMin(point);
-    max = max.cwiseMax(point);
-  }
-  double size() const { return (max - min).sum(); }
-};
+double size_of(const BoundingBox& box) {
+  return (box.max - box.min).sum();
+}
 
 /// Cuts where the two sides together are smallest, each point weighing as much as its side is wide,
 /// until the runs are short enough. `left` is room for the costs of the runs that end before each
@@ -31,17 +25,17 @@ void cut(std::span<const Vec3> points, std::size_t begin, std::size_t end, std::
     first.push_back(static_cast<std::uint32_t>(begin));
     return;
   }
-  FlatBox box;
+  BoundingBox box;
   for (std::size_t i = begin + 1; i < end; ++i) {
-    box.grow(points[i - 1]);
-    left[i - begin] = static_cast<double>(i - begin) * box.size();
+    box.add(points[i - 1]);
+    left[i - begin] = static_cast<double>(i - begin) * size_of(box);
   }
   double least = std::numeric_limits<double>::infinity();
   std::size_t middle = begin + (end - begin) / 2;
   box = {};
   for (std::size_t i = end - 1; i > begin; --i) {
-    box.grow(points[i]);
-    const double cost = left[i - begin] + static_cast<double>(end - i) * box.size();
+    box.add(points[i]);
+    const double cost = left[i - begin] + static_cast<double>(end - i) * size_of(box);
     if (cost < least) least = cost, middle = i;
   }
   cut(points, begin, middle, most, left, first);

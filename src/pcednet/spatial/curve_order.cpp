@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "pcednet/cloud/bounding_box.h"
 #include "pcednet/core/parallel_loops.h"
 #include "pcednet/spatial/morton.h"
 #include "pcednet/spatial/radix_sort.h"
@@ -20,18 +21,15 @@ bool is_before(const Vec3& p, const Vec3& q) {
 
 /// Half the lower corner and half the longest side of the box (halves do not overflow).
 std::pair<Vec3, double> half_box(std::span<const Vec3> positions, const std::vector<Keyed>& keyed) {
-  std::vector<std::pair<Vec3, Vec3>> boxes((keyed.size() + kCodesAtOnce - 1) / kCodesAtOnce);
+  std::vector<BoundingBox> boxes((keyed.size() + kCodesAtOnce - 1) / kCodesAtOnce);
   parallel_blocks(keyed.size(), kCodesAtOnce, [&](std::size_t begin, std::size_t end) {
-    Vec3 min = positions[keyed[begin].index], max = min;
-    for (std::size_t i = begin + 1; i < end; ++i) {
-      min = min.cwiseMin(positions[keyed[i].index]);
-      max = max.cwiseMax(positions[keyed[i].index]);
-    }
-    boxes[begin / kCodesAtOnce] = {min, max};
+    BoundingBox box;
+    for (std::size_t i = begin; i < end; ++i) box.add(positions[keyed[i].index]);
+    boxes[begin / kCodesAtOnce] = box;
   });
-  auto [min, max] = boxes.front();
-  for (const auto& box : boxes) min = min.cwiseMin(box.first), max = max.cwiseMax(box.second);
-  return {0.5 * min, (0.5 * max - 0.5 * min).maxCoeff()};
+  BoundingBox box;
+  for (const BoundingBox& one : boxes) box.add(one);
+  return {0.5 * box.min, (0.5 * box.max - 0.5 * box.min).maxCoeff()};
 }
 
 /// Sorts points, given in the order of their indices, along the curve through their box. Those that

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "pcednet/cloud/bounding_box.h"
 #include "pcednet/core/parallel.h"
 #include "pcednet/spatial/compact_runs.h"
 
@@ -31,15 +32,12 @@ std::vector<EightBoxes> boxes_of_runs(std::span<const Vec3> points,
   std::vector<EightBoxes> row = row_of(runs);
   parallel_blocks(runs, kPointsAtOnce, [&](std::size_t begin, std::size_t end) {
     for (std::size_t run = begin; run < end; ++run) {
-      Vec3 min = points[first[run]], max = min;
-      for (std::size_t i = first[run] + 1; i < first[run + 1]; ++i) {
-        min = min.cwiseMin(points[i]);
-        max = max.cwiseMax(points[i]);
-      }
+      BoundingBox box;
+      for (std::size_t i = first[run]; i < first[run + 1]; ++i) box.add(points[i]);
       EightBoxes& node = row[run / RunTree::kFanOut];
       for (int a = 0; a < 3; ++a) {
-        node.min[a][run % RunTree::kFanOut] = min[a];
-        node.max[a][run % RunTree::kFanOut] = max[a];
+        node.min[a][run % RunTree::kFanOut] = box.min[a];
+        node.max[a][run % RunTree::kFanOut] = box.max[a];
       }
     }
   });

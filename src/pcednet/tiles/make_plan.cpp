@@ -136,10 +136,7 @@ Sample index_inputs(const PlanRequest& request, Plan& plan, const Progress* prog
   for (const auto& path : request.inputs) {
     indexed.push_back(index_input(path, progress, plan.notes,
                                   [&](const PointCloud& part) { sample.add(part.positions); }));
-    for (const Chunk& chunk : indexed.back().input.chunks) {
-      plan.box.min = plan.box.min.cwiseMin(chunk.box.min);
-      plan.box.max = plan.box.max.cwiseMax(chunk.box.max);
-    }
+    for (const Chunk& chunk : indexed.back().input.chunks) plan.box.add(chunk.box);
   }
   if (sample.seen() == 0) {
     throw Error(ErrorKind::kInsufficient, "the inputs have no point with a finite position");

@@ -53,8 +53,7 @@ BoundingBox box_of(const Volume& volume) {
         turned ? Vec3(x ? high.x() : -high.x(), y ? high.x() : -high.x(), z ? high.y() : low.y())
                : Vec3(x ? high.x() : low.x(), y ? high.y() : low.y(),
                       z ? volume.half_height : -volume.half_height);
-    const Vec3 position = volume.frame * local;
-    box.min = box.min.cwiseMin(position), box.max = box.max.cwiseMax(position);
+    box.add(Vec3(volume.frame * local));
   }
   return box;
 }
@@ -113,9 +112,7 @@ bool Solid::is_curved(const Face& face) const {
 
 void Solid::put(Volume volume, bool filled) {
   const BoundingBox box = box_of(volume);
-  if (filled) {
-    box_.min = box_.min.cwiseMin(box.min), box_.max = box_.max.cwiseMax(box.max);
-  }
+  if (filled) box_.add(box);
   const Eigen::Isometry3d to_local = volume.frame.inverse();
   volumes_.push_back({std::move(volume), to_local, box.centre(), 0.5 * box.diagonal(), filled});
 }

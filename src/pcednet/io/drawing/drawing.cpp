@@ -112,10 +112,7 @@ LineMesh line_mesh(Curves curves, const DrawingOptions& options) {
 BoundingBox drawn_box(Curves curves, const DrawingOptions& options) {
   BoundingBox box;
   for (const Curve& curve : curves) {
-    for (const Vec3& point : drawn(curve, options)) {
-      box.min = box.min.cwiseMin(point);
-      box.max = box.max.cwiseMax(point);
-    }
+    for (const Vec3& point : drawn(curve, options)) box.add(point);
   }
   return box;
 }

@@ -50,9 +50,7 @@ bool fits(const BoundingBox& box, const LasFile& file) {
 BoundingBox box_of(const PartOutline& outline) {
   BoundingBox box;
   outline.each_part([&](const PointCloud& part) {
-    const BoundingBox more = bounding_box(part.positions);
-    box.min = box.min.cwiseMin(more.min);
-    box.max = box.max.cwiseMax(more.max);
+    box.add(bounding_box(part.positions));
     return true;
   });
   return box;
