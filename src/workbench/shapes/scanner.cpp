@@ -104,7 +104,6 @@ Scan scan_scene(const Scene& scene, const ScannerOptions& options, std::uint64_t
       }
       distance += options.range_noise * random.normal();
       scan.positions.push_back(place.position + distance * directions[r] + offset);
-      scan.origins.push_back(place.position);
       scan.kinds.push_back(kind);
     }
   }

@@ -21,11 +21,9 @@ struct ScannerOptions {
 /// The kind of surface that a ray hit. Strays are mixed points, between near and far, and outliers.
 enum class ReturnKind : std::uint8_t { kSolid, kLeaf, kStray };
 
-/// The laser scan of a scene: points with the scanner position of each. Hidden surfaces have no
-/// points; far and slanted ones have few.
+/// The laser scan of a scene. Hidden surfaces have no points; far and slanted ones have few.
 struct Scan {
   std::vector<Vec3> positions;
-  std::vector<Vec3> origins;  ///< of the ray, per point
   std::vector<ReturnKind> kinds;
 };
 
