@@ -25,6 +25,13 @@ TEST(UpperMedian, IsTheMiddleValueOrTheUpperOfTheMiddleTwo) {
   EXPECT_EQ(upper_median(std::vector<double>{4, 1, 100, 2}), 4.0);
 }
 
+TEST(ValueAtRank, IsTheOneThatSortingPutsThere) {
+  std::vector<int> values = {9, 1, 5, 1, 7};
+  for (const auto& [rank, value] : {std::pair{4, 9}, {0, 1}, {1, 1}, {2, 5}, {3, 7}}) {
+    EXPECT_EQ(value_at_rank(values, static_cast<std::size_t>(rank)), value);
+  }
+}
+
 TEST(Median, HasHalfOfTheValuesOnEitherSide) {
   Random random(3);
   for (const std::size_t count : {99u, 100u}) {

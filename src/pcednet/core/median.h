@@ -14,13 +14,19 @@ inline double median(std::vector<double> values) {
   return values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
 }
 
+/// The value that stands at `rank`, from 0, once they are sorted; puts them in another order.
+template <typename T>
+T value_at_rank(std::vector<T>& values, std::size_t rank) {
+  const auto place = values.begin() + static_cast<std::ptrdiff_t>(rank);
+  std::nth_element(values.begin(), place, values.end());
+  return *place;
+}
+
 /// The middle value, or the upper of the middle two: always one of `values`, of which there must be
 /// one.
 template <typename T>
 T upper_median(std::vector<T> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+  return value_at_rank(values, values.size() / 2);
 }
 
 }  // namespace pcednet

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pcednet/core/median.h"
 #include "pcednet/core/random.h"
 #include "pcednet/formats/format.h"
 #include "pcednet/formats/read_cloud.h"
@@ -33,8 +34,8 @@ std::optional<SampledSpacing> find_spacing(const PointCloud& cloud) {
     for (const spatial::Neighbour& neighbour : found) sum += std::sqrt(neighbour.sq_distance);
     nearest.push_back(std::sqrt(found[1].sq_distance));
   }
-  std::nth_element(nearest.begin(), nearest.begin() + sample / 2, nearest.end());
-  return SampledSpacing{sum / static_cast<double>(sample * kNeighbours), nearest[sample / 2]};
+  return SampledSpacing{sum / static_cast<double>(sample * kNeighbours),
+                        upper_median(std::move(nearest))};
 }
 
 void add_values(const Attribute& attribute, std::size_t points, AttributeFacts& facts) {

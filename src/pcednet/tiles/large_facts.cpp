@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "pcednet/core/median.h"
 #include "pcednet/formats/format.h"
 #include "pcednet/spatial/kd_tree.h"
 #include "pcednet/tiles/inputs.h"
@@ -34,12 +35,10 @@ class Distances {
     nearest_.push_back(std::sqrt(sq_distances[1]));
   }
 
-  std::optional<SampledSpacing> spacing() {
+  std::optional<SampledSpacing> spacing() const {
     if (nearest_.empty()) return std::nullopt;
-    const auto middle = nearest_.begin() + static_cast<std::ptrdiff_t>(nearest_.size() / 2);
-    std::nth_element(nearest_.begin(), middle, nearest_.end());
     const auto count = static_cast<double>(nearest_.size() * (gls::kSpacingNeighbours - 1));
-    return SampledSpacing{sum_ / count, *middle};
+    return SampledSpacing{sum_ / count, upper_median(nearest_)};
   }
 
  private:

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <vector>
 
+#include "pcednet/core/median.h"
+
 namespace pcednet::render {
 namespace {
 
@@ -29,11 +31,8 @@ struct Range {
 /// The range of all values, cut where it reaches a quarter further than that of the middle 99.6 %.
 Range robust_range(std::vector<float>& values) {
   const std::size_t rank = values.size() / 500;
-  const auto at = [&](std::size_t r) {
-    std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(r), values.end());
-    return values[r];
-  };
-  const float low = at(rank), high = at(values.size() - 1 - rank);
+  const float low = value_at_rank(values, rank);
+  const float high = value_at_rank(values, values.size() - 1 - rank);
   const auto [least, most] = std::minmax_element(values.begin(), values.end());
   const float margin = 0.25f * (high - low);
   return {std::max(*least, low - margin), std::min(*most, high + margin)};

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "pcednet/cloud/bounding_box.h"
+#include "pcednet/core/median.h"
 #include "pcednet/core/parallel.h"
 #include "pcednet/spatial/curve_order.h"
 #include "workbench/render/near_points.h"
@@ -48,13 +49,8 @@ BoundingBox scene_box(const std::vector<Vec3>& positions) {
   for (int axis = 0; axis < 3; ++axis) {
     std::transform(positions.begin(), positions.end(), values.begin(),
                    [&](const Vec3& p) { return p[axis]; });
-    const auto at = [&](std::size_t rank) {
-      std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(rank),
-                       values.end());
-      return values[rank];
-    };
-    box.min[axis] = at(low);
-    box.max[axis] = at(high);
+    box.min[axis] = value_at_rank(values, low);
+    box.max[axis] = value_at_rank(values, high);
   }
   const double margin = 2.0 * (box.max - box.min).maxCoeff();
   return {box.min.array() - margin, box.max.array() + margin};
@@ -152,9 +148,8 @@ void drop_strays(std::vector<Surfel>& surfels, const std::vector<NearPoints>& ne
   std::vector<float> radii(near.size());
   std::transform(near.begin(), near.end(), radii.begin(), reach);
   const auto at = [&](double share) {
-    const auto rank = static_cast<std::ptrdiff_t>(share * static_cast<double>(radii.size() - 1));
-    std::nth_element(radii.begin(), radii.begin() + rank, radii.end());
-    return radii[static_cast<std::size_t>(rank)];
+    return value_at_rank(radii,
+                         static_cast<std::size_t>(share * static_cast<double>(radii.size() - 1)));
   };
   const float largest = kStrayRadius * at(0.5);
   if (largest == 0.0f || at(1.0 - kMostStray) > largest) return;
