@@ -111,10 +111,10 @@ struct SetArguments {
   std::uint64_t seed = 1;
 };
 
-/// A command that writes a folder of clouds.
-CLI::App* add_set(CLI::App& generate, Common& common, SetArguments& arguments,
-                  const std::string& name, const std::string& description,
-                  const std::string& examples) {
+/// A command that writes a folder of clouds; what it does is left open.
+CLI::App* add_open_set(CLI::App& generate, Common& common, SetArguments& arguments,
+                       const std::string& name, const std::string& description,
+                       const std::string& examples) {
   CLI::App* command = add_command(generate, common, name, description, examples);
   command
       ->add_option(
@@ -125,13 +125,24 @@ CLI::App* add_set(CLI::App& generate, Common& common, SetArguments& arguments,
   return command;
 }
 
+/// A command that writes the clouds of all these recipes for a seed.
+template <typename... Recipe>
+void add_set(CLI::App& generate, Common& common, const std::string& name,
+             const std::string& description, const std::string& examples,
+             std::vector<Recipe> (*... recipes)(std::uint64_t seed)) {
+  auto set = std::make_shared<SetArguments>();
+  add_open_set(generate, common, *set, name, description, examples)->callback([=, &common] {
+    run(set->folder, set->seed, common, recipes(set->seed)...);
+  });
+}
+
 void add_default(CLI::App& generate, Common& common) {
   struct Arguments : SetArguments {
     bool paper_only = false;
     std::vector<double> bands;
   };
   auto arguments = std::make_shared<Arguments>();
-  CLI::App* command = add_set(
+  CLI::App* command = add_open_set(
       generate, common, *arguments, "default",
       "Labelled clouds for training: a remake of the paper's Default training set, and more",
       "pcednet generate default clouds/\n"
@@ -151,81 +162,17 @@ void add_default(CLI::App& generate, Common& common) {
   });
 }
 
-void add_cad(CLI::App& generate, Common& common) {
-  auto set = std::make_shared<SetArguments>();
-  add_set(generate, common, *set, "cad",
-          "Labelled clouds for training: CAD parts, as mesh vertices or surface samples",
-          "pcednet generate cad parts/\n"
-          "pcednet generate cad parts/ --seed 2")
-      ->callback(
-          [set, &common] { run(set->folder, set->seed, common, shapes::cad_recipes(set->seed)); });
-}
-
-void add_worn(CLI::App& generate, Common& common) {
-  auto set = std::make_shared<SetArguments>();
-  add_set(generate, common, *set, "worn",
-          "Labelled clouds for training: worn parts and reliefs with labelled ridge lines",
-          "pcednet generate worn parts/")
-      ->callback([set, &common] {
-        run(set->folder, set->seed, common, shapes::worn_recipes(set->seed),
-            shapes::relief_recipes(set->seed));
-      });
-}
-
-void add_varied(CLI::App& generate, Common& common) {
-  auto set = std::make_shared<SetArguments>();
-  add_set(
-      generate, common, *set, "varied",
-      "Labelled clouds for training: CAD parts from a thousand points on, clean and noisy, with "
-      "estimated normals, thinned clouds, and terrains with plants and houses",
-      "pcednet generate varied parts/")
-      ->callback([set, &common] {
-        run(set->folder, set->seed, common, shapes::varied_part_recipes(set->seed),
-            shapes::thinned_recipes(set->seed), shapes::terrain_recipes(set->seed));
-      });
-}
-
-void add_sparse(CLI::App& generate, Common& common) {
-  auto set = std::make_shared<SetArguments>();
-  add_set(generate, common, *set, "sparse",
-          "Labelled clouds for training: CAD parts, blocks and roofs of 600 to 5,000 points",
-          "pcednet generate sparse parts/")
-      ->callback([set, &common] {
-        run(set->folder, set->seed, common, shapes::sparse_part_recipes(set->seed),
-            shapes::sparse_shape_recipes(set->seed), shapes::sparse_roof_recipes(set->seed));
-      });
-}
-
-void add_drawn(CLI::App& generate, Common& common) {
-  auto set = std::make_shared<SetArguments>();
-  add_set(generate, common, *set, "drawn",
-          "Labelled clouds for training: CAD parts of 6,000 to 40,000 points drawn by area, clean",
-          "pcednet generate drawn parts/")
-      ->callback([set, &common] {
-        run(set->folder, set->seed, common, shapes::drawn_part_recipes(set->seed));
-      });
-}
-
-void add_scan(CLI::App& generate, Common& common) {
-  auto set = std::make_shared<SetArguments>();
-  add_set(generate, common, *set, "scan",
-          "Labelled clouds for training: laser scans of facades, yards, rooms and monuments",
-          "pcednet generate scan scans/")
-      ->callback(
-          [set, &common] { run(set->folder, set->seed, common, shapes::scan_recipes(set->seed)); });
-}
-
 void add_line_set(CLI::App& generate, Common& common) {
   struct Arguments : SetArguments {
     std::string only;
   };
   auto arguments = std::make_shared<Arguments>();
-  CLI::App* command =
-      add_set(generate, common, *arguments, "lines",
-              "Clouds with true curves for measuring lines: CAD parts, clean, noisy and scanned, "
-              "and roofs",
-              "pcednet generate lines parts/\n"
-              "pcednet generate lines roofs/ --only roof_");
+  CLI::App* command = add_open_set(
+      generate, common, *arguments, "lines",
+      "Clouds with true curves for measuring lines: CAD parts, clean, noisy and scanned, "
+      "and roofs",
+      "pcednet generate lines parts/\n"
+      "pcednet generate lines roofs/ --only roof_");
   command->add_option("--only", arguments->only, "Only the clouds with this in their names");
   command->callback([arguments, &common] {
     std::vector<shapes::LineRecipe> recipes = shapes::line_recipes();
@@ -264,12 +211,29 @@ void add_generate(CLI::App& app, Common& common) {
                                           "  pcednet generate default clouds/ --seed 2\n");
   generate->require_subcommand(1);
   add_default(*generate, common);
-  add_cad(*generate, common);
-  add_worn(*generate, common);
-  add_scan(*generate, common);
-  add_varied(*generate, common);
-  add_sparse(*generate, common);
-  add_drawn(*generate, common);
+  add_set(*generate, common, "cad",
+          "Labelled clouds for training: CAD parts, as mesh vertices or surface samples",
+          "pcednet generate cad parts/\n"
+          "pcednet generate cad parts/ --seed 2",
+          shapes::cad_recipes);
+  add_set(*generate, common, "worn",
+          "Labelled clouds for training: worn parts and reliefs with labelled ridge lines",
+          "pcednet generate worn parts/", shapes::worn_recipes, shapes::relief_recipes);
+  add_set(*generate, common, "scan",
+          "Labelled clouds for training: laser scans of facades, yards, rooms and monuments",
+          "pcednet generate scan scans/", shapes::scan_recipes);
+  add_set(*generate, common, "varied",
+          "Labelled clouds for training: CAD parts from a thousand points on, clean and noisy, "
+          "with estimated normals, thinned clouds, and terrains with plants and houses",
+          "pcednet generate varied parts/", shapes::varied_part_recipes, shapes::thinned_recipes,
+          shapes::terrain_recipes);
+  add_set(*generate, common, "sparse",
+          "Labelled clouds for training: CAD parts, blocks and roofs of 600 to 5,000 points",
+          "pcednet generate sparse parts/", shapes::sparse_part_recipes,
+          shapes::sparse_shape_recipes, shapes::sparse_roof_recipes);
+  add_set(*generate, common, "drawn",
+          "Labelled clouds for training: CAD parts of 6,000 to 40,000 points drawn by area, clean",
+          "pcednet generate drawn parts/", shapes::drawn_part_recipes);
   add_line_set(*generate, common);
   add_sample(*generate, common);
 }
