@@ -374,6 +374,8 @@ class Tiles(CliTest):
         plan, content = self.small()
         run("tiles", "plan", self.folder / "none.laz", "-o", self.folder / "q.json", expect=3)
         run("tiles", "plan", self.folder / "small.ply", "-o", plan, expect=2)  # exists
+        self.assertIn("-o is required",
+                      run("tiles", "plan", self.folder / "small.ply", expect=2).stderr)
         for bad in ("99", "x", "2-", "3-1", "-1"):
             run("tiles", "run", plan, "--tile=" + bad, expect=2)
         run("tiles", "run", plan, "--max-memory", "lots", expect=2)

@@ -280,7 +280,7 @@ void add_plan(CLI::App& tiles, Common& common) {
                    "LAS, LAZ, COPC and binary PLY files, folders of them, or a "
                    ".vpc that names some")
       ->required();
-  command->add_option("-o,--plan", arguments->plan, "The plan, a JSON file")->required();
+  command->add_option("-o", arguments->plan, "The plan, a JSON file")->required();
   command
       ->add_option("--tile", arguments->tile_length,
                    "Length of a tile, in the unit of the points (0: the largest for the memory)")
