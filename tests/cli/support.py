@@ -94,3 +94,6 @@ class CliTest(unittest.TestCase):
 
     def tearDown(self):
         self._folder.cleanup()
+
+    def path(self, name):
+        return self.folder / name

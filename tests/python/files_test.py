@@ -8,17 +8,13 @@ import warnings
 import numpy as np
 
 import pcednet
-from support import SOURCE, cube, run, write_ply
+from support import SOURCE, CliTest, cube, run, write_ply
 
 
-class Files(unittest.TestCase):
+class Files(CliTest):
     def setUp(self):
-        self.folder = tempfile.TemporaryDirectory()
-        self.addCleanup(self.folder.cleanup)
+        super().setUp()
         warnings.simplefilter("ignore", pcednet.PcednetWarning)
-
-    def path(self, name):
-        return pathlib.Path(self.folder.name) / name
 
     def assert_same_bytes(self, ours, theirs):
         self.assertEqual(ours.read_bytes(), theirs.read_bytes(), ours.name)

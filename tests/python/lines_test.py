@@ -1,17 +1,15 @@
 """pcednet.lines: the curves of the program, as objects and in files."""
 
-import pathlib
-import tempfile
 import unittest
 import warnings
 
 import numpy as np
 
 import pcednet
-from support import cube, run, write_ply
+from support import CliTest, cube, run, write_ply
 
 
-class Lines(unittest.TestCase):
+class Lines(CliTest):
     @classmethod
     def setUpClass(cls):
         positions, normals, _ = cube(12_000)
@@ -20,12 +18,8 @@ class Lines(unittest.TestCase):
         cls.lines = pcednet.lines(cls.positions, cls.result)
 
     def setUp(self):
-        self.folder = tempfile.TemporaryDirectory()
-        self.addCleanup(self.folder.cleanup)
+        super().setUp()
         warnings.simplefilter("ignore", pcednet.PcednetWarning)
-
-    def path(self, name):
-        return pathlib.Path(self.folder.name) / name
 
     def test_a_cube_has_twelve_segments(self):
         self.assertEqual(len(self.lines), 12)

@@ -10,10 +10,10 @@ import warnings
 import numpy as np
 
 import pcednet
-from support import cube, run, write_ply
+from support import CliTest, cube, run, write_ply
 
 
-class Training(unittest.TestCase):
+class Training(CliTest):
     @classmethod
     def setUpClass(cls):
         cls.positions, normals, cls.labels = cube(4000)
@@ -22,12 +22,8 @@ class Training(unittest.TestCase):
                                   scales=8, seed=3, name="cube")
 
     def setUp(self):
-        self.folder = tempfile.TemporaryDirectory()
-        self.addCleanup(self.folder.cleanup)
+        super().setUp()
         warnings.simplefilter("ignore", pcednet.PcednetWarning)
-
-    def path(self, name):
-        return pathlib.Path(self.folder.name) / name
 
     def test_a_training_gives_the_file_of_the_program(self):
         write_ply(self.path("in.ply"), self.positions, self.normals, self.labels,
