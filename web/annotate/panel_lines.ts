@@ -1,5 +1,6 @@
 // The lines found in the prediction: a search, a walk through them, what becomes of each.
 
+import { CLASS_PALETTES } from "../shared/colours";
 import { h } from "../shared/dom";
 import type { Client } from "./client";
 import { count, length, percent } from "./format";
@@ -8,7 +9,6 @@ import { countDecisions, type Reviewer } from "./reviewer";
 import type { AppStore } from "./store";
 import type { Line } from "./types";
 
-export const LINE_CLASSES = ["non-edge", "smooth edge", "sharp edge", "boundary"];
 const FORMATS: [string, string][] = [
   ["dxf", "DXF"],
   ["obj", "OBJ"],
@@ -35,7 +35,7 @@ function summary(store: AppStore): string {
 /** What is known of a line. */
 function facts(line: Line): [string, string][] {
   return [
-    ["kind", `${line.kind}, ${LINE_CLASSES[line.class]}`],
+    ["kind", `${line.kind}, ${CLASS_PALETTES.paper[line.class].name}`],
     ["length", length(line.length)],
     ["confidence", percent(line.confidence)],
     ["angle", `${line.angle.toFixed(0)}° between the surfaces`],
