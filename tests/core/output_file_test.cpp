@@ -17,19 +17,15 @@
 
 #include "pcednet/core/error.h"
 #include "pcednet/core/exists_already.h"
+#include "support/own_folder.h"
 
 namespace pcednet {
 namespace {
 
 namespace fs = std::filesystem;
 
-class OutputFileTest : public testing::Test {
+class OutputFileTest : public testing::Test, protected test::OwnFolder {
  protected:
-  OutputFileTest() { fs::create_directories(folder_); }
-  ~OutputFileTest() override { fs::remove_all(folder_); }
-
-  fs::path path(const std::string& name) const { return folder_ / name; }
-
   std::string content(const std::string& name) const {
     std::ifstream file(path(name), std::ios::binary);
     return {std::istreambuf_iterator<char>(file), {}};
@@ -40,9 +36,6 @@ class OutputFileTest : public testing::Test {
     for (const auto& entry : fs::directory_iterator(folder_)) names.insert(entry.path().filename());
     return names;
   }
-
-  fs::path folder_ =
-      fs::temp_directory_path() / ("pcednet-output-file-" + std::to_string(getpid()));
 };
 
 ErrorKind kind_of(const std::function<void()>& work) {

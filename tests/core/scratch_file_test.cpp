@@ -6,19 +6,12 @@
 #include <string>
 
 #include "support/expect_error.h"
+#include "support/own_folder.h"
 
 namespace pcednet {
 namespace {
 
-namespace fs = std::filesystem;
-
-class ScratchFiles : public ::testing::Test {
- protected:
-  void SetUp() override { fs::create_directories(folder); }
-  void TearDown() override { fs::remove_all(folder); }
-  fs::path folder =
-      fs::temp_directory_path() / ("pcednet-scratch-files-" + std::to_string(getpid()));
-};
+class ScratchFiles : public testing::Test, protected test::OwnFolder {};
 
 std::string text_of(const ScratchFile& file, std::uint64_t offset, std::size_t count) {
   std::string text(count, '?');
@@ -27,7 +20,7 @@ std::string text_of(const ScratchFile& file, std::uint64_t offset, std::size_t c
 }
 
 TEST_F(ScratchFiles, GiveBackWhatWasWritten) {
-  ScratchFile file(folder / "out.laz"), other(folder / "out.laz");
+  ScratchFile file(path("out.laz")), other(path("out.laz"));
   file.write("abc");
   other.write("x");
   file.write("defgh");
@@ -38,7 +31,7 @@ TEST_F(ScratchFiles, GiveBackWhatWasWritten) {
 }
 
 TEST_F(ScratchFiles, AreWrittenAnywhere) {
-  ScratchFile file(folder / "out.laz");
+  ScratchFile file(path("out.laz"));
   const auto write_at = [&](std::uint64_t offset, std::string_view text) {
     file.write_at(offset, std::as_bytes(std::span(text)));
   };
@@ -51,14 +44,14 @@ TEST_F(ScratchFiles, AreWrittenAnywhere) {
 }
 
 TEST_F(ScratchFiles, HaveNoName) {
-  ScratchFile file(folder / "out.laz");
+  ScratchFile file(path("out.laz"));
   file.write("abc");
-  EXPECT_TRUE(fs::is_empty(folder));
+  EXPECT_TRUE(std::filesystem::is_empty(folder_));
 }
 
 TEST_F(ScratchFiles, NeedTheFolderAndGiveNoMoreThanTheyHold) {
-  EXPECT_ERROR(ErrorKind::kFailure, ScratchFile(folder / "nowhere" / "out.laz"));
-  ScratchFile file(folder / "out.laz");
+  EXPECT_ERROR(ErrorKind::kFailure, ScratchFile(path("nowhere/out.laz")));
+  ScratchFile file(path("out.laz"));
   file.write("abc");
   EXPECT_ERROR(ErrorKind::kFailure, text_of(file, 1, 3));
 }

@@ -8,6 +8,7 @@
 
 #include "pcednet/io/npy.h"
 #include "support/expect_error.h"
+#include "support/own_folder.h"
 
 namespace pcednet::eval {
 namespace {
@@ -15,22 +16,13 @@ namespace {
 namespace fs = std::filesystem;
 using Classes = std::vector<std::uint8_t>;
 
-class Predicted : public testing::Test {
+class Predicted : public testing::Test, protected test::OwnFolder {
  protected:
-  void SetUp() override {
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
   fs::path write(const std::string& name, const std::string& text) const {
     std::ofstream(folder_ / name, std::ios::binary) << text;
     return folder_ / name;
   }
 
-  fs::path folder_ =
-      fs::temp_directory_path() / (std::string("pcednet_predictions_") +
-                                   testing::UnitTest::GetInstance()->current_test_info()->name());
   std::vector<Vec3> positions_ = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}};
 };
 

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cstring>
 #include <filesystem>
@@ -15,25 +14,13 @@
 #include "pcednet/core/error.h"
 #include "pcednet/core/random.h"
 #include "pcednet/formats/read_cloud.h"
+#include "support/own_folder.h"
 
 namespace pcednet::io {
 
-/// A folder of a test's own, gone after it.
-class Scratch {
+/// A folder of a test's own with files to read.
+class Scratch : public test::OwnFolder {
  public:
-  Scratch() {
-    const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = std::filesystem::temp_directory_path() /
-              ("pcednet-" + std::string(info->test_suite_name()) + "-" + info->name() + "-" +
-               std::to_string(getpid()));
-    std::filesystem::create_directories(folder_);
-  }
-  ~Scratch() { std::filesystem::remove_all(folder_); }
-  Scratch(const Scratch&) = delete;
-  Scratch& operator=(const Scratch&) = delete;
-
-  std::filesystem::path path(const std::string& name) const { return folder_ / name; }
-
   std::filesystem::path file(const std::string& name, std::string_view bytes) const {
     std::filesystem::create_directories(path(name).parent_path());
     // Truncating an old file makes some file systems wait for the disk.
@@ -45,9 +32,6 @@ class Scratch {
   LoadedCloud read(const std::string& name, std::string_view bytes) const {
     return formats::read_cloud(file(name, bytes));
   }
-
- private:
-  std::filesystem::path folder_;
 };
 
 inline std::string bytes_of(const std::filesystem::path& path) {

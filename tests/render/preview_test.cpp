@@ -15,6 +15,7 @@
 
 #include "pcednet/core/error.h"
 #include "pcednet/core/parallel.h"
+#include "support/own_folder.h"
 
 namespace pcednet::render {
 namespace {
@@ -43,17 +44,8 @@ bool is_background(const Rgb& c) {
   return c == Rgb{255, 255, 255};
 }
 
-/// A folder that goes away with the test.
-class Preview : public testing::Test {
+class Preview : public testing::Test, protected test::OwnFolder {
  protected:
-  void SetUp() override {
-    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = std::filesystem::path(testing::TempDir()) / (std::string("preview_") + test->name());
-    std::filesystem::remove_all(folder_);
-    std::filesystem::create_directories(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
   std::filesystem::path path(const std::string& name = "picture.png") const {
     return folder_ / name;
   }
@@ -80,8 +72,6 @@ class Preview : public testing::Test {
     EXPECT_TRUE(png_image_finish_read(&image, nullptr, picture.pixels.data(), 0, nullptr));
     return picture;
   }
-
-  std::filesystem::path folder_;
 };
 
 constexpr int kSteps = 32;

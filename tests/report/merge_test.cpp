@@ -1,7 +1,6 @@
 #include "workbench/report/merge.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <fstream>
@@ -11,6 +10,7 @@
 #include "pcednet/core/error.h"
 #include "pcednet/formats/write_cloud.h"
 #include "support/expect_error.h"
+#include "support/own_folder.h"
 
 namespace pcednet::report {
 namespace {
@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 /// A folder with one study of one cloud of five points, and predictions of one variant, two seeds.
-class Merge : public ::testing::Test {
+class Merge : public testing::Test, protected test::OwnFolder {
  protected:
   Merge() {
     fs::create_directories(folder_ / "predictions");
@@ -42,7 +42,6 @@ class Merge : public ::testing::Test {
     study_["results"].push_back(Json(result));
     study_["results"][1]["seed"] = 2;
   }
-  ~Merge() override { fs::remove_all(folder_); }
 
   void write(const std::string& name, const std::string& bytes) const {
     std::ofstream(folder_ / name, std::ios::binary) << bytes;
@@ -62,14 +61,7 @@ class Merge : public ::testing::Test {
     return ErrorKind::kFailure;
   }
 
-  fs::path folder_ = fs::temp_directory_path() / fmt_name();
   Json study_;
-
- private:
-  static std::string fmt_name() {
-    return "pcednet_merge_" + std::to_string(::getpid()) + "_" +
-           ::testing::UnitTest::GetInstance()->current_test_info()->name();
-  }
 };
 
 TEST_F(Merge, KeepsStudiesUnchangedAndPacksTheirClouds) {

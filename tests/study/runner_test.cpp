@@ -11,6 +11,7 @@
 #include "pcednet/core/error.h"
 #include "pcednet/core/parallel.h"
 #include "pcednet/detect/classify.h"
+#include "support/own_folder.h"
 #include "workbench/study/keys.h"
 #include "workbench/study/study_file.h"
 
@@ -37,13 +38,9 @@ PlanOptions small() {
   return options;
 }
 
-class StudyRun : public testing::Test {
+class StudyRun : public testing::Test, protected test::OwnFolder {
  protected:
-  void SetUp() override { fs::remove_all(folder_); }
-  void TearDown() override {
-    fs::remove_all(folder_);
-    set_thread_count(0);
-  }
+  void TearDown() override { set_thread_count(0); }
 
   Study run(const std::string& name, const std::string& cache, RunOptions options = {},
             const Progress* progress = nullptr) {
@@ -51,9 +48,6 @@ class StudyRun : public testing::Test {
                       progress);
   }
 
-  fs::path folder_ =
-      fs::temp_directory_path() / (std::string("pcednet_study_") +
-                                   testing::UnitTest::GetInstance()->current_test_info()->name());
   PlanOptions plan_ = small();
   StudyData data_ = {set_of("training", {1}), {set_of("a", {2, 3}), set_of("b", {4})}};
 };

@@ -1,7 +1,6 @@
 #include "pcednet/tiles/label_points.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include "pcednet/core/random.h"
 #include "pcednet/detect/decide.h"
@@ -9,20 +8,15 @@
 #include "pcednet/tiles/inputs.h"
 #include "pcednet/tiles/layout.h"
 #include "pcednet/tiles/sort_inputs.h"
+#include "support/own_folder.h"
 
 namespace pcednet::tiles {
 namespace {
 
 namespace fs = std::filesystem;
 
-class LabelPoints : public testing::Test {
+class LabelPoints : public testing::Test, protected test::OwnFolder {
  protected:
-  void SetUp() override {
-    folder_ = fs::temp_directory_path() / ("pcednet_labels_" + std::to_string(getpid()));
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
   /// A plan of two inputs whose points are in no order.
   Plan plan_of(const std::vector<Vec3>& positions) const {
     Plan plan;
@@ -62,8 +56,6 @@ class LabelPoints : public testing::Test {
     }
     EXPECT_EQ(seen, std::vector<int>(positions.size(), 1));
   }
-
-  fs::path folder_;
 };
 
 TEST_F(LabelPoints, PointsKeepTheirNumbersThroughTilesAndSorting) {

@@ -1,7 +1,6 @@
 #include "pcednet/tiles/plan.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -9,19 +8,16 @@
 #include "pcednet/core/version.h"
 #include "pcednet/tiles/tile_file.h"
 #include "support/expect_error.h"
+#include "support/own_folder.h"
 
 namespace pcednet::tiles {
 namespace {
 
 namespace fs = std::filesystem;
 
-class PlanFile : public testing::Test {
+class PlanFile : public testing::Test, protected test::OwnFolder {
  protected:
-  void SetUp() override {
-    folder_ = fs::temp_directory_path() / ("pcednet_plan_" + std::to_string(getpid()));
-    fs::create_directories(folder_ / "tiles");
-  }
-  void TearDown() override { fs::remove_all(folder_); }
+  void SetUp() override { fs::create_directories(folder_ / "tiles"); }
 
   Plan some_plan() const {
     Plan plan{.version = kVersion};
@@ -39,8 +35,6 @@ class PlanFile : public testing::Test {
     plan.notes = {"a note with \"quotes\""};
     return plan;
   }
-
-  fs::path folder_;
 };
 
 TEST_F(PlanFile, ComesBackAsItWas) {
