@@ -7,16 +7,14 @@
 #include <numbers>
 #include <span>
 
+#include "pcednet/lines/coaxial.h"
+#include "pcednet/lines/ring.h"
 #include "pcednet/spatial/kd_tree.h"
 
 namespace pcednet::lines {
 namespace {
 
-constexpr double kWholeTurn = 2.0 * std::numbers::pi;
-constexpr std::size_t kLeastArc = 5;     ///< nodes
-constexpr double kSmallestRadius = 1.2;  ///< in spacings
-constexpr double kMostOpen = 0.55;       ///< of a circle that is to be closed
-constexpr double kBlocking = 2.5;        ///< spacings from the end of a piece to a gap
+constexpr double kMostOpen = 0.55;  ///< of a circle that is to be closed
 
 // Of small circles, which are found in pieces that fit none of them alone; in spacings.
 constexpr double kLargestSmall = 5.0;                ///< radius
@@ -27,41 +25,6 @@ constexpr double kSmallError = 0.3;                        ///< root mean square
 constexpr std::size_t kSectors = 12, kLeastSectors = 8;
 constexpr std::size_t kLeastAcross = 3;  ///< nodes of a piece that ends on a polygon
 constexpr std::size_t kMostAcross = 1;   ///< pieces that end on a circle
-
-/// The pieces as they are at first, by their first nodes and by their ends.
-struct Index {
-  explicit Index(const std::vector<Piece>& pieces);
-
-  spatial::KdTree starts;  ///< the first node of each piece
-  EndIndex open;
-  double largest_spacing = 0.0;
-};
-
-Index::Index(const std::vector<Piece>& pieces) : starts({}), open(pieces, open_ends(pieces)) {
-  std::vector<Vec3> first_nodes;
-  for (const Piece& piece : pieces) {
-    first_nodes.push_back(piece.nodes.front().at);
-    largest_spacing = std::max(largest_spacing, piece.spacing());
-  }
-  starts = spatial::KdTree(first_nodes);
-}
-
-/// A wedge seen from the axis of a circle: the same all around it.
-ChainNode seen_from_axis(const Fit& circle, const ChainNode& node) {
-  const Vec3 tangent = tangent_at(circle, node.at), outward = tangent.cross(circle.direction);
-  const auto turned = [&](const Vec3& side) {
-    return Vec3(side.dot(outward), side.dot(circle.direction), 0.0);
-  };
-  return {.at = node.at,
-          .along = tangent,
-          .side_a = turned(node.side_a),
-          .side_b = turned(node.side_b)};
-}
-
-bool same_wedge(const Fit& circle, const ChainNode& a, const ChainNode& b) {
-  const ChainNode x = seen_from_axis(circle, a), y = seen_from_axis(circle, b);
-  return match(x.side_a, x.side_b, y.side_a, y.side_b).cosine > 0.6;
-}
 
 bool lies_on(const Fit& circle, const Piece& whole, const Piece& piece, double reach) {
   std::size_t on = 0;
@@ -74,63 +37,8 @@ bool lies_on(const Fit& circle, const Piece& whole, const Piece& piece, double r
   return 5 * on >= 4 * piece.nodes.size();
 }
 
-double angle_at(const Fit& circle, const Vec3& x, const Vec3& place) {
-  const Vec3 y = circle.direction.cross(x), offset = place - circle.point;
-  return std::atan2(y.dot(offset), x.dot(offset));
-}
-
-struct Gap {
-  Vec3 from, to;
-  double length;
-};
-
-/// The gaps between nodes sorted about the axis.
-std::vector<Gap> sort_about_axis(const Fit& circle, std::vector<ChainNode>& nodes) {
-  const Vec3 x = circle.direction.unitOrthogonal();
-  std::vector<std::pair<double, std::size_t>> order;
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
-    order.emplace_back(angle_at(circle, x, nodes[i].at), i);
-  }
-  std::sort(order.begin(), order.end());
-  std::vector<ChainNode> sorted;
-  for (const auto& [angle, i] : order) {
-    ChainNode node = nodes[i];
-    if (tangent_at(circle, node.at).dot(node.along) < 0.0) node.along = -node.along;
-    sorted.push_back(node);
-  }
-  nodes = std::move(sorted);
-  std::vector<Gap> gaps;
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
-    const std::size_t next = (i + 1) % nodes.size();
-    double angle = order[next].first - order[i].first;
-    if (next == 0) angle += kWholeTurn;
-    const double length = angle * circle.radius;
-    if (length > 2.5 * nodes[i].spacing) gaps.push_back({nodes[i].at, nodes[next].at, length});
-  }
-  return gaps;
-}
-
-/// Whether an end of another long piece is where a gap begins.
-bool is_blocked(const std::vector<Gap>& gaps, const std::vector<Piece>& pieces, const Index& index,
-                const std::vector<std::size_t>& joined) {
-  std::vector<spatial::Neighbour> near;
-  for (const Gap& gap : gaps) {
-    for (const Vec3& place : {gap.from, gap.to}) {
-      index.open.tree.within_unsorted(place, kBlocking * index.largest_spacing, near);
-      for (const auto& end : near) {
-        const auto [j, side] = index.open.ends[end.index];
-        const Piece& other = pieces[j];
-        if (other.closed || other.nodes.size() < kLeastArc) continue;
-        if (std::binary_search(joined.begin(), joined.end(), j)) continue;
-        if ((other.ends[side] - place).norm() < kBlocking * other.spacing()) return true;
-      }
-    }
-  }
-  return false;
-}
-
 /// The pieces on the circle of `arc`, itself among them, in their order.
-std::vector<std::size_t> pieces_on_circle(const std::vector<Piece>& pieces, const Index& index,
+std::vector<std::size_t> pieces_on_circle(const std::vector<Piece>& pieces, const PieceIndex& index,
                                           std::size_t arc, double reach) {
   const Piece& whole = pieces[arc];
   std::vector<spatial::Neighbour> near;
@@ -147,7 +55,7 @@ std::vector<std::size_t> pieces_on_circle(const std::vector<Piece>& pieces, cons
 
 /// The circle that `arc` is of, with all pieces on it (`joined`); nothing if it is not to be
 /// closed.
-std::optional<Piece> completed(const std::vector<Piece>& pieces, const Index& index,
+std::optional<Piece> completed(const std::vector<Piece>& pieces, const PieceIndex& index,
                                std::size_t arc, double tolerance,
                                std::vector<std::size_t>& joined) {
   Piece whole = pieces[arc];
@@ -310,12 +218,11 @@ void find_small_circles(std::vector<Piece>& pieces) {
   erase_marked(pieces, gone);
   pieces.insert(pieces.end(), circles.begin(), circles.end());
 }
-
 }  // namespace
 
 void complete_circles(std::vector<Piece>& pieces, double tolerance) {
   find_small_circles(pieces);
-  const Index index(pieces);
+  const PieceIndex index(pieces);
   std::vector<std::uint8_t> gone(pieces.size(), 0);
   std::vector<std::size_t> joined;
   for (const std::size_t i : longest_first(pieces)) {
@@ -334,6 +241,7 @@ void complete_circles(std::vector<Piece>& pieces, double tolerance) {
     pieces[i] = std::move(*circle);
   }
   erase_marked(pieces, gone);
+  complete_coaxial(pieces, tolerance);
 }
 
 }  // namespace pcednet::lines

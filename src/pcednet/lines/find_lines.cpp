@@ -11,6 +11,7 @@
 #include "pcednet/lines/bridge.h"
 #include "pcednet/lines/chain.h"
 #include "pcednet/lines/circles.h"
+#include "pcednet/lines/coaxial.h"
 #include "pcednet/lines/crease.h"
 #include "pcednet/lines/finish.h"
 #include "pcednet/lines/ordered_points.h"
@@ -153,6 +154,7 @@ std::vector<Curve> find_lines(const EdgePoints& points, const LineOptions& optio
   complete_circles(pieces, limits.tolerance);
   bridge_gaps(pieces, cloud, {limits.tolerance, sampling.noise});
   string_together(pieces, limits.gap, limits.angle);
+  complete_coaxial(pieces, limits.tolerance);
   refine(pieces, cloud, sampling, progress);
   if (options.regularise) regularise(pieces);
   if (options.stage == LineStage::kPieces) return drawn(std::span(pieces), finish_options);

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <vector>
+
+#include "pcednet/lines/piece.h"
+
+namespace pcednet::lines {
+
+/// Makes circles of pieces, polylines among them, that lie about the axis of another circle and go
+/// half around it, unless another edge ends in a gap. `tolerance` is in spacings.
+///
+/// Turned parts and bores have several circles on one axis. Where noise breaks one of them into
+/// pieces, these bend and stand too badly for a circle of their own.
+void complete_coaxial(std::vector<Piece>& pieces, double tolerance);
+
+}  // namespace pcednet::lines

@@ -1,0 +1,89 @@
+#include "pcednet/lines/ring.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+namespace pcednet::lines {
+namespace {
+
+constexpr double kBlocking = 2.5;  ///< spacings from the end of a piece to a gap
+
+/// A wedge seen from the axis of a circle: the same all around it.
+ChainNode seen_from_axis(const Fit& circle, const ChainNode& node) {
+  const Vec3 tangent = tangent_at(circle, node.at), outward = tangent.cross(circle.direction);
+  const auto turned = [&](const Vec3& side) {
+    return Vec3(side.dot(outward), side.dot(circle.direction), 0.0);
+  };
+  return {.at = node.at,
+          .along = tangent,
+          .side_a = turned(node.side_a),
+          .side_b = turned(node.side_b)};
+}
+
+}  // namespace
+
+PieceIndex::PieceIndex(const std::vector<Piece>& pieces)
+    : starts({}), open(pieces, open_ends(pieces)) {
+  std::vector<Vec3> first_nodes;
+  for (const Piece& piece : pieces) {
+    first_nodes.push_back(piece.nodes.front().at);
+    largest_spacing = std::max(largest_spacing, piece.spacing());
+  }
+  starts = spatial::KdTree(first_nodes);
+}
+
+bool same_wedge(const Fit& circle, const ChainNode& a, const ChainNode& b) {
+  const ChainNode x = seen_from_axis(circle, a), y = seen_from_axis(circle, b);
+  return match(x.side_a, x.side_b, y.side_a, y.side_b).cosine > 0.6;
+}
+
+double angle_at(const Fit& circle, const Vec3& x, const Vec3& place) {
+  const Vec3 y = circle.direction.cross(x), offset = place - circle.point;
+  return std::atan2(y.dot(offset), x.dot(offset));
+}
+
+std::vector<Gap> sort_about_axis(const Fit& circle, std::vector<ChainNode>& nodes) {
+  const Vec3 x = circle.direction.unitOrthogonal();
+  std::vector<std::pair<double, std::size_t>> order;
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    order.emplace_back(angle_at(circle, x, nodes[i].at), i);
+  }
+  std::sort(order.begin(), order.end());
+  std::vector<ChainNode> sorted;
+  for (const auto& [angle, i] : order) {
+    ChainNode node = nodes[i];
+    if (tangent_at(circle, node.at).dot(node.along) < 0.0) node.along = -node.along;
+    sorted.push_back(node);
+  }
+  nodes = std::move(sorted);
+  std::vector<Gap> gaps;
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const std::size_t next = (i + 1) % nodes.size();
+    double angle = order[next].first - order[i].first;
+    if (next == 0) angle += kWholeTurn;
+    const double length = angle * circle.radius;
+    if (length > 2.5 * nodes[i].spacing) gaps.push_back({nodes[i].at, nodes[next].at, length});
+  }
+  return gaps;
+}
+
+bool is_blocked(const std::vector<Gap>& gaps, const std::vector<Piece>& pieces,
+                const PieceIndex& index, const std::vector<std::size_t>& joined) {
+  std::vector<spatial::Neighbour> near;
+  for (const Gap& gap : gaps) {
+    for (const Vec3& place : {gap.from, gap.to}) {
+      index.open.tree.within_unsorted(place, kBlocking * index.largest_spacing, near);
+      for (const auto& end : near) {
+        const auto [j, side] = index.open.ends[end.index];
+        const Piece& other = pieces[j];
+        if (other.closed || other.nodes.size() < kLeastArc) continue;
+        if (std::binary_search(joined.begin(), joined.end(), j)) continue;
+        if ((other.ends[side] - place).norm() < kBlocking * other.spacing()) return true;
+      }
+    }
+  }
+  return false;
+}
+
+}  // namespace pcednet::lines

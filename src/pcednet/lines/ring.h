@@ -1,0 +1,43 @@
+#pragma once
+
+#include <numbers>
+#include <vector>
+
+#include "pcednet/lines/piece.h"
+
+namespace pcednet::lines {
+
+inline constexpr double kWholeTurn = 2.0 * std::numbers::pi;
+inline constexpr std::size_t kLeastArc = 5;     ///< nodes
+inline constexpr double kSmallestRadius = 1.2;  ///< in spacings
+
+/// The pieces as they are at first, by their first nodes and by their ends.
+struct PieceIndex {
+  explicit PieceIndex(const std::vector<Piece>& pieces);
+
+  spatial::KdTree starts;  ///< the first node of each piece
+  EndIndex open;
+  double largest_spacing = 0.0;
+};
+
+/// Whether the wedges at two nodes are alike, seen from the axis of the circle.
+bool same_wedge(const Fit& circle, const ChainNode& a, const ChainNode& b);
+
+/// The angle of `place` about the axis, from `x`, which is unit and orthogonal to it.
+double angle_at(const Fit& circle, const Vec3& x, const Vec3& place);
+
+/// A part of a circle without nodes.
+struct Gap {
+  Vec3 from, to;
+  double length;
+};
+
+/// Sorts the nodes about the axis and returns the gaps between them.
+std::vector<Gap> sort_about_axis(const Fit& circle, std::vector<ChainNode>& nodes);
+
+/// Whether an end of another long piece is where a gap begins; those in `joined`, which is
+/// ascending, do not count.
+bool is_blocked(const std::vector<Gap>& gaps, const std::vector<Piece>& pieces,
+                const PieceIndex& index, const std::vector<std::size_t>& joined);
+
+}  // namespace pcednet::lines
