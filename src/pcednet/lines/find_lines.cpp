@@ -13,6 +13,7 @@
 #include "pcednet/lines/circles.h"
 #include "pcednet/lines/coaxial.h"
 #include "pcednet/lines/crease.h"
+#include "pcednet/lines/extent.h"
 #include "pcednet/lines/finish.h"
 #include "pcednet/lines/ordered_points.h"
 #include "pcednet/lines/piece.h"
@@ -156,6 +157,7 @@ std::vector<Curve> find_lines(const EdgePoints& points, const LineOptions& optio
   string_together(pieces, limits.gap, limits.angle);
   complete_coaxial(pieces, limits.tolerance);
   refine(pieces, cloud, sampling, progress);
+  extend_free_ends(pieces, cloud, sampling.noise);
   if (options.regularise) regularise(pieces);
   if (options.stage == LineStage::kPieces) return drawn(std::span(pieces), finish_options);
 
