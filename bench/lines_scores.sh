@@ -1,7 +1,7 @@
 #!/bin/sh
 # Scores lines on generated clouds with true curves: bench/lines_scores.sh FOLDER SEED [LINES OPTION...]
 #   clean, noisy, scanned   parts of 32,768 points without normals
-#   roof                    roofs of 1,024 points, boundaries included
+#   roof, survey            roofs of 1,024 points, boundaries included: easy ones, and as surveyed
 # Classifies every cloud first: their labels are the truth.
 set -eu
 folder=$1 seed=$2
@@ -14,6 +14,7 @@ for cloud in "$folder"/*.ply; do
   [ -f "$folder/curves/$name.obj" ] || continue  # a part without edges
   case $name in
     roof*) kind=roof boundaries=--boundaries ;;
+    survey*) kind=survey boundaries=--boundaries ;;
     *_noisy) kind=noisy boundaries= ;;
     *_scanned) kind=scanned boundaries= ;;
     *) kind=clean boundaries= ;;
@@ -23,7 +24,7 @@ for cloud in "$folder"/*.ply; do
   "$pcednet" lines "$cloud" --classify $boundaries "$@" -o "$folder/lines/$kind/$name.obj" \
     --overwrite --progress none >/dev/null 2>&1
 done
-for kind in clean noisy scanned roof; do
+for kind in clean noisy scanned roof survey; do
   echo "== $kind"
   "$pcednet" evaluate "$folder/lines/$kind" --truth "$folder" --cloud "$folder" | tail -2
 done

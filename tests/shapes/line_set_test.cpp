@@ -93,8 +93,9 @@ TEST(TrueCurvesOfSets, OfScansAreTheEdgesThatWereSeen) {
 TEST(LineSet, HasEveryFamilyInEveryState) {
   std::set<std::string> names;
   for (const LineRecipe& recipe : line_recipes()) names.insert(recipe.name);
-  EXPECT_EQ(names.size(), 100u);
-  for (const char* name : {"plate_0", "plate_1_noisy", "dome_0_scanned", "roof_hip_1"}) {
+  EXPECT_EQ(names.size(), 134u);
+  for (const char* name :
+       {"plate_0", "plate_1_noisy", "dome_0_scanned", "roof_hip_1", "survey_crossing_0"}) {
     EXPECT_TRUE(names.contains(name)) << name;
   }
 }
@@ -145,6 +146,29 @@ TEST(LineSet, HasRoofsAsPublished) {
     EXPECT_GT(distinct.size(), 600u);
     EXPECT_LT(distinct.size(), 800u);
   }
+}
+
+TEST(LineSet, HasSurveyedRoofs) {
+  std::size_t roofs = 0;
+  for (const LineRecipe& recipe : line_recipes()) {
+    if (recipe.kind != LineRecipe::Kind::kSurveyedRoof) continue;
+    ++roofs;
+    const GeneratedCloud made = generate(recipe, 1);
+    ASSERT_EQ(made.cloud.size(), 1024u) << recipe.name;
+    const std::vector<Vec3> corners = points_along(made.curves, 100.0);
+    ASSERT_FALSE(corners.empty()) << recipe.name;
+    BoundingBox box = bounding_box(corners);
+    std::size_t inside = 0;
+    std::set<std::vector<double>> distinct;
+    for (const Vec3& p : made.cloud.positions) {
+      distinct.insert({p.x(), p.y(), p.z()});
+      inside += ((p - box.centre()).cwiseAbs() - 0.5 * (box.max - box.min)).maxCoeff() < 0.4;
+    }
+    EXPECT_GT(inside, 900u) << recipe.name;  // chimneys and walls may reach beyond the lines
+    EXPECT_GT(distinct.size(), 600u) << recipe.name;
+    EXPECT_LT(distinct.size(), 860u) << recipe.name;
+  }
+  EXPECT_EQ(roofs, 34u);
 }
 
 TEST(LineSet, HasRoofsInRowsOfPoints) {

@@ -13,13 +13,14 @@ namespace pcednet::shapes {
 struct LineRecipe {
   std::string name = {};
   enum class Kind {
-    kClean,     ///< points of a CAD part, uniform by area
-    kNoisy,     ///< the same, displaced: sigma half a spacing on each axis
-    kScanned,   ///< the part scanned from twelve places around it
-    kRoof,      ///< a roof, with 5 mm of noise, uniform by area
-    kFlownRoof  ///< the same, its points moved to straight rows less than two spacings apart
+    kClean,        ///< points of a CAD part, uniform by area
+    kNoisy,        ///< the same, displaced: sigma half a spacing on each axis
+    kScanned,      ///< the part scanned from twelve places around it
+    kRoof,         ///< a roof, with 5 mm of noise, uniform by area
+    kFlownRoof,    ///< the same, its points moved to straight rows less than two spacings apart
+    kSurveyedRoof  ///< a random_survey_roof() by survey_points()
   } kind = Kind::kClean;
-  int family = 0;          ///< of random_part(), or the kind of random_roof()
+  int family = 0;          ///< of random_part(), or the kind of the roof
   std::uint64_t part = 0;  ///< which one of the family
   std::size_t points = 32768;
 };

@@ -247,7 +247,7 @@ constexpr std::array<Kind, kRoofKinds> kKinds = {{{"pyramid", pyramid},
                                                   {"dormer", dormer},
                                                   {"levels", levels}}};
 
-/// Seen from above: the height of the face there, if it is beneath or above the place.
+/// The height of the face there, if it is beneath or above the place.
 std::optional<double> height_at(const Polyhedron& roof, const std::vector<int>& face,
                                 const Vec3& place) {
   constexpr double kOn = 1e-9;
@@ -288,6 +288,14 @@ const char* roof_kind_name(int kind) {
 
 Polyhedron random_roof(int kind, Random& random) {
   return kKinds.at(static_cast<std::size_t>(kind)).make(random);
+}
+
+std::optional<double> highest_at(const Polyhedron& roof, const Vec3& place) {
+  std::optional<double> highest;
+  for (const std::vector<int>& face : roof.faces) {
+    highest = std::max(highest, height_at(roof, face, place));  // none is below all
+  }
+  return highest;
 }
 
 bool is_seen(const Polyhedron& roof, const Vec3& place) {
