@@ -232,6 +232,69 @@ TEST(Faces, AreNoneOfTooFewPoints) {
   EXPECT_EQ(share_of(row), 0.0);
 }
 
+TEST(Faces, MaySagALittle) {
+  PlainCloud cloud = hip_roof(700, 0.5, 0.005);
+  for (Vec3& place : cloud.positions) place.z() += 0.03 * std::sin(1.2 * place.x());
+  EXPECT_GT(share_of(cloud), 0.95);
+  EXPECT_EQ(roof_lines(cloud).size(), 9u);
+}
+
+/// A gable of this slope with its ridge along x, as beams of 20 cm see it: every height is the mean
+/// over those parts of the beam that meet the roof.
+PlainCloud gable_seen_by_beams(double slope) {
+  Random random(17);
+  PlainCloud cloud;
+  while (cloud.positions.size() < 700) {
+    const double x = random.uniform(0.0, kLength), y = random.uniform(0.0, kWidth);
+    double sum = 0.0, rays = 0.0;
+    for (double aside = -0.2; aside < 0.21; aside += 0.05) {
+      const double at = y + aside;
+      if (at < 0.0 || at > kWidth) continue;
+      sum += slope * std::min(at, kWidth - at);
+      rays += 1.0;
+    }
+    cloud.add({x, y, sum / rays + 0.005 * random.normal()});
+  }
+  return cloud;
+}
+
+TEST(PlaneEdges, AreWhereBeamsMeetThemHalf) {
+  const double slope = 2.0;
+  std::size_t eaves = 0, ridges = 0;
+  for (const Curve& curve : roof_lines(gable_seen_by_beams(slope))) {
+    const Vec3 middle = 0.5 * (curve.points[0] + curve.points[1]);
+    if (std::abs(middle.y() - 0.5 * kWidth) < 0.5 * kWidth - 0.5) {
+      if (curve.edge_class != kSharpEdge) continue;
+      EXPECT_NEAR(middle.z(), 0.5 * slope * kWidth, 0.1);
+      ++ridges;
+    } else {
+      EXPECT_LT(std::abs(std::abs(middle.y() - 0.5 * kWidth) - 0.5 * kWidth), 0.05);
+      ++eaves;
+    }
+  }
+  EXPECT_EQ(eaves, 2u);
+  EXPECT_EQ(ridges, 1u);
+}
+
+TEST(PlaneEdges, AreBeyondTheLastOfRows) {
+  Random random(8);
+  PlainCloud cloud;
+  for (int i = 0; i < 700; ++i) {
+    cloud.add({0.5 * static_cast<double>(random.index(20)), random.uniform(0.0, kWidth), 0.0});
+  }
+  double from = 0.0, to = 0.0;
+  for (const Curve& curve : roof_lines(cloud)) {
+    for (const Vec3& place : curve.points) {
+      from = std::min(from, place.x());
+      to = std::max(to, place.x());
+    }
+  }
+  for (const double beyond : {-from, to - 9.5}) {
+    EXPECT_GT(beyond, 0.08);
+    EXPECT_LT(beyond, 0.25);
+  }
+}
+
 std::vector<Vec2> points_in_rectangle(std::size_t count, double width, double height) {
   Random random(7);
   std::vector<Vec2> points;

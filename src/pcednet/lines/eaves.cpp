@@ -16,13 +16,18 @@ namespace {
 constexpr double kDisc = 2.5;    ///< radius that rolls around a face
 constexpr double kByFold = 1.3;  ///< of outline points from a fold: it ends the face there
 constexpr double kLeastLength = 2.0;
+constexpr double kHalfMet = 0.5;   ///< of a point of no face from the plane beside it
 constexpr double kLongFold = 5.0;  ///< that gives its direction to outlines
 constexpr double kCoverAhead = 1.2, kCoverReach = 1.0, kCoverHeight = 0.7;
 
+constexpr double kWall = 0.2;         ///< sine of the angle of a normal to the ground
 constexpr double kAlongPlane = 0.05;  ///< sine of a direction to a plane that it is taken to be in
 constexpr double kTowards = 0.6;      ///< cosine between the ways out of a face and to a fold
 constexpr double kSameLine = 0.8;     ///< cosine of directions that are tried
 constexpr double kEmptyArea = 0.8;    ///< beyond the last points along a line, in squared spacings
+
+constexpr double kRowDepth = 2.0;    ///< behind an eave, spacings, where rows are looked for
+constexpr double kBeyondRow = 0.25;  ///< of an eave from its last row, in gaps between rows
 
 using Vec2 = Eigen::Vector2d;
 
@@ -48,11 +53,37 @@ struct Eave {
   double length() const { return (points.back() - points.front()).norm(); }
 };
 
-/// The points of each face.
-std::vector<std::vector<std::uint32_t>> points_of(const Faces& faces) {
+/// The place of the face straight above or below: a beam that meets an eave half knows where it is
+/// in plan, not how high. Of walls, the nearest one.
+Vec3 dropped(const Face& face, const Vec3& place) {
+  const double up = face.normal.z();
+  if (std::abs(up) < kWall) return place;
+  return place - face.height(place) / up * Vec3::UnitZ();
+}
+
+/// The only face beside a point of none, if it is near: a beam that meets an eave half is above it.
+std::uint32_t face_beside(const OrderedPoints& cloud, const Faces& faces, std::uint32_t point,
+                          double spacing) {
+  std::uint32_t beside = kNoFace;
+  for (const std::uint32_t other : faces.near(point)) {
+    const std::uint32_t face = faces.of_points[other];
+    if (face == kNoFace || face == beside) continue;
+    if (beside != kNoFace) return kNoFace;
+    beside = face;
+  }
+  if (beside == kNoFace) return kNoFace;
+  const double off = std::abs(faces.faces[beside].height(cloud.position(point)));
+  return off < kHalfMet * spacing ? beside : kNoFace;
+}
+
+/// The points of each face, and those beside it that its eaves have.
+std::vector<std::vector<std::uint32_t>> points_of(const OrderedPoints& cloud, const Faces& faces,
+                                                  double spacing) {
   std::vector<std::vector<std::uint32_t>> points(faces.faces.size());
   for (std::uint32_t i = 0; i < faces.of_points.size(); ++i) {
-    if (faces.of_points[i] != kNoFace) points[faces.of_points[i]].push_back(i);
+    const std::uint32_t own = faces.of_points[i];
+    const std::uint32_t face = own != kNoFace ? own : face_beside(cloud, faces, i, spacing);
+    if (face != kNoFace) points[face].push_back(i);
   }
   return points;
 }
@@ -64,6 +95,7 @@ class Outlines {
 
   void add(std::uint32_t face, const std::vector<std::uint32_t>& points);
   std::vector<Eave> found;
+  std::vector<std::vector<Vec2>> charted;  ///< the points of each face
 
  private:
   bool is_at_fold(std::uint32_t face, const Vec3& place, const Vec3& outward) const;
@@ -85,7 +117,12 @@ class Outlines {
 
 Outlines::Outlines(const OrderedPoints& cloud, const Faces& faces, double spacing,
                    const std::vector<Fold>& folds, const spatial::KdTree& plan)
-    : cloud_(cloud), faces_(faces), spacing_(spacing), folds_of_(faces.faces.size()), plan_(plan) {
+    : charted(faces.faces.size()),
+      cloud_(cloud),
+      faces_(faces),
+      spacing_(spacing),
+      folds_of_(faces.faces.size()),
+      plan_(plan) {
   for (const Fold& fold : folds) {
     folds_of_[fold.face].push_back({&fold.piece, fold.piece.middle().side_a});
     folds_of_[fold.other].push_back({&fold.piece, fold.piece.middle().side_b});
@@ -107,7 +144,7 @@ bool Outlines::is_at_fold(std::uint32_t face, const Vec3& place, const Vec3& out
 /// Whether another face begins above the place: it is at the foot of a step.
 bool Outlines::is_foot(std::uint32_t face, const Vec3& place, const Vec3& outward) const {
   const Vec3 ahead = in_plan(outward);
-  if (ahead.norm() < 0.2) return false;  // a wall
+  if (ahead.norm() < kWall) return false;
   std::vector<spatial::Neighbour> near;
   plan_.within_unsorted(in_plan(place) + kCoverAhead * spacing_ * ahead.normalized(),
                         kCoverReach * spacing_, near);
@@ -154,8 +191,10 @@ void Outlines::add_run(std::uint32_t face, const std::vector<Vec2>& run) {
 
 void Outlines::add(std::uint32_t face, const std::vector<std::uint32_t>& points) {
   const Chart chart(faces_.faces[face]);
-  std::vector<Vec2> flat;
-  for (const std::uint32_t point : points) flat.push_back(chart.flat(cloud_.position(point)));
+  std::vector<Vec2>& flat = charted[face];
+  for (const std::uint32_t point : points) {
+    flat.push_back(chart.flat(dropped(faces_.faces[face], cloud_.position(point))));
+  }
   for (const auto& outline : outlines(flat, kDisc * spacing_)) {
     std::vector<Vec2> chain;
     std::vector<bool> taken;
@@ -207,10 +246,30 @@ void align(std::vector<Eave>& eaves, const Faces& faces, double spacing,
   }
 }
 
-Piece edge_of(const Eave& eave, const Faces& faces, double spacing) {
+/// The widest gap between the depths of points behind the eave: rows along it are so far apart.
+double row_gap(const Eave& eave, const std::vector<Vec2>& points, double spacing) {
+  const Vec2 along = eave.along();
+  const double from = std::min(along.dot(eave.points.front()), along.dot(eave.points.back()));
+  const double to = std::max(along.dot(eave.points.front()), along.dot(eave.points.back()));
+  std::vector<double> depths;
+  for (const Vec2& point : points) {
+    const double depth = eave.line.offset - eave.line.normal.dot(point), at = along.dot(point);
+    if (depth < kRowDepth * spacing && at >= from && at <= to) depths.push_back(depth);
+  }
+  std::sort(depths.begin(), depths.end());
+  double widest = 0.0;
+  for (std::size_t i = 1; i < depths.size(); ++i) {
+    widest = std::max(widest, depths[i] - depths[i - 1]);
+  }
+  return widest;
+}
+
+Piece edge_of(const Eave& eave, const Faces& faces, const std::vector<Vec2>& points,
+              double spacing) {
   const Chart chart(faces.faces[eave.face]);
-  const double offset =
-      eave.line.offset + kEmptyArea * spacing * spacing / std::max(eave.length(), spacing);
+  const double beyond = std::max(kEmptyArea * spacing * spacing / std::max(eave.length(), spacing),
+                                 kBeyondRow * row_gap(eave, points, spacing));
+  const double offset = eave.line.offset + beyond;
   const Vec3 along = chart.direction(eave.along());
   const Vec3 inward = -chart.direction(eave.line.normal);
   Piece piece;
@@ -235,11 +294,13 @@ Piece edge_of(const Eave& eave, const Faces& faces, double spacing) {
 std::vector<Piece> find_eaves(const OrderedPoints& cloud, const Faces& faces, double spacing,
                               const std::vector<Fold>& folds, const spatial::KdTree& plan) {
   Outlines outlines(cloud, faces, spacing, folds, plan);
-  const auto points = points_of(faces);
+  const auto points = points_of(cloud, faces, spacing);
   for (std::uint32_t face = 0; face < points.size(); ++face) outlines.add(face, points[face]);
   align(outlines.found, faces, spacing, folds);
   std::vector<Piece> edges;
-  for (const Eave& eave : outlines.found) edges.push_back(edge_of(eave, faces, spacing));
+  for (const Eave& eave : outlines.found) {
+    edges.push_back(edge_of(eave, faces, outlines.charted[eave.face], spacing));
+  }
   return edges;
 }
 

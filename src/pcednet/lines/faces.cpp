@@ -10,6 +10,7 @@
 #include "pcednet/core/median.h"
 #include "pcednet/core/parallel.h"
 #include "pcednet/lines/local_planes.h"
+#include "pcednet/lines/plane_share.h"
 
 namespace pcednet::lines {
 namespace {
@@ -24,10 +25,10 @@ constexpr double kPlaneReach[] = {0.1, 4.0};  ///< of a plane: spacings at least
 constexpr double kOwnReach = 5.0;             ///< in the median distance of a face's points
 constexpr double kLeastWidth = 0.35;          ///< of a face, standard deviation in spacings
 constexpr double kNeighbourly = 0.5;          ///< price of a face that none of the others has
-constexpr double kFlat = 0.01;                ///< spacings: such faces are plane
-constexpr double kMostBend = 0.1;             ///< share of their heights that a parabola explains,
-constexpr double kByChance = 6.0;             ///< and more of few points, where chance does
+constexpr double kInside = 0.4;               ///< share of points inside that a face is fitted to
 constexpr double kOnePlane = 1.25;            ///< residual of two faces as one, in theirs
+constexpr double kNoFold = 0.1;  ///< sine of the angle of faces without a fold between,
+constexpr double kSag = 0.15;    ///< and their residual as one, in spacings
 
 /// Of points about an origin near them.
 struct Sums {
@@ -222,8 +223,8 @@ std::set<std::pair<std::uint32_t, std::uint32_t>> pairs_of(const Faces& faces) {
   return pairs;
 }
 
-/// Unites faces that one plane explains nearly as well.
-void unite(const OrderedPoints& cloud, Faces& faces) {
+/// Unites faces that one plane explains nearly as well, or well enough where no fold is drawn.
+void unite(const OrderedPoints& cloud, Faces& faces, double spacing) {
   std::vector<Sums> sums = sums_of(cloud, faces);
   std::vector<std::uint32_t> into(faces.faces.size());
   std::iota(into.begin(), into.end(), 0u);
@@ -235,12 +236,15 @@ void unite(const OrderedPoints& cloud, Faces& faces) {
   for (const auto& [one, other] : pairs_of(faces)) {
     const std::uint32_t a = std::min(root(one), root(other)), b = std::max(root(one), root(other));
     if (a == b) continue;
-    const double of_a = fit_plane(sums[a]).residual, of_b = fit_plane(sums[b]).residual;
+    const Fitted plane_a = fit_plane(sums[a]), plane_b = fit_plane(sums[b]);
+    const double of_a = plane_a.residual, of_b = plane_b.residual;
     Sums both = sums[a];
     both.moments.add(sums[b].moments);
     const double apart =
         std::sqrt((of_a * of_a * sums[a].count() + of_b * of_b * sums[b].count()) / both.count());
-    if (fit_plane(both).residual > kOnePlane * std::max(apart, floor)) continue;
+    const bool sags = plane_a.normal.cross(plane_b.normal).norm() < kNoFold;
+    const double most = std::max(kOnePlane * std::max(apart, floor), sags ? kSag * spacing : 0.0);
+    if (fit_plane(both).residual > most) continue;
     sums[a] = both;
     sums[b] = {};
     into[b] = a;
@@ -249,60 +253,26 @@ void unite(const OrderedPoints& cloud, Faces& faces) {
   refit(faces, sums);
 }
 
-/// Heights of points over a plane, and the squares of their coordinates in it.
-struct Bend {
-  double count = 0.0, height = 0.0, sq_height = 0.0;
-  Vec3 squares = Vec3::Zero(), both = Vec3::Zero();
-  Mat3 products = Mat3::Zero();
-
-  void add(double x, double y, double h) {
-    const Vec3 square(x * x, x * y, y * y);
-    count += 1.0;
-    height += h;
-    sq_height += h * h;
-    squares += square;
-    both += h * square;
-    products += square * square.transpose();
-  }
-  double variance() const { return sq_height / count - (height / count) * (height / count); }
-  /// The share of the variance of heights that a parabola explains.
-  double explained() const {
-    const Vec3 mean = squares / count, with = both / count - height / count * mean;
-    const Mat3 covariance = products / count - mean * mean.transpose();
-    return with.dot(covariance.ldlt().solve(with)) / variance();
-  }
-};
-
-/// The points of faces, those that are parts of a curved surface left out.
-double plane_share(const OrderedPoints& cloud, const Faces& faces, double spacing) {
-  std::vector<Bend> bends(faces.faces.size());
-  std::vector<std::pair<Vec3, Vec3>> axes;
-  for (const Face& face : faces.faces) {
-    const Vec3 x = face.normal.unitOrthogonal();
-    axes.emplace_back(x, face.normal.cross(x));
-  }
+/// Planes through the points inside of faces only, where they suffice: a beam that meets two faces,
+/// or an eave, returns a height between.
+void fit_insides(const OrderedPoints& cloud, Faces& faces) {
+  std::vector<Sums> sums(faces.faces.size());
+  for (Sums& of_face : sums) of_face.origin = cloud.position(0);
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const std::uint32_t f = faces.of_points[i];
     if (f == kNoFace) continue;
     const auto near = faces.near(i).first(kLocal);
-    if (!std::all_of(near.begin(), near.end(),
-                     [&](std::uint32_t other) { return faces.of_points[other] == f; })) {
-      continue;  // it may be of the face beside
-    }
-    const Vec3 offset = (cloud.position(i) - faces.faces[f].point) / spacing;
-    bends[f].add(axes[f].first.dot(offset), axes[f].second.dot(offset),
-                 faces.faces[f].normal.dot(offset));
+    const bool inside = std::all_of(
+        near.begin(), near.end(), [&](std::uint32_t other) { return faces.of_points[other] == f; });
+    if (inside) sums[f].add(cloud.position(i));
   }
-  double plane = 0.0;
-  for (std::size_t f = 0; f < bends.size(); ++f) {
-    const Bend& bend = bends[f];
-    if (bend.count < static_cast<double>(kLocal)) continue;
-    const double chance = kByChance / bend.count;
-    if (bend.variance() < kFlat * kFlat || bend.explained() < kMostBend + chance) {
-      plane += static_cast<double>(faces.faces[f].count);
-    }
+  for (std::size_t f = 0; f < sums.size(); ++f) {
+    const double least = kInside * static_cast<double>(faces.faces[f].count);
+    if (sums[f].count() < std::max(2.0 * kLeastPoints, least)) continue;
+    const Fitted plane = fit_plane(sums[f]);
+    faces.faces[f].point = plane.point;
+    faces.faces[f].normal = plane.normal;
   }
-  return plane / static_cast<double>(cloud.size());
 }
 
 }  // namespace
@@ -325,11 +295,12 @@ Faces find_faces(const OrderedPoints& cloud, const Sampling& sampling, const Pro
     if (faces.faces.size() > kMostFaces) return {};
   }
   for (int round = 0; round < kChoices; ++round) {
-    unite(cloud, faces);
+    unite(cloud, faces, sampling.spacing);
     measure_noise(cloud, faces, kPlaneReach[0] * sampling.spacing);
     choose(cloud, faces);
     refit(faces, sums_of(cloud, faces));
   }
+  fit_insides(cloud, faces);
   faces.share = plane_share(cloud, faces, sampling.spacing);
   return faces;
 }

@@ -134,7 +134,7 @@ bool drop_loose(std::vector<Piece>& pieces, const Corners& corners, const Finish
            const auto held = std::count_if(own.begin(), own.end(), [&](std::size_t corner) {
              return corner != Corners::kNoCorner && ends[corner] >= to_hold;
            });
-           if (has_few_edge_points(piece, options.noise, held == 2)) return true;
+           if (!options.exact && has_few_edge_points(piece, options.noise, held == 2)) return true;
            return length_of(piece) < least_length(held, options) * piece.spacing();
          }) > 0;
 }

@@ -8,7 +8,7 @@
 namespace pcednet::lines {
 namespace {
 
-constexpr double kPieceCost = 10.0;
+constexpr double kPieceCost = 8.0;
 constexpr double kMostEmpty = 7.0;       ///< more points that a turned line leaves empty
 constexpr double kBreakOff = 0.25;       ///< spacings from the chord at which a line may break
 constexpr std::size_t kMostBreaks = 64;  ///< that a line runs over
