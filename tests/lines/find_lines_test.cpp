@@ -258,6 +258,21 @@ TEST(Sampling, IsMeasuredAtAllPointsIfAllAreOfAnEdge) {
   EXPECT_NEAR(measured().spacing, cloud.spacing, 0.1 * cloud.spacing);
 }
 
+TEST(Sampling, TakesThinWallsForNoNoise) {
+  const auto noise_of_walls = [](double noise) {
+    Random random(9);
+    Cloud cloud;
+    const auto add = [&](double x, double z) {
+      cloud.add({x, 30.0 * random.uniform(), z + noise * random.normal()}, Vec3::UnitZ(), false);
+    };
+    for (int i = 0; i < 900; ++i) add(30.0 * random.uniform(), 0.0);
+    for (int i = 0; i < 3600; ++i) add(60.0 + 60.0 * random.uniform(), i % 2 == 0 ? 0.0 : 0.7);
+    return measure_sampling(OrderedPoints({cloud.positions, cloud.normals, cloud.classes})).noise;
+  };
+  EXPECT_LT(noise_of_walls(0.0), 1e-6);
+  EXPECT_GT(noise_of_walls(0.3), 0.15);
+}
+
 /// Two walls and a chamfer between them, along y; points about one apart, the chamfer labelled.
 Cloud chamfer(double from_corner) {
   Random random(6);

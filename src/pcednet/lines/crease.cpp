@@ -46,6 +46,14 @@ double typical(std::vector<double> values) {
   return values.empty() ? 0.0 : upper_median(std::move(values));
 }
 
+/// Noise is everywhere: what a tenth of the points have less than half of is shape, as where walls
+/// are thin.
+double noise_of(std::vector<double> distances) {
+  if (distances.empty()) return 0.0;
+  const double least = value_at_rank(distances, distances.size() / 10);
+  return std::min(2.0 * least, upper_median(std::move(distances)));
+}
+
 double distance_to_plane(const OrderedPoints& cloud, std::size_t i,
                          std::span<const spatial::Neighbour> nearest) {
   Vec3 mean = Vec3::Zero();
@@ -82,7 +90,7 @@ Sampling measure_sampling(const OrderedPoints& cloud) {
     spacings.push_back(spacing);
     noises.push_back(distance_to_plane(cloud, points[k], row) / spacing);
   }
-  return {typical(spacings), std::min(typical(noises), kMostNoise)};
+  return {typical(spacings), std::min(noise_of(std::move(noises)), kMostNoise)};
 }
 
 namespace {

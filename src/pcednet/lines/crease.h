@@ -38,7 +38,7 @@ inline double dihedral_angle(const Vec3& side_a, const Vec3& side_b) {
 /// Spacing and noise of a cloud, from points off its edges; from all points if none is off.
 struct Sampling {
   double spacing = 0.0;  ///< sqrt of the area per point, median
-  double noise = 0.0;    ///< distance of points to the plane of their neighbours, in spacings
+  double noise = 0.0;    ///< of points about the plane of their neighbours, in spacings
 };
 
 /// The crease of a point, from its nearest others; nothing where there is none.

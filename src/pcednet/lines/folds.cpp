@@ -16,10 +16,10 @@ constexpr std::size_t kLeastContacts = 3;
 constexpr double kOneSided = 0.75;  ///< of the points beside a fold that are on the right side
 
 // In spacings.
-constexpr double kFarthest = 1.5;  ///< of a contact from the fold
-constexpr double kGap = 6.0;       ///< between contacts of one fold
-constexpr double kBeside = 3.0;    ///< of the points that tell the side of the fold
-constexpr double kLeastLength = 1.0;
+constexpr double kFarthestFold = 1.5;  ///< of a contact from the fold
+constexpr double kGap = 6.0;           ///< between contacts of one fold
+constexpr double kBesideFold = 3.0;    ///< of the points that tell the side of the fold
+constexpr double kLeastFold = 1.0;
 constexpr double kNodeReach = 1.0;
 
 using Pair = std::pair<std::uint32_t, std::uint32_t>;
@@ -84,7 +84,7 @@ void Folds::add(const Pair& pair, const std::vector<Contact>& contacts) {
   std::vector<double> places;
   for (const Contact& contact : contacts) {
     const Vec3 middle = middle_of(contact);
-    if ((middle - nearest_on(*line, middle)).norm() > kFarthest * spacing_) continue;
+    if ((middle - nearest_on(*line, middle)).norm() > kFarthestFold * spacing_) continue;
     places.push_back((middle - line->point).dot(line->direction));
   }
   std::sort(places.begin(), places.end());
@@ -105,7 +105,7 @@ std::optional<Vec3> Folds::side_of(std::uint32_t face, const std::vector<std::ui
     if (faces_.of_points[point] != face) continue;
     const Vec3 offset = cloud_.position(point) - line.point;
     const double place = offset.dot(line.direction), away = offset.dot(side);
-    if (place < from || place > to || std::abs(away) > kBeside * spacing_) continue;
+    if (place < from || place > to || std::abs(away) > kBesideFold * spacing_) continue;
     if (std::abs(away) > 0.3 * spacing_) count[away > 0.0] += 1.0;
   }
   if (count[0] + count[1] < 2.0) return std::nullopt;
@@ -114,7 +114,7 @@ std::optional<Vec3> Folds::side_of(std::uint32_t face, const std::vector<std::ui
 }
 
 void Folds::add_part(const Pair& pair, const Fit& line, double from, double to) {
-  if (to - from < kLeastLength * spacing_) return;
+  if (to - from < kLeastFold * spacing_) return;
   const auto steps = static_cast<std::size_t>(std::ceil((to - from) / spacing_));
   const double half_step = 0.5 * (to - from) / static_cast<double>(steps);
   Piece piece{.fit = line, .nodes = {}, .ends = {}};
@@ -126,7 +126,7 @@ void Folds::add_part(const Pair& pair, const Fit& line, double from, double to) 
     node.at = line.point + place * line.direction;
     node.along = line.direction;
     node.spacing = spacing_;
-    cloud_.tree().within_unsorted(node.at, (kBeside + 1.0) * spacing_, near);
+    cloud_.tree().within_unsorted(node.at, (kBesideFold + 1.0) * spacing_, near);
     std::sort(near.begin(), near.end(),
               [](const auto& a, const auto& b) { return a.index < b.index; });
     for (const spatial::Neighbour& point : near) {

@@ -13,8 +13,8 @@ namespace {
 constexpr std::size_t kMostPlanes = 4;
 constexpr std::size_t kMostSeeds = 16;
 constexpr int kLeastSupport = 4;
-constexpr double kSameDirection = 0.75;  ///< cosine of normals on one plane
-constexpr double kTrusted = 0.5;         ///< edginess up to which a normal counts
+constexpr double kSameNormal = 0.75;  ///< cosine of normals on one plane
+constexpr double kTrusted = 0.5;      ///< edginess up to which a normal counts
 constexpr double kFar = 1e9;
 
 /// What decides whether points are on a plane.
@@ -27,7 +27,7 @@ Tests tests_of(const NearPoints& points) {
   Tests tests;
   for (std::size_t i = 0; i < points.count; ++i) {
     const bool trusted = points.edginess[i] <= kTrusted && !points.normal(i).isZero(0.0);
-    tests.least_cosine[i] = trusted ? kSameDirection : -1.0;
+    tests.least_cosine[i] = trusted ? kSameNormal : -1.0;
     tests.taken[i] = 0.0;
   }
   return tests;

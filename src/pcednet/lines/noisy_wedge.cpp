@@ -191,9 +191,9 @@ std::optional<HalfPlanes> improved(const HalfPlanes& halves, const NearPoints& p
     const double part = sq_distance / (reach * reach);
     if (part < 1.0) (is_a ? a : b).add(points.offset(i), (1.0 - part) * (1.0 - part));
   }
-  constexpr double kLeastWeight = 4.0, kLeastWidth = 0.15;
-  const auto plane_a = plane_of(a, kLeastWeight, kLeastWidth);
-  const auto plane_b = plane_of(b, kLeastWeight, kLeastWidth);
+  constexpr double kWeight = 4.0, kWidth = 0.15;
+  const auto plane_a = plane_of(a, kWeight, kWidth);
+  const auto plane_b = plane_of(b, kWeight, kWidth);
   if (!plane_a || !plane_b) return std::nullopt;
   return half_planes(*plane_a, *plane_b, a.mean(), b.mean());
 }

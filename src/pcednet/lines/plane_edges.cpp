@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kPlanePart = 0.9;
 constexpr std::size_t kMostPoints = 1 << 17;
-constexpr std::size_t kSamples = 4000;
+constexpr std::size_t kFaceSamples = 4000;
 constexpr double kAboveOthers = 0.03;  ///< largest share of points above or below others
 
 // In spacings.
@@ -23,7 +23,7 @@ spatial::KdTree plan_of(const OrderedPoints& cloud) {
 
 /// Whether few points have others straight above or below them.
 bool is_seen_from_above(const OrderedPoints& cloud, double spacing, const spatial::KdTree& plan) {
-  const std::size_t step = std::max<std::size_t>(1, cloud.size() / kSamples);
+  const std::size_t step = std::max<std::size_t>(1, cloud.size() / kFaceSamples);
   std::size_t seen = 0, above = 0;
   std::vector<spatial::Neighbour> near;
   for (std::size_t i = 0; i < cloud.size(); i += step) {

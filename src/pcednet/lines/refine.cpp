@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kNodesToRefine = 4;
 constexpr double kPlaneSide = 0.94;  ///< least cosine of a node's side and the mean
-constexpr std::size_t kLeastPoints = 8;
+constexpr std::size_t kLeastRefined = 8;
 constexpr int kPlaneFits = 3;
 
 // In spacings.
@@ -21,7 +21,7 @@ constexpr double kSideOfPlane = 4.0;  ///< of the points that place a crease
 constexpr double kFromLine = 0.3;     ///< those nearer to it may be of either side
 constexpr double kMostShift = 0.8;
 constexpr double kStripInside = 1.6, kStripOutside = 1.0;
-constexpr double kEmptyArea = 1.0;  ///< beyond the last points of a strip, in squared spacings
+constexpr double kEmptyStrip = 1.0;  ///< beyond the last points of a strip, in squared spacings
 
 struct Plane {
   Vec3 point, normal;
@@ -73,7 +73,7 @@ std::optional<Plane> plane_of_side(const Piece& piece, const std::vector<Vec3>& 
       on.push_back(point);
       mean += point;
     }
-    if (on.size() < kLeastPoints) return std::nullopt;
+    if (on.size() < kLeastRefined) return std::nullopt;
     mean /= static_cast<double>(on.size());
     Mat3 products = Mat3::Zero();
     for (const Vec3& point : on) products += (point - mean) * (point - mean).transpose();
@@ -123,7 +123,7 @@ std::optional<Fit> boundary_line(const Piece& piece, const std::vector<Vec3>& po
     if (out < -kStripInside * spacing || out > kStripOutside * spacing) continue;
     strip.emplace_back(place, out);
   }
-  if (strip.size() < kLeastPoints) return std::nullopt;
+  if (strip.size() < kLeastRefined) return std::nullopt;
   std::sort(strip.begin(), strip.end(), [](const auto& a, const auto& b) {
     return a.x() < b.x() || (a.x() == b.x() && a.y() < b.y());
   });
@@ -140,7 +140,7 @@ std::optional<Fit> boundary_line(const Piece& piece, const std::vector<Vec3>& po
   while (i + 1 < hull.size() && hull[i].x() < 0.5 * length) ++i;
   if (hull.size() < 2 || hull[i].x() - hull[i - 1].x() < 0.25 * length) return std::nullopt;
   const double slope = (hull[i].y() - hull[i - 1].y()) / (hull[i].x() - hull[i - 1].x());
-  const double beyond = kEmptyArea * spacing * spacing / length;
+  const double beyond = kEmptyStrip * spacing * spacing / length;
   const double out = hull[i].y() + slope * (0.5 * length - hull[i].x()) + beyond;
   const Vec3 middle = 0.5 * (piece.ends[0] + piece.ends[1]);
   return Fit{CurveKind::kSegment, middle - out * *inward, (along - slope * *inward).normalized(),
@@ -186,7 +186,7 @@ std::optional<Ray> ray_of_side(const Piece& piece, const std::vector<Eigen::Vect
       products += point * point.transpose();
       count += 1.0;
     }
-    if (count < static_cast<double>(kLeastPoints)) return std::nullopt;
+    if (count < static_cast<double>(kLeastRefined)) return std::nullopt;
     mean /= count;
     const Eigen::Matrix2d covariance = products / count - mean * mean.transpose();
     Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver;

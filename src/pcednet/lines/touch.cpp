@@ -6,7 +6,7 @@ namespace pcednet::lines {
 namespace {
 
 constexpr double kLeastCosine = 0.94;  ///< of the directions where they touch
-constexpr double kLeastApart = 0.35;   ///< of two centres, in the larger radius
+constexpr double kLeastTouch = 0.35;   ///< of two centres, in the larger radius
 
 /// The place of `circle` in the direction of `out` from its centre.
 Vec3 place_towards(const Fit& circle, const Vec3& out) {
@@ -17,7 +17,7 @@ Vec3 place_towards(const Fit& circle, const Vec3& out) {
 std::optional<Vec3> on_centre_line(const Fit& a, const Fit& b, const Vec3& place) {
   const Vec3 between = b.point - a.point;
   const double apart = between.norm();
-  if (apart < kLeastApart * std::max(a.radius, b.radius)) return std::nullopt;
+  if (apart < kLeastTouch * std::max(a.radius, b.radius)) return std::nullopt;
   const Vec3 out = between / apart;
   return place_towards(a, (place - a.point).dot(out) < 0.0 ? Vec3(-out) : out);
 }

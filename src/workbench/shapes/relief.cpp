@@ -237,13 +237,13 @@ Vec2 gradient(const Field& field, const Vec2& p) {
 /// Moves points of the rectangle onto the lines of the ornament that are near.
 void add_lines(const Ornament& ornament, const Field& height, const Vec2& half, std::size_t count,
                Random& random, std::vector<Vec3>& lines) {
-  constexpr double kReach = 0.02, kExact = 1e-4;
+  constexpr double kNear = 0.02, kExact = 1e-4;
   for (std::size_t i = 0; i < count; ++i) {
     const Vec2 start{random.uniform(-half.x(), half.x()), random.uniform(-half.y(), half.y())};
     for (const double level : ornament.lines()) {
       Vec2 p = start;
       double off = ornament.field(p) - level;
-      if (std::abs(off) > kReach) continue;
+      if (std::abs(off) > kNear) continue;
       for (int step = 0; step < 4 && std::abs(off) > kExact; ++step) {
         const Vec2 slope = gradient(ornament.field, p);
         if (slope.squaredNorm() < 0.1) break;

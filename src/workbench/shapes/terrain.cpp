@@ -226,8 +226,8 @@ std::vector<std::uint8_t> labels_of(const Land& land) {
 }
 
 std::vector<Vec3> disturbed(std::vector<Vec3> normals, Random& random) {
-  constexpr double kNoise = 0.2;
-  add_noise(normals, kNoise, random);
+  constexpr double kOfNormals = 0.2;
+  add_noise(normals, kOfNormals, random);
   for (Vec3& normal : normals) normal.normalize();
   return normals;
 }
