@@ -25,7 +25,7 @@ Json optional_number(const std::optional<Number>& value) {
 }
 
 /// File names may hold any bytes: those that are not UTF-8 are replaced.
-std::string text_of(const Json& json) {
+std::string dumped(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
@@ -303,21 +303,21 @@ std::string to_json(const Summary& summary, Asking window) {
   for (const auto name : gls::feature_names(gls::ScaleSpaceOptions{}.features)) {
     json["features"].push_back(std::string(name));
   }
-  return text_of(json);
+  return dumped(json);
 }
 
 std::string to_json(std::span<const RunView> runs) {
   Json json = Json::array();
   for (const RunView& run : runs) json.push_back(json_of(run));
-  return text_of(json);
+  return dumped(json);
 }
 
 std::string to_json(const Painted& painted) {
-  return text_of(json_of(painted));
+  return dumped(json_of(painted));
 }
 
 std::string to_json(const UncertainPlace& place) {
-  return text_of({{"rank", place.rank},
+  return dumped({{"rank", place.rank},
                   {"position", json_of(place.position)},
                   {"normal", json_of(place.normal)},
                   {"confidence", place.confidence},
@@ -326,7 +326,7 @@ std::string to_json(const UncertainPlace& place) {
 }
 
 std::string to_json(const PointView& point) {
-  return text_of({{"point", point.point},
+  return dumped({{"point", point.point},
                   {"position", json_of(point.position)},
                   {"normal", json_of(point.normal)},
                   {"label", point.label},
@@ -337,19 +337,19 @@ std::string to_json(const PointView& point) {
 }
 
 std::string to_json(const ClassesChanged& changed) {
-  return text_of(json_of(changed));
+  return dumped(json_of(changed));
 }
 
 std::string to_json(const FileSaved& saved) {
-  return text_of(json_of(saved));
+  return dumped(json_of(saved));
 }
 
 std::string window_json(const std::string& window, bool is_writer) {
-  return text_of({{"window", window}, {"writer", is_writer}});
+  return dumped({{"window", window}, {"writer", is_writer}});
 }
 
 std::string error_json(const std::string& message) {
-  return text_of({{"error", message}});
+  return dumped({{"error", message}});
 }
 
 std::string event_name(const Event& event) {
@@ -357,7 +357,7 @@ std::string event_name(const Event& event) {
 }
 
 std::string event_json(const Event& event) {
-  return std::visit([](const auto& one) { return text_of(json_of(one)); }, event);
+  return std::visit([](const auto& one) { return dumped(json_of(one)); }, event);
 }
 
 Stroke parse_stroke(std::string_view text) {
