@@ -318,22 +318,22 @@ std::string to_json(const Painted& painted) {
 
 std::string to_json(const UncertainPlace& place) {
   return dumped({{"rank", place.rank},
-                  {"position", json_of(place.position)},
-                  {"normal", json_of(place.normal)},
-                  {"confidence", place.confidence},
-                  {"prediction", place.prediction},
-                  {"of", place.of}});
+                 {"position", json_of(place.position)},
+                 {"normal", json_of(place.normal)},
+                 {"confidence", place.confidence},
+                 {"prediction", place.prediction},
+                 {"of", place.of}});
 }
 
 std::string to_json(const PointView& point) {
   return dumped({{"point", point.point},
-                  {"position", json_of(point.position)},
-                  {"normal", json_of(point.normal)},
-                  {"label", point.label},
-                  {"prediction", point.prediction},
-                  {"p", point.probabilities ? Json(*point.probabilities) : Json::array()},
-                  {"p_class", optional_number(point.p_class)},
-                  {"distance", point.distance}});
+                 {"position", json_of(point.position)},
+                 {"normal", json_of(point.normal)},
+                 {"label", point.label},
+                 {"prediction", point.prediction},
+                 {"p", point.probabilities ? Json(*point.probabilities) : Json::array()},
+                 {"p_class", optional_number(point.p_class)},
+                 {"distance", point.distance}});
 }
 
 std::string to_json(const ClassesChanged& changed) {
