@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "lines/made_pieces.h"
 #include "pcednet/core/random.h"
 #include "pcednet/lines/ordered_points.h"
 
@@ -25,20 +26,6 @@ std::vector<Vec3> two_faces(double from, double to_a, double to_b) {
   return positions;
 }
 
-Piece edge_to_extend(double from, double to) {
-  Piece piece;
-  for (double x = from; x <= to; x += 1.0) {
-    piece.nodes.push_back({.at = x * Vec3::UnitX(),
-                           .along = Vec3::UnitX(),
-                           .side_a = Vec3::UnitY(),
-                           .side_b = Vec3::UnitZ(),
-                           .spacing = 1.0});
-  }
-  piece.fit = fit_segment(piece.nodes);
-  piece.ends = {piece.nodes.front().at, piece.nodes.back().at};
-  return piece;
-}
-
 std::vector<Piece> extended(std::vector<Piece> pieces, const std::vector<Vec3>& positions) {
   const std::vector<Vec3> normals(positions.size(), Vec3::Zero());
   const std::vector<std::uint8_t> classes(positions.size(), kNonEdge);
@@ -47,33 +34,33 @@ std::vector<Piece> extended(std::vector<Piece> pieces, const std::vector<Vec3>& 
 }
 
 TEST(Extent, OfAFreeEndIsThatOfBothSurfaces) {
-  const auto pieces = extended({edge_to_extend(10, 24)}, two_faces(2, 30, 30));
+  const auto pieces = extended({straight_along_x(10, 24)}, two_faces(2, 30, 30));
   EXPECT_NEAR(pieces[0].ends[0].x(), 2.0, 1.0);
   EXPECT_NEAR(pieces[0].ends[1].x(), 30.0, 1.0);
 }
 
 TEST(Extent, EndsWhereOneSurfaceDoes) {
-  const auto pieces = extended({edge_to_extend(10, 24)}, two_faces(2, 40, 27));
+  const auto pieces = extended({straight_along_x(10, 24)}, two_faces(2, 40, 27));
   EXPECT_NEAR(pieces[0].ends[1].x(), 27.0, 1.0);
 }
 
 TEST(Extent, IsShorterThanThePieceThatOvershoots) {
-  const auto pieces = extended({edge_to_extend(10, 33)}, two_faces(2, 30, 30));
+  const auto pieces = extended({straight_along_x(10, 33)}, two_faces(2, 30, 30));
   EXPECT_NEAR(pieces[0].ends[1].x(), 30.0, 1.0);
 }
 
 TEST(Extent, EndsBesideAnotherPieceOfTheSameDirection) {
-  Piece other = edge_to_extend(0, 14);
+  Piece other = straight_along_x(0, 14);
   for (ChainNode& node : other.nodes) node.at += Vec3(22, 1, 0);
   other.fit = fit_segment(other.nodes);
   for (const std::size_t side : {0, 1}) other.ends[side] += Vec3(22, 1, 0);
   other.closed = true;  // its ends are not to meet those of the first
-  const auto pieces = extended({edge_to_extend(5, 16), other}, two_faces(2, 40, 40));
+  const auto pieces = extended({straight_along_x(5, 16), other}, two_faces(2, 40, 40));
   EXPECT_LT(pieces[0].ends[1].x(), 23.0);
 }
 
 TEST(Extent, ReachesNoFartherThanThePieceIsLong) {
-  const auto pieces = extended({edge_to_extend(10, 16)}, two_faces(0, 40, 40));
+  const auto pieces = extended({straight_along_x(10, 16)}, two_faces(0, 40, 40));
   EXPECT_NEAR(pieces[0].ends[1].x(), 22.0, 0.1);
 }
 

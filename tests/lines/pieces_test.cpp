@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "lines/made_pieces.h"
 #include "pcednet/core/random.h"
 #include "pcednet/lines/bridge.h"
 #include "pcednet/lines/circles.h"
@@ -20,37 +21,9 @@ namespace {
 
 constexpr double kWithin = 0.2;
 
-/// A straight piece with nodes about one apart; its wedge is open to `side_a` and `side_b`.
-Piece straight(const Vec3& from, const Vec3& to, const Vec3& side_a = Vec3::UnitZ(),
-               const Vec3& side_b = -Vec3::UnitZ()) {
-  Piece piece;
-  const auto steps = static_cast<int>(std::round((to - from).norm()));
-  for (int i = 0; i <= steps; ++i) {
-    piece.nodes.push_back({.at = from + (to - from) * i / steps,
-                           .along = (to - from).normalized(),
-                           .side_a = side_a,
-                           .side_b = side_b,
-                           .spacing = 1.0});
-  }
-  piece.fit = fit_segment(piece.nodes);
-  piece.ends = {from, to};
-  return piece;
-}
-
-/// Part of the circle of radius 10 about the origin, its wedge open outwards and upwards.
+/// Part of the circle of radius 10 about the origin.
 Piece round_piece(double from, double to) {
-  Piece piece;
-  for (double t = from; t <= to; t += 0.1) {
-    const Vec3 out(std::cos(t), std::sin(t), 0);
-    piece.nodes.push_back({.at = 10 * out,
-                           .along = {-std::sin(t), std::cos(t), 0},
-                           .side_a = out,
-                           .side_b = Vec3::UnitZ(),
-                           .spacing = 1.0});
-  }
-  piece.fit = fit_arc(piece.nodes);
-  piece.ends = {piece.nodes.front().at, piece.nodes.back().at};
-  return piece;
+  return round_about_z(10, 0, from, to);
 }
 
 TEST(Pieces, OfOneLineAreJoinedOverAGap) {

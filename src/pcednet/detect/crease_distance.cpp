@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
 #include <limits>
 
@@ -111,42 +110,50 @@ class FacePlaces {
   FacePlaces(std::span<const Vec3> positions, std::span<const std::uint32_t> curve, double unit)
       : unit_(unit), positions_(along(positions, curve)), search_(positions_) {}
 
-  /// Calls work(k, the nearest others of places[k]) in parallel; places are ascending.
-  template <typename Work>
-  void for_each(std::span<const std::uint32_t> places, std::size_t count, const Work& work) const {
-    const std::size_t others = search_.available(count);
+  std::size_t size() const { return positions_.size(); }
+  std::size_t available(std::size_t count) const { return search_.available(count); }
+
+  /// The available(count) nearest others of each of `places`, which are ascending, row after row.
+  std::vector<std::uint32_t> nearest_others(std::span<const std::uint32_t> places,
+                                            std::size_t count) const {
+    const std::size_t others = available(count);
+    std::vector<std::uint32_t> rows(places.size() * others);
     parallel_blocks(places.size(), kPointsAtATime, [&](std::size_t begin, std::size_t end) {
       std::vector<spatial::Neighbour> near((end - begin) * others);
       search_.nearest_others(places.subspan(begin, end - begin), others, near);
-      for (std::size_t k = begin; k < end; ++k) {
-        work(k, std::span(near).subspan((k - begin) * others, others));
-      }
+      std::transform(near.begin(), near.end(),
+                     rows.begin() + static_cast<std::ptrdiff_t>(begin * others),
+                     [](const spatial::Neighbour& other) { return other.index; });
     });
+    return rows;
   }
 
   /// Of the face that each of `places` is on; zero where none was found, and elsewhere.
   std::vector<Vec3> face_normals(std::span<const std::uint32_t> places) const {
-    std::vector<Vec3> normals(positions_.size(), Vec3::Zero());
-    for_each(places, normals::kExactNeighbours, [&](std::size_t k, auto near) {
-      std::array<std::uint32_t, normals::kExactNeighbours> others;
-      for (std::size_t i = 0; i < near.size(); ++i) others[i] = near[i].index;
-      for (const double tolerance : kTolerances) {
-        Vec3& normal = normals[places[k]];
-        normal = normals::face_normal(positions_, places[k], std::span(others).first(near.size()),
-                                      tolerance);
-        if (!normal.isZero(0.0)) break;
+    std::vector<Vec3> normals(size(), Vec3::Zero());
+    const std::size_t others = available(normals::kExactNeighbours);
+    parallel_blocks(places.size(), kPointsAtATime, [&](std::size_t begin, std::size_t end) {
+      const auto some = places.subspan(begin, end - begin);
+      const auto rows = nearest_others(some, others);
+      for (std::size_t k = 0; k < some.size(); ++k) {
+        const auto near = std::span(rows).subspan(k * others, others);
+        for (const double tolerance : kTolerances) {
+          Vec3& normal = normals[some[k]];
+          normal = normals::face_normal(positions_, some[k], near, tolerance);
+          if (!normal.isZero(0.0)) break;
+        }
       }
     });
     return normals;
   }
 
-  NearFaces near_faces(std::uint32_t place, std::span<const spatial::Neighbour> near,
+  NearFaces near_faces(std::uint32_t place, std::span<const std::uint32_t> near,
                        std::span<const Vec3> normals) const {
     NearFaces around;
     around.count = near.size();
     for (std::size_t k = 0; k < near.size(); ++k) {
-      around.offsets[k] = (positions_[near[k].index] - positions_[place]) / unit_;
-      around.normals[k] = normals[near[k].index];
+      around.offsets[k] = (positions_[near[k]] - positions_[place]) / unit_;
+      around.normals[k] = normals[near[k]];
     }
     return around;
   }
@@ -173,17 +180,12 @@ std::vector<std::uint32_t> places_where(std::span<const std::uint8_t> marks) {
   return places;
 }
 
-/// `places` and their nearest others.
-std::vector<std::uint32_t> with_others(const FacePlaces& cloud,
-                                       std::span<const std::uint32_t> places, std::size_t size) {
+/// `places` and `others`, ascending, each once.
+std::vector<std::uint32_t> united(std::span<const std::uint32_t> places,
+                                  std::span<const std::uint32_t> others, std::size_t size) {
   std::vector<std::uint8_t> marks(size, 0);
-  const auto mark = [&](std::uint32_t place) {
-    std::atomic_ref(marks[place]).store(1, std::memory_order_relaxed);
-  };
-  cloud.for_each(places, kNearest, [&](std::size_t k, auto near) {
-    mark(places[k]);
-    for (const spatial::Neighbour& other : near) mark(other.index);
-  });
+  for (const std::uint32_t place : places) marks[place] = 1;
+  for (const std::uint32_t place : others) marks[place] = 1;
   return places_where(marks);
 }
 
@@ -198,12 +200,17 @@ std::vector<float> crease_distances(std::span<const Vec3> positions,
     if (wanted[curve[place]] != 0) places.push_back(place);
   }
   const FacePlaces cloud(positions, curve, unit);
-  const auto normals = cloud.face_normals(with_others(cloud, places, curve.size()));
-  cloud.for_each(places, kNearest, [&](std::size_t k, auto near) {
-    const Vec3& own = normals[places[k]];
-    if (own.isZero(0.0)) return;
-    NearFaces around = cloud.near_faces(places[k], near, normals);
-    distances[curve[places[k]]] = nearest_crease(own, around);
+  const std::size_t others = cloud.available(kNearest);
+  const auto rows = cloud.nearest_others(places, others);
+  const auto normals = cloud.face_normals(united(places, rows, cloud.size()));
+  parallel_blocks(places.size(), kPointsAtATime, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      const Vec3& own = normals[places[k]];
+      if (own.isZero(0.0)) continue;
+      const auto near = std::span(rows).subspan(k * others, others);
+      NearFaces around = cloud.near_faces(places[k], near, normals);
+      distances[curve[places[k]]] = nearest_crease(own, around);
+    }
   });
   return distances;
 }

@@ -212,14 +212,9 @@ void measure_noise(const OrderedPoints& cloud, Faces& faces, double least) {
 /// Pairs of faces with points beside each other.
 std::set<std::pair<std::uint32_t, std::uint32_t>> pairs_of(const Faces& faces) {
   std::set<std::pair<std::uint32_t, std::uint32_t>> pairs;
-  for (std::size_t i = 0; i < faces.of_points.size(); ++i) {
-    const std::uint32_t own = faces.of_points[i];
-    if (own == kNoFace) continue;
-    for (const std::uint32_t other : faces.near(i)) {
-      const std::uint32_t face = faces.of_points[other];
-      if (face != kNoFace && face != own) pairs.insert(std::minmax(own, face));
-    }
-  }
+  faces.for_each_contact([&](std::uint32_t point, std::uint32_t other) {
+    pairs.insert(std::minmax(faces.of_points[point], faces.of_points[other]));
+  });
   return pairs;
 }
 
@@ -259,12 +254,7 @@ void fit_insides(const OrderedPoints& cloud, Faces& faces) {
   std::vector<Sums> sums(faces.faces.size());
   for (Sums& of_face : sums) of_face.origin = cloud.position(0);
   for (std::size_t i = 0; i < cloud.size(); ++i) {
-    const std::uint32_t f = faces.of_points[i];
-    if (f == kNoFace) continue;
-    const auto near = faces.near(i).first(kLocal);
-    const bool inside = std::all_of(
-        near.begin(), near.end(), [&](std::uint32_t other) { return faces.of_points[other] == f; });
-    if (inside) sums[f].add(cloud.position(i));
+    if (faces.is_inside(i)) sums[faces.of_points[i]].add(cloud.position(i));
   }
   for (std::size_t f = 0; f < sums.size(); ++f) {
     const double least = kInside * static_cast<double>(faces.faces[f].count);
@@ -276,6 +266,14 @@ void fit_insides(const OrderedPoints& cloud, Faces& faces) {
 }
 
 }  // namespace
+
+bool Faces::is_inside(std::size_t point) const {
+  const std::uint32_t own = of_points[point];
+  if (own == kNoFace) return false;
+  const auto nearest = near(point).first(kLocal);
+  return std::all_of(nearest.begin(), nearest.end(),
+                     [&](std::uint32_t other) { return of_points[other] == own; });
+}
 
 Faces find_faces(const OrderedPoints& cloud, const Sampling& sampling, const Progress* progress) {
   Faces faces;

@@ -34,6 +34,18 @@ struct Faces {
   std::span<const std::uint32_t> near(std::size_t point) const {
     return std::span(others).subspan(point * others_of_each, others_of_each);
   }
+  /// Whether the nearest eight others are of the point's own face.
+  bool is_inside(std::size_t point) const;
+  /// Calls work(point, other) for each point and each near one of another face.
+  template <typename Work>
+  void for_each_contact(const Work& work) const {
+    for (std::uint32_t i = 0; i < of_points.size(); ++i) {
+      if (of_points[i] == kNoFace) continue;
+      for (const std::uint32_t other : near(i)) {
+        if (of_points[other] != kNoFace && of_points[other] != of_points[i]) work(i, other);
+      }
+    }
+  }
 };
 
 /// Grows faces from the flattest points over their neighbours, lets every point choose among the

@@ -31,16 +31,11 @@ struct Contact {
 
 std::map<Pair, std::vector<Contact>> contacts_of(const Faces& faces) {
   std::map<Pair, std::vector<Contact>> contacts;
-  for (std::uint32_t i = 0; i < faces.of_points.size(); ++i) {
-    const std::uint32_t own = faces.of_points[i];
-    if (own == kNoFace) continue;
-    for (const std::uint32_t other : faces.near(i)) {
-      const std::uint32_t face = faces.of_points[other];
-      if (face == kNoFace || face == own) continue;
-      if (own < face) contacts[{own, face}].push_back({i, other});
-      if (face < own) contacts[{face, own}].push_back({other, i});
-    }
-  }
+  faces.for_each_contact([&](std::uint32_t point, std::uint32_t other) {
+    const std::uint32_t own = faces.of_points[point], face = faces.of_points[other];
+    if (own < face) contacts[{own, face}].push_back({point, other});
+    if (face < own) contacts[{face, own}].push_back({other, point});
+  });
   return contacts;
 }
 

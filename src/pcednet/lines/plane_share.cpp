@@ -11,7 +11,7 @@
 namespace pcednet::lines {
 namespace {
 
-constexpr std::size_t kBesideOfFace = 8;   ///< nearest others of a point inside of a face
+constexpr double kLeastInside = 8.0;       ///< points inside, to tell
 constexpr double kFlat = 0.01;             ///< spacings: such faces are plane
 constexpr double kMostBend = 0.1;          ///< share of their heights that a parabola explains,
 constexpr double kByChance = 6.0;          ///< and more of few points, where chance does
@@ -65,16 +65,11 @@ struct Bend {
 /// The smallest angle of each face to one that it goes on in, without a step.
 std::vector<double> smallest_angles(const OrderedPoints& cloud, const Faces& faces) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, double> contacts;
-  for (std::uint32_t i = 0; i < faces.of_points.size(); ++i) {
-    const std::uint32_t own = faces.of_points[i];
-    if (own == kNoFace) continue;
-    for (const std::uint32_t other : faces.near(i)) {
-      const std::uint32_t face = faces.of_points[other];
-      if (face == kNoFace || face == own) continue;
-      const double step = faces.faces[own].height(cloud.position(other));
-      if (std::abs(step) < 2.0 * faces.within) contacts[std::minmax(own, face)] += 1.0;
-    }
-  }
+  faces.for_each_contact([&](std::uint32_t point, std::uint32_t other) {
+    const std::uint32_t own = faces.of_points[point], face = faces.of_points[other];
+    const double step = faces.faces[own].height(cloud.position(other));
+    if (std::abs(step) < 2.0 * faces.within) contacts[std::minmax(own, face)] += 1.0;
+  });
   std::vector<double> angles(faces.faces.size(), std::numbers::pi);
   for (const auto& [pair, count] : contacts) {
     if (count < kLeastBeside) continue;
@@ -98,13 +93,8 @@ double plane_share(const OrderedPoints& cloud, const Faces& faces, double spacin
     axes.emplace_back(x, face.normal.cross(x));
   }
   for (std::size_t i = 0; i < cloud.size(); ++i) {
+    if (!faces.is_inside(i)) continue;  // it may be of the face beside
     const std::uint32_t f = faces.of_points[i];
-    if (f == kNoFace) continue;
-    const auto near = faces.near(i).first(kBesideOfFace);
-    if (!std::all_of(near.begin(), near.end(),
-                     [&](std::uint32_t other) { return faces.of_points[other] == f; })) {
-      continue;  // it may be of the face beside
-    }
     const Vec3 offset = (cloud.position(i) - faces.faces[f].point) / spacing;
     bends[f].add(axes[f].first.dot(offset), axes[f].second.dot(offset),
                  faces.faces[f].normal.dot(offset));
@@ -113,7 +103,7 @@ double plane_share(const OrderedPoints& cloud, const Faces& faces, double spacin
   double plane = 0.0;
   for (std::size_t f = 0; f < bends.size(); ++f) {
     const Bend& bend = bends[f];
-    if (bend.count < static_cast<double>(kBesideOfFace)) {  // too small to tell
+    if (bend.count < kLeastInside) {
       if (angles[f] > kOwnAngle && angles[f] < std::numbers::pi) {
         plane += static_cast<double>(faces.faces[f].count);
       }

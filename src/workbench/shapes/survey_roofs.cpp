@@ -6,6 +6,8 @@
 #include <numbers>
 #include <optional>
 
+#include "pcednet/cloud/bounding_box.h"
+
 namespace pcednet::shapes {
 namespace {
 
@@ -137,28 +139,23 @@ std::optional<double> beam(const Target& target, const Vec3& axis, double radius
   return std::nullopt;
 }
 
-struct Box {
-  Vec3 low, high;
-  Vec3 draw(Random& random) const {
-    const double x = random.uniform(low.x(), high.x());
-    return {x, random.uniform(low.y(), high.y()), 0.0};
-  }
-};
-
-Box box_of(const Polyhedron& roof) {
-  Box box = {roof.corners.front(), roof.corners.front()};
-  for (const Vec3& corner : roof.corners) {
-    box.low = box.low.cwiseMin(corner);
-    box.high = box.high.cwiseMax(corner);
-  }
-  return {box.low - Vec3::Constant(kMargin), box.high + Vec3::Constant(kMargin)};
+/// A place in plan.
+Vec3 draw_in(const BoundingBox& box, Random& random) {
+  const double x = random.uniform(box.min.x(), box.max.x());
+  return {x, random.uniform(box.min.y(), box.max.y()), 0.0};
 }
 
-std::vector<Chimney> draw_chimneys(const Polyhedron& roof, const Box& box, Random& random) {
+/// Around the roof, with a margin.
+BoundingBox surveyed_box(const Polyhedron& roof) {
+  const BoundingBox box = bounding_box(roof.corners);
+  return {box.min - Vec3::Constant(kMargin), box.max + Vec3::Constant(kMargin)};
+}
+
+std::vector<Chimney> draw_chimneys(const Polyhedron& roof, const BoundingBox& box, Random& random) {
   std::vector<Chimney> chimneys;
   const std::size_t count = random.index(3) ? 0 : 1 + random.index(2);
   while (chimneys.size() < count) {
-    const Vec3 middle = box.draw(random);
+    const Vec3 middle = draw_in(box, random);
     const auto height = highest_at(roof, middle);
     if (!height) continue;
     const double half = random.uniform(0.2, 0.35);
@@ -205,24 +202,24 @@ Polyhedron random_survey_roof(int kind, Random& random) {
 
 std::vector<Vec3> survey_points(const Polyhedron& roof, std::size_t points, Random& random) {
   constexpr int kTrials = 2000;
-  const Box box = box_of(roof);
+  const BoundingBox box = surveyed_box(roof);
   int on_roof = 0;
-  for (int i = 0; i < kTrials; ++i) on_roof += highest_at(roof, box.draw(random)).has_value();
-  const Vec3 size = box.high - box.low;
+  for (int i = 0; i < kTrials; ++i) on_roof += highest_at(roof, draw_in(box, random)).has_value();
+  const Vec3 size = box.max - box.min;
   const double area = size.x() * size.y() * on_roof / kTrials;
   const double apart =
       random.uniform(kRowsApart[0], kRowsApart[1]) * std::sqrt(area / static_cast<double>(points));
   const double radius = random.uniform(kFootprint[0], kFootprint[1]);
   const double noise = random.uniform(kNoise[0], kNoise[1]);
   const double shift = random.uniform(-kMostShift, kMostShift);
-  const double first = random.index(2) ? box.low.x() + kMargin : random.uniform(0.0, apart);
+  const double first = random.index(2) ? box.min.x() + kMargin : random.uniform(0.0, apart);
   Target target = {roof, {}, draw_chimneys(roof, box, random)};
   target.wave = {random.uniform(0.0, kMostWave), random.uniform(3.0, 8.0),
                  random.uniform(0.0, 2.0 * std::numbers::pi)};
   std::vector<Vec3> positions;
   if (random.index(3) == 0) add_walls(positions, roof, points / 100, random);
   while (positions.size() < points) {
-    Vec3 place = box.draw(random);
+    Vec3 place = draw_in(box, random);
     place.x() = first + apart * std::round((place.x() - first) / apart) +
                 kRowNoise * std::abs(random.normal());
     const auto height = beam(target, place, radius);
