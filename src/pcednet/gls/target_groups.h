@@ -8,9 +8,9 @@
 namespace pcednet::gls {
 
 /// Points that are evaluated together: a stretch of the curve whose start is a multiple of this.
-inline constexpr std::size_t kBlock = 4096;
+inline constexpr std::size_t kStretch = 4096;
 
-/// Reorders points, given in curve order, within each stretch of kBlock, so that every run of 8
+/// Reorders points, given in curve order, within each stretch of kStretch, so that every run of 8
 /// (and of 16, 32, ...) from its start is compact in space: the stretch is halved across the
 /// longest side of its box, again and again. The result depends on where the points are, not on
 /// their numbers.
