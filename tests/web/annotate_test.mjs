@@ -87,7 +87,7 @@ async function stroke(key, places) {
   await page.keyboard.press(key);
   await page.mouse.move(...pixels[0]);
   await page.mouse.down();
-  for (const pixel of pixels.slice(1)) await page.mouse.move(...pixel, { steps: 3 });
+  for (const pixel of pixels.slice(1)) await page.mouse.move(...pixel); // the page dabs in between
   await page.mouse.up();
   await settled(page);
 }
