@@ -80,7 +80,7 @@ void describe_cloud(benchmark::State& state, const std::string& name,
   set_thread_count(1);
   const auto count = static_cast<std::size_t>(state.range(0));
   const FastScaleSpace space(points_of(cloud_of(name, count)), options);
-  const auto targets = sample(space, kBlock, std::max<std::size_t>(1, count / 100000));
+  const auto targets = sample(space, kPointsTogether, std::max<std::size_t>(1, count / 100000));
   const double start = cpu_seconds();
   for (auto _ : state) describe(space, targets);
   const double spent = cpu_seconds() - start;

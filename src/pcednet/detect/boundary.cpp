@@ -1,6 +1,5 @@
 #include "pcednet/detect/boundary.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
@@ -10,6 +9,7 @@
 #include <span>
 
 #include "pcednet/cloud/point_cloud.h"
+#include "pcednet/core/eigendecomposition.h"
 #include "pcednet/core/parallel.h"
 #include "pcednet/detect/decide.h"
 #include "pcednet/detect/part_of_cloud.h"
@@ -130,10 +130,8 @@ Plane plane_of(const Around& around) {
     const Vec3 offset = around.offset[i] - centre;
     covariance += offset * offset.transpose();
   }
-  Eigen::SelfAdjointEigenSolver<Mat3> solver;
-  solver.computeDirect(covariance / count);
-  const Vec3 normal = solver.eigenvectors().col(0), y = solver.eigenvectors().col(1);
-  const Vec3 variances = solver.eigenvalues();
+  const auto [variances, axes] = eigendecomposition(covariance / count);
+  const Vec3 normal = axes.col(0), y = axes.col(1);
   return {.centre = centre,
           .normal = normal,
           .x = y.cross(normal),

@@ -114,7 +114,8 @@ void FastScaleSpace::describe(std::span<const std::uint32_t> targets, std::span<
   const std::vector<Visit> visits = plan_visits(targets, place_);
   std::vector<std::size_t> blocks;  // where each begins
   for (std::size_t i = 0; i < visits.size(); ++i) {
-    if (i == 0 || visits[i].place / kStretch != visits[i - 1].place / kStretch) blocks.push_back(i);
+    if (i == 0 || visits[i].place / kPointsTogether != visits[i - 1].place / kPointsTogether)
+      blocks.push_back(i);
   }
   blocks.push_back(visits.size());
   Stage stage(progress, "describe", visits.size());
@@ -138,10 +139,11 @@ void FastScaleSpace::describe_block(std::span<const Visit> visits, std::span<flo
     }
     return;
   }
-  const std::size_t begin = visits.front().place / kStretch * kStretch;
-  const std::size_t end = std::min(begin + kStretch, order_.size());
-  std::array<std::uint32_t, kStretch + 1> first_visit;  // to each place of the block, or later
-  for (std::size_t i = 0, v = 0; i <= kStretch; ++i) {
+  const std::size_t begin = visits.front().place / kPointsTogether * kPointsTogether;
+  const std::size_t end = std::min(begin + kPointsTogether, order_.size());
+  std::array<std::uint32_t, kPointsTogether + 1>
+      first_visit;  // to each place of the block, or later
+  for (std::size_t i = 0, v = 0; i <= kPointsTogether; ++i) {
     while (v < visits.size() && visits[v].place < begin + i) ++v;
     first_visit[i] = static_cast<std::uint32_t>(v);
   }

@@ -42,7 +42,7 @@ void arrange(std::span<Member> members) {
 }  // namespace
 
 void arrange_in_groups(std::span<const Vec3> positions, std::span<std::uint32_t> order) {
-  parallel_blocks(order.size(), kStretch, [&](std::size_t begin, std::size_t end) {
+  parallel_blocks(order.size(), kPointsTogether, [&](std::size_t begin, std::size_t end) {
     std::vector<Member> members;
     members.reserve(end - begin);
     for (std::size_t i = begin; i < end; ++i) {

@@ -1,6 +1,5 @@
 #include "pcednet/lines/crease.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <atomic>
@@ -8,6 +7,7 @@
 #include <numbers>
 #include <utility>
 
+#include "pcednet/core/eigendecomposition.h"
 #include "pcednet/core/median.h"
 #include "pcednet/lines/local_planes.h"
 #include "pcednet/lines/noisy_wedge.h"
@@ -64,9 +64,8 @@ double distance_to_plane(const OrderedPoints& cloud, std::size_t i,
     const Vec3 offset = cloud.position(near.index) - cloud.position(i) - mean;
     covariance += offset * offset.transpose();
   }
-  Eigen::SelfAdjointEigenSolver<Mat3> solver;
-  solver.computeDirect(covariance / static_cast<double>(nearest.size()), Eigen::EigenvaluesOnly);
-  return std::sqrt(std::max(solver.eigenvalues()[0], 0.0));
+  const auto count = static_cast<double>(nearest.size());
+  return std::sqrt(std::max(eigendecomposition(covariance / count).values[0], 0.0));
 }
 
 }  // namespace

@@ -1,12 +1,12 @@
 #include "pcednet/lines/faces.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <set>
 #include <utility>
 
+#include "pcednet/core/eigendecomposition.h"
 #include "pcednet/core/median.h"
 #include "pcednet/core/parallel.h"
 #include "pcednet/lines/local_planes.h"
@@ -45,11 +45,9 @@ struct Fitted {
 };
 
 Fitted fit_plane(const Sums& sums) {
-  Eigen::SelfAdjointEigenSolver<Mat3> solver;
-  solver.computeDirect(sums.moments.covariance());
-  const auto deviation = [&](int i) { return std::sqrt(std::max(solver.eigenvalues()[i], 0.0)); };
-  return {sums.origin + sums.moments.mean(), solver.eigenvectors().col(0).normalized(),
-          deviation(0), deviation(1)};
+  const auto [variances, axes] = eigendecomposition(sums.moments.covariance());
+  return {sums.origin + sums.moments.mean(), axes.col(0).normalized(),
+          std::sqrt(std::max(variances[0], 0.0)), std::sqrt(std::max(variances[1], 0.0))};
 }
 
 /// Neighbours, and how flat the nearest of them lie.

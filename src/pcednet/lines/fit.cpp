@@ -1,11 +1,12 @@
 #include "pcednet/lines/fit.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <vector>
+
+#include "pcednet/core/eigendecomposition.h"
 
 namespace pcednet::lines {
 namespace {
@@ -36,9 +37,7 @@ Places places_of(std::span<const ChainNode> nodes) {
 Mat3 principal_axes(const std::vector<Vec3>& places) {
   Mat3 products = Mat3::Zero();
   for (const Vec3& place : places) products += place * place.transpose();
-  Eigen::SelfAdjointEigenSolver<Mat3> solver;
-  solver.computeDirect(products / static_cast<double>(places.size()));
-  return solver.eigenvectors();
+  return eigendecomposition(products / static_cast<double>(places.size())).vectors;
 }
 
 struct Circle {

@@ -1,10 +1,10 @@
 #include "pcednet/lines/local_planes.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "pcednet/core/eigendecomposition.h"
 #include "pcednet/core/vector_clones.h"
 
 namespace pcednet::lines {
@@ -117,10 +117,9 @@ void NearPoints::add(const Vec3& offset, const Vec3& normal, double probability)
 std::optional<LocalPlane> plane_of(const Moments& moments, double least_weight,
                                    double least_width) {
   if (moments.weight < least_weight) return std::nullopt;
-  Eigen::SelfAdjointEigenSolver<Mat3> solver;
-  solver.computeDirect(moments.covariance());
-  if (!(solver.eigenvalues()[1] > least_width)) return std::nullopt;
-  const Vec3 normal = solver.eigenvectors().col(0).normalized();
+  const auto [variances, axes] = eigendecomposition(moments.covariance());
+  if (!(variances[1] > least_width)) return std::nullopt;
+  const Vec3 normal = axes.col(0).normalized();
   return LocalPlane{normal, normal.dot(moments.mean()), 0};
 }
 

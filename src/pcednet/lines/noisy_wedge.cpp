@@ -1,12 +1,13 @@
 #include "pcednet/lines/noisy_wedge.h"
 
 #include <Eigen/Dense>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
+
+#include "pcednet/core/eigendecomposition.h"
 
 namespace pcednet::lines {
 namespace {
@@ -44,10 +45,9 @@ struct Frame {
 Frame frame_of(const NearPoints& points, std::size_t count) {
   Moments moments;
   for (std::size_t i = 0; i < count; ++i) moments.add(points.offset(i));
-  Eigen::SelfAdjointEigenSolver<Mat3> solver;
-  solver.computeDirect(moments.covariance());
-  const Vec3 z = solver.eigenvectors().col(0).normalized();
-  const Vec3 x = solver.eigenvectors().col(2).normalized();
+  const Mat3 axes = eigendecomposition(moments.covariance()).vectors;
+  const Vec3 z = axes.col(0).normalized();
+  const Vec3 x = axes.col(2).normalized();
   return {moments.mean(), x, z.cross(x), z};
 }
 

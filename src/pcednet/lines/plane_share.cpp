@@ -51,7 +51,8 @@ struct Bend {
     Eigen::Matrix2d bend, spread;
     bend << 2.0 * factors[0], factors[1], factors[1], 2.0 * factors[2];
     spread << mean()[0], mean()[1], mean()[1], mean()[2];
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(bend);
+    Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver;
+    solver.computeDirect(bend);
     double largest = 0.0;
     for (int i = 0; i < 2; ++i) {
       const Eigen::Vector2d along = solver.eigenvectors().col(i);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <optional>
 
+#include "pcednet/core/eigendecomposition.h"
 #include "pcednet/core/parallel.h"
 
 namespace pcednet::lines {
@@ -77,10 +78,10 @@ std::optional<Plane> plane_of_side(const Piece& piece, const std::vector<Vec3>& 
     mean /= static_cast<double>(on.size());
     Mat3 products = Mat3::Zero();
     for (const Vec3& point : on) products += (point - mean) * (point - mean).transpose();
-    Eigen::SelfAdjointEigenSolver<Mat3> solver;
-    solver.computeDirect(products / (spacing * spacing * static_cast<double>(on.size())));
-    if (!(solver.eigenvalues()[1] > 0.2)) return std::nullopt;
-    plane = {mean, solver.eigenvectors().col(0).normalized()};
+    const auto [variances, axes] =
+        eigendecomposition(products / (spacing * spacing * static_cast<double>(on.size())));
+    if (!(variances[1] > 0.2)) return std::nullopt;
+    plane = {mean, axes.col(0).normalized()};
   }
   return plane;
 }

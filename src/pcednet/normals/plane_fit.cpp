@@ -1,11 +1,11 @@
 #include "pcednet/normals/plane_fit.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <memory>
 
+#include "pcednet/core/eigendecomposition.h"
 #include "pcednet/core/vector_clones.h"
 
 namespace pcednet::normals {
@@ -146,9 +146,7 @@ void find_kernels(const Matrices& m, const Lane& e, Vectors& __restrict v) {
 Vec3 direction_of_doubtful(const Matrices& c, std::size_t i) {
   Mat3 covariance;
   covariance << c.xx[i], c.xy[i], c.xz[i], c.xy[i], c.yy[i], c.yz[i], c.xz[i], c.yz[i], c.zz[i];
-  Eigen::SelfAdjointEigenSolver<Mat3> solver;
-  solver.computeDirect(covariance);
-  return solver.eigenvectors().col(0);
+  return eigendecomposition(covariance).vectors.col(0);
 }
 
 PlaneFit fit_of(const Matrices& c, const Cubic& cubic, const Eigenvalues& e, const Vectors& v,

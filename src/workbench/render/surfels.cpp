@@ -1,12 +1,12 @@
 #include "workbench/render/surfels.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
 
 #include "pcednet/cloud/bounding_box.h"
+#include "pcednet/core/eigendecomposition.h"
 #include "pcednet/core/median.h"
 #include "pcednet/core/parallel.h"
 #include "pcednet/spatial/curve_order.h"
@@ -114,9 +114,7 @@ Vector3f fitted_normal(std::span<const Vec3> positions, std::size_t i, const Nea
   for (std::size_t k = 0; k <= near.count; ++k) {
     covariance += (local[k] - mean) * (local[k] - mean).transpose();
   }
-  Eigen::SelfAdjointEigenSolver<Mat3> solver;
-  solver.computeDirect(covariance);
-  const Vec3 normal = solver.eigenvectors().col(0);
+  const Vec3 normal = eigendecomposition(covariance).vectors.col(0);
   return normal.allFinite() ? Vector3f(normal.normalized().cast<float>()) : Vector3f::UnitZ();
 }
 
