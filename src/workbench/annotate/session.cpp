@@ -63,12 +63,6 @@ bool Session::is_accepted() const {
   return state_->loading.is_accepted;
 }
 
-bool Session::is_ready() const {
-  const Lock lock(state_->mutex);
-  if (state_->loading.failure) std::rethrow_exception(state_->loading.failure);
-  return state_->loading.is_done;
-}
-
 void Session::wait_until_ready() const {
   Lock lock(state_->mutex);
   const Loading& loading = state_->loading;

@@ -47,13 +47,10 @@ class Session {
   Session& operator=(const Session&) = delete;
 
   /// Whether the cloud and the project were found to be sound: all that takes time from now on is
-  /// computing descriptors. Throws like is_ready().
+  /// computing descriptors. Throws what prevents the cloud from ever being painted.
   bool is_accepted() const;
 
-  /// Whether the cloud can be painted yet; throws what prevents it from ever being.
-  bool is_ready() const;
-
-  /// Blocks until it is.
+  /// Blocks until the cloud can be painted; throws like is_accepted().
   void wait_until_ready() const;
 
   Summary summary(std::size_t cloud = 0) const;
