@@ -11,6 +11,7 @@
 #include <limits>
 #include <set>
 
+#include "pcednet/core/bytes.h"
 #include "pcednet/core/error.h"
 #include "pcednet/io/column_names.h"
 #include "pcednet/io/promote.h"
@@ -134,10 +135,7 @@ void make_names_unique(std::vector<ColumnView>& columns, bool has_label, bool ha
 }
 
 void write_number(double value, ScalarType type, std::byte* to) {
-  visit_scalar(type, [&](auto zero) {
-    const auto number = static_cast<decltype(zero)>(value);
-    std::memcpy(to, &number, sizeof number);
-  });
+  visit_scalar(type, [&](auto zero) { store(to, static_cast<decltype(zero)>(value)); });
 }
 
 template <std::size_t kSize>
@@ -166,16 +164,13 @@ void convert_column(const ColumnView& column, const std::byte* from, std::byte* 
   }
   if (to_float) {  // positions and normals: the case that must be quick
     for (std::size_t i = 0; i < count; ++i) {
-      double wide = 0.0;
-      std::memcpy(&wide, from + i * column.stride, sizeof wide);
-      const float narrow = static_cast<float>(wide);
-      std::memcpy(to + i * to_stride, &narrow, sizeof narrow);
+      store(to + i * to_stride, static_cast<float>(load<double>(from + i * column.stride)));
     }
     return;
   }
   visit_scalar(column.stored, [&](auto number) {
     for (std::size_t i = 0; i < count; ++i) {
-      std::memcpy(&number, from + i * column.stride, sizeof number);
+      number = load<decltype(number)>(from + i * column.stride);
       write_number(static_cast<double>(number), column.type, to + i * to_stride);
     }
   });
@@ -246,10 +241,7 @@ void append_binary(const std::vector<ColumnView>& columns, std::size_t begin, st
 }
 
 void append_number(ScalarType type, const std::byte* number, std::string& out) {
-  visit_scalar(type, [&](auto value) {
-    std::memcpy(&value, number, sizeof value);
-    append_shortest(value, out);
-  });
+  visit_scalar(type, [&](auto value) { append_shortest(load<decltype(value)>(number), out); });
 }
 
 void append_text(const std::vector<ColumnView>& columns, std::size_t begin, std::size_t end,

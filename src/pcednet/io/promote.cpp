@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 
+#include "pcednet/core/bytes.h"
 #include "pcednet/io/text_scan.h"
 
 namespace pcednet::io {
@@ -69,8 +69,7 @@ void unpack_colours(PointCloud& cloud, std::size_t packed_index, bool with_alpha
   cloud.colours.resize(cloud.size());
   bool alpha_matters = false;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
-    std::uint32_t argb = 0;
-    std::memcpy(&argb, packed.bytes.data() + i * sizeof argb, sizeof argb);
+    const auto argb = load<std::uint32_t>(&packed.bytes[i * sizeof(std::uint32_t)]);
     const auto byte = [argb](int place) { return static_cast<std::uint8_t>(argb >> (8 * place)); };
     cloud.colours[i] = {byte(2), byte(1), byte(0)};
     alphas[i] = byte(3);

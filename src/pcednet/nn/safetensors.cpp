@@ -12,6 +12,7 @@
 #include <set>
 #include <utility>
 
+#include "pcednet/core/bytes.h"
 #include "pcednet/core/error.h"
 
 namespace pcednet::nn {
@@ -32,8 +33,7 @@ static_assert(std::endian::native == std::endian::little, "the format is little-
 
 std::size_t header_length(std::string_view prefix, std::size_t file_size, const std::string& name) {
   if (file_size < kPrefix) refuse(name, file_size, "the file ends before the header");
-  std::uint64_t length = 0;
-  std::memcpy(&length, prefix.data(), kPrefix);
+  const auto length = load<std::uint64_t>(prefix.data());
   if (length > kMostHeader || length > file_size - kPrefix) {
     refuse(name, 0, fmt::format("a header of {} bytes in a file of {}", length, file_size));
   }
@@ -122,9 +122,8 @@ std::string encode_safetensors(const Safetensors& content) {
   }
   std::string text = header.dump(-1, ' ', false, Json::error_handler_t::replace);
   text.resize((text.size() + 7) / 8 * 8, ' ');  // so that the data is aligned
-  const std::uint64_t length = text.size();
   std::string bytes(kPrefix, '\0');
-  std::memcpy(bytes.data(), &length, kPrefix);
+  store(bytes.data(), std::uint64_t{text.size()});
   bytes += text;
   for (const auto& [name, tensor] : content.tensors) {
     bytes.append(reinterpret_cast<const char*>(tensor.values.data()),

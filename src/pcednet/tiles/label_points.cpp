@@ -5,6 +5,7 @@
 #include <numeric>
 #include <vector>
 
+#include "pcednet/core/bytes.h"
 #include "pcednet/detect/decide.h"
 
 namespace pcednet::tiles {
@@ -13,18 +14,6 @@ namespace {
 // A point's record: its class, both probabilities, and its normal where some were made.
 constexpr std::size_t kSharpAt = 1, kSmoothAt = 5, kNormalAt = 9,
                       kBytesOfNormal = 3 * sizeof(double);
-
-template <typename T>
-void put_at(std::byte* place, const T& value) {
-  std::memcpy(place, &value, sizeof value);
-}
-
-template <typename T>
-T get_at(const std::byte* place) {
-  T value;
-  std::memcpy(&value, place, sizeof value);
-  return value;
-}
 
 }  // namespace
 
@@ -40,9 +29,9 @@ void PointLabels::put(std::span<const std::uint64_t> numbers, const TileFindings
   for (std::size_t k = 0; k < order.size(); ++k) {
     const std::uint32_t i = order[k];
     std::byte* const row = &rows[k * stride_];
-    put_at(row, findings.found.classes[i]);
-    put_at(row + kSharpAt, findings.found.p_sharp[i]);
-    put_at(row + kSmoothAt, findings.found.p_smooth[i]);
+    store(row, findings.found.classes[i]);
+    store(row + kSharpAt, findings.found.p_sharp[i]);
+    store(row + kSmoothAt, findings.found.p_smooth[i]);
     if (stride_ == kNormalAt || findings.prepared.made.empty()) continue;
     std::memcpy(row + kNormalAt, findings.prepared.made[i].data(), kBytesOfNormal);
   }
@@ -63,9 +52,9 @@ TileFindings PointLabels::get(std::size_t begin, std::size_t end) const {
   if (stride_ > kNormalAt) findings.prepared.made.resize(end - begin);
   for (std::size_t i = 0; i < end - begin; ++i) {
     const std::byte* const row = &rows[i * stride_];
-    findings.found.classes[i] = get_at<std::uint8_t>(row);
-    findings.found.p_sharp[i] = get_at<float>(row + kSharpAt);
-    findings.found.p_smooth[i] = get_at<float>(row + kSmoothAt);
+    findings.found.classes[i] = load<std::uint8_t>(row);
+    findings.found.p_sharp[i] = load<float>(row + kSharpAt);
+    findings.found.p_smooth[i] = load<float>(row + kSmoothAt);
     if (stride_ == kNormalAt) continue;
     std::memcpy(findings.prepared.made[i].data(), row + kNormalAt, kBytesOfNormal);
   }

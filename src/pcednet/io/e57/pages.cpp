@@ -6,6 +6,8 @@
 #include <array>
 #include <cstring>
 
+#include "pcednet/core/bytes.h"
+
 namespace pcednet::io {
 namespace {
 
@@ -31,13 +33,6 @@ constexpr Table make_table() {
 
 constexpr Table kTable = make_table();
 
-template <typename Number>
-Number number_at(std::span<const std::byte> bytes, std::size_t offset) {
-  Number number;
-  std::memcpy(&number, bytes.data() + offset, sizeof number);
-  return number;
-}
-
 std::uint32_t stored_checksum(std::span<const std::byte> page) {
   std::uint32_t sum = 0;
   for (std::size_t i = kE57PageContent; i < kE57PageBytes; ++i) {
@@ -51,7 +46,7 @@ std::uint32_t stored_checksum(std::span<const std::byte> page) {
 std::uint32_t crc32c(std::span<const std::byte> bytes) {
   std::uint32_t rest = 0xFFFFFFFF;
   for (; bytes.size() >= 8; bytes = bytes.subspan(8)) {
-    const std::uint64_t word = number_at<std::uint64_t>(bytes, 0) ^ rest;
+    const std::uint64_t word = load<std::uint64_t>(&bytes[0]) ^ rest;
     rest = 0;
     for (std::size_t k = 0; k < 8; ++k) rest ^= kTable[7 - k][(word >> (8 * k)) & 0xFF];
   }
@@ -71,9 +66,9 @@ E57Pages::E57Pages(const InputFile& file) : file_(file) {
   if (!begins_as_e57({reinterpret_cast<const char*>(start.data()), start.size()})) {
     throw unreadable(file.path(), "not an E57 file: it must begin with ASTM-E57");
   }
-  const auto major = number_at<std::uint32_t>(start, 8);
-  const auto bytes = number_at<std::uint64_t>(start, 16);
-  const auto page = number_at<std::uint64_t>(start, 40);
+  const auto major = load<std::uint32_t>(&start[8]);
+  const auto bytes = load<std::uint64_t>(&start[16]);
+  const auto page = load<std::uint64_t>(&start[40]);
   if (major != 1 || page != kE57PageBytes) {
     throw unreadable(file.path(), fmt::format("E57 version {} in pages of {} bytes; accepted: "
                                               "version 1 in pages of 1024",
@@ -83,7 +78,7 @@ E57Pages::E57Pages(const InputFile& file) : file_(file) {
     throw unreadable(file.path(),
                      fmt::format("declares {} bytes, but holds {}", bytes, file.size()));
   }
-  header_ = {number_at<std::uint64_t>(start, 24), number_at<std::uint64_t>(start, 32)};
+  header_ = {load<std::uint64_t>(&start[24]), load<std::uint64_t>(&start[32])};
   size_ = bytes / kE57PageBytes * kE57PageContent;
 }
 

@@ -6,15 +6,10 @@
 #include <array>
 #include <cstring>
 
+#include "pcednet/core/bytes.h"
+
 namespace pcednet::io {
 namespace {
-
-template <typename Number>
-Number number_at(const std::byte* bytes) {
-  Number number;
-  std::memcpy(&number, bytes, sizeof number);
-  return number;
-}
 
 /// The values of one field, decoded as their bytes arrive: the bytestream goes on from packet to
 /// packet, so that a value may begin in one and end in the next.
@@ -53,7 +48,7 @@ class Bytestream {
     if (bits_ == 0) return 0;
     const std::byte* first = pending_.data() + at / 8;
     const unsigned shift = at % 8;
-    std::uint64_t bits = number_at<std::uint64_t>(first) >> shift;
+    std::uint64_t bits = load<std::uint64_t>(first) >> shift;
     if (shift + bits_ > 64) {
       bits |= std::to_integer<std::uint64_t>(first[8]) << (64 - shift);
     }
@@ -112,9 +107,9 @@ Section find_section(const E57Pages& pages, const E57Scan& scan) {
   if (std::to_integer<int>(header[0]) != 1) {
     throw damaged(pages, scan, fmt::format("no section of points at byte {}", scan.points_offset));
   }
-  const auto length = number_at<std::uint64_t>(&header[8]);
+  const auto length = load<std::uint64_t>(&header[8]);
   const std::uint64_t begin =
-      pages.logical(number_at<std::uint64_t>(&header[16]), "the first packet of a scan");
+      pages.logical(load<std::uint64_t>(&header[16]), "the first packet of a scan");
   return {begin, start + std::min(length, pages.size() - start)};
 }
 
@@ -159,7 +154,7 @@ class PacketReader {
     constexpr int kData = 1;
     std::array<std::byte, 4> start = {};
     pages_.read(at, start);
-    const std::size_t length = std::size_t{number_at<std::uint16_t>(&start[2])} + 1;
+    const std::size_t length = std::size_t{load<std::uint16_t>(&start[2])} + 1;
     const int type = std::to_integer<int>(start[0]);
     if (type > 2 || length < 4) {
       throw damaged(pages_, scan_,
@@ -177,14 +172,14 @@ class PacketReader {
   void take_data(std::uint64_t at) {
     const std::size_t count = streams_.size();
     std::size_t offset = 6 + 2 * count;
-    if (packet_.size() < offset || number_at<std::uint16_t>(&packet_[4]) != count) {
+    if (packet_.size() < offset || load<std::uint16_t>(&packet_[4]) != count) {
       throw damaged(pages_, scan_,
                     fmt::format("byte {} of the pages: a packet that is not for {} "
                                 "fields",
                                 at, count));
     }
     for (std::size_t s = 0; s < count; ++s) {
-      const std::size_t bytes = number_at<std::uint16_t>(&packet_[6 + 2 * s]);
+      const std::size_t bytes = load<std::uint16_t>(&packet_[6 + 2 * s]);
       if (bytes > packet_.size() - offset) {
         throw damaged(pages_, scan_,
                       fmt::format("byte {} of the pages: {} bytes of {} do not fit "

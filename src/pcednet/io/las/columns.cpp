@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <map>
 #include <set>
 
+#include "pcednet/core/bytes.h"
 #include "pcednet/core/error.h"
 #include "pcednet/io/las/comments.h"
 #include "pcednet/io/las/layout.h"
@@ -284,24 +284,17 @@ class LayoutBuilder {
 void write_scaled(const LasColumn& column, const std::byte* from, char* to) {
   if (column.scale == LasColumn::Scale::kColour) {
     const auto wide = static_cast<std::uint16_t>(std::to_integer<unsigned>(*from) * 257U);
-    std::memcpy(to, &wide, sizeof wide);
-    return;
+    return store(to, wide);
   }
   if (column.scale == LasColumn::Scale::kAngle) {
     constexpr double kDegreesPerStep = 0.006;
     const double degrees = static_cast<std::int8_t>(std::to_integer<unsigned>(*from));
     const auto steps = static_cast<std::int16_t>(std::lround(degrees / kDegreesPerStep));
-    std::memcpy(to, &steps, sizeof steps);
-    return;
+    return store(to, steps);
   }
-  double number = 0.0;
-  std::memcpy(&number, from, sizeof number);
-  if (column.field.type == ScalarType::kFloat64) {
-    std::memcpy(to, &number, sizeof number);
-    return;
-  }
-  const auto narrow = static_cast<float>(number);
-  std::memcpy(to, &narrow, sizeof narrow);
+  const auto number = load<double>(from);
+  if (column.field.type == ScalarType::kFloat64) return store(to, number);
+  store(to, static_cast<float>(number));
 }
 
 LasLayout las_layout(const PointCloud& part, const WriteOptions& options,

@@ -3,6 +3,7 @@
 #include <cstring>
 #include <utility>
 
+#include "pcednet/core/bytes.h"
 #include "pcednet/core/digest.h"
 #include "pcednet/core/error.h"
 #include "pcednet/core/parallel.h"
@@ -23,9 +24,7 @@ constexpr std::size_t kWindowPerPoint = 16;  // what the points of the tree took
 std::array<double, 3> position_of(const LasFile& file, const std::byte* row) {
   std::array<double, 3> position = {};
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    std::int32_t step = 0;
-    std::memcpy(&step, row + 4 * axis, sizeof step);
-    position[axis] = step * file.scale(axis) + file.offset(axis);
+    position[axis] = load<std::int32_t>(row + 4 * axis) * file.scale(axis) + file.offset(axis);
   }
   return position;
 }
@@ -33,8 +32,7 @@ std::array<double, 3> position_of(const LasFile& file, const std::byte* row) {
 /// A number that orders as the time does, NaN at the ends.
 std::uint64_t order_of_time(const std::byte* row) {
   constexpr std::size_t kGpsTime = 22, kSign = 63;
-  std::uint64_t bits = 0;
-  std::memcpy(&bits, row + kGpsTime, sizeof bits);
+  const auto bits = load<std::uint64_t>(row + kGpsTime);
   return bits >> kSign ? ~bits : bits | std::uint64_t{1} << kSign;
 }
 

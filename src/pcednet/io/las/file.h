@@ -3,12 +3,12 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "pcednet/cloud/point_cloud.h"
+#include "pcednet/core/bytes.h"
 #include "pcednet/io/coordinate_system.h"
 #include "pcednet/io/input_file.h"
 #include "pcednet/io/las/offsets.h"
@@ -44,11 +44,7 @@ LasRecord new_record(const LasRecordKind& kind, std::string description, std::st
 /// The number of type T at `offset` of little-endian bytes (the only order LAS has).
 template <typename T>
 T number_at(std::string_view bytes, std::size_t offset) {
-  T value = {};
-  if (offset + sizeof value <= bytes.size()) {
-    std::memcpy(&value, bytes.data() + offset, sizeof value);
-  }
-  return value;
+  return offset + sizeof(T) <= bytes.size() ? load<T>(bytes.data() + offset) : T{};
 }
 
 /// A text of a field that zeros fill up.
@@ -58,9 +54,7 @@ inline std::string until_zero(std::string_view text) {
 
 template <typename T>
 void put_number(std::string& bytes, std::size_t offset, T value) {
-  if (offset + sizeof value <= bytes.size()) {
-    std::memcpy(bytes.data() + offset, &value, sizeof value);
-  }
+  if (offset + sizeof value <= bytes.size()) store(bytes.data() + offset, value);
 }
 
 /// What stands in a LAS file around its points. The public header block is kept as it is in the

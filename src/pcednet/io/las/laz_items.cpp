@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pcednet/core/bytes.h"
+
 namespace pcednet::io::laz {
 namespace {
 
@@ -40,7 +42,7 @@ std::uint16_t word_of(int low_byte, int high_byte) {
 
 Point10::Point10(const std::byte* first) {
   std::memcpy(last_.data(), first, last_.size());
-  put<std::uint16_t>(&last_[12], 0);
+  store<std::uint16_t>(&last_[12], 0);
 }
 
 template <typename Coder>
@@ -51,10 +53,10 @@ void Point10::code(Coder& coder, std::byte* item) {
   if constexpr (Coder::kEncodes) {
     const unsigned m = kReturnContext10[byte(item + 14) >> 3 & 7][byte(item + 14) & 7];
     changed = (item[14] != last[14] ? 32U : 0U) |
-              (get<std::uint16_t>(item + 12) != intensity_[m] ? 16U : 0U) |
+              (load<std::uint16_t>(item + 12) != intensity_[m] ? 16U : 0U) |
               (item[15] != last[15] ? 8U : 0U) | (item[16] != last[16] ? 4U : 0U) |
               (item[17] != last[17] ? 2U : 0U) |
-              (get<std::uint16_t>(item + 18) != get<std::uint16_t>(last + 18) ? 1U : 0U);
+              (load<std::uint16_t>(item + 18) != load<std::uint16_t>(last + 18) ? 1U : 0U);
   }
   changed = coder.symbol(changed_, changed);
   const auto code_symbol = [&](unsigned flag, LazyModels& models, std::size_t at) {
@@ -67,9 +69,9 @@ void Point10::code(Coder& coder, std::byte* item) {
   const unsigned m = kReturnContext10[n][r], l = n > r ? n - r : r - n;
   if (changed & 16) {
     intensity_[m] =
-        intensities_.code(coder, intensity_[m], std::min(m, 3U), get<std::uint16_t>(item + 12));
+        intensities_.code(coder, intensity_[m], std::min(m, 3U), load<std::uint16_t>(item + 12));
   }
-  put(last + 12, static_cast<std::uint16_t>(intensity_[m]));
+  store(last + 12, static_cast<std::uint16_t>(intensity_[m]));
   code_symbol(8, classification_, 15);
   if (changed & 4) {
     last[16] =
@@ -78,8 +80,8 @@ void Point10::code(Coder& coder, std::byte* item) {
   }
   code_symbol(2, user_data_, 17);
   if (changed & 1) {
-    put(last + 18, static_cast<std::uint16_t>(source_.code(coder, get<std::uint16_t>(last + 18), 0,
-                                                           get<std::uint16_t>(item + 18))));
+    store(last + 18, static_cast<std::uint16_t>(source_.code(coder, load<std::uint16_t>(last + 18),
+                                                             0, load<std::uint16_t>(item + 18))));
   }
   code_position(coder, item, m, l, n == 1);
   std::memcpy(item, last, last_.size());
@@ -92,8 +94,8 @@ void Point10::code_position(Coder& coder, std::byte* item, unsigned m, unsigned 
   code_axis(coder, dx_, x_[m], one, last, item);
   code_axis(coder, dy_, y_[m], one + even_bits(dx_.last_bits(), 20), last + 4, item + 4);
   const unsigned bits = (dx_.last_bits() + dy_.last_bits()) / 2;
-  height_[l] = z_.code(coder, height_[l], one + even_bits(bits, 18), get<std::int32_t>(item + 8));
-  put(last + 8, height_[l]);
+  height_[l] = z_.code(coder, height_[l], one + even_bits(bits, 18), load<std::int32_t>(item + 8));
+  store(last + 8, height_[l]);
 }
 
 GpsTime::GpsTime(std::int64_t first, bool says_unchanged)
@@ -216,14 +218,14 @@ void GpsTime::code_near(Coder& coder, std::int64_t& time) {
 
 template <typename Coder>
 void GpsTime::code(Coder& coder, std::byte* item) {
-  auto time = get<std::int64_t>(item);
+  auto time = load<std::int64_t>(item);
   code_near(coder, time);
-  put(item, time);
+  store(item, time);
 }
 
 template <typename Coder>
 void Colour::code(Coder& coder, std::byte* item) {
-  auto now = get<Words>(item);
+  auto now = load<Words>(item);
   unsigned used = 0;
   if constexpr (Coder::kEncodes) {
     for (unsigned c = 0; c < 3; ++c) {
@@ -253,12 +255,12 @@ void Colour::code(Coder& coder, std::byte* item) {
     highs[1] = highs[2] = highs[0];
   }
   for (std::size_t c = 0; c < 3; ++c) last[c] = word_of(lows[c], highs[c]);
-  put(item, last);
+  store(item, last);
 }
 
 template <typename Coder>
 void Infrared::code(Coder& coder, std::byte* item) {
-  const auto now = get<std::uint16_t>(item);
+  const auto now = load<std::uint16_t>(item);
   unsigned used = 0;
   if constexpr (Coder::kEncodes) {
     used = (low(now) != low(last) ? 1U : 0U) | (high(now) != high(last) ? 2U : 0U);
@@ -268,14 +270,14 @@ void Infrared::code(Coder& coder, std::byte* item) {
   if (used & 1) low_byte = code_byte(coder, differences_[0], low_byte, low(now));
   if (used & 2) high_byte = code_byte(coder, differences_[1], high_byte, high(now));
   last = word_of(low_byte, high_byte);
-  put(item, last);
+  store(item, last);
 }
 
 template <typename Coder>
 void WavePacket::code(Coder& coder, std::byte* item) {
-  const auto before = get<std::uint64_t>(&last[1]);
-  const auto size_before = get<std::uint32_t>(&last[9]);
-  const auto now = get<std::uint64_t>(item + 1);
+  const auto before = load<std::uint64_t>(&last[1]);
+  const auto size_before = load<std::uint32_t>(&last[9]);
+  const auto now = load<std::uint64_t>(item + 1);
   last[0] = std::byte(coder.symbol(index_, std::to_integer<unsigned>(item[0])));
   const auto away = static_cast<std::int64_t>(now - before);
   unsigned kind = 0;
@@ -293,10 +295,10 @@ void WavePacket::code(Coder& coder, std::byte* item) {
     const std::uint32_t low_half = coder.word(static_cast<std::uint32_t>(now));
     offset = std::uint64_t{coder.word(static_cast<std::uint32_t>(now >> 32))} << 32 | low_half;
   }
-  put(&last[1], offset);
+  store(&last[1], offset);
   const auto code_number = [&](IntegerModel& model, unsigned context, std::size_t at) {
-    put(&last[at],
-        model.code(coder, get<std::int32_t>(&last[at]), context, get<std::int32_t>(item + at)));
+    store(&last[at],
+          model.code(coder, load<std::int32_t>(&last[at]), context, load<std::int32_t>(item + at)));
   };
   code_number(size_, 0, 9);
   code_number(location_, 0, 13);

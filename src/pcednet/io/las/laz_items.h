@@ -5,24 +5,13 @@
 #include <cstdint>
 #include <cstring>
 
+#include "pcednet/core/bytes.h"
 #include "pcednet/io/las/laz_coder.h"
 
 namespace pcednet::io::laz {
 
 // The models of LASzip's items, after its specification. `code` decodes an item into `item`, or
 // encodes it from there; which of the two is the coder's matter.
-
-template <typename T>
-T get(const std::byte* from) {
-  T value = {};
-  std::memcpy(&value, from, sizeof value);
-  return value;
-}
-
-template <typename T>
-void put(std::byte* to, T value) {
-  std::memcpy(to, &value, sizeof value);
-}
 
 /// The low bit of a context number cleared, bounded.
 inline unsigned even_bits(unsigned bits, unsigned most) {
@@ -33,11 +22,11 @@ inline unsigned even_bits(unsigned bits, unsigned most) {
 template <typename Coder>
 void code_axis(Coder& coder, IntegerModel& model, Median5& median, unsigned context,
                std::byte* last, const std::byte* item) {
-  const auto before = get<std::uint32_t>(last);
-  const auto wanted = static_cast<std::int32_t>(get<std::uint32_t>(item) - before);
+  const auto before = load<std::uint32_t>(last);
+  const auto wanted = static_cast<std::int32_t>(load<std::uint32_t>(item) - before);
   const std::int32_t difference = model.code(coder, median.get(), context, wanted);
   median.add(difference);
-  put(last, before + static_cast<std::uint32_t>(difference));
+  store(last, before + static_cast<std::uint32_t>(difference));
 }
 
 /// POINT10: the 20 bytes that formats 0 to 5 share.
@@ -89,7 +78,7 @@ class GpsTime {
 /// RGB12 and RGB14.
 class Colour {
  public:
-  explicit Colour(const std::byte* first) { last = get<Words>(first); }
+  explicit Colour(const std::byte* first) { last = load<Words>(first); }
   template <typename Coder>
   void code(Coder& coder, std::byte* item);
 
@@ -104,7 +93,7 @@ class Colour {
 /// The infrared of RGBNIR14.
 class Infrared {
  public:
-  explicit Infrared(const std::byte* first) : last(get<std::uint16_t>(first)) {}
+  explicit Infrared(const std::byte* first) : last(load<std::uint16_t>(first)) {}
   template <typename Coder>
   void code(Coder& coder, std::byte* item);
 

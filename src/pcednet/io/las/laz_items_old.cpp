@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "pcednet/core/bytes.h"
+
 namespace pcednet::io::laz {
 namespace {
 
@@ -20,14 +22,14 @@ void Point10Old::code(Decoder& coder, std::byte* item) {
   const auto move = [&](IntegerModel& model, unsigned context, std::size_t axis) {
     const std::int32_t difference = model.code(coder, median(diffs_[axis]), context);
     diffs_[axis][turn_] = difference;
-    put(last + 4 * axis,
-        get<std::uint32_t>(last + 4 * axis) + static_cast<std::uint32_t>(difference));
+    store(last + 4 * axis,
+          load<std::uint32_t>(last + 4 * axis) + static_cast<std::uint32_t>(difference));
   };
   move(dx_, 0, 0);
   move(dy_, std::min(dx_.last_bits(), 19U), 1);
   turn_ = (turn_ + 1) % 3;
   const unsigned bits = (dx_.last_bits() + dy_.last_bits()) / 2;
-  put(last + 8, z_.code(coder, get<std::int32_t>(last + 8), std::min(bits, 19U)));
+  store(last + 8, z_.code(coder, load<std::int32_t>(last + 8), std::min(bits, 19U)));
   const unsigned changed = coder.symbol(changed_);
   const auto code_symbol = [&](unsigned flag, LazyModels& models, std::size_t at) {
     if (changed & flag) {
@@ -36,7 +38,8 @@ void Point10Old::code(Decoder& coder, std::byte* item) {
   };
   const auto code_word = [&](unsigned flag, IntegerModel& model, std::size_t at) {
     if (!(changed & flag)) return;
-    put(last + at, static_cast<std::uint16_t>(model.code(coder, get<std::uint16_t>(last + at), 0)));
+    store(last + at,
+          static_cast<std::uint16_t>(model.code(coder, load<std::uint16_t>(last + at), 0)));
   };
   code_word(32, intensity_, 12);
   code_symbol(16, flags_, 14);
@@ -91,7 +94,7 @@ void GpsTimeOld::code(Decoder& coder, std::byte* item) {
       read_full();
     }
   }
-  put(item, last_);
+  store(item, last_);
 }
 
 void ColourOld::code(Decoder& coder, std::byte* item) {

@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 
+#include "pcednet/core/bytes.h"
 #include "pcednet/io/las/laz.h"
 #include "pcednet/io/las/laz_items.h"
 #include "pcednet/io/las/laz_point14.h"
@@ -174,13 +175,13 @@ bool decode_layered(const std::vector<LazItem>& items, std::span<const std::byte
   std::copy_n(bytes.begin(), stride, rows.begin());
   const std::size_t count = layer_count(items);
   std::size_t at = stride + 4, data = at + 4 * count;
-  if (bytes.size() < data || get<std::uint32_t>(&bytes[stride]) < rows.size() / stride) {
+  if (bytes.size() < data || load<std::uint32_t>(&bytes[stride]) < rows.size() / stride) {
     return false;
   }
   std::deque<Decoder> coders(count);
   std::vector<bool> present(count);
   for (std::size_t l = 0; l < count; ++l, at += 4) {
-    const std::size_t size = get<std::uint32_t>(&bytes[at]);
+    const std::size_t size = load<std::uint32_t>(&bytes[at]);
     if (size > bytes.size() - data) return false;
     present[l] = size > 0;
     if (size > 0) coders[l].start(bytes.subspan(data, size));

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "pcednet/core/bytes.h"
+
 namespace pcednet::io::laz {
 namespace {
 
@@ -51,10 +53,10 @@ unsigned returns_of(const std::byte* item) {
 }  // namespace
 
 struct Point14::Channel {
-  explicit Channel(const std::byte* first) : time(get<std::int64_t>(first + 22), false) {
+  explicit Channel(const std::byte* first) : time(load<std::int64_t>(first + 22), false) {
     std::memcpy(last.data(), first, last.size());
-    height.fill(get<std::int32_t>(first + 8));
-    intensity.fill(get<std::uint16_t>(first + 12));
+    height.fill(load<std::int32_t>(first + 8));
+    intensity.fill(load<std::uint16_t>(first + 12));
   }
 
   std::array<std::byte, 30> last = {};
@@ -138,8 +140,8 @@ void Point14::code_position(Coder& coder, Coder* z_coder, const std::byte* item,
   if (z_coder == nullptr) return;
   const unsigned bits = (channel.dx.last_bits() + channel.dy.last_bits()) / 2;
   channel.height[l] = channel.z.code(*z_coder, channel.height[l], single + even_bits(bits, 18),
-                                     get<std::int32_t>(item + 8));
-  put(last + 8, channel.height[l]);
+                                     load<std::int32_t>(item + 8));
+  store(last + 8, channel.height[l]);
 }
 
 template <typename Coder>
@@ -164,22 +166,22 @@ void Point14::code_rest(const std::array<Coder*, 9>& coders, const std::byte* it
   if (coders[kIntensity]) {
     std::int32_t& intensity = channel.intensity[place << 1 | (changes.time ? 1U : 0U)];
     intensity = channel.intensities.code(*coders[kIntensity], intensity, place,
-                                         get<std::uint16_t>(item + 12));
-    put(last + 12, static_cast<std::uint16_t>(intensity));
+                                         load<std::uint16_t>(item + 12));
+    store(last + 12, static_cast<std::uint16_t>(intensity));
   }
   if (coders[kAngle] && changes.angle) {
-    put(last + 18, static_cast<std::int16_t>(
-                       channel.angle.code(*coders[kAngle], get<std::int16_t>(last + 18),
-                                          changes.time ? 1 : 0, get<std::int16_t>(item + 18))));
+    store(last + 18, static_cast<std::int16_t>(
+                         channel.angle.code(*coders[kAngle], load<std::int16_t>(last + 18),
+                                            changes.time ? 1 : 0, load<std::int16_t>(item + 18))));
   }
   if (coders[kUser]) {
     last[17] = std::byte(
         coders[kUser]->symbol(channel.user_data[byte_of(last + 17) / 4], byte_of(item + 17)));
   }
   if (coders[kSource] && changes.source) {
-    put(last + 20,
-        static_cast<std::uint16_t>(channel.source.code(
-            *coders[kSource], get<std::uint16_t>(last + 20), 0, get<std::uint16_t>(item + 20))));
+    store(last + 20, static_cast<std::uint16_t>(
+                         channel.source.code(*coders[kSource], load<std::uint16_t>(last + 20), 0,
+                                             load<std::uint16_t>(item + 20))));
   }
   if (coders[kTime] && changes.time) {
     std::memcpy(last + 22, item + 22, 8);

@@ -3,6 +3,7 @@
 #include <functional>
 #include <memory>
 
+#include "pcednet/core/bytes.h"
 #include "pcednet/io/las/laz.h"
 #include "pcednet/io/las/laz_items.h"
 #include "pcednet/io/las/laz_items_old.h"
@@ -36,7 +37,7 @@ Step<Decoder> old_step(const LazItem& item, const std::byte* first) {
     case kPoint10:
       return step_of<Point10Old, Decoder>(std::make_shared<Point10Old>(first), item.offset);
     case kGpsTime11:
-      return step_of<GpsTimeOld, Decoder>(std::make_shared<GpsTimeOld>(get<std::int64_t>(first)),
+      return step_of<GpsTimeOld, Decoder>(std::make_shared<GpsTimeOld>(load<std::int64_t>(first)),
                                           item.offset);
     case kRgb12:
       return step_of<ColourOld, Decoder>(std::make_shared<ColourOld>(first), item.offset);
@@ -62,7 +63,7 @@ Step<Coder> make_step(const LazItem& item, const std::byte* first) {
     case kPoint10:
       return step_of<Point10, Coder>(std::make_shared<Point10>(first), item.offset);
     case kGpsTime11:
-      return step_of<GpsTime, Coder>(std::make_shared<GpsTime>(get<std::int64_t>(first), true),
+      return step_of<GpsTime, Coder>(std::make_shared<GpsTime>(load<std::int64_t>(first), true),
                                      item.offset);
     case kRgb12:
       return step_of<Colour, Coder>(std::make_shared<Colour>(first), item.offset);

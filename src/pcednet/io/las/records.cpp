@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cstring>
 
+#include "pcednet/core/bytes.h"
+
 namespace pcednet::io {
 namespace {
 
@@ -75,9 +77,7 @@ std::array<const std::byte*, 3> colour_channels(const PointCloud& cloud) {
 }
 
 unsigned number_of(const std::byte* first, std::size_t point) {
-  std::uint16_t number = 0;
-  std::memcpy(&number, first + 2 * point, 2);
-  return number;
+  return load<std::uint16_t>(first + 2 * point);
 }
 
 }  // namespace
