@@ -19,6 +19,7 @@
 #include "pcednet/lines/piece.h"
 #include "pcednet/lines/plane_edges.h"
 #include "pcednet/lines/refine.h"
+#include "pcednet/lines/smooth_joints.h"
 #include "pcednet/lines/split.h"
 #include "pcednet/lines/strings.h"
 
@@ -164,6 +165,7 @@ std::vector<Curve> find_lines(const EdgePoints& points, const LineOptions& optio
   const std::vector<Piece> smooth = take_smooth(pieces, sampling.noise);
   std::vector<Curve> curves = finish(std::move(pieces), finish_options);
   for (Curve& curve : finish(smooth, finish_options)) curves.push_back(std::move(curve));
+  join_smooth_corners(curves, limits.angle, 0.5 * limits.tolerance * sampling.spacing);
   return curves;
 }
 

@@ -1,0 +1,123 @@
+#include "pcednet/lines/smooth_joints.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+#include "pcednet/lines/strings.h"
+
+namespace pcednet::lines {
+namespace {
+
+constexpr std::size_t kNoEnd = static_cast<std::size_t>(-1);
+constexpr double kTouching = 0.99;  ///< least cosine between curves of two kinds that touch
+
+/// End `end` is that of curve end / 2: its first point, or its last.
+const Vec3& place_of(const std::vector<Curve>& curves, std::size_t end) {
+  const Curve& curve = curves[end / 2];
+  return end % 2 == 0 ? curve.points.front() : curve.points.back();
+}
+
+/// The direction in which the curve would go on beyond an end.
+Vec3 outward(const std::vector<Curve>& curves, std::size_t end) {
+  const Curve& curve = curves[end / 2];
+  const bool first = end % 2 == 0;
+  if (curve.kind == CurveKind::kArc) {
+    const Vec3 on = curve.axis.cross(place_of(curves, end) - curve.centre).normalized();
+    return first ? Vec3(-on) : on;
+  }
+  const std::size_t last = curve.points.size() - 1;
+  const Vec3& before = curve.points[first ? 1 : last - 1];
+  return (place_of(curves, end) - before).stableNormalized();
+}
+
+bool are_one(const std::vector<Curve>& curves, std::size_t a, std::size_t b, double cosine) {
+  const Curve &of_a = curves[a / 2], &of_b = curves[b / 2];
+  if (of_a.edge_class != of_b.edge_class) return false;
+  const double along = -outward(curves, a).dot(outward(curves, b));
+  const bool touching = of_a.kind != of_b.kind && along > kTouching;
+  return along > cosine && !touching;
+}
+
+/// For each end, the end that goes on from it.
+std::vector<std::size_t> partners_of(const std::vector<Curve>& curves, double cosine) {
+  std::vector<std::size_t> ends;
+  for (std::size_t i = 0; i < curves.size(); ++i) {
+    if (!curves[i].closed) ends.insert(ends.end(), {2 * i, 2 * i + 1});
+  }
+  const auto compare = [&](std::size_t a, std::size_t b) {
+    const Vec3 &p = place_of(curves, a), &q = place_of(curves, b);
+    return std::lexicographical_compare(p.begin(), p.end(), q.begin(), q.end());
+  };
+  std::stable_sort(ends.begin(), ends.end(), compare);
+  std::vector<std::size_t> partner(2 * curves.size(), kNoEnd);
+  for (std::size_t first = 0, next; first < ends.size(); first = next) {
+    next = first + 1;
+    while (next < ends.size() && !compare(ends[first], ends[next])) ++next;
+    if (next - first != 2) continue;
+    const std::size_t a = ends[first], b = ends[first + 1];
+    if (a / 2 == b / 2 || !are_one(curves, a, b, cosine)) continue;
+    partner[a] = b;
+    partner[b] = a;
+  }
+  return partner;
+}
+
+/// Adds `next`, entered at `entry`, to `whole`, which ends there.
+void append(Curve& whole, const Curve& next, std::size_t entry, double tolerance) {
+  std::vector<Vec3> points = sampled(next, tolerance);
+  if (entry % 2 == 1) std::reverse(points.begin(), points.end());
+  const std::size_t shared = whole.points.empty() ? 0 : 1;
+  whole.points.insert(whole.points.end(), points.begin() + static_cast<std::ptrdiff_t>(shared),
+                      points.end());
+  const auto support = static_cast<double>(next.support);
+  const double length = length_of(next);
+  whole.confidence += support * next.confidence;
+  whole.dihedral_angle += length * next.dihedral_angle;
+  whole.support += next.support;
+}
+
+}  // namespace
+
+void join_smooth_corners(std::vector<Curve>& curves, double angle, double tolerance) {
+  const std::vector<std::size_t> partner = partners_of(curves, std::cos(angle));
+  std::vector<std::uint8_t> done(curves.size(), 0);
+  std::vector<Curve> result;
+  const auto follow = [&](std::size_t start) {
+    Curve whole{.edge_class = curves[start / 2].edge_class};
+    double length = 0.0;
+    std::size_t entry = start;
+    do {
+      const Curve& curve = curves[entry / 2];
+      done[entry / 2] = 1;
+      append(whole, curve, entry, tolerance);
+      length += length_of(curve);
+      entry = partner[entry ^ 1U];
+    } while (entry != kNoEnd && !done[entry / 2]);
+    whole.closed = entry != kNoEnd;
+    whole.confidence /= std::max(static_cast<double>(whole.support), 1.0);
+    whole.dihedral_angle /= length;
+    whole.points = simplified(whole.points, tolerance);
+    if (whole.closed) whole.points.pop_back();
+    if (whole.points.size() == 2 && !whole.closed) whole.kind = CurveKind::kSegment;
+    result.push_back(std::move(whole));
+  };
+  const auto joined = [&](std::size_t end) { return partner[end] != kNoEnd; };
+  for (std::size_t i = 0; i < curves.size(); ++i) {  // those that begin at an end
+    if (done[i] || (joined(2 * i) && joined(2 * i + 1))) continue;
+    if (joined(2 * i) || joined(2 * i + 1)) {
+      follow(joined(2 * i) ? 2 * i + 1 : 2 * i);
+    } else {
+      result.push_back(std::move(curves[i]));
+      done[i] = 1;
+    }
+  }
+  for (std::size_t i = 0; i < curves.size(); ++i) {
+    if (!done[i]) follow(2 * i);  // rings
+  }
+  curves = std::move(result);
+}
+
+}  // namespace pcednet::lines
