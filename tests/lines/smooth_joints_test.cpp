@@ -71,12 +71,12 @@ TEST(SmoothJoints, CurvesStayApartAtTurnsAtThirdEndsAndIfTheirClassesDiffer) {
   EXPECT_EQ(smoothly_joined({kToOrigin, other}).size(), 2u);
 }
 
-TEST(SmoothJoints, CurvesOfTwoKindsThatTouchStayTwo) {
+TEST(SmoothJoints, CurvesOfTwoKindsThatTouchStayTwoAsDoPolylines) {
   EXPECT_EQ(smoothly_joined({kToOrigin, arc_from_origin(60)}).size(), 2u);
   EXPECT_EQ(smoothly_joined({arc_from_origin(60), kToOrigin}).size(), 2u);
   EXPECT_EQ(smoothly_joined({arc_from_origin(60), turned_curve({0, 0, 0}, 195)}).size(),
             1u);  // at 15 degrees
-  const Curve bent = {.points = {Vec3::Zero(), Vec3(10, 0, 0), Vec3(15, 5, 0)}};
+  const Curve bent = {.points = {Vec3::Zero(), Vec3(10, 2, 0), Vec3(15, 9, 0)}};
   EXPECT_EQ(smoothly_joined({kToOrigin, bent}).size(), 2u);
 }
 

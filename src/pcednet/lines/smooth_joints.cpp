@@ -12,7 +12,7 @@ namespace pcednet::lines {
 namespace {
 
 constexpr std::size_t kNoEnd = static_cast<std::size_t>(-1);
-constexpr double kTouching = 0.99;  ///< least cosine between curves of two kinds that touch
+constexpr double kTouching = 0.99;  ///< least cosine between a segment and an arc that touch
 
 /// End `end` is that of curve end / 2: its first point, or its last.
 const Vec3& place_of(const std::vector<Curve>& curves, std::size_t end) {
@@ -37,7 +37,8 @@ bool are_one(const std::vector<Curve>& curves, std::size_t a, std::size_t b, dou
   const Curve &of_a = curves[a / 2], &of_b = curves[b / 2];
   if (of_a.edge_class != of_b.edge_class) return false;
   const double along = -outward(curves, a).dot(outward(curves, b));
-  const bool touching = of_a.kind != of_b.kind && along > kTouching;
+  const bool polyline = of_a.kind == CurveKind::kPolyline || of_b.kind == CurveKind::kPolyline;
+  const bool touching = of_a.kind != of_b.kind && (polyline || along > kTouching);
   return along > cosine && !touching;
 }
 
