@@ -21,7 +21,7 @@ build() {
 # test_rooms PRESET: runs its unit tests. Those of the program and of the house check what the
 # release build checks already, at many times its cost.
 test_rooms() {
-  ctest --preset "$1" -j "$(nproc)" -E '^(Cli|Web|Clients|Package|Docs|House)\.' --timeout 1500
+  ctest --preset "$1" -j "$(nproc)" -E '^(Cli|Web|Clients|Package|Docs|House)\.'
 }
 
 for check; do
@@ -53,7 +53,7 @@ for check; do
       build threads
       # setarch: the thread sanitizer of GCC 12 cannot place its memory where addresses are spread wide.
       setarch "$(uname -m)" -R ctest --preset threads -j "$(nproc)" \
-        -E '^(Cli|Web|Clients|Package|Docs|House)\.' --timeout 1500
+        -E '^(Cli|Web|Clients|Package|Docs|House)\.'
       ;;
     *)
       echo "check.sh: no check is called $check; there are format gcc clang tidy address threads" >&2

@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <set>
 
 #include "pcednet/core/parallel.h"
 #include "pcednet/spatial/kd_tree.h"
 #include "workbench/shapes/part_pieces.h"
+#include "workbench/shapes/sparse_set.h"
 #include "workbench/shapes/varied_set.h"
 
 namespace pcednet::shapes {
@@ -115,6 +117,51 @@ TEST(CadSet, LabelsTheBandBesideASharpEdge) {
   // The borders are points some way apart.
   EXPECT_GT(static_cast<double>(agreeing), 0.97 * static_cast<double>(drawn.positions.size()));
   for (const std::size_t some : of_class) EXPECT_GT(some, 100u);
+}
+
+/// The sharp points of a recipe's cloud, and those that are nearest to a place on its curves.
+struct SharpPoints {
+  std::set<std::uint32_t> labelled, nearest;
+};
+
+SharpPoints sharp_points(const CadRecipe& recipe) {
+  constexpr double kStep = 2e-4;  // parts are a unit large
+  const GeneratedCloud made = generate(recipe, 1);
+  SharpPoints sharp;
+  for (std::uint32_t i = 0; i < made.cloud.size(); ++i) {
+    if (made.cloud.labels[i] == kSharpEdge) sharp.labelled.insert(i);
+  }
+  const spatial::KdTree tree(made.cloud.positions);
+  std::vector<spatial::Neighbour> near;
+  for (const lines::Curve& curve : made.curves) {
+    const std::vector<Vec3> chain = lines::sampled(curve, kStep);
+    for (std::size_t i = 1; i < chain.size(); ++i) {
+      const double places = std::ceil((chain[i] - chain[i - 1]).norm() / kStep);
+      for (double place = 0.0; place <= places; ++place) {
+        tree.nearest(chain[i - 1] + place / places * (chain[i] - chain[i - 1]), 1, near);
+        sharp.nearest.insert(near.front().index);
+      }
+    }
+  }
+  return sharp;
+}
+
+TEST(SparseSet, SharpAreThePointsNearestToTheTrueCurves) {
+  std::size_t labelled = 0, nearest = 0, both = 0;
+  std::vector<CadRecipe> recipes = sparse_part_recipes(1);
+  std::erase_if(recipes, [](const CadRecipe& recipe) {
+    return recipe.style.points > 800 || recipe.scatter > 0.0 || !recipe.even;
+  });
+  ASSERT_GT(recipes.size(), 10u);
+  recipes.resize(10);
+  for (const CadRecipe& recipe : recipes) {
+    const SharpPoints sharp = sharp_points(recipe);
+    labelled += sharp.labelled.size(), nearest += sharp.nearest.size();
+    for (const std::uint32_t point : sharp.labelled) both += sharp.nearest.contains(point);
+  }
+  // Places are finite: cells that a curve hardly touches may differ.
+  EXPECT_GT(static_cast<double>(both), 0.97 * static_cast<double>(labelled));
+  EXPECT_GT(static_cast<double>(both), 0.97 * static_cast<double>(nearest));
 }
 
 TEST(VariedSet, ReachesFromAThousandPointsToManyAndIsNoisy) {

@@ -64,6 +64,28 @@ MeshVertices drawn_points(const SolidSamples& samples, std::span<const BorderPoi
 
 namespace {
 
+/// Sharp-edge are the points nearest to some place on a curve, smooth-edge the others that were
+/// edges: a line one point wide, whatever lies between the places.
+void label_nearest(MeshVertices& vertices, std::span<const lines::Curve> curves, double spacing) {
+  constexpr double kStep = 0.05;  // between places, in spacings
+  for (std::uint8_t& label : vertices.labels) {
+    if (label == kSharpEdge) label = kSmoothEdge;
+  }
+  const spatial::KdTree tree(vertices.positions);
+  std::vector<spatial::Neighbour> nearest;
+  for (const lines::Curve& curve : curves) {
+    const std::vector<Vec3> chain = lines::sampled(curve, kStep * spacing);
+    for (std::size_t i = 1; i < chain.size(); ++i) {
+      const Vec3 along = chain[i] - chain[i - 1];
+      const double places = std::ceil(along.norm() / (kStep * spacing));
+      for (double place = 0.5; place < places; ++place) {
+        tree.nearest(chain[i - 1] + place / places * along, 1, nearest);
+        vertices.labels[nearest.front().index] = kSharpEdge;
+      }
+    }
+  }
+}
+
 /// Vertices on no sharp border are smooth-edge within `band` of one.
 void label_beside(MeshVertices& vertices, std::span<const BorderPoint> borders, double band) {
   const auto labels = label_bands(vertices.positions, borders, {0.0, band});
@@ -183,11 +205,13 @@ GeneratedCloud generate(const CadRecipe& recipe, std::uint64_t seed) {
   SolidSamples samples =
       sample_solid(solid, kSolidSamplesPerPoint * recipe.style.points, random.next());
   const std::vector<BorderPoint> borders = find_borders(solid, samples);
+  std::vector<lines::Curve> curves = true_curves(solid, borders);
   if (recipe.even) samples = spread(samples, recipe.style.points);
   MeshVertices vertices = recipe.mesh
                               ? mesh_vertices(samples, borders, solid, recipe.style, random.next())
                               : drawn_points(samples, borders, recipe.style.points, recipe.bands);
   const double spacing = std::sqrt(samples.area / static_cast<double>(vertices.positions.size()));
+  if (recipe.one_point_wide) label_nearest(vertices, curves, spacing);
   if (recipe.wear > 0.0) {
     wear_off(vertices, samples, borders, recipe, spacing, random);
   } else {
@@ -207,7 +231,7 @@ GeneratedCloud generate(const CadRecipe& recipe, std::uint64_t seed) {
       fmt::format("{}; noise {:.2g} of the diagonal along normals, which are {}{}",
                   recipe.mesh ? "vertices as of a mesh" : "points drawn by area", recipe.noise,
                   recipe.estimated ? "estimated" : "of the part", recipe.inward ? ", inward" : "")};
-  return {recipe.name, std::move(cloud), rotated(true_curves(solid, borders), rotation)};
+  return {recipe.name, std::move(cloud), rotated(std::move(curves), rotation)};
 }
 
 }  // namespace pcednet::shapes

@@ -22,6 +22,7 @@ struct CadRecipe {
   std::uint64_t part = 0;        ///< which part of the family
   bool mesh = true;              ///< vertices of a mesh; else points sampled uniformly by area
   bool even = false;             ///< no sampled point is near another
+  bool one_point_wide = false;   ///< sharp-edge are the points nearest to the curves
   MeshStyle style = {};          ///< of the mesh; `points` for sampled points, too
   double noise = 0.0;            ///< along the normal, standard deviation over the box's diagonal
   bool estimated = false;        ///< normals estimated from the positions; else those of the part

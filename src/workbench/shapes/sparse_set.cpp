@@ -24,6 +24,7 @@ CadRecipe sparse_part(int family, int number, std::uint64_t seed) {
   CadRecipe recipe = drawn_part("sparse", family, number, kFirstSparsePart, random);
   recipe.mesh = number % 5 == 4;
   recipe.even = !recipe.mesh && number % 5 != 0;
+  recipe.one_point_wide = !recipe.mesh;
   recipe.estimated = !recipe.mesh || random.index(2) == 1;
   recipe.style = random_mesh_style(random, kFewest, number % 2 == 0 ? kFew : kMost);
   if (number % 7 == 2 && !recipe.mesh) recipe.scatter = random.uniform(0.0, 0.3);
