@@ -10,7 +10,6 @@
 #include "pcednet/detect/describe.h"
 #include "pcednet/detect/part_of_cloud.h"
 #include "pcednet/nn/predict.h"
-#include "pcednet/spatial/curve_order.h"
 
 namespace pcednet::detect {
 namespace {
@@ -74,39 +73,44 @@ bool is_by_creases(const EdgeModel& model, const Expert* expert) {
   return expert != nullptr && expert->kind.exact && edge_outputs(model).size() == kWithSmooth;
 }
 
-}  // namespace
+/// What a cloud is, whoever describes it.
+struct Subject {
+  std::span<const Vec3> positions;
+  std::span<const std::uint32_t> curve;  ///< spatial::curve_order() of the positions
+  CloudFacts facts;                      ///< if the model asks for any
+};
 
-Classification classify(const PreparedCloud& cloud, const EdgeModel& model,
-                        const Progress* progress) {
-  if (!model.experts.empty()) {
-    const CloudFacts facts = facts_of(cloud, model.descriptor);
-    const Expert* expert = expert_for(model, facts);
-    Classification found = classify(cloud, suited_to(model, facts), progress);
-    if (expert) found.expert = expert->kind;
-    if (is_by_creases(model, expert)) {
-      apply_crease_kind(cloud.positions, cloud.curve, found.s_min, found);
-    }
-    return found;
+/// decide(model) says what the networks for such clouds make of each point's description; the
+/// surroundings have the last word.
+template <typename Decide>
+Classification classify_with(const Decide& decide, const Subject& subject, const EdgeModel& model,
+                             const Progress* progress) {
+  const EdgeModel suited = suited_to(model, subject.facts);
+  Classification found = decide(suited);
+  if (suited.context) {
+    apply_context(suited, subject.positions, subject.curve, found, progress);
   }
-  Classification found = describe_and_decide(cloud, model, progress);
-  if (model.context) {
-    apply_context(model, cloud.positions, cloud.curve, found, progress);
+  const Expert* expert = expert_for(model, subject.facts);
+  if (expert) found.expert = expert->kind;
+  if (is_by_creases(model, expert)) {
+    apply_crease_kind(subject.positions, subject.curve, found.s_min, found);
   }
   found.counts = count_classes(found.classes);
   return found;
 }
 
+}  // namespace
+
+Classification classify(const PreparedCloud& cloud, const EdgeModel& model,
+                        const Progress* progress) {
+  const auto facts = model.experts.empty() ? CloudFacts{} : facts_of(cloud, model.descriptor);
+  return classify_with(
+      [&](const EdgeModel& suited) { return describe_and_decide(cloud, suited, progress); },
+      {cloud.positions, cloud.curve, facts}, model, progress);
+}
+
 Classification classify(const DescribedCloud& cloud, std::span<const Vec3> positions,
                         const EdgeModel& model, const Progress* progress) {
-  if (!model.experts.empty()) {
-    const Expert* expert = expert_for(model, cloud.facts);
-    Classification found = classify(cloud, positions, suited_to(model, cloud.facts), progress);
-    if (expert) found.expert = expert->kind;
-    if (is_by_creases(model, expert)) {
-      apply_crease_kind(positions, spatial::curve_order(positions), cloud.scales.front(), found);
-    }
-    return found;
-  }
   const std::size_t width = row_width(model.descriptor);
   if (cloud.values.size() != cloud.order.size() * width || positions.size() != cloud.points) {
     throw Error(ErrorKind::kModelMismatch,
@@ -116,14 +120,14 @@ Classification classify(const DescribedCloud& cloud, std::span<const Vec3> posit
   const auto rows_of = [&](std::size_t begin, std::size_t end) {
     return std::span(cloud.values).subspan(begin * width, (end - begin) * width);
   };
-  Classification found =
-      decide_rows(cloud.points, cloud.order, kDescribedBlock, rows_of, model, progress);
-  if (model.context) {
-    const auto curve = spatial::curve_order(positions);
-    apply_context(model, positions, curve, found, progress);
-  }
-  found.counts = count_classes(found.classes);
-  return found;
+  const auto decide = [&](const EdgeModel& suited) {
+    Classification found =
+        decide_rows(cloud.points, cloud.order, kDescribedBlock, rows_of, suited, progress);
+    found.s_min = cloud.scales.front();
+    found.s_max = cloud.scales.back();
+    return found;
+  };
+  return classify_with(decide, {positions, cloud.order, cloud.facts}, model, progress);
 }
 
 }  // namespace pcednet::detect

@@ -55,7 +55,6 @@ void apply_crease_kind(std::span<const Vec3> positions, std::span<const std::uin
       if (std::isfinite(distances[i])) decide_kind(i, static_cast<double>(distances[i]), found);
     }
   });
-  found.counts = count_classes(found.classes);
 }
 
 }  // namespace pcednet::detect
