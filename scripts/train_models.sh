@@ -23,19 +23,33 @@ for model in ${*:-general scan cad worn}; do
       generate "${set%:*}" "${set#*:}"
       clouds="$clouds $folder/${set%:*}${set#*:}"
     done
-    options="--natural --scales 8 --s-max-ratio 8 --gate 0.4 --second-gate -0.3 --width 40 \
+    options="--scales 8 --s-max-ratio 8 --gate 0.4 --second-gate -0.3 --width 40 --distil 2 \
       --context --keep-orientation --seed 1"
     generate sparse 1
     generate drawn 1
+    more_in_noise=''
+    for set in worn:6 worn:7 worn:8 worn:9 scan:6 scan:7; do
+      generate "${set%:*}" "${set#*:}"
+      more_in_noise="$more_in_noise $folder/${set%:*}${set#*:}"
+    done
+    for seed in 1 2 3; do
+      $pcednet generate lines "$folder/lines$seed" --seed "$seed" --only _noisy
+      $pcednet generate lines "$folder/lines$seed" --seed "$seed" --only _scanned
+    done
     # shellcheck disable=SC2086  # several options, one argument for each folder
-    $pcednet train "$folder/sparse1" -o "$folder/sparse.safetensors" $options --distil 2
+    $pcednet train "$folder/sparse1" -o "$folder/sparse.safetensors" $options --natural --even-validation
     # shellcheck disable=SC2086
     $pcednet train "$folder/drawn1" "$folder/default1" "$folder/default2" "$folder/cad1" "$folder/cad2" \
-      -o "$folder/exact.safetensors" $options --epochs 18 --distil 2 --no-normals --only estimated,exact
+      -o "$folder/exact.safetensors" $options --natural --even-validation --epochs 18 --no-normals \
+      --only estimated,exact
     # shellcheck disable=SC2086
-    $pcednet train $clouds -o models/general.safetensors $options --distil 2 --overwrite \
+    $pcednet train "$folder/lines1" "$folder/lines2" "$folder/lines3" $clouds $more_in_noise \
+      -o "$folder/noisy.safetensors" $options --natural --epochs 18 --no-normals --only estimated,noisy
+    # shellcheck disable=SC2086
+    $pcednet train $clouds -o models/general.safetensors $options --balance 0.07 --overwrite \
       --expert "$folder/sparse.safetensors" below=4000,estimated \
-      --expert "$folder/exact.safetensors" estimated,exact
+      --expert "$folder/exact.safetensors" estimated,exact \
+      --expert "$folder/noisy.safetensors" estimated,noisy
     ;;
   scan)
     generate default 1
@@ -43,14 +57,15 @@ for model in ${*:-general scan cad worn}; do
     generate default 3
     generate scan 1
     $pcednet train "$folder/default1" "$folder/default2" "$folder/default3" "$folder/scan1" \
-      -o models/scan.safetensors --natural --distil 3 --context --keep-orientation --seed 1 --overwrite
+      -o models/scan.safetensors --natural --even-validation --distil 3 --context --keep-orientation \
+      --seed 1 --overwrite
     ;;
   cad)
     generate cad 1
     generate cad 2
     $pcednet train "$folder/cad1" "$folder/cad2" -o models/cad.safetensors \
-      --classes 2 --natural --gate 0.4 --second-gate -0.3 --distil 3 --keep-orientation \
-      --seed 1 --overwrite
+      --classes 2 --natural --even-validation --gate 0.4 --second-gate -0.3 --distil 3 \
+      --keep-orientation --seed 1 --overwrite
     ;;
   worn)
     generate worn 1
@@ -58,7 +73,7 @@ for model in ${*:-general scan cad worn}; do
     generate cad 1
     generate cad 2
     $pcednet train "$folder/worn1" "$folder/worn2" "$folder/cad1" "$folder/cad2" \
-      -o models/worn.safetensors --classes 2 --balance 0.5 --gate -0.5 --distil 3 --context \
+      -o models/worn.safetensors --classes 2 --balance 0.5 --even-validation --gate -0.5 --distil 3 --context \
       --keep-orientation --seed 1 --overwrite
     ;;
   *)

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "labelled_cube.h"
+#include "pcednet/core/random.h"
 
 namespace pcednet::detect {
 namespace {
@@ -21,15 +22,20 @@ TEST(CloudKind, HasTheCloudsOfWhichAllHolds) {
   EXPECT_FALSE((CloudKind{.estimated = false}.has(few)));
   EXPECT_FALSE((CloudKind{.exact = true}.has(few)));
   EXPECT_TRUE((CloudKind{.exact = true}.has({.exact = true})));
+  EXPECT_FALSE((CloudKind{.noisy = true}.has(few)));
+  EXPECT_TRUE((CloudKind{.noisy = true}.has({.noisy = true})));
 }
 
 TEST(CloudKind, IsReadAsItIsWritten) {
   const CloudKind kind = {.below = 4000, .estimated = true, .exact = true};
   EXPECT_EQ(text_of(kind), "below=4000,estimated,exact");
   EXPECT_EQ(cloud_kind_of(text_of(kind)), kind);
+  EXPECT_EQ(cloud_kind_of("noisy,estimated"), (CloudKind{.estimated = true, .noisy = true}));
+  EXPECT_EQ(text_of({.noisy = true}), "noisy");
   EXPECT_EQ(cloud_kind_of("exact,given"), (CloudKind{.estimated = false, .exact = true}));
-  for (const char* text : {"", "below", "below=", "below=0", "below=-1", "below=4x", "exact,",
-                           "exact,exact", "given,estimated", "Exact", "below=1,below=2"}) {
+  for (const char* text :
+       {"", "below", "below=", "below=0", "below=-1", "below=4x", "exact,", "exact,exact",
+        "noisy,noisy", "given,estimated", "Exact", "below=1,below=2"}) {
     EXPECT_FALSE(cloud_kind_of(text)) << text;
   }
 }
@@ -57,6 +63,21 @@ TEST(CloudKind, TakesNormalsThatWereEstimatedBeforeForEstimated) {
   const PreparedCloud prepared = prepare(cloud);
   EXPECT_FALSE(prepared.decision.made);
   EXPECT_TRUE(facts_of(prepared, {}).estimated);
+}
+
+TEST(CloudKind, IsNoisyWhereMoreNeighboursEstimateTheNormals) {
+  PointCloud cloud = cube(3000, 1);
+  cloud.normals.clear();
+  EXPECT_FALSE(facts_of(prepare(cloud), {}).noisy);
+  Random random(1);
+  for (Vec3& position : cloud.positions) {  // half the spacing
+    position += 0.02 * Vec3(random.normal(), random.normal(), random.normal());
+  }
+  const PreparedCloud prepared = prepare(cloud);
+  EXPECT_GT(prepared.decision.neighbours, 12u);
+  EXPECT_TRUE(facts_of(prepared, {}).noisy);
+  cloud.normals = prepared.made;  // such as others would have estimated
+  EXPECT_FALSE(facts_of(prepare(cloud), {}).noisy);
 }
 
 TEST(ExactPoints, LieOnPlaneFacesWithoutNoise) {

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "pcednet/core/error.h"
 #include "pcednet/core/parallel.h"
@@ -155,6 +156,19 @@ TEST(Train, KeepsTheBestEpoch) {
   until_best.epochs = result.best_epoch;
   EXPECT_EQ(train(kSmall, data.set(), until_best).best.network.parameters,
             result.best.network.parameters);
+}
+
+TEST(Train, JudgesEpochsByTheClassesThatItLearnsFrom) {
+  // One sample in ten is of the class that nothing tells apart.
+  Labelled data = doubtful(6000, 1);
+  for (std::size_t i = 0; i < data.labels.size(); ++i) data.labels[i] = i % 10 == 0;
+  const Architecture architecture = {.scales = 4, .features = 3, .classes = 2};
+  for (const auto& [balance, doubt] : {std::pair(0.0, 0.325), std::pair(1.0, std::log(2.0))}) {
+    const TrainResult result = train(architecture, data.set(), {.epochs = 1, .balance = balance});
+    EXPECT_NEAR(result.history.back().validation_loss, doubt, 0.1) << balance;
+  }
+  const TrainOptions evenly = {.epochs = 1, .balance = 0.0, .even_validation = true};
+  EXPECT_GT(train(architecture, data.set(), evenly).history.back().validation_loss, 1.0);
 }
 
 TEST(Train, ReturnsTheBestSoFarWhenStopped) {

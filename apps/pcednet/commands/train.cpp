@@ -38,6 +38,7 @@ struct TrainArguments {
   int epochs = 0;  ///< 0: the recipe's
   double balance = 1.0;
   bool natural = false;
+  bool even_validation = false;
   std::uint64_t seed = 1;
 };
 
@@ -46,6 +47,7 @@ detect::TrainOptions options_of(const TrainArguments& arguments) {
   if (arguments.recipe == Recipe::kPaper) options.training = nn::paper_recipe();
   if (arguments.epochs > 0) options.training.epochs = arguments.epochs;
   options.training.balance = arguments.natural ? 0.0 : arguments.balance;
+  options.training.even_validation = arguments.even_validation;
   options.training.seed = arguments.seed;
   return options;
 }
@@ -58,8 +60,8 @@ void print_epoch(const nn::EpochReport& report) {
 detect::CloudKind take_kind(const std::string& option, const std::string& text) {
   if (const auto kind = detect::cloud_kind_of(text)) return *kind;
   throw Error(ErrorKind::kUsage,
-              fmt::format("{} {}: write given, estimated, exact or below=4000, or several with "
-                          "commas between them",
+              fmt::format("{} {}: write given, estimated, exact, noisy or below=4000, or "
+                          "several with commas between them",
                           option, text));
 }
 
@@ -192,7 +194,8 @@ void add_data_options(CLI::App& command, TrainArguments& arguments) {
   command
       .add_option("--only", arguments.only,
                   "Learn from clouds of this kind alone: given or estimated (normals), exact "
-                  "(points of a model, without noise), below=4000 (points), or several with commas "
+                  "(points of a model, without noise) or noisy (both without normals), below=4000 "
+                  "(points), or several with commas "
                   "between them")
       ->excludes("--project");
   command
@@ -236,6 +239,8 @@ void add_recipe_options(CLI::App& command, TrainArguments& arguments) {
       ->capture_default_str()
       ->check(CLI::Range(0.0, 1.0))
       ->excludes("--natural");
+  command.add_flag("--even-validation", arguments.even_validation,
+                   "Judge the epochs with all classes alike; otherwise they count as in training");
   command
       .add_option("--distil", arguments.options.teachers,
                   "Train this many networks first and learn their mean prediction")

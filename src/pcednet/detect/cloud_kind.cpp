@@ -12,13 +12,14 @@
 
 #include "pcednet/detect/part_of_cloud.h"
 #include "pcednet/normals/estimate.h"
+#include "pcednet/normals/neighbour_count.h"
 #include "pcednet/normals/plane_fit.h"
 
 namespace pcednet::detect {
 namespace {
 
 constexpr std::string_view kBelowWord = "below=", kGivenWord = "given",
-                           kEstimatedWord = "estimated", kExactWord = "exact";
+                           kEstimatedWord = "estimated", kExactWord = "exact", kNoisyWord = "noisy";
 
 bool take_word(std::string_view word, CloudKind& kind) {
   if (word == kGivenWord || word == kEstimatedWord) {
@@ -27,6 +28,7 @@ bool take_word(std::string_view word, CloudKind& kind) {
     return true;
   }
   if (word == kExactWord) return !std::exchange(kind.exact, true);
+  if (word == kNoisyWord) return !std::exchange(kind.noisy, true);
   if (!word.starts_with(kBelowWord) || kind.below > 0) return false;
   const char* end = word.data() + word.size();
   const auto read = std::from_chars(word.data() + kBelowWord.size(), end, kind.below);
@@ -75,8 +77,11 @@ bool are_as_estimated(const PreparedCloud& cloud) {
 }  // namespace
 
 CloudFacts facts_of(const PreparedCloud& cloud, const gls::ScaleSpaceOptions& descriptor) {
-  CloudFacts facts{.estimated = cloud.decision.made && !cloud.reoriented,
-                   .exact = cloud.decision.exact};
+  const bool estimated = cloud.decision.made && !cloud.reoriented;
+  CloudFacts facts{
+      .estimated = estimated,
+      .exact = cloud.decision.exact,
+      .noisy = estimated && cloud.decision.neighbours > normals::NeighbourChoice{}.neighbours};
   if (cloud.part) {
     facts.points = cloud.part->points;
   } else if (descriptor.s_min <= 0.0 || descriptor.s_max <= 0.0) {
@@ -93,7 +98,8 @@ CloudFacts facts_of(const PreparedCloud& cloud, const gls::ScaleSpaceOptions& de
 
 bool CloudKind::has(const CloudFacts& facts) const {
   return (below == 0 || facts.points < below) &&
-         estimated.value_or(facts.estimated) == facts.estimated && (!exact || facts.exact);
+         estimated.value_or(facts.estimated) == facts.estimated && (!exact || facts.exact) &&
+         (!noisy || facts.noisy);
 }
 
 std::string text_of(const CloudKind& kind) {
@@ -101,6 +107,7 @@ std::string text_of(const CloudKind& kind) {
   if (kind.below > 0) words.push_back(fmt::format("{}{}", kBelowWord, kind.below));
   if (kind.estimated) words.emplace_back(*kind.estimated ? kEstimatedWord : kGivenWord);
   if (kind.exact) words.emplace_back(kExactWord);
+  if (kind.noisy) words.emplace_back(kNoisyWord);
   return fmt::format("{}", fmt::join(words, ","));
 }
 

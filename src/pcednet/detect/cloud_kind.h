@@ -18,6 +18,8 @@ struct CloudFacts {
   bool estimated = false;  ///< normals were missing and are made, or (of fewer than 20,000 points)
                            ///< the given ones are such as would be made
   bool exact = false;      ///< normals were missing, and is_exact() is true of its points
+  bool noisy = false;      ///< normals were missing, and noise asks for more neighbours than usual,
+                           ///< see normals::choose_neighbours()
 };
 
 /// Copies of a point do not count: they say nothing of the surface. A part of a cloud has the
@@ -30,12 +32,13 @@ struct CloudKind {
   std::size_t below = 0;  ///< distinct points; 0: of any number
   std::optional<bool> estimated = {};
   bool exact = false;
+  bool noisy = false;
 
   bool has(const CloudFacts& facts) const;
   bool operator==(const CloudKind&) const = default;
 };
 
-/// "below=4000,estimated": `given` or `estimated` normals, `exact`, in any order.
+/// "below=4000,estimated": `given` or `estimated` normals, `exact`, `noisy`, in any order.
 std::string text_of(const CloudKind& kind);
 std::optional<CloudKind> cloud_kind_of(std::string_view text);
 

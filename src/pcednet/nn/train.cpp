@@ -90,6 +90,15 @@ SamplesByClass split_off(SamplesByClass& samples, double share, Random random) {
   return kept;
 }
 
+/// How much each class counts in training, as Sampler deals them.
+std::vector<double> class_weights(const SamplesByClass& samples, double balance) {
+  std::vector<double> weights;
+  for (const auto& of_class : samples) {
+    weights.push_back(std::pow(static_cast<double>(of_class.size()), 1.0 - balance));
+  }
+  return weights;
+}
+
 Model make_model(const Architecture& architecture, const TrainingSet& set,
                  const TrainOptions& options) {
   if (options.start) {
@@ -193,6 +202,8 @@ TrainResult train(const Architecture& architecture, const TrainingSet& set,
   }
   const std::vector<std::uint32_t> validation = concatenate(
       split_off(samples, options.held_out, Random(options.seed, kSplitStream)), kMostToValidate);
+  const std::vector<double> weights =
+      class_weights(samples, options.even_validation ? 1.0 : options.balance);
 
   Trainer trainer(make_model(architecture, set, options), set, std::move(samples), options);
   TrainResult result;
@@ -205,7 +216,7 @@ TrainResult train(const Architecture& architecture, const TrainingSet& set,
     result.cancelled = !trainer.run_epoch(stage, progress, report.training_loss);
     if (result.cancelled) break;
     if (!validation.empty()) {
-      Validation found = validate(trainer.model(), set, validation);
+      Validation found = validate(trainer.model(), set, validation, weights);
       report.validation_confusion = std::move(found.confusion);
       report.validation_loss = found.loss;
       report.validation_accuracy = found.accuracy;

@@ -26,6 +26,7 @@ struct TrainOptions {
   /// at most so many samples.
   std::size_t least_per_epoch = 1 << 14, most_per_epoch = 1 << 20;
 
+  bool even_validation = false;  ///< judge epochs with all classes alike, whatever the balance
   double held_out = 0.1;    ///< of every class, to judge the epochs by; 0: the last one is the best
   bool standardise = true;  ///< measure the inputs' range; otherwise they are taken as they are
   SignRule sign_rule = {};
@@ -38,9 +39,10 @@ struct TrainOptions {
 /// What the paper did: SGD with momentum, batches of 100, rate 0.01, 40 epochs, raw inputs.
 TrainOptions paper_recipe();
 
-/// How an epoch ended, judged by a part of every class that is held out. Validation numbers are
-/// macro averages (the mean over the classes of each class's mean). With fewer than 20 samples of a
-/// class nothing is held out: they are 0, and the last epoch counts as the best.
+/// How an epoch ended, judged by a part of every class that is held out. The validation accuracy is
+/// the macro average (the mean over the classes of each class's mean); in the loss the classes
+/// count as much as in training, see TrainOptions::balance, or evenly. With fewer than 20 samples
+/// of a class nothing is held out: they are 0, and the last epoch counts as the best.
 struct EpochReport {
   int epoch = 0;  ///< from 1
   double training_loss = 0.0;

@@ -66,7 +66,7 @@ void judge(const Evaluator& evaluator, const TrainingSet& set,
 }  // namespace
 
 Validation validate(const Model& model, const TrainingSet& set,
-                    std::span<const std::uint32_t> chosen) {
+                    std::span<const std::uint32_t> chosen, std::span<const double> weights) {
   const Evaluator evaluator(model);
   const auto classes = static_cast<std::size_t>(evaluator.classes());
   const std::size_t tasks = (chosen.size() + kSamplesAtOnce - 1) / kSamplesAtOnce;
@@ -83,6 +83,7 @@ Validation validate(const Model& model, const TrainingSet& set,
     result.confusion[i % result.confusion.size()] += confusion[i];
   }
   std::size_t seen = 0;
+  double weight = 0.0;
   for (std::size_t c = 0; c < classes; ++c) {
     ClassSums total;
     for (std::size_t t = 0; t < tasks; ++t) {
@@ -93,12 +94,13 @@ Validation validate(const Model& model, const TrainingSet& set,
     }
     if (total.count == 0) continue;
     const auto count = static_cast<double>(total.count);
-    result.loss += total.loss / count;
+    result.loss += weights[c] * total.loss / count;
+    weight += weights[c];
     result.accuracy += static_cast<double>(total.right) / count;
     ++seen;
   }
   if (seen > 0) {
-    result.loss /= static_cast<double>(seen);
+    result.loss /= weight;
     result.accuracy /= static_cast<double>(seen);
   }
   return result;

@@ -11,14 +11,15 @@ namespace pcednet::nn {
 
 /// Means over the classes of what is a mean over the samples of each.
 struct Validation {
-  double loss = 0.0;      ///< cross-entropy
+  double loss = 0.0;      ///< cross-entropy, the classes weighted
   double accuracy = 0.0;  ///< share of samples whose most probable class is their own
   /// How often a true class (row) was taken for one (column); classes x classes.
   std::vector<std::size_t> confusion = {};
 };
 
-/// Judges a model on the samples `chosen` (indices into `set`, none of them ignored).
+/// Judges a model on the samples `chosen` (indices into `set`, none of them ignored). `weights`:
+/// of each class in the loss, in any unit.
 Validation validate(const Model& model, const TrainingSet& set,
-                    std::span<const std::uint32_t> chosen);
+                    std::span<const std::uint32_t> chosen, std::span<const double> weights);
 
 }  // namespace pcednet::nn

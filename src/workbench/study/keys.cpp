@@ -22,16 +22,16 @@ std::string text_of_network(const nn::Architecture& architecture) {
 
 std::string text_of_training(const nn::TrainOptions& options) {
   const auto& [optimiser, learning_rate, anneal, momentum, epochs, batch, balance, least_per_epoch,
-               most_per_epoch, held_out, standardise, sign_rule, class_names, start, seed] =
-      options;
+               most_per_epoch, even_validation, held_out, standardise, sign_rule, class_names,
+               start, seed] = options;
   // The runner has no model to start from; the signs and the names of the classes follow from the
   // rest.
   static_cast<void>(start), static_cast<void>(class_names), static_cast<void>(sign_rule);
   return fmt::format(
       "optimiser {} rate {} anneal {} momentum {} epochs {} batch {} balance {} least {} most {} "
-      "held out {} standardise {} seed {}",
+      "validation {} held out {} standardise {} seed {}",
       static_cast<int>(optimiser), learning_rate, anneal, momentum, epochs, batch, balance,
-      least_per_epoch, most_per_epoch, held_out, standardise, seed);
+      least_per_epoch, most_per_epoch, even_validation, held_out, standardise, seed);
 }
 
 }  // namespace
