@@ -16,6 +16,7 @@
 #include "pcednet/eval/predictions.h"
 #include "pcednet/eval/report.h"
 #include "pcednet/formats/format.h"
+#include "prepare.h"
 #include "workbench/truth/read_labelled.h"
 
 namespace pcednet::app {
