@@ -14,6 +14,7 @@
 #include "models.h"
 #include "pcednet/core/stopwatch.h"
 #include "pcednet/formats/virtual_cloud.h"
+#include "pcednet/tiles/inputs.h"
 #include "pcednet/tiles/join.h"
 #include "pcednet/tiles/make_plan.h"
 #include "pcednet/tiles/run_tile.h"
