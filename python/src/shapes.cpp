@@ -16,6 +16,9 @@
 #include "workbench/shapes/varied_set.h"
 
 namespace pcednet::python {
+
+namespace py = pybind11;
+
 namespace {
 
 /// A cloud that can be made.
