@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Geometry>
 #include <algorithm>
 
 #include "pcednet/cloud/point_cloud.h"

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "pcednet/cloud/bounding_box.h"
 #include "pcednet/detect/classify.h"
 #include "pcednet/gls/engine.h"
 #include "workbench/shapes/default_set.h"

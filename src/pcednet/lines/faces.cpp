@@ -1,5 +1,6 @@
 #include "pcednet/lines/faces.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
