@@ -261,6 +261,20 @@ TEST(Finish, DropsFreePiecesWithHardlyAnEdgePoint) {
   EXPECT_EQ(finish({piece}, options).size(), 1u);
 }
 
+TEST(Finish, DropsFreePiecesOfDoubtfulPointsInNoise) {
+  Piece piece = straight({0, 0, 0}, {30, 0, 0});
+  const auto kept = [&](double probability, double noise) {
+    for (ChainNode& node : piece.nodes) {
+      node.edge_points = 1.0;
+      node.probability = probability;
+    }
+    return finish({piece}, {.min_length = 3.0, .tolerance = kWithin, .noise = noise}).size();
+  };
+  EXPECT_EQ(kept(0.7, 0.5), 0u);
+  EXPECT_EQ(kept(0.9, 0.5), 1u);
+  EXPECT_EQ(kept(0.7, 0.1), 1u);
+}
+
 TEST(LocalPlanes, AreThoseOfACorner) {
   NearPoints points;
   for (int axis = 0; axis < 3; ++axis) {

@@ -26,6 +26,9 @@ constexpr double kFewEdgePoints = 0.1, kLongAnyway = 15.0;
 /// With noise beyond kLittleNoise, all pieces need edge points: so many more per spacing of noise.
 constexpr double kLittleNoise = 0.1, kPointsForNoise = 1.5;
 
+/// With noise beyond kMuchNoise, pieces with a free end need edge points as probable as this.
+constexpr double kMuchNoise = 0.2, kLeastProbable = 0.75;
+
 /// Surfaces that bend by more are rounded at the edge unless as many of its points are sharp-edge.
 constexpr double kBend = 0.08, kFewSharp = 0.1;
 constexpr double kStrongBend = 0.16, kSomeSharp = 0.3;
@@ -104,6 +107,17 @@ bool has_few_edge_points(const Piece& piece, double noise, bool held) {
   return !held && found < kFewEdgePoints && length_of(piece) < kLongAnyway * piece.spacing();
 }
 
+/// Whether the piece ends free, in noise, and hangs on points that are edges only perhaps.
+bool is_doubtful(const Piece& piece, double noise, std::ptrdiff_t held) {
+  if (held == 2 || noise < kMuchNoise) return false;
+  double edge_points = 0.0, probability = 0.0;
+  for (const ChainNode& node : piece.nodes) {
+    edge_points += node.edge_points;
+    probability += node.edge_points * node.probability;
+  }
+  return probability < kLeastProbable * std::max(edge_points, 1.0);
+}
+
 /// Of a piece of which corners hold so many ends, in spacings.
 double least_length(std::ptrdiff_t held, const FinishOptions& options) {
   if (held == 2) return 0.0;
@@ -135,6 +149,7 @@ bool drop_loose(std::vector<Piece>& pieces, const Corners& corners, const Finish
              return corner != Corners::kNoCorner && ends[corner] >= to_hold;
            });
            if (!options.exact && has_few_edge_points(piece, options.noise, held == 2)) return true;
+           if (!options.exact && is_doubtful(piece, options.noise, held)) return true;
            return length_of(piece) < least_length(held, options) * piece.spacing();
          }) > 0;
 }
