@@ -108,5 +108,48 @@ TEST(SmoothJoints, ARingIsClosed) {
   EXPECT_EQ(curves[0].points.size(), 18u);
 }
 
+/// Segments from corner to corner of a regular polygon in a circle of that radius.
+std::vector<Curve> polygon(int corners, double radius) {
+  const auto corner = [&](int i) {
+    const double t = 2.0 * std::numbers::pi * (i % corners) / corners;
+    return Vec3(radius * std::cos(t), radius * std::sin(t), 3.0);
+  };
+  std::vector<Curve> sides;
+  for (int i = 0; i < corners; ++i) sides.push_back(straight_curve(corner(i), corner(i + 1)));
+  std::swap(sides[1].points[0], sides[1].points[1]);
+  return sides;
+}
+
+std::vector<Curve> rounded(std::vector<Curve> curves) {
+  close_round_loops(curves, 1.0, 1.5);
+  return curves;
+}
+
+TEST(RoundLoops, ThreeSegmentsRoundASmallCircleAreIt) {
+  const auto curves = rounded(polygon(3, 4.0));
+  ASSERT_EQ(curves.size(), 1u);
+  EXPECT_EQ(curves[0].kind, CurveKind::kCircle);
+  EXPECT_TRUE(curves[0].closed);
+  EXPECT_LT((curves[0].centre - Vec3(0, 0, 3)).norm(), 0.2);
+  EXPECT_NEAR(curves[0].radius, 2.8, 0.4);  // between the circles in and about the triangle
+  EXPECT_NEAR(std::abs(curves[0].axis.z()), 1.0, 1e-6);
+  EXPECT_EQ(curves[0].support, 30u);
+  EXPECT_NEAR(curves[0].confidence, 0.5, 1e-12);
+}
+
+TEST(RoundLoops, OthersStay) {
+  EXPECT_EQ(rounded(polygon(4, 4.0)).size(), 4u) << "a square";
+  EXPECT_EQ(rounded(polygon(3, 8.0)).size(), 3u) << "a triangle";
+  auto curves = polygon(3, 4.0);
+  curves.push_back(straight_curve(curves[0].points[0], {9, 9, 9}));
+  EXPECT_EQ(rounded(curves).size(), 4u) << "another ends in a corner";
+  curves = polygon(3, 4.0);
+  curves[0].edge_class = kSmoothEdge;
+  EXPECT_EQ(rounded(curves).size(), 3u) << "of two classes";
+  curves = polygon(3, 4.0);
+  curves.pop_back();
+  EXPECT_EQ(rounded(curves).size(), 2u) << "open";
+}
+
 }  // namespace
 }  // namespace pcednet::lines

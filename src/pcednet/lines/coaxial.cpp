@@ -12,6 +12,8 @@ namespace {
 
 constexpr double kLeastAxisRadius = 2.5, kOneAxis = 0.5;  ///< in spacings
 constexpr double kOneAxisCosine = 0.999;
+constexpr double kOnAxis = 3.0, kOnAxisInNoise = 4.0;  ///< of nodes to their circle, in tolerances
+constexpr double kNoisyTolerance = 0.28;
 constexpr double kLeastCovered = 0.5;   ///< of the circle, by nodes
 constexpr std::size_t kLeastAbout = 3;  ///< nodes of a piece
 
@@ -122,7 +124,7 @@ Piece circle_about(const Fit& axis, const std::vector<Piece>& pieces,
 void complete_coaxial(std::vector<Piece>& pieces, double tolerance) {
   const PieceIndex index(pieces);
   std::vector<std::uint8_t> gone(pieces.size(), 0);
-  const double reach = 3.0 * tolerance;
+  const double reach = (tolerance > kNoisyTolerance ? kOnAxisInNoise : kOnAxis) * tolerance;
   std::vector<std::size_t> joined;
   for (const Fit& axis : known_axes(pieces)) {
     const std::vector<AboutAxis> around = pieces_about(axis, pieces, gone, reach);

@@ -27,6 +27,7 @@ namespace pcednet::lines {
 namespace {
 
 constexpr std::size_t kLeastNodes = 2;
+constexpr double kRoundWithin = 6.5;  ///< tolerances from the curves round a circle to it
 
 /// The options, and what they are where the spacing decides.
 struct Limits {
@@ -165,6 +166,7 @@ std::vector<Curve> find_lines(const EdgePoints& points, const LineOptions& optio
   const std::vector<Piece> smooth = take_smooth(pieces, sampling.noise);
   std::vector<Curve> curves = finish(std::move(pieces), finish_options);
   for (Curve& curve : finish(smooth, finish_options)) curves.push_back(std::move(curve));
+  close_round_loops(curves, sampling.spacing, kRoundWithin * limits.tolerance * sampling.spacing);
   join_smooth_corners(curves, limits.angle, 0.5 * limits.tolerance * sampling.spacing);
   return curves;
 }

@@ -26,8 +26,9 @@ constexpr double kFewEdgePoints = 0.1, kLongAnyway = 15.0;
 /// With noise beyond kLittleNoise, all pieces need edge points: so many more per spacing of noise.
 constexpr double kLittleNoise = 0.1, kPointsForNoise = 1.5;
 
-/// With noise beyond kMuchNoise, pieces with a free end need edge points as probable as this.
-constexpr double kMuchNoise = 0.2, kLeastProbable = 0.75;
+/// With noise beyond kMuchNoise, pieces of which corners hold so many ends need edge points as
+/// probable as this.
+constexpr double kMuchNoise = 0.2, kLeastProbable[] = {0.84, 0.75, 0.0};
 
 /// Surfaces that bend by more are rounded at the edge unless as many of its points are sharp-edge.
 constexpr double kBend = 0.08, kFewSharp = 0.1;
@@ -109,13 +110,13 @@ bool has_few_edge_points(const Piece& piece, double noise, bool held) {
 
 /// Whether the piece ends free, in noise, and hangs on points that are edges only perhaps.
 bool is_doubtful(const Piece& piece, double noise, std::ptrdiff_t held) {
-  if (held == 2 || noise < kMuchNoise) return false;
+  if (noise < kMuchNoise) return false;
   double edge_points = 0.0, probability = 0.0;
   for (const ChainNode& node : piece.nodes) {
     edge_points += node.edge_points;
     probability += node.edge_points * node.probability;
   }
-  return probability < kLeastProbable * std::max(edge_points, 1.0);
+  return probability < kLeastProbable[held] * std::max(edge_points, 1.0);
 }
 
 /// Of a piece of which corners hold so many ends, in spacings.

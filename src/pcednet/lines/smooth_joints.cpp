@@ -5,14 +5,19 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <optional>
 
+#include "pcednet/lines/fit.h"
 #include "pcednet/lines/strings.h"
 
 namespace pcednet::lines {
 namespace {
 
 constexpr std::size_t kNoEnd = static_cast<std::size_t>(-1);
-constexpr double kTouching = 0.99;  ///< least cosine between a segment and an arc that touch
+constexpr double kTouching = 0.99;     ///< least cosine between a segment and an arc that touch
+constexpr std::size_t kMostRound = 3;  ///< curves round a circle: four are the sides of a rectangle
+constexpr double kLargestRound = 8.0;  ///< radius of such a circle, in spacings
 
 /// End `end` is that of curve end / 2: its first point, or its last.
 const Vec3& place_of(const std::vector<Curve>& curves, std::size_t end) {
@@ -42,8 +47,9 @@ bool are_one(const std::vector<Curve>& curves, std::size_t a, std::size_t b, dou
   return along > cosine && !touching;
 }
 
-/// For each end, the end that goes on from it.
-std::vector<std::size_t> partners_of(const std::vector<Curve>& curves, double cosine) {
+/// For each end, the end that it alone meets, if `together` says so of the two.
+template <typename Together>
+std::vector<std::size_t> partners_of(const std::vector<Curve>& curves, const Together& together) {
   std::vector<std::size_t> ends;
   for (std::size_t i = 0; i < curves.size(); ++i) {
     if (!curves[i].closed) ends.insert(ends.end(), {2 * i, 2 * i + 1});
@@ -59,11 +65,36 @@ std::vector<std::size_t> partners_of(const std::vector<Curve>& curves, double co
     while (next < ends.size() && !compare(ends[first], ends[next])) ++next;
     if (next - first != 2) continue;
     const std::size_t a = ends[first], b = ends[first + 1];
-    if (a / 2 == b / 2 || !are_one(curves, a, b, cosine)) continue;
+    if (a / 2 == b / 2 || !together(a, b)) continue;
     partner[a] = b;
     partner[b] = a;
   }
   return partner;
+}
+
+/// Adds confidence and dihedral angle of a part as sums over its points and its length.
+void add_measures(Curve& whole, const Curve& part) {
+  whole.confidence += static_cast<double>(part.support) * part.confidence;
+  whole.dihedral_angle += length_of(part) * part.dihedral_angle;
+  whole.support += part.support;
+}
+
+/// Makes means of the sums.
+void finish_measures(Curve& whole, double length) {
+  whole.confidence /= std::max(static_cast<double>(whole.support), 1.0);
+  whole.dihedral_angle /= length;
+}
+
+/// The polyline with points no further apart than `step`.
+std::vector<Vec3> densified(const std::vector<Vec3>& points, double step) {
+  std::vector<Vec3> dense;
+  for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+    const Vec3 side = points[i + 1] - points[i];
+    const int parts = static_cast<int>(std::clamp(side.norm() / step, 0.0, 1e4)) + 1;
+    for (int k = 0; k < parts; ++k)
+      dense.push_back(points[i] + (k / static_cast<double>(parts)) * side);
+  }
+  return dense;
 }
 
 /// Adds `next`, entered at `entry`, to `whole`, which ends there.
@@ -73,17 +104,78 @@ void append(Curve& whole, const Curve& next, std::size_t entry, double tolerance
   const std::size_t shared = whole.points.empty() ? 0 : 1;
   whole.points.insert(whole.points.end(), points.begin() + static_cast<std::ptrdiff_t>(shared),
                       points.end());
-  const auto support = static_cast<double>(next.support);
-  const double length = length_of(next);
-  whole.confidence += support * next.confidence;
-  whole.dihedral_angle += length * next.dihedral_angle;
-  whole.support += next.support;
+  add_measures(whole, next);
+}
+
+/// The curves of the loop that begins with `first`, if it is one of so few.
+std::vector<std::size_t> loop_of(std::size_t first, const std::vector<std::size_t>& partner) {
+  std::vector<std::size_t> loop;
+  std::size_t entry = 2 * first;
+  do {
+    loop.push_back(entry / 2);
+    entry = partner[entry ^ 1U];
+    if (entry == kNoEnd || loop.size() > kMostRound) return {};
+  } while (entry / 2 != first);
+  return loop.size() < 2 ? std::vector<std::size_t>() : loop;
+}
+
+/// The circle that the curves of a loop are near to.
+std::optional<Curve> circle_of(const std::vector<std::size_t>& loop,
+                               const std::vector<Curve>& curves, double spacing, double within) {
+  Curve circle{
+      .kind = CurveKind::kCircle, .edge_class = curves[loop[0]].edge_class, .closed = true};
+  std::vector<ChainNode> nodes;
+  double length = 0.0;
+  for (const std::size_t i : loop) {
+    const Curve& curve = curves[i];
+    for (const Vec3& at : densified(sampled(curve, 0.1 * within), 0.5 * spacing)) {
+      ChainNode node{};
+      node.at = at;
+      node.spacing = spacing;
+      nodes.push_back(node);
+    }
+    add_measures(circle, curve);
+    length += length_of(curve);
+  }
+  finish_measures(circle, length);
+  const Fit fit = fit_arc(nodes);
+  if (fit.kind != CurveKind::kArc || fit.radius > kLargestRound * spacing) return std::nullopt;
+  for (const ChainNode& node : nodes) {
+    if (!((nearest_on(fit, node.at) - node.at).norm() < within)) return std::nullopt;
+  }
+  circle.centre = fit.point;
+  circle.axis = fit.direction;
+  circle.radius = fit.radius;
+  circle.points = {nearest_on(fit, nodes.front().at)};
+  return circle;
 }
 
 }  // namespace
 
+void close_round_loops(std::vector<Curve>& curves, double spacing, double within) {
+  const std::vector<std::size_t> partner = partners_of(curves, [&](std::size_t a, std::size_t b) {
+    return curves[a / 2].edge_class == curves[b / 2].edge_class;
+  });
+  std::vector<std::uint8_t> gone(curves.size(), 0);
+  std::vector<Curve> circles;
+  for (std::size_t i = 0; i < curves.size(); ++i) {
+    if (gone[i] || curves[i].closed) continue;
+    const std::vector<std::size_t> loop = loop_of(i, partner);
+    if (loop.empty()) continue;
+    auto circle = circle_of(loop, curves, spacing, within);
+    if (!circle) continue;
+    for (const std::size_t j : loop) gone[j] = 1;
+    circles.push_back(std::move(*circle));
+  }
+  std::size_t i = 0;
+  std::erase_if(curves, [&](const Curve&) { return gone[i++] != 0; });
+  curves.insert(curves.end(), circles.begin(), circles.end());
+}
+
 void join_smooth_corners(std::vector<Curve>& curves, double angle, double tolerance) {
-  const std::vector<std::size_t> partner = partners_of(curves, std::cos(angle));
+  const double cosine = std::cos(angle);
+  const std::vector<std::size_t> partner = partners_of(
+      curves, [&](std::size_t a, std::size_t b) { return are_one(curves, a, b, cosine); });
   std::vector<std::uint8_t> done(curves.size(), 0);
   std::vector<Curve> result;
   const auto follow = [&](std::size_t start) {
@@ -98,8 +190,7 @@ void join_smooth_corners(std::vector<Curve>& curves, double angle, double tolera
       entry = partner[entry ^ 1U];
     } while (entry != kNoEnd && !done[entry / 2]);
     whole.closed = entry != kNoEnd;
-    whole.confidence /= std::max(static_cast<double>(whole.support), 1.0);
-    whole.dihedral_angle /= length;
+    finish_measures(whole, length);
     whole.points = simplified(whole.points, tolerance);
     if (whole.closed) whole.points.pop_back();
     if (whole.points.size() == 2 && !whole.closed) whole.kind = CurveKind::kSegment;
