@@ -37,6 +37,14 @@ TEST(Coaxial, PiecesOfTwoRadiiStayApart) {
   EXPECT_EQ(pieces.size(), 3u);
 }
 
+TEST(Coaxial, APieceOfUnknownSidesIsACircleOfItsOwn) {
+  std::vector<Piece> pieces = {coaxial_circle(), round_about_z(20, 5, 0.0, 5.5)};
+  for (ChainNode& node : pieces[1].nodes) node.side_a = node.side_b = Vec3::Zero();
+  complete_coaxial(pieces, 0.2);
+  ASSERT_EQ(pieces.size(), 2u);
+  EXPECT_NEAR(pieces[1].fit.radius, 20.0, 0.1);
+}
+
 TEST(Coaxial, AnotherEdgeInTheGapKeepsItOpen) {
   Piece spoke = straight_along_x(20, 30);  // ends where the gap begins, and goes on outwards
   for (ChainNode& node : spoke.nodes) node.at.z() += 5.0;

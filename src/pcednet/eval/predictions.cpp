@@ -113,7 +113,7 @@ fs::path find_predictions(const fs::path& folder, const std::string& stem) {
   const auto extensions = extensions_of_predictions();
   for (const char* suffix : {"", "_edges", "_output"}) {
     for (const std::string_view extension : extensions) {
-      const fs::path file = folder / fmt::format("{}{}{}", stem, suffix, extension);
+      fs::path file = folder / fmt::format("{}{}{}", stem, suffix, extension);
       std::error_code error;
       if (fs::is_regular_file(file, error)) return file;
     }

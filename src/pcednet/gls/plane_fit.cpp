@@ -76,7 +76,7 @@ PlaneFit fit_covariance_plane(std::span<const LocalNeighbour> neighbours, double
   const Vec3 mean = m.p / m.w;
   const Mat3 covariance = m.pp - m.p * mean.transpose();
   const Eigen::SelfAdjointEigenSolver<Mat3> solver(covariance);
-  const Vec3 values = solver.eigenvalues();
+  const Vec3& values = solver.eigenvalues();
   constexpr double kSmallestGap = 1e-9;
   const bool one_place = !(values[2] > 1e-12 * t * t * m.w);
   if (one_place || !(values[1] - values[0] > kSmallestGap * values[2])) return fit;

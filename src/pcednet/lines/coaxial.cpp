@@ -106,7 +106,7 @@ Piece circle_about(const Fit& axis, const std::vector<Piece>& pieces,
     const Piece& piece = pieces[other.piece];
     const double away = std::hypot(other.radius - first.radius, other.height - first.height);
     if (piece.closed || away > reach * piece.spacing()) continue;
-    if (!same_wedge(axis, like, piece.middle())) continue;
+    if (&other != &first && !same_wedge(axis, like, piece.middle())) continue;
     const auto nodes = static_cast<double>(piece.nodes.size());
     radius += nodes * other.radius;
     height += nodes * other.height;

@@ -158,6 +158,7 @@ bool Outlines::is_foot(std::uint32_t face, const Vec3& place, const Vec3& outwar
 /// corner: at its point farthest from the middle.
 void Outlines::add_chain(std::uint32_t face, const std::vector<Vec2>& chain,
                          const std::vector<bool>& taken) {
+  if (chain.empty()) return;
   const std::size_t count = chain.size();
   Vec2 middle = Vec2::Zero();
   for (const Vec2& at : chain) middle += at / static_cast<double>(count);
@@ -177,7 +178,7 @@ void Outlines::add_chain(std::uint32_t face, const std::vector<Vec2>& chain,
 }
 
 void Outlines::add_run(std::uint32_t face, const std::vector<Vec2>& run) {
-  for (SupportLine line : straight_parts(run, spacing_)) {
+  for (const SupportLine& line : straight_parts(run, spacing_)) {
     const auto begin = run.begin();
     Eave eave{face,
               {begin + static_cast<std::ptrdiff_t>(line.first),

@@ -78,7 +78,7 @@ Standardisation no_standardisation(int inputs) {
 
 Standardisation measure_standardisation(const TrainingSet& set, int scales, int features,
                                         std::span<const std::uint8_t> odd) {
-  const auto inputs = static_cast<std::size_t>(scales * features);
+  const auto inputs = static_cast<std::size_t>(scales) * static_cast<std::size_t>(features);
   const auto picked = pick_samples(set.labels);
   Standardisation result{std::vector<float>(inputs), std::vector<float>(inputs)};
   parallel_blocks(inputs, 1, [&](std::size_t u, std::size_t) {

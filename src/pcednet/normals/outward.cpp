@@ -75,7 +75,7 @@ std::vector<Ends> measure_blocks(const std::array<Vec3, kDirections>& all,
 double mean_at_far_end(std::span<const Vec3> points, std::span<const Vec3> normals,
                        std::span<const std::uint32_t> members, const std::vector<Ends>& blocks,
                        const Vec3& direction, std::size_t k) {
-  const Vec3 origin = points[members.front()];
+  const Vec3& origin = points[members.front()];
   double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
   for (const Ends& ends : blocks) {
     lowest = std::min(lowest, ends.lowest[k]);

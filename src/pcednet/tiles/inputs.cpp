@@ -129,7 +129,7 @@ void append_rows(const std::vector<Attribute>& from, std::span<const std::uint32
 void read_in_turn(std::span<const std::size_t> parts,
                   const std::function<PointCloud(std::size_t)>& read,
                   const std::function<void(PointCloud&, std::size_t part)>& use) {
-  const auto together = static_cast<std::size_t>(2 * thread_count());
+  const auto together = 2 * static_cast<std::size_t>(thread_count());
   for_each_block(parts.size(), together, [&](std::size_t begin, std::size_t end) {
     std::vector<PointCloud> some(end - begin);
     parallel_blocks(some.size(), 1,

@@ -155,21 +155,21 @@ void add_all(const io::PartReader& reader, CloudFacts& facts, const Progress* pr
 std::optional<CloudFacts> large_facts(const std::filesystem::path& path,
                                       const FactsOptions& options, const Progress* progress) {
   auto file = std::make_unique<io::InputFile>(path);
-  const io::InputFile& bytes = *file;
-  const formats::Format& format = formats::format_of(bytes);
+  const formats::Format& format = formats::format_of(*file);
   if (format.name != "LAS" && format.name != "PLY") return std::nullopt;
+  CloudFacts facts = formats::facts_of_header(*file);
+  const BoundingBox whole = facts.las ? io::las_outline(*file).bounds : BoundingBox{};
   const auto reader = format.open_parts(std::move(file), kChunkPoints);
   if (!reader || reader->points() <= options.large || reader->parts() < 2 * kParts) {
     return std::nullopt;
   }
   reader->set_narrow_colours(true);  // the depth of the colours is no fact
-  CloudFacts facts = formats::facts_of_header(bytes);
   facts.points = reader->points(), facts.parts = reader->parts();
   facts.warnings = reader->warnings;
   if (options.all) {
     add_all(*reader, facts, progress);
   } else {
-    add_sample(*reader, facts.las ? io::las_outline(bytes).bounds : BoundingBox{}, facts, progress);
+    add_sample(*reader, whole, facts, progress);
   }
   facts.problems = formats::find_problems(facts);
   return facts;

@@ -95,7 +95,7 @@ std::vector<Vec3> Sample::take() {
 
 Spacing find_spacing(const SampledPoints& sample, const Plan& plan, const gls::ScaleRange& given,
                      CellCounts& counts, const Progress* progress) {
-  const std::vector<double> spacings = spacings_from(sample, plan, counts, progress);
+  std::vector<double> spacings = spacings_from(sample, plan, counts, progress);
   std::vector<Vec3> positions(sample.positions.begin(), sample.positions.end());
   if (!sample.is_all) positions.insert(positions.end(), {plan.box.min, plan.box.max});
   Spacing spacing{.range = gls::scale_range(positions, given, [&] { return spacings; })};

@@ -90,8 +90,9 @@ std::vector<std::uint8_t> feature_bytes(const Described& described,
     throw NotFound(fmt::format("no feature {} at scale {}", feature, scale));
   }
   const bool is_share = names[static_cast<std::size_t>(feature)].ends_with("phi");
-  const auto width = static_cast<std::size_t>(described.descriptor.scales * features);
-  const auto column = static_cast<std::size_t>(scale * features + feature);
+  const auto width = static_cast<std::size_t>(described.descriptor.scales) * names.size();
+  const auto column =
+      static_cast<std::size_t>(scale) * names.size() + static_cast<std::size_t>(feature);
   std::vector<std::uint8_t> bytes;
   bytes.reserve(points.size());
   for (const std::uint32_t point : points) {

@@ -180,7 +180,7 @@ Settings Session::change_settings(const SettingsChange& change) {
   const Lock lock(state_->mutex);
   State& s = *state_;
   s.check_ready();
-  const Settings wanted = annotate::changed(s.painting->settings(), change);
+  Settings wanted = annotate::changed(s.painting->settings(), change);
   if (wanted.start != kRandomStart) {
     check_start(s.options.load_model(wanted.start), wanted.start, s.painting->classes().table);
   }

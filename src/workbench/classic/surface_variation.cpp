@@ -14,7 +14,7 @@ namespace pcednet::classic {
 namespace {
 
 double variation(std::span<const Vec3> positions, std::span<const spatial::Neighbour> near) {
-  const Vec3 origin = positions[near.front().index];  // large coordinates cancel here
+  const Vec3& origin = positions[near.front().index];  // large coordinates cancel here
   Vec3 mean = Vec3::Zero();
   for (const auto& neighbour : near) mean += positions[neighbour.index] - origin;
   mean /= static_cast<double>(near.size());

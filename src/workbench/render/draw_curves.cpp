@@ -83,7 +83,7 @@ class Ink {
       for (std::size_t c = 0; c < 3 && drops_[i].cover > 0.0f; ++c) {
         const float below = image_.pixels[i][c], above = drops_[i].colour[c];
         image_.pixels[i][c] =
-            static_cast<std::uint8_t>(below + drops_[i].cover * (above - below) + 0.5f);
+            static_cast<std::uint8_t>(std::lround(below + drops_[i].cover * (above - below)));
       }
       drops_[i] = {};
     }

@@ -72,7 +72,7 @@ Rgb shaded(const Layer& layer, const Taps& taps, const Pairs& outline, int x, in
   const float light = openness(layer, taps, x, y, depth);
   Rgb colour = layer.colour[pixel];
   for (std::uint8_t& c : colour)
-    c = static_cast<std::uint8_t>(static_cast<float>(c) * light + 0.5f);
+    c = static_cast<std::uint8_t>(std::lround(static_cast<float>(c) * light));
   return colour;
 }
 

@@ -19,8 +19,8 @@ Eigen::Isometry3d shifted(const Vec3& shift) {
 
 /// A sheet z = sign * s * |q|, a crease where q = 0, with s falling linearly from `slope` at `from`
 /// to 0 at `to` along x.
-HeightField fading(std::function<double(double, double)> q,
-                   std::function<Vec2(double, double)> q_gradient, double slope, double from,
+HeightField fading(const std::function<double(double, double)>& q,
+                   const std::function<Vec2(double, double)>& q_gradient, double slope, double from,
                    double to, double sign) {
   const double rate = slope / (to - from);
   const auto s = [=](double x) { return rate * (to - x); };
@@ -158,7 +158,8 @@ Shape wedges() {
                      parallelogram(-0.5 * edge, 0.8 * side, edge)};
     wedge.edges = {{Segment{-0.5 * edge, 0.5 * edge}}};
     add_rims(wedge);
-    append(shape, wedge, shifted(Vec3(2.0 * (i % 3), 1.5 * (i / 3), 0.2 * i)));
+    const int column = i % 3, row = i / 3;
+    append(shape, wedge, shifted(Vec3(2.0 * column, 1.5 * row, 0.2 * i)));
   }
   return shape;
 }
@@ -207,7 +208,7 @@ Shape rounded_box(double radius) {
     const Vec3 e = Vec3::Unit(axis);
     const Vec3 x = Vec3::Unit((axis + 1) % 3);
     const Vec3 y = Vec3::Unit((axis + 2) % 3);
-    const Vec3 end = inner;
+    const Vec3& end = inner;
     const Vec3 start = inner - inner[axis] * e;
     octant.patches.push_back(cylinder_strip(start, end, x, radius, 0.5 * std::numbers::pi));
     octant.patches.push_back(parallelogram(half[axis] * e, inner.dot(x) * x, inner.dot(y) * y));

@@ -29,7 +29,7 @@ std::vector<std::size_t> chain_of(const ObjStatements& statement, std::size_t ve
 }
 
 Vec3 drawable_vertex(const ObjStatements& statement) {
-  const Vec3 vertex = statement.vertex();
+  Vec3 vertex = statement.vertex();
   if (!is_drawable(vertex)) throw statement.error("a coordinate is not finite or beyond 1e150");
   return vertex;
 }

@@ -17,7 +17,7 @@ std::string coordinate_system(const LasFile& file) {
   std::string citations;
   for (const auto* records : {&file.records, &file.extended_records}) {
     for (const LasRecord& record : *records) {
-      const std::string text = until_zero(record.data);
+      std::string text = until_zero(record.data);
       if (record.is(kWktRecord)) return text;
       if (record.is(kGeoTextRecord)) citations = text;
     }

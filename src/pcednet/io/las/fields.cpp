@@ -99,7 +99,7 @@ constexpr std::array kExtraTypes = {ScalarType::kUint8,  ScalarType::kInt8,   Sc
 
 const char* const kOurs[] = {"edge_class", "p_sharp", "p_smooth"};
 
-std::string to_attribute_name(std::string name) {
+std::string to_attribute_name(const std::string& name) {
   const bool ours = std::find(std::begin(kOurs), std::end(kOurs), name) != std::end(kOurs);
   return ours ? "scalar_" + name : name;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -74,8 +75,9 @@ struct LasFile {
     return (number_at<std::uint8_t>(header, las_header::kPointFormat) &
             las_header::kCompressedBits) != 0;
   }
+  /// Never 0, which no file that is read here says.
   std::size_t record_length() const {
-    return number_at<std::uint16_t>(header, las_header::kRecordLength);
+    return std::max<std::size_t>(number_at<std::uint16_t>(header, las_header::kRecordLength), 1);
   }
   std::uint64_t points_offset() const {
     return number_at<std::uint32_t>(header, las_header::kPointsOffset);
