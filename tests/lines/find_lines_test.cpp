@@ -273,6 +273,22 @@ TEST(Sampling, TakesThinWallsForNoNoise) {
   EXPECT_GT(noise_of_walls(0.3), 0.15);
 }
 
+TEST(Sampling, ThinWallsEverywhereAreNoNoise) {
+  const auto noise_of_wall = [](double noise, double sign) {
+    Random random(9);
+    Cloud cloud;
+    for (int i = 0; i < 6000; ++i) {
+      const double z = (i % 2 == 0 ? 0.0 : 1.2) + noise * random.normal();
+      const Vec3 normal = random.uniform() < 0.5 ? Vec3(0, 0, sign) : Vec3(0, 0, -sign);
+      cloud.add({55.0 * random.uniform(), 55.0 * random.uniform(), z}, normal, false);
+    }
+    return measure_sampling(OrderedPoints({cloud.positions, cloud.normals, cloud.classes})).noise;
+  };
+  EXPECT_LT(noise_of_wall(0.0, 1.0), 1e-6);
+  EXPECT_GT(noise_of_wall(0.5, 1.0), 0.25);
+  EXPECT_EQ(noise_of_wall(0.2, 1.0), noise_of_wall(0.2, -1.0));
+}
+
 /// Two walls and a chamfer between them, along y; points about one apart, the chamfer labelled.
 Cloud chamfer(double from_corner) {
   Random random(6);

@@ -7,8 +7,6 @@
 #include <numbers>
 #include <utility>
 
-#include "pcednet/core/eigendecomposition.h"
-#include "pcednet/core/median.h"
 #include "pcednet/lines/local_planes.h"
 #include "pcednet/lines/noisy_wedge.h"
 #include "pcednet/lines/ordered_points.h"
@@ -16,13 +14,10 @@
 namespace pcednet::lines {
 namespace {
 
-constexpr std::size_t kPlaneNeighbours = 15, kLeastNeighbours = 5;
-constexpr std::size_t kSamples = 2000;  ///< points that spacing and noise are measured at
 constexpr double kLeastAngle = 20.0 * std::numbers::pi / 180.0;
 /// Nearest points that are tried with an edge point, itself among them: bands of smooth-edge are
 /// wide enough, sharp-edge may be a single row.
 constexpr std::size_t kWithSharp = 9, kWithSmooth = 3;
-constexpr double kMostNoise = 0.7;  ///< in spacings: more is no surface
 
 /// With more noise (in spacings) wedges are fitted to all points around, from this many down: the
 /// fewer, the less of other edges is among them.
@@ -41,58 +36,6 @@ constexpr double kLeastFromLine = 0.4;  ///< of those that tell on which side th
 
 /// Ends of the zones of a side: near the line, between, far.
 constexpr double kNearZone[] = {0.15, 0.9}, kMiddleZone = 1.9, kFarZone = 3.3;
-
-double typical(std::vector<double> values) {
-  return values.empty() ? 0.0 : upper_median(std::move(values));
-}
-
-/// Noise is everywhere: what a tenth of the points have less than half of is shape, as where walls
-/// are thin.
-double noise_of(std::vector<double> distances) {
-  if (distances.empty()) return 0.0;
-  const double least = value_at_rank(distances, distances.size() / 10);
-  return std::min(2.0 * least, upper_median(std::move(distances)));
-}
-
-double distance_to_plane(const OrderedPoints& cloud, std::size_t i,
-                         std::span<const spatial::Neighbour> nearest) {
-  Vec3 mean = Vec3::Zero();
-  for (const auto& near : nearest) mean += cloud.position(near.index) - cloud.position(i);
-  mean /= static_cast<double>(nearest.size());
-  Mat3 covariance = Mat3::Zero();
-  for (const auto& near : nearest) {
-    const Vec3 offset = cloud.position(near.index) - cloud.position(i) - mean;
-    covariance += offset * offset.transpose();
-  }
-  const auto count = static_cast<double>(nearest.size());
-  return std::sqrt(std::max(eigendecomposition(covariance / count).values[0], 0.0));
-}
-
-}  // namespace
-
-Sampling measure_sampling(const OrderedPoints& cloud) {
-  const std::size_t step = std::max<std::size_t>(1, cloud.size() / kSamples);
-  std::vector<std::uint32_t> all, points;
-  for (std::size_t i = 0; i < cloud.size(); i += step) {
-    all.push_back(static_cast<std::uint32_t>(i));
-    if (!cloud.is_edge(i)) points.push_back(all.back());
-  }
-  if (points.empty()) points = std::move(all);
-  const std::size_t others = cloud.available(kPlaneNeighbours);
-  std::vector<spatial::Neighbour> nearest;
-  cloud.nearest_others(points, others, nearest);
-  std::vector<double> spacings, noises;
-  for (std::size_t k = 0; k < points.size() && others >= kLeastNeighbours; ++k) {
-    const auto row = std::span(nearest).subspan(k * others, others);
-    const double spacing = spacing_of(row);
-    if (!(spacing > 0.0)) continue;
-    spacings.push_back(spacing);
-    noises.push_back(distance_to_plane(cloud, points[k], row) / spacing);
-  }
-  return {typical(spacings), std::min(noise_of(std::move(noises)), kMostNoise)};
-}
-
-namespace {
 
 /// In spacings.
 struct Tolerances {

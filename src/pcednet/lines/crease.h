@@ -12,6 +12,7 @@
 #include "pcednet/cloud/point_cloud.h"
 #include "pcednet/core/progress.h"
 #include "pcednet/core/vec3.h"
+#include "pcednet/lines/sampling.h"
 #include "pcednet/spatial/kd_tree.h"
 
 namespace pcednet::lines {
@@ -35,12 +36,6 @@ inline double dihedral_angle(const Vec3& side_a, const Vec3& side_b) {
   return std::numbers::pi - std::acos(std::clamp(side_a.dot(side_b), -1.0, 1.0));
 }
 
-/// Spacing and noise of a cloud, from points off its edges; from all points if none is off.
-struct Sampling {
-  double spacing = 0.0;  ///< sqrt of the area per point, median
-  double noise = 0.0;    ///< of points about the plane of their neighbours, in spacings
-};
-
 /// The crease of a point, from its nearest others; nothing where there is none.
 using CreaseAt = std::function<std::optional<Crease>(std::uint32_t point,
                                                      std::span<const spatial::Neighbour> others)>;
@@ -48,8 +43,6 @@ using CreaseAt = std::function<std::optional<Crease>(std::uint32_t point,
 /// What crease_at() finds at `points` (ascending), in their order, from `count` others of each.
 std::vector<Crease> creases_at(const OrderedPoints& cloud, std::span<const std::uint32_t> points,
                                std::size_t count, Stage& stage, const CreaseAt& crease_at);
-
-Sampling measure_sampling(const OrderedPoints& cloud);
 
 /// The creases of the edge points. Edge points without two planes beside them have none.
 std::vector<Crease> find_creases(const OrderedPoints& cloud, const Sampling& sampling,

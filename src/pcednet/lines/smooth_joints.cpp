@@ -129,10 +129,11 @@ std::optional<Curve> circle_of(const std::vector<std::size_t>& loop,
   for (const std::size_t i : loop) {
     const Curve& curve = curves[i];
     for (const Vec3& at : densified(sampled(curve, 0.1 * within), 0.5 * spacing)) {
-      ChainNode node{};
-      node.at = at;
-      node.spacing = spacing;
-      nodes.push_back(node);
+      nodes.push_back({.at = at,
+                       .along = Vec3::Zero(),
+                       .side_a = Vec3::Zero(),
+                       .side_b = Vec3::Zero(),
+                       .spacing = spacing});
     }
     add_measures(circle, curve);
     length += length_of(curve);

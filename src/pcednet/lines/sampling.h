@@ -1,0 +1,15 @@
+#pragma once
+
+namespace pcednet::lines {
+
+class OrderedPoints;
+
+/// Spacing and noise of a cloud, from points off its edges; from all points if none is off.
+struct Sampling {
+  double spacing = 0.0;  ///< sqrt of the area per point, median
+  double noise = 0.0;    ///< of points about the plane of their neighbours, in spacings
+};
+
+Sampling measure_sampling(const OrderedPoints& cloud);
+
+}  // namespace pcednet::lines
