@@ -19,7 +19,7 @@ constexpr double kMostOpen = 0.55;  ///< of a circle that is to be closed
 // Of small circles, which are found in pieces that fit none of them alone; in spacings.
 constexpr double kLargestSmall = 5.0;                ///< radius
 constexpr double kLeastApart = 1.5, kOnSmall = 0.7;  ///< of two nodes; of a node from a circle
-constexpr double kBesideSmall = 1.2, kAcross = 1.5;  ///< of nodes that belong to a circle
+constexpr double kAcross = 1.5;                      ///< of ends on a circle
 constexpr double kMostTurn = 0.28, kTurnBySpacing = 0.78;  ///< sine between node and circle
 constexpr double kSmallError = 0.3;                        ///< root mean square of the nodes
 constexpr std::size_t kSectors = 12, kLeastSectors = 8;
@@ -155,18 +155,6 @@ std::optional<SmallCircle> best_small_circle(const ChainNode& node,
     return std::nullopt;
   }
   return best;
-}
-
-/// Whether the piece is of the circle, or of what is seen of its wall.
-bool belongs_to(const Fit& circle, const Piece& piece) {
-  std::size_t beside = 0;
-  for (const ChainNode& node : piece.nodes) {
-    const Vec3 offset = node.at - circle.point;
-    const double height = offset.dot(circle.direction);
-    const double out = (offset - height * circle.direction).norm() - circle.radius;
-    beside += std::abs(height) < kBesideSmall * node.spacing && out < kBesideSmall * node.spacing;
-  }
-  return 5 * beside >= 3 * piece.nodes.size();
 }
 
 /// Whether pieces across the circle end on it: it is a polygon.

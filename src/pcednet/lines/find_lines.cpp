@@ -8,6 +8,7 @@
 
 #include "pcednet/core/error.h"
 #include "pcednet/core/parallel.h"
+#include "pcednet/lines/bores.h"
 #include "pcednet/lines/bridge.h"
 #include "pcednet/lines/chain.h"
 #include "pcednet/lines/circles.h"
@@ -160,6 +161,7 @@ std::vector<Curve> find_lines(const EdgePoints& points, const LineOptions& optio
   complete_coaxial(pieces, limits.tolerance);
   refine(pieces, cloud, sampling, progress);
   extend_free_ends(pieces, cloud, sampling.noise);
+  find_bores(pieces, cloud, sampling, progress);
   if (options.regularise) regularise(pieces);
   if (options.stage == LineStage::kPieces) return drawn(std::span(pieces), finish_options);
 

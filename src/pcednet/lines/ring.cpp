@@ -8,6 +8,7 @@ namespace pcednet::lines {
 namespace {
 
 constexpr double kBlocking = 2.5;  ///< spacings from the end of a piece to a gap
+constexpr double kBeside = 1.2;    ///< spacings from a circle to nodes that are of it
 
 /// A wedge seen from the axis of a circle: the same all around it.
 ChainNode seen_from_axis(const Fit& circle, const ChainNode& node) {
@@ -41,6 +42,17 @@ bool same_wedge(const Fit& circle, const ChainNode& a, const ChainNode& b) {
 double angle_at(const Fit& circle, const Vec3& x, const Vec3& place) {
   const Vec3 y = circle.direction.cross(x), offset = place - circle.point;
   return std::atan2(y.dot(offset), x.dot(offset));
+}
+
+bool belongs_to(const Fit& circle, const Piece& piece) {
+  std::size_t beside = 0;
+  for (const ChainNode& node : piece.nodes) {
+    const Vec3 offset = node.at - circle.point;
+    const double height = offset.dot(circle.direction);
+    const double out = (offset - height * circle.direction).norm() - circle.radius;
+    beside += std::abs(height) < kBeside * node.spacing && out < kBeside * node.spacing;
+  }
+  return 5 * beside >= 3 * piece.nodes.size();
 }
 
 std::vector<Gap> sort_about_axis(const Fit& circle, std::vector<ChainNode>& nodes) {

@@ -23,6 +23,9 @@ struct PieceIndex {
 /// Whether the wedges at two nodes are alike, seen from the axis of the circle.
 bool same_wedge(const Fit& circle, const ChainNode& a, const ChainNode& b);
 
+/// Whether the piece is of a small circle, or of what is seen of its wall.
+bool belongs_to(const Fit& circle, const Piece& piece);
+
 /// The angle of `place` about the axis, from `x`, which is unit and orthogonal to it.
 double angle_at(const Fit& circle, const Vec3& x, const Vec3& place);
 

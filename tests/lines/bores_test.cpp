@@ -1,0 +1,124 @@
+#include "pcednet/lines/bores.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "pcednet/core/random.h"
+
+namespace pcednet::lines {
+namespace {
+
+constexpr double kBoreRadius = 2.3, kDepth = 3.0, kSide = 20.0;  // in spacings
+
+/// A plate's top at z = 0 with something round in its middle, one point per unit of area. Edge
+/// points are those nearer than 0.7 to the rim at the top.
+struct Part {
+  std::vector<Vec3> positions = {}, normals = {};
+  std::vector<std::uint8_t> classes = {};
+  Random random = Random(5);
+
+  void add(const Vec3& position, const Vec3& normal) {
+    const double out = std::hypot(position.x(), position.y()) - kBoreRadius;
+    positions.push_back(position);
+    normals.push_back(normal);
+    classes.push_back(std::hypot(out, position.z()) < 0.7 ? kSharpEdge : kNonEdge);
+  }
+  void add_plane_with_hole() {
+    for (int i = 0; i < static_cast<int>(kSide * kSide); ++i) {
+      const Vec3 p((random.uniform() - 0.5) * kSide, (random.uniform() - 0.5) * kSide, 0.0);
+      if (std::hypot(p.x(), p.y()) > kBoreRadius) add(p, Vec3::UnitZ());
+    }
+  }
+  void add_disc() {
+    for (int i = 0; i < 17; ++i) {
+      const double angle = 2.0 * std::numbers::pi * random.uniform();
+      const double radius = kBoreRadius * std::sqrt(random.uniform());
+      add(radius * Vec3(std::cos(angle), std::sin(angle), 0.0), Vec3::UnitZ());
+    }
+  }
+  void add_wall(double from, double to, double sign) {
+    const double area = 2.0 * std::numbers::pi * kBoreRadius * (to - from);
+    for (int i = 0; i < static_cast<int>(area); ++i) {
+      const double angle = 2.0 * std::numbers::pi * random.uniform();
+      const Vec3 out(std::cos(angle), std::sin(angle), 0.0);
+      add(kBoreRadius * out + (from + (to - from) * random.uniform()) * Vec3::UnitZ(), sign * out);
+    }
+  }
+  std::vector<Piece> bores(double noise = 0.0) const {
+    std::vector<Piece> pieces;
+    find_bores(pieces, OrderedPoints({positions, normals, classes}), {1.0, noise}, nullptr);
+    return pieces;
+  }
+};
+
+void expect_the_rim(const std::vector<Piece>& pieces) {
+  ASSERT_EQ(pieces.size(), 1u);
+  EXPECT_TRUE(pieces[0].closed);
+  EXPECT_NEAR(pieces[0].fit.radius, kBoreRadius, 0.05);
+  EXPECT_LT(pieces[0].fit.point.norm(), 0.05);
+  EXPECT_GT(pieces[0].middle().edge_points, 0.0);
+  EXPECT_EQ(pieces[0].middle().probability, 1.0);
+}
+
+TEST(Bores, EndInACircleWhereTheyEnterAPlane) {
+  Part part;
+  part.add_plane_with_hole();
+  part.add_wall(-kDepth, 0.0, -1.0);
+  const auto pieces = part.bores();
+  expect_the_rim(pieces);
+  EXPECT_LT(pieces[0].middle().side_a.z(), -0.99);  // down the wall
+}
+
+TEST(Bores, PinsEndInOneToo) {
+  Part part;
+  part.add_disc();
+  part.add_wall(-kDepth, 0.0, 1.0);
+  const auto pieces = part.bores();
+  expect_the_rim(pieces);
+  const ChainNode& node = pieces[0].middle();
+  EXPECT_LT(node.side_b.dot(node.at - pieces[0].fit.point), 0.0);  // into the disc
+}
+
+TEST(Bores, TakeThePlaceOfThePiecesThere) {
+  Part part;
+  part.add_plane_with_hole();
+  part.add_wall(-kDepth, 0.0, -1.0);
+  ChainNode node{.at = {kBoreRadius, -1.0, 0.0},
+                 .along = Vec3::UnitY(),
+                 .side_a = -Vec3::UnitZ(),
+                 .side_b = Vec3::UnitX(),
+                 .spacing = 1.0};
+  Piece chord{.fit = {}, .nodes = {node, node}, .ends = {}};
+  chord.nodes[1].at.y() = 1.0;
+  chord.fit = fit_segment(chord.nodes);
+  chord.ends = {chord.nodes[0].at, chord.nodes[1].at};
+  std::vector<Piece> pieces = {chord};
+  find_bores(pieces, OrderedPoints({part.positions, part.normals, part.classes}), {1.0, 0.0},
+             nullptr);
+  expect_the_rim(pieces);
+}
+
+TEST(Bores, NeedAPlaneThatEndsAtTheWall) {
+  Part through;  // a pin that goes on above the plane
+  through.add_plane_with_hole();
+  through.add_wall(-kDepth, kDepth, 1.0);
+  EXPECT_TRUE(through.bores().empty());
+
+  Part painted;  // edge points in a plane
+  painted.add_plane_with_hole();
+  painted.add_disc();
+  EXPECT_TRUE(painted.bores().empty());
+}
+
+TEST(Bores, AreNotLookedForInMuchNoise) {
+  Part part;
+  part.add_plane_with_hole();
+  part.add_wall(-kDepth, 0.0, -1.0);
+  EXPECT_TRUE(part.bores(0.5).empty());
+}
+
+}  // namespace
+}  // namespace pcednet::lines
