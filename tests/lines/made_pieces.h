@@ -1,7 +1,10 @@
 #pragma once
 
 #include <cmath>
+#include <cstdint>
+#include <vector>
 
+#include "pcednet/lines/ordered_points.h"
 #include "pcednet/lines/piece.h"
 
 namespace pcednet::lines {
@@ -46,5 +49,24 @@ inline Piece round_about_z(double radius, double height, double from, double to,
   piece.ends = {piece.nodes.front().at, piece.nodes.back().at};
   return piece;
 }
+
+inline OrderedPoints no_points() {
+  return OrderedPoints(EdgePoints{});
+}
+
+/// Sharp-edge points one apart along a circle about the z axis.
+struct EdgeRing {
+  EdgeRing(double radius, double height) {
+    for (double t = 0.0; t < 6.28; t += 1.0 / radius) {
+      positions.emplace_back(radius * std::cos(t), radius * std::sin(t), height);
+    }
+    normals.assign(positions.size(), Vec3::UnitZ());
+    classes.assign(positions.size(), kSharpEdge);
+  }
+  OrderedPoints points() const { return OrderedPoints({positions, normals, classes}); }
+
+  std::vector<Vec3> positions, normals;
+  std::vector<std::uint8_t> classes;
+};
 
 }  // namespace pcednet::lines

@@ -51,7 +51,7 @@ TEST(Pieces, ThatLieOnALongerOneAreDropped) {
 
 TEST(Circles, AreCompletedFromTheirArcs) {
   std::vector<Piece> pieces = {round_piece(0.0, 2.5), round_piece(3.3, 5.5)};
-  complete_circles(pieces, kWithin);
+  complete_circles(pieces, no_points(), kWithin);
   ASSERT_EQ(pieces.size(), 1u);
   EXPECT_TRUE(pieces[0].closed);
   EXPECT_NEAR(pieces[0].fit.radius, 10.0, 1e-6);
@@ -60,10 +60,25 @@ TEST(Circles, AreCompletedFromTheirArcs) {
 TEST(Circles, StayOpenWhereAnotherEdgeEndsOrTooLittleIsThere) {
   std::vector<Piece> cut = {round_piece(0.0, 5.0)};
   cut.push_back(straight(cut[0].ends[1], cut[0].ends[0]));
-  complete_circles(cut, kWithin);
+  complete_circles(cut, no_points(), kWithin);
   EXPECT_FALSE(cut[0].closed);
   std::vector<Piece> quarter = {round_piece(0.0, 1.6)};
-  complete_circles(quarter, kWithin);
+  complete_circles(quarter, no_points(), kWithin);
+  EXPECT_FALSE(quarter[0].closed);
+}
+
+TEST(Circles, AreCompletedWhereEdgePointsFollowThem) {
+  std::vector<Piece> cut = {round_piece(0.0, 5.0)};
+  cut.push_back(straight(cut[0].ends[1], cut[0].ends[0]));
+  complete_circles(cut, EdgeRing(10, 0).points(), kWithin);
+  EXPECT_TRUE(cut[0].closed);
+  std::vector<Piece> part = {round_piece(0.0, 2.3)};
+  complete_circles(part, EdgeRing(10, 2).points(), kWithin);  // too far from it
+  EXPECT_FALSE(part[0].closed);
+  complete_circles(part, EdgeRing(10, 0).points(), kWithin);
+  EXPECT_TRUE(part[0].closed);
+  std::vector<Piece> quarter = {round_piece(0.0, 1.6)};
+  complete_circles(quarter, EdgeRing(10, 0).points(), kWithin);
   EXPECT_FALSE(quarter[0].closed);
 }
 
@@ -95,7 +110,7 @@ std::vector<Piece> ring_of(double radius, int sides, bool turn) {
 TEST(Circles, ThatAreSmallAreFoundInShortSegments) {
   std::vector<Piece> pieces = ring_of(3.0, 6, true);
   pieces.push_back(straight({20, 0, 0}, {30, 0, 0}));
-  complete_circles(pieces, kWithin);
+  complete_circles(pieces, no_points(), kWithin);
   ASSERT_EQ(pieces.size(), 2u);
   EXPECT_FALSE(pieces[0].closed);  // the segment beside
   EXPECT_TRUE(pieces[1].closed);
@@ -105,7 +120,7 @@ TEST(Circles, ThatAreSmallAreFoundInShortSegments) {
 
 TEST(Circles, AreNotPutInPlaceOfPolygons) {
   std::vector<Piece> square = ring_of(4.0, 4, false);
-  complete_circles(square, kWithin);
+  complete_circles(square, no_points(), kWithin);
   EXPECT_EQ(square.size(), 4u);
 
   std::vector<Piece> prism = ring_of(3.0, 6, true);  // seen as round, but edges end on it
@@ -114,7 +129,7 @@ TEST(Circles, AreNotPutInPlaceOfPolygons) {
     const Vec3 corner(3.0 * std::cos(t), 3.0 * std::sin(t), 0);
     prism.push_back(straight(corner, corner + Vec3(0, 0, 6), Vec3::UnitX(), Vec3::UnitY()));
   }
-  complete_circles(prism, kWithin);
+  complete_circles(prism, no_points(), kWithin);
   EXPECT_EQ(prism.size(), 12u);
 }
 

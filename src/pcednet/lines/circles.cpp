@@ -14,7 +14,8 @@
 namespace pcednet::lines {
 namespace {
 
-constexpr double kMostOpen = 0.55;  ///< of a circle that is to be closed
+constexpr double kMostOpen = 0.55;        ///< of a circle that is to be closed
+constexpr double kMostOpenOnEdges = 0.7;  ///< the same where edge points follow it
 
 // Of small circles, which are found in pieces that fit none of them alone; in spacings.
 constexpr double kLargestSmall = 5.0;                ///< radius
@@ -56,7 +57,7 @@ std::vector<std::size_t> pieces_on_circle(const std::vector<Piece>& pieces, cons
 /// The circle that `arc` is of, with all pieces on it (`joined`); nothing if it is not to be
 /// closed.
 std::optional<Piece> completed(const std::vector<Piece>& pieces, const PieceIndex& index,
-                               std::size_t arc, double tolerance,
+                               const OrderedPoints& cloud, std::size_t arc, double tolerance,
                                std::vector<std::size_t>& joined) {
   Piece whole = pieces[arc];
   joined = pieces_on_circle(pieces, index, arc, 3.0 * tolerance);
@@ -70,8 +71,11 @@ std::optional<Piece> completed(const std::vector<Piece>& pieces, const PieceInde
   const std::vector<Gap> gaps = sort_about_axis(fit, whole.nodes);
   double open = 0.0;
   for (const Gap& gap : gaps) open += gap.length;
-  if (open > kMostOpen * kWholeTurn * fit.radius) return std::nullopt;
-  if (is_blocked(gaps, pieces, index, joined)) return std::nullopt;
+  const double share = open / (kWholeTurn * fit.radius);
+  if (share > kMostOpenOnEdges) return std::nullopt;
+  if (!edges_follow(fit, gaps, whole.spacing(), cloud)) {
+    if (share > kMostOpen || is_blocked(gaps, pieces, index, joined)) return std::nullopt;
+  }
   whole.closed = true;
   whole.ends = {whole.nodes.front().at, whole.nodes.front().at};
   return whole;
@@ -208,7 +212,7 @@ void find_small_circles(std::vector<Piece>& pieces) {
 }
 }  // namespace
 
-void complete_circles(std::vector<Piece>& pieces, double tolerance) {
+void complete_circles(std::vector<Piece>& pieces, const OrderedPoints& cloud, double tolerance) {
   find_small_circles(pieces);
   const PieceIndex index(pieces);
   std::vector<std::uint8_t> gone(pieces.size(), 0);
@@ -219,7 +223,7 @@ void complete_circles(std::vector<Piece>& pieces, double tolerance) {
     if (piece.nodes.size() < kLeastArc || piece.fit.radius < kSmallestRadius * piece.spacing()) {
       continue;
     }
-    auto circle = completed(pieces, index, i, tolerance, joined);
+    auto circle = completed(pieces, index, cloud, i, tolerance, joined);
     if (!circle) continue;
     for (const std::size_t j : joined) {
       if (j == i) continue;
@@ -229,7 +233,7 @@ void complete_circles(std::vector<Piece>& pieces, double tolerance) {
     pieces[i] = std::move(*circle);
   }
   erase_marked(pieces, gone);
-  complete_coaxial(pieces, tolerance);
+  complete_coaxial(pieces, cloud, tolerance);
 }
 
 }  // namespace pcednet::lines

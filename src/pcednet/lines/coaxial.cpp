@@ -14,8 +14,9 @@ constexpr double kLeastAxisRadius = 2.5, kOneAxis = 0.5;  ///< in spacings
 constexpr double kOneAxisCosine = 0.999;
 constexpr double kOnAxis = 3.0, kOnAxisInNoise = 4.0;  ///< of nodes to their circle, in tolerances
 constexpr double kNoisyTolerance = 0.28;
-constexpr double kLeastCovered = 0.5;   ///< of the circle, by nodes
-constexpr std::size_t kLeastAbout = 3;  ///< nodes of a piece
+constexpr double kLeastCovered = 0.5;         ///< of the circle, by nodes
+constexpr double kLeastCoveredOnEdges = 0.4;  ///< the same where edge points follow it
+constexpr std::size_t kLeastAbout = 3;        ///< nodes of a piece
 
 /// A piece as part of a circle about an axis.
 struct AboutAxis {
@@ -121,7 +122,7 @@ Piece circle_about(const Fit& axis, const std::vector<Piece>& pieces,
 
 }  // namespace
 
-void complete_coaxial(std::vector<Piece>& pieces, double tolerance) {
+void complete_coaxial(std::vector<Piece>& pieces, const OrderedPoints& cloud, double tolerance) {
   const PieceIndex index(pieces);
   std::vector<std::uint8_t> gone(pieces.size(), 0);
   const double reach = (tolerance > kNoisyTolerance ? kOnAxisInNoise : kOnAxis) * tolerance;
@@ -134,8 +135,12 @@ void complete_coaxial(std::vector<Piece>& pieces, double tolerance) {
     for (const AboutAxis& first : around) {
       if (pieces[first.piece].closed) continue;
       Piece whole = circle_about(axis, pieces, around, first, reach, joined);
-      if (covered_share(whole.fit, whole.nodes) < kLeastCovered) continue;
-      if (is_blocked(sort_about_axis(whole.fit, whole.nodes), pieces, index, concentric)) continue;
+      const double covered = covered_share(whole.fit, whole.nodes);
+      if (covered < kLeastCoveredOnEdges) continue;
+      const std::vector<Gap> gaps = sort_about_axis(whole.fit, whole.nodes);
+      if (!edges_follow(whole.fit, gaps, whole.spacing(), cloud)) {
+        if (covered < kLeastCovered || is_blocked(gaps, pieces, index, concentric)) continue;
+      }
       whole.ends = {whole.nodes.front().at, whole.nodes.front().at};
       for (const std::size_t j : joined) {
         gone[j] = 1;

@@ -155,10 +155,10 @@ std::vector<Curve> find_lines(const EdgePoints& points, const LineOptions& optio
   if (options.stage == LineStage::kChains) return drawn(chains, finish_options);
   std::vector<Piece> pieces = split_chains(chains, limits.tolerance, progress);
   join_pieces(pieces, limits.gap, limits.tolerance);
-  complete_circles(pieces, limits.tolerance);
+  complete_circles(pieces, cloud, limits.tolerance);
   bridge_gaps(pieces, cloud, {limits.tolerance, sampling.noise});
   string_together(pieces, limits.gap, limits.angle);
-  complete_coaxial(pieces, limits.tolerance);
+  complete_coaxial(pieces, cloud, limits.tolerance);
   refine(pieces, cloud, sampling, progress);
   extend_free_ends(pieces, cloud, sampling.noise);
   find_bores(pieces, cloud, sampling, progress);

@@ -10,6 +10,11 @@ namespace {
 constexpr double kBlocking = 2.5;  ///< spacings from the end of a piece to a gap
 constexpr double kBeside = 1.2;    ///< spacings from a circle to nodes that are of it
 
+// Of edge points along a gap.
+constexpr double kLeastFollowed = 6.0;  ///< radius, in spacings: edges of small details are near
+constexpr double kOnGap = 1.2;          ///< spacings from the circle
+constexpr double kLeastOnGap = 0.85;    ///< share of the gaps
+
 /// A wedge seen from the axis of a circle: the same all around it.
 ChainNode seen_from_axis(const Fit& circle, const ChainNode& node) {
   const Vec3 tangent = tangent_at(circle, node.at), outward = tangent.cross(circle.direction);
@@ -78,6 +83,28 @@ std::vector<Gap> sort_about_axis(const Fit& circle, std::vector<ChainNode>& node
     if (length > 2.5 * nodes[i].spacing) gaps.push_back({nodes[i].at, nodes[next].at, length});
   }
   return gaps;
+}
+
+bool edges_follow(const Fit& circle, const std::vector<Gap>& gaps, double spacing,
+                  const OrderedPoints& cloud) {
+  if (circle.radius < kLeastFollowed * spacing) return false;
+  std::vector<spatial::Neighbour> near;
+  std::size_t steps = 0, on = 0;
+  for (const Gap& gap : gaps) {
+    const Vec3 x = (nearest_on(circle, gap.from) - circle.point).normalized();
+    const Vec3 y = circle.direction.cross(x);
+    const auto parts = static_cast<std::size_t>(gap.length / spacing);
+    for (std::size_t i = 1; i < parts; ++i) {
+      const double along = gap.length * static_cast<double>(i) / static_cast<double>(parts);
+      const double angle = along / circle.radius;
+      const Vec3 out = std::cos(angle) * x + std::sin(angle) * y;
+      cloud.tree().within_unsorted(circle.point + circle.radius * out, kOnGap * spacing, near);
+      ++steps;
+      on += std::any_of(near.begin(), near.end(),
+                        [&](const auto& point) { return cloud.is_edge(point.index); });
+    }
+  }
+  return static_cast<double>(on) >= kLeastOnGap * static_cast<double>(steps);
 }
 
 bool is_blocked(const std::vector<Gap>& gaps, const std::vector<Piece>& pieces,

@@ -3,6 +3,7 @@
 #include <numbers>
 #include <vector>
 
+#include "pcednet/lines/ordered_points.h"
 #include "pcednet/lines/piece.h"
 
 namespace pcednet::lines {
@@ -37,6 +38,10 @@ struct Gap {
 
 /// Sorts the nodes about the axis and returns the gaps between them.
 std::vector<Gap> sort_about_axis(const Fit& circle, std::vector<ChainNode>& nodes);
+
+/// Whether edge points lie all along the gaps of a circle that is wide enough to tell.
+bool edges_follow(const Fit& circle, const std::vector<Gap>& gaps, double spacing,
+                  const OrderedPoints& cloud);
 
 /// Whether an end of another long piece is where a gap begins; those in `joined`, which is
 /// ascending, do not count.
