@@ -30,6 +30,13 @@ TEST(Coaxial, PiecesThatGoLessThanHalfAroundStay) {
   EXPECT_EQ(pieces.size(), 3u);
 }
 
+TEST(Coaxial, PiecesFarAlongTheAxisStay) {
+  std::vector<Piece> pieces = {coaxial_circle(), round_about_z(20, 500, 0.0, 2.0),
+                               round_about_z(20, 500, 2.5, 5.0)};
+  complete_coaxial(pieces, no_points(), 0.2);
+  EXPECT_EQ(pieces.size(), 3u);
+}
+
 TEST(Coaxial, PiecesOfTwoRadiiStayApart) {
   std::vector<Piece> pieces = {coaxial_circle(), round_about_z(20, 5, 0.0, 2.0),
                                round_about_z(24, 5, 2, 4)};

@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kLeastAxisRadius = 2.5, kOneAxis = 0.5;  ///< in spacings
 constexpr double kOneAxisCosine = 0.999;
+constexpr double kFar = 100.0, kFarInRadii = 4.0;      ///< from a circle: spacings and its radii
 constexpr double kOnAxis = 3.0, kOnAxisInNoise = 4.0;  ///< of nodes to their circle, in tolerances
 constexpr double kNoisyTolerance = 0.28;
 constexpr double kLeastCovered = 0.5;         ///< of the circle, by nodes
@@ -65,32 +66,74 @@ double covered_share(const Fit& circle, const std::vector<ChainNode>& nodes) {
          static_cast<double>(sectors);
 }
 
-/// Axes of closed circles, those of the longest first, each once.
-std::vector<Fit> known_axes(const std::vector<Piece>& pieces) {
-  std::vector<Fit> axes;
-  for (const std::size_t i : longest_first(pieces)) {
-    const Piece& piece = pieces[i];
-    if (!piece.closed || piece.fit.kind != CurveKind::kArc) continue;
-    const double spacing = piece.spacing();
-    if (piece.fit.radius < kLeastAxisRadius * spacing) continue;
-    const bool known = std::any_of(axes.begin(), axes.end(), [&](const Fit& axis) {
-      const Vec3 offset = piece.fit.point - axis.point;
-      const Vec3 aside = offset - offset.dot(axis.direction) * axis.direction;
-      return std::abs(axis.direction.dot(piece.fit.direction)) > kOneAxisCosine &&
-             aside.norm() < kOneAxis * spacing;
-    });
-    if (!known) axes.push_back(piece.fit);
-  }
-  return axes;
+/// How far from a circle others on its axis are sought: a sheet may have thousands of holes.
+double reach_from(const Piece& circle) {
+  return kFar * circle.spacing() + kFarInRadii * circle.fit.radius;
 }
 
-/// The pieces about `axis` that are not `gone`, the longest first.
-std::vector<AboutAxis> pieces_about(const Fit& axis, const std::vector<Piece>& pieces,
-                                    const std::vector<std::uint8_t>& gone, double reach) {
+bool is_on_axis(const Piece& circle, const Fit& axis) {
+  const Vec3 offset = circle.fit.point - axis.point;
+  const Vec3 aside = offset - offset.dot(axis.direction) * axis.direction;
+  return std::abs(axis.direction.dot(circle.fit.direction)) > kOneAxisCosine &&
+         aside.norm() < kOneAxis * circle.spacing();
+}
+
+/// Closed circles, of those near each other on one axis the longest only. `order` is that of
+/// longest_first().
+std::vector<std::size_t> circles_of_axes(const std::vector<Piece>& pieces,
+                                         const std::vector<std::size_t>& order) {
+  std::vector<std::size_t> circles;
+  std::vector<Vec3> centres;
+  for (const std::size_t i : order) {
+    const Piece& piece = pieces[i];
+    if (!piece.closed || piece.fit.kind != CurveKind::kArc) continue;
+    if (piece.fit.radius < kLeastAxisRadius * piece.spacing()) continue;
+    circles.push_back(i);
+    centres.push_back(piece.fit.point);
+  }
+  const spatial::KdTree tree(centres);
+  std::vector<std::uint8_t> kept(circles.size(), 0);
+  std::vector<std::size_t> found;
+  std::vector<spatial::Neighbour> near;
+  for (std::size_t n = 0; n < circles.size(); ++n) {
+    const Piece& circle = pieces[circles[n]];
+    tree.within_unsorted(centres[n], reach_from(circle), near);
+    const bool known = std::any_of(near.begin(), near.end(), [&](const auto& other) {
+      return kept[other.index] && is_on_axis(circle, pieces[circles[other.index]].fit);
+    });
+    kept[n] = !known;
+    if (!known) found.push_back(circles[n]);
+  }
+  return found;
+}
+
+/// The open pieces, by the places of their middles.
+struct OpenPieces {
+  OpenPieces(const std::vector<Piece>& pieces, const std::vector<std::size_t>& order) : tree({}) {
+    std::vector<Vec3> middles;
+    for (const std::size_t i : order) {
+      if (pieces[i].closed || pieces[i].nodes.size() < kLeastAbout) continue;
+      longest_first.push_back(i);
+      middles.push_back(pieces[i].middle().at);
+    }
+    tree = spatial::KdTree(middles);
+  }
+  std::vector<std::size_t> longest_first;
+  spatial::KdTree tree;
+};
+
+/// The pieces about the axis of `circle` that are still open, the longest first.
+std::vector<AboutAxis> pieces_about(const Piece& circle, const std::vector<Piece>& pieces,
+                                    const OpenPieces& open, double reach) {
+  std::vector<spatial::Neighbour> near;
+  open.tree.within_unsorted(circle.fit.point, reach_from(circle), near);
+  std::sort(near.begin(), near.end(),
+            [](const auto& a, const auto& b) { return a.index < b.index; });
   std::vector<AboutAxis> around;
-  for (const std::size_t i : longest_first(pieces)) {
-    if (gone[i] || pieces[i].closed || pieces[i].nodes.size() < kLeastAbout) continue;
-    if (const auto about = about_axis(axis, pieces[i], i, reach)) around.push_back(*about);
+  for (const auto& other : near) {
+    const std::size_t i = open.longest_first[other.index];
+    if (pieces[i].closed) continue;
+    if (const auto about = about_axis(circle.fit, pieces[i], i, reach)) around.push_back(*about);
   }
   return around;
 }
@@ -126,9 +169,12 @@ void complete_coaxial(std::vector<Piece>& pieces, const OrderedPoints& cloud, do
   const PieceIndex index(pieces);
   std::vector<std::uint8_t> gone(pieces.size(), 0);
   const double reach = (tolerance > kNoisyTolerance ? kOnAxisInNoise : kOnAxis) * tolerance;
+  const std::vector<std::size_t> order = longest_first(pieces);
+  const OpenPieces open(pieces, order);
   std::vector<std::size_t> joined;
-  for (const Fit& axis : known_axes(pieces)) {
-    const std::vector<AboutAxis> around = pieces_about(axis, pieces, gone, reach);
+  for (const std::size_t circle : circles_of_axes(pieces, order)) {
+    const std::vector<AboutAxis> around = pieces_about(pieces[circle], pieces, open, reach);
+    const Fit axis = pieces[circle].fit;
     std::vector<std::size_t> concentric;  // block no gap
     for (const AboutAxis& about : around) concentric.push_back(about.piece);
     std::sort(concentric.begin(), concentric.end());

@@ -158,8 +158,8 @@ bool Outlines::is_foot(std::uint32_t face, const Vec3& place, const Vec3& outwar
 /// corner: at its point farthest from the middle.
 void Outlines::add_chain(std::uint32_t face, const std::vector<Vec2>& chain,
                          const std::vector<bool>& taken) {
-  if (chain.empty()) return;
   const std::size_t count = chain.size();
+  if (count == 0) return;
   Vec2 middle = Vec2::Zero();
   for (const Vec2& at : chain) middle += at / static_cast<double>(count);
   std::size_t start = 0;
