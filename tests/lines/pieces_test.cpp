@@ -147,6 +147,26 @@ TEST(Strings, JoinWhatContinuesButNotALongLineAndALongArc) {
   EXPECT_EQ(tangent.size(), 2u);
 }
 
+TEST(Strings, JoinWhatNoiseDrewSideBySideWhereItEndsFree) {
+  const std::vector<Piece> beside = {straight({0, 0, 0}, {10, 0, 0}),
+                                     straight({7, 2.4, 0}, {20, 2.4, 0})};
+  std::vector<Piece> pieces = beside;
+  string_together(pieces, 6.0, 0.5);
+  EXPECT_EQ(pieces.size(), 2u);
+  string_free_ends(pieces, 6.0, 0.5, 0.3);
+  ASSERT_EQ(pieces.size(), 1u);
+  EXPECT_EQ(pieces[0].fit.kind, CurveKind::kPolyline);
+  for (std::size_t i = 1; i < pieces[0].nodes.size(); ++i) {
+    EXPECT_GT(pieces[0].nodes[i].at.x(), pieces[0].nodes[i - 1].at.x());
+  }
+
+  std::vector<Piece> corner = beside;  // two edges that end in the corner of a third
+  corner[0] = straight({0, 0, 0}, {9, 0, 0});
+  corner.push_back(straight({10, -1, 0}, {10, -12, 0}, Vec3::UnitX(), Vec3::UnitZ()));
+  string_free_ends(corner, 6.0, 0.5, 0.3);
+  EXPECT_EQ(corner.size(), 3u);
+}
+
 TEST(Strings, SimplifiedPolylinesStayWithinTheTolerance) {
   std::vector<Vec3> places;
   for (int i = 0; i <= 100; ++i) {

@@ -19,9 +19,8 @@ constexpr double kLeastAngle = 20.0 * std::numbers::pi / 180.0;
 /// wide enough, sharp-edge may be a single row.
 constexpr std::size_t kWithSharp = 9, kWithSmooth = 3;
 
-/// With more noise (in spacings) wedges are fitted to all points around, from this many down: the
-/// fewer, the less of other edges is among them.
-constexpr double kNoisy = 0.2;
+/// In much noise wedges are fitted to all points around, from this many down: the fewer, the less
+/// of other edges is among them.
 constexpr std::size_t kNoisyNeighbours[] = {80, 56, 40, 28};
 constexpr double kNoiseOfPlanes = 1.2;  ///< measured noise is too low: planes of few points bend
 
@@ -131,7 +130,7 @@ std::optional<Wedge> noisy_wedge(const NearPoints& points, double noise) {
 
 /// In noise one of all points, otherwise the best wedge of all pairs of planes.
 std::optional<Wedge> best_wedge(const NearPoints& points, const Tolerances& within) {
-  if (within.noise > kNoisy) {
+  if (within.noise > kMuchNoise) {
     if (auto wedge = noisy_wedge(points, within.noise)) return wedge;
   }
   std::vector<LocalPlane> planes;

@@ -20,6 +20,7 @@
 #include "pcednet/lines/piece.h"
 #include "pcednet/lines/plane_edges.h"
 #include "pcednet/lines/refine.h"
+#include "pcednet/lines/sampling.h"
 #include "pcednet/lines/smooth_joints.h"
 #include "pcednet/lines/split.h"
 #include "pcednet/lines/strings.h"
@@ -161,6 +162,9 @@ std::vector<Curve> find_lines(const EdgePoints& points, const LineOptions& optio
   complete_coaxial(pieces, cloud, limits.tolerance);
   refine(pieces, cloud, sampling, progress);
   extend_free_ends(pieces, cloud, sampling.noise);
+  if (sampling.noise > kMuchNoise) {
+    string_free_ends(pieces, limits.gap, limits.angle, sampling.noise);
+  }
   find_bores(pieces, cloud, sampling, progress);
   if (options.regularise) regularise(pieces);
   if (options.stage == LineStage::kPieces) return drawn(std::span(pieces), finish_options);

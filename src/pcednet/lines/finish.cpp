@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "pcednet/lines/corners.h"
+#include "pcednet/lines/sampling.h"
 #include "pcednet/lines/strings.h"
 
 namespace pcednet::lines {
@@ -26,9 +27,8 @@ constexpr double kFewEdgePoints = 0.1, kLongAnyway = 15.0;
 /// With noise beyond kLittleNoise, all pieces need edge points: so many more per spacing of noise.
 constexpr double kLittleNoise = 0.1, kPointsForNoise = 1.5;
 
-/// With noise beyond kMuchNoise, pieces of which corners hold so many ends need edge points as
-/// probable as this.
-constexpr double kMuchNoise = 0.2, kLeastProbable[] = {0.84, 0.75, 0.0};
+/// In much noise, pieces of which corners hold so many ends need edge points as probable as this.
+constexpr double kLeastProbable[] = {0.84, 0.75, 0.0};
 
 /// Surfaces that bend by more are rounded at the edge unless as many of its points are sharp-edge.
 constexpr double kBend = 0.08, kFewSharp = 0.1;

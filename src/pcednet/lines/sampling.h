@@ -10,6 +10,9 @@ struct Sampling {
   double noise = 0.0;    ///< of points about the plane of their neighbours, in spacings
 };
 
+/// Noise, in spacings, beyond which wedges, pieces and their ends are judged by other rules.
+constexpr double kMuchNoise = 0.2;
+
 Sampling measure_sampling(const OrderedPoints& cloud);
 
 }  // namespace pcednet::lines

@@ -3,12 +3,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pcednet/lines/corners.h"
 #include "pcednet/spatial/kd_tree.h"
 
 namespace pcednet::lines {
 namespace {
 
 constexpr std::size_t kLong = 7;  ///< nodes
+// Of pieces that end free in noise, in spacings.
+constexpr double kAsideInNoise = 2.0;
+constexpr double kOverlapInNoise = 6.0;
 constexpr std::size_t kNone = static_cast<std::size_t>(-1);
 
 /// Whether a straight and a round piece touch: each is what it seems if both are long.
@@ -24,7 +28,10 @@ struct Link {
 
 struct Reach {
   double gap;
-  double cosine;  ///< least, of the directions
+  double cosine;       ///< least, of the directions
+  double aside = 0.7;  ///< spacings
+  double overlap = 2.0;
+  bool kinds_stay_apart = true;
 };
 
 /// Whether and how well end b continues end a.
@@ -34,20 +41,23 @@ bool continues(const Piece& a, std::size_t side_a, const Piece& b, std::size_t s
       a.nodes.size() < 3 && b.nodes.size() < 3) {
     return false;
   }
-  if (stay_apart(a, b)) return false;
+  if (reach.kinds_stay_apart && stay_apart(a, b)) return false;
   const double spacing = a.spacing();
   const Vec3 out_a = outward(a, side_a), out_b = outward(b, side_b);
   const Vec3 offset = b.ends[side_b] - a.ends[side_a];
   const double ahead = offset.dot(out_a), aside = (offset - ahead * out_a).norm();
-  if (out_a.dot(-out_b) < reach.cosine || ahead < -2.0 * spacing) return false;
-  if (offset.norm() > reach.gap || aside > 0.7 * spacing + 0.2 * std::abs(ahead)) return false;
+  if (out_a.dot(-out_b) < reach.cosine || ahead < -reach.overlap * spacing) return false;
+  const double most_aside = reach.aside * spacing + 0.2 * std::abs(ahead);
+  if (offset.norm() > reach.gap || aside > most_aside) return false;
   if (!same_wedge(node_at(a, side_a), node_at(b, side_b))) return false;
   cost = (offset.norm() + 2.0 * aside) / spacing + 4.0 * (1.0 - out_a.dot(-out_b));
   return true;
 }
 
-std::vector<Link> links_of(const std::vector<Piece>& pieces, const Reach& reach) {
-  const EndIndex index(pieces, open_ends(pieces));
+/// Pairs of `ends` that continue each other, the best first.
+std::vector<Link> links_between(std::vector<End> ends, const std::vector<Piece>& pieces,
+                                const Reach& reach) {
+  const EndIndex index(pieces, std::move(ends));
   std::vector<Link> links;
   std::vector<spatial::Neighbour> near;
   for (std::size_t e = 0; e < index.ends.size(); ++e) {
@@ -80,11 +90,10 @@ void append_nodes(const Piece& piece, std::size_t side, std::vector<ChainNode>& 
   }
 }
 
-}  // namespace
-
-void string_together(std::vector<Piece>& pieces, double gap, double angle) {
+/// Makes polylines of the linked pieces.
+void string_along(const std::vector<Link>& links, std::vector<Piece>& pieces) {
   std::vector<std::size_t> partner(2 * pieces.size(), kNone);
-  for (const Link& link : links_of(pieces, {gap, std::cos(angle)})) {
+  for (const Link& link : links) {
     if (partner[link.a] != kNone || partner[link.b] != kNone) continue;
     partner[link.a] = link.b;
     partner[link.b] = link.a;
@@ -119,6 +128,22 @@ void string_together(std::vector<Piece>& pieces, double gap, double angle) {
     if (!done[i]) follow(2 * i);  // rings
   }
   pieces = std::move(result);
+}
+
+}  // namespace
+
+void string_together(std::vector<Piece>& pieces, double gap, double angle) {
+  string_along(links_between(open_ends(pieces), pieces, {gap, std::cos(angle)}), pieces);
+}
+
+void string_free_ends(std::vector<Piece>& pieces, double gap, double angle, double noise) {
+  const Reach reach = {gap, std::cos(angle), kAsideInNoise, kOverlapInNoise, false};
+  const Corners corners = find_corners(pieces, noise);
+  std::vector<End> ends = open_ends(pieces);
+  std::erase_if(ends, [&](const End& end) {
+    return corners.of_ends[end.piece][end.side] != Corners::kNoCorner;
+  });
+  string_along(links_between(std::move(ends), pieces, reach), pieces);
 }
 
 std::vector<Vec3> simplified(const std::vector<Vec3>& places, double tolerance) {
