@@ -296,18 +296,27 @@ TEST(Finish, DropsFreePiecesWithHardlyAnEdgePoint) {
   EXPECT_EQ(finish({piece}, options).size(), 1u);
 }
 
+/// Whether a free piece stays whose nodes have so many edge points, so probable.
+bool stays(Piece piece, double edge_points, double probability, double noise) {
+  for (ChainNode& node : piece.nodes) {
+    node.edge_points = edge_points;
+    node.probability = probability;
+  }
+  return !finish({piece}, {.min_length = 3.0, .tolerance = kWithin, .noise = noise}).empty();
+}
+
 TEST(Finish, DropsFreePiecesOfDoubtfulPointsInNoise) {
-  Piece piece = straight({0, 0, 0}, {30, 0, 0});
-  const auto kept = [&](double probability, double noise) {
-    for (ChainNode& node : piece.nodes) {
-      node.edge_points = 1.0;
-      node.probability = probability;
-    }
-    return finish({piece}, {.min_length = 3.0, .tolerance = kWithin, .noise = noise}).size();
-  };
-  EXPECT_EQ(kept(0.7, 0.5), 0u);
-  EXPECT_EQ(kept(0.9, 0.5), 1u);
-  EXPECT_EQ(kept(0.7, 0.1), 1u);
+  const Piece piece = straight({0, 0, 0}, {12, 0, 0});
+  EXPECT_FALSE(stays(piece, 1.0, 0.7, 0.5));
+  EXPECT_TRUE(stays(piece, 1.0, 0.9, 0.5));
+  EXPECT_TRUE(stays(piece, 1.0, 0.7, 0.1));
+}
+
+TEST(Finish, KeepsLongRowsOfEdgePointsInNoise) {
+  const Piece piece = straight({0, 0, 0}, {30, 0, 0});
+  EXPECT_TRUE(stays(piece, 1.0, 0.7, 0.5));
+  EXPECT_FALSE(stays(piece, 0.7, 0.7, 0.5)) << "too few edge points";
+  EXPECT_FALSE(stays(piece, 1.0, 0.6, 0.5)) << "too doubtful ones";
 }
 
 TEST(LocalPlanes, AreThoseOfACorner) {

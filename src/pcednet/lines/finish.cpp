@@ -15,7 +15,7 @@ namespace {
 
 // The length of a piece that no corner holds, and of one that ends free, in spacings; the second
 // number is added per spacing of noise. An end at the inside of a piece is free unless exact.
-constexpr double kLoose[] = {8.0, 24.0}, kHeldOnce[] = {5.0, 12.0};
+constexpr double kLoose[] = {8.0, 4.0}, kHeldOnce[] = {5.0, 1.0};
 constexpr double kExactLoose = 8.0, kExactHeldOnce = 4.0;
 constexpr int kDropRounds = 3;  ///< those that hung on a dropped piece are loose now
 
@@ -27,8 +27,12 @@ constexpr double kFewEdgePoints = 0.1, kLongAnyway = 15.0;
 /// With noise beyond kLittleNoise, all pieces need edge points: so many more per spacing of noise.
 constexpr double kLittleNoise = 0.1, kPointsForNoise = 1.5;
 
-/// In much noise, pieces of which corners hold so many ends need edge points as probable as this.
-constexpr double kLeastProbable[] = {0.84, 0.75, 0.0};
+/// In much noise, pieces of which corners hold no end, or one, need edge points as probable as
+/// this.
+constexpr double kLeastProbable[] = {0.84, 0.75};
+
+/// Those of a long row may be less probable: so long, in spacings, with so many of them on each.
+constexpr double kLongRow = 16.0, kDenseRow = 0.9, kProbableRow = 0.65;
 
 /// Surfaces that bend by more are rounded at the edge unless as many of its points are sharp-edge.
 constexpr double kBend = 0.08, kFewSharp = 0.1;
@@ -95,28 +99,42 @@ Curve curve_between(const Piece& piece, const std::array<Vec3, 2>& ends,
   return curve;
 }
 
-double edge_points_per_spacing(const Piece& piece) {
-  double edge_points = 0.0;
-  for (const ChainNode& node : piece.nodes) edge_points += node.edge_points;
-  return edge_points * piece.spacing() / length_of(piece);
-}
+/// The edge points that a piece hangs on: how many per spacing, and how probable in the mean.
+struct Evidence {
+  double per_spacing, probability;
+};
 
-/// Whether the points that the piece hangs on are nearly all of no edge class.
-bool has_few_edge_points(const Piece& piece, double noise, bool held) {
-  const double found = edge_points_per_spacing(piece);
-  if (found < kPointsForNoise * (noise - kLittleNoise)) return true;
-  return !held && found < kFewEdgePoints && length_of(piece) < kLongAnyway * piece.spacing();
-}
-
-/// Whether the piece ends free, in noise, and hangs on points that are edges only perhaps.
-bool is_doubtful(const Piece& piece, double noise, std::ptrdiff_t held) {
-  if (noise < kMuchNoise) return false;
+Evidence evidence_of(const Piece& piece) {
   double edge_points = 0.0, probability = 0.0;
   for (const ChainNode& node : piece.nodes) {
     edge_points += node.edge_points;
     probability += node.edge_points * node.probability;
   }
-  return probability < kLeastProbable[held] * std::max(edge_points, 1.0);
+  return {edge_points * piece.spacing() / length_of(piece),
+          probability / std::max(edge_points, 1.0)};
+}
+
+/// Whether the points that the piece hangs on are nearly all of no edge class.
+bool has_few_edge_points(const Piece& piece, double noise, bool held) {
+  const double found = evidence_of(piece).per_spacing;
+  if (found < kPointsForNoise * (noise - kLittleNoise)) return true;
+  return !held && found < kFewEdgePoints && length_of(piece) < kLongAnyway * piece.spacing();
+}
+
+/// Whether the piece is straight, or an arc that a corner holds, and has a row of edge points too
+/// long for chance.
+bool is_long_row(const Piece& piece, std::ptrdiff_t held) {
+  const bool straight = piece.fit.kind == CurveKind::kSegment;
+  return (straight || (piece.fit.kind == CurveKind::kArc && held > 0)) &&
+         length_of(piece) >= kLongRow * piece.spacing() &&
+         evidence_of(piece).per_spacing >= kDenseRow;
+}
+
+/// Whether the piece ends free, in noise, and hangs on points that are edges only perhaps.
+bool is_doubtful(const Piece& piece, double noise, std::ptrdiff_t held) {
+  if (noise < kMuchNoise || held == 2) return false;
+  const double least = is_long_row(piece, held) ? kProbableRow : kLeastProbable[held];
+  return evidence_of(piece).probability < least;
 }
 
 /// Of a piece of which corners hold so many ends, in spacings.
