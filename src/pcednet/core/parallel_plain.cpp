@@ -59,15 +59,16 @@ void parallel_blocks(std::size_t count, std::size_t block,
   if (is_worker || blocks <= 1) {
     take_blocks();  // within a block: its own thread does
   } else {
-    std::vector<std::jthread> threads(
-        std::min<std::size_t>(static_cast<std::size_t>(thread_count()), blocks));
-    for (std::jthread& thread : threads) {
-      thread = std::jthread([&] {
-        is_worker = true;
-        take_blocks();
-      });
-    }
-  }  // joined here
+    const auto work_here = [&] {
+      is_worker = true;
+      take_blocks();
+      is_worker = false;
+    };
+    std::vector<std::jthread> others;  // joined at the end
+    const std::size_t threads = std::min(static_cast<std::size_t>(thread_count()), blocks);
+    while (others.size() + 1 < threads) others.emplace_back(work_here);
+    work_here();
+  }
   if (error) std::rethrow_exception(error);
 }
 
