@@ -33,17 +33,14 @@ bool surface_between(const Fit& fit, const Vec3& from, const Vec3& to, double sp
   return 5 * there >= 4 * (steps - 1);
 }
 
-/// Which ends of each piece are in no corner.
+/// Which ends of each piece a bridge may begin at.
 using FreeEnds = std::vector<std::array<bool, 2>>;
 
-FreeEnds free_ends(const std::vector<Piece>& pieces, double noise) {
-  const Corners corners = find_corners(pieces, noise);
+/// Those in no corner, but for the ends of polylines.
+FreeEnds ends_to_bridge(const std::vector<Piece>& pieces, double noise) {
   FreeEnds free(pieces.size());
-  for (std::size_t i = 0; i < pieces.size(); ++i) {
-    const bool open = !pieces[i].closed && pieces[i].fit.kind != CurveKind::kPolyline;
-    for (const std::size_t side : {0, 1}) {
-      free[i][side] = open && corners.of_ends[i][side] == Corners::kNoCorner;
-    }
+  for (const auto& [piece, side] : free_ends(pieces, noise)) {
+    free[piece][side] = pieces[piece].fit.kind != CurveKind::kPolyline;
   }
   return free;
 }
@@ -106,7 +103,7 @@ bool bridge_once(std::vector<Piece>& pieces, FreeEnds& free, const OrderedPoints
 
 void bridge_gaps(std::vector<Piece>& pieces, const OrderedPoints& cloud,
                  const BridgeOptions& options) {
-  FreeEnds free = free_ends(pieces, options.noise);
+  FreeEnds free = ends_to_bridge(pieces, options.noise);
   while (bridge_once(pieces, free, cloud, options.tolerance)) {
   }
 }

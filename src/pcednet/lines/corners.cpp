@@ -184,4 +184,13 @@ Corners find_corners(const std::vector<Piece>& pieces, double noise) {
   return find_corners(pieces, kCornerReach, kCornerTolerance + noise);
 }
 
+std::vector<End> free_ends(const std::vector<Piece>& pieces, double noise) {
+  const Corners corners = find_corners(pieces, noise);
+  std::vector<End> ends = open_ends(pieces);
+  std::erase_if(ends, [&](const End& end) {
+    return corners.of_ends[end.piece][end.side] != Corners::kNoCorner;
+  });
+  return ends;
+}
+
 }  // namespace pcednet::lines

@@ -21,4 +21,7 @@ Corners find_corners(const std::vector<Piece>& pieces, double reach, double tole
 /// With the reach and tolerance of points of this noise (in spacings).
 Corners find_corners(const std::vector<Piece>& pieces, double noise);
 
+/// The open ends that are in no corner of these.
+std::vector<End> free_ends(const std::vector<Piece>& pieces, double noise);
+
 }  // namespace pcednet::lines

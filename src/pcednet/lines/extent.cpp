@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <utility>
 
 #include "pcednet/lines/corners.h"
 
@@ -160,21 +161,17 @@ double limit_of(const std::vector<Piece>& pieces, const NodeIndex& index, std::s
 }  // namespace
 
 void extend_free_ends(std::vector<Piece>& pieces, const OrderedPoints& cloud, double noise) {
-  const Corners corners = find_corners(pieces, noise);
   const NodeIndex index(pieces);
-  std::vector<std::array<Vec3, 2>> ends;
-  for (std::size_t i = 0; i < pieces.size(); ++i) {
-    const Piece& piece = pieces[i];
-    ends.push_back(piece.ends);
-    if (piece.closed || piece.fit.kind == CurveKind::kPolyline) continue;
-    if (piece.nodes.size() < kLeastToExtend || is_boundary(piece.middle())) continue;
-    for (const std::size_t side : {0, 1}) {
-      if (corners.of_ends[i][side] != Corners::kNoCorner) continue;
-      const double limit = limit_of(pieces, index, i, side);
-      ends[i][side] = track_of(piece, side).at(extent_of(piece, side, limit, cloud, noise));
-    }
+  std::vector<std::pair<End, Vec3>> moved;
+  for (const End& end : free_ends(pieces, noise)) {
+    const Piece& piece = pieces[end.piece];
+    if (piece.fit.kind == CurveKind::kPolyline || piece.nodes.size() < kLeastToExtend) continue;
+    if (is_boundary(piece.middle())) continue;
+    const double limit = limit_of(pieces, index, end.piece, end.side);
+    const double extent = extent_of(piece, end.side, limit, cloud, noise);
+    moved.emplace_back(end, track_of(piece, end.side).at(extent));
   }
-  for (std::size_t i = 0; i < pieces.size(); ++i) pieces[i].ends = ends[i];
+  for (const auto& [end, place] : moved) pieces[end.piece].ends[end.side] = place;
 }
 
 }  // namespace pcednet::lines

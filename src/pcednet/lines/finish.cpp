@@ -115,26 +115,25 @@ Evidence evidence_of(const Piece& piece) {
 }
 
 /// Whether the points that the piece hangs on are nearly all of no edge class.
-bool has_few_edge_points(const Piece& piece, double noise, bool held) {
-  const double found = evidence_of(piece).per_spacing;
+bool has_few_edge_points(const Piece& piece, const Evidence& evidence, double noise, bool held) {
+  const double found = evidence.per_spacing;
   if (found < kPointsForNoise * (noise - kLittleNoise)) return true;
   return !held && found < kFewEdgePoints && length_of(piece) < kLongAnyway * piece.spacing();
 }
 
 /// Whether the piece is straight, or an arc that a corner holds, and has a row of edge points too
 /// long for chance.
-bool is_long_row(const Piece& piece, std::ptrdiff_t held) {
+bool is_long_row(const Piece& piece, const Evidence& evidence, std::ptrdiff_t held) {
   const bool straight = piece.fit.kind == CurveKind::kSegment;
   return (straight || (piece.fit.kind == CurveKind::kArc && held > 0)) &&
-         length_of(piece) >= kLongRow * piece.spacing() &&
-         evidence_of(piece).per_spacing >= kDenseRow;
+         length_of(piece) >= kLongRow * piece.spacing() && evidence.per_spacing >= kDenseRow;
 }
 
 /// Whether the piece ends free, in noise, and hangs on points that are edges only perhaps.
-bool is_doubtful(const Piece& piece, double noise, std::ptrdiff_t held) {
+bool is_doubtful(const Piece& piece, const Evidence& evidence, double noise, std::ptrdiff_t held) {
   if (noise < kMuchNoise || held == 2) return false;
-  const double least = is_long_row(piece, held) ? kProbableRow : kLeastProbable[held];
-  return evidence_of(piece).probability < least;
+  const bool row = is_long_row(piece, evidence, held);
+  return evidence.probability < (row ? kProbableRow : kLeastProbable[held]);
 }
 
 /// Of a piece of which corners hold so many ends, in spacings.
@@ -167,8 +166,11 @@ bool drop_loose(std::vector<Piece>& pieces, const Corners& corners, const Finish
            const auto held = std::count_if(own.begin(), own.end(), [&](std::size_t corner) {
              return corner != Corners::kNoCorner && ends[corner] >= to_hold;
            });
-           if (!options.exact && has_few_edge_points(piece, options.noise, held == 2)) return true;
-           if (!options.exact && is_doubtful(piece, options.noise, held)) return true;
+           if (!options.exact) {
+             const Evidence evidence = evidence_of(piece);
+             if (has_few_edge_points(piece, evidence, options.noise, held == 2)) return true;
+             if (is_doubtful(piece, evidence, options.noise, held)) return true;
+           }
            return length_of(piece) < least_length(held, options) * piece.spacing();
          }) > 0;
 }

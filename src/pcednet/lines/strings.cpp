@@ -138,12 +138,7 @@ void string_together(std::vector<Piece>& pieces, double gap, double angle) {
 
 void string_free_ends(std::vector<Piece>& pieces, double gap, double angle, double noise) {
   const Reach reach = {gap, std::cos(angle), kAsideInNoise, kOverlapInNoise, false};
-  const Corners corners = find_corners(pieces, noise);
-  std::vector<End> ends = open_ends(pieces);
-  std::erase_if(ends, [&](const End& end) {
-    return corners.of_ends[end.piece][end.side] != Corners::kNoCorner;
-  });
-  string_along(links_between(std::move(ends), pieces, reach), pieces);
+  string_along(links_between(free_ends(pieces, noise), pieces, reach), pieces);
 }
 
 std::vector<Vec3> simplified(const std::vector<Vec3>& places, double tolerance) {

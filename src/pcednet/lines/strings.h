@@ -13,7 +13,7 @@ void string_together(std::vector<Piece>& pieces, double gap, double angle);
 
 /// The same for pieces of noisy points, once they have their final extents: where two are drawn
 /// side by side, or overlap, and both end free, they are one edge whatever they seem. Ends in
-/// corners (find_corners with `noise`, in spacings) stay.
+/// corners (those of free_ends with `noise`, in spacings) stay.
 void string_free_ends(std::vector<Piece>& pieces, double gap, double angle, double noise);
 
 /// The vertices of a polyline that stays within `tolerance` of all `places`, the ends kept.
