@@ -67,18 +67,32 @@ printf '%s\n' ply 'format ascii 1.0' 'element vertex 3' 'property float x' 'prop
   >"$corpus/curves/seed.ply"
 build/fuzz/bin/e57_seed >"$corpus/e57/seed.e57"
 
-failed=0
-for reader in "$@"; do
-  log=$findings/$reader.log
-  if "build/fuzz/bin/fuzz_$reader" -max_total_time="$seconds" -max_len=20000 -timeout=10 \
-    -rss_limit_mb=2048 -print_final_stats=1 -artifact_prefix="$findings/$reader-" \
-    "$corpus/$reader" >"$log" 2>&1; then
-    awk -v r="$reader" '/ cov: / { for (i = 1; i < NF; ++i) if ($i == "cov:") cov = $(i + 1) }
+fuzz() {  # READER
+  log=$findings/$1.log
+  if "build/fuzz/bin/fuzz_$1" -max_total_time="$seconds" -max_len=20000 -timeout=10 \
+    -rss_limit_mb=2048 -print_final_stats=1 -artifact_prefix="$findings/$1-" \
+    "$corpus/$1" >"$log" 2>&1; then
+    awk -v r="$1" '/ cov: / { for (i = 1; i < NF; ++i) if ($i == "cov:") cov = $(i + 1) }
       /number_of_executed_units/ { n = $2 }
       END { print r ": " n " executions, " cov " edges, nothing found" }' "$log"
   else
-    echo "$reader: FOUND something, see $log"
-    failed=1
+    echo "$1: FOUND something, see $log"
+    return 1
   fi
+}
+
+trap 'trap "" TERM; kill 0; exit 130' INT
+failed=0
+running=
+finish() {
+  for each in $running; do wait "$each" || failed=1; done
+  running=
+}
+for reader in "$@"; do  # as many at a time as there are cores
+  fuzz "$reader" &
+  running="$running $!"
+  # shellcheck disable=SC2086
+  [ "$(printf '%s\n' $running | wc -l)" -lt "$(nproc)" ] || finish
 done
+finish
 exit $failed

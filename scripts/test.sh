@@ -23,7 +23,8 @@ scripts/fuzz.sh 5 las e57 ply parts
 
 echo "== tests"
 failed=0
-ctest --preset release -j "$(nproc)" --output-log build/release/tests.log || failed=1
+jobs=$((2 * $(nproc)))  # many wait for browsers and daemons
+ctest --preset release -j "$jobs" --output-log build/release/tests.log || failed=1
 echo "== tests that were skipped"
 scripts/check_skips.sh build/release/tests.log || failed=1
 exit $failed
