@@ -215,7 +215,8 @@ class Classify(CliTest):
 
     def test_draws_a_preview(self):
         write_ply(self.folder / "a.ply", *cube(2000)[:2])
-        run("classify", self.folder / "a.ply", "--preview", self.folder / "a.png")
+        said = run("classify", self.folder / "a.ply", "--preview", self.folder / "a.png").stderr
+        self.assertTrue(said.endswith(f"  -> {self.folder / 'a_edges.ply'}\n  -> {self.folder / 'a.png'}\n"), said)
         self.assertEqual((self.folder / "a.png").read_bytes()[:8], b"\x89PNG\r\n\x1a\n")
 
     def test_stops_on_ctrl_c_and_leaves_nothing(self):

@@ -211,6 +211,7 @@ void report(const Job& job, const detect::Classification& result, const Counts& 
   }
   say("  seconds: " + seconds);
   say(fmt::format("  -> {}", job.output.string()));
+  if (!job.preview.empty()) say(fmt::format("  -> {}", job.preview.string()));
 }
 
 void say_kept(const detect::KeptInput& kept) {
