@@ -7,12 +7,15 @@
 #include <limits>
 #include <numbers>
 #include <numeric>
+#include <set>
+#include <string>
 
 #include "pcednet/core/error.h"
 #include "pcednet/core/parallel.h"
 #include "pcednet/core/random.h"
 #include "pcednet/lines/crease.h"
 #include "pcednet/lines/ordered_points.h"
+#include "support/expect_error.h"
 
 namespace pcednet::lines {
 namespace {
@@ -218,6 +221,23 @@ TEST(FindLines, CanBeLookedAtStepByStep) {
     EXPECT_EQ(piece.kind, CurveKind::kSegment);
     EXPECT_NEAR(length_of(piece), 1.0, 10.0 * cloud.spacing);
     EXPECT_NE(length_of(piece), length_of(at(LineStage::kCurves).front())) << "it met no corner";
+  }
+}
+
+TEST(FindLines, StopAtAnyStepWhenTold) {
+  const Cloud cloud = cube(20000);
+  const EdgePoints points = {cloud.positions, cloud.normals, cloud.classes};
+  std::set<std::string> steps;
+  const Progress watch = {.report = [&](const std::string& step, double) { steps.insert(step); },
+                          .cancelled = {}};
+  find_lines(points, {}, &watch);
+  EXPECT_TRUE(steps.contains("joins") && steps.contains("corners"));
+  for (const std::string& last : steps) {
+    bool stop = false;
+    const Progress stopping = {
+        .report = [&](const std::string& step, double) { stop = stop || step == last; },
+        .cancelled = [&] { return stop; }};
+    EXPECT_ERROR(ErrorKind::kCancelled, find_lines(points, {}, &stopping)) << last;
   }
 }
 

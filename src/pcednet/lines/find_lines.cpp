@@ -84,6 +84,22 @@ std::vector<Piece> split_chains(const std::vector<Chain>& chains, double toleran
   return pieces;
 }
 
+/// Makes one piece of those that are of one edge.
+void join(std::vector<Piece>& pieces, const OrderedPoints& cloud, const Limits& limits,
+          double noise, const Progress* progress) {
+  Stage stage(progress, "joins", 5);
+  join_pieces(pieces, limits.gap, limits.tolerance);
+  stage.advance();
+  complete_circles(pieces, cloud, limits.tolerance);
+  stage.advance();
+  bridge_gaps(pieces, cloud, {limits.tolerance, noise});
+  stage.advance();
+  string_together(pieces, limits.gap, limits.angle);
+  stage.advance();
+  complete_coaxial(pieces, cloud, limits.tolerance);
+  stage.advance();
+}
+
 /// Moves the smooth edges to a list of their own: they do not share corners with the others.
 std::vector<Piece> take_smooth(std::vector<Piece>& pieces, double noise) {
   const auto smooth = std::stable_partition(pieces.begin(), pieces.end(), [&](const Piece& piece) {
@@ -155,11 +171,7 @@ std::vector<Curve> find_lines(const EdgePoints& points, const LineOptions& optio
   const std::vector<Chain> chains = trace(creases, limits.gap, sampling.noise, progress);
   if (options.stage == LineStage::kChains) return drawn(chains, finish_options);
   std::vector<Piece> pieces = split_chains(chains, limits.tolerance, progress);
-  join_pieces(pieces, limits.gap, limits.tolerance);
-  complete_circles(pieces, cloud, limits.tolerance);
-  bridge_gaps(pieces, cloud, {limits.tolerance, sampling.noise});
-  string_together(pieces, limits.gap, limits.angle);
-  complete_coaxial(pieces, cloud, limits.tolerance);
+  join(pieces, cloud, limits, sampling.noise, progress);
   refine(pieces, cloud, sampling, progress);
   extend_free_ends(pieces, cloud, sampling.noise);
   if (sampling.noise > kMuchNoise) {
@@ -169,11 +181,15 @@ std::vector<Curve> find_lines(const EdgePoints& points, const LineOptions& optio
   if (options.regularise) regularise(pieces);
   if (options.stage == LineStage::kPieces) return drawn(std::span(pieces), finish_options);
 
+  Stage stage(progress, "corners", 3);
   const std::vector<Piece> smooth = take_smooth(pieces, sampling.noise);
   std::vector<Curve> curves = finish(std::move(pieces), finish_options);
+  stage.advance();
   for (Curve& curve : finish(smooth, finish_options)) curves.push_back(std::move(curve));
+  stage.advance();
   close_round_loops(curves, sampling.spacing, kRoundWithin * limits.tolerance * sampling.spacing);
   join_smooth_corners(curves, limits.angle, 0.5 * limits.tolerance * sampling.spacing);
+  stage.advance();
   return curves;
 }
 
