@@ -22,7 +22,7 @@ class Deb(unittest.TestCase):
     def setUpClass(cls):
         cls._folder = tempfile.TemporaryDirectory()
         cls.folder = pathlib.Path(cls._folder.name)
-        run("cpack", "-G", "DEB", "-B", cls.folder / "packed", cwd=packaging.BUILD)
+        run("cpack", "-G", "DEB", "-D", "CPACK_DEBIAN_COMPRESSION_TYPE=gzip", "-B", cls.folder / "packed", cwd=packaging.BUILD)
         cls.debs = sorted((cls.folder / "packed").glob("*.deb"))
         cls.root = cls.folder / "root"
         for deb in cls.debs:
