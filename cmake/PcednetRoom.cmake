@@ -49,10 +49,6 @@ function(pcednet_compile_options target)
   # -Wno-restrict: GCC 12 warns of std::string's own code (GCC bug 105329).
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wshadow -Wnon-virtual-dtor
     $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict> -ffp-contract=off $<$<BOOL:${PCEDNET_WARNINGS_AS_ERRORS}>:-Werror>)
-  if(CMAKE_UNITY_BUILD AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-    # Collects no garbage below a gigabyte: large units compile in a tenth less time.
-    target_compile_options(${target} PRIVATE "SHELL:--param ggc-min-heapsize=1000000")
-  endif()
 endfunction()
 
 # pcednet_precompile(TARGET OWNER header...): with PCEDNET_PRECOMPILE the headers that nearly every

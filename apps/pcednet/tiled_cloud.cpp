@@ -44,8 +44,7 @@ bool is_surely_small(const fs::path& input, std::uint64_t limit) {
 }
 
 bool is_tiled_format(const fs::path& input) {
-  const std::string_view name = formats::format_of(io::InputFile(input)).name;
-  return name == "LAS" || name == "PLY";
+  return formats::format_of(io::InputFile(input)).is_tiled();
 }
 
 tiles::Plan plan_for(const TiledRequest& request, const detect::EdgeModel& model,

@@ -35,8 +35,7 @@ py::dict settings_of(const gls::ScaleSpaceOptions& options) {
   settings["scales"] = options.scales;
   settings["features"] = gls::feature_count(options.features);
   settings["columns"] = gls::column_names(options);
-  settings["reconstruction"] =
-      gls::reconstruction_names()[static_cast<std::size_t>(options.reconstruction)];
+  settings["reconstruction"] = gls::name_of(options.reconstruction);
   settings["gate"] = options.side_gate;
   settings["second_gate"] = options.second_gate;
   settings["s_max_ratio"] = options.s_max_ratio;

@@ -117,7 +117,15 @@ class Evaluate(CliTest):
     def test_refuses_what_has_no_meaning(self):
         write_ply(self.folder / "a.ply", *cube(300))
         for extra in (("--no-context",), ("--no-boundary",), ("--exact",), ("--s-max", "1")):
-            run("evaluate", self.folder / "a.ply", "--predictions", self.folder, *extra, expect=2)
+            for other in (("--predictions", self.folder), ("--method", "ca"),
+                          ("--truth", self.folder / "a.ply")):
+                run("evaluate", self.folder / "a.ply", *other, *extra, expect=2)
+
+    def test_the_default_model_takes_the_options_of_a_model(self):
+        write_ply(self.folder / "a.ply", *cube(3000))
+        scores = [json.loads(run("evaluate", self.folder / "a.ply", "--json", "-", "--s-max", "0.5",
+                                 *model).stdout)["clouds"] for model in ((), ("--model", "general"))]
+        self.assertEqual(*scores)
 
     def test_takes_the_scales_that_are_given(self):
         write_ply(self.folder / "a.ply", *cube(3000))

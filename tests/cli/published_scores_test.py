@@ -32,7 +32,7 @@ class PublishedScores(CliTest):
                                     ("abc", 0.981, "general"),
                                     ("abc_noise", 0.776, "general"),
                                     ("shrec", 0.495, "general"),
-                                    ("sparse", 0.75, "general"),
+                                    ("sparse", 0.80, "general"),
                                     ("default", 0.917, "scan", "--positive", "edge"),
                                     ("abc", 0.986, "cad"),
                                     ("abc_noise", 0.758, "cad"),

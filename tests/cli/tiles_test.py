@@ -8,7 +8,6 @@ import resource
 import shutil
 import signal
 import subprocess
-import time
 import unittest
 
 import numpy as np
@@ -122,6 +121,9 @@ class Tiles(CliTest):
         run("tiles", "run", plan)
         run("tiles", "join", plan, "-o", self.folder / "out.laz")
         run("convert", self.folder / "out.laz", "-o", self.folder / "out.ply")
+        run("tiles", "join", plan, "-o", self.folder / "out.xyz")
+        run("convert", self.folder / "out.xyz", "-o", self.folder / "text.ply")
+        self.assertEqual(len(sorted_rows(self.folder / "text.ply")), content["points"])
         run("classify", self.folder / "in.laz", "-o", self.folder / "whole.laz")
         run("convert", self.folder / "whole.laz", "-o", self.folder / "whole.ply")
         out, whole = (sorted_rows(self.folder / name) for name in ("out.ply", "whole.ply"))
@@ -231,7 +233,7 @@ class Tiles(CliTest):
         said = run("tiles", "plan", self.folder / "a.ply", "-o", self.folder / "p.json", "--tile", 0.15,
                    "--progress", "plain", expect=2).stderr
         self.assertIn("in no order in space", said)
-        self.assertIn("--sort FOLDER", said)
+        self.assertIn("sort the inputs", said)
         self.assertIn("index 100 %", said)
         self.assertNotIn("dense sample", said)
 
@@ -324,8 +326,9 @@ class Tiles(CliTest):
         plan, _ = self.make_plan(self.folder / "a.ply")
         for jobs in ("1", "2"):
             process = subprocess.Popen([PROGRAM, "tiles", "run", str(plan), "--jobs", jobs,
-                                        "--overwrite"], stderr=subprocess.PIPE)
-            time.sleep(0.3)
+                                        "--overwrite", "--progress", "json"],
+                                       stderr=subprocess.PIPE)
+            self.assertTrue(process.stderr.readline())  # the first tile is in work
             process.send_signal(signal.SIGINT)
             process.communicate(timeout=60)
             self.assertEqual(process.returncode, 130)

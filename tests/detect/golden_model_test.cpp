@@ -19,6 +19,9 @@
 //   the same with --seed 2 -o few.safetensors, and with
 //     --expert few.safetensors below=1000 -o model_3.safetensors
 //   and with --expert few.safetensors below=1000,estimated -o model_4.safetensors
+//   the command of model_2 with -o model_5.safetensors, without --context, after comments with the
+//     three classes of kOwn were put into the headers of both clouds; with -o model_6.safetensors
+//     after those of edges and `upper part`, 4, which the highest fifth of the non-edge points got
 // and the answers, to descriptors of twelve points of the icosahedron and for the context network
 // to random numbers, by numpy alone, in double precision (the functions of
 // tests/nn/numpy_model.py).
@@ -29,6 +32,9 @@ namespace {
 namespace fs = std::filesystem;
 
 const fs::path kFolder = fs::path(PCEDNET_SOURCE_DIR) / "tests/detect/golden";
+
+const ClassTable kOwn = {
+    {"wall", {200, 200, 200}}, {"pipe rail", {0x11, 0x22, 0x33}}, {"edge of it", {170, 0, 0}}};
 
 std::string bytes_of(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
@@ -76,7 +82,8 @@ TEST_P(GoldenModel, IsWrittenWithTheSameBytes) {
 }
 
 INSTANTIATE_TEST_SUITE_P(OfFormat, GoldenModel,
-                         testing::Values("model_1", "model_2", "model_3", "model_4"),
+                         testing::Values("model_1", "model_2", "model_3", "model_4", "model_5",
+                                         "model_6"),
                          [](const auto& tested) { return tested.param; });
 
 TEST(GoldenModels, SayHowPointsAreDescribed) {
@@ -96,6 +103,19 @@ TEST(GoldenModels, SayHowPointsAreDescribed) {
   EXPECT_EQ(load_model(kFolder / "model_3.safetensors").experts[0].kind, CloudKind{.below = 1000});
   EXPECT_EQ(load_model(kFolder / "model_4.safetensors").experts[0].kind,
             (CloudKind{.below = 1000, .estimated = true}));
+}
+
+TEST(GoldenModels, NameTheirOwnClasses) {
+  const EdgeModel five = load_model(kFolder / "model_5.safetensors");
+  EXPECT_EQ(five.table, kOwn);
+  EXPECT_EQ(five.classes, (std::vector<std::uint8_t>{0, 1, 2}));
+  EXPECT_FALSE(five.context);
+  const EdgeModel six = load_model(kFolder / "model_6.safetensors");
+  ClassTable table = edge_classes();
+  table.push_back({"upper part", {0x11, 0x22, 0x33}});
+  EXPECT_EQ(six.table, table);
+  EXPECT_EQ(six.classes, (std::vector<std::uint8_t>{0, 1, 2, 4}));
+  EXPECT_TRUE(six.context);
 }
 
 }  // namespace

@@ -14,6 +14,7 @@
 #include "pcednet/detect/classify.h"
 #include "pcednet/detect/result_cloud.h"
 #include "pcednet/nn/model_file.h"
+#include "support/expect_error.h"
 
 namespace pcednet::detect {
 namespace {
@@ -263,10 +264,10 @@ TEST(ClassifyEdges, LeavesWhatHasNoPlaceUnlabelledAndKeepsOldLabels) {
 
 TEST(PrepareCloud, RefusesWhatHasNoSurface) {
   const PointCloud empty;
-  EXPECT_THROW(prepare(empty), Error);
+  EXPECT_ERROR(ErrorKind::kInsufficient, prepare(empty));
   PointCloud line;
   for (int i = 0; i < 50; ++i) line.positions.emplace_back(i, 0, 0);
-  EXPECT_THROW(prepare(line), Error);
+  EXPECT_ERROR(ErrorKind::kInsufficient, prepare(line));
 }
 
 TEST(PrepareCloud, EstimatesNormalsOutwardsWhereThereAreNone) {

@@ -10,6 +10,7 @@
 
 #include "pcednet/core/error.h"
 #include "pcednet/core/random.h"
+#include "support/expect_error.h"
 
 namespace pcednet::eval {
 namespace {
@@ -179,9 +180,9 @@ TEST(LineFrame, IsTheMeanAndTheLargestCoordinate) {
       frame_of_curves(std::vector{circle({1, 2, 3}, 0.5), polyline({{1, 2, 3}, {1, 5.5, 3}})});
   EXPECT_LT((box.centre - Vec3(1, 3.5, 3)).norm(), 1e-3);
   EXPECT_NEAR(box.scale, 2.0, 1e-3);
-  EXPECT_THROW(frame_of_cloud({}), Error);
-  EXPECT_THROW(frame_of_cloud(std::vector<Vec3>(3, Vec3(1, 2, 3))), Error);
-  EXPECT_THROW(frame_of_curves({}), Error);
+  EXPECT_ERROR(ErrorKind::kInsufficient, frame_of_cloud({}));
+  EXPECT_ERROR(ErrorKind::kInsufficient, frame_of_cloud(std::vector<Vec3>(3, Vec3(1, 2, 3))));
+  EXPECT_ERROR(ErrorKind::kInsufficient, frame_of_curves({}));
 }
 
 TEST(LineScores, OfNothingAreNothing) {
@@ -190,7 +191,7 @@ TEST(LineScores, OfNothingAreNothing) {
   EXPECT_TRUE(std::isnan(scores.hausdorff));
   EXPECT_TRUE(std::isnan(scores.pieces));
   EXPECT_EQ(scores.precision + scores.recall + scores.found + scores.corners, 0.0);
-  EXPECT_THROW(score_lines(cube_edges(), {}, {}), Error);
+  EXPECT_ERROR(ErrorKind::kInsufficient, score_lines(cube_edges(), {}, {}));
 }
 
 TEST(LineReport, LeavesOutWhatHasNoValue) {

@@ -7,6 +7,7 @@
 
 #include "pcednet/core/error.h"
 #include "pcednet/nn/network.h"
+#include "support/expect_error.h"
 
 namespace pcednet::nn {
 namespace {
@@ -53,7 +54,7 @@ TEST(Architecture, RefusesWhatCannotBeBuilt) {
        {Architecture{.scales = 12}, Architecture{.scales = 2}, Architecture{.scales = -4},
         Architecture{.features = 0}, Architecture{.classes = 1}, Architecture{.width = -1},
         Architecture{.hidden = 0}, Architecture{.kind = NetworkKind::kCnn, .features = 1}}) {
-    EXPECT_THROW(make_plan(a), Error);
+    EXPECT_ERROR(ErrorKind::kUsage, make_plan(a));
   }
 }
 

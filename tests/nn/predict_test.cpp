@@ -8,6 +8,7 @@
 #include "pcednet/core/error.h"
 #include "pcednet/core/parallel.h"
 #include "reference.h"
+#include "support/expect_error.h"
 
 namespace pcednet::nn {
 namespace {
@@ -181,20 +182,20 @@ TEST(Predict, OrientsASampleByItsDecidingFeature) {
 
 TEST(Predict, RefusesWhatDoesNotFit) {
   const Model model = random_model({}, 3);
-  EXPECT_THROW(predict(model, std::vector<float>(97)), Error);
+  EXPECT_ERROR(ErrorKind::kUsage, predict(model, std::vector<float>(97)));
   EXPECT_TRUE(predict(model, std::vector<float>()).empty());
   Model short_of_weights = model;
   short_of_weights.network.parameters.pop_back();
-  EXPECT_THROW(predict(short_of_weights, std::vector<float>(96)), Error);
+  EXPECT_ERROR(ErrorKind::kUsage, predict(short_of_weights, std::vector<float>(96)));
   Model undecided = model;
   undecided.sign_rule = {Symmetry::kCanonical, {1, 1, 1, 1, 1, 0}, 5};
-  EXPECT_THROW(predict(undecided, std::vector<float>(96)), Error);
+  EXPECT_ERROR(ErrorKind::kUsage, predict(undecided, std::vector<float>(96)));
 }
 
 TEST(Predict, StopsWhenAsked) {
   const Model model = random_model({}, 3);
   const Progress progress{{}, [] { return true; }};
-  EXPECT_THROW(predict(model, std::vector<float>(96), &progress), Error);
+  EXPECT_ERROR(ErrorKind::kCancelled, predict(model, std::vector<float>(96), &progress));
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "pcednet/nn/distil.h"
 #include "pcednet/nn/predict.h"
 #include "reference.h"
+#include "support/expect_error.h"
 
 namespace pcednet::nn {
 namespace {
@@ -208,7 +209,7 @@ TEST(Train, ContinuesFromAModel) {
   const TrainResult more = train(kSmall, rising_features(100, 3).set(), options);
   EXPECT_GT(share_right(more.best, data), 0.98);
   EXPECT_EQ(more.best.standardisation.mean, first.standardisation.mean);
-  EXPECT_THROW(train({}, {}, options), Error);
+  EXPECT_ERROR(ErrorKind::kUsage, train({}, {}, options));
 }
 
 TEST(Train, HoldsNothingOutWhenAskedTo) {
@@ -260,12 +261,12 @@ TEST(Train, LeavesIgnoredSamplesOut) {
 
 TEST(Train, RefusesWhatDoesNotFit) {
   Labelled data = rising_features(100, 1);
-  EXPECT_THROW(train(kSmall, data.set(), {.epochs = 0}), Error);
-  EXPECT_THROW(train(kSmall, data.set(), {.learning_rate = -1.0}), Error);
-  EXPECT_THROW(train(kSmall, data.set(), {.batch = 0}), Error);
-  EXPECT_THROW(train({}, data.set(), {}), Error);
+  EXPECT_ERROR(ErrorKind::kUsage, train(kSmall, data.set(), {.epochs = 0}));
+  EXPECT_ERROR(ErrorKind::kUsage, train(kSmall, data.set(), {.learning_rate = -1.0}));
+  EXPECT_ERROR(ErrorKind::kUsage, train(kSmall, data.set(), {.batch = 0}));
+  EXPECT_ERROR(ErrorKind::kUsage, train({}, data.set(), {}));
   data.labels[7] = 3;
-  EXPECT_THROW(train(kSmall, data.set(), {}), Error);
+  EXPECT_ERROR(ErrorKind::kUsage, train(kSmall, data.set(), {}));
 }
 
 TEST(Train, TriesAllNetworks) {

@@ -11,6 +11,7 @@
 #include "pcednet/core/error.h"
 #include "pcednet/core/parallel.h"
 #include "pcednet/detect/classify.h"
+#include "support/expect_error.h"
 #include "support/own_folder.h"
 #include "workbench/study/keys.h"
 #include "workbench/study/study_file.h"
@@ -162,7 +163,7 @@ TEST_F(StudyRun, KeepsCloudsThatWereClassifiedBeforeACancel) {
       .report = [&](const std::string& stage,
                     double fraction) { stop = stop || (stage == "classify" && fraction > 0.4); },
       .cancelled = [&] { return stop.load(); }};
-  EXPECT_THROW(run("classes", "cache", {}, &progress), Error);
+  EXPECT_ERROR(ErrorKind::kCancelled, run("classes", "cache", {}, &progress));
   const Study study = run("classes", "cache");
   EXPECT_EQ(study.trained, 0u);
   EXPECT_GT(study.classified, 0u);
@@ -256,7 +257,7 @@ TEST_F(StudyRun, WritesPredictionsAndRefusesTheFileOfAnotherCommand) {
   const Study study = run("classes", "cache", {.seeds = {1, 2}});
   write_study(folder_, study, {.command = "one"}, Overwrite::kNo);
   write_study(folder_, study, {.command = "one"}, Overwrite::kNo);
-  EXPECT_THROW(write_study(folder_, study, {.command = "two"}, Overwrite::kNo), Error);
+  EXPECT_ERROR(ErrorKind::kUsage, write_study(folder_, study, {.command = "two"}, Overwrite::kNo));
   write_study(folder_, study, {.command = "two"}, Overwrite::kYes);
   const fs::path file = folder_ / "predictions/classes/classes2/a/cube3.u8";
   std::ifstream stream(file, std::ios::binary);
@@ -283,7 +284,7 @@ TEST(Experiments, AreAllMadeWithDistinctRows) {
     std::sort(ids.begin(), ids.end());
     EXPECT_EQ(std::unique(ids.begin(), ids.end()), ids.end()) << entry.name;
   }
-  EXPECT_THROW(make_experiment("nonsense", {}), Error);
+  EXPECT_ERROR(ErrorKind::kUsage, make_experiment("nonsense", {}));
 }
 
 TEST(StudyCloudDigest, SeesContentsAndThePlacesWhateverTheirOrder) {

@@ -55,7 +55,7 @@ fs::path preview_path(const ClassifyArguments& arguments, const fs::path& input,
 /// The file for a result unless the user names one: LAS for LAS, PLY for all else.
 std::string output_name(const fs::path& input) {
   const formats::Format* format = formats::find_format(input);
-  const bool is_las = format && format->name == "LAS";
+  const bool is_las = format && format->is_las();
   return formats::stem_of(input) + (is_las ? "_edges.las" : "_edges.ply");
 }
 

@@ -34,10 +34,6 @@ struct DescribeArguments {
 
 using StatusCounts = std::array<std::size_t, 3>;
 
-std::string_view reconstruction_name(gls::Reconstruction reconstruction) {
-  return gls::reconstruction_names()[static_cast<std::size_t>(reconstruction)];
-}
-
 /// Describes every point into `matrix`, a stretch of the order at a time: neighbours in space share
 /// their work, wherever their rows are in the file.
 StatusCounts write_matrix(const gls::ScaleSpace& space, std::size_t points, io::NpyWriter& matrix,
@@ -87,7 +83,7 @@ ordered_json to_json(const DescribeArguments& arguments, const gls::ScaleSpace& 
                        {"points", points},
                        {"scales", space.scales()},
                        {"features", gls::column_names(options)},
-                       {"reconstruction", reconstruction_name(options.reconstruction)},
+                       {"reconstruction", gls::name_of(options.reconstruction)},
                        {"gate", nullptr},
                        {"engine", options.engine == gls::Engine::kExact ? "exact" : "fast"}};
   if (gls::projects(options.reconstruction)) {

@@ -59,11 +59,53 @@ std::vector<float> probabilities(const detect::Classification& found, eval::Posi
   return p;
 }
 
+/// How the classes of a cloud are found.
+struct Way {
+  const EvaluateArguments& arguments;
+  const detect::EdgeModel* model;  ///< none: a method, or predictions
+  const Progress& progress;
+};
+
+/// Those of `input` by the model or the method, or of the file `prediction` if it is named.
+detect::Classification find_classes(const fs::path& input, const fs::path& prediction,
+                                    const PointCloud& cloud, const Way& way) {
+  if (!prediction.empty()) {
+    detect::Classification found;
+    found.classes = read_predictions(prediction, cloud);
+    return found;
+  }
+  return classify_cloud(input, cloud,
+                        {.model = way.model,
+                         .method = way.arguments.method,
+                         .preparation = way.arguments.preparation,
+                         .boundary = !way.arguments.model.no_boundary},
+                        way.progress)
+      .found;
+}
+
+void score(const fs::path& input, const PointCloud& cloud, const detect::Classification& found,
+           const Way& way, Results& results) {
+  const eval::Positive positive = positive_named(way.arguments.positive);
+  if (!way.model && results.classes.clouds == 0) {
+    results.classes.table = classes_of(cloud.comments);
+  }
+  if (has_own_classes(results.classes.table)) {
+    return eval::add_cloud(cloud.labels, found.classes, results.classes);
+  }
+  results.scores.push_back(
+      {formats::stem_of(input), eval::count_confusion(cloud.labels, found.classes, positive)});
+  if (way.arguments.calibration) {
+    eval::add_calibration(cloud.labels, probabilities(found, positive), positive,
+                          results.calibration);
+  }
+}
+
 Results score_all(const EvaluateArguments& arguments, const Common& common) {
   const Progress progress = console_progress(common);
-  const eval::Positive positive = positive_named(arguments.positive);
   std::optional<detect::EdgeModel> model;
   if (!arguments.model.name.empty()) model = load_model(arguments.model);
+
+  const Way way = {arguments, model ? &*model : nullptr, progress};
 
   Results results;
   if (model) results.classes.table = model->table;
@@ -79,30 +121,7 @@ Results score_all(const EvaluateArguments& arguments, const Common& common) {
     throw_if_cancelled(&progress);
     for (const std::string& warning : loaded.warnings) warn(input.string() + ": " + warning);
     with_name_in_errors(input, [&] {
-      const auto& truth = loaded.cloud.labels;
-      detect::Classification found;
-      if (given) {
-        found.classes = read_predictions(prediction, loaded.cloud);
-      } else {
-        found = classify_cloud(input, loaded.cloud,
-                               {.model = model ? &*model : nullptr,
-                                .method = arguments.method,
-                                .preparation = arguments.preparation,
-                                .boundary = !arguments.model.no_boundary},
-                               progress)
-                    .found;
-      }
-      if (!model && results.classes.clouds == 0) {
-        results.classes.table = classes_of(loaded.cloud.comments);
-      }
-      if (has_own_classes(results.classes.table)) {
-        return eval::add_cloud(truth, found.classes, results.classes);
-      }
-      results.scores.push_back(
-          {formats::stem_of(input), eval::count_confusion(truth, found.classes, positive)});
-      if (arguments.calibration) {
-        eval::add_calibration(truth, probabilities(found, positive), positive, results.calibration);
-      }
+      score(input, loaded.cloud, find_classes(input, prediction, loaded.cloud, way), way, results);
     });
   }
   if (results.scores.empty() && results.classes.clouds == 0) {
@@ -196,7 +215,9 @@ void add_evaluate(CLI::App& app, Common& common) {
   add_prepare_options(*command, arguments->preparation);
   for (const char* of_a_model :
        {"--no-context", "--no-boundary", "--exact", "--s-min", "--s-max", "--keep-orientation"}) {
-    command->get_option(of_a_model)->needs("--model");
+    for (const char* other : {"--predictions", "--method", "--truth"}) {
+      command->get_option(of_a_model)->excludes(other);
+    }
   }
   command->callback([arguments, &common] { evaluate(*arguments, common); });
 }

@@ -128,8 +128,7 @@ void put_descriptor(const gls::ScaleSpaceOptions& descriptor,
                     std::map<std::string, std::string>& metadata) {
   metadata["descriptor_scales"] = std::to_string(descriptor.scales);
   metadata["descriptor_features"] = names_of(descriptor.features);
-  metadata["descriptor_reconstruction"] =
-      std::string(gls::reconstruction_names()[static_cast<std::size_t>(descriptor.reconstruction)]);
+  metadata["descriptor_reconstruction"] = gls::name_of(descriptor.reconstruction);
   metadata["descriptor_projection_steps"] = std::to_string(descriptor.max_projection_steps);
   if (descriptor.side_gate) {
     metadata["descriptor_side_gate"] = fmt::format("{}", *descriptor.side_gate);
@@ -215,12 +214,13 @@ Expert read_expert(const std::filesystem::path& path, nn::Safetensors content,
 /// The experts of a file, as they are in it.
 struct StoredExperts {
   const char* format = nullptr;  ///< of a file with them; nullptr if there are none
+  bool is_sparse = false;        ///< a single one, for clouds of few points
   std::vector<nn::Safetensors> parts = {};
 };
 
 StoredExperts take_experts(nn::Safetensors& content) {
   if (nn::Safetensors sparse = take_part(content, kSparse); !sparse.tensors.empty()) {
-    return {kSparseFormat, {std::move(sparse)}};
+    return {kSparseFormat, true, {std::move(sparse)}};
   }
   StoredExperts stored;
   for (;;) {
@@ -238,6 +238,7 @@ StoredExperts to_store(const std::vector<Expert>& experts) {
   const CloudKind& first = experts.front().kind;
   const bool is_sparse = experts.size() == 1 && first == CloudKind{.below = first.below};
   stored.format = is_sparse ? kSparseFormat : kExpertFormat;
+  stored.is_sparse = is_sparse;
   for (const Expert& expert : experts) {
     nn::Model network = expert.network;
     network.metadata[is_sparse ? kFewerThan : kKind] =
@@ -339,10 +340,9 @@ void save_model(const std::filesystem::path& path, const EdgeModel& model, Overw
   }
   nn::Safetensors content = nn::to_safetensors(network);
   if (model.context) add_part(nn::to_safetensors(*model.context), kContext, content);
-  const bool is_sparse = experts.format == kSparseFormat;
   for (std::size_t number = 0; number < experts.parts.size(); ++number) {
-    add_part(experts.parts[number], is_sparse ? std::string(kSparse) : expert_prefix(number),
-             content);
+    add_part(experts.parts[number],
+             experts.is_sparse ? std::string(kSparse) : expert_prefix(number), content);
   }
   nn::write_safetensors(path, content, overwrite);
 }

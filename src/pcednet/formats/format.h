@@ -38,6 +38,9 @@ struct Format {
   bool (*keeps)(const ForeignElement& element) = nullptr;
 
   bool is_written() const { return write != nullptr || create_parts != nullptr; }
+  bool is_las() const { return name == "LAS"; }
+  /// Whether tiles are read from it, and written to it.
+  bool is_tiled() const { return open_parts != nullptr && create_parts != nullptr; }
 };
 
 /// Every format there is. Where the beginning of a file speaks for several, the first counts.

@@ -214,7 +214,7 @@ std::vector<fs::path> files_of_virtual_cloud(const fs::path& path) {
 
 VirtualFile virtual_file(const fs::path& path) {
   const io::InputFile file(path);
-  if (format_of(file).name != "LAS") {
+  if (!format_of(file).is_las()) {
     throw Error(ErrorKind::kInsufficient,
                 path.string() + ": a virtual point cloud is of LAS, LAZ and COPC files");
   }

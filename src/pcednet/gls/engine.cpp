@@ -6,9 +6,7 @@ namespace {
 std::variant<FastScaleSpace, ExactScaleSpace> make_engine(OrientedPoints points,
                                                           ScaleSpaceOptions options,
                                                           const Progress* progress) {
-  const bool spheres = options.reconstruction == Reconstruction::kSphere ||
-                       options.reconstruction == Reconstruction::kSphereMls;
-  if (!spheres) options.engine = Engine::kExact;
+  if (!fits_spheres(options.reconstruction)) options.engine = Engine::kExact;
   if (options.engine == Engine::kExact) return ExactScaleSpace(points, options, progress);
   return FastScaleSpace(points, options, progress);
 }

@@ -65,8 +65,7 @@ FastScaleSpace::FastScaleSpace(OrientedPoints points, const ScaleSpaceOptions& o
                                const LaneKernels& kernels, const Progress* progress)
     : options_(options), kernels_(&kernels) {
   check(points, options);
-  if (options.reconstruction != Reconstruction::kSphere &&
-      options.reconstruction != Reconstruction::kSphereMls) {
+  if (!fits_spheres(options.reconstruction)) {
     throw Error(ErrorKind::kUsage, "the fast engine reconstructs with algebraic spheres only");
   }
   Stage stage(progress, "prepare", 3);
@@ -151,7 +150,7 @@ void FastScaleSpace::describe_block(std::span<const Visit> visits, std::span<flo
     const std::size_t first = first_visit[group.begin - begin];
     return visits.subspan(first, first_visit[group.begin - begin + group.count] - first);
   };
-  const bool moves = options_.reconstruction == Reconstruction::kSphereMls;
+  const bool moves = projects(options_.reconstruction);
   BlockEvaluator evaluator(pyramid_,
                            {.detail = detail_of(options_.features),
                             .projection_steps = moves ? options_.max_projection_steps : 0,

@@ -11,6 +11,10 @@ std::span<const std::string_view> reconstruction_names() {
   return kNames;
 }
 
+std::string_view name_of(Reconstruction reconstruction) {
+  return reconstruction_names()[static_cast<std::size_t>(reconstruction)];
+}
+
 Vec3 projection_move(const AlgebraicSphere& sphere) {
   const double length = sphere.ul.norm();
   return sphere.ul * (-2.0 * sphere.uc / (length * (length + sphere.pratt)));

@@ -22,8 +22,13 @@ constexpr bool projects(Reconstruction reconstruction) {
          reconstruction == Reconstruction::kSphereMls;
 }
 
+constexpr bool fits_spheres(Reconstruction reconstruction) {
+  return reconstruction == Reconstruction::kSphere || reconstruction == Reconstruction::kSphereMls;
+}
+
 /// Their names in files and on the command line, in the order of the enum.
 std::span<const std::string_view> reconstruction_names();
+std::string_view name_of(Reconstruction reconstruction);
 
 /// The way from the evaluation point to the nearest point of the sphere,
 ///

@@ -129,9 +129,7 @@ void decide(const PointCloud& dense, const detect::EdgeModel& model,
   }
   plan.pyramid.corner = plan.box.min;
   plan.pyramid.side = (plan.box.max - plan.box.min).maxCoeff();
-  const bool spheres = model.descriptor.reconstruction == gls::Reconstruction::kSphere ||
-                       model.descriptor.reconstruction == gls::Reconstruction::kSphereMls;
-  if (plan.model.exact || !spheres) return;
+  if (plan.model.exact || !gls::fits_spheres(model.descriptor.reconstruction)) return;
   gls::ScaleSpaceOptions descriptor = model.descriptor;
   descriptor.s_min = plan.s_min, descriptor.s_max = plan.s_max;
   const gls::FastScaleSpace space({dense.positions, prepared.normals, prepared.curve}, descriptor,

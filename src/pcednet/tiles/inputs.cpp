@@ -144,8 +144,7 @@ void read_in_turn(std::span<const std::size_t> parts,
 std::unique_ptr<io::PartReader> open_chunks(const fs::path& path) {
   auto file = std::make_unique<io::InputFile>(path);
   const formats::Format& format = formats::format_of(*file);
-  const bool in_chunks = format.name == "LAS" || format.name == "PLY";
-  auto reader = in_chunks ? format.open_parts(std::move(file), kChunkPoints) : nullptr;
+  auto reader = format.is_tiled() ? format.open_parts(std::move(file), kChunkPoints) : nullptr;
   if (reader) return reader;
   throw Error(ErrorKind::kUsage,
               fmt::format("{}: tiles are read from LAS, LAZ and binary PLY without lists; "

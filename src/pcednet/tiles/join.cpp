@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "pcednet/core/error.h"
+#include "pcednet/formats/format.h"
 #include "pcednet/formats/write_cloud.h"
 #include "pcednet/io/parts.h"
 #include "pcednet/tiles/inputs.h"
@@ -75,11 +76,11 @@ Joined join(const Plan& plan, const std::filesystem::path& path, Overwrite overw
     return false;
   });
   const bool is_las = !plan.las_steps.empty();
-  const bool to_ply = path.extension() == ".ply";
+  const bool to_las = formats::format_for(path).is_las();
   io::PartOutline outline{.points = plan.points(), .first = &first, .is_las = is_las};
   outline.each_part = [&](const auto& visit) {
     // The steps and columns of tiles made of LAS are the same in all.
-    if (is_las && !to_ply)
+    if (is_las && to_las)
       visit(first);
     else
       tiles.each(visit);

@@ -156,7 +156,7 @@ std::optional<CloudFacts> large_facts(const std::filesystem::path& path,
                                       const FactsOptions& options, const Progress* progress) {
   auto file = std::make_unique<io::InputFile>(path);
   const formats::Format& format = formats::format_of(*file);
-  if (format.name != "LAS" && format.name != "PLY") return std::nullopt;
+  if (!format.is_tiled()) return std::nullopt;
   CloudFacts facts = formats::facts_of_header(*file);
   const BoundingBox whole = facts.las ? io::las_outline(*file).bounds : BoundingBox{};
   const auto reader = format.open_parts(std::move(file), kChunkPoints);

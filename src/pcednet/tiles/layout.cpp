@@ -7,7 +7,7 @@
 #include <set>
 
 #include "pcednet/core/error.h"
-#include "pcednet/io/text_scan.h"
+#include "pcednet/formats/format.h"
 
 namespace pcednet::tiles {
 namespace {
@@ -103,14 +103,13 @@ std::string name_of(std::size_t id, std::size_t tiles, const Tile& tile, const G
 }
 
 void check_template(const std::string& output) {
-  const std::string extension = io::lower_case(fs::path(output).extension().string());
-  if (extension != ".laz" && extension != ".las" && extension != ".ply") {
+  const formats::Format* format = formats::find_format(output);
+  if (!format || !format->is_tiled()) {
     throw Error(ErrorKind::kUsage,
-                fmt::format("--output {}: tiles are written as .laz, .las or .ply", output));
+                fmt::format("{}: tiles are written as .laz, .las or .ply", output));
   }
   if (fs::path(output).has_parent_path()) {
-    throw Error(ErrorKind::kUsage,
-                fmt::format("--output {}: a name without folders; see --out-dir", output));
+    throw Error(ErrorKind::kUsage, fmt::format("{}: names of tiles have no folder", output));
   }
 }
 
@@ -183,8 +182,8 @@ std::vector<Tile> lay_out(const CellCounts& counts, const Grid& grid, const fs::
   if (cores.empty()) cores[{0, 0}] = 0;
   if (cores.size() > kMostTiles) {
     throw Error(ErrorKind::kUsage,
-                fmt::format("{} tiles of length {:g}: at most {}; choose a larger --tile",
-                            cores.size(), grid.length(), kMostTiles));
+                fmt::format("{} tiles of length {:g}: at most {}; choose longer ones", cores.size(),
+                            grid.length(), kMostTiles));
   }
   cores.begin()->second += counts.not_finite();
   std::vector<Tile> tiles;
@@ -193,9 +192,9 @@ std::vector<Tile> lay_out(const CellCounts& counts, const Grid& grid, const fs::
   for (std::size_t id = 0; id < tiles.size(); ++id) {
     const std::string name = name_of(id, tiles.size(), tiles[id], grid, output);
     if (!names.insert(name).second) {
-      throw Error(ErrorKind::kUsage,
-                  fmt::format("--output {}: two tiles would be named {}; {{ID}} tells them apart",
-                              output, name));
+      throw Error(
+          ErrorKind::kUsage,
+          fmt::format("{}: two tiles would be named {}; {{ID}} tells them apart", output, name));
     }
     tiles[id].output = folder / name;
   }

@@ -38,8 +38,7 @@ void set_buffer(const detect::EdgeModel& model, const Spacing& spacing, Plan& pl
   const bool crowded = std::any_of(plan.pyramid.levels.begin(), plan.pyramid.levels.end(),
                                    [](const auto& l) { return l.crowd != gls::Crowd::kKeep; });
   const double cells = model.descriptor.eps * plan.s_max * (crowded ? 10.0 : 2.0);
-  const bool moves = model.descriptor.reconstruction == gls::Reconstruction::kSphereMls ||
-                     model.descriptor.reconstruction == gls::Reconstruction::kPlaneMls;
+  const bool moves = gls::projects(model.descriptor.reconstruction);
   const double described = plan.s_max * (moves ? 2.0 : 1.0) + cells;
   const std::size_t fitted = std::max(plan.normals.neighbours, normals::kExactNeighbours);
   const double normals =
@@ -85,8 +84,7 @@ bool is_too_often(double times, const Plan& plan) {
 [[noreturn]] void refuse_order(double tiles, double times) {
   throw Error(ErrorKind::kUsage,
               fmt::format("the points of the inputs are in no order in space: {:.0f} tiles would "
-                          "read each point {:.0f} times. Choose a larger --tile, or give --sort "
-                          "FOLDER for copies of the inputs in order",
+                          "read each point {:.0f} times: choose longer tiles, or sort the inputs",
                           tiles, times));
 }
 

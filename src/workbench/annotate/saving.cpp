@@ -38,7 +38,7 @@ std::string ending_of(Saved what, const fs::path& input) {
   if (what == Saved::kModel) return ".safetensors";
   if (what == Saved::kLines) return "_lines.dxf";
   const formats::Format* format = formats::find_format(input);
-  const bool stays = format && format->name == "LAS" && format->is_written();
+  const bool stays = format && format->is_las();
   return "_annotated" + (stays ? input.extension().string() : ".ply");
 }
 
@@ -53,7 +53,7 @@ bool fits(Saved what, const fs::path& name) {
 }  // namespace
 
 fs::path default_project(const fs::path& input) {
-  return input.parent_path() / (input.stem().string() + "_annotation.json");
+  return input.parent_path() / (formats::stem_of(input) + "_annotation.json");
 }
 
 fs::path saving_path(Saved what, const std::string& name, std::span<const fs::path> inputs,
@@ -69,7 +69,7 @@ fs::path saving_path(Saved what, const std::string& name, std::span<const fs::pa
   fs::path path = input.parent_path() / name;
   if (name.empty()) {
     if (what == Saved::kProject) return project;
-    path /= input.stem().string() + ending_of(what, input);
+    path /= formats::stem_of(input) + ending_of(what, input);
   }
   std::vector<fs::path> all_kept(inputs.begin(), inputs.end());
   all_kept.insert(all_kept.end(), {journal_of(project), project});
