@@ -25,7 +25,7 @@ constexpr bool projects(Reconstruction reconstruction) {
 /// Their names in files and on the command line, in the order of the enum.
 std::span<const std::string_view> reconstruction_names();
 
-/// The way from the evaluation point to the nearest point of the sphere,
+/// The vector from the evaluation point to the nearest point of the sphere,
 ///
 ///     x' - x = -2 uc / (|ul| (|ul| + pratt)) ul,
 ///
