@@ -13,11 +13,12 @@ namespace pcednet::detect {
 /// points that lie on surfaces to a small fraction of their spacing. `unit` must be about 1.2
 /// spacings.
 ///
-/// The 24 nearest others span the faces: each has the plane on which most of its own 16 nearest lie
-/// (normals::face_normal). Another face is turned by 26 degrees or more and explains at least three
-/// of the 24 that are not on the point's own face, some of them near the line where the two planes
-/// meet. The nearer of the two best counts. Where two points lie on the crease itself, as vertices
-/// of a mesh do, no other face counts: these points are the edge, whatever their spacing.
+/// Faces are found among the 24 nearest others: each has the plane on which most of its own 16
+/// nearest lie (normals::face_normal). Another face is turned by 26 degrees or more and explains at
+/// least three of the 24 that are not on the point's own face, some of them near the line where the
+/// two planes meet. The nearer of the two best counts. Where two points lie on the crease itself,
+/// as vertices of a mesh do, no other face counts: these points are the edge, whatever their
+/// spacing.
 ///
 /// The result depends neither on normals, threads nor the order of the points. `curve` is the
 /// spatial::curve_order() of the positions.

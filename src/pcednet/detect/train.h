@@ -37,7 +37,7 @@ struct Samples {
   std::vector<float> values = {};         ///< samples x scales x features
   std::vector<std::uint8_t> labels = {};  ///< of the options' table
   std::size_t clouds = 0, points = 0;     ///< the clouds, and all their points
-  std::vector<std::string> notes = {};    ///< what the user should be told, one sentence each
+  std::vector<std::string> notes = {};    ///< for the user, one sentence each
 };
 
 /// Describes every labelled point.
@@ -50,7 +50,7 @@ struct TrainedModel {
   EdgeModel model;
   bool cancelled = false;
   int epochs = 0;  ///< completed; after 0 epochs the model is not worth keeping
-  std::vector<std::string> notes = {};  ///< what the user should be told, one sentence each
+  std::vector<std::string> notes = {};  ///< for the user, one sentence each
   std::string no_context = {};          ///< why there is no context network though one was wanted
 };
 

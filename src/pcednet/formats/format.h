@@ -19,7 +19,7 @@ struct Format {
   std::string_view name;
   std::vector<std::string_view> extensions;  ///< in lower case, with the dot
 
-  /// Whether a file that starts with these bytes is of this format, whatever its extension.
+  /// Whether a file with this beginning is of this format, with any extension.
   bool (*begins)(std::string_view start) = nullptr;
   io::LoadedCloud (*read)(const io::InputFile& file) = nullptr;
   std::unique_ptr<io::PartReader> (*open_parts)(std::unique_ptr<io::InputFile> file,

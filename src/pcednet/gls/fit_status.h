@@ -4,8 +4,8 @@
 
 namespace pcednet::gls {
 
-/// How far a description can be trusted. It depends only on the number of neighbours, unless the
-/// fit fails altogether.
+/// The reliability of a description. It depends only on the number of neighbours, unless the fit
+/// fails altogether.
 enum class FitStatus : std::uint8_t {
   kStable = 0,     ///< 6 neighbours or more
   kUnstable = 1,   ///< 3 to 5: usable

@@ -51,7 +51,8 @@ struct FitBuffers {
   BlockFrame own;  ///< for a group whose points left the range that its block gathered
 };
 
-/// How far beyond the support sources must be gathered for points that project() moves, in t.
+/// The margin, in t, beyond the support within which sources must be gathered for points that
+/// project() moves.
 inline constexpr float kMargin = 0.25f;
 
 /// The cosine between normals from which all of these gates are fully open; 0 for no gate.

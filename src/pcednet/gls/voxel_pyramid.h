@@ -13,7 +13,7 @@
 
 namespace pcednet::gls {
 
-/// A voxel that stands for the points in it, or a single point.
+/// A voxel that represents the points in it, or a single point.
 ///
 /// Moments add, so a sum over a neighbourhood may use a voxel for its points when the voxel is
 /// small compared with the support. `qq` and `qn` remove the second-order bias: points on one
