@@ -30,7 +30,7 @@ std::string plain(const Vec3& v) {
   return fmt::format("{} {} {}", v.x(), v.y(), v.z());
 }
 
-/// Collects lines of a name and a value.
+/// Collects lines, each with a name and a value.
 class Lines {
  public:
   explicit Lines(std::string title) : text_(std::move(title) + "\n") {}

@@ -36,7 +36,7 @@ void Journal::open() {
   }
 }
 
-/// Replaces the file at once: the old one or the new one is there at any moment.
+/// Replaces the file atomically: either the old or the new one exists at any moment.
 void Journal::rewrite(const std::string& text) {
   write_text_file(path_, text, Overwrite::kYes);
   ::close(file_);
@@ -104,7 +104,7 @@ void Journal::write_line(const std::string& line) {
     if (count < 0 && errno == EINTR) continue;
     if (count <= 0) {
       const int why = errno;
-      // Half a line must not stay: the next one would join it.
+      // An incomplete line must not stay: the next one would join it.
       if (::ftruncate(file_, static_cast<off_t>(size_)) == 0) ::lseek(file_, 0, SEEK_END);
       errno = why;
       fail("cannot be written");

@@ -263,7 +263,7 @@ Experiment noise(const PlanOptions& options) {
   return experiment;
 }
 
-/// Four joined cubes with exact normals: what costs are measured on.
+/// Four joined cubes with exact normals, for measuring costs.
 std::shared_ptr<const CloudSet> generated_cloud(std::size_t points, std::uint64_t seed) {
   const shapes::Recipe recipe{.name = fmt::format("cubes_{}", points),
                               .shape = shapes::four_cubes(),

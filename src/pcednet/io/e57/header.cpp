@@ -12,7 +12,7 @@
 namespace pcednet::io {
 namespace {
 
-/// `text` without what is blank around it.
+/// `text` without surrounding blanks.
 std::string_view bare(std::string_view text) {
   constexpr std::string_view kBlank = " \t\r\n";
   const std::size_t begin = std::min(text.find_first_not_of(kBlank), text.size());
