@@ -323,7 +323,7 @@ void add_run(CLI::App& tiles, Common& common) {
       ->capture_default_str()
       ->check(CLI::Range(1, 1024));
   command->add_option("--max-memory", arguments->memory,
-                      "Memory for all jobs together, such as 8G: fewer at a time if need be");
+                      "Memory for all jobs together, such as 8G: fewer at a time if needed");
   command->callback([arguments, &common] { run_tiles(*arguments, common); });
 }
 

@@ -240,7 +240,8 @@ void add_recipe_options(CLI::App& command, TrainArguments& arguments) {
       ->check(CLI::Range(0.0, 1.0))
       ->excludes("--natural");
   command.add_flag("--even-validation", arguments.even_validation,
-                   "Judge the epochs with all classes alike; otherwise they count as in training");
+                   "Give every class equal weight when choosing the epoch; without it, classes "
+                   "weigh as in training");
   command
       .add_option("--distil", arguments.options.teachers,
                   "Train this many networks first and learn their mean prediction")

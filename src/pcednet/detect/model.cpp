@@ -282,9 +282,9 @@ void drop_context(EdgeModel& model) {
 void check_fits(const EdgeModel& expert, const gls::ScaleSpaceOptions& descriptor,
                 std::size_t classes) {
   if (expert.descriptor == descriptor && expert.classes.size() == classes) return;
-  throw Error(ErrorKind::kModelMismatch,
-              fmt::format("{}: its networks want another description of points, or other classes",
-                          expert.name));
+  throw Error(
+      ErrorKind::kModelMismatch,
+      fmt::format("{}: its networks need another descriptor, or other classes", expert.name));
 }
 
 void join_expert(EdgeModel& model, const EdgeModel& expert, const CloudKind& kind) {

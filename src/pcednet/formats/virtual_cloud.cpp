@@ -176,7 +176,7 @@ fs::path file_behind(const std::string& reference, const fs::path& cloud) {
   constexpr std::string_view kFile = "file://";
   const bool is_file = reference.starts_with(kFile);
   if (!is_file && reference.find("://") != std::string::npos) {
-    throw io::unreadable(cloud, reference + " is on the net: only files on this machine are read");
+    throw io::unreadable(cloud, reference + " is remote: only local files are read");
   }
   const fs::path path =
       cloud.parent_path() / (is_file ? reference.substr(kFile.size()) : reference);

@@ -92,7 +92,7 @@ bool promote_channels(PointCloud& cloud, const std::vector<std::string>& names,
   const ColourScale scale = find_scale(channels, cloud.size());
   if (scale == ColourScale::kNone) {
     warnings.push_back(names[0] + ", " + names[1] + " and " + names[2] +
-                       " are no colours in 0 ... 255 or 0 ... 1: kept as attributes");
+                       " are not colours in 0 ... 255 or 0 ... 1: kept as attributes");
     return false;
   }
   const double factor = factor_of(scale);

@@ -70,7 +70,7 @@ void Journal::read(const Inputs& inputs, std::vector<Record>& records) {
       head = end + 1;
       if (!begins_with(inputs, known)) {
         throw Error(ErrorKind::kInsufficient,
-                    fmt::format("{}: of another input than {}; move it away to begin anew",
+                    fmt::format("{}: of another input than {}; move it away to start afresh",
                                 path_.string(), inputs.front().name));
       }
     } catch (const Error& error) {

@@ -342,7 +342,7 @@ std::span<const std::uint32_t> replay(const Record& record, Replayed& now) {
     case Kind::kStroke:
       if (!now.classes.may_paint(record.edge_class) && record.edge_class != kUnlabelled) {
         refuse_project(
-            fmt::format("a stroke of class {}, which the project has not", record.edge_class));
+            fmt::format("a stroke of class {}, which the project lacks", record.edge_class));
       }
       if (record.edge_class != kUnlabelled) now.ever_painted.insert(record.edge_class);
       return now.labels.paint(record.edge_class, record.points);

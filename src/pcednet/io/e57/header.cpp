@@ -35,7 +35,7 @@ class Parser {
     Number value = {};
     const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (code != std::errc() || end != text.data() + text.size()) {
-      throw error(fmt::format("{} is no number that fits: {:.40}", what, text));
+      throw error(fmt::format("{} is not a valid number: {:.40}", what, text));
     }
     return value;
   }
