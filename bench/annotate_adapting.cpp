@@ -1,5 +1,4 @@
-// bench_adapting [--model FILE] [--seed N] CLOUD...: how well a model is corrected by simulated
-// users.
+// bench_adapting [--model FILE] [--seed N] CLOUD...: how well simulated users correct a model.
 //
 // A user paints balls of four spacings round random errors of the present prediction, with the true
 // labels. After 1, 2, 4, 8 and 16 strokes the program trains as `pcednet annotate` does, once from
@@ -34,7 +33,7 @@ struct Labelled {
   Subject subject() const { return {{{*described, cloud.positions, prepared.curve}}}; }
 };
 
-/// After so many strokes as kStrokes has; none where training was not possible yet.
+/// Scores after each number of strokes in kStrokes; none where training was not possible yet.
 using Curve = std::array<double, kStrokes.size()>;
 
 std::unique_ptr<Labelled> read(const std::string& file, const gls::ScaleSpaceOptions& descriptor) {
@@ -45,7 +44,7 @@ std::unique_ptr<Labelled> read(const std::string& file, const gls::ScaleSpaceOpt
     throw Error(ErrorKind::kInsufficient, file + ": no point is labelled sharp-edge");
   }
   for (std::uint8_t& label : made->cloud.labels) {
-    if (label == kBoundary) label = kNonEdge;  // which nobody paints
+    if (label == kBoundary) label = kNonEdge;  // which cannot be painted
   }
   made->prepared = detect::prepare(made->cloud);
   made->described = describe_once(made->prepared, descriptor, {});
@@ -60,7 +59,7 @@ double mcc(const Labelled& cloud, const std::vector<std::uint8_t>& found) {
       .mcc;
 }
 
-/// One stroke round an error that is not painted yet; none if there is no such.
+/// One stroke round an unpainted error; none if there is no such error.
 void correct(const Labelled& cloud, const std::vector<std::uint8_t>& found, Random& random,
              std::vector<std::uint8_t>& painted) {
   const auto& truth = cloud.cloud.labels;

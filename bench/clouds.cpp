@@ -67,9 +67,9 @@ Vec3 ground_normal(double x, double y) {
       .normalized();
 }
 
-/// What a scanner on a tripod sees of rough ground and plants: scan lines whose points lie close
-/// along the line and far across it, ten times denser near the tripod; two points of five are
-/// leaves with normals of any direction; noise of range and of normals.
+/// A tripod scan of rough ground and plants: scan lines whose points lie close along the line and
+/// far across it, ten times denser near the tripod; two points of five are leaves with normals in
+/// any direction; noise of range and of normals.
 Cloud rough(std::size_t points) {
   constexpr double kNearest = 2.0, kFarthest = 40.0, kRangeNoise = 0.005, kNormalNoise = 0.2;
   Random random(2);
@@ -155,7 +155,7 @@ Cloud leaves(std::size_t points) {
   return cloud;
 }
 
-/// The scene, every normal turned or not by chance.
+/// The scene, with randomly flipped normals.
 Cloud flipped(std::size_t points) {
   Cloud cloud = scene(points);
   Random random(7);

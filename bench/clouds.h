@@ -18,14 +18,15 @@ struct Cloud {
   }
 };
 
-/// A kind of cloud that the benchmarks draw, and what it is.
+/// A kind of benchmark cloud, and its description.
 struct CloudKind {
   const char* name;
   const char* what;
   Cloud (*make)(std::size_t points);
 };
 
-/// The clean scene first, then a rough scan, then what is hard on an engine that merges points.
+/// The clean scene first, then a rough scan, then clouds that are hard for an engine that merges
+/// points.
 const std::vector<CloudKind>& cloud_kinds();
 
 /// The cloud of that name: the same for the same name and number of points. Throws Error(kUsage)

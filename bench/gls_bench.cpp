@@ -28,7 +28,7 @@ const bench::Cloud& cloud_of(const std::string& name, std::size_t count) {
   return at->second;
 }
 
-/// Stretches of the order, spread over the cloud: 1/`part` of it.
+/// Ranges of the order, spread over the cloud: 1/`part` of it.
 template <typename Space>
 std::vector<std::uint32_t> sample(const Space& space, std::size_t stretch, std::size_t part) {
   std::vector<std::uint32_t> targets;
@@ -92,7 +92,7 @@ void describe_cloud(benchmark::State& state, const std::string& name,
   state.counters["exact_over_fast"] = exact_cost(name, count) / each;
 }
 
-/// The innermost sums alone, for each vector code; arithmetic as of lane_sums.inc.
+/// Only the innermost sums, for each vector code; arithmetic as in lane_sums.inc.
 void Sums(benchmark::State& state) {
   const auto kernels = all_lane_kernels();
   const auto which = static_cast<std::size_t>(state.range(0));

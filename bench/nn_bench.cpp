@@ -30,7 +30,7 @@ Model make_model(NetworkKind kind, Symmetry symmetry = Symmetry::kNone) {
   return model;
 }
 
-/// PCEDNet as one would write it first: a point at a time, a number at a time.
+/// PCEDNet in a plain implementation: a point at a time, a number at a time.
 void predict_plainly(const Model& model, const std::vector<float>& samples,
                      std::vector<float>& probabilities) {
   const Plan plan = make_plan(model.network.architecture);
@@ -135,7 +135,7 @@ BENCHMARK(BM_Gradient)
     ->Args({2, 0, 2, 1})
     ->UseRealTime();
 
-/// A whole training on as many labelled points as somebody paints.
+/// A whole training on as many labelled points as a user paints.
 void BM_TrainFewPoints(benchmark::State& state) {
   const auto points = static_cast<std::size_t>(state.range(0));
   const std::vector<float> samples = random_numbers(96 * points);

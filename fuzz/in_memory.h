@@ -36,7 +36,7 @@ class MemoryFile {
   int descriptor_;
 };
 
-/// Reads the bytes as a file: an Error is a fine answer, anything else that is thrown is not.
+/// Reads the bytes as a file: an Error is a valid outcome, any other exception is not.
 template <typename Read>
 int read_or_refuse(std::span<const std::uint8_t> bytes, Read&& read) {
   const MemoryFile file(bytes);

@@ -7,7 +7,7 @@
 
 namespace {
 
-/// Gives every page the checksum that fits it: otherwise hardly an input would get past them.
+/// Corrects the checksum of every page: otherwise hardly any input would pass them.
 void repair_checksums(std::vector<std::uint8_t>& bytes) {
   using pcednet::io::kE57PageBytes, pcednet::io::kE57PageContent;
   for (std::size_t page = 0; page + kE57PageBytes <= bytes.size(); page += kE57PageBytes) {

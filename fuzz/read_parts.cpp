@@ -6,7 +6,7 @@
 
 namespace {
 
-/// What can be read in parts is read as a whole too, and says the same.
+/// Inputs readable in parts are also read whole, with the same result.
 void read_both_ways(const std::filesystem::path& path) {
   const auto reader = pcednet::formats::open_parts(path, 5);
   if (!reader) return;

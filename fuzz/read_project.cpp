@@ -16,7 +16,7 @@ void read_project(const std::filesystem::path& path) {
 
 }  // namespace
 
-/// Project files, and what the annotator takes from a browser and from its journal.
+/// Project files, and the annotator's inputs from a browser and from its journal.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace pcednet;
   const std::string_view text(reinterpret_cast<const char*>(data), size);

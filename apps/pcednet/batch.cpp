@@ -104,7 +104,7 @@ void with_name_in_errors(const fs::path& file, const std::function<void()>& work
     work();
   } catch (const Error& error) {
     if (error.kind() == ErrorKind::kCancelled) throw;
-    // Explained here: what is thrown on does not have the type of an ExistsAlready any more.
+    // Explained here: the rethrown error no longer has the type ExistsAlready.
     const std::string message = explain(error);
     if (message.find(file.string()) != std::string::npos) throw Error(error.kind(), message);
     throw named(error.kind(), message);

@@ -9,7 +9,7 @@
 
 namespace pcednet::app {
 
-/// An input that could not be used, as the user named it, and why.
+/// An input that could not be used, as the user named it, and the reason.
 struct Failure {
   std::string input;
   Error error;
@@ -23,20 +23,20 @@ struct Inputs {
   std::size_t count() const { return files.size() + failures.size(); }
 };
 
-/// Finds every input: a folder stands for every point file in it, in name order, a virtual point
-/// cloud (.vpc) for the files that it names. What fails is an
-/// Error(kUnreadable) for a path that does not exist or a folder that cannot be read,
-/// Error(kInsufficient) for a folder without point files.
+/// Finds every input: a folder contributes every point file in it, in name order, a virtual point
+/// cloud (.vpc) the files that it names. A failure is an Error(kUnreadable) for a path that does
+/// not exist or a folder that cannot be read, Error(kInsufficient) for a folder without point
+/// files.
 Inputs find_inputs(const std::vector<std::string>& arguments);
 
 /// The same for work that needs all of them: throws the first failure.
 std::vector<std::filesystem::path> expand_inputs(const std::vector<std::string>& arguments);
 
-/// Work on one input after another: one that fails is reported at once and again at the end, and
-/// does not cost the user the others. A single input throws as it is.
+/// Work on one input after another: a failure is reported at once and again at the end, and does
+/// not stop the others. With a single input, its error is thrown unchanged.
 class Batch {
  public:
-  /// Reports what failed to be found. Throws it if there was nothing else to find.
+  /// Reports inputs that were not found. Throws if none was found.
   explicit Batch(const Inputs& inputs);
 
   /// Does `work`, whose errors get the file's name; true if it succeeded. Throws Error(kCancelled).
@@ -54,8 +54,8 @@ class Batch {
   std::vector<Failure> failures_;
 };
 
-/// Runs `work`; an Error from it gets the file's name in front of its message, unless it is there.
-/// Memory that runs out becomes an Error(kFailure).
+/// Runs `work`; the message of an Error from it gets the file's name as a prefix, unless it has it.
+/// Lack of memory becomes an Error(kFailure).
 void with_name_in_errors(const std::filesystem::path& file, const std::function<void()>& work);
 
 }  // namespace pcednet::app

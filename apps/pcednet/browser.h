@@ -5,13 +5,13 @@
 
 namespace pcednet::app {
 
-/// Shows a page in the user's browser whose address nobody else may know. The command line of a
-/// program can be read by every user of the machine: on it goes the name of a file that only this
-/// user can read, which leads to the page.
+/// Opens a page with a secret address in the user's browser. All users of the machine can read a
+/// program's command line, so it holds the name of a file, readable only by this user, that
+/// redirects to the page.
 class BrowserTab {
  public:
-  /// Leaves the rest to the desktop's `xdg-open`; nothing happens where there is none. Throws
-  /// Error(kFailure) if the file cannot be written. `url` must not need escapes in HTML.
+  /// Calls the desktop's `xdg-open`; does nothing if there is none. Throws Error(kFailure) if the
+  /// file cannot be written. `url` must not need escapes in HTML.
   explicit BrowserTab(const std::string& url);
 
   /// Removes the file.

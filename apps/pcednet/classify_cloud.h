@@ -9,7 +9,7 @@
 
 namespace pcednet::app {
 
-/// A classification, and what the model saw of the cloud.
+/// A classification, and the prepared cloud that it comes from.
 struct ClassifiedCloud {
   detect::PreparedCloud prepared;  ///< empty where a method classified
   detect::Classification found;
@@ -18,8 +18,8 @@ struct ClassifiedCloud {
 /// formats::read_cloud(), with its warnings on stderr.
 PointCloud read_cloud(const std::filesystem::path& file);
 
-/// How to classify: by `model`, then by geometry where `boundary`, or by the method where there is
-/// no model.
+/// How to classify: by `model`, then for boundary by geometry if `boundary`; without a model by the
+/// method.
 struct Classifier {
   const detect::EdgeModel* model = nullptr;
   MethodArguments method = {};

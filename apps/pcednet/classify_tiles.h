@@ -9,14 +9,14 @@ namespace pcednet::app {
 
 struct TiledResult {
   io::WriteOptions write;
-  /// Puts what was found into the next part of the cloud.
+  /// Adds the findings to the next part of the cloud.
   std::function<void(PointCloud& part, const tiles::TileFindings& findings)> add_result;
-  /// Gets each part as it is written, and the number of points before it.
+  /// Called with each part as written, and the number of points before it.
   std::function<void(const PointCloud& part, std::size_t before)> see;
 };
 
-/// Writes a cloud with what was found in tiles, its points in their order: the file that is written
-/// of the cloud in memory, but for labels that differ (docs/large.md).
+/// Writes a cloud with the findings of its tiles, its points in their order: the same file as for
+/// the cloud in memory, except for labels that differ (docs/large.md).
 void write_tiled(const std::filesystem::path& output, const TiledCloud& cloud,
                  const TiledResult& result, const Progress& progress);
 

@@ -16,7 +16,8 @@ namespace {
 volatile std::sig_atomic_t interrupted = 0;
 
 void on_signal(int signal) {
-  // The others come twice by themselves: from a terminal that closes and its shell, from timeout.
+  // The others may arrive twice by themselves: from a closing terminal and its shell, or from
+  // timeout.
   if (interrupted && signal == SIGINT) std::_Exit(128 + signal);
   interrupted = 1;
 }

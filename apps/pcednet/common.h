@@ -31,7 +31,7 @@ struct HelpFormatter : CLI::Formatter {
 CLI::App* add_command(CLI::App& app, Common& common, const std::string& name,
                       const std::string& description, const std::string& examples);
 
-/// What an option may be, by name.
+/// The values of an option, by name.
 template <typename Value>
 using Choices = std::vector<std::pair<std::string, Value>>;
 
@@ -55,18 +55,18 @@ CLI::Option* add_choice(CLI::App& command, const std::string& option, Value& val
       ->check(CLI::IsMember(names));
 }
 
-/// Progress on stderr in the form the user asked for, and a signal as its cancellation.
+/// Progress on stderr in the form the user chose; a signal cancels.
 Progress console_progress(const Common& common);
 
-/// Makes SIGINT (Ctrl-C), SIGTERM and SIGHUP (a terminal that closes; not under nohup) a request to
-/// stop that console_progress hands on; a second SIGINT ends the program at once. A file that grows
-/// beyond its limit, or a reader that goes away, is an error to report, not a signal to die of.
+/// Makes SIGINT (Ctrl-C), SIGTERM and SIGHUP (a closing terminal; not under nohup) a request to
+/// stop, which console_progress() passes on; a second SIGINT ends the program at once. SIGXFSZ and
+/// SIGPIPE are ignored so that they surface as write errors.
 void install_signal_handlers();
 
-/// The message of an error, with the option that does without it.
+/// The message of an error, with the option that avoids it.
 std::string explain(const Error& error);
 
-/// One line on stderr, after whatever progress line is there.
+/// One line on stderr, after any progress line.
 void say(const std::string& line);
 
 /// The same, as "pcednet: warning: ...".

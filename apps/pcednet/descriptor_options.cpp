@@ -51,13 +51,13 @@ void add_gate_options(CLI::App& command, gls::ScaleSpaceOptions& options) {
 void add_scale_range_options(CLI::App& command, gls::ScaleSpaceOptions& options) {
   command
       .add_option("--s-min", options.s_min,
-                  "Smallest scale, in the unit of the cloud (0: its mean point spacing)")
+                  "Smallest scale, in the unit of the cloud (0: from the cloud and, if there is "
+                  "one, the model)")
       ->capture_default_str();
   command
-      .add_option(
-          "--s-max", options.s_max,
-          "Largest scale, in the unit of the cloud (0: 10 % of the diagonal of its bounding "
-          "box, twice the smallest scale for sparse clouds)")
+      .add_option("--s-max", options.s_max,
+                  "Largest scale, in the unit of the cloud (0: from the cloud and, if there is "
+                  "one, the model)")
       ->capture_default_str();
 }
 

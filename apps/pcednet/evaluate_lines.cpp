@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The first file STEM + ending, of the folders in turn; `place` itself if it is no folder.
+/// The first file STEM + ending, of the folders in turn; `place` itself if it is not a folder.
 fs::path find_file(const fs::path& place, const std::vector<fs::path>& folders,
                    const std::string& stem, const std::vector<std::string>& endings) {
   std::error_code ignored;
@@ -43,7 +43,7 @@ fs::path find_cloud(const fs::path& place, const std::string& stem) {
   return find_file(place, {place}, stem, endings);
 }
 
-/// A file of vertices alone is one without lines: what a method that found nothing may write.
+/// A file with vertices only has no lines: a method that found nothing may write it.
 std::vector<lines::Curve> read_found(const fs::path& path) {
   try {
     return io::read_curves(path);

@@ -8,7 +8,7 @@
 
 namespace pcednet::app {
 
-/// What `info` says of a file, for programs and for people.
+/// The output of `info` for a file, for programs and for people.
 nlohmann::ordered_json json_of(const std::filesystem::path& path, const formats::CloudFacts& facts);
 std::string text_of(const std::filesystem::path& path, const formats::CloudFacts& facts);
 

@@ -30,7 +30,7 @@ std::string plain(const Vec3& v) {
   return fmt::format("{} {} {}", v.x(), v.y(), v.z());
 }
 
-/// Collects lines of a name and a value.
+/// Collects lines, each with a name and a value.
 class Lines {
  public:
   explicit Lines(std::string title) : text_(std::move(title) + "\n") {}
@@ -154,7 +154,7 @@ std::string text_of(const std::filesystem::path& path, const formats::CloudFacts
     lines.add("median spacing", fmt::format("{:.6g}", facts.spacing->median));
   }
   if (!facts.spacing && facts.read < facts.points) {
-    lines.add("spacing", "not known: parts of the file lie in one another. --all finds it");
+    lines.add("spacing", "unknown: parts of the file overlap. --all determines it");
   }
   const std::size_t unusable = facts.defects.normals;
   lines.add("normals", !facts.has_normals ? "no"

@@ -30,7 +30,7 @@ namespace fs = std::filesystem;
 
 using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
 
-/// A file without a name, gone when it is closed.
+/// An unnamed file, removed on closing.
 File temporary_file() {
   File file(std::tmpfile(), std::fclose);
   if (!file) throw Error(ErrorKind::kFailure, "method fee: no temporary file can be made");

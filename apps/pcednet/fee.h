@@ -9,7 +9,7 @@
 
 namespace pcednet::app {
 
-/// Radii in the cloud's unit; where there are none, as shares of its bounding box's diagonal.
+/// Radii in the cloud's unit; by default fractions of the diagonal of its bounding box.
 struct FeeOptions {
   std::optional<double> offset_radius = {};       ///< R; none: 0.05 of the diagonal
   std::optional<double> convolution_radius = {};  ///< r; none: half of R
@@ -19,10 +19,10 @@ struct FeeOptions {
 /// The program pcednet-fee beside this one, or on the PATH; empty if it was not built.
 std::filesystem::path find_fee();
 
-/// Feature edge estimation (Merigot, Ovsjanikov, Guibas 2011): the ratio l1 / (l0 + l1 + l2) of
-/// the eigenvalues l0 <= l1 <= l2 of the Voronoi covariance measure, by pcednet-fee. Throws
-/// Error(kInsufficient) if that program is not there, Error(kFailure) if it fails, Error(kUsage)
-/// for a radius that is not above zero.
+/// Feature edge estimation (Merigot, Ovsjanikov, Guibas 2011): the ratio l1 / (l0 + l1 + l2) of the
+/// eigenvalues l0 <= l1 <= l2 of the Voronoi covariance measure, by pcednet-fee. Throws
+/// Error(kInsufficient) if that program is missing, Error(kFailure) if it fails, Error(kUsage) for
+/// a radius that is not above zero.
 classic::EdgeMeasure feature_edge_estimation(const PointCloud& cloud, const FeeOptions& options,
                                              const Progress* progress);
 

@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 
 constexpr std::uint64_t kUnlimited = std::numeric_limits<std::uint64_t>::max();
 
-/// The number in a file of one number; kUnlimited where there is none, or the word max.
+/// The number in a one-number file; kUnlimited if the file is missing or says max.
 std::uint64_t number_in(const fs::path& file) {
   std::uint64_t number = 0;
   return std::ifstream(file) >> number ? number : kUnlimited;
@@ -31,8 +31,8 @@ std::uint64_t available_on_machine() {
   return kUnlimited;
 }
 
-/// What the groups from `group` up to the root leave. Files that were read count as used there, but
-/// give way.
+/// The memory left by the groups from `group` up to the root. The page cache counts as used there,
+/// but can be reclaimed.
 std::uint64_t left_in_groups(const fs::path& root, fs::path group, const char* limit,
                              const char* used) {
   std::uint64_t least = kUnlimited;
@@ -52,7 +52,7 @@ std::uint64_t left_in_groups(const fs::path& root, fs::path group, const char* l
   }
 }
 
-/// Of both versions of control groups.
+/// For both versions of control groups.
 std::uint64_t left_by_groups() {
   std::uint64_t least = kUnlimited;
   std::ifstream lines("/proc/self/cgroup");

@@ -49,10 +49,10 @@ constexpr std::size_t kMostStrangers = 100;  // connections that have not shown 
 constexpr std::uint32_t kMostHeadBytes = 16 << 10;
 constexpr seconds kStrangerTime{5};  // for a request without the token and its answer
 constexpr seconds kRequestTime{60};  // for a request with the token, idle time included
-constexpr seconds kEventTime{10};    // for a window to take its news
-constexpr seconds kQuietTime{5};     // between signs that the stream of events is there
+constexpr seconds kEventTime{10};    // for a window to receive its events
+constexpr seconds kQuietTime{5};     // between keep-alive messages of the event stream
 
-/// Resolves %41 and +, which stands for a space.
+/// Resolves escapes such as %41, and + to a space.
 std::string decoded(std::string_view text) {
   std::string result;
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -119,8 +119,8 @@ asio::awaitable<void> send(beast::tcp_stream& stream, const annotate::Response& 
   co_await http::async_write(stream, message, use_awaitable);
 }
 
-/// Sends an answer to a request whose body is not wanted. Closing with bytes unread would reset the
-/// connection and take the answer with it: they are read, as long as the time of the request lasts.
+/// Sends an answer to a request whose body is not wanted. Closing with unread bytes would reset the
+/// connection and lose the answer: they are read, within the time limit of the request.
 asio::awaitable<void> turn_away(beast::tcp_stream& stream, const annotate::Response& answer) {
   co_await send(stream, answer, false);
   stream.socket().shutdown(tcp::socket::shutdown_send);
@@ -136,17 +136,17 @@ std::shared_ptr<void> at_end(Leave leave) {
 
 }  // namespace
 
-/// One thread serves all connections, so that a slow one keeps nobody waiting; whoever has shown
-/// the token gets answers from the workers. A connection is a coroutine that ends by an exception:
-/// of its end, of its time limit, or of being closed.
+/// One thread serves all connections without blocking; clients that have shown the token are
+/// answered by the workers. A connection is a coroutine that ends by an exception: at its end, at
+/// its time limit, or on being closed.
 struct HttpServer::Impl {
   annotate::Api* api = nullptr;
   annotate::Events* events = nullptr;
   annotate::Response page = {.type = "text/html; charset=utf-8"};
 
-  // Of the thread alone. They must outlive the coroutines, which the contexts own.
+  // Used by that thread only. They must outlive the coroutines, which the contexts own.
   std::list<beast::tcp_stream*> strangers = {};  ///< have not shown the token; the oldest first
-  std::set<asio::steady_timer*> listeners = {};  ///< expire when there is news
+  std::set<asio::steady_timer*> listeners = {};  ///< expire when there are events
 
   asio::io_context io{1};
   tcp::acceptor acceptor{io};
@@ -207,7 +207,7 @@ asio::awaitable<void> HttpServer::Impl::accept() {
       asio::co_spawn(io, converse(beast::tcp_stream(std::move(socket))), asio::detached);
       continue;
     }
-    pause.expires_after(std::chrono::milliseconds(100));  // no descriptor is free at the moment
+    pause.expires_after(std::chrono::milliseconds(100));  // out of file descriptors for now
     co_await pause.async_wait(use_awaitable);
   }
 }
@@ -226,7 +226,7 @@ asio::awaitable<void> HttpServer::Impl::converse(beast::tcp_stream stream) {
     Parser parser;
     parser.header_limit(kMostHeadBytes);
     parser.body_limit(
-        std::numeric_limits<std::uint64_t>::max());  // Api::refuse() has a better answer
+        std::numeric_limits<std::uint64_t>::max());  // Api::refuse() gives a better answer
     stream.expires_after(is_known ? kRequestTime : kStrangerTime);
     co_await http::async_read_header(stream, buffer, parser, use_awaitable);
     annotate::Request request = request_of(parser);

@@ -7,12 +7,12 @@
 
 namespace pcednet::app {
 
-/// Takes requests on 127.0.0.1 alone and hands those with the token to an Api. Connections that do
-/// not show it can neither fill its threads nor its memory: they are at most 100, of which the
-/// oldest makes room for a new one, and have five seconds for a request and its answer.
+/// Accepts requests on 127.0.0.1 only and passes those with the token to an Api. Connections
+/// without the token can fill neither its threads nor its memory: there are at most 100, the oldest
+/// of which makes room for a new one, and each has five seconds for a request and its answer.
 class HttpServer {
  public:
-  /// `port` 0 is any free one. Throws Error(kFailure) if it cannot be had.
+  /// `port` 0 is any free one. Throws Error(kFailure) if it is not available.
   explicit HttpServer(int port);
   ~HttpServer();
   HttpServer(const HttpServer&) = delete;
@@ -20,7 +20,7 @@ class HttpServer {
 
   int port() const;
 
-  /// Answers, on threads of its own, until destroyed. `page` is what / shows. All must outlive it.
+  /// Answers, on its own threads, until destroyed. `page` is the content of /. All must outlive it.
   void start(annotate::Api& api, annotate::Events& events, std::string_view page);
 
  private:

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::time_t kSeconds = 12 * 3600;
 
-/// An open file that is closed in any case.
+/// An open file, closed on destruction.
 struct Opened {
   int file = -1;
   ~Opened() {
@@ -21,7 +21,7 @@ struct Opened {
   }
 };
 
-/// Nobody else can read it; some file systems know no modes.
+/// Whether no other user can read it; some file systems have no modes.
 bool is_private(int file, struct stat& facts) {
   return ::fstat(file, &facts) == 0 && S_ISREG(facts.st_mode) && facts.st_uid == ::geteuid() &&
          (facts.st_mode & 077) == 0;

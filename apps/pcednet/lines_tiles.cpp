@@ -14,9 +14,9 @@
 namespace pcednet::app {
 namespace {
 
-/// Of the probabilities of both kinds together: find_lines() looks at points from there on.
+/// The least sum of both edge probabilities at which find_lines() considers a point.
 constexpr float kLeastProbability = 0.1f;
-constexpr std::uint64_t kBytesPerPoint = 400;  ///< docs/large.md says what was measured
+constexpr std::uint64_t kBytesPerPoint = 400;  ///< for measurements see docs/large.md
 
 /// Cubes of one size, by their places in a grid that begins one cube before the cloud.
 class Cubes {

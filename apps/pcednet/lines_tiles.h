@@ -9,14 +9,14 @@ namespace pcednet::app {
 
 /// The points of a cloud that its lines come from.
 struct PointsNearEdges {
-  PointCloud cloud;  ///< positions and normals, and what the file has beside points
+  PointCloud cloud;  ///< positions and normals, and the file's content beside points
   std::vector<std::uint8_t> classes;
   std::vector<float> p_sharp, p_smooth;
 };
 
-/// Reads the points that are near points of an edge class, or of such as may be of one: all whose
-/// cube of the largest scale touches one that has any. Throws Error(kFailure) if their lines would
-/// take more memory than `limit`.
+/// Reads the points near points of an edge class, or near points that may be of one: all points
+/// whose cube, of the size of the largest scale, touches a cube with such a point. Throws
+/// Error(kFailure) if their lines would take more memory than `limit`.
 PointsNearEdges read_near_edges(const TiledCloud& cloud, std::uint64_t limit,
                                 const Progress& progress);
 

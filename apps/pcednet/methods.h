@@ -13,7 +13,7 @@ class App;
 
 namespace pcednet::app {
 
-/// A method that needs no model, and its settings; 0 and negative: the method's own.
+/// A method that needs no model, and its settings; 0 and negative: the method's default.
 struct MethodArguments {
   std::string name;
   int neighbours = 0;

@@ -8,10 +8,10 @@
 
 namespace pcednet::app {
 
-/// Whether a file is a model by its name.
+/// Whether the file name is that of a model.
 bool is_model_file(const std::filesystem::path& path);
 
-/// What `info` says of a model, for programs and for people.
+/// The output of `info` for a model, for programs and for people.
 nlohmann::ordered_json json_of(const std::filesystem::path& path, const detect::EdgeModel& model);
 std::string text_of(const std::filesystem::path& path, const detect::EdgeModel& model);
 

@@ -13,7 +13,7 @@ class App;
 
 namespace pcednet::app {
 
-/// The model of commands that are given none.
+/// The model of commands without `--model`.
 inline constexpr const char* kDefaultModel = "general";
 
 /// The shipped models by name, looked for beside the installed program and in the source tree.
@@ -22,11 +22,11 @@ std::map<std::string, std::filesystem::path> shipped_models();
 /// "cad, general, scan, worn".
 std::string names_of(const std::map<std::string, std::filesystem::path>& models);
 
-/// The file behind `--model`: a file as it is, or the shipped model of that name. Throws
-/// Error(kUsage) with the names there are.
+/// The file behind `--model`: a path as given, or the shipped model of that name. Throws
+/// Error(kUsage) with the available names.
 std::filesystem::path find_model(const std::string& name_or_file);
 
-/// A model and how to use it.
+/// A model and its use.
 struct ModelArguments {
   std::string name;
   bool no_context = false;
@@ -34,14 +34,14 @@ struct ModelArguments {
   gls::ScaleSpaceOptions scales = {};  ///< its s_min, s_max and engine
 };
 
-/// Adds --model, --no-context, --no-boundary, --exact, --s-min and --s-max; the last five for a
-/// model alone.
+/// Adds --model, --no-context, --no-boundary, --exact, --s-min and --s-max; the last five apply to
+/// models only.
 void add_model_options(CLI::App& command, ModelArguments& arguments);
 
-/// The model as a plan of tiles names it. Throws what find_model() throws.
+/// The model as a plan of tiles names it. Throws as find_model() does.
 tiles::PlannedModel planned_model(const ModelArguments& arguments);
 
-/// Throws what find_model() and detect::load_model() throw.
+/// Throws as find_model() and detect::load_model() do.
 detect::EdgeModel load_model(const ModelArguments& arguments);
 
 }  // namespace pcednet::app

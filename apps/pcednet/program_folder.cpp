@@ -11,7 +11,7 @@ namespace fs = std::filesystem;
 fs::path program_folder() {
   std::error_code error;
   fs::path program = fs::read_symlink("/proc/self/exe", error);
-  // Without /proc, as in a bare chroot, the kernel's word for what was started.
+  // Without /proc, as in a bare chroot, the kernel's record of the program.
   if (error) program = reinterpret_cast<const char*>(getauxval(AT_EXECFN));
   return program.parent_path();
 }

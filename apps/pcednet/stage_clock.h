@@ -9,7 +9,7 @@
 
 namespace pcednet::app {
 
-/// Seconds that each stage of work takes, under the names that the work reports.
+/// The seconds of each stage of work, under the names that the work reports.
 class StageClock {
  public:
   /// Hands every report on to `progress`.
@@ -17,10 +17,10 @@ class StageClock {
   StageClock(const StageClock&) = delete;
   StageClock& operator=(const StageClock&) = delete;
 
-  /// For the work whose stages count; valid as long as the clock.
+  /// For the work to be timed; valid as long as the clock.
   const Progress& progress() const { return timed_; }
 
-  /// From here on the time is that of `stage`.
+  /// Counts the time from here on for `stage`.
   void begin(const std::string& stage);
 
   /// "read 0.12, describe 3.40, total 3.52", in the order in which the stages first began.

@@ -16,9 +16,9 @@ struct TileJobs {
   bool redo = false;  ///< tiles that are done, too
 };
 
-/// Runs every tile as a process of its own, several at a time. One that fails does not stop the
-/// others. Throws Error(kCancelled) once all are stopped after a signal, otherwise an Error of the
-/// kind of the first failure that names the tiles that failed.
+/// Runs every tile as a separate process, several at a time. A failure does not stop the others.
+/// Throws Error(kCancelled) once all are stopped after a signal, otherwise an Error of the kind of
+/// the first failure that names the tiles that failed.
 void run_tile_jobs(const TileJobs& jobs, const Progress& progress);
 
 }  // namespace pcednet::app

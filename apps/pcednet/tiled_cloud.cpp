@@ -22,8 +22,8 @@ namespace fs = std::filesystem;
 /// Larger tiles repeat hardly less of their neighbours.
 constexpr std::uint64_t kMostForTile = std::uint64_t{4} << 30;
 
-/// What classifying takes in memory, as far as the first points tell: if there are no normals, as
-/// many neighbours as there may be.
+/// The memory for classifying in one piece, estimated from the first points: without normals, for
+/// the largest possible number of neighbours.
 std::uint64_t memory_in_whole(const io::PartReader& reader) {
   constexpr std::size_t kMostNeighbours = 48;
   const PointCloud first = tiles::read_finished(reader, 0);
@@ -34,7 +34,7 @@ std::uint64_t memory_in_whole(const io::PartReader& reader) {
          columns * reader.points();
 }
 
-/// A pipe is read once only; a small file need not be looked into.
+/// A pipe can be read only once; a small file need not be inspected.
 bool is_surely_small(const fs::path& input, std::uint64_t limit) {
   constexpr std::uint64_t kMostPerByte = 1000;  // of memory per byte of a file
   std::error_code error;

@@ -23,18 +23,18 @@ namespace pcednet::app {
 /// Adds --max-memory.
 void add_memory_option(CLI::App& command, std::string& memory);
 
-/// The memory to stay within: what --max-memory says, otherwise most of what is free. Throws
-/// Error(kUsage) for what is no size.
+/// The memory limit: --max-memory, otherwise most of the free memory. Throws Error(kUsage) for an
+/// invalid size.
 std::uint64_t memory_limit(const std::string& memory);
 
-/// The memory for each tile where classifying `input` in memory would take more than `limit`, which
-/// is said on stderr; nothing where it fits, or, with a warning, where one of the files cannot be
-/// read or written in parts. `output`: of points; empty where there is none.
+/// The memory for each tile, if classifying `input` in memory would take more than `limit`, which
+/// is reported on stderr; none if it fits or, with a warning, if one of the files cannot be read or
+/// written in parts. `output`: of points; empty if there is none.
 std::optional<std::uint64_t> memory_of_tiles(const std::filesystem::path& input,
                                              const std::filesystem::path& output,
                                              std::uint64_t limit);
 
-/// A folder that is removed with all that is in it, if it is ever made.
+/// A folder that is removed with its contents, if it was made.
 class PassingFolder {
  public:
   explicit PassingFolder(std::filesystem::path path) : path_(std::move(path)) {}
@@ -49,19 +49,19 @@ class PassingFolder {
 
 struct TiledRequest {
   std::filesystem::path input;
-  std::filesystem::path output;  ///< what is kept on the disk meanwhile is beside it
+  std::filesystem::path output;  ///< temporary files are beside it
   ModelArguments model;
   detect::PrepareOptions preparation;
   std::uint64_t memory = 0;  ///< for a tile
-  /// What is known of a part's points already; empty: the model finds it.
+  /// Existing labels of a part's points; empty: the model finds them.
   std::function<detect::Classification(const PointCloud& part)> given = {};
 };
 
-/// A cloud whose points get normals, if need be, and labels in the memory of one tile, then read
-/// part by part with what was found. What it keeps on the disk is gone with it.
+/// A cloud whose points get normals, if needed, and labels in the memory of one tile, and which is
+/// then read part by part with the findings. Its temporary files are removed with it.
 class TiledCloud {
  public:
-  /// Does the work, and says what the tiles are. Throws what make_plan() and label_points() throw.
+  /// Does the work, and reports the tiles. Throws as make_plan() and label_points() do.
   TiledCloud(TiledRequest request, const detect::EdgeModel& model, const Progress& progress);
 
   const tiles::Plan& plan() const { return plan_; }

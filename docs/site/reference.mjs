@@ -1,4 +1,4 @@
-// Pages made of the program and of the headers: what they say is what there is.
+// Pages generated from the program's help and from the headers.
 import fs from "node:fs";
 import path from "node:path";
 
@@ -50,7 +50,7 @@ export function commandPage(program) {
   return [
     "# Commands and options",
     "",
-    "What `pcednet COMMAND --help` says of every command. [The command line](command-line.md) tells what they have in",
+    "The output of `pcednet COMMAND --help` for every command. [The command line](command-line.md) covers what they have in",
     "common: exit codes, output files, signals.",
     "",
     "## Options of every command",
@@ -95,10 +95,10 @@ export function cppPage(root) {
   const lines = [
     "# The C++ library",
     "",
-    "What the installed headers say. `pcednet/pcednet.h` includes what a program needs to label points in memory;",
+    "The contracts in the installed headers. `pcednet/pcednet.h` includes what a program needs to label points in memory;",
     "`formats/read_cloud.h` and `formats/write_cloud.h` read and write files. The [README](../README.md#in-a-c-program)",
     "shows how to link, [examples/detect_edges.cpp](../examples/detect_edges.cpp) is a whole program, and",
-    "[architecture](architecture.md) tells how the rooms fit together.",
+    "[architecture](architecture.md) shows how the rooms fit together.",
     "",
   ];
   for (const header of headers) {

@@ -97,7 +97,7 @@ def run(*command):
 
 
 def install(settings, prefix):
-    """Builds the module if need be and installs it; returns the folder of the package."""
+    """Builds the module if needed and installs it; returns the folder of the package."""
     named = settings.get("build-dir") or os.environ.get("PCEDNET_BUILD_DIR")
     folder = ROOT / (named or "build/python")  # a full path stays as it is
     if not named:

@@ -6,7 +6,7 @@
 >>> pcednet.lines(xyz, result).write("edges.dxf")
 
 Arrays go in and come out whole, in the input's order. Work is done on every core without Python's
-lock; Ctrl-C stops it; what deserves a look is a warning.
+lock; Ctrl-C stops it; anything that deserves a look is a warning.
 """
 
 from ._classify import Result, classify, describe, estimate_normals

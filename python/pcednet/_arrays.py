@@ -1,4 +1,4 @@
-"""From what callers have to the arrays that the extension takes."""
+"""Converts callers' data to the arrays that the extension takes."""
 
 import contextlib
 import os
@@ -14,7 +14,7 @@ SHORT = {"plain": 0, "smooth": 1, "sharp": 2}
 
 
 def numbers(values, name):
-    """`values` as an array of real numbers, of whatever type; masked ones become NaN."""
+    """`values` as an array of real numbers, of any type; masked ones become NaN."""
     if isinstance(values, np.ma.MaskedArray):
         values = values.astype(np.float64).filled(np.nan)
     try:
@@ -46,7 +46,7 @@ def optional_vectors(values, name, rows):
 
 
 def scanners(places, rows):
-    """The place that saw each point, from one place for all or one for each; None if unknown."""
+    """The scanner position of each point, from one for all or one for each; None if unknown."""
     if places is None:
         return None
     array = numbers(places, "viewpoint")
@@ -123,8 +123,8 @@ def thread_count(threads):
 
 @contextlib.contextmanager
 def reporting(progress):
-    """What the extension calls with (stage, fraction): `progress` itself, or what moves a bar in
-    tqdm's way. A class is made a bar of its own."""
+    """The callback for (stage, fraction): `progress` itself, or a function that moves a bar in
+    tqdm's way. A class is instantiated."""
     if progress is None:
         yield None
         return

@@ -1,4 +1,4 @@
-"""What a model finds in a cloud, and what it reads."""
+"""Classification of clouds, their descriptors and their normals."""
 
 import numpy as np
 
@@ -6,7 +6,7 @@ from . import _arrays, _clouds, _core, _models
 
 
 class Result:
-    """What :func:`classify` found, one row per point in the input's order.
+    """The result of :func:`classify`, one row per point in the input's order.
 
     Attributes
     ----------
@@ -14,8 +14,7 @@ class Result:
         0 non-edge, 1 smooth-edge, 2 sharp-edge, 3 boundary (the sampled surface ends there), 255
         unlabelled (the position is not finite).
     p_sharp, p_smooth : ndarray, (n,) float32
-        The model's probabilities of sharp-edge and smooth-edge; 0 where unlabelled. Those of
-        boundary points say what the model thought of them.
+        The model's probabilities of sharp-edge and smooth-edge; 0 where unlabelled. Boundary points keep the model's probabilities.
     normals : ndarray, (n, 3) float64
         The normals in use: the given ones, unit, or estimated; ``(0, 0, 0)`` where there is none.
     made_normals : bool
@@ -159,7 +158,7 @@ def describe(xyz, normals=None, *, scales=16, features=6, reconstruction="sphere
              second_gate=None, exact=False, eps=0.1, s_min=0.0, s_max=0.0, s_max_ratio=0.0,
              threads=0, progress=None, viewpoint=None, keep_orientation=False,
              return_scales=False):
-    """The scale-space matrix: what algebraic spheres of several sizes say of each point.
+    """The scale-space matrix: each point described by algebraic spheres of several sizes.
 
     The numbers are those of ``pcednet describe``.
 
@@ -168,7 +167,7 @@ def describe(xyz, normals=None, *, scales=16, features=6, reconstruction="sphere
     xyz, normals, threads, progress, viewpoint, keep_orientation
         As in :func:`classify`.
     scales : {4, 8, 16, 32, 64, 128}
-        How many support radii.
+        Number of support radii.
     features : {28, 7, 6, 4, 3}
         Numbers per scale; 6 are the paper's ``tau kappa k1 dtau dkappa phi``.
     reconstruction : {'sphere', 'sphere-mls', 'covariance-plane', 'plane-mls'}
@@ -184,7 +183,7 @@ def describe(xyz, normals=None, *, scales=16, features=6, reconstruction="sphere
         Smallest and largest scale in the unit of the cloud; 0: the mean point spacing, and 10 % of
         the diagonal of the bounding box.
     s_max_ratio : float
-        If not 0 and `s_max` is: `s_max` over `s_min`, whatever the extent of the cloud.
+        If not 0 and `s_max` is: `s_max` over `s_min`, for any extent of the cloud.
     return_scales : bool
         Return the scales too.
 
@@ -218,9 +217,9 @@ def estimate_normals(xyz, normals=None, *, neighbours=0, viewpoint=None, threads
     Parameters
     ----------
     xyz : array_like, (n, 3), or Cloud
-        The normals of a Cloud do not count.
+        The normals of a Cloud are ignored.
     normals : array_like, (n, 3), optional
-        Keep these but for their signs; estimate only those that are ``(0, 0, 0)`` or not finite.
+        Keep these except for their signs; estimate only those that are ``(0, 0, 0)`` or not finite.
     neighbours : int
         Points around each to estimate from; 0: 12, more on noisy clouds.
     viewpoint : array_like, (3,) or (n, 3), optional

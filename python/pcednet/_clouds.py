@@ -29,7 +29,7 @@ class Cloud:
     Attributes
     ----------
     xyz, normals, colours, labels, attributes, name
-        As the parameters; what is not known is None. Arrays may be changed in place or replaced.
+        As the parameters; unknown ones are None. Arrays may be changed in place or replaced.
     comments : list of str
     scanners : ndarray, (m, 3)
         Where the scanners of an E57 stood; the attribute ``scan`` says which saw a point.
@@ -78,7 +78,7 @@ class Cloud:
         return f"<Cloud {self.name!r}: {len(self)} points; {', '.join(fields) or 'no fields'}>"
 
     def viewpoint(self):
-        """The place that saw each point, (n, 3) float64 with NaN where unknown; None if no
+        """The scanner position of each point, (n, 3) float64 with NaN where unknown; None if no
         scanner is known."""
         known = _arrays.vectors(self.scanners, "scanners")
         scan = self.attributes.get("scan")
@@ -101,7 +101,7 @@ class Cloud:
         Returns
         -------
         Cloud
-            Without what belongs to the whole file: its records, faces and stored normals.
+            Without the data of the whole file: its records, faces and stored normals.
         """
         chosen = _arrays.indices(points, len(self), "points")
         part = Cloud(self.xyz[chosen], name=self.name)
@@ -152,12 +152,12 @@ def read(path):
     UnreadableError
         It is truncated or not of a known format; the message has the line or byte.
     InsufficientError
-        What it holds are not points with x, y and z.
+        It does not hold points with x, y and z.
 
     Warns
     -----
     PcednetWarning
-        What the reader noticed, such as positions that are not finite.
+        Remarks of the reader, such as positions that are not finite.
     """
     path = existing(path)
     parts, notes = _core.read(path)
@@ -197,7 +197,7 @@ def write(path, xyz, result=None, *, normals=None, colours=None, labels=None, at
     """Write a point file in the format of its extension: .ply, .pcd, .las, .laz, .copc.laz, .obj,
     .xyz, .txt, .asc, .pts or .csv.
 
-    The file gets its name only when it is complete.
+    The file appears under its name only when it is complete.
 
     Parameters
     ----------
@@ -223,12 +223,12 @@ def write(path, xyz, result=None, *, normals=None, colours=None, labels=None, at
     UsageError
         Another extension, or arrays that do not fit together.
     FailureError
-        The disk takes no more, or the folder is not there.
+        The disk is full, or the folder is missing.
 
     Warns
     -----
     PcednetWarning
-        What the format cannot hold.
+        Data that the format cannot hold.
     """
     if isinstance(xyz, Cloud):
         if any(part is not None for part in (normals, colours, labels, attributes)):

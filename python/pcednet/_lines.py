@@ -11,7 +11,7 @@ _KINDS = ("segment", "arc", "circle", "polyline")
 
 
 class Lines(list):
-    """A list of Curve, in the unit and place of the cloud they were found in."""
+    """A list of Curve, in the unit and coordinates of their cloud."""
 
     kept = None
 
@@ -22,7 +22,7 @@ class Lines(list):
 
     def write(self, path, *, epsg=None, unit=None, tolerance=0.0, dxf_version="2000", view="top",
               overwrite=False):
-        """Write the curves as the extension says: .dxf, .gpkg, .geojson, .obj, .ply or .svg.
+        """Write the curves in the format of the extension: .dxf, .gpkg, .geojson, .obj, .ply or .svg.
 
         Parameters
         ----------
@@ -88,7 +88,7 @@ def lines(xyz, labels=None, normals=None, *, p_sharp=None, p_smooth=None,
     min_confidence : float
         Leave out curves whose points are edges with a lower mean probability.
     stage : {'curves', 'pieces', 'chains', 'creases'}
-        Stop after a step and return what it found.
+        Return the result of this step.
     viewpoint, threads, progress
         As in :func:`classify`.
 

@@ -1,4 +1,4 @@
-"""Models: networks with what they need to know of clouds."""
+"""Models: networks with their descriptors."""
 
 import os
 import pathlib
@@ -24,7 +24,7 @@ def shipped_models():
 
 
 class Model:
-    """A trained network with the description of points that it was trained on.
+    """A trained network with its descriptor.
 
     Made by :func:`train`, :meth:`load` or :meth:`adapt`. Models can be pickled.
 
@@ -35,15 +35,15 @@ class Model:
     classes : list of int
         The class of each output: ``[0, 1, 2]``, or ``[0, 2]`` without smooth-edge.
     descriptor : dict
-        What describes a point: ``scales``, ``features`` per scale, ``columns`` (their names), ...
+        The description of a point: ``scales``, ``features`` per scale, ``columns`` (their names), ...
     has_context : bool
-        Whether a second network decides in the end, on what was found around each point.
+        Whether a context network refines the result from the predictions around each point.
     weights : int
         Parameters of all networks.
     metadata : dict of str to str
-        What the file says of the first network and of its training.
+        The file's metadata on the first network and its training.
     history : list of dict
-        Of a model trained here: ``epoch``, ``loss`` and, with enough points, ``validation_loss``
+        For a model trained here: ``epoch``, ``loss`` and, with enough points, ``validation_loss``
         and ``validation_accuracy`` of each epoch. Otherwise empty.
     """
 
@@ -64,7 +64,7 @@ class Model:
         MissingFileError
             Neither a file nor a shipped model.
         ModelError
-            The file is damaged, or no model of edges.
+            The file is damaged, or not an edge model.
         """
         shipped = _SHIPPED / f"{os.fspath(name)}.safetensors"
         if not os.path.exists(name) and shipped.exists():
@@ -120,7 +120,7 @@ class Model:
         return _train.train(clouds, labels, start=self, **options)
 
     def predict(self, descriptors):
-        """What the first network says of described points, before any context.
+        """The predictions of the first network for described points, without context.
 
         Parameters
         ----------

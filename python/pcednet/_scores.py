@@ -40,7 +40,7 @@ def evaluate(truth, predicted, positive="sharp"):
     Raises
     ------
     UsageError
-        Different numbers of points, or numbers that are no class.
+        Different numbers of points, or numbers that are not classes.
     """
     truth = truth.labels if isinstance(truth, _clouds.Cloud) else truth
     predicted = predicted.labels if isinstance(predicted, Result) else predicted

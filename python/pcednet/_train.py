@@ -1,4 +1,4 @@
-"""Training, from nothing and from a model."""
+"""Training, from scratch and from a model."""
 
 import numpy as np
 
@@ -23,9 +23,9 @@ def train(clouds, labels=None, *, normals=None, start=None, name="model", classe
           threads=0, progress=None, keep_orientation=False, **descriptor):
     """Train a model on labelled points.
 
-    With ``start`` a model that exists learns the labelled points without unlearning the rest: what
-    the annotator does with a few strokes. Otherwise a new network is trained, for which the labels
-    must cover all that it is to know.
+    With ``start``, an existing model learns the labelled points without unlearning the rest, as
+    the annotator does with a few strokes. Otherwise a new network is trained, and the labels
+    must cover everything that it is to learn.
 
     Parameters
     ----------
@@ -36,7 +36,7 @@ def train(clouds, labels=None, *, normals=None, start=None, name="model", classe
         or a mask: ``{"sharp-edge": painted, "non-edge": others}``. None: those of the Clouds.
     normals : array_like (n, 3), or a list of one per cloud, optional
     start : str, path-like or Model, optional
-        What to start from, such as ``"general"``. Only `name` and `seed` apply besides.
+        The model to start from, such as ``"general"``. Only `name` and `seed` apply as well.
     name : str
         Goes into the model.
     classes : {3, 2}

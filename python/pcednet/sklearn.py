@@ -23,7 +23,7 @@ class EdgeClassifier(ClassifierMixin, BaseEstimator):
     Parameters
     ----------
     start : str, path-like or Model, optional
-        What to start from, such as ``"general"``; None trains a new network.
+        The model to start from, such as ``"general"``; None trains a new network.
     classes : {3, 2}
     seed : int
     epochs : int, optional

@@ -14,8 +14,8 @@ namespace pcednet::python {
 
 namespace py = pybind11;
 
-/// Arrays as the Python package hands them over: of this type, C-contiguous, aligned. Another is an
-/// error of the package, not converted here.
+/// Arrays from the Python package: of this type, C-contiguous, aligned. Anything else is an error
+/// of the package and is not converted here.
 template <typename T>
 using Array = py::array_t<T, py::array::c_style>;
 template <typename T>
@@ -42,7 +42,7 @@ inline std::span<const Vec3> vectors(const OptionalArray<double>& array) {
   return array ? vectors(*array) : std::span<const Vec3>();
 }
 
-/// An array of `shape` that owns `values`, which are not copied; `Number` is what they consist of.
+/// An array of `shape` that owns `values`, which are not copied; `Number` is their number type.
 template <typename Number, typename T>
 py::array_t<Number> give(std::vector<T>&& values, const std::vector<py::ssize_t>& shape) {
   if (values.empty()) return py::array_t<Number>(shape);

@@ -4,7 +4,7 @@
 
 namespace pcednet::python {
 
-// What the extension offers, each in the source of its name. The package in ../pcednet checks and
+// The bindings, each group in the source file of its name. The package in ../pcednet checks and
 // converts the arguments and documents the functions.
 
 void add_errors(pybind11::module_& module);

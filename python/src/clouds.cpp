@@ -26,7 +26,7 @@ py::array array_of(Attribute&& attribute, std::size_t points) {
   });
 }
 
-/// The number type of an array; none if files have none such.
+/// The number type of an array; none if files do not have it.
 std::optional<ScalarType> type_of(const py::dtype& dtype) {
   for (int i = 0; i <= static_cast<int>(ScalarType::kFloat64); ++i) {
     const auto type = static_cast<ScalarType>(i);
@@ -57,7 +57,7 @@ std::vector<Vec3> copied(const py::handle& array) {
   return {found.begin(), found.end()};
 }
 
-/// The other way round from take_apart(); without Kept coordinates are written as `position_type`.
+/// The inverse of take_apart(); without Kept, coordinates are written as `position_type`.
 PointCloud put_together(const py::dict& parts) {
   PointCloud cloud;
   if (!parts["kept"].is_none()) {
@@ -97,7 +97,7 @@ py::tuple read(const std::filesystem::path& path) {
   return py::make_tuple(take_apart(std::move(loaded.cloud)), loaded.warnings);
 }
 
-/// A result that goes into the cloud as the command line puts it there.
+/// A result, added to the cloud as the command line does.
 struct ResultParts {
   detect::PreparedCloud prepared = {};
   detect::Classification found = {};
@@ -120,7 +120,7 @@ ResultParts result_of(const py::dict& parts) {
   return result;
 }
 
-/// Returns what the format cannot hold.
+/// Returns the data that the format cannot hold.
 std::vector<std::string> write(const std::filesystem::path& path, const py::dict& parts,
                                const std::optional<py::dict>& result, bool class_colours,
                                bool ascii, bool overwrite) {

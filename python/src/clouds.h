@@ -8,7 +8,7 @@
 
 namespace pcednet::python {
 
-/// What a cloud of a file has besides its arrays: stored normals, other elements, records of LAS,
+/// The data of a file's cloud besides its arrays: stored normals, other elements, records of LAS,
 /// the number type of its coordinates.
 struct Kept {
   std::shared_ptr<const PointCloud> cloud;

@@ -9,7 +9,7 @@ namespace {
 
 namespace py = pybind11;
 
-/// The class of pcednet/errors.py that stands for an error.
+/// The class of pcednet/errors.py for an error.
 const char* class_of(const Error& error) {
   if (dynamic_cast<const ExistsAlready*>(&error) != nullptr) return "ExistsError";
   switch (error.kind()) {

@@ -8,7 +8,7 @@
 namespace pcednet::python {
 namespace {
 
-/// What normalising leaves of a length: normals that come from here are not touched again.
+/// The deviation that normalising leaves: normals from this library are not changed again.
 constexpr double kRounding = 1e-15;
 
 bool is_unit_or_zero(const Vec3& normal) {

@@ -6,9 +6,9 @@
 
 namespace pcednet::python {
 
-/// A cloud that Python holds: positions, normals of any length or none, and the place that saw each
-/// point or none. Looks at the arrays, which must outlive it; normals are copied only if they are
-/// not of unit length.
+/// A cloud in Python's arrays: positions, normals of any length or none, and the scanner position
+/// of each point or none. Refers to the arrays, which must outlive it; normals are copied only if
+/// they are not of unit length.
 class InputCloud {
  public:
   InputCloud(const Array<double>& xyz, const OptionalArray<double>& normals,

@@ -16,7 +16,7 @@ namespace {
 
 namespace py = pybind11;
 
-/// How long a Ctrl-C may wait to be seen.
+/// The longest delay before a Ctrl-C is noticed.
 constexpr std::chrono::milliseconds kPatience{50};
 
 struct News {
@@ -24,12 +24,12 @@ struct News {
   double fraction = 0.0;
 };
 
-/// What the thread that works and the one that waits share.
+/// The state shared by the working and the waiting thread.
 struct Job {
   std::mutex mutex;
   std::condition_variable changed;
   bool done = false;
-  std::optional<News> news;  ///< the latest; what nobody fetched is replaced
+  std::optional<News> news;  ///< the latest; replaces unfetched news
   std::exception_ptr error;
   std::atomic<bool> cancelled = false;
 };
@@ -46,7 +46,7 @@ Progress progress_of(Job& job, bool wanted) {
   return progress;
 }
 
-/// Waits for news, the end, or for as long as a signal may wait.
+/// Waits for news, the end, or for kPatience.
 std::pair<bool, std::optional<News>> wait(Job& job) {
   std::unique_lock lock(job.mutex);
   job.changed.wait_for(lock, kPatience, [&] { return job.done || job.news; });

@@ -7,8 +7,8 @@
 
 namespace pcednet::python {
 
-/// The descriptor of keyword arguments named as the fields; those left out are as the library has
-/// them. The package has checked the names.
+/// The descriptor from keyword arguments named as the fields; missing ones have the library's
+/// defaults. The package has checked the names.
 gls::ScaleSpaceOptions descriptor_of(const pybind11::dict& settings);
 
 }  // namespace pcednet::python

@@ -7,8 +7,8 @@
 namespace pcednet::python {
 namespace {
 
-/// Normals of a cloud: new ones, or the given with new signs; faced to the scanners where these are
-/// known. With them the number of points around each that they were estimated from.
+/// Normals of a cloud: new ones, or the given ones with new signs; facing the scanners where these
+/// are known. Also returns the number of neighbours for their estimation.
 py::tuple make_normals(const Array<double>& xyz, const OptionalArray<double>& given,
                        const OptionalArray<double>& scanners, int neighbours,
                        const py::object& progress, int threads) {

@@ -13,7 +13,7 @@
 namespace pcednet::python {
 namespace {
 
-/// A cloud to learn from, as the package hands it over.
+/// A cloud to learn from, from the package.
 struct LabelledArrays {
   std::string name;
   Array<double> xyz;
@@ -33,7 +33,7 @@ std::vector<LabelledArrays> clouds_of(const py::list& list) {
   return clouds;
 }
 
-/// The clouds prepared, and what they look into.
+/// The prepared clouds, and the data they refer to.
 struct TrainingClouds {
   std::deque<InputCloud> inputs;
   std::vector<detect::TrainingCloud> clouds;
@@ -116,7 +116,7 @@ py::tuple train(const py::list& clouds, const std::string& name, bool keep_orien
   return py::make_tuple(std::move(trained.model), list_of(history), notes);
 }
 
-/// What the annotator does with painted points: see annotate::adapt().
+/// Fine-tunes on painted points, as the annotator does: see annotate::adapt().
 py::tuple adapt(const detect::EdgeModel& model, const py::list& clouds, const std::string& name,
                 bool keep_orientation, std::uint64_t seed, const py::object& progress,
                 int threads) {

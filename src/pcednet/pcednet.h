@@ -4,7 +4,7 @@
 ///
 ///     pcednet::PointCloud cloud;
 ///     cloud.positions = ...;  // and cloud.normals, if there are any
-///     const auto model = pcednet::detect::load_model("scan.safetensors");
+///     const auto model = pcednet::detect::load_model("general.safetensors");
 ///     const auto prepared = pcednet::detect::prepare(cloud);
 ///     auto found = pcednet::detect::classify(prepared, model);
 ///     // found.classes[i] is 0, 1 or 2; found.p_sharp[i] its probability of being a sharp edge
@@ -13,8 +13,8 @@
 ///                                                     found.classes, found.p_sharp,
 ///                                                     found.p_smooth});
 ///
-/// prepare() estimates missing normals and says so in its notes; detect/train.h trains a model.
-/// Every error is a pcednet::Error. Work runs on every core unless set_thread_count() bounds it.
+/// prepare() estimates missing normals and notes it; detect/train.h trains a model. Every error is
+/// a pcednet::Error. Work runs on every core unless set_thread_count() bounds it.
 ///
 /// Link pcednet::pcednet. Point files are read and written by formats/read_cloud.h and
 /// formats/write_cloud.h, lines are written by io/drawing/drawing.h: find_package(pcednet

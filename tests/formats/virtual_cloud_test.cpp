@@ -185,8 +185,8 @@ TEST_F(VirtualCloud, IsRefusedWhereItNamesNoFileThatIsThere) {
     EXPECT_TRUE(io::contains(refusal(ErrorKind::kUnreadable, text), "not a virtual point cloud"));
   }
   EXPECT_TRUE(io::contains(refusal(ErrorKind::kUnreadable, naming("./none.laz")), "there is no"));
-  EXPECT_TRUE(io::contains(refusal(ErrorKind::kUnreadable, naming("https://a.b/c.copc.laz")),
-                           "is on the net"));
+  EXPECT_TRUE(
+      io::contains(refusal(ErrorKind::kUnreadable, naming("https://a.b/c.copc.laz")), "is remote"));
   for (const char* text : {"{\"features\": []}", "{\"features\": [7, {}, {\"assets\": 3}]}"}) {
     EXPECT_TRUE(io::contains(refusal(ErrorKind::kInsufficient, text), "names no point files"));
   }

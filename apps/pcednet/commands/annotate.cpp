@@ -24,13 +24,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A browser opens when the input is found to be sound, or when that takes longer than this.
+/// A browser opens when the input proves valid, or after this time.
 constexpr std::chrono::seconds kPatience{3};
 
-/// How often the address is said to be in use.
+/// The interval at which the address is noted as in use.
 constexpr std::chrono::minutes kTouch{1};
 
-/// Starts from nothing.
+/// No model: training starts from random weights.
 constexpr const char* kNoModel = "none";
 
 struct AnnotateArguments {
@@ -41,7 +41,7 @@ struct AnnotateArguments {
   bool no_browser = false;
 };
 
-/// 128 bits that nobody can guess.
+/// 128 random bits, as a secret.
 std::string make_token() {
   std::ifstream source("/dev/urandom", std::ios::binary);
   unsigned char bytes[16];
@@ -83,7 +83,7 @@ fs::path sound_input(const std::string& given) {
   return fs::absolute(given);
 }
 
-/// The inputs after the first: those given, then those that the project had besides.
+/// The inputs after the first: those given, then further ones of the project.
 std::vector<fs::path> further_inputs(const std::vector<fs::path>& given, const fs::path& project) {
   std::vector<fs::path> all = given;
   const annotate::Inputs known = annotate::inputs_of_project(project);
@@ -105,7 +105,7 @@ std::vector<fs::path> further_inputs(const std::vector<fs::path>& given, const f
   return {all.begin() + 1, all.end()};
 }
 
-/// The classes of --classes: as they are, or one a line in a file of that name.
+/// The classes of --classes: given directly, or one a line in a file of that name.
 std::optional<ClassTable> classes_named(const std::string& given) {
   if (given.empty()) return std::nullopt;
   std::error_code ignored;
@@ -149,11 +149,11 @@ annotate::SessionOptions session_options(const AnnotateArguments& arguments, con
     if (std::holds_alternative<annotate::Ready>(event))
       say("ready; Ctrl-C ends the program, and all strokes are kept");
   };
-  if (!options.model.empty()) options.load_model(options.model);  // refuse before any work
+  if (!options.model.empty()) options.load_model(options.model);  // fail before any work
   return options;
 }
 
-/// A server where the page of an earlier start may still be open, or else at a new address.
+/// A server at the address where the page of an earlier start may still be open, or at a new one.
 struct Place {
   std::unique_ptr<HttpServer> server = {};
   std::string token = {};
@@ -165,7 +165,7 @@ Place find_place(int wanted_port, const std::optional<Address>& old) {
     try {
       return {std::make_unique<HttpServer>(old->port), old->token, true};
     } catch (const Error&) {
-      if (wanted_port != 0) throw;  // another program is there
+      if (wanted_port != 0) throw;  // another program uses it
     }
   }
   return {std::make_unique<HttpServer>(wanted_port), make_token()};
@@ -186,7 +186,7 @@ void annotate_cloud(const AnnotateArguments& arguments, const Common& common) {
   Place place = find_place(arguments.port, kept.read());
   annotate::Session session(options);
   annotate::Api api(session, events, place.token, place.server->port());
-  const auto server = std::move(place.server);  // goes before what it asks for answers
+  const auto server = std::move(place.server);  // destroyed before the objects that answer for it
   server->start(api, events, page);
   const std::string url = fmt::format("http://127.0.0.1:{}/?token={}", server->port(), place.token);
   fmt::print("{}\n", url);
@@ -198,14 +198,14 @@ void annotate_cloud(const AnnotateArguments& arguments, const Common& common) {
   auto touching = now + kTouch;
   const auto cancelled = console_progress(common).cancelled;
   for (; !cancelled(); now = std::chrono::steady_clock::now()) {
-    const bool is_accepted = session.is_accepted();  // throws what went wrong with loading
+    const bool is_accepted = session.is_accepted();  // throws if loading failed
     if (is_accepted && !is_kept) kept.write({server->port(), place.token});
     is_kept = is_accepted;
     if (now > touching) {
       kept.touch();
       touching = now + kTouch;
     }
-    // A page that is still open comes by itself.
+    // A page that is still open reconnects by itself.
     if (place.is_old && api.was_opened()) is_browser_wanted = false;
     if (is_browser_wanted && ((is_accepted && !place.is_old) || now > opening)) {
       tab = open_browser(url);

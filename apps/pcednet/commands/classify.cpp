@@ -38,7 +38,7 @@ struct Job {
   fs::path input, output, preview;
 };
 
-/// What to read and write, and how many inputs have their result already.
+/// The inputs and outputs, and the number of inputs that have their result already.
 struct Plan {
   std::vector<Job> jobs;
   std::size_t skipped = 0;
@@ -52,7 +52,7 @@ fs::path preview_path(const ClassifyArguments& arguments, const fs::path& input,
                                              formats::stem_of(input), pattern.extension().string());
 }
 
-/// The file for a result unless the user names one: LAS for LAS, PLY for all else.
+/// The default file for a result: LAS for LAS, PLY for everything else.
 std::string output_name(const fs::path& input) {
   const formats::Format* format = formats::find_format(input);
   const bool is_las = format && format->is_las();
@@ -76,7 +76,7 @@ bool is_there(const fs::path& file) {
   return !file.empty() && fs::exists(fs::symlink_status(file, ignored));
 }
 
-/// Refuses if one of several results exists, and says which.
+/// Throws if one of several results exists, naming it.
 void refuse_existing(const std::vector<Job>& jobs) {
   std::size_t existing = 0;
   for (const Job& job : jobs) {
@@ -93,7 +93,7 @@ void refuse_existing(const std::vector<Job>& jobs) {
                           existing));
 }
 
-/// Refuses before any work what could not be written after it.
+/// Throws before any work if the outputs could not be written after it.
 void check_outputs(const std::vector<Job>& jobs, const Common& common) {
   if (jobs.size() > 1 && !common.overwrite_files) refuse_existing(jobs);
   std::set<fs::path> taken;
@@ -131,8 +131,8 @@ Plan plan(const Inputs& inputs, const ClassifyArguments& arguments, const Common
   return plan;
 }
 
-/// Applies --las-classification, pairs class=code with commas between, to the field Classification;
-/// there are so many classes.
+/// Applies --las-classification, comma-separated pairs class=code, to the field Classification;
+/// there are `classes` classes.
 void set_las_classification(const std::string& pairs, const std::vector<std::uint8_t>& classes,
                             std::size_t classes_known, PointCloud& cloud) {
   const Attribute* present = find_attribute(cloud, "Classification");
@@ -182,7 +182,7 @@ void count(const std::vector<std::uint8_t>& classes, Counts& counts) {
   for (const std::uint8_t id : classes) ++counts[id];
 }
 
-/// Every class that a model with own ones found.
+/// The counts of all classes of a model with own classes.
 std::string own_counts(const Counts& counts, const ClassTable& table, std::size_t points) {
   std::string text;
   for (std::size_t id = 0; id < table.size(); ++id) {
@@ -219,7 +219,7 @@ void say_kept(const detect::KeptInput& kept) {
   if (kept.colours) say("  the input's colours are kept; --class-colours replaces them");
 }
 
-/// Puts what was found into the cloud, as the user asked for it.
+/// Adds the result to the cloud, with the user's options.
 detect::KeptInput add_found(const detect::PreparedCloud& prepared,
                             const detect::Classification& found, const ClassifyArguments& arguments,
                             const detect::EdgeModel& model, PointCloud& cloud) {
@@ -231,7 +231,7 @@ detect::KeptInput add_found(const detect::PreparedCloud& prepared,
   return kept;
 }
 
-/// Appends every n-th point of a part, about four million of all, which are enough for a picture.
+/// Appends every n-th point of a part, about four million in total, which suffice for a picture.
 void draw_some(const PointCloud& part, std::size_t before, std::size_t all, PointCloud& drawn) {
   constexpr std::size_t kMost = 4'000'000;
   const std::size_t step = all / kMost + 1;
@@ -279,7 +279,7 @@ void classify_large_file(const Job& job, const ClassifyArguments& arguments, std
   report(job, result, counts, model, clock.seconds());
 }
 
-/// The memory for a tile where there must be tiles.
+/// The memory for a tile if tiles are needed.
 std::optional<std::uint64_t> tiles_for(const Job& job, const ClassifyArguments& arguments) {
   if (!arguments.method.name.empty()) return std::nullopt;
   return memory_of_tiles(job.input, job.output, memory_limit(arguments.memory));
@@ -328,7 +328,7 @@ void classify(const ClassifyArguments& arguments, const Common& common) {
     model.name = "none, method " + arguments.method.name;
   }
   if (!arguments.las_classification.empty()) {
-    PointCloud nothing;  // refuses before the work
+    PointCloud nothing;  // throws before the work
     set_las_classification(arguments.las_classification, {}, model.table.size(), nothing);
   }
   const Inputs inputs = find_inputs(arguments.inputs);

@@ -57,7 +57,7 @@ void warn_of_losses(const std::string& output, const std::vector<std::string>& l
   for (const std::string& loss : losses) warn(output + " does not keep: " + loss);
 }
 
-/// The parts of a file, one after the other, beginning with one that is known.
+/// The parts of a file in order, beginning with one that has been read.
 io::EachPart each_part_of(const io::PartReader& reader, const PointCloud& first,
                           const Progress& progress) {
   return [&](const auto& visit) {
@@ -72,8 +72,8 @@ io::EachPart each_part_of(const io::PartReader& reader, const PointCloud& first,
   };
 }
 
-/// Converts in memory that does not grow with the file; false if one of the formats, or what else
-/// is asked for, takes the whole cloud.
+/// Converts in memory that does not grow with the file; false if one of the formats, or another
+/// option, needs the whole cloud.
 bool convert_in_parts(const ConvertRequest& request, const Common& common) {
   if (request.samples > 0 || request.noise > 0.0 || request.fraction < 1.0) return false;
   const auto reader = formats::open_parts(request.input);
@@ -108,7 +108,7 @@ bool convert_in_parts(const ConvertRequest& request, const Common& common) {
 }
 
 void convert(const ConvertRequest& request, const Common& common) {
-  // What cannot be written is refused before a long read.
+  // Fails before a long read if the output cannot be written.
   formats::losses(request.output, {});
   check_writable(request.output, common.overwrite());
   if (convert_in_parts(request, common)) return;

@@ -34,8 +34,8 @@ struct DescribeArguments {
 
 using StatusCounts = std::array<std::size_t, 3>;
 
-/// Describes every point into `matrix`, a stretch of the order at a time: neighbours in space share
-/// their work, wherever their rows are in the file.
+/// Describes every point into `matrix`, a range of the order at a time: neighbours in space share
+/// work, regardless of the positions of their rows in the file.
 StatusCounts write_matrix(const gls::ScaleSpace& space, std::size_t points, io::NpyWriter& matrix,
                           const Progress& progress) {
   const std::size_t scales = space.scales().size();
@@ -65,7 +65,7 @@ StatusCounts write_matrix(const gls::ScaleSpace& space, std::size_t points, io::
     for (const std::uint32_t point : targets) described[point] = 1;
     put_rows();
   });
-  targets.clear();  // what has no place has zeros
+  targets.clear();  // points without a place have zeros
   for (std::uint32_t i = 0; i < points; ++i) {
     if (!described[i]) targets.push_back(i);
   }
@@ -102,7 +102,7 @@ void describe(const DescribeArguments& arguments, const Common& common) {
     throw Error(ErrorKind::kUsage, fmt::format("{}: must end in .npy", output.string()));
   }
   const gls::ScaleSpaceOptions& options = arguments.options;
-  // What cannot be written is refused before the work.
+  // Fails before the work if the output cannot be written.
   check_writable(output, common.overwrite());
   OutputFile settings(fs::path(output).replace_extension(".json"), common.overwrite());
 

@@ -36,7 +36,7 @@ struct EvaluateArguments {
 struct Results {
   std::vector<eval::CloudScore> scores;
   eval::Calibration calibration;
-  eval::ClassReport classes;  ///< instead of both, where there are own classes
+  eval::ClassReport classes;  ///< instead of both, with own classes
 };
 
 std::vector<std::uint8_t> read_predictions(const fs::path& file, const PointCloud& cloud) {
@@ -50,7 +50,7 @@ eval::Positive positive_named(const std::string& name) {
   return name == "edge" ? eval::Positive::kEdge : eval::Positive::kSharp;
 }
 
-/// What was given to the positive classes.
+/// The probability of the positive classes, per point.
 std::vector<float> probabilities(const detect::Classification& found, eval::Positive positive) {
   std::vector<float> p = found.p_sharp;
   if (positive == eval::Positive::kEdge) {

@@ -58,7 +58,7 @@ std::string details(const shapes::LineRecipe&) {
   return "";
 }
 
-/// The true curves of a cloud: in a folder of their own, which folder inputs leave out.
+/// The file of a cloud's true curves: in a separate folder, which folder inputs leave out.
 std::filesystem::path curves_of(const std::filesystem::path& folder, const std::string& name) {
   return folder / "curves" / (name + ".obj");
 }
@@ -111,7 +111,7 @@ struct SetArguments {
   std::uint64_t seed = 1;
 };
 
-/// A command that writes a folder of clouds; what it does is left open.
+/// A command that writes a folder of clouds; its action is set later.
 CLI::App* add_open_set(CLI::App& generate, Common& common, SetArguments& arguments,
                        const std::string& name, const std::string& description,
                        const std::string& examples) {

@@ -38,7 +38,7 @@ void write_json(const InfoRequest& request, const ordered_json& files, const Com
   }
 }
 
-/// Reads headers alone.
+/// Reads only headers.
 void list_files(const InfoRequest& request, const Common& common) {
   check_writable(request.vpc, common.overwrite());
   const Progress progress = console_progress(common);
@@ -59,7 +59,7 @@ void list_files(const InfoRequest& request, const Common& common) {
   say(fmt::format("{}: {} files, {} points", request.vpc, files.size(), points));
 }
 
-/// While there is one, Ctrl-C ends the program at once, which is right where nothing is written.
+/// Makes Ctrl-C end the program at once, which is safe where nothing is written.
 class EndsAtOnce {
  public:
   EndsAtOnce() : before_(std::signal(SIGINT, SIG_DFL)) {}

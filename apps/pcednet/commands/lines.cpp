@@ -46,7 +46,7 @@ struct LinesArguments {
   bool has_unit = false;
 };
 
-/// What find_lines() takes, and what holds it.
+/// The arguments of find_lines(), and the data behind them.
 struct LabelledCloud {
   PointCloud cloud;
   detect::PreparedCloud prepared;
@@ -54,7 +54,7 @@ struct LabelledCloud {
   std::vector<float> p_sharp, p_smooth;
 };
 
-/// Refuses before any work what could not be written after it.
+/// Throws before any work if the output could not be written after it.
 void check_outputs(const LinesArguments& arguments) {
   std::set<fs::path> taken;
   for (const fs::path output : arguments.outputs) {
@@ -93,7 +93,7 @@ void warn_of_other_classes(const std::string& file, const std::vector<std::uint8
                    others));
 }
 
-/// Refuses classes that are no edges.
+/// Throws for classes other than edge classes.
 void check_edges(const std::string& whose, const ClassTable& table) {
   if (has_edges(table)) return;
   throw Error(ErrorKind::kUsage, fmt::format("{}: its classes are {}; lines are of edge classes",
@@ -112,7 +112,7 @@ void add_given_labels(const LinesArguments& arguments, std::vector<std::uint8_t>
   if (!labelled.p_sharp.empty()) labelled.p_smooth.resize(cloud.size());
 }
 
-/// Reads the cloud whole, and classifies it if need be.
+/// Reads the whole cloud, and classifies it if needed.
 void read_labelled(const LinesArguments& arguments, StageClock& clock, LabelledCloud& labelled) {
   clock.begin("read");
   PointCloud& cloud = labelled.cloud;
@@ -146,7 +146,7 @@ detect::Classification given_labels(const LinesArguments& arguments, const Point
   found.classes = formats::labels_of(part, arguments.input);
   found.p_sharp = probabilities(part, "p_sharp");
   found.p_smooth = probabilities(part, "p_smooth");
-  if (found.p_sharp.empty()) {  // as find_lines() takes classes alone
+  if (found.p_sharp.empty()) {  // find_lines() then uses classes only
     found.p_smooth.clear();
     for (const std::uint8_t its_class : found.classes) {
       const bool edge = its_class == kSharpEdge || its_class == kSmoothEdge;
@@ -157,7 +157,7 @@ detect::Classification given_labels(const LinesArguments& arguments, const Point
   return found;
 }
 
-/// The same for a cloud beyond memory: its points near edges.
+/// The same for a cloud larger than memory: its points near edges.
 void read_labelled_in_tiles(const LinesArguments& arguments, std::uint64_t memory,
                             StageClock& clock, LabelledCloud& labelled) {
   TiledRequest request{.input = arguments.input,
@@ -182,7 +182,7 @@ void read_labelled_in_tiles(const LinesArguments& arguments, std::uint64_t memor
   labelled.p_smooth = std::move(near.p_smooth);
 }
 
-/// Leaves what the user asked for; returns how many curves that took away.
+/// Keeps the curves that the user asked for; returns the number removed.
 std::size_t filter(const LinesArguments& arguments, std::vector<Curve>& curves) {
   const auto lacks = [](const std::vector<std::string>& names, std::string_view name) {
     return !names.empty() && std::find(names.begin(), names.end(), name) == names.end();
@@ -225,7 +225,7 @@ void report(const LinesArguments& arguments, const std::vector<Curve>& curves,
 void run(LinesArguments arguments, const Common& common) {
   arguments.drawing.overwrite = common.overwrite();
   check_outputs(arguments);
-  find_model(arguments.model.name);  // refuses before the work
+  find_model(arguments.model.name);  // throws before the work
   StageClock clock(console_progress(common));
   LabelledCloud labelled;
   const auto memory = memory_of_tiles(arguments.input, {}, memory_limit(arguments.memory));
@@ -267,7 +267,7 @@ void run(LinesArguments arguments, const Common& common) {
   if (!arguments.preview.empty()) say("  -> " + arguments.preview);
 }
 
-/// A number that the user gave: from above `least` to `most`.
+/// Checks that a number is above `least` and at most `most`.
 CLI::Validator above(double least, double most, const std::string& meaning) {
   return {[=](const std::string& word) -> std::string {
             double value = 0.0;

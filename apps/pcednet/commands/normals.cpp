@@ -72,7 +72,7 @@ void report(const NormalsRequest& request, const normals::PreparedNormals& prepa
 }
 
 void run(const NormalsRequest& request, const Common& common) {
-  // What cannot be written is refused before a long read.
+  // Fails before a long read if the output cannot be written.
   formats::losses(request.output, {});
   check_writable(request.output, common.overwrite());
   PointCloud cloud = read_cloud(request.input);

@@ -19,8 +19,7 @@ report::MergedStudies merge(const ReportArguments& arguments, const Progress& pr
   try {
     return report::merge_studies(arguments.folder, arguments.merge, &progress);
   } catch (const report::MissingCloud& error) {
-    throw Error(error.kind(),
-                fmt::format("{}; --clouds-per-set 0 does without clouds", error.what()));
+    throw Error(error.kind(), fmt::format("{}; --clouds-per-set 0 needs no clouds", error.what()));
   }
 }
 

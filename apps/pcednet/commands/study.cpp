@@ -34,7 +34,7 @@ struct StudyArguments {
   bool quick = false, natural = false;
 };
 
-/// NAME=VALUE. The name will be that of folders and columns.
+/// NAME=VALUE. The name is used for folders and columns.
 std::pair<std::string, std::string> named(const std::string& argument, const char* option) {
   const std::size_t equals = argument.find('=');
   const std::string name = argument.substr(0, equals);
@@ -162,7 +162,7 @@ study::PlanOptions plan_of(const StudyArguments& arguments) {
   return plan;
 }
 
-/// The command line as it was given, but for what changes no result.
+/// The command line as given, without options that do not affect results.
 std::string command_line() {
   std::ifstream file("/proc/self/cmdline", std::ios::binary);
   std::string line = "pcednet";
@@ -179,7 +179,7 @@ std::string command_line() {
   return line;
 }
 
-/// Keeps the variants that the user named. Throws Error(kUsage) for a name that there is not.
+/// Keeps the variants that the user named. Throws Error(kUsage) for an unknown name.
 void choose_methods(study::Experiment& experiment, const std::vector<std::string>& wanted) {
   if (wanted.empty()) return;
   std::string known;
@@ -257,7 +257,7 @@ void study_command(const StudyArguments& arguments, const Common& common) {
   }
 }
 
-/// Of the networks that are trained, where the experiment does not vary them.
+/// Options of the networks that are trained, where the experiment does not vary them.
 void add_network_options(CLI::App& command, StudyArguments& arguments) {
   detect::TrainOptions& training = arguments.networks;
   command.add_option("--classes", training.architecture.classes, "Classes of the networks")

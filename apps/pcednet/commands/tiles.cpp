@@ -35,7 +35,7 @@ struct PlanArguments {
   detect::PrepareOptions preparation;
 };
 
-/// Where the tiles go unless the user says: beside the plan.
+/// The default folder of the tiles: beside the plan.
 fs::path folder_of(const PlanArguments& arguments) {
   if (!arguments.folder.empty()) return arguments.folder;
   const fs::path plan = arguments.plan;
@@ -82,7 +82,7 @@ struct RunArguments {
   bool missing = false;
 };
 
-/// Adds what "7" or "0-15" names.
+/// Adds the numbers of "7" or "0-15".
 void add_numbers(const std::string& text, std::size_t tiles, std::set<std::size_t>& numbers) {
   const auto refuse = [&] {
     throw Error(ErrorKind::kUsage, fmt::format("--tile {}: not a tile of 0 to {}, or two with - "
@@ -113,7 +113,7 @@ std::vector<std::size_t> chosen_tiles(const RunArguments& arguments, const tiles
   return {chosen.begin(), chosen.end()};
 }
 
-/// How many tiles may be run at a time.
+/// The number of tiles that may run at a time.
 int jobs_within(const RunArguments& arguments, const tiles::Plan& plan) {
   if (arguments.memory.empty()) return arguments.jobs;
   const std::uint64_t most = byte_size("--max-memory", arguments.memory);
@@ -134,7 +134,7 @@ void run_here(const tiles::Plan& plan, const std::vector<std::size_t>& ids, cons
   const Progress progress = console_progress(common);
   for (const std::size_t id : ids) {
     throw_if_cancelled(&progress);
-    // Another run may have done it meanwhile.
+    // Another run may have finished it meanwhile.
     if (!common.overwrite_files && tiles::state_of(plan, id) == tiles::TileState::kDone) continue;
     Stopwatch watch;
     tiles::run_tile(plan, id, model, &progress);
@@ -154,7 +154,7 @@ void run_tiles(const RunArguments& arguments, const Common& common) {
   const int jobs = jobs_within(arguments, plan);
   for (const std::size_t id : ids) make_folder(plan.tiles[id].output.parent_path());
   if (jobs > 1 && ids.size() > 1) {
-    tiles::load_planned_model(plan);  // refuses before any process starts, as does what follows
+    tiles::load_planned_model(plan);  // throws before any process starts, as do the next lines
     for (const tiles::PlannedInput& input : plan.inputs) tiles::check_size(input);
     run_tile_jobs({.plan = arguments.plan,
                    .tiles = ids,
@@ -165,7 +165,7 @@ void run_tiles(const RunArguments& arguments, const Common& common) {
   } else if (!ids.empty()) {
     run_here(plan, ids, common);
   }
-  if (all == 1 && ids.size() == 1) return;  // said by the tile
+  if (all == 1 && ids.size() == 1) return;  // the tile has reported
   say(fmt::format("{} tile{} run, {} were done", ids.size(), ids.size() == 1 ? "" : "s",
                   all - ids.size()));
 }
@@ -182,7 +182,8 @@ struct Group {
   std::size_t points = 0;
 };
 
-/// The command that brings the plan on. Damage that digests alone show is run again by number only.
+/// The next command for the plan. Tiles whose damage only digests show are run again only by
+/// number.
 std::string next_step(const tiles::Plan& plan, const std::array<Group, 3>& groups, bool verify) {
   const std::string path = plan.path.string();
   std::string damaged;
@@ -247,7 +248,7 @@ void join_into_file(const tiles::Plan& plan, const std::string& output, const Co
   say(fmt::format("{}: {} points of {} tiles", output, joined.points, plan.tiles.size()));
 }
 
-/// Reads the headers of the tiles alone.
+/// Reads only the headers of the tiles.
 void list_tiles(const tiles::Plan& plan, const std::string& vpc, const Common& common) {
   tiles::check_all_done(plan);
   std::vector<formats::VirtualFile> files;
@@ -322,7 +323,7 @@ void add_run(CLI::App& tiles, Common& common) {
       ->capture_default_str()
       ->check(CLI::Range(1, 1024));
   command->add_option("--max-memory", arguments->memory,
-                      "Memory for all jobs together, such as 8G: fewer at a time if need be");
+                      "Memory for all jobs together, such as 8G: fewer at a time if needed");
   command->callback([arguments, &common] { run_tiles(*arguments, common); });
 }
 

@@ -31,9 +31,9 @@ struct TrainArguments {
   std::string project, output;
   std::vector<std::pair<std::string, std::string>> experts;  ///< model files and kinds of clouds
   std::string only;                                          ///< the kind of clouds to learn from
-  bool no_normals = false;                                   ///< leave out those of the clouds
+  bool no_normals = false;                                   ///< ignore the normals of the clouds
   detect::PrepareOptions preparation;
-  detect::TrainOptions options;  ///< all but what follows
+  detect::TrainOptions options;  ///< except those below
   Recipe recipe = Recipe::kAdam;
   int epochs = 0;  ///< 0: the recipe's
   double balance = 1.0;
@@ -70,7 +70,7 @@ struct Experts {
   std::vector<detect::CloudKind> kinds = {};
 };
 
-/// Refuses them before the work.
+/// Throws before the work if they do not fit.
 Experts read_experts(const TrainArguments& arguments) {
   Experts experts;
   for (const auto& [file, kind] : arguments.experts) {
@@ -94,7 +94,7 @@ detect::TrainedModel train_project(const TrainArguments& arguments, const Common
                                        ? "train: a project has one input"
                                        : fmt::format("train: the project has {} inputs", clouds));
   }
-  // Those not given are beside the project, or where they were as seen from the first.
+  // Missing ones are beside the project, or at their former place relative to the first.
   if (inputs.empty()) inputs.push_back(file.parent_path() / project.inputs.front().name);
   for (std::size_t k = inputs.size(); k < clouds; ++k) {
     inputs.push_back(inputs.front().parent_path() / project.inputs[k].name);
@@ -104,7 +104,7 @@ detect::TrainedModel train_project(const TrainArguments& arguments, const Common
       common.progress == "none" ? decltype(&print_epoch)(nullptr) : print_epoch, &progress);
 }
 
-/// Clouds with own classes, as the annotator saves them, make a model with these.
+/// Clouds with own classes, as the annotator saves them, give a model with these classes.
 void take_classes(const std::filesystem::path& input, const PointCloud& cloud, bool is_first,
                   detect::TrainOptions& options) {
   const ClassTable table = classes_of(cloud.comments);
@@ -122,7 +122,7 @@ detect::TrainedModel train_clouds(const TrainArguments& arguments, const Common&
   std::optional<detect::CloudKind> only;
   if (!arguments.only.empty()) only = take_kind("--only", arguments.only);
   std::vector<io::LoadedCloud> loaded;
-  loaded.reserve(inputs.size());  // the training clouds look into them
+  loaded.reserve(inputs.size());  // the training clouds refer to them
   std::vector<detect::TrainingCloud> clouds;
   for (const auto& input : inputs) {
     with_name_in_errors(input, [&] {
@@ -240,7 +240,8 @@ void add_recipe_options(CLI::App& command, TrainArguments& arguments) {
       ->check(CLI::Range(0.0, 1.0))
       ->excludes("--natural");
   command.add_flag("--even-validation", arguments.even_validation,
-                   "Judge the epochs with all classes alike; otherwise they count as in training");
+                   "Give every class equal weight when choosing the epoch; without it, classes "
+                   "weigh as in training");
   command
       .add_option("--distil", arguments.options.teachers,
                   "Train this many networks first and learn their mean prediction")

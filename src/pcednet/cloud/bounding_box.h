@@ -20,7 +20,7 @@ struct BoundingBox {
   bool meets(const BoundingBox& other) const {
     return (min.array() <= other.max.array()).all() && (other.min.array() <= max.array()).all();
   }
-  /// Makes it hold the finite point, or the other box, too.
+  /// Extends it to hold the finite point, or the other box.
   void add(const Vec3& p) { add(BoundingBox{p, p}); }
   void add(const BoundingBox& other) {
     min = min.cwiseMin(other.min);
@@ -29,8 +29,8 @@ struct BoundingBox {
   double diagonal() const { return empty() ? 0.0 : (max - min).norm(); }
 };
 
-/// Throws Error(kInsufficient), naming the first such point, for finite coordinates beyond 1e150,
-/// whose squared distances would overflow.
+/// Throws Error(kInsufficient) for finite coordinates beyond 1e150, whose squared distances would
+/// overflow; names the first such point.
 void check_extent(std::span<const Vec3> positions);
 
 BoundingBox bounding_box(std::span<const Vec3> positions);

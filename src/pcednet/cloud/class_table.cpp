@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t kLongestName = 40;  // characters
 constexpr std::string_view kEdges = "edges";
 
-// Of about one lightness, told apart from those of edges and from unlabelled grey.
+// Of similar lightness, distinct from the colours of edges and from unlabelled grey.
 constexpr std::array<Rgb, kMostClasses> kUsualColours = {{{89, 161, 79},
                                                           {176, 122, 161},
                                                           {242, 142, 43},

@@ -20,16 +20,17 @@ struct PointClass {
 using ClassTable = std::vector<PointClass>;
 inline constexpr std::size_t kMostClasses = 8;
 
-/// Those of kEdgeClasses: the classes of every model unless it was trained on others.
+/// The kEdgeClasses: the classes of every model that was not trained on others.
 const ClassTable& edge_classes();
 
-/// Whether the table begins with the four edge classes: boundary, context and lines are of these.
+/// Whether the table begins with the four edge classes, which boundary, context network and lines
+/// need.
 bool has_edges(const ClassTable& table);
 
-/// Whether there are other classes than those of edges.
+/// Whether there are classes other than the edge classes.
 bool has_own_classes(const ClassTable& table);
 
-/// `#rrggbb`, and back; none for any other text.
+/// A colour as `#rrggbb`, and back; none for any other text.
 std::string text_of(const Rgb& colour);
 std::optional<Rgb> colour_of(std::string_view text);
 
@@ -40,7 +41,7 @@ Rgb usual_colour(std::size_t id);
 /// characters in UTF-8.
 void check_classes(const ClassTable& table);
 
-/// Reads classes as a user writes them: names with commas or line ends between them, each may be
+/// Reads classes as a user writes them: names separated by commas or line ends, each optionally
 /// followed by `=#rrggbb`; the first may be `edges`, which stands for the four edge classes. Throws
 /// Error(kUsage) as check_classes().
 ClassTable parse_classes(std::string_view text);
@@ -48,16 +49,17 @@ ClassTable parse_classes(std::string_view text);
 /// The table as a user writes it, without colours.
 std::string names_of(const ClassTable& table);
 
-/// The table as lines `id #rrggbb name`, and back; none if `lines` are no such table. With `before`
-/// in front of each they are the comments of a cloud of own classes, among others.
+/// The table as lines `id #rrggbb name`, and back; none if `lines` are not such a table. Prefixed
+/// with `before`, the lines are the comments of a cloud with own classes; parsing skips other
+/// comments.
 std::vector<std::string> lines_of(const ClassTable& table, std::string_view before = {});
 std::optional<ClassTable> table_of(const std::vector<std::string>& lines,
                                    std::string_view before = {});
 
-/// What stands in front of each class in a labelled cloud's comments.
+/// The prefix of each class in a labelled cloud's comments.
 inline constexpr std::string_view kClassComment = "pcednet class ";
 
-/// The classes that a labelled cloud's comments name; those of edges if they name none.
+/// The classes that a labelled cloud's comments name; the edge classes if they name none.
 ClassTable classes_of(const std::vector<std::string>& comments);
 
 }  // namespace pcednet

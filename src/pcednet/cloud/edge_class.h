@@ -7,8 +7,7 @@
 
 namespace pcednet {
 
-/// The edge classes by number: their names, and their colours, which are the paper's but for
-/// boundary.
+/// The edge classes by number: their names, and their colours, the paper's except for boundary.
 struct EdgeClassEntry {
   EdgeClass edge_class;
   std::string_view name;

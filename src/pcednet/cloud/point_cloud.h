@@ -11,8 +11,8 @@
 
 namespace pcednet {
 
-/// The classes of a point, as stored in labels and in files.
-/// No network gives kBoundary: the end of a surface, which geometry alone finds.
+/// The classes of a point, as stored in labels and in files. No network predicts kBoundary, the end
+/// of a surface: geometry alone finds it.
 enum EdgeClass : std::uint8_t {
   kNonEdge = 0,
   kSmoothEdge = 1,
@@ -42,7 +42,7 @@ struct PointCloud {
   std::vector<Rgb> colours;
   std::vector<std::uint8_t> labels;  ///< EdgeClass values
   std::vector<Attribute> attributes;
-  ScalarType position_type = ScalarType::kFloat64;  ///< that of the file, and of the output
+  ScalarType position_type = ScalarType::kFloat64;  ///< in the file, and in the output
   std::vector<std::string> comments;
   std::vector<ForeignElement> foreign_elements;
   std::vector<Vec3> scanners;  ///< the position of each scan's scanner; NaN where unknown

@@ -5,8 +5,8 @@
 
 namespace pcednet {
 
-/// Calls work(begin, end) for one stretch of the numbers 0 to `count` after another, each of
-/// `block` numbers but the last.
+/// Calls work(begin, end) for consecutive ranges of the numbers 0 to `count`, each of `block`
+/// numbers but the last.
 template <typename Work>
 void for_each_block(std::size_t count, std::size_t block, const Work& work) {
   for (std::size_t begin = 0; begin < count; begin += block) {

@@ -14,7 +14,7 @@ T load(const void* from) {
   return value;
 }
 
-/// Puts the bytes of a value to `to`, which need not be aligned.
+/// Copies the bytes of a value to `to`, which need not be aligned.
 template <typename T>
 void store(void* to, const T& value) {
   static_assert(std::is_trivially_copyable_v<T>);

@@ -4,14 +4,14 @@
 
 namespace pcednet {
 
-/// Of a symmetric matrix: its eigenvalues, ascending, and unit eigenvectors, the columns.
+/// The eigenvalues of a symmetric matrix, ascending, and its unit eigenvectors as columns.
 struct Eigendecomposition {
   Vec3 values;
   Mat3 vectors;
 };
 
-/// By the closed form, which is quick and right to about 1e-8 of the largest eigenvalue; of the
-/// matrix, its lower half is read.
+/// By the closed form, which is fast and accurate to about 1e-8 of the largest eigenvalue; reads
+/// the lower half of the matrix.
 Eigendecomposition eigendecomposition(const Mat3& symmetric);
 
 }  // namespace pcednet

@@ -6,7 +6,7 @@
 
 namespace pcednet {
 
-/// Thrown, with ErrorKind::kUsage, where a file would have to be replaced with Overwrite::kNo.
+/// Thrown, with ErrorKind::kUsage, when Overwrite::kNo forbids replacing a file.
 class ExistsAlready : public Error {
  public:
   explicit ExistsAlready(const std::filesystem::path& path)

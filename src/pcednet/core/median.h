@@ -14,7 +14,7 @@ inline double median(std::vector<double> values) {
   return values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
 }
 
-/// The value that stands at `rank`, from 0, once they are sorted; puts them in another order.
+/// The value at `rank`, from 0, in sorted order; reorders the values.
 template <typename T>
 T value_at_rank(std::vector<T>& values, std::size_t rank) {
   const auto place = values.begin() + static_cast<std::ptrdiff_t>(rank);
@@ -22,8 +22,8 @@ T value_at_rank(std::vector<T>& values, std::size_t rank) {
   return *place;
 }
 
-/// The middle value, or the upper of the middle two: always one of `values`, of which there must be
-/// one.
+/// The middle value, or the upper of the middle two: always one of `values`, which must not be
+/// empty.
 template <typename T>
 T upper_median(std::vector<T> values) {
   return value_at_rank(values, values.size() / 2);

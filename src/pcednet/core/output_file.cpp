@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Renames unless something has the name `to`. Where it cannot, errno tells why.
+/// Renames unless `to` exists. On failure, errno has the reason.
 bool rename_without_replacing(const fs::path& from, const fs::path& to) {
   if (renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0) return true;
   // Not every file system can (NFS cannot); a hard link never replaces either.
@@ -27,7 +27,7 @@ bool rename_without_replacing(const fs::path& from, const fs::path& to) {
   return true;
 }
 
-/// Where the bytes of `path` go until they are complete.
+/// The temporary file for the bytes of `path`.
 std::string part_name(const fs::path& path) {
   return fmt::format("{}.part-{}", path.string(), getpid());
 }
@@ -116,7 +116,7 @@ void OutputFile::write(std::string_view text) {
 }
 
 void OutputFile::write_at(std::uint64_t offset, std::span<const std::byte> bytes) {
-  // What write() still holds would replace these bytes later.
+  // Bytes buffered by write() would overwrite these later.
   if (std::fflush(file_) != 0) fail("cannot write");
   while (!bytes.empty()) {
     const ssize_t written =

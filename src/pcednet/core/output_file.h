@@ -43,14 +43,15 @@ class OutputFile {
   [[noreturn]] void fail(const std::string& action) const;
 
   std::filesystem::path path_;
-  std::filesystem::path temporary_;  ///< empty once it has its name
+  std::filesystem::path temporary_;  ///< empty once the file has its name
   Overwrite overwrite_;
   std::FILE* file_ = nullptr;
 };
 
-/// Refuses before long work the targets that OutputFile would refuse after it. Throws Error(kUsage)
-/// if `path` is a folder or a device, or exists (even as a dangling link) and `overwrite` is kNo;
-/// Error(kFailure) if its folder is missing, not a folder, or not writable. An empty path is valid.
+/// Rejects, before long work, the targets that OutputFile would reject after it. Throws
+/// Error(kUsage) if `path` is a folder or a device, or exists (even as a dangling link) and
+/// `overwrite` is kNo; Error(kFailure) if its folder is missing, not a folder, or not writable. An
+/// empty path is valid.
 void check_writable(const std::filesystem::path& path, Overwrite overwrite);
 
 /// Creates the folder and its missing parents. Throws Error(kUsage) if it is a file,

@@ -16,8 +16,8 @@ void parallel_for_each(std::size_t count, const Work& work) {
   });
 }
 
-/// How many i below `count` are `counted` before each block of parallel_blocks(count, block, ...),
-/// and at last how many there are: where a block may write what it keeps.
+/// The number of i below `count` that are `counted`, before each block of parallel_blocks(count,
+/// block, ...) and, last, in total: the offsets at which the blocks may write what they keep.
 template <typename Counted>
 std::vector<std::size_t> counts_before_blocks(std::size_t count, std::size_t block,
                                               const Counted& counted) {

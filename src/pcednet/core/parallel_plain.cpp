@@ -57,7 +57,7 @@ void parallel_blocks(std::size_t count, std::size_t block,
     }
   };
   if (is_worker || blocks <= 1) {
-    take_blocks();  // within a block: its own thread does
+    take_blocks();  // nested in a block: runs on its thread
   } else {
     const auto work_here = [&] {
       is_worker = true;

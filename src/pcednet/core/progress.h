@@ -36,7 +36,7 @@ class Stage {
 /// `progress` (which may be null) without its report, for work within a stage.
 Progress without_report(const Progress* progress);
 
-/// Throws Error(kCancelled) if `progress` (which may be null) says so.
+/// Throws Error(kCancelled) if `progress` (which may be null) asks to cancel.
 void throw_if_cancelled(const Progress* progress);
 
 }  // namespace pcednet

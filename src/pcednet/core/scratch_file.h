@@ -8,12 +8,11 @@
 
 namespace pcednet {
 
-/// Bytes that memory should not hold, in a file without a name: nothing of it stays behind,
-/// whichever way the process ends.
+/// Bytes too many for memory, in an unnamed file that vanishes however the process ends.
 class ScratchFile {
  public:
-  /// On the disk of `beside`, the file that is being made of it, which errors name. Throws
-  /// Error(kFailure) if its folder takes no file.
+  /// Lies on the disk of `beside`, the output under construction, which errors name. Throws
+  /// Error(kFailure) if no file can be created in that folder.
   explicit ScratchFile(std::filesystem::path beside);
   ~ScratchFile();
   ScratchFile(const ScratchFile&) = delete;
@@ -24,12 +23,11 @@ class ScratchFile {
   /// Appends. Throws Error(kFailure) when the disk is full.
   void write(std::string_view bytes);
 
-  /// Writes at an offset, which may lie beyond the end: what is between reads as zeros. From one
-  /// thread at a time. Throws as write() does.
+  /// Writes at an offset, which may lie beyond the end: the gap reads as zeros. From one thread at
+  /// a time. Throws as write() does.
   void write_at(std::uint64_t offset, std::span<const std::byte> bytes);
 
-  /// Fills `bytes` with what stands at `offset`, from any thread. Throws Error(kFailure) if that is
-  /// not there.
+  /// Fills `bytes` from `offset`, from any thread. Throws Error(kFailure) if the file ends before.
   void read(std::uint64_t offset, std::span<std::byte> bytes) const;
 
  private:

@@ -15,7 +15,7 @@
 
 namespace pcednet {
 
-/// std::max by value, which such loops take without a branch.
+/// std::max by value, which compiles without a branch in such loops.
 [[gnu::always_inline]] inline double larger(double a, double b) {
   return a < b ? b : a;
 }

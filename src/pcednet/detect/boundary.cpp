@@ -20,8 +20,8 @@ namespace pcednet::detect {
 namespace {
 
 constexpr std::size_t kNeighbours = kBoundaryNeighbours, kLeastNeighbours = 12;
-/// Of more points than this the first kTried of every kStride along the curve are tried at first,
-/// then all around those found: a rim is a line of points.
+/// Clouds with more points are first sampled, kTried of every kStride along the curve, then
+/// searched around the points found: a rim is a line of points.
 constexpr std::size_t kMostWhole = std::size_t{1} << 17;
 constexpr std::size_t kTried = 8, kStride = 32;
 constexpr std::size_t kTogether = 1024;
@@ -42,7 +42,7 @@ constexpr double kInliers = 0.7;    ///< share of the neighbours
 constexpr double kAgreement = 0.8;  ///< mean cosine between the neighbours' normals and the plane's
 constexpr double kOpposed = 0.2;    ///< share of neighbours that face the other way
 
-// Of the neighbours that a point of the rim needs along it; lengths in spacings.
+// For the neighbours that a rim point needs along the rim; lengths in spacings.
 constexpr double kSameSide = 0.5;  ///< cosine between the open directions
 constexpr double kLeastAlong = 0.3;
 constexpr double kAcross = 0.7;  ///< and as much per length along the rim
@@ -53,7 +53,7 @@ bool is_before(const Vec3& a, const Vec3& b) {
   return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
 }
 
-/// The finite positions along the curve, each once, in an order free of their numbering.
+/// The finite positions along the curve, each once, in an order independent of their numbering.
 struct DistinctPoints {
   const PreparedCloud& cloud;
   std::vector<Vec3> positions = {};
@@ -62,7 +62,7 @@ struct DistinctPoints {
   std::span<const std::uint32_t> copies(std::size_t point) const {
     return std::span(cloud.curve).subspan(first[point], first[point + 1] - first[point]);
   }
-  /// Of copies that differ the first by its numbers; zero if none is usable.
+  /// The normal of a point; the first by its components if copies differ, zero if none is usable.
   Vec3 normal(std::size_t point) const {
     Vec3 found = Vec3::Zero();
     for (const std::uint32_t copy : copies(point)) {
@@ -87,7 +87,7 @@ DistinctPoints distinct_points(const PreparedCloud& cloud) {
   return points;
 }
 
-/// A point that has its neighbours on one side.
+/// A point with all its neighbours on one side.
 struct RimPoint {
   std::uint32_t point = kNone;
   Vec3 outward = Vec3::Zero(), along = Vec3::Zero();  ///< unit, orthogonal
@@ -140,7 +140,7 @@ Plane plane_of(const Around& around) {
           .spread = variances[2] > 0.0 ? variances[1] / variances[2] : 0.0};
 }
 
-/// Those not far off the plane.
+/// The neighbours not far off the plane.
 Around inliers(const Around& around, const Plane& plane, double spacing) {
   std::array<double, kNeighbours> heights = {};
   for (std::size_t i = 0; i < around.count; ++i) heights[i] = plane.height(around.offset[i]);
@@ -226,7 +226,7 @@ std::optional<RimPoint> rim_at(const DistinctPoints& points, std::uint32_t point
   return rim;
 }
 
-/// What rim_at() finds at the points `todo` (ascending), in their order.
+/// The results of rim_at() at the points `todo` (ascending), in their order.
 std::vector<RimPoint> rims_at(const DistinctPoints& points, const spatial::NeighbourSearch& search,
                               std::span<const std::uint32_t> todo, Stage& stage) {
   const std::size_t count = search.available(kNeighbours);
@@ -245,8 +245,8 @@ std::vector<RimPoint> rims_at(const DistinctPoints& points, const spatial::Neigh
   return rims;
 }
 
-/// The points of all rims, and of the gaps that look like one. Where one is found all around it are
-/// tried.
+/// The points of all rims, and of gaps that look like one. Where one is found, all points around it
+/// are tried.
 std::vector<RimPoint> find_rims(const DistinctPoints& points, const Progress* progress) {
   const spatial::NeighbourSearch search(points.positions);
   if (search.available(kNeighbours) < kLeastNeighbours) return {};
@@ -277,8 +277,8 @@ std::vector<RimPoint> find_rims(const DistinctPoints& points, const Progress* pr
   return rims;
 }
 
-/// Whether the rim goes on to both sides of the point, through the rims numbered `rim_of` the
-/// points, and one of these opens widely.
+/// Whether the rim continues to both sides of the point, through the rims numbered `rim_of` the
+/// points, one of which opens widely.
 bool goes_on(const RimPoint& rim, const DistinctPoints& points, std::span<const RimPoint> rims,
              std::span<const std::uint32_t> rim_of) {
   bool before = false, after = false, wide = rim.wide;
@@ -296,7 +296,7 @@ bool goes_on(const RimPoint& rim, const DistinctPoints& points, std::span<const 
   return wide && before && after;
 }
 
-/// Removes points whose rim does not go on, and the ends that this leaves.
+/// Removes points whose rim does not continue, and the ends that this leaves.
 void remove_isolated(const DistinctPoints& points, std::vector<RimPoint>& rims) {
   std::vector<std::uint32_t> rim_of(points.positions.size(), kNone);
   for (int round = 0; round < kBoundaryRounds; ++round) {

@@ -14,12 +14,12 @@
 namespace pcednet::detect {
 namespace {
 
-/// Points that are classified at once where their descriptions are there: few pauses for all
-/// threads, and cancelled soon.
+/// Points classified at once from existing descriptions: few pauses for all threads, and quick
+/// cancellation.
 constexpr std::size_t kDescribedBlock = 8 * kBlock;
 
-/// Classifies the points `order` of a cloud of `points`, whose descriptions rows_of(begin, end)
-/// gives for so many at a time.
+/// Classifies the points `order` of a cloud of `points`; rows_of(begin, end) gives the descriptions
+/// of at most `at_a_time` points.
 template <typename RowsOf>
 Classification decide_rows(std::size_t points, std::span<const std::uint32_t> order,
                            std::size_t at_a_time, const RowsOf& rows_of, const EdgeModel& model,
@@ -42,7 +42,7 @@ std::vector<std::uint32_t> wanted_of(std::span<const std::uint32_t> order,
   return wanted;
 }
 
-/// Holds the scale space no longer than it is needed.
+/// Holds the scale space only while needed.
 Classification describe_and_decide(const PreparedCloud& cloud, const EdgeModel& model,
                                    const Progress* progress) {
   const gls::PyramidPlan* whole = cloud.part ? &cloud.part->pyramid : nullptr;
@@ -67,21 +67,21 @@ Classification describe_and_decide(const PreparedCloud& cloud, const EdgeModel& 
   return found;
 }
 
-/// Whether the distance to the crease tells sharp-edge from smooth-edge.
+/// Whether the distance to the crease decides between sharp-edge and smooth-edge.
 bool is_by_creases(const EdgeModel& model, const Expert* expert) {
   constexpr std::size_t kWithSmooth = 3;
   return expert != nullptr && expert->kind.exact && edge_outputs(model).size() == kWithSmooth;
 }
 
-/// What a cloud is, whoever describes it.
+/// A cloud, however it is described.
 struct Subject {
   std::span<const Vec3> positions;
   std::span<const std::uint32_t> curve;  ///< spatial::curve_order() of the positions
   CloudFacts facts;                      ///< if the model asks for any
 };
 
-/// decide(model) says what the networks for such clouds make of each point's description; the
-/// surroundings have the last word.
+/// decide(model) returns the classification by the model's networks from each point's description;
+/// the context network decides last.
 template <typename Decide>
 Classification classify_with(const Decide& decide, const Subject& subject, const EdgeModel& model,
                              const Progress* progress) {

@@ -22,31 +22,33 @@ struct ClassCounts {
   }
 };
 
-/// What was found, per point of the cloud in its own order.
+/// The result of a classification, per point in the order of the cloud.
 struct Classification {
-  std::vector<std::uint8_t> classes = {};  ///< of the model's table, EdgeClass as a rule;
-                                           ///< kUnlabelled: the position is not finite
-  std::vector<float> p_sharp = {};         ///< probability of sharp-edge, 0 where unlabelled
-  std::vector<float> p_smooth = {};        ///< of smooth-edge; 0 throughout with a two-class model
-  std::vector<float> p_class = {};         ///< of the class itself; empty with edge classes alone
-  ClassCounts counts = {};                 ///< of edge classes
-  double s_min = 0.0, s_max = 0.0;         ///< the scales of the description
-  std::string note = {};                   ///< for the user, or empty
-  std::optional<CloudKind> expert = {};    ///< the kind of cloud whose expert decided
+  std::vector<std::uint8_t> classes =
+      {};  ///< of the model's table, EdgeClass by default; kUnlabelled: the position is not finite
+  std::vector<float> p_sharp = {};       ///< probability of sharp-edge, 0 where unlabelled
+  std::vector<float> p_smooth = {};      ///< of smooth-edge; 0 throughout with a two-class model
+  std::vector<float> p_class = {};       ///< of the class itself; empty with edge classes alone
+  ClassCounts counts = {};               ///< of edge classes
+  double s_min = 0.0, s_max = 0.0;       ///< the scales of the description
+  std::string note = {};                 ///< for the user, or empty
+  std::optional<CloudKind> expert = {};  ///< the kind of cloud whose expert decided
 };
 
-/// `points` points that are all unlabelled, of a model with own classes or of edges.
+/// A result with all of `points` unlabelled, for a model with own classes or with edge classes
+/// only.
 Classification nothing_found(std::size_t points, bool has_own_classes = false);
 
-/// Describes every point at every scale and lets the network decide: the class of the highest
-/// probability. Works block by block: the scale-space matrix is never held whole. If the model has
-/// a context network it decides in the end, on what was found around each point.
-/// The result is the same for any number of threads and any order of the points.
+/// Describes every point at every scale and classifies it by the network. A point is an edge where
+/// that is more probable than not, of the more probable kind; with own classes, the most probable
+/// class decides: see decide(). Works block by block: the scale-space matrix is never held whole. A
+/// context network, if the model has one, then decides from the predictions around each point. The
+/// result is the same for any number of threads and any order of the points.
 Classification classify(const PreparedCloud& cloud, const EdgeModel& model,
                         const Progress* progress = nullptr);
 
-/// The same for a cloud that has been described as the model wants it. Throws Error(kModelMismatch)
-/// if the rows are not of the model's size, or the positions not the cloud's.
+/// The same for a cloud described as the model requires. Throws Error(kModelMismatch) if the rows
+/// are not of the model's size, or the positions not those of the cloud.
 Classification classify(const DescribedCloud& cloud, std::span<const Vec3> positions,
                         const EdgeModel& model, const Progress* progress = nullptr);
 

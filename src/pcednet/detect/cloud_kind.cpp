@@ -35,8 +35,8 @@ bool take_word(std::string_view word, CloudKind& kind) {
   return read.ec == std::errc() && read.ptr == end && kind.below > 0;
 }
 
-/// The `wanted` points nearest to that of place `i` of the curve among those around it there,
-/// without copies; fewer if there are not so many.
+/// The `wanted` points nearest to that of place `i` among those around it on the curve, without
+/// copies; fewer if there are not enough.
 std::vector<std::uint32_t> near_on_curve(std::span<const Vec3> positions,
                                          std::span<const std::uint32_t> curve, std::size_t i,
                                          std::size_t wanted) {
@@ -59,9 +59,9 @@ std::vector<std::uint32_t> near_on_curve(std::span<const Vec3> positions,
   return near;
 }
 
-/// Whether the normals are such as would be estimated: those of three points in four turn from them
-/// by less than 5 degrees. Beside edges, those that a cloud had before it was thinned, and those
-/// of a surface, turn by 20 and more.
+/// Whether the normals agree with estimated ones: within 5 degrees at three points in four. Beside
+/// edges, normals of the true surface, or from before the cloud was thinned, differ by 20 degrees
+/// and more.
 bool are_as_estimated(const PreparedCloud& cloud) {
   const double least_cosine = std::cos(5.0 / 180.0 * std::numbers::pi);
   const auto estimated = normals::estimate_normals(cloud.positions);
@@ -91,7 +91,7 @@ CloudFacts facts_of(const PreparedCloud& cloud, const gls::ScaleSpaceOptions& de
           i == 0 || cloud.positions[cloud.curve[i]] != cloud.positions[cloud.curve[i - 1]];
     }
   }
-  constexpr std::size_t kFew = 20000;  // more are left to the same networks in either case
+  constexpr std::size_t kFew = 20000;  // above, the same networks decide in either case
   if (!facts.estimated && facts.points < kFew) facts.estimated = are_as_estimated(cloud);
   return facts;
 }

@@ -17,23 +17,23 @@
 namespace pcednet::detect {
 namespace {
 
-constexpr double kReach = 1.2;    // the weight falls to nothing at so many r^2
-constexpr double kLittle = 1e-3;  // added to sums of probabilities, that they can be divided by
-constexpr double kSurest = 1e-6;  // probabilities nearer to 0 or 1 say no more
+constexpr double kReach = 1.2;          // the weight is zero at r^2 times this
+constexpr double kLittle = 1e-3;        // added to sums of probabilities before dividing by them
+constexpr double kSurest = 1e-6;        // probabilities nearer to 0 or 1 are clamped
 constexpr std::size_t kPart = 1 << 15;  // points of a task
 
-/// Sums over the nearest points, of which every size of neighbourhood takes some more. y is a
-/// position as seen from the point, d its square.
+/// Sums over the nearest points, extended from each size of neighbourhood to the next. y is a
+/// position relative to the point, d its squared length.
 struct Sums {
   double count = 0, d = 0, most = 0;
-  /// Of p, p y and the lower half of p y y^T.
+  /// Sums of p, p y and the lower half of p y y^T.
   struct Moments {
     double p = 0, x = 0, y = 0, z = 0, xx = 0, yx = 0, zx = 0, yy = 0, zy = 0, zz = 0;
   };
-  Moments plain, by_d;  ///< as they are, and times d
+  Moments plain, by_d;  ///< plain, and times d
 };
 
-/// Adds `near`, as seen from the point at `place`.
+/// Adds `near`, relative to the point at `place`.
 PCEDNET_VECTOR_CLONES
 void add_nearest(std::span<const spatial::Neighbour> near, const Vec3* positions,
                  const std::array<float, 2>* probabilities, std::size_t kind, std::size_t place,
@@ -75,7 +75,7 @@ Mat3 matrix_of(const Sums::Moments& m) {
   return matrix;
 }
 
-/// What the features of one size and kind are made of, weighted, in units of r.
+/// The quantities behind the features of one size and kind, weighted, in units of r.
 struct Surroundings {
   double share = 0, most = 0;  ///< S w p / S w, max p
   Vec3 centre = Vec3::Zero();

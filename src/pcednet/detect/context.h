@@ -13,17 +13,17 @@
 
 namespace pcednet::detect {
 
-/// How many of the nearest points the context of a point is made of, size by size.
+/// The numbers of nearest points that form the context of a point, size by size.
 constexpr std::array<int, 4> kContextSizes = {4, 8, 16, 32};
 
-/// The shape of the second network of a model with so many classes.
+/// The shape of the context network of a model with `classes` classes.
 nn::Architecture context_architecture(int classes);
 
 /// Numbers per size and kind of edge, see ContextMatrix.
 constexpr int kContextFeatures = 8;
 
-/// The points of a cloud that have a class, for ContextMatrix: what does not depend on what a
-/// network found, so that it is made once for many networks.
+/// The points of a cloud that have a class, for ContextMatrix. Independent of a network's
+/// predictions, and so made once for many networks.
 class ContextPlaces {
  public:
   /// Points that `found` leaves unlabelled have no place. `curve` is the spatial::curve_order() of
@@ -31,8 +31,8 @@ class ContextPlaces {
   ContextPlaces(std::span<const Vec3> positions, std::span<const std::uint32_t> curve,
                 const Classification& found);
 
-  /// The points by place, along the curve. Among points at one position the surer ones come first,
-  /// whatever their numbers, so that it is the same for any numbering which of them are nearest.
+  /// The points by place, along the curve. Among points at one position the more probable edges
+  /// come first, so that the choice of the nearest does not depend on the numbering.
   std::vector<std::uint32_t> order(const Classification& found) const;
 
   std::span<const Vec3> positions() const { return positions_; }  ///< by place
@@ -41,33 +41,34 @@ class ContextPlaces {
  private:
   std::vector<std::uint32_t> order_;
   std::vector<std::array<std::uint32_t, 2>> copies_ =
-      {};  ///< first and last of those at a position
+      {};  ///< first and last of the points at one position
   std::vector<Vec3> positions_;
   std::optional<spatial::NeighbourSearch> search_ = {};
 };
 
-/// What a network found around each point, for a second network to decide with: edges are lines and
+/// A network's predictions around each point, the input of the context network: edges are lines and
 /// bands, which the description of one point does not show.
 ///
-/// Like the scale-space matrix it is a row per point of sizes x features, smallest size first. The
-/// kinds of edge are sharp-edge and, with three classes, any edge; for each, with p_j its
-/// probability at the k nearest points, y_j where they are as seen from the point, r the distance
-/// of the last, w_j = 1 - |y_j|^2 / (1.2 r^2), C the covariance of the y_j / r weighted with w_j
-/// p_j, c their mean and l1 >= l2 >= l3 its eigenvalues, the features are
+/// Like the scale-space matrix, it has a row per point of sizes x features, smallest size first.
+/// The kinds of edge are sharp-edge and, with three classes, any edge. For each kind, let p_j be
+/// its probability at the k nearest points, y_j their positions relative to the point, r the
+/// distance of the last, w_j = 1 - |y_j|^2 / (1.2 r^2), c and C the mean and covariance of the y_j
+/// / r with weights w_j p_j, and l1 >= l2 >= l3 the eigenvalues of C. The features are
 ///
 ///     log(p / (1 - p)) of the point itself    S w p / S w    max p    |c|    sqrt(l1 + l2 + l3)
 ///     distance of the point from the line through c along C's first axis    sqrt(l1)
 ///     sqrt(l2 / l1)
 ///
-/// None depends on the cloud's units, place or orientation.
+/// p is clamped to [1e-6, 1 - 1e-6] in the log-odds; the divisor S w p of c and C gains 1e-3, l1 in
+/// the last feature gains 1e-6. None depends on the cloud's units, place or orientation.
 class ContextMatrix {
  public:
   /// `found` has a class for the points of `places`, which must outlive this.
   ContextMatrix(const ContextPlaces& places, const Classification& found, int classes,
                 float least_edge = kLeastEdge);
 
-  /// The points to describe, of a probability of an edge of `least_edge` or more and of no own
-  /// class, in an order that is free of their numbering and kind to the caches.
+  /// The points to describe: those with an edge probability of at least `least_edge` and no own
+  /// class, in a cache-friendly order that does not depend on their numbering.
   std::span<const std::uint32_t> points() const { return points_; }
 
   /// Numbers per row.
@@ -76,7 +77,7 @@ class ContextMatrix {
     return static_cast<std::size_t>(kContextFeatures) * static_cast<std::size_t>(kinds_);
   }
 
-  /// Describes the points points()[begin] to points()[end]: rows one after the other.
+  /// Describes the points points()[begin] to points()[end] (exclusive), one row each.
   void describe(std::size_t begin, std::size_t end, std::span<float> rows) const;
 
  private:
@@ -89,15 +90,15 @@ class ContextMatrix {
   std::vector<std::uint32_t> points_, places_;       ///< to describe, and their places
 };
 
-/// Lets the second network decide, in place of what was found. `classes` are the edge_outputs() of
-/// its model.
+/// Replaces the predictions in `result` by those of the context network. `classes` are the
+/// edge_outputs() of its model.
 void apply_context(const nn::Model& network, const std::vector<std::uint8_t>& classes,
                    const ContextMatrix& matrix, Classification& result,
                    const Progress* progress = nullptr);
 
-/// The same with the model's context network and the matrix of what was found. `positions` are
-/// those that were classified, `curve` their spatial::curve_order(). The result does not depend on
-/// threads or on the order of the points.
+/// The same with the model's context network and the matrix of the predictions in `result`.
+/// `positions` are those that were classified, `curve` their spatial::curve_order(). The result
+/// does not depend on threads or on the order of the points.
 void apply_context(const EdgeModel& model, std::span<const Vec3> positions,
                    std::span<const std::uint32_t> curve, Classification& result,
                    const Progress* progress = nullptr);

@@ -16,7 +16,8 @@ constexpr std::size_t kNearest = 24;  ///< nearest others among which faces are 
 constexpr std::size_t kPointsAtATime = 512;
 constexpr int kOtherFaces = 2;
 
-/// Of a face's plane, over the distance of its last neighbour: the first that finds a plane counts.
+/// Tolerances for a face's plane, relative to the distance of its last neighbour: the first that
+/// finds a plane counts.
 constexpr std::array<double, 4> kTolerances = {0.003, 0.01, 0.03, 0.08};
 
 constexpr double kLeastSine = 0.438;  ///< between the normals of two faces: 26 degrees
@@ -24,7 +25,7 @@ constexpr double kLeastSine = 0.438;  ///< between the normals of two faces: 26 
 // In the unit.
 constexpr double kOnOwnFace = 0.04;    ///< of the points of the point's own face from its plane
 constexpr double kOnOtherFace = 0.08;  ///< of those of another
-constexpr double kHalfWeight = 0.016;  ///< a point so far from another face counts half
+constexpr double kHalfWeight = 0.016;  ///< a point at this distance from another face counts half
 constexpr double kCreaseReach = 2.5;   ///< of the points that count, from the crease
 constexpr double kGap = 1.6;           ///< of the nearest of them
 constexpr double kFarthest = 2.5;      ///< crease
@@ -34,21 +35,21 @@ constexpr int kLeastVertices = 2;
 
 constexpr float kNoCrease = std::numeric_limits<float>::infinity();
 
-/// The nearest others of a point, as seen from it, in the unit, that are free: on no face found.
+/// The nearest others of a point that are free (on no face found), relative to it, in the unit.
 struct NearFaces {
   std::array<Vec3, kNearest> offsets, normals;
   std::array<bool, kNearest> free;
   std::size_t count = 0;
 };
 
-/// Where another face meets the point's own.
+/// The line where another face meets the point's own.
 struct CreaseBeside {
   double distance = 0.0;
   double points = 0.0;  ///< that the other face explains
   std::size_t face = kNearest;
 };
 
-/// The crease with the plane through neighbour `face`; of no points if there is none.
+/// The crease with the plane through neighbour `face`; without points if there is none.
 CreaseBeside crease_with(std::size_t face, const Vec3& own, const NearFaces& around) {
   const Vec3& normal = around.normals[face];
   const double cosine = normal.dot(own);
@@ -68,7 +69,7 @@ CreaseBeside crease_with(std::size_t face, const Vec3& own, const NearFaces& aro
   return sq_gap < kGap * kGap && crease.points >= kLeastPoints ? crease : CreaseBeside{};
 }
 
-/// Whether the crease has vertices of a mesh on it: of points drawn at random hardly any are.
+/// Whether the crease has vertices of a mesh on it: hardly any randomly sampled points are.
 bool has_vertices(const CreaseBeside& crease, const Vec3& own, const NearFaces& around) {
   const Vec3 &normal = around.normals[crease.face], place = around.offsets[crease.face];
   int vertices = crease.distance < kOnCrease ? 1 : 0;
@@ -128,7 +129,7 @@ class FacePlaces {
     return rows;
   }
 
-  /// Of the face that each of `places` is on; zero where none was found, and elsewhere.
+  /// The normal of the face at each of `places`; zero where none was found, and elsewhere.
   std::vector<Vec3> face_normals(std::span<const std::uint32_t> places) const {
     std::vector<Vec3> normals(size(), Vec3::Zero());
     const std::size_t others = available(normals::kExactNeighbours);

@@ -11,11 +11,11 @@
 namespace pcednet::detect {
 namespace {
 
-// Of log-odds, see the header.
+// For log-odds, see the header.
 constexpr double kOfNetworks = 0.55, kIfNear = 1.0, kIfFar = -2.15;
 constexpr double kSurestKind = 1e-4;  ///< probability that the networks' log-odds are cut at
 
-// Of distances.
+// For distances.
 constexpr double kBetween = 0.48, kChange = 0.02;
 
 /// The share of sharp-edge in the probability of an edge.

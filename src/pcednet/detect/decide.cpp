@@ -31,7 +31,7 @@ void decide_point(std::span<const float> probabilities, const std::vector<std::u
   found.classes[point] = !edge ? kNonEdge : sharp >= smooth ? kSharpEdge : kSmoothEdge;
 }
 
-/// The probability of the class that was chosen among those of edges.
+/// The probability of the chosen edge class.
 float p_of_edge_class(const Classification& found, std::size_t point) {
   const float sharp = found.p_sharp[point], smooth = found.p_smooth[point];
   const std::uint8_t c = found.classes[point];

@@ -11,17 +11,17 @@
 namespace pcednet::detect {
 
 /// Points described at a time: enough to keep every thread busy, few enough for their rows to stay
-/// in the cache.
+/// in cache.
 constexpr std::size_t kBlock = 16 * 1024;
 
-/// Numbers that describe a point: scales x columns.
+/// The number of features per point: scales x columns.
 std::size_t row_width(const gls::ScaleSpaceOptions& descriptor);
 
 /// Describes `points` into `rows`, row_width() numbers each; scales without a fit are 0.
 void describe(const gls::ScaleSpace& space, std::span<const std::uint32_t> points,
               std::span<float> rows, const Progress* progress = nullptr);
 
-/// The scale-space matrix of a cloud as a whole, for several networks to classify.
+/// The whole scale-space matrix of a cloud, for classification by several networks.
 struct DescribedCloud {
   std::size_t points = 0;                 ///< of the cloud
   std::vector<std::uint32_t> order = {};  ///< the point that each row describes
@@ -30,7 +30,7 @@ struct DescribedCloud {
   CloudFacts facts = {};                  ///< of the cloud
 };
 
-/// Describes every point that has a position.
+/// Describes every point with a finite position.
 DescribedCloud describe(const PreparedCloud& cloud, const gls::ScaleSpaceOptions& descriptor,
                         const Progress* progress = nullptr);
 

@@ -144,7 +144,7 @@ void put_descriptor(const gls::ScaleSpaceOptions& descriptor,
   }
 }
 
-/// Takes what is named with `prefix` before it out of `all`, and the prefix off its names.
+/// Moves entries whose names have `prefix` out of `all`, and strips the prefix.
 template <typename Value>
 std::map<std::string, Value> take_part(std::map<std::string, Value>& all, std::string_view prefix) {
   std::map<std::string, Value> part;
@@ -163,7 +163,7 @@ nn::Safetensors take_part(nn::Safetensors& all, std::string_view prefix) {
   return {take_part(all.tensors, prefix), take_part(all.metadata, prefix)};
 }
 
-/// Puts `part` into `all`, with `prefix` before the names.
+/// Adds `part` to `all`, with `prefix` before the names.
 void add_part(const nn::Safetensors& part, std::string_view prefix, nn::Safetensors& all) {
   for (const auto& [name, value] : part.tensors) all.tensors[std::string(prefix) + name] = value;
   for (const auto& [name, value] : part.metadata) all.metadata[std::string(prefix) + name] = value;
@@ -211,7 +211,7 @@ Expert read_expert(const std::filesystem::path& path, nn::Safetensors content,
   return expert;
 }
 
-/// The experts of a file, as they are in it.
+/// The experts of a file, in stored form.
 struct StoredExperts {
   const char* format = nullptr;  ///< of a file with them; nullptr if there are none
   bool is_sparse = false;        ///< a single one, for clouds of few points
@@ -231,7 +231,8 @@ StoredExperts take_experts(nn::Safetensors& content) {
   }
 }
 
-/// One expert for clouds of few points of any kind makes a file that earlier versions read.
+/// A single expert for clouds of few points of any kind gives a file that earlier versions can
+/// read.
 StoredExperts to_store(const std::vector<Expert>& experts) {
   StoredExperts stored;
   if (experts.empty()) return stored;
@@ -282,9 +283,9 @@ void drop_context(EdgeModel& model) {
 void check_fits(const EdgeModel& expert, const gls::ScaleSpaceOptions& descriptor,
                 std::size_t classes) {
   if (expert.descriptor == descriptor && expert.classes.size() == classes) return;
-  throw Error(ErrorKind::kModelMismatch,
-              fmt::format("{}: its networks want another description of points, or other classes",
-                          expert.name));
+  throw Error(
+      ErrorKind::kModelMismatch,
+      fmt::format("{}: its networks need another descriptor, or other classes", expert.name));
 }
 
 void join_expert(EdgeModel& model, const EdgeModel& expert, const CloudKind& kind) {

@@ -15,65 +15,66 @@
 
 namespace pcednet::detect {
 
-/// A point that is so sure to be no edge stays so: most points do, which saves most of the time.
+/// Points with a lower edge probability stay non-edge without the context network: most points,
+/// which saves most of its time.
 inline constexpr float kLeastEdge = 0.01f;
 
-/// What decides for clouds of one kind in place of a model's own networks, on the same description
-/// and for the same classes.
+/// The networks that replace a model's own for clouds of one kind, with the same description and
+/// classes.
 struct Expert {
   CloudKind kind = {};
   nn::Model network = {};
   std::optional<nn::Model> context = {};
 };
 
-/// A network with the description of points that it was trained on: all that is needed to classify
-/// a cloud. Where a scale has no fit its features are 0, in training and in use.
+/// A network and the descriptor it was trained with: all that is needed to classify a cloud.
+/// Features of a scale without a fit are 0, in training and in use.
 struct EdgeModel {
   std::string name;
   std::uint64_t seed = 0;
   gls::ScaleSpaceOptions descriptor;  ///< s_min and s_max are each cloud's own
-  /// The class of every output, ascending numbers of `table`. Of edge classes alone {0, 1, 2} or
+  /// The class of every output, ascending numbers of `table`. With edge classes only, {0, 1, 2} or
   /// {0, 2}, an EdgeClass each.
   std::vector<std::uint8_t> classes;
-  nn::Model network;                      ///< its metadata holds the summary of the training
-  std::optional<nn::Model> context = {};  ///< decides in the end, on a ContextMatrix
-  ClassTable table = edge_classes();      ///< what `classes` are numbers of
-  /// The context network decides on points of this probability of an edge or more.
+  nn::Model network;                      ///< its metadata summarises the training
+  std::optional<nn::Model> context = {};  ///< decides last, from a ContextMatrix
+  ClassTable table = edge_classes();      ///< indexed by `classes`
+  /// The context network decides on points with at least this edge probability.
   float least_edge = kLeastEdge;
-  std::vector<Expert> experts = {};  ///< the first whose kind a cloud is of decides
+  std::vector<Expert> experts = {};  ///< the first whose kind matches the cloud decides
 };
 
-/// Those of `classes` that the context network decides on: the edge classes, none of a table
-/// without them.
+/// Those of `classes` that the context network decides on: the edge classes; none if the table has
+/// no edge classes.
 std::vector<std::uint8_t> edge_outputs(const EdgeModel& model);
 
-/// The expert that decides for such a cloud, or nullptr: the model's own networks do.
+/// The expert that decides for such a cloud; nullptr if the model's own networks do.
 const Expert* expert_for(const EdgeModel& model, const CloudFacts& facts);
 
-/// The model with those networks alone that decide for such a cloud. classify() does this by
-/// itself; it is for those who look at or go on training the networks.
+/// The model reduced to the networks that decide for such a cloud. classify() does this by itself;
+/// call it to inspect the networks or continue their training.
 EdgeModel suited_to(EdgeModel model, const CloudFacts& facts);
 
-/// Leaves the context networks out: faster, less accurate.
+/// Removes the context networks: faster, less accurate.
 void drop_context(EdgeModel& model);
 
-/// Throws Error(kModelMismatch) unless the networks of `expert` are for that description of points
-/// and that many classes.
+/// Throws Error(kModelMismatch) unless the networks of `expert` use `descriptor` and have that many
+/// classes.
 void check_fits(const EdgeModel& expert, const gls::ScaleSpaceOptions& descriptor,
                 std::size_t classes);
 
-/// Lets the networks of `expert` decide for clouds of a kind, unless an earlier one does. Throws
-/// what check_fits() throws.
+/// Adds `expert` for clouds of that kind; earlier experts take precedence. Throws what check_fits()
+/// throws.
 void join_expert(EdgeModel& model, const EdgeModel& expert, const CloudKind& kind);
 
 /// Reads a model file. Throws Error(kUnreadable) if there is none, Error(kModelMismatch), naming
-/// file and place, if it is damaged, no model of edges, or for another descriptor than this
+/// file and place, if it is damaged, not an edge model, or for a descriptor other than this
 /// version's.
 EdgeModel load_model(const std::filesystem::path& path);
 
 /// Writes a safetensors file; the same model gives the same bytes. The context network's tensors
-/// and metadata are named as the network's own, with "context." before them; those of the experts
-/// have "expert1.", "expert2." and so on before theirs, and "kind" among their metadata.
+/// and metadata have the network's names with the prefix "context."; those of the experts have the
+/// prefixes "expert1.", "expert2." and so on, and "kind" among their metadata.
 void save_model(const std::filesystem::path& path, const EdgeModel& model, Overwrite overwrite);
 
 }  // namespace pcednet::detect

@@ -9,13 +9,13 @@
 
 namespace pcednet::detect {
 
-/// Whether networks learn from points of that label.
+/// Whether networks learn from points with that label.
 inline bool is_learnt_from(std::uint8_t label, const ClassTable& table) {
   return label < table.size();
 }
 
-/// The output of the model's network that stands for `label`. Boundary counts as non-edge, with
-/// two edge classes smooth-edge as well.
+/// The output of the model's network for `label`. Boundary counts as non-edge; with two edge
+/// classes, so does smooth-edge.
 inline std::uint8_t output_of(std::uint8_t label, const EdgeModel& model) {
   if (!is_learnt_from(label, model.table)) return nn::kIgnoredLabel;
   const auto& classes = model.classes;

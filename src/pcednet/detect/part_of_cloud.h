@@ -8,11 +8,11 @@
 
 namespace pcednet::detect {
 
-/// A part of a larger cloud whose points are to get the labels that they have there.
+/// A part of a larger cloud, for points to get the same labels as in the whole.
 struct PartOfCloud {
   gls::PyramidPlan pyramid = {};          ///< of the whole
   std::size_t points = 0;                 ///< of the whole
-  std::vector<std::uint8_t> wanted = {};  ///< 1: gets a label, 0: is there for the others only
+  std::vector<std::uint8_t> wanted = {};  ///< 1: gets a label, 0: only a neighbour for others
 };
 
 }  // namespace pcednet::detect

@@ -16,7 +16,7 @@
 namespace pcednet::detect {
 namespace {
 
-/// One missing normal in so many is estimated; fewer are hardly missed.
+/// Missing normals are estimated from one in this many; fewer do no harm.
 constexpr std::size_t kShareToEstimate = 100;
 
 // When signs count as mixed, see the header. Two patches of n points oppose in some 0.4 to 1.4 /
@@ -28,7 +28,7 @@ constexpr double kWalls = 0.3;  // of one_sidedness()
 constexpr std::size_t kMended = 4;
 constexpr std::size_t kShareToOrient = 50;
 
-/// A cloud, as far as it is looked at.
+/// The parts of a cloud that are used.
 struct Points {
   std::span<const Vec3> positions;
   std::span<const Vec3> normals;                ///< may be empty
@@ -53,7 +53,7 @@ Oriented complete_and_orient(const Points& cloud, const PreparedCloud& prepared,
                                      .count_turned = cloud.has_normals(),
                                      .curve = prepared.curve,
                                      .exact_planes = prepared.decision.exact_planes};
-  // Where every point has a scanner the costly search for consistent signs is not needed.
+  // If every point has a scanner, the costly search for consistent signs is unnecessary.
   if (!scanners.empty() && std::all_of(scanners.begin(), scanners.end(), is_known)) {
     options.viewpoint = scanners.front();
   }
@@ -102,7 +102,8 @@ void estimate(PreparedCloud& prepared, const Points& cloud, const std::string& w
   use(std::move(oriented), note, prepared);
 }
 
-/// The points that have another sign than before, or than most of their part before.
+/// The number of points with another sign than before, relative to the majority of their part or,
+/// if all face a scanner, of the cloud.
 std::size_t count_turned(const Points& cloud, const Oriented& oriented) {
   if (oriented.faced < cloud.size()) return oriented.found.orientation.turned;
   std::size_t turned = 0;

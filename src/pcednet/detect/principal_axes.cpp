@@ -46,7 +46,7 @@ void make_tridiagonal(const SymmetricMatrices& m, Tridiagonals& __restrict t) {
   }
 }
 
-/// 0 if it is as good as nothing beside the diagonal entries a and b.
+/// 0 if it is negligible beside the diagonal entries a and b.
 [[gnu::always_inline]] inline double without_dust(double e, double a, double b) {
   const double scaled = kInversePrecision * e;
   const double rest = scaled * scaled <= std::fabs(a) + std::fabs(b) ? 0.0 : e;
@@ -141,13 +141,13 @@ void step(Tridiagonals& __restrict t) {
   }
 }
 
-/// Eigen's selection sort, of which the smallest value needs no place.
+/// Eigen's selection sort, without the position of the smallest value.
 PCEDNET_VECTOR_CLONES
 void take_largest(const Tridiagonals& t, PrincipalAxes& __restrict axes) {
   for (std::size_t i = 0; i < kLanes; ++i) {
     const double d0 = t.d0[i], d1 = t.d1[i], d2 = t.d2[i];
     const double smaller = d1 < d0 ? d1 : d0, greater = d1 < d0 ? d0 : d1;
-    // What stands in the second and third place once the smallest is in the first.
+    // The values in second and third place once the smallest is first.
     const double second = d2 < smaller ? d1 : greater, third = d2 < smaller ? d0 : d2;
     axes.largest[i] = (third < second ? second : third) * t.scale[i];
     axes.middle[i] = (third < second ? third : second) * t.scale[i];

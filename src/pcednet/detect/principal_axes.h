@@ -6,7 +6,7 @@
 
 namespace pcednet::detect {
 
-/// Some symmetric 3x3 matrices side by side. All entries must be finite.
+/// A fixed number of symmetric 3x3 matrices side by side. All entries must be finite.
 struct SymmetricMatrices {
   static constexpr std::size_t kLanes = 8;
   alignas(64) double xx[kLanes], yx[kLanes], zx[kLanes], yy[kLanes], zy[kLanes], zz[kLanes];
@@ -23,7 +23,7 @@ struct PrincipalAxes {
   double axis[3][SymmetricMatrices::kLanes];
 };
 
-/// Finds them by the QR algorithm, all at once; the steps, and so the bytes, are those of Eigen's
+/// Computes them by the QR algorithm, all at once, with the steps, and hence the bytes, of Eigen's
 /// SelfAdjointEigenSolver::compute().
 void find_principal_axes(const SymmetricMatrices& matrices, PrincipalAxes& axes);
 

@@ -22,7 +22,7 @@ std::string edge_class_comment() {
   return comment + fmt::format(" {} unlabelled", static_cast<int>(kUnlabelled));
 }
 
-/// Comments of an earlier classification give way to those of this one.
+/// Replaces comments of an earlier classification.
 void replace_comments(PointCloud& cloud, const EdgeModel& model, const Classification& result) {
   std::erase_if(cloud.comments,
                 [](const std::string& comment) { return comment.starts_with("pcednet "); });
@@ -40,7 +40,7 @@ void replace_comments(PointCloud& cloud, const EdgeModel& model, const Classific
   }
 }
 
-/// Puts what was found under its names, and takes away that of other classes.
+/// Adds the columns of the result, and removes those of other classes.
 void set_columns(PointCloud& cloud, const Classification& result, const ClassTable& table) {
   const bool edges = has_edges(table), own = has_own_classes(table);
   for (const char* stale :

@@ -10,26 +10,25 @@ struct ResultOptions {
 
 struct KeptInput {
   bool labels = false;   ///< as scalar_input_label
-  bool colours = false;  ///< in place of those of the classes
+  bool colours = false;  ///< instead of the class colours
 };
 
 /// Names own classes in the cloud's comments, which classes_of() reads.
 void add_class_comments(PointCloud& cloud, const ClassTable& table);
 
-/// Puts a classification into the cloud it was made of, under the names that viewers understand:
+/// Adds a classification to its cloud, under names that viewers understand:
 ///
 ///     quality             p_sharp + p_smooth, for MeshLab
 ///     scalar_edge_class   the class, for CloudCompare
 ///     scalar_p_sharp, scalar_p_smooth
 ///     label               the class again, for CGAL and others
 ///
-/// With own classes quality and scalar_p_class are the probability of the class; where none of the
-/// classes are edges, scalar_class takes the place of scalar_edge_class and of p_sharp and
-/// p_smooth.
-///
-/// with the colours of the paper where the cloud has none, normals that were estimated, and
+/// Adds the colours of the paper where the cloud has none, normals that were estimated, and
 /// comments on version and model. Labels that the cloud had move to scalar_input_label. Returns
-/// what of the cloud's own was kept so.
+/// which of the cloud's own labels and colours were kept.
+///
+/// With own classes, quality and scalar_p_class are the probability of the class; if no class is an
+/// edge class, scalar_class replaces scalar_edge_class, scalar_p_sharp and scalar_p_smooth.
 KeptInput add_result(PointCloud& cloud, const PreparedCloud& prepared, const Classification& result,
                      const EdgeModel& model, const ResultOptions& options = {});
 

@@ -33,7 +33,7 @@ void check_labels(const TrainingCloud& cloud, const ClassTable& table) {
               fmt::format("{}: no labelled point ({})", cloud.name, classes));
 }
 
-/// The labelled points in the engine's order, which does not depend on how they are numbered.
+/// The labelled points in the engine's order, which does not depend on their numbering.
 std::vector<std::uint32_t> labelled_points(const TrainingCloud& cloud,
                                            std::span<const std::uint32_t> order,
                                            const ClassTable& table) {
@@ -43,7 +43,7 @@ std::vector<std::uint32_t> labelled_points(const TrainingCloud& cloud,
   return points;
 }
 
-/// The classes of a network's outputs; of own classes those that points have.
+/// The classes of a network's outputs; only occurring ones of own classes.
 std::vector<std::uint8_t> classes_of(const nn::Architecture& architecture, const ClassTable& table,
                                      std::span<const std::uint8_t> labels) {
   if (has_own_classes(table)) {

@@ -14,30 +14,30 @@ namespace pcednet::detect {
 struct TrainingCloud {
   std::string name;
   PreparedCloud cloud;
-  std::span<const std::uint8_t> labels;  ///< of the options' table per point; kUnlabelled is left
+  std::span<const std::uint8_t> labels;  ///< per point, of the options' table; kUnlabelled is left
                                          ///< out, kBoundary counts as kNonEdge
 };
 
 struct TrainOptions {
   gls::ScaleSpaceOptions descriptor;
   nn::Architecture architecture;  ///< scales and features are set from `descriptor`
-  /// What labels are numbers of. With own classes the network has an output for each that points
-  /// have, whatever the architecture says.
+  /// The classes that labels index. With own classes the network has an output for each class that
+  /// occurs, regardless of the architecture.
   ClassTable table = edge_classes();
   nn::TrainOptions training;  ///< sign rule and class names are set from the rest
   nn::Symmetry symmetry = nn::Symmetry::kAverage;  ///< flipped normals change no answer
-  int teachers = 0;      ///< networks to train first and to learn from, see nn::distil()
+  int teachers = 0;      ///< networks to train first and distil from, see nn::distil()
   bool context = false;  ///< train a context network too, where clouds are given
 };
 
-/// A scale-space matrix row and a label per labelled point of the clouds, cloud after cloud, each
-/// in an order that does not depend on how its points are numbered.
+/// A scale-space matrix row and a label per labelled point of the clouds, cloud by cloud, each in
+/// an order independent of the numbering of its points.
 struct Samples {
   gls::ScaleSpaceOptions descriptor = {};
   std::vector<float> values = {};         ///< samples x scales x features
-  std::vector<std::uint8_t> labels = {};  ///< of the table that they are learnt under
-  std::size_t clouds = 0, points = 0;     ///< that they are of
-  std::vector<std::string> notes = {};    ///< what the user should be told, one sentence each
+  std::vector<std::uint8_t> labels = {};  ///< of the options' table
+  std::size_t clouds = 0, points = 0;     ///< the clouds, and all their points
+  std::vector<std::string> notes = {};    ///< for the user, one sentence each
 };
 
 /// Describes every labelled point.
@@ -46,24 +46,25 @@ Samples make_samples(std::span<const TrainingCloud> clouds,
                      const gls::ScaleSpaceOptions& descriptor, const Progress* progress = nullptr,
                      const ClassTable& table = edge_classes());
 
-/// Describes the clouds and trains a network on them. `name` goes into the model. The same clouds,
-/// options and seed give the same bytes, whatever the number of threads. With two classes,
-/// smooth-edge counts as non-edge. A cancel during the training proper returns the best model so
-/// far; see TrainedModel::cancelled.
 struct TrainedModel {
   EdgeModel model;
   bool cancelled = false;
-  int epochs = 0;                       ///< completed; a model of none is not worth keeping
-  std::vector<std::string> notes = {};  ///< what the user should be told, one sentence each
+  int epochs = 0;  ///< completed; after 0 epochs the model is not worth keeping
+  std::vector<std::string> notes = {};  ///< for the user, one sentence each
   std::string no_context = {};          ///< why there is no context network though one was wanted
 };
+
+/// Describes the clouds and trains a network on them. `name` goes into the model. The same clouds,
+/// options and seed give the same bytes for any number of threads. With two classes, smooth-edge
+/// counts as non-edge. A cancel during the training proper returns the best model so far; see
+/// TrainedModel::cancelled.
 TrainedModel train(const std::string& name, std::span<const TrainingCloud> clouds,
                    const TrainOptions& options,
                    const std::function<void(const nn::EpochReport&)>& on_epoch = {},
                    const Progress* progress = nullptr);
 
-/// The same with the descriptions made before, for training several networks on them; their
-/// descriptor takes the place of that in `options`.
+/// The same from descriptions made before, to train several networks on them; their descriptor
+/// replaces that in `options`.
 TrainedModel train(const std::string& name, const Samples& samples, const TrainOptions& options,
                    const std::function<void(const nn::EpochReport&)>& on_epoch = {},
                    const Progress* progress = nullptr);

@@ -9,7 +9,7 @@
 namespace pcednet::detect {
 namespace {
 
-/// Rows of the context matrices of all clouds, with the outputs wanted.
+/// Rows of the context matrices of all clouds, with their target outputs.
 struct ContextSamples {
   std::vector<float> values = {};
   std::vector<std::uint8_t> outputs = {};
@@ -70,7 +70,7 @@ void add_context(TrainedModel& trained, std::span<const TrainingCloud> clouds,
     trained.cancelled = context.cancelled;
     if (context.best_epoch > 0) trained.model.context = std::move(context.best);
   } catch (const Error& error) {
-    // The network itself is good.
+    // The first network itself is usable.
     if (error.kind() == ErrorKind::kCancelled) {
       trained.cancelled = true;
     } else if (error.kind() == ErrorKind::kInsufficient) {

@@ -7,11 +7,11 @@
 
 namespace pcednet::detect {
 
-/// Trains a context network for the model, unless its own training was cancelled: classifies the
-/// clouds with the model and learns from what was found around their labelled points. `options` as
-/// for the model's own network; its architecture and symmetry are not used. After a cancel the
-/// model has the best context network so far, or none; TrainedModel::no_context says why there can
-/// be none.
+/// Trains a context network for the model, unless the model's own training was cancelled:
+/// classifies the clouds with the model and learns from the predictions around their labelled
+/// points. `options` as for the model's own network; its architecture and symmetry are not used.
+/// After a cancel the model has the best context network so far, or none; TrainedModel::no_context
+/// gives the reason if none could be trained.
 void add_context(TrainedModel& trained, std::span<const TrainingCloud> clouds,
                  const TrainOptions& options,
                  const std::function<void(const nn::EpochReport&)>& on_epoch = {},

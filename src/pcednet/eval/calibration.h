@@ -13,10 +13,10 @@ namespace pcednet::eval {
 struct CalibrationBin {
   std::size_t points = 0;
   double sum_probability = 0.0;
-  std::size_t positive = 0;  ///< whose true class is positive
+  std::size_t positive = 0;  ///< with a positive true class
 };
 
-/// A reliability diagram: of the points with probability 0.8, eight in ten should be edges.
+/// A reliability diagram: eight in ten points with probability 0.8 should be edges.
 using Calibration = std::array<CalibrationBin, 10>;
 
 /// Adds the points of a cloud. `probabilities` are those of the positive classes; a point

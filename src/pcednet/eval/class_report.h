@@ -10,19 +10,19 @@
 
 namespace pcednet::eval {
 
-/// How a prediction with any classes does, summed over clouds: every class against all others.
+/// The confusion counts of every class against all others, for any classes, summed over clouds.
 struct ClassReport {
   ClassTable table = {};
   std::vector<ConfusionCounts> counts = {};  ///< by class
   std::size_t clouds = 0, points = 0, right = 0;
 };
 
-/// Adds a cloud, of a class per point in both. A point whose truth is no class of the table is left
-/// out. Throws Error(kInsufficient) if the sizes differ.
+/// Adds a cloud; both spans have a class per point. A point whose truth is not a class of the table
+/// is left out. Throws Error(kInsufficient) if the sizes differ.
 void add_cloud(std::span<const std::uint8_t> truth, std::span<const std::uint8_t> predicted,
                ClassReport& report);
 
-/// The mean of the scores over the classes that the truth has (macro average).
+/// The macro average of the scores, over the classes that occur in the truth.
 Scores mean_scores(const ClassReport& report);
 
 /// {"classes":[{"id","name","points","precision","recall","f1","iou"}],"mean":{...},"accuracy",

@@ -36,7 +36,7 @@ double mean(const std::vector<double>& values) {
   return sum / static_cast<double>(values.size());
 }
 
-/// A score of all clouds in one, NaN if none has it.
+/// A score over all clouds, NaN if none has it.
 LineScores over(const std::vector<NamedLineScores>& clouds,
                 double (*summary)(const std::vector<double>&)) {
   LineScores result;

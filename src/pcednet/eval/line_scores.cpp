@@ -124,7 +124,7 @@ Coverage coverage_of(const Samples& truth, std::size_t curve, const Samples& fou
   return coverage;
 }
 
-/// Counts the true curves that one line covers, and the lines that make up each.
+/// Counts the true curves that one line covers, and the lines that form each.
 void count_pieces(const Samples& found, const spatial::KdTree& tree, const Samples& truth,
                   LineScores& scores) {
   std::size_t whole = 0, touched = 0, pieces = 0;
@@ -194,7 +194,7 @@ double share_near(const std::vector<Vec3>& from, const std::vector<Vec3>& to) {
   return static_cast<double>(near) / static_cast<double>(from.size());
 }
 
-/// 1 if neither has corners, as of circles.
+/// 1 if neither has corners, as with circles.
 double corner_f1(const std::vector<Vec3>& found, const std::vector<Vec3>& truth) {
   if (found.empty() && truth.empty()) return 1.0;
   if (found.empty() || truth.empty()) return 0.0;

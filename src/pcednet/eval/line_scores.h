@@ -17,16 +17,16 @@ struct LineFrame {
   double scale = 1.0;
 };
 
-/// The mean of the cloud, and its largest coordinate from there. Ignores positions that are not
-/// finite. Throws Error(kInsufficient) if all others are at one place.
+/// Centre: the mean of the cloud; scale: the largest absolute coordinate about it. Ignores
+/// positions that are not finite. Throws Error(kInsufficient) if all finite ones coincide.
 LineFrame frame_of_cloud(std::span<const Vec3> positions);
 
-/// For want of a cloud: the centre of the curves' box and half its longest side. Throws
+/// Without a cloud: the centre of the curves' box and half its longest side. Throws
 /// Error(kInsufficient) if there are no curves.
 LineFrame frame_of_curves(std::span<const lines::Curve> curves);
 
-/// How well lines stand for true curves; see docs/lines.md. Lengths are those of the frame. What
-/// has no value without lines is NaN.
+/// How well lines match true curves; see docs/lines.md. Lengths are those of the frame. Values
+/// undefined without lines are NaN.
 struct LineScores {
   std::size_t lines = 0, true_curves = 0;
   double chamfer = 0.0;         ///< CD: mean squared distances both ways, added

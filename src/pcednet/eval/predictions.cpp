@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Files of classes alone come before point files.
+/// Files with classes only come before point files.
 std::vector<std::string_view> extensions_of_predictions() {
   std::vector<std::string_view> extensions = {".u8", ".txt", ".csv", ".lbl", ".seg", ".npy"};
   for (const formats::Format& format : formats::all_formats()) {
@@ -89,7 +89,7 @@ std::vector<std::uint8_t> nearest_to_edge_points(std::span<const Vec3> positions
   return classes;
 }
 
-/// The classes of a file that holds nothing else; none if it may hold points.
+/// The classes of a file with nothing else; none if it may hold points.
 std::optional<std::vector<std::uint8_t>> read_bare_classes(const fs::path& path,
                                                            std::size_t points) {
   const std::string extension = io::lower_case(path.extension().string());

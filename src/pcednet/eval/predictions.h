@@ -10,23 +10,23 @@
 
 namespace pcednet::eval {
 
-/// The file in `folder` with what another program found in the cloud `stem`: STEM, STEM_edges or
-/// STEM_output, with an extension that read_predictions() knows. Empty if there is none.
+/// The file in `folder` with another program's predictions for the cloud `stem`: STEM, STEM_edges
+/// or STEM_output, with an extension that read_predictions() knows. Empty if there is none.
 std::filesystem::path find_predictions(const std::filesystem::path& folder,
                                        const std::string& stem);
 
 struct Predictions {
-  std::vector<std::uint8_t> classes;  ///< of every position
-  std::string note;                   ///< how they were assigned; empty: one after the other
+  std::vector<std::uint8_t> classes;  ///< per position
+  std::string note;                   ///< how they were assigned; empty: in order
 };
 
 /// The classes of a cloud at `positions` from another program's file:
 /// - a class per point in the cloud's order: what formats::read_labels() reads;
-/// - .npy: numbers of shape (points) or (points, 1), or scores of shape (points, classes), of which
-///   the largest counts, the lower class among equal ones;
-/// - a point file of another number of points with labels, as of a method that resamples: every
-///   position gets the label of the nearest of its points, as in Himeur et al. 2021;
-/// - a point file without labels: points on edges alone; the position nearest to each is
+/// - .npy: classes of shape (points) or (points, 1), or scores of shape (points, classes), where
+///   the largest score wins, the lower class on ties;
+/// - a point file with labels and another number of points, as from a method that resamples: every
+///   position gets the label of its nearest point in the file, as in Himeur et al. 2021;
+/// - a point file without labels, with points on edges only: the position nearest to each is
 ///   sharp-edge.
 /// Throws what the readers throw, and Error(kInsufficient) where numbers do not fit.
 Predictions read_predictions(const std::filesystem::path& path, std::span<const Vec3> positions);

@@ -14,11 +14,11 @@ struct CloudScore {
   ConfusionCounts counts;
 };
 
-/// The median over the clouds of each score by itself (of an even number, the mean of the middle
-/// two). All zero without clouds.
+/// The median over the clouds of each score separately (the mean of the middle two for an even
+/// number). All zero without clouds.
 Scores median_scores(const std::vector<CloudScore>& clouds);
 
-/// The summed counts, whose scores are the pooled ones.
+/// The summed counts; their scores are the pooled scores.
 ConfusionCounts pooled_counts(const std::vector<CloudScore>& clouds);
 
 /// {"clouds":[{"name","points","tp",...,"iou"}],"median":{...},"pooled":{...}}, indented, with a

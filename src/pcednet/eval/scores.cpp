@@ -11,7 +11,7 @@
 namespace pcednet::eval {
 namespace {
 
-/// Counts points of which `is` says whether their class is positive.
+/// Counts points; `is` decides whether a class is positive.
 template <typename IsPositive>
 ConfusionCounts count_points(std::span<const std::uint8_t> truth,
                              std::span<const std::uint8_t> predicted, const IsPositive& is_one) {

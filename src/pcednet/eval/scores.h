@@ -25,8 +25,8 @@ enum class Positive {
 bool is_positive(std::uint8_t label, Positive positive);
 
 /// Compares the classes of every point; both spans have one class per point. A point whose truth is
-/// kUnlabelled is left out; a prediction that is no edge class counts as negative.
-/// Throws Error(kInsufficient) if the sizes differ.
+/// kUnlabelled is left out; a prediction other than an edge class counts as negative. Throws
+/// Error(kInsufficient) if the sizes differ.
 ConfusionCounts count_confusion(std::span<const std::uint8_t> truth,
                                 std::span<const std::uint8_t> predicted, Positive positive);
 

@@ -17,7 +17,7 @@
 
 namespace pcednet::formats {
 
-/// Distances between points, from at most 2000 of them drawn with a fixed seed.
+/// Distances between points, measured at no more than 2000 points drawn with a fixed seed.
 struct SampledSpacing {
   double mean = 0.0;    ///< to the ten nearest others
   double median = 0.0;  ///< of the distances to the nearest other
@@ -32,13 +32,13 @@ struct AttributeFacts {
   bool has_numbers() const { return least <= largest; }
 };
 
-/// What a point file holds. What is counted and measured is that of the points that were read.
+/// The content of a point file. Counts and measurements are over the points that were read.
 struct CloudFacts {
-  std::string_view format;  ///< its Format's name
+  std::string_view format;  ///< name of its Format
   std::size_t points = 0;
-  std::size_t read = 0;  ///< fewer than `points` where a sample was
-  /// That were read one by one, of a file that need not fit into memory: copies in two of them are
-  /// no duplicates. 0: the file was read as one.
+  std::size_t read = 0;  ///< fewer than `points` if sampled
+  /// Parts that were read one by one, of a file that need not fit into memory: copies in different
+  /// parts do not count as duplicates. 0: the file was read whole.
   std::size_t parts = 0;
   ScalarType position_type = ScalarType::kFloat64;
   BoundingBox bounds = {};
@@ -50,7 +50,7 @@ struct CloudFacts {
   std::vector<std::string> elements = {};  ///< foreign ones, by the first lines of their headers
   Defects defects = {};
   std::size_t rescaled_normals = 0;
-  std::vector<std::string> problems = {};  ///< what may surprise, one sentence each
+  std::vector<std::string> problems = {};  ///< possible surprises, one sentence each
   std::optional<io::E57Document> e57 = {};
   std::optional<io::LasFacts> las = {};
   std::vector<std::string> warnings = {};  ///< of read_cloud
@@ -59,13 +59,13 @@ struct CloudFacts {
 /// Reads the whole file. Throws as read_cloud.
 CloudFacts cloud_facts(const std::filesystem::path& path);
 
-/// What the file says beside its points. Throws as read_cloud.
+/// The facts that the header gives, without points. Throws as read_cloud.
 CloudFacts facts_of_header(const io::InputFile& file);
 
-/// Adds what is counted of a finished part; the first one also tells what all have in common.
+/// Adds the counts of a finished part; the first part also gives what all have in common.
 void add_part(const PointCloud& part, CloudFacts& facts);
 
-/// What may surprise in facts that are complete otherwise.
+/// The possible surprises in otherwise complete facts.
 std::vector<std::string> find_problems(const CloudFacts& facts);
 
 }  // namespace pcednet::formats

@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The whole table: what there is, and the order in which messages name it.
+/// The whole table, in the order in which messages list it.
 std::vector<Format> make_formats() {
   return {
       {.name = "PLY",

@@ -14,24 +14,24 @@
 
 namespace pcednet::formats {
 
-/// A format of point files. A function that it does not have is null.
+/// A format of point files. A function that it lacks is null.
 struct Format {
   std::string_view name;
   std::vector<std::string_view> extensions;  ///< in lower case, with the dot
 
-  /// Whether a file that starts with these bytes is of this format, whatever its extension.
+  /// Whether a file with this beginning is of this format, with any extension.
   bool (*begins)(std::string_view start) = nullptr;
   io::LoadedCloud (*read)(const io::InputFile& file) = nullptr;
   std::unique_ptr<io::PartReader> (*open_parts)(std::unique_ptr<io::InputFile> file,
                                                 std::size_t most) = nullptr;
 
-  /// Null for what is written by its parts.
+  /// Null for a format that is written in parts.
   void (*write)(const std::filesystem::path& path, const PointCloud& cloud,
                 const io::WriteOptions& options) = nullptr;
   std::unique_ptr<io::PartWriter> (*create_parts)(const std::filesystem::path& path,
                                                   const io::PartOutline& outline,
                                                   const io::WriteOptions& options) = nullptr;
-  /// What it cannot hold of a cloud beside foreign elements; null if it holds everything.
+  /// The data of a cloud, foreign elements aside, that it cannot hold; null if it holds everything.
   std::vector<std::string> (*losses)(const std::filesystem::path& path,
                                      const PointCloud& cloud) = nullptr;
   /// Whether it holds that element; null if it holds none.
@@ -43,7 +43,7 @@ struct Format {
   bool is_tiled() const { return open_parts != nullptr && create_parts != nullptr; }
 };
 
-/// Every format there is. Where the beginning of a file speaks for several, the first counts.
+/// All formats. Where the beginning of a file fits several, the first counts.
 std::span<const Format> all_formats();
 
 /// The format to read a file as: by its beginning, otherwise by its extension. Throws
@@ -56,11 +56,11 @@ const Format& format_for(const std::filesystem::path& path);
 /// The format of that extension, in small letters or capitals; null if there is none.
 const Format* find_format(const std::filesystem::path& path);
 
-/// The name of a file without its folder and extension, of which .copc.laz is one.
+/// The name of a file without its folder and extension; .copc.laz counts as one extension.
 std::string stem_of(const std::filesystem::path& path);
 
-/// The extensions of what is read, or written, such as ".ply .pcd .las"; `last` stands before the
-/// last.
+/// The extensions of formats that can be read, or written, such as ".ply .pcd .las"; `last`
+/// separates the last one.
 std::string extensions_read(std::string_view last = " ");
 std::string extensions_written(std::string_view last = " ");
 

@@ -16,7 +16,7 @@ std::vector<std::uint8_t> read_labels(const std::filesystem::path& path);
 
 /// The classes that `cloud` carries: its attribute scalar_edge_class or edge_class, which a
 /// classification leaves, otherwise its labels; empty if it has neither. Throws
-/// Error(kInsufficient), naming `path`, if that attribute holds other numbers than 0 ... 255.
+/// Error(kInsufficient), naming `path`, if that attribute holds numbers outside 0 ... 255.
 std::vector<std::uint8_t> labels_of(const PointCloud& cloud, const std::filesystem::path& path);
 
 }  // namespace pcednet::formats

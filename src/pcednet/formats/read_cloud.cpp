@@ -8,7 +8,7 @@
 namespace pcednet::formats {
 namespace {
 
-/// Then they are taken as absent, which a part cannot know by itself.
+/// If so, they count as absent, which a single part cannot know.
 bool all_normals_unusable(const io::PartReader& reader) {
   for (std::size_t part = 0; part < reader.parts(); ++part) {
     io::PartTally tally;

@@ -74,7 +74,7 @@ ordered_json box_around(const Ring& ring, const BoundingBox& heights) {
   return {(*west)[0], (*south)[1], heights.min.z(), (*east)[0], (*north)[1], heights.max.z()};
 }
 
-/// The day as STAC writes it; null if there is none such.
+/// The day as STAC writes it; null if it is invalid.
 ordered_json day_of(const VirtualFile& file) {
   using namespace std::chrono;
   if (file.created_year == 0 || file.created_day == 0 || file.created_day > 366) return nullptr;
@@ -84,7 +84,7 @@ ordered_json day_of(const VirtualFile& file) {
                      static_cast<unsigned>(date.month()), static_cast<unsigned>(date.day()));
 }
 
-/// As a URL relative to the folder, which readers know by its beginning "./".
+/// A URL relative to the folder; readers recognise it by the prefix "./".
 std::string reference_to(const fs::path& file, const fs::path& folder) {
   std::error_code fault;
   const fs::path relative = fs::relative(file, folder, fault);
@@ -99,7 +99,7 @@ ordered_json properties_of(const VirtualFile& file, const std::string& definitio
         {{"name", field.name}, {"size", size_of(field.type)}, {"type", stac_type(field.type)}});
   }
   const BoundingBox& box = file.bounds;
-  // Not proj:epsg: QGIS takes its number for one of its own.
+  // Not proj:epsg: QGIS takes its number for an internal id.
   return {{"datetime", day_of(file)},
           {"pc:count", file.points},
           {"pc:type", "lidar"},
@@ -156,7 +156,7 @@ std::vector<std::string> remarks_on(std::span<const VirtualFile> files, std::siz
   return remarks;
 }
 
-/// The assets of an item that are point data: those of that role, otherwise the one of that name.
+/// The assets of an item that are point data: by role, otherwise by name.
 std::vector<std::string> references_in(const json& item) {
   std::vector<std::string> references;
   const json assets = item.is_object() ? item.value("assets", json::object()) : json::object();
@@ -176,7 +176,7 @@ fs::path file_behind(const std::string& reference, const fs::path& cloud) {
   constexpr std::string_view kFile = "file://";
   const bool is_file = reference.starts_with(kFile);
   if (!is_file && reference.find("://") != std::string::npos) {
-    throw io::unreadable(cloud, reference + " is on the net: only files on this machine are read");
+    throw io::unreadable(cloud, reference + " is remote: only local files are read");
   }
   const fs::path path =
       cloud.parent_path() / (is_file ? reference.substr(kFile.size()) : reference);

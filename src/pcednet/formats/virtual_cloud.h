@@ -14,10 +14,10 @@
 
 namespace pcednet::formats {
 
-/// What a virtual point cloud says of one of its files.
+/// The entry of a virtual point cloud for one of its files.
 struct VirtualFile {
   struct Field {
-    std::string name;  ///< as PDAL names it
+    std::string name;  ///< PDAL's name
     ScalarType type = ScalarType::kFloat64;
   };
 
@@ -26,16 +26,16 @@ struct VirtualFile {
   BoundingBox bounds = {};
   io::CoordinateSystem coordinate_system = {};
   std::string encoding = "?";                  ///< "las", "laz" or "copc"
-  unsigned created_day = 0, created_year = 0;  ///< 0: not known
+  unsigned created_day = 0, created_year = 0;  ///< 0: unknown
   std::vector<Field> fields = {};
 };
 
 /// Whether a file of that name is a virtual point cloud: .vpc, in small letters or capitals.
 bool is_virtual_cloud(const std::filesystem::path& path);
 
-/// The files that a virtual point cloud names, in its order. Throws Error(kUnreadable) for what is
-/// none, for files that are not there and for such as are on the net, Error(kInsufficient) if it
-/// names none.
+/// The files that a virtual point cloud names, in its order. Throws Error(kUnreadable) if it is not
+/// a virtual point cloud or names a missing or a remote file, Error(kInsufficient) if it names
+/// none.
 std::vector<std::filesystem::path> files_of_virtual_cloud(const std::filesystem::path& path);
 
 /// Reads the header of a LAS, LAZ or COPC file, not its points. Throws Error(kUnreadable) as
@@ -44,12 +44,11 @@ VirtualFile virtual_file(const std::filesystem::path& path);
 
 /// Writes a virtual point cloud (.vpc), as QGIS and pdal_wrench read it: a STAC ItemCollection with
 /// one item per file, which it names relative to its own folder. Files without points are left out.
-/// Returns what its reader should know, one sentence each.
+/// Returns notes for the user, one sentence each.
 ///
-/// Outlines are in WGS 84 where PROJ knows the system; otherwise in the coordinates of the files,
-/// and the system is left out, because QGIS would take the outline for one in WGS 84 then.
-/// Throws Error(kInsufficient) if no file has points, Error(kUsage) and Error(kFailure) as
-/// OutputFile.
+/// Outlines are in WGS 84 where PROJ knows the system; otherwise they are in the coordinates of the
+/// files and the system is left out, because with it QGIS would take them for WGS 84. Throws
+/// Error(kInsufficient) if no file has points, Error(kUsage) and Error(kFailure) as OutputFile.
 std::vector<std::string> write_virtual_cloud(const std::filesystem::path& path,
                                              std::span<const VirtualFile> files,
                                              Overwrite overwrite = Overwrite::kNo);

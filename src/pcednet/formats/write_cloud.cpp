@@ -7,7 +7,7 @@
 namespace pcednet::formats {
 namespace {
 
-/// Other elements than points that the format leaves behind.
+/// Adds elements other than points that the format drops.
 void add_lost_elements(const PointCloud& cloud, const Format& format,
                        std::vector<std::string>& lost) {
   for (const ForeignElement& element : cloud.foreign_elements) {

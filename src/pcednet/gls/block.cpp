@@ -21,14 +21,14 @@ float extreme(const float (&row)[kLanes], float sign) {
   return sign * least[0];
 }
 
-/// How near a source must be to every point to be within its support whatever its qq.
+/// The distance from every point within which a source is in its support, for any qq.
 float inner_reach(const BlockFrame& frame, float margin) {
   const double sq_inverse_t = frame.inverse_t() * frame.inverse_t();
   const double sq_inner = std::max(0.0, 1.0 - frame.level().most_qq * sq_inverse_t);
   return static_cast<float>(std::sqrt(sq_inner) - 1e-4) - margin;
 }
 
-/// Leaves of the sources inside those that every gate lets in wholly.
+/// Keeps, of the inner sources, those that every gate admits fully.
 void keep_open(Part& part, const Source* sources, const NormalBox& normals, float open_from,
                const LaneKernels& kernels) {
   Candidates& inside = part.inside.view;

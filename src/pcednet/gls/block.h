@@ -10,31 +10,32 @@
 
 namespace pcednet::gls {
 
-/// How sources are chosen: for the points as they are, or in advance for points that will move.
+/// How sources are chosen: for the points where they are, or in advance for points that will move.
 struct Reach {
   float margin = 0.0f;  ///< t: gathered beyond the support
-  /// The cosine of normals from which all gates are wide open, 0 without a gate; see open_from().
+  /// The cosine between normals from which all gates are fully open, 0 without a gate; see
+  /// open_from().
   float open_from = 0.0f;
 };
 
-/// Whether some normal can have the cosine to every normal of the box from which gates are open.
+/// Whether some normal can reach the cosine `open_from` with every normal of the box.
 bool may_be_open(const NormalBox& normals, float open_from);
 
-/// The sources that gates may let in, divided.
+/// The sources that gates may admit, divided.
 struct GatedList {
   Room<std::uint32_t> open, rest;
 };
 
-/// A part of a block: the sources near it, less those inside the support of its every point, which
-/// are summed up once.
+/// A part of a block: the sources near it, except those inside the support of all its points, which
+/// are summed once.
 struct Part {
   CandidateList near, inside;
   GatedList gated;
   InsideSums sums;
 };
 
-/// A stretch of points at one scale: all sources that they may meet, and for each depth of its
-/// division the part that is being visited. Its buffers last from one use to the next.
+/// A range of points at one scale: all sources that may affect them, and the part being visited at
+/// each depth of the division. Its buffers are reused.
 struct Block {
   static constexpr std::size_t kDepth = 4;  ///< of the division, the last one into groups
 
@@ -43,24 +44,24 @@ struct Block {
   std::array<Part, kDepth - 1> parts;
 };
 
-/// All sources that some points at one scale may meet.
+/// All sources that may affect some points at one scale.
 struct Sources {
   const BlockFrame* frame;
   Candidates near;               ///< to be summed point by point
-  std::span<const Part> summed;  ///< parts whose sources inside come in addition
-  SourceBox box;                 ///< where the points may be; beyond, see is_within()
+  std::span<const Part> summed;  ///< parts whose inner sources are added
+  SourceBox box;                 ///< where the points may be; see is_within()
 };
 
-/// The boxes of the groups of some points, and of their normals.
+/// The bounding boxes of the positions and of the normals of groups of points.
 class GroupBoxes {
  public:
-  /// Finds those of the points [begin, end) unless they are known; `begin` is that of a group.
+  /// Computes the boxes for the points [begin, end) unless they are known; `begin` starts a group.
   void cover(std::span<const Voxel> points, std::size_t begin, std::size_t end);
 
-  /// Of the points [begin, end), which are covered.
+  /// The box of the points [begin, end), which must be covered.
   TargetBox box_of(std::size_t begin, std::size_t end) const;
 
-  /// Of the normals of the groups that these points belong to.
+  /// The box of the normals of the groups that contain these points.
   NormalBox normals_of(std::size_t begin, std::size_t end) const;
 
  private:
@@ -76,7 +77,7 @@ class GroupBoxes {
   std::vector<Normals> normals_;
 };
 
-/// The box of all lanes in `targets`, in the frame.
+/// The box of all lanes of `targets`, in the frame.
 SourceBox box_of(const LaneTargets& targets);
 
 /// `box` in the frame.
@@ -85,13 +86,13 @@ SourceBox local_box(const BlockFrame& frame, const TargetBox& box);
 /// True if the support of every point of `box` is within `margin` of that of a point of `gathered`.
 bool is_within(const SourceBox& box, const SourceBox& gathered, float margin);
 
-/// Gathers for the points [begin, end), whose box is given, what `level` holds within the support
-/// of scale t. A level that served a larger scale of the same block before is not searched again.
-/// False, and nothing is gathered, if that is more than `most`.
+/// Gathers the entries of `level` within the support at scale t of the points [begin, end), whose
+/// box is given. A level that has served a larger scale of the same block is not searched again.
+/// False, with nothing gathered, if there are more than `most`.
 bool gather(Block& block, std::size_t begin, std::size_t end, const TargetBox& box,
             const VoxelLevel& level, double t, float margin, std::size_t most);
 
-/// The sources of `all` that points in `box` with normals in `normals` may meet, as the block's
+/// The sources of `all` that may affect points in `box` with normals in `normals`, as the block's
 /// part of this depth.
 Sources choose_part(Block& block, std::size_t depth, const Sources& all, const SourceBox& box,
                     const NormalBox& normals, const Reach& reach, const LaneKernels& kernels);

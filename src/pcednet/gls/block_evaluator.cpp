@@ -10,8 +10,8 @@ namespace {
 constexpr std::array<std::size_t, Block::kDepth> kParts = {64 * kLanes, 8 * kLanes, 2 * kLanes,
                                                            kLanes};
 constexpr double kWidestBlock = 64;  // t: float then gives coordinates to 2e-6
-constexpr double kCompactBlock = 4;  // t: no larger than what every point meets
-/// Five times those of most blocks: one that the curve scatters is divided.
+constexpr double kCompactBlock = 4;  // t: no larger than the neighbourhood of every point
+/// Five times the usual: a block that the curve scatters is divided.
 constexpr std::size_t kMostSources = 8 * 4096;
 
 bool any_wanted(std::size_t begin, std::size_t end, const BlockEvaluator::Wanted& wanted) {
@@ -74,7 +74,7 @@ void BlockEvaluator::visit_parts(std::size_t depth, std::size_t begin, std::size
   }
 }
 
-/// Those of the points, if there are gates.
+/// The box of the points' normals, if there are gates.
 NormalBox BlockEvaluator::normals_of(std::size_t begin, std::size_t end, const Visit& visit) const {
   return visit.reach.open_from > 0.0f ? boxes_.normals_of(begin, end) : NormalBox{};
 }

@@ -13,11 +13,11 @@ namespace pcednet::gls {
 struct BlockOptions {
   LaneDetail detail = LaneDetail::kInvariant;
   int projection_steps = 0;
-  std::vector<Gate> gates = {{}};  ///< one or two; of two, neither is open
+  std::vector<Gate> gates = {{}};  ///< one or two; if two, neither is open
 };
 
-/// Describes the points of a pyramid's first level from the level that serves each scale, a block
-/// at a time. Holds the buffers for that, so that none is allocated per point.
+/// Describes the points of a pyramid's first level from the level that serves each scale, block by
+/// block. Owns the buffers, so that none is allocated per point.
 class BlockEvaluator {
  public:
   using Wanted = std::function<bool(const LaneGroup&)>;
@@ -28,7 +28,7 @@ class BlockEvaluator {
 
   /// Calls `emit`, with a fit per gate, for the groups of the points [begin, end) that are
   /// `wanted`, at the scale with this index and support radius. `begin` must be a multiple of
-  /// kLanes. What a group gets depends on begin and end, not on which other groups are wanted.
+  /// kLanes. The result of a group depends on begin and end, not on which other groups are wanted.
   void evaluate(std::size_t begin, std::size_t end, std::size_t scale, double t,
                 const Wanted& wanted, const Emit& emit);
 

@@ -12,15 +12,15 @@
 
 namespace pcednet::gls {
 
-/// t: the support, and what rounding may add.
+/// The support in units of t, with an allowance for rounding.
 inline constexpr float kReach = 1.00001f;
 
-/// Room for values that are written before they are read: it grows without keeping or clearing
+/// A buffer for values that are written before they are read: it grows without keeping or clearing
 /// them.
 template <typename Value>
 class Room {
  public:
-  /// Of `count` values at least.
+  /// At least `count` values.
   Value* make(std::size_t count) {
     if (size_ < count) {
       size_ = count + count / 2;
@@ -36,7 +36,7 @@ class Room {
   std::unique_ptr<Value[]> values_;
 };
 
-/// Owns the arrays of Candidates, of which the kernels fill as many as they find.
+/// Owns the arrays of Candidates, which the kernels fill.
 class CandidateList {
  public:
   void reserve(std::size_t count);
@@ -70,21 +70,21 @@ struct TargetBox {
   double longest_side() const { return (max - min).maxCoeff(); }
 };
 
-/// What evaluation points at scale t may meet: the entries of a level near a box, in single
-/// precision, about an origin in the box and in units of t. Its buffers last from one use to the
-/// next.
+/// The sources for evaluation points at scale t: the entries of a level near a box, in single
+/// precision, about an origin in the box and in units of t. Its buffers are reused.
 class BlockFrame {
  public:
   /// Gathers every voxel of `level` closer than `reach` t to `box`, and some more. `box` must be
-  /// within 32 t of `origin` for coordinates to be good to 2e-6. False, and nothing is gathered, if
-  /// these are more than `most`.
+  /// within 32 t of `origin` for coordinates accurate to 2e-6. False, with nothing gathered, if
+  /// there are more than `most`.
   bool gather(const VoxelLevel& level, const TargetBox& box, const Vec3& origin, double t,
               float reach, std::size_t most = std::numeric_limits<std::size_t>::max());
 
-  /// Changes the scale of what was gathered; `reach` t must not grow.
+  /// Changes the scale of the gathered entries; `reach` t must not grow.
   void rescale(double t);
 
-  /// True if all of `level` that is closer than `reach`, in the cloud's units, to the box is here.
+  /// True if the frame holds all entries of `level` closer to the box than `reach`, in the cloud's
+  /// units.
   bool holds(const VoxelLevel& level, double reach) const {
     return &level == level_ && reach <= reach_;
   }
@@ -94,7 +94,7 @@ class BlockFrame {
   const Candidates& candidates() const { return candidates_.view; }
   const Source* sources() const { return sources_.data(); }
 
-  /// The voxel of the level that source `i` is.
+  /// The voxel of the level that is source `i`.
   std::uint32_t voxel(std::uint32_t i) const { return entries_.data()[i].voxel; }
 
   /// A position in the frame.

@@ -24,7 +24,7 @@ Descriptor describe_sphere(const SphereFit& fit, const MomentSet& moments) {
   result.tau = u.uc / u.pratt;
   result.eta = u.ul / length;
   result.kappa = 2.0 * u.uq / u.pratt;
-  // Never outside [0, 1] but by rounding: pratt^2 = |N/W|^2 + A^2/(B W), and the normals are unit.
+  // Outside [0, 1] only by rounding: pratt^2 = |N/W|^2 + A^2/(B W), and the normals are unit.
   result.phi = std::clamp(1.0 - sq_pratt, 0.0, 1.0);
 
   const auto dtau = [&](const SphereDerivative& du, double ds) {
@@ -54,8 +54,8 @@ Descriptor describe_sphere(const SphereFit& fit, const MomentSet& moments) {
 }
 
 PrincipalCurvatures principal_curvatures(const Mat3& deta_dx, const Vec3& eta, double tie) {
-  // An orthonormal basis of the tangent plane without a square root and without a weak spot (Duff
-  // et al. 2017), the same for eta and -eta.
+  // An orthonormal basis of the tangent plane without a square root and stable everywhere (Duff et
+  // al. 2017), the same for eta and -eta.
   const Vec3 up = upward(eta);
   const double a = -1.0 / (1.0 + up.z());
   const double b = up.x() * up.y() * a;

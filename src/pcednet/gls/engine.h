@@ -11,19 +11,19 @@
 namespace pcednet::gls {
 
 /// The scale-space matrix of a cloud from the engine that the options name. Reconstructions with
-/// planes are evaluated exactly whatever they name.
+/// planes are always evaluated by the exact engine.
 class ScaleSpace {
  public:
-  /// Throws what the engines' constructors throw.
+  /// Throws as the engines' constructors do.
   ScaleSpace(OrientedPoints points, const ScaleSpaceOptions& options,
              const Progress* progress = nullptr);
 
-  /// As given, but for `engine`, which is the one in use.
+  /// The options as given, with `engine` the one in use.
   const ScaleSpaceOptions& options() const { return options_; }
   const std::vector<double>& scales() const;
   std::span<const std::uint32_t> order() const;
 
-  /// As the engines do it.
+  /// See ExactScaleSpace::describe() and FastScaleSpace::describe().
   void describe(std::span<const std::uint32_t> targets, std::span<float> out,
                 std::span<FitStatus> status, const Progress* progress = nullptr) const;
 

@@ -46,7 +46,7 @@ FitStatus put(std::span<const GroupFit> fits, std::size_t lane, std::span<const 
   return status;
 }
 
-/// The power of two that brings the cloud's longest side to between 1/2 and 2, so that squares and
+/// The power of two that scales the cloud's longest side to between 1/2 and 2, so that squares and
 /// cubes of its lengths fit a float; exact.
 double unit_for(const BoundingBox& box) {
   if (box.empty()) return 1.0;

@@ -17,8 +17,8 @@ namespace pcednet::gls {
 ///
 /// Scale t reads the cloud from voxels of edge at most eps t (see VoxelPyramid), in single
 /// precision, for 16 points at a time. Where nothing is merged yet (the nearest scales) it agrees
-/// with ExactScaleSpace to float rounding, statuses included; docs/engine.md tells how far it does
-/// elsewhere. Fits that float cannot resolve are repeated in double precision.
+/// with ExactScaleSpace to float rounding, statuses included; docs/engine.md quantifies the
+/// agreement elsewhere. Fits that float cannot resolve are repeated in double precision.
 ///
 /// Reconstructs with algebraic spheres only. All results are the same bits for any numbering of the
 /// points, any number of threads and any choice of targets, and never NaN or infinite; a flip of
@@ -26,13 +26,13 @@ namespace pcednet::gls {
 /// coincide).
 class FastScaleSpace {
  public:
-  /// Copies what it needs of `points`, about 150 bytes each. Throws what check() throws,
-  /// Error(kUsage) for a reconstruction with planes, and Error(kInsufficient) for clouds without a
-  /// range of scales (see scale_range()).
+  /// Copies what it needs of `points`, about 150 bytes each. Throws as check() does, Error(kUsage)
+  /// for a reconstruction with planes, and Error(kInsufficient) for clouds without a range of
+  /// scales (see scale_range()).
   FastScaleSpace(OrientedPoints points, const ScaleSpaceOptions& options,
                  const Progress* progress = nullptr);
 
-  /// The same with the vector code to use; every choice agrees to float rounding.
+  /// The same with the given vector code; all agree to float rounding.
   FastScaleSpace(OrientedPoints points, const ScaleSpaceOptions& options,
                  const LaneKernels& kernels, const Progress* progress = nullptr);
 
@@ -41,12 +41,13 @@ class FastScaleSpace {
   /// The support radii, smallest first.
   const std::vector<double>& scales() const { return scales_; }
 
-  /// What these points decided of the voxels; for a part of a cloud, what the whole decided.
+  /// The plan of the voxels that these points decided; for a part of a cloud, the plan of the
+  /// whole.
   PyramidPlan pyramid_plan() const;
 
-  /// The finite points in the order in which it is best to ask for them: along a curve, so that a
-  /// stretch of 4096 that starts at a multiple of 4096 is evaluated together. Fewer than 16 at a
-  /// time cost as much as 16.
+  /// The finite points in the most efficient order of targets: along a curve, so that each run of
+  /// 4096 that starts at a multiple of 4096 is evaluated together. Fewer than 16 at a time cost as
+  /// much as 16.
   std::span<const std::uint32_t> order() const { return order_; }
 
   /// Describes the points numbered `targets`, on all threads. `out` is targets x scales x
@@ -64,7 +65,7 @@ class FastScaleSpace {
   ScaleSpaceOptions options_;
   const LaneKernels* kernels_;
   std::vector<std::uint32_t> order_, place_;
-  double unit_ = 1.0;  ///< what the pyramid's coordinates are multiplied by, a power of two
+  double unit_ = 1.0;  ///< the factor of the pyramid's coordinates, a power of two
   VoxelPyramid pyramid_;
   std::vector<double> scales_;
 };

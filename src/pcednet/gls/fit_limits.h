@@ -2,14 +2,14 @@
 
 namespace pcednet::gls {
 
-/// B over t^2 W: below, the neighbours are one place and single out no curvature.
+/// The least B / (t^2 W): below it, the neighbours coincide and determine no curvature.
 inline constexpr double kSmallestSqSpread = 1e-12;
 
-/// |ul| and the Pratt norm, which are about 1 where normals agree: below, the normals cancel and no
-/// surface is singled out.
+/// The least |ul| and Pratt norm, which are about 1 where normals agree: below it, the normals
+/// cancel and determine no surface.
 inline constexpr double kSmallestLength = 1e-4;
 
-/// Of t: after a shorter step the projection on the surface ends.
+/// The projection onto the surface ends after a step shorter than this fraction of t.
 inline constexpr double kSmallestMove = 0.01;
 
 }  // namespace pcednet::gls

@@ -4,12 +4,12 @@
 
 namespace pcednet::gls {
 
-/// How far a description may be trusted. It depends on the number of neighbours, and on nothing
-/// else unless the fit has no answer at all.
+/// The reliability of a description. It depends only on the number of neighbours, unless the fit
+/// fails altogether.
 enum class FitStatus : std::uint8_t {
   kStable = 0,     ///< 6 neighbours or more
   kUnstable = 1,   ///< 3 to 5: usable
-  kUndefined = 2,  ///< fewer, or no surface is singled out by them: every feature is 0
+  kUndefined = 2,  ///< fewer, or they determine no surface: every feature is 0
 };
 
 constexpr FitStatus status_of_count(std::uint32_t neighbours) {

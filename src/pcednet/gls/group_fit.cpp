@@ -22,8 +22,8 @@ struct NearSources {
   Candidates chosen;
 };
 
-/// How far rounding may move the sums at these targets: by a few steps of a float for the sums
-/// themselves, and for each coordinate by half a step of its size.
+/// A bound on the effect of rounding on the sums at these targets: a few steps of a float for the
+/// sums themselves, and half a step of its magnitude for each coordinate.
 float rounding_at(const SourceBox& box) {
   float farthest = 0.0f;
   for (int a = 0; a < 3; ++a) {
@@ -81,7 +81,7 @@ DoubtfulTarget doubtful(const Group& group, std::size_t lane, double t, const Ga
           Vec3(point.normal[0], point.normal[1], point.normal[2]), t, gate};
 }
 
-/// The voxels that the sources are.
+/// The voxels of the sources.
 std::span<const std::uint32_t> voxels_of(const NearSources& near,
                                          std::vector<std::uint32_t>& voxels) {
   voxels.clear();
@@ -95,8 +95,8 @@ std::span<const std::uint32_t> voxels_of(const NearSources& near,
   return voxels;
 }
 
-/// Counts neighbours only where the sum of weights `u`, each at most 1, does not tell that there
-/// are many.
+/// Counts neighbours only if the sum of weights `u`, each at most 1, does not imply that there are
+/// many.
 void find_status(const Group& group, const NearSources& near, const float (&u)[kLanes],
                  const Gate& gate, const FitOptions& options, FitBuffers& buffers,
                  GroupFit& result) {
@@ -125,7 +125,7 @@ void find_status(const Group& group, const NearSources& near, const float (&u)[k
   }
 }
 
-/// Zeros for what is undefined, double precision for what float could not tell.
+/// Zeros for undefined fits, double precision where float is too coarse.
 void settle(const Group& group, const NearSources& near, const Gate& gate, double t,
             FitBuffers& buffers, GroupFit& result) {
   for (std::size_t lane = 0; lane < group.points.size(); ++lane) {
@@ -166,7 +166,7 @@ void sum(const Group& group, const NearSources& near, std::span<const Gate> gate
   kernels.sum(sources, group.targets, both, gates.size(), sums);
 }
 
-/// How far each lane goes in one step, and whether it goes at all.
+/// The next step of each lane, and whether it moves at all.
 struct Moves {
   std::array<std::array<float, 3>, kLanes> by;  ///< in t
   std::array<bool, kLanes> on;
@@ -227,7 +227,7 @@ Sources sources_at(const SourceBox& box, const Sources& at_hand, double t, Block
   return {&own, own.candidates(), {}, box};
 }
 
-/// tau of each point itself, not of where it has moved to: its distance to the last surface.
+/// tau of each original point, not of its moved position: its distance to the last surface.
 void measure_tau(const Group& group, GroupFit& fit) {
   LaneFits& f = fit.fits;
   for (std::size_t lane = 0; lane < group.points.size(); ++lane) {

@@ -17,7 +17,7 @@ struct LaneGroup {
   std::size_t begin, count;
 };
 
-/// The evaluation points of a group: its points, and where in a frame they have moved to.
+/// The evaluation points of a group: its points, and where they have moved in a frame.
 struct Group {
   std::span<const Voxel> points;
   LaneTargets targets;
@@ -26,7 +26,7 @@ struct Group {
   std::array<std::array<float, 3>, kLanes> offsets = {};  ///< from the points, in t
 };
 
-/// What is known of a group of points at one scale.
+/// The fits of a group of points at one scale.
 struct GroupFit {
   std::array<FitStatus, kLanes> status;
   LaneFits fits = {};  ///< features are finite, and 0 where undefined
@@ -35,7 +35,7 @@ struct GroupFit {
 /// The threshold of side_gate(), or none.
 using Gate = std::optional<double>;
 
-/// What decides a fit beside points and sources.
+/// The parameters of a fit beside points and sources.
 struct FitOptions {
   double t;  ///< support radius
   LaneDetail detail = LaneDetail::kInvariant;
@@ -43,21 +43,22 @@ struct FitOptions {
   const LaneKernels* kernels = &lane_kernels();
 };
 
-/// What fitting needs room for.
+/// The buffers of fitting.
 struct FitBuffers {
   CandidateList near;
   GatedList gated;
   std::vector<std::uint32_t> voxels;
-  BlockFrame own;  ///< of a group whose points left what its block gathered
+  BlockFrame own;  ///< for a group whose points left the range that its block gathered
 };
 
-/// t: what must be gathered beyond the support for points that project() moves.
+/// The margin, in t, beyond the support within which sources must be gathered for points that
+/// project() moves.
 inline constexpr float kMargin = 0.25f;
 
-/// The cosine of normals from which all of these gates are wide open; 0 for no gate.
+/// The cosine between normals from which all of these gates are fully open; 0 for no gate.
 float open_from(std::span<const Gate> gates);
 
-/// `points` where they are, at most kLanes of them, and their boxes.
+/// At most kLanes points where they are, and their boxes.
 Group place(std::span<const Voxel> points, const BlockFrame& frame, const SourceBox& box,
             const NormalBox& normals);
 
@@ -65,8 +66,8 @@ Group place(std::span<const Voxel> points, const BlockFrame& frame, const Source
 void fit(const Group& group, const Sources& sources, std::span<const Gate> gates,
          const FitOptions& options, FitBuffers& buffers, std::span<GroupFit> fits);
 
-/// As ExactScaleSpace does it: moves the evaluation points, which are where `fit` was made, onto
-/// the surface until they hardly move. `sources` must be gathered with kMargin.
+/// Moves the evaluation points, at which `fit` was made, onto the surface until they hardly move,
+/// as ExactScaleSpace does. `sources` must be gathered with kMargin.
 void project(Group group, const Sources& sources, const Gate& gate, const FitOptions& options,
              FitBuffers& buffers, GroupFit& fit);
 

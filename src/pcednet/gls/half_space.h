@@ -10,8 +10,8 @@ inline bool points_down(const Vec3& v) {
   return v.y() != 0.0 ? v.y() < 0.0 : v.x() < 0.0;
 }
 
-/// Whichever of v and -v does not point down: what is made from it does not change, in any bit,
-/// when normals are turned.
+/// The one of v and -v that does not point down: results computed from it do not change in any bit
+/// when normals are flipped.
 inline Vec3 upward(const Vec3& v) {
   return points_down(v) ? Vec3(-v) : v;
 }

@@ -10,7 +10,7 @@
 namespace pcednet::gls {
 
 /// Sums over a neighbourhood with one kind of weight (w, or one of its derivatives): all that the
-/// sphere fit needs to know of the points. y is a position relative to x, n a unit normal.
+/// sphere fit needs of the points. y is a position relative to x, n a unit normal.
 struct Moments {
   double w = 0.0;         ///< W  = S w
   Vec3 p = Vec3::Zero();  ///< P  = S w y
@@ -19,8 +19,8 @@ struct Moments {
   double pp = 0.0;        ///< PP = S w |y|^2
 };
 
-/// The moments and their derivatives. Weights are differentiated; y and n are constants, since the
-/// fitted field is evaluated in the frame of x.
+/// The moments and their derivatives. Only weights are differentiated; y and n are constants, since
+/// the fitted field is evaluated in the frame of x.
 struct MomentSet {
   std::uint32_t count = 0;  ///< neighbours summed
   Moments value;
@@ -28,7 +28,7 @@ struct MomentSet {
   std::array<Moments, 3> dx;  ///< with dw/dx_k
 };
 
-/// Sums, in the order given, the neighbours, all of which must be closer than `t`.
+/// Sums over the neighbours in the given order; all must be closer than `t`.
 MomentSet sum_moments(std::span<const LocalNeighbour> neighbours, double t);
 
 }  // namespace pcednet::gls

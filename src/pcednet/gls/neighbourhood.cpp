@@ -10,8 +10,8 @@ namespace pcednet::gls {
 
 void order_by_shell(std::span<const double> radii, std::vector<spatial::Neighbour>& neighbours,
                     std::vector<spatial::Neighbour>& scratch) {
-  // A bisection without branches, which nothing could predict: random shells cost the processor
-  // more than the search.
+  // A branch-free bisection: mispredicted branches for random shells would cost more than the
+  // search.
   const auto shell_of = [&](const spatial::Neighbour& neighbour) {
     std::size_t shell = 0;
     for (std::size_t step = radii.size() / 2; step > 0; step /= 2) {

@@ -10,17 +10,17 @@
 
 namespace pcednet::gls {
 
-/// The cosine by which a gate opens.
+/// The range of cosines over which a gate opens.
 inline constexpr double kGateWidth = 0.3;
 
-/// How much a neighbour with normal `n` counts for a point with normal `own` when neighbourhoods
-/// are to keep to one side of a thin wall: clamp((n . own - a) / 0.3, 0, 1). It depends neither on
-/// x nor on t, so every derivative holds with the weight multiplied by it.
+/// The factor on the weight of a neighbour with normal `n` for a point with normal `own`, which
+/// keeps neighbourhoods to one side of a thin wall: clamp((n . own - a) / 0.3, 0, 1). It depends
+/// neither on x nor on t, so every derivative scales with it.
 inline double side_gate(const Vec3& n, const Vec3& own, double a) {
   return std::clamp((n.dot(own) - a) / kGateWidth, 0.0, 1.0);
 }
 
-/// A neighbour as seen from the evaluation point x, held as the row of numbers that are weighted
+/// A neighbour relative to the evaluation point x, stored as the row of numbers that are weighted
 /// and summed.
 class LocalNeighbour {
  public:
@@ -44,10 +44,10 @@ class LocalNeighbour {
 
 using Neighbourhood = std::vector<LocalNeighbour>;
 
-/// Orders `neighbours` by shell, the shell of a neighbour being the first of the ascending `radii`
-/// that it is closer than, and keeps their order within a shell. The neighbourhood of each radius
-/// is a prefix then, as if they were sorted. All must be closer than the last radius, and the
-/// number of radii a power of two; `scratch` is overwritten.
+/// Orders `neighbours` by shell and keeps their order within a shell; the shell of a neighbour is
+/// the first of the ascending `radii` that exceeds its distance. The neighbourhood of each radius
+/// is then a prefix, as in a sorted list. All must be closer than the last radius, and the number
+/// of radii must be a power of two; `scratch` is overwritten.
 void order_by_shell(std::span<const double> radii, std::vector<spatial::Neighbour>& neighbours,
                     std::vector<spatial::Neighbour>& scratch);
 

@@ -13,7 +13,7 @@
 namespace pcednet::gls {
 namespace {
 
-/// An order of normals that turning them all leaves alone, but for exactly opposite ones.
+/// An order of normals that a flip of all of them preserves, except for exactly opposite ones.
 bool is_less(const Vec3& a, const Vec3& b) {
   const Vec3 p = upward(a), q = upward(b);
   if (p == q) return points_down(a) && !points_down(b);

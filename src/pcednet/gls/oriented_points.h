@@ -18,36 +18,37 @@ struct OrientedPoints {
   std::span<const Vec3> positions;
   std::span<const Vec3> normals;
   std::span<const std::uint32_t> curve = {};  ///< spatial::curve_order() of the positions, if known
-  const PyramidPlan* whole = nullptr;  ///< of the cloud that they are part of; fast engine only
+  const PyramidPlan* whole =
+      nullptr;  ///< the plan of the cloud that they are part of; fast engine only
 };
 
-/// Throws Error(kUsage) for options out of range, for arrays of different sizes and for usable
-/// normals that are not of unit length (to 1e-3).
+/// Throws Error(kUsage) for options out of range, arrays of different sizes, and usable normals not
+/// of unit length (to 1e-3).
 void check(OrientedPoints points, const ScaleSpaceOptions& options);
 
-/// The finite points by place along a curve and, in one place, by normal: whatever is computed in
-/// this order cannot depend on the numbering.
+/// The finite points by position along a curve and, at one position, by normal: results computed in
+/// this order do not depend on the numbering.
 std::vector<std::uint32_t> point_order(OrientedPoints points);
 
-/// The place in an order of a point that is not in it.
+/// The place of a point that is not in an order.
 inline constexpr std::uint32_t kNowhere = std::numeric_limits<std::uint32_t>::max();
 
 /// The place of each of `count` points in `order`.
 std::vector<std::uint32_t> places_in(std::span<const std::uint32_t> order, std::size_t count);
 
-/// Gives points that are equal, in position and normal, the first of their places, so that it does
-/// not matter which of them stands where. `order` is that of point_order().
+/// Gives points with equal position and normal the first of their places, so that their relative
+/// order does not matter. `order` is that of point_order().
 void share_places(OrientedPoints points, std::span<const std::uint32_t> order,
                   std::span<std::uint32_t> places);
 
-/// A row of a matrix that is asked for, and the place of the point it describes.
+/// A requested row of a matrix, and the place of the point it describes.
 struct Visit {
   std::uint32_t place;
   std::size_t row;
 };
 
-/// The rows to fill for the points numbered `targets`, by place, so that neighbours come one after
-/// the other; points that are nowhere last. Throws Error(kUsage) for a number without a point.
+/// The rows to fill for the points numbered `targets`, by place, so that neighbours follow each
+/// other; points at kNowhere come last. Throws Error(kUsage) for a number without a point.
 std::vector<Visit> plan_visits(std::span<const std::uint32_t> targets,
                                std::span<const std::uint32_t> places);
 

@@ -30,7 +30,7 @@ constexpr bool fits_spheres(Reconstruction reconstruction) {
 std::span<const std::string_view> reconstruction_names();
 std::string_view name_of(Reconstruction reconstruction);
 
-/// The way from the evaluation point to the nearest point of the sphere,
+/// The vector from the evaluation point to the nearest point of the sphere,
 ///
 ///     x' - x = -2 uc / (|ul| (|ul| + pratt)) ul,
 ///

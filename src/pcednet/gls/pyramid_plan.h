@@ -6,16 +6,17 @@
 
 namespace pcednet::gls {
 
-/// What becomes of blocks of 8 x 8 x 8 cells that are filled with normals of every direction
-/// (leaves, noise), of which a neighbourhood holds ten times as many voxels as of a surface.
+/// The treatment of blocks of 8 x 8 x 8 cells full of normals in all directions (leaves, noise),
+/// which give a neighbourhood ten times as many voxels as a surface does.
 enum class Crowd {
-  kKeep,         ///< nothing: they are voxels as elsewhere
-  kMerge,        ///< 3 x 3 x 3 voxels, fewer to a neighbourhood than a surface has
-  kMergeByAxis,  ///< one per 4 x 4 x 4 cells, axis and sign: for a gate, which looks at directions
+  kKeep,         ///< voxels as elsewhere
+  kMerge,        ///< 3 x 3 x 3 voxels per block, fewer per neighbourhood than on a surface
+  kMergeByAxis,  ///< one voxel per 4 x 4 x 4 cells, axis and sign: for a gate, which depends on
+                 ///< directions
 };
 
-/// What all points of a cloud together decide of its voxels. A part of the cloud that is described
-/// with the plan of the whole has, away from its rim, the voxels of the whole.
+/// The decisions on voxels that depend on all points of a cloud. A part described with the plan of
+/// the whole has, away from its rim, the voxels of the whole.
 struct PyramidPlan {
   Vec3 corner = Vec3::Zero();  ///< the lower corner of the cloud's box
   double side = 0.0;           ///< its longest side

@@ -35,7 +35,7 @@ struct ExactScaleSpace::Fit {
   Descriptor descriptor;
 };
 
-/// What a thread needs to describe points, kept from one point to the next.
+/// A thread's buffers for describing points, kept from point to point.
 struct ExactScaleSpace::Scratch {
   std::vector<spatial::Neighbour> all;    ///< around the point, at the largest scale
   std::vector<spatial::Neighbour> found;  ///< around its projection
@@ -62,8 +62,8 @@ ExactScaleSpace::ExactScaleSpace(OrientedPoints points, const ScaleSpaceOptions&
   stage.advance();
 }
 
-/// The points `found` as seen from `offset` away from the point at `place`, which lends its normal
-/// to the gate. An offset and not a position, so that differences of large coordinates are taken
+/// The points `found` relative to a position at `offset` from the point at `place`, whose normal
+/// the gate uses. An offset, not a position, so that differences of large coordinates are taken
 /// before anything small is added.
 void ExactScaleSpace::localise(std::span<const spatial::Neighbour> found, std::uint32_t place,
                                const Vec3& offset, double radius,
@@ -102,8 +102,8 @@ ExactScaleSpace::Fit ExactScaleSpace::fit(std::span<const LocalNeighbour> neighb
 }
 
 /// Moves the evaluation point onto the surface until it hardly moves (or the fit is not stable, or
-/// the next one would be undefined). The descriptor is that of the last evaluation point but for
-/// tau, which stays the distance of the point itself to the last surface.
+/// the next one would be undefined). The descriptor is that of the last evaluation point, except
+/// that tau is the distance of the point itself to the last surface.
 ExactScaleSpace::Fit ExactScaleSpace::project(std::uint32_t place, Fit fit, double t,
                                               const std::optional<double>& gate,
                                               Scratch& scratch) const {

@@ -17,13 +17,13 @@ namespace pcednet::gls {
 /// The scale-space matrix of a cloud, evaluated from exact neighbourhoods in double precision.
 ///
 /// Made once for a cloud, then asked for any of its points. The neighbourhood of a point at scale t
-/// is every point closer than t, itself included, but for points whose normal is unusable (or whose
-/// gate is shut): these are not counted either. All results are the same bits for any numbering of
-/// the points and any number of threads, and never NaN or infinite.
+/// is every point closer than t, itself included, except points whose normal is unusable (or whose
+/// gate is closed): these are not counted. All results are the same bits for any numbering of the
+/// points and any number of threads, and never NaN or infinite.
 class ExactScaleSpace {
  public:
-  /// Copies what it needs of `points`. Throws what check() throws, and Error(kInsufficient) for
-  /// clouds without a range of scales (see scale_range()).
+  /// Copies what it needs of `points`. Throws as check() does, and Error(kInsufficient) for clouds
+  /// without a range of scales (see scale_range()).
   ExactScaleSpace(OrientedPoints points, const ScaleSpaceOptions& options,
                   const Progress* progress = nullptr);
 
@@ -32,8 +32,8 @@ class ExactScaleSpace {
   /// The support radii, smallest first.
   const std::vector<double>& scales() const { return scales_; }
 
-  /// The finite points along a curve: any order of targets will do, but one that follows this is
-  /// kind to the caches.
+  /// The finite points along a curve: targets may come in any order, but this one makes the best
+  /// use of the caches.
   std::span<const std::uint32_t> order() const { return order_; }
 
   /// Describes the points numbered `targets`, on all threads. `out` is targets x scales x
@@ -66,8 +66,8 @@ class ExactScaleSpace {
   std::vector<std::optional<double>> gates_;
   std::vector<std::uint32_t> order_;
   std::vector<std::uint32_t> place_;  ///< of each point in the arrays below, or kNowhere
-  std::vector<Vec3> positions_;       ///< the finite points, in an order free of their numbering
-  std::vector<Vec3> normals_;         ///< (0,0,0) where unusable
+  std::vector<Vec3> positions_;  ///< the finite points, in an order independent of their numbering
+  std::vector<Vec3> normals_;    ///< (0,0,0) where unusable
   spatial::KdTree tree_;
   std::vector<double> scales_;
 };

@@ -22,19 +22,20 @@ struct ScaleSpaceOptions {
   int scales = 16;                          ///< a power of two, 4 to 128
   double s_min = 0.0, s_max = 0.0;          ///< 0: from the cloud, see scale_range()
   double s_max_fraction = kPartOfDiagonal;  ///< of the diagonal, where s_max is 0
-  double s_max_ratio = 0.0;  ///< if not 0 and s_max is: s_max over s_min, in even clouds
+  double s_max_ratio = 0.0;  ///< if not 0 while s_max is 0: s_max over s_min, in even clouds
   FeatureSet features = FeatureSet::kPaper6;
   Reconstruction reconstruction = Reconstruction::kSphere;
-  int max_projection_steps = 5;     ///< for the reconstructions that project
-  std::optional<double> side_gate;  ///< the a of side_gate(), -1 to 1; without one all count alike
+  int max_projection_steps = 5;  ///< for the reconstructions that project
+  std::optional<double>
+      side_gate;  ///< the a of side_gate(), -1 to 1; without one all count equally
   std::optional<double> second_gate;  ///< features with this gate follow those with the first
-  Engine engine = Engine::kFast;      ///< what ScaleSpace uses
+  Engine engine = Engine::kFast;      ///< used by ScaleSpace
   double eps = 0.10;  ///< voxel edge over support radius, 0.01 to 1; fast engine only
 
   bool operator==(const ScaleSpaceOptions&) const = default;
 };
 
-/// What the options say of the range, for scale_range().
+/// The range in the options, for scale_range().
 ScaleRange given_range(const ScaleSpaceOptions& options);
 
 /// All sets of features, the largest first.
@@ -43,22 +44,21 @@ std::span<const FeatureSet> feature_sets();
 /// The reconstruction of that name, see reconstruction_names(); nothing for another name.
 std::optional<Reconstruction> reconstruction_of(std::string_view name);
 
-/// The names of a matrix's columns, those of one scale; those of the second gate begin with
-/// "second_".
+/// The column names of a matrix for one scale; those of the second gate begin with "second_".
 std::vector<std::string> column_names(const ScaleSpaceOptions& options);
 
-/// How many they are.
+/// The number of column_names().
 int column_count(const ScaleSpaceOptions& options);
 
 /// The gates to describe with: one, which may be open, or two.
 std::vector<std::optional<double>> gates_of(const ScaleSpaceOptions& options);
 
-/// A sentence for the user if the `scales` of the cloud are those that scale_range() gives to
-/// sparse clouds, else nothing.
+/// A sentence for the user if `scales` are those that scale_range() gives to sparse clouds,
+/// otherwise empty.
 std::string note_on(const ScaleSpaceOptions& options, std::span<const double> scales,
                     std::span<const Vec3> positions);
 
-/// All that decides a description of a given cloud, as text: for keys of results that are kept.
+/// All options that determine the description of a given cloud, as text: for cache keys.
 std::string text_of(const ScaleSpaceOptions& options);
 
 }  // namespace pcednet::gls

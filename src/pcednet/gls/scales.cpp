@@ -29,7 +29,7 @@ void check_given(double bound, const char* name) {
       fmt::format("{} is {}: a positive length is needed, or 0 for the cloud's own", name, bound));
 }
 
-/// Of points in curve order, from a tree of them.
+/// The spacings of points in curve order, from their tree.
 std::vector<double> spacings_in(std::span<const Vec3> positions, const spatial::KdTree& tree) {
   return sampled_spacings(positions.size(), [&](std::size_t place) {
     std::vector<spatial::Neighbour> found;
@@ -40,7 +40,7 @@ std::vector<double> spacings_in(std::span<const Vec3> positions, const spatial::
   });
 }
 
-/// Of the finite points with all their copies left out.
+/// The spacings of the finite points without copies.
 std::vector<double> spacings_of_distinct(std::span<const Vec3> positions) {
   std::vector<Vec3> distinct = spatial::in_order(positions, spatial::curve_order(positions));
   distinct.erase(std::unique(distinct.begin(), distinct.end()), distinct.end());
@@ -58,7 +58,7 @@ double mean_of(std::span<const double> values) {
   return values.empty() ? 0.0 : sum / static_cast<double>(values.size());
 }
 
-/// Of a range tied to the spacing: few outlying points change neither number.
+/// For a range tied to the spacing: a few outlying points change neither number.
 struct Spacing {
   double middle = 0.0;  ///< the mean of the middle half
   double spread = 1.0;  ///< how much larger s_max is because the spacing varies
@@ -83,7 +83,7 @@ ScaleRange tied_range(const ScaleRange& given, std::span<const Vec3> positions,
   return range;
 }
 
-/// The paper's.
+/// The paper's range.
 ScaleRange range_by_extent(const ScaleRange& given, std::span<const Vec3> positions,
                            double diagonal, const std::function<std::vector<double>()>& spacings) {
   ScaleRange range = given;

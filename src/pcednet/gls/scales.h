@@ -26,17 +26,17 @@ struct ScaleRange {
   double s_max_ratio = 0.0;  ///< s_max over s_min in even clouds; 0: s_max_fraction rules
 };
 
-/// Mean distances to the 10 nearest other points (to all others if they are fewer): of every point
-/// or, of more than 16384, of so many of them that follow each other at equal steps along the curve
-/// order. `distance(place)` is that of the point at a place of the order.
+/// Mean distances to the 10 nearest other points (to all others if there are fewer): for every
+/// point or, in clouds of more than 16384, for 16384 points at equal steps along the curve order.
+/// `distance(place)` is that of the point at a place of the order.
 std::vector<double> sampled_spacings(std::size_t points,
                                      const std::function<double(std::size_t)>& distance);
 
-/// The mean distance in a row of nearest squared distances, of which the first, to the point
-/// itself, is left out.
+/// The mean distance in a row of nearest squared distances; the first, to the point itself, is left
+/// out.
 double mean_distance(std::span<const double> sq_distances);
 
-/// How many nearest points, with the point itself, mean_distance() wants.
+/// The number of nearest points, including the point itself, that mean_distance() takes.
 inline constexpr std::size_t kSpacingNeighbours = 11;
 
 /// The range of scales of the finite `positions`. Bounds other than 0 in `given` are kept.

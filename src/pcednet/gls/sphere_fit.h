@@ -26,10 +26,10 @@ struct SphereFit {
 ///
 ///     uq = A / 2B     ul = (N - 2 uq P) / W     uc = -(ul.P + uq PP) / W
 ///
-/// Neighbours that all lie within a millionth of t of each other (B <= 1e-12 t^2 W: duplicates)
-/// single out no curvature; then uq = 0 and the surface is the plane through them with their mean
-/// normal. Undefined with fewer than 3 neighbours, and where the normals cancel so that |ul| or
-/// pratt, which are about 1 otherwise, is below 1e-4 and the direction means nothing.
+/// Neighbours within a millionth of t of each other (B <= 1e-12 t^2 W: duplicates) determine no
+/// curvature; then uq = 0 and the surface is the plane through them with their mean normal.
+/// Undefined with fewer than 3 neighbours, and where the normals cancel: |ul| or pratt, otherwise
+/// about 1, is below 1e-4 and the direction is meaningless.
 SphereFit fit_sphere(const Moments& moments, std::uint32_t count, double t);
 
 /// The derivative of a sphere with respect to t or to one coordinate of x, in the moving frame.

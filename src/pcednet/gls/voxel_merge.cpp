@@ -62,8 +62,8 @@ std::size_t dominant_axis(const std::array<float, 3>& n) {
   return x >= y ? (x >= z ? 0 : 2) : (y >= z ? 1 : 2);
 }
 
-/// The cells of a level. Keys tell 2^20 cells along an axis apart; where there are more (points far
-/// from all others), equal keys are followed by a look at the cells themselves.
+/// The cells of a level. Keys distinguish 2^20 cells along an axis; where there are more (points
+/// far from all others), cells with equal keys are compared themselves.
 class Grid {
  public:
   Grid(const std::vector<Voxel>& voxels, const MergeCells& cells)
@@ -80,7 +80,7 @@ class Grid {
     return place << kAxisBits | dominant_axis((*voxels_)[i].normal);
   }
 
-  /// Which voxel of its block, where that is merged further.
+  /// The voxel within its block, if that is merged further.
   std::size_t place_in_block(std::size_t i) const {
     constexpr double kPerCell = static_cast<double>(kBlockVoxels) / kBlockCells;
     std::size_t place = 0;
@@ -129,9 +129,9 @@ class Grid {
   double inverse_edge_, cells_along_;
 };
 
-/// Which voxel each member of a block goes into, numbered along the curve. Of two signs in one
-/// place that of the first member comes first, so that a flip of all normals changes nothing but
-/// the signs. Members without a normal count for nothing and go nowhere.
+/// Assigns each member of a block to a voxel, numbered along the curve. For two signs in one place,
+/// that of the first member comes first, so that a flip of all normals changes only the signs.
+/// Members without a normal are ignored.
 class BlockPlan {
  public:
   BlockPlan(const std::vector<Voxel>& from, const Grid& grid, Crowd crowd)
@@ -151,10 +151,10 @@ class BlockPlan {
     return voxel_of_;
   }
 
-  /// How many voxels there are in the block last planned.
+  /// The number of voxels in the block last planned.
   std::size_t count() const { return count_; }
 
-  /// How far that block is from a surface: MergeForecast::filling.
+  /// MergeForecast::filling of that block: how little it resembles a surface.
   double filling() const {
     if (members_.size() < kFewestToFill) return 0.0;
     NormalSpread spread;
@@ -242,7 +242,7 @@ void for_blocks(const std::vector<Voxel>& from, const Grid& grid, Crowd crowd,
   }
 }
 
-/// How many voxels the blocks that begin within [begin, end) become.
+/// The number of voxels that the blocks beginning within [begin, end) become.
 std::size_t count_voxels(const std::vector<Voxel>& from, const Grid& grid, Crowd crowd,
                          std::span<const Keyed> keyed, std::size_t begin, std::size_t end) {
   std::size_t count = 0;
@@ -273,7 +273,7 @@ struct ForecastSums {
   double points = 0, merged = 0, filling = 0;
 };
 
-/// What the points of the voxels [begin, end) would meet if there were no others.
+/// The forecast for the points of the voxels [begin, end), as if there were no others.
 ForecastSums forecast_stretch(const std::vector<Voxel>& from, const Grid& grid, Crowd crowd,
                               std::size_t begin, std::size_t end) {
   std::vector<Keyed> keyed;
@@ -318,7 +318,7 @@ std::vector<Voxel> merge_voxels(const std::vector<Voxel>& from, const MergeCells
   });
   spatial::sort_by_key(keyed, grid.key_bits());
 
-  // Planned twice, which costs less than to hold the voxels of all stretches beside the result.
+  // Planned twice, which costs less than holding the voxels of all ranges beside the result.
   std::vector<std::size_t> first((keyed.size() + kStretch - 1) / kStretch + 1);
   parallel_blocks(keyed.size(), kStretch, [&](std::size_t begin, std::size_t end) {
     first[begin / kStretch + 1] = count_voxels(from, grid, cells.crowd, keyed, begin, end);

@@ -16,15 +16,15 @@ struct MergeCells {
 };
 
 /// The voxels of `from` merged, along the curve through the cells: one voxel per cell, dominant
-/// axis of the normal and sign, so that none averages across an edge; but see Crowd.
+/// axis of the normal and sign, so that none averages across an edge; for exceptions see Crowd.
 std::vector<Voxel> merge_voxels(const std::vector<Voxel>& from, const MergeCells& cells);
 
-/// What the average point would meet in merge_voxels(), estimated from every sixteenth stretch of
-/// the curve.
+/// The effect of merge_voxels() on the average point, estimated from every sixteenth range of the
+/// curve.
 struct MergeForecast {
-  double merged = 1.0;  ///< voxels of `from` that go into its voxel; 1 where nothing would merge
-  /// Crowd::kKeep: of its block, occupied cells times NormalSpread::mean_sq_volume(), at most 6 on
-  /// scans of surfaces, 20 and more on noise.
+  double merged = 1.0;  ///< voxels of `from` in its merged voxel; 1 if nothing would merge
+  /// With Crowd::kKeep: occupied cells of its block times NormalSpread::mean_sq_volume(), at most 6
+  /// on scans of surfaces, 20 or more on noise.
   double filling = 0.0;
 };
 MergeForecast forecast_merge(const std::vector<Voxel>& from, const MergeCells& cells);

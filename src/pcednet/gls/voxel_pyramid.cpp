@@ -14,18 +14,18 @@ namespace {
 constexpr double kWorthwhileMerge = 1.6;
 
 /// MergeForecast::filling from which a level costs far more than one of a surface. As with merging,
-/// what the average point meets decides, so that a tree on a wall does not coarsen anything. With a
-/// gate every source costs more.
+/// the average point decides, so that a tree before a wall does not coarsen anything. With a gate
+/// every source costs more.
 constexpr double kCrowded = 9.0, kCrowdedGated = 8.0;
 
-/// How the level of a scale is to come from the level before; `crowd`: how that one did.
+/// How to make the level of a scale from the preceding level; `crowd`: how that one was made.
 PyramidPlan::Level plan_level(const std::vector<Voxel>& finer, MergeCells cells, bool gated,
                               Crowd& crowd) {
   cells.crowd = crowd;
   MergeForecast forecast = forecast_merge(finer, cells);
   if (forecast.filling > (gated ? kCrowdedGated : kCrowded)) {
     cells.crowd = gated ? Crowd::kMergeByAxis : Crowd::kMerge;
-    // Voxels without axes do not tell how far they fill space: they are merged on.
+    // The filling of voxels without axes is unknown: they are merged further.
     if (!gated) crowd = Crowd::kMerge;
     forecast = forecast_merge(finer, cells);
   }

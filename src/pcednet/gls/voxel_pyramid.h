@@ -13,11 +13,11 @@
 
 namespace pcednet::gls {
 
-/// A voxel that stands for the points in it, or a single point.
+/// A voxel that represents the points in it, or a single point.
 ///
-/// Moments add, so a sum over a neighbourhood may take a voxel for its points when the voxel is
-/// small beside the support. `qq` and `qn` remove the second-order bias of doing so: whatever lies
-/// on one sphere is still fitted exactly.
+/// Moments add, so a sum over a neighbourhood may use a voxel for its points when the voxel is
+/// small compared with the support. `qq` and `qn` remove the second-order bias: points on one
+/// sphere are still fitted exactly.
 struct Voxel {
   Vec3 position;                ///< mean position
   std::array<float, 3> normal;  ///< mean normal, not renormalised
@@ -37,34 +37,34 @@ struct VoxelLevel {
 /// The cloud at falling resolutions; the same for any numbering of the points, and under a flip of
 /// all normals the same but for the sign of every mean normal and qn.
 struct VoxelPyramid {
-  Vec3 origin = Vec3::Zero();            ///< the lower corner of the cloud's box, or of the whole's
-  double side = 0.0;                     ///< its longest side
-  Vec3 corner = Vec3::Zero();            ///< of these points alone
-  std::vector<VoxelLevel> levels;        ///< from fine to coarse; the first holds the points
-  std::vector<std::size_t> level_of;     ///< the level that serves each scale
-  std::vector<PyramidPlan::Level> plan;  ///< how each scale came to it
+  Vec3 origin = Vec3::Zero();         ///< the lower corner of the box of the cloud, or of the whole
+  double side = 0.0;                  ///< its longest side
+  Vec3 corner = Vec3::Zero();         ///< of these points alone
+  std::vector<VoxelLevel> levels;     ///< from fine to coarse; the first holds the points
+  std::vector<std::size_t> level_of;  ///< the level that serves each scale
+  std::vector<PyramidPlan::Level> plan;  ///< how each scale got its level
 };
 
 /// The first level: the points numbered `order`, which must be finite, each as a voxel of its own,
-/// in that order. Coordinates are multiplied by `unit`, those of `whole` as well, which is the plan
-/// of the cloud that the points are part of.
+/// in that order. Coordinates are multiplied by `unit`, as are those of `whole`, the plan of the
+/// cloud that the points are part of.
 VoxelPyramid make_pyramid(std::span<const Vec3> positions, std::span<const Vec3> normals,
                           std::span<const std::uint32_t> order, double unit,
                           const PyramidPlan* whole = nullptr);
 
 struct LevelOptions {
   double eps = 0.1;
-  bool gated = false;                  ///< the sums will look at the direction of each normal
-  const PyramidPlan* whole = nullptr;  ///< decides which levels there are, and how they merge
+  bool gated = false;                  ///< the sums will depend on the direction of each normal
+  const PyramidPlan* whole = nullptr;  ///< decides which levels exist, and how they merge
 };
 
 /// Adds levels so that scale t reads voxels of cells of edge at most eps t; a level that would
-/// merge next to nothing is left out, and the scale reads the finer level before.
+/// merge next to nothing is left out, and the scale reads the preceding finer level.
 ///
-/// See merge_voxels() for what is merged. Where the average neighbourhood is filled with leaves or
-/// noise rather than crossed by surfaces, these are merged further, so that it costs about as much
-/// as elsewhere. `scales` must be positive and rising. Work is linear in the points, and so is
-/// memory: together the levels hold about two and a half voxels per point.
+/// See merge_voxels() for the rule. Where the average neighbourhood is filled with leaves or noise
+/// rather than crossed by surfaces, these are merged further, so that it costs about as much as
+/// elsewhere. `scales` must be positive and ascending. Work and memory are linear in the points:
+/// together the levels hold about two and a half voxels per point.
 void add_levels(VoxelPyramid& pyramid, std::span<const double> scales, const LevelOptions& options,
                 const Progress* progress = nullptr);
 

@@ -122,7 +122,7 @@ void CloudBuilder::store_normals() {
 }
 
 /// Gives the columns of these names (all or none of them) their role; with `bytes_only` only
-/// columns of type uint8 will do.
+/// columns of type uint8 qualify.
 bool CloudBuilder::take(const Names& names, Role role, bool bytes_only) {
   std::vector<std::size_t> found;
   for (const std::string& name : names) {

@@ -10,7 +10,7 @@
 
 namespace pcednet::io {
 
-/// One named column of the table of points that every format is.
+/// One named column of a file's table of points.
 struct Column {
   std::string name;
   ScalarType type = ScalarType::kFloat64;
@@ -18,14 +18,14 @@ struct Column {
   bool skip = false;      ///< padding: not kept
 };
 
-/// Turns columns of numbers into a cloud: decides by name what each column is, whatever the
-/// format, and decodes it.
+/// Turns columns of numbers into a cloud: identifies each column by its name, in every format, and
+/// decodes it.
 ///
 /// x y z are positions; nx ny nz (or normal_x ...) normals; red green blue (or diffuse_red ..., or
 /// r g b) and the packed rgb or rgba of PCD colours; label or scalar_label labels, -1 and NaN
-/// standing for unlabelled. Case does not matter. Colours and labels must hold values that are
-/// such; columns that do not, and all others, become attributes in their own type, under the names
-/// that restore_attributes() finds.
+/// standing for unlabelled. Case does not matter. Colour and label columns must hold valid colours
+/// and labels; if not, they become attributes in their own type, like all other columns, under the
+/// names that restore_attributes() finds.
 class CloudBuilder {
  public:
   /// Allocates for `points` points: the caller has checked that number against the file's size.
@@ -65,7 +65,7 @@ class CloudBuilder {
   PointCloud cloud_;
 };
 
-/// Makes columns x, y and z of type float double.
+/// Changes columns x, y and z from float to double.
 void widen_positions(std::vector<Column>& columns);
 
 }  // namespace pcednet::io

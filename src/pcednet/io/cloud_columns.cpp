@@ -120,7 +120,7 @@ void add_attribute(std::vector<ColumnView>& columns, const Attribute& attribute,
   }
 }
 
-/// Hides names that stand further left already. The label column keeps its name and its place at
+/// Hides names that already occur further left. The label column keeps its name and its place at
 /// the end.
 void make_names_unique(std::vector<ColumnView>& columns, bool has_label, bool has_counts) {
   std::set<std::string> taken = {"rgb", "rgba"};  // what write_pcd adds, what readers take apart

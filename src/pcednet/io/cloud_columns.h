@@ -10,7 +10,7 @@
 
 namespace pcednet::io {
 
-/// One column of a cloud's numbers to write, wherever in the cloud they are kept.
+/// One column of numbers to write, and where in the cloud they are stored.
 struct ColumnView {
   std::string name;
   ScalarType type = ScalarType::kFloat64;    ///< to write
@@ -20,7 +20,7 @@ struct ColumnView {
   std::size_t component = 0;                 ///< which one of an attribute's components
 };
 
-/// How a format names columns and which types it has.
+/// How a format names columns, and its number types.
 struct ColumnNames {
   std::vector<std::string> normals = {"nx", "ny", "nz"};
   std::vector<std::string> colours = {"red", "green", "blue"};  ///< empty: colours are left out
@@ -30,11 +30,11 @@ struct ColumnNames {
 };
 
 /// The columns of `cloud`, in the order of create_ply_parts, under unique names made by
-/// column_name(). An attribute of several components gives that many columns side by side.
+/// column_name(). An attribute of several components gives as many adjacent columns.
 ///
-/// Positions get the cloud's position_type if every one of them survives in it, otherwise double;
-/// normals are those of the file, or float.
-/// The views point into `cloud`. Throws Error(kFailure) unless check_consistent(cloud) holds.
+/// Positions get the cloud's position_type if it represents all of them exactly, otherwise double;
+/// normals are those of the file, or float. The views point into `cloud`. Throws Error(kFailure)
+/// unless check_consistent(cloud) holds.
 std::vector<ColumnView> columns_of(const PointCloud& cloud, const ColumnNames& names);
 
 /// Throws Error(kFailure) unless both have the same names and types.
@@ -48,11 +48,11 @@ std::size_t row_bytes(const std::vector<ColumnView>& columns);
 void append_binary(const std::vector<ColumnView>& columns, std::size_t begin, std::size_t end,
                    std::string& out);
 
-/// Appends the number of type `type` at `number`, as short as it can be and still be read back
-/// exactly.
+/// Appends the number of type `type` at `number` in the shortest form that reads back exactly.
 void append_number(ScalarType type, const std::byte* number, std::string& out);
 
-/// Appends the points [begin, end) to `out` as lines of text, of numbers like append_number's.
+/// Appends the points [begin, end) to `out` as lines of text, with numbers as append_number()
+/// writes them.
 void append_text(const std::vector<ColumnView>& columns, std::size_t begin, std::size_t end,
                  char separator, std::string& out);
 

@@ -11,7 +11,7 @@
 namespace pcednet::io {
 namespace {
 
-/// The character that "%XX" at the start of `text` stands for, if there is one.
+/// The character that "%XX" at the start of `text` encodes, if there is one.
 std::optional<char> decoded(std::string_view text) {
   if (text.size() < 3 || text[0] != '%') return std::nullopt;
   unsigned code = 0;

@@ -9,12 +9,12 @@ namespace pcednet::io {
 struct CoordinateSystem {
   int epsg = 0;            ///< its code; 0: unknown
   std::string wkt = {};    ///< its definition (OGC 01-009 or 18-010); may be empty
-  bool in_metres = false;  ///< all its lengths, as far as said
-  int vertical_epsg = 0;   ///< code of the heights where `epsg` is not of them too; 0: unknown
+  bool in_metres = false;  ///< all its lengths, as far as stated
+  int vertical_epsg = 0;   ///< code of the heights if `epsg` does not cover them; 0: unknown
 };
 
-/// The system that a definition describes: its code is that of its outermost AUTHORITY or ID of
-/// EPSG, or that of the horizontal part of a compound system.
+/// The system that a definition describes: its code is that of the outermost EPSG AUTHORITY or ID,
+/// or of the horizontal part of a compound system.
 CoordinateSystem coordinate_system_of_wkt(std::string_view wkt);
 
 }  // namespace pcednet::io

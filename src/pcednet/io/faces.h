@@ -10,14 +10,14 @@ namespace pcednet::io {
 
 using Triangle = std::array<std::uint32_t, 3>;
 
-/// The foreign element that holds these faces, given by their numbers of corners and by all their
-/// corners one after the other, as PLY has them.
+/// The foreign element that holds these faces, given by their numbers of corners and the
+/// concatenated corners, as in PLY.
 ForeignElement make_face_element(const std::vector<std::uint32_t>& sizes,
                                  const std::vector<std::uint32_t>& corners);
 
 /// The faces of the mesh whose vertices `cloud` holds, from its foreign element `face`: its list
 /// vertex_indices or vertex_index, polygons cut into triangles from their first corner. Empty if
-/// there is no such element. Throws Error(kUnreadable) for a corner that is no vertex.
+/// there is no such element. Throws Error(kUnreadable) for a corner that is not a vertex.
 std::vector<Triangle> triangles_of(const PointCloud& cloud);
 
 }  // namespace pcednet::io

@@ -25,8 +25,8 @@ class InputFile {
   const std::filesystem::path& path() const { return path_; }
   std::uint64_t size() const { return size_; }
 
-  /// Fills `bytes` with what stands at `offset`. Throws Error(kUnreadable), naming the byte, if
-  /// the file ends before.
+  /// Fills `bytes` from `offset`. Throws Error(kUnreadable), naming the byte, if the file ends
+  /// before.
   void read(std::uint64_t offset, std::span<std::byte> bytes) const;
 
   /// At most `count` bytes from `offset` on, as many as there are.

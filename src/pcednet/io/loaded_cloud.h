@@ -8,11 +8,12 @@
 
 namespace pcednet::io {
 
-/// A cloud, and what its reader has to tell the user about it.
+/// A cloud, and its reader's warnings to the user.
 struct LoadedCloud {
   PointCloud cloud;
   std::vector<std::string> warnings;
-  std::size_t rescaled_normals = 0;  ///< usable ones whose length in the file was not 1 +- 0.001
+  std::size_t rescaled_normals =
+      0;  ///< usable ones with a length other than 1 +- 0.001 in the file
 };
 
 }  // namespace pcednet::io

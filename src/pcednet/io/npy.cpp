@@ -46,7 +46,7 @@ std::optional<ScalarType> parse_type(std::string_view descr) {
   return std::nullopt;
 }
 
-/// What stands behind `key` in the dictionary, up to `end`.
+/// The text behind `key` in the dictionary, up to `end`.
 std::string_view entry(std::string_view dictionary, std::string_view key, char end) {
   const std::size_t at = dictionary.find(key);
   if (at == std::string_view::npos) return {};

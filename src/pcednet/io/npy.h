@@ -22,8 +22,8 @@ class NpyWriter {
   void append(std::span<const float> numbers);
   void append(std::span<const double> numbers);
 
-  /// Writes the numbers from number `first` of the array on, which are of the array's type; each
-  /// must be put once.
+  /// Writes numbers at number `first` of the array, which must be of the array's type; each must be
+  /// put once.
   void put(std::size_t first, std::span<const float> numbers);
 
   /// Must be called once, last. Throws Error(kFailure) unless the shape is filled exactly.
@@ -41,7 +41,7 @@ class NpyWriter {
   std::size_t missing_ = 1;  ///< numbers still to come
 };
 
-/// An array as read from a file, in C order.
+/// An array read from a file, in C order.
 struct NpyArray {
   std::vector<std::size_t> shape;
   ScalarType type = ScalarType::kFloat64;  ///< in the file

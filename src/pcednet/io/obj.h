@@ -14,8 +14,8 @@ namespace pcednet::io {
 /// Reads the vertices of a Wavefront OBJ: `v x y z`, with a weight, which is ignored, or colours.
 ///
 /// A vertex gets the mean of the unit normals that faces, lines and points give its corners (v//vn,
-/// v/vt/vn); in a file where none does, `vn` number i belongs to `v` number i if there are equally
-/// many. A corner whose normal does not exist is read without, with a warning. Throws
+/// v/vt/vn); in a file without such corners, `vn` number i belongs to `v` number i if their numbers
+/// are equal. A corner whose normal does not exist is read without it, with a warning. Throws
 /// Error(kUnreadable) naming the line of a broken number or an index of a vertex out of range.
 LoadedCloud read_obj(const InputFile& file);
 
@@ -24,7 +24,7 @@ LoadedCloud read_obj(const InputFile& file);
 void write_obj(const std::filesystem::path& path, const PointCloud& cloud,
                const WriteOptions& options = {});
 
-/// What write_obj does not keep of `cloud`, one sentence part each.
+/// The parts of `cloud` that write_obj() does not keep, as phrases.
 std::vector<std::string> obj_losses(const PointCloud& cloud);
 
 }  // namespace pcednet::io

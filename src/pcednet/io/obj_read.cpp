@@ -26,7 +26,7 @@ struct FarthestIndex {
   std::size_t line = 0;
 };
 
-/// How many there are, and where the first is.
+/// Their number, and the line of the first.
 struct Ignored {
   std::size_t count = 0;
   std::size_t line = 0;
@@ -130,7 +130,7 @@ void check_vertices(const std::filesystem::path& path, const Statements& stateme
                    farthest.line);
 }
 
-/// A corner may name a normal that the file has not.
+/// A corner may name a normal that the file lacks.
 void drop_corners_without_normal(Statements& statements, std::vector<std::string>& warnings) {
   Ignored& ignored = statements.corners_without_normal;
   std::erase_if(statements.corners, [&](const Corner& corner) {

@@ -47,8 +47,8 @@ class ObjStatements {
   std::vector<std::string> comments_;
 };
 
-/// The place that an index stands for: n is the n-th of the file, -n the n-th last of the `so_far`
-/// before it. None if it is no such number.
+/// The position that an index denotes: n is the n-th of the file, -n the n-th last of the `so_far`
+/// before it. None if `word` is not such a number.
 std::optional<std::size_t> obj_index(std::string_view word, std::size_t so_far);
 
 }  // namespace pcednet::io

@@ -23,19 +23,19 @@ class PartReader {
 
   virtual std::size_t points() const = 0;
   virtual std::size_t parts() const = 0;
-  /// One part, as the file has it: finish_part() makes of it what read_cloud gives.
+  /// One part as in the file: finish_part() turns it into what read_cloud() returns.
   virtual PointCloud read(std::size_t part) const = 0;
-  /// Whether the numbers of a point come from the steps and fields of LAS, so that they fit there.
+  /// Whether the numbers of a point come from the scale steps and fields of LAS, and so fit there.
   virtual bool is_las() const { return false; }
-  /// Whether all colours are below 256: LAS looks at all parts to know, before the first read(),
-  /// unless it is told.
+  /// Whether all colours are below 256: unless set, LAS reads all parts to find out, before the
+  /// first read().
   virtual bool narrow_colours() const { return false; }
   virtual void set_narrow_colours(bool) {}
 
   std::vector<std::string> warnings = {};
 };
 
-/// What read_cloud says of the points, counted part by part.
+/// The counts behind the warnings of read_cloud(), part by part.
 struct PartTally {
   std::size_t points = 0;
   std::size_t rescaled_normals = 0, unusable_normals = 0;
@@ -45,7 +45,7 @@ struct PartTally {
 /// Makes normals unit, unusable ones (0,0,0), and counts.
 void finish_part(PointCloud& part, PartTally& tally);
 
-/// The warnings that the counts deserve, once all parts are finished.
+/// The warnings for the counts, once all parts are finished.
 std::vector<std::string> warnings_of(const PartTally& tally);
 
 /// Calls `visit` with part after part, finished, until it returns false.
@@ -59,14 +59,14 @@ class PartWriter {
   virtual void append(const PointCloud& part) = 0;
   virtual void commit() = 0;
 
-  std::vector<std::string> losses = {};  ///< as losses() of the whole cloud
+  std::vector<std::string> losses = {};  ///< the losses() of the whole cloud
 };
 
-/// What a writer must know before the first part.
+/// The information that a writer needs before the first part.
 struct PartOutline {
   std::size_t points = 0;
   const PointCloud* first = nullptr;  ///< part 0; must outlive the writer
-  EachPart each_part = {};            ///< for what takes all points to decide
+  EachPart each_part = {};            ///< for decisions that need all points
   bool is_las = false;                ///< see PartReader
 };
 

@@ -10,7 +10,7 @@
 
 namespace pcednet::io {
 
-/// Whether a file that starts so is PCD.
+/// Whether a file with this beginning is PCD.
 bool begins_as_pcd(std::string_view start);
 
 /// Reads PCD 0.5 to 0.7: ascii, binary and binary_compressed.

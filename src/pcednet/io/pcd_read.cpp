@@ -18,7 +18,7 @@
 namespace pcednet::io {
 namespace {
 
-/// No byte of LZF gives more bytes than this: three make at most 264.
+/// No byte of LZF expands to more bytes than this: three give at most 264.
 constexpr std::uint64_t kMostLzfGain = 88;
 
 /// Returns the bytes after the last point.

@@ -19,7 +19,7 @@ ColumnNames pcd_names() {
           .has_counts = true};
 }
 
-/// What read_pcd kept of a header in comments.
+/// The parts of a header that read_pcd() kept in comments.
 struct KeptHeader {
   std::uint64_t width = 0;
   std::uint64_t height = 1;

@@ -14,7 +14,7 @@ namespace {
 
 void ignore(std::size_t, const std::byte*, ScalarType, bool) {}
 
-/// Bytes that a row has at least: its lists may be empty.
+/// The least bytes of a row: its lists may be empty.
 std::size_t least_row_bytes(const PlyElement& element, bool ascii) {
   std::size_t bytes = 0;
   for (const PlyProperty& property : element.properties) {

@@ -14,16 +14,16 @@ namespace pcednet::io {
 
 bool is_vertex(const PlyElement& element);
 
-/// The properties of the element vertex but for its lists.
+/// The properties of the element vertex, without its lists.
 std::vector<Column> scalar_columns(const PlyElement& vertex);
 
 /// Throws Error(kInsufficient) if no element is called vertex.
 void check_has_vertices(const InputFile& file, const PlyHeader& header);
 
-/// Throws Error(kUnreadable) if the file ends before `element`, which begins at `offset`, can.
+/// Throws Error(kUnreadable) if the file is too short for `element`, which begins at `offset`.
 void check_fits(const InputFile& file, const PlyElement& element, std::uint64_t offset, bool ascii);
 
-/// Says that `bytes` after the last element were not read, unless that is 0.
+/// Warns that `bytes` after the last element were not read, unless that is 0.
 void warn_of_unread(std::uint64_t bytes, std::vector<std::string>& warnings);
 
 /// Reads the elements of a binary body one after the other.
@@ -39,7 +39,7 @@ class PlyBinaryBody {
                      CloudBuilder& builder);
   std::vector<std::byte> read_foreign(const PlyElement& element);
 
-  /// Passes over an element without lists.
+  /// Skips an element without lists.
   void skip(const PlyElement& element) { offset_ += element.count * element.fixed_bytes(); }
 
   /// Reads the vertices from `first` on, as many as `builder` has room for, of an element without

@@ -35,7 +35,7 @@ struct PlyElement {
 struct PlyHeader {
   PlyEncoding encoding = PlyEncoding::kAscii;
   std::vector<PlyElement> elements;
-  std::vector<std::string> comments;  ///< "obj_info ..." lines keep that word in front
+  std::vector<std::string> comments;  ///< "obj_info ..." lines keep that prefix
   std::size_t bytes = 0;              ///< where the data begins
   std::size_t lines = 0;
 };
@@ -43,11 +43,10 @@ struct PlyHeader {
 /// Reads the header at the start of `file`. Throws Error(kUnreadable) naming file and line.
 PlyHeader read_ply_header(const InputFile& file);
 
-/// The same from a text that holds the whole header, for messages said to be in `path`.
+/// The same from a text that holds the whole header; messages name `path`.
 PlyHeader parse_ply_header(const std::filesystem::path& path, std::string_view text);
 
-/// The name by which every reader knows a type: uchar, int, double, ...; PLY has no 64-bit
-/// integers.
+/// The name of a type that every reader knows: uchar, int, double, ...; PLY has no 64-bit integers.
 std::string_view ply_type_name(ScalarType type);
 
 }  // namespace pcednet::io

@@ -12,7 +12,7 @@ namespace {
 /// Bytes beside the vertices that are read with part 0.
 constexpr std::uint64_t kMostBesides = std::uint64_t{1} << 24;
 
-/// Whether a column of that name and type becomes what it becomes whatever its numbers are.
+/// Whether the role of a column follows from its name and type, for any numbers.
 bool speaks_for_itself(const Column& column) {
   if (column.type == ScalarType::kUint8) return true;
   const std::string name = lower_case(column.name);

@@ -28,7 +28,7 @@ class AsciiBody {
         text_(file.text(header.bytes)),
         lines_(text_, header.lines) {}
 
-  /// Where the first row of all begins.
+  /// The offset of the very first row.
   std::uint64_t offset() const { return offset_; }
 
   /// `columns` are the scalar properties, with the types to read them in.
@@ -62,7 +62,7 @@ class AsciiBody {
     return bytes;
   }
 
-  /// Bytes after the rows read so far, but for blank lines between.
+  /// Bytes after the rows read so far, without blank lines between.
   std::uint64_t unread() {
     std::string_view line;
     while (lines_.next(line)) {

@@ -14,7 +14,7 @@ namespace pcednet::io {
 
 namespace {
 
-/// A system in PROJ's terms, and what it needs to live.
+/// A PROJ system, and the objects it depends on.
 struct Projected {
   std::unique_ptr<PJ_CONTEXT, decltype(&proj_context_destroy)> context{proj_context_create(),
                                                                        proj_context_destroy};
@@ -63,7 +63,7 @@ std::optional<std::vector<std::array<double, 2>>> to_wgs84(
   if (!wgs84) return std::nullopt;
   const auto exact = own(
       proj_create_crs_to_crs_from_pj(context, found.system.get(), wgs84.get(), nullptr, nullptr));
-  // East before north, whatever the order of the systems' axes is.
+  // East before north, for any order of the systems' axes.
   const auto change = own(exact ? proj_normalize_for_visualization(context, exact.get()) : nullptr);
   if (!change) return std::nullopt;
   for (std::array<double, 2>& point : points) {

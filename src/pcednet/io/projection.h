@@ -9,13 +9,13 @@
 
 namespace pcednet::io {
 
-/// Whether this build has PROJ; without it the functions below know nothing.
+/// Whether this build has PROJ; without it the functions below know no system.
 bool has_projections();
 
-enum class WktVersion { k1, k2 };  ///< OGC 01-009, as LAS takes it; ISO 19162:2019
+enum class WktVersion { k1, k2 };  ///< OGC 01-009, as in LAS; ISO 19162:2019
 
-/// The definition of a system on one line: of its WKT, otherwise of its codes. Empty if PROJ does
-/// not know it.
+/// The definition of a system on one line: from its WKT, otherwise from its codes. Empty if PROJ
+/// does not know it.
 std::string definition_of(const CoordinateSystem& system, WktVersion version);
 
 /// Points (x, y) of a system as (longitude, latitude) of WGS 84, in degrees. None if PROJ does not

@@ -34,7 +34,7 @@ bool to_labels(const Attribute& attribute, std::vector<std::uint8_t>& labels) {
   return true;
 }
 
-/// How the numbers of colour columns are to be read.
+/// The meaning of the numbers in colour columns.
 enum class ColourScale { kNone, kBytes, kUnit, kWords };
 
 ColourScale find_scale(const std::array<const Attribute*, 3>& channels, std::size_t points) {
@@ -56,13 +56,13 @@ ColourScale find_scale(const std::array<const Attribute*, 3>& channels, std::siz
   return all_word ? ColourScale::kWords : ColourScale::kNone;
 }
 
-/// What a number is multiplied with to lie in 0 ... 255.
+/// The factor that scales a number to 0 ... 255.
 double factor_of(ColourScale scale) {
   if (scale == ColourScale::kUnit) return 255.0;
   return scale == ColourScale::kWords ? 1.0 / 257.0 : 1.0;
 }
 
-/// Takes 0xAARRGGBB apart.
+/// Unpacks 0xAARRGGBB.
 void unpack_colours(PointCloud& cloud, std::size_t packed_index, bool with_alpha) {
   const Attribute packed = cloud.attributes[packed_index];
   std::vector<std::uint8_t> alphas(cloud.size());
@@ -92,7 +92,7 @@ bool promote_channels(PointCloud& cloud, const std::vector<std::string>& names,
   const ColourScale scale = find_scale(channels, cloud.size());
   if (scale == ColourScale::kNone) {
     warnings.push_back(names[0] + ", " + names[1] + " and " + names[2] +
-                       " are no colours in 0 ... 255 or 0 ... 1: kept as attributes");
+                       " are not colours in 0 ... 255 or 0 ... 1: kept as attributes");
     return false;
   }
   const double factor = factor_of(scale);

@@ -11,26 +11,27 @@
 
 namespace pcednet::io {
 
-/// The names of a label column, and of the three colour columns, in lower case; earlier ones win.
+/// The names of a label column, and of the three colour columns, in lower case; earlier ones take
+/// precedence.
 const std::vector<std::string>& label_names();
 const std::vector<std::vector<std::string>>& colour_names();
 
-/// The label that a number of any type means: itself if it is whole and in 0 ... 255, kUnlabelled
+/// The label that a number of any type denotes: itself if it is whole and in 0 ... 255, kUnlabelled
 /// if it is -1 or NaN, otherwise none.
 std::optional<std::uint8_t> to_label(double value);
 
-/// Makes the attribute named as labels the labels of `cloud`, if all its values mean labels.
+/// Makes the attribute with a label name the labels of `cloud`, if all its values denote labels.
 void promote_labels(PointCloud& cloud);
 
-/// Makes attributes named as colours the colours of `cloud`: whole numbers in 0 ... 255 as they
+/// Makes attributes with colour names the colours of `cloud`: whole numbers in 0 ... 255 as they
 /// are; floating numbers in 0 ... 1 and 16-bit numbers scaled to 8 bits, with a warning if that
-/// rounds; the packed rgb or rgba of PCD taken apart (an alpha other than 255 stays as attribute
+/// rounds; the packed rgb or rgba of PCD unpacked (an alpha other than 255 becomes the attribute
 /// `alpha`).
 void promote_colours(PointCloud& cloud, std::vector<std::string>& warnings);
 
-/// For a text file that calls its positions float but may spell them with more digits: `declared`,
-/// read as the file says, unless a float moves a coordinate beyond 10,000, as in national grids;
-/// then what `read_wide` reads with double positions.
+/// For a text file that declares its positions float but may give them more digits: `declared`,
+/// read with the declared type, unless float changes a coordinate beyond 10,000, as in national
+/// grids; then the result of `read_wide`, with double positions.
 LoadedCloud keep_spelled_digits(LoadedCloud declared,
                                 const std::function<LoadedCloud()>& read_wide);
 

@@ -8,7 +8,7 @@
 
 namespace pcednet::io {
 
-/// Hands rows that become known one after the other to a builder, many at a time.
+/// Hands rows that arrive one by one to a builder, many at a time.
 class RowFeeder {
  public:
   explicit RowFeeder(CloudBuilder& builder)
@@ -16,7 +16,7 @@ class RowFeeder {
         capacity_(std::clamp<std::size_t>(builder.size(), 1, 1024)),
         rows_(capacity_ * builder.row_bytes()) {}
 
-  /// Room for the next row, which the caller fills before the next call.
+  /// Memory for the next row, which the caller fills before the next call.
   std::byte* next_row() {
     if (used_ == capacity_) flush();
     return rows_.data() + builder_.row_bytes() * used_++;

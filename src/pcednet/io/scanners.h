@@ -7,8 +7,8 @@
 
 namespace pcednet::io {
 
-/// The places that comments of the form "scanner INDEX: X Y Z" name; what read_e57 keeps in
-/// comments, so that it survives in another format. Those not named are NaN.
+/// The positions in comments of the form "scanner INDEX: X Y Z", where read_e57() keeps them so
+/// that they survive in other formats. Unnamed ones are NaN.
 std::vector<Vec3> scanners_of_comments(const std::vector<std::string>& comments);
 
 }  // namespace pcednet::io

@@ -31,7 +31,7 @@ bool parse_as(std::string_view token, T& value) {
   const std::errc error = parse_all(token, value);
   if (error == std::errc{}) return true;
   if constexpr (std::is_same_v<T, double>) {
-    // from_chars does not tell too small from too large.
+    // from_chars does not distinguish too small from too large.
     const bool is_tiny = error == std::errc::result_out_of_range &&
                          token.find_first_of("eE") + 1 == token.find('-', 1);
     if (is_tiny) value = 0.0;

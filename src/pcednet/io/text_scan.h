@@ -33,7 +33,7 @@ inline constexpr std::string_view kBlanks = " \t\r\v\f";
 
 std::string_view trim(std::string_view text);
 
-/// A set of characters, quick to ask.
+/// A set of characters with fast lookup.
 class Separators {
  public:
   constexpr explicit Separators(std::string_view characters) {
@@ -53,7 +53,7 @@ void split(std::string_view line, std::vector<std::string_view>& fields,
 /// The double nearest to what `token` spells; none if that is too large. "nan" and "inf" count.
 std::optional<double> parse_double(std::string_view token);
 
-/// Says why parse_double gives none.
+/// The reason why parse_double() returns none.
 std::string number_fault(std::string_view token);
 
 /// A whole number without sign.

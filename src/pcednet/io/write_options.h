@@ -9,7 +9,7 @@ struct WriteOptions {
   Overwrite overwrite = Overwrite::kNo;
   bool ascii = false;       ///< numbers as text in formats that have both
   bool new_normals = true;  ///< LAS: normals become extra bytes even where the input had none
-  /// COPC: of the work that is left when all points are known. Null, or outlives the writing.
+  /// COPC: progress of the work after the last point has arrived. Null, or outlives the writing.
   const Progress* progress = nullptr;
 };
 

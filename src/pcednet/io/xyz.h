@@ -13,14 +13,14 @@
 
 namespace pcednet::io {
 
-/// Reads points from a text, one a line, numbers separated by blanks, tabs, semicolons or commas;
-/// or with decimal commas, if a line shows that they are: see commas_of().
+/// Reads points from a text, one a line, with numbers separated by blanks, tabs, semicolons or
+/// commas; or with decimal commas, if a line proves it: see commas_of().
 ///
 /// Lines that begin with # or // are comments; a line of names, commented or not, with x, y and z
 /// among them names the columns, which CloudBuilder then reads as of type double. Without names,
-/// columns after the third are taken for normals, colours or labels by what they hold, with a
-/// warning that says so. A first line with one whole number is the count of points. Throws
-/// Error(kUnreadable) naming the line that does not fit the others.
+/// columns after the third are taken for normals, colours or labels by their values, with a
+/// warning. A first line with one whole number is the count of points. Throws Error(kUnreadable)
+/// naming the line that does not fit the others.
 LoadedCloud read_xyz(const InputFile& file);
 
 /// Writes points as text: comments and names behind #, then one point a line; .csv with commas and
@@ -30,7 +30,7 @@ std::unique_ptr<PartWriter> create_xyz_parts(const std::filesystem::path& path,
                                              const PartOutline& outline,
                                              const WriteOptions& options);
 
-/// What text does not keep, one sentence part each.
+/// The parts of a cloud that text does not keep, as phrases.
 std::vector<std::string> xyz_losses(const std::filesystem::path& path, const PartOutline& outline);
 
 }  // namespace pcednet::io

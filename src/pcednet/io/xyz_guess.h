@@ -6,7 +6,7 @@
 
 namespace pcednet::io {
 
-/// Numbers as a text holds them, row after row.
+/// The numbers of a text, row by row.
 struct NumberTable {
   std::vector<double> numbers;
   std::size_t columns = 0;
@@ -14,7 +14,7 @@ struct NumberTable {
   std::size_t rows() const { return columns == 0 ? 0 : numbers.size() / columns; }
 };
 
-/// Whether the vector at `n` is of about unit length.
+/// Whether the vector at `n` has about unit length.
 bool looks_like_normal(const double* n);
 
 /// Names for the columns of a table without names: x y z; then, from the left, three columns of

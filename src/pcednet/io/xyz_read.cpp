@@ -114,7 +114,7 @@ class TableReader {
     take_row(line);
   }
 
-  /// The first line that leaves no doubt decides for the file.
+  /// The first unambiguous line decides for the file.
   void decide_on_commas(std::string_view line, Lines after) {
     std::size_t number = number_, unclear = 0;
     do {

@@ -21,7 +21,7 @@ bool normals_show(const PointCloud& part) {
   return true;
 }
 
-/// Whether the columns speak for themselves: see create_xyz_parts.
+/// Whether the columns need no names: see create_xyz_parts().
 bool is_plain(const std::string& extension, const PartOutline& outline) {
   const PointCloud& cloud = *outline.first;
   const bool more = !cloud.colours.empty() || cloud.has_labels() || !cloud.attributes.empty();

@@ -9,9 +9,9 @@
 
 namespace pcednet::lines {
 
-/// Puts circles where narrow bores and pins end, in place of the pieces there. Chains cannot
-/// follow such an edge, as no plane fits its wall; the points themselves are on a cylinder and a
-/// plane. In much noise nothing is done.
+/// Replaces the pieces where narrow bores and pins end by circles. Chains cannot follow such an
+/// edge, as no plane fits its wall; the points themselves are on a cylinder and a plane. Does
+/// nothing in much noise.
 void find_bores(std::vector<Piece>& pieces, const OrderedPoints& cloud, const Sampling& sampling,
                 const Progress* progress);
 

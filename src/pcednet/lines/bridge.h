@@ -12,8 +12,8 @@ struct BridgeOptions {
   double noise;      ///< in spacings
 };
 
-/// Joins pieces on one line or circle with one wedge over gaps wider than those of join_pieces(),
-/// if neither meets another piece there and the surface goes on between them.
+/// Joins pieces on one line or circle and with one wedge over gaps wider than those of
+/// join_pieces(), if neither meets another piece there and the surface continues between them.
 void bridge_gaps(std::vector<Piece>& pieces, const OrderedPoints& cloud,
                  const BridgeOptions& options);
 

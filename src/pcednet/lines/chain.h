@@ -14,7 +14,7 @@ struct ChainNode {
   Vec3 along;  ///< unit, towards the next node
   Vec3 side_a, side_b;
   double spacing = 0.0;
-  double edge_points = 0.0;  ///< how many of its points are of an edge class
+  double edge_points = 0.0;  ///< number of its points of an edge class
   double probability = 0.0;  ///< their mean
   double bend = 0.0;         ///< mean
   double sharp = 0.0;        ///< share of sharp-edge points
@@ -27,19 +27,20 @@ struct Chain {
   bool closed = false;
 };
 
-/// How alike two wedges are: the smaller cosine of their sides, matched one way or the other.
+/// The similarity of two wedges: the smaller cosine between their sides, in the better of the two
+/// matchings.
 struct WedgeMatch {
   double cosine;
   bool crossed;  ///< side a of one is side b of the other
 };
 WedgeMatch match(const Vec3& side_a, const Vec3& side_b, const Vec3& other_a, const Vec3& other_b);
 
-/// Every crease again, averaged with those nearer than `reach` (in spacings) that continue it.
+/// Every crease averaged with those nearer than `reach` (in spacings) that continue it.
 std::vector<Crease> smoothed(std::span<const Crease> creases, double reach,
                              const Progress* progress);
 
-/// Chains from one end to the other, those of the densest creases first. They run over gaps up to
-/// `gap` where creases beyond continue them.
+/// Chains from end to end, those of the densest creases first. They cross gaps up to `gap` where
+/// creases beyond continue them.
 std::vector<Chain> trace(std::span<const Crease> creases, double gap, double noise,
                          const Progress* progress);
 

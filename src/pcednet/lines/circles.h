@@ -6,11 +6,11 @@
 
 namespace pcednet::lines {
 
-/// Joins arcs of one circle whatever the gaps between them, and closes those of more than half a
-/// circle unless another long piece ends where a gap begins; where edge points of the cloud follow
-/// the circle through its gaps, those of more than a third whatever ends there. Before that,
-/// circles of up to five spacings take the place of the pieces around them that lie on none alone,
-/// unless they are the sides of a polygon.
+/// Joins arcs of one circle across gaps of any size, and closes those that span more than half a
+/// circle unless another long piece ends where a gap begins; those that span more than a third are
+/// closed regardless of other pieces where edge points of the cloud follow the circle through its
+/// gaps. Before that, circles of up to five spacings replace the pieces around them that lie on
+/// none alone, unless these are the sides of a polygon.
 void complete_circles(std::vector<Piece>& pieces, const OrderedPoints& cloud, double tolerance);
 
 }  // namespace pcednet::lines

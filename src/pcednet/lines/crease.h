@@ -19,37 +19,37 @@ namespace pcednet::lines {
 
 class OrderedPoints;
 
-/// What one edge point knows of its edge: the line where two planes beside it meet.
+/// The estimate of an edge at one edge point: the line where two planes beside it meet.
 struct Crease {
   Vec3 at;               ///< the point of that line nearest to the edge point
   Vec3 along;            ///< unit, its sign arbitrary
   Vec3 side_a, side_b;   ///< unit, orthogonal to `along`: in each plane, away from the line
   double spacing;        ///< of the points around it
-  float probability;     ///< of the edge point to be of an edge
-  float bend = 0.0f;     ///< of the surfaces beside it into the wedge, in spacings; 0: plane
+  float probability;     ///< that the edge point is on an edge
+  float bend = 0.0f;     ///< of the adjacent surfaces into the wedge, in spacings; 0: plane
   EdgeClass edge_class;  ///< of the edge point
 };
 
-/// The angle between the normals of two surfaces that leave their edge in these directions,
-/// radians.
+/// The angle, in radians, between the normals of two surfaces that leave their edge in these
+/// directions.
 inline double dihedral_angle(const Vec3& side_a, const Vec3& side_b) {
   return std::numbers::pi - std::acos(std::clamp(side_a.dot(side_b), -1.0, 1.0));
 }
 
-/// The crease of a point, from its nearest others; nothing where there is none.
+/// The crease of a point, from its nearest others; none if there is none.
 using CreaseAt = std::function<std::optional<Crease>(std::uint32_t point,
                                                      std::span<const spatial::Neighbour> others)>;
 
-/// What crease_at() finds at `points` (ascending), in their order, from `count` others of each.
+/// The results of crease_at() at `points` (ascending), in their order, from `count` others of each.
 std::vector<Crease> creases_at(const OrderedPoints& cloud, std::span<const std::uint32_t> points,
                                std::size_t count, Stage& stage, const CreaseAt& crease_at);
 
-/// The creases of the edge points. Edge points without two planes beside them have none.
+/// The creases of the edge points; an edge point without two planes beside it has none.
 std::vector<Crease> find_creases(const OrderedPoints& cloud, const Sampling& sampling,
                                  const Progress* progress);
 
-/// Where the surface ends: beside points that have no neighbours on one side, the line along which
-/// it ends. Both sides of such a crease point into the surface.
+/// The creases where the surface ends: the line of its end, beside points that have no neighbours
+/// on one side. Both sides of such a crease point into the surface.
 std::vector<Crease> find_boundaries(const OrderedPoints& cloud, const Progress* progress);
 
 }  // namespace pcednet::lines

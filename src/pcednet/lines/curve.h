@@ -11,7 +11,7 @@ namespace pcednet::lines {
 
 enum class CurveKind : std::uint8_t { kSegment, kArc, kCircle, kPolyline };
 
-/// An edge as a curve, in the unit and place of the cloud it was found in.
+/// An edge as a curve, in the unit and coordinates of its cloud.
 struct Curve {
   CurveKind kind = CurveKind::kPolyline;
   EdgeClass edge_class = kSharpEdge;
@@ -26,9 +26,9 @@ struct Curve {
   Vec3 axis = Vec3::UnitZ();  ///< unit
   double radius = 0.0;
 
-  double confidence = 0.0;      ///< mean probability of its edge points to be of an edge, 0 to 1
+  double confidence = 0.0;      ///< mean probability that its edge points are on an edge, 0 to 1
   double dihedral_angle = 0.0;  ///< mean angle between the surfaces' normals, radians; 0: flat
-  std::size_t support = 0;      ///< edge points that it stands for
+  std::size_t support = 0;      ///< edge points that it represents
 };
 
 /// "segment", "arc", "circle" or "polyline".

@@ -7,8 +7,8 @@
 
 namespace pcednet::lines {
 
-/// Moves the ends of segments and arcs that meet no other piece: as far as the cloud has points on
-/// both surfaces beside them, but not beside another piece of the same direction. `noise` is in
+/// Extends the ends of segments and arcs that meet no other piece: as far as the cloud has points
+/// on both surfaces beside them, but not beside another piece of the same direction. `noise` is in
 /// spacings.
 void extend_free_ends(std::vector<Piece>& pieces, const OrderedPoints& cloud, double noise);
 

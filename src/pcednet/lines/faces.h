@@ -17,26 +17,26 @@ inline constexpr std::uint32_t kNoFace = std::numeric_limits<std::uint32_t>::max
 struct Face {
   Vec3 point, normal;   ///< the sign of the normal is arbitrary
   std::size_t count;    ///< of its points
-  double within = 0.0;  ///< largest distance of its points, by how far most of them are
+  double within = 0.0;  ///< largest distance of its points, by that of most of them
 
   double height(const Vec3& place) const { return normal.dot(place - point); }
 };
 
-/// A cloud as plane faces.
+/// A cloud segmented into plane faces.
 struct Faces {
   std::vector<Face> faces;
   std::vector<std::uint32_t> of_points;  ///< of each point, or kNoFace
   std::vector<std::uint32_t> others;     ///< the nearest others of each point, row after row
   std::size_t others_of_each = 0;
   double within = 0.0;  ///< largest distance of a point to any face
-  double share = 0.0;   ///< of the points that have a face, one that is no part of a curved surface
+  double share = 0.0;   ///< share of points on faces that are not part of a curved surface
 
   std::span<const std::uint32_t> near(std::size_t point) const {
     return std::span(others).subspan(point * others_of_each, others_of_each);
   }
-  /// Whether the nearest eight others are of the point's own face.
+  /// Whether the eight nearest others are on the point's own face.
   bool is_inside(std::size_t point) const;
-  /// Calls work(point, other) for each point and each near one of another face.
+  /// Calls work(point, other) for each point and each of its near others on another face.
   template <typename Work>
   void for_each_contact(const Work& work) const {
     for (std::uint32_t i = 0; i < of_points.size(); ++i) {
@@ -49,8 +49,8 @@ struct Faces {
 };
 
 /// Grows faces from the flattest points over their neighbours, lets every point choose among the
-/// faces beside it, and unites those that one plane explains. No faces at all, and a share of 0, if
-/// there are more than a hundred: a surface of that many parts is not plane.
+/// adjacent faces, and merges faces that one plane explains. No faces, and a share of 0, if there
+/// are more than a hundred: such a surface does not consist of planes.
 Faces find_faces(const OrderedPoints& cloud, const Sampling& sampling, const Progress* progress);
 
 }  // namespace pcednet::lines

@@ -9,10 +9,10 @@
 
 namespace pcednet::lines {
 
-/// The steps of find_lines(), each to be looked at alone.
+/// The steps of find_lines(), each of which can be returned.
 enum class LineStage : std::uint8_t {
-  kCreases,  ///< a segment of one spacing for each point that may be of an edge; none of roofs
-  kChains,   ///< creases in their order, as polylines; none of roofs
+  kCreases,  ///< a segment of one spacing for each point that may be on an edge; none for roofs
+  kChains,   ///< creases in order along edges, as polylines; none for roofs
   kPieces,   ///< segments, arcs and circles, before they meet in corners
   kCurves,   ///< the result
 };
@@ -22,14 +22,14 @@ struct LineOptions {
   double min_length = 0.0;  ///< shorter curves are left out; 0: 3 spacings
   double gap = 0.0;         ///< curves continue over gaps up to it; 0: 6 spacings
   double angle = 30.0;      ///< degrees: curves are split where they bend by more
-  double tolerance = 0.0;   ///< of the points to a curve; 0: 0.2 spacings, more with noise
-  bool regularise = false;  ///< turns nearly parallel and nearly orthogonal segments so
+  double tolerance = 0.0;   ///< distance of points to a curve; 0: 0.2 spacings, more with noise
+  bool regularise = false;  ///< makes nearly parallel and nearly orthogonal segments exactly so
   bool boundaries = false;  ///< also lines where the sampled surface ends
   LineStage stage = LineStage::kCurves;  ///< the step whose curves are returned
 };
 
-/// The points and what is known of each, in any order. The spans are equally long; the
-/// probabilities may be empty.
+/// The points and their attributes, in any order. The spans have equal length; the probabilities
+/// may be empty.
 struct EdgePoints {
   std::span<const Vec3> positions;
   std::span<const Vec3> normals;          ///< unit, or (0,0,0); their signs do not matter
@@ -44,10 +44,10 @@ struct EdgePoints {
 /// 1. A crease is fitted beside every edge point: where the planes of two surfaces meet.
 /// 2. Creases that continue each other are ordered into chains.
 /// 3. A chain is split into the few segments and arcs that explain it.
-/// 4. Curves are prolonged to the corners in which they meet.
+/// 4. Curves are extended to the corners in which they meet.
 ///
-/// With boundaries, a roof is found as its planes instead: see find_plane_edges(). Gap, angle and
-/// tolerance are not used there.
+/// With boundaries, the lines of a roof come from its planes instead: see find_plane_edges(). Gap,
+/// angle and tolerance are not used there.
 ///
 /// The result is the same for any number of threads and any order of the points. Throws
 /// Error(kUsage) if an option is negative or not finite, or if the spans differ in length.

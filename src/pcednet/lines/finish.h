@@ -11,20 +11,22 @@ struct FinishOptions {
   double min_length;   ///< shorter curves are left out
   double tolerance;    ///< in spacings
   double noise;        ///< in spacings
-  bool exact = false;  ///< pieces are where planes of many points meet: corners are near their ends
+  bool exact = false;  ///< pieces are intersections of planes through many points: corners are near
+                       ///< their ends
 };
 
-/// The class of the edge that the piece is of: kSmoothEdge if the surfaces beside it bend into it
-/// and few of its points are sharp-edge.
+/// The class of the piece's edge: kSmoothEdge if the adjacent surfaces bend into it and few of its
+/// points are sharp-edge.
 EdgeClass class_of(const Piece& piece, double noise);
 
 /// The piece between its own ends.
 Curve curve_of(const Piece& piece, const FinishOptions& options);
 
-/// Prolongs the pieces to their corners, drops loose short ones, and makes curves of the others.
+/// Extends the pieces to their corners, drops loose short ones, and turns the others into curves.
 std::vector<Curve> finish(std::vector<Piece> pieces, const FinishOptions& options);
 
-/// Turns segments that are nearly parallel to a longer one, or orthogonal to one or two, so.
+/// Makes segments that are nearly parallel to a longer one, or nearly orthogonal to one or two,
+/// exactly so.
 void regularise(std::vector<Piece>& pieces);
 
 }  // namespace pcednet::lines

@@ -18,13 +18,13 @@ struct Fit {
 
 Fit fit_segment(std::span<const ChainNode> nodes);
 
-/// kPolyline if the nodes are on no circle.
+/// kPolyline if no circle fits the nodes.
 Fit fit_arc(std::span<const ChainNode> nodes);
 
 /// The point of the unbounded line or circle that is nearest to `place`.
 Vec3 nearest_on(const Fit& fit, const Vec3& place);
 
-/// The direction there, unit, with the sign of the axis' counter-clockwise sense on a circle.
+/// The direction there, unit; counter-clockwise about the axis on a circle.
 Vec3 tangent_at(const Fit& fit, const Vec3& place);
 
 }  // namespace pcednet::lines

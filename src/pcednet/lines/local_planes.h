@@ -17,7 +17,7 @@ struct NearPoints {
   std::size_t count = 0;
   Row x, y, z;
   Row normal_x, normal_y, normal_z;  ///< unit or zero
-  Row edginess;                      ///< probability of an edge: its normal is not to be trusted
+  Row edginess;                      ///< probability of an edge, where normals are unreliable
 
   void add(const Vec3& offset, const Vec3& normal, double probability);
   Vec3 offset(std::size_t i) const { return {x[i], y[i], z[i]}; }
@@ -27,12 +27,12 @@ struct NearPoints {
 struct LocalPlane {
   Vec3 normal;
   double distance;  ///< points x of the plane: normal . x = distance
-  int support;      ///< points on it that are on none found before
+  int support;      ///< points on it and on no plane found before
 
   double operator()(const Vec3& x) const { return normal.dot(x) - distance; }
 };
 
-/// Sums over weighted points, of which their plane of least squares follows.
+/// Sums over weighted points, which determine their least-squares plane.
 struct Moments {
   double weight = 0.0;
   Vec3 sum = Vec3::Zero();
@@ -52,11 +52,11 @@ struct Moments {
   Mat3 covariance() const { return products / weight - mean() * mean().transpose(); }
 };
 
-/// Their plane; none if they are of less weight than `least_weight`, or in a row, which has many:
-/// if the variance along their shorter side is not above `least_width`.
+/// Their plane; none if their weight is below `least_weight`, or if they are collinear: the
+/// variance along their shorter side is not above `least_width`.
 std::optional<LocalPlane> plane_of(const Moments& moments, double least_weight, double least_width);
 
-/// The planes that explain the points, the one with most support first, at most four. A point is on
+/// The planes that explain the points, at most four, the one with most support first. A point is on
 /// a plane if it is nearer than `tolerance`.
 void find_planes(const NearPoints& points, double tolerance, std::vector<LocalPlane>& planes);
 

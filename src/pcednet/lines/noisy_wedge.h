@@ -15,13 +15,13 @@ struct HalfPlanes {
   Vec3 side_a, side_b;  ///< unit, orthogonal to `along`: in each plane, away from the line
 };
 
-/// The half-planes that explain the nearest `count` points, which have noise of standard deviation
-/// `noise` (in spacings); nothing if none do, or if a smooth surface explains them better.
+/// The half-planes that explain the nearest `count` points, with noise of standard deviation
+/// `noise` (in spacings); none if no pair does, or if a smooth surface explains them better.
 ///
-/// Planes of some of the points, as find_planes() fits them, need normals; in noise these are means
-/// over an area that reaches across the edge. Here all points count: they are cut along lines of
-/// several directions, each part gets its plane by least squares, and the best cut is improved with
-/// each point on the nearer half-plane.
+/// find_planes() fits planes to some of the points and needs normals; in noise these are means over
+/// an area that reaches across the edge. Here all points count: they are divided along lines of
+/// several directions, each part gets its least-squares plane, and the best division is improved by
+/// assigning each point to the nearer half-plane.
 std::optional<HalfPlanes> fit_half_planes(const NearPoints& points, std::size_t count,
                                           double noise);
 

@@ -27,7 +27,7 @@ class OrderedPoints {
   bool is_edge(std::size_t i) const {
     return edge_class(i) == kSharpEdge || edge_class(i) == kSmoothEdge;
   }
-  /// To be of an edge; by the class alone where there are no probabilities.
+  /// The probability of an edge; from the class alone if there are no probabilities.
   float probability(std::size_t i) const;
   const spatial::KdTree& tree() const { return *tree_; }
 
@@ -49,7 +49,7 @@ class OrderedPoints {
   std::optional<spatial::NeighbourSearch> search_;
 };
 
-/// The side of a square that holds one point, from the nearest others of a point; 0 if there are
+/// The side of the square that holds one point, from the nearest others of a point; 0 if there are
 /// none.
 double spacing_of(std::span<const spatial::Neighbour> others);
 

@@ -10,7 +10,8 @@ namespace pcednet::lines {
 /// A point of an outline.
 struct OutlinePoint {
   std::size_t index;
-  Eigen::Vector2d outward;  ///< unit: towards the middle of where the disc rests on the point
+  Eigen::Vector2d
+      outward;  ///< unit: towards the middle of the positions where the disc rests on the point
 };
 
 /// The chains of points that a disc of this radius touches as it rolls around the points of a

@@ -13,7 +13,7 @@
 
 namespace pcednet::lines {
 
-/// The tolerance of boundaries is no less, in spacings: where points end is a matter of chance.
+/// The least tolerance of boundaries, in spacings: the end of the points is a matter of chance.
 inline constexpr double kBoundaryTolerance = 0.4;
 
 /// One curve in the making.
@@ -31,7 +31,7 @@ inline bool is_boundary(const ChainNode& node) {
   return node.boundary > 0.5;
 }
 
-/// `tolerance` (in spacings), or that of boundaries if the node is of one.
+/// `tolerance` (in spacings), or that of boundaries if the node is on one.
 inline double tolerance_at(const ChainNode& node, double tolerance) {
   return is_boundary(node) ? std::max(tolerance, kBoundaryTolerance) : tolerance;
 }
@@ -41,14 +41,14 @@ inline const ChainNode& node_at(const Piece& piece, std::size_t side) {
   return side == 0 ? piece.nodes.front() : piece.nodes.back();
 }
 
-/// The direction of the node's curve at `place`, in the node's sense; that of the node where there
-/// is neither line nor circle.
+/// The direction of the node's curve at `place`, in the node's sense; the direction of the node if
+/// there is neither line nor circle.
 Vec3 along_at(const Fit& fit, const ChainNode& node, const Vec3& place);
 
-/// The direction in which the piece would go on beyond an end.
+/// The direction in which the piece would continue beyond an end.
 Vec3 outward(const Piece& piece, std::size_t side);
 
-/// Whether the wedges at two nodes are those of one edge.
+/// Whether the wedges at two nodes belong to one edge.
 bool same_wedge(const ChainNode& a, const ChainNode& b);
 
 /// An end of a piece.
@@ -91,8 +91,8 @@ std::vector<Piece> pieces_of(const Chain& chain, const std::vector<Run>& runs,
 /// Length between the ends.
 double length_of(const Piece& piece);
 
-/// Both as one, joined at these ends, which may face each other at any distance; nothing if no
-/// segment or arc fits them together. `tolerance` is in spacings.
+/// Both pieces as one, joined at these ends, which may face each other at any distance; none if no
+/// segment or arc fits both. `tolerance` is in spacings.
 std::optional<Piece> joined_at(const Piece& a, std::size_t side_a, const Piece& b,
                                std::size_t side_b, double tolerance);
 

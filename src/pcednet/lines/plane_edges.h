@@ -15,16 +15,16 @@ struct Fold {
   std::uint32_t face, other;
 };
 
-/// Where the planes of faces meet whose points are beside each other there.
+/// The intersections of the planes of faces whose points are adjacent there.
 std::vector<Fold> find_folds(const OrderedPoints& cloud, const Faces& faces, double spacing);
 
-/// Straight parts of the outlines of faces where no fold is. The foot of a step, above which
-/// another face begins, has none. `plan` holds the points of the cloud at height 0.
+/// Straight parts of the outlines of faces away from folds. The foot of a step, above which another
+/// face begins, has none. `plan` holds the points of the cloud at height 0.
 std::vector<Piece> find_eaves(const OrderedPoints& cloud, const Faces& faces, double spacing,
                               const std::vector<Fold>& folds, const spatial::KdTree& plan);
 
-/// The folds and eaves of a roof: of a surface seen from above (z is up), nowhere above itself,
-/// nine in ten of whose points are on plane faces. Nothing for other clouds.
+/// The folds and eaves of a roof: a surface seen from above (z is up), nowhere above itself, with
+/// nine in ten points on plane faces. None for other clouds.
 std::optional<std::vector<Piece>> find_plane_edges(const OrderedPoints& cloud,
                                                    const Sampling& sampling,
                                                    const Progress* progress);

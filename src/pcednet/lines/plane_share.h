@@ -4,9 +4,9 @@
 
 namespace pcednet::lines {
 
-/// The share of the points that are of plane faces, not of parts of a curved surface: the heights
-/// of a part of one follow a parabola that turns nearly as much as the face beside it is turned. A
-/// face of a roof may sag.
+/// The share of the points on plane faces, as opposed to parts of a curved surface: the heights of
+/// such a part follow a parabola that turns nearly as much as the adjacent face is turned. A face
+/// of a roof may sag.
 double plane_share(const OrderedPoints& cloud, const Faces& faces, double spacing);
 
 }  // namespace pcednet::lines

@@ -9,9 +9,9 @@
 
 namespace pcednet::lines {
 
-/// Places pieces by all points beside them: segments where the planes of both sides meet, arcs and
-/// circles where two cones about one axis do (cylinders and planes are cones, too), boundaries
-/// where the strip of points along them ends. Pieces with sides of other shapes stay as they are.
+/// Places pieces by all adjacent points: segments where the planes of both sides meet, arcs and
+/// circles where two cones about one axis meet (cylinders and planes are cones, too), boundaries
+/// where the strip of points along them ends. Pieces with sides of other shapes stay unchanged.
 void refine(std::vector<Piece>& pieces, const OrderedPoints& cloud, const Sampling& sampling,
             const Progress* progress);
 

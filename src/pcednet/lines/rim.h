@@ -14,8 +14,8 @@ struct Rim {
   bool is_bore;  ///< the plane is around the circle; otherwise within it: a pin
 };
 
-/// The rim that an edge point is near; nothing if there is none with a radius of 1.5 to 6 spacings.
-/// `reach` is how far points may be from wall and plane, in spacings.
+/// The rim near an edge point; none if there is none with a radius of 1.5 to 6 spacings. `reach` is
+/// the largest distance of points from wall and plane, in spacings.
 std::optional<Rim> rim_near(const OrderedPoints& cloud, std::uint32_t edge_point, double reach,
                             double spacing);
 

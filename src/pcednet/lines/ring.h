@@ -12,7 +12,7 @@ inline constexpr double kWholeTurn = 2.0 * std::numbers::pi;
 inline constexpr std::size_t kLeastArc = 5;     ///< nodes
 inline constexpr double kSmallestRadius = 1.2;  ///< in spacings
 
-/// The pieces as they are at first, by their first nodes and by their ends.
+/// The initial pieces, indexed by their first nodes and by their ends.
 struct PieceIndex {
   explicit PieceIndex(const std::vector<Piece>& pieces);
 
@@ -21,10 +21,10 @@ struct PieceIndex {
   double largest_spacing = 0.0;
 };
 
-/// Whether the wedges at two nodes are alike, seen from the axis of the circle.
+/// Whether the wedges at two nodes agree, seen from the axis of the circle.
 bool same_wedge(const Fit& circle, const ChainNode& a, const ChainNode& b);
 
-/// Whether the piece is of a small circle, or of what is seen of its wall.
+/// Whether the piece belongs to a small circle, or to the visible part of its wall.
 bool belongs_to(const Fit& circle, const Piece& piece);
 
 /// The angle of `place` about the axis, from `x`, which is unit and orthogonal to it.
@@ -39,12 +39,12 @@ struct Gap {
 /// Sorts the nodes about the axis and returns the gaps between them.
 std::vector<Gap> sort_about_axis(const Fit& circle, std::vector<ChainNode>& nodes);
 
-/// Whether edge points lie all along the gaps of a circle that is wide enough to tell.
+/// Whether edge points lie all along the gaps of a circle that is large enough for the test.
 bool edges_follow(const Fit& circle, const std::vector<Gap>& gaps, double spacing,
                   const OrderedPoints& cloud);
 
-/// Whether an end of another long piece is where a gap begins; those in `joined`, which is
-/// ascending, do not count.
+/// Whether another long piece ends where a gap begins; pieces in `joined`, which is ascending, do
+/// not count.
 bool is_blocked(const std::vector<Gap>& gaps, const std::vector<Piece>& pieces,
                 const PieceIndex& index, const std::vector<std::size_t>& joined);
 

@@ -4,13 +4,13 @@ namespace pcednet::lines {
 
 class OrderedPoints;
 
-/// Spacing and noise of a cloud, from points off its edges; from all points if none is off.
+/// Spacing and noise of a cloud, from points off its edges; from all points if all are on edges.
 struct Sampling {
   double spacing = 0.0;  ///< sqrt of the area per point, median
   double noise = 0.0;    ///< of points about the plane of their neighbours, in spacings
 };
 
-/// Noise, in spacings, beyond which wedges, pieces and their ends are judged by other rules.
+/// Noise, in spacings, above which other rules apply to wedges, pieces and their ends.
 constexpr double kMuchNoise = 0.2;
 
 Sampling measure_sampling(const OrderedPoints& cloud);

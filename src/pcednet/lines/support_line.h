@@ -7,24 +7,24 @@
 
 namespace pcednet::lines {
 
-/// Points first to last of an outline and the line that they support: `normal` . p = `offset`, no
-/// point is beyond it.
+/// Points first to last of an outline and the line through them, `normal` . p = `offset`, with no
+/// point beyond it.
 struct SupportLine {
   std::size_t first, last;
   Eigen::Vector2d normal;  ///< unit, outward
   double offset;
 };
 
-/// The straight parts of an outline, in its order: points follow each other with the inside on
-/// their left. Those of least
+/// The straight parts of an outline, in its order; the interior is on the left of consecutive
+/// points. They minimise
 ///
 ///     sum over lines of (a price + points that the empty area between line and outline would hold)
 ///
-/// which is the negative logarithm of the chance of such an outline of points drawn at random:
-/// `spacing` squared is the area of one point.
+/// which is the negative logarithm of the probability of such an outline if points are drawn at
+/// random: `spacing` squared is the area per point.
 std::vector<SupportLine> straight_parts(std::span<const Eigen::Vector2d> outline, double spacing);
 
-/// The same points' line of another direction, if the outline does not speak against it.
+/// The line of the same points with another direction, if the outline is consistent with it.
 std::optional<SupportLine> turned(const SupportLine& line, const Eigen::Vector2d& normal,
                                   std::span<const Eigen::Vector2d> outline, double spacing);
 

@@ -8,8 +8,8 @@
 
 namespace pcednet::nn {
 
-/// A model made ready to be run over blocks of points. The model must outlive it; its parameters
-/// may change in between.
+/// A model prepared for blocks of points. The model must outlive it; its parameters may change
+/// between runs.
 class Evaluator {
  public:
   /// Throws Error(kUsage) if the model's parts do not fit each other.
@@ -21,7 +21,7 @@ class Evaluator {
   int classes() const { return model_->network.architecture.classes; }
   int inputs() const { return model_->network.architecture.inputs(); }
 
-  /// True if every point takes two lanes, its flipped twin in the second half of the row.
+  /// True if every point takes two lanes, with its flipped twin in the second half of the row.
   bool paired() const { return model_->sign_rule.symmetry == Symmetry::kAverage; }
 
   /// The lanes of a table for `points` points (a multiple of kLaneStep).

@@ -77,7 +77,7 @@ double GradientMachine::run_chunk(Workspace& w, const TrainingSet& set,
   for (std::size_t p = 0; p < kChunk; ++p) {
     const std::size_t sample = chosen[std::min(p, chosen.size() - 1)];
     w.rows[p] = set.samples.data() + sample * inputs;
-    // The samples lie anywhere in memory: ask for all of them before the first is needed.
+    // The samples are scattered in memory: prefetch all before the first is needed.
     for (std::size_t u = 0; u < inputs; u += 16) __builtin_prefetch(w.rows[p] + u);
     w.weights[p] = p < chosen.size() ? weight : 0.0f;
   }

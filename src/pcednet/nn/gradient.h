@@ -14,7 +14,7 @@ namespace pcednet::nn {
 /// The loss of a model over some samples and its derivative by the parameters.
 ///
 /// The loss is the mean cross-entropy -sum_c target_c log p_c. With Symmetry::kAverage p is the
-/// softmax of the averaged logits, so what is trained is what is predicted.
+/// softmax of the averaged logits, so training uses the predicted probabilities.
 class GradientMachine {
  public:
   /// `model` must outlive it; its parameters may change between calls.

@@ -13,8 +13,8 @@ namespace pcednet::nn {
 template <typename T, std::size_t N>
 using Names = std::array<std::pair<T, std::string_view>, N>;
 
-/// The metadata of a model file, taken apart key by key. Every function throws
-/// Error(kModelMismatch), naming the file, where it cannot do what it says.
+/// The metadata of a model file, consumed key by key. Every function throws Error(kModelMismatch),
+/// naming the file, on failure.
 class Metadata {
  public:
   Metadata(std::map<std::string, std::string> values, std::string file)
@@ -49,7 +49,7 @@ class Metadata {
 
   [[noreturn]] void refuse_value(const std::string& key, const std::string& value) const;
 
-  /// All that was not taken.
+  /// Everything not taken.
   std::map<std::string, std::string>& rest() { return values_; }
 
  private:

@@ -10,14 +10,14 @@
 
 namespace pcednet::nn {
 
-/// What makes the answer the same when all normals of a cloud are flipped, to the last bit.
+/// How the answer is made invariant, to the last bit, under a flip of all normals of a cloud.
 enum class Symmetry {
-  kNone,       ///< nothing: the answer depends on the side the normals point to
+  kNone,       ///< not: the answer depends on the side the normals point to
   kAverage,    ///< the logits of a sample and of its flipped twin are averaged (twice the work)
-  kCanonical,  ///< of the two the one is used whose deciding feature sums to more than zero
+  kCanonical,  ///< of the two, the one whose deciding feature has a positive sum is used
 };
 
-/// How samples answer to flipped normals.
+/// How features and network respond to flipped normals.
 struct SignRule {
   Symmetry symmetry = Symmetry::kNone;
   std::vector<std::uint8_t> odd_features =
@@ -25,7 +25,7 @@ struct SignRule {
   int deciding_feature = 0;  ///< of kCanonical: summed over the scales
 };
 
-/// A trained network with all that is needed to use it on raw samples.
+/// A trained network with everything needed to apply it to raw samples.
 struct Model {
   Network network;
   Standardisation standardisation;

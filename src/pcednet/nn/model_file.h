@@ -17,7 +17,7 @@ namespace pcednet::nn {
 Safetensors to_safetensors(const Model& model);
 
 /// Throws Error(kModelMismatch), naming the file and what does not fit, unless the file holds
-/// exactly the tensors, of exactly the shapes, that its metadata calls for, all of them finite.
+/// exactly the tensors, of exactly the shapes, that its metadata requires, all of them finite.
 Model from_safetensors(const Safetensors& content, const std::string& name);
 
 }  // namespace pcednet::nn

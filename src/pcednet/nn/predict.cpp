@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t kPoints = kLaneStep;
 constexpr std::size_t kTask = 128 * kPoints;
 
-/// Asks for memory that will be read soon, so that it arrives during the work on what is there.
+/// Prefetches memory that will be read soon, to overlap with the current work.
 void prefetch(std::span<const float> numbers) {
   for (std::size_t i = 0; i < numbers.size(); i += 16) __builtin_prefetch(numbers.data() + i);
 }

@@ -71,7 +71,7 @@ struct Placed {
 
 std::size_t whole_number(const Json& value, const std::string& file, const std::string& tensor) {
   if (!value.is_number_unsigned()) {
-    refuse(file, kPrefix, fmt::format("tensor \"{}\": a size that is no whole number", tensor));
+    refuse(file, kPrefix, fmt::format("tensor \"{}\": a size that is not a whole number", tensor));
   }
   return value.get<std::size_t>();
 }

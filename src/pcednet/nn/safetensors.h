@@ -11,7 +11,7 @@
 
 namespace pcednet::nn {
 
-/// Numbers in rows: the last dimension is the one that varies fastest.
+/// Numbers in row-major order: the last dimension varies fastest.
 struct Tensor {
   std::vector<std::size_t> shape;
   std::vector<float> values;

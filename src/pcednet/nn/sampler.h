@@ -10,13 +10,13 @@ namespace pcednet::nn {
 
 /// An endless stream of sample indices in random order.
 ///
-/// `balance` 1: the classes take turns, and each runs through its samples again and again, which is
-/// the same as replicating the samples of the small ones. 0: all samples come once before any comes
-/// again. Between: the classes come in shares proportional to their number of samples to the power
-/// of 1 - balance, again and again.
+/// `balance` 1: the classes take turns, each cycling through its samples, which equals replicating
+/// the samples of small classes. 0: all samples come once before any repeats. Between: the classes,
+/// each cycling through its samples, have shares proportional to their number of samples to the
+/// power of 1 - balance.
 class Sampler {
  public:
-  /// `samples_by_class` must hold at least one sample; empty classes are passed over.
+  /// `samples_by_class` must hold at least one sample; empty classes are skipped.
   Sampler(std::vector<std::vector<std::uint32_t>> samples_by_class, double balance, Random random);
 
   void next(std::span<std::uint32_t> batch);
@@ -28,7 +28,7 @@ class Sampler {
   struct Deck {
     std::vector<std::uint32_t> cards;
     std::size_t next = 0;
-    double share = 1.0;  ///< of the samples that are given
+    double share = 1.0;  ///< of the samples drawn
     double credit = 0.0;
   };
 

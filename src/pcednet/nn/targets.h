@@ -8,8 +8,8 @@
 
 namespace pcednet::nn {
 
-/// Writes the probabilities wanted of the samples `chosen`, a row per class and a lane per sample;
-/// lanes that are left over repeat the last.
+/// Writes the target probabilities of the samples `chosen`, a row per class and a lane per sample;
+/// spare lanes repeat the last.
 void fill_targets(const TrainingSet& set, std::span<const std::uint32_t> chosen, int classes,
                   LaneTable& targets);
 

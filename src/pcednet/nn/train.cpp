@@ -21,8 +21,9 @@ using SamplesByClass = std::vector<std::vector<std::uint32_t>>;
 // Independent streams of the caller's seed.
 enum Stream : std::uint64_t { kSplitStream = 1, kSampleStream = 2 };
 
-constexpr std::size_t kFewestToSplit = 20;      // samples of a class
-constexpr std::size_t kMostToValidate = 50000;  // of a class: judging stays cheap beside learning
+constexpr std::size_t kFewestToSplit = 20;  // samples of a class
+constexpr std::size_t kMostToValidate =
+    50000;  // of a class: keeps validation cheap compared with training
 
 std::string name_of_class(const TrainOptions& options, std::size_t c) {
   if (c < options.class_names.size()) return fmt::format("{} ({})", c, options.class_names[c]);
@@ -74,7 +75,7 @@ std::vector<std::uint32_t> concatenate(const SamplesByClass& samples, std::size_
   return all;
 }
 
-/// Takes `share` of every class out of `samples`; nothing if a class is too small for that.
+/// Removes `share` of every class from `samples`; nothing if a class is too small for that.
 SamplesByClass split_off(SamplesByClass& samples, double share, Random random) {
   SamplesByClass kept(samples.size());
   if (share == 0.0) return kept;
@@ -90,7 +91,7 @@ SamplesByClass split_off(SamplesByClass& samples, double share, Random random) {
   return kept;
 }
 
-/// How much each class counts in training, as Sampler deals them.
+/// The weight of each class in training, as Sampler draws them.
 std::vector<double> class_weights(const SamplesByClass& samples, double balance) {
   std::vector<double> weights;
   for (const auto& of_class : samples) {

@@ -22,12 +22,13 @@ struct TrainOptions {
   std::size_t batch = 512;
   /// 1: every class comes equally often, by replication; 0: as often as it occurs; see Sampler
   double balance = 1.0;
-  /// An epoch is one round through the largest class with all others replicated, but at least and
-  /// at most so many samples.
+  /// An epoch is one round through the largest class with all others replicated, within these
+  /// bounds on the number of samples.
   std::size_t least_per_epoch = 1 << 14, most_per_epoch = 1 << 20;
 
-  bool even_validation = false;  ///< judge epochs with all classes alike, whatever the balance
-  double held_out = 0.1;    ///< of every class, to judge the epochs by; 0: the last one is the best
+  bool even_validation =
+      false;  ///< give every class equal weight when choosing the epoch; otherwise as in training
+  double held_out = 0.1;    ///< share of every class for validation; 0: the last epoch is the best
   bool standardise = true;  ///< measure the inputs' range; otherwise they are taken as they are
   SignRule sign_rule = {};
   std::vector<std::string> class_names = {};  ///< one per class, or empty
@@ -36,19 +37,19 @@ struct TrainOptions {
   std::uint64_t seed = 1;
 };
 
-/// What the paper did: SGD with momentum, batches of 100, rate 0.01, 40 epochs, raw inputs.
+/// The paper's recipe: SGD with momentum, batches of 100, rate 0.01, 40 epochs, raw inputs.
 TrainOptions paper_recipe();
 
-/// How an epoch ended, judged by a part of every class that is held out. The validation accuracy is
-/// the macro average (the mean over the classes of each class's mean); in the loss the classes
-/// count as much as in training, see TrainOptions::balance, or evenly. With fewer than 20 samples
-/// of a class nothing is held out: they are 0, and the last epoch counts as the best.
+/// The result of an epoch, with validation on a held-out part of every class. The validation
+/// accuracy is the macro average over the classes; in the validation loss the classes weigh as in
+/// training, see TrainOptions::balance, or evenly. With fewer than 20 samples of a class nothing is
+/// held out: both are 0, and the last epoch counts as the best.
 struct EpochReport {
   int epoch = 0;  ///< from 1
   double training_loss = 0.0;
   double validation_loss = 0.0;
   double validation_accuracy = 0.0;
-  /// How often a true class (row) was taken for one (column); empty without validation.
+  /// Confusion counts, true class by row, predicted class by column; empty without validation.
   std::vector<std::size_t> validation_confusion = {};
 };
 

@@ -6,14 +6,14 @@
 
 namespace pcednet::nn {
 
-/// A label that says nothing: such samples are left out.
+/// The label of samples to leave out.
 constexpr std::uint8_t kIgnoredLabel = 255;
 
-/// Samples with the class of each; both are only looked at.
+/// Samples with the class of each; not owned.
 struct TrainingSet {
   std::span<const float> samples;        ///< n x scales x features, row-major
   std::span<const std::uint8_t> labels;  ///< n; a class, or kIgnoredLabel
-  /// n x classes, the probabilities to learn; or empty: those that the labels say.
+  /// n x classes, the probabilities to learn; empty: from the labels.
   std::span<const float> targets = {};
 };
 

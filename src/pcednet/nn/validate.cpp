@@ -45,7 +45,7 @@ void judge(const Evaluator& evaluator, const TrainingSet& set,
       rows[p] = set.samples.data() + sample * static_cast<std::size_t>(evaluator.inputs());
       labels[p] = set.labels[sample];
     }
-    // The labels are what it is judged by, whatever it learnt from.
+    // Validation is against the labels, whatever the training targets.
     fill_targets({set.samples, set.labels}, chosen.subspan(begin, points), classes, targets);
     evaluator.run(rows.data(), table);
     const Kernels& kernels = evaluator.kernels();

@@ -9,11 +9,11 @@
 
 namespace pcednet::nn {
 
-/// Means over the classes of what is a mean over the samples of each.
+/// Macro averages: means over the classes of the means over each class's samples.
 struct Validation {
   double loss = 0.0;      ///< cross-entropy, the classes weighted
   double accuracy = 0.0;  ///< share of samples whose most probable class is their own
-  /// How often a true class (row) was taken for one (column); classes x classes.
+  /// Confusion counts, true class by row, predicted class by column; classes x classes.
   std::vector<std::size_t> confusion = {};
 };
 

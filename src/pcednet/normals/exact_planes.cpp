@@ -11,7 +11,7 @@
 namespace pcednet::normals {
 namespace {
 
-constexpr std::size_t kSeeds = 8;             ///< planes pass through two of the nearest so many
+constexpr std::size_t kSeeds = 8;             ///< planes pass through two of these nearest
 constexpr double kLeastSine = 0.3;            ///< between the directions to those two
 constexpr double kTolerance = 0.003;          ///< over the distance to the last neighbour
 constexpr int kLeastOnPlane = 5;              ///< neighbours, including the two
@@ -19,7 +19,7 @@ constexpr double kLeastRoundness = 0.25;      ///< of these; 0 on a line, 1 all 
 constexpr int kLeastOnSecond = 3;             ///< of these not on the first plane
 constexpr double kLargestSecondCosine = 0.9;  ///< between the normals of the two planes
 
-/// Where the neighbours of a point lie, from that point.
+/// The neighbours of a point, relative to it.
 struct Neighbourhood {
   std::array<Vec3, kExactNeighbours> offsets;
   std::size_t count = 0;
@@ -84,8 +84,8 @@ Planes planes_of(const Neighbourhood& around) {
   return planes;
 }
 
-/// Where `neighbours` lie, and the planes through `point` to a share of the distance to the last;
-/// no planes of fewer neighbours than wanted.
+/// The positions of `neighbours`, and the planes through `point` within a fraction of the distance
+/// to the last; planes with too few neighbours are left out.
 Planes find_planes(std::span<const Vec3> points, std::size_t point,
                    std::span<const std::uint32_t> neighbours, double tolerance,
                    Neighbourhood& around) {

@@ -14,12 +14,11 @@ inline constexpr std::size_t kExactNeighbours = 16;
 /// The unit normal of the plane face that a point lies on, of any sign, or zero if it lies on none.
 ///
 /// Points drawn from a CAD part without noise lie exactly on its faces. A face is a plane through
-/// the point with at least 5 of its 16 nearest neighbours nearer to it than 0.003 of the distance
-/// to the last, which do not lie along one line: such planes hardly occur by chance. The one with
-/// most neighbours counts, the near ones more; it is fitted to them again. If a second plane,
-/// turned by more than 25 degrees, has 3 neighbours that are not on the first, the point lies on
-/// the edge of both, and the result is the mean of their normals, to the side on which the faces
-/// meet.
+/// the point with at least 5 of its 16 nearest neighbours, not collinear, nearer to it than 0.003
+/// of the distance to the last: such planes hardly occur by chance. The plane with most neighbours
+/// counts, near ones with more weight; it is refitted to them. If a second plane, turned by more
+/// than 25 degrees, has 3 neighbours that are not on the first, the point lies on the edge of both,
+/// and the result is the mean of their normals, to the side on which the faces meet.
 ///
 /// `neighbours` are nearest first.
 Vec3 exact_normal(std::span<const Vec3> points, std::size_t point,

@@ -16,7 +16,7 @@ namespace pcednet::normals {
 ///
 /// Up to 20,000 points, evenly spread along the curve, are paired with those of their 12 nearest
 /// neighbours whose normal is within 26 degrees of parallel (|n_i.n_j| > 0.9) and whose direction e
-/// is within 17 degrees of the surface (|e.n_i| < 0.3), if these are more than half: on leaves and
+/// is within 17 degrees of the surface (|e.n_i| < 0.3), if these are more than half; on leaves and
 /// noise they almost never are. On clean oriented clouds fewer than one such pair in 1000 opposes;
 /// with a tenth of the signs wrong, 18 in 100; where two patches of opposite signs meet, the pairs
 /// across the border.

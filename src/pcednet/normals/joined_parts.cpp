@@ -15,7 +15,7 @@ std::int8_t times(std::int8_t a, std::int8_t b) {
   return static_cast<std::int8_t>(a * b);
 }
 
-/// Makes every row join the one that its way ends in, of two that join each other the first.
+/// Makes every row join the end of its path; of two rows that join each other, the first.
 void join_roots(std::vector<Join>& joins) {
   std::vector<Join> next(joins.size());
   parallel_for_each(joins.size(), [&](std::uint32_t i) {
@@ -23,7 +23,7 @@ void join_roots(std::vector<Join>& joins) {
     next[i] = is_root ? Join{i, 1} : joins[i];
   });
   joins.swap(next);
-  // Each round doubles the steps that a row has gone.
+  // Each round doubles the steps of a row.
   for (std::atomic<bool> moved = true; moved;) {
     moved = false;
     parallel_blocks(joins.size(), kRowsAtOnce, [&](std::size_t begin, std::size_t end) {

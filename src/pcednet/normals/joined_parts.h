@@ -6,7 +6,7 @@
 
 namespace pcednet::normals {
 
-/// The row that a row joins (itself if none), and whether the two have the same sign: 1, or -1.
+/// The row that a row joins (itself if none), and the relative sign of the two: 1 or -1.
 struct Join {
   std::uint32_t to;
   std::int8_t sign;

@@ -20,7 +20,7 @@ constexpr double kClean = 0.01;  ///< median thickness
 constexpr double kBall = 0.4;    ///< median thickness of neighbourhoods that show no surface
 constexpr double kExactShare = 0.2;
 
-/// Of a sample of the points.
+/// Measures on a sample of the points.
 struct Measures {
   std::array<double, kCounts.size()> thickness;  ///< median
   double exact = 0.0;                            ///< share of the points on plane faces

@@ -42,7 +42,7 @@ void collect_distinct_points(std::span<const Vec3> positions, NeighbourGraph& gr
   return x * x + y * y + z * z;
 }
 
-/// How the distance from a point to one of its neighbours compares with the neighbour's reach.
+/// The distance from a point to one of its neighbours, compared with the neighbour's reach.
 enum Within : std::uint8_t { kBeyond, kInside, kOnRim };
 
 PCEDNET_VECTOR_CLONES

@@ -32,8 +32,8 @@ bool points_down(const Vec3& v) {
   return false;
 }
 
-/// Turns `normal` about, or not. Either way no zero in it keeps a minus sign, which would tell
-/// where it pointed before.
+/// Flips `normal`, or not. Either way no zero keeps a minus sign, which would reveal its former
+/// direction.
 void turn(Vec3& normal, bool about) {
   normal = (about ? Vec3(-normal) : normal) + Vec3::Zero();
 }
@@ -43,7 +43,7 @@ void face(const Vec3& point, Vec3& normal, const Vec3& viewpoint) {
   turn(normal, facing < 0.0 || (facing == 0.0 && points_down(normal)));
 }
 
-/// Turns one connected surface outwards, or upwards; returns whether outwards could be decided.
+/// Orients one connected surface outwards, or upwards; returns whether outwards could be decided.
 bool turn_outwards(std::span<const Vec3> points, std::span<Vec3> normals,
                    std::span<const std::uint32_t> members) {
   const double outward = outwardness(points, normals, members);
@@ -80,8 +80,8 @@ Orientation turn_parts_outwards(std::span<const Vec3> points, std::span<Vec3> no
   return orientation;
 }
 
-/// How many points have another sign than most of their part, of those whose normals lie along
-/// those of most neighbours: the sign of a normal that points anywhere means nothing.
+/// The number of points with another sign than most of their part, among those whose normals are
+/// nearly parallel to those of most neighbours: the sign of other normals is meaningless.
 std::size_t count_minorities(const Signs& signs, std::span<const Vec3> normals,
                              const Adjacency& links) {
   constexpr double kAlong = 0.9;

@@ -15,7 +15,7 @@ constexpr std::size_t kDirections = 48;
 constexpr std::size_t kMembersAtOnce = 1024;
 
 /// The permutations of (+-1, +-2, +-3): well spread, and along none of the axes and diagonals that
-/// the faces of parts and buildings like.
+/// are common in parts and buildings.
 std::array<Vec3, kDirections> directions() {
   constexpr int kOrders[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
   std::array<Vec3, kDirections> all;
@@ -106,7 +106,7 @@ double outwardness(std::span<const Vec3> points, std::span<const Vec3> normals,
   const auto all = directions();
   const std::vector<Ends> blocks = measure_blocks(all, points, members);
   Heights means;
-  // Small surfaces are many, and not worth a thread each.
+  // Small surfaces are numerous, and not worth a thread each.
   parallel_blocks(kDirections, members.size() < 1000 ? kDirections : 1,
                   [&](std::size_t begin, std::size_t end) {
                     for (std::size_t k = begin; k < end; ++k) {

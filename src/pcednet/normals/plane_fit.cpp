@@ -64,8 +64,8 @@ bool is_line(const Matrices& c, std::size_t i) {
   return !(pairs > kLine * trace * trace);
 }
 
-/// What the closed form of the eigenvalues is made of, for matrices moved to a trace of 0 and
-/// scaled to a largest entry of 1.
+/// The terms of the closed form of the eigenvalues, for matrices shifted to a trace of 0 and scaled
+/// to a largest entry of 1.
 struct Cubic {
   Matrices m;
   Lane shift, scale, third, a, half_b, q;

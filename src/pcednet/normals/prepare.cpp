@@ -13,7 +13,8 @@ bool is_missing(const Vec3& normal) {
   return normal.isZero(0.0);
 }
 
-/// How many of `count` things `work` returns true for, which is called for each, on all threads.
+/// The number of indices below `count` for which `work` returns true; calls it for each, on all
+/// threads.
 template <typename Work>
 std::size_t count_where(std::size_t count, const Work& work) {
   std::atomic<std::size_t> sum = 0;

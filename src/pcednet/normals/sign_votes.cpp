@@ -105,7 +105,7 @@ std::vector<Join> strongest_links(const Rows& rows) {
       auto to = static_cast<std::uint32_t>(i);
       rows.visit(i, [&](std::uint32_t target, std::int64_t vote) {
         const std::int64_t its_size = std::abs(vote);
-        // Without branches: which is the strongest cannot be foreseen.
+        // Branch-free: the strongest is unpredictable.
         const bool better = (its_size > size) | ((its_size == size) & (target < to));
         best = better ? vote : best;
         size = better ? its_size : size;
@@ -257,8 +257,8 @@ void turn_outvoted_points(const SignVotes& votes, std::vector<std::int8_t>& sign
   for (std::uint32_t i = 0; i < sign.size(); ++i) {
     if (flagged[i]) waiting.push_back(i);
   }
-  // Each turn raises the sum of all agreeing votes, a bounded whole number: this ends. The bound
-  // keeps the rare long chain from taking long.
+  // Each flip raises the sum of all agreeing votes, a bounded whole number, so this terminates. The
+  // limit on rounds bounds the cost of rare long chains.
   for (int round = 0; round < 20 && !waiting.empty(); ++round) {
     std::vector<std::uint32_t> touched;
     for (const std::uint32_t i : waiting) {

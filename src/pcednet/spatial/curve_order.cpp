@@ -13,7 +13,7 @@ namespace {
 constexpr int kBits = 21;
 constexpr double kCells = (1 << kBits) - 1;
 constexpr std::size_t kCodesAtOnce = 1 << 14;
-constexpr std::size_t kFew = 64;  // so many are compared instead of being given finer keys
+constexpr std::size_t kFew = 64;  // up to this many are compared instead of getting finer keys
 
 bool is_before(const Vec3& p, const Vec3& q) {
   return std::lexicographical_compare(p.data(), p.data() + 3, q.data(), q.data() + 3);

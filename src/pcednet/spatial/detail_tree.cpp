@@ -82,8 +82,8 @@ std::uint64_t sq_distance_to_centre(std::uint64_t key, int voxel_bits) {
   return sum;
 }
 
-/// Decides, from the root down, which cell keeps a point. The ties of the points, of no more use
-/// once these are sorted, hold the number of that cell.
+/// Decides, from the root down, which cell keeps a point. The ties of the points, unused once these
+/// are sorted, hold the number of that cell.
 class Builder {
  public:
   Builder(std::vector<TreePoint>& points, const DetailTreeOptions& options)

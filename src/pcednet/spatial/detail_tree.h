@@ -30,8 +30,8 @@ struct DetailNode {
 /// levels are an even sample of the cloud.
 struct DetailTree {
   std::vector<DetailNode> nodes;  ///< parents before children, level by level; never empty
-  /// Where each point stands, by its index, if the nodes' points follow each other: in a node by
-  /// key, then tie.
+  /// The rank of each point, by its index, when the nodes' points are concatenated: within a node
+  /// by key, then tie.
   std::vector<std::uint32_t> places;
 };
 
@@ -41,7 +41,7 @@ struct DetailTree {
 /// an even sample: 2^20 of them each, and all that are left at depth 21.
 ///
 /// The tree does not depend on the number of threads, nor on the order of the points as long as
-/// those of equal key and tie may stand for one another. Takes 20 bytes a point, 16 of which are
+/// points of equal key and tie are interchangeable. Takes 20 bytes a point, 16 of which are
 /// `points`.
 DetailTree make_detail_tree(std::vector<TreePoint> points, const DetailTreeOptions& options = {});
 

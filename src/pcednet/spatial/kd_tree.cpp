@@ -9,7 +9,7 @@
 namespace pcednet::spatial {
 namespace {
 
-/// The points in curve order, as nanoflann wants to see them.
+/// The points in curve order, with nanoflann's interface.
 struct OrderedPoints {
   std::vector<Vec3> positions;
   std::vector<std::uint32_t> original;

@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kDigitBits = 11;
 constexpr std::size_t kDigits = std::size_t{1} << kDigitBits;
-constexpr int kHighBits = 3 * kDigitBits;  // tell most of millions of keys apart
+constexpr int kHighBits = 3 * kDigitBits;  // distinguish most of millions of keys
 constexpr std::ptrdiff_t kLongRun = 4096;
 using Histogram = std::array<std::size_t, kDigits>;
 
@@ -56,7 +56,7 @@ void sort_digits(std::vector<Keyed>& keyed, int low, int high) {
   }
 }
 
-/// Sorts by the lowest `low` bits what has the same bits above.
+/// Sorts keys with equal upper bits by the lowest `low` bits.
 void sort_runs(std::vector<Keyed>& keyed, int low) {
   for (auto first = keyed.begin(); first != keyed.end();) {
     const auto last = std::find_if(

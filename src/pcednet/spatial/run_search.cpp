@@ -60,7 +60,7 @@ void RunSearch::find(std::size_t run, std::span<const std::uint32_t> points, Nei
   }
 }
 
-/// A little more than the run before needed, if that can be.
+/// Slightly more than the preceding run needed, if possible.
 double RunSearch::guess(std::size_t run) const {
   const Box box = box_of(tree_, run);
   double sq_diagonal = 0.0;
@@ -159,8 +159,8 @@ void RunSearch::put_in_order(const Query& query, std::size_t picked) {
   for (std::size_t i = 0; i < count_; ++i) query.found[i].index = kNone;
   for (std::size_t i = 0; i < picked; ++i) {
     if (picked_[i] == query.point) continue;
-    // The point itself is nearer than all but its like. Equal ones have equal ranks and take the
-    // places from there in their order.
+    // The point itself is nearer than all except its copies. Points with equal distances have equal
+    // ranks and take the places from there in order.
     auto place = static_cast<std::size_t>(ranks_[i]) - (sq_distances_[i] > 0.0 ? 1 : 0);
     while (place < count_ && query.found[place].index != kNone) ++place;
     if (place < count_) query.found[place] = {picked_[i], sq_distances_[i]};

@@ -84,7 +84,7 @@ std::size_t pick_nearest(Candidates& candidates, const float q[3], std::size_t w
     within = 0;
     for (std::size_t i = 0; i < steps * kStep; ++i) within += candidates.sq[i] <= bound ? 1u : 0u;
   }
-  // What rounding may have made farther than it is.
+  // Includes points that rounding may have moved outwards.
   const float reach = std::sqrt(bound) + Candidates::kError;
   bound = reach * reach * 1.00001f;
   std::size_t count = 0;

@@ -11,10 +11,10 @@ namespace pcednet::tiles {
 namespace {
 
 constexpr std::size_t kCubes = 64;
-constexpr std::size_t kDensePoints = 1'000'000;  ///< about so many in all cubes
+constexpr std::size_t kDensePoints = 1'000'000;  ///< approximate number in all cubes
 
-// Orienting estimated normals takes most memory of all that a plan does. It is done in batches of
-// many stretches of the curve: the first decides how many neighbours there are.
+// Orienting estimated normals takes the most memory of a plan's steps. It is done in batches of
+// many ranges of the curve; the first decides the number of neighbours.
 constexpr std::size_t kBatchPoints = 300'000, kStretches = 16;
 
 bool any_holds(std::span<const BoundingBox> cubes, const Vec3& p) {
@@ -30,7 +30,7 @@ std::vector<BoundingBox> cubes_around(std::span<const Vec3> centres, double half
   return cubes;
 }
 
-/// Cubes of one size that hold some kDensePoints together, as far as the sample tells.
+/// Cubes of one size that together hold about kDensePoints, estimated from the sample.
 std::vector<BoundingBox> choose_cubes(std::span<const Vec3> sample, const Plan& plan) {
   std::vector<Vec3> centres;
   for (std::size_t i = 0; i < kCubes; ++i) {
@@ -78,7 +78,8 @@ void note(const detect::PreparedCloud& prepared, Plan& plan) {
   plan.notes.insert(plan.notes.end(), prepared.notes.begin(), prepared.notes.end());
 }
 
-/// What prepare() does with points without normals; the batches do not know of each other's signs.
+/// Estimates and orients as prepare() does for points without normals; signs are independent
+/// between batches.
 std::vector<Vec3> estimate_in_batches(const PointCloud& dense, detect::PrepareOptions options,
                                       Plan& plan, const Progress* progress) {
   std::vector<Vec3> normals(dense.size(), Vec3::Zero());

@@ -9,16 +9,16 @@
 
 namespace pcednet::tiles {
 
-/// The points of some cubes, with all their neighbours, or all points where `sample` holds all.
-/// Positions and normals only; the cubes are around positions of the sample, which is in curve
-/// order.
+/// All points of some cubes, with all their neighbours, or all points of the cloud where `sample`
+/// holds all. Positions and normals only; the cubes are around positions of the sample, which is in
+/// curve order.
 PointCloud read_dense_sample(std::span<const Vec3> sample, const Plan& plan,
                              const Progress* progress);
 
-/// Decides from a dense sample what all points of a cloud together decide: of the normals and of
-/// the voxels, as prepare() and the fast engine do it for a cloud in memory; but where many points
-/// have no normals, from a part of them, how these are estimated. The plan must have its box and
-/// scales. What prepare() notes is for the user.
+/// Makes, from a dense sample, the decisions that depend on all points of a cloud: on normals and
+/// voxels as prepare() and the fast engine make them for a cloud in memory; where many points have
+/// no normals, a part of them decides on their estimation. The plan must have its box and scales.
+/// The notes of prepare() go to the plan's, for the user.
 void decide(const PointCloud& dense, const detect::EdgeModel& model,
             const detect::PrepareOptions& options, Plan& plan, const Progress* progress);
 

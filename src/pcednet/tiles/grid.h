@@ -11,8 +11,8 @@ namespace pcednet::tiles {
 /// The cores of tiles: squares of the plane of x and y, as high as the cloud, at multiples of their
 /// length. Half-open, so that a point is in exactly one.
 ///
-/// A core consists of `across` x `across` cells of length `cell`; which core a point is in is asked
-/// of the cells with one rounding, never of the core's own edges.
+/// A core consists of `across` x `across` cells of length `cell`; the cells decide, with one
+/// rounding, which core a point is in, never the core's own edges.
 struct Grid {
   double cell = 1.0;
   std::int64_t across = 1;

@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// All that the file says of the points of a part.
+/// The digest of all data of a part's points.
 std::string digest_of(const PointCloud& part) {
   Digest digest;
   digest.add(std::as_bytes(std::span(part.positions)));
@@ -72,7 +72,7 @@ void check_agree(const IndexedInput& a, const IndexedInput& b) {
   }
 }
 
-/// Whether the scale steps of a file are at places where those of another are.
+/// Whether the scale steps of a file coincide with steps of another.
 bool fits_steps(const io::LasFile& file, const io::LasFile& into) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const double steps = (file.offset(axis) - into.offset(axis)) / into.scale(axis);
@@ -84,7 +84,7 @@ bool fits_steps(const io::LasFile& file, const io::LasFile& into) {
   return true;
 }
 
-/// The scale of a file, or the smallest by a power of ten larger in which 32 bits hold the box.
+/// The scale of a file, or its smallest power-of-ten multiple with which 32 bits hold the box.
 double scale_within(const io::LasFile& file, std::size_t axis, const BoundingBox& box) {
   const int a = static_cast<int>(axis);
   const double farthest =

@@ -12,38 +12,38 @@
 
 namespace pcednet::tiles {
 
-/// Points of a chunk, as far as the file has chunks of its own: LAZ is read in its own.
+/// Points of a chunk, unless the file has its own chunks: LAZ is read in these.
 inline constexpr std::size_t kChunkPoints = 50'000;
 
-/// An input, or a tile, that is read chunk by chunk: LAS, LAZ and binary PLY. Throws what
-/// formats::open_parts() throws, and Error(kUsage) for other formats.
+/// Opens an input, or a tile, to read it chunk by chunk: LAS, LAZ and binary PLY. Throws as
+/// formats::open_parts() does, and Error(kUsage) for other formats.
 std::unique_ptr<io::PartReader> open_chunks(const std::filesystem::path& path);
 
-/// The same for an input of a plan. Throws Error(kUnreadable) if it is not the file that was
-/// planned, as far as its size and chunks tell.
+/// The same for an input of a plan. Throws Error(kUnreadable) if its size or chunks are not those
+/// of the planned file.
 std::unique_ptr<io::PartReader> open_planned(const PlannedInput& input);
 
-/// Throws Error(kUnreadable) if an input of a plan is not there, or has another size.
+/// Throws Error(kUnreadable) if an input of a plan is missing, or has another size.
 void check_size(const PlannedInput& input);
 
 /// A chunk of a planned input, finished. Throws Error(kUnreadable) if it has changed since.
 PointCloud read_chunk(const io::PartReader& reader, const PlannedInput& input, std::size_t chunk);
 
 /// Calls `use` with every chunk of a planned input that is wanted, in order, and with the number of
-/// its first point in the file; several are read at a time. Throws what open_planned() and
-/// read_chunk() throw.
+/// its first point in the file; several are read at a time. Throws as open_planned() and
+/// read_chunk() do.
 void for_each_chunk(const PlannedInput& input, const std::function<bool(const Chunk&)>& is_wanted,
                     const Progress* progress,
                     const std::function<void(PointCloud&, std::size_t first)>& use);
 
-/// Reads several parts at a time, and uses them one by one in their order.
+/// Reads several parts at a time and uses them one by one, in order.
 void read_in_turn(std::span<const std::size_t> parts,
                   const std::function<PointCloud(std::size_t)>& read,
                   const std::function<void(PointCloud&, std::size_t part)>& use);
 
 struct IndexedInput {
   PlannedInput input;
-  PointCloud outline;   ///< its columns, and what it says beside points, without points
+  PointCloud outline;   ///< its columns and its content beside points, without points
   std::string columns;  ///< as text, to compare
 };
 
@@ -53,11 +53,11 @@ IndexedInput index_input(const std::filesystem::path& path, const Progress* prog
                          const std::function<void(const PointCloud&)>& see);
 
 /// Throws Error(kUsage) if the inputs have different columns or coordinate systems. Chooses the
-/// plan's las_steps, the finest of the inputs that hold the plan's box, and notes what the tiles
-/// cannot keep.
+/// plan's las_steps, the finest of the inputs that hold the plan's box, and notes data that the
+/// tiles cannot keep.
 void settle_columns(const std::vector<IndexedInput>& inputs, Plan& plan);
 
-/// What the tiles get beside points, from the first input, and their columns.
+/// The content of the tiles beside points, from the first input, and their columns.
 PointCloud outline_of(const Plan& plan);
 
 /// Chunk `chunk` of a file that is not an input of the plan, finished.

@@ -13,7 +13,7 @@ namespace pcednet::tiles {
 
 struct Joined {
   std::size_t points = 0;
-  std::vector<std::string> losses;  ///< what the format does not keep, one sentence part each
+  std::vector<std::string> losses;  ///< the data that the format does not keep, as phrases
 };
 
 /// Throws Error(kInsufficient) with the numbers of the tiles that are missing or damaged, if any
@@ -21,12 +21,12 @@ struct Joined {
 void check_all_done(const Plan& plan);
 
 /// Writes all tiles into one file, tile after tile, in memory that does not grow with them. Throws
-/// as check_all_done, Error(kFailure) if their points are not those
-/// planned, what OutputFile throws, and Error(kUsage) for another format than .laz, .las and .ply.
+/// as check_all_done() and OutputFile do, Error(kFailure) if the points are not those planned, and
+/// Error(kUsage) for formats other than .laz, .las and .ply.
 Joined join(const Plan& plan, const std::filesystem::path& path, Overwrite overwrite,
             const Progress* progress = nullptr);
 
-/// "0, 3, 5 to 9": at most the first of them.
+/// "0, 3, 5 to 9": no more than the first ranges.
 std::string list_of(const std::vector<std::size_t>& numbers);
 
 }  // namespace pcednet::tiles

@@ -12,10 +12,10 @@
 
 namespace pcednet::tiles {
 
-/// What was found of every point, in the order of the inputs: on disk, in a file without a name.
+/// The findings of every point, in the order of the inputs: on disk, in an unnamed file.
 class PointLabels {
  public:
-  /// On the disk of `beside`. `normals`: whether there are some that were made.
+  /// On the disk of `beside`. `normals`: whether there are estimated normals.
   PointLabels(const std::filesystem::path& beside, bool normals);
 
   /// Keeps the findings of the points of these numbers.
@@ -29,9 +29,8 @@ class PointLabels {
   ScratchFile file_;
 };
 
-/// Classifies all points tile after tile, in the memory of one, and counts what was found; without
-/// a model only makes their normals. Throws what read_tile() throws, and Error(kFailure) for a full
-/// disk.
+/// Classifies all points tile by tile, in the memory of one tile, and counts the classes; without a
+/// model only makes their normals. Throws as read_tile() does, and Error(kFailure) for a full disk.
 detect::ClassCounts label_points(const Plan& plan, const detect::EdgeModel* model,
                                  PointLabels& labels, const Progress* progress = nullptr);
 

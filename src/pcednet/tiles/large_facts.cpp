@@ -19,14 +19,15 @@ using formats::CloudFacts;
 using formats::SampledSpacing;
 
 constexpr std::size_t kParts = 16;           ///< of a sample
-constexpr std::size_t kPlaces = 2000;        ///< that the spacing is measured at
-constexpr std::size_t kPositions = 500'000;  ///< to bound how far the nearest points are
+constexpr std::size_t kPlaces = 2000;        ///< where the spacing is measured
+constexpr std::size_t kPositions = 500'000;  ///< to bound the distance of the nearest points
 
-/// The boxes of that many parts hold the average place of the cloud at most, for the spacing within
-/// a part to be that of the cloud.
+/// At most this many parts' boxes may contain the average position, for the spacing within a part
+/// to be that of the cloud.
 constexpr double kMostCover = 2.0;
 
-/// Squared distances to the nearest points of some places, the first of them to the place itself.
+/// Squared distances from given positions to their nearest points, the first of which is the
+/// position itself.
 class Distances {
  public:
   void add(std::span<const double> sq_distances) {
@@ -110,7 +111,7 @@ std::optional<SampledSpacing> spacing_of_all(const io::PartReader& reader, Sampl
   return distances.spacing();
 }
 
-/// Normals that are all unusable are none, as for read_cloud.
+/// Normals that are all unusable count as absent, as in read_cloud().
 void settle(const io::PartTally& tally, CloudFacts& facts) {
   for (std::string& warning : io::warnings_of(tally)) facts.warnings.push_back(std::move(warning));
   if (tally.unusable_normals == tally.points) facts.has_normals = false, facts.defects.normals = 0;
@@ -163,7 +164,7 @@ std::optional<CloudFacts> large_facts(const std::filesystem::path& path,
   if (!reader || reader->points() <= options.large || reader->parts() < 2 * kParts) {
     return std::nullopt;
   }
-  reader->set_narrow_colours(true);  // the depth of the colours is no fact
+  reader->set_narrow_colours(true);  // the depth of the colours is not reported
   facts.points = reader->points(), facts.parts = reader->parts();
   facts.warnings = reader->warnings;
   if (options.all) {

@@ -17,8 +17,8 @@ namespace fs = std::filesystem;
 constexpr double kCellsAlong = 512;
 constexpr std::size_t kMostTiles = 1'000'000;
 
-// The program with its model and what it reads at a time, and bytes per point: docs/large.md says
-// what was measured.
+// The program with its model and read buffers, and bytes per point: for measurements see
+// docs/large.md.
 constexpr std::uint64_t kFixedBytes = 100'000'000, kBytesPerPoint = 300;
 constexpr std::uint64_t kNormalBytes = 150, kNeighbourBytes = 10;
 

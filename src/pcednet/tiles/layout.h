@@ -10,7 +10,7 @@
 
 namespace pcednet::tiles {
 
-/// How many points there are in each cell of a grid; points that are not finite apart.
+/// The number of points in each cell of a grid; points that are not finite are counted separately.
 class CellCounts {
  public:
   explicit CellCounts(double cell) : grid_{cell, 1} {}
@@ -29,19 +29,19 @@ class CellCounts {
   std::map<std::pair<std::int64_t, std::int64_t>, std::uint64_t> cells_ = {};
 };
 
-/// The length of the cells to count in, so that there are about 512 along the longer side: a power
-/// of ten, or two or five of them.
+/// The length of the counting cells, so that there are about 512 along the longer side: 1, 2 or 5
+/// times a power of ten.
 double cell_length(const BoundingBox& box);
 
-/// The share of each side of `whole` that `box` takes; 1 of a side without length, or of an empty
+/// The share of each side of `whole` that `box` takes; 1 for a side without length, or an empty
 /// box.
 Vec3 shares_of(const BoundingBox& box, const BoundingBox& whole);
 
-/// The most points in a core and its buffer, for cores of so many cells.
+/// The most points in a core of `grid` and its buffer.
 std::uint64_t most_points(const CellCounts& counts, const Grid& grid, double buffer);
 
-/// Bytes that a tile of so many points, buffer included, takes while it is run: normals that are
-/// made take most.
+/// The memory in bytes for running a tile of `points` points, buffer included: estimating normals
+/// takes most.
 std::uint64_t memory_for(std::uint64_t points, const detect::NormalsDecision& normals);
 
 struct TileLimits {
@@ -50,13 +50,14 @@ struct TileLimits {
   detect::NormalsDecision normals = {};
 };
 
-/// The largest cores of which none takes more than the memory with its buffer; at least as long as
-/// the buffer is wide.
+/// The largest cores that fit into the memory with their buffers; at least as long as the buffer is
+/// wide.
 Grid choose_grid(const CellCounts& counts, double cell, const TileLimits& limits);
 
-/// The tiles with points, column by column, named by `output`: a template with {ID}, {COLUMN},
+/// The tiles that have points, column by column, named by `output`: a template with {ID}, {COLUMN},
 /// {ROW}, {XLEFT}, {XRIGHT}, {YBOTTOM} and {YTOP}. Points that are not finite are in the first.
-/// Throws Error(kUsage) for a template that gives two tiles one name, or no point file.
+/// Throws Error(kUsage) for a template that gives two tiles one name, or a name that is not of a
+/// point file.
 std::vector<Tile> lay_out(const CellCounts& counts, const Grid& grid,
                           const std::filesystem::path& folder, const std::string& output);
 

@@ -20,7 +20,7 @@
 namespace pcednet::tiles {
 namespace {
 
-/// Of as many points at most the plan is exact: it decides what the whole cloud in memory would.
+/// Up to this many points the plan is exact: it makes the decisions of the whole cloud in memory.
 constexpr std::size_t kSampled = 2'000'000;
 
 /// The distance to the k-th nearest other, from the mean distance to the 10 nearest: some
@@ -29,12 +29,12 @@ double reach_of(std::size_t neighbours, double mean_distance) {
   return 1.5 * mean_distance * std::sqrt(static_cast<double>(neighbours) / 10.0);
 }
 
-/// The sign of a normal is decided by what it is connected with, mean distances around it.
+/// The sign of a normal depends on its connections within this many mean distances.
 constexpr double kSignReach = 64.0;
 
-/// How far around a core points decide on the points in it.
+/// Sets the distance around a core within which points affect the points in it.
 void set_buffer(const detect::EdgeModel& model, const Spacing& spacing, Plan& plan) {
-  // Voxels are an eps of the scale, and where a level merges crowds, blocks of 8 cells are.
+  // Voxels measure an eps of the scale; where a level merges crowds, blocks of 8 cells do.
   const bool crowded = std::any_of(plan.pyramid.levels.begin(), plan.pyramid.levels.end(),
                                    [](const auto& l) { return l.crowd != gls::Crowd::kKeep; });
   const double cells = model.descriptor.eps * plan.s_max * (crowded ? 10.0 : 2.0);
@@ -54,7 +54,7 @@ void set_buffer(const detect::EdgeModel& model, const Spacing& spacing, Plan& pl
   plan.buffer = std::max(plan.reach + described, boundary) + normals;
 }
 
-/// How many times the average point is read, when each tile reads the chunks that it meets.
+/// How often the average point is read, if each tile reads the chunks that it meets.
 double times_read(const Plan& plan) {
   const auto cores = [&](double from, double to) {
     const auto core = [&](double at) {
@@ -88,7 +88,7 @@ bool is_too_often(double times, const Plan& plan) {
                           tiles, times));
 }
 
-/// How many tiles there will be at least.
+/// The least number of tiles.
 double least_tiles(const PlanRequest& request, const Plan& plan, std::span<const Vec3> sample) {
   if (request.tile_length > 0.0) {
     CellCounts tiles(request.tile_length);
@@ -100,7 +100,7 @@ double least_tiles(const PlanRequest& request, const Plan& plan, std::span<const
          static_cast<double>(std::max(request.memory, fixed + 1) - fixed);
 }
 
-/// Refuses before the second reading what would be refused after it.
+/// Throws before the second reading if the inputs would be rejected after it.
 void check_order_early(const PlanRequest& request, const Plan& plan, std::span<const Vec3> sample) {
   if (!request.sort.folder.empty()) return;
   const auto points = static_cast<double>(plan.points());
@@ -116,7 +116,7 @@ void check_order_early(const PlanRequest& request, const Plan& plan, std::span<c
   if (is_too_often(times, plan)) refuse_order(tiles, times);
 }
 
-/// Copies the inputs where the request says so; refuses those that need it where it does not.
+/// Copies the inputs if the request says so; otherwise throws for inputs that need it.
 void settle_order(const PlanRequest& request, Plan& plan, const Progress* progress) {
   const double times = times_read(plan);
   const bool in_order = !is_too_often(times, plan);

@@ -13,7 +13,7 @@ namespace pcednet::tiles {
 /// Copies of the inputs whose points are in order in space.
 struct SortRequest {
   std::filesystem::path folder = {};  ///< for the copies; empty: none are made
-  bool if_needed = false;             ///< only for inputs that would be refused without
+  bool if_needed = false;             ///< only for inputs that would otherwise be rejected
   bool numbered = false;              ///< each point with its number: see kNumberColumn
 };
 
@@ -21,21 +21,20 @@ struct PlanRequest {
   std::vector<std::filesystem::path> inputs;
   std::filesystem::path folder;  ///< for the tiles
   std::string output;            ///< names of the tiles, see lay_out(); empty: by the inputs
-  PlannedModel model;            ///< its digest is found here
+  PlannedModel model;            ///< its digest is computed here
   double tile_length = 0.0;      ///< 0: the largest that `memory` allows
-  std::uint64_t memory = std::uint64_t{2} << 30;  ///< bytes that one tile may take
+  std::uint64_t memory = std::uint64_t{2} << 30;  ///< bytes allowed for one tile
   bool keep_orientation = false;
   SortRequest sort = {};
 };
 
-/// Plans the tiles of the inputs, which are read twice where they are many points, in memory that
-/// does not grow with them. `model` is what the request names, with the bounds of the scales that
-/// are given.
+/// Plans the tiles of the inputs in memory that does not grow with them; reads large inputs twice.
+/// `model` is the one that the request names, with the given bounds of the scales.
 ///
-/// Inputs whose points are in no order in space are refused, after the first reading if that is
-/// plain by then, unless there is a folder for copies.
-/// Throws Error(kUnreadable) for inputs that cannot be read, Error(kUsage) for inputs that do not
-/// fit together, Error(kInsufficient) for no finite point or no range of scales.
+/// Inputs whose points are not in spatial order are rejected, after the first reading if that shows
+/// it, unless there is a folder for copies. Throws Error(kUnreadable) for inputs that cannot be
+/// read, Error(kUsage) for inputs that do not fit together, Error(kInsufficient) if there is no
+/// finite point or no range of scales.
 Plan make_plan(const PlanRequest& request, const detect::EdgeModel& model,
                const Progress* progress = nullptr);
 

@@ -11,7 +11,7 @@
 
 namespace pcednet::tiles {
 
-/// The exact nearest points of some places in a stream of points that is never held.
+/// The exact nearest points of given places, in a stream of points that is never stored.
 class NearestInStream {
  public:
   /// `reach`: a distance within which each place has its nearest ones.

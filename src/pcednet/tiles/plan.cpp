@@ -19,7 +19,7 @@ using nlohmann::json;
 constexpr const char* kFormat = "pcednet-tiles-1";
 constexpr std::array<const char*, 3> kCrowds = {"keep", "merge", "merge by axis"};
 
-/// Tells paths in files from paths in this process.
+/// Converts between paths in plan files and paths in this process.
 class Paths {
  public:
   explicit Paths(const fs::path& plan)

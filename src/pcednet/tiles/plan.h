@@ -19,7 +19,7 @@ struct Chunk {
   std::size_t points = 0;
   std::size_t not_finite = 0;  ///< positions among them
   BoundingBox box = {};        ///< of the finite ones
-  std::string digest = {};     ///< of all that the file says of the points
+  std::string digest = {};     ///< of everything that the file holds on the points
 };
 
 struct PlannedInput {
@@ -31,13 +31,13 @@ struct PlannedInput {
   std::size_t points() const;
 };
 
-/// The model, and how it is used.
+/// The model and its use.
 struct PlannedModel {
   std::string name = {};            ///< as the user gave it
   std::filesystem::path path = {};  ///< of the file
   std::string sha256 = {};          ///< of its bytes
-  bool context = true;              ///< the context network decides in the end
-  bool boundary = true;             ///< points where the surface ends get that class
+  bool context = true;              ///< the context network decides last
+  bool boundary = true;             ///< points where the surface ends get the class boundary
   bool exact = false;               ///< the exact engine describes
 };
 
@@ -47,7 +47,7 @@ struct Tile {
   std::filesystem::path output = {};
 };
 
-/// All that has to be the same for every tile of a cloud, and what the tiles are.
+/// Everything that must be the same for every tile of a cloud, and the tiles.
 struct Plan {
   std::filesystem::path path = {};  ///< of its file
   std::string digest = {};          ///< SHA-256 of its file
@@ -61,14 +61,15 @@ struct Plan {
   detect::NormalsDecision normals = {};
   gls::PyramidPlan pyramid = {};  ///< without levels for the exact engine
   Grid grid = {};
-  double buffer = 0.0;  ///< points so far around a core are read with it
-  double reach = 0.0;   ///< points so far around it are described with it, for the context network
+  double buffer = 0.0;  ///< points within this distance of a core are read with it
+  double reach =
+      0.0;  ///< points within this distance are described with it, for the context network
   std::uint64_t memory = 0;             ///< bytes that the largest tile is expected to take
-  std::vector<Tile> tiles = {};         ///< those with points; a tile's number is its place
-  std::vector<std::string> notes = {};  ///< what the user should be told, one sentence each
+  std::vector<Tile> tiles = {};         ///< those with points; a tile's number is its index
+  std::vector<std::string> notes = {};  ///< for the user, one sentence each
 
   std::size_t points() const;
-  /// The part of the plane that the core of a tile and `around` it take, without bounds in z.
+  /// The box of the core of a tile, extended by `around`, without bounds in z.
   BoundingBox box_of(const Tile& tile, double around) const;
 };
 
@@ -76,8 +77,8 @@ struct Plan {
 /// it, so that a folder can be moved as a whole.
 void write_plan(const std::filesystem::path& path, const Plan& plan, Overwrite overwrite);
 
-/// Throws Error(kUnreadable) for what is not a plan, Error(kUsage) for one of another version of
-/// the program, whose tiles could differ.
+/// Throws Error(kUnreadable) for a file that is not a plan, Error(kUsage) for a plan by another
+/// version of the program, whose tiles could differ.
 Plan read_plan(const std::filesystem::path& path);
 
 }  // namespace pcednet::tiles

@@ -20,7 +20,7 @@
 namespace pcednet::tiles {
 namespace {
 
-/// Which points of a part are in the core of a tile, and which around it.
+/// The points of a part in the core of a tile, and those around it.
 struct Chosen {
   std::vector<std::uint32_t> core, around;
 };
@@ -67,7 +67,7 @@ void keep_first(std::size_t points, detect::PreparedCloud& prepared,
   found.counts = detect::count_classes(found.classes);
 }
 
-/// The numbers that sort_inputs() gave the points, where it did; otherwise as they were read.
+/// Takes the numbers from sort_inputs(), if present; otherwise those of the reading order.
 void take_numbers(TileCloud& points) {
   const Attribute* column = find_attribute(points.core, kNumberColumn);
   if (!column) return;

@@ -11,20 +11,20 @@
 
 namespace pcednet::tiles {
 
-/// The points of a tile, and those around it that decide on them.
+/// The points of a tile, and those around it that affect its results.
 struct TileCloud {
-  PointCloud core;  ///< with all columns, and what the output has beside points
+  PointCloud core;  ///< with all columns, and the output's content beside points
   PointCloud all;   ///< the core and its buffer: positions, normals, scanners; the core first
-  std::vector<std::uint64_t> numbers;  ///< of the core's points in all inputs, one after the other
+  std::vector<std::uint64_t> numbers;  ///< of the core's points, counted through all inputs
 };
 
-/// What was found of the points of a core.
+/// The findings for the points of a core.
 struct TileFindings {
-  detect::PreparedCloud prepared;  ///< without the cloud it was made of: what was `made`
+  detect::PreparedCloud prepared;  ///< without its cloud: only `made`
   detect::Classification found;
 };
 
-/// Reads of the inputs only the chunks that the tile meets. Throws Error(kUnreadable) where an
+/// Reads only the chunks of the inputs that the tile intersects. Throws Error(kUnreadable) where an
 /// input is missing or has changed since the plan, Error(kFailure) where points are not those
 /// planned.
 TileCloud read_tile(const Plan& plan, std::size_t tile, const Progress* progress = nullptr);
@@ -37,8 +37,8 @@ detect::EdgeModel load_planned_model(const Plan& plan);
 TileFindings classify_tile(const Plan& plan, std::size_t tile, const detect::EdgeModel* model,
                            TileCloud& points, const Progress* progress = nullptr);
 
-/// Classifies a tile and writes it, then its record. Whoever else does the same at the same time
-/// writes the same bytes. Throws what read_tile() throws, and Error(kFailure) for a full disk.
+/// Classifies a tile and writes it, then its record. Concurrent runs of the same tile write the
+/// same bytes. Throws as read_tile() does, and Error(kFailure) for a full disk.
 void run_tile(const Plan& plan, std::size_t tile, const detect::EdgeModel& model,
               const Progress* progress = nullptr);
 

@@ -12,8 +12,8 @@
 
 namespace pcednet::tiles {
 
-/// Finite positions chosen at random from a stream, all of them while they are few: those of the
-/// smallest random numbers, which depend on a point's place in the stream alone.
+/// Finite positions chosen at random from a stream, or all if they are few: those with the smallest
+/// random numbers, which depend only on a point's index in the stream.
 class Sample {
  public:
   explicit Sample(std::size_t most) : most_(most) {}
@@ -40,18 +40,19 @@ struct SampledPoints {
   bool is_all = false;              ///< there are no others
 };
 
-/// How far apart the points of a cloud are.
+/// The spacing of the points of a cloud.
 struct Spacing {
   gls::ScaleRange range;
-  // Of the mean distances to the 10 nearest others:
+  // From the mean distances to the 10 nearest others:
   double median = 0.0;
-  double wide = 0.0;  ///< one in a thousand is more
+  double wide = 0.0;  ///< exceeded by one in a thousand
 };
 
-/// The range of scales as gls::scale_range() gives it to a cloud in memory: from 16384 positions at
-/// equal steps along the curve, with the mean distances to their 10 nearest others in the whole
-/// cloud. Where the sample is not all of the cloud, the positions are taken from it, and all inputs
-/// are read once for the distances. Every position goes into `counts`.
+/// The spacings and range of scales, the latter as gls::scale_range() computes it for a cloud in
+/// memory: from 16384 positions at equal steps along the curve, with the mean distances to their 10
+/// nearest others in the whole cloud. Where the sample is not the whole cloud, the positions are
+/// taken from it, and all inputs are read once for the distances. Every position goes into
+/// `counts`.
 Spacing find_spacing(const SampledPoints& sample, const Plan& plan, const gls::ScaleRange& given,
                      CellCounts& counts, const Progress* progress);
 

@@ -11,8 +11,8 @@ struct evp_md_ctx_st;
 
 namespace pcednet::tiles {
 
-/// SHA-256, for files whose digest others check with their own tools. Bytes added in pieces count
-/// as one message.
+/// SHA-256, for digests that users check with their own tools. Bytes added in pieces count as one
+/// message.
 class Sha256 {
  public:
   Sha256();
@@ -30,7 +30,7 @@ class Sha256 {
   std::unique_ptr<evp_md_ctx_st, Free> context_;
 };
 
-/// That of a file's bytes. Throws Error(kUnreadable) if it cannot be read.
+/// The SHA-256 of a file's bytes. Throws Error(kUnreadable) if it cannot be read.
 std::string sha256_of_file(const std::filesystem::path& path);
 
 }  // namespace pcednet::tiles

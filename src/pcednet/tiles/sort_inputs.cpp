@@ -72,7 +72,7 @@ class TileFinder {
   std::map<std::array<std::int64_t, 2>, std::size_t> tiles_ = {};
 };
 
-/// The numbers from `first` on as a column, which PLY has as double alone.
+/// The numbers from `first` on as a column; double, as PLY has no 64-bit integers.
 Attribute number_column(std::size_t first, std::size_t points) {
   std::vector<double> numbers(points);
   std::iota(numbers.begin(), numbers.end(), static_cast<double>(first));

@@ -10,7 +10,7 @@
 
 namespace pcednet::tiles {
 
-/// What stands beside a finished tile, in a file of its name with .json after it.
+/// The record of a finished tile, in a file of its name with .json appended.
 struct TileRecord {
   std::string plan = {};  ///< digest of the plan's file
   std::size_t tile = 0;
@@ -20,17 +20,17 @@ struct TileRecord {
   detect::ClassCounts counts = {};
 };
 
-/// The record that the file of a tile, finished and in its place, deserves. The tile's file is
-/// written first, its record after it: a tile without one is not finished.
+/// Writes the record of a tile whose file is finished and in place. The tile's file is written
+/// first, then its record: a tile without one is not finished.
 void write_record(const std::filesystem::path& tile, TileRecord record);
 
-/// None where there is none, or no sound one.
+/// The record of a tile; none if it is missing or damaged.
 std::optional<TileRecord> read_record(const std::filesystem::path& tile);
 
 enum class TileState { kMissing, kDamaged, kDone };
 
-/// Whether a tile is finished: its record is of this plan, and its file has the size, and where
-/// `look_inside` the digest, that the record says. Times of files say nothing.
+/// Whether a tile is finished: its record is of this plan, and its file has the size and, with
+/// `look_inside`, the digest in the record. File times do not count.
 TileState state_of(const Plan& plan, std::size_t tile, bool look_inside = false);
 
 }  // namespace pcednet::tiles

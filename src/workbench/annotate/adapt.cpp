@@ -22,33 +22,33 @@ namespace {
 constexpr std::uint64_t kKeptStream = 5;  // of the seed
 constexpr double kRate = 0.006;
 constexpr std::size_t kPerEpoch = 1 << 13;
-// However much is painted, a training takes no longer.
+// Bound the time of a training, however much is painted.
 constexpr std::size_t kFewestUnpainted = 2000, kMostUnpainted = 16000, kMostPainted = 16000;
 constexpr double kLeastPainted = 0.3;  // share of the painted among the samples
-// The same where some are of a class that the start does not know: it takes all other points of
-// that class for something else.
+// The same if some are of a class new to the start: it takes all other points of that class for
+// something else.
 constexpr double kLeastPaintedOfNew = 0.5;
-constexpr float kPlain = 0.05f;         // so sure to be no edge; half of the kept points are others
+constexpr float kPlain = 0.05f;         // below, surely no edge; half of the kept points are above
 constexpr std::size_t kPart = 1 << 15;  // rows of a task
 
-// The context network looks again at points of this probability: below it hardly ever changes an
-// answer, and an adapted network leaves many points there.
+// The context network reconsiders points from this probability on: below it hardly ever changes a
+// prediction, and an adapted network leaves many points there.
 constexpr float kLeastEdge = 0.03f;
 
-/// What a network learns from.
+/// The training data of a network.
 struct Lesson {
   std::vector<float> values = {}, targets = {};
   std::vector<std::uint8_t> outputs = {};
 };
 
-/// What the start says of an edge class.
+/// The start's probability of an edge class.
 float target_of(std::uint8_t edge_class, const detect::Classification& answer, std::uint32_t i) {
   if (edge_class == kSharpEdge) return answer.p_sharp[i];
   if (edge_class == kSmoothEdge) return answer.p_smooth[i];
   return 1.0f - answer.p_sharp[i] - answer.p_smooth[i];
 }
 
-/// How far the start is from the class that most points have.
+/// The deviation of the start from the most common class.
 float doubt_of(const detect::Classification& answer, std::uint32_t i) {
   const float edge = answer.p_sharp[i] + answer.p_smooth[i];
   return answer.p_class.empty() ? edge : std::max(edge, 1.0f - answer.p_class[i]);
@@ -62,7 +62,7 @@ void choose(std::vector<std::size_t>& rows, std::size_t count, Random& random) {
 
 class LessonWriter {
  public:
-  /// `model` is what learns; `is_context`: its context network, which knows edges alone.
+  /// `model` learns; `is_context`: its context network, which has edge classes only.
   LessonWriter(const Start& start, const detect::EdgeModel& model,
                std::span<const std::uint8_t> labels, std::uint64_t seed, bool is_context)
       : start_(start), model_(model), labels_(labels), seed_(seed), is_context_(is_context) {
@@ -131,8 +131,7 @@ class LessonWriter {
                           lesson.values.begin() + static_cast<std::ptrdiff_t>(k * rows.width));
         const std::uint32_t i = rows.points[chosen[k]];
         const std::uint8_t its = k < first_kept ? labels_[i] : start_.answer.classes[i];
-        // An answer of another class than the context network's is no more than nearest to
-        // non-edge.
+        // A prediction of a class that the context network lacks counts as non-edge.
         const std::uint8_t output = detect::output_of(its, model_);
         lesson.outputs[k] = output < classes_.size() ? output : std::uint8_t{0};
       }
@@ -171,7 +170,7 @@ class LessonWriter {
     }
   }
 
-  /// `said` is what the start's network says by its outputs, empty if it knows edges alone.
+  /// `said` holds the outputs of the start's network, empty if it has edge classes only.
   void add_targets(std::uint32_t i, std::span<const float> said, Lesson& lesson) const {
     const bool edges = has_edges(model_.table);
     std::array<float, kMostClasses> own = {};  // by class
@@ -211,7 +210,7 @@ nn::TrainResult train(const nn::Model& from, const Lesson& lesson, std::uint64_t
                    options, on_epoch, progress);
 }
 
-/// The second look at clouds of which the first found something: all that the context network sees.
+/// The context network's input from clouds with predictions of the first network.
 class SecondLook {
  public:
   SecondLook(std::span<const detect::ContextPlaces> places,

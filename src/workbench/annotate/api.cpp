@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kMostBodyBytes = std::size_t{8} << 20;
 
-/// The same time for any wrong token: how much of it is right cannot be measured.
+/// Compares in constant time, so that timing reveals nothing about the token.
 bool is_same(const std::string& a, const std::string& b) {
   if (a.size() != b.size()) return false;
   unsigned difference = 0;
@@ -24,7 +24,7 @@ Response error_response(int status, const std::string& message) {
   return {.status = status, .body = error_json(message)};
 }
 
-/// The status of an error's answer, wherever it comes from.
+/// The HTTP status for an error of any origin.
 int status_of(const std::exception& error) {
   if (dynamic_cast<const NotFound*>(&error)) return 404;
   const auto* known = dynamic_cast<const Error*>(&error);

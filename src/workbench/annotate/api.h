@@ -13,18 +13,18 @@ namespace pcednet::annotate {
 /// The requests of docs/annotate.md. May be called from many threads.
 class Api {
  public:
-  /// `port` is where the requests come in. Everything must outlive the Api.
+  /// `port` is the port of the requests. Everything must outlive the Api.
   Api(Session& session, Events& events, std::string token, int port);
 
-  /// Why the body of a request is not even to be read: it is for another host, or comes from the
-  /// page of another origin, or lacks the token, or nothing is at its path, or its body is too long
-  /// or of unknown length. / is the page; everything else is under /api.
+  /// The reason not even to read the body of a request: it is for another host, or comes from a
+  /// page of another origin, or lacks the token, or has an unknown path, or its body is too long or
+  /// of unknown length. / is the page; everything else is under /api.
   std::optional<Response> refuse(const Request& request) const;
 
-  /// The answer to any request under /api but /api/events.
+  /// The answer to any request under /api except /api/events.
   Response handle(const Request& request);
 
-  /// Whether a page has come so far as to ask for a window's name.
+  /// Whether a page has loaded and asked for a window name.
   bool was_opened() const { return windows_.was_any_opened(); }
 
  private:

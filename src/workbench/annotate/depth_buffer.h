@@ -14,7 +14,8 @@ struct ViewedPoint {
   bool visible = false;  ///< within the view's frustum
 };
 
-/// A camera as a page knows it: a column-major matrix to clip space, and the pixels of its picture.
+/// A camera as a page defines it: a column-major matrix to clip space, and the size of its picture
+/// in pixels.
 class View {
  public:
   View(const std::array<double, 16>& matrix, const std::array<double, 2>& viewport);
@@ -33,15 +34,15 @@ class View {
   double depth_scale_, x_scale_;
 };
 
-/// The nearest depth in every cell of a picture, of points drawn as squares that are large enough
-/// to close the surface between neighbours.
+/// A z-buffer of a picture's cells, of points drawn as squares large enough to close the surface
+/// between neighbours.
 class DepthBuffer {
  public:
   DepthBuffer(const View& view, double point_size, double spacing);
 
   void add(const ViewedPoint& point);
 
-  /// Whether something lies clearly before `point`.
+  /// Whether something is clearly in front of `point`.
   bool covers(const ViewedPoint& point) const;
 
  private:

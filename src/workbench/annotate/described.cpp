@@ -23,7 +23,7 @@ struct Header {
   std::uint64_t points = 0, scales = 0, rows = 0, width = 0;
 };
 
-/// All that decides the description.
+/// Everything that determines the description.
 std::array<std::uint64_t, 2> key_of(const detect::PreparedCloud& cloud,
                                     const gls::ScaleSpaceOptions& descriptor) {
   const auto coordinates = [](std::span<const Vec3> values) {
@@ -44,7 +44,7 @@ std::array<std::uint64_t, 2> content_of(const detect::DescribedCloud& cloud) {
       .lanes();
 }
 
-/// True if the file holds what `wanted` says; then `cloud` is filled.
+/// True if the file matches `wanted`; then `cloud` is filled.
 bool read_cache(const fs::path& path, const Header& wanted, detect::DescribedCloud& cloud) {
   std::ifstream file(path, std::ios::binary);
   Header header;

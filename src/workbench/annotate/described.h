@@ -8,7 +8,7 @@
 
 namespace pcednet::annotate {
 
-/// A cloud's description, and which one it is.
+/// A cloud's description, and its identity.
 struct Described {
   gls::ScaleSpaceOptions descriptor = {};
   detect::DescribedCloud cloud = {};
@@ -18,9 +18,9 @@ struct Described {
 
 inline constexpr std::uint32_t kNoRow = 0xffffffff;
 
-/// Describes every point, or reads what was described before from a file in `folder`, which is made
-/// if need be (an empty path: no cache). A file that is damaged, or of another cloud, descriptor or
-/// version, is replaced; one that cannot be written is left out.
+/// Describes every point, or reads an earlier description from a file in `folder`, which is made if
+/// needed (an empty path: no cache). A file that is damaged, or of another cloud, descriptor or
+/// version, is replaced; failure to write it is ignored.
 std::shared_ptr<const Described> describe_once(const detect::PreparedCloud& cloud,
                                                const gls::ScaleSpaceOptions& descriptor,
                                                const std::filesystem::path& folder,

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::uint32_t kMostParts = 4;  // trainings
 
-/// The class of every stroke of which something is left, by its number.
+/// The class of every stroke that is still visible, by its number.
 std::map<std::uint32_t, std::uint8_t> classes_of(std::span<const std::uint32_t> strokes,
                                                  std::span<const std::uint8_t> labels) {
   std::map<std::uint32_t, std::uint8_t> classes;
@@ -23,7 +23,7 @@ std::map<std::uint32_t, std::uint8_t> classes_of(std::span<const std::uint32_t> 
   return classes;
 }
 
-/// The part that each stroke is in: the strokes of a class go round. Empty if they are too few.
+/// The part of each stroke: the strokes of a class are dealt in turn. Empty if there are too few.
 std::map<std::uint32_t, std::uint32_t> parts_of(
     const std::map<std::uint32_t, std::uint8_t>& classes) {
   std::array<std::uint32_t, kMostClasses> count = {};
@@ -37,7 +37,7 @@ std::map<std::uint32_t, std::uint32_t> parts_of(
   return parts;
 }
 
-/// Right answers and all, by the true class.
+/// Correct and all predictions, by true class.
 struct Tally {
   std::array<double, kMostClasses> right = {}, all = {};
 
@@ -61,7 +61,7 @@ struct Tally {
 HeldOut hold_out(const Subject& subject, const Labels& labels, const Settings& settings,
                  const Start* start, const Progress* progress) {
   const std::vector<std::uint32_t> strokes = labels.strokes();
-  // Clouds that joined later are not part of it.
+  // Without clouds that joined later.
   std::size_t points = 0;
   for (const SubjectCloud& cloud : subject.clouds) points += cloud.positions.size();
   std::vector<std::uint8_t> truth = labels.classes();

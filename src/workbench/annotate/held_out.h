@@ -7,17 +7,19 @@
 
 namespace pcednet::annotate {
 
-/// How well trainings answer for strokes that they did not see.
+/// The accuracy of trainings on held-out strokes.
 struct HeldOut {
-  std::size_t strokes = 0;  ///< that painted what is painted now
-  /// The share of right points, the mean over the painted classes; none: too few strokes to tell.
+  std::size_t strokes = 0;  ///< that painted the present labels
+  /// The macro average of the accuracy over the painted classes; none: too few strokes to estimate
+  /// it.
   std::optional<double> accuracy = {};
-  std::optional<double> start = {};  ///< that of the start's own answer, if there is a start
+  std::optional<double> start = {};  ///< that of the start's own predictions, if there is a start
 };
 
-/// Trains as learn() does, several times, each time without some of the strokes, and asks about
-/// these: points beside painted ones say nothing about the others, whole strokes do. Every class
-/// that is painted needs two strokes, and there must be two such classes. Throws Error(kCancelled).
+/// Cross-validates by strokes: trains several times as learn() does, each time without some of the
+/// strokes, and tests on these. Points beside painted ones are no independent test; whole strokes
+/// are. Every painted class needs two strokes, and there must be two such classes. Throws
+/// Error(kCancelled).
 HeldOut hold_out(const Subject& subject, const Labels& labels, const Settings& settings,
                  const Start* start, const Progress* progress = nullptr);
 

@@ -13,7 +13,7 @@ struct Request {
   std::map<std::string, std::string> query = {};
   std::map<std::string, std::string> headers = {};  ///< names in lower case
   std::string body = {};
-  /// The bytes of the body as the head announces them; none if it does not.
+  /// The length of the body that the head announces; none if it does not.
   std::optional<std::uint64_t> announced = 0;
 };
 

@@ -36,7 +36,7 @@ void Journal::open() {
   }
 }
 
-/// Replaces the file at once: the old one or the new one is there at any moment.
+/// Replaces the file atomically: either the old or the new one exists at any moment.
 void Journal::rewrite(const std::string& text) {
   write_text_file(path_, text, Overwrite::kYes);
   ::close(file_);
@@ -70,7 +70,7 @@ void Journal::read(const Inputs& inputs, std::vector<Record>& records) {
       head = end + 1;
       if (!begins_with(inputs, known)) {
         throw Error(ErrorKind::kInsufficient,
-                    fmt::format("{}: of another input than {}; move it away to begin anew",
+                    fmt::format("{}: of another input than {}; move it away to start afresh",
                                 path_.string(), inputs.front().name));
       }
     } catch (const Error& error) {
@@ -104,7 +104,7 @@ void Journal::write_line(const std::string& line) {
     if (count < 0 && errno == EINTR) continue;
     if (count <= 0) {
       const int why = errno;
-      // Half a line must not stay: the next one would join it.
+      // An incomplete line must not stay: the next one would join it.
       if (::ftruncate(file_, static_cast<off_t>(size_)) == 0) ::lseek(file_, 0, SEEK_END);
       errno = why;
       fail("cannot be written");

@@ -7,12 +7,12 @@
 
 namespace pcednet::annotate {
 
-/// A file that gains a line per record and so survives the end of the program at any moment: its
-/// first line names the inputs, a last line without its end is dropped.
+/// A file that gains a line per record and survives the end of the program at any moment: its first
+/// line names the inputs; an incomplete last line is dropped.
 class Journal {
  public:
-  /// Opens the journal at `path`, or begins one that holds `records`. `records` becomes what the
-  /// journal holds. A journal of the first inputs becomes one of all `inputs`. Throws
+  /// Opens the journal at `path`, or begins one with `records`. `records` becomes the content of
+  /// the journal. A journal of the first inputs is extended to all `inputs`. Throws
   /// Error(kUnreadable), naming the line, if it is damaged before its end, Error(kInsufficient) if
   /// it is of other inputs, Error(kFailure) if it cannot be written.
   Journal(std::filesystem::path path, const Inputs& inputs, std::vector<Record>& records);
@@ -20,7 +20,8 @@ class Journal {
   Journal(const Journal&) = delete;
   Journal& operator=(const Journal&) = delete;
 
-  /// Adds a record and hands it to the disk. Throws Error(kFailure); the record is then not in.
+  /// Adds a record and flushes it to disk. Throws Error(kFailure), in which case the record is not
+  /// added.
   void append(const Record& record);
 
  private:

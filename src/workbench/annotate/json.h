@@ -9,13 +9,13 @@
 
 namespace pcednet::annotate {
 
-// What goes to a page and comes from it, as docs/annotate.md describes. Files have a text of their
-// own: see project.h.
+// The messages from and to a page, as docs/annotate.md describes them. Files have their own format:
+// see project.h.
 
-/// A window that asks.
+/// A window that sends a request.
 struct Asking {
   bool is_writer = false;
-  bool is_open = false;  ///< at this start of the program
+  bool is_open = false;  ///< in this run of the program
 };
 std::string to_json(const Summary& summary, Asking window);
 std::string to_json(std::span<const RunView> runs);
@@ -29,23 +29,23 @@ std::string to_json(const ClassesChanged& changed);
 /// "open", "accepted" or "rejected".
 const char* decision_name(Decision decision);
 
-/// {"window": its name, "writer": whether it is the one that paints}.
+/// {"window": its name, "writer": whether it may paint}.
 std::string window_json(const std::string& window, bool is_writer);
 
 /// {"error": message}.
 std::string error_json(const std::string& message);
 
-/// An event as a server sends it: its name and its data.
+/// The name and the data of a server-sent event.
 std::string event_name(const Event& event);
 std::string event_json(const Event& event);
 
-/// Reads a stroke. Throws Error(kUsage) that says what is wrong with it.
+/// Reads a stroke. Throws Error(kUsage), naming the fault.
 Stroke parse_stroke(std::string_view json);
 
-/// Throws Error(kUsage) that says what is wrong with it.
+/// Throws Error(kUsage), naming the fault.
 LinesDecided parse_decision(std::string_view json);
 
-/// A wish to save; an empty name is the usual one.
+/// A request to save; an empty name means the default name.
 struct SaveRequest {
   std::string what = {}, name = {};
   std::size_t cloud = 0;
@@ -55,7 +55,7 @@ struct SaveRequest {
 /// The cloud that a request names; 0 if it names none. Throws Error(kUsage).
 std::size_t parse_cloud(std::string_view json);
 
-/// Throws Error(kUsage) that says what is wrong with it.
+/// Throws Error(kUsage), naming the fault.
 SaveRequest parse_save(std::string_view json);
 
 }  // namespace pcednet::annotate

@@ -13,8 +13,8 @@ namespace pcednet::annotate {
 
 inline constexpr std::uint32_t kNoStroke = 0xffffffff;
 
-/// The painted classes of a cloud's points, with every change that can be taken back.
-/// What changes them returns the points concerned, which stay until the next change.
+/// The painted classes of a cloud's points, with undo and redo. Functions that change them return
+/// the points concerned, valid until the next change.
 class Labels {
  public:
   explicit Labels(std::size_t points) : classes_(points, kUnlabelled) {}
@@ -25,15 +25,14 @@ class Labels {
   std::size_t undo_steps() const { return done_.size(); }
   std::size_t redo_steps() const { return undone_.size(); }
 
-  /// The number of the step that painted each point, from 0; kNoStroke for those not painted.
+  /// The step that painted each point, from 0; kNoStroke for unpainted points.
   std::vector<std::uint32_t> strokes() const;
 
-  /// Gives the points a class (kUnlabelled: none); a step that can be taken back even if nothing
-  /// changes.
-  /// What was taken back before cannot be redone any more.
+  /// Gives the points a class (kUnlabelled: none), as an undoable step even if nothing changes.
+  /// Clears the redo steps.
   std::span<const std::uint32_t> paint(std::uint8_t edge_class, std::vector<std::uint32_t> points);
 
-  /// Takes the last step back, or does it again; nothing if there is no step.
+  /// Undoes the last step, or redoes it; does nothing if there is none.
   std::span<const std::uint32_t> undo();
   std::span<const std::uint32_t> redo();
 
@@ -51,7 +50,7 @@ class Labels {
   std::vector<Step> done_, undone_;
 };
 
-/// Of `points`, those that `stroke` changes: not yet of its class, not protected, not hidden.
+/// Those of `points` that `stroke` changes: not yet of its class, not protected, not hidden.
 /// `prediction` is per point, or empty.
 std::vector<std::uint32_t> points_to_change(std::vector<std::uint32_t> points, const Stroke& stroke,
                                             std::span<const std::uint8_t> labels,

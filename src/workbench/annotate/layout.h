@@ -10,14 +10,15 @@ namespace pcednet::annotate {
 
 inline constexpr std::size_t kMostNodePoints = 65536;
 
-/// A cube of the octree and its share of the points. Drawing it needs its ancestors drawn too: a
-/// node's points are those that its ancestors have left.
+/// A cube of the octree and its share of the points. To draw it, draw its ancestors too: a node has
+/// the points that its ancestors leave.
 struct Node {
   Vec3 centre = Vec3::Zero();
   double half = 0;
   std::size_t first = 0, points = 0;         ///< its points in Layout::order
   std::vector<std::uint32_t> children = {};  ///< numbers of nodes
-  double spacing = 0;  ///< about the distance of drawn points once this node and its ancestors are
+  double spacing =
+      0;  ///< approximate spacing of drawn points once this node and its ancestors are drawn
 };
 
 /// The finite points of a cloud in an octree; node 0 is the root.
@@ -29,14 +30,15 @@ struct Layout {
 
 inline constexpr std::uint32_t kNoNode = 0xffffffff;
 
-/// Lays the finite points out. A node holds at most kMostNodePoints, a uniform subsample of what is
-/// left of its cube, and so is every prefix of them (but for its first few). `spacing` is that of
-/// the whole cloud. Work is linear in the points but for the depth of the tree, at most 21 levels.
+/// Makes the octree of the finite points. A node holds at most kMostNodePoints, a uniform subsample
+/// of the points left in its cube; so is every prefix of them (except the first few). `spacing` is
+/// that of the whole cloud. Work is linear in the points but for the depth of the tree, at most 21
+/// levels.
 Layout make_layout(std::span<const Vec3> positions, double spacing);
 
-/// What a page draws of a node: points x uint16[3] (place in the cube), points x int8[2]
-/// (octahedral normal), points x uint8[3] (colour; nothing if `colours` is empty). All are per
-/// point of the cloud.
+/// The data of a node for drawing: points x uint16[3] (place in the cube), points x int8[2]
+/// (octahedral normal), points x uint8[3] (colour; nothing if `colours` is empty). The arguments
+/// are per point of the cloud.
 std::vector<std::byte> encode_points(const Layout& layout, const Node& node,
                                      std::span<const Vec3> positions, std::span<const Vec3> normals,
                                      std::span<const Rgb> colours);

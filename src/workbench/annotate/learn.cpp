@@ -13,10 +13,10 @@
 namespace pcednet::annotate {
 namespace {
 
-/// Rounds of training: fewer than for a data set, as the painted points are few and the user waits.
+/// Epochs of training: fewer than for a data set, as the painted points are few and the user waits.
 constexpr int kEpochs = 20;
 
-/// However much is painted, a training takes no longer than this many samples a round.
+/// The most samples per epoch, however much is painted.
 constexpr std::size_t kMostPerEpoch = 1 << 15;
 
 detect::Samples painted_samples(const Subject& subject, std::span<const std::uint8_t> labels) {
@@ -115,7 +115,7 @@ Adapted learn(const std::string& name, const Subject& subject, std::span<const s
 
 namespace {
 
-/// A project's cloud, as far as learning needs it.
+/// The data of a project's cloud that learning needs.
 struct ProjectCloud {
   PointCloud cloud = {};
   detect::PreparedCloud prepared = {};

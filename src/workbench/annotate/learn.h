@@ -10,33 +10,33 @@
 
 namespace pcednet::annotate {
 
-/// How many edge classes training on `labels` has under `settings`: two also where three are wished
-/// for but no point is painted smooth-edge. Throws Error(kInsufficient), saying what to paint,
-/// unless non-edge and sharp-edge are there.
+/// The number of edge classes of a training on `labels` under `settings`: two even if three are
+/// requested but no point is painted smooth-edge. Throws Error(kInsufficient), saying what to
+/// paint, unless there are points of non-edge and sharp-edge.
 int classes_to_learn(std::span<const std::uint8_t> labels, const Settings& settings);
 
-/// Throws Error(kInsufficient), saying what to paint, unless `labels` can be learnt from: from
-/// random weights as classes_to_learn(), with own classes points of any two; with a model to start
-/// from any painted point.
+/// Throws Error(kInsufficient), saying what to paint, unless `labels` suffice: from random weights
+/// see classes_to_learn(), or, with own classes, points of any two; with a model to start from, any
+/// painted point.
 void check_can_learn(std::span<const std::uint8_t> labels, const Settings& settings,
                      const ClassTable& table);
 
-/// The descriptor that a run wants: that of the model it starts from.
+/// The descriptor of a run: that of the model it starts from.
 gls::ScaleSpaceOptions descriptor_of(const detect::EdgeModel* start);
 
-/// Epochs that a training reports.
+/// The number of epochs that a training reports.
 int epochs_of(const Start* start);
 
-/// Trains on the painted points; labels are as adapt() takes them. `start` is null (random weights)
-/// or what to start from, with_classes() of the settings, which can_start(). Depends on the
-/// arguments alone, not on the number of threads. Throws as check_can_learn() without a start.
+/// Trains on the painted points; labels as for adapt(). `start` is null (random weights) or the
+/// model to start from, with_classes() of the settings, which can_start(). Depends only on the
+/// arguments, not on the number of threads. Throws as check_can_learn() without a start.
 Adapted learn(const std::string& name, const Subject& subject, std::span<const std::uint8_t> labels,
               const Settings& settings, const Start* start,
               const std::function<void(const nn::EpochReport&)>& on_epoch = {},
               const Progress* progress = nullptr);
 
-/// The model of a project's chosen run, or if it has none of its last labels, as the annotator
-/// saves it; `inputs` are the project's. `load_start` gives the model of a name. Throws
+/// The model of a project's chosen run or, if it has none, of its last labels, as the annotator
+/// saves it; `inputs` are the project's. `load_start` returns the model of a name. Throws
 /// Error(kInsufficient) if an input is not the project's, and as labels_of().
 detect::TrainedModel learn_project(
     const Project& project, std::span<const std::filesystem::path> inputs,

@@ -29,7 +29,7 @@ Vec3 middle_of(const std::vector<Vec3>& path) {
 
 void decide(LineReview& review, const LinesDecided& wanted) {
   if (wanted.version != review.version || !review.curves) {
-    throw Error(ErrorKind::kInsufficient, "the lines were found anew: look at these first");
+    throw Error(ErrorKind::kInsufficient, "the lines have been found again: review these first");
   }
   for (const std::uint32_t line : wanted.lines) {
     if (line >= review.decisions.size()) throw NotFound(fmt::format("there is no line {}", line));

@@ -9,12 +9,12 @@
 
 namespace pcednet::annotate {
 
-/// What the user says to a line.
+/// The user's decision on a line.
 enum class Decision : std::uint8_t { kOpen, kAccepted, kRejected };
 
 /// The lines that were found last, and the decisions on them.
 struct LineReview {
-  int version = 0;             ///< how often lines were found
+  int version = 0;             ///< number of searches for lines
   int prediction_version = 0;  ///< of the prediction that they were found in
   std::size_t cloud = 0;       ///< and of which cloud
   bool is_searching = false;
@@ -22,21 +22,21 @@ struct LineReview {
   std::vector<Decision> decisions = {};                          ///< one per curve
 };
 
-/// A wish to decide on lines of a version, or what came of it.
+/// A request to decide on lines of a version, or its outcome.
 struct LinesDecided {
   int version = 0;
   Decision decision = Decision::kOpen;
   std::vector<std::uint32_t> lines = {};  ///< numbers from 0
 };
 
-/// Throws Error(kInsufficient) if the lines were found anew since, NotFound for a line that is not
-/// there; changes nothing then.
+/// Throws Error(kInsufficient) if new lines were found since, NotFound for a line that does not
+/// exist; changes nothing then.
 void decide(LineReview& review, const LinesDecided& wanted);
 
 /// The accepted curves. Throws Error(kInsufficient) if there are none.
 std::vector<lines::Curve> accepted_curves(const LineReview& review);
 
-/// How a page draws a curve and where it looks at it from. Local coordinates.
+/// The data with which a page draws a curve and moves the view to it. Local coordinates.
 struct CurveView {
   std::vector<Vec3> path = {};  ///< as lines::sampled()
   Vec3 middle = Vec3::Zero();   ///< half way along it

@@ -19,12 +19,12 @@ using Counts = std::vector<std::size_t>;
 
 /// The outcome of a stroke, an undo or a redo.
 struct Painted {
-  std::size_t stroke = 0;   ///< how many strokes count now; 0 for one of an earlier start
+  std::size_t stroke = 0;   ///< number of strokes in effect; 0 for a stroke of an earlier start
   std::size_t changed = 0;  ///< points
   std::size_t cloud = 0;    ///< that they are of
   Counts counts = {};       ///< of all labels
   int labels_version = 0;
-  std::vector<std::uint32_t> nodes = {};  ///< those whose labels are others now, ascending
+  std::vector<std::uint32_t> nodes = {};  ///< nodes with changed labels, ascending
   std::size_t undo = 0, redo = 0;         ///< steps
 };
 
@@ -40,7 +40,7 @@ struct CloudView {
   std::size_t points = 0, painted = 0;
 };
 
-/// Where a session stands.
+/// The state of a session.
 struct Summary {
   std::string name = {}, file = {};         ///< of the input, without and with its extension
   std::vector<CloudView> clouds = {};       ///< all; none while loading
@@ -81,7 +81,7 @@ struct LinesView {
   std::shared_ptr<const Scene> scene = {};
 };
 
-/// What happens in a session without being asked for at that moment.
+/// Events of a session that no request asked for at that moment.
 struct StageProgress {
   std::string stage = {};
   double fraction = 0;

@@ -6,7 +6,7 @@
 
 namespace pcednet::annotate {
 
-/// The request names something that is not there: a node, a run, a place.
+/// The request names something that does not exist: a node, a run, a place.
 class NotFound : public Error {
  public:
   explicit NotFound(const std::string& message) : Error(ErrorKind::kUsage, message) {}

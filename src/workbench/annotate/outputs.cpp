@@ -10,7 +10,7 @@
 namespace pcednet::annotate {
 namespace {
 
-/// The bias of an output that no input can make up for.
+/// The bias of an output that no input can outweigh.
 constexpr float kNever = -1e4f;
 
 /// The bias of an output that has learnt nothing yet: one in some hundreds against an even logit.

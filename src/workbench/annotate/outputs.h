@@ -10,16 +10,16 @@ namespace pcednet::annotate {
 /// Whether training under `table` may start from `model`: its classes are the first of the table.
 bool can_start(const detect::EdgeModel& model, const ClassTable& table);
 
-/// Throws Error(kUsage) that says why not, unless it can; `name` is the model's.
+/// Throws Error(kUsage), with the reason, unless it can; `name` is the model's.
 void check_start(const detect::EdgeModel& model, const std::string& name, const ClassTable& table);
 
-/// `model` under `table`, with an output for each class that `labels` hold and it does not know;
-/// these are never decided for until training teaches them.
+/// `model` under `table`, with an output for each class in `labels` that is new to it; new outputs
+/// are never chosen before training.
 detect::EdgeModel with_outputs(detect::EdgeModel model, const ClassTable& table,
                                std::span<const std::uint8_t> labels);
 
-/// A model that never decides for smooth-edge if `classes` is 2; the odds of the other classes
-/// stay. Otherwise, and without edge classes, `model` as it is.
+/// A model that never predicts smooth-edge if `classes` is 2; the odds of the other classes stay.
+/// Otherwise, and without edge classes, `model` unchanged.
 detect::EdgeModel with_classes(detect::EdgeModel model, int classes);
 
 /// `model` with the names and colours that `table` has now.

@@ -12,18 +12,17 @@ namespace pcednet::annotate {
 /// `<project>.journal`.
 std::filesystem::path journal_of(std::filesystem::path project);
 
-/// The inputs that the journal of a project, or else the project, is about; none if neither is
-/// there. Throws Error(kUnreadable).
+/// The inputs of a project's journal or, without one, of the project; none if neither exists.
+/// Throws Error(kUnreadable).
 Inputs inputs_of_project(const std::filesystem::path& project);
 
-/// What happened to a cloud so far, and where it led: labels and settings are always what replaying
-/// the records gives, and every record is in the journal.
+/// The history of a cloud and its result: labels and settings always equal those from replaying the
+/// records, and every record is in the journal.
 class Painting {
  public:
-  /// Puts together what the project at `project` (which need not be there) and its journal
-  /// remember; `inputs` may go on after theirs. Throws Error(kInsufficient) if one of them is of
-  /// other inputs or says
-  /// something else than the other, and as read_project() and Journal.
+  /// Merges the project at `project` (which need not exist) and its journal; `inputs` may continue
+  /// theirs. Throws Error(kInsufficient) if one of them is of other inputs or contradicts the
+  /// other, and as read_project() and Journal do.
   Painting(const std::filesystem::path& project, const Inputs& inputs);
 
   const Labels& labels() const { return now_.labels; }
@@ -32,17 +31,17 @@ class Painting {
   const std::vector<Record>& records() const { return records_; }
   const Replayed& now() const { return now_; }
 
-  /// Does what the record says, after it is in the journal; returns the points that it concerns,
-  /// until the next one. Throws as Journal::append(); nothing has happened then.
+  /// Appends the record to the journal, then applies it; returns the points that it concerns, valid
+  /// until the next call. Throws as Journal::append() does, in which case nothing changes.
   std::span<const std::uint32_t> add(Record record);
 
-  /// The number of the run to come.
+  /// The number of the next run.
   int next_run() const;
 
   /// The number of the run that was shown last, or 0.
   int shown_run() const;
 
-  /// Whether nothing has changed since that run was shown.
+  /// Whether nothing has changed since the shown run.
   bool is_trained() const;
 
  private:

@@ -49,7 +49,7 @@ Settings settings_of(const Json& json) {
   return changed({}, settings_change_of(json));
 }
 
-/// Ascending numbers as the steps between them, which are short to write.
+/// Ascending numbers as differences, which are short to write.
 Json steps_of(const std::vector<std::uint32_t>& points) {
   Json steps = Json::array();
   std::uint32_t last = 0;
@@ -193,7 +193,7 @@ InputIdentity input_of(const Json& json) {
           .points = json.at("points").get<std::size_t>()};
 }
 
-/// Of a project or of the first line of a journal.
+/// The inputs of a project, or of the first line of a journal.
 Inputs inputs_of(const Json& file) {
   const Json& format = file.at("format");
   Inputs inputs;
@@ -217,7 +217,7 @@ Json head_of(const Inputs& inputs) {
   return {{"format", kSeveralFormat}, {"inputs", std::move(list)}};
 }
 
-/// Runs `read`; whatever it throws becomes Error(kUnreadable).
+/// Runs `read` and turns any exception into Error(kUnreadable).
 template <typename Read>
 auto strictly(Read&& read) {
   try {
@@ -342,7 +342,7 @@ std::span<const std::uint32_t> replay(const Record& record, Replayed& now) {
     case Kind::kStroke:
       if (!now.classes.may_paint(record.edge_class) && record.edge_class != kUnlabelled) {
         refuse_project(
-            fmt::format("a stroke of class {}, which the project has not", record.edge_class));
+            fmt::format("a stroke of class {}, which the project lacks", record.edge_class));
       }
       if (record.edge_class != kUnlabelled) now.ever_painted.insert(record.edge_class);
       return now.labels.paint(record.edge_class, record.points);

@@ -26,7 +26,7 @@ struct Settings {
   bool operator==(const Settings&) const = default;
 };
 
-/// The settings that a request names; the others stay.
+/// The settings that a request changes; the others stay.
 struct SettingsChange {
   std::optional<int> classes = {};
   std::optional<bool> automatic = {};
@@ -37,7 +37,7 @@ struct SettingsChange {
 /// `settings` with the change. Throws Error(kUsage) unless there are 2 or 3 classes.
 Settings changed(Settings settings, const SettingsChange& change);
 
-/// What is told of a run without training it again; records of the first version tell nothing.
+/// Facts on a run that are known without training it again; records of the first version have none.
 struct RunFacts {
   std::optional<std::size_t> painted = {};  ///< points
   std::optional<int> classes = {};
@@ -45,17 +45,17 @@ struct RunFacts {
   std::string time = {};  ///< ISO 8601, UTC
 };
 
-/// What a run was trained on: the labels after so many records, under these settings.
+/// The basis of a training: the labels after `records` records, under these settings.
 struct RunRecord {
   int number = 0;
   std::size_t records = 0;
   Settings settings = {};
   RunFacts facts = {};
-  std::size_t clouds = 1;  ///< the first so many inputs; others joined later
+  std::size_t clouds = 1;  ///< the number of inputs then; others joined later
 };
 
-/// One thing that happened. A stroke is kept as the points that it changed, so that replaying it
-/// needs neither the view nor the prediction of the moment.
+/// One event. A stroke is kept as the points that it changed, so that replaying it needs neither
+/// the view nor the prediction at the time.
 struct Record {
   enum class Kind { kStroke, kUndo, kRedo, kSettings, kClasses, kRun, kRestore };
   Kind kind = Kind::kStroke;
@@ -70,10 +70,10 @@ struct Record {
 /// A project's classes as a record has them.
 std::string to_line(const ProjectClasses& classes);
 
-/// Reads `{"classes": [...]}` of the page. Throws Error(kUsage) that says what is wrong.
+/// Reads `{"classes": [...]}` of the page. Throws Error(kUsage), naming the fault.
 ProjectClasses parse_classes_change(std::string_view json);
 
-/// The input that records are about.
+/// The input that records refer to.
 struct InputIdentity {
   std::string name = {};    ///< without its folder; of a further input as seen from the first's
   std::string digest = {};  ///< of the file's bytes
@@ -81,7 +81,7 @@ struct InputIdentity {
   bool operator==(const InputIdentity&) const = default;
 };
 
-/// Those of a project: its points are numbered through one input after the other.
+/// The inputs of a project; its points are numbered through all inputs in order.
 using Inputs = std::vector<InputIdentity>;
 std::size_t points_of(std::span<const InputIdentity> inputs);
 
@@ -100,7 +100,7 @@ struct Project {
 std::string to_line(const Record& record);
 std::string to_line(const Inputs& inputs);
 
-/// Read what to_line() writes. Throw Error(kUnreadable) that says what is wrong.
+/// Read the output of to_line(). Throw Error(kUnreadable), naming the fault.
 Record parse_record(std::string_view line, std::size_t points);
 Inputs parse_inputs(std::string_view line);
 
@@ -114,22 +114,22 @@ SettingsChange parse_settings_change(std::string_view json);
 Project read_project(const std::filesystem::path& path);
 void write_project(const std::filesystem::path& path, const Project& project, Overwrite overwrite);
 
-/// Where the records lead.
+/// The state after replaying records.
 struct Replayed {
   Labels labels;
   Settings settings = {};
   ProjectClasses classes = {};
   std::set<std::uint8_t> ever_painted = {};  ///< classes of strokes, those taken back too
   std::map<int, RunRecord> runs = {};        ///< all, by their numbers
-  std::optional<RunRecord> run = {};         ///< the one that was shown last
+  std::optional<RunRecord> run = {};         ///< the last one shown
 };
 Replayed replay(std::span<const Record> records, std::size_t points);
 
-/// Goes one record further; returns the points that it concerns, until the next one.
+/// Applies one more record; returns the points that it concerns, valid until the next call.
 std::span<const std::uint32_t> replay(const Record& record, Replayed& now);
 
-/// The labels that a run of `records` was trained on. Throws Error(kUnreadable) if the records
-/// before it are too few or paint another number of points than the run had.
+/// The labels that a run of `records` was trained on. Throws Error(kUnreadable) if there are too
+/// few records before it, or they paint another number of points than the run had.
 Labels labels_of(const RunRecord& run, std::span<const Record> records, std::size_t points);
 
 }  // namespace pcednet::annotate

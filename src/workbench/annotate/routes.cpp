@@ -50,7 +50,7 @@ std::string asked(const Call& call, const std::string& name) {
   return value_of(call.request.query, name);
 }
 
-/// 0 where it is left out.
+/// 0 if absent.
 template <typename Number>
 Number asked_number(const Call& call, const char* name) {
   const std::string text = asked(call, name);
@@ -145,7 +145,7 @@ Response get_node_points(const Call& call) {
       call.session.node_points(number_of<std::size_t>(call.name, "node"), cloud_of(call)));
 }
 
-/// Lines may be asked for in any of their formats.
+/// Lines are available in any of their formats.
 std::string wanted_name(const Call& call, const std::filesystem::path& usual) {
   const std::string format = asked(call, "format");
   return format.empty() ? "" : usual.stem().string() + "." + format;
@@ -163,7 +163,7 @@ Response get_download(const Call& call) {
   std::string folder =
       (std::filesystem::temp_directory_path() / "pcednet-download-XXXXXX").string();
   if (!::mkdtemp(folder.data())) throw Error(ErrorKind::kFailure, folder + ": cannot be made");
-  // The folder goes in any case.
+  // The folder is removed in any case.
   const std::shared_ptr<void> removal(nullptr, [&](void*) {
     std::error_code error;
     std::filesystem::remove_all(folder, error);
@@ -256,9 +256,9 @@ Response save(const Call& call) {
 }
 
 struct Route {
-  std::string_view method, path;  ///< a * stands for a name
+  std::string_view method, path;  ///< a * matches a name
   Response (*answer)(const Call& call);
-  bool is_writers = false;  ///< only the window that paints may ask
+  bool is_writers = false;  ///< only for the window that may paint
 };
 
 constexpr Route kRoutes[] = {
@@ -287,7 +287,7 @@ constexpr Route kRoutes[] = {
     {"POST", "/api/runs/*/restore", restore, true},
 };
 
-/// What stands in `path` for the * of `pattern`, or nothing if it is not of this form.
+/// The part of `path` that matches the * of `pattern`, or nothing if it is not of this form.
 std::optional<std::string> match(std::string_view path, std::string_view pattern) {
   const std::size_t star = pattern.find('*');
   if (star == std::string_view::npos) {

@@ -33,7 +33,7 @@ bool is_drawing(const fs::path& name) {
   });
 }
 
-/// What comes after the input's stem. A LAS cloud stays one, as other programs of its user want it.
+/// The suffix after the input's stem. A LAS cloud stays LAS, for the user's other programs.
 std::string ending_of(Saved what, const fs::path& input) {
   if (what == Saved::kModel) return ".safetensors";
   if (what == Saved::kLines) return "_lines.dxf";

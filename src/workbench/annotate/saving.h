@@ -15,9 +15,9 @@ enum class Saved { kCloud, kModel, kProject, kLines };
 /// `<stem>_annotation.json` beside the input.
 std::filesystem::path default_project(const std::filesystem::path& input);
 
-/// Where `what` goes: `name` or the usual one, beside the input. Throws Error(kUsage) unless `name`
-/// is empty or a plain file name of `what` that is neither an input, the journal nor another's
-/// project. A cloud goes beside its own input, the rest beside the first.
+/// The path of `what`: `name`, or the default name, beside the input. Throws Error(kUsage) unless
+/// `name` is empty or a plain file name of `what` that is neither an input, the journal nor
+/// another's project. A cloud goes beside its own input, the rest beside the first.
 std::filesystem::path saving_path(Saved what, const std::string& name,
                                   std::span<const std::filesystem::path> inputs, std::size_t cloud,
                                   const std::filesystem::path& project);
@@ -26,8 +26,8 @@ std::filesystem::path saving_path(Saved what, const std::string& name,
 void write_lines(const std::filesystem::path& path, std::span<const lines::Curve> curves,
                  const PointCloud& cloud, Overwrite overwrite);
 
-/// The cloud as it is saved: with its painted labels and, if there is a prediction, with that.
-/// Own classes go into its comments.
+/// The cloud to save: with its painted labels and, if there is one, the prediction. Own classes go
+/// into its comments.
 PointCloud saved_cloud(const Scene& scene, const std::vector<std::uint8_t>& labels,
                        const ClassTable& table, const Prediction* prediction);
 

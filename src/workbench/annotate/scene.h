@@ -14,7 +14,7 @@
 
 namespace pcednet::annotate {
 
-/// A cloud with all that looking at it and painting it needs; does not change.
+/// A cloud with all data for viewing and painting; immutable.
 struct Scene {
   InputIdentity input = {};
   PointCloud cloud = {};
@@ -28,20 +28,20 @@ struct Scene {
   std::unique_ptr<const Selector> selector = {};
 };
 
-/// Reads and prepares a cloud. Throws what reading and preparing throw.
+/// Reads and prepares a cloud. Throws as reading and preparing do.
 std::shared_ptr<const Scene> load_scene(const std::filesystem::path& input,
                                         const Progress* progress = nullptr);
 
-/// A model's answer for a cloud, with its boundary.
+/// A model's prediction for a cloud, with its boundary.
 struct Prediction {
   detect::EdgeModel model = {};
   detect::Classification result = {};
-  /// The probability of the chosen class; 1 of boundary, which no network decides; 0 where there is
-  /// no class.
+  /// The probability of the chosen class; 1 for boundary, which no network decides; 0 without a
+  /// class.
   std::vector<float> confidence = {};
 };
 
-/// Of what `model` found in the scene's cloud.
+/// The prediction from `found`, the result of `model` for the scene's cloud.
 std::shared_ptr<const Prediction> make_prediction(const Scene& scene, detect::EdgeModel model,
                                                   detect::Classification found);
 

@@ -57,7 +57,7 @@ std::vector<std::uint32_t> Selector::brush(const Stroke& stroke) const {
       for (const auto& [i, sq_distance] : found) {
         if (facing.dot(normals_[i]) < kLeastCosine) continue;
         if (is_clipped(stroke, positions_[i] - origin_)) continue;
-        // Threads may meet the same point: they write the same byte.
+        // Threads may visit the same point: they write the same byte.
         std::atomic_ref(met[i]).store(1, std::memory_order_relaxed);
       }
     }
@@ -74,7 +74,7 @@ std::vector<std::uint32_t> Selector::polygon(const Stroke& stroke) const {
   std::vector<ViewedPoint> seen(positions_.size());
   parallel_blocks(positions_.size(), kBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      // What is clipped away is not drawn either, and so covers nothing.
+      // Clipped points are not drawn either, and so hide nothing.
       const Vec3 local = positions_[i] - origin_;
       if (local.allFinite() && !is_clipped(stroke, local)) seen[i] = view.see(local);
     }

@@ -10,7 +10,7 @@
 
 namespace pcednet::annotate {
 
-/// Finds the points that a stroke meets. What it looks at must outlive it.
+/// Finds the points that a stroke covers. The spans must outlive it.
 class Selector {
  public:
   /// `origin` is what local coordinates are relative to; `spacing` the distance of neighbouring
@@ -18,10 +18,10 @@ class Selector {
   Selector(std::span<const Vec3> positions, std::span<const Vec3> normals, const Vec3& origin,
            double spacing);
 
-  /// The points that `stroke` meets, ascending; protect and hidden are not looked at. A ball of the
-  /// brush meets points within its radius whose normal turns away by at most 120 degrees from that
-  /// of the point nearest to its centre. A polygon meets points within it between the near and the
-  /// far plane; with front_only, those that no nearer point covers.
+  /// The points that `stroke` covers, ascending; ignores protect and hidden. A ball of the brush
+  /// covers points within its radius whose normal differs by at most 120 degrees from that of the
+  /// point nearest to its centre. A polygon covers points within it between the near and the far
+  /// plane; with front_only, those that no nearer point hides.
   std::vector<std::uint32_t> select(const Stroke& stroke) const;
 
   const spatial::KdTree& tree() const { return tree_; }

@@ -18,8 +18,8 @@ using Lock = std::unique_lock<std::mutex>;
 
 namespace {
 
-/// Training waits so long for the next stroke: longer than an undo key that is held down takes to
-/// repeat itself. Strokes of the mouse follow each other more slowly; they cancel a training.
+/// The delay of training after a stroke: longer than the repeat interval of a held undo key. Mouse
+/// strokes follow each other more slowly; they cancel a training.
 constexpr std::chrono::milliseconds kPause{50};
 
 /// The nodes that hold the points, ascending.
@@ -80,13 +80,13 @@ void Session::State::check_cloud(std::size_t cloud) const {
   if (cloud >= scenes.size()) throw NotFound(fmt::format("there is no cloud {}", cloud));
 }
 
-/// The cloud's own of something that all points have.
+/// The cloud's part of per-point data.
 std::span<const std::uint8_t> Session::State::part(std::span<const std::uint8_t> all,
                                                    std::size_t cloud) const {
   return all.subspan(firsts[cloud], scenes[cloud]->cloud.size());
 }
 
-/// Ends what the worker does and forgets what it was asked to do.
+/// Stops the worker and clears its orders.
 void Session::State::interrupt() {
   ++orders.generation;
   orders.train_at.reset();
@@ -99,7 +99,7 @@ void Session::State::interrupt() {
   changed.notify_all();
 }
 
-/// After a change of what is to be learnt.
+/// Schedules training after a change of the training data.
 void Session::State::schedule() {
   if (painting->settings().automatic || painting->labels().painted() == 0) {
     interrupt();

@@ -15,30 +15,30 @@ namespace pcednet::annotate {
 
 struct SessionOptions {
   std::filesystem::path input = {};
-  std::vector<std::filesystem::path> further = {};  ///< inputs that are trained on together with it
+  std::vector<std::filesystem::path> further = {};  ///< further inputs for the same training
   std::filesystem::path project = {};               ///< empty: see default_project()
   std::filesystem::path cache_folder = {};          ///< empty: descriptions are not kept
-  std::string model = {};                           ///< that a new project starts from; empty: none
-  bool is_model_wanted = false;            ///< an older project starts from it from now on, too
-  std::optional<ClassTable> classes = {};  ///< of a new project, or to add to an older one
-  std::vector<std::string> starts = {};    ///< models that the page may start from, for its list
-  bool overwrite = false;                  ///< saving replaces files without being asked to
-  /// The model behind `model` or a name of Settings::start, which the page gives: throws, and opens
-  /// no file, for any that it may not have.
+  std::string model = {};                           ///< start of a new project; empty: none
+  bool is_model_wanted = false;            ///< an existing project starts from it too, from now on
+  std::optional<ClassTable> classes = {};  ///< of a new project, or to add to an existing one
+  std::vector<std::string> starts = {};    ///< models that the page may offer as starts
+  bool overwrite = false;                  ///< saving replaces files without a request
+  /// Loads the model behind `model` or the name Settings::start, which comes from the page: throws,
+  /// without opening a file, for names that the page may not use.
   std::function<detect::EdgeModel(const std::string& name)> load_model = {};
-  /// Gets every event, from any thread; must not call the session.
+  /// Called with every event, from any thread; must not call the session.
   std::function<void(const Event& event)> emit = {};
 };
 
 enum class Shown { kLabels, kPrediction, kConfidence, kPSharp, kFeature };
 
-/// An annotation of one cloud or of several while it lasts: loading, painting, training, saving.
-/// Loading and training run on a thread of its own; every function may be called from any thread.
-/// The journal is beside the project: what a stroke's answer reports survives the end of the
-/// program. Clouds are numbered from 0; all are trained on together.
+/// A running annotation of one or several clouds: loading, painting, training, saving. Loading and
+/// training run on a separate thread; every function may be called from any thread. The journal is
+/// beside the project: a stroke that was answered survives the end of the program. Clouds are
+/// numbered from 0; one training covers all.
 ///
-/// Errors: kUsage for a request that makes no sense, NotFound for what is not there, kInsufficient
-/// for what is not possible now.
+/// Errors: kUsage for an invalid request, NotFound for something that does not exist, kInsufficient
+/// for something not possible now.
 class Session {
  public:
   explicit Session(SessionOptions options);
@@ -46,8 +46,8 @@ class Session {
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
-  /// Whether the cloud and the project were found to be sound: all that takes time from now on is
-  /// computing descriptors. Throws what prevents the cloud from ever being painted.
+  /// Whether the cloud and the project have proved valid: only computing descriptors takes time
+  /// from now on. Throws the error that prevents painting for good.
   bool is_accepted() const;
 
   /// Blocks until the cloud can be painted; throws like is_accepted().
@@ -64,7 +64,7 @@ class Session {
   Values values(Shown what, const std::vector<std::size_t>& nodes, int feature, int scale,
                 std::size_t cloud = 0) const;
 
-  /// A stroke of an id that was painted before gets the answer that it got then.
+  /// A stroke with the id of an earlier one gets the earlier answer.
   Painted paint(const Stroke& stroke);
   Painted undo();
   Painted redo();
@@ -79,22 +79,22 @@ class Session {
   LinesView lines() const;
   /// Finds the lines in the present prediction of a cloud, on the session's thread.
   void find_lines(std::size_t cloud = 0);
-  /// Throws what annotate::decide() throws.
+  /// Throws as annotate::decide() does.
   void decide(const LinesDecided& wanted);
 
-  /// The place after so many others.
+  /// The place of rank `after` + 1.
   UncertainPlace uncertain(std::size_t after, std::size_t cloud = 0) const;
   PointView pick(const Vec3& local_origin, const Vec3& direction, double radius,
                  std::size_t cloud = 0) const;
 
-  /// Where `what` goes: see saving_path().
+  /// The path of `what`: see saving_path().
   std::filesystem::path target(Saved what, const std::string& name, std::size_t cloud = 0) const;
 
-  /// Writes `what` to `path` and returns the bytes written; of the clouds the one asked for.
+  /// Writes `what` to `path` and returns the bytes written; of several clouds, the one of `cloud`.
   std::uintmax_t save(Saved what, const std::filesystem::path& path, Overwrite overwrite,
                       std::size_t cloud = 0) const;
 
-  /// The cloud that the lines found last are of.
+  /// The cloud of the lines found last.
   std::size_t cloud_of_lines() const;
 
   const SessionOptions& options() const;

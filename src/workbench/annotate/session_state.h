@@ -13,20 +13,20 @@
 
 namespace pcednet::annotate {
 
-/// How far the worker is.
+/// The progress of the worker.
 struct Loading {
-  bool is_accepted = false;  ///< the cloud and the project are sound, and nobody else has them open
+  bool is_accepted = false;  ///< the cloud and the project are valid and not open elsewhere
   bool is_done = false;
-  std::exception_ptr failure = {};  ///< if it never will be done
+  std::exception_ptr failure = {};  ///< if it failed for good
   std::string stage = "read";       ///< also of training
 };
 
-/// What the worker is to do next. Work that began under an older generation is void.
+/// The orders for the worker. Work begun under an older generation is void.
 struct Orders {
   std::optional<std::chrono::steady_clock::time_point> train_at = {};
-  bool asked_for = false;                      ///< by the user: an error if it cannot be done
-  std::optional<std::size_t> find_lines = {};  ///< in a cloud, once there is nothing else to do
-  bool judge = false;                          ///< the run that is shown, after all else
+  bool asked_for = false;                      ///< by the user: failure is an error
+  std::optional<std::size_t> find_lines = {};  ///< in a cloud, when nothing else is to be done
+  bool judge = false;                          ///< the shown run, after everything else
   std::optional<int> restore = {};             ///< a run
   std::uint64_t generation = 0;
   bool stopping = false;
@@ -50,7 +50,7 @@ struct Session::State {
   Loading loading = {};
   Orders orders = {};
 
-  // There once loading is done.
+  // Set once loading is done.
   std::vector<std::shared_ptr<const Scene>> scenes = {};  ///< one per cloud
   std::vector<std::size_t> firsts = {};  ///< and the number of its first point in all
   std::vector<std::shared_ptr<const Described>> described = {};  ///< as the last model wanted it
@@ -59,7 +59,7 @@ struct Session::State {
   std::map<std::string, Painted> answers = {};  ///< to strokes, by their ids
   int labels_version = 0;
 
-  /// What was started from last; of the worker's thread alone.
+  /// The last start; used only by the worker's thread.
   std::shared_ptr<const Start> start = {};
   std::string start_name = {};
   int start_classes = 0;

@@ -20,7 +20,7 @@ std::string now_as_text() {
 
 }  // namespace
 
-/// What a training under `settings` starts from; null: random weights.
+/// The start of a training under `settings`; null: random weights.
 std::shared_ptr<const Start> Session::State::start_of(const Settings& settings, std::size_t clouds,
                                                       std::uint64_t mine) {
   if (settings.start == kRandomStart) return {};
@@ -51,7 +51,7 @@ ClassTable Session::State::table() const {
   return painting->classes().table;
 }
 
-/// What `model` predicts: `found` in the first clouds, all that it says of the others.
+/// The predictions of `model`: `found` for the first clouds, computed for the others.
 Predictions Session::State::predictions_of(const detect::EdgeModel& model,
                                            const detect::Classification& found,
                                            std::uint64_t mine) {
@@ -117,7 +117,7 @@ void Session::State::train_once(std::uint64_t mine) {
     check_can_learn(painted_classes, run.record.settings, table());
   } catch (const Error&) {
     if (asked) throw;
-    // Not yet: the user is still painting. The start has an answer even to nothing.
+    // Too few points yet: the user is still painting. The start has predictions even without any.
     if (run.record.settings.start != kRandomStart) show_start(run.record.settings, mine);
     return;
   }
@@ -132,7 +132,7 @@ void Session::State::train_once(std::uint64_t mine) {
   show(std::move(run));
 }
 
-/// Gives a run of an earlier start the model that it had then.
+/// Restores the model of a run of an earlier start.
 bool Session::State::train_again(Run& run, std::uint64_t mine) {
   const RunFacts then = run.record.facts;
   try {
@@ -148,7 +148,7 @@ bool Session::State::train_again(Run& run, std::uint64_t mine) {
     throw Error(error.kind(),
                 fmt::format("run {} cannot be trained again: {}", run.record.number, error.what()));
   }
-  if (!then.painted) return true;  // of the first version: nothing was known of it
+  if (!then.painted) return true;  // of the first version, without facts
   if (then.loss != run.record.facts.loss) {
     emit(
         Problem{fmt::format("run {} cannot be reproduced exactly: another version of pcednet or of "
@@ -183,7 +183,7 @@ void Session::State::restore_once(int number, std::uint64_t mine) {
     }
   } catch (...) {
     const Lock lock(mutex);
-    if (orders.generation == mine) runs.stop_awaiting();  // nor can it be made again
+    if (orders.generation == mine) runs.stop_awaiting();  // it cannot be restored either
     throw;
   }
   const Lock lock(mutex);
@@ -197,7 +197,7 @@ void Session::State::restore_once(int number, std::uint64_t mine) {
   show(std::move(run));
 }
 
-/// Shows what the start itself finds: a run without training, number 0.
+/// Shows the predictions of the start itself: a run without training, number 0.
 void Session::State::show_start(const Settings& settings, std::uint64_t mine) {
   Stopwatch watch;
   const auto from = start_of(settings, scenes.size(), mine);
@@ -228,7 +228,7 @@ void Session::State::show(Run run) {
   emit(predicted);
 }
 
-/// Says how the run that is shown does on strokes held out, once there is nothing else to do.
+/// Evaluates the shown run on held-out strokes, once nothing else is to be done.
 void Session::State::judge_once(std::uint64_t mine) {
   RunRecord record;
   std::optional<Labels> its;

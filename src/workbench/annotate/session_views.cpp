@@ -115,7 +115,7 @@ UncertainPlace Session::uncertain(std::size_t after, std::size_t cloud) const {
   auto& [version, of, places] = s.uncertain;
   if (version != s.runs.version() || of != cloud) {
     of = cloud;
-    // Places are as far apart as a look at one of them reaches.
+    // Places are as far apart as the view at one of them extends.
     const double apart = std::max(10 * scene.spacing, 0.02 * scene.bounds.diagonal());
     places = rank_uncertain(scene.cloud.positions, scene.selector->tree(), prediction->confidence,
                             apart);

@@ -32,7 +32,7 @@ Progress Session::State::progress(std::uint64_t of_generation) {
           .cancelled = [this, of_generation] { return is_void(of_generation); }};
 }
 
-/// The worker's life: load, then restore, train, find lines and judge as asked.
+/// The worker's loop: load, then restore, train, find lines and judge as ordered.
 void Session::State::work() {
   try {
     load();
@@ -129,7 +129,7 @@ void Session::State::load() {
   }
 }
 
-/// That of the model that the project starts from.
+/// The descriptor of the project's start model.
 gls::ScaleSpaceOptions Session::State::first_descriptor() const {
   std::string name;
   {
@@ -139,8 +139,8 @@ gls::ScaleSpaceOptions Session::State::first_descriptor() const {
   return name == kRandomStart ? gls::ScaleSpaceOptions{} : options.load_model(name).descriptor;
 }
 
-/// A new project starts from the model of the options; that of an older one is replaced only if the
-/// user says so.
+/// A new project starts from the model of the options; that of an existing one is replaced only on
+/// request.
 void Session::State::choose_start(bool is_new) {
   if (!is_new && !options.is_model_wanted) return;
   Settings wanted = painting->settings();
@@ -192,8 +192,8 @@ void Session::State::open_project() {
   loading.is_accepted = true;
 }
 
-/// Lists the runs of earlier starts. Models are not kept: that of the current one is made again,
-/// the others' when they are asked for.
+/// Lists the runs of earlier starts. Models are not kept: the current one is retrained, the others
+/// on demand.
 void Session::State::remember_runs() {
   for (const auto& [number, record] : painting->now().runs) runs.remember(record);
   if (const int shown = painting->shown_run(); shown > 0) {
@@ -204,7 +204,7 @@ void Session::State::remember_runs() {
   if (is_due && !painting->is_trained()) orders.train_at = std::chrono::steady_clock::now();
 }
 
-/// Those of the first so many clouds.
+/// The descriptions of the first `clouds` clouds.
 std::vector<std::shared_ptr<const Described>> Session::State::descriptions(
     const gls::ScaleSpaceOptions& descriptor, std::size_t clouds, std::uint64_t of_generation) {
   std::vector<std::shared_ptr<const Described>> wanted;
@@ -226,7 +226,7 @@ std::filesystem::path Session::State::input_of(std::size_t cloud) const {
   return cloud == 0 ? options.input : options.further[cloud - 1];
 }
 
-/// A further input is named as seen from the first, unless it is far away.
+/// A further input is named relative to the first, unless it is far away.
 Inputs Session::State::inputs() const {
   Inputs all;
   for (std::size_t k = 0; k < scenes.size(); ++k) {

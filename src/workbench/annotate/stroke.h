@@ -13,7 +13,7 @@ namespace pcednet::annotate {
 
 enum class Tool { kBrush, kPolygon };
 
-/// What the user did with a tool. Coordinates are local: minus the session's origin.
+/// One use of a tool. Coordinates are local: minus the session's origin.
 struct Stroke {
   std::string id = {};  ///< the window's own name for it
   Tool tool = Tool::kBrush;

@@ -9,41 +9,42 @@
 
 namespace pcednet::annotate {
 
-/// A cloud to learn from; all is only looked at.
+/// A cloud to learn from; not owned.
 struct SubjectCloud {
   const Described& described;
   std::span<const Vec3> positions;
   std::span<const std::uint32_t> curve;  ///< spatial::curve_order() of the positions
 };
 
-/// Clouds to learn from together, all described in the same way. Points are numbered through one
-/// cloud after the other; so are labels and what is found. Labels are numbers of `table`.
+/// Clouds to learn from together, all described in the same way. Points are numbered through all
+/// clouds in order, as are labels and predictions. Labels index `table`.
 struct Subject {
   std::vector<SubjectCloud> clouds;
   ClassTable table = edge_classes();
 };
 
-/// A number per cloud: that of its first point.
+/// The number of the first point of each cloud.
 std::vector<std::uint32_t> first_points(const Subject& subject);
 
-/// What was found in each cloud, as one.
+/// The predictions for each cloud, joined.
 detect::Classification joined(std::vector<detect::Classification> found);
 
-/// `count` points of what was found, from `first` on.
+/// The predictions for `count` points, from `first` on.
 detect::Classification part_of(const detect::Classification& found, std::size_t first,
                                std::size_t count);
 
-/// What `model` finds in each cloud. Throws Error(kCancelled) if `progress` says so.
+/// The predictions of `model` for each cloud. Throws Error(kCancelled) if `progress` asks to
+/// cancel.
 std::vector<detect::Classification> classify_each(const Subject& subject,
                                                   const detect::EdgeModel& model,
                                                   const Progress* progress = nullptr);
 
-/// The same as one.
+/// The same, joined.
 detect::Classification classify(const Subject& subject, const detect::EdgeModel& model,
                                 const Progress* progress = nullptr);
 
-/// What describes points of one cloud for a network: a row of numbers for each of the points, which
-/// are numbered from 0.
+/// The description of points of one cloud for a network: a row of numbers for each of the points,
+/// which are numbered from 0.
 struct CloudRows {
   std::span<const std::uint32_t> points = {};
   std::span<const float> values = {};

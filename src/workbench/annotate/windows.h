@@ -17,19 +17,19 @@ class Windows {
     std::string name = {};
     bool is_writer = false;
   };
-  /// A new window; it paints if none does.
+  /// Opens a window; it may paint if no other does.
   Opened open();
 
   /// Makes `window` the one that paints. Throws NotFound if there is none of that name.
   void take_over(const std::string& window);
 
-  /// The window is closed. If it painted, the one that was opened last does from now on: returns
-  /// its name, which is empty if there is none. Throws NotFound like take_over().
+  /// Closes the window. If it could paint, the one opened last can from now on: returns its name,
+  /// empty if there is none. Throws NotFound like take_over().
   std::optional<std::string> leave(const std::string& window);
 
   bool is_writer(const std::string& window) const;
 
-  /// Whether it was opened here: a window of an earlier start of the program has another name.
+  /// Whether it was opened in this run: windows of an earlier run have other names.
   bool is_open(const std::string& window) const;
   bool was_any_opened() const;
 

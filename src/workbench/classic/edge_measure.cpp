@@ -17,7 +17,7 @@ void check(double threshold) {
   throw Error(ErrorKind::kUsage, fmt::format("a threshold of {} is not 0 or more", threshold));
 }
 
-/// Over the values that are numbers, added up in sorted order: the same for any order of points.
+/// Over the values that are not NaN, summed in sorted order: the same for any order of points.
 double standard_deviation(std::vector<double> values) {
   std::erase_if(values, [](double v) { return std::isnan(v); });
   std::sort(values.begin(), values.end());

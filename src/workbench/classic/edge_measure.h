@@ -21,9 +21,9 @@ struct CovarianceAnalysisOptions {
   double threshold = 0.65;  ///< in units of twice the standard deviation over the cloud
 };
 
-/// Covariance analysis (Bazazian, Casas, Ruiz-Hidalgo 2015) as the comparison of Himeur et al. 2021
-/// ran it: surface_variation() above threshold * 2 s, s its standard deviation over the cloud. This
-/// reproduces their published output (docs/classic.md). Throws the errors of surface_variation(),
+/// Covariance analysis (Bazazian, Casas, Ruiz-Hidalgo 2015) as run in the comparison of Himeur et
+/// al. 2021: surface_variation() above threshold * 2 s, s its standard deviation over the cloud.
+/// This reproduces their published output (docs/classic.md). Throws as surface_variation() does,
 /// and Error(kUsage) for a negative threshold.
 EdgeMeasure covariance_analysis(std::span<const Vec3> positions,
                                 const CovarianceAnalysisOptions& options = {},

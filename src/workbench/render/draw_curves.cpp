@@ -16,14 +16,14 @@ using Eigen::Vector3f;
 constexpr Rgb kCornerColour = {32, 36, 42};
 constexpr float kHalfWidth = 0.0012f;  // of a line; of the longer side of the picture
 constexpr float kCornerRadius = 1.9f;  // half widths
-constexpr float kBias = 2.0f;          // grains of the surface that may lie before a visible line
+constexpr float kBias = 2.0f;          // grains of surface that may lie in front of a visible line
 
 /// A place on the screen: pixels of the picture, and its depth.
 struct Spot {
   float x, y, depth;
 };
 
-/// Lines on the way to the picture: how much of each pixel they cover.
+/// Lines to be drawn: their coverage of each pixel.
 class Ink {
  public:
   Ink(Image& image, const Layer& layer, const Camera& camera)
@@ -40,7 +40,7 @@ class Ink {
   /// A pixel of the picture at a depth, in the unit of the surfels.
   float pixel_at(float depth) const { return factor_ * depth / camera_.focal; }
 
-  /// False for what lies behind the eye.
+  /// False for points behind the eye.
   bool project(const Vector3f& position, Spot& spot) const {
     const Vector3f p = camera_.to_camera(position);
     if (!(p.z() > 1e-3f)) return false;
@@ -77,7 +77,7 @@ class Ink {
     }
   }
 
-  /// Lays all that was added on the picture.
+  /// Draws everything added onto the picture.
   void dry() {
     for (std::size_t i = 0; i < drops_.size(); ++i) {
       for (std::size_t c = 0; c < 3 && drops_[i].cover > 0.0f; ++c) {

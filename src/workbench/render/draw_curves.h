@@ -9,9 +9,9 @@
 
 namespace pcednet::render {
 
-/// Draws curves over the picture that `layer` was shaded to, in the colours of their classes; the
-/// points in which curves end together become dots. What lies behind the surface fades away.
-/// `image` is `layer` shrunk by a whole number; `box` is where the surfels come from.
+/// Draws curves over the picture shaded from `layer`, in the colours of their classes; points where
+/// curves end together become dots. Hidden parts fade. `image` is `layer` reduced by an integer
+/// factor; `box` is the place of the surfels in the cloud.
 void draw_curves(Image& image, const Layer& layer, const Camera& camera, const UnitBox& box,
                  std::span<const lines::Curve> curves);
 

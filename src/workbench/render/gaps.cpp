@@ -10,8 +10,8 @@ namespace pcednet::render {
 namespace {
 
 constexpr std::size_t kRowsAtOnce = 16;
-constexpr float kDeep = 2.0f;   // grains between a surface and what a hole in it shows
-constexpr float kAlike = 2.0f;  // grains between what the four lines say
+constexpr float kDeep = 2.0f;   // grains between a surface and the background seen through a hole
+constexpr float kAlike = 2.0f;  // grains between the estimates of the four lines
 
 struct PixelOffset {
   int x, y;
@@ -37,7 +37,7 @@ bool fill(const Layer& open, const std::array<PixelOffset, 4>& ends, std::size_t
     const std::ptrdiff_t step = static_cast<std::ptrdiff_t>(end.y) * open.width + end.x;
     const std::size_t a = pixel + static_cast<std::size_t>(step);
     const std::size_t b = pixel - static_cast<std::size_t>(step);
-    // However a plane lies, here is what it has in the middle.
+    // For a plane at any slant, this is its value in the middle.
     const float middle = 0.5f * (open.depth[a] + open.depth[b]);
     if (!(open.depth[pixel] > middle + kDeep * open.grain)) return false;
     least = std::min(least, middle), most = std::max(most, middle), sum += middle;

@@ -20,21 +20,21 @@ struct PreviewOptions {
   /// best_direction().
   std::optional<Vec3> view_direction = std::nullopt;
   Overwrite overwrite = Overwrite::kNo;
-  ClassTable table = edge_classes();  ///< what classes are numbers of, and their colours
+  ClassTable table = edge_classes();  ///< the classes and their colours
 };
 
 /// Writes a shaded picture of the cloud as a PNG.
 ///
-/// `classes` holds one class per point, drawn in its colour (values that are none grey); an
-/// EdgeClass white, yellow, dark red or blue. If it is empty, points have the colours of the cloud,
-/// or white if it has none. Points that are not finite, far outliers, and strays (see
-/// make_surfels()) are skipped. Of more than four million points every n-th is drawn. `curves`, in
-/// the place of the cloud, are drawn over it: see draw_curves(). The picture does not depend on the
+/// `classes` holds one class per point, drawn in its colour (other values grey); an EdgeClass
+/// white, yellow, dark red or blue. If it is empty, points have the colours of the cloud, or white
+/// if it has none. Points that are not finite, far outliers, and strays (see make_surfels()) are
+/// skipped. If there are more than four million points, every n-th is drawn. `curves`, in the
+/// cloud's coordinates, are drawn over it: see draw_curves(). The picture does not depend on the
 /// position of the cloud nor on the number of threads.
 ///
 /// Throws Error(kInsufficient) if no point is finite, Error(kUsage) on a size out of range, a
 /// direction that is zero or not finite, or an existing file that may not be overwritten, and
-/// Error(kFailure) if `classes` has not the size of the cloud or the file cannot be written.
+/// Error(kFailure) if `classes` differs in size from the cloud or the file cannot be written.
 void write_preview(const std::filesystem::path& png, const PointCloud& cloud,
                    std::span<const std::uint8_t> classes, const PreviewOptions& options = {},
                    std::span<const lines::Curve> curves = {});

@@ -81,14 +81,14 @@ float brightness(const Vector3f& normal) {
   return 0.58f + 0.28f * std::max(0.0f, normal.dot(key)) + 0.10f * std::max(0.0f, normal.dot(fill));
 }
 
-/// What the discs on a pixel add up to.
+/// The sum of the discs on a pixel.
 struct Sum {
   float weight = 0.0f;
-  float plain_weight = 0.0f;  ///< of what is no edge
+  float plain_weight = 0.0f;  ///< of discs that are not edges
   float depth = 0.0f;
   Vector3f normal = Vector3f::Zero();
   Vector3f colour = Vector3f::Zero();
-  float sq_distance = kNoDepth;       ///< to the nearest point that is no edge
+  float sq_distance = kNoDepth;       ///< to the nearest point that is not an edge
   float edge_sq_distance = kNoDepth;  ///< to the nearest edge point
   Rgb edge_colour{};
 };

@@ -40,8 +40,8 @@ Points finite_points(const PointCloud& cloud, std::size_t max_count) {
   return points;
 }
 
-/// The box of the middle 96 % along each axis, widened to all sides by twice its longest side:
-/// what lies outside is not part of the scene.
+/// The box of the middle 96 % along each axis, widened on all sides by twice its longest side:
+/// points outside are not part of the scene.
 BoundingBox scene_box(const std::vector<Vec3>& positions) {
   BoundingBox box;
   std::vector<double> values(positions.size());
@@ -119,7 +119,7 @@ Vector3f fitted_normal(std::span<const Vec3> positions, std::size_t i, const Nea
 }
 
 /// Evens out radii and normals: each radius becomes the median of those around it, so that no disc
-/// is much larger than its neighbours, each normal the mean of those much like it.
+/// is much larger than its neighbours, each normal the mean of similar ones.
 void smooth(std::vector<Surfel>& surfels, const std::vector<NearPoints>& near) {
   const std::vector<Surfel> rough = surfels;
   parallel_blocks(surfels.size(), kBlock, [&](std::size_t begin, std::size_t end) {

@@ -19,7 +19,7 @@ struct Surfel {
   bool edge;  ///< drawn over its surroundings
 };
 
-/// What was moved and scaled onto [-1, 1]^3.
+/// The box that was moved and scaled onto [-1, 1]^3.
 struct UnitBox {
   Vec3 centre = Vec3::Zero();
   double half = 1.0;  ///< of its longest side
@@ -32,11 +32,11 @@ struct UnitBox {
 /// The finite points of `cloud` as discs, without far outliers and strays, moved and scaled to fit
 /// [-1, 1]^3, in an order that depends on the positions alone.
 ///
-/// The radius follows the local density. If the density is even except at few points, these are
+/// The radius follows the local density. If the density is even except at a few points, these are
 /// strays: noise that would hide the rest. Points without a normal get one fitted to their
-/// neighbours. `classes` as in write_preview(). Of more than `max_count` points every n-th is
-/// taken. `box`, if given, becomes the place of the result in the cloud. `table` is what classes
-/// are numbers of.
+/// neighbours. `classes` as in write_preview(). If there are more than `max_count` points, every
+/// n-th is taken. `box`, if given, becomes the box of the result in the cloud. `classes` index
+/// `table`.
 std::vector<Surfel> make_surfels(const PointCloud& cloud, std::span<const std::uint8_t> classes,
                                  std::size_t max_count, UnitBox* box = nullptr,
                                  const ClassTable& table = edge_classes());

@@ -106,7 +106,7 @@ void check_result(const Json& result, const std::vector<std::string>& variants,
   }
 }
 
-/// Throws unless `study` has what the page relies on.
+/// Throws unless `study` has everything the page relies on.
 void check_study(const Json& study, const fs::path& file) {
   for (const char* key : {"experiment", "title"}) text_of(study, key, {file});
   const Json& sets = array_of(study, "sets", {file});

@@ -13,18 +13,18 @@ namespace pcednet::report {
 
 struct MergeOptions {
   std::size_t clouds_per_set =
-      4;  ///< the first so many of each set, of those with predictions; 0: none
-  std::size_t points_per_cloud = 30000;  ///< of a larger cloud, a sample
+      4;  ///< the first clouds of each set, of those with predictions; 0: none
+  std::size_t points_per_cloud = 30000;  ///< larger clouds are sampled
   bool lines = false;                    ///< also the lines of the truth and of each prediction
   std::string title = {}, date = {};     ///< of the page; empty: left out
 };
 
-/// Error(kUnreadable) for the file of a cloud, which MergeOptions::clouds_per_set 0 does without.
+/// Error(kUnreadable) for the file of a cloud; MergeOptions::clouds_per_set 0 needs no such files.
 class MissingCloud : public Error {
   using Error::Error;
 };
 
-/// What a page shows.
+/// The content of a page.
 struct MergedStudies {
   std::string json =
       {};  ///< one line: {"schema":"pcednet-report-1","studies":[...],"scenes":[...]}
@@ -34,7 +34,7 @@ struct MergedStudies {
 
 /// Reads the studies in `folder`: its *.json files, in name order, whose "schema" is
 /// "pcednet-study-1" (others are left out with a warning), unchanged into "studies". A result whose
-/// "median" and "pooled" are null has times alone.
+/// "median" and "pooled" are null has times only.
 ///
 /// "scenes" holds the clouds to look at,
 /// {"set","cloud","file","points","shown","min","size","view",
@@ -44,15 +44,15 @@ struct MergedStudies {
 /// encoding. With MergeOptions::lines, a scene has the "lines" of its truth and each prediction its
 /// own: see find_drawn_lines().
 ///
-/// A cloud's file is looked for from the working folder, then from `folder`; predictions are
-/// <folder>/<predictions>/<cloud>.u8. Throws Error(kUnreadable) for a file that is missing or is
-/// not what a study says, Error(kInsufficient) if there is no study, or predictions or labels are
-/// not as many as the points.
+/// A cloud's file is searched from the working folder, then from `folder`; predictions are
+/// <folder>/<predictions>/<cloud>.u8. Throws Error(kUnreadable) for a file that is missing or
+/// differs from the study's record, Error(kInsufficient) if there is no study, or if predictions or
+/// labels differ in number from the points.
 MergedStudies merge_studies(const std::filesystem::path& folder, const MergeOptions& options = {},
                             const Progress* progress = nullptr);
 
-/// The web page `page` with `json` in the place of its data. Nothing in `json` can end the script
-/// element that holds it. Throws Error(kFailure) if the page has no such place.
+/// The web page `page` with `json` as its data. Nothing in `json` can end the script element that
+/// holds it. Throws Error(kFailure) if the page has no place for it.
 std::string fill_page(std::string_view page, std::string_view json);
 
 }  // namespace pcednet::report

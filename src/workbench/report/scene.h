@@ -11,14 +11,14 @@
 
 namespace pcednet::report {
 
-/// Points as the page's viewer takes them. Every text is base64 of little-endian numbers.
+/// Points for the page's viewer. Every string is base64 of little-endian numbers.
 struct Scene {
   std::vector<std::size_t> shown;  ///< the cloud's points in the scene, in its order
   double min[3] = {0, 0, 0};       ///< the least corner of their box ...
   double size = 0;                 ///< ... and the longest side of it
   std::string positions;           ///< 3 uint16 a point: (p - min) / size * 65535, rounded
   std::string normals;         ///< 2 uint8 a point: octahedral(), 0 for -1; unit, of either sign
-  float view[3] = {0, 0, -1};  ///< a direction to look along that shows much, unit length
+  float view[3] = {0, 0, -1};  ///< a good viewing direction, unit length
 };
 
 /// The finite points of `cloud`, at most `count`: those with the smallest hash of their position,

@@ -64,8 +64,8 @@ MeshVertices drawn_points(const SolidSamples& samples, std::span<const BorderPoi
 
 namespace {
 
-/// Sharp-edge are the points nearest to some place on a curve, smooth-edge the others that were
-/// edges: a line one point wide, whatever lies between the places.
+/// Makes the points nearest to some place on a curve sharp-edge, and the other former edge points
+/// smooth-edge: a line one point wide, regardless of the points between the places.
 void label_nearest(MeshVertices& vertices, std::span<const lines::Curve> curves, double spacing) {
   constexpr double kStep = 0.05;  // between places, in spacings
   for (std::uint8_t& label : vertices.labels) {
@@ -111,7 +111,7 @@ SolidSamples spread(const SolidSamples& samples, std::size_t points) {
   return spread;
 }
 
-/// As many vertices as of a worn part, labelled and rounded off.
+/// The vertices of a worn part, labelled and rounded off.
 void wear_off(MeshVertices& vertices, const SolidSamples& samples,
               std::span<const BorderPoint> borders, const CadRecipe& recipe, double spacing,
               Random& random) {

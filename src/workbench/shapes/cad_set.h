@@ -19,10 +19,10 @@ inline constexpr EdgeBands kPartBands = {.sharp = 0.6, .smooth = 1.73};
 struct CadRecipe {
   std::string name = {};
   int family = 0;                ///< of random_part()
-  std::uint64_t part = 0;        ///< which part of the family
+  std::uint64_t part = 0;        ///< number of the part in the family
   bool mesh = true;              ///< vertices of a mesh; else points sampled uniformly by area
   bool even = false;             ///< no sampled point is near another
-  bool one_point_wide = false;   ///< sharp-edge are the points nearest to the curves
+  bool one_point_wide = false;   ///< only the points nearest to the curves are sharp-edge
   MeshStyle style = {};          ///< of the mesh; `points` for sampled points, too
   double noise = 0.0;            ///< along the normal, standard deviation over the box's diagonal
   bool estimated = false;        ///< normals estimated from the positions; else those of the part
@@ -36,11 +36,11 @@ struct CadRecipe {
 /// more or less coarsely.
 MeshStyle random_mesh_style(Random& random, double least, double most);
 
-/// A part drawn by area, with normals estimated from what there is.
+/// A part sampled by area, with normals estimated from the samples.
 CadRecipe drawn_part(const std::string& set, int family, int number, std::uint64_t first_part,
                      Random& random);
 
-/// `parts` of each family, as make(family, number) has them.
+/// `parts` recipes for each family, from make(family, number).
 std::vector<CadRecipe> parts_of_each_family(int parts,
                                             const std::function<CadRecipe(int, int)>& make);
 
@@ -48,7 +48,7 @@ std::vector<CadRecipe> parts_of_each_family(int parts,
 std::vector<CadRecipe> cad_recipes(std::uint64_t seed);
 
 /// The parts of `pcednet generate worn`: edges rounded as by use, casting or remeshing a scan, on
-/// slightly uneven surfaces. The ridge line is sharp-edge, as annotators draw it.
+/// slightly uneven surfaces. The ridge line is sharp-edge, as annotators label it.
 std::vector<CadRecipe> worn_recipes(std::uint64_t seed);
 
 /// The class of each position by its distance to the sharp borders.

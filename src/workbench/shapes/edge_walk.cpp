@@ -200,7 +200,7 @@ bool EdgeWalk::advance(WalkedEdge& edge, const Place& start, double sign) {
   return false;
 }
 
-/// Where the edge stops to be one for a test of this reach, between `last` and `ahead` of it.
+/// The end of the edge by a test of this reach, between `last` and `ahead` of it.
 Vec3 EdgeWalk::end_beyond(const WalkedEdge& edge, const Place& last, const Vec3& ahead,
                           double reach) {
   double low = 0.0, high = 1.0;

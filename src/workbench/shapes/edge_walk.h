@@ -12,12 +12,12 @@
 namespace pcednet::shapes {
 
 /// The surfaces that the faces of a solid are parts of. The four sides of a round hole, and faces
-/// of two volumes in one plane, are of one surface.
+/// of two volumes in one plane, belong to one surface.
 class SurfaceIndex {
  public:
   explicit SurfaceIndex(const Solid& solid);
 
-  /// The number of the surface: faces of equal signed distance everywhere have the same.
+  /// The number of the surface: faces with the same signed distance everywhere share it.
   std::size_t of(const Face& face);
 
   /// A face of the surface.

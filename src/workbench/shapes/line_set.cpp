@@ -103,8 +103,8 @@ GeneratedCloud generate_part(const LineRecipe& recipe, std::uint64_t seed) {
   return {recipe.name, std::move(cloud), rotated(std::move(curves), rotation)};
 }
 
-/// Straight rows over the roof, as of a scanner: points are moved across to the nearest one and
-/// keep their height, which is what an error of position in flight does to slopes.
+/// Straight scan rows over the roof: points are moved across to the nearest row and keep their
+/// height, like the effect of a positioning error in flight on slopes.
 void move_to_rows(std::vector<Vec3>& positions, double spacing, Random& random) {
   constexpr double kApart[] = {0.7, 1.3};  // in spacings
   const double angle = random.index(2) ? 0.0 : random.uniform(0.0, std::numbers::pi);

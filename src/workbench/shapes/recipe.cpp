@@ -76,7 +76,7 @@ std::vector<Vec3> make_normals(const Recipe& recipe, const SurfaceSamples& sampl
   return normals;
 }
 
-/// Keeps one point in so many, with its label and normal.
+/// Keeps one point in `thinned`, with its label and normal.
 void thin(std::vector<Vec3>& positions, PointCloud& cloud, std::size_t thinned, Random& random) {
   std::size_t kept = 0;
   for (std::size_t i = 0; i < positions.size(); ++i) {

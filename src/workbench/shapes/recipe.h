@@ -14,7 +14,7 @@ namespace pcednet::shapes {
 struct GeneratedCloud {
   std::string name;
   PointCloud cloud;
-  std::vector<lines::Curve> curves = {};  ///< the true edges, in the place of the cloud
+  std::vector<lines::Curve> curves = {};  ///< the true edges, in the cloud's coordinates
 };
 
 enum class NormalSource {
@@ -35,7 +35,7 @@ struct Recipe {
   double min_distance = 0.0;  ///< between points, before noise
   NormalSource normals = NormalSource::kPlane10;
   bool inward = false;      ///< all normals point into the solid
-  std::size_t thinned = 1;  ///< one point in so many is kept in the end, drawn at random
+  std::size_t thinned = 1;  ///< one point in this many is kept at the end, at random
 };
 
 /// Samples the points, disturbs them, labels them by the distance of the disturbed points to the

@@ -17,7 +17,7 @@ using std::numbers::pi;
 /// A distance in the plane, negative inside the ornament; of a crest, to the line itself.
 using Field = std::function<double(const Vec2&)>;
 
-/// What rises, or sinks, along a field.
+/// A raised or sunken shape along a field.
 struct Ornament {
   enum class Flank { kPlateau, kDome, kCrest } flank = Flank::kPlateau;
   Field field;
@@ -32,7 +32,7 @@ struct Ornament {
     return height * inside;
   }
 
-  /// The values of the field along which people see a line.
+  /// The values of the field along which a line is visible.
   std::vector<double> lines() const {
     if (flank == Flank::kPlateau) return {0.0, -width};
     return {0.0};

@@ -263,7 +263,7 @@ std::optional<double> height_at(const Polyhedron& roof, const std::vector<int>& 
   return corner(0).z() - (normal.x() * to.x() + normal.y() * to.y()) / normal.z();
 }
 
-/// How far the highest face there is above the place; 0 or less if none is.
+/// The height of the highest face there above the place; 0 or less if none is above.
 double cover_above(const Polyhedron& roof, const Vec3& place) {
   double cover = 0.0;
   for (const std::vector<int>& face : roof.faces) {

@@ -18,7 +18,7 @@ const char* roof_kind_name(int kind);
 /// A roof as an airborne scanner sees it, 2 to 10 metres large: no walls, no floor.
 Polyhedron random_roof(int kind, Random& random);
 
-/// The height of the highest face above or below the place; nothing beside the roof.
+/// The height of the highest face above or below the place; none beside the roof.
 std::optional<double> highest_at(const Polyhedron& roof, const Vec3& place);
 
 /// Whether no face is above the place.

@@ -17,7 +17,7 @@
 namespace pcednet::shapes {
 namespace {
 
-/// The class of a point among the borders near it; each stands for a short straight piece of edge.
+/// The class of a point from the borders near it; each represents a short straight piece of edge.
 std::uint8_t label_of(const Vec3& position, double spacing, const spatial::KdTree& tree,
                       std::span<const BorderPoint> borders, const EdgeBands& bands,
                       std::vector<spatial::Neighbour>& near) {

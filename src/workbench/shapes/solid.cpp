@@ -21,7 +21,7 @@ double rim_distance(const Volume& volume, double side, double cap) {
   return (side + cap + size) / std::sqrt(2.0);
 }
 
-/// Of a volume by itself.
+/// The value for a single volume.
 Solid::Value value_of(const Volume& volume, const Vec3& local) {
   std::size_t nearest = 0;
   const double side = volume.profile.distance(profile_place(volume, local), nearest);
@@ -42,7 +42,7 @@ Solid::Value value_of(const Volume& volume, const Vec3& local) {
   return {cap, {0, 0, top ? Face::Part::kTop : Face::Part::kBottom}};
 }
 
-/// The box of a volume where its frame puts it.
+/// The box of a volume placed by its frame.
 BoundingBox box_of(const Volume& volume) {
   const Vec2 low = volume.profile.low(), high = volume.profile.high();
   const bool turned = volume.kind == Volume::Kind::kRevolution;

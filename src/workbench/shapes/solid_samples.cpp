@@ -81,7 +81,7 @@ SolidSamples sample_solid(const Solid& solid, std::size_t count, std::uint64_t s
       ++hits[block];
       const auto point = onto_surface(solid, p);
       if (!point) continue;
-      // Straight onto a face; what lies beyond an edge would pile up on it.
+      // Straight onto a face; points beyond an edge would pile up on it.
       const Vec3 way = point->position - p;
       const Vec3 aside = way - way.dot(point->normal) * point->normal;
       if (aside.norm() < 1e-3 * kShell * size) parts[block].push_back(*point);

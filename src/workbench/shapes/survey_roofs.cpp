@@ -102,7 +102,7 @@ struct Chimney {
   double half, top;
 };
 
-/// What the beams meet.
+/// The target of the beams.
 struct Target {
   const Polyhedron& roof;
   Wave wave;

@@ -57,7 +57,7 @@ eval::ConfusionCounts counts_of(const Json& json) {
   return {at(0), at(1), at(2), at(3)};
 }
 
-/// What stands in the file, if it is there, whole, and of that key.
+/// The content of the file, if it exists, is complete, and has that key.
 std::optional<Json> read(const fs::path& path, const std::string& key) {
   std::error_code error;
   if (!fs::is_regular_file(path, error)) return std::nullopt;
@@ -66,7 +66,7 @@ std::optional<Json> read(const fs::path& path, const std::string& key) {
   return json;
 }
 
-/// `work`, or nothing if it fails on what was read.
+/// The result of `work`, or none if it fails on the data read.
 template <typename Work>
 auto unless_damaged(const Work& work) -> decltype(work()) {
   try {

@@ -19,14 +19,14 @@ struct EpochPoint {
   double loss = 0, held_out_loss = 0, held_out_accuracy = 0, held_out_mcc = 0;
 };
 
-/// A network that was trained, and what that took.
+/// A trained network, and the cost of its training.
 struct StoredModel {
   detect::EdgeModel model = {};
   Costs costs = {};
   std::vector<EpochPoint> epochs = {};
 };
 
-/// How a cloud was classified, or why it could not be.
+/// The classification of a cloud, or the reason of its failure.
 struct StoredClasses {
   std::vector<std::uint8_t> classes = {};  ///< a byte a point
   eval::ConfusionCounts sharp = {};        ///< agreement with the labels, Positive::kSharp
@@ -35,17 +35,17 @@ struct StoredClasses {
   Costs costs = {};
 };
 
-/// Results that are kept in a folder, each under the text that decides it. A file that is damaged,
-/// or of another text, counts as missing.
+/// A folder of results, each under the text that determines it (its key). A file that is damaged,
+/// or of another key, counts as missing.
 class Cache {
  public:
-  /// Makes the folder if need be. Throws Error(kFailure) if that is impossible.
+  /// Makes the folder if needed. Throws Error(kFailure) if that fails.
   explicit Cache(std::filesystem::path folder);
 
   std::optional<StoredModel> find_model(const std::string& key) const;
   std::optional<StoredClasses> find_classes(const std::string& key) const;
 
-  /// These throw Error(kFailure) when the disk takes no more.
+  /// These throw Error(kFailure) when the disk is full.
   void keep(const std::string& key, const StoredModel& model) const;
   void keep(const std::string& key, const StoredClasses& classes) const;
 

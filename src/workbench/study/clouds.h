@@ -9,13 +9,13 @@
 
 namespace pcednet::study {
 
-/// A labelled cloud, and what tells it apart.
+/// A labelled cloud, and its identity.
 struct StudyCloud {
   std::string name;
-  std::string file;  ///< where it came from; empty if it was made in memory
+  std::string file;  ///< its file; empty if it was made in memory
   PointCloud cloud;
   std::string digest;  ///< of positions, normals and labels, in their order
-  std::string places;  ///< of the positions, in whatever order
+  std::string places;  ///< of the positions, in any order
 };
 
 /// Throws Error(kInsufficient), naming it, if `cloud` has no points or no labels.
@@ -23,14 +23,14 @@ StudyCloud make_study_cloud(const std::string& name, const std::string& file, Po
 
 struct CloudSet {
   std::string name;
-  eval::Positive positive = eval::Positive::kSharp;  ///< what counts as an edge in it
+  eval::Positive positive = eval::Positive::kSharp;  ///< the classes that count as edge in it
   std::vector<StudyCloud> clouds = {};
 };
 
 /// kEdge if a cloud has a point of the smooth-edge class, otherwise kSharp.
 eval::Positive positive_of(const std::vector<StudyCloud>& clouds);
 
-/// What the experiments work on.
+/// The data of the experiments.
 struct StudyData {
   std::shared_ptr<const CloudSet> training;
   std::vector<std::shared_ptr<const CloudSet>> tests = {};

@@ -6,7 +6,7 @@
 
 namespace pcednet::study {
 
-/// What a piece of work took.
+/// The cost of a piece of work.
 struct Cost {
   double seconds = 0, joules = 0;
 
@@ -17,7 +17,7 @@ struct Cost {
   }
 };
 
-/// What the pieces of a result took.
+/// The costs of the parts of a result.
 struct Costs {
   Cost normals = {};            ///< estimating and orienting those of the test clouds
   Cost describe = {};           ///< the test clouds
@@ -28,9 +28,9 @@ struct Costs {
   Costs& operator+=(const Costs& other);
 };
 
-/// How much energy the processor took: read from the RAPL counters where Linux shows them, and
-/// otherwise estimated as processor seconds of this program x the design power of a core, which is
-/// how Himeur et al. 2021 do it.
+/// The energy that the processor used: read from the RAPL counters where Linux exposes them,
+/// otherwise estimated as processor seconds of this program x the design power of a core, as Himeur
+/// et al. 2021 do.
 class EnergyMeter {
  public:
   explicit EnergyMeter(double watts_per_core);

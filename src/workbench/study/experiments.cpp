@@ -43,7 +43,7 @@ void add_models(Experiment& experiment, const PlanOptions& options) {
     experiment.variants.push_back({.id = id,
                                    .title = fmt::format("model {}", id),
                                    .method = ModelMethod{file, options.training.descriptor.engine},
-                                   .note = "as it comes, trained on clouds of its own"});
+                                   .note = "as shipped, trained on other clouds"});
   }
 }
 
@@ -175,7 +175,7 @@ Experiment range(const PlanOptions& options) {
   Experiment experiment{
       .name = "range",
       .title = "Largest scale",
-      .question = "Does one network stand other ranges of scales than it was trained with?",
+      .question = "Does a network tolerate other ranges of scales than it was trained with?",
       .x_label = "largest scale / diagonal of the cloud"};
   for (const double fraction : {0.02, 0.05, 0.1, 0.2, 0.5}) {
     NetworkMethod method = network(options);
@@ -237,7 +237,7 @@ Experiment noise(const PlanOptions& options) {
   Experiment experiment{.name = "noise",
                         .title = "Noise",
                         .question =
-                            "How much noise does a network stand, and what do clean "
+                            "How much noise does a network tolerate, and what do clean "
                             "normals hide?",
                         .x_label = "standard deviation / diagonal of the cloud"};
   struct Line {
@@ -263,7 +263,7 @@ Experiment noise(const PlanOptions& options) {
   return experiment;
 }
 
-/// Four joined cubes with exact normals: what costs are measured on.
+/// Four joined cubes with exact normals, for measuring costs.
 std::shared_ptr<const CloudSet> generated_cloud(std::size_t points, std::uint64_t seed) {
   const shapes::Recipe recipe{.name = fmt::format("cubes_{}", points),
                               .shape = shapes::four_cubes(),

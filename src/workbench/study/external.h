@@ -7,8 +7,8 @@
 
 namespace pcednet::study {
 
-/// What `method` found in `cloud`; no classes if there is no file for it. Throws what
-/// eval::read_predictions() throws.
+/// The predictions of `method` for `cloud`; no classes if there is no file for it. Throws as
+/// eval::read_predictions() does.
 eval::Predictions external_classes(const ExternalMethod& method, const std::string& set,
                                    const StudyCloud& cloud);
 

@@ -24,21 +24,21 @@ struct NetworkMethod {
   std::optional<double> s_max_fraction = {};
 };
 
-/// A network that is there already.
+/// An existing network.
 struct ModelMethod {
   std::filesystem::path file;
   gls::Engine engine = gls::Engine::kFast;
 };
 
-/// What another program found: a file of classes per cloud, of the same stem, in `folder`, in which
-/// "{set}" stands for the name of the set.
+/// Predictions of another program: a file of classes per cloud, with the cloud's stem, in `folder`,
+/// where "{set}" is replaced by the name of the set.
 struct ExternalMethod {
   std::string folder;
 };
 
 /// A method without training.
 struct ClassicMethod {
-  std::string settings;  ///< decides, with the cloud, what it finds
+  std::string settings;  ///< determines, with the cloud, the result
   std::function<std::vector<std::uint8_t>(const PointCloud& cloud, const std::string& set,
                                           const Progress*)>
       classes;
@@ -46,7 +46,7 @@ struct ClassicMethod {
 
 using Method = std::variant<NetworkMethod, ModelMethod, ExternalMethod, ClassicMethod>;
 
-/// What is done to the test clouds before they are classified.
+/// The treatment of the test clouds before they are classified.
 struct Treatment {
   double keep = 1.0;              ///< share of the points
   double noise = 0.0;             ///< standard deviation over the diagonal
@@ -56,7 +56,7 @@ struct Treatment {
   bool operator==(const Treatment&) const = default;
 };
 
-/// What the result of a variant tells the cost of.
+/// The work whose cost a variant reports.
 enum class Phase { kAll, kDescribeTraining, kTrain, kDescribe, kClassify };
 
 /// One row of an experiment's table: a method under some condition.
@@ -64,7 +64,7 @@ struct Variant {
   std::string id;     ///< of a sweep: the name of the line, '-', the number
   std::string title;  ///< for people
   Method method;
-  std::optional<double> x = {};  ///< what is swept
+  std::optional<double> x = {};  ///< the swept value
   Treatment treatment = {};
   std::string note = {};
   std::shared_ptr<const CloudSet> training = {};  ///< empty: the study's
@@ -77,8 +77,8 @@ struct Experiment {
   std::optional<std::string> x_label = {};  ///< of a sweep
   std::vector<Variant> variants = {};
   bool both_positives = false;  ///< score the sharp class alone and with the smooth one
-  bool curves = false;          ///< keep how the networks learnt
-  bool timed = false;           ///< seconds and joules are the result: not those of another machine
+  bool curves = false;          ///< keep the learning curves
+  bool timed = false;  ///< seconds and joules are the result: another machine's do not count
 };
 
 struct NamedMethod {
@@ -86,23 +86,23 @@ struct NamedMethod {
   ClassicMethod method;
 };
 
-/// What the user may choose.
+/// The user's options.
 struct PlanOptions {
-  detect::TrainOptions training = {};  ///< what an experiment does not vary
+  detect::TrainOptions training = {};  ///< where an experiment does not vary it
   bool quick = false;                  ///< fewer epochs, samples, sizes: for a first look
   std::vector<std::pair<std::string, std::filesystem::path>> models = {};  ///< id, file
   std::vector<std::pair<std::string, std::string>> predictions = {};       ///< id, folder
   std::vector<NamedMethod> classic = {};
 };
 
-/// The experiments there are: name and a line on what it shows, in the order of the paper.
+/// The experiments, in the order of the paper: name and a line on what each shows.
 struct ExperimentEntry {
   std::string_view name, summary;
   Experiment (*make)(const PlanOptions&);
 };
 const std::vector<ExperimentEntry>& experiments();
 
-/// Throws Error(kUsage), naming those there are, for an unknown name.
+/// Throws Error(kUsage), listing the names, for an unknown name.
 Experiment make_experiment(std::string_view name, const PlanOptions& options);
 
 }  // namespace pcednet::study

@@ -26,7 +26,7 @@ struct Classifier {
   std::optional<std::uint64_t> seed = {};
 };
 
-/// A cloud that a classifier has to work on, and where its result belongs.
+/// A cloud for a classifier, and the destination of its result.
 struct Task {
   std::string key;
   const StudyCloud* cloud;
@@ -35,7 +35,7 @@ struct Task {
   std::shared_ptr<const StoredModel> model;
 };
 
-/// A cloud and what a method found in it.
+/// A cloud and a method's predictions for it.
 struct Scored {
   const StudyCloud* cloud;
   StoredClasses found;
@@ -84,7 +84,7 @@ class Runner {
   bool learnt_from(const Classifier& classifier, const StudyCloud& cloud) const;
   std::string key_of(const Classifier& classifier, const Variant& variant,
                      const StudyCloud& cloud) const;
-  /// What is still to be classified; tasks on one cloud in one treatment and description together.
+  /// The remaining classifications; tasks on one cloud in one treatment and description together.
   std::vector<std::vector<Task>> plan_tasks();
   void classify_clouds();
   void collect();
@@ -163,7 +163,7 @@ std::vector<TrainingTask> Runner::plan_networks() {
 
 void Runner::train_networks() {
   std::vector<TrainingTask> pending = plan_networks();
-  // Those that learn from the same descriptions follow each other.
+  // Tasks that learn from the same descriptions follow each other.
   std::stable_sort(pending.begin(), pending.end(),
                    [](const auto& a, const auto& b) { return a.samples_key < b.samples_key; });
   Trainer trainer(options_.watts_per_core, progress_);

@@ -16,7 +16,7 @@ namespace pcednet::study {
 struct RunOptions {
   std::vector<std::uint64_t> seeds = {1};
   double watts_per_core = 9.0;  ///< where energy cannot be read; that of the paper's processor
-  std::function<void(const std::string&)> on_job = {};  ///< told what begins
+  std::function<void(const std::string&)> on_job = {};  ///< called as each job begins
 };
 
 /// A variant on a set with a seed.
@@ -28,7 +28,7 @@ struct Result {
   eval::Positive positive = eval::Positive::kSharp;
   std::vector<eval::CloudScore> scores = {};
   Costs costs = {};
-  double points = 0;  ///< what the costs of the test clouds are of
+  double points = 0;  ///< of the test clouds, for their costs
   double training_points = 0;
   /// A byte a point for each cloud of `scores`, if the clouds are those of the files.
   std::vector<std::vector<std::uint8_t>> classes = {};
@@ -40,7 +40,7 @@ struct Curve {
   std::vector<EpochPoint> epochs = {};
 };
 
-/// What an experiment found.
+/// The results of an experiment.
 struct Study {
   Experiment experiment;
   std::string training = {};  ///< the name of the set that the networks learnt from
@@ -48,16 +48,16 @@ struct Study {
   std::vector<Result> results = {};  ///< by variant, set, seed, and positive class
   std::vector<Curve> curves = {};
   std::vector<std::string> notes = {};      ///< what was left out, and why
-  std::size_t trained = 0, classified = 0;  ///< networks and clouds that `cache` did not have
+  std::size_t trained = 0, classified = 0;  ///< networks and clouds not in `cache`
 };
 
-/// Does what the experiment asks for and `cache` does not hold yet. Every training and every
-/// classified cloud is kept at once, so that a run that was cancelled goes on from there.
+/// Runs the experiment as far as `cache` does not hold its results. Every training and every
+/// classified cloud is kept at once, so that a cancelled run can be resumed.
 ///
-/// A cloud whose positions are those of a training cloud is not scored with networks that learnt
-/// from it, and a cloud that cannot be described (thinned to nothing, say) is not scored: the notes
-/// name both. The scores depend on data, experiment and seeds alone, whatever the number of threads
-/// and the order of the seeds. Throws what the work throws, Error(kCancelled) among it.
+/// A cloud with the positions of a training cloud is not scored with networks trained on it, and a
+/// cloud that cannot be described (thinned to nothing, say) is not scored: the notes name both. The
+/// scores depend only on data, experiment and seeds, not on the number of threads and the order of
+/// the seeds. Throws the errors of the work, including Error(kCancelled).
 Study run(const Experiment& experiment, const StudyData& data, const Cache& cache,
           const RunOptions& options, const Progress* progress = nullptr);
 

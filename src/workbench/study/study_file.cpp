@@ -25,7 +25,7 @@ Json sets_of(const Study& study) {
   for (const auto& set : study.sets) {
     Json clouds = Json::array();
     for (const StudyCloud& cloud : set->clouds) {
-      if (cloud.file.empty()) continue;  // nowhere to be seen
+      if (cloud.file.empty()) continue;  // not available to a page
       clouds.push_back(
           {{"name", cloud.name}, {"points", cloud.cloud.size()}, {"file", cloud.file}});
     }
@@ -56,7 +56,7 @@ Json variants_of(const Study& study) {
   return variants;
 }
 
-/// The parts of a cost that a variant is about, by name.
+/// The parts of a variant's cost, by name.
 struct PhasePart {
   Phase phase;
   const char* name;
@@ -77,7 +77,7 @@ Json seconds_of(const Result& result, Phase phase) {
   return seconds;
 }
 
-/// Joules per thousand points of the one phase that the variant is about.
+/// Joules per thousand points of the variant's phase.
 Json joules_of(const Result& result, Phase phase) {
   const bool training = phase == Phase::kTrain || phase == Phase::kDescribeTraining;
   const double points = training ? result.training_points : result.points;
@@ -131,7 +131,7 @@ Json curves_of(const Study& study) {
   return curves;
 }
 
-/// What was published for these methods, trained as here, on sets of these names.
+/// The published scores of these methods, trained as here, on sets of these names.
 Json expected_of(const Study& study) {
   Json expected = Json::array();
   if (study.experiment.name != "methods" || study.training != "default") return expected;

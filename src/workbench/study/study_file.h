@@ -9,7 +9,7 @@
 namespace pcednet::study {
 
 struct FileOptions {
-  std::string command = {};  ///< that made the study, for who reads it
+  std::string command = {};  ///< that made the study, for readers
   bool energy_is_measured = false;
   double watts_per_core = 0;
 };
@@ -17,7 +17,7 @@ struct FileOptions {
 /// The study as JSON of schema "pcednet-study-1", see docs/study.md.
 std::string to_json(const Study& study, const FileOptions& options);
 
-/// Writes `folder`/NAME.json, and the classes that the methods found as
+/// Writes `folder`/NAME.json, and the predictions of the methods as
 /// `folder`/predictions/NAME/VARIANT/SET/CLOUD.u8, a byte a point. A file that an earlier run of
 /// the same command left there is replaced; otherwise `overwrite` decides.
 void write_study(const std::filesystem::path& folder, const Study& study,

@@ -11,10 +11,10 @@
 namespace pcednet::study {
 namespace {
 
-// What is done to a cloud is the experiment; nothing is mended.
+// The treatment of a cloud is the experiment; nothing is repaired.
 constexpr detect::PrepareOptions kAsGiven = {.keep_orientation = true};
 
-/// The labels of the points to learn from; which these are depends on where they lie.
+/// The labels of the points to learn from, chosen by their positions.
 std::vector<std::uint8_t> thinned_labels(const PointCloud& cloud, int one_in) {
   std::vector<std::uint8_t> labels = cloud.labels;
   if (one_in <= 1) return labels;
@@ -40,8 +40,8 @@ PointCloud treat(const PointCloud& cloud, const Treatment& treatment) {
   return treated;
 }
 
-/// Of what is not non-edge; of what is sharp where there is no smooth class. From rows of true
-/// classes and columns of found ones.
+/// The MCC of edge against non-edge, or of sharp-edge where there is no smooth class. Rows are true
+/// classes, columns predicted ones.
 double mcc_of(const std::vector<std::size_t>& confusion) {
   const auto classes = static_cast<std::size_t>(std::sqrt(static_cast<double>(confusion.size())));
   eval::ConfusionCounts counts;
@@ -80,7 +80,7 @@ StoredModel Trainer::train(const TrainingTask& task) {
   double seconds = 0;
   const auto on_epoch = [&](const nn::EpochReport& report) {
     seconds += watch.lap();
-    if (report.epoch == 1) stored.epochs.clear();  // those before were a teacher's
+    if (report.epoch == 1) stored.epochs.clear();  // earlier ones were a teacher's
     stored.epochs.push_back({report.epoch, seconds, report.training_loss, report.validation_loss,
                              report.validation_accuracy, mcc_of(report.validation_confusion)});
   };

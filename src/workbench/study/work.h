@@ -25,8 +25,8 @@ struct TrainingTask {
   std::string key = {};
 };
 
-/// Trains one network after the other, and keeps clouds and descriptions of the training points for
-/// the next one that learns from the same.
+/// Trains one network after another, and keeps clouds and descriptions of the training points for
+/// the next one that learns from them.
 class Trainer {
  public:
   Trainer(double watts_per_core, const Progress* progress)
@@ -51,7 +51,7 @@ class Trainer {
 /// Compares `found` with the labels `truth`.
 void count_agreement(std::span<const std::uint8_t> truth, StoredClasses& found);
 
-/// A cloud in a treatment with its description, which several networks classify.
+/// A treated cloud with its description, which several networks classify.
 class CloudWork {
  public:
   CloudWork(const StudyCloud& cloud, const Treatment& treatment,
@@ -63,14 +63,14 @@ class CloudWork {
 
  private:
   double watts_per_core_;
-  std::string failure_ = {};  ///< why there is no description
+  std::string failure_ = {};  ///< the reason if there is no description
   Costs costs_ = {};
   std::vector<std::uint8_t> truth_ = {};
   std::vector<Vec3> positions_ = {};
   detect::DescribedCloud described_ = {};
 };
 
-/// What a method without training finds in the treated cloud of the set.
+/// The predictions of a method without training for the treated cloud of the set.
 StoredClasses classify_classic(const StudyCloud& cloud, const std::string& set,
                                const Treatment& treatment, const ClassicMethod& method,
                                double watts_per_core, const Progress* progress);

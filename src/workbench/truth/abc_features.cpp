@@ -19,8 +19,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Takes `curves: - {sharp: ..., vert_indices: [...]}` out of the events of a YAML parser, so that
-/// the file, which can be ten times the mesh, is never held as a tree.
+/// Extracts `curves: - {sharp: ..., vert_indices: [...]}` from the events of a YAML parser, so that
+/// the file, which can be ten times as large as the mesh, is never held as a tree.
 class CurveHandler : public YAML::EventHandler {
  public:
   CurveHandler(const fs::path& path, std::size_t points) : path_(path) {
@@ -118,7 +118,7 @@ bool replace(std::string& text, std::string_view what, std::string_view with) {
   return true;
 }
 
-/// A stream over text that is there already.
+/// A stream over text in memory.
 struct TextBuffer : std::streambuf {
   explicit TextBuffer(std::string& text) {
     setg(text.data(), text.data(), text.data() + text.size());

@@ -14,7 +14,8 @@ std::filesystem::path find_abc_features(const std::filesystem::path& mesh);
 
 /// Labels of a mesh's `points` vertices from its ABC features: sharp-edge for the vertices
 /// (`vert_indices`, from 0) of `curves` that are `sharp`, non-edge for the others. Throws
-/// Error(kUnreadable) for a file that is no YAML or has no curves, or names a vertex there is not.
+/// Error(kUnreadable) for a file that is not YAML, has no curves, or names a vertex that does not
+/// exist.
 std::vector<std::uint8_t> read_abc_labels(const std::filesystem::path& features,
                                           std::size_t points);
 

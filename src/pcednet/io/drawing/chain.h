@@ -9,7 +9,7 @@
 
 namespace pcednet::io {
 
-/// Farther out squared distances would overflow.
+/// Whether squared distances do not overflow.
 inline bool is_drawable(const Vec3& point) {
   return (point.array().abs() <= 1e150).all();
 }

@@ -41,21 +41,20 @@ struct DrawingFormat {
 /// The whole table.
 std::span<const DrawingFormat> drawing_formats();
 
-/// The extensions, such as ".dxf .obj .ply"; `last` stands before the last.
+/// The extensions, such as ".dxf .obj .ply"; `last` separates the last one.
 std::string drawing_extensions(std::string_view last = " ");
 
-/// The format to write under that name. Throws Error(kUsage) if there is none, or if it was left
-/// out of this build.
+/// The format to write under that name. Throws Error(kUsage) if there is none, or if this build
+/// lacks it.
 const DrawingFormat& drawing_format_for(const std::filesystem::path& path);
 
 /// Writes `curves` in the format that the extension names, the same bytes each time; no curves give
-/// an empty, valid file. Coordinates keep every bit, except for those of arcs and circles in a
-/// tilted plane of DXF, which has them in the plane's own axes, and those of SVG, whose origin is a
-/// corner of the drawing. The file appears under its name only when it is complete.
+/// an empty, valid file. Coordinates keep every bit, except in DXF for arcs and circles in a tilted
+/// plane, which have the plane's own axes, and in SVG, whose origin is a corner of the drawing. The
+/// file appears under its name only when it is complete.
 ///
 /// Throws Error(kUsage) as drawing_format_for() does and for an existing file, Error(kFailure) when
-/// the disk takes no more, or for a curve that is none: without points, or with numbers that are
-/// not finite.
+/// the disk is full, or for an invalid curve: without points, or with numbers that are not finite.
 void write_drawing(const std::filesystem::path& path, std::span<const lines::Curve> curves,
                    const DrawingOptions& options = {});
 

@@ -114,7 +114,7 @@ void write_header(DxfText& dxf, const BoundingBox& box, LengthUnit unit,
     variable("$MEASUREMENT");
     dxf.integer(70, unit == LengthUnit::kInch || unit == LengthUnit::kFoot ? 0 : 1);
   }
-  // What AutoCAD itself writes for an empty drawing.
+  // AutoCAD's own values for an empty drawing.
   variable("$EXTMIN");
   dxf.point(10, box.empty() ? Vec3::Constant(1e20) : box.min);
   variable("$EXTMAX");

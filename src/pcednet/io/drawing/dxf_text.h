@@ -10,8 +10,8 @@
 
 namespace pcednet::io {
 
-/// The text of a DXF file under construction: group codes and values, and handles where the version
-/// has them.
+/// The text of a DXF file under construction: group codes, values and, where the version has them,
+/// handles.
 class DxfText {
  public:
   explicit DxfText(DxfVersion version) : version_(version) {}
@@ -59,7 +59,7 @@ struct DxfHandles {
 /// Tables of line types, layers and, from 2000 on, all others; the active view shows `box`.
 DxfHandles write_dxf_tables(DxfText& dxf, const BoundingBox& box);
 
-/// The blocks and the objects that a drawing must have from 2000 on.
+/// The blocks and objects that a drawing must have from 2000 on.
 void write_dxf_blocks(DxfText& dxf, const DxfHandles& handles);
 void write_dxf_objects(DxfText& dxf);
 

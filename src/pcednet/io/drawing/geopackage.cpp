@@ -12,7 +12,8 @@
 namespace pcednet::io {
 namespace {
 
-/// The tables that GeoPackage 1.3 wants, and the layer. A fixed time, for the same bytes each time.
+/// The tables that GeoPackage 1.3 requires, and the layer. A fixed time, for the same bytes each
+/// time.
 constexpr const char* kTables = R"(
 PRAGMA application_id = 0x47504B47;
 PRAGMA user_version = 10300;
@@ -42,7 +43,7 @@ CREATE TABLE edges (fid INTEGER PRIMARY KEY AUTOINCREMENT NOT NULL, geom LINESTR
 
 constexpr int kUndefined = -1;
 
-/// A definition of ISO 19162 goes to a column of its own, by the extension for it.
+/// An ISO 19162 definition has a separate column, by the extension for it.
 constexpr const char* kWkt2Tables = R"(
 ALTER TABLE gpkg_spatial_ref_sys ADD COLUMN definition_12_063 TEXT NOT NULL DEFAULT 'undefined';
 CREATE TABLE gpkg_extensions (table_name TEXT, column_name TEXT, extension_name TEXT NOT NULL,

@@ -13,7 +13,7 @@ struct LineClass {
   EdgeClass edge_class;
   std::string_view name;
   Rgb colour;
-  int dxf_colour;  ///< of AutoCAD's 255 the nearest
+  int dxf_colour;  ///< the nearest of AutoCAD's 255
 };
 
 /// In the order of layers and groups.
@@ -23,7 +23,7 @@ inline constexpr std::array<LineClass, 3> kLineClasses = {{
     {kBoundary, kEdgeClasses[kBoundary].name, kEdgeClasses[kBoundary].colour, 152},
 }};
 
-/// The entry of a class; that of sharp edges for one that curves do not have.
+/// The entry of a class; that of sharp edges for a class without lines.
 inline const LineClass& line_class(EdgeClass edge_class) {
   for (const LineClass& entry : kLineClasses) {
     if (entry.edge_class == edge_class) return entry;

@@ -49,7 +49,7 @@ std::size_t vertex_index(double number, std::size_t vertices) {
   throw Error(ErrorKind::kUnreadable, fmt::format("names vertex {} of {}", number, vertices));
 }
 
-/// The rows of a foreign element, which its reader left sound and little-endian.
+/// The rows of a foreign element, which its reader has checked and made little-endian.
 std::vector<EdgeRow> edge_rows(ForeignElement& foreign, std::size_t vertices,
                                const std::filesystem::path& path) {
   const PlyHeader header = parse_ply_header(

@@ -16,8 +16,8 @@ namespace pcednet::io {
 /// property `curve`, if there is one; the property `class` holds an EdgeClass. A curve that ends at
 /// its first vertex is closed. Vertices that repeat the one before are dropped.
 ///
-/// Throws Error(kUnreadable), naming the file and the line, row or byte, for what cannot be read, a
-/// vertex that is missing or not finite, and a line whose vertices are all one point;
+/// Throws Error(kUnreadable), naming the file and the line, row or byte, for a syntax error, a
+/// vertex that is missing or not finite, and a line whose vertices all coincide;
 /// Error(kInsufficient) for a file with vertices but no lines.
 std::vector<lines::Curve> read_curves(const std::filesystem::path& path);
 

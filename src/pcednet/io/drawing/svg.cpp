@@ -9,7 +9,7 @@
 namespace pcednet::io {
 namespace {
 
-/// What lies to the right and what up.
+/// The axes to the right and up.
 struct ViewAxes {
   int right, up;
 };

@@ -10,7 +10,7 @@
 
 namespace pcednet::io {
 
-// One file each; for write_drawing(), which has checked the curves.
+// One file per format; called by write_drawing(), which has checked the curves.
 using Curves = std::span<const lines::Curve>;
 void write_dxf(const std::filesystem::path& path, Curves curves, const DrawingOptions& options);
 void write_obj_lines(const std::filesystem::path& path, Curves curves,
@@ -30,16 +30,17 @@ std::vector<Vec3> drawn(const lines::Curve& curve, const DrawingOptions& options
 
 /// The curves as polylines that share their vertices.
 struct LineMesh {
-  std::vector<Vec3> vertices;                    ///< no two at one place
-  std::vector<std::vector<std::size_t>> chains;  ///< of each curve; a closed one ends as it began
+  std::vector<Vec3> vertices;  ///< no two at one place
+  std::vector<std::vector<std::size_t>>
+      chains;  ///< of each curve; a closed one ends with its first vertex
 };
 LineMesh line_mesh(Curves curves, const DrawingOptions& options);
 
-/// The box of all that is drawn.
+/// The box of everything drawn.
 BoundingBox drawn_box(Curves curves, const DrawingOptions& options);
 
-/// The shortest digits that give back the number, with a point or an exponent: some readers know a
-/// real by it.
+/// The shortest digits that read back exactly, with a point or an exponent, by which some readers
+/// recognise a real.
 std::string real_digits(double value);
 
 double dihedral_degrees(const lines::Curve& curve);

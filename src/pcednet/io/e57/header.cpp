@@ -12,7 +12,7 @@
 namespace pcednet::io {
 namespace {
 
-/// `text` without what is blank around it.
+/// `text` without surrounding blanks.
 std::string_view bare(std::string_view text) {
   constexpr std::string_view kBlank = " \t\r\n";
   const std::size_t begin = std::min(text.find_first_not_of(kBlank), text.size());
@@ -35,7 +35,7 @@ class Parser {
     Number value = {};
     const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (code != std::errc() || end != text.data() + text.size()) {
-      throw error(fmt::format("{} is no number that fits: {:.40}", what, text));
+      throw error(fmt::format("{} is not a valid number: {:.40}", what, text));
     }
     return value;
   }

@@ -35,7 +35,7 @@ class Bytestream {
     if (complete()) return;
     pending_.insert(pending_.end(), bytes.begin(), bytes.end());
     const std::size_t end = pending_.size();
-    pending_.resize(end + 9);  // a value is taken from nine bytes, wherever it ends
+    pending_.resize(end + 9);  // a value is read from nine bytes, wherever it ends
     const std::size_t used_bits = decode(end * 8);
     first_bit_ = used_bits % 8;
     pending_.resize(end);

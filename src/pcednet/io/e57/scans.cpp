@@ -24,7 +24,7 @@ bool has_all(const E57Scan& scan, const Names& names) {
                      [&](const char* name) { return find_field(scan, name) != nullptr; });
 }
 
-/// What one scan holds, one attribute per field.
+/// The content of one scan, one attribute per field.
 struct ScanPoints {
   const E57Scan& scan;
   std::vector<Attribute> fields;
@@ -73,7 +73,7 @@ std::vector<Vec3> positions_of(const ScanPoints& points) {
   return positions;
 }
 
-/// What stands for 0 and for 255: the scan's colour limits, or the range of the field.
+/// The values that become 0 and 255: the scan's colour limits, or the range of the field.
 E57Limits colour_limits(const E57Scan& scan, std::size_t channel) {
   const auto& given = scan.colour_limits[channel];
   if (given && given->lower < given->upper) return *given;
@@ -160,7 +160,7 @@ std::vector<Attribute> plan_attributes(const std::vector<E57Scan>& scans) {
       });
     };
     const bool is_float = attribute.type >= ScalarType::kFloat32;
-    // Only a float can say that there is no number.
+    // Only a float can express a missing number.
     if (!is_float && std::any_of(scans.begin(), scans.end(), lacks)) {
       attribute.type = ScalarType::kFloat64;
     }
@@ -170,7 +170,7 @@ std::vector<Attribute> plan_attributes(const std::vector<E57Scan>& scans) {
 
 void append_attribute(const ScanPoints& points, Attribute& attribute) {
   const auto& fields = points.fields;
-  // Strings have been left empty: as good as absent.
+  // Strings were left empty: they count as absent.
   const auto field = std::find_if(fields.begin(), fields.end(), [&](const Attribute& f) {
     return !f.bytes.empty() && f.name == attribute.name;
   });

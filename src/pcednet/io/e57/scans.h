@@ -13,13 +13,13 @@ namespace pcednet::io {
 /// Throws Error(kInsufficient) for a scan whose points have no coordinates.
 void check_e57_fields(const InputFile& file, const E57Scan& scan);
 
-/// Whether a field of the scan says which of its points are invalid.
+/// Whether a field of the scan marks invalid points.
 bool has_invalid_points(const E57Scan& scan);
 
-/// What the user is told of the scans, of whose points `invalid` are left out.
+/// The warnings about the scans, `invalid` of whose points are left out.
 std::vector<std::string> e57_warnings(const std::vector<E57Scan>& scans, std::uint64_t invalid);
 
-/// Scans appended one after the other; what a point has depends on all scans of the file.
+/// Scans appended one after the other; the attributes depend on all scans of the file.
 class E57Collector {
  public:
   /// `scans` must outlive it.
@@ -29,7 +29,7 @@ class E57Collector {
 
   void append(const E57Pages& pages, std::size_t scan);
 
-  /// Names of attributes that say nothing of what was appended, and need not be kept.
+  /// Names of attributes that carry no information about the appended points, and need not be kept.
   std::set<std::string> silent() const;
 
   /// Call it once, last.

@@ -56,7 +56,7 @@ class LayoutBuilder {
   }
 
  private:
-  /// Those that the file has, but for those that nothing in the cloud stands for any more.
+  /// Adds the file's own extra bytes, except those with nothing left in the cloud.
   void add_own_extra_bytes() {
     std::size_t end = las_format_bytes(file_.point_format());
     std::vector<std::string> ignored;
@@ -77,7 +77,7 @@ class LayoutBuilder {
     }
   }
 
-  /// In the place of the file's own record, which stays as it is if nothing changed.
+  /// Replaces the file's own record, which stays unchanged if nothing changed.
   void put_descriptors() {
     if (descriptors_.size() > UINT16_MAX) too_many();
     if (descriptors_ == descriptors_of(file_)) return;
@@ -130,7 +130,7 @@ class LayoutBuilder {
     layout_.columns.push_back({std::move(field), attribute.bytes.data(), attribute.stride()});
   }
 
-  /// As one attribute, or as the scalars that an array is in PLY.
+  /// As one attribute, or as the scalars into which PLY splits an array.
   bool add_attribute(const LasField& field) {
     if (const Attribute* whole = find_unused(field.name, field, field.components)) {
       copy(field, *whole);
@@ -165,7 +165,7 @@ class LayoutBuilder {
       layout_.columns.push_back({field, reinterpret_cast<const std::byte*>(number), sizeof(Vec3),
                                  LasColumn::Scale::kNormal});
     } else {
-      // Integers cannot hold new normals: these get fields of their own.
+      // Integers cannot hold new normals: these get separate fields.
       const bool outdated = cloud_.has_normals() && options_.new_normals;
       if (outdated) used_.insert(by_name_[field.name].begin(), by_name_[field.name].end());
       return false;
@@ -181,7 +181,7 @@ class LayoutBuilder {
     return has_label_ = true;
   }
 
-  /// That of formats 6 to 10 from that of 0 to 5.
+  /// The scan angle of formats 6 to 10 from that of formats 0 to 5.
   bool add_angle(const LasField& field) {
     if (!choices_.promoted || field.name != "ScanAngle") return false;
     const Attribute* rank = find_unused("ScanAngleRank", {"", ScalarType::kInt8}, 1);
@@ -235,7 +235,7 @@ class LayoutBuilder {
     throw Error(ErrorKind::kFailure, "the points have more attributes than LAS can hold");
   }
 
-  /// New extra bytes come after what the file has, which must be described for that.
+  /// New extra bytes follow those of the file, which must be described for that.
   void describe_undocumented() {
     for (std::size_t at = descriptors_.size(); at > 0;) {
       at -= las_descriptor::kBytes;

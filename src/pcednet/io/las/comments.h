@@ -12,7 +12,7 @@ namespace pcednet::io {
 /// there are no comments, or more than the 64 KiB of a record.
 std::optional<LasRecord> las_comment_record(const std::vector<std::string>& comments);
 
-/// Takes such records out of a file and returns their lines, control characters as blanks.
+/// Removes such records from a file and returns their lines, control characters as blanks.
 std::vector<std::string> take_las_comments(LasFile& file);
 
 }  // namespace pcednet::io

@@ -8,12 +8,12 @@
 namespace pcednet::io {
 namespace {
 
-// GeoTIFF keys, and the values that say nothing.
+// GeoTIFF keys, and the values without meaning.
 constexpr std::uint16_t kGeographicType = 2048, kProjectedType = 3072, kProjectedUnit = 3076,
                         kVerticalType = 4096, kVerticalUnit = 4099;
 constexpr int kMetre = 9001, kUserDefined = 32767;
 
-/// The keys whose value stands with them, which codes do.
+/// The keys with an inline value, as codes have.
 std::map<std::uint16_t, int> geo_keys(std::string_view data) {
   constexpr std::size_t kEntryBytes = 8;
   std::map<std::uint16_t, int> keys;

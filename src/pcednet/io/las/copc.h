@@ -17,11 +17,11 @@
 
 namespace pcednet::io {
 
-/// Whether a file of that name is to be COPC: .copc.laz, in small letters or capitals.
+/// Whether the name is that of a COPC file: .copc.laz, in small letters or capitals.
 bool is_copc_name(const std::filesystem::path& path);
 
-/// Makes the choices those of a file that COPC 1.0 allows: LAS 1.4 with a header of 375 bytes,
-/// point format 6, 7 with colours, 8 with infrared too. Adds the record that must come first, still
+/// Restricts the choices to those that COPC 1.0 allows: LAS 1.4 with a header of 375 bytes, point
+/// format 6, 7 with colours, 8 with infrared too. Adds the record that must come first, still
 /// empty.
 void choose_copc(LasChoices& choices, const PointCloud& first);
 
@@ -32,7 +32,7 @@ void choose_copc(LasChoices& choices, const PointCloud& first);
 /// and 200 MB. The bytes are the same for any number of threads and any order of the points.
 class CopcPointWriter {
  public:
-  /// The points begin at `offset` of the file `path`, where `out` must stand; `out` and `file` must
+  /// The points begin at `offset` of the file `path`, the position of `out`; `out` and `file` must
   /// outlive it.
   CopcPointWriter(OutputFile& out, const std::filesystem::path& path, const LasFile& file,
                   std::uint64_t offset);
@@ -40,12 +40,12 @@ class CopcPointWriter {
   /// Takes `count` more points.
   void append(std::size_t count, const EncodePoints& encode);
 
-  /// Writes them all and returns the bytes that points and table take. `bounds`: of the points, as
-  /// the header has it. Throws Error(kCancelled) if `progress`, which may be null, says so.
+  /// Writes all points and returns the bytes that points and table take. `bounds`: of the points,
+  /// as in the header. Throws Error(kCancelled) if `progress`, which may be null, asks to cancel.
   std::uint64_t finish(const BoundingBox& bounds, const Progress* progress);
 
-  /// After finish(): the data of the record of the hierarchy, whose first byte will be the file's
-  /// byte `place`, and that of the info record.
+  /// After finish(): the data of the hierarchy record, whose first byte will be the file's byte
+  /// `place`, and the data of the info record.
   const std::string& hierarchy() const { return hierarchy_; }
   std::string info(std::uint64_t place, double first_time, double last_time) const;
 

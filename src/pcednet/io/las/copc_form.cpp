@@ -13,7 +13,7 @@ bool has_field(unsigned format, const char* name) {
                      [&](const LasField& f) { return f.name == name; });
 }
 
-/// Of those of COPC, the one that has the colours of `format`.
+/// The point format of COPC with the colours of `format`.
 unsigned copc_format(unsigned format, const PointCloud& first) {
   if (has_field(format, "Infrared")) return 8;
   if (!has_field(format, "Red")) return 6;
@@ -21,8 +21,8 @@ unsigned copc_format(unsigned format, const PointCloud& first) {
   return infrared && infrared->type == ScalarType::kUint16 ? 8 : 7;
 }
 
-/// Whether the system that the records name, if any, is said as WKT, which is added where only
-/// codes are there.
+/// Whether the records' coordinate system, if any, is given as WKT, which is added where there are
+/// only codes.
 bool name_system_in_wkt(LasFile& file) {
   bool keys = false;
   for (const auto* records : {&file.records, &file.extended_records}) {

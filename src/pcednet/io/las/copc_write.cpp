@@ -29,7 +29,7 @@ std::array<double, 3> position_of(const LasFile& file, const std::byte* row) {
   return position;
 }
 
-/// A number that orders as the time does, NaN at the ends.
+/// A number with the order of the time, NaN at the ends.
 std::uint64_t order_of_time(const std::byte* row) {
   constexpr std::size_t kGpsTime = 22, kSign = 63;
   const auto bits = load<std::uint64_t>(row + kGpsTime);
@@ -130,7 +130,7 @@ void CopcPointWriter::write_nodes(const spatial::DetailTree& tree, const Progres
   }
 }
 
-/// A chunk for each node, of the rows at the beginning of `rows`; how many bytes these are.
+/// Writes a chunk for each node, from the rows at the beginning of `rows`; returns their bytes.
 std::size_t CopcPointWriter::write_chunks(std::span<const spatial::DetailNode> nodes,
                                           std::span<std::byte> rows) {
   std::vector<std::span<std::byte>> rows_of_nodes;
@@ -159,8 +159,8 @@ std::size_t CopcPointWriter::write_chunks(std::span<const spatial::DetailNode> n
 }
 
 std::uint64_t CopcPointWriter::finish(const BoundingBox& bounds, const Progress* progress) {
-  // The corner is that of the bounds, so that level ground is not cut in its middle; a step all
-  // around keeps points inside whatever a reader's rounding does.
+  // The corner is that of the bounds, so that level ground is not cut in its middle; a margin of
+  // one step keeps points inside for any rounding by a reader.
   double step = 0.0;
   for (std::size_t axis = 0; axis < 3; ++axis) step = std::max(step, std::abs(file_.scale(axis)));
   if (points() == 0) {

@@ -12,7 +12,7 @@ std::string text_at(std::string_view header, std::size_t offset) {
   return until_zero(header.substr(offset, las_header::kTextBytes));
 }
 
-/// The citations stand in one text, separated by bars.
+/// The citations share one text, separated by bars.
 std::string coordinate_system(const LasFile& file) {
   std::string citations;
   for (const auto* records : {&file.records, &file.extended_records}) {
@@ -26,7 +26,7 @@ std::string coordinate_system(const LasFile& file) {
   return citations;
 }
 
-/// How many points have each value of a field.
+/// Counts the points with each value of a field.
 void count_values(const PointCloud& points, const char* name, std::map<int, std::size_t>& counts) {
   const Attribute* field = find_attribute(points, name);
   if (!field) return;
@@ -69,7 +69,7 @@ LasOutline las_outline(const InputFile& file) {
 }
 
 LasFacts las_facts(const InputFile& file) {
-  std::vector<std::string> warnings;  // read_las() gives them
+  std::vector<std::string> warnings;  // read_las() reports them
   const LasFile las = read_las_file(file, warnings);
   LasFacts facts{.minor_version = las.minor_version(),
                  .point_format = las.point_format(),

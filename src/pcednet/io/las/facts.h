@@ -14,7 +14,7 @@
 
 namespace pcednet::io {
 
-/// What a LAS or LAZ file says beside its points, for people.
+/// The information in a LAS or LAZ file beside its points, for people.
 struct LasFacts {
   struct Record {
     std::string user_id;
@@ -35,12 +35,12 @@ struct LasFacts {
   std::map<int, std::size_t> points_by_return, points_by_class;
 };
 
-/// What the header and the records of a LAS or LAZ file say of its points.
+/// The description of the points in the header and the records of a LAS or LAZ file.
 struct LasOutline {
   std::uint64_t points = 0;
   BoundingBox bounds = {};
   bool compressed = false, copc = false;
-  unsigned created_day = 0, created_year = 0;  ///< 0: not said
+  unsigned created_day = 0, created_year = 0;  ///< 0: not stated
   CoordinateSystem coordinate_system = {};
   std::vector<LasField> fields = {};  ///< X, Y and Z first, extra bytes last
 };
@@ -51,7 +51,7 @@ LasOutline las_outline(const InputFile& file);
 /// Reads the header and the records, no points. Throws as read_las.
 LasFacts las_facts(const InputFile& file);
 
-/// Counts points that read_las, or a part of it, gives.
+/// Counts the points of read_las(), or of one part.
 void count_points(const PointCloud& points, LasFacts& facts);
 
 }  // namespace pcednet::io

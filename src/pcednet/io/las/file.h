@@ -33,7 +33,7 @@ struct LasRecord {
   std::uint16_t record_id = 0;
   std::string description;
   std::string data = {};
-  std::string head = {};  ///< all before the data, as the file has it; empty: a new record
+  std::string head = {};  ///< everything before the data, as in the file; empty: a new record
 
   bool is(const LasRecordKind& kind) const {
     return user_id == kind.user_id && record_id == kind.record_id;
@@ -48,7 +48,7 @@ T number_at(std::string_view bytes, std::size_t offset) {
   return offset + sizeof(T) <= bytes.size() ? load<T>(bytes.data() + offset) : T{};
 }
 
-/// A text of a field that zeros fill up.
+/// The text of a zero-padded field.
 inline std::string until_zero(std::string_view text) {
   return std::string(text.substr(0, text.find('\0')));
 }
@@ -58,12 +58,12 @@ void put_number(std::string& bytes, std::size_t offset, T value) {
   if (offset + sizeof value <= bytes.size()) store(bytes.data() + offset, value);
 }
 
-/// What stands in a LAS file around its points. The public header block is kept as it is in the
-/// file; the accessors read it.
+/// The contents of a LAS file around its points. The public header block is kept verbatim; the
+/// accessors read it.
 struct LasFile {
   std::string header = {};
   std::vector<LasRecord> records = {}, extended_records = {};
-  std::string before_points = {};  ///< bytes behind the records that belong to none of them
+  std::string before_points = {};  ///< bytes behind the records that belong to no record
 
   unsigned minor_version() const {
     return number_at<std::uint8_t>(header, las_header::kMinorVersion);
@@ -75,7 +75,7 @@ struct LasFile {
     return (number_at<std::uint8_t>(header, las_header::kPointFormat) &
             las_header::kCompressedBits) != 0;
   }
-  /// Never 0, which no file that is read here says.
+  /// Never 0: the reader rejects such files.
   std::size_t record_length() const {
     return std::max<std::size_t>(number_at<std::uint16_t>(header, las_header::kRecordLength), 1);
   }
@@ -105,32 +105,33 @@ std::size_t las_format_bytes(unsigned format);
 std::vector<LasField> las_standard_fields(unsigned format);
 
 /// The extra bytes of the file's records, as its record LASF_Spec 4 describes them: unique names
-/// (edge_class, p_sharp and p_smooth as scalar_...); what it does not describe is ExtraBytes.
+/// (edge_class, p_sharp and p_smooth as scalar_...); bytes that it does not describe are
+/// ExtraBytes.
 std::vector<LasField> las_extra_fields(const LasFile& file, std::vector<std::string>& warnings);
 
 /// The 192 bytes that describe an extra field.
 std::string las_extra_descriptor(const LasField& field);
 
-/// Reads all but the points; what is wrong but harmless becomes a warning. Records of COPC, which
-/// index the compressed points, are left out. Throws Error(kUnreadable), naming the byte, for what
-/// cannot be trusted.
+/// Reads everything but the points; harmless faults become warnings. Records of COPC, which index
+/// the compressed points, are left out. Throws Error(kUnreadable), naming the byte, for other
+/// faults.
 LasFile read_las_file(const InputFile& file, std::vector<std::string>& warnings);
 
-/// Where the points must end at the latest: at the records behind them, or with the file.
+/// The latest end of the points: the records behind them, or the end of the file.
 std::uint64_t las_points_limit(const InputFile& file, const LasFile& las);
 
-/// That of its WKT, otherwise of its GeoTIFF keys.
+/// From its WKT, otherwise from its GeoTIFF keys.
 CoordinateSystem coordinate_system_of(const LasFile& file);
 
-/// Makes the header say that the extended records begin at `begin`; false if it has no place for
-/// that.
+/// Sets the beginning of the extended records in the header to `begin`; false if it has no field
+/// for it.
 bool place_extended_records(LasFile& file, std::uint64_t begin);
 
 /// The records as bytes of a file.
 std::string las_record_bytes(const std::vector<LasRecord>& records, bool extended);
 
-/// Keeps header and records with a cloud, as elements that PLY files carry too; and takes them out
-/// again: a file with an empty header if the cloud has none that make sense.
+/// Stores header and records in a cloud, as elements that PLY files carry too; and takes them out
+/// again: a file with an empty header if the cloud has no valid ones.
 void attach_las_file(PointCloud& cloud, const LasFile& file);
 LasFile attached_las_file(const PointCloud& cloud);
 bool is_las_element(const ForeignElement& element);

@@ -14,7 +14,7 @@
 
 namespace pcednet::io {
 
-/// Whether a file that starts so is LAS or LAZ.
+/// Whether a file with this beginning is LAS or LAZ.
 bool begins_as_las(std::string_view start);
 
 /// Reads LAS 1.0 to 1.5 (ASPRS), point formats 0 to 10, and their LASzip compressed form.
@@ -30,22 +30,22 @@ std::unique_ptr<PartReader> open_las_parts(std::unique_ptr<InputFile> file, std:
 
 /// Writes LAS, or LAZ if `path` ends in .laz, or COPC 1.0 if it ends in .copc.laz.
 ///
-/// A cloud that was read from LAS gets back version, point format, scale, offset, records and
-/// fields, its integers bit for bit, without the extra bytes that it lost on its way; another
-/// becomes LAS 1.4, point format 6, or 7 with colours, in steps of a power of ten of at most 0.1
-/// mm. COPC is always LAS 1.4 of point format 6, 7 or 8, its points in an order of their own.
-/// Further attributes become extra bytes: scalar_edge_class, scalar_p_sharp and scalar_p_smooth as
-/// edge_class, p_sharp and p_smooth. append() throws Error(kInsufficient) for positions that are
-/// not finite, Error(kFailure) for a number that its field cannot hold; both name the point.
+/// A cloud that was read from LAS keeps version, point format, scale, offset, records and fields,
+/// its integers bit for bit, without the extra bytes that it lost since; any other becomes LAS 1.4,
+/// point format 6, or 7 with colours, in steps of a power of ten of at most 0.1 mm. COPC is always
+/// LAS 1.4 of point format 6, 7 or 8, with its points reordered. Further attributes become extra
+/// bytes: scalar_edge_class, scalar_p_sharp and scalar_p_smooth as edge_class, p_sharp and
+/// p_smooth. append() throws Error(kInsufficient) for positions that are not finite,
+/// Error(kFailure) for a number that its field cannot hold; both name the point.
 std::unique_ptr<PartWriter> create_las_parts(const std::filesystem::path& path,
                                              const PartOutline& outline,
                                              const WriteOptions& options);
 
-/// The coordinate system of a cloud that was read from LAS, or from a PLY file made of one: that of
-/// its WKT, otherwise of its GeoTIFF keys.
+/// The coordinate system of a cloud that was read from LAS, or from a PLY file made from one: that
+/// of its WKT, otherwise of its GeoTIFF keys.
 CoordinateSystem las_coordinate_system(const PointCloud& cloud);
 
-/// What create_las_parts does not keep of `cloud`, one sentence part each.
+/// The parts of `cloud` that create_las_parts() does not keep, as phrases.
 std::vector<std::string> las_losses(const std::filesystem::path& path, const PointCloud& cloud);
 
 }  // namespace pcednet::io

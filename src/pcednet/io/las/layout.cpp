@@ -64,9 +64,9 @@ LasFile with_digits(LasFile file, int digits) {
   return file;
 }
 
-/// Offsets at whole numbers, and the coarsest step of at most 0.1 mm that keeps every coordinate as
-/// it is; if none does, the finest that 32 bits reach with. Coarser only where they reach no
-/// further.
+/// Offsets at whole numbers, and the coarsest step of at most 0.1 mm that keeps every coordinate
+/// exactly; if none does, the finest whose range 32 bits can hold. Coarser only if necessary for
+/// the range.
 bool choose_scale(const PartOutline& outline, const BoundingBox& box, LasFile& file) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const int a = static_cast<int>(axis);
@@ -107,7 +107,7 @@ LasFile new_file(bool with_colours) {
   return file;
 }
 
-/// Whether the colours are more than what Red, Green and Blue, if there are, say.
+/// Whether the colours carry more than Red, Green and Blue, if these exist.
 bool colours_are_new(const PartOutline& outline) {
   if (outline.first->colours.empty()) return false;
   if (las_colours(*outline.first, true).empty()) return true;

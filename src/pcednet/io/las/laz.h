@@ -15,7 +15,7 @@
 namespace pcednet::io {
 
 namespace laz {
-/// The kinds of items, by their numbers in LASzip's record. Those above 9 are coded in layers.
+/// The kinds of items, by their numbers in LASzip's record. Kinds above 9 are coded in layers.
 enum ItemType : unsigned {
   kByte = 0,
   kPoint10 = 6,
@@ -38,14 +38,14 @@ struct LazItem {
   std::size_t offset = 0;  ///< bytes into the record
 };
 
-/// The compressed points of a LAZ file, chunk by chunk, after the specification of LASzip:
-/// unchunked, chunked and layered; chunks of fixed and of variable size.
+/// The compressed points of a LAZ file, chunk by chunk, by the specification of LASzip: unchunked,
+/// chunked and layered; chunks of fixed and of variable size.
 class LazReader {
  public:
   /// Finds the chunks. Where the header counts no points, as in a file whose writing was
-  /// interrupted, those of the chunks that are there are its points from here on, with a warning;
-  /// chunks behind those counted are left out with one. Throws Error(kUnreadable), naming the byte,
-  /// for what is not LASzip or does not fit the file. `file` must outlive the reader.
+  /// interrupted, the points of the existing chunks are used from here on, with a warning; chunks
+  /// beyond the counted points are left out with a warning. Throws Error(kUnreadable), naming the
+  /// byte, for data that is not LASzip or does not fit the file. `file` must outlive the reader.
   LazReader(const InputFile& file, LasFile& las, std::vector<std::string>& warnings);
 
   std::size_t chunk_count() const { return chunks_.size(); }
@@ -60,7 +60,7 @@ class LazReader {
     std::size_t first_point = 0, points = 0;
     std::uint64_t begin = 0, bytes = 0;
   };
-  /// What the chunk table says of a chunk.
+  /// The chunk table's entry for a chunk.
   struct Entry {
     std::uint64_t points = 0, bytes = 0;
   };
@@ -78,29 +78,29 @@ class LazReader {
   std::vector<LazItem> items_;
   std::vector<Chunk> chunks_;
   unsigned compressor_ = 0;
-  std::uint64_t chunk_size_ = 0;  ///< points of each; kVariable: the table tells
+  std::uint64_t chunk_size_ = 0;  ///< points of each; kVariable: see the table
   std::uint64_t begin_ = 0;       ///< of the points
   std::size_t record_length_ = 0;
 };
 
-/// How many points a chunk has: all the same, but for the last, or as the table says of each.
+/// The number of points of a chunk: the same for all but the last, or individual, in the table.
 enum class LazChunks { kEqual, kVariable };
 
-/// Adds the record that says how the points will be compressed.
+/// Adds the record that describes the compression of the points.
 void add_laz_record(LasFile& file, LazChunks chunks = LazChunks::kEqual);
 
 /// Writes the compressed points with their chunk table.
 class LazPointWriter {
  public:
-  /// The points begin at `offset` of the file, where `out` must stand; `out` must outlive it.
+  /// The points begin at `offset` of the file, the position of `out`, which must outlive it.
   LazPointWriter(OutputFile& out, const LasFile& file, std::uint64_t offset,
                  LazChunks chunks = LazChunks::kEqual);
 
   /// Takes `count` more points, for equal chunks.
   void append(std::size_t count, const EncodePoints& encode);
 
-  /// Writes the records of each as a chunk, for variable ones, which it compresses on all threads.
-  /// Returns the bytes of each.
+  /// Writes each of `rows` as a chunk of variable size, compressed on all threads. Returns the
+  /// bytes of each.
   std::vector<std::size_t> write_chunks(const std::vector<std::span<std::byte>>& rows);
 
   /// Where the next chunk will begin.
@@ -136,8 +136,8 @@ std::string encode_layered(const std::vector<LazItem>& items, std::span<std::byt
 bool decode_layered(const std::vector<LazItem>& items, std::span<const std::byte> bytes,
                     std::span<std::byte> rows, std::size_t stride);
 
-/// How many layers a chunk of such items has. It begins with a record, the number of its records
-/// and the sizes of the layers, all in 32 bits.
+/// The number of layers of a chunk of such items. The chunk begins with a record, the number of its
+/// records and the sizes of the layers, all in 32 bits.
 std::size_t layer_count(const std::vector<LazItem>& items);
 
 }  // namespace laz

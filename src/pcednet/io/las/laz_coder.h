@@ -29,12 +29,12 @@ class SymbolModel {
   void update();
 
   std::vector<std::uint32_t> counts_, distribution_;
-  std::vector<std::uint16_t> table_;  ///< where to begin looking, by the high bits of a place
+  std::vector<std::uint16_t> table_;  ///< where to begin a search, by the high bits of a place
   unsigned table_shift_ = 0;
   std::uint32_t total_ = 0, cycle_ = 0, until_update_ = 0;
 };
 
-/// Symbol models made when first asked for.
+/// Symbol models made on first use.
 class LazyModels {
  public:
   LazyModels(std::size_t count, unsigned symbols) : symbols_(symbols), models_(count) {}
@@ -74,7 +74,7 @@ class Decoder {
   unsigned symbol(SymbolModel& model, unsigned = 0);
   std::uint32_t bits(unsigned count, std::uint32_t = 0);
   std::uint32_t word(std::uint32_t = 0);
-  /// Whether more was read than there is: what came is noise then.
+  /// Whether more was read than there is: the output is then noise.
   bool overrun() const { return excess_ > 8; }
 
  private:
@@ -99,7 +99,7 @@ class Encoder {
   unsigned symbol(SymbolModel& model, unsigned value);
   std::uint32_t bits(unsigned count, std::uint32_t value);
   std::uint32_t word(std::uint32_t value);
-  /// The bytes, once everything is in; call it once.
+  /// The bytes, once everything is encoded; call it once.
   std::string finish();
 
  private:
@@ -110,7 +110,7 @@ class Encoder {
   std::uint32_t base_ = 0, length_ = UINT32_MAX;
 };
 
-/// Numbers near a prediction, by the number of bits of the difference.
+/// Codes numbers near a prediction, by the number of bits of the difference.
 class IntegerModel {
  public:
   explicit IntegerModel(unsigned bits, unsigned contexts = 1);
@@ -119,7 +119,7 @@ class IntegerModel {
   template <typename Coder>
   std::int32_t code(Coder& coder, std::int32_t predicted, unsigned context, std::int32_t value = 0);
 
-  /// How many bits the last difference had.
+  /// The number of bits of the last difference.
   unsigned last_bits() const { return k_; }
 
  private:

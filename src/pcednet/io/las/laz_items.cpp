@@ -8,7 +8,7 @@
 namespace pcednet::io::laz {
 namespace {
 
-/// The contexts of a return number (column) of a pulse with so many returns (row).
+/// The contexts of a return number (column) for a number of returns (row).
 constexpr std::uint8_t kReturnContext10[8][8] = {
     {15, 14, 13, 12, 11, 10, 9, 8},  {14, 0, 1, 3, 6, 10, 10, 9},
     {13, 1, 2, 4, 7, 11, 11, 10},    {12, 3, 4, 5, 8, 12, 12, 11},

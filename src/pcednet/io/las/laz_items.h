@@ -10,15 +10,15 @@
 
 namespace pcednet::io::laz {
 
-// The models of LASzip's items, after its specification. `code` decodes an item into `item`, or
-// encodes it from there; which of the two is the coder's matter.
+// The models of LASzip's items, by its specification. `code` decodes an item into `item`, or
+// encodes it from there, depending on the coder.
 
 /// The low bit of a context number cleared, bounded.
 inline unsigned even_bits(unsigned bits, unsigned most) {
   return bits < most ? bits & ~1U : most;
 }
 
-/// A coordinate, by the median of its last differences; `last` becomes what `item` holds.
+/// A coordinate, by the median of its last differences; `last` becomes the value in `item`.
 template <typename Coder>
 void code_axis(Coder& coder, IntegerModel& model, Median5& median, unsigned context,
                std::byte* last, const std::byte* item) {
@@ -50,8 +50,8 @@ class Point10 {
   IntegerModel dx_{32, 2}, dy_{32, 22}, z_{32, 20}, intensities_{16, 4}, source_{16};
 };
 
-/// Times as multiples of earlier differences, of up to four sequences. POINT14 knows by other means
-/// that a time has not changed, and has no symbols for that.
+/// Times as multiples of earlier differences, in up to four sequences. POINT14 signals an unchanged
+/// time by other means, and has no symbols for it.
 class GpsTime {
  public:
   GpsTime(std::int64_t first, bool says_unchanged);

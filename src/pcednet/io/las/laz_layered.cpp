@@ -95,8 +95,9 @@ void code_records(const std::vector<LazItem>& items, std::deque<Coder>& coders,
   }
   Point14 points(rows.data());
   const auto layers = layers_of<Coder>(items, rows.data());
-  // The scanner channel is the context of the other items. Until version 4 LASzip tells them only
-  // where it changes: context 0 stands for a point that stays in its channel, whichever that is.
+  // The scanner channel is the context of the other items. Until version 4 LASzip codes it for them
+  // only where it changes: context 0 then means a point that stays in its channel, whichever that
+  // is.
   const bool always_told = items[0].version > 3;
   unsigned before = channel_of(rows.data());
   for (std::size_t at = stride; at < rows.size(); at += stride) {
@@ -111,7 +112,7 @@ void code_records(const std::vector<LazItem>& items, std::deque<Coder>& coders,
   }
 }
 
-/// The bytes of a record that each layer stands for: where they never change, it is left out.
+/// The layers whose bytes of the record change: constant ones are left out.
 std::vector<bool> changing_layers(const std::vector<LazItem>& items, std::span<std::byte> rows,
                                   std::size_t stride) {
   const auto changes = [&](std::size_t offset, std::size_t bytes, std::byte mask) {

@@ -19,7 +19,7 @@ enum LayerIndex : std::size_t {
   kTime
 };
 
-/// The contexts of LASzip for a return (column) of a pulse with so many (row).
+/// LASzip's contexts for a return (column) and number of returns (row).
 constexpr std::uint8_t kReturnContext14[16][16] = {
     {0, 1, 2, 3, 4, 5, 3, 4, 4, 5, 5, 5, 5, 5, 5, 5},
     {1, 0, 1, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3},
@@ -76,7 +76,7 @@ Point14::Point14(const std::byte* first) : current_(channel_of(first)) {
 
 Point14::~Point14() = default;
 
-/// Which fields change, the scanner channel, number of returns and return number.
+/// The changed fields, the scanner channel, number of returns and return number.
 template <typename Coder>
 Point14::Changes Point14::code_returns(Coder& coder, const std::byte* item) {
   Channel& from = *channels_[current_];

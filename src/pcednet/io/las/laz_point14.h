@@ -22,7 +22,7 @@ class Point14 {
   Point14(const Point14&) = delete;
   Point14& operator=(const Point14&) = delete;
 
-  /// Codes a point; a layer without coder does not change. Returns the point's scanner channel.
+  /// Codes a point; a layer without a coder stays constant. Returns the point's scanner channel.
   template <typename Coder>
   unsigned code(const std::array<Coder*, 9>& coders, std::byte* item);
 

@@ -74,7 +74,7 @@ Step<Coder> make_step(const LazItem& item, const std::byte* first) {
   }
 }
 
-/// Codes all records but the first, which stands in the file as it is.
+/// Codes all records but the first, which is stored verbatim.
 template <typename Coder>
 void code_records(Coder& coder, const std::vector<LazItem>& items, std::span<std::byte> rows,
                   std::size_t stride) {

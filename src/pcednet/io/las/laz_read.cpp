@@ -13,8 +13,8 @@ constexpr unsigned kUnchunked = 1, kChunked = 2, kLayered = 3;
 constexpr std::uint64_t kVariable = laz_record::kVariableSize;
 constexpr std::uint64_t kSymbolsPerByte = 1024;
 
-/// Whether so many bytes of a chunk may stand for so many symbols: the adaptive models do not get
-/// cheaper than 1024 a byte, and where they would take much memory 64 are believed.
+/// Whether that many bytes of a chunk can encode that many symbols: the adaptive models reach at
+/// most 1024 a byte, and where they would take much memory only 64 are accepted.
 bool may_stand_for(std::uint64_t bytes, std::uint64_t symbols) {
   constexpr std::uint64_t kMany = std::uint64_t{1} << 20;
   return symbols / (symbols > kMany ? 64 : kSymbolsPerByte) <= bytes;
@@ -62,7 +62,7 @@ void LazReader::read_items(const std::string& record) {
     refuse("a coder that is not arithmetic");
   }
   chunk_size_ = number_at<std::uint32_t>(record, laz_record::kChunkSize);
-  if (chunk_size_ == 0) chunk_size_ = kVariable;  // as LAStools writes it into COPC
+  if (chunk_size_ == 0) chunk_size_ = kVariable;  // as LAStools writes into COPC
   const std::size_t count = number_at<std::uint16_t>(record, laz_record::kItemCount);
   if (record.size() < laz_record::kItems + laz_record::kItemBytes * count) refuse("ends early");
   std::size_t offset = 0;
@@ -91,7 +91,8 @@ void LazReader::read_items(const std::string& record) {
   }
 }
 
-/// The place of the chunk table, which may stand at the end of the file; none if there is none.
+/// The offset of the chunk table, which may be stored at the end of the file; none if there is
+/// none.
 std::optional<std::uint64_t> LazReader::table_place() const {
   if (file_.size() < 8) return std::nullopt;
   auto place = number_at<std::uint64_t>(file_.text(begin_, 8), 0);
@@ -130,8 +131,8 @@ bool LazReader::may_hold(const Entry& chunk) const {
          (chunk.bytes >= record_length_ && may_stand_for(chunk.bytes, chunk.points * extra));
 }
 
-/// Points of the chunk at byte `at` behind the first `counted`, as far as can be known without
-/// decoding: pointwise, the last of chunks of equal size does not say how many it has.
+/// Points of the chunk at byte `at` beyond the first `counted`, as far as known without decoding:
+/// in pointwise coding, the last of equal chunks does not state its number.
 std::uint64_t LazReader::points_behind(std::uint64_t counted, const Entry& chunk,
                                        std::uint64_t at) const {
   std::uint64_t held = chunk.points;
@@ -172,7 +173,7 @@ void LazReader::find_chunks(std::uint64_t points, std::vector<std::string>& warn
                   points, known ? "hold" : "have room for", left_out));
 }
 
-/// Layered chunks from the beginning of the points on, each of which tells its own size.
+/// Layered chunks from the beginning of the points on, each of which states its own size.
 std::vector<LazReader::Entry> LazReader::walk_layered(std::uint64_t end) const {
   std::vector<Entry> found;
   const std::size_t head = record_length_ + 4 + 4 * laz::layer_count(items_);

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string_view>
 
-/// Where everything stands in a LAS file, in bytes from the beginning of the block that it is in.
+/// Offsets of the fields of a LAS file, in bytes from the beginning of their block.
 namespace pcednet::io {
 
 /// The public header block (ASPRS LAS 1.4 R15, table 3; the time range is of LAS 1.5).
@@ -31,7 +31,7 @@ inline constexpr unsigned kFormatBits = 0x3F, kCompressedBits = 0xC0, kCompresse
 inline constexpr unsigned kWktBit = 16, kTimeOffsetBit = 64;  ///< of the global encoding
 }  // namespace las_header
 
-/// A variable length record, before its data; the description ends it.
+/// A variable length record, before its data; the description is its last field.
 namespace las_record {
 inline constexpr std::size_t kUserId = 2, kRecordId = 18, kLength = 20;
 inline constexpr std::size_t kUserIdBytes = 16, kDescriptionBytes = 32;
@@ -69,7 +69,7 @@ inline constexpr std::size_t kDepth = 0, kCell = 4, kPlace = 16, kChunkBytes = 2
                              kBytes = 32;
 }
 
-/// Whose records are known here: user id and record id.
+/// The known records: user id and record id.
 struct LasRecordKind {
   std::string_view user_id;
   std::uint16_t record_id;

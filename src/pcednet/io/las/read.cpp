@@ -26,7 +26,7 @@ class LasSource {
       check_las_points(file, las_, warnings);
     }
     comments_ = take_las_comments(las_);
-    LasRecordSink(las_, 0, warnings);  // says what is wrong with the extra bytes
+    LasRecordSink(las_, 0, warnings);  // warns of faulty extra bytes
   }
 
   const LasFile& las() const { return las_; }
@@ -70,7 +70,8 @@ class LasSource {
     });
   }
 
-  /// Points that the file's bytes hardly stand for get room only once those before are decoded.
+  /// Room for points that so few bytes can hardly encode is made only once those before are
+  /// decoded.
   void read_compressed(std::size_t first, std::size_t last, LasRecordSink& sink) const {
     std::vector<std::size_t> chunks;
     for (std::size_t c = 0; c < compressed_->chunk_count(); ++c) {
@@ -100,7 +101,7 @@ class LasSource {
   std::vector<std::string> comments_ = {};
 };
 
-/// What the file says beside its points.
+/// Adds the file's data beside its points.
 void describe(const LasSource& source, PointCloud& cloud) {
   attach_las_file(cloud, source.las());
   cloud.comments = source.comments();

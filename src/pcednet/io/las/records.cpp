@@ -136,7 +136,7 @@ void check_las_points(const InputFile& file, LasFile& las, std::vector<std::stri
   }
   std::uint64_t room = (las_points_limit(file, las) - begin) / las.record_length();
   if (!las.counts_wide()) room = std::min<std::uint64_t>(room, UINT32_MAX);
-  // Extended records whose place the header does not tell may be what stands behind the points.
+  // Extended records whose offset the header does not give may lie behind the points.
   const bool all_found =
       !las.counts_wide() || las.extended_records.size() ==
                                 number_at<std::uint32_t>(las.header, las_header::kExtendedCount);

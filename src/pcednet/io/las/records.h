@@ -19,7 +19,7 @@ class LasRecordSink {
   /// Makes room for `points` in all.
   void grow(std::size_t points);
 
-  /// Takes the points [begin, end) of the cloud; disjoint ranges from several threads.
+  /// Takes the points [begin, end) of the cloud; disjoint ranges may come from several threads.
   void take(const std::byte* rows, std::size_t begin, std::size_t end);
 
   /// The cloud, its normals and labels in their places, its colours not yet; call it once.
@@ -32,16 +32,16 @@ class LasRecordSink {
   PointCloud cloud_ = {};
 };
 
-/// Holds the points that an uncompressed file counts against those it has room for. More than it
-/// counts become a warning; where it counts none, as one whose writing was interrupted, they are
-/// its points from here on. Throws Error(kUnreadable) if the file ends before its points do.
+/// Compares the points that an uncompressed file counts with those it has room for. Uncounted
+/// points become a warning; where the file counts none, as one whose writing was interrupted, they
+/// are its points from here on. Throws Error(kUnreadable) if the file ends before its points do.
 void check_las_points(const InputFile& file, LasFile& las, std::vector<std::string>& warnings);
 
-/// Makes a file that was compressed say that it is not.
+/// Marks a file that was compressed as uncompressed.
 void forget_compression(LasFile& las);
 
-/// 8-bit colours of the 16-bit attributes Red, Green and Blue; empty if there are none. They are
-/// divided by 257, or copied where all of the cloud's are `narrow`: below 256.
+/// 8-bit colours from the 16-bit attributes Red, Green and Blue; empty if there are none. Values
+/// are divided by 257, or copied if all are `narrow`, below 256.
 std::vector<Rgb> las_colours(const PointCloud& cloud, bool narrow);
 bool has_narrow_colours(const PointCloud& cloud);
 

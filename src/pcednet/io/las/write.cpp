@@ -99,7 +99,7 @@ struct Summary {
   }
 };
 
-/// Makes the header say what is written.
+/// Updates the header to the written points.
 void update_header(LasFile& file, const Summary& summary, std::uint64_t count,
                    std::uint64_t points_offset) {
   std::string& header = file.header;
@@ -155,7 +155,7 @@ class LasPartWriter : public PartWriter {
     } else if (compress) {
       compressed_.emplace(*out_, file_, points_offset_);
     }
-    // What each part is laid out by needs no other records.
+    // The layout of the parts needs no other records.
     std::erase_if(choices_.file.records, [](const auto& r) { return !r.is(kExtraBytesRecord); });
     choices_.file.extended_records.clear();
     choices_.file.before_points.clear();
