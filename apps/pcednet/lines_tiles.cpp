@@ -39,6 +39,11 @@ class Cubes {
   bool hold(const Vec3& position) const {
     return all_.contains(spatial::morton_code(place_of(position)));
   }
+  /// Whether the position was not added but has only a neighbour: then points around it may not be
+  /// held.
+  bool are_partial_at(const Vec3& position) const {
+    return !own_.contains(spatial::morton_code(place_of(position)));
+  }
 
  private:
   static constexpr double kMostAlong = 2'000'000;  // of the 2^21 that a code has room for
@@ -109,6 +114,7 @@ PointsNearEdges read_near_edges(const TiledCloud& cloud, std::uint64_t limit,
       near.classes.push_back(findings.found.classes[i]);
       near.p_sharp.push_back(findings.found.p_sharp[i]);
       near.p_smooth.push_back(findings.found.p_smooth[i]);
+      near.partial.push_back(cubes.are_partial_at(position) ? 1 : 0);
     }
     check_memory(near.classes.size(), limit);
     stage.advance(part.size());

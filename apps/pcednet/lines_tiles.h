@@ -12,6 +12,7 @@ struct PointsNearEdges {
   PointCloud cloud;  ///< positions and normals, and the file's content beside points
   std::vector<std::uint8_t> classes;
   std::vector<float> p_sharp, p_smooth;
+  std::vector<std::uint8_t> partial;  ///< not 0 where points around it may have been left out
 };
 
 /// Reads the points near points of an edge class, or near points that may be of one: all points

@@ -185,6 +185,11 @@ TEST(LineFrame, IsTheMeanAndTheLargestCoordinate) {
   EXPECT_ERROR(ErrorKind::kInsufficient, frame_of_curves({}));
 }
 
+TEST(LineScores, RefuseCurvesOfAnotherUnit) {
+  const LineFrame tiny = {Vec3::Zero(), 1e-6};
+  EXPECT_ERROR(ErrorKind::kInsufficient, score_lines(cube_edges(), cube_edges(), tiny));
+}
+
 TEST(LineScores, OfNothingAreNothing) {
   const LineScores scores = score_lines({}, cube_edges(), {});
   EXPECT_TRUE(std::isnan(scores.chamfer));

@@ -196,8 +196,69 @@ TEST(FindLines, RegulariseMakesRightAnglesExact) {
       const Vec3 u = (a.points[1] - a.points[0]).normalized();
       const Vec3 v = (b.points[1] - b.points[0]).normalized();
       const double cosine = std::abs(u.dot(v));
-      EXPECT_LT(std::min(cosine, 1.0 - cosine), 0.01);
+      EXPECT_LT(std::min(cosine, 1.0 - cosine), 1e-12);
     }
+  }
+}
+
+TEST(FindLines, LeavesOutShortCurvesAfterTheyWereJoined) {
+  const auto all = lines_of(cube(3000), {.min_length = 1e-9});
+  for (const double least : {0.2, 0.5, 0.9, 1.1}) {
+    const auto wanted = std::count_if(
+        all.begin(), all.end(), [&](const Curve& curve) { return length_of(curve) >= least; });
+    EXPECT_EQ(static_cast<std::ptrdiff_t>(lines_of(cube(3000), {.min_length = least}).size()),
+              wanted);
+  }
+}
+
+TEST(FindLines, TakesOneOfSeveralPointsAtOnePlaceByTheirValues) {
+  Cloud cloud = cube(3000);
+  const std::size_t count = cloud.positions.size();
+  for (std::size_t i = 0; i < count; ++i) {  // a copy of each that says the contrary
+    cloud.positions.push_back(cloud.positions[i]);
+    cloud.normals.push_back(cloud.normals[i]);
+    cloud.classes.push_back(std::uint8_t{kNonEdge});
+  }
+  const auto curves = lines_of(cloud, {});
+  for (auto* values : {&cloud.positions, &cloud.normals}) {
+    std::reverse(values->begin(), values->end());
+  }
+  std::reverse(cloud.classes.begin(), cloud.classes.end());
+  EXPECT_TRUE(same(lines_of(cloud, {}), curves));
+  EXPECT_EQ(curves.size(), 12u);
+}
+
+TEST(FindLines, FindsNoBoundaryWherePointsAreMissing) {
+  const Cloud cloud = cube(3000);
+  std::vector<Vec3> open;  // without its top
+  std::vector<Vec3> normals;
+  std::vector<std::uint8_t> classes, partial;
+  for (std::size_t i = 0; i < cloud.positions.size(); ++i) {
+    if (cloud.positions[i].z() > 0.8) continue;
+    open.push_back(cloud.positions[i]);
+    normals.push_back(cloud.normals[i]);
+    classes.push_back(cloud.classes[i]);
+    partial.push_back(cloud.positions[i].z() > 0.4 ? 1 : 0);
+  }
+  const auto boundaries = [&](std::span<const std::uint8_t> missing) {
+    const auto curves =
+        find_lines({.positions = open, .normals = normals, .classes = classes, .partial = missing},
+                   {.boundaries = true});
+    return std::count_if(curves.begin(), curves.end(),
+                         [](const Curve& curve) { return curve.edge_class == kBoundary; });
+  };
+  EXPECT_GT(boundaries({}), 0);
+  EXPECT_EQ(boundaries(partial), 0);
+}
+
+TEST(FindLines, RefusesWhatIsNoProbability) {
+  const Cloud cloud = cube(500);
+  for (const float bad : {-0.1f, 1.5f, std::numeric_limits<float>::quiet_NaN()}) {
+    const std::vector<float> p(cloud.positions.size(), bad);
+    EXPECT_ERROR(ErrorKind::kUsage, find_lines({.positions = cloud.positions,
+                                                .normals = cloud.normals,
+                                                .classes = cloud.classes,
+                                                .p_sharp = p}));
   }
 }
 

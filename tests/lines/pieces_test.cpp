@@ -290,7 +290,7 @@ TEST(Bridges, AreNotBuiltWithoutReason) {
 TEST(Finish, DropsFreePiecesWithHardlyAnEdgePoint) {
   Piece piece = straight({0, 0, 0}, {12, 0, 0});
   for (ChainNode& node : piece.nodes) node.edge_points = 0.05;
-  const FinishOptions options = {.min_length = 3.0, .tolerance = kWithin, .noise = 0.0};
+  const FinishOptions options = {.tolerance = kWithin, .noise = 0.0};
   EXPECT_TRUE(finish({piece}, options).empty());
   for (ChainNode& node : piece.nodes) node.edge_points = 1.0;
   EXPECT_EQ(finish({piece}, options).size(), 1u);
@@ -302,7 +302,7 @@ bool stays(Piece piece, double edge_points, double probability, double noise) {
     node.edge_points = edge_points;
     node.probability = probability;
   }
-  return !finish({piece}, {.min_length = 3.0, .tolerance = kWithin, .noise = noise}).empty();
+  return !finish({piece}, {.tolerance = kWithin, .noise = noise}).empty();
 }
 
 TEST(Finish, DropsFreePiecesOfDoubtfulPointsInNoise) {

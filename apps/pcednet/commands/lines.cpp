@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <numbers>
 #include <set>
 
 #include "batch.h"
@@ -41,7 +42,8 @@ struct LinesArguments {
   ModelArguments model{.name = kDefaultModel};
   detect::PrepareOptions preparation;
   lines::LineOptions lines;
-  double min_confidence = 0.0;
+  double min_confidence = 0.0, min_dihedral = 0.0;
+  std::size_t min_points = 0;
   io::DrawingOptions drawing;
   bool has_unit = false;
 };
@@ -52,18 +54,26 @@ struct LabelledCloud {
   detect::PreparedCloud prepared;
   std::vector<std::uint8_t> classes;
   std::vector<float> p_sharp, p_smooth;
+  std::vector<std::uint8_t> partial = {};
 };
 
 /// Throws before any work if the output could not be written after it.
 void check_outputs(const LinesArguments& arguments) {
   std::set<fs::path> taken;
+  const auto check_other = [&](const fs::path& output) {
+    std::error_code error;
+    if (!fs::equivalent(output, arguments.input, error)) return;
+    throw Error(ErrorKind::kUsage, fmt::format("{}: is the input", output.string()));
+  };
   for (const fs::path output : arguments.outputs) {
     io::drawing_format_for(output);
+    check_other(output);
     check_writable(output, arguments.drawing.overwrite);
     if (taken.insert(output.lexically_normal()).second) continue;
     throw Error(ErrorKind::kUsage, fmt::format("{}: named twice", output.string()));
   }
   if (arguments.preview.empty()) return;
+  check_other(arguments.preview);
   check_writable(arguments.preview, arguments.drawing.overwrite);
   if (!taken.insert(fs::path(arguments.preview).lexically_normal()).second) {
     throw Error(ErrorKind::kUsage, fmt::format("{}: named twice", arguments.preview));
@@ -71,13 +81,18 @@ void check_outputs(const LinesArguments& arguments) {
 }
 
 /// The attribute scalar_`name` or `name` of every point; empty if there is none.
-std::vector<float> probabilities(const PointCloud& cloud, const std::string& name) {
+std::vector<float> probabilities(const std::string& file, const PointCloud& cloud,
+                                 const std::string& name) {
   for (const std::string& spelling : {"scalar_" + name, name}) {
     const Attribute* attribute = find_attribute(cloud, spelling);
     if (!attribute || attribute->components != 1) continue;
     std::vector<float> values(cloud.size());
     for (std::size_t i = 0; i < values.size(); ++i) {
       values[i] = static_cast<float>(attribute->value(i));
+      if (values[i] >= 0.0f && values[i] <= 1.0f) continue;
+      throw Error(ErrorKind::kInsufficient,
+                  fmt::format("{}: {} of point {} is {}, which is not in [0, 1]", file, spelling, i,
+                              values[i]));
     }
     return values;
   }
@@ -106,8 +121,8 @@ void add_given_labels(const LinesArguments& arguments, std::vector<std::uint8_t>
   const PointCloud& cloud = labelled.cloud;
   labelled.prepared = prepare(arguments.input, cloud, arguments.preparation, progress);
   labelled.classes = std::move(classes);
-  labelled.p_sharp = probabilities(cloud, "p_sharp");
-  labelled.p_smooth = probabilities(cloud, "p_smooth");
+  labelled.p_sharp = probabilities(arguments.input, cloud, "p_sharp");
+  labelled.p_smooth = probabilities(arguments.input, cloud, "p_smooth");
   if (labelled.p_sharp.empty()) labelled.p_smooth.clear();
   if (!labelled.p_sharp.empty()) labelled.p_smooth.resize(cloud.size());
 }
@@ -144,8 +159,8 @@ void read_labelled(const LinesArguments& arguments, StageClock& clock, LabelledC
 detect::Classification given_labels(const LinesArguments& arguments, const PointCloud& part) {
   detect::Classification found;
   found.classes = formats::labels_of(part, arguments.input);
-  found.p_sharp = probabilities(part, "p_sharp");
-  found.p_smooth = probabilities(part, "p_smooth");
+  found.p_sharp = probabilities(arguments.input, part, "p_sharp");
+  found.p_smooth = probabilities(arguments.input, part, "p_smooth");
   if (found.p_sharp.empty()) {  // find_lines() then uses classes only
     found.p_smooth.clear();
     for (const std::uint8_t its_class : found.classes) {
@@ -180,6 +195,14 @@ void read_labelled_in_tiles(const LinesArguments& arguments, std::uint64_t memor
   labelled.classes = std::move(near.classes);
   labelled.p_sharp = std::move(near.p_sharp);
   labelled.p_smooth = std::move(near.p_smooth);
+  labelled.partial = std::move(near.partial);
+  if (arguments.lines.boundaries && std::find(labelled.classes.begin(), labelled.classes.end(),
+                                              kBoundary) == labelled.classes.end()) {
+    warn(
+        fmt::format("{}: no point is of class boundary (3); in tiles, boundaries are found only "
+                    "around such points",
+                    arguments.input));
+  }
 }
 
 /// Keeps the curves that the user asked for; returns the number removed.
@@ -191,7 +214,9 @@ std::size_t filter(const LinesArguments& arguments, std::vector<Curve>& curves) 
     const std::string_view name = io::line_class(curve.edge_class).name;
     return lacks(arguments.classes, name.substr(0, name.find('-'))) ||
            lacks(arguments.kinds, name_of(curve.kind)) ||
-           curve.confidence < arguments.min_confidence;
+           curve.confidence < arguments.min_confidence ||
+           curve.dihedral_angle < arguments.min_dihedral * std::numbers::pi / 180.0 ||
+           curve.support < arguments.min_points;
   });
 }
 
@@ -202,9 +227,7 @@ void report(const LinesArguments& arguments, const std::vector<Curve>& curves,
   say(fmt::format(
       "{}: {} curve{}, total length {:.6g}{}", arguments.input, curves.size(),
       curves.size() == 1 ? "" : "s", length,
-      left_out == 0
-          ? ""
-          : fmt::format("; {} left out by --class, --kind or --min-confidence", left_out)));
+      left_out == 0 ? "" : fmt::format("; {} left out by --class, --kind or --min-...", left_out)));
   for (const io::LineClass& entry : io::kLineClasses) {
     std::string kinds;
     double class_length = 0.0;
@@ -243,6 +266,7 @@ void run(LinesArguments arguments, const Common& common) {
                                 .classes = labelled.classes,
                                 .p_sharp = labelled.p_sharp,
                                 .p_smooth = labelled.p_smooth,
+                                .partial = labelled.partial,
                                 .curve = labelled.prepared.curve},
                                arguments.lines, &clock.progress());
   });
@@ -328,7 +352,15 @@ void add_drawing_options(CLI::App& command, LinesArguments& arguments) {
       .add_option("--min-confidence", arguments.min_confidence,
                   "Leave out curves whose points are edges with a lower mean probability")
       ->capture_default_str()
-      ->check(CLI::Range(0.0, 1.0));
+      ->check(above(-1e-300, 1.0, "a number from 0 to 1"));
+  command
+      .add_option("--min-dihedral", arguments.min_dihedral,
+                  "Leave out curves whose surfaces differ by fewer degrees in the mean")
+      ->capture_default_str()
+      ->check(above(-1e-300, 180.0, "an angle from 0 to 180"));
+  command
+      .add_option("--min-points", arguments.min_points, "Leave out curves with fewer edge points")
+      ->capture_default_str();
   add_choice(command, "--dxf-version", arguments.drawing.dxf_version,
              {{"2000", io::DxfVersion::k2000}, {"r12", io::DxfVersion::kR12}},
              "DXF: of AutoCAD 2000, which all later ones read, or R12 for old programs");

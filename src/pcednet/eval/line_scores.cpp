@@ -1,5 +1,7 @@
 #include "pcednet/eval/line_scores.h"
 
+#include <fmt/format.h>
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -52,8 +54,25 @@ std::vector<Vec3> middles_along(const std::vector<Vec3>& vertices, double step, 
   return middles;
 }
 
+/// Throws for curves so large that their samples would fill the memory.
+void check_size(std::span<const lines::Curve> curves, const LineFrame& frame) {
+  constexpr double kMost = 1e4;
+  for (const lines::Curve& curve : curves) {
+    double size = curve.closed ? curve.radius : 0.0;
+    for (const Vec3& p : curve.points) {
+      size = std::max(size, (p - frame.centre).cwiseAbs().maxCoeff());
+    }
+    if (size <= kMost * frame.scale) continue;
+    throw Error(ErrorKind::kInsufficient,
+                fmt::format("a curve reaches {:.3g}, the cloud {:.3g}: they are not of one place "
+                            "and unit",
+                            size, frame.scale));
+  }
+}
+
 Samples sample(std::span<const lines::Curve> curves, const LineFrame& frame) {
   constexpr double kTolerance = 1e-5;
+  check_size(curves, frame);
   Samples samples;
   samples.first.push_back(0);
   for (std::size_t i = 0; i < curves.size(); ++i) {

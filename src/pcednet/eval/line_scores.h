@@ -41,7 +41,8 @@ struct LineScores {
   double corners = 0.0;  ///< F1 of ends and bends over 30 degrees, within .03
 };
 
-/// Throws Error(kInsufficient) if there are no true curves.
+/// Throws Error(kInsufficient) if there are no true curves, or if a curve is ten thousand times the
+/// frame in size.
 LineScores score_lines(std::span<const lines::Curve> found, std::span<const lines::Curve> truth,
                        const LineFrame& frame);
 

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 
 #include "pcednet/lines/crease.h"
 #include "pcednet/lines/ordered_points.h"
@@ -55,8 +54,10 @@ std::optional<Crease> boundary_at(const OrderedPoints& cloud, std::size_t i,
 }  // namespace
 
 std::vector<Crease> find_boundaries(const OrderedPoints& cloud, const Progress* progress) {
-  std::vector<std::uint32_t> points(cloud.size());
-  std::iota(points.begin(), points.end(), 0u);
+  std::vector<std::uint32_t> points;
+  for (std::uint32_t i = 0; i < cloud.size(); ++i) {
+    if (!cloud.is_partial(i)) points.push_back(i);
+  }
   Stage stage(progress, "boundaries", points.size());
   return creases_at(cloud, points, kNeighbours, stage,
                     [&](std::uint32_t point, std::span<const spatial::Neighbour> others) {

@@ -90,6 +90,7 @@ ChainNode mean_of(std::span<const Crease> creases, std::span<const std::uint32_t
   ChainNode mean{
       .at = Vec3::Zero(), .along = Vec3::Zero(), .side_a = Vec3::Zero(), .side_b = Vec3::Zero()};
   const double count = static_cast<double>(members.size());
+  double probability = 0.0;  // of all
   for (const std::uint32_t member : members) {
     const Crease& crease = creases[member];
     mean.at += crease.at / count;
@@ -98,6 +99,7 @@ ChainNode mean_of(std::span<const Crease> creases, std::span<const std::uint32_t
     mean.side_a += crossed ? crease.side_b : crease.side_a;
     mean.side_b += crossed ? crease.side_a : crease.side_b;
     mean.spacing += crease.spacing / count;
+    probability += crease.probability / count;
     if (crease.edge_class != kNonEdge) {
       mean.edge_points += 1.0;
       mean.probability += crease.probability;
@@ -106,7 +108,7 @@ ChainNode mean_of(std::span<const Crease> creases, std::span<const std::uint32_t
     mean.sharp += (crease.edge_class == kSharpEdge ? 1.0 : 0.0) / count;
     mean.boundary += (crease.edge_class == kBoundary ? 1.0 : 0.0) / count;
   }
-  mean.probability /= std::max(mean.edge_points, 1.0);
+  mean.probability = mean.edge_points > 0.0 ? mean.probability / mean.edge_points : probability;
   mean.along.normalize();
   mean.side_a.normalize();
   mean.side_b.normalize();

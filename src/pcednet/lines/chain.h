@@ -15,7 +15,7 @@ struct ChainNode {
   Vec3 side_a, side_b;
   double spacing = 0.0;
   double edge_points = 0.0;  ///< number of its points of an edge class
-  double probability = 0.0;  ///< their mean
+  double probability = 0.0;  ///< their mean; that of all its points if there are none
   double bend = 0.0;         ///< mean
   double sharp = 0.0;        ///< share of sharp-edge points
   double boundary = 0.0;     ///< share of boundary points

@@ -20,6 +20,7 @@
 #include "pcednet/lines/piece.h"
 #include "pcednet/lines/plane_edges.h"
 #include "pcednet/lines/refine.h"
+#include "pcednet/lines/regularise.h"
 #include "pcednet/lines/sampling.h"
 #include "pcednet/lines/smooth_joints.h"
 #include "pcednet/lines/split.h"
@@ -58,10 +59,17 @@ void check(const EdgePoints& points, const LineOptions& options) {
   const auto fits = [&](std::size_t size) { return size == count; };
   const bool sound = fits(points.normals.size()) && fits(points.classes.size()) &&
                      (points.p_sharp.empty() || fits(points.p_sharp.size())) &&
-                     (points.p_smooth.empty() || fits(points.p_smooth.size()));
+                     (points.p_smooth.empty() || fits(points.p_smooth.size())) &&
+                     (points.partial.empty() || fits(points.partial.size()));
   if (!sound) {
     throw Error(ErrorKind::kUsage,
                 "positions, normals, classes and probabilities differ in number");
+  }
+  for (const std::span<const float> probabilities : {points.p_sharp, points.p_smooth}) {
+    for (const float p : probabilities) {
+      if (p >= 0.0f && p <= 1.0f) continue;
+      throw Error(ErrorKind::kUsage, fmt::format("the probability {} is not in [0, 1]", p));
+    }
   }
 }
 
@@ -142,6 +150,11 @@ std::vector<Curve> drawn(const std::vector<Chain>& chains, const FinishOptions& 
   return drawn(std::span<const Piece>(pieces), options);
 }
 
+std::vector<Curve> long_ones(std::vector<Curve> curves, double min_length) {
+  std::erase_if(curves, [&](const Curve& curve) { return !(length_of(curve) >= min_length); });
+  return curves;
+}
+
 }  // namespace
 
 std::vector<Curve> find_lines(const EdgePoints& points, const LineOptions& options,
@@ -150,12 +163,12 @@ std::vector<Curve> find_lines(const EdgePoints& points, const LineOptions& optio
   const OrderedPoints cloud(points);
   const Sampling sampling = measure_sampling(cloud);
   const Limits limits = limits_of(options, sampling);
-  if (options.boundaries) {
+  if (options.boundaries && points.partial.empty()) {
     if (auto pieces = find_plane_edges(cloud, sampling, progress)) {
       if (options.regularise) regularise(*pieces);
-      const FinishOptions exact = {limits.min_length, limits.tolerance, 0.0, true};
+      const FinishOptions exact = {limits.tolerance, 0.0, true};
       if (options.stage != LineStage::kCurves) return drawn(std::span(*pieces), exact);
-      return finish(std::move(*pieces), exact);
+      return long_ones(finish(std::move(*pieces), exact), limits.min_length);
     }
   }
   std::vector<Crease> creases = find_creases(cloud, sampling, progress);
@@ -166,7 +179,7 @@ std::vector<Curve> find_lines(const EdgePoints& points, const LineOptions& optio
   if (creases.empty()) return {};
   if (options.stage == LineStage::kCreases) return drawn(creases);
 
-  const FinishOptions finish_options = {limits.min_length, limits.tolerance, sampling.noise};
+  const FinishOptions finish_options = {limits.tolerance, sampling.noise};
   creases = smoothed(creases, limits.smooth_within, progress);
   const std::vector<Chain> chains = trace(creases, limits.gap, sampling.noise, progress);
   if (options.stage == LineStage::kChains) return drawn(chains, finish_options);
@@ -190,7 +203,7 @@ std::vector<Curve> find_lines(const EdgePoints& points, const LineOptions& optio
   close_round_loops(curves, sampling.spacing, kRoundWithin * limits.tolerance * sampling.spacing);
   join_smooth_corners(curves, limits.angle, 0.5 * limits.tolerance * sampling.spacing);
   stage.advance();
-  return curves;
+  return long_ones(std::move(curves), limits.min_length);
 }
 
 }  // namespace pcednet::lines

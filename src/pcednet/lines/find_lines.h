@@ -11,8 +11,8 @@ namespace pcednet::lines {
 
 /// The steps of find_lines(), each of which can be returned.
 enum class LineStage : std::uint8_t {
-  kCreases,  ///< a segment of one spacing for each point that may be on an edge; none for roofs
-  kChains,   ///< creases in order along edges, as polylines; none for roofs
+  kCreases,  ///< a segment of one spacing for each point that may be on an edge
+  kChains,   ///< creases in order along edges, as polylines
   kPieces,   ///< segments, arcs and circles, before they meet in corners
   kCurves,   ///< the result
 };
@@ -36,6 +36,8 @@ struct EdgePoints {
   std::span<const std::uint8_t> classes;  ///< EdgeClass
   std::span<const float> p_sharp = {};
   std::span<const float> p_smooth = {};
+  /// Not 0 where points around it are missing: no boundary is found there. May be empty.
+  std::span<const std::uint8_t> partial = {};
   std::span<const std::uint32_t> curve = {};  ///< spatial::curve_order() of the positions, if known
 };
 
@@ -47,10 +49,11 @@ struct EdgePoints {
 /// 4. Curves are extended to the corners in which they meet.
 ///
 /// With boundaries, the lines of a roof come from its planes instead: see find_plane_edges(). Gap,
-/// angle and tolerance are not used there.
+/// angle and tolerance are not used there, and every stage but the last returns its pieces.
 ///
 /// The result is the same for any number of threads and any order of the points. Throws
-/// Error(kUsage) if an option is negative or not finite, or if the spans differ in length.
+/// Error(kUsage) if an option is negative or not finite, if the spans differ in length, or if a
+/// probability is not in [0, 1].
 std::vector<Curve> find_lines(const EdgePoints& points, const LineOptions& options = {},
                               const Progress* progress = nullptr);
 

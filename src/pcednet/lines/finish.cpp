@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "pcednet/lines/corners.h"
+#include "pcednet/lines/regularise.h"
 #include "pcednet/lines/sampling.h"
 #include "pcednet/lines/strings.h"
 
@@ -37,7 +38,6 @@ constexpr double kLongRow = 16.0, kDenseRow = 0.9, kProbableRow = 0.65;
 /// Surfaces that bend by more are rounded at the edge unless as many of its points are sharp-edge.
 constexpr double kBend = 0.08, kFewSharp = 0.1;
 constexpr double kStrongBend = 0.16, kSomeSharp = 0.3;
-constexpr double kSnap = 0.07;  ///< sine of the largest turn of regularise()
 
 double mean_of(const Piece& piece, double ChainNode::*value) {
   double sum = 0.0;
@@ -53,8 +53,19 @@ double mean_dihedral(const Piece& piece) {
   return sum / static_cast<double>(piece.nodes.size());
 }
 
-/// The arc through both ends whose centre is the nearest to that of the fit.
+/// The arc through both ends whose centre is the nearest to that of the fit; if both ends are one
+/// place, the circle through it.
 void set_arc(Curve& curve, const Fit& fit) {
+  if (curve.points.front() == curve.points.back()) {
+    curve.kind = CurveKind::kCircle;
+    curve.closed = true;
+    curve.points.pop_back();
+    curve.axis = fit.direction;
+    const Vec3 offset = curve.points.front() - fit.point;
+    curve.centre = fit.point + offset.dot(fit.direction) * fit.direction;
+    curve.radius = (curve.points.front() - curve.centre).norm();
+    return;
+  }
   const Vec3 &from = curve.points.front(), &to = curve.points.back();
   const Vec3 chord = (to - from).normalized(), middle = 0.5 * (from + to);
   curve.axis = (fit.direction - fit.direction.dot(chord) * chord).normalized();
@@ -95,7 +106,11 @@ Curve curve_between(const Piece& piece, const std::array<Vec3, 2>& ends,
     curve.support += static_cast<std::size_t>(node.edge_points);
     curve.confidence += node.edge_points * node.probability;
   }
-  curve.confidence /= std::max(static_cast<double>(curve.support), 1.0);
+  if (curve.support > 0) {
+    curve.confidence /= static_cast<double>(curve.support);
+  } else {
+    curve.confidence = mean_of(piece, &ChainNode::probability);
+  }
   return curve;
 }
 
@@ -207,6 +222,7 @@ std::vector<Curve> finish(std::vector<Piece> pieces, const FinishOptions& option
   for (int round = 0; round < kDropRounds && drop_loose(pieces, corners, options); ++round) {
     corners = meet();
   }
+  hold_directions(pieces, corners);
   std::vector<Curve> curves;
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     std::array<Vec3, 2> ends = pieces[i].ends;
@@ -215,40 +231,9 @@ std::vector<Curve> finish(std::vector<Piece> pieces, const FinishOptions& option
       if (corner != Corners::kNoCorner) ends[side] = corners.places[corner];
     }
     Curve curve = curve_between(pieces[i], ends, options);
-    if (is_sound(curve) && length_of(curve) >= options.min_length) {
-      curves.push_back(std::move(curve));
-    }
+    if (is_sound(curve)) curves.push_back(std::move(curve));
   }
   return curves;
-}
-
-void regularise(std::vector<Piece>& pieces) {
-  std::vector<std::size_t> order;
-  for (std::size_t i = 0; i < pieces.size(); ++i) {
-    if (pieces[i].fit.kind == CurveKind::kSegment) order.push_back(i);
-  }
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return length_of(pieces[a]) > length_of(pieces[b]);
-  });
-  std::vector<Vec3> directions;  // of the longer segments
-  for (const std::size_t i : order) {
-    Vec3 own = pieces[i].fit.direction;
-    const auto parallel = std::find_if(directions.begin(), directions.end(),
-                                       [&](const Vec3& d) { return own.cross(d).norm() < kSnap; });
-    if (parallel != directions.end()) {
-      own = own.dot(*parallel) < 0.0 ? Vec3(-*parallel) : *parallel;
-    } else {
-      int orthogonal = 0;
-      for (const Vec3& d : directions) {
-        if (orthogonal == 2 || std::abs(own.dot(d)) > kSnap) continue;
-        own = (own - own.dot(d) * d).normalized();
-        ++orthogonal;
-      }
-      directions.push_back(own);
-    }
-    pieces[i].fit.direction = own;
-    for (Vec3& end : pieces[i].ends) end = nearest_on(pieces[i].fit, end);
-  }
 }
 
 }  // namespace pcednet::lines

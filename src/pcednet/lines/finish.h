@@ -8,7 +8,6 @@
 namespace pcednet::lines {
 
 struct FinishOptions {
-  double min_length;   ///< shorter curves are left out
   double tolerance;    ///< in spacings
   double noise;        ///< in spacings
   bool exact = false;  ///< pieces are intersections of planes through many points: corners are near
@@ -24,9 +23,5 @@ Curve curve_of(const Piece& piece, const FinishOptions& options);
 
 /// Extends the pieces to their corners, drops loose short ones, and turns the others into curves.
 std::vector<Curve> finish(std::vector<Piece> pieces, const FinishOptions& options);
-
-/// Makes segments that are nearly parallel to a longer one, or nearly orthogonal to one or two,
-/// exactly so.
-void regularise(std::vector<Piece>& pieces);
 
 }  // namespace pcednet::lines

@@ -1,6 +1,7 @@
 #include "pcednet/lines/ordered_points.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -13,13 +14,42 @@ namespace {
 constexpr std::size_t kPointsAtOnce = 256;
 constexpr std::size_t kSpacingNeighbours = 15;
 
-/// Points at one place follow each other along the curve; the first stands for all.
+float probability_of(const EdgePoints& points, std::uint32_t i) {
+  if (points.p_sharp.empty()) return 0.0f;
+  return points.p_sharp[i] + (points.p_smooth.empty() ? 0.0f : points.p_smooth[i]);
+}
+
+/// The normal or its opposite, the same for both.
+std::array<double, 3> unsigned_normal(const Vec3& n) {
+  const bool turned = n.x() != 0.0 ? n.x() < 0.0 : n.y() != 0.0 ? n.y() < 0.0 : n.z() < 0.0;
+  const Vec3 one = turned ? Vec3(-n) : n;
+  return {one.x(), one.y(), one.z()};
+}
+
+/// Whether point a stands for both at one place: by values, so that numbering does not matter.
+bool stands_for(const EdgePoints& points, std::uint32_t a, std::uint32_t b) {
+  const float pa = probability_of(points, a), pb = probability_of(points, b);
+  if (pa != pb) return pa > pb;
+  const auto rank = [&](std::uint32_t i) {
+    return points.classes[i] == kUnlabelled ? 0 : points.classes[i] + 1;
+  };
+  if (rank(a) != rank(b)) return rank(a) > rank(b);
+  return unsigned_normal(points.normals[a]) > unsigned_normal(points.normals[b]);
+}
+
+/// Points at one place follow each other along the curve; one stands for all.
 std::vector<std::uint32_t> distinct_points(const EdgePoints& points) {
-  const std::span<const Vec3> positions = points.positions;
   std::vector<std::uint32_t> order(points.curve.begin(), points.curve.end());
-  if (order.empty()) order = spatial::curve_order(positions);
-  const auto same = [&](std::uint32_t a, std::uint32_t b) { return positions[a] == positions[b]; };
-  order.erase(std::unique(order.begin(), order.end(), same), order.end());
+  if (order.empty()) order = spatial::curve_order(points.positions);
+  std::size_t kept = 0;
+  for (const std::uint32_t i : order) {
+    if (kept == 0 || points.positions[i] != points.positions[order[kept - 1]]) {
+      order[kept++] = i;
+    } else if (stands_for(points, i, order[kept - 1])) {
+      order[kept - 1] = i;
+    }
+  }
+  order.resize(kept);
   return order;
 }
 

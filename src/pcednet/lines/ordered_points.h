@@ -27,6 +27,10 @@ class OrderedPoints {
   bool is_edge(std::size_t i) const {
     return edge_class(i) == kSharpEdge || edge_class(i) == kSmoothEdge;
   }
+  /// Whether points around it are missing.
+  bool is_partial(std::size_t i) const {
+    return !points_.partial.empty() && points_.partial[order_[i]] != 0;
+  }
   /// The probability of an edge; from the class alone if there are no probabilities.
   float probability(std::size_t i) const;
   const spatial::KdTree& tree() const { return *tree_; }

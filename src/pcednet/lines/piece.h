@@ -22,6 +22,7 @@ struct Piece {
   std::vector<ChainNode> nodes;
   std::array<Vec3, 2> ends;  ///< on the fit; unused if closed
   bool closed = false;
+  bool regular = false;  ///< a segment whose direction is to be kept, see regularise()
 
   const ChainNode& middle() const { return nodes[nodes.size() / 2]; }
   double spacing() const { return middle().spacing; }
