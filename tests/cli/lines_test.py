@@ -202,7 +202,8 @@ class Lines(CliTest):
         before = set(os.listdir(self.folder))
         bad = [(option, value) for option in ("--tolerance", "--gap", "--min-length", "--angle")
                for value in ("0", "-1", "nan", "inf", "1e999", "x", "")]
-        bad += [("--angle", "181"), ("--min-confidence", "1.5"), ("--class", "sharp,blunt"),
+        bad += [("--angle", "181"), ("--min-confidence", "1.5"), ("--min-confidence", "nan"),
+                ("--min-dihedral", "200"), ("--min-points", "-1"), ("--class", "sharp,blunt"),
                 ("--kind", "spline"), ("--dxf-version", "2018"), ("--view", "below"),
                 ("--unit", "yard"), ("--model", "none such")]
         for option, value in bad:
@@ -225,6 +226,30 @@ class Lines(CliTest):
             "property float z\nproperty float edge_class\nend_header\n0 0 0 0.5\n")
         self.assertIn("no class", run("lines", self.folder / "half.ply", *out, expect=4).stderr)
         run("lines", self.labelled_cube(), "-o", self.folder / "no" / "a.dxf", expect=1)
+
+    def test_the_input_is_never_an_output(self):
+        path = self.folder / "in.ply"
+        write_ply(path, *cube(3000))
+        before = path.read_bytes()
+        for options in (("-o", path), ("-o", self.folder / "a.obj", "--preview", path)):
+            run("lines", path, *options, "--overwrite", expect=2)
+        self.assertEqual(path.read_bytes(), before)
+
+    def test_probabilities_are_from_0_to_1(self):
+        p, n, label = cube(3000)
+        for bad in (np.nan, 90):
+            values = np.full(3000, 0.5, np.float32)
+            values[7] = bad
+            write_ply(self.folder / "p.ply", p, n, label, scalar_p_sharp=values)
+            done = run("lines", self.folder / "p.ply", "-o", self.folder / "p.obj", expect=4)
+            self.assertIn("scalar_p_sharp of point 7", done.stderr)
+
+    def test_filters_by_attributes(self):
+        path = self.labelled_cube()
+        for options, left in (((), 12), (("--min-points", "5"), 12), (("--min-points", "9999"), 0),
+                              (("--min-dihedral", "60"), 12), (("--min-dihedral", "120"), 0)):
+            run("lines", path, *self.outputs("geojson"), "--overwrite", *options)
+            self.assertEqual(len(geojson(self.made["geojson"])), left, options)
 
     def test_nothing_is_replaced_or_left_half_written(self):
         path = self.labelled_cube()

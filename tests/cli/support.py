@@ -42,8 +42,8 @@ def sheet(points=3000, seed=1):
     return p, np.tile([0.0, 0.0, 1.0], (points, 1)), rim
 
 
-def write_ply(path, positions, normals=None, labels=None, position_type="float"):
-    """A binary PLY as any program might write it."""
+def write_ply(path, positions, normals=None, labels=None, position_type="float", **more):
+    """A binary PLY as any program might write it; `more` are attributes in float."""
     fields = [(a, "<f8" if position_type == "double" else "<f4") for a in "xyz"]
     lines = [f"property {position_type} {a}" for a in "xyz"]
     if normals is not None:
@@ -52,6 +52,8 @@ def write_ply(path, positions, normals=None, labels=None, position_type="float")
     if labels is not None:
         fields.append(("label", "u1"))
         lines.append("property uchar label")
+    fields += [(name, "<f4") for name in more]
+    lines += [f"property float {name}" for name in more]
     rows = np.zeros(len(positions), fields)
     for i, a in enumerate("xyz"):
         rows[a] = positions[:, i]
@@ -59,6 +61,8 @@ def write_ply(path, positions, normals=None, labels=None, position_type="float")
             rows["n" + a] = normals[:, i]
     if labels is not None:
         rows["label"] = labels
+    for name, values in more.items():
+        rows[name] = values
     header = "\n".join(["ply", "format binary_little_endian 1.0", f"element vertex {len(rows)}",
                         *lines, "end_header", ""])
     pathlib.Path(path).write_bytes(header.encode() + rows.tobytes())
