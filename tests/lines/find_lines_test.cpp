@@ -201,6 +201,15 @@ TEST(FindLines, RegulariseMakesRightAnglesExact) {
   }
 }
 
+TEST(FindLines, GiveTheAngleBetweenTheSurfaces) {
+  for (const Curve& curve : lines_of(cube(6000))) {
+    EXPECT_NEAR(curve.dihedral_angle, 0.5 * std::numbers::pi, 1e-9);
+  }
+  for (const Curve& curve : lines_of(cylinder(6000))) {
+    EXPECT_NEAR(curve.dihedral_angle, 0.5 * std::numbers::pi, 0.02);
+  }
+}
+
 TEST(FindLines, LeavesOutShortCurvesAfterTheyWereJoined) {
   const auto all = lines_of(cube(3000), {.min_length = 1e-9});
   for (const double least : {0.2, 0.5, 0.9, 1.1}) {

@@ -46,6 +46,7 @@ double mean_of(const Piece& piece, double ChainNode::*value) {
 }
 
 double mean_dihedral(const Piece& piece) {
+  if (piece.dihedral) return *piece.dihedral;
   double sum = 0.0;
   for (const ChainNode& node : piece.nodes) {
     sum += dihedral_angle(node.side_a, node.side_b);

@@ -28,6 +28,18 @@ struct Plane {
   Vec3 point, normal;
 };
 
+/// Where a piece belongs, and the angle of the surfaces that meet there.
+struct Placed {
+  Fit fit;
+  std::optional<double> dihedral = {};
+};
+
+/// The direction into the plane from a line in it, towards `side`.
+Vec3 into(const Plane& plane, const Vec3& along, const Vec3& side) {
+  const Vec3 inward = plane.normal.cross(along).normalized();
+  return inward.dot(side) < 0.0 ? Vec3(-inward) : inward;
+}
+
 /// The points near a segment, each once, in curve order.
 std::vector<Vec3> points_beside(const Piece& piece, const OrderedPoints& cloud) {
   std::vector<std::uint32_t> indices;
@@ -87,8 +99,8 @@ std::optional<Plane> plane_of_side(const Piece& piece, const std::vector<Vec3>& 
 }
 
 /// The line of a crease in place of the piece's, if it is near it.
-std::optional<Fit> crease_line(const Piece& piece, const std::vector<Vec3>& points,
-                               double tolerance) {
+std::optional<Placed> crease_line(const Piece& piece, const std::vector<Vec3>& points,
+                                  double tolerance) {
   const Vec3& along = piece.fit.direction;
   const auto side_a = mean_side(piece, along, &ChainNode::side_a);
   const auto side_b = mean_side(piece, along, &ChainNode::side_b);
@@ -102,14 +114,15 @@ std::optional<Fit> crease_line(const Piece& piece, const std::vector<Vec3>& poin
   Vec3 point = piece.fit.point;
   const double to_a = (a->point - point).dot(a->normal), to_b = (b->point - point).dot(b->normal);
   point += scale * ((to_a - cosine * to_b) * a->normal + (to_b - cosine * to_a) * b->normal);
-  const Vec3 direction = cross.normalized();
-  return Fit{CurveKind::kSegment, point, direction.dot(along) < 0.0 ? Vec3(-direction) : direction,
-             0.0, piece.fit.error};
+  const Vec3 across = cross.normalized(),
+             direction = across.dot(along) < 0.0 ? Vec3(-across) : across;
+  return Placed{{CurveKind::kSegment, point, direction, 0.0, piece.fit.error},
+                dihedral_angle(into(*a, direction, *side_a), into(*b, direction, *side_b))};
 }
 
 /// Where the strip of points along the piece ends: the side of their convex hull there, moved out
 /// by what is empty beyond it on average.
-std::optional<Fit> boundary_line(const Piece& piece, const std::vector<Vec3>& points) {
+std::optional<Placed> boundary_line(const Piece& piece, const std::vector<Vec3>& points) {
   const double spacing = piece.spacing();
   const Vec3& along = piece.fit.direction;
   const auto inward = mean_side(piece, along, &ChainNode::side_a);
@@ -144,8 +157,8 @@ std::optional<Fit> boundary_line(const Piece& piece, const std::vector<Vec3>& po
   const double beyond = kEmptyStrip * spacing * spacing / length;
   const double out = hull[i].y() + slope * (0.5 * length - hull[i].x()) + beyond;
   const Vec3 middle = 0.5 * (piece.ends[0] + piece.ends[1]);
-  return Fit{CurveKind::kSegment, middle - out * *inward, (along - slope * *inward).normalized(),
-             0.0, piece.fit.error};
+  return Placed{{CurveKind::kSegment, middle - out * *inward,
+                 (along - slope * *inward).normalized(), 0.0, piece.fit.error}};
 }
 
 /// A side of an arc in its half-plane (outward from the axis, along the axis).
@@ -221,8 +234,8 @@ std::optional<std::array<Eigen::Vector2d, 2>> sides_about_axis(const Piece& piec
 }
 
 /// The circle in which the two surfaces of revolution about the piece's axis meet.
-std::optional<Fit> crease_circle(const Piece& piece, const std::vector<Vec3>& points,
-                                 double tolerance) {
+std::optional<Placed> crease_circle(const Piece& piece, const std::vector<Vec3>& points,
+                                    double tolerance) {
   const auto sides = sides_about_axis(piece);
   if (!sides) return std::nullopt;
   std::vector<Eigen::Vector2d> flat;
@@ -241,11 +254,12 @@ std::optional<Fit> crease_circle(const Piece& piece, const std::vector<Vec3>& po
   fit.radius += meet.x();
   fit.point += meet.y() * fit.direction;
   if (!(fit.radius > 0.0)) return std::nullopt;
-  return fit;
+  const auto in_space = [](const Eigen::Vector2d& v) { return Vec3(v.x(), v.y(), 0.0); };
+  return Placed{fit, dihedral_angle(in_space(a->direction), in_space(b->direction))};
 }
 
-std::optional<Fit> better_fit(const Piece& piece, const std::vector<Vec3>& points,
-                              double tolerance) {
+std::optional<Placed> better_fit(const Piece& piece, const std::vector<Vec3>& points,
+                                 double tolerance) {
   if (is_boundary(piece.middle())) {
     if (piece.fit.kind != CurveKind::kSegment) return std::nullopt;
     return boundary_line(piece, points);
@@ -256,15 +270,16 @@ std::optional<Fit> better_fit(const Piece& piece, const std::vector<Vec3>& point
 
 void place(Piece& piece, const OrderedPoints& cloud, double tolerance) {
   if (piece.fit.kind == CurveKind::kPolyline || piece.nodes.size() < kNodesToRefine) return;
-  const auto line = better_fit(piece, points_beside(piece, cloud), tolerance);
-  if (!line) return;
-  const std::array<Vec3, 2> ends = {nearest_on(*line, piece.ends[0]),
-                                    nearest_on(*line, piece.ends[1])};
+  const auto better = better_fit(piece, points_beside(piece, cloud), tolerance);
+  if (!better) return;
+  const std::array<Vec3, 2> ends = {nearest_on(better->fit, piece.ends[0]),
+                                    nearest_on(better->fit, piece.ends[1])};
   for (const std::size_t side : {0, 1}) {
     if ((ends[side] - piece.ends[side]).norm() > kMostShift * piece.spacing()) return;
   }
-  piece.fit = *line;
+  piece.fit = better->fit;
   piece.ends = ends;
+  piece.dihedral = better->dihedral;
 }
 
 }  // namespace
