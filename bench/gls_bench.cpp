@@ -92,7 +92,7 @@ void describe_cloud(benchmark::State& state, const std::string& name,
   state.counters["exact_over_fast"] = exact_cost(name, count) / each;
 }
 
-/// The innermost sums alone, for each vector code; arithmetic as of lane_sums.inc.
+/// The innermost sums alone, for each vector code; arithmetic as of lane_sums.h.
 void Sums(benchmark::State& state) {
   const auto kernels = all_lane_kernels();
   const auto which = static_cast<std::size_t>(state.range(0));

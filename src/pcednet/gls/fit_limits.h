@@ -12,4 +12,7 @@ inline constexpr double kSmallestLength = 1e-4;
 /// Of t: after a shorter step the projection on the surface ends.
 inline constexpr double kSmallestMove = 0.01;
 
+/// The cosine by which a gate opens, see side_gate().
+inline constexpr double kGateWidth = 0.3;
+
 }  // namespace pcednet::gls
