@@ -92,7 +92,7 @@ void describe_cloud(benchmark::State& state, const std::string& name,
   state.counters["exact_over_fast"] = exact_cost(name, count) / each;
 }
 
-/// Only the innermost sums, for each vector code; arithmetic as in lane_sums.inc.
+/// Only the innermost sums, for each vector code; arithmetic as in lane_sums.h.
 void Sums(benchmark::State& state) {
   const auto kernels = all_lane_kernels();
   const auto which = static_cast<std::size_t>(state.range(0));

@@ -72,17 +72,17 @@ void BM_PredictPlainly(benchmark::State& state) {
 }
 BENCHMARK(BM_PredictPlainly)->UseRealTime();
 
-/// Arguments: network, symmetry, vector level, threads (0: all).
+/// Arguments: network, symmetry, instruction set, threads (0: all).
 void BM_Predict(benchmark::State& state) {
-  const auto level = static_cast<VectorLevel>(state.range(2));
-  if (level > vector_level()) return state.SkipWithError("not on this processor");
+  const auto instructions = static_cast<InstructionSet>(state.range(2));
+  if (instructions > instruction_set()) return state.SkipWithError("not on this processor");
   const Model model =
       make_model(static_cast<NetworkKind>(state.range(0)), static_cast<Symmetry>(state.range(1)));
   constexpr std::size_t kPoints = 200000;
   const std::vector<float> samples = random_numbers(96 * kPoints);
   std::vector<float> probabilities(3 * kPoints);
   set_thread_count(static_cast<int>(state.range(3)));
-  for (auto _ : state) predict_into(model, samples, probabilities, nullptr, level);
+  for (auto _ : state) predict_into(model, samples, probabilities, nullptr, instructions);
   set_thread_count(0);
   count_points(state, kPoints);
 }
@@ -98,10 +98,10 @@ BENCHMARK(BM_Predict)
     ->Args({2, 0, 2, 1})
     ->UseRealTime();
 
-/// Arguments: network, symmetry, vector level, threads (0: all). One step over a batch of 512.
+/// Arguments: network, symmetry, instruction set, threads (0: all). One step over a batch of 512.
 void BM_Gradient(benchmark::State& state) {
-  const auto level = static_cast<VectorLevel>(state.range(2));
-  if (level > vector_level()) return state.SkipWithError("not on this processor");
+  const auto instructions = static_cast<InstructionSet>(state.range(2));
+  if (instructions > instruction_set()) return state.SkipWithError("not on this processor");
   const Model model =
       make_model(static_cast<NetworkKind>(state.range(0)), static_cast<Symmetry>(state.range(1)));
   constexpr std::size_t kPoints = 100000;
@@ -113,7 +113,7 @@ void BM_Gradient(benchmark::State& state) {
   std::iota(order.begin(), order.end(), 0u);
   Random random(1);
   random.shuffle(std::span(order));
-  GradientMachine machine(model, level);
+  GradientMachine machine(model, instructions);
   std::vector<float> gradient(model.network.parameters.size());
   set_thread_count(static_cast<int>(state.range(3)));
   std::size_t at = 0;

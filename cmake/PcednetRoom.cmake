@@ -51,6 +51,23 @@ function(pcednet_compile_options target)
     $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict> -ffp-contract=off $<$<BOOL:${PCEDNET_WARNINGS_AS_ERRORS}>:-Werror>)
 endfunction()
 
+# pcednet_vector_code(STEM FLAG...): compiles STEM_baseline.cpp, STEM_avx2.cpp and STEM_avx512.cpp of
+# the current folder for these instruction sets (core/processor.h), the last two on x86-64 alone, with
+# the flags. Each is compiled by itself: see core/simd.h.
+function(pcednet_vector_code stem)
+  set(baseline "")
+  set(avx2 -march=x86-64-v3)
+  set(avx512 -march=x86-64-v4 -mprefer-vector-width=512)
+  foreach(instructions baseline avx2 avx512)
+    set_source_files_properties(${stem}_${instructions}.cpp PROPERTIES
+      COMPILE_OPTIONS "${ARGN};${${instructions}}"
+      SKIP_PRECOMPILE_HEADERS ON SKIP_UNITY_BUILD_INCLUSION ON)
+  endforeach()
+  if(NOT CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+    set_source_files_properties(${stem}_avx2.cpp ${stem}_avx512.cpp PROPERTIES HEADER_FILE_ONLY ON)
+  endif()
+endfunction()
+
 # pcednet_precompile(TARGET OWNER header...): with PCEDNET_PRECOMPILE the headers that nearly every
 # source includes are parsed once, by OWNER, for all targets that are compiled as it is. What OWNER
 # adds to the common ones follows it.

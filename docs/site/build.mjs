@@ -122,7 +122,7 @@ const write = (name, text) => fs.writeFileSync(path.join(out, name), text);
 for (const page of pages.values()) write(page.address, layout({ menu, ...page, base: "" }));
 for (const file of sources) {
   const language =
-    { ".cpp": "cpp", ".h": "cpp", ".inc": "cpp", ".py": "python", ".sh": "sh", ".sbatch": "sh" }[path.extname(file)] ??
+    { ".cpp": "cpp", ".h": "cpp", ".py": "python", ".sh": "sh", ".sbatch": "sh" }[path.extname(file)] ??
     "text";
   const fence = "`````";
   const { html } = markdown(`# ${file}\n\n${fence}${language}\n${read(file)}\n${fence}\n`, () => null);

@@ -98,6 +98,15 @@ def check_sizes(root):
             yield f"{path}:{lines}: more than {MAX_LINES[path.suffix]} lines"
 
 
+def check_suffixes(root):
+    """C++ stands in headers and sources, which the other rules read."""
+    others = {".inc", ".inl", ".ipp", ".tpp", ".tcc", ".hpp", ".hh", ".hxx", ".cc", ".cxx", ".c"}
+    for folder in ("src", "apps", "tests", "bench", "examples", "python", "fuzz"):
+        for path in sorted((root / folder).rglob("*")):
+            if path.suffix in others and "node_modules" not in path.parts:
+                yield f"{path}:1: is neither .h nor .cpp"
+
+
 def check_silence(root):
     """The library neither prints nor ends the program."""
     speech = re.compile(
@@ -136,8 +145,8 @@ def check_style(root):
     yield from (line for line in done.stderr.splitlines() if ": error:" in line)
 
 
-RULES = {"rooms": check_rooms, "sizes": check_sizes, "silence": check_silence,
-         "version": check_version, "style": check_style}
+RULES = {"rooms": check_rooms, "sizes": check_sizes, "suffixes": check_suffixes,
+         "silence": check_silence, "version": check_version, "style": check_style}
 
 
 def check_self():
@@ -178,6 +187,7 @@ endforeach()
                   ("src/pcednet/core/slow/d.h", "\n"),
                   ("src/pcednet/new/c.h", "\n"), ("src/workbench/new/c.h", "\n")],
         "sizes": [("src/pcednet/core/a.h", "\n" * 151), ("apps/main.cpp", "\n" * 401)],
+        "suffixes": [("src/pcednet/gls/lanes.inc", "int w;\n"), ("bench/a.hpp", "#pragma once\n")],
         "silence": [("src/pcednet/gls/b.cpp", text) for text in
                     ('std::cout << 1;\n', 'printf("x");\n', "  std::exit(1);\n", "exit (1);\n",
                      'fmt::print(stderr, "x");\n', 'std::fprintf(stderr, "x");\n', "abort();\n")],

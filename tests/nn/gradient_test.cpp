@@ -140,16 +140,16 @@ TEST(Gradient, OfSeveralChunksIsTheMeanOfItsSamples) {
   for (std::size_t k = 0; k < n; ++k) EXPECT_NEAR(whole[k], mean[k], 1e-6);
 }
 
-TEST(Gradient, HasTheSameBytesOnEveryVectorLevelAndThreadCount) {
+TEST(Gradient, HasTheSameBytesWithEveryInstructionSetAndThreadCount) {
   for (const Architecture& architecture : various_architectures()) {
     Problem problem = make_problem(architecture, 700);
     std::vector<float> wanted(problem.model.network.parameters.size());
     const double loss = GradientMachine(problem.model).run(problem.set(), problem.chosen, wanted);
-    for (int level = 0; level <= static_cast<int>(vector_level()); ++level) {
+    for (const InstructionSet instructions : usable_instruction_sets()) {
       for (const int threads : {1, 2, 8}) {
         set_thread_count(threads);
         std::vector<float> found(wanted.size());
-        GradientMachine machine(problem.model, static_cast<VectorLevel>(level));
+        GradientMachine machine(problem.model, instructions);
         EXPECT_EQ(machine.run(problem.set(), problem.chosen, found), loss);
         EXPECT_EQ(found, wanted);
       }

@@ -112,9 +112,8 @@ TEST(Kernels, ShareTheProductsOfMirroredInputs) {
   const std::vector<std::uint8_t> odd = {1, 0, 1, 1, 0, 1, 1, 1, 0, 1};
   const std::vector<float> parameters = random_numbers(kMostOutputs * (kInputs + 1), 2);
   const std::vector<float> inputs = random_numbers(kInputs * kLanes, 3);
-  for (const auto level : {VectorLevel::kBaseline, VectorLevel::kAvx2, VectorLevel::kAvx512}) {
-    if (level > vector_level()) continue;
-    const Kernels& its = kernels(level);
+  for (const InstructionSet instructions : usable_instruction_sets()) {
+    const Kernels& its = kernels(instructions);
     for (const int outputs : {13, 16, kMostOutputs}) {
       AffineMap map{
           .outputs = outputs, .segments = 2, .length = 4, .weight_output_stride = kInputs};
@@ -139,11 +138,11 @@ TEST(Kernels, ShareTheProductsOfMirroredInputs) {
   }
 }
 
-TEST(Kernels, RefuseALevelThatTheProcessorLacks) {
-  if (vector_level() == VectorLevel::kAvx512) {
-    EXPECT_NO_THROW(kernels(VectorLevel::kAvx512));
+TEST(Kernels, RefuseInstructionsThatTheProcessorLacks) {
+  if (instruction_set() == InstructionSet::kAvx512) {
+    EXPECT_NO_THROW(kernels(InstructionSet::kAvx512));
   } else {
-    EXPECT_ERROR(ErrorKind::kFailure, kernels(VectorLevel::kAvx512));
+    EXPECT_ERROR(ErrorKind::kFailure, kernels(InstructionSet::kAvx512));
   }
 }
 

@@ -102,19 +102,20 @@ TEST(Predict, GivesProbabilitiesEvenForHugeWeightsAndInputs) {
   }
 }
 
-TEST(Predict, HasTheSameBytesOnEveryVectorLevelAndThreadCount) {
+TEST(Predict, HasTheSameBytesWithEveryInstructionSetAndThreadCount) {
   for (const Architecture& architecture : various_architectures()) {
     const Model model = random_model(architecture, 3);
     const auto inputs = static_cast<std::size_t>(architecture.inputs());
     const std::size_t count = 5000;  // two tasks
     const std::vector<float> samples = random_numbers(count * inputs, 5, 2.0);
     const std::vector<float> wanted = predict(model, samples);
-    for (int level = 0; level <= static_cast<int>(vector_level()); ++level) {
+    for (const InstructionSet instructions : usable_instruction_sets()) {
       for (const int threads : {1, 2, 8}) {
         set_thread_count(threads);
         std::vector<float> found(wanted.size());
-        predict_into(model, samples, found, nullptr, static_cast<VectorLevel>(level));
-        EXPECT_TRUE(same_bytes(found, wanted)) << "level " << level;
+        predict_into(model, samples, found, nullptr, instructions);
+        EXPECT_TRUE(same_bytes(found, wanted))
+            << "instruction set " << static_cast<int>(instructions);
       }
     }
     set_thread_count(0);

@@ -12,4 +12,7 @@ inline constexpr double kSmallestLength = 1e-4;
 /// The projection onto the surface ends after a step shorter than this fraction of t.
 inline constexpr double kSmallestMove = 0.01;
 
+/// The cosine by which a gate opens, see side_gate().
+inline constexpr double kGateWidth = 0.3;
+
 }  // namespace pcednet::gls

@@ -1,30 +1,20 @@
 #include "pcednet/gls/lane_kernels.h"
 
-#include <vector>
+#include <cstddef>
+
+#include "pcednet/core/processor.h"
 
 namespace pcednet::gls {
 
-extern const LaneKernels lane_kernels_baseline;
-#ifdef PCEDNET_X86_KERNELS
-extern const LaneKernels lane_kernels_avx2;
-extern const LaneKernels lane_kernels_avx512;
-#endif
-
 std::span<const LaneKernels> all_lane_kernels() {
-  static const std::vector<LaneKernels> kernels = [] {
-    std::vector<LaneKernels> usable = {lane_kernels_baseline};
-#ifdef PCEDNET_X86_KERNELS
-    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) {
-      usable.push_back(lane_kernels_avx2);
-    }
-    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
-        __builtin_cpu_supports("avx512vl")) {
-      usable.push_back(lane_kernels_avx512);
-    }
+  static const LaneKernels kernels[] = {
+    lane_kernels_baseline,
+#if defined(__x86_64__)
+    lane_kernels_avx2,
+    lane_kernels_avx512,
 #endif
-    return usable;
-  }();
-  return kernels;
+  };
+  return std::span(kernels).first(usable_instruction_sets().size());
 }
 
 const LaneKernels& lane_kernels() {

@@ -1,4 +1,7 @@
-#define PCEDNET_KERNELS lane_kernels_avx2
-#define PCEDNET_KERNELS_NAME "avx2"
-#define PCEDNET_WIDTH 8
-#include "pcednet/gls/lane_kernels.inc"
+#include "pcednet/gls/lane_code.h"
+
+namespace pcednet::gls {
+
+constinit const LaneKernels lane_kernels_avx2 = lane_code<8>("avx2");
+
+}  // namespace pcednet::gls

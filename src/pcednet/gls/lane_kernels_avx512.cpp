@@ -1,4 +1,7 @@
-#define PCEDNET_KERNELS lane_kernels_avx512
-#define PCEDNET_KERNELS_NAME "avx512"
-#define PCEDNET_WIDTH 16
-#include "pcednet/gls/lane_kernels.inc"
+#include "pcednet/gls/lane_code.h"
+
+namespace pcednet::gls {
+
+constinit const LaneKernels lane_kernels_avx512 = lane_code<16>("avx512");
+
+}  // namespace pcednet::gls

@@ -1,4 +1,7 @@
-#define PCEDNET_KERNELS lane_kernels_baseline
-#define PCEDNET_KERNELS_NAME "baseline"
-#define PCEDNET_WIDTH 4
-#include "pcednet/gls/lane_kernels.inc"
+#include "pcednet/gls/lane_code.h"
+
+namespace pcednet::gls {
+
+constinit const LaneKernels lane_kernels_baseline = lane_code<4>("baseline");
+
+}  // namespace pcednet::gls

@@ -138,4 +138,7 @@ struct LaneKernels {
   void (*solve)(const LaneSums& sums, LaneDetail detail, float rounding, LaneFits& fits);
 };
 
+/// Of lane_kernels_*.cpp; the last two on x86-64 alone.
+extern const LaneKernels lane_kernels_baseline, lane_kernels_avx2, lane_kernels_avx512;
+
 }  // namespace pcednet::gls

@@ -6,16 +6,14 @@
 #include <vector>
 
 #include "pcednet/core/vec3.h"
+#include "pcednet/gls/fit_limits.h"
 #include "pcednet/spatial/kd_tree.h"
 
 namespace pcednet::gls {
 
-/// The range of cosines over which a gate opens.
-inline constexpr double kGateWidth = 0.3;
-
 /// The factor on the weight of a neighbour with normal `n` for a point with normal `own`, which
-/// keeps neighbourhoods to one side of a thin wall: clamp((n . own - a) / 0.3, 0, 1). It depends
-/// neither on x nor on t, so every derivative scales with it.
+/// keeps neighbourhoods to one side of a thin wall: clamp((n . own - a) / kGateWidth, 0, 1). It
+/// depends neither on x nor on t, so every derivative scales with it.
 inline double side_gate(const Vec3& n, const Vec3& own, double a) {
   return std::clamp((n.dot(own) - a) / kGateWidth, 0.0, 1.0);
 }

@@ -2,10 +2,10 @@
 
 namespace pcednet::nn {
 
-Evaluator::Evaluator(const Model& model, VectorLevel level)
+Evaluator::Evaluator(const Model& model, InstructionSet instructions)
     : model_(&model),
       plan_(make_plan(model.network.architecture)),
-      kernels_(&nn::kernels(level)),
+      kernels_(&nn::kernels(instructions)),
       odd_inputs_(static_cast<std::size_t>(inputs()), 0) {
   check_consistent(model);
   const std::vector<std::uint8_t>& odd = model.sign_rule.odd_features;

@@ -13,7 +13,7 @@ namespace pcednet::nn {
 class Evaluator {
  public:
   /// Throws Error(kUsage) if the model's parts do not fit each other.
-  explicit Evaluator(const Model& model, VectorLevel level = vector_level());
+  explicit Evaluator(const Model& model, InstructionSet instructions = instruction_set());
 
   const Model& model() const { return *model_; }
   const Plan& plan() const { return plan_; }

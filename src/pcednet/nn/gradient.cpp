@@ -22,8 +22,8 @@ struct GradientMachine::Workspace {
   alignas(64) std::array<float, kChunk> losses;
 };
 
-GradientMachine::GradientMachine(const Model& model, VectorLevel level)
-    : evaluator_(model, level) {}
+GradientMachine::GradientMachine(const Model& model, InstructionSet instructions)
+    : evaluator_(model, instructions) {}
 
 GradientMachine::~GradientMachine() = default;
 

@@ -18,7 +18,7 @@ namespace pcednet::nn {
 class GradientMachine {
  public:
   /// `model` must outlive it; its parameters may change between calls.
-  explicit GradientMachine(const Model& model, VectorLevel level = vector_level());
+  explicit GradientMachine(const Model& model, InstructionSet instructions = instruction_set());
 
   ~GradientMachine();
 

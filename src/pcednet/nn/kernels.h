@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "pcednet/core/processor.h"
 #include "pcednet/nn/architecture.h"
 
 /// The inner loops, compiled once per vector instruction set and chosen at run time.
@@ -30,12 +31,6 @@ class LaneTable {
  private:
   int lanes_;
   std::vector<CacheLine> lines_;
-};
-
-enum class VectorLevel {
-  kBaseline,  ///< what every processor of the platform has
-  kAvx2,      ///< x86-64-v3
-  kAvx512,    ///< x86-64-v4
 };
 
 /// How input numbers are brought to the range a network likes.
@@ -95,10 +90,10 @@ struct Kernels {
                    int lanes, bool to_inputs, float* gradient);
 };
 
-/// The best level of this processor.
-VectorLevel vector_level();
+/// Of kernels_*.cpp; the last two on x86-64 alone.
+extern const Kernels kernels_baseline, kernels_avx2, kernels_avx512;
 
-/// The kernels of a level that this processor has.
-const Kernels& kernels(VectorLevel level = vector_level());
+/// The kernels for instructions that this processor has.
+const Kernels& kernels(InstructionSet instructions = instruction_set());
 
 }  // namespace pcednet::nn

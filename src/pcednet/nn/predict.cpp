@@ -33,8 +33,9 @@ std::vector<float> predict(const Model& model, std::span<const float> samples,
 }
 
 void predict_into(const Model& model, std::span<const float> samples,
-                  std::span<float> probabilities, const Progress* progress, VectorLevel level) {
-  const Evaluator evaluator(model, level);
+                  std::span<float> probabilities, const Progress* progress,
+                  InstructionSet instructions) {
+  const Evaluator evaluator(model, instructions);
   const auto inputs = static_cast<std::size_t>(evaluator.inputs());
   const auto classes = static_cast<std::size_t>(evaluator.classes());
   const std::size_t count = samples.size() / inputs;

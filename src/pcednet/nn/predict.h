@@ -17,9 +17,9 @@ namespace pcednet::nn {
 std::vector<float> predict(const Model& model, std::span<const float> samples,
                            const Progress* progress = nullptr);
 
-/// The same into the caller's memory (n x classes), with the vector instructions of `level`.
+/// The same into the caller's memory (n x classes), with these vector instructions.
 void predict_into(const Model& model, std::span<const float> samples,
                   std::span<float> probabilities, const Progress* progress = nullptr,
-                  VectorLevel level = vector_level());
+                  InstructionSet instructions = instruction_set());
 
 }  // namespace pcednet::nn

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include "pcednet/core/digest.h"
+#include "pcednet/core/processor.h"
 #include "pcednet/io/input_file.h"
-#include "pcednet/nn/kernels.h"
 
 namespace pcednet::study {
 namespace {
@@ -59,7 +59,7 @@ std::string text_of(const CloudSet& set) {
 
 std::string this_program() {
   return fmt::format("{} level {}", Digest().add(io::InputFile("/proc/self/exe").text()).hex(),
-                     static_cast<int>(nn::vector_level()));
+                     static_cast<int>(instruction_set()));
 }
 
 }  // namespace pcednet::study
