@@ -1,0 +1,104 @@
+#include "lines_arguments.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "common.h"
+
+namespace pcednet::app {
+namespace {
+
+/// Checks that a number is above `least` and at most `most`.
+CLI::Validator above(double least, double most, const std::string& meaning) {
+  return {[=](const std::string& word) -> std::string {
+            double value = 0.0;
+            const bool sound = CLI::detail::lexical_cast(word, value) && std::isfinite(value) &&
+                               value > least && value <= most;
+            return sound ? "" : fmt::format("{} is not {}", word, meaning);
+          },
+          meaning};
+}
+
+}  // namespace
+
+void add_line_options(CLI::App& command, lines::LineOptions& options) {
+  const CLI::Validator length = above(0.0, 1e150, "a length above 0");
+  command
+      .add_option("--min-length", options.min_length,
+                  "Leave out shorter curves (default: from the spacing, as the two below)")
+      ->check(length);
+  command.add_option("--gap", options.gap, "Bridge gaps up to this length")->check(length);
+  command
+      .add_option("--tolerance", options.tolerance,
+                  "How far the points may be from their curve; also of the polylines that stand "
+                  "for arcs in formats without arcs (default there: a thousandth of the radius)")
+      ->check(length);
+  command
+      .add_option("--angle", options.angle,
+                  "Split a curve where it bends by more than this many degrees")
+      ->capture_default_str()
+      ->check(above(0.0, 180.0, "an angle above 0, up to 180"));
+  command.add_flag("--regularise", options.regularise,
+                   "Make nearly parallel and nearly right angles exactly so");
+  command.add_flag("--boundaries", options.boundaries,
+                   "Also draw where the surface ends, on a layer of its own; --class with boundary "
+                   "does the same");
+  using enum lines::LineStage;
+  add_choice(command, "--stage", options.stage,
+             {{"creases", kCreases}, {"chains", kChains}, {"pieces", kPieces}, {"curves", kCurves}},
+             "Stop after a step and draw what it found: a short segment for each edge point, these "
+             "in order, segments and arcs before they meet, or the finished curves");
+}
+
+void add_drawing_options(CLI::App& command, LinesArguments& arguments) {
+  CLI::Option* classes =
+      command
+          .add_option("--class", arguments.classes,
+                      "The classes to draw, with commas between: sharp, smooth (rounded edges, at "
+                      "the cost of some that are none), boundary (where the surface ends)")
+          ->delimiter(',')
+          ->default_str("sharp,boundary")
+          ->check(CLI::IsMember({"sharp", "smooth", "boundary"}));
+  classes->each([&arguments](const std::string& name) {
+    arguments.lines.boundaries = arguments.lines.boundaries || name == "boundary";
+  });
+  command
+      .add_option("--kind", arguments.kinds,
+                  "Keep these kinds only: segment, arc, circle, polyline, with commas between")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"segment", "arc", "circle", "polyline"}));
+  command
+      .add_option("--min-confidence", arguments.min_confidence,
+                  "Leave out curves whose points are edges with a lower mean probability")
+      ->capture_default_str()
+      ->check(above(-1e-300, 1.0, "a number from 0 to 1"));
+  command
+      .add_option("--min-dihedral", arguments.min_dihedral,
+                  "Leave out curves whose surfaces differ by fewer degrees in the mean")
+      ->capture_default_str()
+      ->check(above(-1e-300, 180.0, "an angle from 0 to 180"));
+  command
+      .add_option("--min-points", arguments.min_points, "Leave out curves with fewer edge points")
+      ->capture_default_str();
+  add_choice(command, "--dxf-version", arguments.drawing.dxf_version,
+             {{"2000", io::DxfVersion::k2000}, {"r12", io::DxfVersion::kR12}},
+             "DXF: of AutoCAD 2000, which all later ones read, or R12 for old programs");
+  add_choice(command, "--view", arguments.drawing.view,
+             {{"top", io::View::kTop}, {"front", io::View::kFront}, {"side", io::View::kSide}},
+             "SVG: seen from above, from the front (x, z) or from the side (y, z)");
+  using enum io::LengthUnit;
+  CLI::Option* unit = add_choice(command, "--unit", arguments.drawing.unit,
+                                 {{"none", kNone},
+                                  {"mm", kMillimetre},
+                                  {"cm", kCentimetre},
+                                  {"m", kMetre},
+                                  {"in", kInch},
+                                  {"ft", kFoot}},
+                                 "DXF: the unit of the coordinates (default: m if the coordinate "
+                                 "system of a LAS file says so, otherwise none)");
+  unit->default_str("");
+  unit->each([&arguments](const std::string&) { arguments.has_unit = true; });
+}
+
+}  // namespace pcednet::app

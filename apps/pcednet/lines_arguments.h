@@ -1,0 +1,35 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+#include "models.h"
+#include "pcednet/detect/prepare.h"
+#include "pcednet/io/drawing/drawing.h"
+#include "pcednet/lines/find_lines.h"
+
+namespace pcednet::app {
+
+/// The arguments of `pcednet lines`.
+struct LinesArguments {
+  std::string input, preview, memory;
+  std::vector<std::string> outputs, kinds;
+  std::vector<std::string> classes = {"sharp", "boundary"};
+  bool classify = false;
+  ModelArguments model{.name = kDefaultModel};
+  detect::PrepareOptions preparation;
+  lines::LineOptions lines;
+  double min_confidence = 0.0, min_dihedral = 0.0;
+  std::size_t min_points = 0;
+  io::DrawingOptions drawing;
+  bool has_unit = false;
+};
+
+/// Adds the options of finding curves.
+void add_line_options(CLI::App& command, lines::LineOptions& options);
+
+/// Adds the options of choosing curves and writing them.
+void add_drawing_options(CLI::App& command, LinesArguments& arguments);
+
+}  // namespace pcednet::app
