@@ -73,7 +73,7 @@ std::vector<Piece> split_chains(const std::vector<Chain>& chains, double toleran
     for (std::size_t i = begin; i < end; ++i) {
       const Chain& chain = chains[i];
       const double within = tolerance_at(chain.nodes[chain.nodes.size() / 2], tolerance);
-      of_chains[i] = pieces_of(chain, split(chain, within), kLeastNodes);
+      of_chains[i] = pieces_of(chain, split(chain, within, progress), kLeastNodes);
     }
     stage.advance(end - begin);
   });
