@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "lines/made_pieces.h"
 #include "pcednet/core/random.h"
@@ -32,6 +33,23 @@ TEST(Pieces, OfOneLineAreJoinedOverAGap) {
   join_pieces(pieces, 6.0, kWithin);
   ASSERT_EQ(pieces.size(), 2u);
   EXPECT_NEAR(length_of(pieces[0]), 30.0, 1.0);
+}
+
+TEST(Pieces, OfOneLineAreJoinedWhicheverWayTheyRun) {
+  const Vec3 a(0, 0, 0), b(10, 0, 0), c(14, 0, 0), d(30, 0, 0);
+  for (const auto& [first, second] :
+       {std::pair(straight(a, b), straight(c, d)), std::pair(straight(a, b), straight(d, c)),
+        std::pair(straight(b, a), straight(c, d)), std::pair(straight(b, a), straight(d, c))}) {
+    std::vector<Piece> pieces = {first, second};
+    join_pieces(pieces, 6.0, kWithin);
+    ASSERT_EQ(pieces.size(), 1u);
+    const std::vector<ChainNode>& nodes = pieces[0].nodes;
+    const double sign = nodes.back().at.x() > nodes.front().at.x() ? 1.0 : -1.0;
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      EXPECT_GT(sign * nodes[i].along.x(), 0.99);
+      if (i > 0) EXPECT_GT(sign * (nodes[i].at - nodes[i - 1].at).x(), 0.0);
+    }
+  }
 }
 
 TEST(Pieces, OfOneLineStayApartIfTheirWedgesDiffer) {
