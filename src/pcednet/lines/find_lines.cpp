@@ -88,7 +88,7 @@ std::vector<Piece> split_chains(const std::vector<Chain>& chains, double toleran
 void join(std::vector<Piece>& pieces, const OrderedPoints& cloud, const Limits& limits,
           double noise, const Progress* progress) {
   Stage stage(progress, "joins", 5);
-  join_pieces(pieces, limits.gap, limits.tolerance);
+  join_pieces(pieces, limits.gap, limits.tolerance, progress);
   stage.advance();
   complete_circles(pieces, cloud, limits.tolerance);
   stage.advance();

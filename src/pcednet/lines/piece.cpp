@@ -14,6 +14,7 @@ namespace {
 constexpr double kOneWedge = 0.7;            ///< least cosine of sides
 constexpr double kFacing = 0.5;              ///< least cosine of the ends of joined pieces
 constexpr double kSameDirectionTwice = 0.7;  ///< of an edge and its copy
+constexpr std::size_t kPiecesAtOnce = 64;    ///< between two looks at the progress
 constexpr double kDuplicate = 1.2;           ///< spacings between copies of one edge
 
 void set_ends(Piece& piece) {
@@ -96,12 +97,13 @@ std::vector<Vec3> ends_of(const std::vector<Piece>& pieces) {
 }
 
 /// One pass of joins; true if there was one.
-bool join_once(std::vector<Piece>& pieces, double gap, double tolerance) {
+bool join_once(std::vector<Piece>& pieces, double gap, double tolerance, const Progress* progress) {
   const spatial::KdTree tree(ends_of(pieces));
   std::vector<std::uint8_t> gone(pieces.size(), 0), changed(pieces.size(), 0);
   std::vector<spatial::Neighbour> near;
   bool any = false;
   for (std::size_t i = 0; i < pieces.size(); ++i) {
+    if (i % kPiecesAtOnce == 0) throw_if_cancelled(progress);
     if (gone[i] || changed[i] || pieces[i].closed || pieces[i].fit.kind == CurveKind::kPolyline) {
       continue;
     }
@@ -260,9 +262,10 @@ std::optional<Piece> joined_at(const Piece& a, std::size_t side_a, const Piece& 
   return joined(a, side_a, b, side_b, tolerance);
 }
 
-void join_pieces(std::vector<Piece>& pieces, double gap, double tolerance) {
+void join_pieces(std::vector<Piece>& pieces, double gap, double tolerance,
+                 const Progress* progress) {
   drop_duplicates(pieces);
-  while (join_once(pieces, gap, tolerance)) {
+  while (join_once(pieces, gap, tolerance, progress)) {
   }
   close_circles(pieces, gap);
   drop_duplicates(pieces);
