@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "lines/made_pieces.h"
 #include "pcednet/core/random.h"
 #include "pcednet/lines/bridge.h"
+#include "pcednet/lines/chain.h"
 #include "pcednet/lines/circles.h"
 #include "pcednet/lines/corners.h"
 #include "pcednet/lines/finish.h"
@@ -15,6 +17,7 @@
 #include "pcednet/lines/piece.h"
 #include "pcednet/lines/strings.h"
 #include "pcednet/lines/touch.h"
+#include "support/expect_error.h"
 
 namespace pcednet::lines {
 namespace {
@@ -32,6 +35,66 @@ TEST(Pieces, OfOneLineAreJoinedOverAGap) {
   join_pieces(pieces, 6.0, kWithin);
   ASSERT_EQ(pieces.size(), 2u);
   EXPECT_NEAR(length_of(pieces[0]), 30.0, 1.0);
+}
+
+TEST(Pieces, OfOneLineAreJoinedWhicheverWayTheyRun) {
+  const Vec3 a(0, 0, 0), b(10, 0, 0), c(14, 0, 0), d(30, 0, 0);
+  for (const auto& [first, second] :
+       {std::pair(straight(a, b), straight(c, d)), std::pair(straight(a, b), straight(d, c)),
+        std::pair(straight(b, a), straight(c, d)), std::pair(straight(b, a), straight(d, c))}) {
+    std::vector<Piece> pieces = {first, second};
+    join_pieces(pieces, 6.0, kWithin);
+    ASSERT_EQ(pieces.size(), 1u);
+    const std::vector<ChainNode>& nodes = pieces[0].nodes;
+    const double sign = nodes.back().at.x() > nodes.front().at.x() ? 1.0 : -1.0;
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      EXPECT_GT(sign * nodes[i].along.x(), 0.99);
+      if (i > 0) EXPECT_GT(sign * (nodes[i].at - nodes[i - 1].at).x(), 0.0);
+    }
+  }
+}
+
+TEST(Pieces, StopToBeJoinedWhenTold) {
+  std::vector<Piece> pieces = {straight({0, 0, 0}, {10, 0, 0})};
+  const Progress stopped = {.report = {}, .cancelled = [] { return true; }};
+  EXPECT_ERROR(ErrorKind::kCancelled, join_pieces(pieces, 6.0, kWithin, &stopped));
+}
+
+/// Creases one apart along the x axis.
+std::vector<Crease> row_of_creases(double from, double to) {
+  std::vector<Crease> creases;
+  for (double x = from; x < to; x += 1.0) {
+    creases.push_back({.at = {x, 0, 0},
+                       .along = Vec3::UnitX(),
+                       .side_a = Vec3::UnitY(),
+                       .side_b = Vec3::UnitZ(),
+                       .spacing = 1.0,
+                       .edge_class = kSharpEdge});
+  }
+  return creases;
+}
+
+TEST(Chains, CrossGapsUpToTheirWidth) {
+  for (const double gap : {6.0, 12.0, 100.0, 1000.0}) {
+    for (const double part : {0.5, 0.95, 1.05}) {
+      std::vector<Crease> creases = row_of_creases(0.0, 20.0);
+      const double beyond = 19.0 + std::max(part * gap, 3.0);
+      for (Crease crease : row_of_creases(beyond, beyond + 20.0)) {
+        crease.at.y() += 0.07 * part * gap;  // within the cone
+        creases.push_back(crease);
+      }
+      const auto chains = trace(creases, gap, 0.0, nullptr);
+      EXPECT_EQ(chains.size(), part < 1.0 ? 1u : 2u) << gap << ", part " << part;
+    }
+  }
+}
+
+TEST(Chains, StopWhenTold) {
+  bool traces = false;
+  const Progress stopping = {
+      .report = [&](const std::string&, double fraction) { traces = fraction >= 1.0; },
+      .cancelled = [&] { return traces; }};
+  EXPECT_ERROR(ErrorKind::kCancelled, trace(row_of_creases(0, 300), 6.0, 0.0, &stopping));
 }
 
 TEST(Pieces, OfOneLineStayApartIfTheirWedgesDiffer) {

@@ -15,6 +15,7 @@
 #include "pcednet/lines/find_lines.h"
 #include "pcednet/lines/outline.h"
 #include "pcednet/lines/support_line.h"
+#include "support/expect_error.h"
 
 namespace pcednet::lines {
 namespace {
@@ -230,6 +231,40 @@ TEST(Faces, AreNoneOfTooFewPoints) {
   PlainCloud row;
   for (int i = 0; i < 100; ++i) row.add({0.1 * i, 0.0, 0.0});
   EXPECT_EQ(share_of(row), 0.0);
+}
+
+/// Points in random order along x, in a band of this width.
+PlainCloud band(std::size_t points, double width) {
+  Random random(9);
+  PlainCloud cloud;
+  for (std::size_t i = 0; i < points; ++i) {
+    const double x = random.uniform(0.0, static_cast<double>(points));
+    cloud.add({x, random.uniform(0.0, width), 0.01 * random.normal()});
+  }
+  return cloud;
+}
+
+TEST(Faces, AreNoneOfACableThatHangsBesideOne) {
+  PlainCloud cloud = hip_roof(1000, 0.4, 0.0);
+  for (const Vec3& place : band(1000, 2.0).positions) {
+    cloud.add({0.2 * place.x() - 100.0, -20.0 + 0.2 * place.y(), 5.0 + 0.2 * place.z()});
+  }
+  const OrderedPoints points(cloud.points());
+  const Faces faces = find_faces(points, measure_sampling(points), nullptr);
+  EXPECT_EQ(faces.faces.size(), 4u);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    EXPECT_EQ(faces.of_points[i] == kNoFace, points.position(i).y() < -10.0);
+  }
+}
+
+TEST(Faces, StopWhenTold) {
+  const PlainCloud cloud = hip_roof(1000, 0.4, 0.0);
+  const OrderedPoints points(cloud.points());
+  bool grows = false;
+  const Progress stopping = {
+      .report = [&](const std::string&, double fraction) { grows = fraction >= 1.0; },
+      .cancelled = [&] { return grows; }};
+  EXPECT_ERROR(ErrorKind::kCancelled, find_faces(points, measure_sampling(points), &stopping));
 }
 
 TEST(Faces, MaySagALittle) {

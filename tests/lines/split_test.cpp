@@ -2,8 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+
+#include "pcednet/core/random.h"
+#include "support/expect_error.h"
 
 namespace pcednet::lines {
 namespace {
@@ -75,6 +79,59 @@ TEST(Split, TakesAClosedChainForACircleIfItIsOne) {
     }
   }
   EXPECT_EQ(split(square, kTolerance).size(), 4u);
+}
+
+double cost_of(std::span<const ChainNode> nodes, const Fit& fit) {
+  const auto count = static_cast<double>(nodes.size());
+  if (fit.kind == CurveKind::kPolyline) return 4.0 + 5.0 * count;
+  const double sq = std::pow(fit.error / kTolerance, 2);
+  return (fit.kind == CurveKind::kSegment ? 12.0 : 18.0) + count * std::min(sq, 9.0);
+}
+
+/// The least sum of costs over all ways to divide the chain.
+double least_cost(std::span<const ChainNode> nodes) {
+  std::vector<double> least = {0.0};
+  for (std::size_t end = 1; end <= nodes.size(); ++end) {
+    least.push_back(1e300);
+    for (std::size_t start = 0; start < end; ++start) {
+      const auto run = nodes.subspan(start, end - start);
+      double cost = cost_of(run, {});
+      if (run.size() >= 2) cost = std::min(cost, cost_of(run, fit_segment(run)));
+      if (run.size() >= 4) cost = std::min(cost, cost_of(run, fit_arc(run)));
+      least.back() = std::min(least.back(), least[start] + cost);
+    }
+  }
+  return least.back();
+}
+
+TEST(Split, IsTheCheapestOfAllWays) {
+  Random random(3);
+  for (int kind = 0; kind < 24; ++kind) {
+    Chain chain;
+    Vec3 at = Vec3::Zero();
+    double heading = 0.0, bend = 0.0;
+    const double noise = 0.05 * (kind % 4), turn = 0.3 * (kind % 3);
+    for (int i = 0; i < 48; ++i) {
+      if (random.index(12) == 0) {
+        heading += turn * random.normal();
+        bend = 0.1 * random.uniform(-1.0, 1.0);
+      }
+      heading += bend;
+      at += Vec3(std::cos(heading), std::sin(heading), 0);
+      const Vec3 off(random.normal(), random.normal(), random.normal());
+      chain.nodes.push_back(node(at + noise * off, {std::cos(heading), std::sin(heading), 0}));
+    }
+    double cost = 0.0;
+    for (const auto& run : split(chain, kTolerance)) {
+      cost += cost_of(std::span(chain.nodes).subspan(run.first, run.last - run.first), run.fit);
+    }
+    EXPECT_NEAR(cost, least_cost(chain.nodes), 1e-9) << kind;
+  }
+}
+
+TEST(Split, StopsWhenTold) {
+  const Progress stopped = {.report = {}, .cancelled = [] { return true; }};
+  EXPECT_ERROR(ErrorKind::kCancelled, split(bow(), kTolerance, &stopped));
 }
 
 TEST(Split, OfNothingIsNothing) {

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <optional>
+#include <tuple>
 
 #include "pcednet/core/parallel.h"
 #include "pcednet/spatial/kd_tree.h"
@@ -12,8 +14,12 @@ namespace pcednet::lines {
 namespace {
 
 constexpr std::size_t kCreasesAtOnce = 512;
-constexpr double kSameDirection = 0.78;  ///< cosine of creases that continue each other
-constexpr double kSameWedge = 0.76;      ///< cosine of their sides
+constexpr std::size_t kNodesAtOnce = 64;  ///< between two looks at the progress
+constexpr double kSameDirection = 0.78;   ///< cosine of creases that continue each other
+constexpr double kSameWedge = 0.76;       ///< cosine of their sides
+
+/// Creases ahead may be that far aside, in their distance: beside the last node, beyond a gap.
+constexpr double kCone = 0.4, kNarrowCone = 0.08;
 
 // In spacings.
 constexpr double kBeside = 1.5;
@@ -39,20 +45,36 @@ bool continues(const A& a, const B& b) {
 /// Follows creases from one to the next and takes them on the way.
 class Tracer {
  public:
-  Tracer(std::span<const Crease> creases, double gap, double noise)
+  Tracer(std::span<const Crease> creases, double gap, double noise, const Progress* progress)
       : creases_(creases),
         tree_(places_of(creases)),
         taken_(creases.size(), 0),
         gap_(gap),
-        noise_(noise) {}
+        noise_(noise),
+        progress_(progress) {}
 
-  std::vector<std::size_t> densest_first(const Progress* progress) const;
+  std::vector<std::size_t> densest_first() const;
   Chain trace_from(std::size_t crease);
   bool is_taken(std::size_t crease) const { return taken_[crease] != 0; }
 
  private:
+  /// A crease ahead of a node.
+  struct Ahead {
+    std::uint32_t index;
+    double distance, sq_distance;  ///< along the node's direction, and the square of the whole
+  };
+  /// Distances along a node's direction.
+  struct Stretch {
+    double from, to;
+  };
+
   std::optional<ChainNode> next(const ChainNode& node);
-  std::optional<ChainNode> next_within(const ChainNode& node, double reach, double cone);
+  std::optional<ChainNode> next_beside(const ChainNode& node);
+  std::optional<ChainNode> next_beyond_gap(const ChainNode& node);
+  /// Those of the creases found that continue the node, in the stretch of its cone.
+  void add_ahead(const ChainNode& node, const Stretch& stretch, double cone);
+  double nearest_ahead() const;
+  std::optional<ChainNode> mean_of_nearest(const ChainNode& node);
   void take_beside(const ChainNode& node);
   bool closes(const ChainNode& last, const ChainNode& first) const;
   void extend(std::vector<ChainNode>& nodes, bool& closed);
@@ -61,12 +83,15 @@ class Tracer {
   spatial::KdTree tree_;
   std::vector<std::uint8_t> taken_;
   double gap_, noise_;
+  const Progress* progress_;
+  std::size_t steps_ = 0;
   std::vector<spatial::Neighbour> found_;
+  std::vector<Ahead> ahead_;
 };
 
-std::vector<std::size_t> Tracer::densest_first(const Progress* progress) const {
+std::vector<std::size_t> Tracer::densest_first() const {
   std::vector<std::uint32_t> beside(creases_.size());
-  Stage stage(progress, "chains", creases_.size());
+  Stage stage(progress_, "chains", creases_.size());
   parallel_blocks(creases_.size(), kCreasesAtOnce, [&](std::size_t begin, std::size_t end) {
     std::vector<spatial::Neighbour> found;
     for (std::size_t i = begin; i < end; ++i) {
@@ -115,39 +140,71 @@ ChainNode mean_of(std::span<const Crease> creases, std::span<const std::uint32_t
   return mean;
 }
 
-std::optional<ChainNode> Tracer::next_within(const ChainNode& node, double reach, double cone) {
-  const double spacing = node.spacing;
-  tree_.within(node.at, reach, found_);
-  struct Ahead {
-    std::uint32_t index;
-    double distance;
-  };
-  std::vector<Ahead> ahead;
+void Tracer::add_ahead(const ChainNode& node, const Stretch& stretch, double cone) {
   for (const auto& near : found_) {
     if (taken_[near.index] || !continues(node, creases_[near.index])) continue;
     const Vec3 offset = creases_[near.index].at - node.at;
     const double distance = offset.dot(node.along);
     const double aside = (offset - distance * node.along).norm();
-    if (distance < kLeastStep * spacing) continue;
-    if (aside > cone * distance + (0.35 + noise_) * spacing) continue;
-    ahead.push_back({near.index, distance});
+    if (distance < stretch.from || distance >= stretch.to) continue;
+    if (aside > cone * distance + (0.35 + noise_) * node.spacing) continue;
+    ahead_.push_back({near.index, distance, offset.squaredNorm()});
   }
-  if (ahead.empty()) return std::nullopt;
-  const double nearest =
-      std::min_element(ahead.begin(), ahead.end(), [](const Ahead& a, const Ahead& b) {
-        return a.distance < b.distance;
-      })->distance;
+}
+
+std::optional<ChainNode> Tracer::mean_of_nearest(const ChainNode& node) {
+  if (ahead_.empty()) return std::nullopt;
+  const double most = nearest_ahead() + kNodeLength * node.spacing;
+  // Sums depend on the order, which must not depend on how the creases were found.
+  std::sort(ahead_.begin(), ahead_.end(), [&](const Ahead& a, const Ahead& b) {
+    const Vec3 &at_a = creases_[a.index].at, &at_b = creases_[b.index].at;
+    return std::tuple(a.sq_distance, at_a.x(), at_a.y(), at_a.z(), a.index) <
+           std::tuple(b.sq_distance, at_b.x(), at_b.y(), at_b.z(), b.index);
+  });
   std::vector<std::uint32_t> members;
-  for (const Ahead& crease : ahead) {
-    if (crease.distance <= nearest + kNodeLength * spacing) members.push_back(crease.index);
+  for (const Ahead& crease : ahead_) {
+    if (crease.distance <= most) members.push_back(crease.index);
   }
   return mean_of(creases_, members, node);
 }
 
+double Tracer::nearest_ahead() const {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const Ahead& crease : ahead_) nearest = std::min(nearest, crease.distance);
+  return nearest;
+}
+
+std::optional<ChainNode> Tracer::next_beside(const ChainNode& node) {
+  ahead_.clear();
+  tree_.within_unsorted(node.at, kReach * node.spacing, found_);
+  add_ahead(node, {kLeastStep * node.spacing, std::numeric_limits<double>::infinity()}, kCone);
+  return mean_of_nearest(node);
+}
+
+std::optional<ChainNode> Tracer::next_beyond_gap(const ChainNode& node) {
+  ahead_.clear();
+  const double aside = (0.35 + noise_) * node.spacing;
+  Stretch stretch{kLeastStep * node.spacing, 0.0};
+  while (stretch.from < gap_ && stretch.from <= nearest_ahead() + kNodeLength * node.spacing) {
+    // A ball around as much of the cone as it is wide: one around the node that reaches over a
+    // wide gap would hold much of the cloud.
+    const double length = std::max(2.0 * (kNarrowCone * stretch.from + aside), node.spacing);
+    stretch.to = stretch.from + length;
+    const double width = kNarrowCone * stretch.to + aside;
+    tree_.within_unsorted(node.at + (stretch.from + 0.5 * length) * node.along,
+                          1.01 * std::hypot(0.5 * length, width), found_);
+    add_ahead(node, stretch, kNarrowCone);
+    std::erase_if(ahead_, [&](const Ahead& crease) { return crease.sq_distance >= gap_ * gap_; });
+    stretch.from = stretch.to;
+  }
+  return mean_of_nearest(node);
+}
+
 std::optional<ChainNode> Tracer::next(const ChainNode& node) {
-  if (auto near = next_within(node, kReach * node.spacing, 0.4)) return near;
+  if (++steps_ % kNodesAtOnce == 0) throw_if_cancelled(progress_);
+  if (auto near = next_beside(node)) return near;
   if (gap_ <= kReach * node.spacing) return std::nullopt;
-  return next_within(node, gap_, 0.08);
+  return next_beyond_gap(node);
 }
 
 void Tracer::take_beside(const ChainNode& node) {
@@ -162,7 +219,7 @@ bool Tracer::closes(const ChainNode& last, const ChainNode& first) const {
   const double distance = offset.dot(last.along);
   return distance > 0.0 && distance < kReach * last.spacing &&
          (offset - distance * last.along).norm() <
-             0.4 * distance + (0.35 + noise_) * last.spacing &&
+             kCone * distance + (0.35 + noise_) * last.spacing &&
          last.along.dot(first.along) > kSameDirection &&
          match(last.side_a, last.side_b, first.side_a, first.side_b).cosine > kSameWedge;
 }
@@ -243,9 +300,9 @@ std::vector<Crease> smoothed(std::span<const Crease> creases, double reach,
 
 std::vector<Chain> trace(std::span<const Crease> creases, double gap, double noise,
                          const Progress* progress) {
-  Tracer tracer(creases, gap, noise);
+  Tracer tracer(creases, gap, noise, progress);
   std::vector<Chain> chains;
-  for (const std::size_t crease : tracer.densest_first(progress)) {
+  for (const std::size_t crease : tracer.densest_first()) {
     if (!tracer.is_taken(crease)) chains.push_back(tracer.trace_from(crease));
   }
   return chains;

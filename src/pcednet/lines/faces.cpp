@@ -75,8 +75,13 @@ std::vector<double> look_around(const OrderedPoints& cloud, Faces& result,
 
 class Growing {
  public:
-  Growing(const OrderedPoints& cloud, double spacing, Faces& result)
-      : cloud_(cloud), spacing_(spacing), result_(result), seen_(cloud.size(), 0) {}
+  Growing(const OrderedPoints& cloud, double spacing, const Progress* progress, Faces& result)
+      : cloud_(cloud),
+        spacing_(spacing),
+        progress_(progress),
+        result_(result),
+        seen_(cloud.size(), 0),
+        narrow_(cloud.size(), 0) {}
 
   void try_at(std::uint32_t seed);
 
@@ -86,8 +91,10 @@ class Growing {
 
   const OrderedPoints& cloud_;
   double spacing_;
+  const Progress* progress_;
   Faces& result_;
-  std::vector<std::uint32_t> seen_;  ///< in which spread() a point was last seen
+  std::vector<std::uint32_t> seen_;   ///< in which spread() a point was last seen
+  std::vector<std::uint8_t> narrow_;  ///< the points of growths too narrow for a face
   std::uint32_t spreads_ = 0;
   std::vector<std::uint32_t> members_;
 };
@@ -118,7 +125,8 @@ void Growing::spread(std::uint32_t seed, Fitted& plane) {
 }
 
 void Growing::try_at(std::uint32_t seed) {
-  if (!is_free(seed)) return;
+  // Every point of a cable would grow the whole of it again.
+  if (!is_free(seed) || narrow_[seed]) return;
   Sums sums{.origin = cloud_.position(seed)};
   sums.add(cloud_.position(seed));
   for (const std::uint32_t other : result_.near(seed)) {
@@ -128,10 +136,14 @@ void Growing::try_at(std::uint32_t seed) {
   Fitted plane = fit_plane(sums);
   if (plane.residual > 0.5 * result_.within || plane.width < 0.5 * kLeastWidth * spacing_) return;
   for (int growth = 0; growth < kGrowths; ++growth) {
+    throw_if_cancelled(progress_);
     spread(seed, plane);
     if (members_.size() < kLeastPoints) return;
   }
-  if (plane.width < kLeastWidth * spacing_) return;
+  if (plane.width < kLeastWidth * spacing_) {
+    for (const std::uint32_t member : members_) narrow_[member] = 1;
+    return;
+  }
   for (const std::uint32_t member : members_) {
     result_.of_points[member] = static_cast<std::uint32_t>(result_.faces.size());
   }
@@ -286,7 +298,7 @@ Faces find_faces(const OrderedPoints& cloud, const Sampling& sampling, const Pro
   const auto quiet = static_cast<std::size_t>(kQuietShare * static_cast<double>(seeds.size()));
   faces.within =
       std::max(kPlaneReach[0] * sampling.spacing, kPlaneReach[1] * residuals[seeds[quiet]]);
-  Growing growing(cloud, sampling.spacing, faces);
+  Growing growing(cloud, sampling.spacing, progress, faces);
   for (const std::uint32_t seed : seeds) {
     growing.try_at(seed);
     if (faces.faces.size() > kMostFaces) return {};

@@ -81,7 +81,7 @@ std::vector<Piece> split_chains(const std::vector<Chain>& chains, double toleran
     for (std::size_t i = begin; i < end; ++i) {
       const Chain& chain = chains[i];
       const double within = tolerance_at(chain.nodes[chain.nodes.size() / 2], tolerance);
-      of_chains[i] = pieces_of(chain, split(chain, within), kLeastNodes);
+      of_chains[i] = pieces_of(chain, split(chain, within, progress), kLeastNodes);
     }
     stage.advance(end - begin);
   });
@@ -96,7 +96,7 @@ std::vector<Piece> split_chains(const std::vector<Chain>& chains, double toleran
 void join(std::vector<Piece>& pieces, const OrderedPoints& cloud, const Limits& limits,
           double noise, const Progress* progress) {
   Stage stage(progress, "joins", 5);
-  join_pieces(pieces, limits.gap, limits.tolerance);
+  join_pieces(pieces, limits.gap, limits.tolerance, progress);
   stage.advance();
   complete_circles(pieces, cloud, limits.tolerance);
   stage.advance();

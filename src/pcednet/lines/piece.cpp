@@ -14,6 +14,7 @@ namespace {
 constexpr double kOneWedge = 0.7;            ///< least cosine of sides
 constexpr double kFacing = 0.5;              ///< least cosine of the ends of joined pieces
 constexpr double kSameDirectionTwice = 0.7;  ///< of an edge and its copy
+constexpr std::size_t kPiecesAtOnce = 64;    ///< between two looks at the progress
 constexpr double kDuplicate = 1.2;           ///< spacings between copies of one edge
 
 void set_ends(Piece& piece) {
@@ -32,42 +33,58 @@ double arc_angle(const Piece& piece) {
                     piece.ends[1] - piece.fit.point);
 }
 
-Piece reversed(Piece piece) {
-  std::reverse(piece.nodes.begin(), piece.nodes.end());
-  for (ChainNode& node : piece.nodes) node.along = -node.along;
-  std::swap(piece.ends[0], piece.ends[1]);
-  piece.fit.direction = -piece.fit.direction;
-  return piece;
+/// Appends the nodes, in their order or turned round.
+void append(std::vector<ChainNode>& nodes, const std::vector<ChainNode>& more, bool in_order) {
+  if (in_order) {
+    nodes.insert(nodes.end(), more.begin(), more.end());
+    return;
+  }
+  for (auto node = more.rbegin(); node != more.rend(); ++node) {
+    nodes.push_back(*node);
+    nodes.back().along = -node->along;
+  }
 }
 
-/// Both, a's end before b's start, as one; nothing if no segment or arc fits them together.
-std::optional<Piece> joined(const Piece& a, const Piece& b, double tolerance) {
-  Piece both{.fit = {}, .nodes = a.nodes, .ends = {}};
-  both.nodes.insert(both.nodes.end(), b.nodes.begin(), b.nodes.end());
+/// Both as one, from a's other end to b's; nothing if no segment or arc fits them together.
+std::optional<Piece> joined(const Piece& a, std::size_t side_a, const Piece& b, std::size_t side_b,
+                            double tolerance) {
+  Piece both{.fit = {}, .nodes = {}, .ends = {}};
+  both.nodes.reserve(a.nodes.size() + b.nodes.size());
+  append(both.nodes, a.nodes, side_a == 1);
+  append(both.nodes, b.nodes, side_b == 0);
   const bool straight = a.fit.kind == CurveKind::kSegment && b.fit.kind == CurveKind::kSegment;
   both.fit = straight ? fit_segment(both.nodes) : fit_arc(both.nodes);
-  const double within = tolerance_at(a.nodes.back(), tolerance);
+  const double within = tolerance_at(node_at(a, side_a), tolerance);
   const double limit = std::max({1.4 * within, 1.3 * a.fit.error, 1.3 * b.fit.error});
   if (both.fit.kind == CurveKind::kPolyline || both.fit.error > limit) return std::nullopt;
   set_ends(both);
   return both;
 }
 
-std::optional<Piece> try_join(const Piece& a, const Piece& b, double gap, double tolerance) {
-  const ChainNode &end = a.nodes.back(), &start = b.nodes.front();
-  const Vec3 offset = start.at - end.at;
-  const double reach = std::max(gap, 2.0 * end.spacing);
-  if (offset.norm() > reach || end.along.dot(start.along) < kFacing) return std::nullopt;
-  if (offset.dot(end.along) < -1.5 * end.spacing || !same_wedge(end, start)) return std::nullopt;
-  return joined(a, b, tolerance);
+/// The direction of the node at an end of the piece, out of it.
+Vec3 out_of(const Piece& piece, std::size_t side) {
+  return side == 1 ? piece.nodes.back().along : Vec3(-piece.nodes.front().along);
 }
 
-/// The same piece begun at the other end, or with sides swapped: every way two can continue.
+/// Whether b may begin where a ends.
+bool may_continue(const Piece& a, std::size_t side_a, const Piece& b, std::size_t side_b,
+                  double gap) {
+  const ChainNode &end = node_at(a, side_a), &start = node_at(b, side_b);
+  const Vec3 offset = start.at - end.at, out = out_of(a, side_a);
+  return offset.norm() <= std::max(gap, 2.0 * end.spacing) &&
+         -out.dot(out_of(b, side_b)) >= kFacing && offset.dot(out) >= -1.5 * end.spacing &&
+         same_wedge(end, start);
+}
+
+/// Both as one, joined at the first pair of ends that allows it.
 std::optional<Piece> try_ways(const Piece& a, const Piece& b, double gap, double tolerance) {
-  if (auto piece = try_join(a, b, gap, tolerance)) return piece;
-  if (auto piece = try_join(a, reversed(b), gap, tolerance)) return piece;
-  if (auto piece = try_join(reversed(a), b, gap, tolerance)) return piece;
-  return try_join(b, a, gap, tolerance);
+  constexpr std::array<std::array<std::size_t, 2>, 3> kWays = {{{1, 0}, {1, 1}, {0, 0}}};
+  for (const auto& [side_a, side_b] : kWays) {
+    if (!may_continue(a, side_a, b, side_b, gap)) continue;
+    if (auto both = joined(a, side_a, b, side_b, tolerance)) return both;
+  }
+  if (!may_continue(b, 1, a, 0, gap)) return std::nullopt;
+  return joined(b, 1, a, 0, tolerance);
 }
 
 std::vector<Vec3> ends_of(const std::vector<Piece>& pieces) {
@@ -80,12 +97,13 @@ std::vector<Vec3> ends_of(const std::vector<Piece>& pieces) {
 }
 
 /// One pass of joins; true if there was one.
-bool join_once(std::vector<Piece>& pieces, double gap, double tolerance) {
+bool join_once(std::vector<Piece>& pieces, double gap, double tolerance, const Progress* progress) {
   const spatial::KdTree tree(ends_of(pieces));
   std::vector<std::uint8_t> gone(pieces.size(), 0), changed(pieces.size(), 0);
   std::vector<spatial::Neighbour> near;
   bool any = false;
   for (std::size_t i = 0; i < pieces.size(); ++i) {
+    if (i % kPiecesAtOnce == 0) throw_if_cancelled(progress);
     if (gone[i] || changed[i] || pieces[i].closed || pieces[i].fit.kind == CurveKind::kPolyline) {
       continue;
     }
@@ -236,18 +254,18 @@ std::vector<Piece> pieces_of(const Chain& chain, const std::vector<Run>& runs,
 
 std::optional<Piece> joined_at(const Piece& a, std::size_t side_a, const Piece& b,
                                std::size_t side_b, double tolerance) {
-  const Piece first = side_a == 1 ? a : reversed(a), second = side_b == 0 ? b : reversed(b);
-  const Vec3 &end = first.ends[1], &start = second.ends[0];
-  const Vec3 out = outward(first, 1), on = -outward(second, 0);
+  const Vec3 &end = a.ends[side_a], &start = b.ends[side_b];
+  const Vec3 out = outward(a, side_a), on = -outward(b, side_b);
   if (out.dot(on) < kFacing) return std::nullopt;
   const double back = std::min((start - end).dot(out), (start - end).dot(on));
-  if (back < -first.spacing()) return std::nullopt;
-  return joined(first, second, tolerance);
+  if (back < -a.spacing()) return std::nullopt;
+  return joined(a, side_a, b, side_b, tolerance);
 }
 
-void join_pieces(std::vector<Piece>& pieces, double gap, double tolerance) {
+void join_pieces(std::vector<Piece>& pieces, double gap, double tolerance,
+                 const Progress* progress) {
   drop_duplicates(pieces);
-  while (join_once(pieces, gap, tolerance)) {
+  while (join_once(pieces, gap, tolerance, progress)) {
   }
   close_circles(pieces, gap);
   drop_duplicates(pieces);

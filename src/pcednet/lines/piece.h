@@ -99,7 +99,9 @@ std::optional<Piece> joined_at(const Piece& a, std::size_t side_a, const Piece& 
                                std::size_t side_b, double tolerance);
 
 /// Joins pieces that lie on one line or circle and continue each other over gaps up to `gap`, and
-/// drops those that lie on a longer one. `tolerance` is in spacings.
-void join_pieces(std::vector<Piece>& pieces, double gap, double tolerance);
+/// drops those that lie on a longer one. `tolerance` is in spacings. Throws Error(kCancelled) once
+/// the caller cancels.
+void join_pieces(std::vector<Piece>& pieces, double gap, double tolerance,
+                 const Progress* progress = nullptr);
 
 }  // namespace pcednet::lines

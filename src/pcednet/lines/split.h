@@ -19,7 +19,7 @@ struct Run {
 ///     sum over runs of (price of its kind + sum over its nodes of min(distance / tolerance, 3)^2)
 ///
 /// by dynamic programming. Runs that neither a segment nor an arc explains have kind kPolyline. A
-/// closed chain of one kArc run is a circle.
-std::vector<Run> split(const Chain& chain, double tolerance);
+/// closed chain of one kArc run is a circle. Throws Error(kCancelled) once the caller cancels.
+std::vector<Run> split(const Chain& chain, double tolerance, const Progress* progress = nullptr);
 
 }  // namespace pcednet::lines
