@@ -71,7 +71,9 @@ TEST(Regularise, DoesNotCollapseWhatCannotBeRegular) {
   corners.of_ends = {{0, 1}, {1, 2}, {2, 0}};
   const auto before = corners.places;
   hold_directions(pieces, corners);
-  EXPECT_EQ(corners.places, before);
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    EXPECT_LT((corners.places[i] - before[i]).norm(), 1e-6) << i;
+  }
 }
 
 TEST(Finish, MakesACircleOfAnArcWhoseEndsShareACorner) {

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <numeric>
+#include <optional>
 
 namespace pcednet::lines {
 namespace {
@@ -15,6 +17,8 @@ constexpr double kApart = 0.7;     ///< sine of the least angle between two dire
 constexpr double kMostMove = 2.0;  ///< of a corner, in spacings
 /// Weights of directions relative to the places of corners: exact to rounding, or a compromise.
 constexpr double kExactly = 1e9, kNearly = 3.0;
+constexpr int kDropRounds = 30;
+constexpr double kContradicting = 0.7;  ///< of the largest turn
 
 /// The direction of a segment that shorter ones may follow.
 struct Reference {
@@ -88,6 +92,11 @@ std::vector<std::vector<HeldSegment>> connected(const std::vector<HeldSegment>& 
 struct Group {
   std::vector<std::size_t> corners;
   std::vector<Vec3> places;
+
+  std::size_t number_of(std::size_t corner) const {
+    return static_cast<std::size_t>(std::lower_bound(corners.begin(), corners.end(), corner) -
+                                    corners.begin());
+  }
 };
 
 Group corners_of(const std::vector<HeldSegment>& held, const Corners& corners) {
@@ -104,10 +113,6 @@ Group corners_of(const std::vector<HeldSegment>& held, const Corners& corners) {
 ///
 ///     sum |p - p0|^2 + weight sum |(I - d d^T) (p_a - p_b)|^2 .
 std::vector<Vec3> solved(const Group& group, const std::vector<HeldSegment>& held, double weight) {
-  const auto number = [&](std::size_t corner) {
-    const auto at = std::lower_bound(group.corners.begin(), group.corners.end(), corner);
-    return static_cast<int>(at - group.corners.begin());
-  };
   const Vec3 origin = group.places.front();
   const auto size = static_cast<int>(3 * group.places.size());
   std::vector<Eigen::Triplet<double>> entries;
@@ -119,7 +124,8 @@ std::vector<Vec3> solved(const Group& group, const std::vector<HeldSegment>& hel
   for (const HeldSegment& segment : held) {
     const Mat3 across =
         weight * (Mat3::Identity() - segment.direction * segment.direction.transpose());
-    const int a = 3 * number(segment.a), b = 3 * number(segment.b);
+    const int a = 3 * static_cast<int>(group.number_of(segment.a)),
+              b = 3 * static_cast<int>(group.number_of(segment.b));
     for (int r = 0; r < 3; ++r) {
       for (int c = 0; c < 3; ++c) {
         entries.emplace_back(a + r, a + c, across(r, c));
@@ -142,7 +148,8 @@ double largest_move(const std::vector<Vec3>& from, const std::vector<Vec3>& to) 
   double largest = 0.0;
   for (std::size_t i = 0; i < from.size(); ++i) {
     const double move = (to[i] - from[i]).norm();
-    if (!(move <= largest)) largest = move;
+    if (!std::isfinite(move)) return std::numeric_limits<double>::infinity();
+    largest = std::max(largest, move);
   }
   return largest;
 }
@@ -162,6 +169,30 @@ void follow(Piece& piece, const std::array<std::size_t, 2>& corners,
     const Vec3& d = piece.fit.direction;
     piece.ends[side] = places[held] + d.dot(piece.ends[side] - places[held]) * d;
   }
+}
+
+/// Removes the segments that a compromise turns the most: they contradict the others.
+void drop_contradicting(std::vector<HeldSegment>& held, const Group& group) {
+  const std::vector<Vec3> places = solved(group, held, kNearly);
+  const auto turn = [&](const HeldSegment& segment) {
+    const Vec3 between = places[group.number_of(segment.b)] - places[group.number_of(segment.a)];
+    return between.normalized().cross(segment.direction).norm();
+  };
+  double largest = 0.0;
+  for (const HeldSegment& segment : held) largest = std::max(largest, turn(segment));
+  std::erase_if(held, [&](const HeldSegment& s) { return turn(s) >= kContradicting * largest; });
+}
+
+/// The places of the group's corners with the directions of its segments, without those that
+/// contradict the others; nothing if that asks for too much.
+std::optional<std::vector<Vec3>> regular_places(const Group& group, std::vector<HeldSegment> held,
+                                                double most) {
+  for (int round = 0; round < kDropRounds && !held.empty(); ++round) {
+    std::vector<Vec3> places = solved(group, held, kExactly);
+    if (largest_move(group.places, places) <= most) return places;
+    drop_contradicting(held, group);
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -199,10 +230,10 @@ void hold_directions(std::vector<Piece>& pieces, Corners& corners) {
   for (const std::vector<HeldSegment>& held :
        connected(held_segments(pieces, corners), corners.places.size())) {
     const Group group = corners_of(held, corners);
-    std::vector<Vec3> places = solved(group, held, kExactly);
-    if (!(largest_move(group.places, places) <= most)) places = solved(group, held, kNearly);
-    if (!(largest_move(group.places, places) <= most)) continue;
-    for (std::size_t i = 0; i < places.size(); ++i) corners.places[group.corners[i]] = places[i];
+    const auto places = regular_places(group, held, most);
+    if (!places) continue;
+    for (std::size_t i = 0; i < places->size(); ++i)
+      corners.places[group.corners[i]] = (*places)[i];
   }
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     if (pieces[i].regular) follow(pieces[i], corners.of_ends[i], corners.places);

@@ -13,8 +13,8 @@ void regularise(std::vector<Piece>& pieces);
 
 /// Moves corners, and the free ends of regular segments, so that regular segments have their
 /// direction between the corners that they end in: by least squares, each connected group of
-/// corners for itself. Where directions contradict each other, so that corners would move by more
-/// than two spacings, they are approached only.
+/// corners for itself. Segments whose directions contradict those of others, so that corners would
+/// move by more than two spacings, turn.
 void hold_directions(std::vector<Piece>& pieces, Corners& corners);
 
 }  // namespace pcednet::lines
