@@ -80,7 +80,8 @@ void add_drawing_options(CLI::App& command, LinesArguments& arguments) {
       ->check(above(-1e-300, 180.0, "an angle from 0 to 180"));
   command
       .add_option("--min-points", arguments.min_points, "Leave out curves with fewer edge points")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->check(CLI::NonNegativeNumber);
   add_choice(command, "--dxf-version", arguments.drawing.dxf_version,
              {{"2000", io::DxfVersion::k2000}, {"r12", io::DxfVersion::kR12}},
              "DXF: of AutoCAD 2000, which all later ones read, or R12 for old programs");

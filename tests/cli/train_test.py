@@ -117,7 +117,7 @@ class Train(CliTest):
         few = self.train("few.safetensors", "--epochs", 1, "--scales", 8)
         result = run("train", self.folder / "clouds", "-o", self.folder / "m.safetensors",
                      "--expert", few, "below=9", expect=5)
-        self.assertIn("another description of points", result.stderr)
+        self.assertIn("another descriptor", result.stderr)
         self.assertFalse((self.folder / "m.safetensors").exists())
 
     def test_trains_with_two_gates_and_teachers(self):
