@@ -209,7 +209,9 @@ TEST(Train, ContinuesFromAModel) {
   const TrainResult more = train(kSmall, rising_features(100, 3).set(), options);
   EXPECT_GT(share_right(more.best, data), 0.98);
   EXPECT_EQ(more.best.standardisation.mean, first.standardisation.mean);
-  EXPECT_ERROR(ErrorKind::kUsage, train({}, {}, options));
+  Architecture other = kSmall;
+  ++other.hidden;
+  EXPECT_ERROR(ErrorKind::kUsage, train(other, data.set(), options));
 }
 
 TEST(Train, HoldsNothingOutWhenAskedTo) {
