@@ -49,7 +49,8 @@ TEST(Pieces, OfOneLineAreJoinedWhicheverWayTheyRun) {
     const double sign = nodes.back().at.x() > nodes.front().at.x() ? 1.0 : -1.0;
     for (std::size_t i = 0; i < nodes.size(); ++i) {
       EXPECT_GT(sign * nodes[i].along.x(), 0.99);
-      if (i > 0) EXPECT_GT(sign * (nodes[i].at - nodes[i - 1].at).x(), 0.0);
+      if (i == 0) continue;
+      EXPECT_GT(sign * (nodes[i].at - nodes[i - 1].at).x(), 0.0);
     }
   }
 }
@@ -69,6 +70,7 @@ std::vector<Crease> row_of_creases(double from, double to) {
                        .side_a = Vec3::UnitY(),
                        .side_b = Vec3::UnitZ(),
                        .spacing = 1.0,
+                       .probability = 1.0f,
                        .edge_class = kSharpEdge});
   }
   return creases;
