@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "pcednet/gls/half_space.h"
+#include "pcednet/core/half_space.h"
 
 namespace pcednet::gls {
 namespace {

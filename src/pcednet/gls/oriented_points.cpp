@@ -7,7 +7,7 @@
 #include <string>
 
 #include "pcednet/core/error.h"
-#include "pcednet/gls/half_space.h"
+#include "pcednet/core/half_space.h"
 #include "pcednet/spatial/curve_order.h"
 
 namespace pcednet::gls {

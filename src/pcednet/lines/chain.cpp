@@ -7,6 +7,7 @@
 #include <optional>
 #include <tuple>
 
+#include "pcednet/core/half_space.h"
 #include "pcednet/core/parallel.h"
 #include "pcednet/spatial/kd_tree.h"
 
@@ -119,7 +120,7 @@ ChainNode mean_of(std::span<const Crease> creases, std::span<const std::uint32_t
   for (const std::uint32_t member : members) {
     const Crease& crease = creases[member];
     mean.at += crease.at / count;
-    mean.along += crease.along.dot(node.along) < 0.0 ? Vec3(-crease.along) : crease.along;
+    mean.along += turned_to(crease.along, node.along);
     const bool crossed = match(node.side_a, node.side_b, crease.side_a, crease.side_b).crossed;
     mean.side_a += crossed ? crease.side_b : crease.side_a;
     mean.side_b += crossed ? crease.side_a : crease.side_b;

@@ -54,18 +54,23 @@ double mean_dihedral(const Piece& piece) {
   return sum / static_cast<double>(piece.nodes.size());
 }
 
+/// The circle about this centre and the axis of the fit through `place`.
+void set_circle(Curve& curve, const Fit& fit, const Vec3& centre, const Vec3& place) {
+  curve.kind = CurveKind::kCircle;
+  curve.closed = true;
+  curve.centre = centre;
+  curve.axis = fit.direction;
+  curve.points = {place};
+  curve.radius = (place - centre).norm();
+}
+
 /// The arc through both ends whose centre is the nearest to that of the fit; if both ends are one
 /// place, the circle through it.
 void set_arc(Curve& curve, const Fit& fit) {
   if (curve.points.front() == curve.points.back()) {
-    curve.kind = CurveKind::kCircle;
-    curve.closed = true;
-    curve.points.pop_back();
-    curve.axis = fit.direction;
-    const Vec3 offset = curve.points.front() - fit.point;
-    curve.centre = fit.point + offset.dot(fit.direction) * fit.direction;
-    curve.radius = (curve.points.front() - curve.centre).norm();
-    return;
+    const Vec3 place = curve.points.front();
+    const double height = (place - fit.point).dot(fit.direction);
+    return set_circle(curve, fit, fit.point + height * fit.direction, place);
   }
   const Vec3 &from = curve.points.front(), &to = curve.points.back();
   const Vec3 chord = (to - from).normalized(), middle = 0.5 * (from + to);
@@ -87,11 +92,7 @@ void set_shape(Curve& curve, const Piece& piece, const std::array<Vec3, 2>& ends
     }
     curve.points = simplified(curve.points, 0.5 * tolerance * piece.spacing());
   } else if (piece.closed) {
-    curve.kind = CurveKind::kCircle;
-    curve.centre = piece.fit.point;
-    curve.axis = piece.fit.direction;
-    curve.points = {nearest_on(piece.fit, piece.nodes.front().at)};
-    curve.radius = (curve.points.front() - curve.centre).norm();
+    set_circle(curve, piece.fit, piece.fit.point, nearest_on(piece.fit, piece.nodes.front().at));
   } else {
     curve.points = {ends[0], ends[1]};
     if (curve.kind == CurveKind::kArc) set_arc(curve, piece.fit);

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "pcednet/core/eigendecomposition.h"
+#include "pcednet/core/half_space.h"
 
 namespace pcednet::lines {
 namespace {
@@ -119,7 +120,7 @@ std::optional<HalfPlanes> half_planes(const LocalPlane& a, const LocalPlane& b, 
   halves.along = a.normal.cross(b.normal).normalized();
   const auto towards = [&](const Vec3& normal, const Vec3& place) {
     const Vec3 side = halves.along.cross(normal);
-    return side.dot(place - halves.at) < 0.0 ? Vec3(-side) : side;
+    return turned_to(side, place - halves.at);
   };
   halves.side_a = towards(a.normal, of_a);
   halves.side_b = towards(b.normal, of_b);

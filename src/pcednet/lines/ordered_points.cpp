@@ -1,10 +1,11 @@
 #include "pcednet/lines/ordered_points.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
+#include <tuple>
 
+#include "pcednet/core/half_space.h"
 #include "pcednet/core/parallel.h"
 #include "pcednet/spatial/curve_order.h"
 
@@ -14,16 +15,10 @@ namespace {
 constexpr std::size_t kPointsAtOnce = 256;
 constexpr std::size_t kSpacingNeighbours = 15;
 
+/// Of an edge; 0 without probabilities.
 float probability_of(const EdgePoints& points, std::uint32_t i) {
   if (points.p_sharp.empty()) return 0.0f;
   return points.p_sharp[i] + (points.p_smooth.empty() ? 0.0f : points.p_smooth[i]);
-}
-
-/// The normal or its opposite, the same for both.
-std::array<double, 3> unsigned_normal(const Vec3& n) {
-  const bool turned = n.x() != 0.0 ? n.x() < 0.0 : n.y() != 0.0 ? n.y() < 0.0 : n.z() < 0.0;
-  const Vec3 one = turned ? Vec3(-n) : n;
-  return {one.x(), one.y(), one.z()};
 }
 
 /// Whether point a stands for both at one place: by values, so that numbering does not matter.
@@ -34,7 +29,8 @@ bool stands_for(const EdgePoints& points, std::uint32_t a, std::uint32_t b) {
     return points.classes[i] == kUnlabelled ? 0 : points.classes[i] + 1;
   };
   if (rank(a) != rank(b)) return rank(a) > rank(b);
-  return unsigned_normal(points.normals[a]) > unsigned_normal(points.normals[b]);
+  const Vec3 na = upward(points.normals[a]), nb = upward(points.normals[b]);
+  return std::tie(na.x(), na.y(), na.z()) > std::tie(nb.x(), nb.y(), nb.z());
 }
 
 /// Points at one place follow each other along the curve; one stands for all.
@@ -67,8 +63,7 @@ OrderedPoints::OrderedPoints(const EdgePoints& points)
 
 float OrderedPoints::probability(std::size_t i) const {
   if (points_.p_sharp.empty()) return is_edge(i) ? 1.0f : 0.0f;
-  const std::uint32_t point = order_[i];
-  return points_.p_sharp[point] + (points_.p_smooth.empty() ? 0.0f : points_.p_smooth[point]);
+  return probability_of(points_, order_[i]);
 }
 
 void OrderedPoints::nearest_others(std::span<const std::uint32_t> points, std::size_t count,

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "pcednet/core/half_space.h"
 #include "pcednet/lines/curve.h"
 
 namespace pcednet::lines {
@@ -165,7 +166,7 @@ void drop_duplicates(std::vector<Piece>& pieces) {
 Vec3 along_at(const Fit& fit, const ChainNode& node, const Vec3& place) {
   if (fit.kind == CurveKind::kPolyline) return node.along;
   const Vec3 tangent = tangent_at(fit, place);
-  return tangent.dot(node.along) < 0.0 ? Vec3(-tangent) : tangent;
+  return turned_to(tangent, node.along);
 }
 
 Vec3 outward(const Piece& piece, std::size_t side) {

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "pcednet/core/eigendecomposition.h"
+#include "pcednet/core/half_space.h"
 #include "pcednet/core/parallel.h"
 
 namespace pcednet::lines {
@@ -36,8 +37,7 @@ struct Placed {
 
 /// The direction into the plane from a line in it, towards `side`.
 Vec3 into(const Plane& plane, const Vec3& along, const Vec3& side) {
-  const Vec3 inward = plane.normal.cross(along).normalized();
-  return inward.dot(side) < 0.0 ? Vec3(-inward) : inward;
+  return turned_to(plane.normal.cross(along).normalized(), side);
 }
 
 /// The points near a segment, each once, in curve order.
@@ -114,8 +114,7 @@ std::optional<Placed> crease_line(const Piece& piece, const std::vector<Vec3>& p
   Vec3 point = piece.fit.point;
   const double to_a = (a->point - point).dot(a->normal), to_b = (b->point - point).dot(b->normal);
   point += scale * ((to_a - cosine * to_b) * a->normal + (to_b - cosine * to_a) * b->normal);
-  const Vec3 across = cross.normalized(),
-             direction = across.dot(along) < 0.0 ? Vec3(-across) : across;
+  const Vec3 direction = turned_to(cross.normalized(), along);
   return Placed{{CurveKind::kSegment, point, direction, 0.0, piece.fit.error},
                 dihedral_angle(into(*a, direction, *side_a), into(*b, direction, *side_b))};
 }

@@ -9,6 +9,8 @@
 #include <numeric>
 #include <optional>
 
+#include "pcednet/core/half_space.h"
+
 namespace pcednet::lines {
 namespace {
 
@@ -32,10 +34,6 @@ struct Turned {
   std::vector<std::size_t> after;  ///< pieces
 };
 
-Vec3 along_as(const Vec3& direction, const Vec3& sense) {
-  return direction.dot(sense) < 0.0 ? Vec3(-direction) : direction;
-}
-
 /// The direction made orthogonal to the first two references that it nearly is.
 Turned made_orthogonal(const Vec3& own, const std::vector<Reference>& references) {
   Turned turned = {own, {}};
@@ -50,7 +48,7 @@ Turned made_orthogonal(const Vec3& own, const std::vector<Reference>& references
     }
     const Vec3 normal = first->direction.cross(d);
     if (normal.norm() < kApart || own.cross(normal.normalized()).norm() > 2.0 * kSnap) continue;
-    return {along_as(normal.normalized(), own), {first->piece, reference.piece}};
+    return {turned_to(normal.normalized(), own), {first->piece, reference.piece}};
   }
   return turned;
 }
@@ -213,7 +211,7 @@ void regularise(std::vector<Piece>& pieces) {
         [&](const Reference& reference) { return own.cross(reference.direction).norm() < kSnap; });
     Turned turned;
     if (parallel != references.end()) {
-      turned = {along_as(parallel->direction, own), {parallel->piece}};
+      turned = {turned_to(parallel->direction, own), {parallel->piece}};
     } else {
       turned = made_orthogonal(own, references);
       references.push_back({turned.direction, i});

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "pcednet/core/half_space.h"
+
 namespace pcednet::lines {
 namespace {
 
@@ -19,7 +21,7 @@ std::optional<Vec3> on_centre_line(const Fit& a, const Fit& b, const Vec3& place
   const double apart = between.norm();
   if (apart < kLeastTouch * std::max(a.radius, b.radius)) return std::nullopt;
   const Vec3 out = between / apart;
-  return place_towards(a, (place - a.point).dot(out) < 0.0 ? Vec3(-out) : out);
+  return place_towards(a, turned_to(out, place - a.point));
 }
 
 }  // namespace

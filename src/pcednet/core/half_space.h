@@ -2,7 +2,7 @@
 
 #include "pcednet/core/vec3.h"
 
-namespace pcednet::gls {
+namespace pcednet {
 
 /// True for exactly one of v and -v, unless v is zero.
 inline bool points_down(const Vec3& v) {
@@ -16,4 +16,9 @@ inline Vec3 upward(const Vec3& v) {
   return points_down(v) ? Vec3(-v) : v;
 }
 
-}  // namespace pcednet::gls
+/// The one of v and -v within 90 degrees of `sense`.
+inline Vec3 turned_to(const Vec3& v, const Vec3& sense) {
+  return v.dot(sense) < 0.0 ? Vec3(-v) : v;
+}
+
+}  // namespace pcednet
