@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include <filesystem>
 #include <string>
 #include <utility>
 #include <vector>
@@ -62,6 +63,9 @@ Progress console_progress(const Common& common);
 /// stop, which console_progress() passes on; a second SIGINT ends the program at once. SIGXFSZ and
 /// SIGPIPE are ignored so that they surface as write errors.
 void install_signal_handlers();
+
+/// Throws Error(kUsage) if `output` is the file `input`, which it would replace by something else.
+void check_not_input(const std::filesystem::path& output, const std::filesystem::path& input);
 
 /// The message of an error, with the option that avoids it.
 std::string explain(const Error& error);

@@ -2,19 +2,19 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
+#include <functional>
+#include <string>
 
 #include "common.h"
 
 namespace pcednet::app {
 namespace {
 
-/// Checks that a number is above `least` and at most `most`.
-CLI::Validator above(double least, double most, const std::string& meaning) {
+/// Checks that a word is a number that `is_sound`, which must refuse NaN and infinities.
+CLI::Validator number(const std::string& meaning, const std::function<bool(double)>& is_sound) {
   return {[=](const std::string& word) -> std::string {
             double value = 0.0;
-            const bool sound = CLI::detail::lexical_cast(word, value) && std::isfinite(value) &&
-                               value > least && value <= most;
+            const bool sound = CLI::detail::lexical_cast(word, value) && is_sound(value);
             return sound ? "" : fmt::format("{} is not {}", word, meaning);
           },
           meaning};
@@ -23,7 +23,8 @@ CLI::Validator above(double least, double most, const std::string& meaning) {
 }  // namespace
 
 void add_line_options(CLI::App& command, lines::LineOptions& options) {
-  const CLI::Validator length = above(0.0, 1e150, "a length above 0");
+  const CLI::Validator length =
+      number("a length above 0", [](double v) { return v > 0.0 && v <= 1e150; });
   command
       .add_option("--min-length", options.min_length,
                   "Leave out shorter curves (default: from the spacing, as the two below)")
@@ -38,7 +39,8 @@ void add_line_options(CLI::App& command, lines::LineOptions& options) {
       .add_option("--angle", options.angle,
                   "Split a curve where it bends by more than this many degrees")
       ->capture_default_str()
-      ->check(above(0.0, 180.0, "an angle above 0, up to 180"));
+      ->check(
+          number("an angle above 0, up to 180", [](double v) { return v > 0.0 && v <= 180.0; }));
   command.add_flag("--regularise", options.regularise,
                    "Make nearly parallel and nearly right angles exactly so");
   command.add_flag("--boundaries", options.boundaries,
@@ -72,12 +74,12 @@ void add_drawing_options(CLI::App& command, LinesArguments& arguments) {
       .add_option("--min-confidence", arguments.min_confidence,
                   "Leave out curves whose points are edges with a lower mean probability")
       ->capture_default_str()
-      ->check(above(-1e-300, 1.0, "a number from 0 to 1"));
+      ->check(number("a number from 0 to 1", [](double v) { return v >= 0.0 && v <= 1.0; }));
   command
       .add_option("--min-dihedral", arguments.min_dihedral,
                   "Leave out curves whose surfaces differ by fewer degrees in the mean")
       ->capture_default_str()
-      ->check(above(-1e-300, 180.0, "an angle from 0 to 180"));
+      ->check(number("an angle from 0 to 180", [](double v) { return v >= 0.0 && v <= 180.0; }));
   command
       .add_option("--min-points", arguments.min_points, "Leave out curves with fewer edge points")
       ->capture_default_str()

@@ -213,6 +213,13 @@ class Classify(CliTest):
         self.assertIn("--overwrite", done.stderr)
         self.assertEqual((self.folder / "a_edges.ply").read_text(), "precious")
 
+    def test_the_preview_is_never_the_input(self):
+        write_ply(self.folder / "a.ply", *cube(500))
+        before = (self.folder / "a.ply").read_bytes()
+        run("classify", self.folder / "a.ply", "-o", self.folder / "b.ply", "--preview",
+            self.folder / "a.ply", "--overwrite", expect=2)
+        self.assertEqual((self.folder / "a.ply").read_bytes(), before)
+
     def test_draws_a_preview(self):
         write_ply(self.folder / "a.ply", *cube(2000)[:2])
         said = run("classify", self.folder / "a.ply", "--preview", self.folder / "a.png").stderr

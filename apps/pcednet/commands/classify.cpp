@@ -98,6 +98,7 @@ void check_outputs(const std::vector<Job>& jobs, const Common& common) {
   if (jobs.size() > 1 && !common.overwrite_files) refuse_existing(jobs);
   std::set<fs::path> taken;
   for (const Job& job : jobs) {
+    check_not_input(job.preview, job.input);
     for (const fs::path& file : {job.output, job.preview}) {
       check_writable(file, common.overwrite());
       if (file.empty() || taken.insert(file.lexically_normal()).second) continue;

@@ -47,20 +47,15 @@ struct LabelledCloud {
 /// Throws before any work if the output could not be written after it.
 void check_outputs(const LinesArguments& arguments) {
   std::set<fs::path> taken;
-  const auto check_other = [&](const fs::path& output) {
-    std::error_code error;
-    if (!fs::equivalent(output, arguments.input, error)) return;
-    throw Error(ErrorKind::kUsage, fmt::format("{}: is the input", output.string()));
-  };
   for (const fs::path output : arguments.outputs) {
     io::drawing_format_for(output);
-    check_other(output);
+    check_not_input(output, arguments.input);
     check_writable(output, arguments.drawing.overwrite);
     if (taken.insert(output.lexically_normal()).second) continue;
     throw Error(ErrorKind::kUsage, fmt::format("{}: named twice", output.string()));
   }
   if (arguments.preview.empty()) return;
-  check_other(arguments.preview);
+  check_not_input(arguments.preview, arguments.input);
   check_writable(arguments.preview, arguments.drawing.overwrite);
   if (!taken.insert(fs::path(arguments.preview).lexically_normal()).second) {
     throw Error(ErrorKind::kUsage, fmt::format("{}: named twice", arguments.preview));
