@@ -206,10 +206,13 @@ void report(const LinesArguments& arguments, const std::vector<Curve>& curves,
             std::size_t left_out) {
   double length = 0.0;
   for (const Curve& curve : curves) length += length_of(curve);
-  say(fmt::format(
-      "{}: {} curve{}, total length {:.6g}{}", arguments.input, curves.size(),
-      curves.size() == 1 ? "" : "s", length,
-      left_out == 0 ? "" : fmt::format("; {} left out by --class, --kind or --min-...", left_out)));
+  say(fmt::format("{}: {} curve{}, total length {:.6g}{}", arguments.input, curves.size(),
+                  curves.size() == 1 ? "" : "s", length,
+                  left_out == 0
+                      ? ""
+                      : fmt::format("; {} left out: of another --class or --kind, or below "
+                                    "--min-confidence, --min-dihedral or --min-points",
+                                    left_out)));
   for (const io::LineClass& entry : io::kLineClasses) {
     std::string kinds;
     double class_length = 0.0;

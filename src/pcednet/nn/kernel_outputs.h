@@ -44,14 +44,21 @@ template <int W>
 }
 
 template <int W>
+[[gnu::always_inline]] inline Floats<W> highest_logit(const float* rows, int classes, int p,
+                                                      int lanes, bool paired) {
+  Floats<W> highest = logit<W>(rows, 0, p, lanes, paired);
+  for (int c = 1; c < classes; ++c) {
+    const Floats<W> z = logit<W>(rows, c, p, lanes, paired);
+    highest = z > highest ? z : highest;
+  }
+  return highest;
+}
+
+template <int W>
 void softmax(float* rows, int classes, int lanes, bool paired) {
   const int used = paired ? lanes / 2 : lanes;
   for (int p = 0; p < used; p += W) {
-    Floats<W> highest = logit<W>(rows, 0, p, lanes, paired);
-    for (int c = 1; c < classes; ++c) {
-      const Floats<W> z = logit<W>(rows, c, p, lanes, paired);
-      highest = z > highest ? z : highest;
-    }
+    const Floats<W> highest = highest_logit<W>(rows, classes, p, lanes, paired);
     Floats<W> total = splat<W>(0.0f);
     for (int c = 0; c < classes; ++c) {
       const Floats<W> power = exponential(logit<W>(rows, c, p, lanes, paired) - highest);
@@ -70,11 +77,7 @@ void cross_entropy(const float* logits, const float* targets, const float* weigh
                    int lanes, bool paired, float* losses, float* deltas) {
   const int used = paired ? lanes / 2 : lanes;
   for (int p = 0; p < used; p += W) {
-    Floats<W> highest = logit<W>(logits, 0, p, lanes, paired);
-    for (int c = 1; c < classes; ++c) {
-      const Floats<W> z = logit<W>(logits, c, p, lanes, paired);
-      highest = z > highest ? z : highest;
-    }
+    const Floats<W> highest = highest_logit<W>(logits, classes, p, lanes, paired);
     Floats<W> total = splat<W>(0.0f);
     for (int c = 0; c < classes; ++c) {
       total += exponential(logit<W>(logits, c, p, lanes, paired) - highest);
