@@ -6,11 +6,12 @@
 #   tidy     clang-tidy finds nothing
 #   address  the tests of every room under the address and undefined-behaviour sanitizers
 #   threads  the same under the thread sanitizer
+#   fuzz     half a minute of every reader finds nothing
 # Installs what is missing. About an hour on two cores; each check leaves its build in build/.
 set -eu
 cd "$(dirname "$0")/.."
 scripts/setup.sh test python web check
-[ $# -gt 0 ] || set -- format gcc clang tidy address threads
+[ $# -gt 0 ] || set -- format gcc clang tidy address threads fuzz
 
 # build PRESET: configures and builds it.
 build() {
@@ -55,8 +56,12 @@ for check; do
       setarch "$(uname -m)" -R ctest --preset threads -j "$(nproc)" \
         -E '^(Cli|Web|Clients|Package|Docs|House)\.'
       ;;
+    fuzz)
+      build release
+      scripts/fuzz.sh 30
+      ;;
     *)
-      echo "check.sh: no check is called $check; there are format gcc clang tidy address threads" >&2
+      echo "check.sh: no check is called $check; there are format gcc clang tidy address threads fuzz" >&2
       exit 2
       ;;
   esac

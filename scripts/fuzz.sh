@@ -10,7 +10,7 @@ shift
 all="ply pcd obj xyz las e57 parts npy features model project curves"
 # shellcheck disable=SC2086
 [ $# -gt 0 ] || set -- $all
-command -v clang++ >/dev/null || { echo "fuzz.sh: no clang++; scripts/setup.sh test" >&2; exit 77; }
+command -v clang++ >/dev/null || { echo "fuzz.sh: no clang++; scripts/setup.sh check" >&2; exit 77; }
 pcednet=$(realpath "${PCEDNET:-build/release/bin/pcednet}")
 
 cmake --preset fuzz >build/fuzz-configure.log

@@ -18,9 +18,6 @@ echo "== release build"
 cmake --preset release -DPCEDNET_TESTS=ON -DPCEDNET_PYTHON_MODULE=ON
 cmake --build --preset release
 
-echo "== a few seconds of fuzzing"
-scripts/fuzz.sh 5 las e57 ply parts
-
 echo "== tests"
 failed=0
 jobs=$((2 * $(nproc)))  # many wait for browsers and daemons
