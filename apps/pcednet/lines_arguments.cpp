@@ -90,16 +90,11 @@ void add_drawing_options(CLI::App& command, LinesArguments& arguments) {
   add_choice(command, "--view", arguments.drawing.view,
              {{"top", io::View::kTop}, {"front", io::View::kFront}, {"side", io::View::kSide}},
              "SVG: seen from above, from the front (x, z) or from the side (y, z)");
-  using enum io::LengthUnit;
-  CLI::Option* unit = add_choice(command, "--unit", arguments.drawing.unit,
-                                 {{"none", kNone},
-                                  {"mm", kMillimetre},
-                                  {"cm", kCentimetre},
-                                  {"m", kMetre},
-                                  {"in", kInch},
-                                  {"ft", kFoot}},
-                                 "DXF: the unit of the coordinates (default: m if the coordinate "
-                                 "system of a LAS file says so, otherwise none)");
+  Choices<io::LengthUnit> units;
+  for (const io::NamedUnit& unit : io::length_units()) units.emplace_back(unit.name, unit.unit);
+  CLI::Option* unit = add_choice(command, "--unit", arguments.drawing.unit, units,
+                                 "DXF: the unit of the coordinates (default: that of the "
+                                 "coordinate system of a LAS file, otherwise none)");
   unit->default_str("");
   unit->each([&arguments](const std::string&) { arguments.has_unit = true; });
 }

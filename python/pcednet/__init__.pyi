@@ -86,7 +86,7 @@ class Lines(list[Curve]):
     @property
     def length(self) -> float: ...
     def write(self, path: _Path, *, epsg: int | None = None,
-              unit: Literal["none", "mm", "cm", "m", "in", "ft"] | None = None,
+              unit: Literal["none", "mm", "cm", "m", "in", "ft", "us-ft"] | None = None,
               tolerance: float = 0.0, dxf_version: Literal["2000", "r12"] = "2000",
               view: Literal["top", "front", "side"] = "top", overwrite: bool = False) -> None: ...
 

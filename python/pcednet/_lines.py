@@ -30,7 +30,7 @@ class Lines(list):
         epsg : int, optional
             Code of the coordinate system, for GeoPackage and GeoJSON. Unless given, that of the
             LAS file that the cloud was read from.
-        unit : {'none', 'mm', 'cm', 'm', 'in', 'ft'}, optional
+        unit : {'none', 'mm', 'cm', 'm', 'in', 'ft', 'us-ft'}, optional
             DXF: of the coordinates.
         tolerance : float
             How far the polylines that stand for arcs may be from them, in formats without arcs;

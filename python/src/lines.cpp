@@ -72,7 +72,6 @@ py::tuple find_lines(const Array<double>& xyz, const OptionalArray<double>& norm
 }
 
 io::DrawingOptions drawing_of(const py::dict& settings, const Kept* kept) {
-  using enum io::LengthUnit;
   io::DrawingOptions options;
   options.overwrite = settings["overwrite"].cast<bool>() ? Overwrite::kYes : Overwrite::kNo;
   options.tolerance = settings["tolerance"].cast<double>();
@@ -86,15 +85,11 @@ io::DrawingOptions drawing_of(const py::dict& settings, const Kept* kept) {
   if (!settings["epsg"].is_none()) {
     options.coordinate_system = {.epsg = settings["epsg"].cast<int>()};
   }
-  if (options.coordinate_system.in_metres) options.unit = kMetre;
+  options.unit = io::unit_of(options.coordinate_system);
   if (!settings["unit"].is_none()) {
-    options.unit = named<io::LengthUnit>({{"none", kNone},
-                                          {"mm", kMillimetre},
-                                          {"cm", kCentimetre},
-                                          {"m", kMetre},
-                                          {"in", kInch},
-                                          {"ft", kFoot}},
-                                         "unit", settings["unit"].cast<std::string>());
+    std::map<std::string, io::LengthUnit> units;
+    for (const io::NamedUnit& unit : io::length_units()) units.emplace(unit.name, unit.unit);
+    options.unit = named(units, "unit", settings["unit"].cast<std::string>());
   }
   return options;
 }

@@ -259,8 +259,8 @@ void run(LinesArguments arguments, const Common& common) {
   clock.begin("write");
   arguments.drawing.tolerance = arguments.lines.tolerance;
   arguments.drawing.coordinate_system = io::las_coordinate_system(cloud);
-  if (!arguments.has_unit && arguments.drawing.coordinate_system.in_metres) {
-    arguments.drawing.unit = io::LengthUnit::kMetre;
+  if (!arguments.has_unit) {
+    arguments.drawing.unit = io::unit_of(arguments.drawing.coordinate_system);
   }
   for (const std::string& output : arguments.outputs) {
     io::write_drawing(output, curves, arguments.drawing);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <functional>
 #include <vector>
 
 #include "pcednet/io/text_scan.h"
@@ -59,12 +60,19 @@ int epsg_of(const WktNode& node) {
   return fault == std::errc{} && end == word.data() + word.size() && code > 0 ? code : 0;
 }
 
+/// The unit of all; 0 if there is none, or if they differ.
+double common_unit(const std::vector<double>& units) {
+  const bool same =
+      std::adjacent_find(units.begin(), units.end(), std::not_equal_to{}) == units.end();
+  return units.empty() || !same || !(units[0] > 0.0) ? 0.0 : units[0];
+}
+
 }  // namespace
 
 CoordinateSystem coordinate_system_of_wkt(std::string_view wkt) {
   CoordinateSystem system{.epsg = 0, .wkt = std::string(trim(wkt))};
   int whole = 0, horizontal = 0;
-  bool metres = false, other_lengths = false;
+  std::vector<double> units;
   visit_wkt(wkt, [&](const std::vector<WktNode>& open) {
     const WktNode& node = open.back();
     const std::string_view parent = open.size() > 1 ? std::string_view(open.end()[-2].keyword) : "";
@@ -75,19 +83,20 @@ CoordinateSystem coordinate_system_of_wkt(std::string_view wkt) {
         horizontal = code;
       }
     }
+    // An ellipsoid and the parameters of a projection may have other units than the coordinates.
     const bool is_length =
-        node.keyword == "lengthunit" ||
+        (node.keyword == "lengthunit" && !is_one_of(parent, {"ellipsoid", "parameter"})) ||
         (node.keyword == "unit" && is_one_of(parent, {"projcs", "vert_cs", "geoccs", "local_cs"}));
-    if (!is_length || node.values.size() < 2) return;
-    const bool is_metre = parse_double(node.values[1]) == 1.0;
-    (is_metre ? metres : other_lengths) = true;
+    if (is_length && node.values.size() > 1) {
+      units.push_back(parse_double(node.values[1]).value_or(0.0));
+    }
   });
   system.epsg = whole ? whole : horizontal;
-  // An ellipsoid has a length unit too, the degrees of a geographic system have not.
+  // Degrees are no lengths, though heights above them are.
   const bool geographic =
       is_one_of(lower_case(system.wkt.substr(0, system.wkt.find_first_of("[("))),
                 {"geogcs", "geogcrs", "geodcrs"});
-  system.in_metres = metres && !other_lengths && !geographic;
+  if (!geographic) system.unit = common_unit(units);
   return system;
 }
 

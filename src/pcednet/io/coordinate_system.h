@@ -7,10 +7,10 @@ namespace pcednet::io {
 
 /// The coordinate system of a file, as far as it is known.
 struct CoordinateSystem {
-  int epsg = 0;            ///< its code; 0: unknown
-  std::string wkt = {};    ///< its definition (OGC 01-009 or 18-010); may be empty
-  bool in_metres = false;  ///< all its lengths, as far as stated
-  int vertical_epsg = 0;   ///< code of the heights if `epsg` does not cover them; 0: unknown
+  int epsg = 0;           ///< its code; 0: unknown
+  std::string wkt = {};   ///< its definition (OGC 01-009 or 18-010); may be empty
+  double unit = 0.0;      ///< metres in one unit of all its lengths; 0: unknown, or they differ
+  int vertical_epsg = 0;  ///< code of the heights if `epsg` does not cover them; 0: unknown
 };
 
 /// The system that a definition describes: its code is that of the outermost EPSG AUTHORITY or ID,

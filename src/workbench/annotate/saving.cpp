@@ -87,7 +87,7 @@ void write_lines(const std::filesystem::path& path, std::span<const lines::Curve
                  const PointCloud& cloud, Overwrite overwrite) {
   io::DrawingOptions options{.overwrite = overwrite,
                              .coordinate_system = io::las_coordinate_system(cloud)};
-  if (options.coordinate_system.in_metres) options.unit = io::LengthUnit::kMetre;
+  options.unit = io::unit_of(options.coordinate_system);
   io::write_drawing(path, curves, options);
 }
 

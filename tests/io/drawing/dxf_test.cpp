@@ -209,6 +209,23 @@ TEST(Dxf, HasWhatItsVersionMustHave) {
   for (const std::string& owner : owners) EXPECT_TRUE(handles.contains(owner)) << owner;
 }
 
+TEST(Dxf, HasTheUnitOfTheCoordinateSystem) {
+  const Scratch scratch;
+  const auto written_unit = [&](double metres) {
+    written(scratch, sample_curves(), {.unit = unit_of({.unit = metres})});
+    const std::string bytes = bytes_of(scratch.path("a.dxf"));
+    const auto number_after = [&](std::string_view variable) {
+      return std::stoi(bytes.substr(bytes.find(variable) + variable.size()));
+    };
+    return std::pair(number_after("$INSUNITS\n 70\n"), number_after("$MEASUREMENT\n 70\n"));
+  };
+  EXPECT_EQ(written_unit(1.0), std::pair(6, 1));
+  EXPECT_EQ(written_unit(0.3048), std::pair(2, 0));
+  EXPECT_EQ(written_unit(0.304800609601219), std::pair(21, 0));
+  EXPECT_EQ(written_unit(0.9144), std::pair(0, 1));
+  EXPECT_EQ(written_unit(0.0), std::pair(0, 1));
+}
+
 TEST(Dxf, AWholeTurnIsACircle) {
   const Scratch scratch;
   Curve arc = make_arc(Vec3::Zero(), Vec3::UnitX(), 1.0, 0.0, 1.0);

@@ -17,7 +17,20 @@ enum class DxfVersion { kR12, k2000 };
 /// Where an SVG is seen from: above (x to the right, y up), the front (x, z) or the side (y, z).
 enum class View { kTop, kFront, kSide };
 
-enum class LengthUnit { kNone, kMillimetre, kCentimetre, kMetre, kInch, kFoot };
+enum class LengthUnit { kNone, kMillimetre, kCentimetre, kMetre, kInch, kFoot, kUsSurveyFoot };
+
+struct NamedUnit {
+  std::string_view name;  ///< for people: m, ft
+  LengthUnit unit;
+  double metres;  ///< 0: unknown
+  int dxf_code;   ///< `$INSUNITS`
+};
+
+/// The whole table.
+std::span<const NamedUnit> length_units();
+
+/// That of a coordinate system; kNone if it is unknown, or not in the table.
+LengthUnit unit_of(const CoordinateSystem& system);
 
 struct DrawingOptions {
   Overwrite overwrite = Overwrite::kNo;

@@ -1,4 +1,5 @@
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -81,21 +82,13 @@ void write_entities(DxfText& dxf, Curves curves, std::uint64_t owner) {
 }
 
 long unit_code(LengthUnit unit) {
-  switch (unit) {
-    case LengthUnit::kNone:
-      break;
-    case LengthUnit::kMillimetre:
-      return 4;
-    case LengthUnit::kCentimetre:
-      return 5;
-    case LengthUnit::kMetre:
-      return 6;
-    case LengthUnit::kInch:
-      return 1;
-    case LengthUnit::kFoot:
-      return 2;
-  }
-  return 0;
+  const auto units = length_units();
+  return std::ranges::find(units, unit, &NamedUnit::unit)->dxf_code;
+}
+
+bool is_imperial(LengthUnit unit) {
+  return unit == LengthUnit::kInch || unit == LengthUnit::kFoot ||
+         unit == LengthUnit::kUsSurveyFoot;
 }
 
 void write_header(DxfText& dxf, const BoundingBox& box, LengthUnit unit,
@@ -112,7 +105,7 @@ void write_header(DxfText& dxf, const BoundingBox& box, LengthUnit unit,
     variable("$INSUNITS");
     dxf.integer(70, unit_code(unit));
     variable("$MEASUREMENT");
-    dxf.integer(70, unit == LengthUnit::kInch || unit == LengthUnit::kFoot ? 0 : 1);
+    dxf.integer(70, is_imperial(unit) ? 0 : 1);
   }
   // AutoCAD's own values for an empty drawing.
   variable("$EXTMIN");

@@ -11,7 +11,22 @@ namespace {
 // GeoTIFF keys, and the values without meaning.
 constexpr std::uint16_t kGeographicType = 2048, kProjectedType = 3072, kProjectedUnit = 3076,
                         kVerticalType = 4096, kVerticalUnit = 4099;
-constexpr int kMetre = 9001, kUserDefined = 32767;
+constexpr int kUserDefined = 32767;
+
+/// Metres in the unit of an EPSG code; 0: not one of lengths that surveys have.
+double metres_in(int unit_code) {
+  constexpr int kMetre = 9001, kFoot = 9002, kUsSurveyFoot = 9003;
+  switch (unit_code) {
+    case kMetre:
+      return 1.0;
+    case kFoot:
+      return 0.3048;
+    case kUsSurveyFoot:
+      return 1200.0 / 3937.0;
+    default:
+      return 0.0;
+  }
+}
 
 /// The keys with an inline value, as codes have.
 std::map<std::uint16_t, int> geo_keys(std::string_view data) {
@@ -36,7 +51,8 @@ CoordinateSystem coordinate_system_of_keys(std::string_view data) {
   CoordinateSystem system;
   system.epsg = value(kProjectedType, value(kGeographicType, 0));
   system.vertical_epsg = value(kVerticalType, 0);
-  system.in_metres = value(kProjectedUnit, 0) == kMetre && value(kVerticalUnit, kMetre) == kMetre;
+  const int unit = value(kProjectedUnit, 0);
+  if (value(kVerticalUnit, unit) == unit) system.unit = metres_in(unit);
   return system;
 }
 
