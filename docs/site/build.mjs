@@ -20,11 +20,7 @@ const errors = [];
 function addressOf(file) {
   const { dir, name } = path.parse(file);
   if (name !== "README") return name.toLowerCase() + ".html";
-  return dir === ""
-    ? "index.html"
-    : dir === "docs"
-      ? "contents.html"
-      : path.basename(dir) + ".html";
+  return dir === "" ? "index.html" : dir === "docs" ? "contents.html" : path.basename(dir) + ".html";
 }
 
 /** The sections of the table in docs/README.md: [{title, links: [{file, title}]}]. */
@@ -35,37 +31,24 @@ function readMenu() {
     if (section) menu.push({ title: section[1], links: [] });
     const cell = /^\| (.*?) \|/.exec(line)?.[1] ?? "";
     for (const [, target] of cell.matchAll(/\]\((.*?\.md)\)/g)) {
-      menu
-        .at(-1)
-        .links.push({ file: path.normalize(path.join("docs", target)) });
+      menu.at(-1).links.push({ file: path.normalize(path.join("docs", target)) });
     }
   }
   const afterUse = menu.findIndex((section) => section.title === "Use") + 1;
-  menu.splice(afterUse, 0, {
-    title: "Reference",
-    links: Object.keys(made).map((file) => ({ file })),
-  });
+  menu.splice(afterUse, 0, { title: "Reference", links: Object.keys(made).map((file) => ({ file })) });
   return menu;
 }
 
 const made = {
-  "docs/commands.html": () =>
-    commandPage(JSON.parse(fs.readFileSync(commandsFile, "utf8"))),
+  "docs/commands.html": () => commandPage(JSON.parse(fs.readFileSync(commandsFile, "utf8"))),
   "docs/cpp.html": () => cppPage(root),
 };
 const menu = readMenu();
-const files = [
-  "docs/README.md",
-  ...menu.flatMap((section) => section.links.map((link) => link.file)),
-];
+const files = ["docs/README.md", ...menu.flatMap((section) => section.links.map((link) => link.file))];
 const pages = new Map(); // by file: {address, title, html, headings}
 for (const file of files) {
   const source = file.endsWith(".md") ? read(file) : made[file]();
-  pages.set(file, {
-    file,
-    address: file.endsWith(".md") ? addressOf(file) : path.basename(file),
-    source,
-  });
+  pages.set(file, { file, address: file.endsWith(".md") ? addressOf(file) : path.basename(file), source });
 }
 
 const copied = new Set(); // images
@@ -77,10 +60,7 @@ const wanted = []; // links to check: {from, address, anchor}
 function resolve(file, link) {
   if (/^[a-z]+:/.test(link)) return link;
   const [target, anchor] = link.split("#");
-  const found =
-    target === ""
-      ? file
-      : path.normalize(path.join(path.dirname(file), target));
+  const found = target === "" ? file : path.normalize(path.join(path.dirname(file), target));
   if (pages.has(found)) {
     const address = pages.get(found).address;
     if (anchor) wanted.push({ from: file, address, anchor });
@@ -91,8 +71,7 @@ function resolve(file, link) {
   else if (/\.(png|svg|jpg)$/.test(found)) {
     copied.add(found);
     return "images/" + path.basename(found);
-  } else if (found.endsWith(".md"))
-    errors.push(`${file}: ${link} is not in the table of docs/README.md`);
+  } else if (found.endsWith(".md")) errors.push(`${file}: ${link} is not in the table of docs/README.md`);
   else if (fs.statSync(place).isFile()) {
     sources.add(found);
     return "source/" + found.replaceAll("/", "-") + ".html";
@@ -104,9 +83,7 @@ function resolve(file, link) {
 function picture(file, link) {
   const address = resolve(file, link);
   const place = path.join(root, path.dirname(file), link);
-  const head = fs.existsSync(place)
-    ? fs.readFileSync(place).subarray(16, 24)
-    : Buffer.alloc(8);
+  const head = fs.existsSync(place) ? fs.readFileSync(place).subarray(16, 24) : Buffer.alloc(8);
   return { address, width: head.readUInt32BE(0), height: head.readUInt32BE(4) };
 }
 
@@ -117,11 +94,7 @@ for (const page of pages.values()) {
     (link) => resolve(page.file, link),
     (link) => picture(page.file, link),
   );
-  Object.assign(page, {
-    html,
-    headings,
-    title: headings[0]?.text ?? page.address,
-  });
+  Object.assign(page, { html, headings, title: headings[0]?.text ?? page.address });
   anchors.set(page.address, new Set(headings.map((heading) => heading.id)));
   for (const part of html.split(/(?=<h[1-4] id=)/)) {
     const head = /^<h[1-4] id="(.*?)">(.*?)<\/h/s.exec(part);
@@ -141,55 +114,28 @@ for (const link of wanted) {
 
 for (const section of menu) {
   for (const link of section.links)
-    Object.assign(link, {
-      address: pages.get(link.file).address,
-      title: pages.get(link.file).title,
-    });
+    Object.assign(link, { address: pages.get(link.file).address, title: pages.get(link.file).title });
 }
 fs.rmSync(out, { recursive: true, force: true });
-for (const folder of ["images", "source", "assets"])
-  fs.mkdirSync(path.join(out, folder), { recursive: true });
+for (const folder of ["images", "source", "assets"]) fs.mkdirSync(path.join(out, folder), { recursive: true });
 const write = (name, text) => fs.writeFileSync(path.join(out, name), text);
-for (const page of pages.values())
-  write(page.address, layout({ menu, ...page, base: "" }));
+for (const page of pages.values()) write(page.address, layout({ menu, ...page, base: "" }));
 for (const file of sources) {
   const language =
-    {
-      ".cpp": "cpp",
-      ".h": "cpp",
-      ".py": "python",
-      ".sh": "sh",
-      ".sbatch": "sh",
-    }[path.extname(file)] ?? "text";
+    { ".cpp": "cpp", ".h": "cpp", ".py": "python", ".sh": "sh", ".sbatch": "sh" }[path.extname(file)] ?? "text";
   const fence = "`````";
-  const { html } = markdown(
-    `# ${file}\n\n${fence}${language}\n${read(file)}\n${fence}\n`,
-    () => null,
-  );
+  const { html } = markdown(`# ${file}\n\n${fence}${language}\n${read(file)}\n${fence}\n`, () => null);
   write(
     `source/${file.replaceAll("/", "-")}.html`,
     layout({ menu, html, headings: [], title: file, address: "", base: "../" }),
   );
 }
-for (const file of copied)
-  fs.copyFileSync(
-    path.join(root, file),
-    path.join(out, "images", path.basename(file)),
-  );
-for (const file of ["style.css", "page.js"])
-  fs.copyFileSync(path.join(here, file), path.join(out, "assets", file));
-fs.copyFileSync(
-  path.join(root, "packaging/pcednet.svg"),
-  path.join(out, "assets/pcednet.svg"),
-);
-fs.copyFileSync(
-  path.join(here, "node_modules/minisearch/dist/umd/index.js"),
-  path.join(out, "assets/minisearch.js"),
-);
+for (const file of copied) fs.copyFileSync(path.join(root, file), path.join(out, "images", path.basename(file)));
+for (const file of ["style.css", "page.js"]) fs.copyFileSync(path.join(here, file), path.join(out, "assets", file));
+fs.copyFileSync(path.join(root, "packaging/pcednet.svg"), path.join(out, "assets/pcednet.svg"));
+fs.copyFileSync(path.join(here, "node_modules/minisearch/dist/umd/index.js"), path.join(out, "assets/minisearch.js"));
 write("assets/search.js", `window.pcednetPages = ${JSON.stringify(search)};\n`);
 
 for (const error of errors) console.error(`build.mjs: ${error}`);
 if (errors.length) process.exit(1);
-console.log(
-  `${pages.size} pages, ${sources.size} sources, ${copied.size} pictures in ${out}`,
-);
+console.log(`${pages.size} pages, ${sources.size} sources, ${copied.size} pictures in ${out}`);
