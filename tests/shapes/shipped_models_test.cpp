@@ -36,6 +36,10 @@
 // its column. Who trains the models anew may have to measure them again. The models of the table
 // were trained before today's; today's `cad` has a median of .823 here, though .865 (.833 before)
 // on all clouds of seed 5.
+//
+// `general` scores .920 .914 on default (edges), .813 .776 on cad, .552 .575 on worn, .472 .486 on
+// varied, .580 .567 on sparse, and .714 .687 on noisy parts without normals (edges). Its floors are
+// .018 below: three times the standard deviation over training seeds of its most variable set.
 
 namespace pcednet::shapes {
 namespace {
@@ -107,21 +111,21 @@ std::vector<CadRecipe> parts(bool with_noise) {
 }
 
 TEST(ShippedModels, GeneralFindsEdgesOfAnyCloud) {
-  expect_above({.median = .870, .pooled = .880}, Clouds(default_recipes(kHeldOutSeed), 28),
+  expect_above({.median = .902, .pooled = .895}, Clouds(default_recipes(kHeldOutSeed), 28),
                "general --positive edge", "worn --positive edge");
-  expect_above({.median = .770, .pooled = .750}, Clouds(parts(false), 24), "general", "worn");
-  expect_above({.median = .450, .pooled = .520}, Clouds(worn_recipes(kHeldOutSeed), 18), "general",
+  expect_above({.median = .795, .pooled = .757}, Clouds(parts(false), 24), "general", "worn");
+  expect_above({.median = .534, .pooled = .557}, Clouds(worn_recipes(kHeldOutSeed), 18), "general",
                "cad");
-  expect_above({.median = .420, .pooled = .460}, Clouds(varied_part_recipes(kHeldOutSeed), 24),
+  expect_above({.median = .454, .pooled = .467}, Clouds(varied_part_recipes(kHeldOutSeed), 24),
                "general", "scan");
-  expect_above({.median = .555, .pooled = .515}, Clouds(sparse_part_recipes(kHeldOutSeed), 48),
+  expect_above({.median = .561, .pooled = .548}, Clouds(sparse_part_recipes(kHeldOutSeed), 48),
                "general", "worn");
 }
 
 TEST(ShippedModels, GeneralFindsEdgesInNoiseWithoutNormals) {
   std::vector<LineRecipe> recipes = line_recipes();
   std::erase_if(recipes, [](const LineRecipe& r) { return r.kind != LineRecipe::Kind::kNoisy; });
-  expect_above({.median = .680, .pooled = .660}, Clouds(std::move(recipes), 12),
+  expect_above({.median = .696, .pooled = .669}, Clouds(std::move(recipes), 12),
                "general --positive edge", "worn --positive edge");
 }
 
