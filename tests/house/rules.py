@@ -131,6 +131,19 @@ def check_version(root):
             yield f"{name}: says {found[1] if found else 'no version'}, CMakeLists.txt {version}"
 
 
+def check_colours(root):
+    """The pages name and colour the classes as the library does."""
+    table = root / "src/pcednet/cloud/edge_class.h"
+    palette = root / "web/shared/colours.ts"
+    classes = [(name, f"#{int(r):02x}{int(g):02x}{int(b):02x}") for name, r, g, b in
+               re.findall(r'\{k\w+, "([\w-]+)", \{(\d+), (\d+), (\d+)\}\}', read(table))]
+    paper = re.search(r"paper: \[(.*?)\]", read(palette), re.DOTALL)[1]
+    shown = [(name.replace(" ", "-"), colour) for name, colour in
+             re.findall(r'name: "(.*?)", colour: "(.*?)"', paper)]
+    if not classes or shown[:len(classes)] != classes:
+        yield f"{palette}: shows {shown}, {table.name} has {classes}"
+
+
 def check_style(root):
     """Every source is as clang-format leaves it."""
     program = shutil.which("clang-format-14") or shutil.which("clang-format")
@@ -146,14 +159,15 @@ def check_style(root):
 
 
 RULES = {"rooms": check_rooms, "sizes": check_sizes, "suffixes": check_suffixes,
-         "silence": check_silence, "version": check_version, "style": check_style}
+         "silence": check_silence, "version": check_version, "colours": check_colours,
+         "style": check_style}
 
 
 def check_self():
     """Every rule finds its breach, and nothing else in the same house without it."""
     sound = {
         "CMakeLists.txt": """project(pcednet VERSION 1.2.3)
-foreach(room core core/fast gls) # order
+foreach(room core core/fast cloud gls) # order
   add_subdirectory(src/pcednet/${room})
 endforeach()
 foreach(room study)
@@ -168,6 +182,9 @@ endforeach()
         "src/pcednet/gls/b.cpp": '#include "pcednet/core/a.h"\nint n = snprintf(b, 2, "x");\n',
         "src/workbench/study/CMakeLists.txt": "workbench_room(study USES gls)\n",
         "src/workbench/study/c.cpp": '#include "workbench/study/c.h"\n\n#include "pcednet/gls/b.h"\n',
+        "src/pcednet/cloud/edge_class.h": "// {kNonEdge, \"non-edge\", {255, 0, 16}}\n",
+        "src/pcednet/cloud/CMakeLists.txt": "pcednet_room(cloud)\n",
+        "web/shared/colours.ts": 'paper: [ { name: "non-edge", colour: "#ff0010" }, { name: "none", colour: "#0" } ],\n',
         "CHANGELOG.md": "# Changes\n\n## Unreleased\n\n## 1.2.3\n\n## 1.2.2\n",
         "CITATION.cff": 'cff-version: 1.2.0\nversion: "1.2.3"\n',
         ".clang-format": "BasedOnStyle: Google\n",
@@ -192,6 +209,9 @@ endforeach()
                     ('std::cout << 1;\n', 'printf("x");\n', "  std::exit(1);\n", "exit (1);\n",
                      'fmt::print(stderr, "x");\n', 'std::fprintf(stderr, "x");\n', "abort();\n")],
         "version": [("CHANGELOG.md", "## 1.2.2\n"), ("CITATION.cff", "version: 1.2.4\n")],
+        "colours": [("web/shared/colours.ts", 'paper: [ { name: "non-edge", colour: "#ff0011" } ]\n'),
+                    ("web/shared/colours.ts", 'paper: [ { name: "edge", colour: "#ff0010" } ]\n'),
+                    ("src/pcednet/cloud/edge_class.h", "\n")],
         "style": [("src/pcednet/core/a.h", "int  a ;\n")],
     }
     for rule, check in RULES.items():
