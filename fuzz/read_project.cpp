@@ -10,8 +10,9 @@ constexpr std::size_t kMostPoints = 100'000;
 
 void read_project(const std::filesystem::path& path) {
   const auto project = pcednet::annotate::read_project(path);
-  if (project.input.points > kMostPoints) return;  // a program compares them with the cloud first
-  pcednet::annotate::replay(project.records, project.input.points);
+  const std::size_t points = pcednet::annotate::points_of(project.inputs);
+  if (points > kMostPoints) return;  // a program compares them with the clouds first
+  pcednet::annotate::replay(project.records, points);
 }
 
 }  // namespace
@@ -27,8 +28,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     }
   };
   try_to([&] { annotate::parse_stroke(text); });
+  try_to([&] { annotate::parse_decision(text); });
+  try_to([&] { annotate::parse_cloud(text); });
+  try_to([&] { annotate::parse_save(text); });
+  try_to([&] { annotate::parse_classes_change(text); });
   try_to([&] { annotate::parse_settings_change(text); });
   try_to([&] { annotate::parse_record(text, kMostPoints); });
-  try_to([&] { annotate::parse_input(text); });
+  try_to([&] { annotate::parse_inputs(text); });
   return fuzz::read_or_refuse({data, size}, read_project);
 }

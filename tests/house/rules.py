@@ -152,7 +152,7 @@ def check_style(root):
     version = subprocess.run([program, "--version"], capture_output=True, text=True).stdout
     if not re.search(rf"version {CLANG_FORMAT}\.", version):
         raise Skip(f"needs clang-format {CLANG_FORMAT}, here is: {version.strip()}")
-    paths = list(sources(root, "src", "apps", "tests", "bench", "examples", "python"))
+    paths = list(sources(root, "src", "apps", "tests", "bench", "examples", "python", "fuzz"))
     done = subprocess.run([program, "--dry-run", "-Werror", *map(str, paths)],
                           capture_output=True, text=True)
     yield from (line for line in done.stderr.splitlines() if ": error:" in line)
