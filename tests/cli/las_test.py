@@ -229,10 +229,10 @@ class Las(CliTest):
         back, _ = read_ply(self.convert(self.folder / "a.las", "b.ply"))
         np.testing.assert_allclose(back["nx"], n[:, 0], atol=1e-6)
 
-    def test_refuses_truncations(self):  # every one of them: tests/io/las/read_test.cpp
+    def test_refuses_every_truncation_but_those_behind_the_points(self):
         rows = random_rows(FORMATS[1], 3)
         whole = las(1, rows, [vlr(b"somebody", 7, b"abc")])
-        for length in range(0, len(whole), 11):
+        for length in range(0, len(whole), 1 if len(whole) < 500 else 3):
             path = self.write("cut.las", whole[:length])
             run("convert", path, "-o", self.folder / "cut.ply", "--overwrite", expect=3)
 
@@ -295,10 +295,10 @@ class Las(CliTest):
         for number in (3, 7):
             source = self.write("in.las", las(number, random_rows(FORMATS[number], 40)))
             whole = self.convert(source, "a.laz").read_bytes()
-            for length in range(0, len(whole) - 12, 89):
+            for length in range(0, len(whole) - 12, 29):
                 path = self.write("cut.laz", whole[:length])
                 run("convert", path, "-o", self.folder / "cut.ply", "--overwrite", expect=3)
-            for _ in range(20):
+            for _ in range(60):
                 data = bytearray(whole)
                 for at in random.integers(96, len(data), 4):
                     data[at] = random.integers(256)
