@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "common.h"
+#include "pcednet/io/length_units.h"
 
 namespace pcednet::app {
 namespace {
@@ -90,13 +92,11 @@ void add_drawing_options(CLI::App& command, LinesArguments& arguments) {
   add_choice(command, "--view", arguments.drawing.view,
              {{"top", io::View::kTop}, {"front", io::View::kFront}, {"side", io::View::kSide}},
              "SVG: seen from above, from the front (x, z) or from the side (y, z)");
-  Choices<io::LengthUnit> units;
-  for (const io::NamedUnit& unit : io::length_units()) units.emplace_back(unit.name, unit.unit);
-  CLI::Option* unit = add_choice(command, "--unit", arguments.drawing.unit, units,
-                                 "DXF: the unit of the coordinates (default: that of the "
-                                 "coordinate system of a LAS file, otherwise none)");
-  unit->default_str("");
-  unit->each([&arguments](const std::string&) { arguments.has_unit = true; });
+  Choices<std::optional<io::LengthUnit>> units;
+  for (const auto& entry : io::length_units()) units.emplace_back(entry.name, entry.unit);
+  add_choice(command, "--unit", arguments.drawing.unit, units,
+             "DXF: the unit of the coordinates (default: that of the coordinate system of a LAS "
+             "file, otherwise none)");
 }
 
 }  // namespace pcednet::app

@@ -23,7 +23,6 @@ struct LinesArguments {
   double min_confidence = 0.0, min_dihedral = 0.0;
   std::size_t min_points = 0;
   io::DrawingOptions drawing;
-  bool has_unit = false;
 };
 
 /// Adds the options of finding curves.

@@ -11,6 +11,7 @@
 #include "pcednet/core/error.h"
 #include "pcednet/io/drawing/drawing.h"
 #include "pcednet/io/las/las.h"
+#include "pcednet/io/length_units.h"
 #include "pcednet/lines/find_lines.h"
 
 namespace pcednet::python {
@@ -85,10 +86,9 @@ io::DrawingOptions drawing_of(const py::dict& settings, const Kept* kept) {
   if (!settings["epsg"].is_none()) {
     options.coordinate_system = {.epsg = settings["epsg"].cast<int>()};
   }
-  options.unit = io::unit_of(options.coordinate_system);
   if (!settings["unit"].is_none()) {
     std::map<std::string, io::LengthUnit> units;
-    for (const io::NamedUnit& unit : io::length_units()) units.emplace(unit.name, unit.unit);
+    for (const auto& entry : io::length_units()) units.emplace(entry.name, entry.unit);
     options.unit = named(units, "unit", settings["unit"].cast<std::string>());
   }
   return options;

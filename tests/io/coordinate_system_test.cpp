@@ -18,9 +18,9 @@ std::string projected(const std::string& unit, const std::string& code) {
 TEST(CoordinateSystem, FindsTheCodeOfADefinition) {
   const auto utm = coordinate_system_of_wkt(projected(R"("metre",1)", "25832"));
   EXPECT_EQ(utm.epsg, 25832);
-  EXPECT_EQ(utm.unit, 1.0);
+  EXPECT_EQ(utm.unit, LengthUnit::kMetre);
   EXPECT_EQ(coordinate_system_of_wkt(kGeographic).epsg, 4258);
-  EXPECT_EQ(coordinate_system_of_wkt(kGeographic).unit, 0.0);
+  EXPECT_EQ(coordinate_system_of_wkt(kGeographic).unit, LengthUnit::kNone);
   EXPECT_EQ(coordinate_system_of_wkt(projected(R"("metre",1)", "")).epsg, 0);
 }
 
@@ -32,23 +32,28 @@ TEST(CoordinateSystem, TakesTheHorizontalPartOfACompoundSystem) {
   const auto named = coordinate_system_of_wkt("COMPD_CS[\"both\"," + parts +
                                               R"(, AUTHORITY [ "EPSG" , "5555" ] ])");
   EXPECT_EQ(named.epsg, 5555);
-  EXPECT_EQ(named.unit, 1.0);
+  EXPECT_EQ(named.unit, LengthUnit::kMetre);
   const std::string in_feet = projected(R"("foot",0.3048)", "2263") + vertical;
-  EXPECT_EQ(coordinate_system_of_wkt("COMPD_CS[\"both\"," + in_feet + "]").unit, 0.0);
+  EXPECT_EQ(coordinate_system_of_wkt("COMPD_CS[\"both\"," + in_feet + "]").unit, LengthUnit::kNone);
 }
 
 TEST(CoordinateSystem, KnowsFeetAndTheNewerForm) {
-  EXPECT_EQ(coordinate_system_of_wkt(projected(R"("foot",0.3048)", "2263")).unit, 0.3048);
+  const auto unit_of = [](const std::string& unit) {
+    return coordinate_system_of_wkt(projected(unit, "2263")).unit;
+  };
+  EXPECT_EQ(unit_of(R"("foot",0.3048)"), LengthUnit::kFoot);
+  EXPECT_EQ(unit_of(R"("US survey foot",0.3048006)"), LengthUnit::kUsSurveyFoot);
+  EXPECT_EQ(unit_of(R"("yard",0.9144)"), LengthUnit::kNone);
   const auto modern = coordinate_system_of_wkt(
       R"(PROJCRS["x",BASEGEOGCRS["y",DATUM["z",ELLIPSOID["e",6378137,298,LENGTHUNIT["metre",1]]],)"
       R"(ID["EPSG",4258]],CS[Cartesian,2],AXIS["E",east],LENGTHUNIT["metre",1],ID["EPSG",25832]])");
   EXPECT_EQ(modern.epsg, 25832);
-  EXPECT_EQ(modern.unit, 1.0);
+  EXPECT_EQ(modern.unit, LengthUnit::kMetre);
   const auto in_feet = coordinate_system_of_wkt(
       R"(PROJCRS["x",BASEGEOGCRS["y",DATUM["z",ELLIPSOID["e",6378137,298,LENGTHUNIT["metre",1]]]],)"
       R"(CONVERSION["c",PARAMETER["false easting",0,LENGTHUNIT["metre",1]]],CS[Cartesian,2],)"
       R"(AXIS["E",east],AXIS["N",north],LENGTHUNIT["US survey foot",0.304800609601219]])");
-  EXPECT_NEAR(in_feet.unit, 1200.0 / 3937.0, 1e-12);
+  EXPECT_EQ(in_feet.unit, LengthUnit::kUsSurveyFoot);
 }
 
 TEST(CoordinateSystem, SurvivesNonsense) {

@@ -47,19 +47,17 @@ struct LabelledCloud {
 /// Throws before any work if the output could not be written after it.
 void check_outputs(const LinesArguments& arguments) {
   std::set<fs::path> taken;
-  for (const fs::path output : arguments.outputs) {
-    io::drawing_format_for(output);
+  const auto check = [&](const fs::path& output) {
     check_not_input(output, arguments.input);
     check_writable(output, arguments.drawing.overwrite);
-    if (taken.insert(output.lexically_normal()).second) continue;
+    if (taken.insert(output.lexically_normal()).second) return;
     throw Error(ErrorKind::kUsage, fmt::format("{}: named twice", output.string()));
+  };
+  for (const std::string& output : arguments.outputs) {
+    io::drawing_format_for(output);
+    check(output);
   }
-  if (arguments.preview.empty()) return;
-  check_not_input(arguments.preview, arguments.input);
-  check_writable(arguments.preview, arguments.drawing.overwrite);
-  if (!taken.insert(fs::path(arguments.preview).lexically_normal()).second) {
-    throw Error(ErrorKind::kUsage, fmt::format("{}: named twice", arguments.preview));
-  }
+  if (!arguments.preview.empty()) check(arguments.preview);
 }
 
 /// The attribute scalar_`name` or `name` of every point; empty if there is none.
@@ -259,9 +257,6 @@ void run(LinesArguments arguments, const Common& common) {
   clock.begin("write");
   arguments.drawing.tolerance = arguments.lines.tolerance;
   arguments.drawing.coordinate_system = io::las_coordinate_system(cloud);
-  if (!arguments.has_unit) {
-    arguments.drawing.unit = io::unit_of(arguments.drawing.coordinate_system);
-  }
   for (const std::string& output : arguments.outputs) {
     io::write_drawing(output, curves, arguments.drawing);
   }

@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <charconv>
-#include <functional>
+#include <optional>
 #include <vector>
 
+#include "pcednet/io/length_units.h"
 #include "pcednet/io/text_scan.h"
 
 namespace pcednet::io {
@@ -60,19 +61,12 @@ int epsg_of(const WktNode& node) {
   return fault == std::errc{} && end == word.data() + word.size() && code > 0 ? code : 0;
 }
 
-/// The unit of all; 0 if there is none, or if they differ.
-double common_unit(const std::vector<double>& units) {
-  const bool same =
-      std::adjacent_find(units.begin(), units.end(), std::not_equal_to{}) == units.end();
-  return units.empty() || !same || !(units[0] > 0.0) ? 0.0 : units[0];
-}
-
 }  // namespace
 
 CoordinateSystem coordinate_system_of_wkt(std::string_view wkt) {
   CoordinateSystem system{.epsg = 0, .wkt = std::string(trim(wkt))};
   int whole = 0, horizontal = 0;
-  std::vector<double> units;
+  std::optional<LengthUnit> common;  // of all lengths so far
   visit_wkt(wkt, [&](const std::vector<WktNode>& open) {
     const WktNode& node = open.back();
     const std::string_view parent = open.size() > 1 ? std::string_view(open.end()[-2].keyword) : "";
@@ -87,16 +81,16 @@ CoordinateSystem coordinate_system_of_wkt(std::string_view wkt) {
     const bool is_length =
         (node.keyword == "lengthunit" && !is_one_of(parent, {"ellipsoid", "parameter"})) ||
         (node.keyword == "unit" && is_one_of(parent, {"projcs", "vert_cs", "geoccs", "local_cs"}));
-    if (is_length && node.values.size() > 1) {
-      units.push_back(parse_double(node.values[1]).value_or(0.0));
-    }
+    if (!is_length || node.values.size() < 2) return;
+    const LengthUnit unit = unit_of_metres(parse_double(node.values[1]).value_or(0.0));
+    common = common.value_or(unit) == unit ? unit : LengthUnit::kNone;
   });
   system.epsg = whole ? whole : horizontal;
   // Degrees are no lengths, though heights above them are.
   const bool geographic =
       is_one_of(lower_case(system.wkt.substr(0, system.wkt.find_first_of("[("))),
                 {"geogcs", "geogcrs", "geodcrs"});
-  if (!geographic) system.unit = common_unit(units);
+  if (!geographic) system.unit = common.value_or(LengthUnit::kNone);
   return system;
 }
 

@@ -5,11 +5,13 @@
 
 namespace pcednet::io {
 
+enum class LengthUnit { kNone, kMillimetre, kCentimetre, kMetre, kInch, kFoot, kUsSurveyFoot };
+
 /// The coordinate system of a file, as far as it is known.
 struct CoordinateSystem {
-  int epsg = 0;           ///< its code; 0: unknown
-  std::string wkt = {};   ///< its definition (OGC 01-009 or 18-010); may be empty
-  double unit = 0.0;      ///< metres in one unit of all its lengths; 0: unknown, or they differ
+  int epsg = 0;                         ///< its code; 0: unknown
+  std::string wkt = {};                 ///< its definition (OGC 01-009 or 18-010); may be empty
+  LengthUnit unit = LengthUnit::kNone;  ///< of all its lengths; kNone: another, or they differ
   int vertical_epsg = 0;  ///< code of the heights if `epsg` does not cover them; 0: unknown
 };
 

@@ -43,6 +43,7 @@ template <int W>
   return paired ? 0.5f * (load<W>(at) + load<W>(at + lanes / 2)) : load<W>(at);
 }
 
+/// Over the classes, of W points from p on.
 template <int W>
 [[gnu::always_inline]] inline Floats<W> highest_logit(const float* rows, int classes, int p,
                                                       int lanes, bool paired) {

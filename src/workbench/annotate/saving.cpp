@@ -85,10 +85,9 @@ fs::path saving_path(Saved what, const std::string& name, std::span<const fs::pa
 
 void write_lines(const std::filesystem::path& path, std::span<const lines::Curve> curves,
                  const PointCloud& cloud, Overwrite overwrite) {
-  io::DrawingOptions options{.overwrite = overwrite,
-                             .coordinate_system = io::las_coordinate_system(cloud)};
-  options.unit = io::unit_of(options.coordinate_system);
-  io::write_drawing(path, curves, options);
+  io::write_drawing(
+      path, curves,
+      {.overwrite = overwrite, .coordinate_system = io::las_coordinate_system(cloud)});
 }
 
 PointCloud saved_cloud(const Scene& scene, const std::vector<std::uint8_t>& labels,

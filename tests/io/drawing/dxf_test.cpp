@@ -211,19 +211,20 @@ TEST(Dxf, HasWhatItsVersionMustHave) {
 
 TEST(Dxf, HasTheUnitOfTheCoordinateSystem) {
   const Scratch scratch;
-  const auto written_unit = [&](double metres) {
-    written(scratch, sample_curves(), {.unit = unit_of({.unit = metres})});
+  const auto written_unit = [&](LengthUnit unit, std::optional<LengthUnit> given = {}) {
+    written(scratch, sample_curves(), {.unit = given, .coordinate_system = {.unit = unit}});
     const std::string bytes = bytes_of(scratch.path("a.dxf"));
     const auto number_after = [&](std::string_view variable) {
       return std::stoi(bytes.substr(bytes.find(variable) + variable.size()));
     };
     return std::pair(number_after("$INSUNITS\n 70\n"), number_after("$MEASUREMENT\n 70\n"));
   };
-  EXPECT_EQ(written_unit(1.0), std::pair(6, 1));
-  EXPECT_EQ(written_unit(0.3048), std::pair(2, 0));
-  EXPECT_EQ(written_unit(0.304800609601219), std::pair(21, 0));
-  EXPECT_EQ(written_unit(0.9144), std::pair(0, 1));
-  EXPECT_EQ(written_unit(0.0), std::pair(0, 1));
+  EXPECT_EQ(written_unit(LengthUnit::kMetre), std::pair(6, 1));
+  EXPECT_EQ(written_unit(LengthUnit::kFoot), std::pair(2, 0));
+  EXPECT_EQ(written_unit(LengthUnit::kUsSurveyFoot), std::pair(21, 0));
+  EXPECT_EQ(written_unit(LengthUnit::kNone), std::pair(0, 1));
+  EXPECT_EQ(written_unit(LengthUnit::kFoot, LengthUnit::kMetre), std::pair(6, 1));
+  EXPECT_EQ(written_unit(LengthUnit::kFoot, LengthUnit::kNone), std::pair(0, 1));
 }
 
 TEST(Dxf, AWholeTurnIsACircle) {

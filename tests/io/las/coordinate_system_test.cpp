@@ -30,7 +30,7 @@ TEST(LasCoordinateSystem, IsThatOfTheWktOrOfTheKeys) {
       keys({1, 1, 0, 4, 1024, 0, 1, 1, 2048, 0, 1, 4258, 3072, 0, 1, 25832, 3076, 0, 1, 9001})};
   const auto of_keys = las_coordinate_system(cloud_with(scratch, {geo_keys}));
   EXPECT_EQ(of_keys.epsg, 25832);
-  EXPECT_EQ(of_keys.unit, 1.0);
+  EXPECT_EQ(of_keys.unit, LengthUnit::kMetre);
   EXPECT_EQ(of_keys.wkt, "");
   const LasTestRecord wkt{"LASF_Projection", 2112, std::string(kWkt) + '\0'};
   const PointCloud cloud = cloud_with(scratch, {geo_keys, wkt});
@@ -47,10 +47,10 @@ TEST(LasCoordinateSystem, HasTheUnitOfItsKeysIfHeightsHaveItToo) {
     const std::string data = keys({1, 1, 0, 2, 3076, 0, 1, plan, 4099, 0, 1, heights});
     return las_coordinate_system(cloud_with(scratch, {{"LASF_Projection", 34735, data}})).unit;
   };
-  EXPECT_EQ(unit_of_keys(9002, 9002), 0.3048);
-  EXPECT_EQ(unit_of_keys(9003, 9003), 1200.0 / 3937.0);
-  EXPECT_EQ(unit_of_keys(9003, 9001), 0.0);
-  EXPECT_EQ(unit_of_keys(9035, 9035), 0.0);
+  EXPECT_EQ(unit_of_keys(9002, 9002), LengthUnit::kFoot);
+  EXPECT_EQ(unit_of_keys(9003, 9003), LengthUnit::kUsSurveyFoot);
+  EXPECT_EQ(unit_of_keys(9003, 9001), LengthUnit::kNone);
+  EXPECT_EQ(unit_of_keys(9035, 9035), LengthUnit::kNone);
 }
 
 TEST(LasCoordinateSystem, SurvivesBrokenKeys) {
@@ -61,7 +61,7 @@ TEST(LasCoordinateSystem, SurvivesBrokenKeys) {
     const auto system =
         las_coordinate_system(cloud_with(scratch, {{"LASF_Projection", 34735, data}}));
     EXPECT_EQ(system.epsg, 0);
-    EXPECT_EQ(system.unit, 0.0);
+    EXPECT_EQ(system.unit, LengthUnit::kNone);
   }
 }
 

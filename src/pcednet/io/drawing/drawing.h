@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -17,30 +18,16 @@ enum class DxfVersion { kR12, k2000 };
 /// Where an SVG is seen from: above (x to the right, y up), the front (x, z) or the side (y, z).
 enum class View { kTop, kFront, kSide };
 
-enum class LengthUnit { kNone, kMillimetre, kCentimetre, kMetre, kInch, kFoot, kUsSurveyFoot };
-
-struct NamedUnit {
-  std::string_view name;  ///< for people: m, ft
-  LengthUnit unit;
-  double metres;  ///< 0: unknown
-  int dxf_code;   ///< `$INSUNITS`
-};
-
-/// The whole table.
-std::span<const NamedUnit> length_units();
-
-/// That of a coordinate system; kNone if it is unknown, or not in the table.
-LengthUnit unit_of(const CoordinateSystem& system);
-
 struct DrawingOptions {
   Overwrite overwrite = Overwrite::kNo;
   /// Formats without arcs get polylines that are nowhere farther from them; 0: a thousandth of the
   /// radius.
   double tolerance = 0.0;
   DxfVersion dxf_version = DxfVersion::k2000;
-  LengthUnit unit = LengthUnit::kNone;  ///< DXF: of the coordinates
+  /// DXF: of the coordinates; absent: that of the coordinate system.
+  std::optional<LengthUnit> unit = std::nullopt;
   View view = View::kTop;
-  CoordinateSystem coordinate_system = {};  ///< GeoJSON and GeoPackage
+  CoordinateSystem coordinate_system = {};
 };
 
 /// A format of files of lines.

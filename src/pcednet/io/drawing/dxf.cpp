@@ -1,11 +1,11 @@
 #include <Eigen/Geometry>
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "pcednet/io/drawing/dxf_text.h"
 #include "pcednet/io/drawing/line_classes.h"
 #include "pcednet/io/drawing/writers.h"
+#include "pcednet/io/length_units.h"
 
 namespace pcednet::io {
 namespace {
@@ -81,17 +81,7 @@ void write_entities(DxfText& dxf, Curves curves, std::uint64_t owner) {
   dxf.end_section();
 }
 
-long unit_code(LengthUnit unit) {
-  const auto units = length_units();
-  return std::ranges::find(units, unit, &NamedUnit::unit)->dxf_code;
-}
-
-bool is_imperial(LengthUnit unit) {
-  return unit == LengthUnit::kInch || unit == LengthUnit::kFoot ||
-         unit == LengthUnit::kUsSurveyFoot;
-}
-
-void write_header(DxfText& dxf, const BoundingBox& box, LengthUnit unit,
+void write_header(DxfText& dxf, const BoundingBox& box, const LengthUnitEntry& unit,
                   std::uint64_t next_handle) {
   const auto variable = [&](std::string_view name) { dxf.text(9, name); };
   dxf.begin_section("HEADER");
@@ -103,9 +93,9 @@ void write_header(DxfText& dxf, const BoundingBox& box, LengthUnit unit,
     variable("$HANDSEED");
     dxf.handle(5, next_handle);
     variable("$INSUNITS");
-    dxf.integer(70, unit_code(unit));
+    dxf.integer(70, unit.dxf_code);
     variable("$MEASUREMENT");
-    dxf.integer(70, is_imperial(unit) ? 0 : 1);
+    dxf.integer(70, unit.imperial ? 0 : 1);
   }
   // AutoCAD's own values for an empty drawing.
   variable("$EXTMIN");
@@ -132,7 +122,8 @@ void write_dxf(const std::filesystem::path& path, Curves curves, const DrawingOp
   if (body.has_handles()) write_dxf_objects(body);
   body.text(0, "EOF");
   DxfText header(options.dxf_version);  // names the handle after the last
-  write_header(header, box, options.unit, body.next_handle());
+  const LengthUnit unit = options.unit.value_or(options.coordinate_system.unit);
+  write_header(header, box, entry_of(unit), body.next_handle());
   OutputFile file(path, options.overwrite);
   file.write(header.bytes());
   file.write(body.bytes());

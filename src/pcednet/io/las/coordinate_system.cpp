@@ -4,6 +4,7 @@
 
 #include "pcednet/io/las/file.h"
 #include "pcednet/io/las/las.h"
+#include "pcednet/io/length_units.h"
 
 namespace pcednet::io {
 namespace {
@@ -12,21 +13,6 @@ namespace {
 constexpr std::uint16_t kGeographicType = 2048, kProjectedType = 3072, kProjectedUnit = 3076,
                         kVerticalType = 4096, kVerticalUnit = 4099;
 constexpr int kUserDefined = 32767;
-
-/// Metres in the unit of an EPSG code; 0: not one of lengths that surveys have.
-double metres_in(int unit_code) {
-  constexpr int kMetre = 9001, kFoot = 9002, kUsSurveyFoot = 9003;
-  switch (unit_code) {
-    case kMetre:
-      return 1.0;
-    case kFoot:
-      return 0.3048;
-    case kUsSurveyFoot:
-      return 1200.0 / 3937.0;
-    default:
-      return 0.0;
-  }
-}
 
 /// The keys with an inline value, as codes have.
 std::map<std::uint16_t, int> geo_keys(std::string_view data) {
@@ -52,7 +38,7 @@ CoordinateSystem coordinate_system_of_keys(std::string_view data) {
   system.epsg = value(kProjectedType, value(kGeographicType, 0));
   system.vertical_epsg = value(kVerticalType, 0);
   const int unit = value(kProjectedUnit, 0);
-  if (value(kVerticalUnit, unit) == unit) system.unit = metres_in(unit);
+  if (value(kVerticalUnit, unit) == unit) system.unit = unit_of_code(unit);
   return system;
 }
 

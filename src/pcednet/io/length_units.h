@@ -1,0 +1,31 @@
+#pragma once
+
+#include <span>
+#include <string_view>
+
+#include "pcednet/io/coordinate_system.h"
+
+namespace pcednet::io {
+
+/// What is known of a unit of length.
+struct LengthUnitEntry {
+  LengthUnit unit;
+  std::string_view name;  ///< in options: "m"
+  double metres;          ///< 0: unknown
+  int epsg;               ///< its code; 0: none
+  int dxf_code;           ///< `$INSUNITS`
+  bool imperial;          ///< DXF: `$MEASUREMENT` is 0
+};
+
+/// The whole table.
+std::span<const LengthUnitEntry> length_units();
+
+const LengthUnitEntry& entry_of(LengthUnit unit);
+
+/// The unit of so many metres, as a definition rounds them; kNone if the table has none.
+LengthUnit unit_of_metres(double metres);
+
+/// The unit with that EPSG code; kNone if the table has none.
+LengthUnit unit_of_code(int epsg);
+
+}  // namespace pcednet::io
