@@ -15,13 +15,10 @@ clients='cloudcompare|meshlab|pcl|gdal|qgis'
 [ "$(id -u)" = 0 ] || clients="$clients|slurm"
 may_be_skipped="EqualsTheWholeFilesWhereTheyAre|^Cli\.published_scores_test\$|^Clients\.($clients)\$"
 
-in_part=$(awk '/^[0-9]+\/[0-9]+ Testing: / { name = $3 } /^OK \(.*skipped=/ { print name }' "$outputs")
-if [ -n "$in_part" ]; then
-  echo "Parts of these tests were skipped:"
-  echo "$in_part" | sed 's/^/  /'
-  exit 1
-fi
-skipped=$(sed -n 's/^[[:space:]]*[0-9]* - \(.*\) (\(Skipped\|Disabled\))$/\1/p' "$log")
+skipped=$(
+  sed -n 's/^[[:space:]]*[0-9]* - \(.*\) (\(Skipped\|Disabled\))$/\1/p' "$log"
+  awk '/^[0-9]+\/[0-9]+ Testing: / { name = $3 } /^OK \(.*skipped=/ { print name " in part" }' "$outputs"
+)
 [ -n "$skipped" ] || { echo "No test was skipped."; exit 0; }
 echo "$(echo "$skipped" | wc -l) tests were skipped:"
 echo "$skipped" | sed 's/^/  /'
