@@ -24,4 +24,5 @@ jobs=$((2 * $(nproc)))  # many wait for browsers and daemons
 ctest --preset release -j "$jobs" --output-log build/release/tests.log || failed=1
 echo "== tests that were skipped"
 scripts/check_skips.sh build/release/tests.log build/release/Testing/Temporary/LastTest.log || failed=1
+[ "$failed" = 0 ] || scripts/show_failures.sh build/release/tests.log
 exit $failed

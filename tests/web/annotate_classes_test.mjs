@@ -60,7 +60,7 @@ test("paints them by their keys, trains, and shows their colours", async () => {
   assert.equal(await state("paintClass"), 2);
   await page.keyboard.press("4");
   assert.equal(await state("paintClass"), 2, "there is no fourth class");
-  await page.getByRole("checkbox", { name: "Train after each stroke" }).uncheck();
+  await its.trainAfterStrokes(false);
   const [left, right, front, back] = [0.1, 1.9, 0.1, 1.3]; // of the lower roof, beside its edges
   await paint(
     0,

@@ -54,7 +54,7 @@ test("lists both and shows what the model finds in each", async () => {
 });
 
 test("paints in each; one model learns from both, and the one in view shows it", async () => {
-  await page.getByRole("checkbox", { name: "Train after each stroke" }).uncheck();
+  await its.trainAfterStrokes(false);
   await dab("1");
   const [there] = [await state("counts")];
   assert.ok(there[0] > 0);

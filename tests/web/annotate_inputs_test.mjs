@@ -50,7 +50,7 @@ test("tells the coordinates of a national grid apart in the clipping box", async
 });
 
 test("saves LAS as LAS, with what was painted", async () => {
-  await page.getByRole("checkbox", { name: "Train after each stroke" }).uncheck();
+  await its.trainAfterStrokes(false);
   await paint(2, [[1, 0, 0.6].map((c, axis) => c + PLACE[axis])], 0.05);
   const painted = (await state("counts"))[2];
   assert.ok(painted > 5);

@@ -8,16 +8,16 @@ import { test } from "node:test";
 
 import { roof, writeRoof } from "./annotate_cloud.mjs";
 import { complainedOfNothing, openAnnotator } from "./annotator.mjs";
-import { serve } from "./browser.mjs";
+import { lastingPort, serve } from "./browser.mjs";
 
 const its = openAnnotator("start", {
-  prepare: (folder) => {
+  prepare: async (folder) => {
     writeRoof(path.join(folder, "roof.ply"), roof());
-    return [path.join(folder, "roof.ply"), "--model", "scan"];
+    return [path.join(folder, "roof.ply"), "--model", "scan", "--port", await lastingPort()];
   },
   ready: () => (page = its.page),
 });
-const { folder, paint, settled, shown } = its;
+const { folder, paint, settled, shown, trainAfterStrokes } = its;
 const input = path.join(folder, "roof.ply");
 let page;
 
@@ -106,12 +106,11 @@ test("learns from one stroke, and says that this is too little to tell how right
   const before = await predicted();
   const hint = page.getByText("Paint where the prediction is wrong.");
   assert.ok(await hint.isVisible());
-  await page.getByRole("checkbox", { name: "Train after each stroke" }).uncheck();
-  await page.waitForFunction(() => !annotator.store.now.settings.auto);
+  await trainAfterStrokes(false);
   await paint(0, [[0.2, 0.7, 0.6]], 0.1);
   assert.ok(await hint.isHidden(), "nobody who paints needs it");
   await page.getByText("prediction, out of date").waitFor();
-  await page.getByRole("checkbox", { name: "Train after each stroke" }).check();
+  await trainAfterStrokes(true);
   await shown(1);
   await page.getByText("prediction, out of date").waitFor({ state: "detached" });
   await page.getByText("Not enough strokes to tell how right it is").waitFor();

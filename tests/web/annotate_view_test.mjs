@@ -8,7 +8,7 @@ import { complainedOfNothing, openAnnotator } from "./annotator.mjs";
 const its = openAnnotator("view", {
   ready: async () => {
     page = its.page;
-    await page.getByRole("checkbox", { name: "Train after each stroke" }).uncheck();
+    await its.trainAfterStrokes(false);
     await settled();
   },
 });

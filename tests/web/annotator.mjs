@@ -37,6 +37,13 @@ export function openAnnotator(name, { height = 720, prepare = writesRoof, ready 
         run ?? null,
       ),
 
+    /** Checks or unchecks training after each stroke, until the program knows. */
+    async trainAfterStrokes(on) {
+      const told = its.page.waitForResponse((answer) => new URL(answer.url()).pathname === "/api/settings");
+      await its.page.getByRole("checkbox", { name: "Train after each stroke" }).setChecked(on);
+      await told;
+    },
+
     /** A stroke of the brush round places of the cloud, by the page's own means. */
     async paint(edgeClass, places, radius) {
       await its.page.evaluate(
@@ -60,7 +67,7 @@ export function openAnnotator(name, { height = 720, prepare = writesRoof, ready 
   };
 
   before(async () => {
-    its.server = await serve(prepare(its.folder));
+    its.server = await serve(await prepare(its.folder));
     its.browser = await launch();
     its.page = await its.browser.newPage({ viewport: { width: 1280, height } });
     its.page.setDefaultTimeout(120_000);

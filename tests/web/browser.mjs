@@ -1,7 +1,9 @@
 // Headless Chromium with WebGL in software. Environment: PCEDNET_SOURCE_DIR, whose web/ folder holds
 // playwright-core, and CHROMIUM, the browser.
 import { spawn } from "node:child_process";
+import { once } from "node:events";
 import { createRequire } from "node:module";
+import net from "node:net";
 import path from "node:path";
 
 const require = createRequire(path.join(process.env.PCEDNET_SOURCE_DIR, "web/package.json"));
@@ -9,8 +11,25 @@ const require = createRequire(path.join(process.env.PCEDNET_SOURCE_DIR, "web/pac
 export function launch() {
   return require("playwright-core").chromium.launch({
     executablePath: process.env.CHROMIUM,
-    args: ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
+    args: ["--no-sandbox", "--disable-dev-shm-usage", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
   });
+}
+
+/** A free port that the system gives to nobody by itself, so that it is still free when a program starts again. */
+export async function lastingPort() {
+  for (;;) {
+    const port = 20_000 + Math.floor(12_000 * Math.random());
+    const server = net.createServer();
+    const free = once(server, "listening").then(
+      () => true,
+      () => false,
+    );
+    server.listen(port, "127.0.0.1");
+    if (!(await free)) continue;
+    server.close();
+    await once(server, "close");
+    return port;
+  }
 }
 
 /**

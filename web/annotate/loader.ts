@@ -67,7 +67,7 @@ export class Loader {
   }
 
   get isLoading(): boolean {
-    return this.loading.size > 0 || this.wanted.length > 0;
+    return this.loading.size > 0 || this.wanted.length > 0 || Object.values(this.refreshing).includes(true);
   }
 
   private pump(): void {
