@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <numeric>
-
 #include "labelled_cube.h"
 #include "pcednet/core/random.h"
 
@@ -78,24 +76,6 @@ TEST(CloudKind, IsNoisyWhereMoreNeighboursEstimateTheNormals) {
   EXPECT_TRUE(facts_of(prepared, {}).noisy);
   cloud.normals = prepared.made;  // such as others would have estimated
   EXPECT_FALSE(facts_of(prepare(cloud), {}).noisy);
-}
-
-TEST(ExactPoints, LieOnPlaneFacesWithoutNoise) {
-  PointCloud cloud = cube(3000, 1);
-  cloud.normals.clear();
-  EXPECT_TRUE(prepare(cloud).decision.exact);
-  for (std::size_t i = 0; i < cloud.positions.size(); ++i) {  // a hundredth of the spacing
-    cloud.positions[i] *= 1.0 + 5e-4 * static_cast<double>(i % 7);
-  }
-  EXPECT_FALSE(prepare(cloud).decision.exact);
-}
-
-TEST(ExactPoints, AreNoFewPointsOrCopiesOfThem) {
-  const std::vector<Vec3> positions(100, Vec3(1.0, 2.0, 3.0));
-  std::vector<std::uint32_t> curve(100);
-  std::iota(curve.begin(), curve.end(), 0u);
-  EXPECT_FALSE(is_exact(positions, curve));
-  EXPECT_FALSE(is_exact({}, {}));
 }
 
 }  // namespace

@@ -13,7 +13,6 @@
 #include "pcednet/detect/part_of_cloud.h"
 #include "pcednet/normals/estimate.h"
 #include "pcednet/normals/neighbour_count.h"
-#include "pcednet/normals/plane_fit.h"
 
 namespace pcednet::detect {
 namespace {
@@ -33,30 +32,6 @@ bool take_word(std::string_view word, CloudKind& kind) {
   const char* end = word.data() + word.size();
   const auto read = std::from_chars(word.data() + kBelowWord.size(), end, kind.below);
   return read.ec == std::errc() && read.ptr == end && kind.below > 0;
-}
-
-/// The `wanted` points nearest to that of place `i` among those around it on the curve, without
-/// copies; fewer if there are not enough.
-std::vector<std::uint32_t> near_on_curve(std::span<const Vec3> positions,
-                                         std::span<const std::uint32_t> curve, std::size_t i,
-                                         std::size_t wanted) {
-  constexpr std::size_t kAround = 32;
-  const Vec3& centre = positions[curve[i]];
-  const auto sq_distance = [&](std::uint32_t point) {
-    return (positions[point] - centre).squaredNorm();
-  };
-  std::vector<std::uint32_t> near;
-  const std::size_t begin = i - std::min(i, kAround);
-  for (std::size_t k = begin; k < std::min(i + kAround, curve.size()); ++k) {
-    const Vec3& position = positions[curve[k]];
-    const bool is_copy = k > begin && position == positions[curve[k - 1]];
-    if (!is_copy && position != centre) near.push_back(curve[k]);
-  }
-  const std::size_t count = std::min(wanted, near.size());
-  std::partial_sort(near.begin(), near.begin() + static_cast<std::ptrdiff_t>(count), near.end(),
-                    [&](auto a, auto b) { return sq_distance(a) < sq_distance(b); });
-  near.resize(count);
-  return near;
 }
 
 /// Whether the normals agree with estimated ones: within 5 degrees at three points in four. Beside
@@ -120,26 +95,6 @@ std::optional<CloudKind> cloud_kind_of(std::string_view text) {
     if (!is_last) text.remove_prefix(comma + 1);
   }
   return kind;
-}
-
-bool is_exact(std::span<const Vec3> positions, std::span<const std::uint32_t> curve) {
-  constexpr std::size_t kSamples = 2000, kNear = 12, kShare = 10;
-  constexpr double kThickness = 1e-6;
-  const std::size_t samples = std::min(kSamples, curve.size());
-  std::vector<std::uint32_t> some, neighbours;
-  for (std::size_t s = 0; s < samples; ++s) {
-    const std::size_t i = s * curve.size() / samples;
-    const auto near = near_on_curve(positions, curve, i, kNear);
-    if (near.size() < kNear) continue;
-    some.push_back(curve[i]);
-    neighbours.insert(neighbours.end(), near.begin(), near.end());
-  }
-  std::vector<normals::PlaneFit> fits(some.size());
-  normals::fit_planes(positions, some, neighbours, fits);
-  const auto exact = std::count_if(fits.begin(), fits.end(), [](const normals::PlaneFit& fit) {
-    return !fit.normal.isZero(0.0) && fit.thickness < kThickness;
-  });
-  return !fits.empty() && static_cast<std::size_t>(exact) * kShare >= fits.size();
 }
 
 }  // namespace pcednet::detect

@@ -3,7 +3,6 @@
 #include <cstddef>
 #include <limits>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 
@@ -18,7 +17,8 @@ struct CloudFacts {
       std::numeric_limits<std::size_t>::max();  ///< distinct; the maximum unless counted
   bool estimated = false;  ///< normals were missing and are estimated, or (below 20,000 points) the
                            ///< given ones agree with estimated ones
-  bool exact = false;      ///< normals were missing, and is_exact() is true of its points
+  bool exact = false;      ///< normals were missing, and is_exact() is true of the points, see
+                           ///< exact_points.h
   bool noisy = false;  ///< normals were missing, and noise requires more neighbours than usual, see
                        ///< normals::choose_neighbours()
 };
@@ -42,11 +42,5 @@ struct CloudKind {
 /// "below=4000,estimated": `given` or `estimated` normals, `exact`, `noisy`, in any order.
 std::string text_of(const CloudKind& kind);
 std::optional<CloudKind> cloud_kind_of(std::string_view text);
-
-/// Whether points lie on the plane faces of a model more exactly than any measured point: for 2,000
-/// points, evenly spread along the curve, planes are fitted to those with 12 others near them on
-/// it, and one plane in ten has a thickness (see normals::PlaneFit) below 1e-6. Parts sampled
-/// without noise have 1e-12, the cleanest scans 1e-4.
-bool is_exact(std::span<const Vec3> positions, std::span<const std::uint32_t> curve);
 
 }  // namespace pcednet::detect
