@@ -118,7 +118,10 @@ class Lines(CliTest):
         done = run("lines", path, *self.outputs("geojson"), "--class", "smooth,boundary",
                    "--overwrite")
         self.assertEqual(geojson(self.made["geojson"]), [])
-        self.assertIn(f"{every} left out", done.stderr)
+        self.assertIn(f"left out: {every} by --class smooth,boundary", done.stderr)
+        done = run("lines", path, *self.outputs("geojson"), "--min-points", "5", "--kind",
+                   "circle", "--overwrite")
+        self.assertIn(f"left out: {every} by --kind circle", done.stderr)
         run("lines", path, *self.outputs("dxf"), "--dxf-version", "r12", "--overwrite")
         self.assertIn("AC1009", self.made["dxf"].read_text())
         run("lines", path, *self.outputs("dxf"), "--unit", "mm", "--overwrite")

@@ -1,10 +1,12 @@
 #include "pcednet/lines/find_lines.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <memory>
 #include <numbers>
 #include <set>
@@ -185,32 +187,48 @@ void read_labelled_in_tiles(const LinesArguments& arguments, std::uint64_t memor
   }
 }
 
-/// Keeps the curves that the user asked for; returns the number removed.
-std::size_t filter(const LinesArguments& arguments, std::vector<Curve>& curves) {
-  const auto lacks = [](const std::vector<std::string>& names, std::string_view name) {
-    return !names.empty() && std::find(names.begin(), names.end(), name) == names.end();
+bool is_listed(const std::vector<std::string>& names, std::string_view name) {
+  return names.empty() || std::find(names.begin(), names.end(), name) != names.end();
+}
+
+/// Keeps the curves that the user asked for; says how many each option leaves out, the first of
+/// several that do.
+std::string filter(const LinesArguments& arguments, std::vector<Curve>& curves) {
+  struct Option {
+    std::string text;
+    std::function<bool(const Curve&)> keeps;
   };
-  return std::erase_if(curves, [&](const Curve& curve) {
-    const std::string_view name = io::line_class(curve.edge_class).name;
-    return lacks(arguments.classes, name.substr(0, name.find('-'))) ||
-           lacks(arguments.kinds, name_of(curve.kind)) ||
-           curve.confidence < arguments.min_confidence ||
-           curve.dihedral_angle < arguments.min_dihedral * std::numbers::pi / 180.0 ||
-           curve.support < arguments.min_points;
-  });
+  const Option options[] = {
+      {fmt::format("--class {}", fmt::join(arguments.classes, ",")),
+       [&](const Curve& curve) {
+         const std::string_view name = io::line_class(curve.edge_class).name;
+         return is_listed(arguments.classes, name.substr(0, name.find('-')));
+       }},
+      {fmt::format("--kind {}", fmt::join(arguments.kinds, ",")),
+       [&](const Curve& curve) { return is_listed(arguments.kinds, name_of(curve.kind)); }},
+      {fmt::format("--min-confidence {}", arguments.min_confidence),
+       [&](const Curve& curve) { return !(curve.confidence < arguments.min_confidence); }},
+      {fmt::format("--min-dihedral {}", arguments.min_dihedral),
+       [&](const Curve& curve) {
+         return !(curve.dihedral_angle < arguments.min_dihedral * std::numbers::pi / 180.0);
+       }},
+      {fmt::format("--min-points {}", arguments.min_points),
+       [&](const Curve& curve) { return curve.support >= arguments.min_points; }}};
+  std::vector<std::string> left_out;
+  for (const Option& option : options) {
+    const auto count =
+        std::erase_if(curves, [&](const Curve& curve) { return !option.keeps(curve); });
+    if (count > 0) left_out.push_back(fmt::format("{} by {}", count, option.text));
+  }
+  return left_out.empty() ? "" : fmt::format("; left out: {}", fmt::join(left_out, ", "));
 }
 
 void report(const LinesArguments& arguments, const std::vector<Curve>& curves,
-            std::size_t left_out) {
+            const std::string& left_out) {
   double length = 0.0;
   for (const Curve& curve : curves) length += length_of(curve);
   say(fmt::format("{}: {} curve{}, total length {:.6g}{}", arguments.input, curves.size(),
-                  curves.size() == 1 ? "" : "s", length,
-                  left_out == 0
-                      ? ""
-                      : fmt::format("; {} left out: of another --class or --kind, or below "
-                                    "--min-confidence, --min-dihedral or --min-points",
-                                    left_out)));
+                  curves.size() == 1 ? "" : "s", length, left_out));
   for (const io::LineClass& entry : io::kLineClasses) {
     std::string kinds;
     double class_length = 0.0;
@@ -253,7 +271,7 @@ void run(LinesArguments arguments, const Common& common) {
                                 .curve = labelled.prepared.curve},
                                arguments.lines, &clock.progress());
   });
-  const std::size_t left_out = filter(arguments, curves);
+  const std::string left_out = filter(arguments, curves);
   clock.begin("write");
   arguments.drawing.tolerance = arguments.lines.tolerance;
   arguments.drawing.coordinate_system = io::las_coordinate_system(cloud);
