@@ -8,12 +8,14 @@
 #include "pcednet/detect/prepare.h"
 #include "pcednet/io/drawing/drawing.h"
 #include "pcednet/lines/find_lines.h"
+#include "preview_options.h"
 
 namespace pcednet::app {
 
 /// The arguments of `pcednet lines`.
 struct LinesArguments {
-  std::string input, preview, memory;
+  std::string input, memory;
+  PreviewArguments preview;
   std::vector<std::string> outputs, kinds;
   std::vector<std::string> classes = {"sharp", "boundary"};
   bool classify = false;

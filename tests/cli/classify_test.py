@@ -226,6 +226,23 @@ class Classify(CliTest):
         self.assertTrue(said.endswith(f"  -> {self.folder / 'a_edges.ply'}\n  -> {self.folder / 'a.png'}\n"), said)
         self.assertEqual((self.folder / "a.png").read_bytes()[:8], b"\x89PNG\r\n\x1a\n")
 
+    def test_draws_the_preview_from_where_it_is_told(self):
+        path, picture = self.folder / "a.ply", self.folder / "a.png"
+        write_ply(path, *cube(2000)[:2])
+
+        def drawn(*words):
+            run("classify", path, "--preview", picture, *words, "--overwrite")
+            return picture.read_bytes()
+
+        slanted = drawn("--preview-from", "-50", "30")
+        self.assertEqual(slanted, drawn("--preview-from", "310", "30"))
+        self.assertNotEqual(slanted, drawn("--preview-from", "-50", "90"))
+        for words in (["30"], ["30", "91"], ["30", "-90.5"], ["30", "nan"], ["inf", "0"], ["x", "0"]):
+            run("classify", path, "--preview", picture, "--preview-from", *words, "--overwrite",
+                expect=2)
+        run("classify", path, "--preview-from", "30", "30", "--overwrite", expect=2)
+        self.assertTrue(picture.exists())
+
     def test_stops_on_ctrl_c_and_leaves_nothing(self):
         write_ply(self.folder / "big.ply", *cube(400_000)[:2])
         running = subprocess.Popen([PROGRAM, "classify", self.folder / "big.ply", "--exact",

@@ -180,6 +180,9 @@ class Lines(CliTest):
         drawn = picture.read_bytes()
         self.assertEqual(drawn[:8], b"\x89PNG\r\n\x1a\n")
         self.assertEqual(struct.unpack(">II", drawn[16:24]), (1280, 960))
+        run("lines", path, *self.outputs("dxf"), "--preview", picture, "--preview-from", "0", "90",
+            "--overwrite")
+        self.assertNotEqual(picture.read_bytes(), drawn)
         run("lines", path, *self.outputs("svg"), "--preview", picture, expect=2)
         run("lines", path, "-o", picture, "--preview", picture, expect=2)
         run("lines", path, *self.outputs("svg"), "--preview", picture, "--overwrite",

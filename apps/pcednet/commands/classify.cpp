@@ -17,6 +17,7 @@
 #include "pcednet/formats/format.h"
 #include "pcednet/formats/write_cloud.h"
 #include "prepare.h"
+#include "preview_options.h"
 #include "stage_clock.h"
 #include "workbench/render/preview.h"
 
@@ -27,7 +28,8 @@ namespace fs = std::filesystem;
 
 struct ClassifyArguments {
   std::vector<std::string> inputs;
-  std::string output, output_folder, preview, las_classification, memory;
+  std::string output, output_folder, las_classification, memory;
+  PreviewArguments preview;
   ModelArguments model{.name = kDefaultModel};
   MethodArguments method;
   detect::PrepareOptions preparation;
@@ -45,9 +47,9 @@ struct Plan {
 };
 
 fs::path preview_path(const ClassifyArguments& arguments, const fs::path& input, bool several) {
-  if (arguments.preview.empty()) return {};
-  if (!several) return arguments.preview;
-  const fs::path pattern = arguments.preview;
+  if (arguments.preview.path.empty()) return {};
+  if (!several) return arguments.preview.path;
+  const fs::path pattern = arguments.preview.path;
   return pattern.parent_path() / fmt::format("{}_{}{}", pattern.stem().string(),
                                              formats::stem_of(input), pattern.extension().string());
 }
@@ -275,7 +277,9 @@ void classify_large_file(const Job& job, const ClassifyArguments& arguments, std
   if (!job.preview.empty()) {
     clock.begin("preview");
     render::write_preview(job.preview, drawn, drawn.labels,
-                          {.overwrite = common.overwrite(), .table = model.table});
+                          {.view_direction = arguments.preview.direction,
+                           .overwrite = common.overwrite(),
+                           .table = model.table});
   }
   report(job, result, counts, model, clock.seconds());
 }
@@ -314,7 +318,9 @@ void classify_file(const Job& job, const ClassifyArguments& arguments,
   if (!job.preview.empty()) {
     clock.begin("preview");
     render::write_preview(job.preview, cloud, result.classes,
-                          {.overwrite = common.overwrite(), .table = model.table});
+                          {.view_direction = arguments.preview.direction,
+                           .overwrite = common.overwrite(),
+                           .table = model.table});
   }
   Counts counts = {};
   count(result.classes, counts);
@@ -375,7 +381,7 @@ void add_classify(CLI::App& app, Common& common) {
       ->excludes(overwrite);
   add_model_options(*command, arguments->model);
   add_memory_option(*command, arguments->memory);
-  command->add_option("--preview", arguments->preview, "Draw the labelled cloud to this PNG file");
+  add_preview_options(*command, arguments->preview, "Draw the labelled cloud to this PNG file");
   command->add_flag("--class-colours", arguments->class_colours,
                     "Colour the points by class even if the input has colours");
   command->add_flag("--ascii", arguments->ascii, "Write text instead of binary");

@@ -59,7 +59,7 @@ void check_outputs(const LinesArguments& arguments) {
     io::drawing_format_for(output);
     check(output);
   }
-  if (!arguments.preview.empty()) check(arguments.preview);
+  if (!arguments.preview.path.empty()) check(arguments.preview.path);
 }
 
 /// The attribute scalar_`name` or `name` of every point; empty if there is none.
@@ -278,15 +278,17 @@ void run(LinesArguments arguments, const Common& common) {
   for (const std::string& output : arguments.outputs) {
     io::write_drawing(output, curves, arguments.drawing);
   }
-  if (!arguments.preview.empty()) {
+  if (!arguments.preview.path.empty()) {
     clock.begin("preview");
-    render::write_preview(arguments.preview, cloud, {}, {.overwrite = common.overwrite()}, curves);
+    render::write_preview(
+        arguments.preview.path, cloud, {},
+        {.view_direction = arguments.preview.direction, .overwrite = common.overwrite()}, curves);
   }
   report(arguments, curves, left_out);
   if (curves.empty()) say("  no edges: what was written holds no lines");
   say("  seconds: " + clock.seconds());
   for (const std::string& output : arguments.outputs) say("  -> " + output);
-  if (!arguments.preview.empty()) say("  -> " + arguments.preview);
+  if (!arguments.preview.path.empty()) say("  -> " + arguments.preview.path);
 }
 
 }  // namespace
@@ -307,7 +309,7 @@ void add_lines(CLI::App& app, Common& common) {
           "Output file: " + io::drawing_extensions(" or ") + "; may be given several times")
       ->required()
       ->allow_extra_args(false);
-  command->add_option("--preview", arguments->preview,
+  add_preview_options(*command, arguments->preview,
                       "Draw the curves over the shaded cloud to this PNG file");
   add_line_options(*command, arguments->lines);
   add_drawing_options(*command, *arguments);
