@@ -1,8 +1,8 @@
 #include "preview_options.h"
 
-#include <array>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 namespace pcednet::app {
 namespace {
@@ -20,10 +20,10 @@ Vec3 direction_from(double azimuth, double elevation) {
 void add_preview_options(CLI::App& command, PreviewArguments& arguments, const std::string& help) {
   CLI::Option* preview = command.add_option("--preview", arguments.path, help);
   command
-      .add_option_function<std::array<double, 2>>(
+      .add_option_function<std::vector<double>>(
           "--preview-from",
-          [&arguments](const std::array<double, 2>& from) {
-            const auto [azimuth, elevation] = from;
+          [&arguments](const std::vector<double>& from) {
+            const double azimuth = from[0], elevation = from[1];
             if (!std::isfinite(azimuth) || !(std::abs(elevation) <= 90.0)) {
               throw CLI::ValidationError("--preview-from",
                                          "wants two angles in degrees, the second from -90 to 90");
@@ -32,6 +32,7 @@ void add_preview_options(CLI::App& command, PreviewArguments& arguments, const s
           },
           "Look from here (AZIMUTH ELEVATION): degrees from the x axis towards the y axis, and "
           "degrees above the horizon (default: from where most edges are seen)")
+      ->expected(2)
       ->needs(preview);
 }
 
