@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "pcednet/core/eigendecomposition.h"
+#include "pcednet/normals/exact_planes.h"
 #include "pcednet/normals/plane_fit.h"
 
 namespace pcednet::detect {
@@ -38,18 +38,17 @@ std::vector<std::uint32_t> near_on_curve(std::span<const Vec3> positions,
   return near;
 }
 
-/// Whether the points are not much longer than wide.
+/// Whether these, which lie on a plane, fill it about their mean.
 bool fill_a_plane(std::span<const Vec3> positions, std::span<const std::uint32_t> points) {
   Vec3 mean = Vec3::Zero();
   for (const std::uint32_t i : points) mean += positions[i];
   mean /= static_cast<double>(points.size());
-  Mat3 covariance = Mat3::Zero();
+  Mat3 products = Mat3::Zero();
   for (const std::uint32_t i : points) {
     const Vec3 offset = positions[i] - mean;
-    covariance += offset * offset.transpose();
+    products += offset * offset.transpose();
   }
-  const Vec3 variances = eigendecomposition(covariance).values;
-  return variances[1] > kLeastWidth * kLeastWidth * variances[2];
+  return normals::fill_a_plane(products);
 }
 
 }  // namespace

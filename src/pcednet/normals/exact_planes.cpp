@@ -15,7 +15,6 @@ constexpr std::size_t kSeeds = 8;             ///< planes pass through two of th
 constexpr double kLeastSine = 0.3;            ///< between the directions to those two
 constexpr double kTolerance = 0.003;          ///< over the distance to the last neighbour
 constexpr int kLeastOnPlane = 5;              ///< neighbours, including the two
-constexpr double kLeastRoundness = 0.25;      ///< of these; 0 on a line, 1 all around the point
 constexpr int kLeastOnSecond = 3;             ///< of these not on the first plane
 constexpr double kLargestSecondCosine = 0.9;  ///< between the normals of the two planes
 
@@ -50,17 +49,14 @@ Plane plane_with(const Vec3& normal, const Neighbourhood& around) {
   return plane;
 }
 
-/// Whether the neighbours on the plane determine it: those along one line, a scan line or an edge,
-/// lie on many planes. Compares the product of the two second moments in the plane with their sum.
+/// Whether the neighbours on the plane determine it.
 bool is_determined(const Plane& plane, const Neighbourhood& around) {
   if (plane.support() < kLeastOnPlane) return false;
-  Mat3 moments = Mat3::Zero();
+  Mat3 products = Mat3::Zero();
   for (std::size_t k = 0; k < around.count; ++k) {
-    if (plane.has(k)) moments += around.offsets[k] * around.offsets[k].transpose();
+    if (plane.has(k)) products += around.offsets[k] * around.offsets[k].transpose();
   }
-  const double trace = moments.trace();
-  const double product = 0.5 * (trace * trace - moments.squaredNorm());
-  return 4.0 * product >= kLeastRoundness * trace * trace;
+  return fill_a_plane(products);
 }
 
 /// The planes with enough neighbours on them.
@@ -118,6 +114,13 @@ Vec3 mean_normal(const Plane& first, const Plane& second, const Neighbourhood& a
 }
 
 }  // namespace
+
+bool fill_a_plane(const Mat3& products) {
+  constexpr double kLeastRoundness = 0.25;  // 0 on a line, 1 all around the place
+  const double trace = products.trace();
+  const double of_pairs = 0.5 * (trace * trace - products.squaredNorm());
+  return 4.0 * of_pairs >= kLeastRoundness * trace * trace;
+}
 
 Vec3 exact_normal(std::span<const Vec3> points, std::size_t point,
                   std::span<const std::uint32_t> neighbours) {

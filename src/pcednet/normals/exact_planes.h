@@ -11,6 +11,12 @@ namespace pcednet::normals {
 /// The neighbours of a point among which exact_normal() looks for planes.
 inline constexpr std::size_t kExactNeighbours = 16;
 
+/// Whether points are spread over a plane, rather than along a line, about a place: at least a
+/// quarter as wide as long, as standard deviations. Those of a scan line or an edge are not: they
+/// lie on many planes, or exactly on the one that the scanner's beam sweeps. `products` is the sum
+/// of v v^T of their offsets v from the place.
+bool fill_a_plane(const Mat3& products);
+
 /// The unit normal of the plane face that a point lies on, of any sign, or zero if it lies on none.
 ///
 /// Points drawn from a CAD part without noise lie exactly on its faces. A face is a plane through
