@@ -1,21 +1,11 @@
 #include "preview_options.h"
 
 #include <cmath>
-#include <numbers>
 #include <vector>
 
+#include "workbench/render/preview.h"
+
 namespace pcednet::app {
-namespace {
-
-/// From an eye in this direction, in degrees, to what it looks at.
-Vec3 direction_from(double azimuth, double elevation) {
-  constexpr double kRadians = std::numbers::pi / 180.0;
-  const double across = std::cos(kRadians * elevation);
-  return {-across * std::cos(kRadians * azimuth), -across * std::sin(kRadians * azimuth),
-          -std::sin(kRadians * elevation)};
-}
-
-}  // namespace
 
 void add_preview_options(CLI::App& command, PreviewArguments& arguments, const std::string& help) {
   CLI::Option* preview = command.add_option("--preview", arguments.path, help);
@@ -28,7 +18,7 @@ void add_preview_options(CLI::App& command, PreviewArguments& arguments, const s
               throw CLI::ValidationError("--preview-from",
                                          "wants two angles in degrees, the second from -90 to 90");
             }
-            arguments.direction = direction_from(azimuth, elevation);
+            arguments.direction = render::direction_from(azimuth, elevation);
           },
           "Look from here (AZIMUTH ELEVATION): degrees from the x axis towards the y axis, and "
           "degrees above the horizon (default: from where most edges are seen)")

@@ -46,6 +46,13 @@ struct Plan {
   std::size_t skipped = 0;
 };
 
+render::PreviewOptions preview_options(const ClassifyArguments& arguments,
+                                       const detect::EdgeModel& model, const Common& common) {
+  return {.view_direction = arguments.preview.direction,
+          .overwrite = common.overwrite(),
+          .table = model.table};
+}
+
 fs::path preview_path(const ClassifyArguments& arguments, const fs::path& input, bool several) {
   if (arguments.preview.path.empty()) return {};
   if (!several) return arguments.preview.path;
@@ -277,9 +284,7 @@ void classify_large_file(const Job& job, const ClassifyArguments& arguments, std
   if (!job.preview.empty()) {
     clock.begin("preview");
     render::write_preview(job.preview, drawn, drawn.labels,
-                          {.view_direction = arguments.preview.direction,
-                           .overwrite = common.overwrite(),
-                           .table = model.table});
+                          preview_options(arguments, model, common));
   }
   report(job, result, counts, model, clock.seconds());
 }
@@ -318,9 +323,7 @@ void classify_file(const Job& job, const ClassifyArguments& arguments,
   if (!job.preview.empty()) {
     clock.begin("preview");
     render::write_preview(job.preview, cloud, result.classes,
-                          {.view_direction = arguments.preview.direction,
-                           .overwrite = common.overwrite(),
-                           .table = model.table});
+                          preview_options(arguments, model, common));
   }
   Counts counts = {};
   count(result.classes, counts);

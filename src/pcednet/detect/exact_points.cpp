@@ -13,7 +13,6 @@ namespace {
 constexpr std::size_t kSamples = 2000, kNear = 12;
 constexpr std::size_t kShare = 10;        ///< one in so many is on a plane
 constexpr double kExactThickness = 1e-6;  ///< of a plane
-constexpr double kLeastWidth = 0.25;      ///< of a length, both as standard deviations
 
 /// The kNear points nearest to that of place `i` among those around it on the curve, without
 /// copies; fewer if there are not enough.

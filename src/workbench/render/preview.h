@@ -23,6 +23,10 @@ struct PreviewOptions {
   ClassTable table = edge_classes();  ///< the classes and their colours
 };
 
+/// The viewing direction of an eye at these degrees from the x axis towards the y axis, and above
+/// the horizon.
+Vec3 direction_from(double azimuth, double elevation);
+
 /// Writes a shaded picture of the cloud as a PNG.
 ///
 /// `classes` holds one class per point, drawn in its colour (other values grey); an EdgeClass

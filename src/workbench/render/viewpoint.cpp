@@ -5,6 +5,7 @@
 
 #include "pcednet/core/parallel.h"
 #include "workbench/render/camera.h"
+#include "workbench/render/preview.h"
 #include "workbench/render/splat.h"
 
 namespace pcednet::render {
@@ -29,10 +30,8 @@ std::vector<View> candidates() {
   for (const Elevation elevation :
        {Elevation{12, 0.95f}, Elevation{27, 1.0f}, Elevation{48, 0.88f}}) {
     for (int azimuth = 15; azimuth < 375; azimuth += 30) {
-      const double a = azimuth * std::numbers::pi / 180,
-                   e = elevation.degrees_above * std::numbers::pi / 180;
-      const Vec3 from(std::cos(a) * std::cos(e), std::sin(a) * std::cos(e), std::sin(e));
-      all.push_back({-from.cast<float>(), elevation.preference});
+      const Vec3 direction = direction_from(azimuth, elevation.degrees_above);
+      all.push_back({direction.cast<float>(), elevation.preference});
     }
   }
   return all;
@@ -61,6 +60,11 @@ float score(std::span<const Surfel> surfels, const Vector3f& direction) {
 }
 
 }  // namespace
+
+Vec3 direction_from(double azimuth, double elevation) {
+  const double a = azimuth * std::numbers::pi / 180, e = elevation * std::numbers::pi / 180;
+  return -Vec3(std::cos(a) * std::cos(e), std::sin(a) * std::cos(e), std::sin(e));
+}
 
 Vector3f best_direction(std::span<const Surfel> surfels) {
   const std::vector<View> all = candidates();
