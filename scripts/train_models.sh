@@ -23,7 +23,7 @@ for model in ${*:-general scan cad worn}; do
       generate "${set%:*}" "${set#*:}"
       clouds="$clouds $folder/${set%:*}${set#*:}"
     done
-    options="--scales 8 --s-max-ratio 8 --gate 0.4 --second-gate -0.3 --width 40 --distil 2 \
+    options="--scales 8 --s-max-ratio 8 --octaves --gate 0.4 --second-gate -0.3 --width 40 --distil 2 \
       --context --keep-orientation --seed 1"
     generate sparse 1
     generate drawn 1

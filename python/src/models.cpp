@@ -39,6 +39,7 @@ py::dict settings_of(const gls::ScaleSpaceOptions& options) {
   settings["gate"] = options.side_gate;
   settings["second_gate"] = options.second_gate;
   settings["s_max_ratio"] = options.s_max_ratio;
+  settings["octaves"] = options.octaves;
   return settings;
 }
 
@@ -78,6 +79,7 @@ gls::ScaleSpaceOptions descriptor_of(const py::dict& settings) {
   set("s_min", options.s_min);
   set("s_max", options.s_max);
   set("s_max_ratio", options.s_max_ratio);
+  set("octaves", options.octaves);
   set("gate", options.side_gate);
   set("second_gate", options.second_gate);
   set("eps", options.eps);

@@ -88,6 +88,45 @@ TEST(ExactPlanes, AreNotTakenFromScanLines) {
   EXPECT_FALSE(make_neighbour_graph(positions, 0, nullptr).has_exact_planes);
 }
 
+TEST(ExactPlanes, AreNotTakenFromTheSweepOfAScanner) {
+  // A scanner 2 m above level ground; every column of its beams is in a vertical plane, which noise
+  // as large as a third of the spacing fills.
+  Random random(8);
+  std::vector<Vec3> positions;
+  for (int column = 0; column < 150; ++column) {
+    const double azimuth = 0.004 * column;
+    for (int row = 0; row < 60; ++row) {
+      const double elevation = -0.9 + 0.004 * row;
+      const double range = -2.0 / std::sin(elevation) + 0.003 * random.normal();
+      positions.emplace_back(range * std::cos(elevation) * std::cos(azimuth),
+                             range * std::cos(elevation) * std::sin(azimuth),
+                             range * std::sin(elevation));
+    }
+  }
+  EXPECT_FALSE(make_neighbour_graph(positions, 0, nullptr).has_exact_planes);
+}
+
+TEST(ExactPlanes, AreFacesIfTheSurfaceStaysOnOneSide) {
+  std::vector<Vec3> points = {Vec3(0, 1, 0)};
+  for (int i = -2; i <= 2; ++i) {
+    for (int k = 0; k <= 2; ++k) {
+      if (i != 0 || k != 1) points.emplace_back(i, k, 0);
+      if (k != 0) points.emplace_back(i, 0, -k);
+    }
+  }
+  const auto nearest = [&] {
+    std::vector<std::uint32_t> others(points.size() - 1);
+    std::iota(others.begin(), others.end(), 1u);
+    std::stable_sort(others.begin(), others.end(), [&](std::uint32_t a, std::uint32_t b) {
+      return (points[a] - points[0]).squaredNorm() < (points[b] - points[0]).squaredNorm();
+    });
+    return others;
+  };
+  EXPECT_TRUE(is_on_face(points, 0, nearest()));
+  points.emplace_back(0.5, 1.0, 0.5);  // above the face, where the others are below
+  EXPECT_FALSE(is_on_face(points, 0, nearest()));
+}
+
 TEST(ExactPlanes, NeedSixteenNeighbours) {
   const Shape shape = drawn_box(16, Vec3(1, 1, 1e-9));
   std::vector<std::uint32_t> others(15);

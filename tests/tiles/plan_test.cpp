@@ -27,8 +27,10 @@ class PlanFile : public testing::Test, protected test::OwnFolder {
     plan.box = {{0, 1, 2}, {3, 4, 0.1 + 0.2}};
     plan.model = {"general", "/models/general.safetensors", "abc", false, true, true};
     plan.s_min = 0.1, plan.s_max = 1.0 / 3.0;
-    plan.normals = {true, 24, true, true};
-    plan.pyramid = {{0, 1, 2}, 3.0, {{false, gls::Crowd::kKeep}, {true, gls::Crowd::kMergeByAxis}}};
+    plan.normals = {true, 24, true, true, {0.01, {-1.0, 2.0, 0.5}, 0.04}};
+    plan.pyramids = {
+        {{0, 1, 2}, 3.0, {{false, gls::Crowd::kKeep}, {true, gls::Crowd::kMergeByAxis}}},
+        {{0, 1, 2}, 3.0, {{true, gls::Crowd::kKeep}}}};
     plan.grid = {0.1, 7};
     plan.buffer = 0.7, plan.reach = 0.3, plan.memory = 5'000'000'000;
     plan.tiles = {{0, -1, 50001, folder_ / "tiles/0.laz"}, {1, -1, 10, folder_ / "tiles/1.laz"}};
@@ -58,8 +60,13 @@ TEST_F(PlanFile, ComesBackAsItWas) {
   EXPECT_TRUE(back.model.exact);
   EXPECT_EQ(back.s_max, 1.0 / 3.0);
   EXPECT_EQ(back.normals.neighbours, 24u);
+  EXPECT_EQ(back.normals.rounding.step, 0.01);
+  EXPECT_EQ(back.normals.rounding.origin, Vec3(-1.0, 2.0, 0.5));
+  EXPECT_EQ(back.normals.rounding.spacing, 0.04);
   EXPECT_TRUE(back.normals.made && back.normals.exact_planes && back.normals.exact);
-  EXPECT_EQ(back.pyramid.levels, plan.pyramid.levels);
+  ASSERT_EQ(back.pyramids.size(), 2u);
+  EXPECT_EQ(back.pyramids[0].levels, plan.pyramids[0].levels);
+  EXPECT_EQ(back.pyramids[1].levels, plan.pyramids[1].levels);
   EXPECT_EQ(back.grid.length(), plan.grid.length());
   EXPECT_EQ(back.memory, plan.memory);
   EXPECT_EQ(back.tiles[0].row, -1);

@@ -261,6 +261,9 @@ void add_train(CLI::App& app, Common& common) {
       "pcednet train --project scan_annotation.json -o my.safetensors    a training of annotate");
   add_data_options(*command, *arguments);
   add_descriptor_options(*command, arguments->options.descriptor);
+  command->add_flag("--octaves", arguments->options.descriptor.octaves,
+                    "With --s-max-ratio: the model describes clouds of uneven spacing at larger "
+                    "scales where points are sparser; training does not");
   add_network_options(*command, arguments->options);
   add_recipe_options(*command, *arguments);
   for (const char* of_clouds : {"--s-min", "--s-max", "--context"}) {

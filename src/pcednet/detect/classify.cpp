@@ -2,13 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <optional>
+
 #include "pcednet/core/blocks.h"
 #include "pcednet/core/error.h"
 #include "pcednet/detect/context.h"
 #include "pcednet/detect/crease_kind.h"
 #include "pcednet/detect/decide.h"
 #include "pcednet/detect/describe.h"
-#include "pcednet/detect/part_of_cloud.h"
+#include "pcednet/detect/octaves.h"
 #include "pcednet/nn/predict.h"
 
 namespace pcednet::detect {
@@ -18,52 +21,41 @@ namespace {
 /// cancellation.
 constexpr std::size_t kDescribedBlock = 8 * kBlock;
 
-/// Classifies the points `order` of a cloud of `points`; rows_of(begin, end) gives the descriptions
-/// of at most `at_a_time` points.
+/// Classifies the points `order`; rows_of(begin, end) gives the descriptions of at most `at_a_time`
+/// of them.
 template <typename RowsOf>
-Classification decide_rows(std::size_t points, std::span<const std::uint32_t> order,
-                           std::size_t at_a_time, const RowsOf& rows_of, const EdgeModel& model,
-                           const Progress* progress) {
-  Classification found = nothing_found(points, has_own_classes(model.table));
-  Stage stage(progress, "describe", order.size());
+void decide_rows(std::span<const std::uint32_t> order, std::size_t at_a_time, const RowsOf& rows_of,
+                 const EdgeModel& model, Stage& stage, Classification& found) {
   for_each_block(order.size(), at_a_time, [&](std::size_t begin, std::size_t end) {
     const auto block = order.subspan(begin, end - begin);
     decide(block, nn::predict(model.network, rows_of(begin, end)), model, found);
     stage.advance(block.size());
   });
-  return found;
 }
 
-/// The points of `order` that are to get a label in `part`.
-std::vector<std::uint32_t> wanted_of(std::span<const std::uint32_t> order,
-                                     const PartOfCloud& part) {
-  std::vector<std::uint32_t> wanted(order.begin(), order.end());
-  std::erase_if(wanted, [&](std::uint32_t i) { return part.wanted[i] == 0; });
-  return wanted;
-}
-
-/// Holds the scale space only while needed.
+/// Holds a scale space only while needed.
 Classification describe_and_decide(const PreparedCloud& cloud, const EdgeModel& model,
                                    const Progress* progress) {
-  const gls::PyramidPlan* whole = cloud.part ? &cloud.part->pyramid : nullptr;
-  const gls::ScaleSpace space({cloud.positions, cloud.normals, cloud.curve, whole},
-                              model.descriptor, progress);
-  std::vector<std::uint32_t> wanted;
-  if (cloud.part) wanted = wanted_of(space.order(), *cloud.part);
-  const auto order = cloud.part ? std::span<const std::uint32_t>(wanted) : space.order();
+  Classification found = nothing_found(cloud.positions.size(), has_own_classes(model.table));
   const std::size_t width = row_width(model.descriptor);
-  std::vector<float> rows(std::min(kBlock, order.size()) * width);
+  std::vector<float> rows(std::min(kBlock, cloud.curve.size()) * width);
   const Progress cancel_only = without_report(progress);
-  const auto rows_of = [&](std::size_t begin, std::size_t end) {
-    const auto some = std::span(rows).first((end - begin) * width);
-    describe(space, order.subspan(begin, end - begin), some, &cancel_only);
-    return some;
-  };
-  Classification found =
-      decide_rows(cloud.positions.size(), order, kBlock, rows_of, model, progress);
-  found.s_min = space.scales().front();
-  found.s_max = space.scales().back();
-  found.note = gls::note_on(model.descriptor, space.scales(), cloud.positions);
+  std::optional<Stage> stage;
+  for_each_octave(cloud, model.descriptor, progress, [&](const auto& space, const auto& points) {
+    if (!stage) {
+      stage.emplace(progress, "describe", cloud.curve.size());
+      found.s_min = space.scales().front();
+      found.s_max = space.scales().back();
+      found.note = gls::note_on(model.descriptor, space.scales(), cloud.positions);
+    }
+    found.largest_scale = space.scales().back();
+    const auto rows_of = [&](std::size_t begin, std::size_t end) {
+      const auto some = std::span(rows).first((end - begin) * width);
+      describe(space, points.subspan(begin, end - begin), some, &cancel_only);
+      return some;
+    };
+    decide_rows(points, kBlock, rows_of, model, *stage, found);
+  });
   return found;
 }
 
@@ -121,8 +113,9 @@ Classification classify(const DescribedCloud& cloud, std::span<const Vec3> posit
     return std::span(cloud.values).subspan(begin * width, (end - begin) * width);
   };
   const auto decide = [&](const EdgeModel& suited) {
-    Classification found =
-        decide_rows(cloud.points, cloud.order, kDescribedBlock, rows_of, suited, progress);
+    Classification found = nothing_found(cloud.points, has_own_classes(suited.table));
+    Stage stage(progress, "describe", cloud.order.size());
+    decide_rows(cloud.order, kDescribedBlock, rows_of, suited, stage, found);
     found.s_min = cloud.scales.front();
     found.s_max = cloud.scales.back();
     return found;

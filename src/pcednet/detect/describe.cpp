@@ -1,5 +1,10 @@
 #include "pcednet/detect/describe.h"
 
+#include <algorithm>
+
+#include "pcednet/core/blocks.h"
+#include "pcednet/detect/octaves.h"
+
 namespace pcednet::detect {
 
 std::size_t row_width(const gls::ScaleSpaceOptions& descriptor) {
@@ -16,15 +21,29 @@ void describe(const gls::ScaleSpace& space, std::span<const std::uint32_t> point
 DescribedCloud describe(const PreparedCloud& cloud, const gls::ScaleSpaceOptions& descriptor,
                         const Progress* progress) {
   const Progress cancel_only = without_report(progress);
-  const gls::ScaleSpace space({cloud.positions, cloud.normals, cloud.curve}, descriptor,
-                              &cancel_only);
-  const auto order = space.order();
-  DescribedCloud described{.points = cloud.positions.size(),
-                           .order = {order.begin(), order.end()},
-                           .scales = {space.scales().begin(), space.scales().end()},
-                           .facts = facts_of(cloud, descriptor)};
-  described.values.resize(order.size() * row_width(descriptor));
-  describe(space, order, described.values, progress);
+  const std::size_t width = row_width(descriptor);
+  DescribedCloud described{
+      .points = cloud.positions.size(), .order = cloud.curve, .facts = facts_of(cloud, descriptor)};
+  described.values.resize(described.order.size() * width);
+  std::vector<std::uint32_t> row_of(described.points);
+  for (std::size_t row = 0; row < described.order.size(); ++row) {
+    row_of[described.order[row]] = static_cast<std::uint32_t>(row);
+  }
+  std::vector<float> rows;
+  Stage stage(progress, "describe", described.order.size());
+  for_each_octave(cloud, descriptor, &cancel_only, [&](const auto& space, const auto& points) {
+    if (described.scales.empty()) described.scales = space.scales();
+    for_each_block(points.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+      const auto block = points.subspan(begin, end - begin);
+      rows.resize(block.size() * width);
+      describe(space, block, rows, &cancel_only);
+      for (std::size_t i = 0; i < block.size(); ++i) {
+        std::copy_n(rows.data() + i * width, width,
+                    described.values.data() + row_of[block[i]] * width);
+      }
+      stage.advance(block.size());
+    });
+  });
   return described;
 }
 

@@ -121,6 +121,10 @@ gls::ScaleSpaceOptions take_descriptor(nn::Metadata& metadata) {
   if (metadata.has("descriptor_s_max_ratio")) {
     descriptor.s_max_ratio = metadata.take_number<double>("descriptor_s_max_ratio");
   }
+  if (metadata.has("descriptor_octaves")) {
+    metadata.take_fixed("descriptor_octaves", "1");
+    descriptor.octaves = true;
+  }
   return descriptor;
 }
 
@@ -142,6 +146,7 @@ void put_descriptor(const gls::ScaleSpaceOptions& descriptor,
   if (descriptor.s_max_ratio > 0.0) {
     metadata["descriptor_s_max_ratio"] = fmt::format("{}", descriptor.s_max_ratio);
   }
+  if (descriptor.octaves) metadata["descriptor_octaves"] = "1";
 }
 
 /// Moves entries whose names have `prefix` out of `all`, and strips the prefix.

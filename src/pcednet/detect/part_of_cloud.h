@@ -10,9 +10,9 @@ namespace pcednet::detect {
 
 /// A part of a larger cloud, for points to get the same labels as in the whole.
 struct PartOfCloud {
-  gls::PyramidPlan pyramid = {};          ///< of the whole
-  std::size_t points = 0;                 ///< of the whole
-  std::vector<std::uint8_t> wanted = {};  ///< 1: gets a label, 0: only a neighbour for others
+  std::vector<gls::PyramidPlan> pyramids = {};  ///< of the whole, one per octave in use
+  std::size_t points = 0;                       ///< of the whole
+  std::vector<std::uint8_t> wanted = {};        ///< 1: gets a label, 0: only a neighbour for others
 };
 
 }  // namespace pcednet::detect

@@ -63,10 +63,10 @@ Oriented complete_and_orient(const Points& cloud, const PreparedCloud& prepared,
         cloud.normals.begin(), cloud.normals.end(), given.begin(),
         [](const Vec3& normal) { return !is_usable(normal); }, Vec3(Vec3::Zero()));
   }
-  Oriented oriented{normals::complete_and_orient_normals(cloud.positions, given, options, progress),
-                    0};
+  Oriented oriented{
+      normals::complete_and_orient_normals(prepared.positions, given, options, progress), 0};
   if (!scanners.empty()) {
-    oriented.faced = normals::face_viewpoints(cloud.positions, oriented.found.normals, scanners);
+    oriented.faced = normals::face_viewpoints(prepared.positions, oriented.found.normals, scanners);
   }
   return oriented;
 }
@@ -88,8 +88,9 @@ std::string describe(const Oriented& oriented) {
 
 void use(Oriented&& oriented, const std::string& note, PreparedCloud& prepared) {
   prepared.notes.push_back(note);
-  prepared.decision = {true, oriented.found.neighbours, oriented.found.exact_planes,
-                       prepared.decision.exact};
+  prepared.decision.made = true;
+  prepared.decision.neighbours = oriented.found.neighbours;
+  prepared.decision.exact_planes = oriented.found.exact_planes;
   prepared.made = std::move(oriented.found.normals);
   prepared.normals = prepared.made;
 }
@@ -100,6 +101,18 @@ void estimate(PreparedCloud& prepared, const Points& cloud, const std::string& w
   const std::string note = fmt::format("{}: estimated from the {} nearest points and {}", why,
                                        oriented.found.neighbours, describe(oriented));
   use(std::move(oriented), note, prepared);
+}
+
+/// Spreads rounded positions.
+void spread_positions(const Rounding& rounding, PreparedCloud& prepared) {
+  if (rounding.step == 0.0) return;
+  prepared.moved = spread(prepared.positions, rounding);
+  prepared.positions = prepared.moved;
+  prepared.curve = spatial::curve_order(prepared.positions);
+  prepared.notes.push_back(fmt::format(
+      "coordinates are rounded to {:.6g}, about {:.2g} of the spacing: points are spread "
+      "within such a step before they are described, and written as they were read",
+      rounding.step, rounding.step / rounding.spacing));
 }
 
 /// The number of points with another sign than before, relative to the majority of their part or,
@@ -157,11 +170,14 @@ PreparedCloud prepare_points(const Points& cloud, const PrepareOptions& options,
   std::size_t usable = count_usable();
   if (options.decided) {
     prepared.decision = *options.decided;
+    spread_positions(prepared.decision.rounding, prepared);
     if (options.decided->made) estimate(prepared, cloud, "normals as decided", progress);
     return prepared;
   }
   if (usable < finite && finite - usable >= finite / kShareToEstimate) {
-    prepared.decision.exact = is_exact(cloud.positions, prepared.curve);
+    prepared.decision.rounding = find_rounding(prepared.positions, prepared.curve);
+    spread_positions(prepared.decision.rounding, prepared);
+    prepared.decision.exact = is_exact(prepared.positions, prepared.curve);
     estimate(prepared, cloud,
              !cloud.has_normals() ? "no normals in the file"
              : usable == 0        ? "no normal is usable"

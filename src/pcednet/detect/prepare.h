@@ -8,6 +8,7 @@
 
 #include "pcednet/cloud/point_cloud.h"
 #include "pcednet/core/progress.h"
+#include "pcednet/detect/rounding.h"
 
 namespace pcednet::detect {
 
@@ -18,6 +19,7 @@ struct NormalsDecision {
   std::size_t neighbours = 0;  ///< of each point, where normals are estimated
   bool exact_planes = false;   ///< see normals::NeighbourChoice
   bool exact = false;          ///< normals were missing, and is_exact() is true of the points
+  Rounding rounding = {};      ///< of the positions, where normals were missing
 };
 
 struct PrepareOptions {
@@ -29,9 +31,10 @@ struct PartOfCloud;
 
 /// The input of the descriptors, and the record of its preparation.
 struct PreparedCloud {
-  std::span<const Vec3> positions;    ///< the cloud's own
+  std::span<const Vec3> positions;    ///< the cloud's own, or `moved`
   std::span<const Vec3> normals;      ///< the cloud's own, or `made`; unit or (0,0,0)
   std::vector<std::uint32_t> curve;   ///< spatial::curve_order() of the positions
+  std::vector<Vec3> moved;            ///< empty unless the cloud's positions are rounded: spread()
   std::vector<Vec3> made;             ///< empty when the cloud's normals are used as they are
   std::vector<std::string> notes;     ///< for the user, one sentence each
   bool reoriented = false;            ///< the signs of the cloud's normals were mixed
@@ -41,7 +44,8 @@ struct PreparedCloud {
 
 /// Makes `cloud` ready for description; it must outlive the result. Where one point in a hundred or
 /// more has no usable normal, missing normals are estimated from the positions and all are
-/// oriented: by the scanner positions if the cloud has them.
+/// oriented: by the scanner positions if the cloud has them. If these positions are rounded
+/// coarsely, see find_rounding(), they are spread() before.
 ///
 /// Normals with mixed signs are oriented in the same way. Signs are mixed where more flat pairs of
 /// neighbours oppose than at the border of a patch, not as on the two sides of thin walls, where

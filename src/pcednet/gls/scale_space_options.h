@@ -23,6 +23,8 @@ struct ScaleSpaceOptions {
   double s_min = 0.0, s_max = 0.0;          ///< 0: from the cloud, see scale_range()
   double s_max_fraction = kPartOfDiagonal;  ///< of the diagonal, where s_max is 0
   double s_max_ratio = 0.0;  ///< if not 0 while s_max is 0: s_max over s_min, in even clouds
+  bool octaves = false;      ///< in uneven clouds, larger scales where the spacing is wider: see
+                             ///< detect/octaves.h; a scale space itself has one range
   FeatureSet features = FeatureSet::kPaper6;
   Reconstruction reconstruction = Reconstruction::kSphere;
   int max_projection_steps = 5;  ///< for the reconstructions that project

@@ -59,6 +59,10 @@ bool is_determined(const Plane& plane, const Neighbourhood& around) {
   return fill_a_plane(products);
 }
 
+bool better(const Plane& a, const Plane& b) {
+  return a.score < b.score;
+}
+
 /// The planes with enough neighbours on them.
 struct Planes {
   std::array<Plane, kSeeds*(kSeeds - 1) / 2> all;
@@ -95,8 +99,10 @@ Planes find_planes(std::span<const Vec3> points, std::size_t point,
   return planes_of(around);
 }
 
-bool better(const Plane& a, const Plane& b) {
-  return a.score < b.score;
+/// The one with most neighbours, near ones with more weight; none if there are no planes.
+const Plane* best_of(const Planes& planes) {
+  const auto begin = planes.all.begin(), end = begin + static_cast<std::ptrdiff_t>(planes.count);
+  return begin == end ? nullptr : &*std::max_element(begin, end, better);
 }
 
 /// The mean normal of the edge of two faces: all their points lie on one side of the plane across
@@ -126,14 +132,14 @@ Vec3 exact_normal(std::span<const Vec3> points, std::size_t point,
                   std::span<const std::uint32_t> neighbours) {
   Neighbourhood around;
   const Planes planes = find_planes(points, point, neighbours, kTolerance, around);
-  const auto begin = planes.all.begin(), end = begin + static_cast<std::ptrdiff_t>(planes.count);
-  if (begin == end) return Vec3::Zero();
-  const Plane& first = *std::max_element(begin, end, better);
+  const Plane* const best = best_of(planes);
+  if (best == nullptr) return Vec3::Zero();
+  const Plane& first = *best;
   const Plane* second = nullptr;
-  for (auto plane = begin; plane != end; ++plane) {
-    if (std::abs(plane->normal.dot(first.normal)) > kLargestSecondCosine) continue;
-    if (std::popcount(plane->on_it & ~first.on_it) < kLeastOnSecond) continue;
-    if (second == nullptr || better(*second, *plane)) second = &*plane;
+  for (const Plane& plane : std::span(planes.all).first(planes.count)) {
+    if (std::abs(plane.normal.dot(first.normal)) > kLargestSecondCosine) continue;
+    if (std::popcount(plane.on_it & ~first.on_it) < kLeastOnSecond) continue;
+    if (second == nullptr || better(*second, plane)) second = &plane;
   }
   if (second != nullptr) return mean_normal(first, *second, around);
 
@@ -147,12 +153,27 @@ Vec3 exact_normal(std::span<const Vec3> points, std::size_t point,
   return fit[0].normal.isZero(0.0) ? first.normal : fit[0].normal;
 }
 
+bool is_on_face(std::span<const Vec3> points, std::size_t point,
+                std::span<const std::uint32_t> neighbours) {
+  Neighbourhood around;
+  const Planes planes = find_planes(points, point, neighbours, kTolerance, around);
+  const Plane* const face = best_of(planes);
+  if (face == nullptr) return false;
+  bool above = false, below = false;
+  for (std::size_t k = 0; k < around.count; ++k) {
+    if (face->has(k)) continue;
+    const bool is_above = face->normal.dot(around.offsets[k]) > 0.0;
+    (is_above ? above : below) = true;
+  }
+  return !(above && below);
+}
+
 Vec3 face_normal(std::span<const Vec3> points, std::size_t point,
                  std::span<const std::uint32_t> neighbours, double tolerance) {
   Neighbourhood around;
   const Planes planes = find_planes(points, point, neighbours, tolerance, around);
-  const auto begin = planes.all.begin(), end = begin + static_cast<std::ptrdiff_t>(planes.count);
-  return begin == end ? Vec3(Vec3::Zero()) : std::max_element(begin, end, better)->normal;
+  const Plane* const best = best_of(planes);
+  return best == nullptr ? Vec3(Vec3::Zero()) : best->normal;
 }
 
 }  // namespace pcednet::normals

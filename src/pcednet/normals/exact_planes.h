@@ -30,6 +30,12 @@ bool fill_a_plane(const Mat3& products);
 Vec3 exact_normal(std::span<const Vec3> points, std::size_t point,
                   std::span<const std::uint32_t> neighbours);
 
+/// Whether the point lies on such a plane whose neighbours off it are all on one side. They are
+/// where the plane is a face; the surface crosses the planes that a scanner's beam sweeps, and
+/// those through rows of points on a grid.
+bool is_on_face(std::span<const Vec3> points, std::size_t point,
+                std::span<const std::uint32_t> neighbours);
+
 /// The normal of the first of these planes alone, for any `tolerance` in place of 0.003: of one
 /// face even where the point is near its edge.
 Vec3 face_normal(std::span<const Vec3> points, std::size_t point,

@@ -18,7 +18,7 @@ constexpr std::array<std::size_t, 3> kCounts = {12, 24, 48};
 
 constexpr double kClean = 0.01;  ///< median thickness
 constexpr double kBall = 0.4;    ///< median thickness of neighbourhoods that show no surface
-constexpr double kExactShare = 0.2;
+constexpr double kExactShare = 0.17;
 
 /// Measures on a sample of the points.
 struct Measures {
@@ -49,7 +49,7 @@ Measures measure(std::span<const Vec3> points, const spatial::NeighbourSearch& s
         thickness[c][begin + i] = fits[i].thickness;
         if (kCounts[c] != kCounts.back()) continue;
         const auto row = std::span(neighbours).subspan(i * kCounts[c], kCounts[c]);
-        is_exact[begin + i] = !exact_normal(points, chosen[i], row).isZero(0.0);
+        is_exact[begin + i] = is_on_face(points, chosen[i], row);
       }
     }
   });

@@ -20,9 +20,9 @@ struct NeighbourChoice {
 /// bends and reduce it where it is noise. The count is therefore doubled as long as the median
 /// thickness of 2000 points (see PlaneFit) falls, the first time only if it is above 0.01. From 0.4
 /// on, neighbourhoods are balls of noise, and 48 are taken. Only above 0.01, where planes across
-/// edges are the rule, are exact planes looked for: a fifth of the 2000 points must have one, which
-/// neither noise nor curved surfaces reach. `points` must be distinct and in curve order, and
-/// `search` made from them.
+/// edges are the rule, are exact planes looked for: a sixth of the 2000 points must lie on one, see
+/// is_on_face(), which neither noise nor curved surfaces reach. `points` must be distinct and in
+/// curve order, and `search` made from them.
 NeighbourChoice choose_neighbours(std::span<const Vec3> points,
                                   const spatial::NeighbourSearch& search);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "pcednet/detect/octaves.h"
 #include "pcednet/gls/fast_scale_space.h"
 #include "pcednet/spatial/curve_order.h"
 #include "pcednet/tiles/inputs.h"
@@ -75,6 +76,7 @@ std::vector<std::vector<std::uint32_t>> batches_of(std::span<const Vec3> positio
 
 void note(const detect::PreparedCloud& prepared, Plan& plan) {
   plan.normals = prepared.decision;
+  plan.normals.rounding.origin = plan.box.min;  // as of the cloud as a whole
   plan.notes.insert(plan.notes.end(), prepared.notes.begin(), prepared.notes.end());
 }
 
@@ -120,22 +122,32 @@ PointCloud read_dense_sample(std::span<const Vec3> sample, const Plan& plan,
 void decide(const PointCloud& dense, const detect::EdgeModel& model,
             const detect::PrepareOptions& options, Plan& plan, const Progress* progress) {
   detect::PreparedCloud prepared;
-  std::vector<Vec3> estimated;
+  std::vector<Vec3> estimated, moved;
   if (!dense.has_normals() && dense.size() > kBatchPoints) {
     estimated = estimate_in_batches(dense, options, plan, progress);
+    prepared.positions = dense.positions;
     prepared.normals = estimated;
+    if (plan.normals.rounding.step > 0.0) {
+      moved = detect::spread(dense.positions, plan.normals.rounding);
+      prepared.positions = moved;
+    }
   } else {
     prepared = detect::prepare(dense, options, progress);
     note(prepared, plan);
   }
-  plan.pyramid.corner = plan.box.min;
-  plan.pyramid.side = (plan.box.max - plan.box.min).maxCoeff();
-  if (plan.model.exact || !gls::fits_spheres(model.descriptor.reconstruction)) return;
   gls::ScaleSpaceOptions descriptor = model.descriptor;
   descriptor.s_min = plan.s_min, descriptor.s_max = plan.s_max;
-  const gls::FastScaleSpace space({dense.positions, prepared.normals, prepared.curve}, descriptor,
-                                  progress);
-  plan.pyramid.levels = space.pyramid_plan().levels;
+  const bool has_octaves = detect::has_octaves(descriptor, plan.s_min, plan.s_max);
+  for (std::size_t octave = 0; octave < (has_octaves ? detect::kOctaves : 1); ++octave) {
+    if (octave > 0) descriptor = detect::at_octave(descriptor, plan.s_min, octave);
+    gls::PyramidPlan& pyramid = plan.pyramids.emplace_back();
+    pyramid.corner = plan.box.min;
+    pyramid.side = (plan.box.max - plan.box.min).maxCoeff();
+    if (plan.model.exact || !gls::fits_spheres(descriptor.reconstruction)) continue;
+    const gls::FastScaleSpace space({prepared.positions, prepared.normals, prepared.curve},
+                                    descriptor, progress);
+    pyramid.levels = space.pyramid_plan().levels;
+  }
 }
 
 }  // namespace pcednet::tiles

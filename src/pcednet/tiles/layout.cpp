@@ -20,7 +20,7 @@ constexpr std::size_t kMostTiles = 1'000'000;
 // The program with its model and read buffers, and bytes per point: for measurements see
 // docs/large.md.
 constexpr std::uint64_t kFixedBytes = 100'000'000, kBytesPerPoint = 300;
-constexpr std::uint64_t kNormalBytes = 150, kNeighbourBytes = 10;
+constexpr std::uint64_t kNormalBytes = 150, kNeighbourBytes = 10, kMovedBytes = sizeof(Vec3);
 
 /// Sums of counts over rectangles of cells.
 class SummedCounts {
@@ -151,7 +151,8 @@ Vec3 shares_of(const BoundingBox& box, const BoundingBox& whole) {
 }
 
 std::uint64_t memory_for(std::uint64_t points, const detect::NormalsDecision& normals) {
-  const std::uint64_t made = normals.made ? kNormalBytes + kNeighbourBytes * normals.neighbours : 0;
+  std::uint64_t made = normals.made ? kNormalBytes + kNeighbourBytes * normals.neighbours : 0;
+  if (normals.rounding.step > 0.0) made += kMovedBytes;
   return kFixedBytes + (kBytesPerPoint + made) * points;
 }
 

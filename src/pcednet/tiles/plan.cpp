@@ -118,6 +118,25 @@ PlannedModel model_of(const json& j, const Paths& paths) {
           .exact = j.at("exact")};
 }
 
+json json_of(const detect::NormalsDecision& normals) {
+  const detect::Rounding& rounding = normals.rounding;
+  return {{"made", normals.made},
+          {"neighbours", normals.neighbours},
+          {"exact_planes", normals.exact_planes},
+          {"exact", normals.exact},
+          {"rounded_to", rounding.step},
+          {"rounded_from", json_of(rounding.origin)},
+          {"spacing", rounding.spacing}};
+}
+
+detect::NormalsDecision normals_in(const json& j) {
+  return {j.at("made"),
+          j.at("neighbours"),
+          j.at("exact_planes"),
+          j.at("exact"),
+          {j.at("rounded_to"), vec3_of(j.at("rounded_from")), j.at("spacing")}};
+}
+
 json json_of(const gls::PyramidPlan& pyramid) {
   json levels = json::array();
   for (const auto& level : pyramid.levels) {
@@ -137,12 +156,12 @@ gls::PyramidPlan pyramid_of(const json& j) {
 }
 
 std::string text_of(const Plan& plan, const Paths& paths) {
-  std::vector<std::string> inputs, tiles;
+  std::vector<std::string> inputs, tiles, pyramids;
+  for (const auto& pyramid : plan.pyramids) pyramids.push_back(json_of(pyramid).dump());
   for (const PlannedInput& input : plan.inputs) inputs.push_back(text_of(input, paths));
   for (std::size_t id = 0; id < plan.tiles.size(); ++id) {
     tiles.push_back(text_of(id, plan.tiles[id], plan, paths));
   }
-  const auto& normals = plan.normals;
   const std::vector<std::pair<const char*, std::string>> members = {
       {"format", json(kFormat).dump()},
       {"program", json(plan.version).dump()},
@@ -151,12 +170,8 @@ std::string text_of(const Plan& plan, const Paths& paths) {
       {"las_steps", json(plan.las_steps).dump()},
       {"model", json_of(plan.model, paths).dump()},
       {"scales", json{{"s_min", plan.s_min}, {"s_max", plan.s_max}}.dump()},
-      {"normals", json{{"made", normals.made},
-                       {"neighbours", normals.neighbours},
-                       {"exact_planes", normals.exact_planes},
-                       {"exact", normals.exact}}
-                      .dump()},
-      {"pyramid", json_of(plan.pyramid).dump()},
+      {"normals", json_of(plan.normals).dump()},
+      {"pyramids", list_of(pyramids, "  ")},
       {"cell", json(plan.grid.cell).dump()},
       {"cells_across", json(plan.grid.across).dump()},
       {"buffer", json(plan.buffer).dump()},
@@ -180,10 +195,8 @@ Plan plan_of(const json& j, const Paths& paths) {
   plan.model = model_of(j.at("model"), paths);
   plan.s_min = j.at("scales").at("s_min");
   plan.s_max = j.at("scales").at("s_max");
-  const json& normals = j.at("normals");
-  plan.normals = {normals.at("made"), normals.at("neighbours"), normals.at("exact_planes"),
-                  normals.value("exact", false)};
-  plan.pyramid = pyramid_of(j.at("pyramid"));
+  plan.normals = normals_in(j.at("normals"));
+  for (const json& pyramid : j.at("pyramids")) plan.pyramids.push_back(pyramid_of(pyramid));
   plan.grid = {j.at("cell"), j.at("cells_across")};
   plan.buffer = j.at("buffer");
   plan.reach = j.at("reach");

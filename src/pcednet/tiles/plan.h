@@ -59,7 +59,8 @@ struct Plan {
   PlannedModel model = {};
   double s_min = 0.0, s_max = 0.0;
   detect::NormalsDecision normals = {};
-  gls::PyramidPlan pyramid = {};  ///< without levels for the exact engine
+  /// One per octave of scales in use; without levels for the exact engine.
+  std::vector<gls::PyramidPlan> pyramids = {};
   Grid grid = {};
   double buffer = 0.0;  ///< points within this distance of a core are read with it
   double reach =

@@ -41,7 +41,8 @@ std::shared_ptr<const Start> Session::State::start_of(const Settings& settings, 
 Subject Session::State::subject_of(std::span<const std::shared_ptr<const Described>> rows) const {
   Subject subject{.clouds = {}, .table = table()};
   for (std::size_t k = 0; k < rows.size(); ++k) {
-    subject.clouds.push_back({*rows[k], scenes[k]->cloud.positions, scenes[k]->prepared.curve});
+    const detect::PreparedCloud& prepared = scenes[k]->prepared;
+    subject.clouds.push_back({*rows[k], prepared.positions, prepared.curve});
   }
   return subject;
 }
@@ -64,7 +65,7 @@ Predictions Session::State::predictions_of(const detect::EdgeModel& model,
     predictions.push_back(make_prediction(
         *scenes[k], model,
         is_known ? part_of(found, firsts[k], points)
-                 : detect::classify(rows[k]->cloud, scenes[k]->cloud.positions, model)));
+                 : detect::classify(rows[k]->cloud, scenes[k]->prepared.positions, model)));
   }
   return predictions;
 }

@@ -1,0 +1,105 @@
+#include "pcednet/detect/octaves.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "pcednet/core/median.h"
+#include "pcednet/core/parallel_loops.h"
+#include "pcednet/detect/part_of_cloud.h"
+#include "pcednet/normals/neighbour_graph.h"
+
+namespace pcednet::detect {
+namespace {
+
+constexpr std::size_t kForSpacing = gls::kSpacingNeighbours - 1;
+
+/// The mean distance of every point of the graph to its neighbours.
+std::vector<double> spacings_in(const normals::NeighbourGraph& graph) {
+  std::vector<double> spacings(graph.points.size());
+  parallel_for_each(spacings.size(), [&](std::size_t i) {
+    double sum = 0.0;
+    for (const std::uint32_t k : graph.of(i)) sum += (graph.points[k] - graph.points[i]).norm();
+    spacings[i] = sum / static_cast<double>(graph.degree);
+  });
+  return spacings;
+}
+
+std::uint8_t octave_of(double spacing, double s_min) {
+  const double octave = std::round(std::log2(spacing / s_min));
+  return static_cast<std::uint8_t>(std::clamp(octave, 0.0, static_cast<double>(kOctaves - 1)));
+}
+
+std::vector<std::uint32_t> chosen_of(std::span<const std::uint32_t> order,
+                                     std::span<const std::uint8_t> octaves, std::size_t octave,
+                                     const PartOfCloud* part) {
+  std::vector<std::uint32_t> chosen;
+  std::copy_if(order.begin(), order.end(), std::back_inserter(chosen), [&](std::uint32_t i) {
+    return (octaves.empty() ? 0u : octaves[i]) == octave && (!part || part->wanted[i] != 0);
+  });
+  return chosen;
+}
+
+}  // namespace
+
+bool has_octaves(const gls::ScaleSpaceOptions& descriptor, double s_min, double s_max) {
+  constexpr double kRounding = 1e-6;
+  return descriptor.octaves && descriptor.s_max_ratio > 0.0 &&
+         s_max > (1.0 + kRounding) * descriptor.s_max_ratio * s_min;
+}
+
+gls::ScaleSpaceOptions at_octave(gls::ScaleSpaceOptions descriptor, double s_min,
+                                 std::size_t octave) {
+  descriptor.s_min = s_min * static_cast<double>(std::size_t{1} << octave);
+  descriptor.s_max = descriptor.s_max_ratio * descriptor.s_min;
+  return descriptor;
+}
+
+std::vector<std::uint8_t> octaves_of(std::span<const Vec3> positions,
+                                     std::span<const std::uint32_t> curve, double s_min) {
+  const auto graph = normals::make_neighbour_graph(positions, kForSpacing, nullptr, curve);
+  std::vector<std::uint8_t> octaves(positions.size(), 0);
+  if (graph.degree == 0) return octaves;
+  const std::vector<double> spacings = spacings_in(graph);
+  std::vector<std::uint8_t> found(spacings.size());
+  parallel_for_each(found.size(), [&](std::size_t i) {
+    std::vector<double> around;
+    for (const std::uint32_t k : graph.of(i)) around.push_back(spacings[k]);
+    found[i] = octave_of(upper_median(std::move(around)), s_min);
+  });
+  parallel_for_each(octaves.size(), [&](std::size_t i) {
+    if (graph.point_of[i] != normals::kNoPoint) octaves[i] = found[graph.point_of[i]];
+  });
+  return octaves;
+}
+
+void for_each_octave(
+    const PreparedCloud& cloud, const gls::ScaleSpaceOptions& descriptor, const Progress* progress,
+    const std::function<void(const gls::ScaleSpace&, std::span<const std::uint32_t>)>& work) {
+  const auto space_of = [&](std::size_t octave, const gls::ScaleSpaceOptions& options,
+                            const Progress* its) {
+    const gls::PyramidPlan* whole = cloud.part ? &cloud.part->pyramids[octave] : nullptr;
+    return gls::ScaleSpace({cloud.positions, cloud.normals, cloud.curve, whole}, options, its);
+  };
+  std::vector<std::uint8_t> octaves;
+  double s_min = 0.0;
+  {
+    const gls::ScaleSpace space = space_of(0, descriptor, progress);
+    s_min = space.scales().front();
+    if (has_octaves(descriptor, s_min, space.scales().back())) {
+      octaves = octaves_of(cloud.positions, cloud.curve, s_min);
+    }
+    if (octaves.empty() && !cloud.part) return work(space, space.order());
+    work(space, chosen_of(space.order(), octaves, 0, cloud.part));
+  }
+  const Progress cancel_only = without_report(progress);
+  for (std::size_t octave = 1; octave < kOctaves; ++octave) {
+    if (chosen_of(cloud.curve, octaves, octave, cloud.part).empty()) continue;
+    const gls::ScaleSpace space =
+        space_of(octave, at_octave(descriptor, s_min, octave), &cancel_only);
+    work(space, chosen_of(space.order(), octaves, octave, cloud.part));
+  }
+}
+
+}  // namespace pcednet::detect

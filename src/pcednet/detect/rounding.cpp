@@ -1,0 +1,121 @@
+#include "pcednet/detect/rounding.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <numbers>
+
+#include "pcednet/cloud/bounding_box.h"
+#include "pcednet/core/median.h"
+#include "pcednet/core/parallel_loops.h"
+#include "pcednet/core/random.h"
+#include "pcednet/detect/exact_points.h"
+#include "pcednet/detect/near_on_curve.h"
+#include "pcednet/normals/plane_fit.h"
+
+namespace pcednet::detect {
+namespace {
+
+constexpr double kLeastStep = 0.1;       ///< that matters, over the spacing
+constexpr double kLeastExtent = 1e-8;    ///< a step is at least this part of the extent
+constexpr double kOff = 0.1;             ///< of a step: what a coordinate may be off its multiple
+constexpr std::size_t kShareMoved = 20;  ///< one point in so many lies on a surface that was moved
+
+/// The largest number of which all of these, sorted and beginning with 0, are multiples; infinite
+/// if all are 0, and 0 if it would be below `least`. Later numbers make it more precise.
+double common_step(std::span<const double> offsets, double least) {
+  double step = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 1; i < offsets.size(); ++i) {
+    const double gap = offsets[i] - offsets[i - 1];
+    if (gap >= least) step = std::min(step, gap);
+  }
+  if (std::isinf(step)) return step;
+  for (std::size_t i = 0; i < offsets.size();) {
+    const double multiple = std::round(offsets[i] / step);
+    const double off = std::abs(offsets[i] - multiple * step);
+    if (off > kOff * step) {  // as in Euclid's algorithm
+      if (off < least) return 0.0;
+      step = off, i = 0;
+      continue;
+    }
+    if (multiple > 0.0) step = offsets[i] / multiple;
+    ++i;
+  }
+  return step;
+}
+
+/// The smallest of the steps of x, y and z.
+double least_step(std::span<const Vec3> positions, std::span<const std::uint32_t> points) {
+  double step = std::numeric_limits<double>::infinity();
+  std::vector<double> offsets(points.size());
+  for (int axis = 0; axis < 3; ++axis) {
+    std::transform(points.begin(), points.end(), offsets.begin(),
+                   [&](std::uint32_t i) { return positions[i][axis]; });
+    std::sort(offsets.begin(), offsets.end());
+    const double first = offsets.front();
+    for (double& offset : offsets) offset -= first;
+    step = std::min(step, common_step(offsets, kLeastExtent * offsets.back()));
+  }
+  return std::isinf(step) ? 0.0 : step;
+}
+
+/// The median over the points. A circle about a point with `kInCircle` others in it has as many
+/// times the area that a point takes; further ones are often elsewhere on the curve.
+double spacing_of(std::span<const Vec3> positions, const NearOnCurve& near) {
+  constexpr std::size_t kInCircle = 4;
+  std::vector<double> reach(near.points.size());
+  for (std::size_t i = 0; i < reach.size(); ++i) {
+    reach[i] = (positions[near.of(i)[kInCircle - 1]] - positions[near.points[i]]).norm();
+  }
+  return upper_median(reach) * std::sqrt(std::numbers::pi / kInCircle);
+}
+
+/// Whether fewer than half of the points near one have a coordinate in common with it, as on faces
+/// parallel to an axis, and they lie on no other plane either.
+bool is_moved(std::span<const Vec3> positions, std::uint32_t point,
+              std::span<const std::uint32_t> near, const normals::PlaneFit& fit, double step) {
+  if (fit.thickness < kExactThickness) return false;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto common = std::count_if(near.begin(), near.end(), [&](std::uint32_t other) {
+      return std::abs(positions[other][axis] - positions[point][axis]) < 0.5 * step;
+    });
+    if (2 * static_cast<std::size_t>(common) >= near.size()) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+Rounding find_rounding(std::span<const Vec3> positions, std::span<const std::uint32_t> curve) {
+  const NearOnCurve near = near_on_curve(positions, curve);
+  if (near.points.empty()) return {};
+  const double step = least_step(positions, near.points);
+  const double spacing = spacing_of(positions, near);
+  if (step < kLeastStep * spacing || step == 0.0) return {};
+  std::vector<normals::PlaneFit> fits(near.points.size());
+  normals::fit_planes(positions, near.points, near.neighbours, fits);
+  std::size_t moved = 0;
+  for (std::size_t i = 0; i < fits.size(); ++i) {
+    moved += is_moved(positions, near.points[i], near.of(i), fits[i], step) ? 1 : 0;
+  }
+  if (moved * kShareMoved < fits.size()) return {};
+  return {step, bounding_box(positions).min, spacing};
+}
+
+std::vector<Vec3> spread(std::span<const Vec3> positions, const Rounding& rounding) {
+  std::vector<Vec3> moved(positions.begin(), positions.end());
+  parallel_for_each(moved.size(), [&](std::size_t i) {
+    Vec3& position = moved[i];
+    if (!position.allFinite()) return;
+    const auto multiple = [&](int axis) {
+      return static_cast<std::uint64_t>(
+          std::llround((position[axis] - rounding.origin[axis]) / rounding.step));
+    };
+    Random random(multiple(0), Random(multiple(1), multiple(2)).next());
+    for (double& coordinate : position) coordinate += rounding.step * random.uniform(-0.5, 0.5);
+  });
+  return moved;
+}
+
+}  // namespace pcednet::detect

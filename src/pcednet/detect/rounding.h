@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "pcednet/core/vec3.h"
+
+namespace pcednet::detect {
+
+/// Coordinates rounded to multiples of a step: by a scale of LAS, by decimals of a text, or to the
+/// centres of voxels.
+struct Rounding {
+  double step = 0.0;           ///< 0: not rounded, or too finely to matter
+  Vec3 origin = Vec3::Zero();  ///< a corner of the lattice
+  double spacing = 0.0;        ///< of neighbouring points, about
+};
+
+/// The rounding of a cloud to steps of more than a tenth of its spacing, which turns surfaces that
+/// are oblique to the axes into stairs, whose treads are level and whose risers look like edges.
+/// The smallest step of the three axes counts, so the raster of a terrain model is none. Neither
+/// are points of a solid of which nearly all faces are parallel to the axes or lattice planes: they
+/// were not moved.
+///
+/// Judged by 2,000 points. `curve` is the spatial::curve_order() of the positions.
+Rounding find_rounding(std::span<const Vec3> positions, std::span<const std::uint32_t> curve);
+
+/// The positions with a pseudo-random part of half a step at most, up or down, added to each
+/// coordinate: the stairs become noise of 0.29 steps. What is added depends on the rounded position
+/// relative to the origin alone, so copies of a point stay copies.
+std::vector<Vec3> spread(std::span<const Vec3> positions, const Rounding& rounding);
+
+}  // namespace pcednet::detect
