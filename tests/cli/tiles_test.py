@@ -94,6 +94,26 @@ class Tiles(CliTest):
         write_ply(self.folder / "bare.ply", *field(normals=False))
         self.check_equal_to_untiled(self.folder / "bare.ply", 0.999)
 
+    def test_labels_are_those_of_the_whole_cloud_if_rounded(self):
+        p, _ = field()
+        c, s = np.cos(0.5), np.sin(0.5)
+        oblique = p @ np.array([[c, s, 0], [-s, c, 0], [0, 0, 1]]) @ np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]])
+        write_ply(self.folder / "rounded.ply", np.round(oblique / 0.02).astype(np.float32) * 0.02)
+        self.check_equal_to_untiled(self.folder / "rounded.ply", 0.999)
+        plan = json.loads((self.folder / "p.json").read_text())
+        self.assertAlmostEqual(plan["normals"]["rounded_to"], 0.02, 6)
+        self.assertIn("rounded to 0.02", plan["notes"][0])
+
+    def test_labels_are_those_of_the_whole_cloud_where_the_spacing_varies(self):
+        p, n = field()
+        kept = np.random.default_rng(4).random(len(p)) < 0.04 + np.exp(-1.5 * p[:, 0])
+        write_ply(self.folder / "uneven.ply", p[kept], n[kept])
+        self.check_equal_to_untiled(self.folder / "uneven.ply", 0.999)
+        plan = json.loads((self.folder / "p.json").read_text())
+        self.assertEqual(len(plan["pyramids"]), 4)
+        said = run("classify", self.folder / "uneven.ply", "-o", self.folder / "u.ply").stderr
+        self.assertIn("where points are sparser", said)
+
     def test_a_plan_is_the_same_again_and_says_what_decides(self):
         p, n = field(3, 600)
         write_ply(self.folder / "a.ply", p, n)
@@ -102,7 +122,7 @@ class Tiles(CliTest):
         run("tiles", "plan", self.folder / "a.ply", "-o", plan, "--tile", 1, "--threads", 1,
             "--overwrite")
         self.assertEqual(plan.read_bytes(), first)
-        for name in ("program", "model", "scales", "normals", "pyramid", "buffer", "inputs"):
+        for name in ("program", "model", "scales", "normals", "pyramids", "buffer", "inputs"):
             self.assertIn(name, content)
         self.assertEqual(sum(t["points"] for t in content["tiles"]), len(p))
         self.assertEqual(len(content["model"]["sha256"]), 64)

@@ -119,22 +119,30 @@ PointCloud read_dense_sample(std::span<const Vec3> sample, const Plan& plan,
   return dense;
 }
 
-void decide(const PointCloud& dense, const detect::EdgeModel& model,
-            const detect::PrepareOptions& options, Plan& plan, const Progress* progress) {
-  detect::PreparedCloud prepared;
-  std::vector<Vec3> estimated, moved;
+PreparedSample decide_normals(const PointCloud& dense, const detect::PrepareOptions& options,
+                              Plan& plan, const Progress* progress) {
+  PreparedSample sample;
   if (!dense.has_normals() && dense.size() > kBatchPoints) {
-    estimated = estimate_in_batches(dense, options, plan, progress);
-    prepared.positions = dense.positions;
-    prepared.normals = estimated;
+    sample.positions = dense.positions;
+    sample.made = estimate_in_batches(dense, options, plan, progress);
+    sample.normals = sample.made;
     if (plan.normals.rounding.step > 0.0) {
-      moved = detect::spread(dense.positions, plan.normals.rounding);
-      prepared.positions = moved;
+      sample.moved = detect::spread(dense.positions, plan.normals.rounding);
+      sample.positions = sample.moved;
     }
-  } else {
-    prepared = detect::prepare(dense, options, progress);
-    note(prepared, plan);
+    sample.curve = spatial::curve_order(sample.positions);
+    return sample;
   }
+  detect::PreparedCloud prepared = detect::prepare(dense, options, progress);
+  note(prepared, plan);
+  sample.positions = prepared.positions, sample.normals = prepared.normals;
+  sample.curve = std::move(prepared.curve);
+  sample.moved = std::move(prepared.moved), sample.made = std::move(prepared.made);
+  return sample;
+}
+
+void decide_voxels(const PreparedSample& sample, const detect::EdgeModel& model, Plan& plan,
+                   const Progress* progress) {
   gls::ScaleSpaceOptions descriptor = model.descriptor;
   descriptor.s_min = plan.s_min, descriptor.s_max = plan.s_max;
   const bool has_octaves = detect::has_octaves(descriptor, plan.s_min, plan.s_max);
@@ -144,8 +152,8 @@ void decide(const PointCloud& dense, const detect::EdgeModel& model,
     pyramid.corner = plan.box.min;
     pyramid.side = (plan.box.max - plan.box.min).maxCoeff();
     if (plan.model.exact || !gls::fits_spheres(descriptor.reconstruction)) continue;
-    const gls::FastScaleSpace space({prepared.positions, prepared.normals, prepared.curve},
-                                    descriptor, progress);
+    const gls::FastScaleSpace space({sample.positions, sample.normals, sample.curve}, descriptor,
+                                    progress);
     pyramid.levels = space.pyramid_plan().levels;
   }
 }

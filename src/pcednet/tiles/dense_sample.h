@@ -5,6 +5,7 @@
 
 #include "pcednet/core/progress.h"
 #include "pcednet/detect/model.h"
+#include "pcednet/detect/prepare.h"
 #include "pcednet/tiles/plan.h"
 
 namespace pcednet::tiles {
@@ -15,11 +16,21 @@ namespace pcednet::tiles {
 PointCloud read_dense_sample(std::span<const Vec3> sample, const Plan& plan,
                              const Progress* progress);
 
-/// Makes, from a dense sample, the decisions that depend on all points of a cloud: on normals and
-/// voxels as prepare() and the fast engine make them for a cloud in memory; where many points have
-/// no normals, a part of them decides on their estimation. The plan must have its box and scales.
-/// The notes of prepare() go to the plan's, for the user.
-void decide(const PointCloud& dense, const detect::EdgeModel& model,
-            const detect::PrepareOptions& options, Plan& plan, const Progress* progress);
+/// A dense sample, ready for description. It must outlive this.
+struct PreparedSample {
+  std::span<const Vec3> positions, normals;
+  std::vector<std::uint32_t> curve;  ///< of the positions
+  std::vector<Vec3> moved, made;     ///< unless they are the sample's own
+};
+
+/// Makes, from a dense sample, the decisions on normals that prepare() makes for a cloud in memory;
+/// where many points have no normals, a part of them decides. The plan must have its box. The notes
+/// of prepare() go to the plan's, for the user.
+PreparedSample decide_normals(const PointCloud& dense, const detect::PrepareOptions& options,
+                              Plan& plan, const Progress* progress);
+
+/// The decisions on voxels, as the fast engine makes them. The plan must have its scales.
+void decide_voxels(const PreparedSample& sample, const detect::EdgeModel& model, Plan& plan,
+                   const Progress* progress);
 
 }  // namespace pcednet::tiles

@@ -186,12 +186,14 @@ Plan make_plan(const PlanRequest& request, const detect::EdgeModel& model,
   check_order_early(request, plan, sample);
   const double cell = counting_cell(request, plan.box);
   CellCounts counts(cell);
+
+  const PointCloud dense = read_dense_sample(sample, plan, progress);
+  const PreparedSample prepared =
+      decide_normals(dense, {.keep_orientation = request.keep_orientation}, plan, progress);
   const Spacing spacing =
       find_spacing({sample, is_all}, plan, gls::given_range(model.descriptor), counts, progress);
   plan.s_min = spacing.range.s_min, plan.s_max = spacing.range.s_max;
-
-  const PointCloud dense = read_dense_sample(sample, plan, progress);
-  decide(dense, model, {.keep_orientation = request.keep_orientation}, plan, progress);
+  decide_voxels(prepared, model, plan, progress);
 
   set_buffer(model, spacing, plan);
   plan.grid = grid_of(request, counts, cell, plan);

@@ -16,7 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr const char* kFormat = "pcednet-tiles-1";
+constexpr const char* kFormat = "pcednet-tiles-2";
 constexpr std::array<const char*, 3> kCrowds = {"keep", "merge", "merge by axis"};
 
 /// Converts between paths in plan files and paths in this process.

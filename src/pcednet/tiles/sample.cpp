@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "pcednet/core/random.h"
+#include "pcednet/detect/rounding.h"
 #include "pcednet/spatial/curve_order.h"
 #include "pcednet/spatial/kd_tree.h"
 #include "pcednet/tiles/inputs.h"
@@ -27,6 +28,12 @@ void stream_points(const Plan& plan, const Progress* progress,
   }
 }
 
+/// The positions as they are described.
+std::vector<Vec3> described(std::span<const Vec3> positions, const Plan& plan) {
+  if (plan.normals.rounding.step > 0.0) return detect::spread(positions, plan.normals.rounding);
+  return {positions.begin(), positions.end()};
+}
+
 /// Mean distances to the nearest others of positions at equal steps of the sample.
 std::vector<double> spacings_from(const SampledPoints& sample, const Plan& plan, CellCounts& counts,
                                   const Progress* progress) {
@@ -40,8 +47,6 @@ std::vector<double> spacings_from(const SampledPoints& sample, const Plan& plan,
   };
   const std::size_t points = sample.positions.size();
   if (sample.is_all) {
-    counts.add(sample.positions);
-    counts.add_not_finite(plan.points() - points);
     return gls::sampled_spacings(
         points, [&](std::size_t place) { return gls::mean_distance(nearest(place)); });
   }
@@ -53,7 +58,7 @@ std::vector<double> spacings_from(const SampledPoints& sample, const Plan& plan,
   }
   NearestInStream stream(std::move(places), reach);
   stream_points(plan, progress, [&](std::span<const Vec3> positions) {
-    stream.add(positions);
+    stream.add(described(positions, plan));
     counts.add(positions);
   });
   std::vector<double> spacings;
@@ -95,8 +100,15 @@ std::vector<Vec3> Sample::take() {
 
 Spacing find_spacing(const SampledPoints& sample, const Plan& plan, const gls::ScaleRange& given,
                      CellCounts& counts, const Progress* progress) {
-  std::vector<double> spacings = spacings_from(sample, plan, counts, progress);
-  std::vector<Vec3> positions(sample.positions.begin(), sample.positions.end());
+  if (sample.is_all) {
+    counts.add(sample.positions);
+    counts.add_not_finite(plan.points() - sample.positions.size());
+  }
+  std::vector<Vec3> positions = described(sample.positions, plan);
+  if (plan.normals.rounding.step > 0.0) {
+    positions = spatial::in_order(positions, spatial::curve_order(positions));
+  }
+  std::vector<double> spacings = spacings_from({positions, sample.is_all}, plan, counts, progress);
   if (!sample.is_all) positions.insert(positions.end(), {plan.box.min, plan.box.max});
   Spacing spacing{.range = gls::scale_range(positions, given, [&] { return spacings; })};
   std::vector<double> sorted = spacings;

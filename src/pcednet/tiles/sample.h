@@ -52,7 +52,7 @@ struct Spacing {
 /// memory: from 16384 positions at equal steps along the curve, with the mean distances to their 10
 /// nearest others in the whole cloud. Where the sample is not the whole cloud, the positions are
 /// taken from it, and all inputs are read once for the distances. Every position goes into
-/// `counts`.
+/// `counts`. Rounded positions are spread before, as the plan decides.
 Spacing find_spacing(const SampledPoints& sample, const Plan& plan, const gls::ScaleRange& given,
                      CellCounts& counts, const Progress* progress);
 
