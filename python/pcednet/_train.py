@@ -6,7 +6,7 @@ from . import _arrays, _classify, _clouds, _core, _models
 from .errors import UsageError
 
 _DESCRIPTOR = ("scales", "features", "reconstruction", "gate", "second_gate", "exact", "eps", "s_min",
-               "s_max", "s_max_ratio")
+               "s_max", "s_max_ratio", "octaves")
 
 
 def _descriptor(options):
