@@ -19,7 +19,7 @@ import type {
   Uncertain,
 } from "./types";
 import { NO_CLASS } from "./types";
-import { WorkQueue } from "./work";
+import { LONGEST_PAUSE_MS, pause, WorkQueue } from "./work";
 
 export type Saved = "cloud" | "model" | "project" | "lines";
 
@@ -98,10 +98,17 @@ export class Client {
 
   /** The program answers again, or another start of it does. */
   private async returned(): Promise<void> {
-    const { store } = this;
     this.missed = true;
-    await this.refresh();
-    store.set({ connected: true });
+    for (let wait = 100; this.events?.readyState === EventSource.OPEN; wait = Math.min(2 * wait, LONGEST_PAUSE_MS)) {
+      try {
+        await this.refresh();
+        this.store.set({ connected: true });
+        return;
+      } catch (error) {
+        if (error instanceof ApiError) throw error;
+        await pause(wait); // no further "open" would come
+      }
+    }
   }
 
   private listen(): void {

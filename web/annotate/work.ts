@@ -3,8 +3,8 @@
 import { ApiError, type Api } from "./api";
 import type { Painted, Stroke } from "./types";
 
-const LONGEST_PAUSE_MS = 1000;
-const pause = (milliseconds: number): Promise<void> => new Promise((done) => setTimeout(done, milliseconds));
+export const LONGEST_PAUSE_MS = 1000;
+export const pause = (milliseconds: number): Promise<void> => new Promise((done) => setTimeout(done, milliseconds));
 
 export interface WorkEvents {
   painted(answer: Painted): void;

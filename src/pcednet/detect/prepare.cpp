@@ -9,6 +9,7 @@
 #include "pcednet/cloud/bounding_box.h"
 #include "pcednet/core/error.h"
 #include "pcednet/detect/exact_points.h"
+#include "pcednet/detect/rounding.h"
 #include "pcednet/normals/flat_pairs.h"
 #include "pcednet/normals/prepare.h"
 #include "pcednet/spatial/curve_order.h"

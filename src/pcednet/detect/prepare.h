@@ -8,9 +8,16 @@
 
 #include "pcednet/cloud/point_cloud.h"
 #include "pcednet/core/progress.h"
-#include "pcednet/detect/rounding.h"
 
 namespace pcednet::detect {
+
+/// Coordinates rounded to multiples of a step: by a scale of LAS, by decimals of a text, or to the
+/// centres of voxels.
+struct Rounding {
+  double step = 0.0;           ///< 0: not rounded, or too finely to matter
+  Vec3 origin = Vec3::Zero();  ///< a corner of the lattice
+  double spacing = 0.0;        ///< of neighbouring points, about
+};
 
 /// The decisions on normals that depend on all points of a cloud.
 struct NormalsDecision {

@@ -5,16 +5,9 @@
 #include <vector>
 
 #include "pcednet/core/vec3.h"
+#include "pcednet/detect/prepare.h"
 
 namespace pcednet::detect {
-
-/// Coordinates rounded to multiples of a step: by a scale of LAS, by decimals of a text, or to the
-/// centres of voxels.
-struct Rounding {
-  double step = 0.0;           ///< 0: not rounded, or too finely to matter
-  Vec3 origin = Vec3::Zero();  ///< a corner of the lattice
-  double spacing = 0.0;        ///< of neighbouring points, about
-};
 
 /// The rounding of a cloud to steps of more than a tenth of its spacing, which turns surfaces that
 /// are oblique to the axes into stairs, whose treads are level and whose risers look like edges.

@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "pcednet/detect/octaves.h"
+#include "pcednet/detect/rounding.h"
 #include "pcednet/gls/fast_scale_space.h"
 #include "pcednet/spatial/curve_order.h"
 #include "pcednet/tiles/inputs.h"
