@@ -4,7 +4,6 @@
 #include <array>
 #include <memory>
 #include <numeric>
-#include <set>
 
 #include "batch.h"
 #include "classify_cloud.h"
@@ -14,10 +13,9 @@
 #include "models.h"
 #include "pcednet/core/error.h"
 #include "pcednet/detect/result_cloud.h"
-#include "pcednet/formats/format.h"
 #include "pcednet/formats/write_cloud.h"
 #include "prepare.h"
-#include "preview_options.h"
+#include "result_plan.h"
 #include "stage_clock.h"
 #include "workbench/render/preview.h"
 
@@ -28,117 +26,19 @@ namespace fs = std::filesystem;
 
 struct ClassifyArguments {
   std::vector<std::string> inputs;
-  std::string output, output_folder, las_classification, memory;
-  PreviewArguments preview;
+  ResultArguments results;
+  std::string las_classification, memory;
   ModelArguments model{.name = kDefaultModel};
   MethodArguments method;
   detect::PrepareOptions preparation;
-  bool class_colours = false, ascii = false, skip_existing = false;
-};
-
-struct Job {
-  fs::path input, output, preview;
-};
-
-/// The inputs and outputs, and the number of inputs that have their result already.
-struct Plan {
-  std::vector<Job> jobs;
-  std::size_t skipped = 0;
+  bool class_colours = false, ascii = false;
 };
 
 render::PreviewOptions preview_options(const ClassifyArguments& arguments,
                                        const detect::EdgeModel& model, const Common& common) {
-  return {.view_direction = arguments.preview.direction,
+  return {.view_direction = arguments.results.preview.direction,
           .overwrite = common.overwrite(),
           .table = model.table};
-}
-
-fs::path preview_path(const ClassifyArguments& arguments, const fs::path& input, bool several) {
-  if (arguments.preview.path.empty()) return {};
-  if (!several) return arguments.preview.path;
-  const fs::path pattern = arguments.preview.path;
-  return pattern.parent_path() / fmt::format("{}_{}{}", pattern.stem().string(),
-                                             formats::stem_of(input), pattern.extension().string());
-}
-
-/// The default file for a result: LAS for LAS, PLY for everything else.
-std::string output_name(const fs::path& input) {
-  const formats::Format* format = formats::find_format(input);
-  const bool is_las = format && format->is_las();
-  return formats::stem_of(input) + (is_las ? "_edges.las" : "_edges.ply");
-}
-
-std::vector<Job> jobs_for(const std::vector<fs::path>& inputs, const ClassifyArguments& arguments) {
-  std::vector<Job> jobs;
-  for (const fs::path& input : inputs) {
-    const fs::path folder =
-        arguments.output_folder.empty() ? input.parent_path() : fs::path(arguments.output_folder);
-    const fs::path output =
-        arguments.output.empty() ? folder / output_name(input) : fs::path(arguments.output);
-    jobs.push_back({input, output, preview_path(arguments, input, inputs.size() > 1)});
-  }
-  return jobs;
-}
-
-bool is_there(const fs::path& file) {
-  std::error_code ignored;
-  return !file.empty() && fs::exists(fs::symlink_status(file, ignored));
-}
-
-/// Throws if one of several results exists, naming it.
-void refuse_existing(const std::vector<Job>& jobs) {
-  std::size_t existing = 0;
-  for (const Job& job : jobs) {
-    for (const fs::path& file : {job.output, job.preview}) {
-      if (!is_there(file)) continue;
-      say(fmt::format("pcednet: {}: exists already", file.string()));
-      ++existing;
-    }
-  }
-  if (existing == 0) return;
-  throw Error(ErrorKind::kUsage,
-              fmt::format("{} of the results exist already; nothing was done. Give --skip-existing "
-                          "to keep them or --overwrite to replace them",
-                          existing));
-}
-
-/// Throws before any work if the outputs could not be written after it.
-void check_outputs(const std::vector<Job>& jobs, const Common& common) {
-  if (jobs.size() > 1 && !common.overwrite_files) refuse_existing(jobs);
-  std::set<fs::path> taken;
-  for (const Job& job : jobs) {
-    check_not_input(job.preview, job.input);
-    for (const fs::path& file : {job.output, job.preview}) {
-      check_writable(file, common.overwrite());
-      if (file.empty() || taken.insert(file.lexically_normal()).second) continue;
-      throw Error(ErrorKind::kUsage,
-                  fmt::format("{}: two results would be written here", file.string()));
-    }
-  }
-}
-
-/// Leaves out inputs that are the results of others: those of an earlier run on the same folder.
-void drop_results(std::vector<Job>& jobs) {
-  std::set<fs::path> results;
-  for (const Job& job : jobs) results.insert(job.output.lexically_normal());
-  const std::size_t dropped = std::erase_if(jobs, [&](const Job& job) {
-    return jobs.size() > 1 && results.contains(job.input.lexically_normal());
-  });
-  if (dropped > 0) say(fmt::format("{} files left out: they are results of other inputs", dropped));
-}
-
-Plan plan(const Inputs& inputs, const ClassifyArguments& arguments, const Common& common) {
-  if (!arguments.output.empty() && (inputs.count() > 1 || !arguments.output_folder.empty())) {
-    throw Error(ErrorKind::kUsage, "classify: -o is for one input; use --out-dir for several");
-  }
-  Plan plan{.jobs = jobs_for(inputs.files, arguments)};
-  drop_results(plan.jobs);
-  if (arguments.skip_existing) {
-    plan.skipped = std::erase_if(plan.jobs, [](const Job& job) { return is_there(job.output); });
-  }
-  if (!arguments.output_folder.empty()) make_folder(arguments.output_folder);
-  check_outputs(plan.jobs, common);
-  return plan;
 }
 
 /// Applies --las-classification, comma-separated pairs class=code, to the field Classification;
@@ -347,7 +247,7 @@ void classify(const ClassifyArguments& arguments, const Common& common) {
   }
   const Inputs inputs = find_inputs(arguments.inputs);
   Batch batch(inputs);
-  const auto [jobs, skipped] = plan(inputs, arguments, common);
+  const auto [jobs, skipped] = plan_results(inputs, arguments.results, common);
   std::size_t done = 0;
   for (const Job& job : jobs) {
     done += batch.run(job.input, [&] { classify_file(job, arguments, model, common); }) ? 1 : 0;
@@ -374,21 +274,22 @@ void add_classify(CLI::App& app, Common& common) {
   command->add_option("inputs", arguments->inputs, "Point files or folders of point files")
       ->required();
   command->add_option(
-      "-o,--output", arguments->output,
+      "-o,--output", arguments->results.output,
       "Output file (default: <stem>_edges.ply beside the input, .las for LAS and LAZ)");
   command->add_option("--las-classification", arguments->las_classification,
                       "Set the LAS field Classification of some classes, as class=code,...: 2=64 "
                       "sets sharp edges to 64");
-  command->add_option("--out-dir", arguments->output_folder,
+  command->add_option("--out-dir", arguments->results.folder,
                       "Folder for the results, created if missing");
   CLI::Option* overwrite = command->get_option("--overwrite");
   command
-      ->add_flag("--skip-existing", arguments->skip_existing,
+      ->add_flag("--skip-existing", arguments->results.skip_existing,
                  "Leave out inputs whose result exists, as after a stop")
       ->excludes(overwrite);
   add_model_options(*command, arguments->model);
   add_memory_option(*command, arguments->memory);
-  add_preview_options(*command, arguments->preview, "Draw the labelled cloud to this PNG file");
+  add_preview_options(*command, arguments->results.preview,
+                      "Draw the labelled cloud to this PNG file");
   command->add_flag("--class-colours", arguments->class_colours,
                     "Colour the points by class even if the input has colours");
   command->add_flag("--ascii", arguments->ascii, "Write text instead of binary");

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "batch.h"
+#include "common.h"
+#include "preview_options.h"
+
+namespace pcednet::app {
+
+/// Where the user wants the results of `classify`.
+struct ResultArguments {
+  std::string output;        ///< file, for a single input; empty: beside the input
+  std::string folder;        ///< for all results; empty: beside the inputs
+  PreviewArguments preview;  ///< of several inputs: with the name of the input added
+  bool skip_existing = false;
+};
+
+/// An input and its results.
+struct Job {
+  std::filesystem::path input, output;
+  std::filesystem::path preview;  ///< empty: none
+};
+
+/// The inputs to work on, and the number of those that have their result already.
+struct ResultPlan {
+  std::vector<Job> jobs;
+  std::size_t skipped = 0;
+};
+
+/// Plans the results of `inputs`, before any work: LAS for LAS and LAZ, PLY for everything else.
+/// Inputs that are results of others, those of an earlier run on the same folder, are left out.
+/// Throws Error(kUsage) if results exist that may not be replaced, if two would be the same file or
+/// if one cannot be written. Creates the folder.
+ResultPlan plan_results(const Inputs& inputs, const ResultArguments& arguments,
+                        const Common& common);
+
+}  // namespace pcednet::app
