@@ -15,7 +15,7 @@ import numpy as np
 from support import PROGRAM, CliTest, read_ply, run, write_ply
 
 
-def field(columns=5, points=2500, seed=1, normals=True):
+def field(columns=4, points=2000, seed=1, normals=True):
     """Boxes of different sizes on rough ground: positions, normals."""
     random_numbers = np.random.default_rng(seed)
     p, n = [], []
