@@ -73,7 +73,7 @@ NeighbourGraph make_neighbour_graph(std::span<const Vec3> positions, std::size_t
   graph.fitted = search.available(choice.neighbours);
   graph.has_exact_planes = choice.has_exact_planes;
   graph.degree = choice.has_exact_planes ? std::max(graph.fitted, kExactNeighbours) : graph.fitted;
-  graph.neighbours.resize(points * graph.degree);
+  graph.neighbours = UnsetArray<std::uint32_t>(points * graph.degree);
   parallel_blocks(points, kQueriesAtOnce, [&](std::size_t begin, std::size_t end) {
     std::vector<std::uint32_t> some(end - begin);
     std::iota(some.begin(), some.end(), static_cast<std::uint32_t>(begin));
@@ -108,7 +108,7 @@ Adjacency make_adjacency(const NeighbourGraph& graph, std::size_t count) {
   const auto take = [](std::size_t& counter) {
     return std::atomic_ref(counter).fetch_add(1, std::memory_order_relaxed);
   };
-  std::vector<std::uint8_t> mutual(points * count);
+  UnsetArray<std::uint8_t> mutual(points * count);
   by_block([&](std::size_t i, const auto& row) {
     std::uint8_t* const flags = mutual.data() + i * count;
     compare_with_reach(graph.points.data(), sq_reach.data(), i, row, flags);
@@ -121,7 +121,7 @@ Adjacency make_adjacency(const NeighbourGraph& graph, std::size_t count) {
     }
   });
   std::partial_sum(adjacency.first.begin(), adjacency.first.end(), adjacency.first.begin());
-  adjacency.target.resize(adjacency.first.back());
+  adjacency.target = UnsetArray<std::uint32_t>(adjacency.first.back());
   std::vector<std::size_t> next(points);
   by_block([&](std::size_t i, const auto&) { next[i] = adjacency.first[i] + count; });
   by_block([&](std::size_t i, const auto& row) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "pcednet/core/progress.h"
+#include "pcednet/core/unset_array.h"
 #include "pcednet/core/vec3.h"
 
 namespace pcednet::normals {
@@ -21,7 +22,7 @@ struct NeighbourGraph {
   std::vector<std::uint32_t> order;       ///< positions of the cloud; those of one point together
   std::vector<std::uint32_t> point_of;    ///< per position of the cloud, kNoPoint if not finite
   std::size_t degree = 0;                 ///< neighbours of each point
-  std::vector<std::uint32_t> neighbours;  ///< points x degree, nearest first, without the point
+  UnsetArray<std::uint32_t> neighbours;   ///< points x degree, nearest first, without the point
   std::size_t fitted = 0;                 ///< the nearest of them, which planes are fitted to
   bool has_exact_planes = false;          ///< see NeighbourChoice
 
@@ -42,8 +43,8 @@ NeighbourGraph make_neighbour_graph(std::span<const Vec3> positions, std::size_t
 /// The undirected graph: for every point its neighbours and the points that have it as a neighbour,
 /// each once.
 struct Adjacency {
-  std::vector<std::size_t> first;     ///< points + 1
-  std::vector<std::uint32_t> target;  ///< of point i: first[i] to first[i + 1], in any order
+  std::vector<std::size_t> first;    ///< points + 1
+  UnsetArray<std::uint32_t> target;  ///< of point i: first[i] to first[i + 1], in any order
 
   std::size_t size() const { return first.size() - 1; }
   std::span<const std::uint32_t> of(std::size_t point) const {

@@ -154,7 +154,7 @@ Orientation orient_points(NeighbourGraph& graph, std::span<Vec3> normals,
   }
   Stage stage(progress, "orientation", 4);
   const Adjacency links = make_adjacency(graph, static_cast<std::size_t>(options.neighbours));
-  std::vector<std::uint32_t>().swap(graph.neighbours);
+  graph.neighbours = {};
   graph.degree = graph.fitted = 0;
   stage.advance();
   const SignVotes votes(graph.points, normals, links);

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "pcednet/core/unset_array.h"
 #include "pcednet/core/vec3.h"
 #include "pcednet/normals/joined_parts.h"
 #include "pcednet/normals/neighbour_graph.h"
@@ -32,7 +33,7 @@ class SignVotes {
 
  private:
   const Adjacency* links_;
-  std::vector<std::int32_t> votes_;
+  UnsetArray<std::int32_t> votes_;
 };
 
 /// Contracts the graph along the strongest sums of votes (Boruvka's rounds). Points with a zero
