@@ -23,9 +23,10 @@ test::Cloud noise(std::size_t count) {
   return cloud;
 }
 
-std::vector<Voxel> points_of(const test::Cloud& cloud) {
+UnsetArray<Voxel> points_of(const test::Cloud& cloud) {
   const auto order = point_order(cloud.points());
-  return make_pyramid(cloud.positions, cloud.normals, order, 1.0).levels.front().voxels;
+  VoxelPyramid pyramid = make_pyramid(cloud.positions, cloud.normals, order, 1.0);
+  return std::move(pyramid.levels.front().voxels);
 }
 
 double spread_of(const std::function<Vec3(test::Stream&)>& draw) {
@@ -64,18 +65,18 @@ TEST(NormalSpread, TellsSurfacesAndEdgesFromNoise) {
 }
 
 TEST(VoxelMerge, KeepsFarFewerVoxelsOfNoiseWhereItIsCrowded) {
-  const std::vector<Voxel> points = points_of(noise(100000));
+  const UnsetArray<Voxel> points = points_of(noise(100000));
   MergeCells cells = {.origin = Vec3::Zero(), .side = 1.0, .edge = 0.02, .crowd = Crowd::kKeep};
   const std::size_t kept = merge_voxels(points, cells).size();
   EXPECT_GT(forecast_merge(points, cells).filling, 20.0);
   cells.crowd = Crowd::kMerge;
-  const std::vector<Voxel> merged = merge_voxels(points, cells);
+  const UnsetArray<Voxel> merged = merge_voxels(points, cells);
   EXPECT_LE(merged.size(), 20u * 19 * 19);  // cubes of 0.16 / 3, and cells of blocks at the rim
   EXPECT_LT(merged.size(), kept / 9);
   cells.crowd = Crowd::kMergeByAxis;
-  const std::vector<Voxel> by_axis = merge_voxels(points, cells);
+  const UnsetArray<Voxel> by_axis = merge_voxels(points, cells);
   EXPECT_LE(by_axis.size(), 6u * 13 * 13 * 14);  // cubes of 0.08, axes, signs
-  for (const std::vector<Voxel>& voxels : {merged, by_axis}) {
+  for (const std::span<const Voxel> voxels : {std::span(merged), std::span(by_axis)}) {
     double count = 0.0;
     for (const Voxel& voxel : voxels) count += voxel.count;
     EXPECT_EQ(count, 100000.0);
@@ -91,7 +92,7 @@ TEST(VoxelMerge, LeavesSurfacesAloneWhereverItIsCrowded) {
   for (Vec3& p : thin.positions) p.z() *= 0.02;
   for (const test::Cloud& cloud :
        {test::scene(40000, 55), test::cube(40000, 56, 0.003, 0.1), thin}) {
-    const std::vector<Voxel> points = points_of(cloud);
+    const UnsetArray<Voxel> points = points_of(cloud);
     MergeCells cells = {.origin = Vec3(-2, -2, -2), .side = 6, .edge = 0.02, .crowd = Crowd::kKeep};
     EXPECT_LT(forecast_merge(points, cells).filling, 4.0);
     const std::size_t kept = merge_voxels(points, cells).size();

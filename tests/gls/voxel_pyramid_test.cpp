@@ -16,7 +16,7 @@ struct Totals {
   double count = 0.0, pp = 0.0, pn = 0.0;
   Vec3 p = Vec3::Zero(), n = Vec3::Zero();
 
-  explicit Totals(const std::vector<Voxel>& voxels, const Vec3& place) {
+  explicit Totals(std::span<const Voxel> voxels, const Vec3& place) {
     for (const Voxel& v : voxels) {
       const Vec3 y = v.position - place, normal(v.normal[0], v.normal[1], v.normal[2]);
       count += v.count;

@@ -10,7 +10,7 @@ namespace pcednet {
 /// unlike a std::vector, one thread need not visit all of its memory first.
 template <typename Value>
 class UnsetArray {
-  static_assert(std::is_trivially_copyable_v<Value>);
+  static_assert(std::is_trivially_destructible_v<Value>);
 
  public:
   UnsetArray() = default;
@@ -22,6 +22,8 @@ class UnsetArray {
   const Value* data() const { return values_.get(); }
   Value& operator[](std::size_t i) { return values_[i]; }
   const Value& operator[](std::size_t i) const { return values_[i]; }
+  Value* begin() { return data(); }
+  Value* end() { return data() + size_; }
   const Value* begin() const { return data(); }
   const Value* end() const { return data() + size_; }
 

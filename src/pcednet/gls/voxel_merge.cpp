@@ -66,8 +66,8 @@ std::size_t dominant_axis(const std::array<float, 3>& n) {
 /// far from all others), cells with equal keys are compared themselves.
 class Grid {
  public:
-  Grid(const std::vector<Voxel>& voxels, const MergeCells& cells)
-      : voxels_(&voxels),
+  Grid(std::span<const Voxel> voxels, const MergeCells& cells)
+      : voxels_(voxels),
         origin_(cells.origin),
         inverse_edge_(1.0 / cells.edge),
         cells_along_(cells.side * inverse_edge_ + 1.0) {}
@@ -77,7 +77,7 @@ class Grid {
     const std::array<std::uint64_t, 3> cell = cell_of(i);
     const auto wrapped = [&](std::size_t a) { return static_cast<std::uint32_t>(cell[a] & kMost); };
     const std::uint64_t place = spatial::morton_code({wrapped(0), wrapped(1), wrapped(2)});
-    return place << kAxisBits | dominant_axis((*voxels_)[i].normal);
+    return place << kAxisBits | dominant_axis(voxels_[i].normal);
   }
 
   /// The voxel within its block, if that is merged further.
@@ -112,7 +112,7 @@ class Grid {
 
   /// In units of the edge.
   std::array<double, 3> place_of(std::size_t i) const {
-    const Vec3 place = ((*voxels_)[i].position - origin_) * inverse_edge_;
+    const Vec3 place = (voxels_[i].position - origin_) * inverse_edge_;
     const auto within = [](double c) { return std::clamp(c, 0.0, 0x1p62); };
     return {within(place.x()), within(place.y()), within(place.z())};
   }
@@ -124,7 +124,7 @@ class Grid {
     return cell;
   }
 
-  const std::vector<Voxel>* voxels_;
+  std::span<const Voxel> voxels_;
   Vec3 origin_;
   double inverse_edge_, cells_along_;
 };
@@ -134,8 +134,8 @@ class Grid {
 /// Members without a normal are ignored.
 class BlockPlan {
  public:
-  BlockPlan(const std::vector<Voxel>& from, const Grid& grid, Crowd crowd)
-      : from_(&from), grid_(&grid), crowd_(crowd) {}
+  BlockPlan(std::span<const Voxel> from, const Grid& grid, Crowd crowd)
+      : from_(from), grid_(&grid), crowd_(crowd) {}
 
   /// The voxel of each of `members`, sorted by key.
   std::span<const std::uint32_t> plan(std::span<const Keyed> members) {
@@ -171,7 +171,7 @@ class BlockPlan {
   }
 
  private:
-  const Voxel& voxel(std::size_t i) const { return (*from_)[members_[i].index]; }
+  const Voxel& voxel(std::size_t i) const { return from_[members_[i].index]; }
 
   /// Calls `use(begin, end)` for the members of every cell, or cube of cells.
   template <typename Use>
@@ -215,7 +215,7 @@ class BlockPlan {
     }
   }
 
-  const std::vector<Voxel>* from_;
+  std::span<const Voxel> from_;
   const Grid* grid_;
   Crowd crowd_;
   std::span<const Keyed> members_;
@@ -225,7 +225,7 @@ class BlockPlan {
 
 /// Calls `use(members, voxel_of, plan)` for every block that begins within [begin, end).
 template <typename Use>
-void for_blocks(const std::vector<Voxel>& from, const Grid& grid, Crowd crowd,
+void for_blocks(std::span<const Voxel> from, const Grid& grid, Crowd crowd,
                 std::span<const Keyed> keyed, std::size_t begin, std::size_t end, Use&& use) {
   const auto continues = [&](std::size_t i) {
     return grid.are_together(keyed[i - 1], keyed[i], kBlockBits);
@@ -243,7 +243,7 @@ void for_blocks(const std::vector<Voxel>& from, const Grid& grid, Crowd crowd,
 }
 
 /// The number of voxels that the blocks beginning within [begin, end) become.
-std::size_t count_voxels(const std::vector<Voxel>& from, const Grid& grid, Crowd crowd,
+std::size_t count_voxels(std::span<const Voxel> from, const Grid& grid, Crowd crowd,
                          std::span<const Keyed> keyed, std::size_t begin, std::size_t end) {
   std::size_t count = 0;
   for_blocks(from, grid, crowd, keyed, begin, end,
@@ -254,7 +254,7 @@ std::size_t count_voxels(const std::vector<Voxel>& from, const Grid& grid, Crowd
 }
 
 /// Writes them.
-void merge_stretch(const std::vector<Voxel>& from, const Grid& grid, Crowd crowd,
+void merge_stretch(std::span<const Voxel> from, const Grid& grid, Crowd crowd,
                    std::span<const Keyed> keyed, std::size_t begin, std::size_t end, Voxel* to) {
   std::vector<VoxelSums> sums;
   for_blocks(from, grid, crowd, keyed, begin, end,
@@ -274,7 +274,7 @@ struct ForecastSums {
 };
 
 /// The forecast for the points of the voxels [begin, end), as if there were no others.
-ForecastSums forecast_stretch(const std::vector<Voxel>& from, const Grid& grid, Crowd crowd,
+ForecastSums forecast_stretch(std::span<const Voxel> from, const Grid& grid, Crowd crowd,
                               std::size_t begin, std::size_t end) {
   std::vector<Keyed> keyed;
   keyed.reserve(end - begin);
@@ -307,10 +307,10 @@ ForecastSums forecast_stretch(const std::vector<Voxel>& from, const Grid& grid, 
 
 }  // namespace
 
-std::vector<Voxel> merge_voxels(const std::vector<Voxel>& from, const MergeCells& cells) {
+UnsetArray<Voxel> merge_voxels(std::span<const Voxel> from, const MergeCells& cells) {
   constexpr std::size_t kStretch = 1 << 14;
   const Grid grid(from, cells);
-  std::vector<Keyed> keyed(from.size());
+  UnsetArray<Keyed> keyed(from.size());
   parallel_blocks(from.size(), kStretch, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       keyed[i] = {grid.key(i), static_cast<std::uint32_t>(i)};
@@ -324,14 +324,14 @@ std::vector<Voxel> merge_voxels(const std::vector<Voxel>& from, const MergeCells
     first[begin / kStretch + 1] = count_voxels(from, grid, cells.crowd, keyed, begin, end);
   });
   std::partial_sum(first.begin(), first.end(), first.begin());
-  std::vector<Voxel> to(first.back());
+  UnsetArray<Voxel> to(first.back());
   parallel_blocks(keyed.size(), kStretch, [&](std::size_t begin, std::size_t end) {
     merge_stretch(from, grid, cells.crowd, keyed, begin, end, &to[first[begin / kStretch]]);
   });
   return to;
 }
 
-MergeForecast forecast_merge(const std::vector<Voxel>& from, const MergeCells& cells) {
+MergeForecast forecast_merge(std::span<const Voxel> from, const MergeCells& cells) {
   constexpr std::size_t kStretch = 1 << 14, kStep = 16 * kStretch;
   const Grid grid(from, cells);
   std::vector<ForecastSums> stretches((from.size() + kStep - 1) / kStep);

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <vector>
+#include <span>
 
 #include "pcednet/gls/voxel_pyramid.h"
 
@@ -17,7 +17,7 @@ struct MergeCells {
 
 /// The voxels of `from` merged, along the curve through the cells: one voxel per cell, dominant
 /// axis of the normal and sign, so that none averages across an edge; for exceptions see Crowd.
-std::vector<Voxel> merge_voxels(const std::vector<Voxel>& from, const MergeCells& cells);
+UnsetArray<Voxel> merge_voxels(std::span<const Voxel> from, const MergeCells& cells);
 
 /// The effect of merge_voxels() on the average point, estimated from every sixteenth range of the
 /// curve.
@@ -27,6 +27,6 @@ struct MergeForecast {
   /// on scans of surfaces, 20 or more on noise.
   double filling = 0.0;
 };
-MergeForecast forecast_merge(const std::vector<Voxel>& from, const MergeCells& cells);
+MergeForecast forecast_merge(std::span<const Voxel> from, const MergeCells& cells);
 
 }  // namespace pcednet::gls

@@ -19,7 +19,7 @@ constexpr double kWorthwhileMerge = 1.6;
 constexpr double kCrowded = 9.0, kCrowdedGated = 8.0;
 
 /// How to make the level of a scale from the preceding level; `crowd`: how that one was made.
-PyramidPlan::Level plan_level(const std::vector<Voxel>& finer, MergeCells cells, bool gated,
+PyramidPlan::Level plan_level(std::span<const Voxel> finer, MergeCells cells, bool gated,
                               Crowd& crowd) {
   cells.crowd = crowd;
   MergeForecast forecast = forecast_merge(finer, cells);
@@ -44,7 +44,7 @@ VoxelPyramid make_pyramid(std::span<const Vec3> positions, std::span<const Vec3>
                           const PyramidPlan* whole) {
   VoxelPyramid pyramid;
   VoxelLevel& points = pyramid.levels.emplace_back();
-  points.voxels.resize(order.size());
+  points.voxels = UnsetArray<Voxel>(order.size());
   constexpr std::size_t kStretch = 1 << 14;
   std::vector<std::pair<Vec3, Vec3>> corners((order.size() + kStretch - 1) / kStretch);
   parallel_blocks(order.size(), kStretch, [&](std::size_t begin, std::size_t end) {
@@ -54,6 +54,7 @@ VoxelPyramid make_pyramid(std::span<const Vec3> positions, std::span<const Vec3>
       Voxel& point = points.voxels[i];
       point.position = positions[order[i]] * unit;
       point.count = is_usable(n) ? 1.0f : 0.0f;
+      point.qq = point.qn = 0.0f;
       for (std::size_t a = 0; a < 3; ++a) {
         const auto component = static_cast<float>(n[static_cast<Eigen::Index>(a)]);
         point.normal[a] = point.count > 0.0f ? component : 0.0f;
@@ -83,7 +84,7 @@ void add_levels(VoxelPyramid& pyramid, std::span<const double> scales, const Lev
                         .side = pyramid.side,
                         .edge = options.eps * scales[i],
                         .crowd = {}};
-    const std::vector<Voxel>& finer = pyramid.levels.back().voxels;
+    const UnsetArray<Voxel>& finer = pyramid.levels.back().voxels;
     const PyramidPlan::Level plan = options.whole ? options.whole->levels.at(i)
                                                   : plan_level(finer, cells, options.gated, crowd);
     if (plan.merges) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "pcednet/core/progress.h"
+#include "pcednet/core/unset_array.h"
 #include "pcednet/core/vec3.h"
 #include "pcednet/gls/neighbourhood.h"
 #include "pcednet/gls/pyramid_plan.h"
@@ -21,16 +22,16 @@ namespace pcednet::gls {
 struct Voxel {
   Vec3 position;                ///< mean position
   std::array<float, 3> normal;  ///< mean normal, not renormalised
-  float count = 1.0f;           ///< points; 0 for a point whose normal is unusable
-  float qq = 0.0f;              ///< mean |q|^2, q the position of its points about `position`
-  float qn = 0.0f;              ///< mean q.n likewise
+  float count;                  ///< points; 0 for a point whose normal is unusable
+  float qq;                     ///< mean |q|^2, q the position of its points about `position`
+  float qn;                     ///< mean q.n likewise
 };
 
 /// The cloud at one resolution, along a space-filling curve.
 struct VoxelLevel {
   double cell = 0.0;     ///< edge of the cells that were merged; 0 for the points themselves
   float most_qq = 0.0f;  ///< the largest qq of its voxels
-  std::vector<Voxel> voxels;
+  UnsetArray<Voxel> voxels;
   spatial::BoxTree boxes;
 };
 

@@ -98,7 +98,7 @@ Adjacency make_adjacency(const NeighbourGraph& graph, std::size_t count) {
       for (std::size_t i = begin; i < end; ++i) work(i, graph.of(i).first(count));
     });
   };
-  std::vector<double> sq_reach(points);
+  UnsetArray<double> sq_reach(points);
   by_block([&](std::size_t i, const auto& row) {
     sq_reach[i] = sq_distance(graph.points[i].data(), graph.points[row.back()].data());
   });
@@ -122,7 +122,7 @@ Adjacency make_adjacency(const NeighbourGraph& graph, std::size_t count) {
   });
   std::partial_sum(adjacency.first.begin(), adjacency.first.end(), adjacency.first.begin());
   adjacency.target = UnsetArray<std::uint32_t>(adjacency.first.back());
-  std::vector<std::size_t> next(points);
+  UnsetArray<std::size_t> next(points);
   by_block([&](std::size_t i, const auto&) { next[i] = adjacency.first[i] + count; });
   by_block([&](std::size_t i, const auto& row) {
     std::copy(row.begin(), row.end(), adjacency.target.data() + adjacency.first[i]);

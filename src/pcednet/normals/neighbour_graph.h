@@ -19,12 +19,12 @@ inline constexpr std::uint32_t kNoPoint = 0xffffffff;
 /// numbering of the cloud, and neighbours are close in memory.
 struct NeighbourGraph {
   std::vector<Vec3> points;
-  std::vector<std::uint32_t> order;       ///< positions of the cloud; those of one point together
-  std::vector<std::uint32_t> point_of;    ///< per position of the cloud, kNoPoint if not finite
-  std::size_t degree = 0;                 ///< neighbours of each point
-  UnsetArray<std::uint32_t> neighbours;   ///< points x degree, nearest first, without the point
-  std::size_t fitted = 0;                 ///< the nearest of them, which planes are fitted to
-  bool has_exact_planes = false;          ///< see NeighbourChoice
+  std::vector<std::uint32_t> order;      ///< positions of the cloud; those of one point together
+  std::vector<std::uint32_t> point_of;   ///< per position of the cloud, kNoPoint if not finite
+  std::size_t degree = 0;                ///< neighbours of each point
+  UnsetArray<std::uint32_t> neighbours;  ///< points x degree, nearest first, without the point
+  std::size_t fitted = 0;                ///< the nearest of them, which planes are fitted to
+  bool has_exact_planes = false;         ///< see NeighbourChoice
 
   std::span<const std::uint32_t> of(std::size_t point) const {
     return {neighbours.data() + point * degree, degree};

@@ -4,6 +4,7 @@
 
 #include "pcednet/cloud/bounding_box.h"
 #include "pcednet/core/parallel_loops.h"
+#include "pcednet/core/unset_array.h"
 #include "pcednet/spatial/morton.h"
 #include "pcednet/spatial/radix_sort.h"
 
@@ -20,7 +21,7 @@ bool is_before(const Vec3& p, const Vec3& q) {
 }
 
 /// Half the lower corner and half the longest side of the box (halves do not overflow).
-std::pair<Vec3, double> half_box(std::span<const Vec3> positions, const std::vector<Keyed>& keyed) {
+std::pair<Vec3, double> half_box(std::span<const Vec3> positions, std::span<const Keyed> keyed) {
   std::vector<BoundingBox> boxes((keyed.size() + kCodesAtOnce - 1) / kCodesAtOnce);
   parallel_blocks(keyed.size(), kCodesAtOnce, [&](std::size_t begin, std::size_t end) {
     BoundingBox box;
@@ -35,7 +36,7 @@ std::pair<Vec3, double> half_box(std::span<const Vec3> positions, const std::vec
 /// Sorts points, given in the order of their indices, along the curve through their box. Those that
 /// share a cell are sorted along the curve through theirs: points far from all others cost the
 /// others nothing.
-void sort_along_curve(std::span<const Vec3> positions, std::vector<Keyed>& keyed) {
+void sort_along_curve(std::span<const Vec3> positions, std::span<Keyed> keyed) {
   if (keyed.size() <= 1) return;
   if (keyed.size() <= kFew) {
     std::stable_sort(keyed.begin(), keyed.end(), [&](const Keyed& a, const Keyed& b) {
@@ -57,11 +58,7 @@ void sort_along_curve(std::span<const Vec3> positions, std::vector<Keyed>& keyed
   for (auto first = keyed.begin(); first != keyed.end();) {
     const auto last =
         std::find_if(first + 1, keyed.end(), [&](const Keyed& k) { return k.key != first->key; });
-    if (last - first > 1) {
-      std::vector<Keyed> cell(first, last);
-      sort_along_curve(positions, cell);
-      std::copy(cell.begin(), cell.end(), first);
-    }
+    if (last - first > 1) sort_along_curve(positions, {first, last});
     first = last;
   }
 }
@@ -71,7 +68,7 @@ void sort_along_curve(std::span<const Vec3> positions, std::vector<Keyed>& keyed
 std::vector<std::uint32_t> curve_order(std::span<const Vec3> positions) {
   const auto finite = counts_before_blocks(positions.size(), kCodesAtOnce,
                                            [&](std::size_t i) { return positions[i].allFinite(); });
-  std::vector<Keyed> keyed(finite.back());
+  UnsetArray<Keyed> keyed(finite.back());
   parallel_blocks(positions.size(), kCodesAtOnce, [&](std::size_t begin, std::size_t end) {
     std::size_t to = finite[begin / kCodesAtOnce];
     for (std::size_t i = begin; i < end; ++i) {

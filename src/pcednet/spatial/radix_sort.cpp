@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
+#include <vector>
 
 #include "pcednet/core/parallel.h"
+#include "pcednet/core/unset_array.h"
 
 namespace pcednet::spatial {
 namespace {
@@ -35,36 +38,39 @@ bool make_places(std::vector<Histogram>& histograms, std::size_t size) {
 }
 
 /// Sorts by the bits [low, high) of the keys.
-void sort_digits(std::vector<Keyed>& keyed, int low, int high) {
+void sort_digits(std::span<Keyed> keyed, int low, int high) {
   const std::size_t block = std::max<std::size_t>(keyed.size() / 64 + 1, 1 << 16);
   std::vector<Histogram> histograms((keyed.size() + block - 1) / block);
-  std::vector<Keyed> sorted(keyed.size());
+  UnsetArray<Keyed> room(keyed.size());
+  Keyed *from = keyed.data(), *to = room.data();
   for (int shift = low; shift < high; shift += kDigitBits) {
     parallel_blocks(keyed.size(), block, [&](std::size_t begin, std::size_t end) {
       Histogram& histogram = histograms[begin / block];
       histogram.fill(0);
-      for (std::size_t i = begin; i < end; ++i) ++histogram[digit(keyed[i], shift)];
+      for (std::size_t i = begin; i < end; ++i) ++histogram[digit(from[i], shift)];
     });
     if (!make_places(histograms, keyed.size())) continue;
     parallel_blocks(keyed.size(), block, [&](std::size_t begin, std::size_t end) {
       Histogram& places = histograms[begin / block];
       for (std::size_t i = begin; i < end; ++i) {
-        sorted[places[digit(keyed[i], shift)]++] = keyed[i];
+        to[places[digit(from[i], shift)]++] = from[i];
       }
     });
-    keyed.swap(sorted);
+    std::swap(from, to);
   }
+  if (from == keyed.data()) return;
+  parallel_blocks(keyed.size(), block, [&](std::size_t begin, std::size_t end) {
+    std::copy(from + begin, from + end, keyed.data() + begin);
+  });
 }
 
 /// Sorts keys with equal upper bits by the lowest `low` bits.
-void sort_runs(std::vector<Keyed>& keyed, int low) {
+void sort_runs(std::span<Keyed> keyed, int low) {
   for (auto first = keyed.begin(); first != keyed.end();) {
     const auto last = std::find_if(
         first + 1, keyed.end(), [&](const Keyed& k) { return k.key >> low != first->key >> low; });
     if (last - first > kLongRun) {
-      std::vector<Keyed> run(first, last);
-      sort_digits(run, 0, low);
-      std::copy(run.begin(), run.end(), first);
+      sort_digits({first, last}, 0, low);
     } else if (last - first > 1) {
       std::stable_sort(first, last, [](const Keyed& a, const Keyed& b) { return a.key < b.key; });
     }
@@ -74,7 +80,7 @@ void sort_runs(std::vector<Keyed>& keyed, int low) {
 
 }  // namespace
 
-void sort_by_key(std::vector<Keyed>& keyed, int bits) {
+void sort_by_key(std::span<Keyed> keyed, int bits) {
   const int low = std::max(0, bits - kHighBits);
   sort_digits(keyed, low, bits);
   if (low > 0) sort_runs(keyed, low);

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <cstdint>
-#include <vector>
+#include <span>
 
 namespace pcednet::spatial {
 
@@ -12,6 +12,6 @@ struct Keyed {
 
 /// Sorts by the lowest `bits` bits of the keys, on all threads; equal keys keep their order. Higher
 /// bits must be 0. Takes linear time and as much additional memory as the input.
-void sort_by_key(std::vector<Keyed>& keyed, int bits);
+void sort_by_key(std::span<Keyed> keyed, int bits);
 
 }  // namespace pcednet::spatial

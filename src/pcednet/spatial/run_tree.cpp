@@ -61,7 +61,10 @@ std::vector<EightBoxes> boxes_of_nodes(const std::vector<EightBoxes>& finer) {
 
 RunTree::RunTree(std::span<const Vec3> points) {
   if (points.empty()) return;
-  for (std::vector<double>* const axis : {&x, &y, &z}) axis->resize(points.size() + kRun);
+  for (UnsetArray<double>* const axis : {&x, &y, &z}) {
+    *axis = UnsetArray<double>(points.size() + kRun);
+    std::fill(axis->end() - kRun, axis->end(), 0.0);
+  }
   parallel_blocks(points.size(), kPointsAtOnce, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       x[i] = points[i].x(), y[i] = points[i].y(), z[i] = points[i].z();

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "pcednet/core/unset_array.h"
 #include "pcednet/core/vec3.h"
 #include "pcednet/spatial/search_kernels.h"
 
@@ -25,7 +26,7 @@ struct RunTree {
   std::size_t size() const { return first.empty() ? 0 : first.back(); }
   std::array<const double*, 3> axes() const { return {x.data(), y.data(), z.data()}; }
 
-  std::vector<double> x, y, z;       ///< padded with kRun zeros, so that whole runs can be read
+  UnsetArray<double> x, y, z;        ///< padded with kRun zeros, so that whole runs can be read
   std::vector<std::uint32_t> first;  ///< first point of each run, and size()
   std::vector<std::vector<EightBoxes>> rows;  ///< from the runs up to a single node
 };
