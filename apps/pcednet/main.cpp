@@ -1,4 +1,7 @@
 #include <fmt/format.h>
+#if defined(__GLIBC__)
+#include <malloc.h>
+#endif
 
 #include <cstdio>
 #include <exception>
@@ -15,6 +18,15 @@
 
 namespace pcednet::app {
 namespace {
+
+/// Lets threads use again what they free: blocks of points need buffers of some megabytes one after
+/// another, which would go back to the system and come as new pages each time.
+void keep_freed_memory() {
+#if defined(__GLIBC__)
+  mallopt(M_MMAP_THRESHOLD, 32 << 20);
+  mallopt(M_TRIM_THRESHOLD, 128 << 20);
+#endif
+}
 
 int run(int argc, char** argv) {
   CLI::App app{
@@ -62,6 +74,7 @@ int run(int argc, char** argv) {
 }  // namespace pcednet::app
 
 int main(int argc, char** argv) {
+  pcednet::app::keep_freed_memory();
   try {
     return pcednet::app::run(argc, argv);
   } catch (const pcednet::Error& error) {
