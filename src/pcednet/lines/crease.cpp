@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 #include <utility>
 
@@ -23,6 +24,14 @@ constexpr std::size_t kWithSharp = 9, kWithSmooth = 3;
 /// of other edges is among them.
 constexpr std::size_t kNoisyNeighbours[] = {80, 56, 40, 28};
 constexpr double kNoiseOfPlanes = 1.2;  ///< measured noise is too low: planes of few points bend
+
+/// Where one side of an edge is much denser than the other, the nearest points are all of the
+/// denser: so many are looked at then, thinned to a distance from each other, in that of the last.
+constexpr std::size_t kFarNeighbours = 300;
+constexpr double kApart = 0.16;
+constexpr std::size_t kUnevenSides = 3;  ///< times as many points
+constexpr double kAlmostAll = 0.95;
+constexpr double kOffSide = 0.5, kReachesLine = 0.5;  ///< spacings
 
 /// Of points to be tried beside those of an edge class; the second is added per spacing of noise.
 constexpr double kLeastProbability[] = {0.1, 0.9};
@@ -168,6 +177,48 @@ std::optional<Crease> crease_at(const OrderedPoints& cloud, std::uint32_t i,
                 .edge_class = cloud.edge_class(i)};
 }
 
+/// The nearest of these of which no two are near each other: about as many as evenly spaced
+/// neighbours, from as far.
+std::vector<spatial::Neighbour> thinned(const OrderedPoints& cloud,
+                                        std::span<const spatial::Neighbour> others) {
+  std::vector<spatial::Neighbour> kept;
+  if (others.empty()) return kept;
+  const double sq_apart = kApart * kApart * others.back().sq_distance;
+  for (const auto& near : others) {
+    const Vec3& place = cloud.position(near.index);
+    const bool is_close = std::any_of(kept.begin(), kept.end(), [&](const auto& other) {
+      return (cloud.position(other.index) - place).squaredNorm() < sq_apart;
+    });
+    if (!is_close && kept.size() + 1 < NearPoints::kMost) kept.push_back(near);
+  }
+  return kept;
+}
+
+/// Whether the points around a crease explain why the nearest of them did not show it: they reach
+/// it, and one side has several times the points of the other, or both sides, which are in rows,
+/// have almost all of them.
+bool is_uneven(const Crease& crease, const OrderedPoints& cloud,
+               std::span<const spatial::Neighbour> others) {
+  std::size_t counts[2] = {0, 0};
+  double nearest = kSideReach;
+  const Vec3* const sides[2] = {&crease.side_a, &crease.side_b};
+  for (const auto& near : others) {
+    const Vec3 offset = (cloud.position(near.index) - crease.at) / crease.spacing;
+    for (int k = 0; k < 2; ++k) {
+      const double away = offset.dot(*sides[k]);
+      if (away <= 0.0 || std::abs(offset.dot(crease.along.cross(*sides[k]))) > kOffSide) continue;
+      nearest = std::min(nearest, away);
+      ++counts[k];
+      break;
+    }
+  }
+  if (nearest > kReachesLine) return false;
+  const auto [least, most] = std::minmax(counts[0], counts[1]);
+  if (most >= kUnevenSides * least) return true;
+  return crease.edge_class == kSharpEdge &&
+         static_cast<double>(least + most) >= kAlmostAll * static_cast<double>(others.size());
+}
+
 /// The points of an edge class, those that may be, and the neighbours of both.
 std::vector<std::uint32_t> points_near_edges(const OrderedPoints& cloud, double noise,
                                              const Progress* progress) {
@@ -219,11 +270,27 @@ std::vector<Crease> find_creases(const OrderedPoints& cloud, const Sampling& sam
   const Tolerances within = {.plane = 0.3 + 1.1 * sampling.noise,
                              .first = 2.0 + 2.0 * sampling.noise,
                              .noise = sampling.noise};
+  std::vector<std::uint8_t> has_crease(cloud.size(), 0);
   Stage stage(progress, "creases", points.size());
-  return creases_at(cloud, points, others, stage,
-                    [&](std::uint32_t point, std::span<const spatial::Neighbour> near) {
-                      return crease_at(cloud, point, near, within);
-                    });
+  std::vector<Crease> creases =
+      creases_at(cloud, points, others, stage,
+                 [&](std::uint32_t point, std::span<const spatial::Neighbour> near) {
+                   const auto crease = crease_at(cloud, point, near, within);
+                   has_crease[point] = crease.has_value();
+                   return crease;
+                 });
+  std::vector<std::uint32_t> rest;
+  std::copy_if(points.begin(), points.end(), std::back_inserter(rest),
+               [&](std::uint32_t i) { return cloud.is_edge(i) && has_crease[i] == 0; });
+  Stage again(progress, "uneven creases", rest.size());
+  const std::vector<Crease> uneven =
+      creases_at(cloud, rest, kFarNeighbours, again,
+                 [&](std::uint32_t point, std::span<const spatial::Neighbour> near) {
+                   const auto crease = crease_at(cloud, point, thinned(cloud, near), within);
+                   return crease && is_uneven(*crease, cloud, near) ? crease : std::nullopt;
+                 });
+  creases.insert(creases.end(), uneven.begin(), uneven.end());
+  return creases;
 }
 
 }  // namespace pcednet::lines

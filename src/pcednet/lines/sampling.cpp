@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
+#include <numeric>
 #include <span>
 #include <vector>
 
@@ -14,19 +16,52 @@ namespace pcednet::lines {
 namespace {
 
 constexpr std::size_t kPlaneNeighbours = 15, kLeastNeighbours = 5;
-constexpr std::size_t kSamples = 2000;     ///< points that spacing and noise are measured at
+constexpr std::size_t kSamples = 2000;  ///< points that spacing and noise are measured at
+constexpr std::size_t kFewSamples = 50;
+constexpr double kUneven = 1.5;            ///< times the spacing
 constexpr double kMostNoise = 0.7;         ///< in spacings: more is no surface
 constexpr double kLeastGapOfSheets = 0.5;  ///< between the two sides of a wall, of their heights
 
-double typical(std::vector<double> values) {
-  return values.empty() ? 0.0 : upper_median(std::move(values));
+/// Of a point and its nearest others.
+struct PlaneSample {
+  double spacing;
+  double noise;  ///< of them about their plane; below 0: unknown
+};
+
+double typical_spacing(const std::vector<PlaneSample>& samples) {
+  std::vector<double> spacings;
+  for (const PlaneSample& sample : samples) spacings.push_back(sample.spacing);
+  return spacings.empty() ? 0.0 : upper_median(std::move(spacings));
 }
 
-/// Noise is everywhere: what a tenth of the points have less than half of is shape.
-double noise_of(std::vector<double> distances) {
-  if (distances.empty()) return 0.0;
-  const double least = value_at_rank(distances, distances.size() / 10);
-  return std::min(2.0 * least, upper_median(std::move(distances)));
+/// In spacings. Noise is everywhere: what a tenth of the points have less than half of is shape.
+double noise_of(const std::vector<PlaneSample>& samples) {
+  std::vector<double> noises;
+  for (const PlaneSample& sample : samples) {
+    if (sample.noise >= 0.0) noises.push_back(sample.noise / sample.spacing);
+  }
+  if (noises.empty()) return 0.0;
+  const double least = value_at_rank(noises, noises.size() / 10);
+  return std::min({2.0 * least, upper_median(std::move(noises)), kMostNoise});
+}
+
+/// The samples where the spacing is about this one; if they are few, all, as if it were theirs.
+std::vector<PlaneSample> like(const std::vector<PlaneSample>& samples, double spacing) {
+  std::vector<PlaneSample> alike, scaled;
+  for (const PlaneSample& sample : samples) {
+    const double ratio = sample.spacing / spacing;
+    if (ratio < kUneven && ratio * kUneven > 1.0) alike.push_back(sample);
+    scaled.push_back({spacing, sample.noise});
+  }
+  return alike.size() < kFewSamples ? scaled : alike;
+}
+
+/// About kSamples of these.
+std::vector<std::uint32_t> some_of(const std::vector<std::uint32_t>& points) {
+  const std::size_t step = std::max<std::size_t>(1, points.size() / kSamples);
+  std::vector<std::uint32_t> some;
+  for (std::size_t i = 0; i < points.size(); i += step) some.push_back(points[i]);
+  return some;
 }
 
 /// Leaves the neighbours on the point's own side of a wall; `heights` are theirs along its normal.
@@ -58,38 +93,45 @@ double distance_to_plane(const std::vector<Vec3>& offsets) {
   return std::sqrt(std::max(eigendecomposition(covariance / count).values[0], 0.0));
 }
 
-}  // namespace
-
-Sampling measure_sampling(const OrderedPoints& cloud) {
-  const std::size_t step = std::max<std::size_t>(1, cloud.size() / kSamples);
-  std::vector<std::uint32_t> all, points;
-  for (std::size_t i = 0; i < cloud.size(); i += step) {
-    all.push_back(static_cast<std::uint32_t>(i));
-    if (!cloud.is_edge(i)) points.push_back(all.back());
-  }
-  if (points.empty()) points = std::move(all);
+std::vector<PlaneSample> samples_at(const OrderedPoints& cloud,
+                                    const std::vector<std::uint32_t>& points) {
   const std::size_t others = cloud.available(kPlaneNeighbours);
+  std::vector<PlaneSample> samples;
+  if (others < kLeastNeighbours) return samples;
   std::vector<spatial::Neighbour> nearest;
   cloud.nearest_others(points, others, nearest);
-  std::vector<double> spacings, noises;
   std::vector<Vec3> offsets;
   std::vector<double> heights;
-  for (std::size_t k = 0; k < points.size() && others >= kLeastNeighbours; ++k) {
+  for (std::size_t k = 0; k < points.size(); ++k) {
     const auto row = std::span(nearest).subspan(k * others, others);
     const double spacing = spacing_of(row);
     if (!(spacing > 0.0)) continue;
-    spacings.push_back(spacing);
     offsets.clear(), heights.clear();
     for (const auto& near : row) {
       offsets.push_back(cloud.position(near.index) - cloud.position(points[k]));
       heights.push_back(offsets.back().dot(cloud.normal(points[k])));
     }
     keep_own_sheet(offsets, heights);
-    if (offsets.size() >= kLeastNeighbours) {
-      noises.push_back(distance_to_plane(offsets) / spacing);
-    }
+    const bool enough = offsets.size() >= kLeastNeighbours;
+    samples.push_back({spacing, enough ? distance_to_plane(offsets) : -1.0});
   }
-  return {typical(spacings), std::min(noise_of(std::move(noises)), kMostNoise)};
+  return samples;
+}
+
+}  // namespace
+
+Sampling measure_sampling(const OrderedPoints& cloud) {
+  std::vector<std::uint32_t> all(cloud.size()), on, off;
+  std::iota(all.begin(), all.end(), 0u);
+  const auto is_edge = [&](std::uint32_t i) { return cloud.is_edge(i); };
+  std::copy_if(all.begin(), all.end(), std::back_inserter(on), is_edge);
+  all = some_of(all);
+  std::remove_copy_if(all.begin(), all.end(), std::back_inserter(off), is_edge);
+  const std::vector<PlaneSample> around = samples_at(cloud, off.empty() ? all : off);
+  const double spacing = typical_spacing(around);
+  const double at_edges = typical_spacing(samples_at(cloud, some_of(on)));
+  if (at_edges < kUneven * spacing) return {spacing, noise_of(around)};
+  return {at_edges, noise_of(like(around, at_edges))};
 }
 
 }  // namespace pcednet::lines

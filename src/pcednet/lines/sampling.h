@@ -5,6 +5,7 @@ namespace pcednet::lines {
 class OrderedPoints;
 
 /// Spacing and noise of a cloud, from points off its edges; from all points if all are on edges.
+/// Where points at edges are much sparser than others, as in a scan from close by, theirs.
 struct Sampling {
   double spacing = 0.0;  ///< sqrt of the area per point, median
   double noise = 0.0;    ///< of points about the plane of their neighbours, in spacings

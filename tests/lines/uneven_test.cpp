@@ -1,0 +1,113 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "pcednet/core/random.h"
+#include "pcednet/lines/find_lines.h"
+#include "pcednet/lines/ordered_points.h"
+#include "pcednet/lines/sampling.h"
+
+namespace pcednet::lines {
+namespace {
+
+constexpr double kEdgeLength = 40.0, kFaceWidth = 12.0;
+
+struct Faces {
+  std::vector<Vec3> positions = {}, normals = {};
+  std::vector<std::uint8_t> classes = {};
+
+  EdgePoints points() const { return {positions, normals, classes}; }
+
+  /// A face along y, and away from it; its points labelled within 0.7 spacings of the edge.
+  void add_face(const Vec3& away, const Vec3& normal, double spacing, Random& random) {
+    const auto count = static_cast<int>(kEdgeLength * kFaceWidth / (spacing * spacing));
+    for (int i = 0; i < count; ++i) {
+      const double from_edge = kFaceWidth * random.uniform();
+      positions.push_back(from_edge * away + kEdgeLength * random.uniform() * Vec3::UnitY());
+      normals.push_back(normal);
+      classes.push_back(from_edge < 0.7 * spacing ? kSharpEdge : kNonEdge);
+    }
+  }
+
+  void add_ground(double spacing, Random& random) {
+    for (int i = 0; i < 30000; ++i) {
+      positions.emplace_back(1000.0 + 170.0 * spacing * random.uniform(),
+                             170.0 * spacing * random.uniform(), 0.0);
+      normals.push_back(Vec3::UnitZ());
+      classes.push_back(kNonEdge);
+    }
+  }
+};
+
+/// The floor and wall of a scan that looks at the floor and along the wall.
+Faces floor_and_wall(double of_floor, double of_wall) {
+  Random random(11);
+  Faces cloud;
+  cloud.add_face(Vec3::UnitX(), Vec3::UnitZ(), of_floor, random);
+  cloud.add_face(Vec3::UnitZ(), Vec3::UnitX(), of_wall, random);
+  return cloud;
+}
+
+double length_along_edge(const std::vector<Curve>& curves) {
+  double length = 0.0;
+  for (const Curve& curve : curves) {
+    const bool is_on_edge =
+        std::all_of(curve.points.begin(), curve.points.end(),
+                    [](const Vec3& p) { return std::hypot(p.x(), p.z()) < 0.5; });
+    if (is_on_edge) length += length_of(curve);
+  }
+  return length;
+}
+
+TEST(UnevenLines, FollowTheEdgeBetweenADenseFaceAndASparseOne) {
+  for (const double of_wall : {0.3, 0.9}) {
+    const std::vector<Curve> curves = find_lines(floor_and_wall(0.3, of_wall).points());
+    EXPECT_GT(length_along_edge(curves), 0.9 * kEdgeLength) << of_wall;
+    EXPECT_LT(length_along_edge(curves), 1.01 * kEdgeLength) << of_wall;
+    EXPECT_LE(curves.size(), 3u) << of_wall;
+  }
+}
+
+TEST(UnevenLines, AreTheSameForAnyOrderOfThePoints) {
+  const Faces cloud = floor_and_wall(0.3, 0.9);
+  std::vector<std::size_t> order(cloud.positions.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  Random random(12);
+  for (std::size_t i = order.size() - 1; i > 0; --i)
+    std::swap(order[i], order[random.index(i + 1)]);
+  Faces shuffled;
+  for (const std::size_t i : order) {
+    shuffled.positions.push_back(cloud.positions[i]);
+    shuffled.normals.push_back(cloud.normals[i]);
+    shuffled.classes.push_back(cloud.classes[i]);
+  }
+  const std::vector<Curve> a = find_lines(cloud.points()), b = find_lines(shuffled.points());
+  ASSERT_EQ(a.size(), b.size());
+  ASSERT_FALSE(a.empty());
+  for (std::size_t i = 0; i < a.size(); ++i) EXPECT_EQ(a[i].points, b[i].points);
+}
+
+TEST(UnevenLines, TakeTheSpacingOfEdgesWhereItIsMuchWider) {
+  Faces cloud = floor_and_wall(1.0, 1.0);
+  Random random(13);
+  cloud.add_ground(0.1, random);
+  const Sampling sampling = measure_sampling(OrderedPoints(cloud.points()));
+  EXPECT_NEAR(sampling.spacing, 1.0, 0.1);
+  EXPECT_LT(sampling.noise, 1e-6);
+}
+
+TEST(UnevenLines, MeasureNoiseInTheSpacingOfEdges) {
+  Faces cloud = floor_and_wall(1.0, 1.0);
+  Random random(13);
+  cloud.add_ground(0.1, random);
+  for (std::size_t i = 0; i < cloud.positions.size(); ++i) {
+    cloud.positions[i] += 0.05 * random.normal() * cloud.normals[i];
+  }
+  // Half a spacing of the ground, a twentieth of one at the edge.
+  EXPECT_LT(measure_sampling(OrderedPoints(cloud.points())).noise, 0.1);
+}
+
+}  // namespace
+}  // namespace pcednet::lines
