@@ -1,11 +1,15 @@
 #!/usr/bin/python3
-"""How well `pcednet classify` finds the edges of one scene in the forms in which clouds come.
+"""How well pcednet finds the edges of one scene in the forms in which clouds come.
 
     bench/cloud_forms.py [--pcednet PROGRAM] [--model MODEL] [FORM...]
 
 The scene is a house with a gabled roof, steps, a column and a dome on level ground, 20 by 20 metres. Found: the
 points within .7 spacings of an edge that are an edge or boundary. True: the edges within 2 spacings of one. False:
-the points beyond 4 spacings that are edges, in percent. Spacings are those at each point. Without FORM, all.
+the points beyond 4 spacings that are edges, in percent. Spacings are those at each point.
+
+Lines, by default and with boundaries: the share of the edges' length, where there are points within 1.5 spacings,
+that a curve follows within 2, the share of the curves' length within 2 spacings of an edge, and how many they are.
+Without FORM, all.
 """
 import argparse
 import pathlib
@@ -240,6 +244,35 @@ def spacing_at(p):
     return np.median(near[:, 1:].mean(1)[index], axis=1) / 1.15
 
 
+def curves_of(path):
+    """The polylines of an OBJ file."""
+    words = [line.split() for line in path.read_text().splitlines()]
+    corners = np.array([w[1:4] for w in words if w[:1] == ["v"]], float).reshape(-1, 3)
+    return [corners[[int(i) - 1 for i in w[1:]]] for w in words if w[:1] == ["l"]]
+
+
+def places_along(curves, step=.02):
+    """Points in such steps along polylines."""
+    parts = [np.zeros((0, 3))]
+    for curve in curves:
+        for a, b in zip(curve[:-1], curve[1:]):
+            n = max(1, int(np.ceil(np.linalg.norm(b - a) / step)))
+            parts.append(a + ((np.arange(n) + .5) / n)[:, None] * (b - a))
+    return np.vstack(parts)
+
+
+def score_lines(curves, scene, p, spacing):
+    """Found, true and the number of curves."""
+    if not curves:
+        return 0.0, 1.0, 0
+    cloud, drawn, edges = cKDTree(p), places_along(curves), places_along(scene.edges)
+    away, index = cloud.query(edges)
+    seen, reach = away < 1.5 * spacing[index], 2 * spacing[index]
+    found = cKDTree(drawn).query(edges[seen])[0] < reach[seen]
+    off = distance(drawn, scene.edges + scene.rims)
+    return found.mean(), (off < 2 * spacing[cloud.query(drawn)[1]]).mean(), len(curves)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--pcednet", default="build/release/bin/pcednet")
@@ -247,22 +280,28 @@ def main():
     parser.add_argument("forms", nargs="*")
     arguments = parser.parse_args()
     scene = Scene()
-    print(f"{'form':36s}   points  found   true  false %")
+    print(f"{'form':36s}   points  found   true  false % |  lines: found   true curves | with boundaries")
     with tempfile.TemporaryDirectory() as folder:
-        cloud, labelled = pathlib.Path(folder) / "cloud.ply", pathlib.Path(folder) / "labelled.ply"
+        cloud, labelled, drawn = (pathlib.Path(folder) / name for name in ("cloud.ply", "labelled.ply", "lines.obj"))
+        run = lambda *command: subprocess.run([arguments.pcednet, *command, "--overwrite"], check=True,
+                                              capture_output=True)
         for name in forms(scene, None):
             if arguments.forms and not any(form in name for form in arguments.forms):
                 continue
             p = forms(scene, np.random.default_rng(5))[name]()
             write_ply(cloud, p)
-            subprocess.run([arguments.pcednet, "classify", cloud, "-o", labelled, "--model", arguments.model,
-                            "--overwrite"], check=True, capture_output=True)
+            run("classify", cloud, "-o", labelled, "--model", arguments.model)
             classes, spacing = classes_of(labelled), spacing_at(p)
             away, rim = distance(p, scene.edges), distance(p, scene.rims)
             edge = (classes == 1) | (classes == 2)
             near, far = away < .7 * spacing, np.minimum(away, rim) > 4 * spacing
             print(f"{name:36s} {len(p):8d}   {(classes[near] > 0).mean():.3f}"
-                  f"  {(away[edge] < 2 * spacing[edge]).mean():.3f}  {100 * edge[far].mean():.3f}", flush=True)
+                  f"  {(away[edge] < 2 * spacing[edge]).mean():.3f}  {100 * edge[far].mean():7.3f}", end="")
+            for boundaries in ([], ["--boundaries"]):
+                run("lines", labelled, "-o", drawn, *boundaries)
+                found, true, count = score_lines(curves_of(drawn), scene, p, spacing)
+                print(f" |         {found:.3f}  {true:.3f} {count:6d}", end="")
+            print(flush=True)
 
 
 if __name__ == "__main__":
