@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <memory>
 #include <type_traits>
+#include <utility>
 
 namespace pcednet {
 
@@ -16,6 +17,12 @@ class UnsetArray {
   UnsetArray() = default;
   explicit UnsetArray(std::size_t size)
       : values_(std::make_unique_for_overwrite<Value[]>(size)), size_(size) {}
+  UnsetArray(UnsetArray&& other) noexcept { *this = std::move(other); }
+  UnsetArray& operator=(UnsetArray&& other) noexcept {
+    values_ = std::move(other.values_);
+    size_ = std::exchange(other.size_, 0);
+    return *this;
+  }
 
   std::size_t size() const { return size_; }
   Value* data() { return values_.get(); }
