@@ -275,7 +275,7 @@ std::vector<Crease> find_creases(const OrderedPoints& cloud, const Sampling& sam
   std::vector<Crease> creases =
       creases_at(cloud, points, others, stage,
                  [&](std::uint32_t point, std::span<const spatial::Neighbour> near) {
-                   const auto crease = crease_at(cloud, point, near, within);
+                   auto crease = crease_at(cloud, point, near, within);
                    has_crease[point] = crease.has_value();
                    return crease;
                  });
