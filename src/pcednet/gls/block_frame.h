@@ -2,10 +2,10 @@
 
 #include <cstdint>
 #include <limits>
-#include <memory>
 #include <span>
 #include <vector>
 
+#include "pcednet/core/unset_array.h"
 #include "pcednet/core/vec3.h"
 #include "pcednet/gls/lane_types.h"
 #include "pcednet/gls/voxel_pyramid.h"
@@ -22,18 +22,14 @@ class Room {
  public:
   /// At least `count` values.
   Value* make(std::size_t count) {
-    if (size_ < count) {
-      size_ = count + count / 2;
-      values_ = std::make_unique_for_overwrite<Value[]>(size_);
-    }
-    return values_.get();
+    if (values_.size() < count) values_ = UnsetArray<Value>(count + count / 2);
+    return values_.data();
   }
-  Value* data() { return values_.get(); }
-  const Value* data() const { return values_.get(); }
+  Value* data() { return values_.data(); }
+  const Value* data() const { return values_.data(); }
 
  private:
-  std::size_t size_ = 0;
-  std::unique_ptr<Value[]> values_;
+  UnsetArray<Value> values_;
 };
 
 /// Owns the arrays of Candidates, which the kernels fill.

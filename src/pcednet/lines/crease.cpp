@@ -177,19 +177,20 @@ std::optional<Crease> crease_at(const OrderedPoints& cloud, std::uint32_t i,
                 .edge_class = cloud.edge_class(i)};
 }
 
-/// The nearest of these of which no two are near each other: about as many as evenly spaced
-/// neighbours, from as far.
+/// Of these, nearest first, those that are not near one chosen before: at most as many as
+/// NearPoints has room for beside the point itself.
 std::vector<spatial::Neighbour> thinned(const OrderedPoints& cloud,
                                         std::span<const spatial::Neighbour> others) {
   std::vector<spatial::Neighbour> kept;
   if (others.empty()) return kept;
   const double sq_apart = kApart * kApart * others.back().sq_distance;
   for (const auto& near : others) {
+    if (kept.size() + 1 == NearPoints::kMost) break;
     const Vec3& place = cloud.position(near.index);
     const bool is_close = std::any_of(kept.begin(), kept.end(), [&](const auto& other) {
       return (cloud.position(other.index) - place).squaredNorm() < sq_apart;
     });
-    if (!is_close && kept.size() + 1 < NearPoints::kMost) kept.push_back(near);
+    if (!is_close) kept.push_back(near);
   }
   return kept;
 }
@@ -201,12 +202,13 @@ bool is_uneven(const Crease& crease, const OrderedPoints& cloud,
                std::span<const spatial::Neighbour> others) {
   std::size_t counts[2] = {0, 0};
   double nearest = kSideReach;
-  const Vec3* const sides[2] = {&crease.side_a, &crease.side_b};
+  const Vec3 sides[2] = {crease.side_a, crease.side_b};
+  const Vec3 normals[2] = {crease.along.cross(sides[0]), crease.along.cross(sides[1])};
   for (const auto& near : others) {
     const Vec3 offset = (cloud.position(near.index) - crease.at) / crease.spacing;
     for (int k = 0; k < 2; ++k) {
-      const double away = offset.dot(*sides[k]);
-      if (away <= 0.0 || std::abs(offset.dot(crease.along.cross(*sides[k]))) > kOffSide) continue;
+      const double away = offset.dot(sides[k]);
+      if (away <= 0.0 || std::abs(offset.dot(normals[k])) > kOffSide) continue;
       nearest = std::min(nearest, away);
       ++counts[k];
       break;
