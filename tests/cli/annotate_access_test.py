@@ -8,7 +8,7 @@ import time
 import unittest
 
 import support
-from annotate_support import AnnotateTest, Drip, EDGE, FACE, brush
+from annotate_support import AnnotateTest, Drip, EDGE, FACE, POINTS, brush
 from support import read_ply, run, write_ply
 
 
@@ -184,7 +184,7 @@ half.rename({str(given)!r})
         self.assertEqual({path: path.read_bytes() for path in self.folder.rglob("*") if path.is_file()},
                          before)
         saved = server.post("/api/save", {"what": "cloud", "name": "K\u00e4se \u26f0.ply"})["path"]
-        self.assertEqual(len(read_ply(saved)[0]), 20000)
+        self.assertEqual(len(read_ply(saved)[0]), POINTS)
         self.assertEqual(server.end()[0], 0)
         # A project with an unusual name is not taken for a cloud that may be replaced.
         server = self.serve("--project", str(self.folder / "strokes.ply"))

@@ -8,7 +8,7 @@ import unittest
 
 import numpy as np
 
-from annotate_support import AnnotateTest, Drip, EDGE, FACE, Server, brush
+from annotate_support import AnnotateTest, Drip, EDGE, FACE, POINTS, Server, brush
 from support import read_ply, run, write_ply
 
 
@@ -16,7 +16,7 @@ class AnnotateSession(AnnotateTest):
     def test_paints_the_points_of_the_brush_and_takes_them_back(self):
         server = self.quiet()
         session = server.get("/api/session")
-        self.assertEqual(sum(n["points"] for n in session["nodes"]), 20000)
+        self.assertEqual(sum(n["points"] for n in session["nodes"]), POINTS)
         centre = np.array([0.5, 0.1, 0.1]) - session["origin"]
         answer = server.post("/api/stroke", brush("a", 1, [centre]))
         near = np.linalg.norm(self.positions - [0.5, 0.1, 0.1], axis=1) < 0.1
@@ -72,7 +72,7 @@ class AnnotateSession(AnnotateTest):
         server = self.quiet()
         server.post("/api/stroke", brush("a", 2, EDGE))
         self.assertEqual(server.end()[0], 0)
-        write_ply(self.cloud, self.positions[:15000])
+        write_ply(self.cloud, self.positions[:-1000])
         done = run("annotate", self.cloud, "--no-browser", expect=4)
         self.assertIn("another input", done.stderr)
 

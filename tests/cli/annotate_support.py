@@ -134,6 +134,7 @@ def brush(name, edge_class, centres, radius=0.1, **more):
             "hidden": [], "clip": None, "centres": [list(map(float, c)) for c in centres], **more}
 
 
+POINTS = 8000  # of the cube
 EDGE = [(0.5, 0.5, z) for z in np.linspace(-0.3, 0.3, 13)]
 FACE = [(0.5, y, z) for y in (-0.2, 0, 0.2) for z in (-0.2, 0, 0.2)]
 
@@ -143,7 +144,7 @@ class AnnotateTest(CliTest):
 
     def setUp(self):
         super().setUp()
-        self.positions, normals, _ = support.cube(20000)
+        self.positions, normals, _ = support.cube(POINTS)
         self.cloud = self.folder / "cube.ply"
         write_ply(self.cloud, self.positions, normals)
         self.servers = []

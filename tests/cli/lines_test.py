@@ -61,8 +61,8 @@ class Lines(CliTest):
         self.made = {f: self.folder / f"out.{f}" for f in formats or FORMATS}
         return [word for path in self.made.values() for word in ("-o", path)]
 
-    def labelled_cube(self, name="cube.ply", shift=(0, 0, 0)):
-        p, n, label = cube(30000)
+    def labelled_cube(self, name="cube.ply", shift=(0, 0, 0), points=8000):
+        p, n, label = cube(points)
         write_ply(self.folder / name, p + shift, n, np.where(label == 2, 2, 0).astype(np.uint8),
                   position_type="double")
         return self.folder / name

@@ -5,6 +5,8 @@ import stat
 import subprocess
 import unittest
 
+import numpy as np
+
 from support import PROGRAM, CliTest, cube, read_ply, run, write_ply
 
 
@@ -25,17 +27,22 @@ class Outputs(CliTest):
         self.assertEqual(running.wait(60), expect, said)
         return said
 
+    def halted(self, **options):
+        """A conversion to out.ply that has begun to write, and waits for SIGCONT in its midst."""
+        process = self.start("convert", self.cloud, "-o", self.folder / "out.ply", **options)
+        while not any(".part" in name and f"-{process.pid}" in name for name in os.listdir(self.folder)):
+            self.assertIsNone(process.poll(), "ended without writing")
+        process.send_signal(signal.SIGSTOP)
+        return process
+
+    def write_large_cloud(self):
+        """Of which a conversion writes long enough to be halted."""
+        write_ply(self.cloud, np.random.default_rng(1).uniform(0.0, 1.0, (1_500_000, 3)))
+
     def test_one_of_three_runs_at_once_wins(self):
-        write_ply(self.cloud, *cube(600_000)[:2])
+        self.write_large_cloud()
         out = self.folder / "out.ply"
-        running = []
-        for _ in range(3):  # each is halted in its midst until all of them have begun to write
-            process = self.start("convert", self.cloud, "-o", out)
-            running.append(process)
-            while not any(".part" in name and f"-{process.pid}" in name
-                          for name in os.listdir(self.folder)):
-                self.assertIsNone(process.poll(), "ended without writing")
-            process.send_signal(signal.SIGSTOP)
+        running = [self.halted() for _ in range(3)]  # all of them have begun to write
         for process in running:
             process.send_signal(signal.SIGCONT)
         said = [process.stderr.read() for process in running]
@@ -44,19 +51,16 @@ class Outputs(CliTest):
         self.assertEqual(sorted(process.wait(60) for process in running), [0, 2, 2])
         self.assertEqual(sum("out.ply: exists already" in text for text in said), 2)
         self.assertEqual(sorted(os.listdir(self.folder)), ["a.ply", "out.ply"])
-        self.assertEqual(len(read_ply(out)[0]), 600_000)
+        self.assertEqual(len(read_ply(out)[0]), 1_500_000)
 
     def stop(self, *signals, expect=130, preexec_fn=None):
         """Sends signals to a conversion in its midst; returns the names of the files then."""
-        write_ply(self.cloud, *cube(4_000_000)[:2])
-        running = self.start("convert", self.cloud, "-o", self.folder / "out.ply",
-                             preexec_fn=preexec_fn)
-        for line in running.stderr:
-            if '"convert"' in line:
-                break
-        self.assertTrue(any(".part" in name for name in os.listdir(self.folder)))
+        self.write_large_cloud()
+        running = self.halted(preexec_fn=preexec_fn)
         for number in signals:
             running.send_signal(number)
+        self.assertTrue(any(".part" in name for name in os.listdir(self.folder)))
+        running.send_signal(signal.SIGCONT)
         self.end(running, expect)
         return sorted(os.listdir(self.folder))
 
@@ -102,11 +106,13 @@ class Outputs(CliTest):
             self.assertEqual(there.read_text(), "precious")
 
     def test_an_existing_cloud_of_a_set_is_found_before_the_others_are_made(self):
-        run("generate", "default", self.folder / "set", "--paper-only")
-        last = sorted(os.listdir(self.folder / "set"))[-1]
+        few = ("--only", "roof_gable")
+        run("generate", "lines", self.folder / "set", *few)
+        *others, last = sorted(name for name in os.listdir(self.folder / "set") if name.endswith(".ply"))
+        self.assertGreater(len(others), 0)
         (self.folder / "again").mkdir()
         (self.folder / "again" / last).write_text("precious")
-        done = run("generate", "default", self.folder / "again", "--paper-only", expect=2)
+        done = run("generate", "lines", self.folder / "again", *few, expect=2)
         self.assertIn(f"{last}: exists already", done.stderr)
         self.assertEqual(os.listdir(self.folder / "again"), [last])
 

@@ -56,11 +56,11 @@ class Tiles(CliTest):
     def status(self, plan, *options):
         return json.loads(run("tiles", "status", plan, "--json", "-", *options).stdout)
 
-    def small(self):
-        """A plan of a few tiles that run quickly."""
+    def small(self, tile=1.4):
+        """A plan of nine tiles, by default, that run quickly."""
         p, n = field(3, 300)
         write_ply(self.folder / "small.ply", p, n)
-        return self.make_plan(self.folder / "small.ply", tile=1.0)
+        return self.make_plan(self.folder / "small.ply", tile=tile)
 
     def check_whole(self, plan, cloud):
         """Joins, and compares the points with the input's: none lost, none doubled."""
@@ -73,29 +73,31 @@ class Tiles(CliTest):
             np.testing.assert_array_equal(rows[name], expected[name])
         return rows
 
-    def check_equal_to_untiled(self, cloud, least, *options):
+    def check_equal_to_untiled(self, cloud, least, *options, jobs=1):
+        """Returns what classify says."""
         plan, content = self.make_plan(cloud, *options)
         self.assertGreaterEqual(len(content["tiles"]), 9)
-        run("tiles", "run", plan, "--jobs", 2)
+        run("tiles", "run", plan, "--jobs", jobs)
         rows = self.check_whole(plan, cloud)
-        run("classify", cloud, "-o", self.folder / "whole.ply", "--overwrite", *options)
+        said = run("classify", cloud, "-o", self.folder / "whole.ply", "--overwrite", *options).stderr
         whole = sorted_rows(self.folder / "whole.ply")
         self.assertEqual(rows.dtype, whole.dtype)
         equal = np.mean(rows["scalar_edge_class"] == whole["scalar_edge_class"])
         self.assertGreaterEqual(equal, least)
         self.assertGreater(np.mean(whole["scalar_edge_class"] == 2), 0.02)
+        return said
 
     def test_labels_are_those_of_the_whole_cloud(self):
-        write_ply(self.folder / "a.ply", *field())
-        self.check_equal_to_untiled(self.folder / "a.ply", 0.9999)
+        write_ply(self.folder / "a.ply", *field(3))
+        self.check_equal_to_untiled(self.folder / "a.ply", 0.9999, jobs=2)
         self.check_equal_to_untiled(self.folder / "a.ply", 0.9999, "--model", "worn")
 
     def test_labels_are_those_of_the_whole_cloud_without_normals(self):
-        write_ply(self.folder / "bare.ply", *field(normals=False))
+        write_ply(self.folder / "bare.ply", *field(3, normals=False))
         self.check_equal_to_untiled(self.folder / "bare.ply", 0.999)
 
     def test_labels_are_those_of_the_whole_cloud_if_rounded(self):
-        p, _ = field()
+        p, _ = field(3)
         c, s = np.cos(0.5), np.sin(0.5)
         oblique = p @ np.array([[c, s, 0], [-s, c, 0], [0, 0, 1]]) @ np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]])
         write_ply(self.folder / "rounded.ply", np.round(oblique / 0.02).astype(np.float32) * 0.02)
@@ -105,14 +107,13 @@ class Tiles(CliTest):
         self.assertIn("rounded to 0.02", plan["notes"][0])
 
     def test_labels_are_those_of_the_whole_cloud_where_the_spacing_varies(self):
-        p, n = field()
+        p, n = field(3)
         kept = np.random.default_rng(4).random(len(p)) < 0.04 + np.exp(-1.5 * p[:, 0])
         write_ply(self.folder / "uneven.ply", p[kept], n[kept])
-        self.check_equal_to_untiled(self.folder / "uneven.ply", 0.999)
+        said = self.check_equal_to_untiled(self.folder / "uneven.ply", 0.999)
+        self.assertIn("where points are sparser", said)
         plan = json.loads((self.folder / "p.json").read_text())
         self.assertEqual(len(plan["pyramids"]), 4)
-        said = run("classify", self.folder / "uneven.ply", "-o", self.folder / "u.ply").stderr
-        self.assertIn("where points are sparser", said)
 
     def test_a_plan_is_the_same_again_and_says_what_decides(self):
         p, n = field(3, 600)
@@ -158,7 +159,7 @@ class Tiles(CliTest):
         p, n = field(3, 300)
         write_ply(self.folder / "a.ply", p, n)
         run("convert", self.folder / "a.ply", "-o", self.folder / "a.laz")
-        plan, content = self.make_plan(self.folder / "a.laz", tile=1.0)
+        plan, content = self.make_plan(self.folder / "a.laz", tile=1.4)
         vpc = self.folder / "a.vpc"
         said = run("tiles", "join", plan, "--vpc", vpc, expect=4).stderr
         self.assertIn("tiles are missing or damaged: 0 to", said)
@@ -175,7 +176,7 @@ class Tiles(CliTest):
         self.assertEqual((self.folder / "b.vpc").read_bytes(), before)
         run("tiles", "join", plan, "--vpc", vpc, expect=2)  # exists
         self.assertIn("needs -o FILE, --vpc FILE", run("tiles", "join", plan, expect=2).stderr)
-        plan, _ = self.make_plan(self.folder / "a.ply", tile=1.0)
+        plan, _ = self.make_plan(self.folder / "a.ply", tile=10)
         run("tiles", "run", plan)
         said = run("tiles", "join", plan, "--vpc", self.folder / "c.vpc", expect=4).stderr
         self.assertIn("of LAS, LAZ and COPC files", said)
@@ -194,7 +195,7 @@ class Tiles(CliTest):
             run("convert", self.folder / "b.ply", "-o", self.folder / f"in/{name}.copc.laz")
             (self.folder / "b.ply").unlink()
         run("info", self.folder / "in", "--vpc", self.folder / "in.vpc")
-        plan, content = self.make_plan(self.folder / "in.vpc", tile=1.0)
+        plan, content = self.make_plan(self.folder / "in.vpc", tile=1.4)
         self.assertEqual([i["path"] for i in content["inputs"]],
                          ["in/left.copc.laz", "in/right.copc.laz"])
         # Each file is in the finest steps that hold it, which do not hold both together.
@@ -220,7 +221,7 @@ class Tiles(CliTest):
         (self.folder / "in").mkdir()
         write_ply(self.folder / "in/left.ply", p[half], n[half])
         write_ply(self.folder / "in/right.ply", p[~half], n[~half])
-        plan, _ = self.make_plan(self.folder / "in", tile=1.0)
+        plan, _ = self.make_plan(self.folder / "in", tile=1.4)
         run("tiles", "run", plan)
         rows = self.check_whole(plan, self.folder / "a.ply")
         run("classify", self.folder / "a.ply", "-o", self.folder / "whole.ply")
@@ -236,7 +237,7 @@ class Tiles(CliTest):
         order = np.random.default_rng(4).permutation(len(p))
         write_ply(self.folder / "a.ply", p[order], n[order])
         plan, content = self.make_plan(self.folder / "a.ply", "--sort", self.folder / "sorted",
-                                       tile=1.0)
+                                       tile=1.4)
         self.assertEqual(len(content["inputs"]), len(content["tiles"]))
         self.assertEqual(len(list((self.folder / "sorted").iterdir())), len(content["tiles"]))
         run("tiles", "run", plan)
@@ -261,7 +262,7 @@ class Tiles(CliTest):
         p, n = field(3, 300)
         p[::500] = np.nan
         write_ply(self.folder / "a.ply", p, n)
-        plan, _ = self.make_plan(self.folder / "a.ply", tile=1.0)
+        plan, _ = self.make_plan(self.folder / "a.ply", tile=1.4)
         run("tiles", "run", plan)
         run("tiles", "join", plan, "-o", self.folder / "joined.ply")
         rows, _ = read_ply(self.folder / "joined.ply")
@@ -307,7 +308,7 @@ class Tiles(CliTest):
         self.assertEqual(self.status(plan, "--verify")["done"], list(range(len(files))))
 
     def test_killed_at_random_nothing_is_lost(self):
-        plan, content = self.small()
+        plan, content = self.small(tile=1.0)
         whole = self.folder / "small.ply"
         chance = random.Random(17)
         for attempt in range(200):
@@ -362,7 +363,7 @@ class Tiles(CliTest):
         said = run("tiles", "run", plan, expect=1, preexec_fn=limit).stderr
         self.assertIn("File too large", said)
         self.assertEqual(list((self.folder / "p_tiles").iterdir()), [])
-        run("tiles", "run", plan, "--jobs", 2)
+        run("tiles", "run", plan)
         self.check_whole(plan, self.folder / "small.ply")
         run("tiles", "join", plan, "-o", self.folder / "j.ply", expect=1, preexec_fn=limit)
         self.assertFalse((self.folder / "j.ply").exists())

@@ -136,8 +136,8 @@ class Generated(unittest.TestCase):
     def test_clouds_are_those_of_the_program(self):
         with tempfile.TemporaryDirectory() as folder:
             theirs = pathlib.Path(folder) / "theirs"
-            run("generate", "lines", theirs, "--only", "block_0", "--seed", "3")
-            clouds = list(pcednet.generate("lines", 3, only="block_0"))
+            run("generate", "lines", theirs, "--only", "roof_mansard", "--seed", "3")
+            clouds = list(pcednet.generate("lines", 3, only="roof_mansard"))
             self.assertEqual(sorted(cloud.name for cloud in clouds),
                              sorted(file.stem for file in theirs.glob("*.ply")))
             cloud = clouds[0]

@@ -13,7 +13,7 @@ import numpy as np
 import pcednet
 from support import cube
 
-POSITIONS, NORMALS, _ = cube(60_000)
+POSITIONS, NORMALS, _ = cube(20_000)
 
 
 class Bar:
@@ -88,11 +88,12 @@ class Interruption(unittest.TestCase):
         return time.monotonic() - sent[0]
 
     def test_ctrl_c_cancels(self):
+        positions, normals, _ = cube(40_000)
         whole = time.monotonic()
-        pcednet.classify(POSITIONS, exact=True)
+        pcednet.classify(positions, normals, exact=True)
         whole = time.monotonic() - whole
         took = self.interrupted(
-            lambda report: pcednet.classify(POSITIONS, exact=True, progress=report))
+            lambda report: pcednet.classify(positions, exact=True, progress=report))
         self.assertLess(took, 0.5 * whole)
         labels = np.arange(len(POSITIONS)) % 3
         self.interrupted(lambda report: pcednet.train(POSITIONS, labels, normals=NORMALS,
@@ -111,7 +112,7 @@ class Interruption(unittest.TestCase):
                               text=True) as process:
             self.assertEqual(process.stdout.readline(), "begins\n")
             try:
-                process.wait(timeout=1)
+                process.wait(timeout=0.4)
                 self.fail("ended before it could be interrupted")
             except subprocess.TimeoutExpired:
                 process.send_signal(signal.SIGINT)

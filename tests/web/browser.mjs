@@ -11,7 +11,13 @@ const require = createRequire(path.join(process.env.PCEDNET_SOURCE_DIR, "web/pac
 export function launch() {
   return require("playwright-core").chromium.launch({
     executablePath: process.env.CHROMIUM,
-    args: ["--no-sandbox", "--disable-dev-shm-usage", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
+    args: [
+      "--no-sandbox",
+      "--disable-dev-shm-usage",
+      "--use-angle=swiftshader",
+      "--enable-unsafe-swiftshader",
+      "--disable-gpu-compositing", // WebGL alone is drawn by the slow imitation of a graphics card, not the page too
+    ],
   });
 }
 
