@@ -66,6 +66,12 @@ std::vector<fs::path> expand_inputs(const std::vector<std::string>& arguments) {
   return std::move(inputs.files);
 }
 
+void check_not_inputs(const fs::path& output, const std::vector<std::string>& arguments) {
+  if (output.empty()) return;
+  for (const std::string& argument : arguments) check_not_input(output, argument);
+  for (const fs::path& file : find_inputs(arguments).files) check_not_input(output, file);
+}
+
 Batch::Batch(const Inputs& inputs) : inputs_(inputs.count()) {
   for (const Failure& failure : inputs.failures) add(failure);
 }

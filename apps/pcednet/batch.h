@@ -32,6 +32,10 @@ Inputs find_inputs(const std::vector<std::string>& arguments);
 /// The same for work that needs all of them: throws the first failure.
 std::vector<std::filesystem::path> expand_inputs(const std::vector<std::string>& arguments);
 
+/// check_not_input() for all inputs that the arguments name, and for the arguments themselves.
+void check_not_inputs(const std::filesystem::path& output,
+                      const std::vector<std::string>& arguments);
+
 /// Work on one input after another: a failure is reported at once and again at the end, and does
 /// not stop the others. With a single input, its error is thrown unchanged.
 class Batch {

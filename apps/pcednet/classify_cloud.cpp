@@ -5,11 +5,32 @@
 #include <utility>
 
 #include "common.h"
+#include "descriptor_options.h"
+#include "pcednet/cloud/bounding_box.h"
 #include "pcednet/detect/boundary.h"
+#include "pcednet/formats/cloud_facts.h"
 #include "pcednet/formats/read_cloud.h"
 #include "prepare.h"
 
 namespace pcednet::app {
+namespace {
+
+/// Warns of float32 coordinates so large that they are rounded to more than the spacing of the
+/// points, unless prepare() has found that and spread them.
+void warn_of_rounding(const std::filesystem::path& file, const PointCloud& cloud,
+                      const Classifier& classifier, const ClassifiedCloud& classified) {
+  const bool spacing_known = classifier.model && classifier.model->descriptor.s_min == 0.0;
+  if (cloud.position_type != ScalarType::kFloat32 || !spacing_known) return;
+  const BoundingBox bounds = bounding_box(cloud.positions);
+  const double step = formats::float_step(bounds);
+  if (step <= classified.found.s_min || !classified.prepared.moved.empty()) return;
+  warn(fmt::format(
+      "{}: coordinates up to {} are rounded to {:.2g}, as they are float, and the "
+      "points are {:.2g} apart: write them as double, or relative to a nearer origin",
+      file.string(), formats::largest_coordinate(bounds), step, classified.found.s_min));
+}
+
+}  // namespace
 
 PointCloud read_cloud(const std::filesystem::path& file) {
   auto loaded = formats::read_cloud(file);
@@ -24,6 +45,7 @@ ClassifiedCloud classify_cloud(const std::filesystem::path& file, const PointClo
   ClassifiedCloud result;
   if (classifier.model) {
     result.prepared = prepare(file, cloud, classifier.preparation, progress);
+    check_scales(file, bounding_box(cloud.positions), classifier.model->descriptor);
     result.found = detect::classify(result.prepared, *classifier.model, &progress);
     if (classifier.boundary && has_edges(classifier.model->table)) {
       detect::mark_boundary(result.prepared, result.found, &progress);
@@ -31,6 +53,7 @@ ClassifiedCloud classify_cloud(const std::filesystem::path& file, const PointClo
   } else {
     result.found = classify_by_method(cloud, classifier.method, &progress);
   }
+  warn_of_rounding(file, cloud, classifier, result);
   if (!result.found.note.empty()) warn(fmt::format("{}: {}", file.string(), result.found.note));
   return result;
 }

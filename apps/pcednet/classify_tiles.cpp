@@ -4,8 +4,8 @@
 
 namespace pcednet::app {
 
-void write_tiled(const std::filesystem::path& output, const TiledCloud& cloud,
-                 const TiledResult& result, const Progress& progress) {
+std::vector<std::string> write_tiled(const std::filesystem::path& output, const TiledCloud& cloud,
+                                     const TiledResult& result, const Progress& progress) {
   const auto each = [&](const std::function<bool(const PointCloud&)>& visit) {
     cloud.each([&](PointCloud& part, const tiles::TileFindings& findings) {
       throw_if_cancelled(&progress);
@@ -35,6 +35,7 @@ void write_tiled(const std::filesystem::path& output, const TiledCloud& cloud,
     return true;
   });
   writer->commit();
+  return writer->losses;
 }
 
 }  // namespace pcednet::app

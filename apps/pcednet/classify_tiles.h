@@ -1,6 +1,8 @@
 #pragma once
 
 #include <functional>
+#include <string>
+#include <vector>
 
 #include "pcednet/io/write_options.h"
 #include "tiled_cloud.h"
@@ -16,8 +18,9 @@ struct TiledResult {
 };
 
 /// Writes a cloud with the findings of its tiles, its points in their order: the same file as for
-/// the cloud in memory, except for labels that differ (docs/large.md).
-void write_tiled(const std::filesystem::path& output, const TiledCloud& cloud,
-                 const TiledResult& result, const Progress& progress);
+/// the cloud in memory, except for labels that differ (docs/large.md). Returns what its format
+/// cannot hold.
+std::vector<std::string> write_tiled(const std::filesystem::path& output, const TiledCloud& cloud,
+                                     const TiledResult& result, const Progress& progress);
 
 }  // namespace pcednet::app

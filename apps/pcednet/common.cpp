@@ -7,19 +7,27 @@
 #include <cstdio>
 #include <memory>
 #include <sstream>
+#include <string_view>
 
 #include "pcednet/core/exists_already.h"
 
 namespace pcednet::app {
 namespace {
 
-volatile std::sig_atomic_t interrupted = 0;
+volatile std::sig_atomic_t interrupted = 0, ends_at_once = 0;
+
+[[noreturn]] void end_at_once() {
+  constexpr std::string_view kSaid = "pcednet: stopped by the user\n";
+  static_cast<void>(!write(STDERR_FILENO, kSaid.data(), kSaid.size()));
+  std::_Exit(static_cast<int>(ErrorKind::kCancelled));
+}
 
 void on_signal(int signal) {
   // The others may arrive twice by themselves: from a closing terminal and its shell, or from
   // timeout.
   if (interrupted && signal == SIGINT) std::_Exit(128 + signal);
   interrupted = 1;
+  if (ends_at_once) end_at_once();
 }
 
 bool progress_line_open = false;
@@ -47,6 +55,15 @@ void install_signal_handlers() {
   action.sa_handler = SIG_IGN;
   sigaction(SIGXFSZ, &action, nullptr);
   sigaction(SIGPIPE, &action, nullptr);
+}
+
+EndsAtOnce::EndsAtOnce() {
+  ends_at_once = 1;
+  if (interrupted) end_at_once();
+}
+
+EndsAtOnce::~EndsAtOnce() {
+  ends_at_once = 0;
 }
 
 std::string HelpFormatter::make_subcommand(const CLI::App* command) const {
@@ -113,6 +130,10 @@ void say(const std::string& line) {
 
 void warn(const std::string& line) {
   say("pcednet: warning: " + line);
+}
+
+void warn_of_losses(const std::string& output, const std::vector<std::string>& losses) {
+  for (const std::string& loss : losses) warn(output + " does not keep: " + loss);
 }
 
 }  // namespace pcednet::app

@@ -64,7 +64,18 @@ Progress console_progress(const Common& common);
 /// SIGPIPE are ignored so that they surface as write errors.
 void install_signal_handlers();
 
-/// Throws Error(kUsage) if `output` is the file `input`, which it would replace by something else.
+/// Makes a signal that is a request to stop end the program at once, with the exit code of a stop:
+/// for work that cannot be interrupted, where nothing is written.
+class EndsAtOnce {
+ public:
+  EndsAtOnce();
+  EndsAtOnce(const EndsAtOnce&) = delete;
+  EndsAtOnce& operator=(const EndsAtOnce&) = delete;
+  ~EndsAtOnce();
+};
+
+/// Throws Error(kUsage) if `output` is the file `input`, also by a link, which it would replace by
+/// something else.
 void check_not_input(const std::filesystem::path& output, const std::filesystem::path& input);
 
 /// The message of an error, with the option that avoids it.
@@ -75,5 +86,8 @@ void say(const std::string& line);
 
 /// The same, as "pcednet: warning: ...".
 void warn(const std::string& line);
+
+/// Warns of each thing that the format of `output` cannot hold.
+void warn_of_losses(const std::string& output, const std::vector<std::string>& losses);
 
 }  // namespace pcednet::app

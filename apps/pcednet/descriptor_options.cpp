@@ -1,6 +1,9 @@
 #include "descriptor_options.h"
 
+#include <fmt/format.h>
+
 #include "common.h"
+#include "number_options.h"
 
 namespace pcednet::app {
 namespace {
@@ -37,15 +40,22 @@ void add_descriptor_options(CLI::App& command, gls::ScaleSpaceOptions& options) 
       .add_option("--s-max-ratio", options.s_max_ratio,
                   "Largest scale over the smallest, in place of 10 % of the diagonal; up to three "
                   "times more where the spacing varies (0: off)")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->check(number_from_0());
 }
 
 void add_gate_options(CLI::App& command, gls::ScaleSpaceOptions& options) {
-  command.add_option("--gate", options.side_gate,
-                     "Leave out neighbours whose normal has a cosine below this with the point's "
-                     "own, such as the far side of thin walls (-1 to 1; default: off)");
-  command.add_option("--second-gate", options.second_gate,
-                     "Describe with a second gate as well: twice the numbers per scale");
+  const CLI::Validator cosine =
+      number("a number from -1 to 1", [](double v) { return v >= -1.0 && v <= 1.0; });
+  command
+      .add_option("--gate", options.side_gate,
+                  "Leave out neighbours whose normal has a cosine below this with the point's own, "
+                  "such as the far side of thin walls (-1 to 1; default: off)")
+      ->check(cosine);
+  command
+      .add_option("--second-gate", options.second_gate,
+                  "Describe with a second gate as well: twice the numbers per scale")
+      ->check(cosine);
 }
 
 void add_scale_range_options(CLI::App& command, gls::ScaleSpaceOptions& options) {
@@ -53,18 +63,32 @@ void add_scale_range_options(CLI::App& command, gls::ScaleSpaceOptions& options)
       .add_option("--s-min", options.s_min,
                   "Smallest scale, in the unit of the cloud (0: from the cloud and, if there is "
                   "one, the model)")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->check(number_from_0());
   command
       .add_option("--s-max", options.s_max,
                   "Largest scale, in the unit of the cloud (0: from the cloud and, if there is "
                   "one, the model)")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->check(number_from_0());
 }
 
 void add_engine_option(CLI::App& command, gls::ScaleSpaceOptions& options) {
   command.add_flag_callback(
       "--exact", [&options] { options.engine = gls::Engine::kExact; },
       "Describe with exact neighbourhoods in double precision (slow)");
+}
+
+void check_scales(const std::filesystem::path& file, const BoundingBox& box,
+                  const gls::ScaleSpaceOptions& options) {
+  const double diagonal = box.diagonal();
+  if (!(diagonal > 0.0)) return;
+  const auto larger = [&](const char* option, double scale) {
+    return fmt::format("{}: {} {:g} is larger than the cloud, whose diagonal is {:.4g}",
+                       file.string(), option, scale, diagonal);
+  };
+  if (options.s_min > diagonal) throw Error(ErrorKind::kUsage, larger("--s-min", options.s_min));
+  if (options.s_max > diagonal) warn(larger("--s-max", options.s_max));
 }
 
 }  // namespace pcednet::app

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <filesystem>
+
+#include "pcednet/cloud/bounding_box.h"
 #include "pcednet/gls/scale_space_options.h"
 
 namespace CLI {
@@ -20,5 +23,10 @@ void add_scale_range_options(CLI::App& command, gls::ScaleSpaceOptions& options)
 
 /// Adds --exact alone.
 void add_engine_option(CLI::App& command, gls::ScaleSpaceOptions& options);
+
+/// Throws Error(kUsage) if the given s_min exceeds the diagonal of the cloud's box; warns if the
+/// given s_max does.
+void check_scales(const std::filesystem::path& file, const BoundingBox& box,
+                  const gls::ScaleSpaceOptions& options);
 
 }  // namespace pcednet::app

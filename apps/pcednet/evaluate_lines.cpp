@@ -10,6 +10,7 @@
 #include "pcednet/formats/format.h"
 #include "pcednet/formats/read_cloud.h"
 #include "pcednet/io/drawing/read_curves.h"
+#include "pcednet/io/text_scan.h"
 
 namespace pcednet::app {
 namespace {
@@ -43,13 +44,16 @@ fs::path find_cloud(const fs::path& place, const std::string& stem) {
   return find_file(place, {place}, stem, endings);
 }
 
-/// A file with vertices only has no lines: a method that found nothing may write it.
+/// An OBJ file with vertices only has no lines: a method that found nothing may write it. A PLY
+/// file of lines says so with an element edge, even of none.
 std::vector<lines::Curve> read_found(const fs::path& path) {
   try {
     return io::read_curves(path);
   } catch (const Error& error) {
-    if (error.kind() == ErrorKind::kInsufficient) return {};
-    throw;
+    const bool is_obj = io::lower_case(path.extension().string()) == ".obj";
+    if (error.kind() != ErrorKind::kInsufficient || !is_obj) throw;
+    warn(std::string(error.what()) + ": taken for a result without lines");
+    return {};
   }
 }
 
@@ -66,6 +70,8 @@ eval::LineFrame frame_for(const LineEvaluation& arguments, const std::string& st
 }  // namespace
 
 void evaluate_lines(const LineEvaluation& arguments, const Common& common) {
+  check_not_inputs(arguments.json, arguments.inputs);
+  check_not_inputs(arguments.json, {arguments.truth, arguments.cloud});
   if (arguments.json != "-") check_writable(arguments.json, common.overwrite());
   std::vector<eval::NamedLineScores> scores;
   for (const fs::path& input : expand_inputs(arguments.inputs)) {

@@ -2,31 +2,20 @@
 
 #include <fmt/format.h>
 
-#include <functional>
+#include <algorithm>
+#include <filesystem>
 #include <optional>
 #include <string>
 
 #include "common.h"
+#include "number_options.h"
 #include "pcednet/io/length_units.h"
+#include "pcednet/io/text_scan.h"
 
 namespace pcednet::app {
-namespace {
-
-/// Checks that a word is a number that `is_sound`, which must refuse NaN and infinities.
-CLI::Validator number(const std::string& meaning, const std::function<bool(double)>& is_sound) {
-  return {[=](const std::string& word) -> std::string {
-            double value = 0.0;
-            const bool sound = CLI::detail::lexical_cast(word, value) && is_sound(value);
-            return sound ? "" : fmt::format("{} is not {}", word, meaning);
-          },
-          meaning};
-}
-
-}  // namespace
 
 void add_line_options(CLI::App& command, lines::LineOptions& options) {
-  const CLI::Validator length =
-      number("a length above 0", [](double v) { return v > 0.0 && v <= 1e150; });
+  const CLI::Validator length = length_above_0();
   command
       .add_option("--min-length", options.min_length,
                   "Leave out shorter curves (default: from the spacing, as the two below)")
@@ -76,7 +65,7 @@ void add_drawing_options(CLI::App& command, LinesArguments& arguments) {
       .add_option("--min-confidence", arguments.min_confidence,
                   "Leave out curves whose points are edges with a lower mean probability")
       ->capture_default_str()
-      ->check(number("a number from 0 to 1", [](double v) { return v >= 0.0 && v <= 1.0; }));
+      ->check(share());
   command
       .add_option("--min-dihedral", arguments.min_dihedral,
                   "Leave out curves whose surfaces differ by fewer degrees in the mean")
@@ -84,19 +73,39 @@ void add_drawing_options(CLI::App& command, LinesArguments& arguments) {
       ->check(number("an angle from 0 to 180", [](double v) { return v >= 0.0 && v <= 180.0; }));
   command
       .add_option("--min-points", arguments.min_points, "Leave out curves with fewer edge points")
-      ->capture_default_str()
-      ->check(CLI::NonNegativeNumber);
-  add_choice(command, "--dxf-version", arguments.drawing.dxf_version,
-             {{"2000", io::DxfVersion::k2000}, {"r12", io::DxfVersion::kR12}},
-             "DXF: of AutoCAD 2000, which all later ones read, or R12 for old programs");
-  add_choice(command, "--view", arguments.drawing.view,
-             {{"top", io::View::kTop}, {"front", io::View::kFront}, {"side", io::View::kSide}},
-             "SVG: seen from above, from the front (x, z) or from the side (y, z)");
+      ->capture_default_str();
+  const auto of_format = [&arguments](CLI::Option* option, const std::string& extension) {
+    option->each([&arguments, name = option->get_name(), extension](const std::string&) {
+      arguments.of_formats.emplace_back(name, extension);
+    });
+  };
+  of_format(add_choice(command, "--dxf-version", arguments.drawing.dxf_version,
+                       {{"2000", io::DxfVersion::k2000}, {"r12", io::DxfVersion::kR12}},
+                       "DXF: of AutoCAD 2000, which all later ones read, or R12 for old programs"),
+            ".dxf");
+  of_format(
+      add_choice(command, "--view", arguments.drawing.view,
+                 {{"top", io::View::kTop}, {"front", io::View::kFront}, {"side", io::View::kSide}},
+                 "SVG: seen from above, from the front (x, z) or from the side (y, z)"),
+      ".svg");
   Choices<std::optional<io::LengthUnit>> units;
   for (const auto& entry : io::length_units()) units.emplace_back(entry.name, entry.unit);
-  add_choice(command, "--unit", arguments.drawing.unit, units,
-             "DXF: the unit of the coordinates (default: that of the coordinate system of a LAS "
-             "file, otherwise none)");
+  of_format(add_choice(
+                command, "--unit", arguments.drawing.unit, units,
+                "DXF: the unit of the coordinates (default: that of the coordinate system of a LAS "
+                "file, otherwise none)"),
+            ".dxf");
+}
+
+void check_format_options(const LinesArguments& arguments) {
+  for (const auto& [option, extension] : arguments.of_formats) {
+    const auto is_it = [&](const std::filesystem::path& output) {
+      return io::lower_case(output.extension().string()) == extension;
+    };
+    if (std::any_of(arguments.outputs.begin(), arguments.outputs.end(), is_it)) continue;
+    throw Error(ErrorKind::kUsage,
+                fmt::format("{} is for {} files, and none is an output", option, extension));
+  }
 }
 
 }  // namespace pcednet::app

@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "models.h"
@@ -25,10 +26,15 @@ struct LinesArguments {
   double min_confidence = 0.0, min_dihedral = 0.0;
   std::size_t min_points = 0;
   io::DrawingOptions drawing;
+  /// Options of one format that were given, each with the extension of that format.
+  std::vector<std::pair<std::string, std::string>> of_formats;
 };
 
 /// Adds the options of finding curves.
 void add_line_options(CLI::App& command, lines::LineOptions& options);
+
+/// Throws Error(kUsage) for an option of a format that no output is of.
+void check_format_options(const LinesArguments& arguments);
 
 /// Adds the options of choosing curves and writing them.
 void add_drawing_options(CLI::App& command, LinesArguments& arguments);

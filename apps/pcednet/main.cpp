@@ -11,6 +11,8 @@
 
 #include "commands.h"
 #include "common.h"
+#include "missing_command.h"
+#include "number_options.h"
 #include "pcednet/core/error.h"
 #include "pcednet/core/parallel.h"
 #include "pcednet/core/version.h"
@@ -57,11 +59,17 @@ int run(int argc, char** argv) {
   add_study(app, common);
   add_report(app, common);
   add_annotate(app, common);
+  guard_number_options(app);
   try {
     for (int i = 1; i < argc; ++i) {
       if (*argv[i] == '\0') throw CLI::ValidationError("an argument is empty");
     }
     app.parse(argc, argv);
+  } catch (const CLI::RequiredError& error) {
+    const std::string why = missing_command(app);
+    app.exit(why.empty() ? error : CLI::RequiredError(why, CLI::ExitCodes::RequiredError),
+             std::cout, std::cerr);
+    return static_cast<int>(ErrorKind::kUsage);
   } catch (const CLI::ParseError& error) {
     const bool asked_for_help = error.get_exit_code() == 0;
     app.exit(error, asked_for_help ? std::cout : std::cerr, std::cerr);

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "fee.h"
+#include "number_options.h"
 #include "pcednet/core/error.h"
 #include "workbench/classic/edge_measure.h"
 
@@ -51,22 +52,35 @@ classic::EdgeMeasure measure(const PointCloud& cloud, const MethodArguments& arg
 }  // namespace
 
 void add_method_options(CLI::App& command, MethodArguments& arguments) {
+  CLI::Option* method =
+      command
+          .add_option(
+              "--method", arguments.name,
+              "Use a method without a model: ca (covariance analysis), multi-scale (surface "
+              "variation over several neighbourhoods), fee (feature edge estimation, if built)")
+          ->check(CLI::IsMember({"ca", "multi-scale", "fee"}));
   command
-      .add_option("--method", arguments.name,
-                  "Use a method without a model: ca (covariance analysis), multi-scale (surface "
-                  "variation over several neighbourhoods), fee (feature edge estimation, if built)")
-      ->check(CLI::IsMember({"ca", "multi-scale", "fee"}));
-  command.add_option("--neighbours", arguments.neighbours,
-                     "Neighbours for --method ca (default: 10)");
-  command.add_option("--threshold", arguments.threshold,
-                     "Threshold for --method (default: ca 0.65, in units of twice the standard "
-                     "deviation; multi-scale 0.06; fee 0.16)");
-  command.add_option(
-      "--offset-radius", arguments.offset_radius,
-      "Offset radius for --method fee, in the unit of the cloud (default: 0.05 of the diagonal)");
-  command.add_option("--convolution-radius", arguments.convolution_radius,
-                     "Convolution radius for --method fee, in the unit of the cloud (default: half "
-                     "the offset radius)");
+      .add_option("--neighbours", arguments.neighbours, "Neighbours for --method ca (default: 10)")
+      ->transform(whole_number(4, 1'000'000))
+      ->needs(method);
+  command
+      .add_option("--threshold", arguments.threshold,
+                  "Threshold for --method (default: ca 0.65, in units of twice the standard "
+                  "deviation; multi-scale 0.06; fee 0.16)")
+      ->check(number_from_0())
+      ->needs(method);
+  command
+      .add_option("--offset-radius", arguments.offset_radius,
+                  "Offset radius for --method fee, in the unit of the cloud (default: 0.05 of the "
+                  "diagonal)")
+      ->check(length_above_0())
+      ->needs(method);
+  command
+      .add_option("--convolution-radius", arguments.convolution_radius,
+                  "Convolution radius for --method fee, in the unit of the cloud (default: half "
+                  "the offset radius)")
+      ->check(length_above_0())
+      ->needs(method);
 }
 
 detect::Classification classify_by_method(const PointCloud& cloud, const MethodArguments& arguments,

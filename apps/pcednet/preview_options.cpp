@@ -1,14 +1,22 @@
 #include "preview_options.h"
 
 #include <cmath>
+#include <filesystem>
 #include <vector>
 
+#include "pcednet/io/text_scan.h"
 #include "workbench/render/preview.h"
 
 namespace pcednet::app {
 
 void add_preview_options(CLI::App& command, PreviewArguments& arguments, const std::string& help) {
-  CLI::Option* preview = command.add_option("--preview", arguments.path, help);
+  const auto is_png = [](const std::string& path) {
+    const std::filesystem::path name = path;
+    return io::lower_case(name.extension().string()) == ".png"
+               ? ""
+               : path + " does not end in .png, the one format of previews";
+  };
+  CLI::Option* preview = command.add_option("--preview", arguments.path, help)->check(is_png);
   command
       .add_option_function<std::vector<double>>(
           "--preview-from",

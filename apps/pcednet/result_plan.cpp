@@ -64,6 +64,7 @@ void refuse_existing(const std::vector<Job>& jobs) {
 
 /// Throws before any work if the outputs could not be written after it.
 void check_outputs(const std::vector<Job>& jobs, const Common& common) {
+  for (const Job& job : jobs) formats::format_for(job.output);
   if (jobs.size() > 1 && !common.overwrite_files) refuse_existing(jobs);
   std::set<fs::path> taken;
   for (const Job& job : jobs) {

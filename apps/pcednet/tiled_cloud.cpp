@@ -7,6 +7,7 @@
 
 #include "byte_size.h"
 #include "common.h"
+#include "descriptor_options.h"
 #include "free_memory.h"
 #include "pcednet/formats/format.h"
 #include "pcednet/formats/read_cloud.h"
@@ -58,6 +59,7 @@ tiles::Plan plan_for(const TiledRequest& request, const detect::EdgeModel& model
                         .keep_orientation = request.preparation.keep_orientation,
                         .sort = {.folder = sorted, .if_needed = true, .numbered = true}},
                        model, &progress);
+  check_scales(request.input, plan.box, model.descriptor);
   for (const std::string& note : plan.notes) {
     const std::string name = request.input.string();
     warn(note.starts_with(name) ? note : name + ": " + note);

@@ -254,7 +254,9 @@ half.rename({str(given)!r})
         server.open()
         write_ply(self.folder / "none.ply", self.positions[:0])
         run("annotate", self.folder / "none.ply", expect=4, env=environment)
-        run("annotate", self.cloud, expect=1, env=environment)  # another annotator has it open
+        done = run("annotate", self.cloud, expect=1, env=environment)
+        self.assertEqual(done.stdout, "")  # no address
+        self.assertIn("another annotator has it open", done.stderr)
         self.assertFalse(given.exists())
 
     def test_says_what_is_wrong_and_ends(self):

@@ -261,6 +261,18 @@ class Classify(CliTest):
         running.stderr.close()
         self.assertEqual(os.listdir(self.folder), ["big.ply"])
 
+    def test_warns_of_what_the_format_does_not_keep_and_of_rounded_coordinates(self):
+        p, n, _ = cube(500)
+        write_ply(self.folder / "a.ply", p, n)
+        said = run("classify", self.folder / "a.ply", "-o", self.folder / "b.obj").stderr
+        self.assertIn("b.obj does not keep: attribute scalar_p_sharp", said)
+        self.assertNotIn("keep", run("classify", self.folder / "a.ply").stderr)
+        write_ply(self.folder / "far.ply", p + [500_000, 5_400_000, 0], n)
+        said = run("classify", self.folder / "far.ply").stderr
+        self.assertRegex(said, r"far.ply: coordinates up to 540000\d are rounded to 0.5")
+        write_ply(self.folder / "far.ply", p + [500_000, 5_400_000, 0], n, position_type="double")
+        self.assertNotIn("rounded", run("classify", self.folder / "far.ply", "--overwrite").stderr)
+
 
 if __name__ == "__main__":
     unittest.main()

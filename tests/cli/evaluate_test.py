@@ -114,6 +114,24 @@ class Evaluate(CliTest):
         run("evaluate", truth, "--truth", self.folder / "gone.obj", expect=3)
         run("evaluate", truth, "--truth", truth, "--cloud", self.folder / "other", expect=3)
 
+    def test_labels_that_are_no_classes(self):
+        p, n, label = cube(300)
+        for name, labels in (("none", 255), ("others", 7)):
+            path = self.folder / (name + ".ply")
+            write_ply(path, p, n, np.full(300, labels, np.uint8))
+            self.assertIn(f"{path}: no point is labelled with a class of edges",
+                          run("evaluate", path, "--method", "ca", expect=4).stderr)
+        label[:5] = 8
+        write_ply(self.folder / "some.ply", p, n, label)
+        said = run("evaluate", self.folder / "some.ply", "--method", "ca").stderr
+        self.assertIn("some.ply: 5 labels are no classes of edges", said)
+
+    def test_a_cloud_is_no_file_of_lines(self):
+        write_ply(self.folder / "a.ply", *cube(300))
+        (self.folder / "truth.obj").write_text("v 0 0 0\nv 1 0 0\nl 1 2\n")
+        said = run("evaluate", self.folder / "a.ply", "--truth", self.folder / "truth.obj", expect=4).stderr
+        self.assertIn("a.ply: has no lines", said)
+
     def test_refuses_what_has_no_meaning(self):
         write_ply(self.folder / "a.ply", *cube(300))
         for extra in (("--no-context",), ("--no-boundary",), ("--exact",), ("--s-max", "1")):

@@ -30,6 +30,14 @@ class Info(CliTest):
             self.assertIn(part, problems)
         self.assertNotIn("no normals", problems)
 
+    def test_rounding_of_float_coordinates(self):
+        p, n, _ = cube(500)
+        write_ply(self.folder / "far.ply", p + [500_000, 5_400_000, 0], n)
+        self.assertIn("coordinates up to 5400000: as float they are rounded to 0.5",
+                      " ".join(self.info(self.folder / "far.ply")[0]["problems"]))
+        write_ply(self.folder / "twice.ply", np.vstack([p, p]) + [9, 9, 0], np.vstack([n, n]))
+        self.assertNotIn("rounded", " ".join(self.info(self.folder / "twice.ply")[0]["problems"]))
+
     def test_a_good_cloud_has_no_problems(self):
         p, n, _ = cube(500)
         write_ply(self.folder / "a.ply", p, n)

@@ -105,6 +105,32 @@ class Outputs(CliTest):
                           command)
             self.assertEqual(there.read_text(), "precious")
 
+    def test_an_input_is_not_replaced_by_something_else(self):
+        (self.folder / "soft.ply").symlink_to("a.ply")
+        os.link(self.cloud, self.folder / "hard.ply")
+        before = self.cloud.read_bytes()
+        for output in (self.cloud, self.folder / "soft.ply", self.folder / "hard.ply"):
+            for arguments in (("tiles", "plan", self.cloud, "-o", output),
+                              ("train", self.folder, "-o", output),
+                              ("info", self.cloud, "--json", output),
+                              ("info", self.cloud, "--vpc", output),
+                              ("evaluate", self.cloud, "--json", output),
+                              ("convert", self.cloud, "-o", output, "--subsample", 0.1)):
+                said = run(*arguments, "--overwrite", expect=2).stderr
+                self.assertIn(f"{output}: is the input", said)
+        self.assertEqual(self.cloud.read_bytes(), before)
+        plan = self.folder / "p.json"
+        plan.write_text("{}")
+        run("tiles", "status", plan, "--json", plan, "--overwrite", expect=2)
+        run("convert", self.cloud, "-o", self.cloud, "--overwrite")  # loses no point
+
+    def test_an_output_of_no_format_is_found_before_the_work(self):
+        broken = self.folder / "broken.ply"
+        broken.write_text("ply\nnonsense\n")
+        for name in ("x.foo", "-", "x.e57", "x.vpc", "x"):
+            said = run("classify", broken, "-o", name, expect=2).stderr
+            self.assertIn(f"{name}: points are written as .ply", said)
+
     def test_an_existing_cloud_of_a_set_is_found_before_the_others_are_made(self):
         few = ("--only", "roof_gable")
         run("generate", "lines", self.folder / "set", *few)

@@ -162,9 +162,23 @@ class Train(CliTest):
         label[label == 1] = 0
         write_ply(self.folder / "a.ply", p, n, label)
         done = run("train", self.folder / "a.ply", "-o", self.folder / "m.safetensors", expect=4)
-        self.assertIn("smooth-edge", done.stderr)
+        self.assertIn("no point is labelled smooth-edge (1); --classes 2", done.stderr)
         run("train", self.folder / "a.ply", "-o", self.folder / "m.safetensors", "--classes", 2,
             "--epochs", 1)
+
+    def test_says_where_nothing_is_held_out(self):
+        p, n, label = cube(1000)
+        few = np.full(1000, 255, np.uint8)
+        for id in range(3):
+            few[np.flatnonzero(label == id)[:10]] = id
+        write_ply(self.folder / "a.ply", p, n, few)
+        model = self.folder / "m.safetensors"
+        said = run("train", self.folder / "a.ply", "-o", model, "--epochs", 1).stderr
+        self.assertIn("validation loss -  accuracy -\n", said)
+        self.assertIn("nothing was held out for validation", said)
+        self.assertNotIn("validation_loss", tensors(model)[0])
+        said = tensors(self.train("all.safetensors", "--epochs", 1))[0]
+        self.assertIn("validation_loss", said)
 
 
 if __name__ == "__main__":

@@ -31,8 +31,9 @@ def folder_of_programs(folder):
 case "$1 $2" in
   annotate*) exec {sys.executable} {HERE}/painter.py "$@" ;;
   "generate sample")
-    {PROGRAM} "$@" --overwrite
-    exec {PROGRAM} convert "$3" -o "$3" --subsample 0.167 --overwrite ;;
+    {PROGRAM} generate sample "$3.whole.ply" --overwrite &&
+      {PROGRAM} convert "$3.whole.ply" -o "$3" --subsample 0.167 --overwrite && rm "$3.whole.ply"
+    exit ;;
 esac
 exec {PROGRAM} "$@"
 """)

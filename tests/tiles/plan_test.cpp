@@ -1,5 +1,6 @@
 #include "pcednet/tiles/plan.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -100,6 +101,52 @@ TEST_F(PlanFile, IsRefusedWhereItIsNone) {
   other["program"] = "0.0.1";
   std::ofstream(path) << other;
   EXPECT_ERROR(ErrorKind::kUsage, read_plan(path));
+}
+
+TEST_F(PlanFile, SaysWhatIsWrongInAPlainSentence) {
+  const fs::path path = folder_ / "p.json";
+  const auto said = [&](const auto& json) -> std::string {
+    std::ofstream(path) << json;
+    try {
+      read_plan(path);
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::kUnreadable);
+      return error.what();
+    }
+    return "";
+  };
+  const std::string none = path.string() + ": not a plan of tiles";
+  for (const char* other : {"{}", "[]", "7", "null", "{\"format\": 3}"}) {
+    EXPECT_EQ(said(other), none);
+  }
+  write_plan(path, some_plan(), Overwrite::kYes);
+  const auto whole = nlohmann::json::parse(std::ifstream(path));
+  for (const auto& [member, value] : whole.items()) {
+    if (member == "format" || member == "points") continue;  // the latter is for readers
+    const std::string damaged = fmt::format("{}: \"{}\" is missing or damaged", none, member);
+    auto lacks = whole, wrong = whole;
+    lacks.erase(member);
+    EXPECT_EQ(said(lacks), damaged);
+    wrong[member] = true;
+    if (!value.is_number()) {
+      EXPECT_EQ(said(wrong), damaged);
+    }
+  }
+  for (const auto& [member, value] : {std::pair<std::string, double>("cell", 0.0),
+                                      {"cell", -1.0},
+                                      {"cells_across", 0},
+                                      {"buffer", -1.0},
+                                      {"memory", 0}}) {
+    auto wrong = whole;
+    wrong[member] = value;
+    EXPECT_EQ(said(wrong), fmt::format("{}: \"{}\" is damaged", none, member));
+  }
+  auto wrong = whole;
+  wrong["tiles"] = nlohmann::json::array();
+  EXPECT_EQ(said(wrong), none + ": \"tiles\" is damaged");
+  wrong = whole;
+  wrong["pyramids"][0]["levels"][0][1] = "heap";
+  EXPECT_EQ(said(wrong), none + ": \"pyramids\" is missing or damaged");
 }
 
 TEST_F(PlanFile, KnowsWhichTilesAreDone) {

@@ -179,12 +179,14 @@ void classify_large_file(const Job& job, const ClassifyArguments& arguments, std
     count(part.labels, counts);
     if (!job.preview.empty()) draw_some(part, before, cloud.plan().points(), drawn);
   };
-  write_tiled(job.output, cloud,
-              {.write = {.overwrite = common.overwrite(), .ascii = arguments.ascii},
-               .add_result = add_result,
-               .see = see},
-              clock.progress());
+  const auto losses =
+      write_tiled(job.output, cloud,
+                  {.write = {.overwrite = common.overwrite(), .ascii = arguments.ascii},
+                   .add_result = add_result,
+                   .see = see},
+                  clock.progress());
   say_kept(kept);
+  warn_of_losses(job.output.string(), losses);
   if (!job.preview.empty()) {
     clock.begin("preview");
     render::write_preview(job.preview, drawn, drawn.labels,
@@ -219,6 +221,7 @@ void classify_file(const Job& job, const ClassifyArguments& arguments,
                                                  progress);
   clock.begin("write");
   say_kept(add_found(prepared, result, arguments, model, cloud));
+  warn_of_losses(job.output.string(), formats::losses(job.output, cloud));
   formats::write_cloud(job.output, cloud,
                        {.overwrite = common.overwrite(),
                         .ascii = arguments.ascii,

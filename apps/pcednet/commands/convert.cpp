@@ -6,6 +6,8 @@
 
 #include "batch.h"
 #include "commands.h"
+#include "free_memory.h"
+#include "number_options.h"
 #include "pcednet/core/error.h"
 #include "pcednet/formats/format.h"
 #include "pcednet/formats/read_cloud.h"
@@ -29,12 +31,27 @@ struct ConvertRequest {
   bool vertex_normals = false;
 };
 
-void sample(const ConvertRequest& request, PointCloud& cloud) {
+/// The most points to sample: as many as an index of 32 bits can number.
+constexpr std::uint64_t kMostSamples = 0xffffffff;
+
+/// Throws before the work if the points would not fit into the free memory.
+void check_sample_fits(const ConvertRequest& request) {
+  constexpr std::uint64_t kBytesPerPoint = 2 * sizeof(Vec3) + sizeof(Rgb);
+  constexpr std::uint64_t kGrowth = 2;  // a full array is copied into one twice as large
+  const std::uint64_t most = free_memory() / (kGrowth * kBytesPerPoint);
+  if (request.samples <= most) return;
+  throw Error(ErrorKind::kUsage, fmt::format("--sample {}: the free memory holds {} points at most",
+                                             request.samples, most));
+}
+
+void sample(const ConvertRequest& request, const Progress& progress, PointCloud& cloud) {
   const auto triangles = io::triangles_of(cloud);
   if (triangles.empty()) {
     throw Error(ErrorKind::kInsufficient,
                 "has no faces to sample; .obj and .ply files can have faces");
   }
+  Stage stage(&progress, "sample", request.samples);
+  const EndsAtOnce sampling;
   cloud = shapes::sample_mesh(cloud, triangles,
                               {request.samples, request.vertex_normals, request.seed});
 }
@@ -53,10 +70,6 @@ void warn_of(const std::string& file, const std::vector<std::string>& warnings) 
   for (const std::string& warning : warnings) warn(file + ": " + warning);
 }
 
-void warn_of_losses(const std::string& output, const std::vector<std::string>& losses) {
-  for (const std::string& loss : losses) warn(output + " does not keep: " + loss);
-}
-
 /// The parts of a file in order, beginning with one that has been read.
 io::EachPart each_part_of(const io::PartReader& reader, const PointCloud& first,
                           const Progress& progress) {
@@ -72,10 +85,15 @@ io::EachPart each_part_of(const io::PartReader& reader, const PointCloud& first,
   };
 }
 
+/// Whether the points of the output are not those of the input.
+bool changes_points(const ConvertRequest& request) {
+  return request.samples > 0 || request.noise > 0.0 || request.fraction < 1.0;
+}
+
 /// Converts in memory that does not grow with the file; false if one of the formats, or another
 /// option, needs the whole cloud.
 bool convert_in_parts(const ConvertRequest& request, const Common& common) {
-  if (request.samples > 0 || request.noise > 0.0 || request.fraction < 1.0) return false;
+  if (changes_points(request)) return false;
   const auto reader = formats::open_parts(request.input);
   if (!reader) return false;
   const Progress progress = console_progress(common);
@@ -110,6 +128,8 @@ bool convert_in_parts(const ConvertRequest& request, const Common& common) {
 void convert(const ConvertRequest& request, const Common& common) {
   // Fails before a long read if the output cannot be written.
   formats::losses(request.output, {});
+  if (changes_points(request)) check_not_input(request.output, request.input);
+  check_sample_fits(request);
   check_writable(request.output, common.overwrite());
   if (convert_in_parts(request, common)) return;
   const Progress progress = console_progress(common);
@@ -117,7 +137,7 @@ void convert(const ConvertRequest& request, const Common& common) {
   throw_if_cancelled(&progress);
   warn_of(request.input, loaded.warnings);
   if (request.samples > 0) {
-    with_name_in_errors(request.input, [&] { sample(request, loaded.cloud); });
+    with_name_in_errors(request.input, [&] { sample(request, progress, loaded.cloud); });
   }
   perturb(request, loaded.cloud);
   throw_if_cancelled(&progress);
@@ -149,7 +169,7 @@ void add_convert(CLI::App& app, Common& common) {
                            ->add_option("--noise", request->noise,
                                         "Add Gaussian noise with this standard deviation, as a "
                                         "fraction of the bounding box diagonal")
-                           ->check(CLI::NonNegativeNumber);
+                           ->check(number_from_0());
   command
       ->add_flag("--noise-along-normal", request->along_normal,
                  "Add the noise along the normals only")
@@ -157,10 +177,13 @@ void add_convert(CLI::App& app, Common& common) {
   command
       ->add_option("--subsample", request->fraction,
                    "Keep this share of the points, chosen at random")
-      ->check(CLI::Range(0.0, 1.0));
-  CLI::Option* samples = command->add_option(
-      "--sample", request->samples,
-      "Sample this many points on the faces of a mesh instead of reading its vertices");
+      ->check(share());
+  CLI::Option* samples =
+      command
+          ->add_option(
+              "--sample", request->samples,
+              "Sample this many points on the faces of a mesh instead of reading its vertices")
+          ->transform(whole_number(1, kMostSamples));
   command
       ->add_flag("--vertex-normals", request->vertex_normals,
                  "Interpolate the normals of the vertices instead of using those of the faces")

@@ -11,6 +11,7 @@
 #include "classify_cloud.h"
 #include "commands.h"
 #include "descriptor_options.h"
+#include "number_options.h"
 #include "pcednet/core/blocks.h"
 #include "pcednet/core/error.h"
 #include "pcednet/core/version.h"
@@ -103,12 +104,15 @@ void describe(const DescribeArguments& arguments, const Common& common) {
   }
   const gls::ScaleSpaceOptions& options = arguments.options;
   // Fails before the work if the output cannot be written.
+  const fs::path beside = fs::path(output).replace_extension(".json");
+  for (const fs::path& file : {output, beside}) check_not_input(file, arguments.input);
   check_writable(output, common.overwrite());
-  OutputFile settings(fs::path(output).replace_extension(".json"), common.overwrite());
+  OutputFile settings(beside, common.overwrite());
 
   const PointCloud cloud = read_cloud(arguments.input);
   const Progress progress = console_progress(common);
   const auto prepared = prepare(arguments.input, cloud, arguments.preparation, progress);
+  check_scales(arguments.input, bounding_box(cloud.positions), options);
   std::optional<gls::ScaleSpace> made;
   with_name_in_errors(arguments.input, [&] {
     made.emplace(gls::OrientedPoints{prepared.positions, prepared.normals, prepared.curve}, options,
@@ -144,7 +148,7 @@ void add_describe(CLI::App& app, Common& common) {
   command
       ->add_option("--eps", arguments->options.eps,
                    "Voxel size over scale; smaller is slower and more accurate")
-      ->check(CLI::Range(0.01, 1.0))
+      ->check(number("a number from 0.01 to 1", [](double v) { return v >= 0.01 && v <= 1.0; }))
       ->capture_default_str();
   add_prepare_options(*command, arguments->preparation);
   command->callback([arguments, &common] { describe(*arguments, common); });

@@ -100,6 +100,27 @@ void score(const fs::path& input, const PointCloud& cloud, const detect::Classif
   }
 }
 
+/// Throws if no label is a class of the table; warns of those that are none.
+void check_labels(const fs::path& input, const PointCloud& cloud, const ClassTable& table) {
+  std::size_t classes = 0, others = 0;
+  for (const std::uint8_t label : cloud.labels) {
+    const bool is_class = label < table.size();
+    classes += is_class ? 1 : 0;
+    others += !is_class && label != kUnlabelled ? 1 : 0;
+  }
+  if (classes == 0) {
+    throw Error(ErrorKind::kInsufficient, fmt::format("{}: no point is labelled with a class of {}",
+                                                      input.string(), pcednet::names_of(table)));
+  }
+  if (others == 0) return;
+  warn(has_own_classes(table)
+           ? fmt::format("{}: {} labels are none of the classes {}: left out", input.string(),
+                         others, pcednet::names_of(table))
+           : fmt::format("{}: {} labels are no classes of edges: 1 is smooth, 2 sharp, 3 boundary; "
+                         "they count as non-edge",
+                         input.string(), others));
+}
+
 Results score_all(const EvaluateArguments& arguments, const Common& common) {
   const Progress progress = console_progress(common);
   std::optional<detect::EdgeModel> model;
@@ -120,6 +141,9 @@ Results score_all(const EvaluateArguments& arguments, const Common& common) {
     const auto loaded = truth::read_labelled(input);
     throw_if_cancelled(&progress);
     for (const std::string& warning : loaded.warnings) warn(input.string() + ": " + warning);
+    check_labels(input, loaded.cloud,
+                 way.model || results.classes.clouds > 0 ? results.classes.table
+                                                         : classes_of(loaded.cloud.comments));
     with_name_in_errors(input, [&] {
       score(input, loaded.cloud, find_classes(input, prediction, loaded.cloud, way), way, results);
     });
@@ -149,6 +173,8 @@ void evaluate(EvaluateArguments arguments, const Common& common) {
   if (arguments.calibration && arguments.positive == "boundary") {
     throw Error(ErrorKind::kUsage, "evaluate: boundary has no probabilities to calibrate");
   }
+  check_not_inputs(arguments.json, arguments.inputs);
+  check_not_input(arguments.json, arguments.model.name);
   if (arguments.json != "-") check_writable(arguments.json, common.overwrite());
   const Results results = score_all(arguments, common);
   const bool own = results.classes.clouds > 0;

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <csignal>
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -59,18 +58,6 @@ void list_files(const InfoRequest& request, const Common& common) {
   say(fmt::format("{}: {} files, {} points", request.vpc, files.size(), points));
 }
 
-/// Makes Ctrl-C end the program at once, which is safe where nothing is written.
-class EndsAtOnce {
- public:
-  EndsAtOnce() : before_(std::signal(SIGINT, SIG_DFL)) {}
-  EndsAtOnce(const EndsAtOnce&) = delete;
-  EndsAtOnce& operator=(const EndsAtOnce&) = delete;
-  ~EndsAtOnce() { std::signal(SIGINT, before_); }
-
- private:
-  void (*before_)(int);
-};
-
 formats::CloudFacts facts_of(const std::filesystem::path& path, bool all,
                              const Progress& progress) {
   if (auto facts = tiles::large_facts(path, {.all = all}, &progress)) return std::move(*facts);
@@ -79,6 +66,8 @@ formats::CloudFacts facts_of(const std::filesystem::path& path, bool all,
 }
 
 void info(const InfoRequest& request, const Common& common) {
+  check_not_inputs(request.json, request.inputs);
+  check_not_inputs(request.vpc, request.inputs);
   if (!request.vpc.empty()) return list_files(request, common);
   if (request.json != "-") check_writable(request.json, common.overwrite());
   const Progress progress = console_progress(common);

@@ -59,6 +59,7 @@ void check_outputs(const LinesArguments& arguments) {
     io::drawing_format_for(output);
     check(output);
   }
+  check_format_options(arguments);
   if (!arguments.preview.path.empty()) check(arguments.preview.path);
 }
 

@@ -9,6 +9,7 @@
 #include "batch.h"
 #include "classify_cloud.h"
 #include "commands.h"
+#include "number_options.h"
 #include "pcednet/core/error.h"
 #include "pcednet/formats/write_cloud.h"
 #include "pcednet/normals/prepare.h"
@@ -89,9 +90,7 @@ void run(const NormalsRequest& request, const Common& common) {
   if (request.flip) {
     for (Vec3& normal : cloud.normals) normal = Vec3::Zero() - normal;
   }
-  for (const std::string& loss : formats::losses(request.output, cloud)) {
-    warn(request.output + " does not keep: " + loss);
-  }
+  warn_of_losses(request.output, formats::losses(request.output, cloud));
   formats::write_cloud(request.output, cloud, {.overwrite = common.overwrite()});
   report(request, prepared);
 }
@@ -111,7 +110,7 @@ void add_normals(CLI::App& app, Common& common) {
       ->add_option("--neighbours", request->neighbours,
                    "Neighbours of each point (0: 12, more on noisy clouds)")
       ->capture_default_str()
-      ->check(CLI::Range(0, 1000));
+      ->transform(whole_number(0, 1000));
   command->add_flag(
       "--keep", request->keep,
       "Keep the normals of the file except for their signs; estimate only missing ones");
@@ -119,7 +118,8 @@ void add_normals(CLI::App& app, Common& common) {
   command
       ->add_option("--viewpoint", request->viewpoint,
                    "Turn every normal to face this position (X Y Z) instead of outwards")
-      ->expected(3);
+      ->expected(3)
+      ->check(number("a finite number", [](double) { return true; }));
   command->callback([request, &common] { run(*request, common); });
 }
 

@@ -14,6 +14,7 @@
 #include "fee.h"
 #include "methods.h"
 #include "models.h"
+#include "number_options.h"
 #include "pcednet/core/error.h"
 #include "workbench/shapes/default_set.h"
 #include "workbench/study/study_file.h"
@@ -263,13 +264,14 @@ void add_network_options(CLI::App& command, StudyArguments& arguments) {
   command.add_option("--classes", training.architecture.classes, "Classes of the networks")
       ->capture_default_str()
       ->check(CLI::IsMember({2, 3}));
-  command.add_option("--epochs", arguments.epochs, "Training epochs (0: as in the recipe)");
+  command.add_option("--epochs", arguments.epochs, "Training epochs (0: as in the recipe)")
+      ->transform(whole_number(0, 1'000'000));
   command.add_flag("--natural", arguments.natural,
                    "Keep natural class frequencies instead of balancing the classes");
   add_gate_options(command, training.descriptor);
   command.add_flag("--context", training.context, "Train context networks too, like train");
   command.add_option("--distil", training.teachers, "Networks to train first, like train")
-      ->check(CLI::Range(0, 100));
+      ->transform(whole_number(0, 100));
   add_engine_option(command, training.descriptor);
 }
 
@@ -311,7 +313,7 @@ void add_study(CLI::App& app, Common& common) {
       ->add_option("--core-watts", arguments->core_watts,
                    "Power of a processor core, for processors without energy counters")
       ->capture_default_str()
-      ->check(CLI::PositiveNumber);
+      ->check(number_above_0());
   command->callback([arguments, &common] { study_command(*arguments, common); });
 }
 

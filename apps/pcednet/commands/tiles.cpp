@@ -11,7 +11,9 @@
 #include "batch.h"
 #include "byte_size.h"
 #include "commands.h"
+#include "descriptor_options.h"
 #include "models.h"
+#include "number_options.h"
 #include "pcednet/core/stopwatch.h"
 #include "pcednet/formats/virtual_cloud.h"
 #include "pcednet/tiles/inputs.h"
@@ -43,6 +45,7 @@ fs::path folder_of(const PlanArguments& arguments) {
 }
 
 void plan_tiles(const PlanArguments& arguments, const Common& common) {
+  check_not_inputs(arguments.plan, arguments.inputs);
   check_writable(arguments.plan, common.overwrite());
   const ModelArguments& model = arguments.model;
   tiles::PlanRequest request{.inputs = expand_inputs(arguments.inputs),
@@ -61,6 +64,7 @@ void plan_tiles(const PlanArguments& arguments, const Common& common) {
                                                model.name, pcednet::names_of(loaded.table)));
   }
   const tiles::Plan plan = tiles::make_plan(request, loaded, &progress);
+  check_scales(arguments.inputs.front(), plan.box, loaded.descriptor);
   tiles::write_plan(arguments.plan, plan, common.overwrite());
   for (const std::string& note : plan.notes) warn(note);
   say(fmt::format("{}: {} points in {} tiles of length {:g}, buffer {:.4g}", arguments.plan,
@@ -221,6 +225,7 @@ nlohmann::ordered_json status_json(const tiles::Plan& plan, const std::array<Gro
 }
 
 void show_status(const StatusArguments& arguments, const Common& common) {
+  check_not_input(arguments.json, arguments.plan);
   const tiles::Plan plan = tiles::read_plan(arguments.plan);
   const Progress progress = console_progress(common);
   std::array<Group, 3> groups;
@@ -244,7 +249,7 @@ struct JoinArguments {
 void join_into_file(const tiles::Plan& plan, const std::string& output, const Common& common) {
   const Progress progress = console_progress(common);
   const tiles::Joined joined = tiles::join(plan, output, common.overwrite(), &progress);
-  for (const std::string& loss : joined.losses) warn(output + " does not keep: " + loss);
+  warn_of_losses(output, joined.losses);
   say(fmt::format("{}: {} points of {} tiles", output, joined.points, plan.tiles.size()));
 }
 
@@ -263,8 +268,10 @@ void join_tiles(const JoinArguments& arguments, const Common& common) {
   if (arguments.output.empty() && arguments.vpc.empty()) {
     throw Error(ErrorKind::kUsage, "tiles join: needs -o FILE, --vpc FILE or both");
   }
-  if (!arguments.output.empty()) check_writable(arguments.output, common.overwrite());
-  if (!arguments.vpc.empty()) check_writable(arguments.vpc, common.overwrite());
+  for (const std::string& file : {arguments.output, arguments.vpc}) {
+    check_not_input(file, arguments.plan);
+    check_writable(file, common.overwrite());
+  }
   const tiles::Plan plan = tiles::read_plan(arguments.plan);
   if (!arguments.vpc.empty()) list_tiles(plan, arguments.vpc, common);
   if (!arguments.output.empty()) join_into_file(plan, arguments.output, common);
@@ -285,9 +292,9 @@ void add_plan(CLI::App& tiles, Common& common) {
   command->add_option("-o", arguments->plan, "The plan, a JSON file")->required();
   command
       ->add_option("--tile", arguments->tile_length,
-                   "Length of a tile, in the unit of the points (0: the largest for the memory)")
-      ->capture_default_str()
-      ->check(CLI::NonNegativeNumber);
+                   "Length of a tile, in the unit of the points (default: the largest for the "
+                   "memory)")
+      ->check(length_above_0());
   command
       ->add_option("--max-memory", arguments->memory,
                    "Memory that one tile may take, such as 500M or 2G")

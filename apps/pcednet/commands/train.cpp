@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 
@@ -7,6 +8,7 @@
 #include "commands.h"
 #include "descriptor_options.h"
 #include "models.h"
+#include "number_options.h"
 #include "pcednet/core/error.h"
 #include "pcednet/detect/train.h"
 #include "prepare.h"
@@ -53,8 +55,12 @@ detect::TrainOptions options_of(const TrainArguments& arguments) {
 }
 
 void print_epoch(const nn::EpochReport& report) {
-  say(fmt::format("epoch {:>3}  loss {:.4f}  validation loss {:.4f}  accuracy {:.4f}", report.epoch,
-                  report.training_loss, report.validation_loss, report.validation_accuracy));
+  const auto number = [&](double value) {
+    return report.is_validated() ? fmt::format("{:.4f}", value) : std::string("-");
+  };
+  say(fmt::format("epoch {:>3}  loss {:.4f}  validation loss {}  accuracy {}", report.epoch,
+                  report.training_loss, number(report.validation_loss),
+                  number(report.validation_accuracy)));
 }
 
 detect::CloudKind take_kind(const std::string& option, const std::string& text) {
@@ -115,6 +121,21 @@ void take_classes(const std::filesystem::path& input, const PointCloud& cloud, b
                           pcednet::names_of(table), pcednet::names_of(options.table)));
 }
 
+/// Three classes cannot be learnt from labels of two.
+void check_has_smooth(const std::vector<detect::TrainingCloud>& clouds,
+                      const detect::TrainOptions& options) {
+  if (has_own_classes(options.table) || options.architecture.classes != 3) return;
+  const auto has = [&](EdgeClass wanted) {
+    return std::any_of(clouds.begin(), clouds.end(), [&](const auto& cloud) {
+      return std::find(cloud.labels.begin(), cloud.labels.end(), wanted) != cloud.labels.end();
+    });
+  };
+  if (has(kSmoothEdge) || !has(kSharpEdge)) return;
+  throw Error(
+      ErrorKind::kInsufficient,
+      "train: no point is labelled smooth-edge (1); --classes 2 learns sharp-edge (2) alone");
+}
+
 detect::TrainedModel train_clouds(const TrainArguments& arguments, const Common& common,
                                   const Progress& progress) {
   auto options = options_of(arguments);
@@ -133,6 +154,7 @@ detect::TrainedModel train_clouds(const TrainArguments& arguments, const Common&
     PointCloud& cloud = loaded.back().cloud;
     if (arguments.no_normals) cloud.normals.clear();
     take_classes(input, cloud, loaded.size() == 1, options);
+    check_scales(input, bounding_box(cloud.positions), options.descriptor);
     auto prepared = prepare(input, cloud, arguments.preparation, progress);
     if (!only || only->has(detect::facts_of(prepared, options.descriptor))) {
       clouds.push_back({input.string(), std::move(prepared), cloud.labels});
@@ -144,12 +166,16 @@ detect::TrainedModel train_clouds(const TrainArguments& arguments, const Common&
     throw Error(ErrorKind::kInsufficient,
                 fmt::format("train: no cloud is of the kind --only {}", arguments.only));
   }
+  check_has_smooth(clouds, options);
   return detect::train(std::filesystem::path(arguments.output).stem().string(), clouds, options,
                        common.progress == "none" ? decltype(&print_epoch)(nullptr) : print_epoch,
                        &progress);
 }
 
 void train(const TrainArguments& arguments, const Common& common) {
+  check_not_inputs(arguments.output, arguments.inputs);
+  check_not_input(arguments.output, arguments.project);
+  for (const auto& [file, kind] : arguments.experts) check_not_input(arguments.output, file);
   check_writable(arguments.output, common.overwrite());
   if (arguments.inputs.empty() && arguments.project.empty()) {
     throw Error(ErrorKind::kUsage, "train: give labelled point files or --project");
@@ -170,6 +196,11 @@ void train(const TrainArguments& arguments, const Common& common) {
     warn(fmt::format("no context network was trained: the first network left no point in doubt: {}",
                      trained.no_context));
   }
+  if (!trained.validated) {
+    say("  nothing was held out for validation, as a class has fewer than 20 points: the last "
+        "epoch "
+        "was kept");
+  }
   const auto& context = trained.model.context;
   say(fmt::format("{} weights{}; seconds: {}\n  -> {}",
                   trained.model.network.network.parameters.size(),
@@ -177,8 +208,8 @@ void train(const TrainArguments& arguments, const Common& common) {
                   clock.seconds(), arguments.output));
   if (trained.cancelled) {
     throw Error(ErrorKind::kCancelled,
-                fmt::format("stopped by the user: {} holds the best of {} epochs", arguments.output,
-                            trained.epochs));
+                fmt::format("stopped by the user: {} holds the {} of {} epochs", arguments.output,
+                            trained.validated ? "best" : "last", trained.epochs));
   }
 }
 
@@ -217,7 +248,8 @@ void add_network_options(CLI::App& command, detect::TrainOptions& options) {
       ->check(CLI::IsMember({2, 3}));
   command
       .add_option("--width", architecture.width, "Neurons per pair of scales (0: as in the paper)")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->transform(whole_number(0, 4096));
   add_choice(command, "--symmetry", options.symmetry, kSymmetries,
              "Symmetry under flipped normals: average, canonical (half the work) or none");
   command.add_flag("--context", options.context,
@@ -229,7 +261,8 @@ void add_recipe_options(CLI::App& command, TrainArguments& arguments) {
   add_choice(command, "--recipe", arguments.recipe,
              {{"adam", Recipe::kAdam}, {"paper", Recipe::kPaper}},
              "adam, or paper (SGD as published)");
-  command.add_option("--epochs", arguments.epochs, "Training epochs (0: as in the recipe)");
+  command.add_option("--epochs", arguments.epochs, "Training epochs (0: as in the recipe)")
+      ->transform(whole_number(0, 1'000'000));
   command.add_flag(
       "--natural", arguments.natural,
       "Keep natural class frequencies instead of balancing the classes: fewer false edges");
@@ -237,7 +270,7 @@ void add_recipe_options(CLI::App& command, TrainArguments& arguments) {
       .add_option("--balance", arguments.balance,
                   "Balance of the classes, from 0 (natural frequencies) to 1 (equal frequencies)")
       ->capture_default_str()
-      ->check(CLI::Range(0.0, 1.0))
+      ->check(share())
       ->excludes("--natural");
   command.add_flag("--even-validation", arguments.even_validation,
                    "Give every class equal weight when choosing the epoch; without it, classes "
@@ -245,7 +278,7 @@ void add_recipe_options(CLI::App& command, TrainArguments& arguments) {
   command
       .add_option("--distil", arguments.options.teachers,
                   "Train this many networks first and learn their mean prediction")
-      ->check(CLI::Range(0, 100));
+      ->transform(whole_number(0, 100));
   command.add_option("--seed", arguments.seed, "Random seed")->capture_default_str();
 }
 
@@ -261,9 +294,11 @@ void add_train(CLI::App& app, Common& common) {
       "pcednet train --project scan_annotation.json -o my.safetensors    a training of annotate");
   add_data_options(*command, *arguments);
   add_descriptor_options(*command, arguments->options.descriptor);
-  command->add_flag("--octaves", arguments->options.descriptor.octaves,
-                    "With --s-max-ratio: the model describes clouds of uneven spacing at larger "
-                    "scales where points are sparser; training does not");
+  command
+      ->add_flag("--octaves", arguments->options.descriptor.octaves,
+                 "With --s-max-ratio: the model describes clouds of uneven spacing at larger "
+                 "scales where points are sparser; training does not")
+      ->needs("--s-max-ratio");
   add_network_options(*command, arguments->options);
   add_recipe_options(*command, *arguments);
   for (const char* of_clouds : {"--s-min", "--s-max", "--context"}) {

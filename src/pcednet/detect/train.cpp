@@ -75,6 +75,10 @@ nn::SignRule sign_rule(const gls::ScaleSpaceOptions& descriptor, nn::Symmetry sy
   return rule;
 }
 
+bool is_validated(const nn::TrainResult& result) {
+  return !result.history.empty() && result.history.back().is_validated();
+}
+
 std::map<std::string, std::string> summary_of(const nn::TrainResult& result,
                                               const Samples& samples) {
   std::map<std::string, std::string> summary;
@@ -82,7 +86,7 @@ std::map<std::string, std::string> summary_of(const nn::TrainResult& result,
   summary["training_points"] = std::to_string(samples.points);
   summary["training_samples"] = std::to_string(samples.labels.size());
   summary["training_epochs"] = std::to_string(result.history.size());
-  if (!result.history.empty()) {
+  if (is_validated(result)) {
     const auto best = std::min_element(
         result.history.begin(), result.history.end(),
         [](const auto& a, const auto& b) { return a.validation_loss < b.validation_loss; });
@@ -165,6 +169,7 @@ TrainedModel train(const std::string& name, const Samples& samples, const TrainO
                                       options.teachers, on_epoch, progress);
   trained.cancelled = result.cancelled;
   trained.epochs = static_cast<int>(result.history.size());
+  trained.validated = is_validated(result);
   model.network = std::move(result.best);
   model.network.metadata = summary_of(result, samples);
   return trained;

@@ -49,7 +49,8 @@ Samples make_samples(std::span<const TrainingCloud> clouds,
 struct TrainedModel {
   EdgeModel model;
   bool cancelled = false;
-  int epochs = 0;  ///< completed; after 0 epochs the model is not worth keeping
+  int epochs = 0;          ///< completed; after 0 epochs the model is not worth keeping
+  bool validated = false;  ///< the best epoch was kept; otherwise the last, as nothing was held out
   std::vector<std::string> notes = {};  ///< for the user, one sentence each
   std::string no_context = {};          ///< why there is no context network though one was wanted
 };

@@ -61,7 +61,25 @@ void add_in_common(const PointCloud& part, CloudFacts& facts) {
   }
 }
 
+double largest_of(const BoundingBox& bounds) {
+  return std::max(bounds.min.cwiseAbs().maxCoeff(), bounds.max.cwiseAbs().maxCoeff());
+}
+
+/// Copies of points count for the median, which is then 0.
+double distance_of_points(const SampledSpacing& spacing) {
+  return spacing.median > 0.0 ? spacing.median : spacing.mean;
+}
+
 }  // namespace
+
+double float_step(const BoundingBox& bounds) {
+  return std::ldexp(1.0, std::ilogb(std::max(largest_of(bounds), 1e-30)) - 23);
+}
+
+std::string largest_coordinate(const BoundingBox& bounds) {
+  const double largest = largest_of(bounds);
+  return largest < 1e15 ? fmt::format("{:.0f}", largest) : fmt::format("{:g}", largest);
+}
 
 CloudFacts facts_of_header(const io::InputFile& file) {
   CloudFacts facts{.format = format_of(file).name};
@@ -100,15 +118,13 @@ std::vector<std::string> find_problems(const CloudFacts& facts) {
   add(defects.normals, "normals are zero or not finite");
   add(facts.rescaled_normals, "normals are not of unit length: made so");
   if (!facts.bounds.empty() && facts.spacing) {
-    const double largest =
-        std::max(facts.bounds.min.cwiseAbs().maxCoeff(), facts.bounds.max.cwiseAbs().maxCoeff());
-    const double step = std::ldexp(1.0, std::ilogb(std::max(largest, 1e-30)) - 23);
-    if (step > 0.1 * facts.spacing->median) {
+    const double step = float_step(facts.bounds), apart = distance_of_points(*facts.spacing);
+    const bool is_float = facts.position_type == ScalarType::kFloat32;
+    if (apart > 0.0 && step > 0.1 * apart) {
       problems.push_back(fmt::format(
-          "coordinates up to {}: as float they would be rounded to "
-          "{:.2g}, the points are {:.2g} apart",
-          largest < 1e15 ? fmt::format("{:.0f}", largest) : fmt::format("{:g}", largest), step,
-          facts.spacing->median));
+          "coordinates up to {}: as float they {} rounded to {:.2g}, the points are "
+          "{:.2g} apart",
+          largest_coordinate(facts.bounds), is_float ? "are" : "would be", step, apart));
     }
   }
   return problems;

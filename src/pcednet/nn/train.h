@@ -43,7 +43,7 @@ TrainOptions paper_recipe();
 /// The result of an epoch, with validation on a held-out part of every class. The validation
 /// accuracy is the macro average over the classes; in the validation loss the classes weigh as in
 /// training, see TrainOptions::balance, or evenly. With fewer than 20 samples of a class nothing is
-/// held out: both are 0, and the last epoch counts as the best.
+/// held out: is_validated() is false, both are 0, and the last epoch counts as the best.
 struct EpochReport {
   int epoch = 0;  ///< from 1
   double training_loss = 0.0;
@@ -51,6 +51,8 @@ struct EpochReport {
   double validation_accuracy = 0.0;
   /// Confusion counts, true class by row, predicted class by column; empty without validation.
   std::vector<std::size_t> validation_confusion = {};
+
+  bool is_validated() const { return !validation_confusion.empty(); }
 };
 
 struct TrainResult {

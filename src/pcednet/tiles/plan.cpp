@@ -2,8 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <numeric>
+#include <stdexcept>
 
 #include "pcednet/core/error.h"
 #include "pcednet/core/version.h"
@@ -150,6 +154,7 @@ gls::PyramidPlan pyramid_of(const json& j) {
   for (const json& level : j.at("levels")) {
     const std::string name = level.at(1);
     const auto found = std::find(kCrowds.begin(), kCrowds.end(), name);
+    if (found == kCrowds.end()) throw std::runtime_error("no such crowd");
     pyramid.levels.push_back({level.at(0), static_cast<gls::Crowd>(found - kCrowds.begin())});
   }
   return pyramid;
@@ -187,27 +192,80 @@ std::string text_of(const Plan& plan, const Paths& paths) {
   return text + "\n}\n";
 }
 
-Plan plan_of(const json& j, const Paths& paths) {
+/// Reads the members of a plan; `member` is then the name of the last one that was looked for.
+Plan plan_of(const json& j, const Paths& paths, std::string& member) {
+  const auto at = [&](const char* name) -> const json& {
+    member = name;
+    return j.at(name);
+  };
   Plan plan;
-  plan.version = j.at("program");
-  plan.box = box_in(j.at("box"));
-  plan.las_steps = j.at("las_steps").get<std::vector<double>>();
-  plan.model = model_of(j.at("model"), paths);
-  plan.s_min = j.at("scales").at("s_min");
-  plan.s_max = j.at("scales").at("s_max");
-  plan.normals = normals_in(j.at("normals"));
-  for (const json& pyramid : j.at("pyramids")) plan.pyramids.push_back(pyramid_of(pyramid));
-  plan.grid = {j.at("cell"), j.at("cells_across")};
-  plan.buffer = j.at("buffer");
-  plan.reach = j.at("reach");
-  plan.memory = j.at("memory");
-  plan.notes = j.at("notes").get<std::vector<std::string>>();
-  for (const json& input : j.at("inputs")) plan.inputs.push_back(input_of(input, paths));
-  for (const json& tile : j.at("tiles")) {
+  plan.version = at("program");
+  plan.box = box_in(at("box"));
+  plan.las_steps = at("las_steps").get<std::vector<double>>();
+  plan.model = model_of(at("model"), paths);
+  plan.s_min = at("scales").at("s_min");
+  plan.s_max = at("scales").at("s_max");
+  plan.normals = normals_in(at("normals"));
+  for (const json& pyramid : at("pyramids")) plan.pyramids.push_back(pyramid_of(pyramid));
+  plan.grid.cell = at("cell");
+  plan.grid.across = at("cells_across");
+  plan.buffer = at("buffer");
+  plan.reach = at("reach");
+  plan.memory = at("memory");
+  plan.notes = at("notes").get<std::vector<std::string>>();
+  for (const json& input : at("inputs")) plan.inputs.push_back(input_of(input, paths));
+  for (const json& tile : at("tiles")) {
     plan.tiles.push_back(
         {tile.at("column"), tile.at("row"), tile.at("points"), paths.read(tile.at("output"))});
   }
   return plan;
+}
+
+/// The name of a member with a value that no plan has; empty if all are sound.
+std::string unsound_member(const Plan& plan) {
+  const auto is_length = [](double v) { return std::isfinite(v) && v >= 0.0; };
+  if (!(std::isfinite(plan.grid.cell) && plan.grid.cell > 0.0)) return "cell";
+  if (plan.grid.across < 1) return "cells_across";
+  if (!is_length(plan.buffer)) return "buffer";
+  if (!is_length(plan.reach)) return "reach";
+  if (!(0.0 < plan.s_min && plan.s_min < plan.s_max)) return "scales";
+  if (plan.memory == 0) return "memory";
+  if (!plan.las_steps.empty() && plan.las_steps.size() != 6) return "las_steps";
+  if (plan.inputs.empty()) return "inputs";
+  if (plan.tiles.empty()) return "tiles";
+  return "";
+}
+
+/// The plan in a text; throws Error(kUnreadable) or, for another version, Error(kUsage).
+Plan parse_plan(const std::string& text, const fs::path& path) {
+  const auto refuse = [&](const std::string& why) {
+    return Error(ErrorKind::kUnreadable,
+                 fmt::format("{}: not a plan of tiles{}", path.string(), why));
+  };
+  std::string member;
+  try {
+    const json j = json::parse(text);
+    if (!j.is_object() || !j.contains("format") || j["format"] != kFormat) throw refuse("");
+    member = "program";
+    const std::string version = j.at(member);
+    if (version != kVersion) {
+      throw Error(ErrorKind::kUsage,
+                  fmt::format("{}: planned by pcednet {}, and this is {}: tiles of both could "
+                              "differ. Plan again, or run the other version",
+                              path.string(), version, kVersion));
+    }
+    Plan plan = plan_of(j, Paths(path), member);
+    if (const std::string unsound = unsound_member(plan); !unsound.empty()) {
+      throw refuse(fmt::format(": \"{}\" is damaged", unsound));
+    }
+    return plan;
+  } catch (const Error&) {
+    throw;
+  } catch (const json::parse_error& error) {
+    throw refuse(fmt::format(": byte {} is not JSON", error.byte));
+  } catch (const std::exception&) {
+    throw refuse(fmt::format(": \"{}\" is missing or damaged", member));
+  }
 }
 
 }  // namespace
@@ -237,27 +295,7 @@ void write_plan(const fs::path& path, const Plan& plan, Overwrite overwrite) {
 
 Plan read_plan(const fs::path& path) {
   const std::string text = io::InputFile(path).text();
-  Plan plan;
-  try {
-    const json j = json::parse(text);
-    if (j.at("format") != kFormat) throw std::runtime_error("another format");
-    const std::string version = j.at("program");
-    if (version != kVersion) {
-      throw Error(ErrorKind::kUsage,
-                  fmt::format("{}: planned by pcednet {}, and this is {}: tiles of both could "
-                              "differ. Plan again, or run the other version",
-                              path.string(), version, kVersion));
-    }
-    plan = plan_of(j, Paths(path));
-  } catch (const Error&) {
-    throw;
-  } catch (const nlohmann::json::parse_error& error) {
-    throw Error(ErrorKind::kUnreadable, fmt::format("{}: not a plan of tiles: byte {} is not JSON",
-                                                    path.string(), error.byte));
-  } catch (const std::exception& error) {
-    throw Error(ErrorKind::kUnreadable,
-                fmt::format("{}: not a plan of tiles: {}", path.string(), error.what()));
-  }
+  Plan plan = parse_plan(text, path);
   plan.path = path;
   plan.digest = Sha256().add(text).hex();
   return plan;

@@ -6,6 +6,7 @@
 
 #include "io/las/laz_writer.h"
 #include "pcednet/formats/write_cloud.h"
+#include "pcednet/io/las/facts.h"
 
 namespace pcednet::io {
 namespace {
@@ -248,6 +249,16 @@ TEST(Laz, RefusesEveryTruncation) {
       }
     }
   }
+}
+
+TEST(Laz, WithoutPointsHasFacts) {
+  const Scratch scratch;
+  const std::string whole = laz_bytes({0, 2, ""}, {});
+  EXPECT_LT(whole.size(), 377U);  // the first record of COPC would end behind it
+  scratch.file("none.laz", whole);
+  const LasFacts facts = las_facts(InputFile(scratch.path("none.laz")));
+  EXPECT_TRUE(facts.compressed);
+  EXPECT_FALSE(facts.copc);
 }
 
 TEST(Laz, SurvivesDamageAnywhere) {

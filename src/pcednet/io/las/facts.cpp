@@ -35,9 +35,9 @@ void count_values(const PointCloud& points, const char* name, std::map<int, std:
 
 /// Whether the record that COPC requires comes first, which read_las_file leaves out.
 bool begins_with_copc_record(const InputFile& file) {
-  const std::string head =
-      file.text(las_header::kBytes14, las_record::kHeadBytes).substr(las_record::kUserId);
-  return until_zero(head.substr(0, las_record::kUserIdBytes)) == kCopcInfoRecord.user_id;
+  const std::string user_id =
+      file.text(las_header::kBytes14 + las_record::kUserId, las_record::kUserIdBytes);
+  return until_zero(user_id) == kCopcInfoRecord.user_id;
 }
 
 }  // namespace

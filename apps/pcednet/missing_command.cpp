@@ -1,0 +1,59 @@
+#include "missing_command.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <functional>
+#include <numeric>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace pcednet::app {
+namespace {
+
+/// The number of letters to insert, delete or replace (Levenshtein).
+std::size_t changes_between(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t diagonal = std::exchange(row[0], i + 1);
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({replaced, diagonal + 1, row[j] + 1});
+    }
+  }
+  return row.back();
+}
+
+/// The command of `parent` that differs from `word` in one letter of three at most.
+std::string nearest_command(const CLI::App& parent, const std::string& word) {
+  std::string nearest;
+  std::size_t fewest = std::max<std::size_t>(word.size() / 3, 1) + 1;
+  for (const CLI::App* command : parent.get_subcommands(std::function<bool(const CLI::App*)>())) {
+    const std::size_t changes = changes_between(word, command->get_name());
+    if (changes >= fewest) continue;
+    fewest = changes;
+    nearest = command->get_name();
+  }
+  return nearest;
+}
+
+}  // namespace
+
+std::string missing_command(const CLI::App& app) {
+  const CLI::App* last = &app;
+  while (!last->get_subcommands().empty()) last = last->get_subcommands().front();
+  if (last->get_require_subcommand_min() == 0) return "";
+  const std::string after = last == &app ? "" : last->get_name() + " ";
+  const std::vector<std::string> words = last->remaining();
+  if (words.empty()) return fmt::format("pcednet {}needs a command", after);
+  const std::string& word = words.front();
+  if (word.starts_with('-')) return fmt::format("a command is missing before the option {}", word);
+  const std::string nearest = nearest_command(*last, word);
+  return fmt::format("there is no command {}{}{}", after, word,
+                     nearest.empty() ? "" : fmt::format("; did you mean {}{}?", after, nearest));
+}
+
+}  // namespace pcednet::app

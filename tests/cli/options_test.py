@@ -1,0 +1,109 @@
+"""Options of the command line: numbers that no command may take, and options that need others."""
+import os
+import resource
+import signal
+import subprocess
+import unittest
+
+from support import PROGRAM, CliTest, cube, run, write_ply
+
+
+class Options(CliTest):
+    def setUp(self):
+        super().setUp()
+        self.cloud, self.out = self.folder / "a.ply", self.folder / "x.ply"
+        write_ply(self.cloud, *cube(200))
+
+    def refused(self, *arguments, saying):
+        said = run(*arguments, expect=2).stderr
+        self.assertIn(saying, said)
+        self.assertLess(max(map(len, said.splitlines())), 250, said)
+        self.assertEqual(os.listdir(self.folder), ["a.ply"])
+
+    def test_whole_numbers_below_0_and_beyond_64_bits(self):
+        convert = ("convert", self.cloud, "-o", self.out)
+        train = ("train", self.cloud, "-o", self.folder / "m.safetensors")
+        for arguments in ((*convert, "--sample", -5), (*convert, "--sample", 99999999999),
+                          (*convert, "--sample", 0), (*convert, "--seed", -1), (*train, "--seed", -1),
+                          (*train, "--seed", "99999999999999999999"), (*train, "--epochs", -3),
+                          (*train, "--width", -1), (*train, "--distil", -1),
+                          ("generate", "default", self.folder / "set", "--seed", -1),
+                          ("study", "methods", "-o", self.folder / "set", "--seeds", "1,-1"),
+                          ("lines", self.cloud, "-o", self.folder / "x.dxf", "--min-points", -1),
+                          ("classify", self.cloud, "--method", "ca", "--neighbours", 0),
+                          ("normals", self.cloud, "-o", self.out, "--neighbours", -1)):
+            value = str(arguments[-1]).split(",")[-1]
+            self.refused(*arguments, saying=f"{arguments[-2]}: {value} is not a whole number from ")
+
+    def test_a_whole_number_may_begin_with_0(self):
+        run("convert", self.cloud, "-o", self.out, "--noise", 0.001, "--seed", "010")
+        self.assertIn(b"seed 10", self.out.read_bytes())
+
+    def test_numbers_that_are_not_finite_or_out_of_range(self):
+        convert = ("convert", self.cloud, "-o", self.out)
+        classify = ("classify", self.cloud, "-o", self.out)
+        plan = ("tiles", "plan", self.cloud, "-o", self.folder / "p.json", "--tile")
+        for arguments in ((*convert, "--noise", "nan"), (*convert, "--noise", "-1"),
+                          (*convert, "--subsample", "nan"), (*convert, "--subsample", "2"),
+                          (*classify, "--method", "ca", "--threshold", "nan"),
+                          (*classify, "--method", "ca", "--threshold", "-1"),
+                          (*classify, "--s-max", "nan"), (*classify, "--s-min", "-1"),
+                          (*plan, "nan"), (*plan, "inf"), (*plan, "-1"), (*plan, "0"),
+                          ("describe", self.cloud, "-o", self.folder / "x.npy", "--gate", "nan"),
+                          ("train", self.cloud, "-o", self.out, "--balance", "nan"),
+                          ("normals", self.cloud, "-o", self.out, "--viewpoint", "0", "0", "nan"),
+                          ("generate", "default", self.folder / "set", "--bands", "1", "0")):
+            self.refused(*arguments, saying=f"{arguments[-1]} is not a")
+
+    def test_more_samples_than_memory_holds(self):
+        self.refused("convert", self.cloud, "-o", self.out, "--sample", 4294967295,
+                     saying="--sample 4294967295: the free memory holds ")
+
+    def test_sampling_stops_at_once(self):
+        mesh = self.folder / "mesh.obj"
+        mesh.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+        for number in (signal.SIGINT, signal.SIGTERM):
+            running = subprocess.Popen(
+                [PROGRAM, "convert", mesh, "-o", self.out, "--sample", "15000000", "--progress", "plain"],
+                stderr=subprocess.PIPE, text=True,
+                preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (1, 1)))  # all would take more
+            self.assertEqual(running.stderr.readline(), "sample 0 %\n")
+            running.send_signal(number)
+            self.assertIn("stopped by the user", running.communicate(timeout=60)[1])
+            self.assertEqual(running.returncode, 130)
+            self.assertFalse(self.out.exists())
+
+    def test_options_that_would_have_no_effect(self):
+        classify = ("classify", self.cloud, "-o", self.out)
+        lines = ("lines", self.cloud, "-o")
+        for saying, *arguments in (
+                ("--threshold requires --method", *classify, "--threshold", "0.1"),
+                ("--neighbours requires --method", "evaluate", self.cloud, "--neighbours", "9"),
+                ("--octaves requires --s-max-ratio", "train", self.cloud, "-o", self.out, "--octaves"),
+                ("--view is for .svg", *lines, self.folder / "x.dxf", "--view", "front"),
+                ("--unit is for .dxf", *lines, self.folder / "x.svg", "--unit", "mm"),
+                ("--dxf-version is for .dxf", *lines, self.folder / "x.obj", "--dxf-version", "r12")):
+            self.refused(*arguments, saying=saying)
+
+    def test_scales_beyond_the_cloud(self):
+        classify = ("classify", self.cloud, "-o", self.out)
+        self.refused(*classify, "--s-min", "1e6", saying="--s-min 1e+06 is larger than the cloud")
+        said = run(*classify, "--s-max", "1e6").stderr
+        self.assertIn("warning: " + str(self.cloud) + ": --s-max 1e+06 is larger than the cloud", said)
+
+    def test_a_command_that_there_is_not(self):
+        for said, *words in (("there is no command foo\n", "foo"),
+                             ("there is no command clasify; did you mean classify?", "clasify", "a.ply"),
+                             ("there is no command generate foo\n", "generate", "foo", "x"),
+                             ("there is no command tiles plane; did you mean tiles plan?", "tiles", "plane"),
+                             ("a command is missing before the option --threads", "--threads", "2", "foo"),
+                             ("pcednet needs a command",), ("pcednet generate needs a command", "generate")):
+            self.assertIn(said, run(*words, expect=2).stderr)
+
+    def test_a_preview_is_a_png(self):
+        self.refused("classify", self.cloud, "--preview", self.folder / "x.jpg",
+                     saying="x.jpg does not end in .png")
+
+
+if __name__ == "__main__":
+    unittest.main()
