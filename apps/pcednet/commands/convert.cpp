@@ -7,6 +7,7 @@
 #include "batch.h"
 #include "commands.h"
 #include "pcednet/core/error.h"
+#include "pcednet/detect/prepare.h"
 #include "pcednet/formats/format.h"
 #include "pcednet/formats/read_cloud.h"
 #include "pcednet/formats/write_cloud.h"
@@ -40,6 +41,8 @@ void sample(const ConvertRequest& request, PointCloud& cloud) {
 }
 
 void perturb(const ConvertRequest& request, PointCloud& cloud) {
+  // Its normals are those of the points before.
+  if (request.noise > 0.0 || request.fraction < 1.0) detect::set_estimated_normals(cloud, false);
   if (request.noise > 0.0) {
     with_name_in_errors(request.input, [&] {
       cloud = shapes::add_gaussian_noise(std::move(cloud),
