@@ -167,6 +167,19 @@ TEST(Prepare, LeavesOutPointsThatAreNowhere) {
   EXPECT_EQ(prepare(cloud).notes.size(), 1U);
 }
 
+TEST(Prepare, SaysThatNormalsAreNotThoseOfThePoints) {
+  PointCloud cloud = sphere(5000, 6000);
+  cloud.normals[0] = cloud.positions[0];
+  EXPECT_TRUE(prepare(cloud).notes.empty());
+  Random random(2);
+  for (Vec3& normal : cloud.normals) {
+    normal = Vec3(random.normal(), random.normal(), random.normal()).normalized();
+  }
+  const auto notes = prepare(cloud, {.keep_orientation = true}).notes;
+  ASSERT_EQ(notes.size(), 1U);
+  EXPECT_NE(notes[0].find("the normals are not those of the points"), std::string::npos);
+}
+
 TEST(Prepare, SaysFromHowManyPointsItEstimates) {
   PointCloud cloud = sphere(4000, 1);
   cloud.normals.clear();

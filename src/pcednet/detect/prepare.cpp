@@ -12,6 +12,7 @@
 #include "pcednet/core/half_space.h"
 #include "pcednet/detect/exact_points.h"
 #include "pcednet/detect/far_points.h"
+#include "pcednet/detect/normal_fit.h"
 #include "pcednet/detect/rounding.h"
 #include "pcednet/normals/flat_pairs.h"
 #include "pcednet/normals/prepare.h"
@@ -31,6 +32,8 @@ constexpr std::size_t kFewPairs = 10;
 constexpr double kWalls = 0.3;  // of one_sidedness()
 constexpr std::size_t kMended = 4;
 constexpr std::size_t kShareToOrient = 50;
+
+constexpr double kMisfits = 0.5;  ///< share of flat places with wrong normals; true ones have none
 
 /// The parts of a cloud that are used.
 struct Points {
@@ -137,6 +140,16 @@ void spread_positions(const Rounding& rounding, PreparedCloud& prepared) {
       rounding.step, rounding.step / rounding.spacing));
 }
 
+/// Says so if the normals of the cloud are not those of its surface.
+void note_misfits(PreparedCloud& prepared) {
+  const double share = share_of_misfits(prepared.positions, prepared.normals, prepared.curve);
+  if (share < kMisfits) return;
+  prepared.notes.push_back(fmt::format(
+      "the normals are not those of the points: they lie across the surface in {:.0f} % "
+      "of its flat places; `pcednet normals` makes new ones",
+      100.0 * share));
+}
+
 /// The number of points with another sign than before, relative to the majority of their part or,
 /// if all face a scanner, of the cloud.
 std::size_t count_turned(const Points& cloud, const Oriented& oriented) {
@@ -212,6 +225,7 @@ PreparedCloud prepare_points(const Points& cloud, const PrepareOptions& options,
                   "no normals, and none can be estimated: the points form no surface");
     }
   }
+  if (prepared.made.empty()) note_misfits(prepared);
   if (prepared.made.empty() && !options.keep_orientation) orient_mixed(prepared, cloud, progress);
   usable = count_usable();
   if (usable < finite) {
