@@ -72,8 +72,10 @@ set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "libeigen3-dev, libtbb-dev, libfmt-dev, lib
 if(SQLite3_FOUND)
   string(APPEND CPACK_DEBIAN_DEV_PACKAGE_DEPENDS ", libsqlite3-dev")
 endif()
-if(PROJ_FOUND)
-  string(APPEND CPACK_DEBIAN_DEV_PACKAGE_DEPENDS ", libproj-dev")
+if(PCEDNET_PROJ_LIBRARY)  # no program is linked to it
+  string(REGEX REPLACE "\\.so\\." "" proj_package ${PCEDNET_PROJ_LIBRARY})
+  string(APPEND CPACK_DEBIAN_DEV_PACKAGE_DEPENDS ", ${proj_package}")
+  set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS ${proj_package})
 endif()
 set(CPACK_DEBIAN_DEV_PACKAGE_RECOMMENDS "pcednet (= ${version_of_packages})")
 set(CPACK_DEBIAN_DEV_DESCRIPTION "find edges in 3D point clouds (development files)
@@ -85,6 +87,9 @@ package pcednet.")
 
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3 (>= 3.11), python3 (<< 3.12), python3-numpy")
+if(proj_package)
+  string(APPEND CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS ", ${proj_package}")
+endif()
 set(CPACK_DEBIAN_PYTHON_DESCRIPTION "find edges in 3D point clouds (Python)
 Python module of pcednet, which labels every point of a point cloud as
 non-edge, smooth-edge, sharp-edge or boundary: NumPy arrays in, arrays out.")

@@ -88,6 +88,30 @@ class Classify(CliTest):
         self.assertIn("nx", rows.dtype.names)
         self.assertGreater(np.mean((rows["label"] > 0) == (label > 0)), 0.9)
 
+    def test_gives_its_own_results_the_same_labels(self):
+        bare, once, twice = (self.folder / name for name in ("bare.ply", "once.ply", "twice.ply"))
+        write_ply(bare, cube(4000)[0])
+        run("classify", bare, "-o", once)
+        said = run("classify", once, "-o", twice).stderr
+        self.assertIn("the normals in the file are estimates", said)
+        self.assertEqual(once.read_bytes(), twice.read_bytes())
+        normals, after = self.folder / "normals.ply", self.folder / "after.ply"
+        run("normals", bare, "-o", normals, "--flip")
+        run("classify", normals, "-o", after)
+        first, rows = read_ply(once)[0], read_ply(after)[0]
+        np.testing.assert_array_equal(rows["label"], first["label"])
+        np.testing.assert_array_equal(rows["nx"], -first["nx"])  # the signs of the file
+
+    def test_leaves_out_a_point_that_is_nowhere(self):
+        p, n, _ = cube()
+        for normals in (n, None):
+            alone = self.classify(p, normals, name="alone.ply")
+            given = None if normals is None else np.vstack([n, [[0, 0, 1]]])
+            rows = self.classify(np.vstack([p, [[1e30, 0, 0]]]), given, name="far.ply")
+            np.testing.assert_array_equal(rows["label"][:-1], alone["label"])
+            self.assertEqual(rows["label"][-1], 255)
+            self.assertEqual(rows["x"][-1], np.float32(1e30))
+
     def test_mends_normals_of_mixed_signs_unless_told_not_to(self):
         p, n, _ = cube(4000)
         mixed = np.where(np.random.default_rng(2).random(len(p))[:, None] < 0.1, -n, n)

@@ -35,16 +35,18 @@ double distance_to_rim(const Vec3& p) {
 }
 
 std::vector<std::uint32_t> boundary_of(const PointCloud& cloud) {
-  return find_boundary(prepare(cloud));
+  std::vector<std::uint32_t> points;
+  for (const BoundaryPoint& found : find_boundary(prepare(cloud))) points.push_back(found.point);
+  return points;
 }
 
 double share_found(const PointCloud& cloud) {
   return static_cast<double>(boundary_of(cloud).size()) / static_cast<double>(cloud.size());
 }
 
-/// Expects most of what is found within 1.5 spacings of the rim, and most of the rim within one of
-/// what is found.
-void expect_rim(const PointCloud& cloud) {
+/// Expects most of what is found within 1.5 spacings of the rim, and at least this share of the rim
+/// within one of what is found.
+void expect_rim(const PointCloud& cloud, double least_met = 0.85) {
   const double spacing = std::sqrt((1.0 - 3.1416 * kHole * kHole) / double(cloud.size()));
   const std::vector<std::uint32_t> found = boundary_of(cloud);
   ASSERT_FALSE(found.empty());
@@ -59,12 +61,13 @@ void expect_rim(const PointCloud& cloud) {
     met += std::any_of(found.begin(), found.end(),
                        [&](std::uint32_t i) { return (cloud.positions[i] - p).norm() < spacing; });
   }
-  EXPECT_GT(double(met), 0.85 * double(rim));
+  EXPECT_GT(double(met), least_met * double(rim));
 }
 
 TEST(Boundary, IsTheRimOfASheetAndOfItsHole) {
   expect_rim(sheet(5000));
   expect_rim(sheet(5000, 0.2));
+  expect_rim(sheet(5000, 0.6), 0.6);  // the rim itself is noise
 }
 
 TEST(Boundary, IsFoundWithoutNormals) {
@@ -208,7 +211,28 @@ TEST(Boundary, IsMarkedOverTheNetworksClassesButNotOnPointsThatAreNowhere) {
   EXPECT_EQ(found.counts.boundary, boundary.size());
   EXPECT_EQ(found.counts.sharp, 2000 - boundary.size());
   EXPECT_EQ(found.counts.unlabelled, 1u);
-  for (const std::uint32_t i : boundary) EXPECT_EQ(found.classes[i], kBoundary);
+  for (const BoundaryPoint& its : boundary) EXPECT_EQ(found.classes[its.point], kBoundary);
+}
+
+TEST(Boundary, IsMarkedOnEdgesOnlyWhereItIsClear) {
+  const std::vector<BoundaryPoint> boundary = {{0, true}, {1, false}, {2, true}, {3, false}};
+  std::vector<std::uint8_t> classes = {kSharpEdge, kSharpEdge, kNonEdge, kUnlabelled, kSmoothEdge};
+  mark_boundary(boundary, classes);
+  const std::vector<std::uint8_t> expected = {kBoundary, kSharpEdge, kBoundary, kBoundary,
+                                              kSmoothEdge};
+  EXPECT_EQ(classes, expected);
+}
+
+TEST(Boundary, IsClearWithoutNoiseOnly) {
+  const auto share_clear = [](double noise) {
+    const PointCloud cloud = sheet(5000, noise);
+    const auto boundary = find_boundary(prepare(cloud));
+    const auto clear = std::count_if(boundary.begin(), boundary.end(),
+                                     [](const BoundaryPoint& its) { return its.clear; });
+    return static_cast<double>(clear) / static_cast<double>(boundary.size());
+  };
+  EXPECT_EQ(share_clear(0.0), 1.0);
+  EXPECT_LT(share_clear(0.7), 0.2);
 }
 
 }  // namespace

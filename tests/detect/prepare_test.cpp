@@ -128,6 +128,58 @@ TEST(Prepare, LeavesNormalsAloneThatNoOrientationMakesAgree) {
   EXPECT_TRUE(prepare(cloud).notes.empty());
 }
 
+TEST(Prepare, EstimatesAgainWhatItEstimatedBefore) {
+  PointCloud cloud = sphere(3000, 1);
+  cloud.normals.clear();
+  Random random(9);
+  for (Vec3& p : cloud.positions) p *= 1.0 + 0.02 * random.normal();
+  const PreparedCloud once = prepare(cloud);
+  EXPECT_TRUE(once.all_made);
+  PointCloud written = cloud;
+  for (const Vec3& normal : once.normals) {
+    written.normals.push_back(-normal.cast<float>().cast<double>());
+  }
+  EXPECT_TRUE(prepare(written).made.empty());
+  set_estimated_normals(written, true);
+  const PreparedCloud again = prepare(written);
+  EXPECT_EQ(again.decision.neighbours, once.decision.neighbours);
+  for (std::size_t i = 0; i < cloud.size(); ++i) EXPECT_EQ(again.normals[i], -once.normals[i]);
+  EXPECT_TRUE(prepare(written, {.keep_orientation = true}).made.empty());
+  set_estimated_normals(written, false);
+  EXPECT_TRUE(prepare(written).made.empty());
+}
+
+TEST(Prepare, LeavesOutPointsThatAreNowhere) {
+  PointCloud cloud = sphere(2000, 1);
+  cloud.normals.clear();
+  const PreparedCloud alone = prepare(cloud);
+  for (const double far : {1e20, 3.4e38, -1e140}) {
+    PointCloud with = cloud;
+    with.positions.emplace_back(far, 0.0, 0.0);
+    const PreparedCloud prepared = prepare(with);
+    ASSERT_EQ(prepared.notes.size(), 3U);
+    EXPECT_NE(prepared.notes[0].find("1 point is nowhere near the others"), std::string::npos);
+    EXPECT_EQ(prepared.curve, alone.curve);
+    EXPECT_EQ(prepared.normals[7], alone.normals[7]);
+    EXPECT_TRUE(prepared.normals.back().isZero(0.0));
+  }
+  for (Vec3& p : cloud.positions) p *= 1e20;  // a large cloud has none
+  EXPECT_EQ(prepare(cloud).notes.size(), 1U);
+}
+
+TEST(Prepare, SaysThatNormalsAreNotThoseOfThePoints) {
+  PointCloud cloud = sphere(5000, 6000);
+  cloud.normals[0] = cloud.positions[0];
+  EXPECT_TRUE(prepare(cloud).notes.empty());
+  Random random(2);
+  for (Vec3& normal : cloud.normals) {
+    normal = Vec3(random.normal(), random.normal(), random.normal()).normalized();
+  }
+  const auto notes = prepare(cloud, {.keep_orientation = true}).notes;
+  ASSERT_EQ(notes.size(), 1U);
+  EXPECT_NE(notes[0].find("the normals are not those of the points"), std::string::npos);
+}
+
 TEST(Prepare, SaysFromHowManyPointsItEstimates) {
   PointCloud cloud = sphere(4000, 1);
   cloud.normals.clear();

@@ -149,12 +149,21 @@ TEST(FindLines, DrawsBoundariesOnDemand) {
 }
 
 TEST(FindLines, AreTheSameForAnyThreadsAndOrderAndSignsOfNormals) {
-  const Cloud cloud = cylinder(4000);
+  Cloud cloud = cylinder(4000);
+  Random disturbance(8);
+  const auto blow = [&]() -> Vec3 {
+    return 0.1 * Vec3(disturbance.normal(), disturbance.normal(), disturbance.normal());
+  };
+  for (std::size_t i = 0; i < cloud.positions.size(); ++i) {
+    cloud.positions[i] += cloud.spacing * blow();
+    cloud.normals[i] = (cloud.normals[i] + blow()).normalized();
+  }
+  const LineOptions options = {.boundaries = true};
   set_thread_count(1);
-  const auto curves = lines_of(cloud);
+  const auto curves = lines_of(cloud, options);
   for (const int threads : {2, 8}) {
     set_thread_count(threads);
-    EXPECT_TRUE(same(lines_of(cloud), curves)) << threads;
+    EXPECT_TRUE(same(lines_of(cloud, options), curves)) << threads;
   }
   set_thread_count(0);
   Cloud shuffled = cloud;
@@ -167,7 +176,7 @@ TEST(FindLines, AreTheSameForAnyThreadsAndOrderAndSignsOfNormals) {
     shuffled.normals[i] = (random.index(2) == 0 ? 1.0 : -1.0) * cloud.normals[order[i]];
     shuffled.classes[i] = cloud.classes[order[i]];
   }
-  EXPECT_TRUE(same(lines_of(shuffled), curves));
+  EXPECT_TRUE(same(lines_of(shuffled, options), curves));
 }
 
 TEST(FindLines, FollowTheCloudToANationalGrid) {

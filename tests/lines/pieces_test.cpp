@@ -352,38 +352,6 @@ TEST(Bridges, AreNotBuiltWithoutReason) {
   EXPECT_EQ(bridged({left, straight({45, 0, 0}, {70, 0, 0}, Vec3::UnitY(), Vec3::UnitZ())}), 2u);
 }
 
-TEST(Finish, DropsFreePiecesWithHardlyAnEdgePoint) {
-  Piece piece = straight({0, 0, 0}, {12, 0, 0});
-  for (ChainNode& node : piece.nodes) node.edge_points = 0.05;
-  const FinishOptions options = {.tolerance = kWithin, .noise = 0.0};
-  EXPECT_TRUE(finish({piece}, options).empty());
-  for (ChainNode& node : piece.nodes) node.edge_points = 1.0;
-  EXPECT_EQ(finish({piece}, options).size(), 1u);
-}
-
-/// Whether a free piece stays whose nodes have so many edge points, so probable.
-bool stays(Piece piece, double edge_points, double probability, double noise) {
-  for (ChainNode& node : piece.nodes) {
-    node.edge_points = edge_points;
-    node.probability = probability;
-  }
-  return !finish({piece}, {.tolerance = kWithin, .noise = noise}).empty();
-}
-
-TEST(Finish, DropsFreePiecesOfDoubtfulPointsInNoise) {
-  const Piece piece = straight({0, 0, 0}, {12, 0, 0});
-  EXPECT_FALSE(stays(piece, 1.0, 0.7, 0.5));
-  EXPECT_TRUE(stays(piece, 1.0, 0.9, 0.5));
-  EXPECT_TRUE(stays(piece, 1.0, 0.7, 0.1));
-}
-
-TEST(Finish, KeepsLongRowsOfEdgePointsInNoise) {
-  const Piece piece = straight({0, 0, 0}, {30, 0, 0});
-  EXPECT_TRUE(stays(piece, 1.0, 0.7, 0.5));
-  EXPECT_FALSE(stays(piece, 0.7, 0.7, 0.5)) << "too few edge points";
-  EXPECT_FALSE(stays(piece, 1.0, 0.6, 0.5)) << "too doubtful ones";
-}
-
 TEST(LocalPlanes, AreThoseOfACorner) {
   NearPoints points;
   for (int axis = 0; axis < 3; ++axis) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <set>
 
 #include "pcednet/core/parallel.h"
@@ -38,6 +39,39 @@ TEST(Scanner, SeesSurfacesAndTheirShadows) {
   EXPECT_GT(post, 100u);
 }
 
+TEST(Scanner, SeesTheWallEndAtTheShadowAndAtItsSides) {
+  const Scan scan = scan_scene(post_before_wall(),
+                               {.rays = 20000, .range_noise = 0, .mixed = 0, .outliers = 0}, 1);
+  constexpr double kRays = 6.0 * 100.0 / 129.0 * std::numbers::pi / 180.0;  // apart, at y = 2
+  const double shadow = 0.2 * 6.0 / 4.2;
+  std::size_t ends = 0;
+  for (std::size_t i = 0; i < scan.positions.size(); ++i) {
+    const Vec3& p = scan.positions[i];
+    if (std::abs(p.y() - 2.0) > 2e-3 || std::abs(p.z()) > 1.5) continue;
+    const double x = std::abs(p.x()), beside_shadow = x - shadow, inside = 2.0 - x;
+    const bool open = !scan.open_sides[i].isZero(0.0);
+    ends += open;
+    EXPECT_EQ(open, std::min(beside_shadow, inside) < 1.05 * kRays) << p.transpose();
+    const double away = scan.open_sides[i].x() * p.x();  // from the shadow
+    if (open) {
+      EXPECT_GT(beside_shadow < 0.5 ? -away : away, 0.0);
+    }
+  }
+  EXPECT_GT(ends, 60u);
+}
+
+TEST(ScanSet, LabelsTheEndsThatNoOtherScanSeesBeyond) {
+  const auto shares = [](std::size_t places) {
+    const PointCloud cloud =
+        generate({.name = "yard", .kind = 1, .scanner = {.rays = 9000, .places = places}}, 1).cloud;
+    const auto ends = std::count(cloud.labels.begin(), cloud.labels.end(), kBoundary);
+    return static_cast<double>(ends) / static_cast<double>(cloud.size());
+  };
+  EXPECT_GT(shares(1), 0.03);
+  EXPECT_LT(shares(1), 0.15);
+  EXPECT_LT(shares(3), 0.8 * shares(1));
+}
+
 TEST(Scanner, MakesItsFaultsAsOften) {
   const Scene scene = post_before_wall();
   const auto count = [&](const ScannerOptions& options, ReturnKind kind) {
@@ -60,8 +94,8 @@ TEST(Scanner, MakesItsFaultsAsOften) {
 TEST(ScanSet, LabelsBandsAlongTrueEdges) {
   const ScanRecipe recipe = {.name = "room", .kind = 2, .scanner = {.rays = 8000}};
   const PointCloud cloud = generate(recipe, 1).cloud;
-  std::size_t counts[4] = {};
-  for (const std::uint8_t label : cloud.labels) ++counts[label == kUnlabelled ? 3 : label];
+  std::size_t counts[5] = {};
+  for (const std::uint8_t label : cloud.labels) ++counts[label == kUnlabelled ? 4 : label];
   const auto share = [&](int i) {
     return static_cast<double>(counts[i]) / static_cast<double>(cloud.size());
   };

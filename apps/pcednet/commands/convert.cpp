@@ -9,6 +9,7 @@
 #include "free_memory.h"
 #include "number_options.h"
 #include "pcednet/core/error.h"
+#include "pcednet/detect/prepare.h"
 #include "pcednet/formats/format.h"
 #include "pcednet/formats/read_cloud.h"
 #include "pcednet/formats/write_cloud.h"
@@ -57,6 +58,8 @@ void sample(const ConvertRequest& request, const Progress& progress, PointCloud&
 }
 
 void perturb(const ConvertRequest& request, PointCloud& cloud) {
+  // Its normals are those of the points before.
+  if (request.noise > 0.0 || request.fraction < 1.0) detect::set_estimated_normals(cloud, false);
   if (request.noise > 0.0) {
     with_name_in_errors(request.input, [&] {
       cloud = shapes::add_gaussian_noise(std::move(cloud),

@@ -89,16 +89,16 @@ void run(const std::string& folder, std::uint64_t seed, const Common& common,
   const Progress progress = console_progress(common);
   const std::size_t clouds = (lists.size() + ...);
   Stage stage(&progress, "generate", clouds);
-  say("cloud             points  sharp smooth    non");
+  say("cloud             points  sharp smooth  bound    non");
   std::size_t points = 0;
   const auto make = [&](const auto& recipe) {
     const shapes::GeneratedCloud made = shapes::generate(recipe, seed);
     const PointCloud& cloud = made.cloud;
     if (!made.curves.empty()) write_curves(curves_of(folder, recipe.name), made.curves, common);
     formats::write_cloud(path_of(recipe), cloud, {.overwrite = common.overwrite()});
-    say(fmt::format("{:<16} {:>7} {:>6.1f} {:>6.1f} {:>6.1f}{}", recipe.name, cloud.size(),
+    say(fmt::format("{:<16} {:>7} {:>6.1f} {:>6.1f} {:>6.1f} {:>6.1f}{}", recipe.name, cloud.size(),
                     percent_of(cloud, kSharpEdge), percent_of(cloud, kSmoothEdge),
-                    percent_of(cloud, kNonEdge), details(recipe)));
+                    percent_of(cloud, kBoundary), percent_of(cloud, kNonEdge), details(recipe)));
     points += cloud.size();
     stage.advance();
   };

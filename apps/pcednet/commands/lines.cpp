@@ -102,7 +102,9 @@ void add_given_labels(const LinesArguments& arguments, std::vector<std::uint8_t>
                       LabelledCloud& labelled, const Progress& progress) {
   warn_of_other_classes(arguments.input, classes);
   const PointCloud& cloud = labelled.cloud;
-  labelled.prepared = prepare(arguments.input, cloud, arguments.preparation, progress);
+  detect::PrepareOptions preparation = arguments.preparation;
+  preparation.keep_orientation = true;  // lines do not depend on signs
+  labelled.prepared = prepare(arguments.input, cloud, preparation, progress);
   labelled.classes = std::move(classes);
   labelled.p_sharp = probabilities(arguments.input, cloud, "p_sharp");
   labelled.p_smooth = probabilities(arguments.input, cloud, "p_smooth");

@@ -11,6 +11,7 @@
 #include "commands.h"
 #include "number_options.h"
 #include "pcednet/core/error.h"
+#include "pcednet/detect/prepare.h"
 #include "pcednet/formats/write_cloud.h"
 #include "pcednet/normals/prepare.h"
 
@@ -87,6 +88,8 @@ void run(const NormalsRequest& request, const Common& common) {
     say(fmt::format("{}: {} points turned towards their scanner", request.input, faced));
   }
   cloud.normals = prepared.normals;
+  // With another number of neighbours, they are the user's choice.
+  if (!request.keep) detect::set_estimated_normals(cloud, request.neighbours == 0);
   if (request.flip) {
     for (Vec3& normal : cloud.normals) normal = Vec3::Zero() - normal;
   }

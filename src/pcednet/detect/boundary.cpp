@@ -33,8 +33,9 @@ constexpr double kAcrossFrom = 0.92;   ///< cosine to the direction away from th
 constexpr double kLeastSpread = 0.06;  ///< less across than along, as variances, is a line
 
 // In spacings.
-constexpr double kThickness = 0.5;  ///< standard deviation of the neighbours from their plane
-constexpr double kHeight = 0.5;     ///< of the point above it
+constexpr double kThickness = 1.0;  ///< standard deviation of the neighbours from their plane
+constexpr double kHeight = 1.0;     ///< of the point above it
+constexpr double kClear = 0.5;      ///< the most of both where no noise hides what else is there
 constexpr double kExact = 0.1;      ///< nearer points are never outliers
 
 constexpr double kOutlier = 3.0;    ///< median distances from the plane
@@ -93,6 +94,7 @@ struct RimPoint {
   Vec3 outward = Vec3::Zero(), along = Vec3::Zero();  ///< unit, orthogonal
   double spacing = 0.0;
   bool wide = false;  ///< the opening is kWideOpening or more
+  bool clear = false;
   std::array<std::uint32_t, kNeighbours> others;
 };
 
@@ -202,7 +204,8 @@ std::optional<RimPoint> rim_at(const DistinctPoints& points, std::uint32_t point
   const Around around = inliers(all, plane_of(all), spacing);
   if (static_cast<double>(around.count) < kInliers * count) return std::nullopt;
   const Plane plane = plane_of(around);
-  if (plane.thickness > kThickness * spacing || plane.height(Vec3::Zero()) > kHeight * spacing ||
+  const double height = plane.height(Vec3::Zero());
+  if (plane.thickness > kThickness * spacing || height > kHeight * spacing ||
       plane.spread < kLeastSpread || !is_one_sheet(points, all, plane.normal)) {
     return std::nullopt;
   }
@@ -221,6 +224,7 @@ std::optional<RimPoint> rim_at(const DistinctPoints& points, std::uint32_t point
                .along = plane.normal.cross(outward),
                .spacing = spacing,
                .wide = opening.width >= kWideOpening,
+               .clear = std::max(plane.thickness, height) <= kClear * spacing,
                .others = all.index};
   std::fill(rim.others.begin() + static_cast<std::ptrdiff_t>(all.count), rim.others.end(), kNone);
   return rim;
@@ -318,24 +322,29 @@ void remove_isolated(const DistinctPoints& points, std::vector<RimPoint>& rims) 
 
 }  // namespace
 
-std::vector<std::uint32_t> find_boundary(const PreparedCloud& cloud, const Progress* progress) {
+std::vector<BoundaryPoint> find_boundary(const PreparedCloud& cloud, const Progress* progress) {
   const DistinctPoints points = distinct_points(cloud);
   std::vector<RimPoint> rims = find_rims(points, progress);
   remove_isolated(points, rims);
-  std::vector<std::uint32_t> boundary;
+  std::vector<BoundaryPoint> boundary;
   for (const RimPoint& rim : rims) {
-    const auto copies = points.copies(rim.point);
-    boundary.insert(boundary.end(), copies.begin(), copies.end());
+    for (const std::uint32_t copy : points.copies(rim.point)) boundary.push_back({copy, rim.clear});
   }
-  std::sort(boundary.begin(), boundary.end());
+  std::sort(boundary.begin(), boundary.end(),
+            [](const BoundaryPoint& a, const BoundaryPoint& b) { return a.point < b.point; });
   return boundary;
 }
 
-void mark_boundary(const PreparedCloud& cloud, Classification& found, const Progress* progress) {
-  for (const std::uint32_t point : find_boundary(cloud, progress)) {
-    std::uint8_t& its = found.classes[point];
-    if (its <= kBoundary || its == kUnlabelled) its = kBoundary;
+void mark_boundary(std::span<const BoundaryPoint> boundary, std::span<std::uint8_t> classes) {
+  for (const BoundaryPoint& found : boundary) {
+    std::uint8_t& its = classes[found.point];
+    const bool is_edge = its == kSharpEdge || its == kSmoothEdge;
+    if ((is_edge && found.clear) || its == kNonEdge || its == kUnlabelled) its = kBoundary;
   }
+}
+
+void mark_boundary(const PreparedCloud& cloud, Classification& found, const Progress* progress) {
+  mark_boundary(find_boundary(cloud, progress), found.classes);
   found.counts = count_classes(found.classes);
 }
 

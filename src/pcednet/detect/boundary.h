@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "pcednet/core/progress.h"
@@ -14,7 +15,15 @@ namespace pcednet::detect {
 inline constexpr std::size_t kBoundaryNeighbours = 24;
 inline constexpr int kBoundaryRounds = 3;
 
-/// The points where the sampled surface ends, ascending: eaves, the rims of holes and fragments.
+/// A point where the sampled surface ends: at eaves, at the rims of holes and fragments.
+struct BoundaryPoint {
+  std::uint32_t point;
+  bool clear;  ///< less noise than half a spacing: nothing else can be there
+
+  friend bool operator==(const BoundaryPoint&, const BoundaryPoint&) = default;
+};
+
+/// The boundary points, ascending.
 ///
 /// The 24 nearest others of such a point are on one side of it. They lie in a plane, or a gently
 /// bent sheet, with the point; none is within an angle of 105 degrees as seen from it; their centre
@@ -24,12 +33,15 @@ inline constexpr int kBoundaryRounds = 3;
 ///
 /// The result is the same for any number of threads, any order of the points and after a flip of
 /// all normals. A point without a usable normal is judged by the positions alone.
-std::vector<std::uint32_t> find_boundary(const PreparedCloud& cloud,
+std::vector<BoundaryPoint> find_boundary(const PreparedCloud& cloud,
                                          const Progress* progress = nullptr);
 
-/// Gives the points of find_boundary() the class kBoundary, except those of an own class. Their
-/// probabilities stay those of the network. `found` must be of the cloud, its classes of a table
-/// that has_edges().
+/// Gives boundary points the class kBoundary, in place of non-edge and unlabelled, and of an edge
+/// class where the boundary is clear. Points of an own class keep it.
+void mark_boundary(std::span<const BoundaryPoint> boundary, std::span<std::uint8_t> classes);
+
+/// The same for the points of find_boundary(). Their probabilities stay those of the network.
+/// `found` must be of the cloud, its classes of a table that has_edges().
 void mark_boundary(const PreparedCloud& cloud, Classification& found,
                    const Progress* progress = nullptr);
 

@@ -5,10 +5,14 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 
 #include "pcednet/cloud/bounding_box.h"
 #include "pcednet/core/error.h"
+#include "pcednet/core/half_space.h"
 #include "pcednet/detect/exact_points.h"
+#include "pcednet/detect/far_points.h"
+#include "pcednet/detect/normal_fit.h"
 #include "pcednet/detect/rounding.h"
 #include "pcednet/normals/flat_pairs.h"
 #include "pcednet/normals/prepare.h"
@@ -29,11 +33,14 @@ constexpr double kWalls = 0.3;  // of one_sidedness()
 constexpr std::size_t kMended = 4;
 constexpr std::size_t kShareToOrient = 50;
 
+constexpr double kMisfits = 0.5;  ///< share of flat places with wrong normals; true ones have none
+
 /// The parts of a cloud that are used.
 struct Points {
   std::span<const Vec3> positions;
-  std::span<const Vec3> normals;                ///< may be empty
-  std::function<std::vector<Vec3>()> scanners;  ///< of every point, or of none
+  std::span<const Vec3> normals;                   ///< may be empty
+  std::function<std::vector<Vec3>()> scanners;     ///< of every point, or of none
+  const char* without = "no normals in the file";  ///< said if there are none
 
   std::size_t size() const { return positions.size(); }
   bool empty() const { return positions.empty(); }
@@ -101,7 +108,24 @@ void estimate(PreparedCloud& prepared, const Points& cloud, const std::string& w
   Oriented oriented = complete_and_orient(cloud, prepared, progress);
   const std::string note = fmt::format("{}: estimated from the {} nearest points and {}", why,
                                        oriented.found.neighbours, describe(oriented));
+  prepared.all_made = std::none_of(cloud.normals.begin(), cloud.normals.end(), is_usable);
   use(std::move(oriented), note, prepared);
+}
+
+/// Takes the position from points that are nowhere near the others.
+void leave_out_far_points(PreparedCloud& prepared) {
+  const std::vector<std::uint32_t> far = far_points(prepared.positions);
+  if (far.empty()) return;
+  const double largest = prepared.positions[far.front()].cwiseAbs().maxCoeff();
+  prepared.notes.push_back(fmt::format(
+      "{} point{} nowhere near the others, the first with a coordinate of {:.6g}: taken for points "
+      "without a position",
+      far.size(), far.size() == 1 ? " is" : "s are", largest));
+  prepared.moved.assign(prepared.positions.begin(), prepared.positions.end());
+  for (const std::uint32_t i : far) {
+    prepared.moved[i] = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
+  }
+  prepared.positions = prepared.moved;
 }
 
 /// Spreads rounded positions.
@@ -114,6 +138,16 @@ void spread_positions(const Rounding& rounding, PreparedCloud& prepared) {
       "coordinates are rounded to {:.6g}, about {:.2g} of the spacing: points are spread "
       "within such a step before they are described, and written as they were read",
       rounding.step, rounding.step / rounding.spacing));
+}
+
+/// Says so if the normals of the cloud are not those of its surface.
+void note_misfits(PreparedCloud& prepared) {
+  const double share = share_of_misfits(prepared.positions, prepared.normals, prepared.curve);
+  if (share < kMisfits) return;
+  prepared.notes.push_back(fmt::format(
+      "the normals are not those of the points: they lie across the surface in {:.0f} % "
+      "of its flat places; `pcednet normals` makes new ones",
+      100.0 * share));
 }
 
 /// The number of points with another sign than before, relative to the majority of their part or,
@@ -129,14 +163,14 @@ std::size_t count_turned(const Points& cloud, const Oriented& oriented) {
 
 /// Orients the cloud's normals if their signs are mixed, see the header.
 void orient_mixed(PreparedCloud& prepared, const Points& cloud, const Progress* progress) {
-  const normals::FlatPairs pairs(cloud.positions, cloud.normals, prepared.curve);
+  const normals::FlatPairs pairs(prepared.positions, cloud.normals, prepared.curve);
   const std::size_t opposed = pairs.opposed(cloud.normals);
   const double border = kBorder / std::sqrt(static_cast<double>(cloud.size()));
   if (opposed < kFewPairs ||
       static_cast<double>(opposed) < border * static_cast<double>(pairs.size())) {
     return;
   }
-  if (pairs.one_sidedness(cloud.positions, cloud.normals) > kWalls) return;
+  if (pairs.one_sidedness(prepared.positions, cloud.normals) > kWalls) return;
   Oriented oriented = complete_and_orient(cloud, prepared, progress);
   const std::size_t turned = count_turned(cloud, oriented);
   if (pairs.opposed(oriented.found.normals) * kMended > opposed) return;
@@ -151,14 +185,14 @@ void orient_mixed(PreparedCloud& prepared, const Points& cloud, const Progress* 
 PreparedCloud prepare_points(const Points& cloud, const PrepareOptions& options,
                              const Progress* progress) {
   if (cloud.empty()) throw Error(ErrorKind::kInsufficient, "the cloud has no points");
-  PreparedCloud prepared;
-  prepared.curve = spatial::curve_order(cloud.positions);
-  const std::size_t finite = prepared.curve.size();
-  if (finite == 0) throw Error(ErrorKind::kInsufficient, "no point has a finite position");
   check_extent(cloud.positions);
-
+  PreparedCloud prepared;
   prepared.positions = cloud.positions;
   prepared.normals = cloud.normals;
+  leave_out_far_points(prepared);
+  prepared.curve = spatial::curve_order(prepared.positions);
+  const std::size_t finite = prepared.curve.size();
+  if (finite == 0) throw Error(ErrorKind::kInsufficient, "no point has a finite position");
   if (finite < cloud.size()) {
     prepared.notes.push_back(
         fmt::format("{} of {} points have no finite position: kept, unlabelled",
@@ -180,7 +214,7 @@ PreparedCloud prepare_points(const Points& cloud, const PrepareOptions& options,
     spread_positions(prepared.decision.rounding, prepared);
     prepared.decision.exact = is_exact(prepared.positions, prepared.curve);
     estimate(prepared, cloud,
-             !cloud.has_normals() ? "no normals in the file"
+             !cloud.has_normals() ? cloud.without
              : usable == 0        ? "no normal is usable"
                            : fmt::format("{} of {} points have no usable normal", finite - usable,
                                          cloud.size()),
@@ -191,6 +225,7 @@ PreparedCloud prepare_points(const Points& cloud, const PrepareOptions& options,
                   "no normals, and none can be estimated: the points form no surface");
     }
   }
+  if (prepared.made.empty()) note_misfits(prepared);
   if (prepared.made.empty() && !options.keep_orientation) orient_mixed(prepared, cloud, progress);
   usable = count_usable();
   if (usable < finite) {
@@ -204,12 +239,32 @@ PreparedCloud prepare_points(const Points& cloud, const PrepareOptions& options,
 
 }  // namespace
 
+bool has_estimated_normals(const PointCloud& cloud) {
+  return cloud.has_normals() && std::find(cloud.comments.begin(), cloud.comments.end(),
+                                          kEstimatedNormals) != cloud.comments.end();
+}
+
+void set_estimated_normals(PointCloud& cloud, bool estimated) {
+  std::erase(cloud.comments, kEstimatedNormals);
+  if (estimated) cloud.comments.emplace_back(kEstimatedNormals);
+}
+
 PreparedCloud prepare(const PointCloud& cloud, const PrepareOptions& options,
                       const Progress* progress) {
   check_consistent(cloud);
-  return prepare_points(
-      {cloud.positions, cloud.normals, [&cloud] { return scanner_of_points(cloud); }}, options,
-      progress);
+  Points points = {cloud.positions, cloud.normals, [&cloud] { return scanner_of_points(cloud); }};
+  if (options.keep_orientation || options.decided || !has_estimated_normals(cloud)) {
+    return prepare_points(points, options, progress);
+  }
+  points.normals = {};
+  points.without = "the normals in the file are estimates";
+  PreparedCloud prepared = prepare_points(points, options, progress);
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    if (is_usable(cloud.normals[i])) {
+      prepared.made[i] = turned_to(prepared.made[i], cloud.normals[i]);
+    }
+  }
+  return prepared;
 }
 
 PreparedCloud prepare(const PointArrays& cloud, const PrepareOptions& options,

@@ -4,6 +4,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "pcednet/cloud/point_cloud.h"
@@ -29,6 +30,12 @@ struct NormalsDecision {
   Rounding rounding = {};      ///< of the positions, where normals were missing
 };
 
+/// The comment of a cloud whose normals are all estimated from its positions, by this program.
+inline constexpr std::string_view kEstimatedNormals = "pcednet normals estimated";
+bool has_estimated_normals(const PointCloud& cloud);
+/// Gives the cloud the comment, or takes it away.
+void set_estimated_normals(PointCloud& cloud, bool estimated);
+
 struct PrepareOptions {
   bool keep_orientation = false;  ///< use the cloud's normals even if their signs are mixed
   std::optional<NormalsDecision> decided = {};  ///< for the cloud that this one is part of
@@ -44,6 +51,7 @@ struct PreparedCloud {
   std::vector<Vec3> moved;            ///< empty unless the cloud's positions are rounded: spread()
   std::vector<Vec3> made;             ///< empty when the cloud's normals are used as they are
   std::vector<std::string> notes;     ///< for the user, one sentence each
+  bool all_made = false;              ///< not one of the cloud's normals is used, but for its sign
   bool reoriented = false;            ///< the signs of the cloud's normals were mixed
   NormalsDecision decision = {};      ///< made here, or given
   const PartOfCloud* part = nullptr;  ///< for classify() and find_boundary(); must outlive both
@@ -53,6 +61,10 @@ struct PreparedCloud {
 /// more has no usable normal, missing normals are estimated from the positions and all are
 /// oriented: by the scanner positions if the cloud has them. If these positions are rounded
 /// coarsely, see find_rounding(), they are spread() before.
+///
+/// Normals that has_estimated_normals() says are estimates are estimated again and get the signs
+/// that they have: the result is that of the cloud without them. So it is not with
+/// keep_orientation.
 ///
 /// Normals with mixed signs are oriented in the same way. Signs are mixed where more flat pairs of
 /// neighbours oppose than at the border of a patch, not as on the two sides of thin walls, where

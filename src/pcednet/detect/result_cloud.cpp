@@ -23,7 +23,8 @@ std::string edge_class_comment() {
 }
 
 /// Replaces comments of an earlier classification.
-void replace_comments(PointCloud& cloud, const EdgeModel& model, const Classification& result) {
+void replace_comments(PointCloud& cloud, bool estimated_normals, const EdgeModel& model,
+                      const Classification& result) {
   std::erase_if(cloud.comments,
                 [](const std::string& comment) { return comment.starts_with("pcednet "); });
   cloud.comments.push_back(fmt::format("pcednet {}", kVersion));
@@ -33,6 +34,7 @@ void replace_comments(PointCloud& cloud, const EdgeModel& model, const Classific
     cloud.comments.push_back(
         fmt::format("pcednet scales {:.9g} to {:.9g}", result.s_min, result.s_max));
   }
+  set_estimated_normals(cloud, estimated_normals);
   if (has_own_classes(model.table)) {
     add_class_comments(cloud, model.table);
   } else {
@@ -83,6 +85,8 @@ KeptInput add_result(PointCloud& cloud, const PreparedCloud& prepared, const Cla
     set_attribute(cloud, make_attribute("scalar_input_label", cloud.labels));
     kept.labels = true;
   }
+  const bool estimated =
+      prepared.all_made || (prepared.made.empty() && has_estimated_normals(cloud));
   if (!prepared.made.empty()) cloud.normals = prepared.made;
   if (cloud.colours.empty() || options.class_colours) {
     cloud.colours.resize(cloud.size());
@@ -95,7 +99,7 @@ KeptInput add_result(PointCloud& cloud, const PreparedCloud& prepared, const Cla
   }
   set_columns(cloud, result, model.table);
   cloud.labels = result.classes;
-  replace_comments(cloud, model, result);
+  replace_comments(cloud, estimated, model, result);
   return kept;
 }
 

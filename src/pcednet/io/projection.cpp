@@ -7,6 +7,9 @@
 #include <cmath>
 #include <memory>
 #endif
+#ifdef PCEDNET_PROJ_LIBRARY
+#include <dlfcn.h>
+#endif
 
 namespace pcednet::io {
 
@@ -14,11 +17,79 @@ namespace pcednet::io {
 
 namespace {
 
+/// The functions of PROJ that are used here.
+struct Functions {
+  decltype(&proj_context_create) context_create;
+  decltype(&proj_context_destroy) context_destroy;
+  decltype(&proj_context_set_enable_network) context_set_enable_network;
+  decltype(&proj_log_level) log_level;
+  decltype(&proj_create) create;
+  decltype(&proj_create_crs_to_crs_from_pj) create_crs_to_crs_from_pj;
+  decltype(&proj_normalize_for_visualization) normalize_for_visualization;
+  decltype(&proj_is_crs) is_crs;
+  decltype(&proj_as_wkt) as_wkt;
+  decltype(&proj_trans) trans;
+  decltype(&proj_destroy) destroy;
+};
+
+#ifdef PCEDNET_PROJ_LIBRARY
+
+template <typename Function>
+bool find(void* library, const char* name, Function*& function) {
+  function = reinterpret_cast<Function*>(dlsym(library, name));
+  return function != nullptr;
+}
+
+/// Loads PROJ when it is first needed: with the thirty libraries that it needs, that takes longer
+/// than many a command. Null if it is not there.
+const Functions* proj() {
+  static const std::optional<Functions> functions = []() -> std::optional<Functions> {
+    void* library = dlopen(PCEDNET_PROJ_LIBRARY, RTLD_NOW | RTLD_LOCAL);
+    Functions f{};
+    const bool found =
+        library && find(library, "proj_context_create", f.context_create) &&
+        find(library, "proj_context_destroy", f.context_destroy) &&
+        find(library, "proj_context_set_enable_network", f.context_set_enable_network) &&
+        find(library, "proj_log_level", f.log_level) && find(library, "proj_create", f.create) &&
+        find(library, "proj_create_crs_to_crs_from_pj", f.create_crs_to_crs_from_pj) &&
+        find(library, "proj_normalize_for_visualization", f.normalize_for_visualization) &&
+        find(library, "proj_is_crs", f.is_crs) && find(library, "proj_as_wkt", f.as_wkt) &&
+        find(library, "proj_trans", f.trans) && find(library, "proj_destroy", f.destroy);
+    return found ? std::optional(f) : std::nullopt;
+  }();
+  return functions ? &*functions : nullptr;
+}
+
+#else
+
+const Functions* proj() {
+  static const Functions functions = {proj_context_create,
+                                      proj_context_destroy,
+                                      proj_context_set_enable_network,
+                                      proj_log_level,
+                                      proj_create,
+                                      proj_create_crs_to_crs_from_pj,
+                                      proj_normalize_for_visualization,
+                                      proj_is_crs,
+                                      proj_as_wkt,
+                                      proj_trans,
+                                      proj_destroy};
+  return &functions;
+}
+
+#endif
+
+struct Destroy {
+  void operator()(PJ_CONTEXT* context) const { proj()->context_destroy(context); }
+  void operator()(PJ* object) const { proj()->destroy(object); }
+};
+using Context = std::unique_ptr<PJ_CONTEXT, Destroy>;
+using Object = std::unique_ptr<PJ, Destroy>;
+
 /// A PROJ system, and the objects it depends on.
 struct Projected {
-  std::unique_ptr<PJ_CONTEXT, decltype(&proj_context_destroy)> context{proj_context_create(),
-                                                                       proj_context_destroy};
-  std::unique_ptr<PJ, decltype(&proj_destroy)> system{nullptr, proj_destroy};
+  Context context = {};
+  Object system = {};
 };
 
 Projected look_up(const CoordinateSystem& system) {
@@ -28,18 +99,20 @@ Projected look_up(const CoordinateSystem& system) {
     if (system.vertical_epsg > 0) definition += fmt::format("+{}", system.vertical_epsg);
   }
   Projected found;
-  if (definition.empty() || !found.context) return found;
-  proj_log_level(found.context.get(), PJ_LOG_NONE);
-  proj_context_set_enable_network(found.context.get(), 0);
-  found.system.reset(proj_create(found.context.get(), definition.c_str()));
-  if (found.system && !proj_is_crs(found.system.get())) found.system.reset();
+  if (definition.empty() || !proj()) return found;
+  found.context.reset(proj()->context_create());
+  if (!found.context) return found;
+  proj()->log_level(found.context.get(), PJ_LOG_NONE);
+  proj()->context_set_enable_network(found.context.get(), 0);
+  found.system.reset(proj()->create(found.context.get(), definition.c_str()));
+  if (found.system && !proj()->is_crs(found.system.get())) found.system.reset();
   return found;
 }
 
 }  // namespace
 
 bool has_projections() {
-  return true;
+  return proj() != nullptr;
 }
 
 std::string definition_of(const CoordinateSystem& system, WktVersion version) {
@@ -47,7 +120,7 @@ std::string definition_of(const CoordinateSystem& system, WktVersion version) {
   if (!found.system) return {};
   const char* const options[] = {"MULTILINE=NO", nullptr};
   const PJ_WKT_TYPE type = version == WktVersion::k1 ? PJ_WKT1_GDAL : PJ_WKT2_2019;
-  const char* text = proj_as_wkt(found.context.get(), found.system.get(), type, options);
+  const char* text = proj()->as_wkt(found.context.get(), found.system.get(), type, options);
   return text ? text : "";
 }
 
@@ -56,19 +129,16 @@ std::optional<std::vector<std::array<double, 2>>> to_wgs84(
   const Projected found = look_up(system);
   if (!found.system) return std::nullopt;
   PJ_CONTEXT* context = found.context.get();
-  const auto own = [](PJ* object) {
-    return std::unique_ptr<PJ, decltype(&proj_destroy)>(object, proj_destroy);
-  };
-  const auto wgs84 = own(proj_create(context, "EPSG:4326"));
+  const Object wgs84(proj()->create(context, "EPSG:4326"));
   if (!wgs84) return std::nullopt;
-  const auto exact = own(
-      proj_create_crs_to_crs_from_pj(context, found.system.get(), wgs84.get(), nullptr, nullptr));
+  const Object exact(proj()->create_crs_to_crs_from_pj(context, found.system.get(), wgs84.get(),
+                                                       nullptr, nullptr));
   // East before north, for any order of the systems' axes.
-  const auto change = own(exact ? proj_normalize_for_visualization(context, exact.get()) : nullptr);
+  const Object change(exact ? proj()->normalize_for_visualization(context, exact.get()) : nullptr);
   if (!change) return std::nullopt;
   for (std::array<double, 2>& point : points) {
-    const PJ_COORD there =
-        proj_trans(change.get(), PJ_FWD, proj_coord(point[0], point[1], 0.0, HUGE_VAL));
+    const PJ_COORD here{{point[0], point[1], 0.0, HUGE_VAL}};
+    const PJ_COORD there = proj()->trans(change.get(), PJ_FWD, here);
     point = {there.xy.x, there.xy.y};
     if (!std::isfinite(point[0]) || !std::isfinite(point[1])) return std::nullopt;
   }

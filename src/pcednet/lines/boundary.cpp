@@ -20,7 +20,7 @@ constexpr double kBeyondLast = 0.4;  ///< from the last of its points to the bou
 
 std::optional<Crease> boundary_at(const OrderedPoints& cloud, std::size_t i,
                                   std::span<const spatial::Neighbour> nearest) {
-  const Vec3& normal = cloud.normal(i);
+  const Vec3 normal = cloud.normal(i);
   if (normal.isZero(0.0)) return std::nullopt;
   const double spacing = spacing_of(nearest);
   if (!(spacing > 0.0) || nearest.size() < kNeighbours / 2) return std::nullopt;

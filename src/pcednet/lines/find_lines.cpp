@@ -73,6 +73,12 @@ void check(const EdgePoints& points, const LineOptions& options) {
   }
 }
 
+std::vector<Chain> traced(std::span<const Crease> creases, const Limits& limits, double noise,
+                          const Progress* progress) {
+  if (creases.empty()) return {};
+  return trace(smoothed(creases, limits.smooth_within, progress), limits.gap, noise, progress);
+}
+
 std::vector<Piece> split_chains(const std::vector<Chain>& chains, double tolerance,
                                 const Progress* progress) {
   std::vector<std::vector<Piece>> of_chains(chains.size());
@@ -171,17 +177,19 @@ std::vector<Curve> find_lines(const EdgePoints& points, const LineOptions& optio
       return long_ones(finish(std::move(*pieces), exact), limits.min_length);
     }
   }
-  std::vector<Crease> creases = find_creases(cloud, sampling, progress);
-  if (options.boundaries) {
-    const std::vector<Crease> boundaries = find_boundaries(cloud, progress);
+  std::vector<Crease> creases = find_creases(cloud, sampling, progress), boundaries;
+  if (options.boundaries) boundaries = find_boundaries(cloud, progress);
+  if (options.stage == LineStage::kCreases) {
     creases.insert(creases.end(), boundaries.begin(), boundaries.end());
+    return drawn(creases);
   }
-  if (creases.empty()) return {};
-  if (options.stage == LineStage::kCreases) return drawn(creases);
 
   const FinishOptions finish_options = {limits.tolerance, sampling.noise};
-  creases = smoothed(creases, limits.smooth_within, progress);
-  const std::vector<Chain> chains = trace(creases, limits.gap, sampling.noise, progress);
+  std::vector<Chain> chains = traced(creases, limits, sampling.noise, progress);
+  for (Chain& chain : traced(boundaries, limits, sampling.noise, progress)) {
+    chains.push_back(std::move(chain));
+  }
+  if (chains.empty()) return {};
   if (options.stage == LineStage::kChains) return drawn(chains, finish_options);
   std::vector<Piece> pieces = split_chains(chains, limits.tolerance, progress);
   join(pieces, cloud, limits, sampling.noise, progress);

@@ -161,11 +161,17 @@ double least_length(std::ptrdiff_t held, const FinishOptions& options) {
   return least[0] + least[1] * options.noise;
 }
 
-/// How many pieces end in each corner.
-std::vector<std::size_t> ends_in(const Corners& corners) {
+bool is_of_boundary(const Piece& piece) {
+  return mean_of(piece, &ChainNode::boundary) > 0.5;
+}
+
+/// How many pieces, those of boundaries left out or not, end in each corner.
+std::vector<std::size_t> ends_in(const Corners& corners, std::span<const Piece> pieces,
+                                 bool with_boundaries) {
   std::vector<std::size_t> ends(corners.places.size());
-  for (const auto& own : corners.of_ends) {
-    for (const std::size_t corner : own) {
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    if (!with_boundaries && is_of_boundary(pieces[i])) continue;
+    for (const std::size_t corner : corners.of_ends[i]) {
       if (corner != Corners::kNoCorner) ++ends[corner];
     }
   }
@@ -174,12 +180,15 @@ std::vector<std::size_t> ends_in(const Corners& corners) {
 
 /// True if a piece was dropped.
 bool drop_loose(std::vector<Piece>& pieces, const Corners& corners, const FinishOptions& options) {
-  const std::vector<std::size_t> ends = ends_in(corners);
+  const std::vector<std::size_t> all_end = ends_in(corners, pieces, true);
+  // A boundary beside it makes no edge: where plants are scanned, all ends near some.
+  const std::vector<std::size_t> edges_end = ends_in(corners, pieces, options.exact);
   const std::size_t to_hold = options.exact ? 1 : 2;
   std::size_t i = 0;
   return std::erase_if(pieces, [&](const Piece& piece) {
            const auto& own = corners.of_ends[i++];
            if (piece.closed) return false;
+           const std::vector<std::size_t>& ends = is_of_boundary(piece) ? all_end : edges_end;
            const auto held = std::count_if(own.begin(), own.end(), [&](std::size_t corner) {
              return corner != Corners::kNoCorner && ends[corner] >= to_hold;
            });
@@ -203,7 +212,7 @@ bool is_sound(const Curve& curve) {
 }  // namespace
 
 EdgeClass class_of(const Piece& piece, double noise) {
-  if (mean_of(piece, &ChainNode::boundary) > 0.5) return kBoundary;
+  if (is_of_boundary(piece)) return kBoundary;
   const double bend = mean_of(piece, &ChainNode::bend) - noise;
   const double sharp = mean_of(piece, &ChainNode::sharp);
   const bool rounded =

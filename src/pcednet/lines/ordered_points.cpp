@@ -5,7 +5,6 @@
 #include <numbers>
 #include <tuple>
 
-#include "pcednet/core/half_space.h"
 #include "pcednet/core/parallel.h"
 #include "pcednet/spatial/curve_order.h"
 

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "pcednet/core/half_space.h"
 #include "pcednet/core/progress.h"
 #include "pcednet/lines/find_lines.h"
 #include "pcednet/spatial/kd_tree.h"
@@ -20,7 +21,8 @@ class OrderedPoints {
 
   std::size_t size() const { return positions_.size(); }
   const Vec3& position(std::size_t i) const { return positions_[i]; }
-  const Vec3& normal(std::size_t i) const { return points_.normals[order_[i]]; }
+  /// One of a normal and its opposite, the same of both: nothing may depend on signs.
+  Vec3 normal(std::size_t i) const { return upward(points_.normals[order_[i]]); }
   EdgeClass edge_class(std::size_t i) const {
     return static_cast<EdgeClass>(points_.classes[order_[i]]);
   }

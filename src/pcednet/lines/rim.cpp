@@ -53,7 +53,7 @@ std::vector<Vec3> likely_axes(const OrderedPoints& cloud, std::span<const spatia
   std::vector<Vec3> axes;
   std::vector<std::uint32_t> on;
   for (const auto& first : near) {
-    const Vec3 &at = cloud.position(first.index), &normal = cloud.normal(first.index);
+    const Vec3 &at = cloud.position(first.index), normal = cloud.normal(first.index);
     const auto is_like = [&](const Vec3& other) {
       return std::abs(normal.dot(other)) > kAlongAxis;
     };

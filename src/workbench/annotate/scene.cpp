@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "pcednet/core/error.h"
-#include "pcednet/detect/boundary.h"
 #include "pcednet/detect/decide.h"
 #include "pcednet/formats/read_cloud.h"
 #include "pcednet/gls/scales.h"
@@ -56,11 +55,7 @@ std::shared_ptr<const Prediction> make_prediction(const Scene& scene, detect::Ed
   prediction->model = std::move(model);
   auto& result = prediction->result;
   const bool own = !result.p_class.empty(), edges = has_edges(prediction->model.table);
-  if (edges) {
-    for (const std::uint32_t i : scene.boundary) {
-      if (result.classes[i] <= kSharpEdge) result.classes[i] = kBoundary;
-    }
-  }
+  if (edges) detect::mark_boundary(scene.boundary, result.classes);
   result.counts = detect::count_classes(result.classes);
   prediction->confidence.resize(result.classes.size());
   for (std::size_t i = 0; i < result.classes.size(); ++i) {

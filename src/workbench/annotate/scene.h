@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "pcednet/cloud/bounding_box.h"
+#include "pcednet/detect/boundary.h"
 #include "pcednet/detect/prepare.h"
 #include "workbench/annotate/described.h"
 #include "workbench/annotate/layout.h"
@@ -21,9 +22,9 @@ struct Scene {
   std::vector<std::string> warnings = {};
   detect::PreparedCloud prepared = {};
   BoundingBox bounds = {};
-  Vec3 origin = Vec3::Zero();                ///< what local coordinates are relative to
-  double spacing = 0.0;                      ///< the mean one
-  std::vector<std::uint32_t> boundary = {};  ///< detect::find_boundary()
+  Vec3 origin = Vec3::Zero();  ///< what local coordinates are relative to
+  double spacing = 0.0;        ///< the mean one
+  std::vector<detect::BoundaryPoint> boundary = {};
   Layout layout = {};
   std::unique_ptr<const Selector> selector = {};
 };

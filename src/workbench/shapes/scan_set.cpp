@@ -63,6 +63,34 @@ std::vector<std::uint8_t> label_scan(const Scan& scan, std::span<const BorderPoi
   return labels;
 }
 
+/// Whether no scan has the surface where the scanner of point i sees no more of it.
+bool is_end(const Scan& scan, std::size_t i, double spacing, const spatial::KdTree& tree,
+            std::vector<spatial::Neighbour>& near) {
+  constexpr double kAround = 3.0, kBeyond = 0.5;  // in spacings
+  constexpr std::ptrdiff_t kSeen = 2;             // points of other scans
+  if (scan.open_sides[i].isZero(0.0)) return false;
+  const Vec3 open = scan.open_sides[i].normalized();
+  tree.within(scan.positions[i], kAround * spacing, near);
+  return std::count_if(near.begin(), near.end(), [&](const spatial::Neighbour& other) {
+           const std::size_t j = other.index;
+           return scan.places[j] != scan.places[i] && scan.kinds[j] == ReturnKind::kSolid &&
+                  (scan.positions[j] - scan.positions[i]).dot(open) > kBeyond * spacing;
+         }) < kSeen;
+}
+
+/// Labels non-edge points of the solid where the surface that was scanned ends.
+void label_ends(const Scan& scan, std::span<const double> spacings,
+                std::span<std::uint8_t> labels) {
+  const spatial::KdTree tree(scan.positions);
+  parallel_blocks(labels.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    std::vector<spatial::Neighbour> near;
+    for (std::size_t i = begin; i < end; ++i) {
+      if (labels[i] != kNonEdge || scan.kinds[i] != ReturnKind::kSolid) continue;
+      if (is_end(scan, i, spacings[i], tree, near)) labels[i] = kBoundary;
+    }
+  });
+}
+
 }  // namespace
 
 std::vector<ScanRecipe> scan_recipes(std::uint64_t seed) {
@@ -96,6 +124,7 @@ GeneratedCloud generate(const ScanRecipe& recipe, std::uint64_t seed) {
   const std::vector<BorderPoint> borders = borders_of(scan, scene.solid);
   const std::vector<double> spacings = local_spacings(scan.positions);
   cloud.labels = label_scan(scan, borders, spacings, recipe.bands);
+  label_ends(scan, spacings, cloud.labels);
   for (const Vec3& position : scan.positions) {
     cloud.positions.push_back(position.cast<float>().cast<double>());
   }

@@ -14,9 +14,16 @@ namespace {
 
 constexpr double kLeaf = 0.04;  // half the width of a leaf
 
+// Two hits are on one surface if they are nearer than so many gaps between rays there.
+constexpr double kJump = 2.0;
+constexpr double kSlant = 0.1;     // the least cosine between ray and normal that counts
+constexpr std::size_t kAhead = 2;  // rays without the surface where it ends
+
 struct Hit {
   double distance = 0.0;  ///< 0: nothing
   bool leaf = false;
+
+  bool on_solid() const { return distance > 0.0 && !leaf; }
 };
 
 /// Sphere tracing: the solid's distance, and that to the next leaf, are steps that miss nothing.
@@ -44,6 +51,8 @@ Hit trace(const Scene& scene, const spatial::KdTree& foliage, const Vec3& from,
 struct Rays {
   std::vector<Vec3> directions;  ///< column by column
   std::size_t rows;
+
+  std::size_t columns() const { return directions.size() / rows; }
 };
 
 Rays rays_of(const ScanPlace& place, std::size_t rays) {
@@ -69,6 +78,69 @@ Rays rays_of(const ScanPlace& place, std::size_t rays) {
   return result;
 }
 
+/// What one scanner sees of the solid.
+struct Outlook {
+  const Solid* solid;
+  Vec3 from;
+  Rays rays;
+  std::vector<Hit> hits;
+
+  Vec3 at(std::size_t r) const { return from + hits[r].distance * rays.directions[r]; }
+  /// The distance to the hit of a ray at this angle, on the plane that touches the surface.
+  double gap(std::size_t r, double angle) const {
+    const Vec3 normal = solid->normal_of(solid->value(at(r)).face, at(r));
+    const double cosine = std::abs(normal.dot(rays.directions[r]));
+    return hits[r].distance * angle / std::max(cosine, kSlant);
+  }
+  bool on_one_surface(std::size_t r, std::size_t other) const {
+    if (!hits[other].on_solid()) return false;
+    const double angle = (rays.directions[other] - rays.directions[r]).norm();
+    return (at(other) - at(r)).norm() < kJump * std::max(gap(r, angle), gap(other, angle));
+  }
+  /// See Scan::open_sides.
+  Vec3 open_side(std::size_t r) const;
+};
+
+Vec3 Outlook::open_side(std::size_t r) const {
+  const std::size_t row = r % rays.rows, column = r / rays.rows;
+  const struct {
+    std::size_t step, before, after;  // between rays, and their number on either side
+  } lines[] = {{1, row, rays.rows - 1 - row}, {rays.rows, column, rays.columns() - 1 - column}};
+  Vec3 open = Vec3::Zero();
+  for (const auto& line : lines) {
+    for (const bool forward : {false, true}) {
+      const std::size_t ahead = forward ? line.after : line.before;
+      const auto ray = [&](std::size_t k) {
+        return forward ? r + k * line.step : r - k * line.step;
+      };
+      bool goes_on = false;
+      for (std::size_t k = 1; k <= std::min(ahead, kAhead); ++k) {
+        goes_on = goes_on || on_one_surface(r, ray(k));
+      }
+      if (goes_on) continue;
+      const std::size_t last = forward ? r - line.step : r + line.step;
+      open += ahead > 0 ? rays.directions[ray(1)] - rays.directions[r]
+                        : rays.directions[r] - rays.directions[last];
+    }
+  }
+  if (open.isZero(0.0)) return open;
+  const Vec3 normal = solid->normal_of(solid->value(at(r)).face, at(r));
+  return open - open.dot(normal) * normal;
+}
+
+Outlook look(const Scene& scene, const spatial::KdTree& foliage, const ScanPlace& place,
+             const ScannerOptions& options) {
+  Outlook view = {&scene.solid, place.position, rays_of(place, options.rays), {}};
+  const std::vector<Vec3>& directions = view.rays.directions;
+  view.hits.resize(directions.size());
+  parallel_blocks(directions.size(), 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t r = begin; r < end; ++r) {
+      view.hits[r] = trace(scene, foliage, view.from, directions[r], options.range);
+    }
+  });
+  return view;
+}
+
 }  // namespace
 
 Scan scan_scene(const Scene& scene, const ScannerOptions& options, std::uint64_t seed) {
@@ -77,12 +149,13 @@ Scan scan_scene(const Scene& scene, const ScannerOptions& options, std::uint64_t
   Random random(seed, 31);
   for (std::size_t i = 0; i < std::min(options.places, scene.scanners.size()); ++i) {
     const ScanPlace& place = scene.scanners[i];
-    const Rays rays = rays_of(place, options.rays);
-    const std::vector<Vec3>& directions = rays.directions;
-    std::vector<Hit> hits(directions.size());
+    const Outlook view = look(scene, foliage, place, options);
+    const std::vector<Vec3>& directions = view.rays.directions;
+    const std::vector<Hit>& hits = view.hits;
+    std::vector<Vec3> open_sides(directions.size(), Vec3::Zero());
     parallel_blocks(directions.size(), 64, [&](std::size_t begin, std::size_t end) {
       for (std::size_t r = begin; r < end; ++r) {
-        hits[r] = trace(scene, foliage, place.position, directions[r], options.range);
+        if (hits[r].on_solid()) open_sides[r] = view.open_side(r);
       }
     });
     const double shift = i == 0 ? 0.0 : options.misalignment;
@@ -91,7 +164,7 @@ Scan scan_scene(const Scene& scene, const ScannerOptions& options, std::uint64_t
       if (hits[r].distance == 0.0) continue;
       double distance = hits[r].distance;
       ReturnKind kind = hits[r].leaf ? ReturnKind::kLeaf : ReturnKind::kSolid;
-      for (const std::size_t back : {std::size_t{1}, rays.rows}) {
+      for (const std::size_t back : {std::size_t{1}, view.rays.rows}) {
         const double before = r >= back ? hits[r - back].distance : 0.0;
         const bool jumps = before > 0.0 && std::abs(before - hits[r].distance) > 0.1;
         if (!jumps || kind == ReturnKind::kStray || random.uniform() >= options.mixed) continue;
@@ -105,6 +178,8 @@ Scan scan_scene(const Scene& scene, const ScannerOptions& options, std::uint64_t
       distance += options.range_noise * random.normal();
       scan.positions.push_back(place.position + distance * directions[r] + offset);
       scan.kinds.push_back(kind);
+      scan.places.push_back(static_cast<std::uint8_t>(i));
+      scan.open_sides.push_back(open_sides[r]);
     }
   }
   return scan;

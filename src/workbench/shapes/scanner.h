@@ -25,6 +25,10 @@ enum class ReturnKind : std::uint8_t { kSolid, kLeaf, kStray };
 struct Scan {
   std::vector<Vec3> positions;
   std::vector<ReturnKind> kinds;
+  std::vector<std::uint8_t> places;  ///< the position of the scanner
+  /// The direction, of any length, in which the scanner sees no more of the surface beside the
+  /// point: it is hidden, out of reach, or turns away. 0 where it sees more all around.
+  std::vector<Vec3> open_sides;
 };
 
 Scan scan_scene(const Scene& scene, const ScannerOptions& options, std::uint64_t seed);
