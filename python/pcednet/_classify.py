@@ -136,7 +136,7 @@ def classify(xyz, normals=None, *, model="general", threads=0, progress=None, vi
     >>> result = pcednet.classify(xyz)
     >>> sharp = xyz[result.labels == 2]
     """
-    positions, given, scanners = _clouds.points_of(xyz, normals, viewpoint)
+    positions, given, scanners = _clouds.points_of(xyz, normals, viewpoint, keep_orientation)
     model = _models.model_of(model)
     core = model._core if context else model._core.without_context()
     if s_min or s_max or exact:
@@ -145,6 +145,10 @@ def classify(xyz, normals=None, *, model="general", threads=0, progress=None, vi
         parts = _core.classify(core, positions, given, scanners, bool(boundary),
                                bool(keep_orientation), report, _arrays.thread_count(threads))
     parts["notes"] = worded(parts["notes"])
+    # Estimated again, with the signs of the file.
+    if given is None and normals is None and isinstance(xyz, _clouds.Cloud) and xyz._has_estimates():
+        against = (parts["normals"] * np.asarray(xyz.normals)).sum(axis=1) < 0
+        parts["normals"] = np.where(against[:, None], -parts["normals"], parts["normals"])
     _arrays.warn(parts["notes"])
     return Result(parts, model)
 
@@ -199,7 +203,7 @@ def describe(xyz, normals=None, *, scales=16, features=6, reconstruction="sphere
     UsageError, InsufficientError, KeyboardInterrupt
         As :func:`classify`.
     """
-    positions, given, scanners = _clouds.points_of(xyz, normals, viewpoint)
+    positions, given, scanners = _clouds.points_of(xyz, normals, viewpoint, keep_orientation)
     settings = {"scales": scales, "features": features, "reconstruction": reconstruction,
                 "gate": gate, "second_gate": second_gate, "exact": bool(exact), "eps": eps,
                 "s_min": s_min, "s_max": s_max, "s_max_ratio": s_max_ratio}

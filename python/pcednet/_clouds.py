@@ -40,6 +40,7 @@ class Cloud:
     def __init__(self, xyz, normals=None, colours=None, labels=None, attributes=None, name=""):
         self._is_float32 = getattr(xyz, "dtype", None) == np.float32
         self._kept, self._kept_rows = None, 0
+        self._estimates = None  # the normals, if they are estimates that a file holds
         self.xyz = _arrays.vectors(xyz, "xyz")
         self.normals = normals
         self.colours = colours
@@ -57,10 +58,16 @@ class Cloud:
         cloud.comments, cloud.scanners = parts["comments"], parts["scanners"]
         cloud._is_float32 = parts["is_float32"]
         cloud._kept, cloud._kept_rows = parts["kept"], len(cloud)
+        if _core.ESTIMATED_NORMALS in cloud.comments:
+            cloud._estimates = cloud.normals
         return cloud
 
     def __len__(self):
         return len(self.xyz)
+
+    def _has_estimates(self):
+        """Whether the normals are those that pcednet once estimated, as the file says."""
+        return self.normals is not None and self.normals is self._estimates
 
     def __array__(self, dtype=None):
         return np.asarray(self.xyz, dtype)
@@ -112,13 +119,17 @@ class Cloud:
         part.attributes = {name: np.asarray(values)[chosen]
                            for name, values in self.attributes.items()}
         part.comments, part.scanners = list(self.comments), self.scanners
+        if self._has_estimates():
+            part._estimates = part.normals
         return part
 
 
-def points_of(xyz, normals=None, viewpoint=None):
-    """Positions, normals and scanners of a call, from arrays or from a Cloud."""
+def points_of(xyz, normals=None, viewpoint=None, estimates=True):
+    """Positions, normals and scanners of a call, from arrays or from a Cloud, with or without normals that are
+    estimates."""
     if isinstance(xyz, Cloud):
-        normals = xyz.normals if normals is None else normals
+        if normals is None and (estimates or not xyz._has_estimates()):
+            normals = xyz.normals
         viewpoint = xyz.viewpoint() if viewpoint is None else viewpoint
         xyz = xyz.xyz
     positions = _arrays.vectors(xyz, "xyz")
@@ -183,11 +194,13 @@ def _parts_of(cloud):
         wanted = {"b": np.dtype(np.uint8)}.get(array.dtype.kind, array.dtype.newbyteorder("="))
         wanted = np.dtype(np.float32) if wanted == np.float16 else wanted
         attributes[str(name)] = np.require(array, wanted, ["C", "A"])
+    comments = [str(line) for line in cloud.comments
+                if line != _core.ESTIMATED_NORMALS or cloud._has_estimates()]
     return {"xyz": _arrays.vectors(cloud.xyz, "xyz"),
             "normals": _arrays.optional_vectors(cloud.normals, "normals", rows),
             "colours": colours,
             "labels": None if cloud.labels is None else _arrays.labels(cloud.labels, rows),
-            "attributes": attributes, "comments": [str(line) for line in cloud.comments],
+            "attributes": attributes, "comments": comments,
             "scanners": _arrays.vectors(cloud.scanners, "scanners"),
             "kept": cloud._kept if rows == cloud._kept_rows else None, "is_float32": cloud._is_float32}
 

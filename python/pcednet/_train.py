@@ -76,7 +76,7 @@ def train(clouds, labels=None, *, normals=None, start=None, name="model", classe
     clouds = list(clouds) if several else [clouds]
     labels = _one_each(labels, clouds, several, "labels")
     normals = _one_each(normals, clouds, several, "normals")
-    arrays = [_labelled(k, *one) for k, one in enumerate(zip(clouds, normals, labels))]
+    arrays = [_labelled(k, *one, keep_orientation) for k, one in enumerate(zip(clouds, normals, labels))]
     if not arrays:
         raise UsageError("train: no clouds")
     settings = {"descriptor": _descriptor(descriptor), "classes": int(classes), "seed": int(seed),
@@ -109,8 +109,8 @@ def _one_each(values, clouds, several, name):
     return values
 
 
-def _labelled(number, cloud, normals, labels):
-    positions, given, scanners = _clouds.points_of(cloud, normals)
+def _labelled(number, cloud, normals, labels, keep_orientation):
+    positions, given, scanners = _clouds.points_of(cloud, normals, estimates=keep_orientation)
     name = getattr(cloud, "name", "") or f"cloud {number}"
     if labels is None:
         labels = getattr(cloud, "labels", None)

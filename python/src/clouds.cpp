@@ -179,6 +179,7 @@ py::dict take_apart(PointCloud&& cloud) {
 
 void add_clouds(py::module_& module) {
   py::class_<Kept>(module, "Kept");
+  module.attr("ESTIMATED_NORMALS") = std::string(detect::kEstimatedNormals);
   module.def("read", read);
   module.def("write", write);
 }

@@ -55,6 +55,10 @@ class Options(CliTest):
                           ("generate", "default", self.folder / "set", "--bands", "1", "0")):
             self.refused(*arguments, saying=f"{arguments[-1]} is not a")
 
+    def test_bands_in_the_wrong_order(self):
+        self.refused("generate", "default", self.folder / "set", "--bands", "5", "1",
+                     saying="--bands 5 1: the sharp band is wider than the smooth one")
+
     def test_more_samples_than_memory_holds(self):
         self.refused("convert", self.cloud, "-o", self.out, "--sample", 4294967295,
                      saying="--sample 4294967295: the free memory holds ")

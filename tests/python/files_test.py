@@ -24,7 +24,7 @@ class Files(CliTest):
         write_ply(self.path("given.ply"), positions, 2 * normals, labels)
         write_ply(self.path("bare.ply"), positions + 5e5, position_type="double")
         run("convert", self.path("given.ply"), "-o", self.path("given.las"))
-        for name in ("given.ply", "bare.ply", "given.las"):
+        for name in ("given.ply", "bare.ply", "given.las", "theirs_bare.ply"):
             ours, theirs = self.path(f"ours_{name}"), self.path(f"theirs_{name}")
             run("classify", self.path(name), "-o", theirs)
             cloud = pcednet.read(self.path(name))

@@ -51,10 +51,8 @@ void sample(const ConvertRequest& request, const Progress& progress, PointCloud&
     throw Error(ErrorKind::kInsufficient,
                 "has no faces to sample; .obj and .ply files can have faces");
   }
-  Stage stage(&progress, "sample", request.samples);
-  const EndsAtOnce sampling;
   cloud = shapes::sample_mesh(cloud, triangles,
-                              {request.samples, request.vertex_normals, request.seed});
+                              {request.samples, request.vertex_normals, request.seed}, &progress);
 }
 
 void perturb(const ConvertRequest& request, PointCloud& cloud) {

@@ -157,7 +157,14 @@ void add_default(CLI::App& generate, Common& common) {
   command->callback([arguments, &common] {
     const auto& [folder, seed] = static_cast<const SetArguments&>(*arguments);
     shapes::DefaultSetOptions options{.extras = !arguments->paper_only};
-    if (!arguments->bands.empty()) options.bands = {arguments->bands[0], arguments->bands[1]};
+    if (const auto& bands = arguments->bands; !bands.empty()) {
+      if (bands[0] > bands[1]) {
+        throw Error(ErrorKind::kUsage,
+                    fmt::format("--bands {} {}: the sharp band is wider than the smooth one",
+                                bands[0], bands[1]));
+      }
+      options.bands = {bands[0], bands[1]};
+    }
     run(folder, seed, common, shapes::default_recipes(seed, options));
   });
 }

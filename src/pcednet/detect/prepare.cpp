@@ -108,7 +108,6 @@ void estimate(PreparedCloud& prepared, const Points& cloud, const std::string& w
   Oriented oriented = complete_and_orient(cloud, prepared, progress);
   const std::string note = fmt::format("{}: estimated from the {} nearest points and {}", why,
                                        oriented.found.neighbours, describe(oriented));
-  prepared.all_made = std::none_of(cloud.normals.begin(), cloud.normals.end(), is_usable);
   use(std::move(oriented), note, prepared);
 }
 

@@ -51,7 +51,6 @@ struct PreparedCloud {
   std::vector<Vec3> moved;            ///< empty unless the cloud's positions are rounded: spread()
   std::vector<Vec3> made;             ///< empty when the cloud's normals are used as they are
   std::vector<std::string> notes;     ///< for the user, one sentence each
-  bool all_made = false;              ///< not one of the cloud's normals is used, but for its sign
   bool reoriented = false;            ///< the signs of the cloud's normals were mixed
   NormalsDecision decision = {};      ///< made here, or given
   const PartOfCloud* part = nullptr;  ///< for classify() and find_boundary(); must outlive both

@@ -85,8 +85,9 @@ KeptInput add_result(PointCloud& cloud, const PreparedCloud& prepared, const Cla
     set_attribute(cloud, make_attribute("scalar_input_label", cloud.labels));
     kept.labels = true;
   }
-  const bool estimated =
-      prepared.all_made || (prepared.made.empty() && has_estimated_normals(cloud));
+  const bool estimated = has_estimated_normals(cloud) ||
+                         (!prepared.made.empty() &&
+                          std::none_of(cloud.normals.begin(), cloud.normals.end(), is_usable));
   if (!prepared.made.empty()) cloud.normals = prepared.made;
   if (cloud.colours.empty() || options.class_colours) {
     cloud.colours.resize(cloud.size());

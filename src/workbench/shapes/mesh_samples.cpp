@@ -46,7 +46,7 @@ Rgb blend(const std::vector<Rgb>& colours, const Triangle& t, const Vec3& weight
 }  // namespace
 
 PointCloud sample_mesh(const PointCloud& vertices, std::span<const Triangle> triangles,
-                       const MeshSampleOptions& options) {
+                       const MeshSampleOptions& options, const Progress* progress) {
   if (options.vertex_normals && !vertices.has_normals()) {
     throw Error(ErrorKind::kInsufficient, "the vertices have no normals to interpolate");
   }
@@ -56,7 +56,10 @@ PointCloud sample_mesh(const PointCloud& vertices, std::span<const Triangle> tri
   cloud.comments = vertices.comments;
   cloud.comments.push_back(
       fmt::format("sample: {} points on the faces, seed {}", options.points, options.seed));
+  constexpr std::size_t kAtOnce = 4096;  // between looks at the caller
+  Stage stage(progress, "sample", options.points);
   for (std::size_t i = 0; i < options.points; ++i) {
+    if (i % kAtOnce == 0) stage.advance(std::min(kAtOnce, options.points - i));
     const double place = random.uniform() * sums.back();
     // The first sum above it: never a face without area.
     const auto found = std::upper_bound(sums.begin(), sums.end(), place);

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "pcednet/cloud/point_cloud.h"
+#include "pcednet/core/progress.h"
 
 namespace pcednet::shapes {
 
@@ -22,6 +23,6 @@ struct MeshSampleOptions {
 /// and missing.
 PointCloud sample_mesh(const PointCloud& vertices,
                        std::span<const std::array<std::uint32_t, 3>> triangles,
-                       const MeshSampleOptions& options = {});
+                       const MeshSampleOptions& options = {}, const Progress* progress = nullptr);
 
 }  // namespace pcednet::shapes
