@@ -72,7 +72,9 @@ set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "libeigen3-dev, libtbb-dev, libfmt-dev, lib
 if(SQLite3_FOUND)
   string(APPEND CPACK_DEBIAN_DEV_PACKAGE_DEPENDS ", libsqlite3-dev")
 endif()
-if(PCEDNET_PROJ_LIBRARY)  # no program is linked to it
+if(PCEDNET_LINKS_PROJ)
+  string(APPEND CPACK_DEBIAN_DEV_PACKAGE_DEPENDS ", libproj-dev")
+elseif(PCEDNET_PROJ_LIBRARY)  # no program is linked to it
   string(REGEX REPLACE "\\.so\\." "" proj_package ${PCEDNET_PROJ_LIBRARY})
   string(APPEND CPACK_DEBIAN_DEV_PACKAGE_DEPENDS ", ${proj_package}")
   set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS ${proj_package})

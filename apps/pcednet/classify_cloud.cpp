@@ -23,7 +23,7 @@ void warn_of_rounding(const std::filesystem::path& file, const PointCloud& cloud
   if (cloud.position_type != ScalarType::kFloat32 || !spacing_known) return;
   const BoundingBox bounds = bounding_box(cloud.positions);
   const double step = formats::float_step(bounds);
-  if (step <= classified.found.s_min || !classified.prepared.moved.empty()) return;
+  if (step <= classified.found.s_min || classified.prepared.decision.rounding.step > 0.0) return;
   warn(fmt::format(
       "{}: coordinates up to {} are rounded to {:.2g}, as they are float, and the "
       "points are {:.2g} apart: write them as double, or relative to a nearer origin",

@@ -27,7 +27,7 @@ std::size_t changes_between(std::string_view a, std::string_view b) {
   return row.back();
 }
 
-/// The command of `parent` that differs from `word` in one letter of three at most.
+/// The command of `parent` that differs from `word` in one letter, or in one of three.
 std::string nearest_command(const CLI::App& parent, const std::string& word) {
   std::string nearest;
   std::size_t fewest = std::max<std::size_t>(word.size() / 3, 1) + 1;

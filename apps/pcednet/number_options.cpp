@@ -36,7 +36,7 @@ CLI::Validator number_above_0() {
 }
 
 CLI::Validator length_above_0() {
-  return number("a length above 0", [](double v) { return v > 0.0 && v <= 1e150; });
+  return number("a length above 0, at most 1e150", [](double v) { return v > 0.0 && v <= 1e150; });
 }
 
 CLI::Validator share() {
@@ -60,12 +60,7 @@ CLI::Validator whole_number(std::uint64_t least, std::uint64_t most) {
 
 void guard_number_options(CLI::App& app) {
   for (CLI::Option* option : app.get_options()) {
-    const std::string type = option->get_type_name();
-    if (type == "UINT") option->transform(whole_number(0, kLargest));
-    if (type == "FLOAT:POSITIVE") {
-      option->get_validator(0)->operation(
-          [check = number_above_0()](std::string& word) { return check(word); });
-    }
+    if (option->get_type_name() == "UINT") option->transform(whole_number(0, kLargest));
   }
   for (CLI::App* command : app.get_subcommands({})) guard_number_options(*command);
 }

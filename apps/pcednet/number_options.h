@@ -12,8 +12,8 @@ namespace pcednet::app {
 /// message is "WORD is not MEANING".
 CLI::Validator number(const std::string& meaning, const std::function<bool(double)>& is_sound);
 
-/// "a number, 0 or more", "a number above 0", "a length above 0" (up to 1e150), "a number from 0 to
-/// 1".
+/// "a number, 0 or more", "a number above 0", "a length above 0, at most 1e150", "a number from 0
+/// to 1".
 CLI::Validator number_from_0();
 CLI::Validator number_above_0();
 CLI::Validator length_above_0();
@@ -25,7 +25,7 @@ CLI::Validator share();
 CLI::Validator whole_number(std::uint64_t least, std::uint64_t most);
 
 /// Gives every option of all commands under `app` that takes numbers without sign and has no check
-/// that of whole_number(), and makes CLI11's check for positive numbers that of number_above_0().
+/// that of whole_number().
 void guard_number_options(CLI::App& app);
 
 }  // namespace pcednet::app

@@ -144,18 +144,19 @@ def classify(xyz, normals=None, *, model="general", threads=0, progress=None, vi
     with _arrays.reporting(progress) as report:
         parts = _core.classify(core, positions, given, scanners, bool(boundary),
                                bool(keep_orientation), report, _arrays.thread_count(threads))
-    parts["notes"] = worded(parts["notes"])
-    # Estimated again, with the signs of the file.
-    if given is None and normals is None and isinstance(xyz, _clouds.Cloud) and xyz._has_estimates():
+    estimates = given is None and normals is None and getattr(xyz, "normals", None) is not None
+    parts["notes"] = worded(parts["notes"], estimates)
+    if estimates:  # estimated again, with the signs of the file
         against = (parts["normals"] * np.asarray(xyz.normals)).sum(axis=1) < 0
         parts["normals"] = np.where(against[:, None], -parts["normals"], parts["normals"])
     _arrays.warn(parts["notes"])
     return Result(parts, model)
 
 
-def worded(notes):
-    """Notes of arrays, which come from no file."""
-    return [note.replace("no normals in the file", "no normals given") for note in notes]
+def worded(notes, estimates=False):
+    """Notes of arrays, which come from no file, or of a Cloud with normals that are estimates."""
+    given = "the normals in the file are estimates" if estimates else "no normals given"
+    return [note.replace("no normals in the file", given) for note in notes]
 
 
 def describe(xyz, normals=None, *, scales=16, features=6, reconstruction="sphere", gate=None,

@@ -1,5 +1,6 @@
 """Clouds of points with their fields, in memory and in files."""
 
+import hashlib
 import os
 
 import numpy as np
@@ -40,7 +41,7 @@ class Cloud:
     def __init__(self, xyz, normals=None, colours=None, labels=None, attributes=None, name=""):
         self._is_float32 = getattr(xyz, "dtype", None) == np.float32
         self._kept, self._kept_rows = None, 0
-        self._estimates = None  # the normals, if they are estimates that a file holds
+        self._estimates = None  # digest of positions and normals, if a file says that they are estimates
         self.xyz = _arrays.vectors(xyz, "xyz")
         self.normals = normals
         self.colours = colours
@@ -59,15 +60,15 @@ class Cloud:
         cloud._is_float32 = parts["is_float32"]
         cloud._kept, cloud._kept_rows = parts["kept"], len(cloud)
         if _core.ESTIMATED_NORMALS in cloud.comments:
-            cloud._estimates = cloud.normals
+            cloud._estimates = _digest(cloud.xyz, cloud.normals)
         return cloud
 
     def __len__(self):
         return len(self.xyz)
 
     def _has_estimates(self):
-        """Whether the normals are those that pcednet once estimated, as the file says."""
-        return self.normals is not None and self.normals is self._estimates
+        """Whether the normals are those that pcednet once estimated for these points, as the file says."""
+        return self._estimates is not None and self._estimates == _digest(self.xyz, self.normals)
 
     def __array__(self, dtype=None):
         return np.asarray(self.xyz, dtype)
@@ -119,9 +120,14 @@ class Cloud:
         part.attributes = {name: np.asarray(values)[chosen]
                            for name, values in self.attributes.items()}
         part.comments, part.scanners = list(self.comments), self.scanners
-        if self._has_estimates():
-            part._estimates = part.normals
         return part
+
+
+def _digest(*arrays):
+    digest = hashlib.blake2b()
+    for array in arrays:
+        digest.update(np.ascontiguousarray(array if array is not None else []))
+    return digest.digest()
 
 
 def points_of(xyz, normals=None, viewpoint=None, estimates=True):

@@ -60,8 +60,13 @@ class Options(CliTest):
                      saying="--bands 5 1: the sharp band is wider than the smooth one")
 
     def test_more_samples_than_memory_holds(self):
-        self.refused("convert", self.cloud, "-o", self.out, "--sample", 4294967295,
-                     saying="--sample 4294967295: the free memory holds ")
+        limit = 4 << 30
+        done = subprocess.run([PROGRAM, "convert", self.cloud, "-o", self.out, "--sample", "4294967295"],
+                              capture_output=True, text=True,
+                              preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (limit, limit)))
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("--sample 4294967295: the free memory holds ", done.stderr)
+        self.assertEqual(os.listdir(self.folder), ["a.ply"])
 
     def test_sampling_stops_at_once(self):
         mesh = self.folder / "mesh.obj"

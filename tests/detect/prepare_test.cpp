@@ -143,9 +143,20 @@ TEST(Prepare, EstimatesAgainWhatItEstimatedBefore) {
   const PreparedCloud again = prepare(written);
   EXPECT_EQ(again.decision.neighbours, once.decision.neighbours);
   for (std::size_t i = 0; i < cloud.size(); ++i) EXPECT_EQ(again.normals[i], -once.normals[i]);
+  EXPECT_NE(again.notes.front().find("with the signs that they have"), std::string::npos);
   EXPECT_TRUE(prepare(written, {.keep_orientation = true}).made.empty());
   set_estimated_normals(written, false);
   EXPECT_TRUE(prepare(written).made.empty());
+}
+
+TEST(Prepare, TakesNoMixedSignsOfEstimates) {
+  PointCloud cloud = sphere(3000, 1);
+  cloud.normals.clear();
+  const std::vector<Vec3> once = prepare(cloud).made;
+  cloud.normals = once;
+  for (std::size_t i = 0; i < cloud.size(); i += 2) cloud.normals[i] = -cloud.normals[i];
+  set_estimated_normals(cloud, true);
+  EXPECT_EQ(prepare(cloud).made, once);
 }
 
 TEST(Prepare, LeavesOutPointsThatAreNowhere) {

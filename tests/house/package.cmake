@@ -26,7 +26,8 @@ run(${CMAKE_COMMAND} --build ${WORK_DIR}/consumer)
 run(${WORK_DIR}/consumer/consumer ${VERSION} ${model})
 
 # The example: arrays, and file to file.
-run(${CMAKE_COMMAND} -S ${SOURCE_DIR}/examples -B ${WORK_DIR}/examples ${settings})
+run(${CMAKE_COMMAND} -S ${SOURCE_DIR}/examples -B ${WORK_DIR}/examples ${settings}
+    -D CMAKE_DISABLE_FIND_PACKAGE_PROJ=ON)
 run(${CMAKE_COMMAND} --build ${WORK_DIR}/examples)
 run(${WORK_DIR}/examples/detect_edges ${model})
 if(NOT output MATCHES "note: no normals" OR NOT output MATCHES "21600 points: [1-9][0-9]+ sharp")

@@ -7,6 +7,10 @@ namespace {
 
 using Points = std::vector<std::array<double, 2>>;
 
+TEST(Projections, AreThereIfBuiltWithProj) {
+  EXPECT_EQ(has_projections(), PCEDNET_HAS_PROJ == 1);
+}
+
 // What must hold with PROJ, and what without.
 TEST(Projections, DefineASystemByItsCodes) {
   const std::string old = definition_of({.epsg = 25832}, WktVersion::k1),

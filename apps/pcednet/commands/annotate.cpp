@@ -161,7 +161,7 @@ void check_not_open(const fs::path& project) {
   const fs::path journal = annotate::journal_of(project);
   const int file = ::open(journal.c_str(), O_RDONLY | O_CLOEXEC);
   if (file < 0) return;
-  const bool is_free = ::flock(file, LOCK_SH | LOCK_NB) == 0;
+  const bool is_free = ::flock(file, LOCK_SH | LOCK_NB) == 0 || errno != EWOULDBLOCK;
   ::close(file);
   if (is_free) return;
   throw Error(ErrorKind::kFailure,

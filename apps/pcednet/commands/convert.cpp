@@ -32,14 +32,18 @@ struct ConvertRequest {
   bool vertex_normals = false;
 };
 
+/// Whether the points of the output are not those of the input.
+bool changes_points(const ConvertRequest& request) {
+  return request.samples > 0 || request.noise > 0.0 || request.fraction < 1.0;
+}
+
 /// The most points to sample: as many as an index of 32 bits can number.
 constexpr std::uint64_t kMostSamples = 0xffffffff;
 
 /// Throws before the work if the points would not fit into the free memory.
 void check_sample_fits(const ConvertRequest& request) {
   constexpr std::uint64_t kBytesPerPoint = 2 * sizeof(Vec3) + sizeof(Rgb);
-  constexpr std::uint64_t kGrowth = 2;  // a full array is copied into one twice as large
-  const std::uint64_t most = free_memory() / (kGrowth * kBytesPerPoint);
+  const std::uint64_t most = free_memory() / kBytesPerPoint;
   if (request.samples <= most) return;
   throw Error(ErrorKind::kUsage, fmt::format("--sample {}: the free memory holds {} points at most",
                                              request.samples, most));
@@ -56,8 +60,8 @@ void sample(const ConvertRequest& request, const Progress& progress, PointCloud&
 }
 
 void perturb(const ConvertRequest& request, PointCloud& cloud) {
-  // Its normals are those of the points before.
-  if (request.noise > 0.0 || request.fraction < 1.0) detect::set_estimated_normals(cloud, false);
+  if (changes_points(request))
+    detect::set_estimated_normals(cloud, false);  // those of other points
   if (request.noise > 0.0) {
     with_name_in_errors(request.input, [&] {
       cloud = shapes::add_gaussian_noise(std::move(cloud),
@@ -84,11 +88,6 @@ io::EachPart each_part_of(const io::PartReader& reader, const PointCloud& first,
       more = visit(part);
     }
   };
-}
-
-/// Whether the points of the output are not those of the input.
-bool changes_points(const ConvertRequest& request) {
-  return request.samples > 0 || request.noise > 0.0 || request.fraction < 1.0;
 }
 
 /// Converts in memory that does not grow with the file; false if one of the formats, or another

@@ -174,6 +174,7 @@ void evaluate(EvaluateArguments arguments, const Common& common) {
     throw Error(ErrorKind::kUsage, "evaluate: boundary has no probabilities to calibrate");
   }
   check_not_inputs(arguments.json, arguments.inputs);
+  if (!arguments.predictions.empty()) check_not_inputs(arguments.json, {arguments.predictions});
   check_not_input(arguments.json, arguments.model.name);
   if (arguments.json != "-") check_writable(arguments.json, common.overwrite());
   const Results results = score_all(arguments, common);

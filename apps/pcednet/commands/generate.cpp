@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "commands.h"
+#include "number_options.h"
 #include "pcednet/core/error.h"
 #include "pcednet/formats/write_cloud.h"
 #include "pcednet/io/drawing/drawing.h"
@@ -153,7 +154,7 @@ void add_default(CLI::App& generate, Common& common) {
       ->add_option("--bands", arguments->bands,
                    "Widths of the sharp and the smooth band of every cloud, in point spacings")
       ->expected(2)
-      ->check(CLI::PositiveNumber);
+      ->check(number_above_0());
   command->callback([arguments, &common] {
     const auto& [folder, seed] = static_cast<const SetArguments&>(*arguments);
     shapes::DefaultSetOptions options{.extras = !arguments->paper_only};

@@ -273,6 +273,10 @@ void join_tiles(const JoinArguments& arguments, const Common& common) {
     check_writable(file, common.overwrite());
   }
   const tiles::Plan plan = tiles::read_plan(arguments.plan);
+  for (const std::string& file : {arguments.output, arguments.vpc}) {
+    for (const tiles::PlannedInput& input : plan.inputs) check_not_input(file, input.path);
+    for (const tiles::Tile& tile : plan.tiles) check_not_input(file, tile.output);
+  }
   if (!arguments.vpc.empty()) list_tiles(plan, arguments.vpc, common);
   if (!arguments.output.empty()) join_into_file(plan, arguments.output, common);
 }

@@ -198,8 +198,7 @@ void train(const TrainArguments& arguments, const Common& common) {
   }
   if (!trained.validated) {
     say("  nothing was held out for validation, as a class has fewer than 20 points: the last "
-        "epoch "
-        "was kept");
+        "epoch was kept");
   }
   const auto& context = trained.model.context;
   say(fmt::format("{} weights{}; seconds: {}\n  -> {}",

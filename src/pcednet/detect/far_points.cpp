@@ -1,6 +1,7 @@
 #include "pcednet/detect/far_points.h"
 
 #include <algorithm>
+#include <iterator>
 
 #include "pcednet/core/median.h"
 
@@ -8,36 +9,55 @@ namespace pcednet::detect {
 namespace {
 
 constexpr double kSuspect = 1e15, kFar = 1e12;
+constexpr std::size_t kLeast = 3;  ///< other points, in several places, that say what is near
 
-/// The middle values of the coordinates of finite positions.
+bool is_suspect(const Vec3& position) {
+  return position.allFinite() && position.cwiseAbs().maxCoeff() > kSuspect;
+}
+
+/// The middle values of the coordinates.
 Vec3 middle_of(std::span<const Vec3> positions) {
   Vec3 middle = Vec3::Zero();
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
     std::vector<double> values;
-    for (const Vec3& position : positions) {
-      if (position.allFinite()) values.push_back(position[axis]);
-    }
+    for (const Vec3& position : positions) values.push_back(position[axis]);
     middle[axis] = value_at_rank(values, values.size() / 2);
   }
   return middle;
 }
 
+/// The middle of positions, and the distances from it of those that are elsewhere.
+struct Spread {
+  Vec3 middle = Vec3::Zero();
+  std::vector<double> distances = {};
+};
+
+template <typename Condition>
+Spread spread_of(std::span<const Vec3> positions, const Condition& is_used) {
+  std::vector<Vec3> used;
+  std::copy_if(positions.begin(), positions.end(), std::back_inserter(used), is_used);
+  if (used.empty()) return {};
+  Spread spread{.middle = middle_of(used)};
+  for (const Vec3& position : used) {
+    if (position != spread.middle) spread.distances.push_back((position - spread.middle).norm());
+  }
+  return spread;
+}
+
 }  // namespace
 
 std::vector<std::uint32_t> far_points(std::span<const Vec3> positions) {
-  const bool suspect = std::any_of(positions.begin(), positions.end(), [](const Vec3& position) {
-    return position.allFinite() && position.cwiseAbs().maxCoeff() > kSuspect;
-  });
-  if (!suspect) return {};
-  const Vec3 middle = middle_of(positions);
-  std::vector<double> distances;
-  for (const Vec3& position : positions) {
-    if (position.allFinite()) distances.push_back((position - middle).norm());
-  }
-  const double most = kFar * value_at_rank(distances, distances.size() / 2);
+  if (std::none_of(positions.begin(), positions.end(), is_suspect)) return {};
+  const auto is_finite = [](const Vec3& p) { return p.allFinite(); };
+  Spread others =
+      spread_of(positions, [&](const Vec3& p) { return is_finite(p) && !is_suspect(p); });
+  if (others.distances.size() < kLeast) others = spread_of(positions, is_finite);
+  auto& distances = others.distances;
+  const double most =
+      distances.empty() ? 0.0 : kFar * value_at_rank(distances, distances.size() / 2);
   std::vector<std::uint32_t> far;
   for (std::uint32_t i = 0; i < positions.size(); ++i) {
-    if (positions[i].allFinite() && (positions[i] - middle).norm() > most) far.push_back(i);
+    if (is_suspect(positions[i]) && (positions[i] - others.middle).norm() > most) far.push_back(i);
   }
   return far;
 }

@@ -40,6 +40,7 @@ struct Points {
   std::span<const Vec3> positions;
   std::span<const Vec3> normals;                   ///< may be empty
   std::function<std::vector<Vec3>()> scanners;     ///< of every point, or of none
+  std::span<const Vec3> estimates = {};            ///< whose signs new ones take; may be empty
   const char* without = "no normals in the file";  ///< said if there are none
 
   std::size_t size() const { return positions.size(); }
@@ -103,11 +104,35 @@ void use(Oriented&& oriented, const std::string& note, PreparedCloud& prepared) 
   prepared.normals = prepared.made;
 }
 
+/// Whether more flat pairs of neighbours oppose than at the border of a patch.
+bool oppose_often(const normals::FlatPairs& pairs, std::span<const Vec3> normals) {
+  const double border = kBorder / std::sqrt(static_cast<double>(normals.size()));
+  const std::size_t opposed = pairs.opposed(normals);
+  return opposed >= kFewPairs &&
+         static_cast<double>(opposed) >= border * static_cast<double>(pairs.size());
+}
+
+/// Turns normals to the signs of earlier ones unless these are mixed; false if it does not.
+bool take_signs(std::span<const Vec3> earlier, const PreparedCloud& prepared,
+                std::vector<Vec3>& made) {
+  if (earlier.empty()) return false;
+  std::vector<Vec3> turned = made;
+  for (std::size_t i = 0; i < made.size(); ++i) {
+    if (is_usable(earlier[i])) turned[i] = turned_to(made[i], earlier[i]);
+  }
+  const normals::FlatPairs pairs(prepared.positions, turned, prepared.curve);
+  if (oppose_often(pairs, turned)) return false;
+  made = std::move(turned);
+  return true;
+}
+
 void estimate(PreparedCloud& prepared, const Points& cloud, const std::string& why,
               const Progress* progress) {
   Oriented oriented = complete_and_orient(cloud, prepared, progress);
-  const std::string note = fmt::format("{}: estimated from the {} nearest points and {}", why,
-                                       oriented.found.neighbours, describe(oriented));
+  const bool signs = take_signs(cloud.estimates, prepared, oriented.found.normals);
+  const std::string note =
+      fmt::format("{}: estimated from the {} nearest points{}", why, oriented.found.neighbours,
+                  signs ? ", with the signs that they have" : " and " + describe(oriented));
   use(std::move(oriented), note, prepared);
 }
 
@@ -163,16 +188,11 @@ std::size_t count_turned(const Points& cloud, const Oriented& oriented) {
 /// Orients the cloud's normals if their signs are mixed, see the header.
 void orient_mixed(PreparedCloud& prepared, const Points& cloud, const Progress* progress) {
   const normals::FlatPairs pairs(prepared.positions, cloud.normals, prepared.curve);
-  const std::size_t opposed = pairs.opposed(cloud.normals);
-  const double border = kBorder / std::sqrt(static_cast<double>(cloud.size()));
-  if (opposed < kFewPairs ||
-      static_cast<double>(opposed) < border * static_cast<double>(pairs.size())) {
-    return;
-  }
+  if (!oppose_often(pairs, cloud.normals)) return;
   if (pairs.one_sidedness(prepared.positions, cloud.normals) > kWalls) return;
   Oriented oriented = complete_and_orient(cloud, prepared, progress);
   const std::size_t turned = count_turned(cloud, oriented);
-  if (pairs.opposed(oriented.found.normals) * kMended > opposed) return;
+  if (pairs.opposed(oriented.found.normals) * kMended > pairs.opposed(cloud.normals)) return;
   if (turned * kShareToOrient < cloud.size()) return;
   const double percent = 100.0 * static_cast<double>(turned) / static_cast<double>(cloud.size());
   const std::string note = fmt::format(
@@ -255,15 +275,9 @@ PreparedCloud prepare(const PointCloud& cloud, const PrepareOptions& options,
   if (options.keep_orientation || options.decided || !has_estimated_normals(cloud)) {
     return prepare_points(points, options, progress);
   }
-  points.normals = {};
+  std::swap(points.normals, points.estimates);
   points.without = "the normals in the file are estimates";
-  PreparedCloud prepared = prepare_points(points, options, progress);
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    if (is_usable(cloud.normals[i])) {
-      prepared.made[i] = turned_to(prepared.made[i], cloud.normals[i]);
-    }
-  }
-  return prepared;
+  return prepare_points(points, options, progress);
 }
 
 PreparedCloud prepare(const PointArrays& cloud, const PrepareOptions& options,

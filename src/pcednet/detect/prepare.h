@@ -37,7 +37,7 @@ bool has_estimated_normals(const PointCloud& cloud);
 void set_estimated_normals(PointCloud& cloud, bool estimated);
 
 struct PrepareOptions {
-  bool keep_orientation = false;  ///< use the cloud's normals even if their signs are mixed
+  bool keep_orientation = false;  ///< use the cloud's normals, also mixed signs and estimates
   std::optional<NormalsDecision> decided = {};  ///< for the cloud that this one is part of
 };
 
@@ -48,7 +48,7 @@ struct PreparedCloud {
   std::span<const Vec3> positions;    ///< the cloud's own, or `moved`
   std::span<const Vec3> normals;      ///< the cloud's own, or `made`; unit or (0,0,0)
   std::vector<std::uint32_t> curve;   ///< spatial::curve_order() of the positions
-  std::vector<Vec3> moved;            ///< empty unless the cloud's positions are rounded: spread()
+  std::vector<Vec3> moved;            ///< empty unless positions are rounded, see spread(), or far
   std::vector<Vec3> made;             ///< empty when the cloud's normals are used as they are
   std::vector<std::string> notes;     ///< for the user, one sentence each
   bool reoriented = false;            ///< the signs of the cloud's normals were mixed
@@ -61,9 +61,9 @@ struct PreparedCloud {
 /// oriented: by the scanner positions if the cloud has them. If these positions are rounded
 /// coarsely, see find_rounding(), they are spread() before.
 ///
-/// Normals that has_estimated_normals() says are estimates are estimated again and get the signs
-/// that they have: the result is that of the cloud without them. So it is not with
-/// keep_orientation.
+/// Points of far_points() are taken for points without a position. Normals that are estimates, see
+/// has_estimated_normals(), are estimated again and get the signs that they have unless these are
+/// mixed: the result is that of the cloud without them.
 ///
 /// Normals with mixed signs are oriented in the same way. Signs are mixed where more flat pairs of
 /// neighbours oppose than at the border of a patch, not as on the two sides of thin walls, where

@@ -151,7 +151,7 @@ std::vector<std::string> remarks_on(std::span<const VirtualFile> files, std::siz
   if (named && systems.count("") > 0) {
     remarks.emplace_back(io::has_projections()
                              ? "PROJ does not know the coordinate system: it is left out"
-                             : "made without PROJ: the coordinate system is left out");
+                             : "without PROJ: the coordinate system is left out");
   }
   return remarks;
 }

@@ -18,7 +18,7 @@ namespace pcednet::io {
 namespace {
 
 /// The functions of PROJ that are used here.
-struct Functions {
+struct ProjFunctions {
   decltype(&proj_context_create) context_create;
   decltype(&proj_context_destroy) context_destroy;
   decltype(&proj_context_set_enable_network) context_set_enable_network;
@@ -35,26 +35,29 @@ struct Functions {
 #ifdef PCEDNET_PROJ_LIBRARY
 
 template <typename Function>
-bool find(void* library, const char* name, Function*& function) {
+bool load_function(void* library, const char* name, Function*& function) {
   function = reinterpret_cast<Function*>(dlsym(library, name));
   return function != nullptr;
 }
 
 /// Loads PROJ when it is first needed: with the thirty libraries that it needs, that takes longer
 /// than many a command. Null if it is not there.
-const Functions* proj() {
-  static const std::optional<Functions> functions = []() -> std::optional<Functions> {
+const ProjFunctions* proj() {
+  static const std::optional<ProjFunctions> functions = []() -> std::optional<ProjFunctions> {
     void* library = dlopen(PCEDNET_PROJ_LIBRARY, RTLD_NOW | RTLD_LOCAL);
-    Functions f{};
+    ProjFunctions f{};
     const bool found =
-        library && find(library, "proj_context_create", f.context_create) &&
-        find(library, "proj_context_destroy", f.context_destroy) &&
-        find(library, "proj_context_set_enable_network", f.context_set_enable_network) &&
-        find(library, "proj_log_level", f.log_level) && find(library, "proj_create", f.create) &&
-        find(library, "proj_create_crs_to_crs_from_pj", f.create_crs_to_crs_from_pj) &&
-        find(library, "proj_normalize_for_visualization", f.normalize_for_visualization) &&
-        find(library, "proj_is_crs", f.is_crs) && find(library, "proj_as_wkt", f.as_wkt) &&
-        find(library, "proj_trans", f.trans) && find(library, "proj_destroy", f.destroy);
+        library && load_function(library, "proj_context_create", f.context_create) &&
+        load_function(library, "proj_context_destroy", f.context_destroy) &&
+        load_function(library, "proj_context_set_enable_network", f.context_set_enable_network) &&
+        load_function(library, "proj_log_level", f.log_level) &&
+        load_function(library, "proj_create", f.create) &&
+        load_function(library, "proj_create_crs_to_crs_from_pj", f.create_crs_to_crs_from_pj) &&
+        load_function(library, "proj_normalize_for_visualization", f.normalize_for_visualization) &&
+        load_function(library, "proj_is_crs", f.is_crs) &&
+        load_function(library, "proj_as_wkt", f.as_wkt) &&
+        load_function(library, "proj_trans", f.trans) &&
+        load_function(library, "proj_destroy", f.destroy);
     return found ? std::optional(f) : std::nullopt;
   }();
   return functions ? &*functions : nullptr;
@@ -62,18 +65,18 @@ const Functions* proj() {
 
 #else
 
-const Functions* proj() {
-  static const Functions functions = {proj_context_create,
-                                      proj_context_destroy,
-                                      proj_context_set_enable_network,
-                                      proj_log_level,
-                                      proj_create,
-                                      proj_create_crs_to_crs_from_pj,
-                                      proj_normalize_for_visualization,
-                                      proj_is_crs,
-                                      proj_as_wkt,
-                                      proj_trans,
-                                      proj_destroy};
+const ProjFunctions* proj() {
+  static const ProjFunctions functions = {proj_context_create,
+                                          proj_context_destroy,
+                                          proj_context_set_enable_network,
+                                          proj_log_level,
+                                          proj_create,
+                                          proj_create_crs_to_crs_from_pj,
+                                          proj_normalize_for_visualization,
+                                          proj_is_crs,
+                                          proj_as_wkt,
+                                          proj_trans,
+                                          proj_destroy};
   return &functions;
 }
 
@@ -83,13 +86,13 @@ struct Destroy {
   void operator()(PJ_CONTEXT* context) const { proj()->context_destroy(context); }
   void operator()(PJ* object) const { proj()->destroy(object); }
 };
-using Context = std::unique_ptr<PJ_CONTEXT, Destroy>;
-using Object = std::unique_ptr<PJ, Destroy>;
+using ProjContext = std::unique_ptr<PJ_CONTEXT, Destroy>;
+using ProjObject = std::unique_ptr<PJ, Destroy>;
 
 /// A PROJ system, and the objects it depends on.
 struct Projected {
-  Context context = {};
-  Object system = {};
+  ProjContext context = {};
+  ProjObject system = {};
 };
 
 Projected look_up(const CoordinateSystem& system) {
@@ -129,12 +132,13 @@ std::optional<std::vector<std::array<double, 2>>> to_wgs84(
   const Projected found = look_up(system);
   if (!found.system) return std::nullopt;
   PJ_CONTEXT* context = found.context.get();
-  const Object wgs84(proj()->create(context, "EPSG:4326"));
+  const ProjObject wgs84(proj()->create(context, "EPSG:4326"));
   if (!wgs84) return std::nullopt;
-  const Object exact(proj()->create_crs_to_crs_from_pj(context, found.system.get(), wgs84.get(),
-                                                       nullptr, nullptr));
+  const ProjObject exact(proj()->create_crs_to_crs_from_pj(context, found.system.get(), wgs84.get(),
+                                                           nullptr, nullptr));
   // East before north, for any order of the systems' axes.
-  const Object change(exact ? proj()->normalize_for_visualization(context, exact.get()) : nullptr);
+  const ProjObject change(exact ? proj()->normalize_for_visualization(context, exact.get())
+                                : nullptr);
   if (!change) return std::nullopt;
   for (std::array<double, 2>& point : points) {
     const PJ_COORD here{{point[0], point[1], 0.0, HUGE_VAL}};

@@ -181,7 +181,8 @@ std::vector<std::size_t> ends_in(const Corners& corners, std::span<const Piece> 
 /// True if a piece was dropped.
 bool drop_loose(std::vector<Piece>& pieces, const Corners& corners, const FinishOptions& options) {
   const std::vector<std::size_t> all_end = ends_in(corners, pieces, true);
-  // A boundary beside it makes no edge: where plants are scanned, all ends near some.
+  // A boundary beside it makes no edge: where plants are scanned, every edge ends near one. Exact
+  // pieces are of roofs, where eaves do.
   const std::vector<std::size_t> edges_end = ends_in(corners, pieces, options.exact);
   const std::size_t to_hold = options.exact ? 1 : 2;
   std::size_t i = 0;

@@ -263,8 +263,10 @@ Plan parse_plan(const std::string& text, const fs::path& path) {
     throw;
   } catch (const json::parse_error& error) {
     throw refuse(fmt::format(": byte {} is not JSON", error.byte));
+  } catch (const std::bad_alloc&) {
+    throw;
   } catch (const std::exception&) {
-    throw refuse(fmt::format(": \"{}\" is missing or damaged", member));
+    throw refuse(member.empty() ? "" : fmt::format(": \"{}\" is missing or damaged", member));
   }
 }
 

@@ -56,6 +56,9 @@ PointCloud sample_mesh(const PointCloud& vertices, std::span<const Triangle> tri
   cloud.comments = vertices.comments;
   cloud.comments.push_back(
       fmt::format("sample: {} points on the faces, seed {}", options.points, options.seed));
+  cloud.positions.reserve(options.points);
+  cloud.normals.reserve(options.points);
+  if (!vertices.colours.empty()) cloud.colours.reserve(options.points);
   constexpr std::size_t kAtOnce = 4096;  // between looks at the caller
   Stage stage(progress, "sample", options.points);
   for (std::size_t i = 0; i < options.points; ++i) {

@@ -106,7 +106,7 @@ Vec3 Outlook::open_side(std::size_t r) const {
   const struct {
     std::size_t step, before, after;  // between rays, and their number on either side
   } lines[] = {{1, row, rays.rows - 1 - row}, {rays.rows, column, rays.columns() - 1 - column}};
-  Vec3 open = Vec3::Zero();
+  Vec3 open = Vec3::Zero(), first = Vec3::Zero();
   for (const auto& line : lines) {
     for (const bool forward : {false, true}) {
       const std::size_t ahead = forward ? line.after : line.before;
@@ -119,13 +119,17 @@ Vec3 Outlook::open_side(std::size_t r) const {
       }
       if (goes_on) continue;
       const std::size_t last = forward ? r - line.step : r + line.step;
-      open += ahead > 0 ? rays.directions[ray(1)] - rays.directions[r]
-                        : rays.directions[r] - rays.directions[last];
+      const Vec3 side = ahead > 0 ? rays.directions[ray(1)] - rays.directions[r]
+                                  : rays.directions[r] - rays.directions[last];
+      if (first.isZero(0.0)) first = side;
+      open += side;
     }
   }
-  if (open.isZero(0.0)) return open;
+  if (first.isZero(0.0)) return first;
+  if (open.norm() < 0.5 * first.norm()) open = first;  // opposite sides
   const Vec3 normal = solid->normal_of(solid->value(at(r)).face, at(r));
-  return open - open.dot(normal) * normal;
+  const Vec3 within = open - open.dot(normal) * normal;
+  return within.norm() > kSlant * open.norm() ? within : open;
 }
 
 Outlook look(const Scene& scene, const spatial::KdTree& foliage, const ScanPlace& place,

@@ -9,7 +9,7 @@
 namespace pcednet::shapes {
 
 struct ScannerOptions {
-  std::size_t rays = 20000;    ///< per scanner position, at equal angles
+  std::size_t rays = 20000;    ///< per scanner position, at equal angles; 4 or more
   double range = 15.0;         ///< largest distance of a return
   double range_noise = 0.003;  ///< standard deviation along the ray
   double mixed = 0.1;          ///< probability of a mixed point where a ray grazes an edge
@@ -25,7 +25,7 @@ enum class ReturnKind : std::uint8_t { kSolid, kLeaf, kStray };
 struct Scan {
   std::vector<Vec3> positions;
   std::vector<ReturnKind> kinds;
-  std::vector<std::uint8_t> places;  ///< the position of the scanner
+  std::vector<std::uint8_t> places;  ///< index into Scene::scanners
   /// The direction, of any length, in which the scanner sees no more of the surface beside the
   /// point: it is hidden, out of reach, or turns away. 0 where it sees more all around.
   std::vector<Vec3> open_sides;

@@ -62,7 +62,7 @@ void choose_copc(LasChoices& choices, const PointCloud& first) {
     choices.losses.emplace_back(
         has_projections() ? "the coordinate system as WKT: its GeoTIFF keys, which are kept, name "
                             "none that PROJ knows"
-                          : "the coordinate system as WKT (made without PROJ): only its GeoTIFF "
+                          : "the coordinate system as WKT (without PROJ): only its GeoTIFF "
                             "keys are kept");
   }
   file.header.resize(las_header::kBytes14);
