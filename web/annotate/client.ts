@@ -99,16 +99,21 @@ export class Client {
   /** The program answers again, or another start of it does. */
   private async returned(): Promise<void> {
     this.missed = true;
+    if (await this.ask()) this.store.set({ connected: true });
+  }
+
+  /** Asks for the session until it is answered, for no further event would come; false if the program is gone. */
+  private async ask(): Promise<boolean> {
     for (let wait = 100; this.events?.readyState === EventSource.OPEN; wait = Math.min(2 * wait, LONGEST_PAUSE_MS)) {
       try {
         await this.refresh();
-        this.store.set({ connected: true });
-        return;
+        return true;
       } catch (error) {
         if (error instanceof ApiError) throw error;
-        await pause(wait); // no further "open" would come
+        await pause(wait);
       }
     }
+    return false;
   }
 
   private listen(): void {
@@ -118,7 +123,7 @@ export class Client {
         if (this.loading) store.set({ progress: { stage, fraction } });
         else this.lines.takeStage(stage, fraction);
       },
-      ready: () => this.attempt(this.refresh()),
+      ready: () => this.attempt(this.ask()),
       labels: (answer: Painted) => this.takePainted(answer),
       training: (event: TrainingEvent) => this.takeTraining(event),
       prediction: (event: PredictionEvent) => this.attempt(this.takePrediction(event)),
