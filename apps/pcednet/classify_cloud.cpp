@@ -18,10 +18,8 @@ namespace {
 /// Warns of float32 coordinates so large that they are rounded to more than the spacing of the
 /// points, unless prepare() has found that and spread them.
 void warn_of_rounding(const std::filesystem::path& file, const PointCloud& cloud,
-                      const Classifier& classifier, const ClassifiedCloud& classified) {
-  const bool spacing_known = classifier.model && classifier.model->descriptor.s_min == 0.0;
-  if (cloud.position_type != ScalarType::kFloat32 || !spacing_known) return;
-  const BoundingBox bounds = bounding_box(cloud.positions);
+                      const BoundingBox& bounds, const ClassifiedCloud& classified) {
+  if (cloud.position_type != ScalarType::kFloat32) return;
   const double step = formats::float_step(bounds);
   if (step <= classified.found.s_min || classified.prepared.decision.rounding.step > 0.0) return;
   warn(fmt::format(
@@ -44,16 +42,18 @@ ClassifiedCloud classify_cloud(const std::filesystem::path& file, const PointClo
                                const Classifier& classifier, const Progress& progress) {
   ClassifiedCloud result;
   if (classifier.model) {
+    const BoundingBox bounds = bounding_box(cloud.positions);
     result.prepared = prepare(file, cloud, classifier.preparation, progress);
-    check_scales(file, bounding_box(cloud.positions), classifier.model->descriptor);
+    check_scales(file, bounds, classifier.model->descriptor);
     result.found = detect::classify(result.prepared, *classifier.model, &progress);
     if (classifier.boundary && has_edges(classifier.model->table)) {
       detect::mark_boundary(result.prepared, result.found, &progress);
     }
+    const bool is_spacing = classifier.model->descriptor.s_min == 0.0;  // what s_min is then
+    if (is_spacing) warn_of_rounding(file, cloud, bounds, result);
   } else {
     result.found = classify_by_method(cloud, classifier.method, &progress);
   }
-  warn_of_rounding(file, cloud, classifier, result);
   if (!result.found.note.empty()) warn(fmt::format("{}: {}", file.string(), result.found.note));
   return result;
 }

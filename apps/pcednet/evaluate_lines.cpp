@@ -50,7 +50,7 @@ std::vector<lines::Curve> read_found(const fs::path& path) {
   try {
     return io::read_curves(path);
   } catch (const Error& error) {
-    const bool is_obj = io::lower_case(path.extension().string()) == ".obj";
+    const bool is_obj = io::extension_of(path) == ".obj";
     if (error.kind() != ErrorKind::kInsufficient || !is_obj) throw;
     warn(std::string(error.what()) + ": taken for a result without lines");
     return {};

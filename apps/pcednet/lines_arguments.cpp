@@ -100,7 +100,7 @@ void add_drawing_options(CLI::App& command, LinesArguments& arguments) {
 void check_format_options(const LinesArguments& arguments) {
   for (const auto& [option, extension] : arguments.of_formats) {
     const auto is_it = [&](const std::filesystem::path& output) {
-      return io::lower_case(output.extension().string()) == extension;
+      return io::extension_of(output) == extension;
     };
     if (std::any_of(arguments.outputs.begin(), arguments.outputs.end(), is_it)) continue;
     throw Error(ErrorKind::kUsage,

@@ -12,7 +12,7 @@ namespace pcednet::app {
 void add_preview_options(CLI::App& command, PreviewArguments& arguments, const std::string& help) {
   const auto is_png = [](const std::string& path) {
     const std::filesystem::path name = path;
-    return io::lower_case(name.extension().string()) == ".png"
+    return io::extension_of(name) == ".png"
                ? ""
                : path + " does not end in .png, the one format of previews";
   };

@@ -10,52 +10,17 @@
 #include <set>
 #include <string>
 
+#include "lines/made_clouds.h"
 #include "pcednet/core/error.h"
 #include "pcednet/core/parallel.h"
 #include "pcednet/core/random.h"
-#include "pcednet/lines/crease.h"
-#include "pcednet/lines/ordered_points.h"
 #include "support/expect_error.h"
 
 namespace pcednet::lines {
 namespace {
 
-constexpr double kNear = 0.7;  // of an edge: spacings that are labelled
-
-struct Cloud {
-  std::vector<Vec3> positions = {}, normals = {};
-  std::vector<std::uint8_t> classes = {};
-  double spacing = 0.0;
-
-  void add(const Vec3& position, const Vec3& normal, bool edge) {
-    positions.push_back(position);
-    normals.push_back(normal);
-    classes.push_back(edge ? kSharpEdge : kNonEdge);
-  }
-};
-
 std::vector<Curve> lines_of(const Cloud& cloud, const LineOptions& options = {}) {
   return find_lines({cloud.positions, cloud.normals, cloud.classes}, options);
-}
-
-/// Points uniform on the surface of the unit cube.
-Cloud cube(std::size_t points) {
-  Random random(1);
-  Cloud cloud{.spacing = std::sqrt(6.0 / static_cast<double>(points))};
-  for (std::size_t i = 0; i < points; ++i) {
-    const auto axis = static_cast<Eigen::Index>(random.index(3));
-    const double side = random.index(2) == 0 ? 0.0 : 1.0;
-    Vec3 p(random.uniform(), random.uniform(), random.uniform());
-    p[axis] = side;
-    double nearest = 1.0;
-    for (Eigen::Index other = 0; other < 3; ++other) {
-      if (other != axis) nearest = std::min({nearest, p[other], 1.0 - p[other]});
-    }
-    Vec3 normal = Vec3::Zero();
-    normal[axis] = side == 0.0 ? -1.0 : 1.0;
-    cloud.add(p, normal, nearest < kNear * cloud.spacing);
-  }
-  return cloud;
 }
 
 /// A cylinder of radius 1 and height 1 with both caps.
@@ -345,78 +310,6 @@ TEST(FindLines, AreNoneWhereThereIsNothingToSee) {
   Cloud all_edges = cube(1000);
   std::fill(all_edges.classes.begin(), all_edges.classes.end(), kSharpEdge);
   EXPECT_EQ(lines_of(all_edges).size(), 12u);
-}
-
-TEST(Sampling, IsMeasuredAtAllPointsIfAllAreOfAnEdge) {
-  Cloud cloud = cube(3000);
-  const auto measured = [&] {
-    return measure_sampling(OrderedPoints({cloud.positions, cloud.normals, cloud.classes}));
-  };
-  EXPECT_NEAR(measured().spacing, cloud.spacing, 0.1 * cloud.spacing);
-  std::fill(cloud.classes.begin(), cloud.classes.end(), kSharpEdge);
-  EXPECT_NEAR(measured().spacing, cloud.spacing, 0.1 * cloud.spacing);
-}
-
-TEST(Sampling, TakesThinWallsForNoNoise) {
-  const auto noise_of_walls = [](double noise) {
-    Random random(9);
-    Cloud cloud;
-    const auto add = [&](double x, double z) {
-      cloud.add({x, 30.0 * random.uniform(), z + noise * random.normal()}, Vec3::UnitZ(), false);
-    };
-    for (int i = 0; i < 900; ++i) add(30.0 * random.uniform(), 0.0);
-    for (int i = 0; i < 3600; ++i) add(60.0 + 60.0 * random.uniform(), i % 2 == 0 ? 0.0 : 0.7);
-    return measure_sampling(OrderedPoints({cloud.positions, cloud.normals, cloud.classes})).noise;
-  };
-  EXPECT_LT(noise_of_walls(0.0), 1e-6);
-  EXPECT_GT(noise_of_walls(0.3), 0.15);
-}
-
-TEST(Sampling, ThinWallsEverywhereAreNoNoise) {
-  const auto noise_of_wall = [](double noise, double sign) {
-    Random random(9);
-    Cloud cloud;
-    for (int i = 0; i < 6000; ++i) {
-      const double z = (i % 2 == 0 ? 0.0 : 1.2) + noise * random.normal();
-      const Vec3 normal = random.uniform() < 0.5 ? Vec3(0, 0, sign) : Vec3(0, 0, -sign);
-      cloud.add({55.0 * random.uniform(), 55.0 * random.uniform(), z}, normal, false);
-    }
-    return measure_sampling(OrderedPoints({cloud.positions, cloud.normals, cloud.classes})).noise;
-  };
-  EXPECT_LT(noise_of_wall(0.0, 1.0), 1e-6);
-  EXPECT_GT(noise_of_wall(0.5, 1.0), 0.25);
-  EXPECT_EQ(noise_of_wall(0.2, 1.0), noise_of_wall(0.2, -1.0));
-}
-
-/// Two walls and a chamfer between them, along y; points about one apart, the chamfer labelled.
-Cloud chamfer(double from_corner) {
-  Random random(6);
-  Cloud cloud{.spacing = 1.0};
-  const double width = std::sqrt(2.0) * from_corner, length = 60.0, wall = 10.0;
-  const auto at = [&] { return length * random.uniform(); };
-  for (int i = 0; i < static_cast<int>(length * wall); ++i) {
-    cloud.add({from_corner + wall * random.uniform(), at(), 0.0}, Vec3::UnitZ(), false);
-    cloud.add({0.0, at(), from_corner + wall * random.uniform()}, Vec3::UnitX(), false);
-  }
-  for (int i = 0; i < static_cast<int>(length * width); ++i) {
-    const double x = from_corner * random.uniform();
-    cloud.add({x, at(), from_corner - x}, Vec3(1, 0, 1).normalized(), true);
-  }
-  return cloud;
-}
-
-TEST(Creases, OfAChamferAreNotWhereItsNeighboursWouldMeet) {
-  constexpr double kFromCorner = 2.6;
-  const Cloud cloud = chamfer(kFromCorner);
-  const OrderedPoints points({cloud.positions, cloud.normals, cloud.classes});
-  std::size_t on_edges = 0, in_the_air = 0;
-  for (const Crease& crease : find_creases(points, {.spacing = 1.0, .noise = 0.0}, nullptr)) {
-    const double x = crease.at.x(), z = crease.at.z();
-    on_edges += std::hypot(std::max(x, z) - kFromCorner, std::min(x, z)) < 0.5;
-    in_the_air += std::hypot(x, z) < 0.5;
-  }
-  EXPECT_GT(on_edges, 50u);
-  EXPECT_EQ(in_the_air, 0u);
 }
 
 TEST(FindLines, StayFiniteOnAnyPoints) {

@@ -1,6 +1,4 @@
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
 #include <unistd.h>
 
 #include <chrono>
@@ -18,6 +16,7 @@
 #include "pcednet/core/error.h"
 #include "web_pages.h"
 #include "workbench/annotate/api.h"
+#include "workbench/annotate/journal.h"
 #include "workbench/annotate/painting.h"
 #include "workbench/annotate/saving.h"
 
@@ -155,19 +154,6 @@ annotate::SessionOptions session_options(const AnnotateArguments& arguments, con
   return options;
 }
 
-/// Throws, before an address is printed for nothing, if another annotator has the project open. Its
-/// session decides in the end.
-void check_not_open(const fs::path& project) {
-  const fs::path journal = annotate::journal_of(project);
-  const int file = ::open(journal.c_str(), O_RDONLY | O_CLOEXEC);
-  if (file < 0) return;
-  const bool is_free = ::flock(file, LOCK_SH | LOCK_NB) == 0 || errno != EWOULDBLOCK;
-  ::close(file);
-  if (is_free) return;
-  throw Error(ErrorKind::kFailure,
-              fmt::format("{}: another annotator has it open", journal.string()));
-}
-
 /// A server at the address where the page of an earlier start may still be open, or at a new one.
 struct Place {
   std::unique_ptr<HttpServer> server = {};
@@ -198,7 +184,7 @@ void annotate_cloud(const AnnotateArguments& arguments, const Common& common) {
   const auto options = session_options(arguments, common, events);
   const fs::path project =
       options.project.empty() ? annotate::default_project(options.input) : options.project;
-  check_not_open(project);
+  annotate::check_not_open(annotate::journal_of(project));  // before an address is printed
   const KeptAddress kept(project);
   Place place = find_place(arguments.port, kept.read());
   annotate::Session session(options);

@@ -60,8 +60,8 @@ void sample(const ConvertRequest& request, const Progress& progress, PointCloud&
 }
 
 void perturb(const ConvertRequest& request, PointCloud& cloud) {
-  if (changes_points(request))
-    detect::set_estimated_normals(cloud, false);  // those of other points
+  // Estimates are of the points before.
+  if (changes_points(request)) detect::set_estimated_normals(cloud, false);
   if (request.noise > 0.0) {
     with_name_in_errors(request.input, [&] {
       cloud = shapes::add_gaussian_noise(std::move(cloud),

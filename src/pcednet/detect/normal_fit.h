@@ -7,9 +7,9 @@
 
 namespace pcednet::detect {
 
-/// The share of flat places whose normals lie across the plane of their points, from a thousand
-/// places along `curve`, the spatial::curve_order() of the positions. 0 if few places are flat:
-/// then nothing is known. Signs and unusable normals do not matter.
+/// The share of flat places whose normals lie across the plane of their points, of those of
+/// near_on_curve(). 0 if few places are flat: then nothing is known. Signs and unusable normals do
+/// not matter.
 double share_of_misfits(std::span<const Vec3> positions, std::span<const Vec3> normals,
                         std::span<const std::uint32_t> curve);
 

@@ -38,10 +38,9 @@ constexpr double kMisfits = 0.5;  ///< share of flat places with wrong normals; 
 /// The parts of a cloud that are used.
 struct Points {
   std::span<const Vec3> positions;
-  std::span<const Vec3> normals;                   ///< may be empty
-  std::function<std::vector<Vec3>()> scanners;     ///< of every point, or of none
-  std::span<const Vec3> estimates = {};            ///< whose signs new ones take; may be empty
-  const char* without = "no normals in the file";  ///< said if there are none
+  std::span<const Vec3> normals;                ///< may be empty
+  std::function<std::vector<Vec3>()> scanners;  ///< of every point, or of none
+  std::span<const Vec3> estimates = {};         ///< whose signs new ones take; may be empty
 
   std::size_t size() const { return positions.size(); }
   bool empty() const { return positions.empty(); }
@@ -233,8 +232,9 @@ PreparedCloud prepare_points(const Points& cloud, const PrepareOptions& options,
     spread_positions(prepared.decision.rounding, prepared);
     prepared.decision.exact = is_exact(prepared.positions, prepared.curve);
     estimate(prepared, cloud,
-             !cloud.has_normals() ? cloud.without
-             : usable == 0        ? "no normal is usable"
+             !cloud.estimates.empty() ? "the normals in the file are estimates"
+             : !cloud.has_normals()   ? "no normals in the file"
+             : usable == 0            ? "no normal is usable"
                            : fmt::format("{} of {} points have no usable normal", finite - usable,
                                          cloud.size()),
              progress);
@@ -276,7 +276,6 @@ PreparedCloud prepare(const PointCloud& cloud, const PrepareOptions& options,
     return prepare_points(points, options, progress);
   }
   std::swap(points.normals, points.estimates);
-  points.without = "the normals in the file are estimates";
   return prepare_points(points, options, progress);
 }
 

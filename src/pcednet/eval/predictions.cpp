@@ -92,7 +92,7 @@ std::vector<std::uint8_t> nearest_to_edge_points(std::span<const Vec3> positions
 /// The classes of a file with nothing else; none if it may hold points.
 std::optional<std::vector<std::uint8_t>> read_bare_classes(const fs::path& path,
                                                            std::size_t points) {
-  const std::string extension = io::lower_case(path.extension().string());
+  const std::string extension = io::extension_of(path);
   if (extension == ".u8" || extension == ".lbl" || extension == ".seg") {
     auto classes = formats::read_labels(path);
     if (classes.size() == points) return classes;
@@ -122,7 +122,7 @@ fs::path find_predictions(const fs::path& folder, const std::string& stem) {
 }
 
 Predictions read_predictions(const fs::path& path, std::span<const Vec3> positions) {
-  if (io::lower_case(path.extension().string()) == ".npy") {
+  if (io::extension_of(path) == ".npy") {
     return {classes_of_array(path, io::read_npy(path), positions.size()), {}};
   }
   if (auto classes = read_bare_classes(path, positions.size())) return {*std::move(classes), {}};

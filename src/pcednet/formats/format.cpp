@@ -82,7 +82,7 @@ std::span<const Format> all_formats() {
 }
 
 const Format* find_format(const fs::path& path) {
-  const std::string extension = io::lower_case(path.extension().string());
+  const std::string extension = io::extension_of(path);
   for (const Format& format : all_formats()) {
     for (const std::string_view other : format.extensions) {
       if (extension == other) return &format;
@@ -93,8 +93,7 @@ const Format* find_format(const fs::path& path) {
 
 std::string stem_of(const fs::path& path) {
   const fs::path stem = path.stem();
-  const bool is_copc = io::lower_case(path.extension().string()) == ".laz" &&
-                       io::lower_case(stem.extension().string()) == ".copc";
+  const bool is_copc = io::extension_of(path) == ".laz" && io::extension_of(stem) == ".copc";
   return is_copc ? stem.stem().string() : stem.string();
 }
 

@@ -83,7 +83,7 @@ std::vector<std::uint8_t> labels_of(const PointCloud& cloud, const std::filesyst
 }
 
 std::vector<std::uint8_t> read_labels(const std::filesystem::path& path) {
-  const std::string extension = io::lower_case(path.extension().string());
+  const std::string extension = io::extension_of(path);
   if (extension == ".u8") {
     const io::InputFile file(path);
     std::vector<std::uint8_t> labels(file.size());

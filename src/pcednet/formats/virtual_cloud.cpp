@@ -191,7 +191,7 @@ fs::path file_behind(const std::string& reference, const fs::path& cloud) {
 }  // namespace
 
 bool is_virtual_cloud(const fs::path& path) {
-  return io::lower_case(path.extension().string()) == ".vpc";
+  return io::extension_of(path) == ".vpc";
 }
 
 std::vector<fs::path> files_of_virtual_cloud(const fs::path& path) {

@@ -117,6 +117,10 @@ bool parse_number(std::string_view token, ScalarType type, std::byte* number) {
   });
 }
 
+std::string extension_of(const std::filesystem::path& path) {
+  return lower_case(path.extension().string());
+}
+
 std::string lower_case(std::string_view text) {
   std::string lower(text);
   std::transform(lower.begin(), lower.end(), lower.begin(), [](char c) {

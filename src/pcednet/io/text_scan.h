@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -65,5 +66,8 @@ bool parse_number(std::string_view token, ScalarType type, std::byte* number);
 
 /// ASCII letters in lower case.
 std::string lower_case(std::string_view text);
+
+/// The extension of a file in lower case, with its dot: ".ply".
+std::string extension_of(const std::filesystem::path& path);
 
 }  // namespace pcednet::io

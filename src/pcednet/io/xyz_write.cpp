@@ -33,10 +33,6 @@ bool is_plain(const std::string& extension, const PartOutline& outline) {
   return all_show;
 }
 
-std::string extension_of(const std::filesystem::path& path) {
-  return lower_case(path.extension().string());
-}
-
 std::string header_of(const std::string& extension, const PointCloud& cloud,
                       const std::vector<ColumnView>& columns) {
   std::string names;

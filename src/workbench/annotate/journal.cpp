@@ -14,6 +14,28 @@
 #include "pcednet/core/output_file.h"
 
 namespace pcednet::annotate {
+namespace {
+
+/// Takes a lock that lasts until the file is closed: two annotators of one project would write
+/// between each other's lines.
+void lock(int file, int operation, const std::filesystem::path& path) {
+  if (::flock(file, operation | LOCK_NB) == 0) return;
+  throw Error(ErrorKind::kFailure, fmt::format("{}: another annotator has it open", path.string()));
+}
+
+}  // namespace
+
+void check_not_open(const std::filesystem::path& path) {
+  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (file < 0) return;
+  try {
+    lock(file, LOCK_SH, path);
+  } catch (...) {
+    ::close(file);
+    throw;
+  }
+  ::close(file);
+}
 
 Journal::Journal(std::filesystem::path path, const Inputs& inputs, std::vector<Record>& records)
     : path_(std::move(path)) {
@@ -29,11 +51,7 @@ Journal::Journal(std::filesystem::path path, const Inputs& inputs, std::vector<R
 void Journal::open() {
   file_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
   if (file_ < 0) fail("cannot be opened");
-  // Two annotators of one project would write between each other's lines.
-  if (::flock(file_, LOCK_EX | LOCK_NB) != 0) {
-    throw Error(ErrorKind::kFailure,
-                fmt::format("{}: another annotator has it open", path_.string()));
-  }
+  lock(file_, LOCK_EX, path_);
 }
 
 /// Replaces the file atomically: either the old or the new one exists at any moment.

@@ -36,4 +36,7 @@ class Journal {
   std::size_t size_ = 0;  ///< bytes of whole lines
 };
 
+/// Throws Error(kFailure) if another annotator has the journal at `path` open, as Journal() does.
+void check_not_open(const std::filesystem::path& path);
+
 }  // namespace pcednet::annotate

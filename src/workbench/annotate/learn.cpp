@@ -167,23 +167,21 @@ detect::TrainedModel learn_project(
   }
   std::optional<Start> start;
   if (model) start = make_start(std::move(*model), subject);
-  int epochs = 0;
-  bool validated = false;
+  nn::EpochReport last;
   const std::size_t seen = points_of(std::span(project.inputs).first(clouds));
   Adapted learnt = learn(
       inputs.front().stem().string(), subject, std::span(end.labels.classes()).first(seen),
       settings, start ? &*start : nullptr,
       [&](const nn::EpochReport& report) {
-        epochs = report.epoch;
-        validated = report.is_validated();
+        last = report;
         if (on_epoch) on_epoch(report);
       },
       progress);
   if (start && learnt.cancelled) throw Error(ErrorKind::kCancelled, "stopped by the user");
   return {.model = std::move(learnt.model),
           .cancelled = learnt.cancelled,
-          .epochs = epochs,
-          .validated = validated};
+          .epochs = last.epoch,
+          .validated = last.is_validated()};
 }
 
 }  // namespace pcednet::annotate

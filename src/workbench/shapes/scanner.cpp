@@ -80,16 +80,15 @@ Rays rays_of(const ScanPlace& place, std::size_t rays) {
 
 /// What one scanner sees of the solid.
 struct Outlook {
-  const Solid* solid;
   Vec3 from;
   Rays rays;
-  std::vector<Hit> hits;
+  std::vector<Hit> hits = {};
+  std::vector<Vec3> normals = {};  ///< of the solid where it is hit
 
   Vec3 at(std::size_t r) const { return from + hits[r].distance * rays.directions[r]; }
   /// The distance to the hit of a ray at this angle, on the plane that touches the surface.
   double gap(std::size_t r, double angle) const {
-    const Vec3 normal = solid->normal_of(solid->value(at(r)).face, at(r));
-    const double cosine = std::abs(normal.dot(rays.directions[r]));
+    const double cosine = std::abs(normals[r].dot(rays.directions[r]));
     return hits[r].distance * angle / std::max(cosine, kSlant);
   }
   bool on_one_surface(std::size_t r, std::size_t other) const {
@@ -127,19 +126,22 @@ Vec3 Outlook::open_side(std::size_t r) const {
   }
   if (first.isZero(0.0)) return first;
   if (open.norm() < 0.5 * first.norm()) open = first;  // opposite sides
-  const Vec3 normal = solid->normal_of(solid->value(at(r)).face, at(r));
-  const Vec3 within = open - open.dot(normal) * normal;
+  const Vec3 within = open - open.dot(normals[r]) * normals[r];
   return within.norm() > kSlant * open.norm() ? within : open;
 }
 
 Outlook look(const Scene& scene, const spatial::KdTree& foliage, const ScanPlace& place,
              const ScannerOptions& options) {
-  Outlook view = {&scene.solid, place.position, rays_of(place, options.rays), {}};
+  Outlook view = {.from = place.position, .rays = rays_of(place, options.rays)};
   const std::vector<Vec3>& directions = view.rays.directions;
   view.hits.resize(directions.size());
+  view.normals.resize(directions.size());
   parallel_blocks(directions.size(), 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t r = begin; r < end; ++r) {
       view.hits[r] = trace(scene, foliage, view.from, directions[r], options.range);
+      if (!view.hits[r].on_solid()) continue;
+      const Vec3 hit = view.at(r);
+      view.normals[r] = scene.solid.normal_of(scene.solid.value(hit).face, hit);
     }
   });
   return view;

@@ -14,7 +14,7 @@ io::LoadedCloud read_labelled(const std::filesystem::path& path) {
   io::LoadedCloud loaded = formats::read_cloud(path);
   PointCloud& cloud = loaded.cloud;
   if (cloud.empty() || cloud.has_labels()) return loaded;
-  if (io::lower_case(path.extension().string()) == ".obj") {
+  if (io::extension_of(path) == ".obj") {
     const std::filesystem::path features = find_abc_features(path);
     if (!features.empty()) {
       cloud.labels = read_abc_labels(features, cloud.size());

@@ -68,7 +68,7 @@ std::string drawing_extensions(std::string_view last) {
 }
 
 const DrawingFormat& drawing_format_for(const std::filesystem::path& path) {
-  const std::string extension = lower_case(path.extension().string());
+  const std::string extension = extension_of(path);
   for (const DrawingFormat& format : drawing_formats()) {
     if (format.extension != extension) continue;
     if (format.write == write_geopackage && !has_geopackage()) {

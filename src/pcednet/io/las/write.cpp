@@ -140,7 +140,7 @@ class LasPartWriter : public PartWriter {
     losses = las_losses(*outline.first, choices_);
     file_ = las_layout(*outline.first, options, choices_).file;
     const bool is_copc = is_copc_name(path);
-    const bool compress = lower_case(path.extension().string()) == ".laz";
+    const bool compress = extension_of(path) == ".laz";
     if (compress) add_laz_record(file_, is_copc ? LazChunks::kVariable : LazChunks::kEqual);
     const std::string records = las_record_bytes(file_.records, false) + file_.before_points;
     points_offset_ = file_.header.size() + records.size();
