@@ -10,7 +10,7 @@ endfunction()
 
 set(prefix ${WORK_DIR}/prefix)
 set(model ${prefix}/share/pcednet/models/general.safetensors)
-set(settings -G ${GENERATOR} -D CMAKE_BUILD_TYPE=Release -D CMAKE_CXX_COMPILER=${CXX_COMPILER}
+set(settings -G ${GENERATOR} -D CMAKE_CXX_COMPILER=${CXX_COMPILER}
     "-DCMAKE_CXX_FLAGS=${CXX_FLAGS}" -D CMAKE_PREFIX_PATH=${prefix})
 file(REMOVE_RECURSE ${WORK_DIR})
 run(${CMAKE_COMMAND} --install ${BUILD_DIR} --prefix ${prefix})

@@ -41,6 +41,31 @@ TEST(Profile, TellsInsideFromOutsideOfAConcaveFillet) {
   EXPECT_NEAR(corner.distance({1.05, 1.05}, side), 0.4 - std::hypot(0.35, 0.35), 1e-12);
 }
 
+TEST(Profile, OfAWheelLooksTheSameFromEveryTooth) {
+  constexpr int kTeeth = 24;
+  const auto turn = [](int teeth) {
+    return Eigen::Rotation2Dd(2.0 * std::numbers::pi * teeth / kTeeth).toRotationMatrix();
+  };
+  std::vector<Corner> corners;
+  for (int tooth = 0; tooth < kTeeth; ++tooth) {
+    corners.push_back({turn(tooth) * Vec2(1.0, 0.0), Corner::Shape::kFillet, 0.02});
+    corners.push_back({turn(tooth) * Vec2(0.8, 0.1), Corner::Shape::kSharp});
+  }
+  const Profile wheel = outline(corners);
+  const std::size_t sides = wheel.size() / kTeeth;
+  Random random(3);
+  for (int i = 0; i < 200; ++i) {
+    const Vec2 p(random.uniform(-1.5, 1.5), random.uniform(-1.5, 1.5));
+    std::size_t nearest = 0, turned = 0;
+    const double distance = wheel.distance(p, nearest);
+    for (int tooth = 1; tooth < kTeeth; ++tooth) {
+      EXPECT_NEAR(wheel.distance(turn(tooth) * p, turned), distance, 1e-12);
+      const std::size_t shift = sides * static_cast<std::size_t>(tooth);
+      EXPECT_EQ(turned, (nearest + shift) % wheel.size());
+    }
+  }
+}
+
 TEST(Solid, AddsAndCutsInOrder) {
   Solid part;
   part.add(box(1, 1, 1, Vec3::Zero()));

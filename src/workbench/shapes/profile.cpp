@@ -36,11 +36,34 @@ double sq_distance(const Side& side, const Vec2& p) {
   return (p - side.a - t * along).squaredNorm();
 }
 
+/// The distance that is too far to be nearer than a squared distance, or as near.
+double beyond(double sq) {
+  return std::sqrt(1.000001 * sq + 1e-20);
+}
+
 Side arc(const Vec2& a, const Vec2& b, const Vec2& centre, bool convex) {
   return {a, b, (a - centre).norm(), centre, convex};
 }
 
 }  // namespace
+
+Profile::Profile(std::vector<Side> sides) : sides_(std::move(sides)) {
+  constexpr std::size_t kInRun = 6;
+  constexpr double kRounding = 1e-9;
+  for (std::size_t begin = 0; begin < sides_.size(); begin += kInRun) {
+    const std::size_t end = std::min(begin + kInRun, sides_.size());
+    Vec2 middle = Vec2::Zero();
+    for (std::size_t i = begin; i < end; ++i) {
+      middle += (sides_[i].a + sides_[i].b) / (2.0 * static_cast<double>(end - begin));
+    }
+    double reach = 0.0;
+    for (std::size_t i = begin; i < end; ++i) {
+      const Vec2 half_chord = 0.5 * (sides_[i].b - sides_[i].a);  // an arc stays in its disc
+      reach = std::max(reach, (sides_[i].a + half_chord - middle).norm() + half_chord.norm());
+    }
+    runs_.push_back({begin, end, middle, (1.0 + kRounding) * reach + kRounding});
+  }
+}
 
 double Profile::distance_to(std::size_t i, const Vec2& p) const {
   const Side& side = sides_[i];
@@ -51,15 +74,34 @@ double Profile::distance_to(std::size_t i, const Vec2& p) const {
   return -cross((side.b - side.a).normalized(), p - side.a);
 }
 
+/// The squared distance to the sides of the run whose disc is nearest, if there are others.
+double Profile::sq_distance_to_nearest_run(const Vec2& p) const {
+  double away = std::numeric_limits<double>::infinity(), least = away;
+  if (runs_.size() < 2) return least;
+  const Run* nearest = nullptr;
+  for (const Run& run : runs_) {
+    const double to_disc = (p - run.middle).norm() - run.reach;
+    if (to_disc < away) away = to_disc, nearest = &run;
+  }
+  for (std::size_t i = nearest->begin; i < nearest->end; ++i) {
+    least = std::min(least, sq_distance(sides_[i], p));
+  }
+  return least;
+}
+
 double Profile::distance(const Vec2& p, std::size_t& nearest) const {
   double least = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < sides_.size(); ++i) {
-    const double sq = sq_distance(sides_[i], p);
-    // Where two sides meet, the one that is farther as a whole is the one seen from here.
-    const bool tie = std::abs(sq - least) <= 1e-12 * (sq + 1e-12);
-    if (tie ? std::abs(distance_to(i, p)) > std::abs(distance_to(nearest, p)) : sq < least) {
-      least = sq;
-      nearest = i;
+  const double far = beyond(sq_distance_to_nearest_run(p));
+  for (const Run& run : runs_) {
+    if ((p - run.middle).norm() - run.reach > far) continue;
+    for (std::size_t i = run.begin; i < run.end; ++i) {
+      const double sq = sq_distance(sides_[i], p);
+      // Where two sides meet, the one that is farther as a whole is the one seen from here.
+      const bool tie = std::abs(sq - least) <= 1e-12 * (sq + 1e-12);
+      if (tie ? std::abs(distance_to(i, p)) > std::abs(distance_to(nearest, p)) : sq < least) {
+        least = sq;
+        nearest = i;
+      }
     }
   }
   return contains(p) ? -std::sqrt(least) : std::sqrt(least);
@@ -68,13 +110,18 @@ double Profile::distance(const Vec2& p, std::size_t& nearest) const {
 /// Inside the polygon of chords, but for the bulges.
 bool Profile::contains(const Vec2& p) const {
   bool odd = false;
-  for (const Side& side : sides_) {
-    const Vec2 &a = side.a, &b = side.b;
-    if ((a.y() > p.y()) != (b.y() > p.y()) &&
-        p.x() < a.x() + (b.x() - a.x()) * (p.y() - a.y()) / (b.y() - a.y())) {
-      odd = !odd;
+  for (const Run& run : runs_) {
+    const Vec2 offset = p - run.middle;
+    if (offset.x() > run.reach || std::abs(offset.y()) > run.reach) continue;
+    for (std::size_t i = run.begin; i < run.end; ++i) {
+      const Side& side = sides_[i];
+      const Vec2 &a = side.a, &b = side.b;
+      if ((a.y() > p.y()) != (b.y() > p.y()) &&
+          p.x() < a.x() + (b.x() - a.x()) * (p.y() - a.y()) / (b.y() - a.y())) {
+        odd = !odd;
+      }
+      if (side.radius > 0.0 && in_bulge(side, p)) odd = !odd;
     }
-    if (side.radius > 0.0 && in_bulge(side, p)) odd = !odd;
   }
   return odd;
 }

@@ -21,7 +21,7 @@ class Profile {
   };
 
   Profile() = default;
-  explicit Profile(std::vector<Side> sides) : sides_(std::move(sides)) {}
+  explicit Profile(std::vector<Side> sides);
 
   std::size_t size() const { return sides_.size(); }
   bool is_round(std::size_t i) const { return sides_[i].radius > 0.0; }
@@ -38,9 +38,18 @@ class Profile {
   Vec2 high() const;
 
  private:
+  /// Sides one after another, and a disc that holds them and their bulges.
+  struct Run {
+    std::size_t begin, end;
+    Vec2 middle;
+    double reach;
+  };
+
+  double sq_distance_to_nearest_run(const Vec2& p) const;
   bool contains(const Vec2& p) const;
 
   std::vector<Side> sides_;
+  std::vector<Run> runs_;
 };
 
 /// A corner of an outline: sharp, rounded or cut off.
