@@ -111,12 +111,6 @@ Progress console_progress(const Common& common) {
   return progress;
 }
 
-void check_not_input(const std::filesystem::path& output, const std::filesystem::path& input) {
-  std::error_code error;
-  if (!std::filesystem::equivalent(output, input, error)) return;
-  throw Error(ErrorKind::kUsage, fmt::format("{}: is the input", output.string()));
-}
-
 std::string explain(const Error& error) {
   const bool exists = dynamic_cast<const ExistsAlready*>(&error) != nullptr;
   return std::string(error.what()) + (exists ? "; give --overwrite to replace it" : "");

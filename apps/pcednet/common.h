@@ -74,10 +74,6 @@ class EndsAtOnce {
   ~EndsAtOnce();
 };
 
-/// Throws Error(kUsage) if `output` is the file `input`, also by a link, which it would replace by
-/// something else.
-void check_not_input(const std::filesystem::path& output, const std::filesystem::path& input);
-
 /// The message of an error, with the option that avoids it.
 std::string explain(const Error& error);
 

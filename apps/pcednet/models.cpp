@@ -69,6 +69,10 @@ tiles::PlannedModel planned_model(const ModelArguments& arguments) {
           .exact = arguments.scales.engine == gls::Engine::kExact};
 }
 
+void check_not_model(const std::filesystem::path& output, const ModelArguments& arguments) {
+  if (!arguments.name.empty()) check_not_input(output, find_model(arguments.name));
+}
+
 detect::EdgeModel load_model(const ModelArguments& arguments) {
   detect::EdgeModel model = detect::load_model(find_model(arguments.name));
   if (arguments.no_context) detect::drop_context(model);

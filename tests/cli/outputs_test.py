@@ -1,5 +1,6 @@
 """Files that commands write: never half of one, never over another, refused before the work."""
 import os
+import shutil
 import signal
 import stat
 import subprocess
@@ -7,7 +8,7 @@ import unittest
 
 import numpy as np
 
-from support import PROGRAM, CliTest, cube, read_ply, run, write_ply
+from support import PROGRAM, SOURCE, CliTest, cube, read_ply, run, write_ply
 
 
 class Outputs(CliTest):
@@ -119,6 +120,16 @@ class Outputs(CliTest):
                 said = run(*arguments, "--overwrite", expect=2).stderr
                 self.assertIn(f"{output}: is the input", said)
         self.assertEqual(self.cloud.read_bytes(), before)
+        shipped = SOURCE / "models/scan.safetensors"
+        for name, arguments in (("m.json", ("tiles", "plan", self.cloud, "-o")),
+                                ("m.ply", ("classify", self.cloud, "-o")),
+                                ("m.png", ("classify", self.cloud, "-o", "x.ply", "--preview")),
+                                ("m.dxf", ("lines", self.cloud, "--classify", "-o"))):
+            model = self.folder / name
+            shutil.copy(shipped, model)
+            said = run(*arguments, model, "--model", model, "--overwrite", expect=2).stderr
+            self.assertIn(f"{model}: is the input", said)
+            self.assertEqual(model.read_bytes(), shipped.read_bytes())
         plan = self.folder / "p.json"
         plan.write_text("{}")
         run("tiles", "status", plan, "--json", plan, "--overwrite", expect=2)

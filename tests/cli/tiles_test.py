@@ -302,10 +302,53 @@ class Tiles(CliTest):
         self.assertEqual(self.status(plan, "--verify")["damaged"], [1, 3])
         self.assertIn("run %s --tile 1 --tile 3 --overwrite" % plan,
                       run("tiles", "status", plan, "--verify").stdout)
+        said = run("tiles", "run", plan, "--missing", expect=2).stderr
+        self.assertIn(f"{files[2]}: exists already", said)  # for all that is known, not a tile
+        run("tiles", "run", plan, "--tile", 2, "--overwrite")
         run("tiles", "run", plan, "--missing")
         run("tiles", "run", plan, "--tile", 3, "--overwrite")
         self.assertEqual([f.read_bytes() for f in files], before)
         self.assertEqual(self.status(plan, "--verify")["done"], list(range(len(files))))
+
+    def test_tiles_and_copies_replace_nothing_else(self):
+        p, n = field(3, 300)
+        os.mkdir(self.folder / "in")
+        for name in ("0.ply", "1.ply", "unsorted_0.ply"):
+            write_ply(self.folder / "in" / name, p[::3], n[::3])
+        before = (self.folder / "in/0.ply").read_bytes()
+        plan, copies = self.folder / "p.json", self.folder / "copies"
+        for options in (("--out-dir", self.folder / "in"), ("--sort", self.folder / "in")):
+            said = run("tiles", "plan", self.folder / "in", "-o", plan, "--tile", 1.4, *options,
+                       "--overwrite", expect=2).stderr
+            self.assertIn("0.ply: is the input", said)
+        self.assertEqual(len(list((self.folder / "in").iterdir())), 3)
+        copies.mkdir()
+        (copies / "1.ply").write_text("precious")
+        sort = ("tiles", "plan", self.folder / "in/0.ply", "-o", plan, "--tile", 1.4, "--sort", copies)
+        self.assertIn("1.ply: exists already", run(*sort, expect=2).stderr)
+        self.assertEqual([f.name for f in copies.iterdir()], ["1.ply"])
+        run(*sort, "--overwrite")
+        tile = self.folder / "p_tiles/2.ply"
+        tile.parent.mkdir()
+        for name in ("2.ply", "2.ply.json"):
+            there = tile.parent / name
+            there.write_text("precious")
+            for jobs in (1, 2):
+                said = run("tiles", "run", plan, "--jobs", jobs, expect=2).stderr
+                self.assertIn(f"{there}: exists already; give --overwrite", said)
+            self.assertEqual(there.read_text(), "precious")
+            there.unlink()
+        run("tiles", "run", plan)
+        self.assertEqual((self.folder / "in/0.ply").read_bytes(), before)
+
+    def test_an_input_counts_once(self):
+        p, n = field(3, 300)
+        write_ply(self.folder / "a.ply", p, n)
+        (self.folder / "b.ply").symlink_to("a.ply")
+        for twice in ("a.ply", "b.ply", "."):
+            said = run("tiles", "plan", self.folder / "a.ply", self.folder / twice, "-o",
+                       self.folder / "p.json", expect=2).stderr
+            self.assertIn("the same file as the input", said)
 
     def test_killed_at_random_nothing_is_lost(self):
         plan, content = self.small(tile=1.0)

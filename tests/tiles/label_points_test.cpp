@@ -71,7 +71,7 @@ TEST_F(LabelPoints, PointsKeepTheirNumbersThroughTilesAndSorting) {
   ASSERT_EQ(plan.tiles.size(), 16u);
   ASSERT_GT(plan.inputs[0].chunks.size(), 1u);
   check_numbers(plan, positions);
-  sort_inputs(folder_ / "sorted", true, plan, nullptr);
+  sort_inputs({.folder = folder_ / "sorted", .numbered = true}, plan, nullptr);
   ASSERT_EQ(plan.inputs.size(), plan.tiles.size());
   check_numbers(plan, positions);
 }

@@ -123,6 +123,23 @@ test("says what is wrong with a folder", () => {
   assert.match(again.words, /--overwrite/);
 });
 
+test("replaces nothing that it reads", () => {
+  const study = path.join(folder, "methods.json");
+  const before = fs.readFileSync(study);
+  const page = path.join(folder, "other.html");
+  for (const words of [
+    ["-o", study],
+    ["-o", page, "--json", study],
+    ["-o", page, "--json", page],
+  ]) {
+    const refused = pcednet(folder, ...words, "--clouds-per-set", "1", "--overwrite");
+    assert.equal(refused.code, 2, refused.words);
+    assert.match(refused.words, /is the input|named twice/);
+  }
+  assert.deepEqual(fs.readFileSync(study), before);
+  assert.ok(!fs.existsSync(page));
+});
+
 test("shows every score of a set, of both statistics, as the study has them", async () => {
   const section = "#experiment-0";
   for (const statistic of ["median", "pooled"]) {

@@ -51,6 +51,7 @@ void check_outputs(const LinesArguments& arguments) {
   std::set<fs::path> taken;
   const auto check = [&](const fs::path& output) {
     check_not_input(output, arguments.input);
+    check_not_model(output, arguments.model);
     check_writable(output, arguments.drawing.overwrite);
     if (taken.insert(output.lexically_normal()).second) return;
     throw Error(ErrorKind::kUsage, fmt::format("{}: named twice", output.string()));

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <memory>
 
 #include "commands.h"
@@ -9,6 +10,8 @@
 
 namespace pcednet::app {
 namespace {
+
+namespace fs = std::filesystem;
 
 struct ReportArguments {
   std::string folder, output = "report.html", json;
@@ -32,8 +35,16 @@ void make_report(const ReportArguments& arguments, const Common& common) {
   }
   check_writable(arguments.output, common.overwrite());
   check_writable(arguments.json, common.overwrite());
+  if (fs::path(arguments.output).lexically_normal() ==
+      fs::path(arguments.json).lexically_normal()) {
+    throw Error(ErrorKind::kUsage, fmt::format("{}: named twice", arguments.json));
+  }
   const Progress progress = console_progress(common);
   const auto merged = merge(arguments, progress);
+  for (const fs::path& file : merged.files) {
+    check_not_input(arguments.output, file);
+    check_not_input(arguments.json, file);
+  }
   for (const std::string& warning : merged.warnings) warn(warning);
   const std::string filled = report::fill_page(page, merged.json);
   write_text_file(arguments.output, filled, common.overwrite());

@@ -46,6 +46,7 @@ fs::path folder_of(const PlanArguments& arguments) {
 
 void plan_tiles(const PlanArguments& arguments, const Common& common) {
   check_not_inputs(arguments.plan, arguments.inputs);
+  check_not_model(arguments.plan, arguments.model);
   check_writable(arguments.plan, common.overwrite());
   const ModelArguments& model = arguments.model;
   tiles::PlanRequest request{.inputs = expand_inputs(arguments.inputs),
@@ -55,7 +56,8 @@ void plan_tiles(const PlanArguments& arguments, const Common& common) {
                              .tile_length = arguments.tile_length,
                              .memory = byte_size("--max-memory", arguments.memory),
                              .keep_orientation = arguments.preparation.keep_orientation,
-                             .sort = {.folder = arguments.sorted}};
+                             .sort = {.folder = arguments.sorted,
+                                      .overwrite = common.overwrite()}};
   const Progress progress = console_progress(common);
   const detect::EdgeModel loaded = load_model(model);
   if (has_own_classes(loaded.table)) {
@@ -154,6 +156,7 @@ void run_tiles(const RunArguments& arguments, const Common& common) {
   if (!common.overwrite_files) {
     std::erase_if(
         ids, [&](std::size_t id) { return tiles::state_of(plan, id) == tiles::TileState::kDone; });
+    for (const std::size_t id : ids) tiles::check_is_tile(plan.tiles[id].output);
   }
   const int jobs = jobs_within(arguments, plan);
   for (const std::size_t id : ids) make_folder(plan.tiles[id].output.parent_path());

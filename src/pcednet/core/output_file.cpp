@@ -72,6 +72,12 @@ void check_writable(const fs::path& path, Overwrite overwrite) {
   check_folder_of(path);
 }
 
+void check_not_input(const fs::path& output, const fs::path& input) {
+  std::error_code error;
+  if (!fs::equivalent(output, input, error)) return;
+  throw Error(ErrorKind::kUsage, fmt::format("{}: is the input", output.string()));
+}
+
 void make_folder(const fs::path& folder) {
   std::error_code error, ignored;
   if (fs::exists(folder, ignored) && !fs::is_directory(folder, ignored)) {

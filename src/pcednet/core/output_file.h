@@ -54,6 +54,10 @@ class OutputFile {
 /// empty path is valid.
 void check_writable(const std::filesystem::path& path, Overwrite overwrite);
 
+/// Throws Error(kUsage) if `output` is the file `input`, also by a link, which it would replace by
+/// something else.
+void check_not_input(const std::filesystem::path& output, const std::filesystem::path& input);
+
 /// Creates the folder and its missing parents. Throws Error(kUsage) if it is a file,
 /// Error(kFailure) if it cannot be created.
 void make_folder(const std::filesystem::path& folder);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "pcednet/core/error.h"
 #include "pcednet/core/version.h"
@@ -130,6 +131,26 @@ void check_order_early(const PlanRequest& request, const Plan& plan, std::span<c
   if (is_too_often(times, plan)) refuse_order(tiles, times);
 }
 
+/// Throws if a file is there twice.
+void check_inputs_differ(const PlanRequest& request) {
+  std::map<std::filesystem::path, std::filesystem::path> seen;
+  for (const auto& path : request.inputs) {
+    std::error_code error;
+    const auto [first, is_new] = seen.emplace(std::filesystem::canonical(path, error), path);
+    if (is_new || error) continue;
+    throw Error(ErrorKind::kUsage, fmt::format("{}: the same file as the input {}", path.string(),
+                                               first->second.string()));
+  }
+}
+
+/// Throws if a tile would replace an input.
+void check_tiles_are_no_inputs(const PlanRequest& request, const Plan& plan) {
+  for (const Tile& tile : plan.tiles) {
+    if (!std::filesystem::exists(tile.output)) continue;
+    for (const auto& input : request.inputs) check_not_input(tile.output, input);
+  }
+}
+
 /// Copies the inputs if the request says so; otherwise throws for inputs that need it.
 void settle_order(const PlanRequest& request, Plan& plan, const Progress* progress) {
   const double times = times_read(plan);
@@ -137,7 +158,7 @@ void settle_order(const PlanRequest& request, Plan& plan, const Progress* progre
   if (request.sort.folder.empty()) {
     if (!in_order) refuse_order(static_cast<double>(plan.tiles.size()), times);
   } else if (!in_order || !request.sort.if_needed) {
-    sort_inputs(request.sort.folder, request.sort.numbered, plan, progress);
+    sort_inputs(request.sort, plan, progress);
   }
 }
 
@@ -178,6 +199,7 @@ Grid grid_of(const PlanRequest& request, const CellCounts& counts, double cell, 
 Plan make_plan(const PlanRequest& request, const detect::EdgeModel& model,
                const Progress* progress) {
   Plan plan{.version = kVersion, .model = request.model};
+  check_inputs_differ(request);
   plan.model.sha256 = sha256_of_file(request.model.path);
 
   Sample some = index_inputs(request, plan, progress);
@@ -201,6 +223,7 @@ Plan make_plan(const PlanRequest& request, const detect::EdgeModel& model,
                        !request.output.empty()  ? request.output
                        : plan.las_steps.empty() ? "{ID}.ply"
                                                 : "{ID}.laz");
+  check_tiles_are_no_inputs(request, plan);
   plan.memory = memory_for(most_points(counts, plan.grid, plan.buffer), plan.normals);
   settle_order(request, plan, progress);
   return plan;

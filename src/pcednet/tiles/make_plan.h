@@ -7,15 +7,9 @@
 #include "pcednet/core/progress.h"
 #include "pcednet/detect/model.h"
 #include "pcednet/tiles/plan.h"
+#include "pcednet/tiles/sort_inputs.h"
 
 namespace pcednet::tiles {
-
-/// Copies of the inputs whose points are in order in space.
-struct SortRequest {
-  std::filesystem::path folder = {};  ///< for the copies; empty: none are made
-  bool if_needed = false;             ///< only for inputs that would otherwise be rejected
-  bool numbered = false;              ///< each point with its number: see kNumberColumn
-};
 
 struct PlanRequest {
   std::vector<std::filesystem::path> inputs;
@@ -33,8 +27,9 @@ struct PlanRequest {
 ///
 /// Inputs whose points are not in spatial order are rejected, after the first reading if that shows
 /// it, unless there is a folder for copies. Throws Error(kUnreadable) for inputs that cannot be
-/// read, Error(kUsage) for inputs that do not fit together, Error(kInsufficient) if there is no
-/// finite point or no range of scales.
+/// read, Error(kUsage) for inputs that do not fit together, for one that is there twice, and for a
+/// tile or copy with the name of an input, Error(kInsufficient) if there is no finite point or no
+/// range of scales.
 Plan make_plan(const PlanRequest& request, const detect::EdgeModel& model,
                const Progress* progress = nullptr);
 

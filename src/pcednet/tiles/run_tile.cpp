@@ -146,14 +146,20 @@ void run_tile(const Plan& plan, std::size_t tile, const detect::EdgeModel& model
   detect::add_result(points.core, findings.prepared, findings.found, model);
   io::PartOutline outline = io::outline_of(points.core);
   outline.is_las = !plan.las_steps.empty();
-  const auto writer = formats::create_parts(
-      path, outline, {.overwrite = Overwrite::kYes, .new_normals = findings.prepared.made.empty()});
-  writer->append(points.core);
-  writer->commit();
-  write_record(path, {.plan = plan.digest,
-                      .tile = tile,
-                      .points = points.core.size(),
-                      .counts = findings.found.counts});
+  TileRecord record{.plan = plan.digest, .tile = tile, .points = points.core.size()};
+  write_claim(path, record);
+  try {
+    const auto writer = formats::create_parts(
+        path, outline,
+        {.overwrite = Overwrite::kYes, .new_normals = findings.prepared.made.empty()});
+    writer->append(points.core);
+    writer->commit();
+  } catch (...) {
+    remove_claim(path);
+    throw;
+  }
+  record.counts = findings.found.counts;
+  write_record(path, record);
 }
 
 }  // namespace pcednet::tiles

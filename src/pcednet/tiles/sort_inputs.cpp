@@ -19,12 +19,24 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kOpenFiles = 256;
+constexpr const char* kUnsorted = "unsorted_";
 
 /// The files of the copies: LAS and PLY, which are read from any place.
 fs::path copy_path(const fs::path& folder, const Plan& plan, std::size_t tile, const char* prefix) {
   const std::size_t digits = std::to_string(plan.tiles.size() - 1).size();
   return folder /
          fmt::format("{}{:0{}}{}", prefix, tile, digits, plan.las_steps.empty() ? ".ply" : ".las");
+}
+
+/// Throws if a copy would replace an input or what must stay.
+void check_copies(const SortRequest& request, const Plan& plan) {
+  for (std::size_t id = 0; id < plan.tiles.size(); ++id) {
+    for (const char* prefix : {kUnsorted, ""}) {
+      const fs::path path = copy_path(request.folder, plan, id, prefix);
+      for (const PlannedInput& input : plan.inputs) check_not_input(path, input.path);
+      check_writable(path, request.overwrite);
+    }
+  }
 }
 
 /// A file that points are appended to; it is created with the first of them.
@@ -84,7 +96,7 @@ void scatter(const fs::path& folder, const Plan& plan, const PointCloud& outline
              std::size_t end, const Progress* progress) {
   std::deque<Copy> copies;  // stay where they are
   for (std::size_t id = begin; id < end; ++id) {
-    copies.emplace_back(copy_path(folder, plan, id, "unsorted_"), plan, plan.tiles[id].points);
+    copies.emplace_back(copy_path(folder, plan, id, kUnsorted), plan, plan.tiles[id].points);
   }
   const TileFinder tile_of(plan);
   const bool numbered = find_attribute(outline, kNumberColumn) != nullptr;
@@ -141,10 +153,12 @@ void sort_file(const fs::path& from, const fs::path& to, const Plan& plan,
 
 }  // namespace
 
-void sort_inputs(const fs::path& folder, bool numbered, Plan& plan, const Progress* progress) {
+void sort_inputs(const SortRequest& request, Plan& plan, const Progress* progress) {
+  const fs::path& folder = request.folder;
   make_folder(folder);
+  check_copies(request, plan);
   PointCloud outline = outline_of(plan);
-  if (numbered) outline.attributes.push_back(number_column(0, 0));
+  if (request.numbered) outline.attributes.push_back(number_column(0, 0));
   for_each_block(plan.tiles.size(), kOpenFiles, [&](std::size_t begin, std::size_t end) {
     scatter(folder, plan, outline, begin, end, progress);
   });
@@ -152,7 +166,7 @@ void sort_inputs(const fs::path& folder, bool numbered, Plan& plan, const Progre
   for (std::size_t id = 0; id < plan.tiles.size(); ++id) {
     throw_if_cancelled(progress);
     const fs::path path = copy_path(folder, plan, id, "");
-    sort_file(copy_path(folder, plan, id, "unsorted_"), path, plan, outline);
+    sort_file(copy_path(folder, plan, id, kUnsorted), path, plan, outline);
     std::vector<std::string> known;
     sorted.push_back(index_input(path, progress, known, [](const PointCloud&) {}).input);
     sorted.back().narrow_colours = plan.inputs.front().narrow_colours;

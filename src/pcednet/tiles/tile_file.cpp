@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "pcednet/core/error.h"
+#include "pcednet/core/exists_already.h"
 #include "pcednet/io/input_file.h"
 #include "pcednet/tiles/sha256.h"
 
@@ -20,9 +21,7 @@ fs::path record_path(const fs::path& tile) {
 
 }  // namespace
 
-void write_record(const fs::path& tile, TileRecord record) {
-  record.bytes = fs::file_size(tile);
-  record.sha256 = sha256_of_file(tile);
+void write_claim(const fs::path& tile, TileRecord record) {
   const json j = {{"format", kRecordFormat},
                   {"plan", record.plan},
                   {"tile", record.tile},
@@ -35,6 +34,17 @@ void write_record(const fs::path& tile, TileRecord record) {
                   {"boundary", record.counts.boundary},
                   {"unlabelled", record.counts.unlabelled}};
   write_text_file(record_path(tile), j.dump(1) + "\n", Overwrite::kYes);
+}
+
+void remove_claim(const fs::path& tile) {
+  std::error_code ignored;
+  if (!fs::exists(tile, ignored)) fs::remove(record_path(tile), ignored);
+}
+
+void write_record(const fs::path& tile, TileRecord record) {
+  record.bytes = fs::file_size(tile);
+  record.sha256 = sha256_of_file(tile);
+  write_claim(tile, record);
 }
 
 std::optional<TileRecord> read_record(const fs::path& tile) {
@@ -52,6 +62,14 @@ std::optional<TileRecord> read_record(const fs::path& tile) {
     return std::nullopt;
   } catch (const Error&) {
     return std::nullopt;
+  }
+}
+
+void check_is_tile(const fs::path& tile) {
+  if (read_record(tile)) return;
+  for (const fs::path& path : {tile, record_path(tile)}) {
+    std::error_code ignored;
+    if (fs::exists(fs::symlink_status(path, ignored))) throw ExistsAlready(path);
   }
 }
 

@@ -24,8 +24,16 @@ struct TileRecord {
 /// first, then its record: a tile without one is not finished.
 void write_record(const std::filesystem::path& tile, TileRecord record);
 
+/// Writes the record of a tile that is begun, so that its file is known for one of a tile.
+void write_claim(const std::filesystem::path& tile, TileRecord record);
+/// Removes it if there is no such file.
+void remove_claim(const std::filesystem::path& tile);
+
 /// The record of a tile; none if it is missing or damaged.
 std::optional<TileRecord> read_record(const std::filesystem::path& tile);
+
+/// Throws ExistsAlready if a file that is no tile's has the name of the tile or of its record.
+void check_is_tile(const std::filesystem::path& tile);
 
 enum class TileState { kMissing, kDamaged, kDone };
 

@@ -226,6 +226,15 @@ std::vector<Exhibit> choose_exhibits(const Studies& studies, const fs::path& fol
   return exhibits;
 }
 
+std::vector<fs::path> files_of(const Studies& studies, const std::vector<Exhibit>& exhibits) {
+  std::vector<fs::path> files = studies.files;
+  for (const Exhibit& exhibit : exhibits) {
+    files.push_back(exhibit.file);
+    for (const auto& source : exhibit.sources) files.push_back(source.predictions);
+  }
+  return files;
+}
+
 std::vector<std::uint8_t> read_classes(const fs::path& predictions, const fs::path& cloud,
                                        std::size_t points) {
   auto classes = formats::read_labels(predictions);
@@ -289,6 +298,7 @@ MergedStudies merge_studies(const fs::path& folder, const MergeOptions& options,
   }
   MergedStudies merged{.studies = studies.texts.size(),
                        .scenes = scenes.size(),
+                       .files = files_of(studies, exhibits),
                        .warnings = std::move(studies.warnings)};
   Json whole = {{"schema", "pcednet-report-1"},
                 {"studies", std::move(studies.texts)},

@@ -29,6 +29,7 @@ struct MergedStudies {
   std::string json =
       {};  ///< one line: {"schema":"pcednet-report-1","studies":[...],"scenes":[...]}
   std::size_t studies = 0, scenes = 0;
+  std::vector<std::filesystem::path> files = {};  ///< that were read
   std::vector<std::string> warnings = {};
 };
 
