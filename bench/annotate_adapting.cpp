@@ -48,9 +48,11 @@ std::unique_ptr<Labelled> read(const std::string& file, const gls::ScaleSpaceOpt
   }
   made->prepared = detect::prepare(made->cloud);
   made->described = describe_once(made->prepared, descriptor, {});
-  std::vector<Vec3> ordered;
-  for (const std::uint32_t i : made->prepared.curve) ordered.push_back(made->cloud.positions[i]);
-  made->spacing = gls::scale_range(ordered, spatial::KdTree(ordered), {}).s_min;
+  const std::vector<Vec3>& positions = made->cloud.positions;
+  const std::vector<std::uint32_t>& curve = made->prepared.curve;
+  made->spacing = gls::scale_range(positions, {}, [&] {
+                    return gls::spacings_of_places(positions, curve);
+                  }).s_min;
   return made;
 }
 

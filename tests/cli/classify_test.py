@@ -225,15 +225,16 @@ class Classify(CliTest):
                       ("--s-max", 1e-5), ("--method", "ca", "--s-max", 0.1)):
             run("classify", self.folder / "b.ply", *wrong, expect=2)
 
-    def test_gives_ten_copies_of_every_point_the_labels_of_one(self):
-        p, n, _ = cube(400)
-        extra = ("--no-context", "--exact")  # the context asks the nearest points: all copies
-        one = self.classify(p, n, position_type="double", extra=extra)
-        many = self.classify(np.repeat(p, 12, 0), np.repeat(n, 12, 0), position_type="double",
-                             extra=extra)
-        # Not so where a single copy has too few neighbours for a fit.
-        off = np.abs(np.repeat(one["scalar_p_sharp"], 12) - many["scalar_p_sharp"]) > 1e-3
-        self.assertLess(np.mean(off), 0.01)
+    def test_counts_copies_of_points_once(self):
+        p, n, _ = cube(3000)
+        every = np.arange(3000)
+        for normals, extra in ((None, ()), (n, ()), (n, ("--exact",))):
+            one = self.classify(p, normals, extra=extra)
+            for chosen in (np.repeat(every, 2), np.r_[every, every[p[:, 0] > 0.2]],
+                           np.r_[every, np.full(4000, 7)]):
+                many = self.classify(p[chosen], None if normals is None else n[chosen], extra=extra)
+                for name in ("label", "scalar_p_sharp", "nx"):
+                    np.testing.assert_allclose(many[name], one[name][chosen], atol=1e-5)
 
     def test_never_overwrites_unasked(self):
         write_ply(self.folder / "a.ply", *cube(400)[:2])

@@ -194,11 +194,33 @@ TEST(FastScaleSpace, CostsNoMoreWhereThousandsOfPointsAreOne) {
   test::Cloud cloud = test::cube(30000, 3);
   for (int i = 0; i < 60000; ++i) cloud.add(Vec3(0.5, 0.1, 0.2), Vec3::UnitX());
   ScaleSpaceOptions options;
-  options.s_min = 0.01;
+  options.s_min = 0.03;
   const FastScaleSpace space(cloud.points(), options);
   const auto matrix = test::describe(space, test::all_targets(cloud.positions.size()));
   for (const float f : matrix.features) ASSERT_TRUE(std::isfinite(f));
   EXPECT_EQ(matrix.status_at(60000, 0), FitStatus::kStable);
+}
+
+TEST(FastScaleSpace, CountsCopiesOnce) {
+  test::Cloud cloud = test::cube(9000, 3, 0.01, 0.2);
+  ScaleSpaceOptions options;
+  options.side_gate = -0.3;
+  const auto targets = test::all_targets(9000);
+  const auto wanted = test::describe(FastScaleSpace(cloud.points(), options), targets);
+  const auto exact = test::describe(ExactScaleSpace(cloud.points(), options), targets);
+  for (std::size_t i = 0; i < 9000; ++i) {
+    for (std::size_t copy = 0; copy < (i == 77 ? 5000 : i % 3); ++copy) {
+      cloud.add(cloud.positions[i], cloud.normals[i]);
+    }
+  }
+  const auto found = test::describe(FastScaleSpace(cloud.points(), options), targets);
+  EXPECT_EQ(found.status, wanted.status);
+  for (std::size_t i = 0; i < found.features.size(); ++i) {
+    ASSERT_NEAR(found.features[i], wanted.features[i],
+                1e-5f * (1.0f + std::abs(wanted.features[i])));
+  }
+  EXPECT_EQ(test::describe(ExactScaleSpace(cloud.points(), options), targets).features,
+            exact.features);
 }
 
 TEST(FastScaleSpace, RefusesWhatItCannotDescribe) {

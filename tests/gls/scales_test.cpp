@@ -11,14 +11,21 @@
 #include "pcednet/core/random.h"
 #include "pcednet/gls/fast_scale_space.h"
 #include "pcednet/gls/scale_space.h"
+#include "pcednet/spatial/curve_order.h"
 #include "support/expect_error.h"
 
 namespace pcednet::gls {
 namespace {
 
+ScaleRange range_of(const std::vector<Vec3>& positions, const ScaleRange& given) {
+  return scale_range(positions, given, [&] {
+    return spacings_of_places(positions, spatial::curve_order(positions));
+  });
+}
+
 ErrorKind kind_of_error(const std::vector<Vec3>& positions, const ScaleRange& given = {}) {
   try {
-    scale_range(positions, spatial::KdTree(positions), given);
+    range_of(positions, given);
   } catch (const Error& error) {
     return error.kind();
   }
@@ -34,7 +41,7 @@ TEST(Scales, SmallestIsTheMeanDistanceToTenNeighbours) {
     std::partial_sort(distances.begin(), distances.begin() + 11, distances.end());
     sum += std::accumulate(distances.begin() + 1, distances.begin() + 11, 0.0) / 10;
   }
-  const auto range = scale_range(cloud.positions, spatial::KdTree(cloud.positions), {});
+  const auto range = range_of(cloud.positions, {});
   EXPECT_NEAR(range.s_min / (sum / 3000), 1.0, 1e-13);
   // The cube with noise at its corners: between 1 and 1.1 times its own diagonal.
   EXPECT_GT(range.s_max, 0.1 * std::sqrt(3.0));
@@ -72,11 +79,11 @@ TEST(Scales, RefuseCloudsInOnePlace) {
 
 TEST(Scales, ReachTwiceTheSpacingOfSparseClouds) {
   const std::vector<Vec3> two = {Vec3(1, 2, 3), Vec3(1, 2, 5)};
-  const auto range = scale_range(two, spatial::KdTree(two), {});
+  const auto range = range_of(two, {});
   EXPECT_EQ(range.s_min, 2.0);
   EXPECT_EQ(range.s_max, 4.0);
   const auto cloud = test::cube(1000, 1);
-  const auto given = scale_range(cloud.positions, spatial::KdTree(cloud.positions), {0.5, 0.0});
+  const auto given = range_of(cloud.positions, {0.5, 0.0});
   EXPECT_EQ(given.s_min, 0.5);
   EXPECT_EQ(given.s_max, 1.0);
 }
@@ -84,53 +91,65 @@ TEST(Scales, ReachTwiceTheSpacingOfSparseClouds) {
 TEST(Scales, AreThePapersWhereverItHasSome) {
   // At the border between the two rules: the paper's s_max just above and just below s_min.
   const auto cloud = test::cube(1000, 1);
-  const spatial::KdTree tree(cloud.positions);
-  const double s_min = scale_range(cloud.positions, tree, {}).s_min;
-  const double diagonal = scale_range(cloud.positions, tree, {0.0, 0.0, 1.0}).s_max;
+  const double s_min = range_of(cloud.positions, {}).s_min;
+  const double diagonal = range_of(cloud.positions, {0.0, 0.0, 1.0}).s_max;
   const double border = s_min / diagonal;
-  EXPECT_NEAR(scale_range(cloud.positions, tree, {0.0, 0.0, 1.01 * border}).s_max, 1.01 * s_min,
-              1e-12);
-  EXPECT_EQ(scale_range(cloud.positions, tree, {0.0, 0.0, 0.99 * border}).s_max, 2.0 * s_min);
+  EXPECT_NEAR(range_of(cloud.positions, {0.0, 0.0, 1.01 * border}).s_max, 1.01 * s_min, 1e-12);
+  EXPECT_EQ(range_of(cloud.positions, {0.0, 0.0, 0.99 * border}).s_max, 2.0 * s_min);
 }
 
-TEST(Scales, OfPointsWithManyCopiesAreThoseOfOneEach) {
-  const auto cloud = test::cube(1000, 1);
-  std::vector<Vec3> copies;
-  for (int copy = 0; copy < 11; ++copy) {
-    copies.insert(copies.end(), cloud.positions.begin(), cloud.positions.end());
+TEST(Scales, AreThoseOfOnePointAtEachPlace) {
+  constexpr ScaleRange kTenfold = {.s_max_ratio = 10.0};
+  const auto cloud = test::cube(3000, 1);
+  ScaleSpaceOptions options;
+  options.s_max_ratio = 10.0;
+  const FastScaleSpace fast({cloud.positions, cloud.normals}, options);
+  for (const std::size_t copies : {1u, 700u, 3000u, 33000u}) {
+    test::Cloud with = cloud;
+    for (std::size_t i = 0; i < copies; ++i) {
+      with.positions.push_back(cloud.positions[i % 3000]);
+      with.normals.push_back(i % 5 == 0 ? Vec3::UnitX() : cloud.normals[i % 3000]);
+    }
+    for (const ScaleRange& given : {kTenfold, ScaleRange{}}) {
+      const ScaleRange one = range_of(cloud.positions, given),
+                       many = range_of(with.positions, given);
+      EXPECT_EQ(many.s_min, one.s_min);
+      EXPECT_EQ(many.s_max, one.s_max);
+    }
+    const auto scales = FastScaleSpace({with.positions, with.normals}, options).scales();
+    for (std::size_t i = 0; i < scales.size(); ++i) {
+      EXPECT_NEAR(scales[i] / fast.scales()[i], 1.0, 1e-12);
+    }
+    EXPECT_EQ(ExactScaleSpace({with.positions, with.normals}, options).scales().front(),
+              range_of(with.positions, kTenfold).s_min);
   }
-  const auto one = scale_range(cloud.positions, spatial::KdTree(cloud.positions), {});
-  const auto many = scale_range(copies, spatial::KdTree(copies), {});
-  EXPECT_NEAR(many.s_min / one.s_min, 1.0, 1e-13);
-  EXPECT_EQ(many.s_max, one.s_max);
 }
 
 TEST(Scales, OfARatioFollowTheSpacingAlone) {
   constexpr ScaleRange kTenfold = {.s_max_ratio = 10.0};
   const auto cloud = test::cube(4000, 1);
-  const auto whole = scale_range(cloud.positions, spatial::KdTree(cloud.positions), kTenfold);
+  const auto whole = range_of(cloud.positions, kTenfold);
   EXPECT_DOUBLE_EQ(whole.s_max, 10.0 * whole.s_min);
 
   std::vector<Vec3> side;
   for (const Vec3& p : cloud.positions) {
     if (p.z() > 0.0) side.push_back(p);
   }
-  const auto half = scale_range(side, spatial::KdTree(side), kTenfold);
+  const auto half = range_of(side, kTenfold);
   EXPECT_NEAR(half.s_min / whole.s_min, 1.0, 0.03);
-  const auto given = scale_range(side, spatial::KdTree(side), {.s_min = 0.5, .s_max_ratio = 10.0});
+  const auto given = range_of(side, {.s_min = 0.5, .s_max_ratio = 10.0});
   EXPECT_DOUBLE_EQ(given.s_max, 5.0);
-  EXPECT_ERROR(ErrorKind::kUsage, scale_range(side, spatial::KdTree(side), {.s_max_ratio = 0.5}));
+  EXPECT_ERROR(ErrorKind::kUsage, range_of(side, {.s_max_ratio = 0.5}));
 }
 
 TEST(Scales, OfARatioAreNotMovedByAThrownPoint) {
   constexpr ScaleRange kTenfold = {.s_max_ratio = 10.0};
   auto positions = test::cube(4000, 1).positions;
-  const double s_min = scale_range(positions, spatial::KdTree(positions), kTenfold).s_min;
-  const double mean = scale_range(positions, spatial::KdTree(positions), {}).s_min;
+  const double s_min = range_of(positions, kTenfold).s_min;
+  const double mean = range_of(positions, {}).s_min;
   positions.emplace_back(1000.0, 0.0, 0.0);
-  const spatial::KdTree tree(positions);
-  EXPECT_NEAR(scale_range(positions, tree, kTenfold).s_min / s_min, 1.0, 0.001);
-  EXPECT_GT(scale_range(positions, tree, {}).s_min / mean, 2.0);
+  EXPECT_NEAR(range_of(positions, kTenfold).s_min / s_min, 1.0, 0.001);
+  EXPECT_GT(range_of(positions, {}).s_min / mean, 2.0);
 }
 
 /// A plane seen from the origin: the spacing grows with the range, `reach` times in all.
@@ -146,7 +165,7 @@ std::vector<Vec3> fan(double reach) {
 
 TEST(Scales, OfARatioReachFurtherWhereTheSpacingVaries) {
   const auto reach_of = [](const std::vector<Vec3>& positions) {
-    const auto range = scale_range(positions, spatial::KdTree(positions), {.s_max_ratio = 10.0});
+    const auto range = range_of(positions, {.s_max_ratio = 10.0});
     return range.s_max / range.s_min;
   };
   // The quartiles of the spacing are sqrt(6) apart, but for the randomness of the points.
@@ -184,11 +203,10 @@ TEST(Scales, AreTheSameFromBothEngines) {
 
 TEST(Scales, KeepGivenBoundsAndRefuseImpossibleOnes) {
   const auto cloud = test::cube(1000, 1);
-  const spatial::KdTree tree(cloud.positions);
-  const auto range = scale_range(cloud.positions, tree, {0.05, 0.0});
+  const auto range = range_of(cloud.positions, {0.05, 0.0});
   EXPECT_EQ(range.s_min, 0.05);
   EXPECT_NEAR(range.s_max, 0.1 * std::sqrt(3.0), 1e-3);
-  EXPECT_EQ(scale_range(cloud.positions, tree, {0.0, 0.7}).s_max, 0.7);
+  EXPECT_EQ(range_of(cloud.positions, {0.0, 0.7}).s_max, 0.7);
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (const ScaleRange& bad : {ScaleRange{-1, 0}, ScaleRange{0, -1}, ScaleRange{nan, 0},
                                 ScaleRange{0, 1 / 0.0}, ScaleRange{0.5, 0.5}, ScaleRange{2, 1}}) {

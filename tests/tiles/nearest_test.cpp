@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "pcednet/core/random.h"
+#include "pcednet/spatial/curve_order.h"
 
 namespace pcednet::tiles {
 namespace {
@@ -21,14 +22,16 @@ TEST(NearestInStream, FindsWhatBruteForceFinds) {
   }
   points.emplace_back(-7e5, 3e5, 1e3);
   points.push_back(Vec3::Constant(NAN));
+  std::vector<std::uint32_t> distinct = spatial::curve_order(points);  // the finite ones
+  distinct.erase(std::unique(distinct.begin(), distinct.end(),
+                             [&](auto a, auto b) { return points[a] == points[b]; }),
+                 distinct.end());
   std::vector<Vec3> places;
   std::vector<double> reach;
   std::vector<std::vector<double>> expected;
   for (std::size_t i = 0; i < 3000; i += 7) {
     std::vector<double> all;
-    for (const Vec3& p : points) {
-      if (p.allFinite()) all.push_back((p - points[i]).squaredNorm());
-    }
+    for (const std::uint32_t k : distinct) all.push_back((points[k] - points[i]).squaredNorm());
     std::sort(all.begin(), all.end());
     all.resize(gls::kSpacingNeighbours);
     places.push_back(points[i]);

@@ -13,6 +13,7 @@
 #include "pcednet/core/parallel.h"
 #include "pcednet/detect/decide.h"
 #include "pcednet/detect/part_of_cloud.h"
+#include "pcednet/spatial/curve_order.h"
 #include "pcednet/spatial/neighbour_search.h"
 #include "pcednet/spatial/opening.h"
 
@@ -75,16 +76,10 @@ struct DistinctPoints {
 };
 
 DistinctPoints distinct_points(const PreparedCloud& cloud) {
-  DistinctPoints points{cloud};
-  points.positions.reserve(cloud.curve.size());
-  points.first.reserve(cloud.curve.size() + 1);
-  for (std::size_t i = 0; i < cloud.curve.size(); ++i) {
-    const Vec3& position = cloud.positions[cloud.curve[i]];
-    if (i > 0 && position == points.positions.back()) continue;
-    points.positions.push_back(position);
-    points.first.push_back(static_cast<std::uint32_t>(i));
-  }
-  points.first.push_back(static_cast<std::uint32_t>(cloud.curve.size()));
+  DistinctPoints points{cloud, spatial::in_order(cloud.positions, cloud.curve),
+                        spatial::starts_of_places(cloud.positions, cloud.curve)};
+  points.positions.erase(std::unique(points.positions.begin(), points.positions.end()),
+                         points.positions.end());
   return points;
 }
 

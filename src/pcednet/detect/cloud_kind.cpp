@@ -13,6 +13,7 @@
 #include "pcednet/detect/part_of_cloud.h"
 #include "pcednet/normals/estimate.h"
 #include "pcednet/normals/neighbour_count.h"
+#include "pcednet/spatial/curve_order.h"
 
 namespace pcednet::detect {
 namespace {
@@ -41,7 +42,7 @@ bool are_as_estimated(const PreparedCloud& cloud) {
   const double least_cosine = std::cos(5.0 / 180.0 * std::numbers::pi);
   const auto estimated = normals::estimate_normals(cloud.positions);
   std::vector<double> cosines;
-  for (const std::uint32_t i : cloud.curve) {
+  for (const std::uint32_t i : spatial::firsts_of_places(cloud.positions, cloud.curve)) {
     cosines.push_back(std::abs(estimated[i].dot(cloud.normals[i])));
   }
   const auto quarter = cosines.begin() + static_cast<std::ptrdiff_t>(cosines.size() / 4);
@@ -60,11 +61,7 @@ CloudFacts facts_of(const PreparedCloud& cloud, const gls::ScaleSpaceOptions& de
   if (cloud.part) {
     facts.points = cloud.part->points;
   } else if (descriptor.s_min <= 0.0 || descriptor.s_max <= 0.0) {
-    facts.points = 0;
-    for (std::size_t i = 0; i < cloud.curve.size(); ++i) {
-      facts.points +=
-          i == 0 || cloud.positions[cloud.curve[i]] != cloud.positions[cloud.curve[i - 1]];
-    }
+    facts.points = spatial::firsts_of_places(cloud.positions, cloud.curve).size();
   }
   constexpr std::size_t kFew = 20000;  // above, the same networks decide in either case
   if (!facts.estimated && facts.points < kFew) facts.estimated = are_as_estimated(cloud);

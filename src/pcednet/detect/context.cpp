@@ -13,6 +13,7 @@
 #include "pcednet/detect/describe.h"
 #include "pcednet/detect/principal_axes.h"
 #include "pcednet/nn/predict.h"
+#include "pcednet/spatial/curve_order.h"
 
 namespace pcednet::detect {
 namespace {
@@ -124,48 +125,44 @@ nn::Architecture context_architecture(int classes) {
 
 ContextPlaces::ContextPlaces(std::span<const Vec3> positions, std::span<const std::uint32_t> curve,
                              const Classification& found)
-    : order_(curve.begin(), curve.end()) {
-  std::erase_if(order_, [&](std::uint32_t i) { return found.classes[i] == kUnlabelled; });
-  positions_.resize(order_.size());
-  parallel_blocks(order_.size(), kPart, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) positions_[i] = positions[order_[i]];
-  });
-  for (std::size_t first = 0, last = 0; first < order_.size(); first = last) {
-    for (last = first + 1; last < order_.size() && positions_[last] == positions_[first];) ++last;
-    if (last - first == 1) continue;
-    copies_.push_back({static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(last)});
+    : points_(curve.begin(), curve.end()) {
+  std::erase_if(points_, [&](std::uint32_t i) { return found.classes[i] == kUnlabelled; });
+  positions_ = spatial::in_order(positions, points_);
+  starts_ = spatial::starts_of_places(positions, points_);
+  if (starts_.size() > points_.size()) {
+    std::vector<std::uint32_t>().swap(starts_);
+  } else {
+    positions_.erase(std::unique(positions_.begin(), positions_.end()), positions_.end());
   }
   search_.emplace(positions_);
-}
-
-std::vector<std::uint32_t> ContextPlaces::order(const Classification& found) const {
-  std::vector<std::uint32_t> order = order_;
-  const auto surer = [&](std::uint32_t a, std::uint32_t b) {
-    return std::tie(found.p_sharp[a], found.p_smooth[a]) >
-           std::tie(found.p_sharp[b], found.p_smooth[b]);
-  };
-  for (const auto& [first, last] : copies_) {
-    std::stable_sort(order.begin() + first, order.begin() + last, surer);
-  }
-  return order;
 }
 
 ContextMatrix::ContextMatrix(const ContextPlaces& places, const Classification& found, int classes,
                              float least_edge)
     : around_(&places), kinds_(classes - 1) {
-  const std::vector<std::uint32_t> order = places.order(found);
-  probabilities_.resize(order.size());
-  parallel_blocks(order.size(), kPart, [&](std::size_t begin, std::size_t end) {
+  const auto probabilities_of = [&](std::uint32_t point) -> std::array<float, 2> {
+    return {found.p_sharp[point], found.p_sharp[point] + found.p_smooth[point]};
+  };
+  const auto is_less_sure = [&](std::uint32_t a, std::uint32_t b) {
+    return std::tie(found.p_sharp[a], found.p_smooth[a]) <
+           std::tie(found.p_sharp[b], found.p_smooth[b]);
+  };
+  probabilities_.resize(places.size());
+  parallel_blocks(places.size(), kPart, [&](std::size_t begin, std::size_t end) {
     for (std::size_t place = begin; place < end; ++place) {
-      const float sharp = found.p_sharp[order[place]];
-      probabilities_[place] = {sharp, sharp + found.p_smooth[order[place]]};
+      const auto points = places.points(place);
+      probabilities_[place] =
+          probabilities_of(*std::max_element(points.begin(), points.end(), is_less_sure));
     }
   });
-  for (std::size_t place = 0; place < order.size(); ++place) {
-    if (probabilities_[place][1] < least_edge) continue;
-    if (found.classes[order[place]] > kSharpEdge) continue;
-    points_.push_back(order[place]);
-    places_.push_back(static_cast<std::uint32_t>(place));
+  for (std::size_t place = 0; place < places.size(); ++place) {
+    for (const std::uint32_t point : places.points(place)) {
+      const std::array<float, 2> own = probabilities_of(point);
+      if (own[1] < least_edge || found.classes[point] > kSharpEdge) continue;
+      points_.push_back(point);
+      places_.push_back(static_cast<std::uint32_t>(place));
+      own_.push_back(own);
+    }
   }
 }
 
@@ -173,17 +170,20 @@ void ContextMatrix::describe(std::size_t begin, std::size_t end, std::span<float
   const std::size_t count = around_->search().available(kContextSizes.back());
   parallel_blocks(end - begin, 1024, [&](std::size_t first, std::size_t last) {
     const auto places = std::span(places_).subspan(begin + first, last - first);
-    std::vector<spatial::Neighbour> near(places.size() * count);
-    around_->search().nearest_others(places, count, near);
-    for (std::size_t i = 0; i < places.size(); ++i) {
-      describe_point(places[i], std::span(near).subspan(i * count, count),
+    std::vector<std::uint32_t> distinct(places.begin(), places.end());
+    distinct.erase(std::unique(distinct.begin(), distinct.end()), distinct.end());
+    std::vector<spatial::Neighbour> near(distinct.size() * count);
+    around_->search().nearest_others(distinct, count, near);
+    for (std::size_t i = 0, k = 0; i < places.size(); ++i) {
+      if (places[i] != distinct[k]) ++k;
+      describe_point(places[i], own_[begin + first + i], std::span(near).subspan(k * count, count),
                      rows.data() + (first + i) * width());
     }
   });
 }
 
-void ContextMatrix::describe_point(std::size_t place, std::span<const spatial::Neighbour> near,
-                                   float* row) const {
+void ContextMatrix::describe_point(std::size_t place, const std::array<float, 2>& own,
+                                   std::span<const spatial::Neighbour> near, float* row) const {
   const auto kinds = static_cast<std::size_t>(kinds_);
   constexpr std::size_t kSizes = kContextSizes.size();
   static_assert(2 * kSizes <= SymmetricMatrices::kLanes);
@@ -207,14 +207,13 @@ void ContextMatrix::describe_point(std::size_t place, std::span<const spatial::N
   PrincipalAxes axes;
   find_principal_axes(covariances, axes);
   for (std::size_t kind = 0; kind < kinds; ++kind) {
-    const auto own = static_cast<double>(probabilities_[place][kind]);
     for (std::size_t size = 0; size < kSizes; ++size) {
       const std::size_t lane = kind * kSizes + size;
       float* const out = row + size * features() + kind * std::size_t{kContextFeatures};
       if (near.empty()) {
         std::fill_n(out, kContextFeatures, 0.0f);
       } else {
-        write_features(around[lane], axes, lane, own, out);
+        write_features(around[lane], axes, lane, static_cast<double>(own[kind]), out);
       }
     }
   }

@@ -22,7 +22,7 @@ nn::Architecture context_architecture(int classes);
 /// Numbers per size and kind of edge, see ContextMatrix.
 constexpr int kContextFeatures = 8;
 
-/// The points of a cloud that have a class, for ContextMatrix. Independent of a network's
+/// The places of a cloud's points that have a class, for ContextMatrix. Independent of a network's
 /// predictions, and so made once for many networks.
 class ContextPlaces {
  public:
@@ -31,17 +31,18 @@ class ContextPlaces {
   ContextPlaces(std::span<const Vec3> positions, std::span<const std::uint32_t> curve,
                 const Classification& found);
 
-  /// The points by place, along the curve. Among points at one position the more probable edges
-  /// come first, so that the choice of the nearest does not depend on the numbering.
-  std::vector<std::uint32_t> order(const Classification& found) const;
-
+  std::size_t size() const { return positions_.size(); }
+  /// The points at a place: one, or points with the same position.
+  std::span<const std::uint32_t> points(std::size_t place) const {
+    if (starts_.empty()) return std::span(points_).subspan(place, 1);
+    return std::span(points_).subspan(starts_[place], starts_[place + 1] - starts_[place]);
+  }
   std::span<const Vec3> positions() const { return positions_; }  ///< by place
   const spatial::NeighbourSearch& search() const { return *search_; }
 
  private:
-  std::vector<std::uint32_t> order_;
-  std::vector<std::array<std::uint32_t, 2>> copies_ =
-      {};  ///< first and last of the points at one position
+  std::vector<std::uint32_t> points_;       ///< place by place, along the curve
+  std::vector<std::uint32_t> starts_ = {};  ///< of the places, and the end; empty: a point each
   std::vector<Vec3> positions_;
   std::optional<spatial::NeighbourSearch> search_ = {};
 };
@@ -51,9 +52,10 @@ class ContextPlaces {
 ///
 /// Like the scale-space matrix, it has a row per point of sizes x features, smallest size first.
 /// The kinds of edge are sharp-edge and, with three classes, any edge. For each kind, let p_j be
-/// its probability at the k nearest points, y_j their positions relative to the point, r the
-/// distance of the last, w_j = 1 - |y_j|^2 / (1.2 r^2), c and C the mean and covariance of the y_j
-/// / r with weights w_j p_j, and l1 >= l2 >= l3 the eigenvalues of C. The features are
+/// its probability at the k nearest places, of the surest point there, y_j their positions relative
+/// to the point, r the distance of the last, w_j = 1 - |y_j|^2 / (1.2 r^2), c and C the mean and
+/// covariance of the y_j / r with weights w_j p_j, and l1 >= l2 >= l3 the eigenvalues of C. The
+/// features are
 ///
 ///     log(p / (1 - p)) of the point itself    S w p / S w    max p    |c|    sqrt(l1 + l2 + l3)
 ///     distance of the point from the line through c along C's first axis    sqrt(l1)
@@ -81,13 +83,14 @@ class ContextMatrix {
   void describe(std::size_t begin, std::size_t end, std::span<float> rows) const;
 
  private:
-  void describe_point(std::size_t place, std::span<const spatial::Neighbour> near,
-                      float* row) const;
+  void describe_point(std::size_t place, const std::array<float, 2>& own,
+                      std::span<const spatial::Neighbour> near, float* row) const;
 
   const ContextPlaces* around_;
   int kinds_;
   std::vector<std::array<float, 2>> probabilities_;  ///< by place, of sharp-edge and of any edge
   std::vector<std::uint32_t> points_, places_;       ///< to describe, and their places
+  std::vector<std::array<float, 2>> own_;            ///< probabilities of these points
 };
 
 /// Replaces the predictions in `result` by those of the context network. `classes` are the

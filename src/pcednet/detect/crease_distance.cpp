@@ -4,9 +4,11 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "pcednet/core/parallel.h"
 #include "pcednet/normals/exact_planes.h"
+#include "pcednet/spatial/curve_order.h"
 #include "pcednet/spatial/neighbour_search.h"
 
 namespace pcednet::detect {
@@ -105,11 +107,11 @@ float nearest_crease(const Vec3& own, NearFaces& around) {
   return static_cast<float>(nearest);
 }
 
-/// The points of a cloud by their place on its curve.
+/// The places of a cloud's points along its curve.
 class FacePlaces {
  public:
-  FacePlaces(std::span<const Vec3> positions, std::span<const std::uint32_t> curve, double unit)
-      : unit_(unit), positions_(along(positions, curve)), search_(positions_) {}
+  FacePlaces(std::vector<Vec3> positions, double unit)
+      : unit_(unit), positions_(std::move(positions)), search_(positions_) {}
 
   std::size_t size() const { return positions_.size(); }
   std::size_t available(std::size_t count) const { return search_.available(count); }
@@ -160,14 +162,6 @@ class FacePlaces {
   }
 
  private:
-  static std::vector<Vec3> along(std::span<const Vec3> positions,
-                                 std::span<const std::uint32_t> curve) {
-    std::vector<Vec3> ordered(curve.size());
-    std::transform(curve.begin(), curve.end(), ordered.begin(),
-                   [&](std::uint32_t i) { return positions[i]; });
-    return ordered;
-  }
-
   double unit_;
   std::vector<Vec3> positions_;
   spatial::NeighbourSearch search_;
@@ -195,22 +189,33 @@ std::vector<std::uint32_t> united(std::span<const std::uint32_t> places,
 std::vector<float> crease_distances(std::span<const Vec3> positions,
                                     std::span<const std::uint32_t> curve,
                                     std::span<const std::uint8_t> wanted, double unit) {
-  std::vector<float> distances(positions.size(), kNoCrease);
+  const std::vector<std::uint32_t> starts = spatial::starts_of_places(positions, curve);
+  const auto points_at = [&](std::uint32_t place) {
+    return curve.subspan(starts[place], starts[place + 1] - starts[place]);
+  };
   std::vector<std::uint32_t> places;
-  for (std::uint32_t place = 0; place < curve.size(); ++place) {
-    if (wanted[curve[place]] != 0) places.push_back(place);
+  for (std::uint32_t place = 0; place + 1 < starts.size(); ++place) {
+    const auto points = points_at(place);
+    if (std::any_of(points.begin(), points.end(), [&](auto i) { return wanted[i] != 0; })) {
+      places.push_back(place);
+    }
   }
-  const FacePlaces cloud(positions, curve, unit);
+  const FacePlaces cloud(spatial::in_order(positions, spatial::firsts_of_places(positions, curve)),
+                         unit);
   const std::size_t others = cloud.available(kNearest);
   const auto rows = cloud.nearest_others(places, others);
   const auto normals = cloud.face_normals(united(places, rows, cloud.size()));
+  std::vector<float> distances(positions.size(), kNoCrease);
   parallel_blocks(places.size(), kPointsAtATime, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       const Vec3& own = normals[places[k]];
       if (own.isZero(0.0)) continue;
       const auto near = std::span(rows).subspan(k * others, others);
       NearFaces around = cloud.near_faces(places[k], near, normals);
-      distances[curve[places[k]]] = nearest_crease(own, around);
+      const float distance = nearest_crease(own, around);
+      for (const std::uint32_t i : points_at(places[k])) {
+        if (wanted[i] != 0) distances[i] = distance;
+      }
     }
   });
   return distances;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "pcednet/spatial/curve_order.h"
+
 namespace pcednet::detect {
 namespace {
 
@@ -16,9 +18,7 @@ std::vector<std::uint32_t> nearest_around(std::span<const Vec3> positions,
   std::vector<std::uint32_t> near;
   const std::size_t begin = i - std::min(i, kAround);
   for (std::size_t k = begin; k < std::min(i + kAround, curve.size()); ++k) {
-    const Vec3& position = positions[curve[k]];
-    const bool is_copy = k > begin && position == positions[curve[k - 1]];
-    if (!is_copy && position != centre) near.push_back(curve[k]);
+    if (k != i) near.push_back(curve[k]);
   }
   const std::size_t count = std::min(NearOnCurve::kNear, near.size());
   std::partial_sort(near.begin(), near.begin() + static_cast<std::ptrdiff_t>(count), near.end(),
@@ -31,12 +31,13 @@ std::vector<std::uint32_t> nearest_around(std::span<const Vec3> positions,
 
 NearOnCurve near_on_curve(std::span<const Vec3> positions, std::span<const std::uint32_t> curve) {
   NearOnCurve found;
-  const std::size_t samples = std::min(NearOnCurve::kSamples, curve.size());
+  const std::vector<std::uint32_t> places = spatial::firsts_of_places(positions, curve);
+  const std::size_t samples = std::min(NearOnCurve::kSamples, places.size());
   for (std::size_t s = 0; s < samples; ++s) {
-    const std::size_t i = s * curve.size() / samples;
-    const auto near = nearest_around(positions, curve, i);
+    const std::size_t i = s * places.size() / samples;
+    const auto near = nearest_around(positions, places, i);
     if (near.size() < NearOnCurve::kNear) continue;
-    found.points.push_back(curve[i]);
+    found.points.push_back(places[i]);
     found.neighbours.insert(found.neighbours.end(), near.begin(), near.end());
   }
   return found;

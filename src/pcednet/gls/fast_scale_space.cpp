@@ -69,17 +69,21 @@ FastScaleSpace::FastScaleSpace(OrientedPoints points, const ScaleSpaceOptions& o
     throw Error(ErrorKind::kUsage, "the fast engine reconstructs with algebraic spheres only");
   }
   Stage stage(progress, "prepare", 3);
-  std::vector<std::uint32_t> curve = point_order(points);
+  order_ = point_order(points);
   stage.advance();
-  order_ = curve;
-  arrange_in_groups(points.positions, order_);
-  place_ = places_in(order_, points.positions.size());
-  share_places(points, curve, place_);
+  std::vector<std::uint32_t> distinct = distinct_points(points, order_);
+  places_ = distinct.size();
   unit_ = unit_for(bounding_box(points.positions));
-  pyramid_ = make_pyramid(points.positions, points.normals, order_, unit_, points.whole);
-  stage.advance();
-  find_scales(points, curve);
-  std::vector<std::uint32_t>().swap(curve);  // before the levels take their memory
+  {
+    std::vector<std::uint32_t> groups = distinct;
+    arrange_in_groups(points.positions, groups);
+    place_ = places_in(groups, points.positions.size());
+    pyramid_ = make_pyramid(points.positions, points.normals, groups, unit_, points.whole);
+    stage.advance();
+    find_scales(points, distinct);
+    add_copies(points, groups, order_, place_);
+  }
+  std::vector<std::uint32_t>().swap(distinct);  // before the levels take their memory
   stage.advance();
   std::vector<double> scaled = scales_;
   for (double& scale : scaled) scale *= unit_;
@@ -101,8 +105,11 @@ void FastScaleSpace::find_scales(OrientedPoints points, std::span<const std::uin
                             [&](std::size_t i) { return level.voxels[i].position; });
     return mean_distance(std::span(sq_distances).first(found)) / unit_;
   };
-  scales_ = sample_scales(scale_range(points.positions, given_range(options_),
-                                      [&] { return sampled_spacings(curve.size(), distance); }),
+  const auto spacings = [&] {
+    return have_copies(points.positions, curve) ? spacings_of_places(points.positions, curve)
+                                                : sampled_spacings(curve.size(), distance);
+  };
+  scales_ = sample_scales(scale_range(points.positions, given_range(options_), spacings),
                           options_.scales);
 }
 
@@ -139,7 +146,7 @@ void FastScaleSpace::describe_block(std::span<const Visit> visits, std::span<flo
     return;
   }
   const std::size_t begin = visits.front().place / kPointsTogether * kPointsTogether;
-  const std::size_t end = std::min(begin + kPointsTogether, order_.size());
+  const std::size_t end = std::min(begin + kPointsTogether, places_);
   std::array<std::uint32_t, kPointsTogether + 1>
       first_visit;  // to each place of the block, or later
   for (std::size_t i = 0, v = 0; i <= kPointsTogether; ++i) {

@@ -65,7 +65,8 @@ class FastScaleSpace {
   ScaleSpaceOptions options_;
   const LaneKernels* kernels_;
   std::vector<std::uint32_t> order_, place_;
-  double unit_ = 1.0;  ///< the factor of the pyramid's coordinates, a power of two
+  std::size_t places_ = 0;  ///< copies of a point share one
+  double unit_ = 1.0;       ///< the factor of the pyramid's coordinates, a power of two
   VoxelPyramid pyramid_;
   std::vector<double> scales_;
 };

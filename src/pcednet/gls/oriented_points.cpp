@@ -20,6 +20,12 @@ bool is_less(const Vec3& a, const Vec3& b) {
   return std::lexicographical_compare(p.data(), p.data() + 3, q.data(), q.data() + 3);
 }
 
+bool are_copies(OrientedPoints points, std::uint32_t i, std::uint32_t j) {
+  if (points.positions[i] != points.positions[j]) return false;
+  const Vec3 &n = points.normals[i], &m = points.normals[j];
+  return is_usable(n) ? n == m : !is_usable(m);
+}
+
 void refuse(const std::string& why) {
   throw Error(ErrorKind::kUsage, why);
 }
@@ -75,20 +81,31 @@ std::vector<std::uint32_t> places_in(std::span<const std::uint32_t> order, std::
   return places;
 }
 
-void share_places(OrientedPoints points, std::span<const std::uint32_t> order,
-                  std::span<std::uint32_t> places) {
-  const auto are_equal = [&](std::uint32_t i, std::uint32_t j) {
-    if (points.positions[i] != points.positions[j]) return false;
-    const Vec3 &n = points.normals[i], &m = points.normals[j];
-    return is_usable(n) ? n == m : !is_usable(m);
-  };
-  for (auto first = order.begin(); first != order.end();) {
-    std::uint32_t place = places[*first];
-    auto last = first + 1;
-    for (; last != order.end() && are_equal(*first, *last); ++last) {
-      place = std::min(place, places[*last]);
+std::vector<std::uint32_t> distinct_points(OrientedPoints points,
+                                           std::span<const std::uint32_t> order) {
+  std::vector<std::uint32_t> distinct;
+  distinct.reserve(order.size());
+  for (const std::uint32_t i : order) {
+    if (distinct.empty() || !are_copies(points, distinct.back(), i)) distinct.push_back(i);
+  }
+  return distinct;
+}
+
+void add_copies(OrientedPoints points, std::span<const std::uint32_t> distinct,
+                std::vector<std::uint32_t>& order, std::span<std::uint32_t> places) {
+  if (distinct.size() < order.size()) {
+    std::uint32_t original = order.front();
+    for (const std::uint32_t i : order) {
+      if (are_copies(points, original, i)) {
+        places[i] = places[original];
+      } else {
+        original = i;
+      }
     }
-    for (; first != last; ++first) places[*first] = place;
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::uint32_t i, std::uint32_t j) { return places[i] < places[j]; });
+  } else {
+    order.assign(distinct.begin(), distinct.end());
   }
 }
 

@@ -36,10 +36,15 @@ inline constexpr std::uint32_t kNowhere = std::numeric_limits<std::uint32_t>::ma
 /// The place of each of `count` points in `order`.
 std::vector<std::uint32_t> places_in(std::span<const std::uint32_t> order, std::size_t count);
 
-/// Gives points with equal position and normal the first of their places, so that their relative
-/// order does not matter. `order` is that of point_order().
-void share_places(OrientedPoints points, std::span<const std::uint32_t> order,
-                  std::span<std::uint32_t> places);
+/// The points without copies: of those with equal position and normal the first in `order`, which
+/// is that of point_order().
+std::vector<std::uint32_t> distinct_points(OrientedPoints points,
+                                           std::span<const std::uint32_t> order);
+
+/// Gives copies of the points in `distinct` their places, and puts them after them in `order`, that
+/// of point_order().
+void add_copies(OrientedPoints points, std::span<const std::uint32_t> distinct,
+                std::vector<std::uint32_t>& order, std::span<std::uint32_t> places);
 
 /// A requested row of a matrix, and the place of the point it describes.
 struct Visit {

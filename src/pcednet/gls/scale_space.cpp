@@ -50,15 +50,18 @@ ExactScaleSpace::ExactScaleSpace(OrientedPoints points, const ScaleSpaceOptions&
   check(points, options);
   Stage stage(progress, "prepare", 3);
   order_ = point_order(points);
-  place_ = places_in(order_, points.positions.size());
-  for (const std::uint32_t i : order_) {
+  const std::vector<std::uint32_t> distinct = distinct_points(points, order_);
+  place_ = places_in(distinct, points.positions.size());
+  add_copies(points, distinct, order_, place_);
+  for (const std::uint32_t i : distinct) {
     positions_.push_back(points.positions[i]);
     normals_.push_back(is_usable(points.normals[i]) ? points.normals[i] : Vec3::Zero());
   }
   stage.advance();
   tree_ = spatial::KdTree(positions_);
   stage.advance();
-  scales_ = sample_scales(scale_range(positions_, tree_, given_range(options)), options.scales);
+  const auto spacings = [&] { return spacings_of_places(points.positions, distinct); };
+  scales_ = sample_scales(scale_range(positions_, given_range(options), spacings), options.scales);
   stage.advance();
 }
 

@@ -29,24 +29,6 @@ void check_given(double bound, const char* name) {
       fmt::format("{} is {}: a positive length is needed, or 0 for the cloud's own", name, bound));
 }
 
-/// The spacings of points in curve order, from their tree.
-std::vector<double> spacings_in(std::span<const Vec3> positions, const spatial::KdTree& tree) {
-  return sampled_spacings(positions.size(), [&](std::size_t place) {
-    std::vector<spatial::Neighbour> found;
-    std::array<double, kSpacingNeighbours> sq_distances;
-    tree.nearest(positions[place], kSpacingNeighbours, found);
-    for (std::size_t i = 0; i < found.size(); ++i) sq_distances[i] = found[i].sq_distance;
-    return mean_distance(std::span(sq_distances).first(found.size()));
-  });
-}
-
-/// The spacings of the finite points without copies.
-std::vector<double> spacings_of_distinct(std::span<const Vec3> positions) {
-  std::vector<Vec3> distinct = spatial::in_order(positions, spatial::curve_order(positions));
-  distinct.erase(std::unique(distinct.begin(), distinct.end()), distinct.end());
-  return spacings_in(distinct, spatial::KdTree(distinct));
-}
-
 /// Block by block: in another order the last digits of every s_min would change.
 double mean_of(std::span<const double> values) {
   constexpr std::size_t kBlock = 256;
@@ -69,14 +51,13 @@ Spacing spacing_of(std::vector<double> spacings) {
   std::sort(spacings.begin(), spacings.end());
   const std::size_t quarter = spacings.size() / 4;
   const auto half = std::span(spacings).subspan(quarter, spacings.size() - 2 * quarter);
-  const double quartiles = half.back() / half.front();  // infinite if half of the points are copies
+  const double quartiles = half.back() / half.front();
   return {mean_of(half), std::clamp(quartiles / kEvenQuartiles, 1.0, kLargestSpread)};
 }
 
-ScaleRange tied_range(const ScaleRange& given, std::span<const Vec3> positions,
+ScaleRange tied_range(const ScaleRange& given,
                       const std::function<std::vector<double>()>& spacings) {
-  Spacing spacing = spacing_of(spacings());
-  if (spacing.middle == 0.0) spacing = spacing_of(spacings_of_distinct(positions));
+  const Spacing spacing = spacing_of(spacings());
   ScaleRange range = given;
   if (range.s_min == 0.0) range.s_min = spacing.middle;
   if (range.s_max == 0.0) range.s_max = given.s_max_ratio * spacing.spread * range.s_min;
@@ -84,11 +65,10 @@ ScaleRange tied_range(const ScaleRange& given, std::span<const Vec3> positions,
 }
 
 /// The paper's range.
-ScaleRange range_by_extent(const ScaleRange& given, std::span<const Vec3> positions,
-                           double diagonal, const std::function<std::vector<double>()>& spacings) {
+ScaleRange range_by_extent(const ScaleRange& given, double diagonal,
+                           const std::function<std::vector<double>()>& spacings) {
   ScaleRange range = given;
   if (range.s_min == 0.0) range.s_min = mean_of(spacings());
-  if (range.s_min == 0.0) range.s_min = mean_of(spacings_of_distinct(positions));
   if (range.s_max > 0.0) return range;
   range.s_max = given.s_max_fraction * diagonal;
   if (!(range.s_min < range.s_max)) range.s_max = kSparseRange * range.s_min;
@@ -114,9 +94,24 @@ std::vector<double> sampled_spacings(std::size_t points,
   return spacings;
 }
 
-ScaleRange scale_range(std::span<const Vec3> positions, const spatial::KdTree& tree,
-                       const ScaleRange& given) {
-  return scale_range(positions, given, [&] { return spacings_in(positions, tree); });
+bool have_copies(std::span<const Vec3> positions, std::span<const std::uint32_t> curve) {
+  return std::adjacent_find(curve.begin(), curve.end(), [&](std::uint32_t i, std::uint32_t j) {
+           return positions[i] == positions[j];
+         }) != curve.end();
+}
+
+std::vector<double> spacings_of_places(std::span<const Vec3> positions,
+                                       std::span<const std::uint32_t> curve) {
+  const std::vector<Vec3> places =
+      spatial::in_order(positions, spatial::firsts_of_places(positions, curve));
+  const spatial::KdTree tree(places);
+  return sampled_spacings(places.size(), [&](std::size_t place) {
+    std::vector<spatial::Neighbour> found;
+    std::array<double, kSpacingNeighbours> sq_distances;
+    tree.nearest(places[place], kSpacingNeighbours, found);
+    for (std::size_t i = 0; i < found.size(); ++i) sq_distances[i] = found[i].sq_distance;
+    return mean_distance(std::span(sq_distances).first(found.size()));
+  });
 }
 
 ScaleRange scale_range(std::span<const Vec3> positions, const ScaleRange& given,
@@ -134,10 +129,9 @@ ScaleRange scale_range(std::span<const Vec3> positions, const ScaleRange& given,
                     "points at two places or more are needed",
                     diagonal));
   }
-  const ScaleRange range = both_given ? given
-                           : given.s_max_ratio > 0.0
-                               ? tied_range(given, positions, spacings)
-                               : range_by_extent(given, positions, diagonal, spacings);
+  const ScaleRange range = both_given                ? given
+                           : given.s_max_ratio > 0.0 ? tied_range(given, spacings)
+                                                     : range_by_extent(given, diagonal, spacings);
   if (kShortest < range.s_min && range.s_min < range.s_max && range.s_max < kLongest) return range;
   throw Error(
       ErrorKind::kUsage,

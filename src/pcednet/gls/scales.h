@@ -1,14 +1,11 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <span>
 #include <vector>
 
 #include "pcednet/core/vec3.h"
-
-namespace pcednet::spatial {
-class KdTree;
-}
 
 namespace pcednet::gls {
 
@@ -26,9 +23,9 @@ struct ScaleRange {
   double s_max_ratio = 0.0;  ///< s_max over s_min in even clouds; 0: s_max_fraction rules
 };
 
-/// Mean distances to the 10 nearest other points (to all others if there are fewer): for every
-/// point or, in clouds of more than 16384, for 16384 points at equal steps along the curve order.
-/// `distance(place)` is that of the point at a place of the order.
+/// Mean distances to the 10 nearest other places (to all others if there are fewer): for every
+/// place or, if there are more than 16384, for 16384 at equal steps along the curve order.
+/// `distance(place)` is that of a place of the order.
 std::vector<double> sampled_spacings(std::size_t points,
                                      const std::function<double(std::size_t)>& distance);
 
@@ -47,19 +44,22 @@ inline constexpr std::size_t kSpacingNeighbours = 11;
 /// nor a few far points change the range.
 ///
 /// Without one, the paper's range: s_min = the mean of `spacings()`, s_max = s_max_fraction (10 %)
-/// of the diagonal of the bounding box. Where this gives no range:
-/// - A spacing of 0 (every point has ten copies) becomes the spacing of the distinct positions.
-/// - An s_max that was not given and is not above s_min (a sparse cloud: fewer than some 330 points
-///   on a cube) becomes kSparseRange times s_min; see note_on().
+/// of the diagonal of the bounding box. Where this gives no range,
+/// an s_max that was not given and is not above s_min (a sparse cloud: fewer than some 330 points
+/// on a cube) becomes kSparseRange times s_min; see note_on().
 ///
 /// Throws Error(kInsufficient) for fewer than two places unless both bounds are given,
 /// Error(kUsage) if a given bound is negative, not finite, or leaves no range.
 ScaleRange scale_range(std::span<const Vec3> positions, const ScaleRange& given,
                        const std::function<std::vector<double>()>& spacings);
 
-/// The same from a tree of `positions`, the finite points in curve order.
-ScaleRange scale_range(std::span<const Vec3> positions, const spatial::KdTree& tree,
-                       const ScaleRange& given);
+/// Whether points at one place follow each other in the order.
+bool have_copies(std::span<const Vec3> positions, std::span<const std::uint32_t> curve);
+
+/// The spacings of the places of points, which `curve` lists along their curve: copies of a point
+/// do not make the others denser.
+std::vector<double> spacings_of_places(std::span<const Vec3> positions,
+                                       std::span<const std::uint32_t> curve);
 
 /// `count` scales, smallest first: s_i = s_min (s_max / s_min)^((i - 1) / (count - 1)).
 /// Throws Error(kUsage) unless count is 4, 8, 16, 32, 64 or 128 and 0 < s_min < s_max.

@@ -1,6 +1,7 @@
 #include "pcednet/spatial/curve_order.h"
 
 #include <algorithm>
+#include <iterator>
 
 #include "pcednet/cloud/bounding_box.h"
 #include "pcednet/core/parallel_loops.h"
@@ -79,6 +80,26 @@ std::vector<std::uint32_t> curve_order(std::span<const Vec3> positions) {
   std::vector<std::uint32_t> order(keyed.size());
   parallel_for_each(order.size(), [&](std::size_t i) { order[i] = keyed[i].index; });
   return order;
+}
+
+std::vector<std::uint32_t> starts_of_places(std::span<const Vec3> positions,
+                                            std::span<const std::uint32_t> order) {
+  std::vector<std::uint32_t> starts;
+  starts.reserve(order.size() + 1);
+  for (std::uint32_t i = 0; i < order.size(); ++i) {
+    if (i == 0 || positions[order[i]] != positions[order[i - 1]]) starts.push_back(i);
+  }
+  starts.push_back(static_cast<std::uint32_t>(order.size()));
+  return starts;
+}
+
+std::vector<std::uint32_t> firsts_of_places(std::span<const Vec3> positions,
+                                            std::span<const std::uint32_t> order) {
+  std::vector<std::uint32_t> firsts;
+  firsts.reserve(order.size());
+  std::unique_copy(order.begin(), order.end(), std::back_inserter(firsts),
+                   [&](std::uint32_t i, std::uint32_t j) { return positions[i] == positions[j]; });
+  return firsts;
 }
 
 std::vector<Vec3> in_order(std::span<const Vec3> positions, std::span<const std::uint32_t> order) {

@@ -26,6 +26,7 @@ NearestInStream::NearestInStream(std::vector<Vec3> places, std::span<const doubl
   Row none;
   none.fill(std::numeric_limits<double>::infinity());
   nearest_.assign(places_.size(), none);
+  points_.resize(places_.size());
   for (std::uint32_t p = 0; p < places_.size(); ++p) {
     const double far = std::max(reach[p], 1e-100);
     sq_reach_.push_back(reach[p] * reach[p]);
@@ -64,7 +65,8 @@ void NearestInStream::look_around(const Vec3& point, std::vector<Found>& found) 
     if (cell == cells_.end()) continue;
     for (const std::uint32_t place : cell->second) {
       const double sq = sq_distance(point, places_[place]);
-      if (sq <= sq_reach_[place] && sq < nearest_[place].back()) found.push_back({place, sq});
+      if (sq <= sq_reach_[place] && sq < nearest_[place].back())
+        found.push_back({place, sq, point});
     }
   }
 }
@@ -76,14 +78,22 @@ void NearestInStream::add(std::span<const Vec3> points) {
     for (std::size_t i = begin; i < end; ++i) look_around(points[i], found[begin / kTogether]);
   });
   for (const std::vector<Found>& some : found) {
-    for (const auto& [place, sq] : some) {
-      Row& row = nearest_[place];
-      if (!(sq < row.back())) continue;
-      const auto at = std::upper_bound(row.begin(), row.end(), sq);
-      std::copy_backward(at, row.end() - 1, row.end());
-      *at = sq;
-    }
+    for (const Found& one : some) insert(one);
   }
+}
+
+void NearestInStream::insert(const Found& found) {
+  Row& row = nearest_[found.place];
+  auto& points = points_[found.place];
+  if (!(found.sq_distance < row.back())) return;
+  const auto [first, last] = std::equal_range(row.begin(), row.end(), found.sq_distance);
+  const auto begin = points.begin() + (first - row.begin()),
+             at = points.begin() + (last - row.begin());
+  if (std::find(begin, at, found.point) != at) return;
+  std::copy_backward(last, row.end() - 1, row.end());
+  std::copy_backward(at, points.end() - 1, points.end());
+  *last = found.sq_distance;
+  *at = found.point;
 }
 
 }  // namespace pcednet::tiles

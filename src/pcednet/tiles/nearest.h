@@ -11,7 +11,8 @@
 
 namespace pcednet::tiles {
 
-/// The exact nearest points of given places, in a stream of points that is never stored.
+/// The exact nearest places of points to given ones, in a stream of points that is never stored:
+/// copies of a point count once.
 class NearestInStream {
  public:
   /// `reach`: a distance within which each place has its nearest ones.
@@ -19,7 +20,7 @@ class NearestInStream {
 
   void add(std::span<const Vec3> points);
 
-  /// The squared distances of the nearest points to a place, ascending; infinite where there are
+  /// The squared distances of the nearest ones to a place, ascending; infinite where there are
   /// fewer.
   std::span<const double> of(std::size_t place) const { return nearest_[place]; }
 
@@ -28,6 +29,7 @@ class NearestInStream {
   struct Found {
     std::uint32_t place;
     double sq_distance;
+    Vec3 point;
   };
   struct Cell {
     int size;  ///< its edge is 2^size
@@ -38,10 +40,12 @@ class NearestInStream {
     std::size_t operator()(const Cell& cell) const;
   };
   void look_around(const Vec3& point, std::vector<Found>& found) const;
+  void insert(const Found& found);
 
   std::vector<Vec3> places_;
   std::vector<double> sq_reach_;
   std::vector<Row> nearest_;
+  std::vector<std::array<Vec3, gls::kSpacingNeighbours>> points_;  ///< at these distances
   std::vector<int> sizes_ = {};  ///< of the cells in use, as powers of two
   std::unordered_map<Cell, std::vector<std::uint32_t>, CellHash> cells_ = {};
 };

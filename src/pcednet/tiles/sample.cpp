@@ -108,6 +108,7 @@ Spacing find_spacing(const SampledPoints& sample, const Plan& plan, const gls::S
   if (plan.normals.rounding.step > 0.0) {
     positions = spatial::in_order(positions, spatial::curve_order(positions));
   }
+  positions.erase(std::unique(positions.begin(), positions.end()), positions.end());
   std::vector<double> spacings = spacings_from({positions, sample.is_all}, plan, counts, progress);
   if (!sample.is_all) positions.insert(positions.end(), {plan.box.min, plan.box.max});
   Spacing spacing{.range = gls::scale_range(positions, given, [&] { return spacings; })};

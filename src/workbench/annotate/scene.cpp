@@ -30,11 +30,10 @@ std::shared_ptr<const Scene> load_scene(const std::filesystem::path& input,
   const Progress quiet = without_report(progress);
   scene->boundary = detect::find_boundary(scene->prepared, &quiet);
   stage.advance();
-  std::vector<Vec3> ordered;
-  for (const std::uint32_t i : spatial::curve_order(scene->cloud.positions)) {
-    ordered.push_back(scene->cloud.positions[i]);
-  }
-  const auto range = gls::scale_range(ordered, spatial::KdTree(ordered), {});
+  const auto curve = spatial::curve_order(scene->cloud.positions);
+  const std::vector<Vec3> ordered = spatial::in_order(scene->cloud.positions, curve);
+  const auto range = gls::scale_range(
+      ordered, {}, [&] { return gls::spacings_of_places(scene->cloud.positions, curve); });
   scene->spacing = range.s_min;
   const auto scales = gls::sample_scales(range, gls::ScaleSpaceOptions{}.scales);
   if (const auto note = gls::note_on({}, scales, ordered); !note.empty()) {
