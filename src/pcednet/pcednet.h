@@ -18,7 +18,7 @@
 ///
 /// Link pcednet::pcednet. Point files are read and written by formats/read_cloud.h and
 /// formats/write_cloud.h, lines are written by io/drawing/drawing.h: find_package(pcednet
-/// COMPONENTS formats), pcednet::formats.
+/// COMPONENTS formats), pcednet::formats and pcednet::io_drawing.
 
 #include "pcednet/cloud/point_cloud.h"
 #include "pcednet/core/error.h"

@@ -449,6 +449,12 @@ class Tiles(CliTest):
         self.assertIn("smaller", run("tiles", "run", plan, "--max-memory", "1M", expect=2).stderr)
         self.assertIn("convert", run("tiles", "plan", self.text_cloud(), "-o",
                                      self.folder / "q.json", expect=2).stderr)
+        p, n = field(2, 300)
+        p[7] = (1e9, 1e9, 0)
+        write_ply(self.folder / "far.ply", p, n)
+        self.assertIn("points far from all others?",
+                      run("tiles", "plan", self.folder / "far.ply", "-o", self.folder / "q.json",
+                          "--tile", 1, expect=2).stderr)
         (self.folder / "no.json").write_text("{}")
         for command in ("run", "status"):
             run("tiles", command, self.folder / "no.json", expect=3)

@@ -9,6 +9,8 @@
 
 #include "detect/labelled_cube.h"
 #include "pcednet/core/parallel.h"
+#include "pcednet/detect/result_cloud.h"
+#include "support/expect_error.h"
 
 namespace pcednet::detect {
 namespace {
@@ -233,6 +235,16 @@ TEST(Boundary, IsClearWithoutNoiseOnly) {
   };
   EXPECT_EQ(share_clear(0.0), 1.0);
   EXPECT_LT(share_clear(0.7), 0.2);
+}
+
+TEST(Boundary, OfAnotherCloudIsRefused) {
+  PointCloud cloud = sheet(500, 0.0);
+  const PreparedCloud prepared = prepare(cloud);
+  for (const std::size_t points : {0u, 499u, 501u}) {
+    Classification found = nothing_found(points);
+    EXPECT_ERROR(ErrorKind::kUsage, mark_boundary(prepared, found));
+    EXPECT_ERROR(ErrorKind::kUsage, add_result(cloud, prepared, found, EdgeModel{}));
+  }
 }
 
 }  // namespace

@@ -245,6 +245,17 @@ TEST(FindLines, RefusesWhatIsNoProbability) {
   }
 }
 
+TEST(FindLines, RefusesACurveOfOtherPoints) {
+  const Cloud cloud = cube(500);
+  for (const std::vector<std::uint32_t>& curve :
+       {std::vector<std::uint32_t>{1, 2, 500}, std::vector<std::uint32_t>(501, 3)}) {
+    EXPECT_ERROR(ErrorKind::kUsage, find_lines({.positions = cloud.positions,
+                                                .normals = cloud.normals,
+                                                .classes = cloud.classes,
+                                                .curve = curve}));
+  }
+}
+
 TEST(FindLines, CanBeLookedAtStepByStep) {
   const Cloud cloud = cube(20000);
   const auto at = [&](LineStage stage) { return lines_of(cloud, {.stage = stage}); };

@@ -339,6 +339,7 @@ void mark_boundary(std::span<const BoundaryPoint> boundary, std::span<std::uint8
 }
 
 void mark_boundary(const PreparedCloud& cloud, Classification& found, const Progress* progress) {
+  check_size(found, cloud.positions.size());
   mark_boundary(find_boundary(cloud, progress), found.classes);
   found.counts = count_classes(found.classes);
 }

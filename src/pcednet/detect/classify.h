@@ -36,6 +36,9 @@ struct Classification {
   std::optional<CloudKind> expert = {};  ///< the kind of cloud whose expert decided
 };
 
+/// Throws Error(kUsage) if the result is not one of so many points.
+void check_size(const Classification& found, std::size_t points);
+
 /// A result with all of `points` unlabelled, for a model with own classes or with edge classes
 /// only.
 Classification nothing_found(std::size_t points, bool has_own_classes = false);

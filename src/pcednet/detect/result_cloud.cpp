@@ -78,6 +78,7 @@ void add_class_comments(PointCloud& cloud, const ClassTable& table) {
 
 KeptInput add_result(PointCloud& cloud, const PreparedCloud& prepared, const Classification& result,
                      const EdgeModel& model, const ResultOptions& options) {
+  check_size(result, cloud.size());
   KeptInput kept;
   const bool classified_before = find_attribute(cloud, "scalar_edge_class") != nullptr ||
                                  find_attribute(cloud, "scalar_class") != nullptr;

@@ -65,6 +65,11 @@ void check(const EdgePoints& points, const LineOptions& options) {
     throw Error(ErrorKind::kUsage,
                 "positions, normals, classes and probabilities differ in number");
   }
+  const bool in_range = std::all_of(points.curve.begin(), points.curve.end(),
+                                    [&](std::uint32_t i) { return i < count; });
+  if (points.curve.size() > count || !in_range) {
+    throw Error(ErrorKind::kUsage, fmt::format("the curve is not of {} points", count));
+  }
   for (const std::span<const float> probabilities : {points.p_sharp, points.p_smooth}) {
     for (const float p : probabilities) {
       if (p >= 0.0f && p <= 1.0f) continue;

@@ -182,6 +182,14 @@ Sample index_inputs(const PlanRequest& request, Plan& plan, const Progress* prog
 /// The length of the cells in which points are counted: the tiles are a whole number of them.
 double counting_cell(const PlanRequest& request, const BoundingBox& box) {
   if (request.tile_length == 0.0) return cell_length(box);
+  constexpr double kMostCells = 1e8;
+  const Vec3 extent = box.max - box.min;
+  if (!((extent.x() / request.tile_length) * (extent.y() / request.tile_length) < kMostCells)) {
+    throw Error(ErrorKind::kUsage,
+                fmt::format("tiles of length {:g} over an extent of {:g} x {:g}: too many; points "
+                            "far from all others?",
+                            request.tile_length, extent.x(), extent.y()));
+  }
   double cell = request.tile_length;  // halves of it are exact
   while (cell > cell_length(box)) cell *= 0.5;
   return cell;

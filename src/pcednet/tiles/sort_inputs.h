@@ -21,8 +21,8 @@ struct SortRequest {
 /// Replaces the inputs of a plan by copies in the folder: a file for each tile, its points along a
 /// space-filling curve, so that a tile needs to read little more than its own. Columns and
 /// coordinates stay unchanged. Takes the disk space of all points uncompressed, temporarily twice,
-/// and the memory of one tile. Throws Error(kUsage) before any work if a copy would replace an input
-/// or, without Overwrite::kYes, another file.
+/// and the memory of one tile. Throws Error(kUsage) before any work if a copy would replace an
+/// input or, without Overwrite::kYes, another file.
 ///
 /// If `numbered`, the copies have a further column, kNumberColumn: the number of each point,
 /// counted through all inputs.
