@@ -3,9 +3,12 @@
 #include <malloc.h>
 #endif
 
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <exception>
 #include <filesystem>
+#include <iostream>
 #include <memory>
 #include <new>
 
@@ -28,6 +31,13 @@ void keep_freed_memory() {
   mallopt(M_MMAP_THRESHOLD, 32 << 20);
   mallopt(M_TRIM_THRESHOLD, 128 << 20);
 #endif
+}
+
+/// Throws if what was printed could not be written, as on a full disk.
+void check_printed() {
+  std::cout.flush();
+  if (std::cout && std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return;
+  throw Error(ErrorKind::kFailure, fmt::format("standard output: {}", std::strerror(errno)));
 }
 
 int run(int argc, char** argv) {
@@ -75,6 +85,7 @@ int run(int argc, char** argv) {
     app.exit(error, asked_for_help ? std::cout : std::cerr, std::cerr);
     return asked_for_help ? 0 : static_cast<int>(ErrorKind::kUsage);
   }
+  check_printed();
   return 0;
 }
 

@@ -51,6 +51,8 @@ def scanners(places, rows):
         return None
     array = numbers(places, "viewpoint")
     if array.shape == (3,):
+        if not np.isfinite(array).all():
+            raise UsageError(f"viewpoint: {array}: a place is needed")
         array = np.broadcast_to(array, (rows, 3))
     array = vectors(array, "viewpoint", rows)
     return array if np.isfinite(array).all(axis=1).any() else None

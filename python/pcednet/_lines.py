@@ -1,5 +1,6 @@
 """Edges as curves."""
 
+import math
 import os
 
 from . import _arrays, _clouds, _core
@@ -46,8 +47,12 @@ class Lines(list):
         ExistsError
             The file exists and `overwrite` is False.
         UsageError
-            Another extension.
+            Another extension, or a tolerance or code below 0.
         """
+        if not 0.0 <= float(tolerance) < math.inf:
+            raise UsageError(f"tolerance: {tolerance}: a length of 0 or more is needed")
+        if epsg is not None and int(epsg) <= 0:
+            raise UsageError(f"epsg: {epsg}: a code above 0 is needed")
         settings = {"epsg": epsg, "unit": unit, "tolerance": float(tolerance),
                     "dxf_version": str(dxf_version), "view": view, "overwrite": bool(overwrite)}
         _core.write_lines(os.fspath(path), list(self), settings, self.kept)
@@ -103,6 +108,8 @@ def lines(xyz, labels=None, normals=None, *, p_sharp=None, p_smooth=None,
         As :func:`classify`.
     """
     classes, kinds = _some(classes, _SHORT.values(), "classes"), _some(kinds, _KINDS, "kinds")
+    if not 0.0 <= min_confidence <= 1.0:
+        raise UsageError(f"min_confidence: {min_confidence}: a number from 0 to 1 is needed")
     if labels is None:
         labels = classify(xyz, normals, viewpoint=viewpoint, threads=threads, progress=progress)
     positions, given, scanners = _clouds.points_of(xyz, normals, viewpoint)
@@ -134,6 +141,8 @@ def lines(xyz, labels=None, normals=None, *, p_sharp=None, p_smooth=None,
 
 def _some(names, known, what):
     names = [names] if isinstance(names, str) else list(names)
+    if not names:
+        raise UsageError(f"{what}: at least one of {', '.join(known)} is needed")
     for name in names:
         if name not in known:
             raise UsageError(f"{what}: {name!r}: there are {', '.join(known)}")

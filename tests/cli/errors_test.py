@@ -1,11 +1,12 @@
 """Bad input of every kind: the right exit code, a message that names the file, nothing lost."""
 import os
 import resource
+import subprocess
 import unittest
 
 import numpy as np
 
-from support import CliTest, cube, run, write_ply
+from support import PROGRAM, CliTest, cube, run, write_ply
 
 
 class Errors(CliTest):
@@ -74,6 +75,15 @@ class Errors(CliTest):
                    naming="m.safetensors")
         self.fails(2, "classify", self.folder / "a.ply", "--model", "no-such-model",
                    naming="no-such-model")
+
+    def test_what_is_printed_and_lost_is_an_error(self):
+        write_ply(self.folder / "a.ply", *cube(500))
+        for arguments in (("info", "a.ply"), ("info", "a.ply", "--json", "-")):
+            with open("/dev/full", "w") as full:
+                done = subprocess.run([PROGRAM, *arguments], stdout=full, stderr=subprocess.PIPE,
+                                      text=True, cwd=self.folder)
+            self.assertEqual(done.returncode, 1, arguments)
+            self.assertIn("standard output: No space left on device", done.stderr)
 
     def test_a_full_disk_leaves_nothing_half_written(self):
         write_ply(self.folder / "a.ply", *cube(20000)[:2])

@@ -73,10 +73,14 @@ class Lines(CliTest):
                 found.write(self.path("b.dxf"), **wrong)
         with self.assertRaises(pcednet.UsageError):
             found.write(self.path("b.dwg"))
+        for wrong in ({"tolerance": -1.0}, {"tolerance": float("nan")}, {"epsg": -5}):
+            with self.assertRaisesRegex(pcednet.UsageError, "is needed"):
+                found.write(self.path("b.gpkg"), **wrong)
 
     def test_wrong_choices_are_refused(self):
         for wrong in ({"classes": ["crease"]}, {"kinds": "spline"}, {"stage": "end"},
-                      {"gap": -1.0}):
+                      {"gap": -1.0}, {"angle": 0.0}, {"angle": 400.0}, {"min_confidence": 2.0},
+                      {"classes": []}, {"viewpoint": (0.0, 0.0, float("nan"))}):
             with self.assertRaises(pcednet.UsageError):
                 pcednet.lines(self.positions, self.result, **wrong)
 

@@ -55,6 +55,10 @@ void check(const EdgePoints& points, const LineOptions& options) {
                   fmt::format("{} is neither a length nor an angle: it must be 0 or more", number));
     }
   }
+  if (!(options.angle > 0.0 && options.angle <= 180.0)) {
+    throw Error(ErrorKind::kUsage,
+                fmt::format("the angle {} is not above 0, up to 180 degrees", options.angle));
+  }
   const std::size_t count = points.positions.size();
   const auto fits = [&](std::size_t size) { return size == count; };
   const bool sound = fits(points.normals.size()) && fits(points.classes.size()) &&

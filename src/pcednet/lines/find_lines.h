@@ -21,7 +21,7 @@ enum class LineStage : std::uint8_t {
 struct LineOptions {
   double min_length = 0.0;  ///< shorter curves are left out; 0: 3 spacings
   double gap = 0.0;         ///< curves continue over gaps up to it; 0: 6 spacings
-  double angle = 30.0;      ///< degrees: curves are split where they bend by more
+  double angle = 30.0;      ///< degrees, up to 180: curves are split where they bend by more
   double tolerance = 0.0;   ///< distance of points to a curve; 0: 0.2 spacings, more with noise
   bool regularise = false;  ///< makes nearly parallel and nearly orthogonal segments exactly so
   bool boundaries = false;  ///< also lines where the sampled surface ends
