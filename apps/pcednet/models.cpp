@@ -69,8 +69,8 @@ tiles::PlannedModel planned_model(const ModelArguments& arguments) {
           .exact = arguments.scales.engine == gls::Engine::kExact};
 }
 
-void check_not_model(const std::filesystem::path& output, const ModelArguments& arguments) {
-  if (!arguments.name.empty()) check_not_input(output, find_model(arguments.name));
+std::filesystem::path model_file(const ModelArguments& arguments) {
+  return arguments.name.empty() ? std::filesystem::path() : find_model(arguments.name);
 }
 
 detect::EdgeModel load_model(const ModelArguments& arguments) {

@@ -41,8 +41,9 @@ void add_model_options(CLI::App& command, ModelArguments& arguments);
 /// The model as a plan of tiles names it. Throws as find_model() does.
 tiles::PlannedModel planned_model(const ModelArguments& arguments);
 
-/// check_not_input() for the file of the model. Throws as find_model() does.
-void check_not_model(const std::filesystem::path& output, const ModelArguments& arguments);
+/// The file of the model, for check_not_input(); empty without a model. Throws as find_model()
+/// does.
+std::filesystem::path model_file(const ModelArguments& arguments);
 
 /// Throws as find_model() and detect::load_model() do.
 detect::EdgeModel load_model(const ModelArguments& arguments);

@@ -9,7 +9,7 @@ import unittest
 import numpy as np
 
 from support import PROGRAM, CliTest, read_ply, run, write_ply
-from tiles_test import field
+from tiles_support import field
 
 CHANCE = ("quality", "scalar_p_sharp", "scalar_p_smooth")  # their last digits may differ
 LABELS = ("label", "scalar_edge_class", "red", "green", "blue")

@@ -18,7 +18,7 @@ import unittest
 SOURCE = pathlib.Path(os.environ["PCEDNET_SOURCE_DIR"])
 sys.path.insert(0, str(SOURCE / "tests/cli"))
 
-import tiles_test
+import tiles_support
 from support import PROGRAM, CliTest, run, write_ply
 
 EXAMPLES = SOURCE / "examples/large"
@@ -90,7 +90,7 @@ class Engine(CliTest):
     def setUp(self):
         super().setUp()
         self.folder.chmod(0o755)
-        write_ply(self.folder / "cloud.ply", *tiles_test.field(3, 300))
+        write_ply(self.folder / "cloud.ply", *tiles_support.field(3, 300))
         self.plan = self.folder / "p.json"
         run("tiles", "plan", self.folder / "cloud.ply", "-o", self.plan, "--tile", 1)
         self.count = len(json.loads(self.plan.read_text())["tiles"])

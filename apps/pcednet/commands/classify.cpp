@@ -251,8 +251,9 @@ void classify(const ClassifyArguments& arguments, const Common& common) {
   const Inputs inputs = find_inputs(arguments.inputs);
   Batch batch(inputs);
   const auto [jobs, skipped] = plan_results(inputs, arguments.results, common);
+  const fs::path used = model_file(arguments.model);
   for (const Job& job : jobs) {
-    for (const auto& file : {job.output, job.preview}) check_not_model(file, arguments.model);
+    for (const auto& file : {job.output, job.preview}) check_not_input(file, used);
   }
   std::size_t done = 0;
   for (const Job& job : jobs) {

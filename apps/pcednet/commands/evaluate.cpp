@@ -175,7 +175,7 @@ void evaluate(EvaluateArguments arguments, const Common& common) {
   }
   check_not_inputs(arguments.json, arguments.inputs);
   if (!arguments.predictions.empty()) check_not_inputs(arguments.json, {arguments.predictions});
-  check_not_model(arguments.json, arguments.model);
+  check_not_input(arguments.json, model_file(arguments.model));
   if (arguments.json != "-") check_writable(arguments.json, common.overwrite());
   const Results results = score_all(arguments, common);
   const bool own = results.classes.clouds > 0;

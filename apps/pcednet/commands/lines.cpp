@@ -48,10 +48,11 @@ struct LabelledCloud {
 
 /// Throws before any work if the output could not be written after it.
 void check_outputs(const LinesArguments& arguments) {
+  const fs::path model = model_file(arguments.model);
   std::set<fs::path> taken;
   const auto check = [&](const fs::path& output) {
     check_not_input(output, arguments.input);
-    check_not_model(output, arguments.model);
+    check_not_input(output, model);
     check_writable(output, arguments.drawing.overwrite);
     if (taken.insert(output.lexically_normal()).second) return;
     throw Error(ErrorKind::kUsage, fmt::format("{}: named twice", output.string()));

@@ -46,7 +46,7 @@ fs::path folder_of(const PlanArguments& arguments) {
 
 void plan_tiles(const PlanArguments& arguments, const Common& common) {
   check_not_inputs(arguments.plan, arguments.inputs);
-  check_not_model(arguments.plan, arguments.model);
+  check_not_input(arguments.plan, model_file(arguments.model));
   check_writable(arguments.plan, common.overwrite());
   const ModelArguments& model = arguments.model;
   tiles::PlanRequest request{.inputs = expand_inputs(arguments.inputs),
@@ -155,10 +155,12 @@ void run_tiles(const RunArguments& arguments, const Common& common) {
   if (!common.overwrite_files) {
     std::erase_if(
         ids, [&](std::size_t id) { return tiles::state_of(plan, id) == tiles::TileState::kDone; });
-    for (const std::size_t id : ids) tiles::check_is_tile(plan.tiles[id].output);
   }
   const int jobs = jobs_within(arguments, plan);
-  for (const std::size_t id : ids) make_folder(plan.tiles[id].output.parent_path());
+  for (const std::size_t id : ids) {
+    make_folder(plan.tiles[id].output.parent_path());
+    if (!common.overwrite_files) tiles::check_is_tile(plan.tiles[id].output);
+  }
   if (jobs > 1 && ids.size() > 1) {
     tiles::load_planned_model(plan);  // throws before any process starts, as do the next lines
     for (const tiles::PlannedInput& input : plan.inputs) tiles::check_size(input);
@@ -276,7 +278,7 @@ void join_tiles(const JoinArguments& arguments, const Common& common) {
   }
   const tiles::Plan plan = tiles::read_plan(arguments.plan);
   for (const std::string& file : {arguments.output, arguments.vpc}) {
-    for (const tiles::PlannedInput& input : plan.inputs) check_not_input(file, input.path);
+    tiles::check_not_input(file, plan.inputs);
     for (const tiles::Tile& tile : plan.tiles) check_not_input(file, tile.output);
   }
   if (!arguments.vpc.empty()) list_tiles(plan, arguments.vpc, common);

@@ -76,11 +76,9 @@ struct DistinctPoints {
 };
 
 DistinctPoints distinct_points(const PreparedCloud& cloud) {
-  DistinctPoints points{cloud, spatial::in_order(cloud.positions, cloud.curve),
-                        spatial::starts_of_places(cloud.positions, cloud.curve)};
-  points.positions.erase(std::unique(points.positions.begin(), points.positions.end()),
-                         points.positions.end());
-  return points;
+  const auto firsts = spatial::firsts_of_places(cloud.positions, cloud.curve);
+  return {cloud, spatial::in_order(cloud.positions, firsts),
+          spatial::starts_of_places(cloud.positions, cloud.curve)};
 }
 
 /// A point with all its neighbours on one side.

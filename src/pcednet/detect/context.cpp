@@ -127,12 +127,11 @@ ContextPlaces::ContextPlaces(std::span<const Vec3> positions, std::span<const st
                              const Classification& found)
     : points_(curve.begin(), curve.end()) {
   std::erase_if(points_, [&](std::uint32_t i) { return found.classes[i] == kUnlabelled; });
-  positions_ = spatial::in_order(positions, points_);
-  starts_ = spatial::starts_of_places(positions, points_);
-  if (starts_.size() > points_.size()) {
-    std::vector<std::uint32_t>().swap(starts_);
+  if (spatial::have_copies(positions, points_)) {
+    starts_ = spatial::starts_of_places(positions, points_);
+    positions_ = spatial::in_order(positions, spatial::firsts_of_places(positions, points_));
   } else {
-    positions_.erase(std::unique(positions_.begin(), positions_.end()), positions_.end());
+    positions_ = spatial::in_order(positions, points_);
   }
   search_.emplace(positions_);
 }

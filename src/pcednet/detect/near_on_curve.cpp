@@ -9,16 +9,16 @@ namespace {
 
 /// The nearest to that of place `i`; fewer than kNear if there are not enough.
 std::vector<std::uint32_t> nearest_around(std::span<const Vec3> positions,
-                                          std::span<const std::uint32_t> curve, std::size_t i) {
+                                          std::span<const std::uint32_t> places, std::size_t i) {
   constexpr std::size_t kAround = 32;
-  const Vec3& centre = positions[curve[i]];
+  const Vec3& centre = positions[places[i]];
   const auto sq_distance = [&](std::uint32_t point) {
     return (positions[point] - centre).squaredNorm();
   };
   std::vector<std::uint32_t> near;
   const std::size_t begin = i - std::min(i, kAround);
-  for (std::size_t k = begin; k < std::min(i + kAround, curve.size()); ++k) {
-    if (k != i) near.push_back(curve[k]);
+  for (std::size_t k = begin; k < std::min(i + kAround, places.size()); ++k) {
+    if (k != i) near.push_back(places[k]);
   }
   const std::size_t count = std::min(NearOnCurve::kNear, near.size());
   std::partial_sort(near.begin(), near.begin() + static_cast<std::ptrdiff_t>(count), near.end(),

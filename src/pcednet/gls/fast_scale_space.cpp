@@ -10,6 +10,7 @@
 #include "pcednet/gls/block_evaluator.h"
 #include "pcednet/gls/scales.h"
 #include "pcednet/gls/target_groups.h"
+#include "pcednet/spatial/curve_order.h"
 
 namespace pcednet::gls {
 namespace {
@@ -106,8 +107,9 @@ void FastScaleSpace::find_scales(OrientedPoints points, std::span<const std::uin
     return mean_distance(std::span(sq_distances).first(found)) / unit_;
   };
   const auto spacings = [&] {
-    return have_copies(points.positions, curve) ? spacings_of_places(points.positions, curve)
-                                                : sampled_spacings(curve.size(), distance);
+    return spatial::have_copies(points.positions, curve)
+               ? spacings_of_places(points.positions, curve)
+               : sampled_spacings(curve.size(), distance);
   };
   scales_ = sample_scales(scale_range(points.positions, given_range(options_), spacings),
                           options_.scales);

@@ -94,12 +94,6 @@ std::vector<double> sampled_spacings(std::size_t points,
   return spacings;
 }
 
-bool have_copies(std::span<const Vec3> positions, std::span<const std::uint32_t> curve) {
-  return std::adjacent_find(curve.begin(), curve.end(), [&](std::uint32_t i, std::uint32_t j) {
-           return positions[i] == positions[j];
-         }) != curve.end();
-}
-
 std::vector<double> spacings_of_places(std::span<const Vec3> positions,
                                        std::span<const std::uint32_t> curve) {
   const std::vector<Vec3> places =

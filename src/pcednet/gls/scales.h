@@ -44,17 +44,14 @@ inline constexpr std::size_t kSpacingNeighbours = 11;
 /// nor a few far points change the range.
 ///
 /// Without one, the paper's range: s_min = the mean of `spacings()`, s_max = s_max_fraction (10 %)
-/// of the diagonal of the bounding box. Where this gives no range,
-/// an s_max that was not given and is not above s_min (a sparse cloud: fewer than some 330 points
-/// on a cube) becomes kSparseRange times s_min; see note_on().
+/// of the diagonal of the bounding box. Where this gives no range, an s_max that was not given and
+/// is not above s_min (a sparse cloud: fewer than some 330 points on a cube) becomes kSparseRange
+/// times s_min; see note_on().
 ///
 /// Throws Error(kInsufficient) for fewer than two places unless both bounds are given,
 /// Error(kUsage) if a given bound is negative, not finite, or leaves no range.
 ScaleRange scale_range(std::span<const Vec3> positions, const ScaleRange& given,
                        const std::function<std::vector<double>()>& spacings);
-
-/// Whether points at one place follow each other in the order.
-bool have_copies(std::span<const Vec3> positions, std::span<const std::uint32_t> curve);
 
 /// The spacings of the places of points, which `curve` lists along their curve: copies of a point
 /// do not make the others denser.

@@ -82,6 +82,12 @@ std::vector<std::uint32_t> curve_order(std::span<const Vec3> positions) {
   return order;
 }
 
+bool have_copies(std::span<const Vec3> positions, std::span<const std::uint32_t> order) {
+  return std::adjacent_find(order.begin(), order.end(), [&](std::uint32_t i, std::uint32_t j) {
+           return positions[i] == positions[j];
+         }) != order.end();
+}
+
 std::vector<std::uint32_t> starts_of_places(std::span<const Vec3> positions,
                                             std::span<const std::uint32_t> order) {
   std::vector<std::uint32_t> starts;

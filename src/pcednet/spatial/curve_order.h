@@ -16,6 +16,9 @@ namespace pcednet::spatial {
 /// order of their indices. Points that are not finite are left out. At most 2^32 - 1 points.
 std::vector<std::uint32_t> curve_order(std::span<const Vec3> positions);
 
+/// Whether points at one place follow each other in their order along the curve.
+bool have_copies(std::span<const Vec3> positions, std::span<const std::uint32_t> order);
+
 /// Where the points at each place begin in their order along the curve, and its length: copies of a
 /// point follow each other.
 std::vector<std::uint32_t> starts_of_places(std::span<const Vec3> positions,

@@ -9,6 +9,7 @@
 #include "pcednet/core/blocks.h"
 #include "pcednet/core/digest.h"
 #include "pcednet/core/error.h"
+#include "pcednet/core/output_file.h"
 #include "pcednet/core/parallel.h"
 #include "pcednet/formats/format.h"
 #include "pcednet/io/las/file.h"
@@ -150,6 +151,12 @@ std::unique_ptr<io::PartReader> open_chunks(const fs::path& path) {
               fmt::format("{}: tiles are read from LAS, LAZ and binary PLY without lists; "
                           "pcednet convert writes these",
                           path.string()));
+}
+
+void check_not_input(const fs::path& output, std::span<const PlannedInput> inputs) {
+  std::error_code ignored;
+  if (!fs::exists(output, ignored)) return;  // one look instead of one for each input
+  for (const PlannedInput& input : inputs) pcednet::check_not_input(output, input.path);
 }
 
 void check_size(const PlannedInput& input) {

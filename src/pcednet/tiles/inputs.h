@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <span>
@@ -22,6 +23,9 @@ std::unique_ptr<io::PartReader> open_chunks(const std::filesystem::path& path);
 /// The same for an input of a plan. Throws Error(kUnreadable) if its size or chunks are not those
 /// of the planned file.
 std::unique_ptr<io::PartReader> open_planned(const PlannedInput& input);
+
+/// Throws Error(kUsage) if the output is one of the inputs.
+void check_not_input(const std::filesystem::path& output, std::span<const PlannedInput> inputs);
 
 /// Throws Error(kUnreadable) if an input of a plan is missing, or has another size.
 void check_size(const PlannedInput& input);

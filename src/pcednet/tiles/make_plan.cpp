@@ -143,14 +143,6 @@ void check_inputs_differ(const PlanRequest& request) {
   }
 }
 
-/// Throws if a tile would replace an input.
-void check_tiles_are_no_inputs(const PlanRequest& request, const Plan& plan) {
-  for (const Tile& tile : plan.tiles) {
-    if (!std::filesystem::exists(tile.output)) continue;
-    for (const auto& input : request.inputs) check_not_input(tile.output, input);
-  }
-}
-
 /// Copies the inputs if the request says so; otherwise throws for inputs that need it.
 void settle_order(const PlanRequest& request, Plan& plan, const Progress* progress) {
   const double times = times_read(plan);
@@ -231,7 +223,7 @@ Plan make_plan(const PlanRequest& request, const detect::EdgeModel& model,
                        !request.output.empty()  ? request.output
                        : plan.las_steps.empty() ? "{ID}.ply"
                                                 : "{ID}.laz");
-  check_tiles_are_no_inputs(request, plan);
+  for (const Tile& tile : plan.tiles) check_not_input(tile.output, plan.inputs);
   plan.memory = memory_for(most_points(counts, plan.grid, plan.buffer), plan.normals);
   settle_order(request, plan, progress);
   return plan;

@@ -33,7 +33,7 @@ void check_copies(const SortRequest& request, const Plan& plan) {
   for (std::size_t id = 0; id < plan.tiles.size(); ++id) {
     for (const char* prefix : {kUnsorted, ""}) {
       const fs::path path = copy_path(request.folder, plan, id, prefix);
-      for (const PlannedInput& input : plan.inputs) check_not_input(path, input.path);
+      check_not_input(path, plan.inputs);
       check_writable(path, request.overwrite);
     }
   }

@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "pcednet/core/error.h"
-#include "pcednet/core/exists_already.h"
+#include "pcednet/core/output_file.h"
 #include "pcednet/io/input_file.h"
 #include "pcednet/tiles/sha256.h"
 
@@ -67,10 +67,7 @@ std::optional<TileRecord> read_record(const fs::path& tile) {
 
 void check_is_tile(const fs::path& tile) {
   if (read_record(tile)) return;
-  for (const fs::path& path : {tile, record_path(tile)}) {
-    std::error_code ignored;
-    if (fs::exists(fs::symlink_status(path, ignored))) throw ExistsAlready(path);
-  }
+  for (const fs::path& path : {tile, record_path(tile)}) check_writable(path, Overwrite::kNo);
 }
 
 TileState state_of(const Plan& plan, std::size_t tile, bool look_inside) {

@@ -32,7 +32,8 @@ void remove_claim(const std::filesystem::path& tile);
 /// The record of a tile; none if it is missing or damaged.
 std::optional<TileRecord> read_record(const std::filesystem::path& tile);
 
-/// Throws ExistsAlready if a file that is no tile's has the name of the tile or of its record.
+/// Throws as check_writable() does unless there is a record: a file that is no tile's may have the
+/// name of the tile or of its record.
 void check_is_tile(const std::filesystem::path& tile);
 
 enum class TileState { kMissing, kDamaged, kDone };

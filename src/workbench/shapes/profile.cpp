@@ -80,7 +80,7 @@ double Profile::sq_distance_to_nearest_run(const Vec2& p) const {
   if (runs_.size() < 2) return least;
   const Run* nearest = nullptr;
   for (const Run& run : runs_) {
-    const double to_disc = (p - run.middle).norm() - run.reach;
+    const double to_disc = run.distance_to_disc(p);
     if (to_disc < away) away = to_disc, nearest = &run;
   }
   for (std::size_t i = nearest->begin; i < nearest->end; ++i) {
@@ -93,7 +93,7 @@ double Profile::distance(const Vec2& p, std::size_t& nearest) const {
   double least = std::numeric_limits<double>::infinity();
   const double far = beyond(sq_distance_to_nearest_run(p));
   for (const Run& run : runs_) {
-    if ((p - run.middle).norm() - run.reach > far) continue;
+    if (run.distance_to_disc(p) > far) continue;
     for (std::size_t i = run.begin; i < run.end; ++i) {
       const double sq = sq_distance(sides_[i], p);
       // Where two sides meet, the one that is farther as a whole is the one seen from here.

@@ -43,6 +43,8 @@ class Profile {
     std::size_t begin, end;
     Vec2 middle;
     double reach;
+
+    double distance_to_disc(const Vec2& p) const { return (p - middle).norm() - reach; }
   };
 
   double sq_distance_to_nearest_run(const Vec2& p) const;

@@ -1,0 +1,214 @@
+"""pcednet tiles run: no point lost or doubled and nothing replaced, whatever happens on the way."""
+import os
+import pathlib
+import random
+import resource
+import shutil
+import signal
+import subprocess
+import unittest
+
+from support import PROGRAM, run, write_ply
+from tiles_support import TilesTest, field
+
+
+class TilesRun(TilesTest):
+    def test_only_what_is_missing_or_damaged_is_run(self):
+        plan, content = self.small()
+        run("tiles", "run", plan, "--tile", "0", "--tile", "2-4")
+        state = self.status(plan)
+        self.assertEqual(state["done"], [0, 2, 3, 4])
+        self.assertIn(f"  next: pcednet tiles run {plan}\n", run("tiles", "status", plan).stdout)
+        said = run("tiles", "join", plan, "-o", self.folder / "j.ply", expect=4).stderr
+        self.assertIn("missing or damaged: 1, 5 to ", said)
+        self.assertFalse((self.folder / "j.ply").exists())
+        run("tiles", "run", plan)
+        state = self.status(plan)
+        self.assertEqual(state["missing"] + state["damaged"], [])
+        self.assertEqual(state["done_points"], content["points"])
+        files = [self.folder / t["output"] for t in content["tiles"]]
+        before = [f.read_bytes() for f in files]
+        # Times say nothing: neither old nor future ones make a tile to be run.
+        for f, when in zip(files, (0, 1, 2**31, 2**33)):
+            os.utime(f, (when, when))
+            os.utime(str(f) + ".json", (2**33 - when, 2**33 - when))
+        said = run("tiles", "run", plan).stderr
+        self.assertIn("0 tiles run", said)
+        # Of four damages the last is seen by digest only.
+        files[0].unlink()
+        files[1].write_bytes(before[1][:-1])
+        pathlib.Path(str(files[2]) + ".json").unlink()
+        files[3].write_bytes(before[3][:-1] + bytes([before[3][-1] ^ 1]))
+        state = self.status(plan)
+        self.assertEqual((state["missing"], state["damaged"]), ([0, 2], [1]))
+        self.assertEqual(self.status(plan, "--verify")["damaged"], [1, 3])
+        self.assertIn("run %s --tile 1 --tile 3 --overwrite" % plan,
+                      run("tiles", "status", plan, "--verify").stdout)
+        said = run("tiles", "run", plan, "--missing", expect=2).stderr
+        self.assertIn(f"{files[2]}: exists already", said)  # for all that is known, not a tile
+        run("tiles", "run", plan, "--tile", 2, "--overwrite")
+        run("tiles", "run", plan, "--missing")
+        run("tiles", "run", plan, "--tile", 3, "--overwrite")
+        self.assertEqual([f.read_bytes() for f in files], before)
+        self.assertEqual(self.status(plan, "--verify")["done"], list(range(len(files))))
+
+    def test_tiles_and_copies_replace_nothing_else(self):
+        p, n = field(3, 300)
+        os.mkdir(self.folder / "in")
+        for name in ("0.ply", "1.ply", "unsorted_0.ply"):
+            write_ply(self.folder / "in" / name, p[::3], n[::3])
+        before = (self.folder / "in/0.ply").read_bytes()
+        plan, copies = self.folder / "p.json", self.folder / "copies"
+        for options in (("--out-dir", self.folder / "in"), ("--sort", self.folder / "in")):
+            said = run("tiles", "plan", self.folder / "in", "-o", plan, "--tile", 1.4, *options,
+                       "--overwrite", expect=2).stderr
+            self.assertIn("0.ply: is the input", said)
+        self.assertEqual(len(list((self.folder / "in").iterdir())), 3)
+        copies.mkdir()
+        (copies / "1.ply").write_text("precious")
+        sort = ("tiles", "plan", self.folder / "in/0.ply", "-o", plan, "--tile", 1.4, "--sort", copies)
+        self.assertIn("1.ply: exists already", run(*sort, expect=2).stderr)
+        self.assertEqual([f.name for f in copies.iterdir()], ["1.ply"])
+        run(*sort, "--overwrite")
+        tile = self.folder / "p_tiles/2.ply"
+        tile.parent.mkdir()
+        for name in ("2.ply", "2.ply.json"):
+            there = tile.parent / name
+            there.write_text("precious")
+            for jobs in (1, 2):
+                said = run("tiles", "run", plan, "--jobs", jobs, expect=2).stderr
+                self.assertIn(f"{there}: exists already; give --overwrite", said)
+            self.assertEqual(there.read_text(), "precious")
+            there.unlink()
+        run("tiles", "run", plan)
+        self.assertEqual((self.folder / "in/0.ply").read_bytes(), before)
+
+    def test_an_input_counts_once(self):
+        p, n = field(3, 300)
+        write_ply(self.folder / "a.ply", p, n)
+        (self.folder / "b.ply").symlink_to("a.ply")
+        for twice in ("a.ply", "b.ply", "."):
+            said = run("tiles", "plan", self.folder / "a.ply", self.folder / twice, "-o",
+                       self.folder / "p.json", expect=2).stderr
+            self.assertIn("the same file as the input", said)
+
+    def test_killed_at_random_nothing_is_lost(self):
+        plan, content = self.small(tile=1.0)
+        whole = self.folder / "small.ply"
+        chance = random.Random(17)
+        for attempt in range(200):
+            if not self.status(plan)["missing"]:
+                break
+            # Each attempt lives a little longer, so that one comes to its end at last.
+            process = subprocess.Popen([PROGRAM, "tiles", "run", str(plan), "--jobs",
+                                        str(1 + attempt % 2)], stderr=subprocess.DEVNULL,
+                                       start_new_session=True)
+            try:
+                process.wait(chance.uniform(0.02, 0.15 + 0.02 * attempt))
+            except subprocess.TimeoutExpired:
+                os.killpg(process.pid, signal.SIGKILL)
+                process.wait()
+        self.assertGreater(attempt, 0)
+        rows = self.check_whole(plan, whole)
+        tiles = [self.folder / t["output"] for t in content["tiles"]]
+        again = [t.read_bytes() for t in tiles]
+        run("tiles", "run", plan, "--overwrite")
+        self.assertEqual([t.read_bytes() for t in tiles], again)
+        self.assertEqual(len(rows), content["points"])
+
+    def test_two_runs_at_once_do_no_harm(self):
+        plan, content = self.small()
+        runs = [subprocess.Popen([PROGRAM, "tiles", "run", str(plan)], stderr=subprocess.PIPE)
+                for _ in range(3)]
+        for process in runs:
+            said = process.communicate()[1]
+            self.assertEqual(process.returncode, 0, said)
+        self.assertEqual(self.status(plan, "--verify")["done"], list(range(len(content["tiles"]))))
+        self.check_whole(plan, self.folder / "small.ply")
+        self.assertEqual([p.name for p in (self.folder / "p_tiles").iterdir() if "part" in p.name], [])
+
+    def test_an_interrupt_stops_cleanly(self):
+        write_ply(self.folder / "a.ply", *field())
+        plan, _ = self.make_plan(self.folder / "a.ply")
+        for jobs in ("1", "2"):
+            process = subprocess.Popen([PROGRAM, "tiles", "run", str(plan), "--jobs", jobs,
+                                        "--overwrite", "--progress", "json"],
+                                       stderr=subprocess.PIPE)
+            self.assertTrue(process.stderr.readline())  # the first tile is in work
+            process.send_signal(signal.SIGINT)
+            process.communicate(timeout=60)
+            self.assertEqual(process.returncode, 130)
+            self.assertEqual([p.name for p in (self.folder / "p_tiles").iterdir()
+                              if "part" in p.name], [])
+            self.assertEqual(self.status(plan, "--verify")["damaged"], [])
+
+    def test_a_full_disk_is_said_and_harms_nothing(self):
+        plan, _ = self.small()
+        limit = lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000))
+        said = run("tiles", "run", plan, expect=1, preexec_fn=limit).stderr
+        self.assertIn("File too large", said)
+        self.assertEqual(list((self.folder / "p_tiles").iterdir()), [])
+        run("tiles", "run", plan)
+        self.check_whole(plan, self.folder / "small.ply")
+        run("tiles", "join", plan, "-o", self.folder / "j.ply", expect=1, preexec_fn=limit)
+        self.assertFalse((self.folder / "j.ply").exists())
+
+    def test_inputs_and_models_that_changed_are_refused(self):
+        plan, _ = self.small()
+        cloud = self.folder / "small.ply"
+        before = cloud.read_bytes()
+        changed = bytearray(before)
+        changed[-20] ^= 1  # as long as before
+        for content, code, words in ((bytes(changed), 3, "has changed since the plan"),
+                                     (before + b" ", 3, "has changed since the plan"),
+                                     (before[:-4], 3, "has changed since the plan"),
+                                     (None, 3, "small.ply")):
+            cloud.unlink(missing_ok=True)
+            if content is not None:
+                cloud.write_bytes(content)
+            self.assertIn(words, run("tiles", "run", plan, expect=code).stderr)
+        said = run("tiles", "run", plan, "--jobs", 2, expect=3).stderr
+        self.assertEqual(said.count("small.ply: No such file"), 1)
+        self.assertEqual(self.status(plan)["done"], [])
+        cloud.write_bytes(before)
+        model = self.folder / "m.safetensors"
+        shutil.copy(pathlib.Path(os.environ["PCEDNET_SOURCE_DIR"]) / "models/general.safetensors", model)
+        plan, _ = self.make_plan(cloud, "--model", model, tile=1.0)
+        run("tiles", "run", plan, "--tile", 0)
+        shutil.copy(pathlib.Path(os.environ["PCEDNET_SOURCE_DIR"]) / "models/worn.safetensors", model)
+        self.assertIn("not the model", run("tiles", "run", plan, expect=5).stderr)
+        self.assertIn("not the model", run("tiles", "run", plan, "--jobs", 2, expect=5).stderr)
+
+    def test_usage_errors(self):
+        plan, content = self.small()
+        run("tiles", "plan", self.folder / "none.laz", "-o", self.folder / "q.json", expect=3)
+        run("tiles", "plan", self.folder / "small.ply", "-o", plan, expect=2)  # exists
+        self.assertIn("-o is required",
+                      run("tiles", "plan", self.folder / "small.ply", expect=2).stderr)
+        for bad in ("99", "x", "2-", "3-1", "-1"):
+            run("tiles", "run", plan, "--tile=" + bad, expect=2)
+        run("tiles", "run", plan, "--max-memory", "lots", expect=2)
+        self.assertIn("smaller", run("tiles", "run", plan, "--max-memory", "1M", expect=2).stderr)
+        self.assertIn("convert", run("tiles", "plan", self.text_cloud(), "-o",
+                                     self.folder / "q.json", expect=2).stderr)
+        p, n = field(2, 300)
+        p[7] = (1e9, 1e9, 0)
+        write_ply(self.folder / "far.ply", p, n)
+        self.assertIn("points far from all others?",
+                      run("tiles", "plan", self.folder / "far.ply", "-o", self.folder / "q.json",
+                          "--tile", 1, expect=2).stderr)
+        (self.folder / "no.json").write_text("{}")
+        for command in ("run", "status"):
+            run("tiles", command, self.folder / "no.json", expect=3)
+        said = run("tiles", "run", self.folder / "small.ply", expect=3).stderr
+        self.assertIn("not a plan of tiles: byte 1 is not JSON", said)
+        self.assertIn("Examples", run("tiles", "run", "--help").stdout)
+
+    def text_cloud(self):
+        path = self.folder / "a.xyz"
+        path.write_text("0 0 0\n1 1 1\n")
+        return path
+
+
+if __name__ == "__main__":
+    unittest.main()
