@@ -187,14 +187,20 @@ test("loses no stroke and goes on by itself when the program is killed and start
   await page.mouse.up();
   await page.getByText("pcednet does not answer: nothing can be painted.").waitFor();
   const before = its.server.address;
-  let asked = 0; // the first answer gets lost
+  let asked = 0; // the first answer gets lost, and the program is ready before the second arrives
   const session = (url) => url.pathname === "/api/session";
-  await page.route(session, (route) => (asked++ === 0 ? route.abort() : route.continue()));
+  await page.route(session, async (route) => {
+    if (++asked === 1) return route.abort();
+    const response = await route.fetch();
+    if (asked === 2) await page.evaluate(() => annotator.client.events.dispatchEvent(new MessageEvent("ready")));
+    await page.waitForTimeout(500);
+    await route.fulfill({ response });
+  });
   its.server = await serve([input]);
   assert.equal(its.server.address, before);
   await page.waitForFunction(() => annotator.store.now.undo === 5 && annotator.store.now.connected);
-  await page.unroute(session);
-  assert.ok(asked > 1);
+  await page.unrouteAll({ behavior: "wait" });
+  assert.ok(asked > 2);
   await settled();
   assert.deepEqual(await eye(), view, "the view is as it was");
   await expectPainted(drawn);

@@ -52,6 +52,7 @@ export class Client {
   private predicted = false;
   /** The start whose description the session told of. */
   private described = "";
+  private looked: Promise<void> = Promise.resolve();
   stage!: Stage;
 
   constructor(
@@ -154,8 +155,14 @@ export class Client {
     });
   }
 
-  /** The session as it is now; the first time that it is ready, the cloud too. */
-  private async refresh(): Promise<void> {
+  /** The session as it is now. One look at it after another: two at a time would open two windows. */
+  private refresh(): Promise<void> {
+    this.looked = this.looked.catch(() => {}).then(() => this.takeSession());
+    return this.looked;
+  }
+
+  /** The first time that it is ready, the cloud too. */
+  private async takeSession(): Promise<void> {
     const session = await this.api.get<Session>("/api/session");
     const { store } = this;
     if (!session.known) await this.enter();
