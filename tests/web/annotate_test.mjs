@@ -31,7 +31,9 @@ async function stop() {
 }
 
 async function open(address = server.address) {
-  const opened = await browser.newPage({ viewport: { width: 960, height: 640 } });
+  // In a context that outlives the page: to be closed with it cuts off what the page says as it leaves.
+  const context = await browser.newContext({ viewport: { width: 960, height: 640 } });
+  const opened = await context.newPage();
   opened.setDefaultTimeout(120_000);
   opened.on(
     "console",
@@ -346,7 +348,7 @@ test("tells a second window that it may look, until it takes over", async () => 
   await second.getByText("Another window is painting this cloud; this one is read-only.").waitFor();
   await second.getByRole("button", { name: "Take over" }).click();
   await page.getByText("Another window is painting this cloud; this one is read-only.").waitFor();
-  assert.equal(await second.evaluate(() => annotator.store.now.writer), true);
+  await second.waitForFunction(() => annotator.store.now.writer);
   await page.getByRole("button", { name: "Take over" }).click();
   await page.waitForFunction(() => annotator.store.now.writer);
   await second.waitForFunction(() => !annotator.store.now.writer);
