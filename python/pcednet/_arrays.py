@@ -1,6 +1,7 @@
 """Converts callers' data to the arrays that the extension takes."""
 
 import contextlib
+import operator
 import os
 import sys
 import warnings
@@ -118,9 +119,35 @@ def probabilities(values, rows, name):
 
 
 def thread_count(threads):
-    if threads != int(threads) or not 0 <= threads <= 4096:
-        raise UsageError(f"threads: 0 (every core) to 4096, not {threads}")
-    return int(threads)
+    return whole(threads, "threads", 0, 4096)
+
+
+def whole(value, name, least=0, most=2**31 - 1):
+    """A whole number from `least` to `most`."""
+    try:
+        number = operator.index(value)
+    except TypeError:
+        number = None
+    if number is None or not least <= number <= most:
+        raise UsageError(f"{name}: a whole number from {least} to {most} is needed, not {value!r}")
+    return number
+
+
+def seed(value):
+    return whole(value, "seed", most=2**64 - 1)
+
+
+def real(value, name):
+    try:
+        return float(value)
+    except (TypeError, ValueError):
+        raise UsageError(f"{name}: a number is needed, not {value!r}") from None
+
+
+def text(value, name):
+    if not isinstance(value, str):
+        raise UsageError(f"{name}: a text is needed, not {value!r}")
+    return value
 
 
 @contextlib.contextmanager

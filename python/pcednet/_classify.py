@@ -140,7 +140,7 @@ def classify(xyz, normals=None, *, model="general", threads=0, progress=None, vi
     model = _models.model_of(model)
     core = model._core if context else model._core.without_context()
     if s_min or s_max or exact:
-        core = core.with_scales(float(s_min), float(s_max), bool(exact))
+        core = core.with_scales(_arrays.real(s_min, "s_min"), _arrays.real(s_max, "s_max"), bool(exact))
     with _arrays.reporting(progress) as report:
         parts = _core.classify(core, positions, given, scanners, bool(boundary),
                                bool(keep_orientation), report, _arrays.thread_count(threads))
@@ -205,14 +205,30 @@ def describe(xyz, normals=None, *, scales=16, features=6, reconstruction="sphere
         As :func:`classify`.
     """
     positions, given, scanners = _clouds.points_of(xyz, normals, viewpoint, keep_orientation)
-    settings = {"scales": scales, "features": features, "reconstruction": reconstruction,
-                "gate": gate, "second_gate": second_gate, "exact": bool(exact), "eps": eps,
-                "s_min": s_min, "s_max": s_max, "s_max_ratio": s_max_ratio}
+    settings = descriptor_settings({
+        "scales": scales, "features": features, "reconstruction": reconstruction, "gate": gate,
+        "second_gate": second_gate, "exact": exact, "eps": eps, "s_min": s_min, "s_max": s_max,
+        "s_max_ratio": s_max_ratio})
     with _arrays.reporting(progress) as report:
         matrix, radii, notes = _core.describe(positions, given, scanners, bool(keep_orientation),
                                               settings, report, _arrays.thread_count(threads))
     _arrays.warn(worded(notes))
     return (matrix, radii) if return_scales else matrix
+
+
+def descriptor_settings(options):
+    """Options of a descriptor as the extension takes them."""
+    def checked(name, value):
+        if name in ("scales", "features"):
+            return _arrays.whole(value, name)
+        if name == "reconstruction":
+            return _arrays.text(value, name)
+        if name in ("exact", "octaves"):
+            return bool(value)
+        without = value is None and name in ("gate", "second_gate")
+        return None if without else _arrays.real(value, name)
+
+    return {name: checked(name, value) for name, value in options.items()}
 
 
 def estimate_normals(xyz, normals=None, *, neighbours=0, viewpoint=None, threads=0,
@@ -250,8 +266,8 @@ def estimate_normals(xyz, normals=None, *, neighbours=0, viewpoint=None, threads
     positions, _, scanners = _clouds.points_of(xyz, None, viewpoint)
     given = _arrays.optional_vectors(normals, "normals", len(positions))
     with _arrays.reporting(progress) as report:
-        made, _, unusable = _core.make_normals(positions, given, scanners, int(neighbours), report,
-                                               _arrays.thread_count(threads))
+        made, _, unusable = _core.make_normals(positions, given, scanners, _arrays.whole(neighbours, "neighbours"),
+                                               report, _arrays.thread_count(threads))
     if unusable:
         _arrays.warn([f"{unusable} points without a normal: not finite, or on a line of points"])
     return made

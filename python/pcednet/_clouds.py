@@ -85,6 +85,15 @@ class Cloud:
                   if getattr(self, name) is not None] + list(self.attributes)
         return f"<Cloud {self.name!r}: {len(self)} points; {', '.join(fields) or 'no fields'}>"
 
+    def _scalar(self, name):
+        """The attribute `name`, also as CloudCompare spells it; None if there is none."""
+        return self.attributes.get(f"scalar_{name}", self.attributes.get(name))
+
+    def _classes(self):
+        """What a classification left, otherwise the labels."""
+        found = self._scalar("edge_class")
+        return self.labels if found is None else found
+
     def viewpoint(self):
         """The scanner position of each point, (n, 3) float64 with NaN where unknown; None if no
         scanner is known."""
@@ -109,7 +118,7 @@ class Cloud:
         Returns
         -------
         Cloud
-            Without the data of the whole file: its records, faces and stored normals.
+            With the coordinate system of the whole, without its faces.
         """
         chosen = _arrays.indices(points, len(self), "points")
         part = Cloud(self.xyz[chosen], name=self.name)
@@ -120,6 +129,10 @@ class Cloud:
         part.attributes = {name: np.asarray(values)[chosen]
                            for name, values in self.attributes.items()}
         part.comments, part.scanners = list(self.comments), self.scanners
+        if self._kept is not None:
+            part._kept, part._kept_rows = self._kept.of_part(), len(part)
+        if self._has_estimates():
+            part._estimates = _digest(part.xyz, part.normals)
         return part
 
 
@@ -261,7 +274,7 @@ def write(path, xyz, result=None, *, normals=None, colours=None, labels=None, at
             raise UsageError(f"result: of {len(result.labels)} points, the cloud has {len(cloud)}")
         parts = result._parts()
     path = os.fspath(path)
-    losses = _core.write(path, _parts_of(cloud), parts, class_colours, ascii, overwrite)
+    losses = _core.write(path, _parts_of(cloud), parts, bool(class_colours), bool(ascii), bool(overwrite))
     _arrays.warn(f"{path} does not keep: {loss}" for loss in losses)
 
 
@@ -287,7 +300,8 @@ def generate(name="default", seed=1, only=""):
     UsageError
         There is no such set, or no such cloud in it.
     """
-    recipes = [recipe for recipe in _core.recipes(name, seed) if only in recipe.name]
+    recipes = [recipe for recipe in _core.recipes(_arrays.text(name, "name"), _arrays.seed(seed))
+               if only in recipe.name]
     if not recipes:
         raise UsageError(f"generate: no cloud of {name} has {only!r} in its name")
     return (_made(recipe) for recipe in recipes)

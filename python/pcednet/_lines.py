@@ -3,6 +3,8 @@
 import math
 import os
 
+import numpy as np
+
 from . import _arrays, _clouds, _core
 from ._classify import Result, classify
 from .errors import UsageError
@@ -49,12 +51,12 @@ class Lines(list):
         UsageError
             Another extension, or a tolerance or code below 0.
         """
-        if not 0.0 <= float(tolerance) < math.inf:
+        if not 0.0 <= _arrays.real(tolerance, "tolerance") < math.inf:
             raise UsageError(f"tolerance: {tolerance}: a length of 0 or more is needed")
-        if epsg is not None and int(epsg) <= 0:
-            raise UsageError(f"epsg: {epsg}: a code above 0 is needed")
-        settings = {"epsg": epsg, "unit": unit, "tolerance": float(tolerance),
-                    "dxf_version": str(dxf_version), "view": view, "overwrite": bool(overwrite)}
+        settings = {"epsg": None if epsg is None else _arrays.whole(epsg, "epsg", 1),
+                    "unit": None if unit is None else _arrays.text(unit, "unit"),
+                    "tolerance": float(tolerance), "dxf_version": str(dxf_version),
+                    "view": _arrays.text(view, "view"), "overwrite": bool(overwrite)}
         _core.write_lines(os.fspath(path), list(self), settings, self.kept)
 
     def __repr__(self):
@@ -73,7 +75,9 @@ def lines(xyz, labels=None, normals=None, *, p_sharp=None, p_smooth=None,
     ----------
     xyz : array_like, (n, 3), or Cloud
     labels : Result or array_like (n,), optional
-        A Result brings its normals and probabilities. None classifies the points first.
+        A Result brings its normals and probabilities. None: those of a Cloud, its ``edge_class`` (which a
+        classification leaves) or else its labels, with its ``p_sharp`` and ``p_smooth``; without any
+        the points are classified first.
     normals : array_like, (n, 3), optional
         With an array of labels. Estimated if missing.
     p_sharp, p_smooth : array_like, (n,), optional
@@ -108,8 +112,13 @@ def lines(xyz, labels=None, normals=None, *, p_sharp=None, p_smooth=None,
         As :func:`classify`.
     """
     classes, kinds = _some(classes, _SHORT.values(), "classes"), _some(kinds, _KINDS, "kinds")
-    if not 0.0 <= min_confidence <= 1.0:
+    if not 0.0 <= _arrays.real(min_confidence, "min_confidence") <= 1.0:
         raise UsageError(f"min_confidence: {min_confidence}: a number from 0 to 1 is needed")
+    if labels is None and isinstance(xyz, _clouds.Cloud):
+        labels = xyz._classes()
+        if labels is not None:
+            p_sharp = _probability(xyz, "p_sharp") if p_sharp is None else p_sharp
+            p_smooth = _probability(xyz, "p_smooth") if p_smooth is None else p_smooth
     if labels is None:
         labels = classify(xyz, normals, viewpoint=viewpoint, threads=threads, progress=progress)
     positions, given, scanners = _clouds.points_of(xyz, normals, viewpoint)
@@ -122,21 +131,33 @@ def lines(xyz, labels=None, normals=None, *, p_sharp=None, p_smooth=None,
         p_smooth = None
     elif p_smooth is None:
         p_smooth = [0.0] * rows
-    settings = {"min_length": float(min_length), "gap": float(gap), "angle": float(angle),
-                "tolerance": float(tolerance), "regularise": bool(regularise),
-                "boundaries": bool(boundaries), "stage": stage}
+    labels = _arrays.labels(labels, rows)
+    lengths = {"min_length": min_length, "gap": gap, "angle": angle, "tolerance": tolerance}
+    settings = {**{name: _arrays.real(value, name) for name, value in lengths.items()},
+                "regularise": bool(regularise), "boundaries": bool(boundaries),
+                "stage": _arrays.text(stage, "stage")}
     with _arrays.reporting(progress) as report:
         curves, notes = _core.find_lines(
-            positions, given, scanners, prepared, _arrays.labels(labels, rows),
+            positions, given, scanners, prepared, labels,
             _arrays.probabilities(p_sharp, rows, "p_sharp"),
             _arrays.probabilities(p_smooth, rows, "p_smooth"), settings, report,
             _arrays.thread_count(threads))
+    others = int(np.isin(labels, [0, 1, 2, 3, 255], invert=True).sum())
+    if others:
+        notes.append(f"{others} labels are no classes of edges: 1 is smooth, 2 sharp, 3 boundary")
     _arrays.warn(notes)
     found = Lines(curve for curve in curves
                   if _SHORT[curve.label] in classes and curve.kind in kinds
                   and curve.confidence >= min_confidence)
     found.kept = xyz._kept if isinstance(xyz, _clouds.Cloud) else None
     return found
+
+
+def _probability(cloud, name):
+    values = cloud._scalar(name)
+    if values is not None and not ((values >= 0) & (values <= 1)).all():
+        raise UsageError(f"{name}: not all numbers of the cloud are from 0 to 1")
+    return values
 
 
 def _some(names, known, what):

@@ -29,7 +29,8 @@ def evaluate(truth, predicted, positive="sharp"):
     ----------
     truth : array_like, (n,), or Cloud
         Points of the class 255 (or -1) are left out.
-    predicted : array_like, (n,), or Result
+    predicted : array_like, (n,), Result, or Cloud
+        Of a Cloud: its ``edge_class``, which a classification leaves, or else its labels.
     positive : {'sharp', 'edge', 'boundary'}
         The classes that count as positive; ``'edge'`` is sharp-edge and smooth-edge.
 
@@ -43,7 +44,11 @@ def evaluate(truth, predicted, positive="sharp"):
         Different numbers of points, or numbers that are not classes.
     """
     truth = truth.labels if isinstance(truth, _clouds.Cloud) else truth
-    predicted = predicted.labels if isinstance(predicted, Result) else predicted
+    if isinstance(predicted, Result):
+        predicted = predicted.labels
+    elif isinstance(predicted, _clouds.Cloud):
+        predicted = predicted._classes()
     rows = len(_arrays.numbers(truth, "truth").reshape(-1))
     return Scores(_core.evaluate(_arrays.labels(truth, rows, "truth"),
-                                 _arrays.labels(predicted, rows, "predicted"), positive))
+                                 _arrays.labels(predicted, rows, "predicted"),
+                                 _arrays.text(positive, "positive")))

@@ -14,8 +14,9 @@ def _descriptor(options):
         if name not in _DESCRIPTOR:
             raise TypeError(f"unexpected keyword argument {name!r}; a descriptor has "
                             f"{', '.join(_DESCRIPTOR)}")
-    return {name: value for name, value in options.items()
-            if value is not None or name in ("gate", "second_gate")}
+    given = {name: value for name, value in options.items()
+             if value is not None or name in ("gate", "second_gate")}
+    return _classify.descriptor_settings(given)
 
 
 def train(clouds, labels=None, *, normals=None, start=None, name="model", classes=3, seed=1,
@@ -79,16 +80,20 @@ def train(clouds, labels=None, *, normals=None, start=None, name="model", classe
     arrays = [_labelled(k, *one, keep_orientation) for k, one in enumerate(zip(clouds, normals, labels))]
     if not arrays:
         raise UsageError("train: no clouds")
-    settings = {"descriptor": _descriptor(descriptor), "classes": int(classes), "seed": int(seed),
-                "epochs": epochs, "context": bool(context), "balance": float(balance),
-                "distil": int(distil), "recipe": recipe, "network": network}
+    seed = _arrays.seed(seed)
+    settings = {"descriptor": _descriptor(descriptor),
+                "classes": _arrays.whole(classes, "classes", 2, 3), "seed": seed,
+                "epochs": None if epochs is None else _arrays.whole(epochs, "epochs"),
+                "context": bool(context), "balance": _arrays.real(balance, "balance"),
+                "distil": _arrays.whole(distil, "distil"), "recipe": _arrays.text(recipe, "recipe"),
+                "network": _arrays.text(network, "network")}
     with _arrays.reporting(progress) as report:
         if start is None:
-            core, history, notes = _core.train(arrays, name, bool(keep_orientation), settings,
+            core, history, notes = _core.train(arrays, str(name), bool(keep_orientation), settings,
                                                report, _arrays.thread_count(threads))
         else:
-            core, history, notes = _core.adapt(_models.model_of(start)._core, arrays, name,
-                                               bool(keep_orientation), int(seed), report,
+            core, history, notes = _core.adapt(_models.model_of(start)._core, arrays, str(name),
+                                               bool(keep_orientation), seed, report,
                                                _arrays.thread_count(threads))
     _arrays.warn(_classify.worded(notes))
     return _models.Model(core, history)

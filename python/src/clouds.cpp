@@ -3,7 +3,9 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <algorithm>
 #include <cstring>
+#include <iterator>
 #include <optional>
 
 #include "arrays.h"
@@ -13,6 +15,7 @@
 #include "pcednet/detect/result_cloud.h"
 #include "pcednet/formats/read_cloud.h"
 #include "pcednet/formats/write_cloud.h"
+#include "pcednet/io/las/file.h"
 
 namespace pcednet::python {
 namespace {
@@ -89,6 +92,15 @@ PointCloud put_together(const py::dict& parts) {
   cloud.comments = parts["comments"].cast<std::vector<std::string>>();
   cloud.scanners = copied(parts["scanners"]);
   return cloud;
+}
+
+/// What is of any part of the points, too: the header and records of LAS, the number type.
+Kept kept_of_part(const Kept& whole) {
+  PointCloud part;
+  part.position_type = whole.cloud->position_type;
+  std::copy_if(whole.cloud->foreign_elements.begin(), whole.cloud->foreign_elements.end(),
+               std::back_inserter(part.foreign_elements), io::is_las_element);
+  return {std::make_shared<const PointCloud>(std::move(part))};
 }
 
 py::tuple read(const std::filesystem::path& path) {
@@ -178,7 +190,7 @@ py::dict take_apart(PointCloud&& cloud) {
 }
 
 void add_clouds(py::module_& module) {
-  py::class_<Kept>(module, "Kept");
+  py::class_<Kept>(module, "Kept").def("of_part", kept_of_part);
   module.attr("ESTIMATED_NORMALS") = std::string(detect::kEstimatedNormals);
   module.def("read", read);
   module.def("write", write);

@@ -62,7 +62,7 @@ py::tuple find_lines(const Array<double>& xyz, const OptionalArray<double>& norm
                              .p_smooth = numbers(p_smooth)};
     detect::PreparedCloud made;
     if (!prepared) {
-      made = cloud.prepare({}, job);
+      made = cloud.prepare({.keep_orientation = true}, job);  // lines do not depend on signs
       points.normals = made.normals;
       points.curve = made.curve;
       notes = made.notes;

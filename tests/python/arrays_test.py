@@ -208,6 +208,21 @@ class Refusals(unittest.TestCase):
         with self.assertRaisesRegex(FileNotFoundError, "neither a file nor a shipped model .*gene"):
             pcednet.classify(good, model="no_such_model")
 
+    def test_values_of_another_type_are_refused_by_name(self):
+        good, _, labels = cube(500)
+        for function, named in (
+                (pcednet.classify, {"s_min": "near"}), (pcednet.classify, {"threads": 1.5}),
+                (pcednet.describe, {"scales": "many"}), (pcednet.describe, {"gate": [1, 2]}),
+                (pcednet.describe, {"reconstruction": 3}), (pcednet.lines, {"min_length": "long"}),
+                (pcednet.lines, {"stage": None}), (pcednet.estimate_normals, {"neighbours": 1e9}),
+                (lambda xyz, **named: pcednet.train(xyz, labels, **named), {"seed": -1}),
+                (lambda xyz, **named: pcednet.train(xyz, labels, **named), {"epochs": 1.5}),
+                (lambda xyz, **named: pcednet.train(xyz, labels, **named), {"balance": "even"}),
+                (lambda xyz, **named: pcednet.evaluate(labels, labels, **named), {"positive": 2})):
+            name, = named
+            with self.assertRaisesRegex(pcednet.UsageError, f"^{name}: a .* is needed, not "):
+                quietly(function, good, **named)
+
     def test_warnings_point_at_the_line_that_called(self):
         positions = cube(1000)[0]
         with warnings.catch_warnings(record=True) as caught:

@@ -6,7 +6,10 @@ import warnings
 import numpy as np
 
 import pcednet
+from las_test import NEW, SCALE, las, vlr
 from support import CliTest, cube, run, write_ply
+
+WKT = 'PROJCS["UTM",UNIT["metre",1],AUTHORITY["EPSG","25832"]]'
 
 
 class Lines(CliTest):
@@ -61,6 +64,37 @@ class Lines(CliTest):
         with self.assertRaises(pcednet.UsageError):
             pcednet.lines(self.positions, self.result.labels[1:])
 
+    def test_labels_of_a_file_are_drawn(self):
+        write_ply(self.path("in.ply"), self.positions, self.normals, position_type="double")
+        run("classify", self.path("in.ply"), "-o", self.path("labelled.ply"), "--model", "cad")
+        run("lines", self.path("labelled.ply"), "-o", self.path("theirs.dxf"))
+        cloud = pcednet.read(self.path("labelled.ply"))
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            pcednet.lines(cloud).write(self.path("ours.dxf"))
+        self.assertEqual(self.path("ours.dxf").read_bytes(), self.path("theirs.dxf").read_bytes())
+        self.assertEqual(pcednet.evaluate(cloud["scalar_edge_class"], cloud).mcc, 1)
+        cloud["scalar_p_sharp"][3] = 2
+        with self.assertRaisesRegex(pcednet.UsageError, "from 0 to 1"):
+            pcednet.lines(cloud)
+        del cloud.attributes["scalar_p_sharp"]
+        cloud["scalar_edge_class"][:] = 0
+        self.assertEqual(pcednet.lines(cloud), [])
+        self.assertEqual(len(pcednet.lines(cloud, pcednet.classify(cloud))), 12)
+
+    def test_a_part_of_a_cloud_keeps_its_coordinate_system(self):
+        rows = np.zeros(len(self.positions), NEW)
+        for i, axis in enumerate("XYZ"):
+            rows[axis] = np.round((100 + 10 * self.positions[:, i]) / SCALE[i])
+        records = [vlr(b"LASF_Projection", 2112, WKT.encode() + b"\0")]
+        self.path("in.las").write_bytes(las(6, rows, records))
+        part = pcednet.read(self.path("in.las")).select(range(6000))
+        pcednet.lines(part).write(self.path("part.gpkg"))
+        self.assertIn(b"25832", self.path("part.gpkg").read_bytes())
+        pcednet.write(self.path("part.las"), part)
+        pcednet.lines(pcednet.read(self.path("part.las"))).write(self.path("again.gpkg"))
+        self.assertIn(b"25832", self.path("again.gpkg").read_bytes())
+
     def test_the_coordinate_system_goes_along(self):
         found = pcednet.lines(self.positions, self.result)
         found.write(self.path("a.gpkg"), epsg=25832)
@@ -83,6 +117,10 @@ class Lines(CliTest):
                       {"classes": []}, {"viewpoint": (0.0, 0.0, float("nan"))}):
             with self.assertRaises(pcednet.UsageError):
                 pcednet.lines(self.positions, self.result, **wrong)
+        with self.assertWarnsRegex(pcednet.PcednetWarning, "7 labels are no classes of edges"):
+            labels = self.result.labels.copy()
+            labels[:7] = 9
+            pcednet.lines(self.positions, labels, self.normals)
 
 
 if __name__ == "__main__":
