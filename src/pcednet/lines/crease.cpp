@@ -6,8 +6,10 @@
 #include <cmath>
 #include <iterator>
 #include <numbers>
+#include <tuple>
 #include <utility>
 
+#include "pcednet/core/eigendecomposition.h"
 #include "pcednet/lines/local_planes.h"
 #include "pcednet/lines/noisy_wedge.h"
 #include "pcednet/lines/ordered_points.h"
@@ -35,6 +37,10 @@ constexpr double kOffSide = 0.5, kReachesLine = 0.5;  ///< spacings
 
 /// Of points to be tried beside those of an edge class; the second is added per spacing of noise.
 constexpr double kLeastProbability[] = {0.1, 0.9};
+
+/// Mean squares of the normals across an edge at least, and along it as a share of that at most.
+constexpr double kLeastVaried = 0.04, kMostAlong = 0.15;
+constexpr double kShortened = 8.0 / 9.0;  ///< the share of squared lengths that does not count
 
 // In spacings.
 constexpr double kFarthest = 2.2;       ///< of an edge point from its crease
@@ -156,8 +162,7 @@ std::optional<Wedge> best_wedge(const NearPoints& points, const Tolerances& with
 
 std::optional<Crease> crease_at(const OrderedPoints& cloud, std::uint32_t i,
                                 std::span<const spatial::Neighbour> others,
-                                const Tolerances& within) {
-  const double spacing = spacing_of(others);
+                                const Tolerances& within, double spacing) {
   if (!(spacing > 0.0)) return std::nullopt;
   NearPoints near_points;
   near_points.add(Vec3::Zero(), cloud.normal(i), cloud.probability(i));
@@ -195,6 +200,33 @@ std::vector<spatial::Neighbour> thinned(const OrderedPoints& cloud,
   return kept;
 }
 
+/// Of these, those that are nearest if lengths along the edge count for a third: as many as
+/// NearPoints has room for beside the point itself. The edge runs where the normals do not vary.
+/// None if they vary in no direction, or in all.
+std::vector<spatial::Neighbour> along_edge(const OrderedPoints& cloud, std::uint32_t point,
+                                           std::span<const spatial::Neighbour> others) {
+  Mat3 scatter = Mat3::Zero();
+  for (const auto& near : others) {
+    const Vec3 normal = cloud.normal(near.index);
+    scatter += normal * normal.transpose();
+  }
+  const Eigendecomposition axes = eigendecomposition(scatter / static_cast<double>(others.size()));
+  if (axes.values[1] < kLeastVaried || axes.values[0] > kMostAlong * axes.values[1]) return {};
+  const Vec3 along = axes.vectors.col(0);
+  std::vector<spatial::Neighbour> nearest(others.begin(), others.end());
+  for (auto& near : nearest) {
+    const double length = (cloud.position(near.index) - cloud.position(point)).dot(along);
+    near.sq_distance -= kShortened * length * length;
+  }
+  const std::size_t count = std::min(nearest.size(), NearPoints::kMost - 1);
+  std::partial_sort(nearest.begin(), nearest.begin() + static_cast<std::ptrdiff_t>(count),
+                    nearest.end(), [](const auto& a, const auto& b) {
+                      return std::tie(a.sq_distance, a.index) < std::tie(b.sq_distance, b.index);
+                    });
+  nearest.resize(count);
+  return nearest;
+}
+
 /// Whether the points around a crease explain why the nearest of them did not show it: they reach
 /// it, and one side has several times the points of the other, or both sides, which are in rows,
 /// have almost all of them.
@@ -219,6 +251,25 @@ bool is_uneven(const Crease& crease, const OrderedPoints& cloud,
   if (most >= kUnevenSides * least) return true;
   return crease.edge_class == kSharpEdge &&
          static_cast<double>(least + most) >= kAlmostAll * static_cast<double>(others.size());
+}
+
+/// Where one side is much denser than the other.
+std::optional<Crease> uneven_crease(const OrderedPoints& cloud, std::uint32_t point,
+                                    std::span<const spatial::Neighbour> others,
+                                    const Tolerances& within) {
+  const auto even = thinned(cloud, others);
+  const auto crease = crease_at(cloud, point, even, within, spacing_of(even));
+  return crease && is_uneven(*crease, cloud, others) ? crease : std::nullopt;
+}
+
+/// In noise: of points along the edge, which tell more than as many around `point` and reach less
+/// far across other edges.
+std::optional<Crease> lengthwise_crease(const OrderedPoints& cloud, std::uint32_t point,
+                                        std::span<const spatial::Neighbour> others,
+                                        const Tolerances& within) {
+  const auto along = along_edge(cloud, point, others);
+  if (along.empty()) return std::nullopt;
+  return crease_at(cloud, point, along, within, spacing_of(others));
 }
 
 /// The points of an edge class, those that may be, and the neighbours of both.
@@ -277,21 +328,26 @@ std::vector<Crease> find_creases(const OrderedPoints& cloud, const Sampling& sam
   std::vector<Crease> creases =
       creases_at(cloud, points, others, stage,
                  [&](std::uint32_t point, std::span<const spatial::Neighbour> near) {
-                   auto crease = crease_at(cloud, point, near, within);
+                   auto crease = crease_at(cloud, point, near, within, spacing_of(near));
                    has_crease[point] = crease.has_value();
                    return crease;
                  });
+  const bool noisy = sampling.noise > kMuchNoise;
   std::vector<std::uint32_t> rest;
   std::copy_if(points.begin(), points.end(), std::back_inserter(rest),
-               [&](std::uint32_t i) { return cloud.is_edge(i) && has_crease[i] == 0; });
-  Stage again(progress, "uneven creases", rest.size());
-  const std::vector<Crease> uneven =
+               [&](std::uint32_t i) { return (noisy || cloud.is_edge(i)) && has_crease[i] == 0; });
+  Stage again(progress, "creases of more points", rest.size());
+  const std::vector<Crease> more =
       creases_at(cloud, rest, kFarNeighbours, again,
                  [&](std::uint32_t point, std::span<const spatial::Neighbour> near) {
-                   const auto crease = crease_at(cloud, point, thinned(cloud, near), within);
-                   return crease && is_uneven(*crease, cloud, near) ? crease : std::nullopt;
+                   std::optional<Crease> crease;
+                   if (noisy) crease = lengthwise_crease(cloud, point, near, within);
+                   if (!crease && cloud.is_edge(point)) {
+                     crease = uneven_crease(cloud, point, near, within);
+                   }
+                   return crease;
                  });
-  creases.insert(creases.end(), uneven.begin(), uneven.end());
+  creases.insert(creases.end(), more.begin(), more.end());
   return creases;
 }
 
