@@ -75,7 +75,7 @@ Cubes cubes_near_edges(const TiledCloud& cloud, const Progress& progress) {
   cloud.each([&](const PointCloud& part, const tiles::TileFindings& findings) {
     for (std::size_t i = 0; i < part.size(); ++i) {
       const Vec3& position = part.positions[i];
-      if (position.allFinite() && may_be_edge(findings.found, i)) {
+      if (tiles::has_place(position) && may_be_edge(findings.found, i)) {
         cubes.add_with_neighbours(position);
       }
     }
@@ -108,7 +108,7 @@ PointsNearEdges read_near_edges(const TiledCloud& cloud, std::uint64_t limit,
     const std::vector<Vec3>& normals = made.empty() ? part.normals : made;
     for (std::size_t i = 0; i < part.size(); ++i) {
       const Vec3& position = part.positions[i];
-      if (!position.allFinite() || !cubes.hold(position)) continue;
+      if (!tiles::has_place(position) || !cubes.hold(position)) continue;
       near.cloud.positions.push_back(position);
       near.cloud.normals.push_back(normals.empty() ? Vec3::Zero() : normals[i]);
       near.classes.push_back(findings.found.classes[i]);

@@ -180,18 +180,25 @@ class Tiles(TilesTest):
         self.assertIn("index 100 %", said)
         self.assertNotIn("dense sample", said)
 
-    def test_points_that_are_not_finite_stay(self):
+    def test_points_of_no_place_stay_and_change_no_other(self):
         p, n = field(3, 300)
         p[::500] = np.nan
+        p[250] = 1e30
         write_ply(self.folder / "a.ply", p, n)
-        plan, _ = self.make_plan(self.folder / "a.ply", tile=1.4)
+        said = run("tiles", "plan", self.folder / "a.ply", "-o", self.folder / "p.json", "--tile", 1.4)
+        plan = self.folder / "p.json"
+        self.assertIn("12 of 5400 points have no finite position up to 1e+15", said.stderr)
+        self.assertEqual(len(json.loads(plan.read_text())["tiles"]), 9)
         run("tiles", "run", plan)
         run("tiles", "join", plan, "-o", self.folder / "joined.ply")
         rows, _ = read_ply(self.folder / "joined.ply")
         self.assertEqual(len(rows), len(p))
-        lost = np.isnan(rows["x"])
-        self.assertEqual(lost.sum(), np.isnan(p[:, 0]).sum())
+        lost = ~(rows["x"] < 1e15)
+        self.assertEqual(lost.sum(), 12)
         self.assertTrue(np.all((rows["scalar_edge_class"] == 255) == lost))
+        run("classify", self.folder / "a.ply", "-o", self.folder / "whole.ply")
+        rows, whole = (sorted_rows(self.folder / name) for name in ("joined.ply", "whole.ply"))
+        self.assertGreater(np.mean(rows["scalar_edge_class"] == whole["scalar_edge_class"]), 0.9999)
 
 
 if __name__ == "__main__":

@@ -51,7 +51,7 @@ TEST_F(PlanFile, ComesBackAsItWas) {
   EXPECT_TRUE(back.inputs[0].narrow_colours);
   EXPECT_EQ(back.inputs[0].chunks[0].box.max, plan.inputs[0].chunks[0].box.max);
   EXPECT_TRUE(back.inputs[1].chunks[0].box.empty());
-  EXPECT_EQ(back.inputs[1].chunks[0].not_finite, 10u);
+  EXPECT_EQ(back.inputs[1].chunks[0].without_place, 10u);
   EXPECT_EQ(back.inputs[1].chunks[1].digest, "d3");
   EXPECT_EQ(back.points(), 50011u);
   EXPECT_EQ(back.las_steps, plan.las_steps);

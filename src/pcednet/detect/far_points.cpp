@@ -8,11 +8,11 @@
 namespace pcednet::detect {
 namespace {
 
-constexpr double kSuspect = 1e15, kFar = 1e12;
+constexpr double kFar = 1e12;
 constexpr std::size_t kLeast = 3;  ///< other points, in several places, that say what is near
 
 bool is_suspect(const Vec3& position) {
-  return position.allFinite() && position.cwiseAbs().maxCoeff() > kSuspect;
+  return position.allFinite() && position.cwiseAbs().maxCoeff() > kSuspectCoordinate;
 }
 
 /// The middle values of the coordinates.

@@ -8,9 +8,13 @@
 
 namespace pcednet::detect {
 
-/// The points that are nowhere near the others, ascending: those with a coordinate above 1e15 that
-/// are farther from the middle of the others than 1e12 times the median distance from it, as values
-/// are that stand for "no data". Distances to them would leave no digits for the others.
+/// Points with a larger coordinate may be of no place: values such as 1e30 stand for "no data".
+constexpr double kSuspectCoordinate = 1e15;
+
+/// The points that are nowhere near the others, ascending: those with a coordinate above
+/// kSuspectCoordinate that are farther from the middle of the others than 1e12 times the median
+/// distance from it, as values are that stand for "no data". Distances to them would leave no
+/// digits for the others.
 std::vector<std::uint32_t> far_points(std::span<const Vec3> positions);
 
 }  // namespace pcednet::detect

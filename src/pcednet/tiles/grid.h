@@ -5,8 +5,14 @@
 #include <cstdint>
 
 #include "pcednet/cloud/bounding_box.h"
+#include "pcednet/detect/far_points.h"
 
 namespace pcednet::tiles {
+
+/// Whether a point is somewhere: finite, and no value that stands for "no data".
+inline bool has_place(const Vec3& position) {
+  return position.allFinite() && position.cwiseAbs().maxCoeff() <= detect::kSuspectCoordinate;
+}
 
 /// The cores of tiles: squares of the plane of x and y, as high as the cloud, at multiples of their
 /// length. Half-open, so that a point is in exactly one.
@@ -24,7 +30,7 @@ struct Grid {
     return {floor_of(position.x()), floor_of(position.y())};
   }
 
-  /// Column and row of the core that holds a point, which must be finite.
+  /// Column and row of the core that holds a point, which must have a place.
   std::array<std::int64_t, 2> core_of(const Vec3& position) const {
     const auto [x, y] = cell_of(position);
     return {core_of_cell(x), core_of_cell(y)};

@@ -38,12 +38,15 @@ std::string digest_of(const PointCloud& part) {
 }
 
 Chunk chunk_of(const PointCloud& part, std::string digest) {
-  const auto finite = std::count_if(part.positions.begin(), part.positions.end(),
-                                    [](const Vec3& p) { return p.allFinite(); });
-  return {.points = part.size(),
-          .not_finite = part.size() - static_cast<std::size_t>(finite),
-          .box = bounding_box(part.positions),
-          .digest = std::move(digest)};
+  Chunk chunk{.points = part.size(), .digest = std::move(digest)};
+  for (const Vec3& position : part.positions) {
+    if (has_place(position)) {
+      chunk.box.add(position);
+    } else {
+      ++chunk.without_place;
+    }
+  }
+  return chunk;
 }
 
 /// The columns of a cloud, as text to compare.

@@ -119,8 +119,8 @@ void CellCounts::add(std::span<const Vec3> positions) {
   std::array<std::int64_t, 2> last = {};
   std::uint64_t* count = nullptr;
   for (const Vec3& position : positions) {
-    if (!position.allFinite()) {
-      ++not_finite_;
+    if (!has_place(position)) {
+      ++without_place_;
       continue;
     }
     const auto cell = grid_.cell_of(position);
@@ -186,7 +186,7 @@ std::vector<Tile> lay_out(const CellCounts& counts, const Grid& grid, const fs::
                 fmt::format("{} tiles of length {:g}: at most {}; choose longer ones", cores.size(),
                             grid.length(), kMostTiles));
   }
-  cores.begin()->second += counts.not_finite();
+  cores.begin()->second += counts.without_place();
   std::vector<Tile> tiles;
   for (const auto& [core, count] : cores) tiles.push_back({core.first, core.second, count, {}});
   std::set<std::string> names;

@@ -10,22 +10,22 @@
 
 namespace pcednet::tiles {
 
-/// The number of points in each cell of a grid; points that are not finite are counted separately.
+/// The number of points in each cell of a grid; points without a place are counted separately.
 class CellCounts {
  public:
   explicit CellCounts(double cell) : grid_{cell, 1} {}
 
   void add(std::span<const Vec3> positions);
-  void add_not_finite(std::uint64_t points) { not_finite_ += points; }
+  void add_without_place(std::uint64_t points) { without_place_ += points; }
 
-  std::uint64_t not_finite() const { return not_finite_; }
+  std::uint64_t without_place() const { return without_place_; }
   const std::map<std::pair<std::int64_t, std::int64_t>, std::uint64_t>& cells() const {
     return cells_;
   }
 
  private:
   Grid grid_;
-  std::uint64_t not_finite_ = 0;
+  std::uint64_t without_place_ = 0;
   std::map<std::pair<std::int64_t, std::int64_t>, std::uint64_t> cells_ = {};
 };
 
@@ -55,7 +55,7 @@ struct TileLimits {
 Grid choose_grid(const CellCounts& counts, double cell, const TileLimits& limits);
 
 /// The tiles that have points, column by column, named by `output`: a template with {ID}, {COLUMN},
-/// {ROW}, {XLEFT}, {XRIGHT}, {YBOTTOM} and {YTOP}. Points that are not finite are in the first.
+/// {ROW}, {XLEFT}, {XRIGHT}, {YBOTTOM} and {YTOP}. Points without a place are in the first.
 /// Throws Error(kUsage) for a template that gives two tiles one name, or a name that is not of a
 /// point file.
 std::vector<Tile> lay_out(const CellCounts& counts, const Grid& grid,

@@ -164,10 +164,17 @@ Sample index_inputs(const PlanRequest& request, Plan& plan, const Progress* prog
     for (const Chunk& chunk : indexed.back().input.chunks) plan.box.add(chunk.box);
   }
   if (sample.seen() == 0) {
-    throw Error(ErrorKind::kInsufficient, "the inputs have no point with a finite position");
+    throw Error(ErrorKind::kInsufficient,
+                fmt::format("the inputs have no point with a finite position up to {:g}",
+                            detect::kSuspectCoordinate));
   }
   settle_columns(indexed, plan);
   for (IndexedInput& input : indexed) plan.inputs.push_back(std::move(input.input));
+  if (sample.seen() < plan.points()) {
+    plan.notes.push_back(
+        fmt::format("{} of {} points have no finite position up to {:g}: kept, unlabelled",
+                    plan.points() - sample.seen(), plan.points(), detect::kSuspectCoordinate));
+  }
   return sample;
 }
 

@@ -57,7 +57,7 @@ std::size_t NearestInStream::CellHash::operator()(const Cell& cell) const {
 }
 
 void NearestInStream::look_around(const Vec3& point, std::vector<Found>& found) const {
-  if (!point.allFinite()) return;
+  if (!has_place(point)) return;
   for (const int size : sizes_) {
     const auto cell = cells_.find(
         {size,

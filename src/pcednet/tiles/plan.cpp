@@ -76,7 +76,8 @@ std::string list_of(const std::vector<std::string>& elements, const char* indent
 std::string text_of(const PlannedInput& input, const Paths& paths) {
   std::vector<std::string> chunks;
   for (const Chunk& chunk : input.chunks) {
-    chunks.push_back(json{chunk.points, chunk.not_finite, json_of(chunk.box), chunk.digest}.dump());
+    chunks.push_back(
+        json{chunk.points, chunk.without_place, json_of(chunk.box), chunk.digest}.dump());
   }
   return fmt::format(
       "{{\"path\":{},\"bytes\":{},\"points\":{},\"narrow_colours\":{},\"chunks\":{}}}",
@@ -91,7 +92,7 @@ PlannedInput input_of(const json& j, const Paths& paths) {
                      .chunks = {}};
   for (const json& chunk : j.at("chunks")) {
     input.chunks.push_back({.points = chunk.at(0),
-                            .not_finite = chunk.at(1),
+                            .without_place = chunk.at(1),
                             .box = box_in(chunk.at(2)),
                             .digest = chunk.at(3)});
   }

@@ -17,9 +17,9 @@ namespace pcednet::tiles {
 /// Points of an input that are read together.
 struct Chunk {
   std::size_t points = 0;
-  std::size_t not_finite = 0;  ///< positions among them
-  BoundingBox box = {};        ///< of the finite ones
-  std::string digest = {};     ///< of everything that the file holds on the points
+  std::size_t without_place = 0;  ///< of them, see has_place()
+  BoundingBox box = {};           ///< of the others
+  std::string digest = {};        ///< of everything that the file holds on the points
 };
 
 struct PlannedInput {
@@ -55,7 +55,7 @@ struct Plan {
   std::vector<PlannedInput> inputs = {};
   /// Scale and offset of x, y and z in the tiles, where all inputs are LAS or LAZ; otherwise empty.
   std::vector<double> las_steps = {};
-  BoundingBox box = {};  ///< of all finite points
+  BoundingBox box = {};  ///< of all points with a place
   PlannedModel model = {};
   double s_min = 0.0, s_max = 0.0;
   detect::NormalsDecision normals = {};

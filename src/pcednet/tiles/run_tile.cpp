@@ -30,7 +30,7 @@ Chosen choose(const PointCloud& part, const Plan& plan, std::size_t tile, const 
   Chosen chosen;
   for (std::uint32_t i = 0; i < part.size(); ++i) {
     const Vec3& position = part.positions[i];
-    if (!position.allFinite()) {
+    if (!has_place(position)) {
       if (tile == 0) chosen.core.push_back(i);
     } else if (plan.grid.core_of(position) == std::array{wanted.column, wanted.row}) {
       chosen.core.push_back(i);
@@ -82,8 +82,7 @@ void take_numbers(TileCloud& points) {
 TileFindings classify_tile(const Plan& plan, std::size_t tile, const detect::EdgeModel* model,
                            TileCloud& points, const Progress* progress) {
   TileFindings findings{.prepared = {}, .found = detect::nothing_found(points.core.size())};
-  const auto is_finite = [](const Vec3& p) { return p.allFinite(); };
-  if (std::any_of(points.all.positions.begin(), points.all.positions.end(), is_finite)) {
+  if (std::any_of(points.all.positions.begin(), points.all.positions.end(), has_place)) {
     const detect::PartOfCloud part = part_of(plan, tile, points);
     detect::PreparedCloud& prepared = findings.prepared;
     prepared = detect::prepare(points.all, {.decided = plan.normals}, progress);
@@ -105,7 +104,7 @@ TileCloud read_tile(const Plan& plan, std::size_t tile, const Progress* progress
   std::size_t before = 0;
   for (const PlannedInput& input : plan.inputs) {
     const auto is_wanted = [&](const Chunk& chunk) {
-      return box.meets(chunk.box) || (tile == 0 && chunk.not_finite > 0);
+      return box.meets(chunk.box) || (tile == 0 && chunk.without_place > 0);
     };
     for_each_chunk(input, is_wanted, progress, [&](const PointCloud& part, std::size_t first) {
       const Chosen chosen = choose(part, plan, tile, box);

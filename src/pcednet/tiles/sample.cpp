@@ -72,7 +72,7 @@ std::vector<double> spacings_from(const SampledPoints& sample, const Plan& plan,
 
 void Sample::add(std::span<const Vec3> positions) {
   for (const Vec3& position : positions) {
-    if (!position.allFinite()) continue;
+    if (!has_place(position)) continue;
     const std::uint64_t number = Random(1, seen_++).next();
     if (number > limit_) continue;
     chosen_.emplace_back(number, position);
@@ -102,7 +102,7 @@ Spacing find_spacing(const SampledPoints& sample, const Plan& plan, const gls::S
                      CellCounts& counts, const Progress* progress) {
   if (sample.is_all) {
     counts.add(sample.positions);
-    counts.add_not_finite(plan.points() - sample.positions.size());
+    counts.add_without_place(plan.points() - sample.positions.size());
   }
   std::vector<Vec3> positions = described(sample.positions, plan);
   if (plan.normals.rounding.step > 0.0) {

@@ -76,7 +76,7 @@ class TileFinder {
     }
   }
   std::size_t operator()(const Vec3& position) const {
-    return position.allFinite() ? tiles_.at(grid_.core_of(position)) : 0;
+    return has_place(position) ? tiles_.at(grid_.core_of(position)) : 0;
   }
 
  private:
@@ -139,7 +139,7 @@ void sort_file(const fs::path& from, const fs::path& to, const Plan& plan,
   }
   std::vector<std::uint32_t> order = spatial::curve_order(all.positions);
   for (std::uint32_t i = 0; i < all.size(); ++i) {
-    if (!all.positions[i].allFinite()) order.push_back(i);
+    if (!has_place(all.positions[i])) order.push_back(i);
   }
   Copy copy(to, plan, all.size());
   for_each_block(order.size(), kChunkPoints, [&](std::size_t begin, std::size_t end) {
