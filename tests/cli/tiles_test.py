@@ -180,6 +180,19 @@ class Tiles(TilesTest):
         self.assertIn("index 100 %", said)
         self.assertNotIn("dense sample", said)
 
+    def test_normals_that_were_estimated_are_estimated_again(self):
+        p, _ = field(3, 300, normals=False)
+        write_ply(self.folder / "bare.ply", p)
+        run("classify", self.folder / "bare.ply", "-o", self.folder / "a.ply")
+        self.check_equal_to_untiled(self.folder / "a.ply", 0.9999)
+        rows, whole = (sorted_rows(self.folder / name) for name in ("joined.ply", "a.ply"))
+        self.assertGreater(np.mean(rows["scalar_edge_class"] == whole["scalar_edge_class"]), 0.9999)
+        given = (self.folder / "a.ply").read_bytes().replace(b"normals estimated", b"normals measured")
+        (self.folder / "b.ply").write_bytes(given)
+        said = run("tiles", "plan", self.folder / "a.ply", self.folder / "b.ply", "-o",
+                   self.folder / "q.json", expect=2)
+        self.assertIn("differ in whether pcednet estimated their normals", said.stderr)
+
     def test_points_of_no_place_stay_and_change_no_other(self):
         p, n = field(3, 300)
         p[::500] = np.nan

@@ -258,9 +258,13 @@ PreparedCloud prepare_points(const Points& cloud, const PrepareOptions& options,
 
 }  // namespace
 
+bool tells_of_estimated_normals(const PointCloud& outline) {
+  return std::find(outline.comments.begin(), outline.comments.end(), kEstimatedNormals) !=
+         outline.comments.end();
+}
+
 bool has_estimated_normals(const PointCloud& cloud) {
-  return cloud.has_normals() && std::find(cloud.comments.begin(), cloud.comments.end(),
-                                          kEstimatedNormals) != cloud.comments.end();
+  return cloud.has_normals() && tells_of_estimated_normals(cloud);
 }
 
 void set_estimated_normals(PointCloud& cloud, bool estimated) {
@@ -272,9 +276,8 @@ PreparedCloud prepare(const PointCloud& cloud, const PrepareOptions& options,
                       const Progress* progress) {
   check_consistent(cloud);
   Points points = {cloud.positions, cloud.normals, [&cloud] { return scanner_of_points(cloud); }};
-  if (options.keep_orientation || options.decided || !has_estimated_normals(cloud)) {
-    return prepare_points(points, options, progress);
-  }
+  const bool as_given = options.decided ? !options.decided->made : options.keep_orientation;
+  if (as_given || !has_estimated_normals(cloud)) return prepare_points(points, options, progress);
   std::swap(points.normals, points.estimates);
   return prepare_points(points, options, progress);
 }

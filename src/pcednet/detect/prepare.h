@@ -33,6 +33,8 @@ struct NormalsDecision {
 /// The comment of a cloud whose normals are all estimated from its positions, by this program.
 inline constexpr std::string_view kEstimatedNormals = "pcednet normals estimated";
 bool has_estimated_normals(const PointCloud& cloud);
+/// Whether the comments say so of points that are elsewhere.
+bool tells_of_estimated_normals(const PointCloud& outline);
 /// Gives the cloud the comment, or takes it away.
 void set_estimated_normals(PointCloud& cloud, bool estimated);
 

@@ -81,14 +81,15 @@ void note(const detect::PreparedCloud& prepared, Plan& plan) {
   plan.notes.insert(plan.notes.end(), prepared.notes.begin(), prepared.notes.end());
 }
 
-/// Estimates and orients as prepare() does for points without normals; signs are independent
-/// between batches.
+/// Estimates and orients as prepare() does for points without normals of their own; signs are
+/// independent between batches.
 std::vector<Vec3> estimate_in_batches(const PointCloud& dense, detect::PrepareOptions options,
                                       Plan& plan, const Progress* progress) {
   std::vector<Vec3> normals(dense.size(), Vec3::Zero());
   for (const std::vector<std::uint32_t>& batch : batches_of(dense.positions)) {
     PointCloud points;
     points.scanners = dense.scanners;
+    points.comments = dense.comments;
     append_surface(dense, batch, points);
     const detect::PreparedCloud prepared = detect::prepare(points, options, progress);
     if (!options.decided) note(prepared, plan);
@@ -110,7 +111,9 @@ PointCloud read_dense_sample(std::span<const Vec3> sample, const Plan& plan,
            });
   };
   PointCloud dense;
-  if (plan.inputs.size() == 1) dense.scanners = outline_of(plan).scanners;
+  const PointCloud outline = outline_of(plan);
+  if (plan.inputs.size() == 1) dense.scanners = outline.scanners;
+  detect::set_estimated_normals(dense, detect::tells_of_estimated_normals(outline));
   Stage stage(progress, "dense sample", plan.inputs.size());
   for (const PlannedInput& input : plan.inputs) {
     for_each_chunk(input, is_wanted, progress,
@@ -123,7 +126,8 @@ PointCloud read_dense_sample(std::span<const Vec3> sample, const Plan& plan,
 PreparedSample decide_normals(const PointCloud& dense, const detect::PrepareOptions& options,
                               Plan& plan, const Progress* progress) {
   PreparedSample sample;
-  if (!dense.has_normals() && dense.size() > kBatchPoints) {
+  const bool as_given = options.keep_orientation || !detect::has_estimated_normals(dense);
+  if (!(dense.has_normals() && as_given) && dense.size() > kBatchPoints) {
     sample.positions = dense.positions;
     sample.made = estimate_in_batches(dense, options, plan, progress);
     sample.normals = sample.made;

@@ -69,6 +69,10 @@ void check_agree(const IndexedInput& a, const IndexedInput& b) {
                             "plan them one by one",
                             names, a.columns, b.columns));
   }
+  if (detect::tells_of_estimated_normals(a.outline) !=
+      detect::tells_of_estimated_normals(b.outline)) {
+    throw Error(ErrorKind::kUsage, names + " differ in whether pcednet estimated their normals");
+  }
   const auto first = io::las_coordinate_system(a.outline);
   const auto other = io::las_coordinate_system(b.outline);
   if (first.epsg != other.epsg || (first.epsg == 0 && first.wkt != other.wkt)) {
