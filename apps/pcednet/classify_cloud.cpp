@@ -15,17 +15,13 @@
 namespace pcednet::app {
 namespace {
 
-/// Warns of float32 coordinates so large that they are rounded to more than the spacing of the
-/// points, unless prepare() has found that and spread them.
+/// Warns of float32 coordinates that are rounded too coarsely, unless prepare() has spread them.
 void warn_of_rounding(const std::filesystem::path& file, const PointCloud& cloud,
                       const BoundingBox& bounds, const ClassifiedCloud& classified) {
   if (cloud.position_type != ScalarType::kFloat32) return;
-  const double step = formats::float_step(bounds);
-  if (step <= classified.found.s_min || classified.prepared.decision.rounding.step > 0.0) return;
-  warn(fmt::format(
-      "{}: coordinates up to {} are rounded to {:.2g}, as they are float, and the "
-      "points are {:.2g} apart: write them as double, or relative to a nearer origin",
-      file.string(), formats::largest_coordinate(bounds), step, classified.found.s_min));
+  if (classified.prepared.decision.rounding.step > 0.0) return;
+  const std::string note = formats::note_on_float(bounds, classified.found.s_min);
+  if (!note.empty()) warn(fmt::format("{}: {}", file.string(), note));
 }
 
 }  // namespace
@@ -42,8 +38,8 @@ ClassifiedCloud classify_cloud(const std::filesystem::path& file, const PointClo
                                const Classifier& classifier, const Progress& progress) {
   ClassifiedCloud result;
   if (classifier.model) {
-    const BoundingBox bounds = bounding_box(cloud.positions);
     result.prepared = prepare(file, cloud, classifier.preparation, progress);
+    const BoundingBox bounds = bounding_box(result.prepared.positions);
     check_scales(file, bounds, classifier.model->descriptor);
     result.found = detect::classify(result.prepared, *classifier.model, &progress);
     if (classifier.boundary && has_edges(classifier.model->table)) {

@@ -81,6 +81,15 @@ std::string largest_coordinate(const BoundingBox& bounds) {
   return largest < 1e15 ? fmt::format("{:.0f}", largest) : fmt::format("{:g}", largest);
 }
 
+std::string note_on_float(const BoundingBox& bounds, double apart) {
+  const double step = float_step(bounds);
+  if (step <= apart) return {};
+  return fmt::format(
+      "coordinates up to {} are rounded to {:.2g}, as they are float, and the points are {:.2g} "
+      "apart: write them as double, or relative to a nearer origin",
+      largest_coordinate(bounds), step, apart);
+}
+
 CloudFacts facts_of_header(const io::InputFile& file) {
   CloudFacts facts{.format = format_of(file).name};
   if (facts.format == "E57") facts.e57 = io::read_e57_document(io::E57Pages(file));

@@ -71,6 +71,10 @@ double float_step(const BoundingBox& bounds);
 /// The largest coordinate of the box, as text: 5400000, or 1e+20.
 std::string largest_coordinate(const BoundingBox& bounds);
 
+/// That float32 coordinates within `bounds` are rounded to more than the points are apart; empty if
+/// they are not.
+std::string note_on_float(const BoundingBox& bounds, double apart);
+
 /// The possible surprises in otherwise complete facts.
 std::vector<std::string> find_problems(const CloudFacts& facts);
 

@@ -11,6 +11,7 @@
 #include "pcednet/detect/boundary.h"
 #include "pcednet/detect/context.h"
 #include "pcednet/detect/octaves.h"
+#include "pcednet/formats/cloud_facts.h"
 #include "pcednet/normals/exact_planes.h"
 #include "pcednet/tiles/dense_sample.h"
 #include "pcednet/tiles/inputs.h"
@@ -178,6 +179,14 @@ Sample index_inputs(const PlanRequest& request, Plan& plan, const Progress* prog
   return sample;
 }
 
+/// Where s_min is the spacing.
+void note_float_rounding(const detect::EdgeModel& model, Plan& plan) {
+  const bool is_spacing = model.descriptor.s_min == 0.0 && plan.normals.rounding.step == 0.0;
+  if (!is_spacing || outline_of(plan).position_type != ScalarType::kFloat32) return;
+  const std::string note = formats::note_on_float(plan.box, plan.s_min);
+  if (!note.empty()) plan.notes.push_back(note);
+}
+
 /// The length of the cells in which points are counted: the tiles are a whole number of them.
 double counting_cell(const PlanRequest& request, const BoundingBox& box) {
   if (request.tile_length == 0.0) return cell_length(box);
@@ -222,6 +231,7 @@ Plan make_plan(const PlanRequest& request, const detect::EdgeModel& model,
   const Spacing spacing =
       find_spacing({sample, is_all}, plan, gls::given_range(model.descriptor), counts, progress);
   plan.s_min = spacing.range.s_min, plan.s_max = spacing.range.s_max;
+  note_float_rounding(model, plan);
   decide_voxels(prepared, model, plan, progress);
 
   set_buffer(model, spacing, plan);
