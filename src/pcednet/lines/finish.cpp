@@ -26,11 +26,11 @@ constexpr double kExactReach = 5.0, kExactTolerance = 0.6;  ///< of corners of e
 constexpr double kFewEdgePoints = 0.1, kLongAnyway = 15.0;
 
 /// With noise beyond kLittleNoise, all pieces need edge points: so many more per spacing of noise.
-constexpr double kLittleNoise = 0.1, kPointsForNoise = 1.5;
+constexpr double kLittleNoise = 0.1, kPointsForNoise = 0.8;
 
 /// In much noise, pieces of which corners hold no end, or one, need edge points as probable as
 /// this.
-constexpr double kLeastProbable[] = {0.84, 0.75};
+constexpr double kLeastProbable[] = {0.78, 0.68};
 
 /// Those of a long row may be less probable: so long, in spacings, with so many of them on each.
 constexpr double kLongRow = 16.0, kDenseRow = 0.9, kProbableRow = 0.65;
