@@ -26,7 +26,7 @@ constexpr double kExactReach = 5.0, kExactTolerance = 0.6;  ///< of corners of e
 constexpr double kFewEdgePoints = 0.1, kLongAnyway = 15.0;
 
 /// With noise beyond kLittleNoise, all pieces need edge points: so many more per spacing of noise.
-constexpr double kLittleNoise = 0.1, kPointsForNoise = 0.8;
+constexpr double kLittleNoise = 0.1, kPointsForNoise = 1.5;
 
 /// In much noise, pieces of which corners hold no end, or one, need edge points as probable as
 /// this.
