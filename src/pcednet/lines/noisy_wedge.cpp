@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <span>
 
 #include "pcednet/core/eigendecomposition.h"
 #include "pcednet/core/half_space.h"
@@ -57,18 +58,19 @@ struct HeightSums {
   double n = 0.0, u = 0.0, v = 0.0, uu = 0.0, uv = 0.0, vv = 0.0;
   double h = 0.0, hu = 0.0, hv = 0.0, hh = 0.0;
 
-  void add(const Vec3& p) {
-    n += 1.0;
-    u += p.x();
-    v += p.y();
-    uu += p.x() * p.x();
-    uv += p.x() * p.y();
-    vv += p.y() * p.y();
-    h += p.z();
-    hu += p.z() * p.x();
-    hv += p.z() * p.y();
-    hh += p.z() * p.z();
-  }
+  HeightSums() = default;
+  explicit HeightSums(const Vec3& p)
+      : n(1.0),
+        u(p.x()),
+        v(p.y()),
+        uu(p.x() * p.x()),
+        uv(p.x() * p.y()),
+        vv(p.y() * p.y()),
+        h(p.z()),
+        hu(p.z() * p.x()),
+        hv(p.z() * p.y()),
+        hh(p.z() * p.z()) {}
+
   void add(const HeightSums& other, double sign = 1.0) {
     n += sign * other.n;
     u += sign * other.u;
@@ -84,13 +86,14 @@ struct HeightSums {
   Vec3 mean() const { return Vec3(u, v, h) / n; }
 };
 
+/// The least-squares plane of a part, by its slopes in the frame.
 struct Part {
-  LocalPlane plane;
   Vec3 mean;
+  double slope_u, slope_v;
   double error;  ///< sum of squared distances across the plane
 };
 
-std::optional<Part> part_of(const HeightSums& sums, const Frame& frame) {
+std::optional<Part> part_of(const HeightSums& sums) {
   constexpr double kLeastSpread = 0.02;  // of the points of a part over u and v
   if (sums.n < static_cast<double>(kFewestOfSide)) return std::nullopt;
   const Vec3 mean = sums.mean();
@@ -101,11 +104,14 @@ std::optional<Part> part_of(const HeightSums& sums, const Frame& frame) {
   if (!(determinant > kLeastSpread * sums.n * sums.n)) return std::nullopt;
   const double slope_u = (hu * vv - hv * uv) / determinant;
   const double slope_v = (hv * uu - hu * uv) / determinant;
-  const Vec3 normal = (frame.z - slope_u * frame.x - slope_v * frame.y).normalized();
-  const Vec3 place = frame.place(mean);
   const double error = std::max(0.0, hh - slope_u * hu - slope_v * hv) /
                        (1.0 + slope_u * slope_u + slope_v * slope_v);
-  return Part{{normal, normal.dot(place), 0}, place, error};
+  return Part{mean, slope_u, slope_v, error};
+}
+
+LocalPlane plane_of(const Part& part, const Frame& frame) {
+  const Vec3 normal = (frame.z - part.slope_u * frame.x - part.slope_v * frame.y).normalized();
+  return {normal, normal.dot(frame.place(part.mean)), 0};
 }
 
 /// The half-planes of two planes, each on the side of a point of its part.
@@ -128,25 +134,26 @@ std::optional<HalfPlanes> half_planes(const LocalPlane& a, const LocalPlane& b, 
 }
 
 /// The best of the cuts along lines that pass the origin in one direction.
-void try_cuts(const std::array<Vec3, NearPoints::kMost>& places, std::size_t count,
-              const Frame& frame, double angle, std::optional<HalfPlanes>& best,
-              double& least_error) {
-  const Vec3 origin = frame.of(Vec3::Zero()), across(std::cos(angle), std::sin(angle), 0.0);
+void try_cuts(std::span<const HeightSums> places, const Frame& frame, double angle,
+              std::optional<HalfPlanes>& best, double& least_error) {
+  const Vec3 origin = frame.of(Vec3::Zero());
+  const double across_u = std::cos(angle), across_v = std::sin(angle);
   constexpr double kMiddle = 0.5 * static_cast<double>(kCuts + 1);
   std::array<HeightSums, kCuts + 1> strips{};
   HeightSums before, after;
-  for (std::size_t i = 0; i < count; ++i) {
-    const double strip = (places[i] - origin).dot(across) / kCutStep + kMiddle;
-    strips[static_cast<std::size_t>(std::clamp(strip, 0.0, static_cast<double>(kCuts)))].add(
-        places[i]);
+  for (const HeightSums& place : places) {
+    const double away = (place.u - origin.x()) * across_u + (place.v - origin.y()) * across_v;
+    const double strip = away / kCutStep + kMiddle;
+    strips[static_cast<std::size_t>(std::clamp(strip, 0.0, static_cast<double>(kCuts)))].add(place);
   }
   for (const HeightSums& strip : strips) after.add(strip);
   for (std::size_t cut = 0; cut < kCuts; ++cut) {
     before.add(strips[cut]);
     after.add(strips[cut], -1.0);
-    const auto a = part_of(before, frame), b = part_of(after, frame);
+    const auto a = part_of(before), b = part_of(after);
     if (!a || !b || a->error + b->error >= least_error) continue;
-    const auto halves = half_planes(a->plane, b->plane, a->mean, b->mean);
+    const auto halves = half_planes(plane_of(*a, frame), plane_of(*b, frame), frame.place(a->mean),
+                                    frame.place(b->mean));
     if (!halves) continue;
     least_error = a->error + b->error;
     best = halves;
@@ -155,13 +162,13 @@ void try_cuts(const std::array<Vec3, NearPoints::kMost>& places, std::size_t cou
 
 std::optional<HalfPlanes> best_cut(const NearPoints& points, std::size_t count,
                                    const Frame& frame) {
-  std::array<Vec3, NearPoints::kMost> places;
-  for (std::size_t i = 0; i < count; ++i) places[i] = frame.of(points.offset(i));
+  std::array<HeightSums, NearPoints::kMost> places;
+  for (std::size_t i = 0; i < count; ++i) places[i] = HeightSums(frame.of(points.offset(i)));
   std::optional<HalfPlanes> best;
   double least_error = std::numeric_limits<double>::infinity();
   for (int i = 0; i < kDirections; ++i) {
     const double angle = std::numbers::pi * i / kDirections;
-    try_cuts(places, count, frame, angle, best, least_error);
+    try_cuts(std::span(places).first(count), frame, angle, best, least_error);
   }
   return best;
 }
