@@ -612,13 +612,16 @@ test("restores a run of before the restart", async () => {
   };
   // The one that was shown comes back by itself.
   assert.ok((await model()).equals(fs.readFileSync(saved.model)), "the model that was saved");
-  const now = (await state("runs")).find((run) => run.current).run;
-  assert.ok(now > 1, "there was a run before");
+  const runs = await state("runs");
+  const current = runs.find((run) => run.current);
+  assert.ok(current.run > 1, "there was a run before");
   await page.locator("summary", { hasText: "Runs" }).click();
-  for (const run of [1, now]) {
+  for (const { run, painted, loss } of [runs.find((one) => one.run === 1), current]) {
     await page.getByRole("button", { name: `Restore run ${run}`, exact: true }).click();
     await page.getByRole("button", { name: `Restore run ${run}`, exact: true }).waitFor({ state: "detached" });
-    assert.equal((await model()).equals(fs.readFileSync(saved.model)), run === now);
+    // Where the program is slow, the first run may have learnt from the same strokes.
+    const same = painted === current.painted && loss === current.loss;
+    assert.equal((await model()).equals(fs.readFileSync(saved.model)), same, `run ${run}`);
   }
 });
 
