@@ -49,7 +49,8 @@ function(pcednet_compile_options target)
   # -Wno-restrict: GCC 12 warns of std::string's own code (GCC bug 105329).
   # ggc-*: GCC collects its garbage when it holds a gigabyte, not at every step: a tenth of its time.
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wshadow -Wnon-virtual-dtor
-    $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict;--param=ggc-min-expand=100;--param=ggc-min-heapsize=1048576> -ffp-contract=off $<$<BOOL:${PCEDNET_WARNINGS_AS_ERRORS}>:-Werror>)
+    $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict;--param=ggc-min-expand=100;--param=ggc-min-heapsize=1048576>
+    -ffp-contract=off $<$<BOOL:${PCEDNET_WARNINGS_AS_ERRORS}>:-Werror>)
 endfunction()
 
 # pcednet_vector_code(STEM FLAG...): compiles STEM_baseline.cpp, STEM_avx2.cpp and STEM_avx512.cpp of

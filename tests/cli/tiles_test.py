@@ -156,6 +156,7 @@ class Tiles(TilesTest):
     def test_inputs_in_random_order_can_be_sorted_first(self):
         p, n = field(3, 600)
         p[::700] = np.nan
+        p[350] = 1e30
         order = np.random.default_rng(4).permutation(len(p))
         write_ply(self.folder / "a.ply", p[order], n[order])
         plan, content = self.make_plan(self.folder / "a.ply", "--sort", self.folder / "sorted",

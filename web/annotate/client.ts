@@ -52,6 +52,7 @@ export class Client {
   private predicted = false;
   /** The start whose description the session told of. */
   private described = "";
+  /** The last look at the session, done or not. */
   private looked: Promise<void> = Promise.resolve();
   stage!: Stage;
 

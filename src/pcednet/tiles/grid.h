@@ -3,6 +3,9 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
 
 #include "pcednet/cloud/bounding_box.h"
 #include "pcednet/detect/far_points.h"
@@ -12,6 +15,15 @@ namespace pcednet::tiles {
 /// Whether a point is somewhere: finite, and no value that stands for "no data".
 inline bool has_place(const Vec3& position) {
   return position.allFinite() && position.cwiseAbs().maxCoeff() <= detect::kSuspectCoordinate;
+}
+
+/// The positions, NaN for those without a place.
+inline std::vector<Vec3> places_of(std::span<const Vec3> positions) {
+  std::vector<Vec3> places(positions.begin(), positions.end());
+  for (Vec3& place : places) {
+    if (!has_place(place)) place.setConstant(std::numeric_limits<double>::quiet_NaN());
+  }
+  return places;
 }
 
 /// The cores of tiles: squares of the plane of x and y, as high as the cloud, at multiples of their

@@ -179,10 +179,10 @@ Sample index_inputs(const PlanRequest& request, Plan& plan, const Progress* prog
   return sample;
 }
 
-/// Where s_min is the spacing.
-void note_float_rounding(const detect::EdgeModel& model, Plan& plan) {
+/// Of coordinates of this type, where s_min is the spacing.
+void note_float_rounding(const detect::EdgeModel& model, ScalarType type, Plan& plan) {
   const bool is_spacing = model.descriptor.s_min == 0.0 && plan.normals.rounding.step == 0.0;
-  if (!is_spacing || outline_of(plan).position_type != ScalarType::kFloat32) return;
+  if (!is_spacing || type != ScalarType::kFloat32) return;
   const std::string note = formats::note_on_float(plan.box, plan.s_min);
   if (!note.empty()) plan.notes.push_back(note);
 }
@@ -231,7 +231,7 @@ Plan make_plan(const PlanRequest& request, const detect::EdgeModel& model,
   const Spacing spacing =
       find_spacing({sample, is_all}, plan, gls::given_range(model.descriptor), counts, progress);
   plan.s_min = spacing.range.s_min, plan.s_max = spacing.range.s_max;
-  note_float_rounding(model, plan);
+  note_float_rounding(model, dense.position_type, plan);
   decide_voxels(prepared, model, plan, progress);
 
   set_buffer(model, spacing, plan);

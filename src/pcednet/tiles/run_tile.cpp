@@ -42,7 +42,8 @@ Chosen choose(const PointCloud& part, const Plan& plan, std::size_t tile, const 
 }
 
 void add_core(const PointCloud& core, PointCloud& all) {
-  all.positions.insert(all.positions.begin(), core.positions.begin(), core.positions.end());
+  const std::vector<Vec3> places = places_of(core.positions);
+  all.positions.insert(all.positions.begin(), places.begin(), places.end());
   all.normals.insert(all.normals.begin(), core.normals.begin(), core.normals.end());
   all.scanners = core.scanners;
   detect::set_estimated_normals(all, detect::tells_of_estimated_normals(core));

@@ -125,7 +125,7 @@ void scatter(const fs::path& folder, const Plan& plan, const PointCloud& outline
   for (Copy& copy : copies) copy.commit();
 }
 
-/// Writes the points of a scattered file along the curve, those that are not finite last.
+/// Writes the points of a scattered file along the curve, those without a place last.
 void sort_file(const fs::path& from, const fs::path& to, const Plan& plan,
                const PointCloud& outline) {
   const auto reader = open_chunks(from);
@@ -137,7 +137,7 @@ void sort_file(const fs::path& from, const fs::path& to, const Plan& plan,
     std::iota(every.begin(), every.end(), 0u);
     append_points(part, every, all);
   }
-  std::vector<std::uint32_t> order = spatial::curve_order(all.positions);
+  std::vector<std::uint32_t> order = spatial::curve_order(places_of(all.positions));
   for (std::uint32_t i = 0; i < all.size(); ++i) {
     if (!has_place(all.positions[i])) order.push_back(i);
   }
