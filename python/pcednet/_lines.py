@@ -117,6 +117,7 @@ def lines(xyz, labels=None, normals=None, *, p_sharp=None, p_smooth=None,
     if labels is None and isinstance(xyz, _clouds.Cloud):
         labels = xyz._classes()
         if labels is not None:
+            _core.check_edges([str(line) for line in xyz.comments])
             p_sharp = _probability(xyz, "p_sharp") if p_sharp is None else p_sharp
             p_smooth = _probability(xyz, "p_smooth") if p_smooth is None else p_smooth
     if labels is None:

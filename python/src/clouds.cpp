@@ -11,6 +11,7 @@
 #include "arrays.h"
 #include "bindings.h"
 #include "job.h"
+#include "pcednet/cloud/class_table.h"
 #include "pcednet/core/error.h"
 #include "pcednet/detect/result_cloud.h"
 #include "pcednet/formats/read_cloud.h"
@@ -103,6 +104,14 @@ Kept kept_of_part(const Kept& whole) {
   return {std::make_shared<const PointCloud>(std::move(part))};
 }
 
+/// Throws for classes other than edge classes, which comments tell of.
+void check_edges(const std::vector<std::string>& comments) {
+  const ClassTable table = classes_of(comments);
+  if (has_edges(table)) return;
+  throw Error(ErrorKind::kUsage,
+              "labels: the classes are " + names_of(table) + "; lines are of edge classes");
+}
+
 py::tuple read(const std::filesystem::path& path) {
   io::LoadedCloud loaded;
   run_job({py::none()}, [&](const Progress*) { loaded = formats::read_cloud(path); });
@@ -192,6 +201,7 @@ py::dict take_apart(PointCloud&& cloud) {
 void add_clouds(py::module_& module) {
   py::class_<Kept>(module, "Kept").def("of_part", kept_of_part);
   module.attr("ESTIMATED_NORMALS") = std::string(detect::kEstimatedNormals);
+  module.def("check_edges", check_edges);
   module.def("read", read);
   module.def("write", write);
 }

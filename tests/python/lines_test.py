@@ -74,6 +74,10 @@ class Lines(CliTest):
             pcednet.lines(cloud).write(self.path("ours.dxf"))
         self.assertEqual(self.path("ours.dxf").read_bytes(), self.path("theirs.dxf").read_bytes())
         self.assertEqual(pcednet.evaluate(cloud["scalar_edge_class"], cloud).mcc, 1)
+        cloud.comments = ["pcednet class 0 #9e9e9e ground", "pcednet class 1 #f28e2b roof"]
+        with self.assertRaisesRegex(pcednet.UsageError, "lines are of edge classes"):
+            pcednet.lines(cloud)
+        cloud.comments = []
         cloud["scalar_p_sharp"][3] = 2
         with self.assertRaisesRegex(pcednet.UsageError, "from 0 to 1"):
             pcednet.lines(cloud)
