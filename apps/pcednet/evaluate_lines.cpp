@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <iostream>
+#include <optional>
 
 #include "batch.h"
 #include "pcednet/eval/line_scores.h"
@@ -44,6 +45,22 @@ fs::path find_cloud(const fs::path& place, const std::string& stem) {
   return find_file(place, {place}, stem, endings);
 }
 
+/// None if a folder has no file of them for `stem`; a point file of that name is the cloud.
+std::optional<std::vector<lines::Curve>> read_truth(const fs::path& place,
+                                                    const std::string& stem) {
+  const fs::path file = find_truth(place, stem);
+  if (file.empty()) return std::nullopt;
+  const bool may_be_cloud = file != place && io::extension_of(file) == ".ply";
+  try {
+    auto curves = io::read_curves(file);
+    if (!curves.empty()) return curves;
+  } catch (const Error& error) {
+    if (error.kind() == ErrorKind::kInsufficient && may_be_cloud) return std::nullopt;
+    throw;
+  }
+  throw Error(ErrorKind::kInsufficient, file.string() + ": has no curves to compare with");
+}
+
 /// An OBJ file with vertices only has no lines: a method that found nothing may write it. A PLY
 /// file of lines says so with an element edge, even of none.
 std::vector<lines::Curve> read_found(const fs::path& path) {
@@ -76,16 +93,15 @@ void evaluate_lines(const LineEvaluation& arguments, const Common& common) {
   std::vector<eval::NamedLineScores> scores;
   for (const fs::path& input : expand_inputs(arguments.inputs)) {
     const std::string stem = input.stem().string();
-    const fs::path truth = find_truth(arguments.truth, stem);
-    if (truth.empty()) {
+    const auto truth = read_truth(arguments.truth, stem);
+    if (!truth) {
       warn(fmt::format("{}: no true curves in {}: left out", input.string(), arguments.truth));
       continue;
     }
     with_name_in_errors(input, [&] {
-      const auto curves = io::read_curves(truth);
       const auto found = read_found(input);
       scores.push_back(
-          {stem, eval::score_lines(found, curves, frame_for(arguments, stem, curves))});
+          {stem, eval::score_lines(found, *truth, frame_for(arguments, stem, *truth))});
     });
   }
   if (scores.empty()) {

@@ -123,7 +123,8 @@ TiledCloud::TiledCloud(TiledRequest request, const detect::EdgeModel& model,
     warn(fmt::format("that is more than {}: no tile is shorter than its buffer",
                      size_text(request_.memory)));
   }
-  labels_.emplace(request_.output, plan_.normals.made);
+  labels_.emplace(request_.output, !request_.given && has_own_classes(model.table),
+                  plan_.normals.made);
   if (request_.given) {
     tiles::label_points(plan_, nullptr, *labels_, &progress);
   } else {

@@ -34,6 +34,18 @@ TEST(Prepare, EstimatesWhatIsMissingOfTheNormals) {
             std::string::npos);
 }
 
+TEST(Prepare, DoesNotCountTheNormalsOfPointsThatAreNowhere) {
+  PointCloud cloud = sphere(400, 1);
+  const PointCloud nowhere = sphere(401, 500);
+  for (std::size_t i = 1; i < nowhere.size(); ++i) {
+    cloud.positions.push_back(Vec3::Constant(std::numeric_limits<double>::quiet_NaN()));
+    cloud.normals.push_back(nowhere.normals[i]);
+  }
+  const PreparedCloud prepared = prepare(cloud);
+  EXPECT_EQ(prepared.made.size(), cloud.size());
+  for (std::size_t i = 0; i < 400; ++i) EXPECT_TRUE(is_usable(prepared.normals[i]));
+}
+
 TEST(Prepare, LeavesTheFilesNormalsAloneIfFewAreMissing) {
   const PointCloud cloud = sphere(4000, 200);
   const PreparedCloud prepared = prepare(cloud);

@@ -176,6 +176,19 @@ TEST(Estimate, NeedsThreeDistinctPoints) {
   for (const Vec3& n : normals) EXPECT_LT(angle_between_lines(n, Vec3::UnitZ()), 1e-7);
 }
 
+TEST(Estimate, TakesFewPointsOfAnExactPlane) {
+  for (const int points : {4, 10, 16, 17}) {
+    Random random(7);
+    std::vector<Vec3> positions;
+    for (int i = 0; i < points; ++i) {
+      positions.emplace_back(random.uniform(0, 1), random.uniform(0, 1), 1e-12 * i);
+    }
+    for (const Vec3& n : estimate_normals(positions)) {
+      EXPECT_LT(angle_between_lines(n, Vec3::UnitZ()), 1e-6) << points << " points";
+    }
+  }
+}
+
 TEST(Estimate, LooksPastPointsThatAreNotFinite) {
   auto positions = box(Vec3::Ones(), 10).positions;
   const auto expected = estimate_normals(positions);

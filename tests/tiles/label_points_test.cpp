@@ -76,21 +76,48 @@ TEST_F(LabelPoints, PointsKeepTheirNumbersThroughTilesAndSorting) {
   check_numbers(plan, positions);
 }
 
+TEST_F(LabelPoints, SortingThatStopsLeavesNothing) {
+  Random random(6);
+  std::vector<Vec3> positions;
+  for (int i = 0; i < 20'000; ++i) {
+    positions.emplace_back(random.uniform(-2, 2), random.uniform(-2, 2), 0.0);
+  }
+  Plan plan = plan_of(positions);
+  int asked = 0, stop_at = 0;  // counts until nothing is left to stop
+  const Progress progress{.report = {}, .cancelled = [&] { return ++asked > stop_at; }};
+  const fs::path folder = folder_ / "sorted";
+  while (asked >= stop_at) {
+    stop_at += 5, asked = 0;
+    try {
+      sort_inputs({.folder = folder}, plan, &progress);
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::kCancelled);
+      EXPECT_TRUE(fs::is_empty(folder)) << "after " << stop_at;
+    }
+  }
+  EXPECT_GT(stop_at, 5);
+  EXPECT_EQ(static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), {})),
+            plan.tiles.size());
+}
+
 TEST_F(LabelPoints, FindingsComeBackInOrder) {
   for (const bool normals : {false, true}) {
-    PointLabels labels(folder_ / "out.ply", normals);
+    const bool own_classes = !normals;
+    PointLabels labels(folder_ / "out.ply", own_classes, normals);
     // Three tiles that share out the numbers 0 to 999.
     for (std::size_t tile = 0; tile < 3; ++tile) {
       std::vector<std::uint64_t> numbers;
       for (std::uint64_t i = 1000; i-- > 0;) {
         if (i / 10 % 3 == tile) numbers.push_back(i);
       }
-      TileFindings some{.prepared = {}, .found = detect::nothing_found(numbers.size())};
+      TileFindings some{.prepared = {},
+                        .found = detect::nothing_found(numbers.size(), own_classes)};
       for (std::size_t k = 0; k < numbers.size(); ++k) {
         const auto number = static_cast<float>(numbers[k]);
         some.found.classes[k] = static_cast<std::uint8_t>(numbers[k] % 4);
         some.found.p_sharp[k] = 1.0f / (1.0f + number);
         some.found.p_smooth[k] = number;
+        if (own_classes) some.found.p_class[k] = 0.5f * number;
         if (normals) some.prepared.made.emplace_back(0.1 * number, 1.0 / 3.0, -number);
       }
       labels.put(numbers, some);
@@ -98,12 +125,14 @@ TEST_F(LabelPoints, FindingsComeBackInOrder) {
     const TileFindings back = labels.get(100, 1000);
     ASSERT_EQ(back.found.classes.size(), 900u);
     EXPECT_EQ(back.prepared.made.size(), normals ? 900u : 0u);
+    EXPECT_EQ(back.found.p_class.size(), own_classes ? 900u : 0u);
     EXPECT_EQ(back.found.counts.sharp, 225u);
     for (std::size_t i = 0; i < 900; ++i) {
       const auto number = static_cast<float>(i + 100);
       EXPECT_EQ(back.found.classes[i], (i + 100) % 4);
       EXPECT_EQ(back.found.p_sharp[i], 1.0f / (1.0f + number));
       EXPECT_EQ(back.found.p_smooth[i], number);
+      if (own_classes) EXPECT_EQ(back.found.p_class[i], 0.5f * number);
       if (!normals) continue;
       EXPECT_EQ(back.prepared.made[i], Vec3(0.1 * number, 1.0 / 3.0, -number));
     }

@@ -218,7 +218,9 @@ PreparedCloud prepare_points(const Points& cloud, const PrepareOptions& options,
   }
   const auto count_usable = [&] {
     return static_cast<std::size_t>(
-        std::count_if(prepared.normals.begin(), prepared.normals.end(), is_usable));
+        std::count_if(prepared.curve.begin(), prepared.curve.end(), [&](std::uint32_t i) {
+          return i < prepared.normals.size() && is_usable(prepared.normals[i]);
+        }));
   };
   std::size_t usable = count_usable();
   if (options.decided) {

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <optional>
 
 #include "pcednet/cloud/point_cloud.h"
 #include "pcednet/core/error.h"
@@ -89,24 +88,6 @@ std::vector<std::uint8_t> nearest_to_edge_points(std::span<const Vec3> positions
   return classes;
 }
 
-/// The classes of a file with nothing else; none if it may hold points.
-std::optional<std::vector<std::uint8_t>> read_bare_classes(const fs::path& path,
-                                                           std::size_t points) {
-  const std::string extension = io::extension_of(path);
-  if (extension == ".u8" || extension == ".lbl" || extension == ".seg") {
-    auto classes = formats::read_labels(path);
-    if (classes.size() == points) return classes;
-    throw misfit(path, fmt::format("{} classes", classes.size()), points);
-  }
-  if (extension != ".txt" && extension != ".csv") return std::nullopt;
-  try {
-    auto classes = formats::read_labels(path);
-    if (classes.size() == points) return classes;
-  } catch (const Error&) {  // a text of points
-  }
-  return std::nullopt;
-}
-
 }  // namespace
 
 fs::path find_predictions(const fs::path& folder, const std::string& stem) {
@@ -125,7 +106,10 @@ Predictions read_predictions(const fs::path& path, std::span<const Vec3> positio
   if (io::extension_of(path) == ".npy") {
     return {classes_of_array(path, io::read_npy(path), positions.size()), {}};
   }
-  if (auto classes = read_bare_classes(path, positions.size())) return {*std::move(classes), {}};
+  if (auto classes = formats::read_bare_labels(path)) {
+    if (classes->size() == positions.size()) return {*std::move(classes), {}};
+    throw misfit(path, fmt::format("{} classes", classes->size()), positions.size());
+  }
   const PointCloud others = formats::read_cloud(path).cloud;
   auto labels = formats::labels_of(others, path);
   if (labels.empty()) {

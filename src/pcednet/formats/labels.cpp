@@ -26,26 +26,29 @@ bool is_comment(std::string_view line) {
   return line.starts_with('#') || line.starts_with("//");
 }
 
-/// Labels from a text with one number a line; none if a line holds several.
+/// Labels from a text with one number a line; none if a line holds several, also after a line with
+/// one that is no label, such as the number of points.
 std::optional<std::vector<std::uint8_t>> read_text_labels(const io::InputFile& file) {
   const std::string text = file.text();
   std::vector<std::uint8_t> labels;
   std::vector<std::string_view> words;
   io::Lines lines(text);
   std::string_view line;
+  std::optional<Error> no_label;
   while (lines.next(line)) {
     line = io::trim(line);
     if (line.empty() || is_comment(line)) continue;
     io::split(line, words, io::Separators(" \t\r\v\f,;"));
     if (words.size() != 1) return std::nullopt;
     const auto label = parse_label(words[0]);
-    if (!label) {
-      throw io::unreadable(file.path(),
-                           fmt::format("expected a label in 0 ... 255 or -1, not {:.40}", words[0]),
-                           lines.number());
+    if (!label && !no_label) {
+      no_label = io::unreadable(
+          file.path(), fmt::format("expected a label in 0 ... 255 or -1, not {:.40}", words[0]),
+          lines.number());
     }
-    labels.push_back(*label);
+    labels.push_back(label.value_or(kUnlabelled));
   }
+  if (no_label) throw *no_label;
   return labels;
 }
 
@@ -82,7 +85,7 @@ std::vector<std::uint8_t> labels_of(const PointCloud& cloud, const std::filesyst
   return cloud.labels;
 }
 
-std::vector<std::uint8_t> read_labels(const std::filesystem::path& path) {
+std::optional<std::vector<std::uint8_t>> read_bare_labels(const std::filesystem::path& path) {
   const std::string extension = io::extension_of(path);
   if (extension == ".u8") {
     const io::InputFile file(path);
@@ -91,13 +94,15 @@ std::vector<std::uint8_t> read_labels(const std::filesystem::path& path) {
     return labels;
   }
   const bool labels_only = extension == ".lbl" || extension == ".seg";
-  if (labels_only || extension == ".txt" || extension == ".csv") {
-    const io::InputFile file(path);
-    auto labels = read_text_labels(file);
-    if (labels) return *std::move(labels);
-    if (labels_only) throw io::unreadable(path, "expected one label a line");
-  }
-  return read_cloud_labels(path);
+  if (!labels_only && extension != ".txt" && extension != ".csv") return std::nullopt;
+  auto labels = read_text_labels(io::InputFile(path));
+  if (!labels && labels_only) throw io::unreadable(path, "expected one label a line");
+  return labels;
+}
+
+std::vector<std::uint8_t> read_labels(const std::filesystem::path& path) {
+  auto labels = read_bare_labels(path);
+  return labels ? *std::move(labels) : read_cloud_labels(path);
 }
 
 }  // namespace pcednet::formats

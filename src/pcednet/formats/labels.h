@@ -2,16 +2,20 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <string>
+#include <optional>
 #include <vector>
 
 #include "pcednet/cloud/point_cloud.h"
 
 namespace pcednet::formats {
 
-/// Reads one label per point, an EdgeClass each: .u8 (a byte per point); a text with one whole
-/// number a line (.txt, .csv, .lbl, .seg; -1 is unlabelled); or any point file, see labels_of.
-/// Throws Error(kUnreadable) like read_cloud, Error(kInsufficient) for a point file without labels.
+/// Reads a file of nothing but one label per point, an EdgeClass each: .u8 (a byte per point), or a
+/// text with one whole number a line (.txt, .csv, .lbl, .seg; -1 is unlabelled). None if it may
+/// hold points. Throws Error(kUnreadable) like read_cloud, also for a number that is no label.
+std::optional<std::vector<std::uint8_t>> read_bare_labels(const std::filesystem::path& path);
+
+/// The same, or the labels of any point file, see labels_of. Throws Error(kInsufficient) if that
+/// has none.
 std::vector<std::uint8_t> read_labels(const std::filesystem::path& path);
 
 /// The classes that `cloud` carries: its attribute scalar_edge_class or edge_class, which a

@@ -16,10 +16,12 @@ class Rows {
  public:
   explicit Rows(const std::vector<std::byte>& bytes) : bytes_(bytes) {}
 
+  std::uint64_t face = 0;  ///< its number, for messages
+
   double number(ScalarType type) {
     return visit_scalar(type, [&](auto value) {
       if (bytes_.size() - at_ < sizeof value) {
-        throw Error(ErrorKind::kUnreadable, "the faces end early");
+        throw Error(ErrorKind::kUnreadable, fmt::format("the data end in face {}", face));
       }
       std::memcpy(&value, bytes_.data() + at_, sizeof value);
       at_ += sizeof value;
@@ -32,12 +34,12 @@ class Rows {
   std::size_t at_ = 0;
 };
 
-void append_fan(const std::vector<double>& corners, std::size_t points,
+void append_fan(const std::vector<double>& corners, std::uint64_t face, std::size_t points,
                 std::vector<Triangle>& triangles) {
   for (const double corner : corners) {
     if (corner >= 0.0 && corner < static_cast<double>(points)) continue;
     throw Error(ErrorKind::kUnreadable,
-                fmt::format("a face names vertex {} of {}", corner, points));
+                fmt::format("face {} names vertex {} of {}", face, corner, points));
   }
   const auto index = [&](std::size_t c) { return static_cast<std::uint32_t>(corners[c]); };
   for (std::size_t c = 2; c < corners.size(); ++c) {
@@ -79,12 +81,12 @@ std::vector<Triangle> triangles_of(const PointCloud& cloud) {
         "faces", "ply\nformat binary_little_endian 1.0\n" + foreign.header + "end_header\n");
     const PlyElement& face = header.elements.front();
     Rows rows(foreign.bytes);
-    for (std::uint64_t f = 0; f < face.count; ++f) {
+    for (rows.face = 0; rows.face < face.count; ++rows.face) {
       for (const PlyProperty& property : face.properties) {
         const double count = property.length_type ? rows.number(*property.length_type) : 1.0;
         corners.clear();
         for (double c = 0.0; c < count; ++c) corners.push_back(rows.number(property.type));
-        if (names_corners(property)) append_fan(corners, cloud.size(), triangles);
+        if (names_corners(property)) append_fan(corners, rows.face, cloud.size(), triangles);
       }
     }
   }

@@ -23,7 +23,8 @@ class PartReader {
 
   virtual std::size_t points() const = 0;
   virtual std::size_t parts() const = 0;
-  /// One part as in the file: finish_part() turns it into what read_cloud() returns.
+  /// One part as in the file: finish_part() turns it into what read_cloud() returns. The first call
+  /// must have returned before others begin, unless set_narrow_colours() was called.
   virtual PointCloud read(std::size_t part) const = 0;
   /// Whether the numbers of a point come from the scale steps and fields of LAS, and so fit there.
   virtual bool is_las() const { return false; }

@@ -72,7 +72,8 @@ NeighbourGraph make_neighbour_graph(std::span<const Vec3> positions, std::size_t
       count > 0 ? NeighbourChoice{count, exact_planes} : choose_neighbours(graph.points, search);
   graph.fitted = search.available(choice.neighbours);
   graph.has_exact_planes = choice.has_exact_planes;
-  graph.degree = choice.has_exact_planes ? std::max(graph.fitted, kExactNeighbours) : graph.fitted;
+  graph.degree = search.available(
+      choice.has_exact_planes ? std::max(choice.neighbours, kExactNeighbours) : choice.neighbours);
   graph.neighbours = UnsetArray<std::uint32_t>(points * graph.degree);
   parallel_blocks(points, kQueriesAtOnce, [&](std::size_t begin, std::size_t end) {
     std::vector<std::uint32_t> some(end - begin);

@@ -1,8 +1,12 @@
 #include "pcednet/tiles/dense_sample.h"
 
 #include <algorithm>
+#include <array>
+#include <limits>
 #include <numeric>
 
+#include "pcednet/core/median.h"
+#include "pcednet/core/parallel_loops.h"
 #include "pcednet/detect/octaves.h"
 #include "pcednet/detect/rounding.h"
 #include "pcednet/gls/fast_scale_space.h"
@@ -24,31 +28,26 @@ bool any_holds(std::span<const BoundingBox> cubes, const Vec3& p) {
                      [&](const BoundingBox& cube) { return cube.holds(p); });
 }
 
-std::vector<BoundingBox> cubes_around(std::span<const Vec3> centres, double half_side) {
-  std::vector<BoundingBox> cubes;
-  for (const Vec3& centre : centres) {
-    cubes.push_back({centre - Vec3::Constant(half_side), centre + Vec3::Constant(half_side)});
-  }
-  return cubes;
-}
-
 /// Cubes of one size that together hold about kDensePoints, estimated from the sample.
 std::vector<BoundingBox> choose_cubes(std::span<const Vec3> sample, const Plan& plan) {
-  std::vector<Vec3> centres;
+  std::array<Vec3, kCubes> centres;
   for (std::size_t i = 0; i < kCubes; ++i) {
-    centres.push_back(sample[(2 * i + 1) * sample.size() / (2 * kCubes)]);
+    centres[i] = sample[(2 * i + 1) * sample.size() / (2 * kCubes)];
   }
+  std::vector<double> half_sides(sample.size());  // that reach the point from the nearest centre
+  parallel_for_each(sample.size(), [&](std::size_t i) {
+    double least = std::numeric_limits<double>::infinity();
+    for (const Vec3& centre : centres) {
+      least = std::min(least, (sample[i] - centre).cwiseAbs().maxCoeff());
+    }
+    half_sides[i] = least;
+  });
   const double share = static_cast<double>(kDensePoints) / static_cast<double>(plan.points());
-  const auto wanted = static_cast<std::size_t>(share * static_cast<double>(sample.size()));
-  double least = 0.0, most = (plan.box.max - plan.box.min).maxCoeff();
-  for (int step = 0; step < 20; ++step) {
-    const double half_side = 0.5 * (least + most);
-    const auto cubes = cubes_around(centres, half_side);
-    const auto inside = static_cast<std::size_t>(std::count_if(
-        sample.begin(), sample.end(), [&](const Vec3& p) { return any_holds(cubes, p); }));
-    (inside > wanted ? most : least) = half_side;
-  }
-  return cubes_around(centres, most);
+  const auto inside = static_cast<std::size_t>(share * static_cast<double>(sample.size()));
+  const Vec3 half = Vec3::Constant(value_at_rank(half_sides, std::min(inside, sample.size() - 1)));
+  std::vector<BoundingBox> cubes;
+  for (const Vec3& centre : centres) cubes.push_back({centre - half, centre + half});
+  return cubes;
 }
 
 /// All points if there are no cubes.

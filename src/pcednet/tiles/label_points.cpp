@@ -11,28 +11,35 @@
 namespace pcednet::tiles {
 namespace {
 
-// A point's record: its class, both probabilities, and its normal where some were made.
-constexpr std::size_t kSharpAt = 1, kSmoothAt = 5, kNormalAt = 9,
-                      kBytesOfNormal = 3 * sizeof(double);
+// A point's record: its class, both probabilities of edges, that of an own class, its normal if
+// some are made.
+constexpr std::size_t kSharpAt = 1, kSmoothAt = 5, kClassAt = 9, kNormalAt = 13;
+constexpr std::size_t kBytesOfNormal = 3 * sizeof(double);
+
+std::size_t record_bytes(bool normals) {
+  return kNormalAt + (normals ? kBytesOfNormal : 0);
+}
 
 }  // namespace
 
-PointLabels::PointLabels(const std::filesystem::path& beside, bool normals)
-    : stride_(kNormalAt + (normals ? kBytesOfNormal : 0)), file_(beside) {}
+PointLabels::PointLabels(const std::filesystem::path& beside, bool own_classes, bool normals)
+    : own_classes_(own_classes), normals_(normals), file_(beside) {}
 
 void PointLabels::put(std::span<const std::uint64_t> numbers, const TileFindings& findings) {
   std::vector<std::uint32_t> order(numbers.size());
   std::iota(order.begin(), order.end(), 0u);
   std::sort(order.begin(), order.end(),
             [&](std::uint32_t a, std::uint32_t b) { return numbers[a] < numbers[b]; });
-  std::vector<std::byte> rows(stride_ * order.size());
+  const std::size_t stride = record_bytes(normals_);
+  std::vector<std::byte> rows(stride * order.size());
   for (std::size_t k = 0; k < order.size(); ++k) {
     const std::uint32_t i = order[k];
-    std::byte* const row = &rows[k * stride_];
+    std::byte* const row = &rows[k * stride];
     store(row, findings.found.classes[i]);
     store(row + kSharpAt, findings.found.p_sharp[i]);
     store(row + kSmoothAt, findings.found.p_smooth[i]);
-    if (stride_ == kNormalAt || findings.prepared.made.empty()) continue;
+    if (own_classes_) store(row + kClassAt, findings.found.p_class[i]);
+    if (!normals_ || findings.prepared.made.empty()) continue;
     std::memcpy(row + kNormalAt, findings.prepared.made[i].data(), kBytesOfNormal);
   }
   // Numbers that follow each other are written together.
@@ -40,22 +47,24 @@ void PointLabels::put(std::span<const std::uint64_t> numbers, const TileFindings
     for (end = k + 1; end < order.size() && numbers[order[end]] == numbers[order[end - 1]] + 1;) {
       ++end;
     }
-    file_.write_at(numbers[order[k]] * stride_,
-                   std::span(rows).subspan(k * stride_, (end - k) * stride_));
+    file_.write_at(numbers[order[k]] * stride,
+                   std::span(rows).subspan(k * stride, (end - k) * stride));
   }
 }
 
 TileFindings PointLabels::get(std::size_t begin, std::size_t end) const {
-  std::vector<std::byte> rows((end - begin) * stride_);
-  file_.read(begin * stride_, rows);
-  TileFindings findings{.prepared = {}, .found = detect::nothing_found(end - begin)};
-  if (stride_ > kNormalAt) findings.prepared.made.resize(end - begin);
+  const std::size_t stride = record_bytes(normals_);
+  std::vector<std::byte> rows((end - begin) * stride);
+  file_.read(begin * stride, rows);
+  TileFindings findings{.prepared = {}, .found = detect::nothing_found(end - begin, own_classes_)};
+  if (normals_) findings.prepared.made.resize(end - begin);
   for (std::size_t i = 0; i < end - begin; ++i) {
-    const std::byte* const row = &rows[i * stride_];
+    const std::byte* const row = &rows[i * stride];
     findings.found.classes[i] = load<std::uint8_t>(row);
     findings.found.p_sharp[i] = load<float>(row + kSharpAt);
     findings.found.p_smooth[i] = load<float>(row + kSmoothAt);
-    if (stride_ == kNormalAt) continue;
+    if (own_classes_) findings.found.p_class[i] = load<float>(row + kClassAt);
+    if (!normals_) continue;
     std::memcpy(findings.prepared.made[i].data(), row + kNormalAt, kBytesOfNormal);
   }
   findings.found.counts = detect::count_classes(findings.found.classes);

@@ -15,8 +15,9 @@ namespace pcednet::tiles {
 /// The findings of every point, in the order of the inputs: on disk, in an unnamed file.
 class PointLabels {
  public:
-  /// On the disk of `beside`. `normals`: whether there are estimated normals.
-  PointLabels(const std::filesystem::path& beside, bool normals);
+  /// On the disk of `beside`. `own_classes`: whether the model has some; `normals`: whether some
+  /// are estimated.
+  PointLabels(const std::filesystem::path& beside, bool own_classes, bool normals);
 
   /// Keeps the findings of the points of these numbers.
   void put(std::span<const std::uint64_t> numbers, const TileFindings& findings);
@@ -25,7 +26,7 @@ class PointLabels {
   TileFindings get(std::size_t begin, std::size_t end) const;
 
  private:
-  std::size_t stride_;
+  bool own_classes_, normals_;
   ScratchFile file_;
 };
 

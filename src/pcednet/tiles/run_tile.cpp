@@ -83,14 +83,18 @@ void take_numbers(TileCloud& points) {
 
 TileFindings classify_tile(const Plan& plan, std::size_t tile, const detect::EdgeModel* model,
                            TileCloud& points, const Progress* progress) {
-  TileFindings findings{.prepared = {}, .found = detect::nothing_found(points.core.size())};
+  const bool own_classes = model && has_own_classes(model->table);
+  TileFindings findings{.prepared = {},
+                        .found = detect::nothing_found(points.core.size(), own_classes)};
   if (std::any_of(points.all.positions.begin(), points.all.positions.end(), has_place)) {
     const detect::PartOfCloud part = part_of(plan, tile, points);
     detect::PreparedCloud& prepared = findings.prepared;
     prepared = detect::prepare(points.all, {.decided = plan.normals}, progress);
     prepared.part = &part;
     if (model) findings.found = detect::classify(prepared, *model, progress);
-    if (model && plan.model.boundary) detect::mark_boundary(prepared, findings.found, progress);
+    if (model && plan.model.boundary && has_edges(model->table)) {
+      detect::mark_boundary(prepared, findings.found, progress);
+    }
     std::vector<Vec3> made = std::move(prepared.made);
     prepared = {};
     prepared.made = std::move(made);

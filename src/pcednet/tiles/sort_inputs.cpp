@@ -28,6 +28,29 @@ fs::path copy_path(const fs::path& folder, const Plan& plan, std::size_t tile, c
          fmt::format("{}{:0{}}{}", prefix, tile, digits, plan.las_steps.empty() ? ".ply" : ".las");
 }
 
+/// The copies of the tiles: unsorted ones go with it, and unless keep() is called the sorted too.
+class Copies {
+ public:
+  Copies(const fs::path& folder, const Plan& plan) : folder_(folder), plan_(plan) {}
+  Copies(const Copies&) = delete;
+  Copies& operator=(const Copies&) = delete;
+  ~Copies() {
+    std::error_code ignored;
+    for (std::size_t id = 0; id < plan_.tiles.size(); ++id) fs::remove(unsorted(id), ignored);
+    for (std::size_t id = 0; id < made_; ++id) fs::remove(sorted(id), ignored);
+  }
+
+  fs::path unsorted(std::size_t tile) const { return copy_path(folder_, plan_, tile, kUnsorted); }
+  fs::path sorted(std::size_t tile) const { return copy_path(folder_, plan_, tile, ""); }
+  void count_sorted() { ++made_; }  ///< they are made in the order of the tiles
+  void keep() { made_ = 0; }
+
+ private:
+  const fs::path& folder_;
+  const Plan& plan_;
+  std::size_t made_ = 0;
+};
+
 /// Throws if a copy would replace an input or what must stay.
 void check_copies(const SortRequest& request, const Plan& plan) {
   for (std::size_t id = 0; id < plan.tiles.size(); ++id) {
@@ -159,18 +182,21 @@ void sort_inputs(const SortRequest& request, Plan& plan, const Progress* progres
   check_copies(request, plan);
   PointCloud outline = outline_of(plan);
   if (request.numbered) outline.attributes.push_back(number_column(0, 0));
+  Copies copies(folder, plan);
   for_each_block(plan.tiles.size(), kOpenFiles, [&](std::size_t begin, std::size_t end) {
     scatter(folder, plan, outline, begin, end, progress);
   });
   std::vector<PlannedInput> sorted;
   for (std::size_t id = 0; id < plan.tiles.size(); ++id) {
     throw_if_cancelled(progress);
-    const fs::path path = copy_path(folder, plan, id, "");
-    sort_file(copy_path(folder, plan, id, kUnsorted), path, plan, outline);
+    const fs::path path = copies.sorted(id);
+    sort_file(copies.unsorted(id), path, plan, outline);
+    copies.count_sorted();
     std::vector<std::string> known;
     sorted.push_back(index_input(path, progress, known, [](const PointCloud&) {}).input);
     sorted.back().narrow_colours = plan.inputs.front().narrow_colours;
   }
+  copies.keep();
   plan.inputs = std::move(sorted);
 }
 
