@@ -56,6 +56,8 @@ struct Tolerances {
   double plane;  ///< from a plane to its points
   double first;  ///< from a crease to the nearest points of a side
   double noise;
+  std::size_t points;     ///< around an edge point
+  bool skips_other_side;  ///< of these, those that face away: beyond a thin wall
 };
 
 /// The wedge that two planes make at the edge point, which is the origin; all in spacings.
@@ -167,6 +169,10 @@ std::optional<Crease> crease_at(const OrderedPoints& cloud, std::uint32_t i,
   NearPoints near_points;
   near_points.add(Vec3::Zero(), cloud.normal(i), cloud.probability(i));
   for (const auto& near : others) {
+    if (within.skips_other_side) {
+      if (near_points.count == within.points) break;
+      if (cloud.cosine(i, near.index) < 0.0) continue;
+    }
     near_points.add((cloud.position(near.index) - cloud.position(i)) / spacing,
                     cloud.normal(near.index), cloud.probability(near.index));
   }
@@ -319,10 +325,13 @@ std::vector<Crease> creases_at(const OrderedPoints& cloud, std::span<const std::
 std::vector<Crease> find_creases(const OrderedPoints& cloud, const Sampling& sampling,
                                  const Progress* progress) {
   const std::vector<std::uint32_t> points = points_near_edges(cloud, sampling.noise, progress);
-  const auto others = static_cast<std::size_t>(39.0 + 80.0 * sampling.noise);
+  const bool noisy = sampling.noise > kMuchNoise;
   const Tolerances within = {.plane = 0.3 + 1.1 * sampling.noise,
                              .first = 2.0 + 2.0 * sampling.noise,
-                             .noise = sampling.noise};
+                             .noise = sampling.noise,
+                             .points = static_cast<std::size_t>(40.0 + 80.0 * sampling.noise),
+                             .skips_other_side = noisy && sampling.oriented};
+  const std::size_t others = (within.skips_other_side ? 2 : 1) * (within.points - 1);
   std::vector<std::uint8_t> has_crease(cloud.size(), 0);
   Stage stage(progress, "creases", points.size());
   std::vector<Crease> creases =
@@ -332,7 +341,6 @@ std::vector<Crease> find_creases(const OrderedPoints& cloud, const Sampling& sam
                    has_crease[point] = crease.has_value();
                    return crease;
                  });
-  const bool noisy = sampling.noise > kMuchNoise;
   std::vector<std::uint32_t> rest;
   std::copy_if(points.begin(), points.end(), std::back_inserter(rest),
                [&](std::uint32_t i) { return (noisy || cloud.is_edge(i)) && has_crease[i] == 0; });

@@ -23,6 +23,10 @@ class OrderedPoints {
   const Vec3& position(std::size_t i) const { return positions_[i]; }
   /// One of a normal and its opposite, the same of both: nothing may depend on signs.
   Vec3 normal(std::size_t i) const { return upward(points_.normals[order_[i]]); }
+  /// Of the angle between the normals of two points, with their signs.
+  double cosine(std::size_t i, std::size_t j) const {
+    return points_.normals[order_[i]].dot(points_.normals[order_[j]]);
+  }
   EdgeClass edge_class(std::size_t i) const {
     return static_cast<EdgeClass>(points_.classes[order_[i]]);
   }

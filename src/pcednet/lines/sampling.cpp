@@ -21,11 +21,14 @@ constexpr std::size_t kFewSamples = 50;
 constexpr double kUneven = 1.5;            ///< times the spacing
 constexpr double kMostNoise = 0.7;         ///< in spacings: more is no surface
 constexpr double kLeastGapOfSheets = 0.5;  ///< between the two sides of a wall, of their heights
+constexpr std::size_t kOnOwnSide = 3;      ///< nearest others, hardly ever beyond a wall
+constexpr double kMostOpposed = 0.15;      ///< of these, where signs are alike
 
 /// Of a point and its nearest others.
 struct PlaneSample {
   double spacing;
-  double noise;  ///< of them about their plane; below 0: unknown
+  double noise;         ///< of them about their plane; below 0: unknown
+  std::size_t opposed;  ///< of the nearest kOnOwnSide
 };
 
 double typical_spacing(const std::vector<PlaneSample>& samples) {
@@ -45,13 +48,20 @@ double noise_of(const std::vector<PlaneSample>& samples) {
   return std::min({2.0 * least, upper_median(std::move(noises)), kMostNoise});
 }
 
+bool are_oriented(const std::vector<PlaneSample>& samples) {
+  std::size_t opposed = 0;
+  for (const PlaneSample& sample : samples) opposed += sample.opposed;
+  return static_cast<double>(opposed) <=
+         kMostOpposed * static_cast<double>(kOnOwnSide * samples.size());
+}
+
 /// The samples where the spacing is about this one; if they are few, all, as if it were theirs.
 std::vector<PlaneSample> like(const std::vector<PlaneSample>& samples, double spacing) {
   std::vector<PlaneSample> alike, scaled;
   for (const PlaneSample& sample : samples) {
     const double ratio = sample.spacing / spacing;
     if (ratio < kUneven && ratio * kUneven > 1.0) alike.push_back(sample);
-    scaled.push_back({spacing, sample.noise});
+    scaled.push_back({spacing, sample.noise, sample.opposed});
   }
   return alike.size() < kFewSamples ? scaled : alike;
 }
@@ -113,7 +123,11 @@ std::vector<PlaneSample> samples_at(const OrderedPoints& cloud,
     }
     keep_own_sheet(offsets, heights);
     const bool enough = offsets.size() >= kLeastNeighbours;
-    samples.push_back({spacing, enough ? distance_to_plane(offsets) : -1.0});
+    const auto opposed =
+        std::count_if(row.begin(), row.begin() + kOnOwnSide,
+                      [&](const auto& near) { return cloud.cosine(points[k], near.index) < 0.0; });
+    samples.push_back(
+        {spacing, enough ? distance_to_plane(offsets) : -1.0, static_cast<std::size_t>(opposed)});
   }
   return samples;
 }
@@ -130,8 +144,9 @@ Sampling measure_sampling(const OrderedPoints& cloud) {
   const std::vector<PlaneSample> around = samples_at(cloud, off.empty() ? all : off);
   const double spacing = typical_spacing(around);
   const double at_edges = typical_spacing(samples_at(cloud, some_of(on)));
-  if (at_edges < kUneven * spacing) return {spacing, noise_of(around)};
-  return {at_edges, noise_of(like(around, at_edges))};
+  const bool oriented = are_oriented(around);
+  if (at_edges < kUneven * spacing) return {spacing, noise_of(around), oriented};
+  return {at_edges, noise_of(like(around, at_edges)), oriented};
 }
 
 }  // namespace pcednet::lines

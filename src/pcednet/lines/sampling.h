@@ -9,6 +9,7 @@ class OrderedPoints;
 struct Sampling {
   double spacing = 0.0;  ///< sqrt of the area per point, median
   double noise = 0.0;    ///< of points about the plane of their neighbours, in spacings
+  bool oriented = true;  ///< the normals of neighbours have like signs
 };
 
 /// Noise, in spacings, above which other rules apply to wedges, pieces and their ends.
