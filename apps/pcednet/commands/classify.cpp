@@ -9,6 +9,7 @@
 #include "classify_cloud.h"
 #include "classify_tiles.h"
 #include "commands.h"
+#include "las_codes.h"
 #include "methods.h"
 #include "models.h"
 #include "pcednet/core/error.h"
@@ -28,6 +29,7 @@ struct ClassifyArguments {
   std::vector<std::string> inputs;
   ResultArguments results;
   std::string las_classification, memory;
+  LasCodes codes;  ///< those of las_classification
   ModelArguments model{.name = kDefaultModel};
   MethodArguments method;
   detect::PrepareOptions preparation;
@@ -39,36 +41,6 @@ render::PreviewOptions preview_options(const ClassifyArguments& arguments,
   return {.view_direction = arguments.results.preview.direction,
           .overwrite = common.overwrite(),
           .table = model.table};
-}
-
-/// Applies --las-classification, comma-separated pairs class=code, to the field Classification;
-/// there are `classes` classes.
-void set_las_classification(const std::string& pairs, const std::vector<std::uint8_t>& classes,
-                            std::size_t classes_known, PointCloud& cloud) {
-  const Attribute* present = find_attribute(cloud, "Classification");
-  std::vector<std::uint8_t> codes(cloud.size());
-  if (present && present->type == ScalarType::kUint8 && present->components == 1) {
-    for (std::size_t i = 0; i < codes.size(); ++i) {
-      codes[i] = static_cast<std::uint8_t>(present->bytes[i]);
-    }
-  }
-  for (const std::string& pair : CLI::detail::split(pairs, ',')) {
-    int edge_class = -1, code = -1, used = 0;
-    const bool sound = std::sscanf(pair.c_str(), "%d=%d%n", &edge_class, &code, &used) == 2 &&
-                       static_cast<std::size_t>(used) == pair.size() && edge_class >= 0 &&
-                       static_cast<std::size_t>(edge_class) < classes_known && code >= 0 &&
-                       code <= 255;
-    if (!sound) {
-      throw Error(ErrorKind::kUsage,
-                  fmt::format("--las-classification: \"{}\" is not class=code, class 0 to {}, code "
-                              "0 to 255",
-                              pair, classes_known - 1));
-    }
-    for (std::size_t i = 0; i < codes.size(); ++i) {
-      if (classes[i] == edge_class) codes[i] = static_cast<std::uint8_t>(code);
-    }
-  }
-  set_attribute(cloud, make_attribute("Classification", codes));
 }
 
 double percent(std::size_t count, std::size_t points) {
@@ -139,9 +111,7 @@ detect::KeptInput add_found(const detect::PreparedCloud& prepared,
                             const detect::EdgeModel& model, PointCloud& cloud) {
   const detect::KeptInput kept =
       detect::add_result(cloud, prepared, found, model, {.class_colours = arguments.class_colours});
-  if (!arguments.las_classification.empty()) {
-    set_las_classification(arguments.las_classification, found.classes, model.table.size(), cloud);
-  }
+  set_las_codes(arguments.codes, found.classes, cloud);
   return kept;
 }
 
@@ -210,6 +180,7 @@ void classify_file(const Job& job, const ClassifyArguments& arguments,
   const Progress& progress = clock.progress();
   clock.begin("read");
   PointCloud cloud = read_cloud(job.input);
+  check_codes_fit(arguments.codes, job, cloud);
   throw_if_cancelled(&progress);
   const bool by_method = !arguments.method.name.empty();
   clock.begin(by_method ? arguments.method.name : "normals");
@@ -237,20 +208,18 @@ void classify_file(const Job& job, const ClassifyArguments& arguments,
   report(job, result, counts, model, clock.seconds());
 }
 
-void classify(const ClassifyArguments& arguments, const Common& common) {
+void classify(ClassifyArguments arguments, const Common& common) {
   detect::EdgeModel model;
   if (arguments.method.name.empty()) {
     model = load_model(arguments.model);
   } else {
     model.name = "none, method " + arguments.method.name;
   }
-  if (!arguments.las_classification.empty()) {
-    PointCloud nothing;  // throws before the work
-    set_las_classification(arguments.las_classification, {}, model.table.size(), nothing);
-  }
+  arguments.codes = las_codes(arguments.las_classification, model.table.size());
   const Inputs inputs = find_inputs(arguments.inputs);
   Batch batch(inputs);
   const auto [jobs, skipped] = plan_results(inputs, arguments.results, common);
+  check_codes_fit(arguments.codes, jobs);
   const fs::path used = model_file(arguments.model);
   for (const Job& job : jobs) {
     for (const auto& file : {job.output, job.preview}) check_not_input(file, used);
@@ -284,8 +253,8 @@ void add_classify(CLI::App& app, Common& common) {
       "-o,--output", arguments->results.output,
       "Output file (default: <stem>_edges.ply beside the input, .las for LAS and LAZ)");
   command->add_option("--las-classification", arguments->las_classification,
-                      "Set the LAS field Classification of some classes, as class=code,...: 2=64 "
-                      "sets sharp edges to 64");
+                      "Set the LAS field Classification of some classes, as class=code,...: 2=31 "
+                      "sets sharp edges to 31. Codes above 31 are for point formats 6 to 10");
   command->add_option("--out-dir", arguments->results.folder,
                       "Folder for the results, created if missing");
   CLI::Option* overwrite = command->get_option("--overwrite");

@@ -1,0 +1,45 @@
+"""Several inputs at once: what is refused before the work, what is passed over, what is left behind."""
+import os
+import unittest
+
+import numpy as np
+
+from las_test import FORMATS, las, random_rows
+from support import CliTest, cube, read_ply, run, write_ply
+
+
+class Inputs(CliTest):
+    def cloud(self, name, **options):
+        path = self.folder / name
+        path.parent.mkdir(exist_ok=True)
+        write_ply(path, *cube(200)[:2], **options)
+        return path
+
+    def names(self, folder=""):
+        return sorted(os.listdir(self.folder / folder))
+
+    def test_codes_that_a_las_file_cannot_hold_are_refused_before_the_work(self):
+        source, out = self.folder / "old.las", self.folder / "out.las"
+        source.write_bytes(las(3, random_rows(FORMATS[3], 300)))
+        run("convert", source, "-o", self.folder / "old.ply")
+        run("convert", source, "-o", self.folder / "new.copc.laz")
+        before = self.names()
+        for name, more in (("old.las", ()), ("old.ply", ()), ("old.ply", ("--max-memory", "1M"))):
+            said = run("classify", self.folder / name, "-o", out, "--las-classification", "1=20,2=64",
+                       "--progress", "plain", *more, expect=2).stderr
+            self.assertIn(f"{name}: --las-classification 2=64 does not fit point format 3, which {out} keeps: its "
+                          "codes are 0 to 31", said)
+            self.assertNotIn("describe", said)
+            self.assertEqual(self.names(), before)
+        # Other outputs hold all codes, and the example of the help suits every LAS file.
+        run("classify", source, "-o", self.folder / "b.copc.laz", "--las-classification", "2=64")
+        run("classify", source, "-o", self.folder / "b.ply", "--las-classification", "2=64")
+        self.assertIn("2=31 sets sharp edges to 31", " ".join(run("classify", "--help").stdout.split()))
+        run("classify", source, "-o", out, "--las-classification", "2=31")
+        run("convert", out, "-o", self.folder / "out.ply")
+        rows, _ = read_ply(self.folder / "out.ply")
+        self.assertTrue(np.all(rows["Classification"][rows["scalar_edge_class"] == 2] == 31))
+
+
+if __name__ == "__main__":
+    unittest.main()
