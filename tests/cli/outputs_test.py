@@ -71,6 +71,14 @@ class Outputs(CliTest):
     def test_two_signals_at_once_leave_no_part_of_a_file(self):
         self.assertEqual(self.stop(signal.SIGHUP, signal.SIGTERM), ["a.ply"])
 
+    def test_the_sample_that_is_stopped_leaves_no_file(self):
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+            running = self.start("generate", "sample", self.folder / "sample.ply")
+            self.assertIn("generate", running.stderr.readline())
+            running.send_signal(number)
+            self.assertIn("stopped by the user", self.end(running, 130))
+            self.assertEqual(os.listdir(self.folder), ["a.ply"])
+
     def test_nohup_goes_on_when_the_terminal_closes(self):
         ignore = lambda: signal.signal(signal.SIGHUP, signal.SIG_IGN)
         self.assertEqual(self.stop(signal.SIGHUP, expect=0, preexec_fn=ignore),

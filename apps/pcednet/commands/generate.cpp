@@ -205,8 +205,15 @@ void add_sample(CLI::App& generate, Common& common) {
   command->add_option("--seed", *seed, "Seed of the points")->capture_default_str();
   command->callback([file, seed, &common] {
     check_writable(*file, common.overwrite());
-    formats::write_cloud(*file, shapes::building_scan(*seed).cloud,
-                         {.overwrite = common.overwrite()});
+    const Progress progress = console_progress(common);
+    Stage stage(&progress, "generate", 1);
+    const shapes::GeneratedCloud made = [&] {
+      const EndsAtOnce making;
+      return shapes::building_scan(*seed);
+    }();
+    stage.advance();
+    formats::write_cloud(*file, made.cloud,
+                         {.overwrite = common.overwrite(), .progress = &progress});
   });
 }
 
