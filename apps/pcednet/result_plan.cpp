@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <set>
 
 #include "pcednet/core/error.h"
@@ -66,14 +67,16 @@ void refuse_existing(const std::vector<Job>& jobs) {
 void check_outputs(const std::vector<Job>& jobs, const Common& common) {
   for (const Job& job : jobs) formats::format_for(job.output);
   if (jobs.size() > 1 && !common.overwrite_files) refuse_existing(jobs);
-  std::set<fs::path> taken;
+  std::map<fs::path, fs::path> inputs;  // of each output
   for (const Job& job : jobs) {
     check_not_input(job.preview, job.input);
     for (const fs::path& file : {job.output, job.preview}) {
       check_writable(file, common.overwrite());
-      if (file.empty() || taken.insert(file.lexically_normal()).second) continue;
+      const auto [first, is_new] = inputs.emplace(file.lexically_normal(), job.input);
+      if (file.empty() || is_new) continue;
       throw Error(ErrorKind::kUsage,
-                  fmt::format("{}: two results would be written here", file.string()));
+                  fmt::format("{}: the results of {} and {} would both be written here",
+                              file.string(), first->second.string(), job.input.string()));
     }
   }
 }
@@ -100,7 +103,6 @@ ResultPlan plan_results(const Inputs& inputs, const ResultArguments& arguments,
   if (arguments.skip_existing) {
     plan.skipped = std::erase_if(plan.jobs, [](const Job& job) { return is_there(job.output); });
   }
-  if (!arguments.folder.empty()) make_folder(arguments.folder);
   check_outputs(plan.jobs, common);
   return plan;
 }

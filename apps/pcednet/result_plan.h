@@ -32,8 +32,8 @@ struct ResultPlan {
 
 /// Plans the results of `inputs`, before any work: LAS for LAS and LAZ, PLY for everything else.
 /// Inputs that are results of others, those of an earlier run on the same folder, are left out.
-/// Throws Error(kUsage) if results exist that may not be replaced, if two would be the same file or
-/// if one cannot be written. Creates the folder.
+/// The folder must exist. Throws Error(kUsage) if results exist that may not be replaced, if two
+/// would be the same file or if one cannot be written.
 ResultPlan plan_results(const Inputs& inputs, const ResultArguments& arguments,
                         const Common& common);
 

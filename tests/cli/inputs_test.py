@@ -40,6 +40,21 @@ class Inputs(CliTest):
         rows, _ = read_ply(self.folder / "out.ply")
         self.assertTrue(np.all(rows["Classification"][rows["scalar_edge_class"] == 2] == 31))
 
+    def test_two_results_of_one_name_are_refused_and_both_inputs_named(self):
+        inputs = [self.cloud("a/s.ply"), self.cloud("b/s.ply")]
+        out = self.folder / "out" / "deep"
+        said = run("classify", *inputs, "--out-dir", out, expect=2).stderr
+        self.assertIn(f"{out}/s_edges.ply: the results of {inputs[0]} and {inputs[1]} would both be written here", said)
+        self.assertEqual(self.names(), ["a", "b"])
+        (self.folder / "out").mkdir()
+        run("classify", *inputs, "--out-dir", f"{out}/", expect=2)
+        run("classify", inputs[0], "-o", self.folder / "x.ply", "--out-dir", out, expect=2)
+        self.assertEqual(self.names("out"), [])
+        broken = self.folder / "broken.ply"
+        broken.write_text("no cloud")
+        run("classify", broken, "--out-dir", out, expect=3)
+        self.assertEqual(self.names("out"), [])
+
 
 if __name__ == "__main__":
     unittest.main()

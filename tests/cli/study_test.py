@@ -155,7 +155,10 @@ class Study(CliTest):
         write_ply(self.folder / "bare.ply", *cube(100)[:2])
         self.assertIn("bare.ply", self.study("classes", "--test", "a=bare.ply", expect=4).stderr)
         run("study", "classes", "--test", f"a={self.folder / 'test'}", expect=2)
-        (self.folder / "out").mkdir(exist_ok=True)
+        said = self.study("classes", "--test", "a=test", "--seeds", "2,1,2", expect=2).stderr
+        self.assertIn("--seeds 2,1,2: the seed 2 is there twice", said)
+        self.assertFalse((self.folder / "out").exists())
+        (self.folder / "out").mkdir()
         (self.folder / "out" / "classes.json").write_text("{}")
         self.study("classes", "--test", "a=test", expect=2)
 

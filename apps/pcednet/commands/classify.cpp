@@ -10,6 +10,7 @@
 #include "classify_tiles.h"
 #include "commands.h"
 #include "las_codes.h"
+#include "made_folder.h"
 #include "methods.h"
 #include "models.h"
 #include "pcednet/core/error.h"
@@ -218,6 +219,7 @@ void classify(ClassifyArguments arguments, const Common& common) {
   arguments.codes = las_codes(arguments.las_classification, model.table.size());
   const Inputs inputs = find_inputs(arguments.inputs);
   Batch batch(inputs);
+  const MadeFolder folder(arguments.results.folder);
   const auto [jobs, skipped] = plan_results(inputs, arguments.results, common);
   check_codes_fit(arguments.codes, jobs);
   const fs::path used = model_file(arguments.model);

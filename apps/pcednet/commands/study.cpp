@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -12,6 +13,7 @@
 #include "commands.h"
 #include "descriptor_options.h"
 #include "fee.h"
+#include "made_folder.h"
 #include "methods.h"
 #include "models.h"
 #include "number_options.h"
@@ -203,17 +205,28 @@ void list_experiments() {
   }
 }
 
+/// Throws if a seed is there twice: its networks would count twice.
+void check_seeds(const std::vector<std::uint64_t>& seeds) {
+  std::set<std::uint64_t> seen;
+  for (const std::uint64_t seed : seeds) {
+    if (seen.insert(seed).second) continue;
+    throw Error(ErrorKind::kUsage,
+                fmt::format("--seeds {}: the seed {} is there twice", fmt::join(seeds, ","), seed));
+  }
+}
+
 void run_studies(const StudyArguments& arguments, const Common& common) {
+  check_seeds(arguments.seeds);
   const auto plan = plan_of(arguments);
   study::FileOptions file{
       .command = command_line(),
       .energy_is_measured = study::EnergyMeter(arguments.core_watts).has_counters(),
       .watts_per_core = arguments.core_watts};
+  const MadeFolder folder(arguments.folder), kept(fs::path(arguments.folder) / "cache");
   std::vector<study::Experiment> experiments;
   for (const std::string& name : arguments.names) {
     experiments.push_back(study::make_experiment(name, plan));
     choose_methods(experiments.back(), arguments.methods);
-    make_folder(arguments.folder);
     study::check_study_file(arguments.folder, name, file.command, common.overwrite());
   }
   const auto needs_data = [](const study::Variant& variant) { return !variant.test; };
