@@ -8,20 +8,34 @@
 #include "common.h"
 #include "pcednet/formats/format.h"
 #include "pcednet/formats/virtual_cloud.h"
+#include "pcednet/io/text_scan.h"
+#include "point_text.h"
 
 namespace pcednet::app {
 namespace {
 
 namespace fs = std::filesystem;
 
-std::vector<fs::path> files_in(const fs::path& folder) {
+/// Whether a file of a folder is a text such as README.txt, which is there for people.
+bool is_prose(const fs::path& file) {
+  const std::string extension = io::extension_of(file);
+  std::error_code ignored;  // a pipe can be read only once
+  if (extension != ".txt" && extension != ".csv" && extension != ".asc") return false;
+  if (!fs::is_regular_file(file, ignored)) return false;
+  try {
+    return formats::format_of(io::InputFile(file)).name == "text" && !begins_like_points(file);
+  } catch (const Error&) {
+    return false;  // told where it is read
+  }
+}
+
+std::vector<fs::path> files_in(const fs::path& folder, std::vector<fs::path>& passed_over) {
   std::vector<fs::path> files;
   std::error_code error, ignored;
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
        entry.increment(error)) {
-    if (formats::find_format(entry->path()) && !entry->is_directory(ignored)) {
-      files.push_back(entry->path());
-    }
+    if (!formats::find_format(entry->path()) || entry->is_directory(ignored)) continue;
+    (is_prose(entry->path()) ? passed_over : files).push_back(entry->path());
   }
   if (error) {
     throw Error(ErrorKind::kUnreadable,
@@ -34,15 +48,21 @@ std::vector<fs::path> files_in(const fs::path& folder) {
   return files;
 }
 
-std::vector<fs::path> files_of(const std::string& argument) {
+std::vector<fs::path> files_of(const std::string& argument, std::vector<fs::path>& passed_over) {
   std::error_code error;
   const fs::file_status status = fs::status(argument, error);
-  if (fs::is_directory(status)) return files_in(argument);
+  if (fs::is_directory(status)) return files_in(argument, passed_over);
   if (status.type() == fs::file_type::not_found) {
     throw Error(ErrorKind::kUnreadable, fmt::format("{}: no such file", argument));
   }
   if (formats::is_virtual_cloud(argument)) return formats::files_of_virtual_cloud(argument);
   return {argument};
+}
+
+void warn_of_passed_over(const Inputs& inputs) {
+  for (const fs::path& file : inputs.passed_over) {
+    warn(fmt::format("{}: a text that does not begin like points: passed over", file.string()));
+  }
 }
 
 }  // namespace
@@ -51,7 +71,7 @@ Inputs find_inputs(const std::vector<std::string>& arguments) {
   Inputs inputs;
   for (const std::string& argument : arguments) {
     try {
-      const auto files = files_of(argument);
+      const auto files = files_of(argument, inputs.passed_over);
       inputs.files.insert(inputs.files.end(), files.begin(), files.end());
     } catch (const Error& error) {
       inputs.failures.push_back({argument, error});
@@ -63,6 +83,7 @@ Inputs find_inputs(const std::vector<std::string>& arguments) {
 std::vector<fs::path> expand_inputs(const std::vector<std::string>& arguments) {
   Inputs inputs = find_inputs(arguments);
   if (!inputs.failures.empty()) throw inputs.failures.front().error;
+  warn_of_passed_over(inputs);
   return std::move(inputs.files);
 }
 
@@ -73,6 +94,7 @@ void check_not_inputs(const fs::path& output, const std::vector<std::string>& ar
 }
 
 Batch::Batch(const Inputs& inputs) : inputs_(inputs.count()) {
+  warn_of_passed_over(inputs);
   for (const Failure& failure : inputs.failures) add(failure);
 }
 

@@ -19,17 +19,20 @@ struct Failure {
 struct Inputs {
   std::vector<std::filesystem::path> files;
   std::vector<Failure> failures;
+  std::vector<std::filesystem::path> passed_over;  ///< texts in folders that are no points
 
   std::size_t count() const { return files.size() + failures.size(); }
 };
 
-/// Finds every input: a folder contributes every point file in it, in name order, a virtual point
-/// cloud (.vpc) the files that it names. A failure is an Error(kUnreadable) for a path that does
+/// Finds every input: a folder contributes every point file in it, in name order, but no .txt, .csv
+/// or .asc that does not begin like points; a virtual point cloud (.vpc) the files that it names. A
+/// failure is an Error(kUnreadable) for a path that does
 /// not exist or a folder that cannot be read, Error(kInsufficient) for a folder without point
 /// files.
 Inputs find_inputs(const std::vector<std::string>& arguments);
 
-/// The same for work that needs all of them: throws the first failure.
+/// The same for work that needs all of them: throws the first failure, and warns of files that are
+/// passed over.
 std::vector<std::filesystem::path> expand_inputs(const std::vector<std::string>& arguments);
 
 /// check_not_input() for all inputs that the arguments name, and for the arguments themselves.
@@ -40,7 +43,8 @@ void check_not_inputs(const std::filesystem::path& output,
 /// not stop the others. With a single input, its error is thrown unchanged.
 class Batch {
  public:
-  /// Reports inputs that were not found. Throws if none was found.
+  /// Warns of files that are passed over, and reports inputs that were not found. Throws if none
+  /// was found.
   explicit Batch(const Inputs& inputs);
 
   /// Does `work`, whose errors get the file's name; true if it succeeded. Throws Error(kCancelled).

@@ -55,6 +55,31 @@ class Inputs(CliTest):
         run("classify", broken, "--out-dir", out, expect=3)
         self.assertEqual(self.names("out"), [])
 
+    def test_texts_in_a_folder_that_are_no_points_are_passed_over(self):
+        self.cloud("in/a.ply")
+        row = "".join(f"{x} {y} {x * y % 3}\n" for x in range(8) for y in range(8))
+        points = {"count.txt": "64\n" + row, "names.csv": "x,y,z\n" + row.replace(" ", ","), "note.asc": "# a\n" + row,
+                  "commas.txt": row.replace(" ", ",5;").replace("\n", ",5\n")}
+        prose = {"README.txt": "This folder holds\na cloud: x y z\n", "empty.txt": "", "1.txt": "1 tree\n2 trees\n",
+                 "list.csv": "name;points\na;200\n", "axes.txt": "Axes: x y z\nz is up\n", "only.asc": "# a comment\n"}
+        for name, text in (points | prose).items():
+            (self.folder / "in" / name).write_text(text)
+        folder, out = self.folder / "in", self.folder / "out"
+        said = run("classify", folder, "--out-dir", out).stderr
+        self.assertIn(f"{len(points) + 1} classified, 0 skipped", said)
+        for name in prose:
+            self.assertEqual(said.count(f"warning: {folder}/{name}: a text that does not begin like points: passed over"),
+                             1, said)
+        said = run("classify", folder, "--out-dir", out, "--skip-existing").stderr
+        self.assertIn(f"0 classified, {len(points) + 1} skipped because their results exist, 0 failed", said)
+        # One that is named, or that begins like points, is an error as ever.
+        self.assertIn("README.txt: line 1", run("info", folder / "README.txt", expect=3).stderr)
+        (folder / "broken.txt").write_text("0 0 0\n1 1 one\n")
+        self.assertIn("broken.txt: line 2", run("info", folder, expect=3).stderr)
+        (self.folder / "other").mkdir()
+        (self.folder / "other/README.txt").write_text("Nothing here.\n")
+        self.assertIn("no point files in it", run("classify", self.folder / "other", expect=4).stderr)
+
 
 if __name__ == "__main__":
     unittest.main()
