@@ -23,4 +23,7 @@ void add_study(CLI::App& app, Common& common);
 void add_report(CLI::App& app, Common& common);
 void add_annotate(CLI::App& app, Common& common);
 
+// Commands of `tiles` with a file of their own.
+void add_tiles_plan(CLI::App& tiles, Common& common);
+
 }  // namespace pcednet::app

@@ -19,12 +19,13 @@ namespace pcednet::app {
 namespace {
 
 pid_t start(const TileJobs& jobs, std::size_t tile) {
-  std::vector<std::string> words = {"pcednet",    "tiles",
-                                    "run",        jobs.plan,
-                                    "--tile",     std::to_string(tile),
-                                    "--threads",  std::to_string(jobs.threads),
-                                    "--progress", "none"};
-  if (jobs.redo) words.emplace_back("--overwrite");
+  // With --overwrite it runs the tile in any case: is_done() has decided.
+  std::vector<std::string> words = {"pcednet",     "tiles",
+                                    "run",         jobs.plan,
+                                    "--tile",      std::to_string(tile),
+                                    "--threads",   std::to_string(jobs.threads),
+                                    "--overwrite", "--progress",
+                                    "none"};
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
@@ -79,16 +80,22 @@ class Running {
 
 }  // namespace
 
-void run_tile_jobs(const TileJobs& jobs, const Progress& progress) {
+std::size_t run_tile_jobs(const TileJobs& jobs, const Progress& progress) {
   Running running;
   std::vector<std::size_t> failed;
+  std::size_t started = 0;
   int code = 0;
   Stage stage(&progress, "tiles", jobs.tiles.size());
   for (std::size_t next = 0; next < jobs.tiles.size() || running.size() > 0;) {
     throw_if_cancelled(&progress);
     if (next < jobs.tiles.size() && running.size() < static_cast<std::size_t>(jobs.jobs)) {
       const std::size_t tile = jobs.tiles[next++];
+      if (jobs.is_done(tile)) {
+        stage.advance();
+        continue;
+      }
       running.add(start(jobs, tile), tile);
+      ++started;
       continue;
     }
     for (const auto& [tile, its_code] : running.wait()) {
@@ -98,7 +105,7 @@ void run_tile_jobs(const TileJobs& jobs, const Progress& progress) {
       if (code == 0) code = its_code;
     }
   }
-  if (failed.empty()) return;
+  if (failed.empty()) return started;
   throw Error(static_cast<ErrorKind>(code),
               fmt::format("{} of {} tiles failed, for the reasons above: {}", failed.size(),
                           jobs.tiles.size(), tiles::list_of(failed)));

@@ -2,6 +2,7 @@
 import os
 import pathlib
 import random
+import re
 import resource
 import shutil
 import signal
@@ -42,8 +43,10 @@ class TilesRun(TilesTest):
         state = self.status(plan)
         self.assertEqual((state["missing"], state["damaged"]), ([0, 2], [1]))
         self.assertEqual(self.status(plan, "--verify")["damaged"], [1, 3])
-        self.assertIn("run %s --tile 1 --tile 3 --overwrite" % plan,
-                      run("tiles", "status", plan, "--verify").stdout)
+        said = run("tiles", "status", plan, "--verify").stdout
+        self.assertRegex(said, r"missing +2 tiles, +\d+ points: 0, 2\n")
+        self.assertIn(f"  next: pcednet tiles run {plan} --tile 1 --tile 3 --overwrite\n"
+                      f"  then: pcednet tiles run {plan}, for the missing\n", said)
         said = run("tiles", "run", plan, "--missing", expect=2).stderr
         self.assertIn(f"{files[2]}: exists already", said)  # for all that is known, not a tile
         run("tiles", "run", plan, "--tile", 2, "--overwrite")
@@ -127,6 +130,23 @@ class TilesRun(TilesTest):
         self.check_whole(plan, self.folder / "small.ply")
         self.assertEqual([p.name for p in (self.folder / "p_tiles").iterdir() if "part" in p.name], [])
 
+    def test_tiles_of_another_run_are_counted_as_its_own(self):
+        plan, content = self.small()
+        tiles = len(content["tiles"])
+        for jobs in ("1", "2"):
+            shutil.rmtree(self.folder / "p_tiles", ignore_errors=True)
+            first = subprocess.Popen([PROGRAM, "tiles", "run", str(plan), "--jobs", jobs, "--progress", "json"],
+                                     stderr=subprocess.PIPE, text=True)
+            self.assertTrue(first.stderr.readline())  # it has seen that no tile is done
+            first.send_signal(signal.SIGSTOP)
+            run("tiles", "run", plan)
+            first.send_signal(signal.SIGCONT)
+            said = first.communicate(timeout=60)[1]
+            self.assertEqual(first.returncode, 0, said)
+            ran = len(re.findall(r"^tile \d+: ", said, re.M))
+            self.assertLess(ran, tiles)
+            self.assertRegex(said, rf"\n{ran} tiles? run, 0 were done, {tiles - ran} were done by another run meanwhile\n")
+
     def test_an_interrupt_stops_cleanly(self):
         write_ply(self.folder / "a.ply", *field())
         plan, _ = self.make_plan(self.folder / "a.ply")
@@ -178,6 +198,29 @@ class TilesRun(TilesTest):
         shutil.copy(pathlib.Path(os.environ["PCEDNET_SOURCE_DIR"]) / "models/worn.safetensors", model)
         self.assertIn("not the model", run("tiles", "run", plan, expect=5).stderr)
         self.assertIn("not the model", run("tiles", "run", plan, "--jobs", 2, expect=5).stderr)
+
+    def test_a_plan_in_the_place_of_another_tells_of_its_tiles(self):
+        plan, _ = self.small()
+        run("tiles", "run", plan, "--tile", 1, "--tile", 2)
+        again = ("tiles", "plan", self.folder / "small.ply", "-o", plan, "--overwrite", "--tile")
+        self.assertNotIn("another plan", run(*again, 1.4).stderr)  # the same
+        said = run(*again, 2).stderr
+        self.assertIn(f"warning: {self.folder}/p_tiles: tiles of another plan are here, such as 1.ply", said)
+        self.assertEqual(self.status(plan)["done"], [])
+
+    def test_names_of_tiles_and_plans_that_mean_nothing(self):
+        cloud = self.folder / "small.ply"
+        self.small()
+        before = sorted(os.listdir(self.folder))
+        for name, place in (("{TILE}.ply", "{TILE}"), ("{id}.ply", "{id}"), ("{ID}_{XLEFT.ply", "{XLEFT.ply")):
+            said = run("tiles", "plan", cloud, "-o", self.folder / "q.json", "--output", name, "--progress", "plain",
+                       expect=2).stderr
+            self.assertIn(f"{name}: names of tiles have no {place}; there are {{ID}}, {{COLUMN}}, {{ROW}}, {{XLEFT}}, "
+                          "{XRIGHT}, {YBOTTOM}, {YTOP}", said)
+            self.assertNotIn("index", said)
+        said = run("tiles", "plan", cloud, "-o", "-", cwd=self.folder, expect=2).stderr
+        self.assertIn("-o -: a plan is a file", said)
+        self.assertEqual(sorted(os.listdir(self.folder)), before)
 
     def test_usage_errors(self):
         plan, content = self.small()

@@ -1,5 +1,6 @@
 """pcednet tiles: the labels of the whole from any inputs, and their columns."""
 import json
+import re
 import unittest
 
 import numpy as np
@@ -100,8 +101,8 @@ class Tiles(TilesTest):
         self.assertIn("needs -o FILE, --vpc FILE", run("tiles", "join", plan, expect=2).stderr)
         plan, _ = self.make_plan(self.folder / "a.ply", tile=10)
         run("tiles", "run", plan)
-        said = run("tiles", "join", plan, "--vpc", self.folder / "c.vpc", expect=4).stderr
-        self.assertIn("of LAS, LAZ and COPC files", said)
+        said = run("tiles", "join", plan, "--vpc", self.folder / "c.vpc", expect=2).stderr
+        self.assertIn("0.ply: --vpc lists LAS, LAZ and COPC files; tiles plan --output {ID}.laz", said)
 
     def test_copc_and_virtual_point_clouds_are_planned(self):
         p, n = field(3, 600)
@@ -177,9 +178,25 @@ class Tiles(TilesTest):
         said = run("tiles", "plan", self.folder / "a.ply", "-o", self.folder / "p.json", "--tile", 0.15,
                    "--progress", "plain", expect=2).stderr
         self.assertIn("in no order in space", said)
-        self.assertIn("sort the inputs", said)
+        self.assertIn("sort the inputs: --sort FOLDER makes copies in order", said)
         self.assertIn("index 100 %", said)
         self.assertNotIn("dense sample", said)
+
+    def test_much_reading_is_said(self):
+        p, n = field(6, 3000)
+        order = np.random.default_rng(4).permutation(len(p))
+        write_ply(self.folder / "a.ply", (p[order] + 1) * np.float32([2, 1, 1]), n[order])
+        plan = self.folder / "p.json"
+        for much, *options in ((False, "--tile", 20), (False, "--tile", 2, "--sort", self.folder / "sorted"),
+                               (True, "--tile", 2)):
+            said = run("tiles", "plan", self.folder / "a.ply", "-o", plan, "--overwrite", *options).stderr
+            found = re.search(r"the (\d+) tiles will read each point ([\d.]+) times, but about ([\d.]+) times from "
+                              r"copies in order, which --sort FOLDER makes", said)
+            self.assertEqual(found is not None, much, said)
+        tiles, times, in_order = map(float, found.groups())
+        self.assertEqual(tiles, len(json.loads(plan.read_text())["tiles"]))
+        self.assertAlmostEqual(times, tiles, delta=2)  # each reads nearly all
+        self.assertLess(in_order, 10)
 
     def test_normals_that_were_estimated_are_estimated_again(self):
         p, _ = field(3, 300, normals=False)

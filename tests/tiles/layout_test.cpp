@@ -59,6 +59,19 @@ TEST(Layout, ChoosesTheLargestTilesThatFitTheMemory) {
   EXPECT_GE(choose_grid(counts, cell, {buffer, 1}).length(), buffer);
 }
 
+TEST(Layout, CountsThePointsOfCoresWithTheirBuffers) {
+  const std::vector<Vec3> positions = square_of_points(5000);
+  const Grid grid{0.5, 40};
+  const double buffer = 2.5;
+  CellCounts counts(grid.cell);
+  counts.add(positions);
+  std::uint64_t sum = 0;
+  for (const Tile& tile : lay_out(counts, grid, "", "{ID}.las")) {
+    sum += fullest(positions, grid, buffer, {tile});
+  }
+  EXPECT_EQ(points_with_buffers(counts, grid, buffer), sum);
+}
+
 TEST(Layout, NamesTheTilesByTheirTemplate) {
   CellCounts counts(5.0);
   counts.add(std::vector<Vec3>{{1000, 0, 0}, {1010, -10, 0}, {1000, 3, 0}});
@@ -71,6 +84,8 @@ TEST(Layout, NamesTheTilesByTheirTemplate) {
   EXPECT_ERROR(ErrorKind::kUsage, lay_out(counts, {5.0, 2}, "out", "{ROW}0.xyz"));
   EXPECT_ERROR(ErrorKind::kUsage, lay_out(counts, {5.0, 2}, "out", "same.laz"));
   EXPECT_ERROR(ErrorKind::kUsage, lay_out(counts, {5.0, 2}, "out", "a/{ID}.laz"));
+  EXPECT_ERROR(ErrorKind::kUsage, check_template("{ID}_{id}.laz"));
+  EXPECT_ERROR(ErrorKind::kUsage, check_template("{ID.laz"));
 }
 
 }  // namespace

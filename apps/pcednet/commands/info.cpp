@@ -12,7 +12,9 @@
 #include "model_facts.h"
 #include "pcednet/core/error.h"
 #include "pcednet/core/output_file.h"
+#include "pcednet/formats/format.h"
 #include "pcednet/formats/virtual_cloud.h"
+#include "pcednet/io/input_file.h"
 #include "pcednet/tiles/large_facts.h"
 
 namespace pcednet::app {
@@ -37,6 +39,13 @@ void write_json(const InfoRequest& request, const ordered_json& files, const Com
   }
 }
 
+void check_is_las(const std::filesystem::path& path) {
+  if (formats::format_of(io::InputFile(path)).is_las()) return;
+  throw Error(ErrorKind::kUsage, path.string() +
+                                     ": --vpc lists LAS, LAZ and COPC files, which "
+                                     "pcednet convert writes");
+}
+
 /// Reads only headers.
 void list_files(const InfoRequest& request, const Common& common) {
   check_writable(request.vpc, common.overwrite());
@@ -46,7 +55,10 @@ void list_files(const InfoRequest& request, const Common& common) {
   std::vector<formats::VirtualFile> files;
   for (const std::filesystem::path& path : inputs.files) {
     throw_if_cancelled(&progress);
-    batch.run(path, [&] { files.push_back(formats::virtual_file(path)); });
+    batch.run(path, [&] {
+      check_is_las(path);
+      files.push_back(formats::virtual_file(path));
+    });
   }
   batch.finish();
   for (const std::string& remark :

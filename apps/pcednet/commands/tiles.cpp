@@ -4,81 +4,26 @@
 
 #include <algorithm>
 #include <charconv>
+#include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "batch.h"
 #include "byte_size.h"
 #include "commands.h"
-#include "descriptor_options.h"
-#include "models.h"
-#include "number_options.h"
 #include "pcednet/core/stopwatch.h"
+#include "pcednet/formats/format.h"
 #include "pcednet/formats/virtual_cloud.h"
 #include "pcednet/tiles/inputs.h"
 #include "pcednet/tiles/join.h"
-#include "pcednet/tiles/make_plan.h"
 #include "pcednet/tiles/run_tile.h"
 #include "pcednet/tiles/tile_file.h"
-#include "prepare.h"
 #include "tile_jobs.h"
 
 namespace pcednet::app {
 namespace {
 
 namespace fs = std::filesystem;
-
-struct PlanArguments {
-  std::vector<std::string> inputs;
-  std::string plan, folder, output, sorted, memory = "2G";
-  double tile_length = 0.0;
-  ModelArguments model{.name = kDefaultModel};
-  detect::PrepareOptions preparation;
-};
-
-/// The default folder of the tiles: beside the plan.
-fs::path folder_of(const PlanArguments& arguments) {
-  if (!arguments.folder.empty()) return arguments.folder;
-  const fs::path plan = arguments.plan;
-  return plan.parent_path() / (plan.stem().string() + "_tiles");
-}
-
-void plan_tiles(const PlanArguments& arguments, const Common& common) {
-  check_not_inputs(arguments.plan, arguments.inputs);
-  check_not_input(arguments.plan, model_file(arguments.model));
-  check_writable(arguments.plan, common.overwrite());
-  const ModelArguments& model = arguments.model;
-  tiles::PlanRequest request{.inputs = expand_inputs(arguments.inputs),
-                             .folder = folder_of(arguments),
-                             .output = arguments.output,
-                             .model = planned_model(model),
-                             .tile_length = arguments.tile_length,
-                             .memory = byte_size("--max-memory", arguments.memory),
-                             .keep_orientation = arguments.preparation.keep_orientation,
-                             .sort = {.folder = arguments.sorted, .overwrite = common.overwrite()}};
-  const Progress progress = console_progress(common);
-  const detect::EdgeModel loaded = load_model(model);
-  if (has_own_classes(loaded.table)) {
-    throw Error(ErrorKind::kUsage, fmt::format("{}: has own classes ({}); tiles are for models of "
-                                               "edges, classify takes it",
-                                               model.name, pcednet::names_of(loaded.table)));
-  }
-  const tiles::Plan plan = tiles::make_plan(request, loaded, &progress);
-  check_scales(arguments.inputs.front(), plan.box, loaded.descriptor);
-  tiles::write_plan(arguments.plan, plan, common.overwrite());
-  for (const std::string& note : plan.notes) warn(note);
-  say(fmt::format("{}: {} points in {} tiles of length {:g}, buffer {:.4g}", arguments.plan,
-                  plan.points(), plan.tiles.size(), plan.grid.length(), plan.buffer));
-  say(fmt::format("  scales: {:.9g} to {:.9g}", plan.s_min, plan.s_max));
-  say(fmt::format("  the largest tile takes about {} of memory", size_text(plan.memory)));
-  if (plan.memory > request.memory) {
-    warn(fmt::format("that is more than --max-memory {}: {}", arguments.memory,
-                     arguments.tile_length > 0.0 ? "--tile is that long"
-                                                 : "no tile is shorter than its buffer"));
-  }
-  say(fmt::format("  next: pcednet tiles run {}", arguments.plan));
-}
 
 struct RunArguments {
   std::string plan, memory;
@@ -134,48 +79,69 @@ int jobs_within(const RunArguments& arguments, const tiles::Plan& plan) {
   return static_cast<int>(fit);
 }
 
-void run_here(const tiles::Plan& plan, const std::vector<std::size_t>& ids, const Common& common) {
+using IsDone = std::function<bool(std::size_t tile)>;
+
+/// Runs the tiles that are not done when their turn comes; returns how many.
+std::size_t run_here(const tiles::Plan& plan, const std::vector<std::size_t>& ids,
+                     const IsDone& is_done, const Common& common) {
   const detect::EdgeModel model = tiles::load_planned_model(plan);
   const Progress progress = console_progress(common);
+  std::size_t ran = 0;
   for (const std::size_t id : ids) {
     throw_if_cancelled(&progress);
-    // Another run may have finished it meanwhile.
-    if (!common.overwrite_files && tiles::state_of(plan, id) == tiles::TileState::kDone) continue;
+    if (is_done(id)) continue;
     Stopwatch watch;
     tiles::run_tile(plan, id, model, &progress);
     say(fmt::format("tile {}: {} points, {:.1f} s -> {}", id, plan.tiles[id].points, watch.lap(),
                     plan.tiles[id].output.string()));
+    ++ran;
   }
+  return ran;
+}
+
+std::size_t run_processes(const tiles::Plan& plan, const TileJobs& jobs, const Common& common) {
+  tiles::load_planned_model(plan);  // throws before any process starts, as do the next lines
+  for (const tiles::PlannedInput& input : plan.inputs) tiles::check_size(input);
+  return run_tile_jobs(jobs, console_progress(common));
+}
+
+/// Of `all` tiles, of which `begun` were not done at the beginning.
+void say_run(std::size_t all, std::size_t begun, std::size_t ran) {
+  const auto done = [](std::size_t tiles) {
+    return fmt::format("{} {} done", tiles, tiles == 1 ? "was" : "were");
+  };
+  std::string line = fmt::format("{} tile{} run, {}", ran, ran == 1 ? "" : "s", done(all - begun));
+  if (ran < begun) line += fmt::format(", {} by another run meanwhile", done(begun - ran));
+  say(line);
 }
 
 void run_tiles(const RunArguments& arguments, const Common& common) {
   const tiles::Plan plan = tiles::read_plan(arguments.plan);
   std::vector<std::size_t> ids = chosen_tiles(arguments, plan);
   const std::size_t all = ids.size();
-  if (!common.overwrite_files) {
-    std::erase_if(
-        ids, [&](std::size_t id) { return tiles::state_of(plan, id) == tiles::TileState::kDone; });
-  }
+  const IsDone is_done = [&](std::size_t id) {
+    return !common.overwrite_files && tiles::state_of(plan, id) == tiles::TileState::kDone;
+  };
+  std::erase_if(ids, is_done);
   const int jobs = jobs_within(arguments, plan);
   for (const std::size_t id : ids) {
     make_folder(plan.tiles[id].output.parent_path());
     if (!common.overwrite_files) tiles::check_is_tile(plan.tiles[id].output);
   }
+  std::size_t ran = 0;
   if (jobs > 1 && ids.size() > 1) {
-    tiles::load_planned_model(plan);  // throws before any process starts, as do the next lines
-    for (const tiles::PlannedInput& input : plan.inputs) tiles::check_size(input);
-    run_tile_jobs({.plan = arguments.plan,
-                   .tiles = ids,
-                   .jobs = jobs,
-                   .threads = common.threads,
-                   .redo = common.overwrite_files},
-                  console_progress(common));
+    ran = run_processes(plan,
+                        {.plan = arguments.plan,
+                         .tiles = ids,
+                         .jobs = jobs,
+                         .threads = common.threads,
+                         .is_done = is_done},
+                        common);
   } else if (!ids.empty()) {
-    run_here(plan, ids, common);
+    ran = run_here(plan, ids, is_done, common);
   }
-  if (all == 1 && ids.size() == 1) return;  // the tile has reported
-  say(fmt::format("{} tile{} run, {} were done", ids.size(), ids.size() == 1 ? "" : "s",
-                  all - ids.size()));
+  if (all == 1 && ran == 1) return;  // the tile has reported
+  say_run(all, ids.size(), ran);
 }
 
 struct StatusArguments {
@@ -198,7 +164,12 @@ std::string next_step(const tiles::Plan& plan, const std::array<Group, 3>& group
   if (verify) {
     for (const std::size_t id : groups[1].ids) damaged += fmt::format(" --tile {}", id);
   }
-  if (!damaged.empty()) return fmt::format("run {}{} --overwrite", path, damaged);
+  if (!damaged.empty()) {
+    const bool more = !groups[0].ids.empty();
+    return fmt::format(
+        "run {}{} --overwrite{}", path, damaged,
+        more ? fmt::format("\n  then: pcednet tiles run {}, for the missing", path) : "");
+  }
   const bool done = groups[0].ids.empty() && groups[1].ids.empty();
   if (!done) return "run " + path;
   const fs::path like = plan.tiles.front().output;
@@ -257,8 +228,19 @@ void join_into_file(const tiles::Plan& plan, const std::string& output, const Co
   say(fmt::format("{}: {} points of {} tiles", output, joined.points, plan.tiles.size()));
 }
 
+/// Throws if the tiles are PLY, which a virtual point cloud cannot list.
+void check_are_las(const tiles::Plan& plan) {
+  const fs::path& tile = plan.tiles.front().output;
+  if (const auto* format = formats::find_format(tile); format && format->is_las()) return;
+  throw Error(ErrorKind::kUsage,
+              fmt::format("{}: --vpc lists LAS, LAZ and COPC files; tiles plan --output {{ID}}.laz "
+                          "makes the tiles such files",
+                          tile.string()));
+}
+
 /// Reads only the headers of the tiles.
 void list_tiles(const tiles::Plan& plan, const std::string& vpc, const Common& common) {
+  check_are_las(plan);
   tiles::check_all_done(plan);
   std::vector<formats::VirtualFile> files;
   for (const tiles::Tile& tile : plan.tiles) files.push_back(formats::virtual_file(tile.output));
@@ -283,41 +265,6 @@ void join_tiles(const JoinArguments& arguments, const Common& common) {
   }
   if (!arguments.vpc.empty()) list_tiles(plan, arguments.vpc, common);
   if (!arguments.output.empty()) join_into_file(plan, arguments.output, common);
-}
-
-void add_plan(CLI::App& tiles, Common& common) {
-  auto arguments = std::make_shared<PlanArguments>();
-  CLI::App* command = add_command(
-      tiles, common, "plan", "Decide how to classify point files tile by tile",
-      "pcednet tiles plan city/ -o city.json\n"
-      "pcednet tiles plan city/ -o city.json --max-memory 1G       memory of one tile\n"
-      "pcednet tiles plan a.laz b.laz -o ab.json --tile 250 --output {XLEFT}_{YBOTTOM}.laz");
-  command
-      ->add_option("inputs", arguments->inputs,
-                   "LAS, LAZ, COPC and binary PLY files, folders of them, or a "
-                   ".vpc that names some")
-      ->required();
-  command->add_option("-o", arguments->plan, "The plan, a JSON file")->required();
-  command
-      ->add_option("--tile", arguments->tile_length,
-                   "Length of a tile, in the unit of the points (default: the largest for the "
-                   "memory)")
-      ->check(length_above_0());
-  command
-      ->add_option("--max-memory", arguments->memory,
-                   "Memory that one tile may take, such as 500M or 2G")
-      ->capture_default_str();
-  command->add_option("--out-dir", arguments->folder,
-                      "Folder for the tiles (default: <plan>_tiles beside the plan)");
-  command->add_option("--output", arguments->output,
-                      "Names of the tiles, with {ID}, {COLUMN}, {ROW}, {XLEFT}, {XRIGHT}, "
-                      "{YBOTTOM}, {YTOP} (default: {ID}.laz, or {ID}.ply for PLY)");
-  command->add_option("--sort", arguments->sorted,
-                      "Folder for copies of the inputs with their points in order, for inputs in "
-                      "random order");
-  add_model_options(*command, arguments->model);
-  add_prepare_options(*command, arguments->preparation);
-  command->callback([arguments, &common] { plan_tiles(*arguments, common); });
 }
 
 void add_run(CLI::App& tiles, Common& common) {
@@ -380,7 +327,7 @@ void add_tiles(CLI::App& app, Common& common) {
       "  pcednet tiles status city.json\n"
       "  pcednet tiles join city.json -o city.laz\n");
   tiles->require_subcommand(1);
-  add_plan(*tiles, common);
+  add_tiles_plan(*tiles, common);
   add_run(*tiles, common);
   add_status(*tiles, common);
   add_join(*tiles, common);

@@ -69,17 +69,39 @@ class SummedCounts {
   std::vector<std::uint64_t> sums_ = {};
 };
 
-std::uint64_t most_in(const SummedCounts& sums, const Grid& grid, double buffer) {
+/// Calls `use` with the points of every core, and with those of the core and its buffer.
+template <typename Use>
+void for_each_core(const SummedCounts& sums, const Grid& grid, double buffer, const Use& use) {
   const auto around = static_cast<std::int64_t>(std::ceil(buffer / grid.cell));
-  std::uint64_t most = 0;
   for (auto c = grid.core_of_cell(sums.left()); c * grid.across < sums.right(); ++c) {
     for (auto r = grid.core_of_cell(sums.bottom()); r * grid.across < sums.top(); ++r) {
       const std::int64_t x = c * grid.across, y = r * grid.across;
-      most = std::max(most, sums.sum(x - around, y - around, x + grid.across + around,
-                                     y + grid.across + around));
+      use(sums.sum(x, y, x + grid.across, y + grid.across),
+          sums.sum(x - around, y - around, x + grid.across + around, y + grid.across + around));
     }
   }
+}
+
+std::uint64_t most_in(const SummedCounts& sums, const Grid& grid, double buffer) {
+  std::uint64_t most = 0;
+  for_each_core(sums, grid, buffer, [&](std::uint64_t, std::uint64_t with_buffer) {
+    most = std::max(most, with_buffer);
+  });
   return most;
+}
+
+/// The names in braces of a template, and their values for a tile.
+std::vector<std::pair<std::string, std::string>> names_in_braces(std::size_t id, std::size_t tiles,
+                                                                 const Tile& tile,
+                                                                 const Grid& grid) {
+  const auto edge = [&](std::int64_t core) { return fmt::format("{:.12g}", grid.edge(core)); };
+  return {{"{ID}", fmt::format("{:0{}}", id, std::to_string(tiles - 1).size())},
+          {"{COLUMN}", std::to_string(tile.column)},
+          {"{ROW}", std::to_string(tile.row)},
+          {"{XLEFT}", edge(tile.column)},
+          {"{XRIGHT}", edge(tile.column + 1)},
+          {"{YBOTTOM}", edge(tile.row)},
+          {"{YTOP}", edge(tile.row + 1)}};
 }
 
 std::string replaced(std::string text, const std::string& what, const std::string& by) {
@@ -91,16 +113,27 @@ std::string replaced(std::string text, const std::string& what, const std::strin
 
 std::string name_of(std::size_t id, std::size_t tiles, const Tile& tile, const Grid& grid,
                     std::string name) {
-  const std::size_t digits = std::to_string(tiles - 1).size();
-  name = replaced(name, "{ID}", fmt::format("{:0{}}", id, digits));
-  name = replaced(name, "{COLUMN}", std::to_string(tile.column));
-  name = replaced(name, "{ROW}", std::to_string(tile.row));
-  const auto edge = [&](std::int64_t core) { return fmt::format("{:.12g}", grid.edge(core)); };
-  name = replaced(name, "{XLEFT}", edge(tile.column));
-  name = replaced(name, "{XRIGHT}", edge(tile.column + 1));
-  name = replaced(name, "{YBOTTOM}", edge(tile.row));
-  return replaced(name, "{YTOP}", edge(tile.row + 1));
+  for (const auto& [place, value] : names_in_braces(id, tiles, tile, grid)) {
+    name = replaced(std::move(name), place, value);
+  }
+  return name;
 }
+
+/// Throws for a { that begins none of these names.
+void check_braces(const std::string& output) {
+  std::string known;
+  for (const auto& [place, value] : names_in_braces(0, 1, {}, {})) {
+    known += (known.empty() ? "" : ", ") + place;
+  }
+  for (std::size_t at = 0; (at = output.find('{', at)) != std::string::npos; ++at) {
+    const std::string place = output.substr(at, output.find('}', at) - at + 1);
+    if (place.back() == '}' && (known + ",").find(place + ",") != std::string::npos) continue;
+    throw Error(ErrorKind::kUsage,
+                fmt::format("{}: names of tiles have no {}; there are {}", output, place, known));
+  }
+}
+
+}  // namespace
 
 void check_template(const std::string& output) {
   const formats::Format* format = formats::find_format(output);
@@ -111,9 +144,8 @@ void check_template(const std::string& output) {
   if (fs::path(output).has_parent_path()) {
     throw Error(ErrorKind::kUsage, fmt::format("{}: names of tiles have no folder", output));
   }
+  check_braces(output);
 }
-
-}  // namespace
 
 void CellCounts::add(std::span<const Vec3> positions) {
   std::array<std::int64_t, 2> last = {};
@@ -158,6 +190,14 @@ std::uint64_t memory_for(std::uint64_t points, const detect::NormalsDecision& no
 
 std::uint64_t most_points(const CellCounts& counts, const Grid& grid, double buffer) {
   return most_in(SummedCounts(counts), grid, buffer);
+}
+
+std::uint64_t points_with_buffers(const CellCounts& counts, const Grid& grid, double buffer) {
+  std::uint64_t sum = 0;
+  for_each_core(SummedCounts(counts), grid, buffer, [&](std::uint64_t core, std::uint64_t with) {
+    if (core > 0) sum += with;
+  });
+  return sum;
 }
 
 Grid choose_grid(const CellCounts& counts, double cell, const TileLimits& limits) {

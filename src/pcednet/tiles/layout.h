@@ -40,6 +40,9 @@ Vec3 shares_of(const BoundingBox& box, const BoundingBox& whole);
 /// The most points in a core of `grid` and its buffer.
 std::uint64_t most_points(const CellCounts& counts, const Grid& grid, double buffer);
 
+/// The points in all cores of `grid` that have some, each counted with its buffer.
+std::uint64_t points_with_buffers(const CellCounts& counts, const Grid& grid, double buffer);
+
 /// The memory in bytes for running a tile of `points` points, buffer included: estimating normals
 /// takes most.
 std::uint64_t memory_for(std::uint64_t points, const detect::NormalsDecision& normals);
@@ -54,10 +57,13 @@ struct TileLimits {
 /// wide.
 Grid choose_grid(const CellCounts& counts, double cell, const TileLimits& limits);
 
-/// The tiles that have points, column by column, named by `output`: a template with {ID}, {COLUMN},
-/// {ROW}, {XLEFT}, {XRIGHT}, {YBOTTOM} and {YTOP}. Points without a place are in the first.
-/// Throws Error(kUsage) for a template that gives two tiles one name, or a name that is not of a
-/// point file.
+/// Throws Error(kUsage) unless `output` is a template for names of tiles: the name of a point file
+/// with {ID}, {COLUMN}, {ROW}, {XLEFT}, {XRIGHT}, {YBOTTOM} and {YTOP}.
+void check_template(const std::string& output);
+
+/// The tiles that have points, column by column, named by the template `output`. Points without a
+/// place are in the first. Throws as check_template() does, and Error(kUsage) for a template that
+/// gives two tiles one name.
 std::vector<Tile> lay_out(const CellCounts& counts, const Grid& grid,
                           const std::filesystem::path& folder, const std::string& output);
 

@@ -100,7 +100,8 @@ bool is_too_often(double times, const Plan& plan) {
 [[noreturn]] void refuse_order(double tiles, double times) {
   throw Error(ErrorKind::kUsage,
               fmt::format("the points of the inputs are in no order in space: {:.0f} tiles would "
-                          "read each point {:.0f} times: choose longer tiles, or sort the inputs",
+                          "read each point {:.0f} times: choose longer tiles, or sort the inputs: "
+                          "--sort FOLDER makes copies in order",
                           tiles, times));
 }
 
@@ -144,12 +145,36 @@ void check_inputs_differ(const PlanRequest& request) {
   }
 }
 
+/// How often the average point of copies in order would be read: chunks of a tile's points are
+/// squares, and the tile reads those within its buffer.
+double times_read_in_order(const CellCounts& counts, const Plan& plan) {
+  const double points = static_cast<double>(plan.points());
+  const double chunks = points / static_cast<double>(kChunkPoints * plan.tiles.size());
+  const double side = plan.grid.length() / std::sqrt(std::max(chunks, 1.0));
+  return static_cast<double>(points_with_buffers(counts, plan.grid, plan.buffer + side)) / points;
+}
+
+/// Notes how often the tiles read each point, if that is often and copies in order would help.
+void note_reading(double times, const CellCounts& counts, Plan& plan) {
+  constexpr double kMostTimes = 3.0, kLeastGain = 1.5;
+  if (times <= kMostTimes) return;
+  const double in_order = times_read_in_order(counts, plan);
+  if (times <= kLeastGain * in_order) return;
+  plan.notes.push_back(
+      fmt::format("neighbours in space are far apart in the inputs: the {} tiles will read each "
+                  "point {:.1f} times, but about {:.1f} times from copies in order, which --sort "
+                  "FOLDER makes",
+                  plan.tiles.size(), times, in_order));
+}
+
 /// Copies the inputs if the request says so; otherwise throws for inputs that need it.
-void settle_order(const PlanRequest& request, Plan& plan, const Progress* progress) {
+void settle_order(const PlanRequest& request, const CellCounts& counts, Plan& plan,
+                  const Progress* progress) {
   const double times = times_read(plan);
   const bool in_order = !is_too_often(times, plan);
   if (request.sort.folder.empty()) {
     if (!in_order) refuse_order(static_cast<double>(plan.tiles.size()), times);
+    note_reading(times, counts, plan);
   } else if (!in_order || !request.sort.if_needed) {
     sort_inputs(request.sort, plan, progress);
   }
@@ -216,6 +241,7 @@ Plan make_plan(const PlanRequest& request, const detect::EdgeModel& model,
                const Progress* progress) {
   Plan plan{.version = kVersion, .model = request.model};
   check_inputs_differ(request);
+  if (!request.output.empty()) check_template(request.output);
   plan.model.sha256 = sha256_of_file(request.model.path);
 
   Sample some = index_inputs(request, plan, progress);
@@ -242,7 +268,7 @@ Plan make_plan(const PlanRequest& request, const detect::EdgeModel& model,
                                                 : "{ID}.laz");
   for (const Tile& tile : plan.tiles) check_not_input(tile.output, plan.inputs);
   plan.memory = memory_for(most_points(counts, plan.grid, plan.buffer), plan.normals);
-  settle_order(request, plan, progress);
+  settle_order(request, counts, plan, progress);
   return plan;
 }
 

@@ -70,6 +70,20 @@ void check_is_tile(const fs::path& tile) {
   for (const fs::path& path : {tile, record_path(tile)}) check_writable(path, Overwrite::kNo);
 }
 
+fs::path tile_of_another_plan(const fs::path& folder, const std::string& digest) {
+  fs::path found;
+  std::error_code error;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
+       entry.increment(error)) {
+    fs::path tile = entry->path();
+    if (tile.extension() != ".json") continue;
+    tile.replace_extension();
+    const auto record = read_record(tile);
+    if (record && record->plan != digest && (found.empty() || tile < found)) found = tile;
+  }
+  return found;
+}
+
 TileState state_of(const Plan& plan, std::size_t tile, bool look_inside) {
   const fs::path& path = plan.tiles[tile].output;
   std::error_code error;

@@ -36,6 +36,11 @@ std::optional<TileRecord> read_record(const std::filesystem::path& tile);
 /// name of the tile or of its record.
 void check_is_tile(const std::filesystem::path& tile);
 
+/// A tile in the folder whose record is of another plan than that of this digest; empty if there is
+/// none.
+std::filesystem::path tile_of_another_plan(const std::filesystem::path& folder,
+                                           const std::string& digest);
+
 enum class TileState { kMissing, kDamaged, kDone };
 
 /// Whether a tile is finished: its record is of this plan, and its file has the size and, with

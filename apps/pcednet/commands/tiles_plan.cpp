@@ -1,0 +1,134 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "batch.h"
+#include "byte_size.h"
+#include "commands.h"
+#include "descriptor_options.h"
+#include "models.h"
+#include "number_options.h"
+#include "pcednet/core/error.h"
+#include "pcednet/tiles/make_plan.h"
+#include "pcednet/tiles/plan.h"
+#include "pcednet/tiles/tile_file.h"
+#include "prepare.h"
+
+namespace pcednet::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct PlanArguments {
+  std::vector<std::string> inputs;
+  std::string plan, folder, output, sorted, memory = "2G";
+  double tile_length = 0.0;
+  ModelArguments model{.name = kDefaultModel};
+  detect::PrepareOptions preparation;
+};
+
+/// The default folder of the tiles: beside the plan.
+fs::path folder_of(const PlanArguments& arguments) {
+  if (!arguments.folder.empty()) return arguments.folder;
+  const fs::path plan = arguments.plan;
+  return plan.parent_path() / (plan.stem().string() + "_tiles");
+}
+
+/// Throws unless the name of the plan is that of a file.
+void check_plan_name(const PlanArguments& arguments) {
+  if (arguments.plan != "-") return;
+  throw Error(ErrorKind::kUsage,
+              "-o -: a plan is a file, beside which its tiles are; give a name such as plan.json");
+}
+
+/// Warns where the folder of the tiles holds some of an earlier plan.
+void warn_of_old_tiles(const PlanArguments& arguments) {
+  const std::string digest = tiles::read_plan(arguments.plan).digest;
+  const fs::path folder = folder_of(arguments);
+  const fs::path old = tiles::tile_of_another_plan(folder, digest);
+  if (old.empty()) return;
+  warn(
+      fmt::format("{}: tiles of another plan are here, such as {}: tiles run replaces those with "
+                  "names of this plan, and others stay",
+                  folder.string(), old.filename().string()));
+}
+
+void plan_tiles(const PlanArguments& arguments, const Common& common) {
+  check_plan_name(arguments);
+  check_not_inputs(arguments.plan, arguments.inputs);
+  check_not_input(arguments.plan, model_file(arguments.model));
+  check_writable(arguments.plan, common.overwrite());
+  const ModelArguments& model = arguments.model;
+  tiles::PlanRequest request{.inputs = expand_inputs(arguments.inputs),
+                             .folder = folder_of(arguments),
+                             .output = arguments.output,
+                             .model = planned_model(model),
+                             .tile_length = arguments.tile_length,
+                             .memory = byte_size("--max-memory", arguments.memory),
+                             .keep_orientation = arguments.preparation.keep_orientation,
+                             .sort = {.folder = arguments.sorted, .overwrite = common.overwrite()}};
+  const Progress progress = console_progress(common);
+  const detect::EdgeModel loaded = load_model(model);
+  if (has_own_classes(loaded.table)) {
+    throw Error(ErrorKind::kUsage, fmt::format("{}: has own classes ({}); tiles are for models of "
+                                               "edges, classify takes it",
+                                               model.name, pcednet::names_of(loaded.table)));
+  }
+  const tiles::Plan plan = tiles::make_plan(request, loaded, &progress);
+  check_scales(arguments.inputs.front(), plan.box, loaded.descriptor);
+  tiles::write_plan(arguments.plan, plan, common.overwrite());
+  for (const std::string& note : plan.notes) warn(note);
+  warn_of_old_tiles(arguments);
+  say(fmt::format("{}: {} points in {} tiles of length {:g}, buffer {:.4g}", arguments.plan,
+                  plan.points(), plan.tiles.size(), plan.grid.length(), plan.buffer));
+  say(fmt::format("  scales: {:.9g} to {:.9g}", plan.s_min, plan.s_max));
+  say(fmt::format("  the largest tile takes about {} of memory", size_text(plan.memory)));
+  if (plan.memory > request.memory) {
+    warn(fmt::format("that is more than --max-memory {}: {}", arguments.memory,
+                     arguments.tile_length > 0.0 ? "--tile is that long"
+                                                 : "no tile is shorter than its buffer"));
+  }
+  say(fmt::format("  next: pcednet tiles run {}", arguments.plan));
+}
+
+}  // namespace
+
+void add_tiles_plan(CLI::App& tiles, Common& common) {
+  auto arguments = std::make_shared<PlanArguments>();
+  CLI::App* command = add_command(
+      tiles, common, "plan", "Decide how to classify point files tile by tile",
+      "pcednet tiles plan city/ -o city.json\n"
+      "pcednet tiles plan city/ -o city.json --max-memory 1G       memory of one tile\n"
+      "pcednet tiles plan a.laz b.laz -o ab.json --tile 250 --output {XLEFT}_{YBOTTOM}.laz");
+  command
+      ->add_option("inputs", arguments->inputs,
+                   "LAS, LAZ, COPC and binary PLY files, folders of them, or a "
+                   ".vpc that names some")
+      ->required();
+  command->add_option("-o", arguments->plan, "The plan, a JSON file")->required();
+  command
+      ->add_option("--tile", arguments->tile_length,
+                   "Length of a tile, in the unit of the points (default: the largest for the "
+                   "memory)")
+      ->check(length_above_0());
+  command
+      ->add_option("--max-memory", arguments->memory,
+                   "Memory that one tile may take, such as 500M or 2G")
+      ->capture_default_str();
+  command->add_option("--out-dir", arguments->folder,
+                      "Folder for the tiles (default: <plan>_tiles beside the plan)");
+  command->add_option("--output", arguments->output,
+                      "Names of the tiles, with {ID}, {COLUMN}, {ROW}, {XLEFT}, {XRIGHT}, "
+                      "{YBOTTOM}, {YTOP} (default: {ID}.laz, or {ID}.ply for PLY)");
+  command->add_option("--sort", arguments->sorted,
+                      "Folder for copies of the inputs with their points in order in space: tiles "
+                      "read little more than their own points of these");
+  add_model_options(*command, arguments->model);
+  add_prepare_options(*command, arguments->preparation);
+  command->callback([arguments, &common] { plan_tiles(*arguments, common); });
+}
+
+}  // namespace pcednet::app
