@@ -80,8 +80,8 @@ std::uint64_t memory_limit(const std::string& memory) {
   return free_memory() / 5 * 4;
 }
 
-std::optional<std::uint64_t> memory_of_tiles(const fs::path& input, const fs::path& output,
-                                             std::uint64_t limit) {
+std::optional<TilesNeeded> tiles_needed(const fs::path& input, const fs::path& output,
+                                        std::uint64_t limit) {
   if (is_surely_small(input, limit)) return std::nullopt;
   const auto reader = formats::open_parts(input, tiles::kChunkPoints);
   if (!reader) return std::nullopt;
@@ -91,15 +91,14 @@ std::optional<std::uint64_t> memory_of_tiles(const fs::path& input, const fs::pa
       fmt::format("{}: {} points may take {} of memory, more than {}", input.string(),
                   reader->points(), size_text(whole), size_text(limit));
   if (!is_tiled_format(input)) {
-    warn(much + "; LAS, LAZ and binary PLY, which pcednet convert writes, are classified in tiles");
+    warn(much + "; LAS, LAZ and binary PLY, which pcednet convert writes, are read in tiles");
     return std::nullopt;
   }
   if (!output.empty() && !formats::format_for(output).create_parts) {
     warn(much + "; .las, .laz, .ply and text are written in tiles");
     return std::nullopt;
   }
-  say(much + ": classified in tiles");
-  return std::min(limit, kMostForTile);
+  return TilesNeeded{std::min(limit, kMostForTile), much};
 }
 
 PassingFolder::~PassingFolder() {

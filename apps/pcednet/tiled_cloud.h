@@ -27,12 +27,17 @@ void add_memory_option(CLI::App& command, std::string& memory);
 /// invalid size.
 std::uint64_t memory_limit(const std::string& memory);
 
-/// The memory for each tile, if classifying `input` in memory would take more than `limit`, which
-/// is reported on stderr; none if it fits or, with a warning, if one of the files cannot be read or
-/// written in parts. `output`: of points; empty if there is none.
-std::optional<std::uint64_t> memory_of_tiles(const std::filesystem::path& input,
-                                             const std::filesystem::path& output,
-                                             std::uint64_t limit);
+/// That a cloud is too large to be worked on in one piece.
+struct TilesNeeded {
+  std::uint64_t memory = 0;  ///< for a tile
+  std::string reason;        ///< for people; the caller says it, with what it does
+};
+
+/// Whether classifying `input` in memory would take more than `limit`; none if it fits or, with a
+/// warning, if one of the files cannot be read or written in parts. `output`: of points; empty if
+/// there is none.
+std::optional<TilesNeeded> tiles_needed(const std::filesystem::path& input,
+                                        const std::filesystem::path& output, std::uint64_t limit);
 
 /// A folder that is removed with its contents, if it was made.
 class PassingFolder {

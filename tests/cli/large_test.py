@@ -115,6 +115,8 @@ class Large(CliTest):
                 run("classify", self.folder / "a.ply")
             tiled, tiled_length, said = self.lines(self.folder / name, "--max-memory", "101M")
             self.assertRegex(said, r"lines are found from the \d+ of 36000 points that are near edges")
+            self.assertIn("101 MiB: classified in tiles" if name == "a.ply" else
+                          "101 MiB: read in tiles; its labels are kept", said)
             self.assertAlmostEqual(tiled / count, 1, delta=0.02)
             self.assertAlmostEqual(tiled_length / length, 1, delta=0.01)
         # Labels without normals: these are estimated in tiles.

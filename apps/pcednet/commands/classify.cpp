@@ -127,14 +127,16 @@ void draw_some(const PointCloud& part, std::size_t before, std::size_t all, Poin
   }
 }
 
-void classify_large_file(const Job& job, const ClassifyArguments& arguments, std::uint64_t memory,
-                         const detect::EdgeModel& model, const Common& common) {
+void classify_large_file(const Job& job, const ClassifyArguments& arguments,
+                         const TilesNeeded& needed, const detect::EdgeModel& model,
+                         const Common& common) {
+  say(needed.reason + ": classified in tiles");
   StageClock clock(console_progress(common));
   const TiledCloud cloud({.input = job.input,
                           .output = job.output,
                           .model = arguments.model,
                           .preparation = arguments.preparation,
-                          .memory = memory},
+                          .memory = needed.memory},
                          model, clock.progress());
   const detect::Classification result{
       .counts = cloud.counts(), .s_min = cloud.plan().s_min, .s_max = cloud.plan().s_max};
@@ -166,16 +168,15 @@ void classify_large_file(const Job& job, const ClassifyArguments& arguments, std
   report(job, result, counts, model, clock.seconds());
 }
 
-/// The memory for a tile if tiles are needed.
-std::optional<std::uint64_t> tiles_for(const Job& job, const ClassifyArguments& arguments) {
+std::optional<TilesNeeded> tiles_for(const Job& job, const ClassifyArguments& arguments) {
   if (!arguments.method.name.empty()) return std::nullopt;
-  return memory_of_tiles(job.input, job.output, memory_limit(arguments.memory));
+  return tiles_needed(job.input, job.output, memory_limit(arguments.memory));
 }
 
 void classify_file(const Job& job, const ClassifyArguments& arguments,
                    const detect::EdgeModel& model, const Common& common) {
-  if (const auto memory = tiles_for(job, arguments)) {
-    return classify_large_file(job, arguments, *memory, model, common);
+  if (const auto needed = tiles_for(job, arguments)) {
+    return classify_large_file(job, arguments, *needed, model, common);
   }
   StageClock clock(console_progress(common));
   const Progress& progress = clock.progress();

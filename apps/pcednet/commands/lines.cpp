@@ -160,18 +160,20 @@ detect::Classification given_labels(const LinesArguments& arguments, const Point
 }
 
 /// The same for a cloud larger than memory: its points near edges.
-void read_labelled_in_tiles(const LinesArguments& arguments, std::uint64_t memory,
+void read_labelled_in_tiles(const LinesArguments& arguments, const TilesNeeded& needed,
                             StageClock& clock, LabelledCloud& labelled) {
   TiledRequest request{.input = arguments.input,
                        .output = arguments.outputs.front(),
                        .model = arguments.model,
                        .preparation = arguments.preparation,
-                       .memory = memory};
+                       .memory = needed.memory};
   const auto first = tiles::read_finished(*tiles::open_chunks(arguments.input), 0);
   if (!arguments.classify && !formats::labels_of(first, arguments.input).empty()) {
     request.preparation.keep_orientation = true;  // lines do not depend on signs
     request.given = [&](const PointCloud& part) { return given_labels(arguments, part); };
   }
+  say(needed.reason +
+      (request.given ? ": read in tiles; its labels are kept" : ": classified in tiles"));
   const TiledCloud cloud(std::move(request), load_model(arguments.model), clock.progress());
   PointsNearEdges near = read_near_edges(cloud, memory_limit(arguments.memory), clock.progress());
   say(fmt::format("  lines are found from the {} of {} points that are near edges",
@@ -257,9 +259,9 @@ void run(LinesArguments arguments, const Common& common) {
   find_model(arguments.model.name);  // throws before the work
   StageClock clock(console_progress(common));
   LabelledCloud labelled;
-  const auto memory = memory_of_tiles(arguments.input, {}, memory_limit(arguments.memory));
-  if (memory) {
-    read_labelled_in_tiles(arguments, *memory, clock, labelled);
+  const auto needed = tiles_needed(arguments.input, {}, memory_limit(arguments.memory));
+  if (needed) {
+    read_labelled_in_tiles(arguments, *needed, clock, labelled);
   } else {
     read_labelled(arguments, clock, labelled);
   }
