@@ -3,13 +3,16 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <memory>
 #include <sstream>
 #include <string_view>
 
+#include "number_options.h"
 #include "pcednet/core/exists_already.h"
+#include "pcednet/io/text_scan.h"
 
 namespace pcednet::app {
 namespace {
@@ -82,7 +85,7 @@ CLI::App* add_command(CLI::App& app, Common& common, const std::string& name,
   CLI::App* command = app.add_subcommand(name, text);
   command->add_option("--threads", common.threads, "Threads (0: all cores)")
       ->capture_default_str()
-      ->check(CLI::Range(0, 4096));
+      ->transform(whole_number(0, 4096));
   command->add_option("--progress", common.progress, "Progress on stderr: auto, plain, json, none")
       ->capture_default_str()
       ->check(CLI::IsMember({"auto", "plain", "json", "none"}));
@@ -109,6 +112,17 @@ Progress console_progress(const Common& common) {
     progress.report = report_on_terminal;
   }
   return progress;
+}
+
+void check_ascii(bool ascii, const std::vector<std::filesystem::path>& outputs) {
+  const auto has_both = [](const std::filesystem::path& output) {
+    const std::string extension = io::extension_of(output);
+    return extension == ".ply" || extension == ".pcd";
+  };
+  if (!ascii || outputs.empty() || std::any_of(outputs.begin(), outputs.end(), has_both)) return;
+  throw Error(ErrorKind::kUsage,
+              fmt::format("{}: --ascii is for .ply and .pcd files, and none is an output",
+                          outputs.front().string()));
 }
 
 std::string explain(const Error& error) {

@@ -74,6 +74,10 @@ class EndsAtOnce {
   ~EndsAtOnce();
 };
 
+/// Throws Error(kUsage) if none of the outputs, of which there are some, is .ply or .pcd: the
+/// others have no --ascii.
+void check_ascii(bool ascii, const std::vector<std::filesystem::path>& outputs);
+
 /// The message of an error, with the option that avoids it.
 std::string explain(const Error& error);
 

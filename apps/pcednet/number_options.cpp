@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -13,6 +14,20 @@ constexpr std::uint64_t kLargest = std::numeric_limits<std::uint64_t>::max();
 
 bool is_any(std::uint64_t least, std::uint64_t most) {
   return least == 0 && most == kLargest;
+}
+
+/// Checks that a word is a sign, or none, and decimal digits; takes away zeros in front.
+CLI::Validator decimal_digits() {
+  CLI::Validator check("");
+  check.operation([](std::string& word) -> std::string {
+    const std::size_t begin = word.starts_with('-') ? 1 : 0;
+    const bool sound =
+        begin < word.size() && word.find_first_not_of("0123456789", begin) == std::string::npos;
+    if (!sound) return word + " is not a whole number";
+    word.erase(begin, std::min(word.find_first_not_of('0', begin), word.size() - 1) - begin);
+    return "";
+  });
+  return check;
 }
 
 }  // namespace
@@ -60,7 +75,9 @@ CLI::Validator whole_number(std::uint64_t least, std::uint64_t most) {
 
 void guard_number_options(CLI::App& app) {
   for (CLI::Option* option : app.get_options()) {
-    if (option->get_type_name() == "UINT") option->transform(whole_number(0, kLargest));
+    const std::string type = option->get_type_name();
+    if (type == "UINT") option->transform(whole_number(0, kLargest));
+    if (type.starts_with("INT")) option->transform(decimal_digits());
   }
   for (CLI::App* command : app.get_subcommands({})) guard_number_options(*command);
 }

@@ -25,7 +25,7 @@ CLI::Validator share();
 CLI::Validator whole_number(std::uint64_t least, std::uint64_t most);
 
 /// Gives every option of all commands under `app` that takes numbers without sign and has no check
-/// that of whole_number().
+/// that of whole_number(), and reads those of all other whole numbers as decimal digits.
 void guard_number_options(CLI::App& app);
 
 }  // namespace pcednet::app

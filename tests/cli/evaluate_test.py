@@ -126,6 +126,20 @@ class Evaluate(CliTest):
         said = run("evaluate", self.folder / "some.ply", "--method", "ca").stderr
         self.assertIn("some.ply: 5 labels are no classes of edges", said)
 
+    def test_unlabelled_clouds_among_others_are_left_out(self):
+        p, n, label = cube(300)
+        clouds = self.folder / "in"
+        clouds.mkdir()
+        for name, labels in (("a", None), ("b", label), ("c", np.full(300, 255, np.uint8)), ("d", label)):
+            write_ply(clouds / (name + ".ply"), p, n, labels)
+        done = run("evaluate", clouds, "--method", "ca", "--json", "-")
+        self.assertEqual([row["name"] for row in json.loads(done.stdout)["clouds"]], ["b", "d"])
+        self.assertIn(f"warning: {clouds}/a.ply: has no labels: left out", done.stderr)
+        self.assertIn(f"warning: {clouds}/c.ply: no point is labelled with a class of edges", done.stderr)
+        self.assertEqual(done.stderr.count(": left out"), 2)
+        said = run("evaluate", clouds / "a.ply", clouds / "c.ply", "--method", "ca", expect=4).stderr
+        self.assertIn(f"pcednet: {clouds}/a.ply: has no labels\n", said)
+
     def test_a_cloud_is_no_file_of_lines(self):
         write_ply(self.folder / "a.ply", *cube(300))
         (self.folder / "truth.obj").write_text("v 0 0 0\nv 1 0 0\nl 1 2\n")

@@ -38,6 +38,13 @@ class Options(CliTest):
     def test_a_whole_number_may_begin_with_0(self):
         run("convert", self.cloud, "-o", self.out, "--noise", 0.001, "--seed", "010")
         self.assertIn(b"seed 10", self.out.read_bytes())
+        plan = self.folder / "p.json"
+        run("tiles", "plan", self.cloud, "-o", plan, "--threads", "09")
+        run("tiles", "run", plan, "--jobs", "08")
+        for option, value, saying in (("--scales", "010", "10 not in"), ("--scales", "0x10", "0x10 is not a whole number"),
+                                      ("--threads", "010000", "10000 is not a whole number from 0 to 4096"),
+                                      ("--threads", "-1", "-1 is not a whole number from 0 to 4096")):
+            self.assertIn(saying, run("describe", self.cloud, "-o", self.folder / "x.npy", option, value, expect=2).stderr)
 
     def test_numbers_that_are_not_finite_or_out_of_range(self):
         convert = ("convert", self.cloud, "-o", self.out)
@@ -89,6 +96,10 @@ class Options(CliTest):
                 ("--threshold requires --method", *classify, "--threshold", "0.1"),
                 ("--neighbours requires --method", "evaluate", self.cloud, "--neighbours", "9"),
                 ("--octaves requires --s-max-ratio", "train", self.cloud, "-o", self.out, "--octaves"),
+                ("--ascii is for .ply and .pcd", "convert", self.cloud, "-o", self.folder / "x.las", "--ascii"),
+                ("--ascii is for .ply and .pcd", "classify", self.cloud, "-o", self.folder / "x.xyz", "--ascii"),
+                ("--seed requires --noise, --subsample or --sample", "convert", self.cloud, "-o", self.out, "--seed", 3),
+                ("--exact excludes --eps", "describe", self.cloud, "-o", self.folder / "x.npy", "--exact", "--eps", 0.2),
                 ("--view is for .svg", *lines, self.folder / "x.dxf", "--view", "front"),
                 ("--unit is for .dxf", *lines, self.folder / "x.svg", "--unit", "mm"),
                 ("--dxf-version is for .dxf", *lines, self.folder / "x.obj", "--dxf-version", "r12")):

@@ -220,13 +220,17 @@ void classify(ClassifyArguments arguments, const Common& common) {
   arguments.codes = las_codes(arguments.las_classification, model.table.size());
   const Inputs inputs = find_inputs(arguments.inputs);
   Batch batch(inputs);
-  const MadeFolder folder(arguments.results.folder);
+  MadeFolder folder(arguments.results.folder);
   const auto [jobs, skipped] = plan_results(inputs, arguments.results, common);
+  std::vector<fs::path> outputs;
+  for (const Job& job : jobs) outputs.push_back(job.output);
+  check_ascii(arguments.ascii, outputs);
   check_codes_fit(arguments.codes, jobs);
   const fs::path used = model_file(arguments.model);
   for (const Job& job : jobs) {
     for (const auto& file : {job.output, job.preview}) check_not_input(file, used);
   }
+  folder.keep();
   std::size_t done = 0;
   for (const Job& job : jobs) {
     done += batch.run(job.input, [&] { classify_file(job, arguments, model, common); }) ? 1 : 0;
@@ -271,7 +275,7 @@ void add_classify(CLI::App& app, Common& common) {
                       "Draw the labelled cloud to this PNG file");
   command->add_flag("--class-colours", arguments->class_colours,
                     "Colour the points by class even if the input has colours");
-  command->add_flag("--ascii", arguments->ascii, "Write text instead of binary");
+  command->add_flag("--ascii", arguments->ascii, "Write .ply and .pcd as text");
   add_method_options(*command, arguments->method);
   add_prepare_options(*command, arguments->preparation);
   for (const char* of_a_model : {"--model", "--no-context", "--no-boundary", "--exact", "--s-min",

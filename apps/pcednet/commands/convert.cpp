@@ -128,6 +128,7 @@ bool convert_in_parts(const ConvertRequest& request, const Common& common) {
 void convert(const ConvertRequest& request, const Common& common) {
   // Fails before a long read if the output cannot be written.
   formats::losses(request.output, {});
+  check_ascii(request.ascii, {request.output});
   if (changes_points(request)) check_not_input(request.output, request.input);
   check_sample_fits(request);
   check_writable(request.output, common.overwrite());
@@ -174,10 +175,10 @@ void add_convert(CLI::App& app, Common& common) {
       ->add_flag("--noise-along-normal", request->along_normal,
                  "Add the noise along the normals only")
       ->needs(noise);
-  command
-      ->add_option("--subsample", request->fraction,
-                   "Keep this share of the points, chosen at random")
-      ->check(share());
+  CLI::Option* subsample = command
+                               ->add_option("--subsample", request->fraction,
+                                            "Keep this share of the points, chosen at random")
+                               ->check(share());
   CLI::Option* samples =
       command
           ->add_option(
@@ -188,9 +189,15 @@ void add_convert(CLI::App& app, Common& common) {
       ->add_flag("--vertex-normals", request->vertex_normals,
                  "Interpolate the normals of the vertices instead of using those of the faces")
       ->needs(samples);
-  command->add_option("--seed", request->seed, "Seed of the noise and of the choice of points")
-      ->capture_default_str();
-  command->callback([request, &common] { convert(*request, common); });
+  CLI::Option* seed =
+      command->add_option("--seed", request->seed, "Seed of the noise and of the choice of points")
+          ->capture_default_str();
+  command->callback([=, &common] {
+    if (*seed && !*noise && !*subsample && !*samples) {
+      throw Error(ErrorKind::kUsage, "--seed requires --noise, --subsample or --sample");
+    }
+    convert(*request, common);
+  });
 }
 
 }  // namespace pcednet::app

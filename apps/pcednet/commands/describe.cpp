@@ -149,7 +149,8 @@ void add_describe(CLI::App& app, Common& common) {
       ->add_option("--eps", arguments->options.eps,
                    "Voxel size over scale; smaller is slower and more accurate")
       ->check(number("a number from 0.01 to 1", [](double v) { return v >= 0.01 && v <= 1.0; }))
-      ->capture_default_str();
+      ->capture_default_str()
+      ->excludes("--exact");
   add_prepare_options(*command, arguments->preparation);
   command->callback([arguments, &common] { describe(*arguments, common); });
 }

@@ -121,6 +121,28 @@ void check_labels(const fs::path& input, const PointCloud& cloud, const ClassTab
                          input.string(), others));
 }
 
+/// A cloud with labels of the results' classes, or of its own if these are not settled.
+PointCloud read_truth(const fs::path& input, const Way& way, const Results& results) {
+  auto loaded = truth::read_labelled(input);
+  throw_if_cancelled(&way.progress);
+  const bool settled = way.model || results.classes.clouds > 0;
+  check_labels(input, loaded.cloud,
+               settled ? results.classes.table : classes_of(loaded.cloud.comments));
+  for (const std::string& warning : loaded.warnings) warn(input.string() + ": " + warning);
+  return std::move(loaded.cloud);
+}
+
+/// The predictions for a cloud; none, with a warning, if the folder has none. Empty if the model or
+/// a method predicts.
+std::optional<fs::path> find_prediction(const fs::path& input, const std::string& folder) {
+  if (folder.empty()) return fs::path();
+  fs::path found = eval::find_predictions(folder, formats::stem_of(input));
+  if (!found.empty()) return found;
+  warn(fmt::format("{}: no prediction in {}: left out", input.string(), folder));
+  return std::nullopt;
+}
+
+/// Scores all inputs. Of several, those without labels are left out, with a warning each.
 Results score_all(const EvaluateArguments& arguments, const Common& common) {
   const Progress progress = console_progress(common);
   std::optional<detect::EdgeModel> model;
@@ -130,29 +152,28 @@ Results score_all(const EvaluateArguments& arguments, const Common& common) {
 
   Results results;
   if (model) results.classes.table = model->table;
-  for (const fs::path& input : expand_inputs(arguments.inputs)) {
-    const bool given = !arguments.predictions.empty();
-    const fs::path prediction =
-        given ? eval::find_predictions(arguments.predictions, formats::stem_of(input)) : fs::path();
-    if (given && prediction.empty()) {
-      warn(fmt::format("{}: no prediction in {}: left out", input.string(), arguments.predictions));
+  std::optional<Error> unlabelled;  // the first
+  const auto inputs = expand_inputs(arguments.inputs);
+  for (const fs::path& input : inputs) {
+    const auto prediction = find_prediction(input, arguments.predictions);
+    if (!prediction) continue;
+    PointCloud cloud;
+    try {
+      cloud = read_truth(input, way, results);
+    } catch (const Error& error) {
+      if (error.kind() != ErrorKind::kInsufficient || inputs.size() == 1) throw;
+      if (!unlabelled) unlabelled = error;
+      warn(fmt::format("{}: left out", error.what()));
       continue;
     }
-    const auto loaded = truth::read_labelled(input);
-    throw_if_cancelled(&progress);
-    for (const std::string& warning : loaded.warnings) warn(input.string() + ": " + warning);
-    check_labels(input, loaded.cloud,
-                 way.model || results.classes.clouds > 0 ? results.classes.table
-                                                         : classes_of(loaded.cloud.comments));
     with_name_in_errors(input, [&] {
-      score(input, loaded.cloud, find_classes(input, prediction, loaded.cloud, way), way, results);
+      score(input, cloud, find_classes(input, *prediction, cloud, way), way, results);
     });
   }
-  if (results.scores.empty() && results.classes.clouds == 0) {
-    throw Error(ErrorKind::kInsufficient,
-                fmt::format("{}: no prediction for any cloud", arguments.predictions));
-  }
-  return results;
+  if (!results.scores.empty() || results.classes.clouds > 0) return results;
+  if (unlabelled) throw *unlabelled;
+  throw Error(ErrorKind::kInsufficient,
+              fmt::format("{}: no prediction for any cloud", arguments.predictions));
 }
 
 void evaluate(EvaluateArguments arguments, const Common& common) {
