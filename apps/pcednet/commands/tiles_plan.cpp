@@ -123,9 +123,10 @@ void add_tiles_plan(CLI::App& tiles, Common& common) {
   command->add_option("--output", arguments->output,
                       "Names of the tiles, with {ID}, {COLUMN}, {ROW}, {XLEFT}, {XRIGHT}, "
                       "{YBOTTOM}, {YTOP} (default: {ID}.laz, or {ID}.ply for PLY)");
-  command->add_option("--sort", arguments->sorted,
-                      "Folder for copies of the inputs with their points in order in space: tiles "
-                      "read little more than their own points of these");
+  command->add_option(
+      "--sort", arguments->sorted,
+      "Folder for copies of the inputs with their points in order in space: a tile reads "
+      "little beyond its buffer of these");
   add_model_options(*command, arguments->model);
   add_prepare_options(*command, arguments->preparation);
   command->callback([arguments, &common] { plan_tiles(*arguments, common); });

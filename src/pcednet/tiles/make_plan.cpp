@@ -145,13 +145,13 @@ void check_inputs_differ(const PlanRequest& request) {
   }
 }
 
-/// How often the average point of copies in order would be read: chunks of a tile's points are
-/// squares, and the tile reads those within its buffer.
+/// How often the average point of copies in order would be read, about: of chunks at the buffer's
+/// edge, taken for squares, two thirds of the side are beyond it (measured on 9 and 16 tiles).
 double times_read_in_order(const CellCounts& counts, const Plan& plan) {
-  const double points = static_cast<double>(plan.points());
+  const auto points = static_cast<double>(plan.points());
   const double chunks = points / static_cast<double>(kChunkPoints * plan.tiles.size());
-  const double side = plan.grid.length() / std::sqrt(std::max(chunks, 1.0));
-  return static_cast<double>(points_with_buffers(counts, plan.grid, plan.buffer + side)) / points;
+  const double beyond = 2.0 / 3.0 * plan.grid.length() / std::sqrt(std::max(chunks, 1.0));
+  return static_cast<double>(points_with_buffers(counts, plan.grid, plan.buffer + beyond)) / points;
 }
 
 /// Notes how often the tiles read each point, if that is often and copies in order would help.
