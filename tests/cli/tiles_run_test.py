@@ -131,7 +131,7 @@ class TilesRun(TilesTest):
         self.assertEqual([p.name for p in (self.folder / "p_tiles").iterdir() if "part" in p.name], [])
 
     def test_tiles_of_another_run_are_counted_as_its_own(self):
-        plan, content = self.small()
+        plan, content = self.small(tile=1.0)
         tiles = len(content["tiles"])
         for jobs in ("1", "2"):
             shutil.rmtree(self.folder / "p_tiles", ignore_errors=True)
