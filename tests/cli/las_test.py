@@ -172,6 +172,38 @@ class Las(CliTest):
                     "--overwrite")
                 self.assertEqual((self.folder / "again.las").read_bytes(), data)
 
+    def test_does_not_miss_class_colours_where_there_are_none(self):
+        for number in (6, 3):
+            source = self.write("scan.las", las(number, self.scan(number)))
+            for options in ((), ("--class-colours",)):
+                done = run("classify", source, "--overwrite", *options)
+                self.assertNotIn("does not keep", done.stderr)
+        points, _, _ = points_of((self.folder / "scan_edges.las").read_bytes())
+        got = np.frombuffer(points, FORMATS[3] + [("edge_class", "u1"), ("p", "<f4", 2)])
+        self.assertEqual(set(got["Red"][got["edge_class"] == 2]), {168 * 257})
+
+    def test_brings_the_fields_back_through_text_and_pcd(self):
+        rows = random_rows(FORMATS[7])
+        source = self.write("in.las", las(7, rows))
+        for name in ("a.csv", "a.xyz", "a.pts", "a.pcd"):
+            self.convert(source, name)
+            done = run("convert", self.folder / name, "-o", self.folder / "out.las", "--overwrite")
+            self.assertNotIn("does not keep", done.stderr)
+            points, length, _ = points_of((self.folder / "out.las").read_bytes())
+            self.assertEqual(length, rows.dtype.itemsize)
+            got = np.frombuffer(points, FORMATS[7])
+            for field in set(rows.dtype.names) - set("XYZ"):
+                np.testing.assert_array_equal(got[field], rows[field], f"{name} {field}")
+
+    def test_keeps_numbers_that_are_no_intensity(self):
+        source = self.write("a.csv", b"x,y,z,intensity\n1,2,3,0.5\n4,5,6,1\n")
+        done = run("convert", source, "-o", self.folder / "a.las")
+        self.assertIn("intensity in the field Intensity of LAS, since 0.5 is not a whole number",
+                      done.stderr)
+        points, length, _ = points_of((self.folder / "a.las").read_bytes())
+        self.assertEqual(length, 38)
+        self.assertEqual(np.frombuffer(points, NEW + [("intensity", "<f8")])["intensity"].tolist(), [0.5, 1.0])
+
     def test_info_tells_what_the_header_and_the_records_say(self):
         rows = self.scan(3)
         source = self.write("scan.las", las(3, rows))

@@ -110,6 +110,25 @@ bool promote_channels(PointCloud& cloud, const std::vector<std::string>& names,
   return true;
 }
 
+bool promote_packed(PointCloud& cloud) {
+  for (const char* name : {"rgb", "rgba"}) {
+    const auto found = find_plain(cloud, name);
+    if (!found || size_of(cloud.attributes[*found].type) != 4) continue;
+    unpack_colours(cloud, *found, std::string(name) == "rgba");
+    return true;
+  }
+  return false;
+}
+
+/// Whether there are colours of 16 bits, which those of 8 bits beside them do not replace.
+bool has_wide_channels(const PointCloud& cloud) {
+  const auto& names = colour_names().front();
+  return std::all_of(names.begin(), names.end(), [&](const std::string& name) {
+    const auto found = find_plain(cloud, name);
+    return found && cloud.attributes[*found].type == ScalarType::kUint16;
+  });
+}
+
 }  // namespace
 
 const std::vector<std::string>& label_names() {
@@ -141,15 +160,11 @@ void promote_labels(PointCloud& cloud) {
 }
 
 void promote_colours(PointCloud& cloud, std::vector<std::string>& warnings) {
+  if (has_wide_channels(cloud) && promote_packed(cloud)) return;
   for (const auto& names : colour_names()) {
     if (promote_channels(cloud, names, warnings)) return;
   }
-  for (const char* name : {"rgb", "rgba"}) {
-    const auto found = find_plain(cloud, name);
-    if (!found || size_of(cloud.attributes[*found].type) != 4) continue;
-    unpack_colours(cloud, *found, std::string(name) == "rgba");
-    return;
-  }
+  promote_packed(cloud);
 }
 
 LoadedCloud keep_spelled_digits(LoadedCloud declared,

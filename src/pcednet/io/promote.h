@@ -26,7 +26,7 @@ void promote_labels(PointCloud& cloud);
 /// Makes attributes with colour names the colours of `cloud`: whole numbers in 0 ... 255 as they
 /// are; floating numbers in 0 ... 1 and 16-bit numbers scaled to 8 bits, with a warning if that
 /// rounds; the packed rgb or rgba of PCD unpacked (an alpha other than 255 becomes the attribute
-/// `alpha`).
+/// `alpha`). Beside packed colours 16-bit ones stay attributes.
 void promote_colours(PointCloud& cloud, std::vector<std::string>& warnings);
 
 /// For a text file that declares its positions float but may give them more digits: `declared`,

@@ -9,6 +9,7 @@
 #include "pcednet/core/error.h"
 #include "pcednet/io/las/comments.h"
 #include "pcednet/io/las/layout.h"
+#include "pcednet/io/text_scan.h"
 
 namespace pcednet::io {
 namespace {
@@ -104,14 +105,32 @@ class LayoutBuilder {
       }
       return true;
     }
-    if (add_normal(field) || add_label(field) || add_attribute(field) || add_angle(field)) {
-      return true;
-    }
-    // Formats without returns in their source have one per pulse.
+    if (choices_.sources.unfit.count(field.name) != 0) return add_one_return(field);
+    return add_normal(field) || add_label(field) || add_source(field) || add_attribute(field) ||
+           add_angle(field) || add_one_return(field);
+  }
+
+  /// Formats without returns in their source have one per pulse.
+  bool add_one_return(const LasField& field) {
     static constexpr std::byte kOne{1};
     const bool counts = field.name == "ReturnNumber" || field.name == "NumberOfReturns";
     if (counts) layout_.columns.push_back({field, &kOne, 0});
     return counts;
+  }
+
+  /// From an attribute of another type or name.
+  bool add_source(const LasField& field) {
+    const auto source = choices_.sources.attributes.find(field.name);
+    if (source == choices_.sources.attributes.end()) return false;
+    const Attribute* attribute = find_attribute(cloud_, source->second);
+    if (!attribute) return false;
+    used_.insert(attribute);
+    const bool is_degrees =
+        field.name == "ScanAngle" && lower_case(source->second) == "scananglerank";
+    layout_.columns.push_back({field, attribute->bytes.data(), attribute->stride(),
+                               is_degrees ? LasColumn::Scale::kAngle : LasColumn::Scale::kCast,
+                               attribute->type});
+    return true;
   }
 
   const Attribute* find_unused(const std::string& name, const LasField& field,
@@ -187,7 +206,8 @@ class LayoutBuilder {
     const Attribute* rank = find_unused("ScanAngleRank", {"", ScalarType::kInt8}, 1);
     if (!rank) return false;
     used_.insert(rank);
-    layout_.columns.push_back({field, rank->bytes.data(), 1, LasColumn::Scale::kAngle});
+    layout_.columns.push_back(
+        {field, rank->bytes.data(), 1, LasColumn::Scale::kAngle, ScalarType::kInt8});
     return true;
   }
 
@@ -201,7 +221,7 @@ class LayoutBuilder {
     const bool has_result = find_attribute(cloud_, "scalar_p_sharp") != nullptr;
     for (const Attribute& attribute : cloud_.attributes) {
       const bool derived = attribute.name == "quality" && has_result;
-      if (used_.count(&attribute) != 0 || derived || is_channel(attribute.name)) continue;
+      if (used_.count(&attribute) != 0 || derived || is_replaced(attribute.name)) continue;
       for (std::size_t c = 0; c < attribute.components; ++c) {
         const std::string name = attribute.components > 1
                                      ? fmt::format("{}[{}]", attribute.name.substr(0, 26), c)
@@ -216,9 +236,10 @@ class LayoutBuilder {
     }
   }
 
-  bool is_channel(const std::string& name) const {
+  /// Whether the colours are written in its place.
+  bool is_replaced(const std::string& name) const {
     return std::find(std::begin(kChannels), std::end(kChannels), name) != std::end(kChannels) &&
-           taken_.count(name) != 0;
+           taken_.count(name) != 0 && choices_.sources.unfit.count(name) == 0;
   }
 
   LasField new_field(const std::string& name, ScalarType type) {
@@ -279,16 +300,26 @@ class LayoutBuilder {
   bool has_normals_ = false, has_label_ = false;
 };
 
+double number_of(ScalarType type, const std::byte* from) {
+  return visit_scalar(type,
+                      [&](auto zero) { return static_cast<double>(load<decltype(zero)>(from)); });
+}
+
 }  // namespace
 
 void write_scaled(const LasColumn& column, const std::byte* from, char* to) {
+  if (column.scale == LasColumn::Scale::kCast) {
+    const double number = number_of(column.stored, from);
+    return visit_scalar(column.field.type,
+                        [&](auto zero) { store(to, static_cast<decltype(zero)>(number)); });
+  }
   if (column.scale == LasColumn::Scale::kColour) {
     const auto wide = static_cast<std::uint16_t>(std::to_integer<unsigned>(*from) * 257U);
     return store(to, wide);
   }
   if (column.scale == LasColumn::Scale::kAngle) {
     constexpr double kDegreesPerStep = 0.006;
-    const double degrees = static_cast<std::int8_t>(std::to_integer<unsigned>(*from));
+    const double degrees = number_of(column.stored, from);
     const auto steps = static_cast<std::int16_t>(std::lround(degrees / kDegreesPerStep));
     return store(to, steps);
   }

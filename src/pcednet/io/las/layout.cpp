@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
+#include <limits>
+#include <optional>
 
 #include "pcednet/cloud/bounding_box.h"
 #include "pcednet/core/error.h"
@@ -18,14 +21,17 @@ namespace {
 
 constexpr int kLeastDigits = 4, kMostDigits = 9;
 
+/// Whether each coordinate is that of its step but for the rounding of doubles: of the coordinate
+/// itself, of the step's product and of the sum. Decimals such as 512345.67 are.
 bool is_exact(const PointCloud& cloud, const LasFile& file) {
+  constexpr double kRounding = 2.0 * std::numeric_limits<double>::epsilon();
   for (const Vec3& p : cloud.positions) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const double value = p[static_cast<int>(axis)];
-      const double step = las_step(file, axis, value);
-      if (std::isfinite(value) && step * file.scale(axis) + file.offset(axis) != value) {
-        return false;
-      }
+      const double distance = las_step(file, axis, value) * file.scale(axis);
+      const double error = std::abs(distance + file.offset(axis) - value);
+      const double allowed = kRounding * std::max(std::abs(value), std::abs(distance));
+      if (std::isfinite(value) && !(error <= allowed)) return false;
     }
   }
   return true;
@@ -107,17 +113,29 @@ LasFile new_file(bool with_colours) {
   return file;
 }
 
-/// Whether the colours carry more than Red, Green and Blue, if these exist.
-bool colours_are_new(const PartOutline& outline) {
-  if (outline.first->colours.empty()) return false;
-  if (las_colours(*outline.first, true).empty()) return true;
-  bool narrow = true, same = true;
-  outline.each_part(
-      [&](const PointCloud& part) { return narrow = narrow && has_narrow_colours(part); });
-  outline.each_part([&](const PointCloud& part) {
-    return same = same && las_colours(part, narrow) == part.colours;
-  });
-  return !same;
+/// A file for a cloud of another format: with colours if it has any, 8 or 16 bits a channel.
+LasFile new_file_for(const PartOutline& outline) {
+  LasFile file = new_file(true);
+  const PointCloud& first = *outline.first;
+  const bool with_colours =
+      !first.colours.empty() ||
+      las_channels(first, find_las_sources(file, true, outline))[0] != nullptr;
+  return with_colours ? file : new_file(false);
+}
+
+/// Whether the points of each class have one colour, so that the classes say as much as the
+/// colours, as those that classify gives a cloud without colours.
+bool colours_follow_classes(const PointCloud& cloud) {
+  const Attribute* classes = find_attribute(cloud, "scalar_edge_class");
+  if (!classes) classes = find_attribute(cloud, "scalar_class");
+  if (!classes || classes->type != ScalarType::kUint8 || classes->components != 1) return false;
+  std::array<std::optional<Rgb>, 256> colours = {};
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    std::optional<Rgb>& colour = colours[std::to_integer<std::size_t>(classes->bytes[i])];
+    if (!colour) colour = cloud.colours[i];
+    if (*colour != cloud.colours[i]) return false;
+  }
+  return true;
 }
 
 bool labels_are_classes(const PartOutline& outline) {
@@ -135,11 +153,10 @@ bool labels_are_classes(const PartOutline& outline) {
 
 LasChoices choices_of(const PartOutline& outline) {
   LasChoices choices{.file = attached_las_file(*outline.first),
-                     .new_colours = !outline.is_las && colours_are_new(outline),
                      .label_is_class = labels_are_classes(outline)};
-  const bool is_new = choices.file.header.empty();
+  const bool is_new = choices.is_new = choices.file.header.empty();
   if (!is_new && outline.is_las) return choices;
-  if (is_new) choices.file = new_file(!outline.first->colours.empty());
+  if (is_new) choices.file = new_file_for(outline);
   const BoundingBox box = box_of(outline);
   if (is_new || !fits(box, choices.file)) {
     choices.exact = choose_scale(outline, box, choices.file);
@@ -159,6 +176,9 @@ double las_step(const LasFile& file, std::size_t axis, double coordinate) {
 LasChoices las_choices(const std::filesystem::path& path, const PartOutline& outline) {
   LasChoices choices = choices_of(outline);
   if (is_copc_name(path)) choose_copc(choices, *outline.first);
+  if (outline.is_las) return choices;
+  choices.sources = find_las_sources(choices.file, choices.is_new, outline);
+  choices.new_colours = colours_are_new(outline, choices.sources);
   return choices;
 }
 
@@ -169,6 +189,7 @@ std::vector<std::string> las_losses(const std::filesystem::path& path, const Poi
 std::vector<std::string> las_losses(const PointCloud& first, const LasChoices& choices) {
   const LasFile& file = choices.file;
   std::vector<std::string> losses = choices.losses;
+  losses.insert(losses.end(), choices.sources.losses.begin(), choices.sources.losses.end());
   if (!first.comments.empty() && !las_comment_record(first.comments)) {
     losses.emplace_back("comments of more than 64 KiB");
   }
@@ -178,7 +199,7 @@ std::vector<std::string> las_losses(const PointCloud& first, const LasChoices& c
   const auto standard = las_standard_fields(file.point_format());
   const bool has_colours = std::any_of(standard.begin(), standard.end(),
                                        [](const LasField& f) { return f.name == "Red"; });
-  if (!first.colours.empty() && !has_colours) {
+  if (!first.colours.empty() && !has_colours && !colours_follow_classes(first)) {
     losses.push_back(fmt::format("colours: {}point format {} has none",
                                  choices.promoted ? "" : "the input's ", file.point_format()));
   }

@@ -6,22 +6,26 @@
 #include <vector>
 
 #include "pcednet/io/las/file.h"
+#include "pcednet/io/las/sources.h"
 #include "pcednet/io/parts.h"
 
 namespace pcednet::io {
 
 /// A field of the records to write, and the source of its numbers.
 struct LasColumn {
-  enum class Scale { kNone, kColour, kNormal, kAngle };
+  enum class Scale { kNone, kCast, kColour, kNormal, kAngle };
   LasField field = {};
   const std::byte* first = nullptr;  ///< the number of point 0
   std::size_t stride = 0;            ///< bytes from point to point; 0: the same for all points
-  Scale scale = Scale::kNone;        ///< bytes times 257, unit normals, whole degrees
+  Scale scale = Scale::kNone;        ///< of another type, bytes times 257, unit normals, degrees
+  ScalarType stored = ScalarType::kFloat64;  ///< kCast and kAngle: the type of the numbers
 };
 
 /// The decisions that depend on all points.
 struct LasChoices {
   LasFile file = {};                     ///< version, point format, scale, offset; all records
+  bool is_new = false;                   ///< the cloud does not come from LAS
+  LasSources sources = {};               ///< of standard fields
   bool new_colours = false;              ///< the colours are not those of Red, Green and Blue
   bool label_is_class = false;           ///< the labels add nothing to scalar_edge_class
   bool promoted = false;                 ///< the point format is not that of the input

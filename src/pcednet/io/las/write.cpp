@@ -50,18 +50,20 @@ void encode(const std::filesystem::path& path, const PointCloud& cloud, const La
     const std::byte* from = column.first + begin * column.stride;
     const std::size_t bytes = field.components * size_of(field.type);
     for (std::size_t i = begin; i < end; ++i, to += stride, from += column.stride) {
+      char number[8];
+      const bool is_scaled = column.scale != LasColumn::Scale::kNone;
+      if (is_scaled) write_scaled(column, from, number);
+      const void* value_bytes = is_scaled ? static_cast<const void*>(number) : from;
       if (field.bits > 0) {
-        const auto value = std::to_integer<unsigned>(*from);
+        const unsigned value = *static_cast<const unsigned char*>(value_bytes);
         if (value >> field.bits != 0) {
           refuse(path, ErrorKind::kFailure, before + i,
                  fmt::format("{} {} does not fit point format {}, which has {} bits for it",
                              field.name, value, layout.file.point_format(), field.bits));
         }
         *to = static_cast<char>(static_cast<unsigned char>(*to) | (value << field.shift));
-      } else if (column.scale == LasColumn::Scale::kNone) {
-        std::memcpy(to, from, bytes);
       } else {
-        write_scaled(column, from, to);
+        std::memcpy(to, value_bytes, bytes);
       }
     }
   }
@@ -77,14 +79,13 @@ struct Summary {
   double first() const { return timed() ? least_time : 0.0; }
   double last() const { return timed() ? most_time : 0.0; }
 
-  void add(const PointCloud& part, const LasFile& file) {
-    const Attribute* times = find_attribute(part, "GpsTime");
-    if (times && times->type != ScalarType::kFloat64) times = nullptr;  // not that of LAS
+  void add(const PointCloud& part, const LasFile& file, const LasSources& sources) {
+    const Attribute* times = las_source(part, sources, "GpsTime", ScalarType::kFloat64);
     for (std::size_t i = 0; times && i < part.size(); ++i) {
       least_time = std::min(least_time, times->value(i));
       most_time = std::max(most_time, times->value(i));
     }
-    const Attribute* returns = find_attribute(part, "ReturnNumber");
+    const Attribute* returns = las_source(part, sources, "ReturnNumber", ScalarType::kUint8);
     for (std::size_t i = 0; i < part.size(); ++i) {
       const auto number = returns ? static_cast<std::size_t>(returns->value(i)) : 1;
       if (number >= 1 && number <= by_return.size()) ++by_return[number - 1];
@@ -178,7 +179,7 @@ class LasPartWriter : public PartWriter {
     } else {
       write_blocks(*out_, part.size(), encode_points);
     }
-    summary_.add(part, file_);
+    summary_.add(part, file_, choices_.sources);
     count_ += part.size();
   }
 
