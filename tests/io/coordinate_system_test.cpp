@@ -56,6 +56,22 @@ TEST(CoordinateSystem, KnowsFeetAndTheNewerForm) {
   EXPECT_EQ(in_feet.unit, LengthUnit::kUsSurveyFoot);
 }
 
+TEST(CoordinateSystem, TellsDegreesFromLengths) {
+  const std::string parts = std::string(kGeographic) + R"(,VERT_CS["h",UNIT["metre",1]])";
+  for (const std::string& wkt :
+       {std::string(kGeographic), "COMPD_CS[\"both\"," + parts + "]",
+        std::string(R"(GEOGCRS["x",CS[ellipsoidal,2],ANGLEUNIT["degree",0.0174532925199433]])"),
+        std::string(R"(GEODCRS["x",CS[ellipsoidal,2],ANGLEUNIT["degree",0.0174532925199433]])")}) {
+    EXPECT_TRUE(coordinate_system_of_wkt(wkt).geographic) << wkt;
+    EXPECT_EQ(coordinate_system_of_wkt(wkt).unit, LengthUnit::kNone) << wkt;
+  }
+  const std::string geocentric = R"(GEODCRS["x",CS[Cartesian,3],LENGTHUNIT["metre",1]])";
+  for (const std::string& wkt : {projected(R"("metre",1)", "25832"), geocentric}) {
+    EXPECT_FALSE(coordinate_system_of_wkt(wkt).geographic) << wkt;
+    EXPECT_EQ(coordinate_system_of_wkt(wkt).unit, LengthUnit::kMetre) << wkt;
+  }
+}
+
 TEST(CoordinateSystem, SurvivesNonsense) {
   for (const char* text :
        {"", "]", "[", "A[\"", "A[B[C[", "PROJCS[AUTHORITY[\"EPSG\"]]",

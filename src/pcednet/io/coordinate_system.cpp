@@ -52,6 +52,12 @@ bool is_one_of(std::string_view word, std::initializer_list<std::string_view> wo
   return std::find(words.begin(), words.end(), word) != words.end();
 }
 
+/// Whether the innermost node is the system itself or the horizontal part of a compound one.
+bool is_horizontal(const std::vector<WktNode>& open) {
+  return open.size() == 1 ||
+         (open.size() == 2 && is_one_of(open[0].keyword, {"compd_cs", "compoundcrs"}));
+}
+
 int epsg_of(const WktNode& node) {
   if (!is_one_of(node.keyword, {"authority", "id"})) return 0;
   if (node.values.size() < 2 || lower_case(node.values[0]) != "epsg") return 0;
@@ -66,6 +72,7 @@ int epsg_of(const WktNode& node) {
 CoordinateSystem coordinate_system_of_wkt(std::string_view wkt) {
   CoordinateSystem system{.epsg = 0, .wkt = std::string(trim(wkt))};
   int whole = 0, horizontal = 0;
+  bool cartesian = false;  // as geocentric systems are, which share a keyword with geographic ones
   std::optional<LengthUnit> common;  // of all lengths so far
   visit_wkt(wkt, [&](const std::vector<WktNode>& open) {
     const WktNode& node = open.back();
@@ -77,6 +84,11 @@ CoordinateSystem coordinate_system_of_wkt(std::string_view wkt) {
         horizontal = code;
       }
     }
+    if (is_horizontal(open) && is_one_of(node.keyword, {"geogcs", "geogcrs", "geodcrs"})) {
+      system.geographic = !cartesian;
+    }
+    cartesian = cartesian || (node.keyword == "cs" && !node.values.empty() &&
+                              lower_case(node.values[0]) == "cartesian");
     // An ellipsoid and the parameters of a projection may have other units than the coordinates.
     const bool is_length =
         (node.keyword == "lengthunit" && !is_one_of(parent, {"ellipsoid", "parameter"})) ||
@@ -87,10 +99,7 @@ CoordinateSystem coordinate_system_of_wkt(std::string_view wkt) {
   });
   system.epsg = whole ? whole : horizontal;
   // Degrees are no lengths, though heights above them are.
-  const bool geographic =
-      is_one_of(lower_case(system.wkt.substr(0, system.wkt.find_first_of("[("))),
-                {"geogcs", "geogcrs", "geodcrs"});
-  if (!geographic) system.unit = common.value_or(LengthUnit::kNone);
+  if (!system.geographic) system.unit = common.value_or(LengthUnit::kNone);
   return system;
 }
 

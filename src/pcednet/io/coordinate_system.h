@@ -12,7 +12,8 @@ struct CoordinateSystem {
   int epsg = 0;                         ///< its code; 0: unknown
   std::string wkt = {};                 ///< its definition (OGC 01-009 or 18-010); may be empty
   LengthUnit unit = LengthUnit::kNone;  ///< of all its lengths; kNone: another, or they differ
-  int vertical_epsg = 0;  ///< code of the heights if `epsg` does not cover them; 0: unknown
+  int vertical_epsg = 0;    ///< code of the heights if `epsg` does not cover them; 0: unknown
+  bool geographic = false;  ///< x and y are angles: longitude and latitude
 };
 
 /// The system that a definition describes: its code is that of the outermost EPSG AUTHORITY or ID,

@@ -12,6 +12,8 @@
 #include "io/drawing/sample_curves.h"
 #include "io/scratch.h"
 #include "pcednet/io/drawing/read_curves.h"
+#include "pcednet/io/drawing/writers.h"
+#include "pcednet/io/projection.h"
 
 namespace pcednet::io {
 namespace {
@@ -95,6 +97,31 @@ TEST(Drawing, GeoJsonHoldsAttributesAndExactCoordinates) {
   const json& circle = file["features"][4]["properties"];
   EXPECT_EQ(circle["radius"], 0.75);
   EXPECT_DOUBLE_EQ(circle["length"], 1.5 * std::numbers::pi);
+}
+
+TEST(Drawing, GeoJsonWithoutACodeIsALoss) {
+  EXPECT_EQ(drawing_losses("a.geojson", {.coordinate_system = {.epsg = 25832}}).size(), 0u);
+  EXPECT_EQ(drawing_losses("a.svg", {}).size(), 0u);
+  const auto losses = drawing_losses("a.geojson", {.coordinate_system = {.wkt = "PROJCS[]"}});
+  ASSERT_EQ(losses.size(), 1u);
+  EXPECT_TRUE(contains(losses[0], "degrees of WGS 84"));
+}
+
+// What must hold with PROJ and SQLite, and what without.
+TEST(Drawing, GeoPackageDefinesASystemThatHasACodeOnly) {
+  const Scratch scratch;
+  const auto write = [&] {
+    write_drawing(scratch.path("a.gpkg"), sample_curves(), {.coordinate_system = {.epsg = 25832}});
+  };
+  if (has_geopackage()) {
+    write();
+  } else {
+    error_of(ErrorKind::kUsage, write);
+  }
+  const std::string bytes = bytes_of(scratch.path("a.gpkg"));
+  EXPECT_EQ(contains(bytes, "EPSG:25832"), has_geopackage());
+  EXPECT_EQ(contains(bytes, "PROJCS[\"ETRS89 / UTM zone 32N\""),
+            has_geopackage() && has_projections());
 }
 
 TEST(Drawing, SvgShowsTheView) {

@@ -3,6 +3,7 @@
 #include "io/las/las_writer.h"
 #include "pcednet/formats/write_cloud.h"
 #include "pcednet/io/las/las.h"
+#include "pcednet/io/projection.h"
 
 namespace pcednet::io {
 namespace {
@@ -51,6 +52,56 @@ TEST(LasCoordinateSystem, HasTheUnitOfItsKeysIfHeightsHaveItToo) {
   EXPECT_EQ(unit_of_keys(9003, 9003), LengthUnit::kUsSurveyFoot);
   EXPECT_EQ(unit_of_keys(9003, 9001), LengthUnit::kNone);
   EXPECT_EQ(unit_of_keys(9035, 9035), LengthUnit::kNone);
+}
+
+// What must hold with PROJ, and what without.
+TEST(LasCoordinateSystem, HasTheUnitOfItsCodesWhereTheKeysStateNone) {
+  const Scratch scratch;
+  const auto unit_of_keys = [&](const std::string& data) {
+    return las_coordinate_system(cloud_with(scratch, {{"LASF_Projection", 34735, data}})).unit;
+  };
+  const auto if_known = [](LengthUnit unit) {
+    return has_projections() ? unit : LengthUnit::kNone;
+  };
+  EXPECT_EQ(unit_of_keys(keys({1, 1, 0, 3, 1024, 0, 1, 1, 1025, 0, 1, 1, 3072, 0, 1, 25832})),
+            if_known(LengthUnit::kMetre));
+  EXPECT_EQ(unit_of_keys(keys({1, 1, 0, 2, 1024, 0, 1, 1, 3072, 0, 1, 2263})),
+            if_known(LengthUnit::kUsSurveyFoot));
+  EXPECT_EQ(unit_of_keys(keys({1, 1, 0, 2, 3072, 0, 1, 2263, 4099, 0, 1, 9001})),
+            LengthUnit::kNone);
+  EXPECT_EQ(unit_of_keys(keys({1, 1, 0, 2, 3072, 0, 1, 25832, 4099, 0, 1, 9001})),
+            if_known(LengthUnit::kMetre));
+  EXPECT_EQ(unit_of_keys(keys({1, 1, 0, 2, 3072, 0, 1, 25832, 4096, 0, 1, 7837})),
+            if_known(LengthUnit::kMetre));
+  EXPECT_EQ(unit_of_keys(keys({1, 1, 0, 2, 1024, 0, 1, 2, 2048, 0, 1, 4326})), LengthUnit::kNone);
+}
+
+TEST(LasCoordinateSystem, OfOnesOwnIsNotThatOfItsAngles) {
+  const Scratch scratch;
+  const std::string data = keys({1, 1, 0, 3, 1024, 0, 1, 1, 2048, 0, 1, 4258, 3072, 0, 1, 32767});
+  EXPECT_EQ(las_coordinate_system(cloud_with(scratch, {{"LASF_Projection", 34735, data}})).epsg, 0);
+}
+
+TEST(LasCoordinateSystem, InDegreesIsAWarning) {
+  const Scratch scratch;
+  const auto warnings_with = [&](const LasTestRecord& record) {
+    LasTestFile file{.rows = las_test_rows(6, 3)};
+    file.records = {record};
+    return scratch.read("a.las", las_bytes(file)).warnings;
+  };
+  const auto of_keys = [&](const std::string& data) {
+    return warnings_with({"LASF_Projection", 34735, data});
+  };
+  const std::string geographic = R"(GEOGCS["WGS 84",UNIT["degree",0.0174532925199433]])";
+  for (const auto& warnings : {of_keys(keys({1, 1, 0, 2, 1024, 0, 1, 2, 2048, 0, 1, 4326})),
+                               of_keys(keys({1, 1, 0, 1, 2048, 0, 1, 4326})),
+                               warnings_with({"LASF_Projection", 2112, geographic})}) {
+    ASSERT_EQ(warnings.size(), 1u);
+    EXPECT_TRUE(contains(warnings[0], "coordinates are in degrees"));
+  }
+  EXPECT_TRUE(of_keys(keys({1, 1, 0, 2, 1024, 0, 1, 1, 3072, 0, 1, 25832})).empty());
+  EXPECT_TRUE(of_keys(keys({1, 1, 0, 2, 1024, 0, 1, 3, 2048, 0, 1, 4978})).empty());
+  EXPECT_TRUE(warnings_with({"LASF_Projection", 2112, kWkt}).empty());
 }
 
 TEST(LasCoordinateSystem, SurvivesBrokenKeys) {

@@ -90,6 +90,16 @@ void write_drawing(const std::filesystem::path& path, Curves curves,
   format.write(path, curves, options);
 }
 
+std::vector<std::string> drawing_losses(const std::filesystem::path& path,
+                                        const DrawingOptions& options) {
+  const bool is_geojson = drawing_format_for(path).write == write_geojson;
+  if (!is_geojson || options.coordinate_system.epsg > 0) return {};
+  return {
+      "the coordinate system, which has no known EPSG code: readers that are not told otherwise "
+      "take "
+      "the coordinates for degrees of WGS 84"};
+}
+
 std::vector<Vec3> drawn(const Curve& curve, const DrawingOptions& options) {
   return sampled(curve, options.tolerance > 0.0 ? options.tolerance : curve.radius / 1000.0);
 }

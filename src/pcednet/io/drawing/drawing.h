@@ -58,4 +58,9 @@ const DrawingFormat& drawing_format_for(const std::filesystem::path& path);
 void write_drawing(const std::filesystem::path& path, std::span<const lines::Curve> curves,
                    const DrawingOptions& options = {});
 
+/// What readers of the file will not learn of the drawing, as phrases: GeoJSON without an EPSG code
+/// does not tell that its coordinates are no degrees. Throws Error(kUsage) as drawing_format_for().
+std::vector<std::string> drawing_losses(const std::filesystem::path& path,
+                                        const DrawingOptions& options);
+
 }  // namespace pcednet::io

@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "pcednet/io/drawing/line_classes.h"
+#include "pcednet/io/projection.h"
 
 namespace pcednet::io {
 namespace {
@@ -165,11 +166,12 @@ bool is_wkt2(std::string_view wkt) {
 }
 
 /// Adds the coordinate system and returns its number in the file.
-int add_system(Database& database, const CoordinateSystem& system) {
+int add_system(Database& database, CoordinateSystem system) {
   constexpr int kWgs84 = 4326, kOwn = 100000;
   if (system.epsg == 0 && system.wkt.empty()) return kUndefined;
   if (system.epsg == kWgs84) return kWgs84;
   const int srs = system.epsg > 0 ? system.epsg : kOwn;
+  if (system.wkt.empty()) system.wkt = definition_of({.epsg = system.epsg}, WktVersion::k1);
   const bool modern = is_wkt2(system.wkt);
   if (modern) database.execute(kWkt2Tables);
   Insertion row(database, modern

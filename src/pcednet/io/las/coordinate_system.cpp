@@ -5,14 +5,16 @@
 #include "pcednet/io/las/file.h"
 #include "pcednet/io/las/las.h"
 #include "pcednet/io/length_units.h"
+#include "pcednet/io/projection.h"
 
 namespace pcednet::io {
 namespace {
 
 // GeoTIFF keys, and the values without meaning.
-constexpr std::uint16_t kGeographicType = 2048, kProjectedType = 3072, kProjectedUnit = 3076,
-                        kVerticalType = 4096, kVerticalUnit = 4099;
+constexpr std::uint16_t kModelType = 1024, kGeographicType = 2048, kProjectedType = 3072,
+                        kProjectedUnit = 3076, kVerticalType = 4096, kVerticalUnit = 4099;
 constexpr int kUserDefined = 32767;
+constexpr int kProjectedModel = 1, kGeographicModel = 2;
 
 /// The keys with an inline value, as codes have.
 std::map<std::uint16_t, int> geo_keys(std::string_view data) {
@@ -28,35 +30,55 @@ std::map<std::uint16_t, int> geo_keys(std::string_view data) {
   return keys;
 }
 
-CoordinateSystem coordinate_system_of_keys(std::string_view data) {
+/// The unit that PROJ knows of the system's codes; `heights` is the code of theirs, if the file
+/// states it.
+LengthUnit unit_of_system(CoordinateSystem system, int heights) {
+  if (heights > 0) system.vertical_epsg = 0;
+  const LengthUnit unit = coordinate_system_of_wkt(definition_of(system, WktVersion::k1)).unit;
+  return heights == 0 || unit_of_code(heights) == unit ? unit : LengthUnit::kNone;
+}
+
+/// Where the keys give codes alone, PROJ tells the unit if it is to be asked, which takes time.
+CoordinateSystem coordinate_system_of_keys(std::string_view data, bool ask_for_unit) {
   const auto keys = geo_keys(data);
   const auto value = [&](std::uint16_t key, int otherwise) {
     const auto found = keys.find(key);
     return found == keys.end() ? otherwise : found->second;
   };
+  const int model = value(kModelType, value(kProjectedType, 0) == 0 && value(kGeographicType, 0) > 0
+                                          ? kGeographicModel
+                                          : kProjectedModel);
   CoordinateSystem system;
-  system.epsg = value(kProjectedType, value(kGeographicType, 0));
+  // A projection of one's own has no code, though the angles that it projects have one.
+  system.epsg = value(kProjectedType, model == kProjectedModel ? 0 : value(kGeographicType, 0));
   system.vertical_epsg = value(kVerticalType, 0);
-  const int unit = value(kProjectedUnit, 0);
-  if (value(kVerticalUnit, unit) == unit) system.unit = unit_of_code(unit);
+  system.geographic = model == kGeographicModel;
+  if (system.geographic) return system;
+  const int unit = value(kProjectedUnit, 0), heights = value(kVerticalUnit, unit);
+  if (unit > 0 && heights == unit) system.unit = unit_of_code(unit);
+  if (unit == 0 && ask_for_unit) system.unit = unit_of_system(system, heights);
+  return system;
+}
+
+CoordinateSystem find_system(const LasFile& file, bool ask_for_unit) {
+  CoordinateSystem system;
+  for (const auto* records : {&file.records, &file.extended_records}) {
+    for (const LasRecord& record : *records) {
+      if (record.is(kWktRecord)) return coordinate_system_of_wkt(until_zero(record.data));
+      if (record.is(kGeoKeysRecord)) system = coordinate_system_of_keys(record.data, ask_for_unit);
+    }
+  }
   return system;
 }
 
 }  // namespace
 
 CoordinateSystem coordinate_system_of(const LasFile& file) {
-  CoordinateSystem system;
-  for (const auto* records : {&file.records, &file.extended_records}) {
-    for (const LasRecord& record : *records) {
-      if (record.is(kWktRecord)) return coordinate_system_of_wkt(until_zero(record.data));
-      if (record.is(kGeoKeysRecord)) system = coordinate_system_of_keys(record.data);
-    }
-  }
-  return system;
+  return find_system(file, false);
 }
 
 CoordinateSystem las_coordinate_system(const PointCloud& cloud) {
-  return coordinate_system_of(attached_las_file(cloud));
+  return find_system(attached_las_file(cloud), true);
 }
 
 }  // namespace pcednet::io

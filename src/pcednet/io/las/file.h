@@ -120,7 +120,7 @@ LasFile read_las_file(const InputFile& file, std::vector<std::string>& warnings)
 /// The latest end of the points: the records behind them, or the end of the file.
 std::uint64_t las_points_limit(const InputFile& file, const LasFile& las);
 
-/// From its WKT, otherwise from its GeoTIFF keys.
+/// From its WKT, otherwise from its GeoTIFF keys; never asks PROJ.
 CoordinateSystem coordinate_system_of(const LasFile& file);
 
 /// Sets the beginning of the extended records in the header to `begin`; false if it has no field

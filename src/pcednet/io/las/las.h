@@ -33,7 +33,8 @@ std::unique_ptr<PartReader> open_las_parts(std::unique_ptr<InputFile> file, std:
 /// A cloud that was read from LAS keeps version, point format, scale, offset, records and fields,
 /// its integers bit for bit, without the extra bytes that it lost since; any other becomes LAS 1.4,
 /// point format 6, or 7 with colours, in steps of a power of ten of at most 0.1 mm. COPC is always
-/// LAS 1.4 of point format 6, 7 or 8, with its points reordered. Further attributes become extra
+/// LAS 1.4 of point format 6, 7 or 8, with its points reordered. Attributes of any type with the
+/// name of a field, in any capitals, go into it if it holds all their values. Others become extra
 /// bytes: scalar_edge_class, scalar_p_sharp and scalar_p_smooth as edge_class, p_sharp and
 /// p_smooth. append() throws Error(kInsufficient) for positions that are not finite,
 /// Error(kFailure) for a number that its field cannot hold; both name the point.
@@ -42,7 +43,8 @@ std::unique_ptr<PartWriter> create_las_parts(const std::filesystem::path& path,
                                              const WriteOptions& options);
 
 /// The coordinate system of a cloud that was read from LAS, or from a PLY file made from one: that
-/// of its WKT, otherwise of its GeoTIFF keys.
+/// of its WKT, otherwise of its GeoTIFF keys. Where these state no unit, it is the one that PROJ
+/// knows of their codes.
 CoordinateSystem las_coordinate_system(const PointCloud& cloud);
 
 /// The parts of `cloud` that create_las_parts() does not keep, as phrases.

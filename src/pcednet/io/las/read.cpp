@@ -26,6 +26,10 @@ class LasSource {
       check_las_points(file, las_, warnings);
     }
     comments_ = take_las_comments(las_);
+    if (coordinate_system_of(las_).geographic) {
+      warnings.emplace_back(
+          "coordinates are in degrees: lengths across and up differ; project the cloud first");
+    }
     LasRecordSink(las_, 0, warnings);  // warns of faulty extra bytes
   }
 
