@@ -107,9 +107,10 @@ TEST(Xyz, TellsProseFromNames) {
   EXPECT_EQ(cloud.comments, std::vector<std::string>{"the x y z of a scan"});
 }
 
-std::string guess(std::size_t columns, const std::vector<double>& numbers) {
+std::string guess(std::size_t columns, const std::vector<double>& numbers,
+                  TextKind kind = TextKind::kAny) {
   std::string joined;
-  for (const std::string& name : guess_column_names({numbers, columns})) {
+  for (const std::string& name : guess_column_names({numbers, columns}, kind)) {
     joined += (joined.empty() ? "" : " ") + name;
   }
   return joined;
@@ -131,6 +132,61 @@ TEST(Xyz, GuessesColumnsWithoutNames) {
   EXPECT_EQ(guess(9, {1, 2, 3, 98, 97, 96, 0, 1, 0}), "x y z red green blue nx ny nz");
   EXPECT_EQ(guess(10, {1, 2, 3, 98, 97, 96, 0, 1, 0, 1}), "x y z red green blue nx ny nz label");
   EXPECT_EQ(guess(5, {1, 2, 3, 0, 1}), "x y z scalar_4 label");
+}
+
+TEST(Xyz, FindsTheIntensityOfPts) {
+  const auto pts = TextKind::kPts, counted = TextKind::kCountedPts;
+  EXPECT_EQ(guess(7, {1, 2, 3, -1024, 98, 97, 96}, pts), "x y z intensity red green blue");
+  EXPECT_EQ(guess(7, {1, 2, 3, 99, 98, 97, 2}, counted), "x y z intensity red green blue");
+  EXPECT_EQ(guess(4, {1, 2, 3, 0.5}, pts), "x y z intensity");
+  EXPECT_EQ(guess(4, {1, 2, 3, 0}, pts), "x y z label");
+  EXPECT_EQ(guess(4, {1, 2, 3, 0}, counted), "x y z intensity");
+  EXPECT_EQ(guess(6, {1, 2, 3, 60, 0, 255}, counted), "x y z red green blue");
+  EXPECT_EQ(guess(6, {1, 2, 3, 0.6, 0, 0.8}, counted), "x y z nx ny nz");
+}
+
+TEST(Xyz, ReadsEveryScanOfPts) {
+  const Scratch scratch;
+  const auto loaded = scratch.read("a.pts",
+                                   "2\n1 2 3 -5 10 20 30\n4 5 6 -6 11 21 31\n"
+                                   "0\n\n1\r\n7 8 9 7 12 22 32\r\n");
+  ASSERT_EQ(loaded.cloud.size(), 3u);
+  EXPECT_EQ(loaded.cloud.positions[2], Vec3(7, 8, 9));
+  EXPECT_EQ(loaded.cloud.colours.at(2), (Rgb{12, 22, 32}));
+  ASSERT_TRUE(find_attribute(loaded.cloud, "intensity"));
+  EXPECT_EQ(find_attribute(loaded.cloud, "intensity")->value(1), -6);
+  for (const char* bytes : {"2\n1 2 3\n1\n4 5 6\n", "1\n1 2 3\n2\n4 5 6\n", "1\n1 2 3\n4 5 6\n1\n",
+                            "1\n1 2 3\n18446744073709551615\n"}) {
+    error_of(ErrorKind::kUnreadable, [&] { scratch.read("b.pts", bytes); });
+  }
+}
+
+TEST(Xyz, WritesPtsAsOtherProgramsReadIt) {
+  const Scratch scratch;
+  PointCloud cloud;
+  cloud.positions = {Vec3(0.5, 2, 3)};
+  cloud.colours = {Rgb{10, 20, 2}};
+  cloud.comments = {"a comment"};
+  cloud.attributes = {make_attribute("Intensity", std::vector<std::uint16_t>{7})};
+  formats::write_cloud(scratch.path("a.pts"), cloud);
+  EXPECT_EQ(bytes_of(scratch.path("a.pts")), "1\n0.5 2 3 7 10 20 2\n");
+  EXPECT_EQ(formats::losses("a.pts", cloud),
+            (std::vector<std::string>{"number types of attributes", "comments"}));
+  const PointCloud back = formats::read_cloud(scratch.path("a.pts")).cloud;
+  EXPECT_EQ(back.colours, cloud.colours);
+  EXPECT_TRUE(find_attribute(back, "intensity"));
+  // Further columns are behind these, under names.
+  cloud.normals = {Vec3(0, 0, 1)};
+  cloud.attributes.insert(cloud.attributes.begin(),
+                          make_attribute("height", std::vector<float>{0.25F}));
+  formats::write_cloud(scratch.path("b.pts"), cloud);
+  EXPECT_EQ(bytes_of(scratch.path("b.pts")),
+            "1\n# a comment\n# x y z Intensity red green blue nx ny nz height\n"
+            "0.5 2 3 7 10 20 2 0 0 1 0.25\n");
+  const PointCloud named = formats::read_cloud(scratch.path("b.pts")).cloud;
+  EXPECT_EQ(named.normals, cloud.normals);
+  EXPECT_EQ(named.comments, cloud.comments);
+  EXPECT_EQ(named.attributes.size(), 2u);
 }
 
 TEST(Xyz, SaysWhatItGuessed) {

@@ -19,13 +19,15 @@ namespace pcednet::io {
 /// Lines that begin with # or // are comments; a line of names, commented or not, with x, y and z
 /// among them names the columns, which CloudBuilder then reads as of type double. Without names,
 /// columns after the third are taken for normals, colours or labels by their values, with a
-/// warning. A first line with one whole number is the count of points. Throws Error(kUnreadable)
+/// warning. A first line with one whole number is the count of points; as many points later another
+/// count may follow, that of the next scan. Throws Error(kUnreadable)
 /// naming the line that does not fit the others.
 LoadedCloud read_xyz(const InputFile& file);
 
 /// Writes points as text: comments and names behind #, then one point a line; .csv with commas and
-/// the names alone; .pts with a count first. Positions alone, and positions with normals in .xyz,
-/// are written without comments and names, as programs that know neither expect.
+/// the names alone; .pts with a count first, then comments and names, and with its columns in the
+/// order x y z intensity red green blue. Positions alone, positions with normals in .xyz, and those
+/// columns in .pts are written without comments and names, as programs that know neither expect.
 std::unique_ptr<PartWriter> create_xyz_parts(const std::filesystem::path& path,
                                              const PartOutline& outline,
                                              const WriteOptions& options);

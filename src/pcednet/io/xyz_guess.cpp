@@ -47,16 +47,20 @@ bool looks_like_normal(const double* n) {
   return length > 0.9 && length < 1.1;
 }
 
-std::vector<std::string> guess_column_names(const NumberTable& table) {
+std::vector<std::string> guess_column_names(const NumberTable& table, TextKind kind) {
   std::vector<std::string> names = {"x", "y", "z"};
   bool has_normals = false, has_colours = false;
   while (names.size() < table.columns) {
     const std::size_t next = names.size();
     const std::size_t left = table.columns - next;
     // x y z intensity r g b, the usual .pts: four columns of which three are colours either way.
-    const bool scalar_first =
-        left == 4 && are_colours(table, next + 1) && !is_label(table, table.columns - 1);
-    if (left >= 3 && !has_normals && are_normals(table, next)) {
+    const bool is_counted = kind == TextKind::kCountedPts;
+    const bool may_be_label = !is_counted && is_label(table, table.columns - 1);
+    const bool scalar_first = left == 4 && are_colours(table, next + 1) && !may_be_label;
+    const bool is_alone = left == 1 && !may_be_label;
+    if (kind != TextKind::kAny && next == 3 && (scalar_first || is_alone)) {
+      names.emplace_back("intensity");
+    } else if (left >= 3 && !has_normals && are_normals(table, next)) {
       names.insert(names.end(), {"nx", "ny", "nz"});
       has_normals = true;
     } else if (left >= 3 && !has_colours && !scalar_first && are_colours(table, next)) {

@@ -90,10 +90,7 @@ class TableReader {
   /// A line before the first point: a count, names, or the first point; `after`: the lines behind.
   void take_first(std::string_view line, const Lines& after) {
     split(line, words_, kAllSeparators);
-    if (words_.size() == 1 && !promised_ && parse_count(words_[0])) {
-      promised_ = parse_count(words_[0]);
-      return;
-    }
+    if (take_count()) return;
     const bool is_number = !words_.empty() && parse_double(words_[0]).has_value();
     if (!is_number && names_.empty()) {
       names_ = split_names(line);
@@ -112,6 +109,16 @@ class TableReader {
     }
     table_.columns = words_.size();
     take_row(line);
+  }
+
+  /// Takes the words for the count of the points that follow, if they can be that: at the
+  /// beginning, and behind the points of the count before, where a .pts has its next scan.
+  bool take_count() {
+    if (words_.size() != 1 || promised_.value_or(0) != table_.rows()) return false;
+    const auto count = parse_count(words_[0]);
+    if (!count || *count > UINT64_MAX - table_.rows()) return false;
+    promised_ = table_.rows() + *count;
+    return true;
   }
 
   /// The first unambiguous line decides for the file.
@@ -164,6 +171,7 @@ class TableReader {
   void take_row(std::string_view line) {
     check_commas(line);
     split(line, words_, separators());
+    if (promised_ && take_count()) return;
     if (words_.size() != table_.columns) {
       throw error(
           fmt::format("{} numbers where the lines before have {}", words_.size(), table_.columns));
@@ -177,7 +185,7 @@ class TableReader {
 
   LoadedCloud build() {
     const bool guessed = names_.empty();
-    if (guessed) names_ = guess_column_names(table_);
+    if (guessed) names_ = guess_column_names(table_, kind());
     std::vector<Column> columns;
     for (std::size_t c = 0; c < names_.size(); ++c) {
       columns.push_back({names_[c].empty() ? fmt::format("scalar_{}", c + 1) : names_[c]});
@@ -190,6 +198,11 @@ class TableReader {
       loaded.warnings.push_back(fmt::format("no column names: read as {}", fmt::join(names_, " ")));
     }
     return loaded;
+  }
+
+  TextKind kind() const {
+    if (extension_of(path_) != ".pts") return TextKind::kAny;
+    return promised_ ? TextKind::kCountedPts : TextKind::kPts;
   }
 
   const std::filesystem::path& path_;

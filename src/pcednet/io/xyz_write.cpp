@@ -21,9 +21,39 @@ bool normals_show(const PointCloud& part) {
   return true;
 }
 
+bool is_intensity(std::string_view name) {
+  return lower_case(name) == "intensity";
+}
+
+bool has_intensity(const PointCloud& cloud) {
+  return std::any_of(cloud.attributes.begin(), cloud.attributes.end(), [](const Attribute& one) {
+    return one.components == 1 && is_intensity(one.name);
+  });
+}
+
+/// The columns of columns_of(), for a .pts in its order: x y z intensity red green blue, then the
+/// others.
+std::vector<ColumnView> text_columns(const std::string& extension, const PointCloud& cloud) {
+  std::vector<ColumnView> columns = columns_of(cloud, {});
+  if (extension != ".pts") return columns;
+  const auto first = columns.begin() + 3;
+  const auto intensity = std::find_if(
+      first, columns.end(), [](const ColumnView& column) { return is_intensity(column.name); });
+  if (intensity != columns.end()) std::rotate(first, intensity, intensity + 1);
+  if (cloud.has_normals() && !cloud.colours.empty()) {
+    const auto normals = first + (intensity == columns.end() ? 0 : 1);
+    std::rotate(normals, normals + 3, normals + 6);
+  }
+  return columns;
+}
+
 /// Whether the columns need no names: see create_xyz_parts().
 bool is_plain(const std::string& extension, const PartOutline& outline) {
   const PointCloud& cloud = *outline.first;
+  if (extension == ".pts") {
+    const std::size_t usual = 3 + (cloud.colours.empty() ? 0 : 3) + (has_intensity(cloud) ? 1 : 0);
+    return columns_of(cloud, {}).size() == usual;
+  }
   const bool more = !cloud.colours.empty() || cloud.has_labels() || !cloud.attributes.empty();
   if (extension == ".csv" || more || cloud.empty()) return false;
   if (!cloud.has_normals()) return true;
@@ -65,19 +95,17 @@ class XyzPartWriter : public PartWriter {
                 const WriteOptions& options)
       : path_(path),
         separator_(extension_of(path) == ".csv" ? ',' : ' '),
-        columns_(columns_of(*outline.first, {})),
+        extension_(extension_of(path)),
+        columns_(text_columns(extension_, *outline.first)),
         file_(path, options.overwrite) {
-    const std::string extension = extension_of(path);
-    const bool plain = is_plain(extension, outline);
-    losses = losses_of(extension, *outline.first, plain);
-    if (!plain) {
-      file_.write(header_of(extension, *outline.first, columns_));
-    }
-    if (extension == ".pts") file_.write(fmt::format("{}\n", outline.points));
+    const bool plain = is_plain(extension_, outline);
+    losses = losses_of(extension_, *outline.first, plain);
+    if (extension_ == ".pts") file_.write(fmt::format("{}\n", outline.points));
+    if (!plain) file_.write(header_of(extension_, *outline.first, columns_));
   }
 
   void append(const PointCloud& part) override {
-    const auto columns = columns_of(part, {});
+    const auto columns = text_columns(extension_, part);
     check_same_columns(path_, columns_, columns);
     write_blocks(file_, part.size(), [&](std::size_t begin, std::size_t end, std::string& out) {
       append_text(columns, begin, end, separator_, out);
@@ -89,6 +117,7 @@ class XyzPartWriter : public PartWriter {
  private:
   std::filesystem::path path_;
   char separator_;
+  std::string extension_;
   std::vector<ColumnView> columns_;
   OutputFile file_;
 };
