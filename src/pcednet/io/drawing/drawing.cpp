@@ -93,11 +93,11 @@ void write_drawing(const std::filesystem::path& path, Curves curves,
 std::vector<std::string> drawing_losses(const std::filesystem::path& path,
                                         const DrawingOptions& options) {
   const bool is_geojson = drawing_format_for(path).write == write_geojson;
-  if (!is_geojson || options.coordinate_system.epsg > 0) return {};
+  const CoordinateSystem& system = options.coordinate_system;
+  if (!is_geojson || system.epsg > 0 || system.geographic) return {};
   return {
-      "the coordinate system, which has no known EPSG code: readers that are not told otherwise "
-      "take "
-      "the coordinates for degrees of WGS 84"};
+      "that its coordinates are no degrees of WGS 84, for which readers take them without an EPSG "
+      "code; GeoPackage does"};
 }
 
 std::vector<Vec3> drawn(const Curve& curve, const DrawingOptions& options) {

@@ -122,7 +122,7 @@ class LayoutBuilder {
   bool add_source(const LasField& field) {
     const auto source = choices_.sources.attributes.find(field.name);
     if (source == choices_.sources.attributes.end()) return false;
-    const Attribute* attribute = find_attribute(cloud_, source->second);
+    const Attribute* attribute = las_source(cloud_, choices_.sources, field.name, field.type);
     if (!attribute) return false;
     used_.insert(attribute);
     const bool is_degrees =

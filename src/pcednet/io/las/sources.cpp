@@ -49,15 +49,25 @@ std::optional<WholeRange> range_of(const LasField& field) {
   return visit_scalar(field.type, [](auto zero) { return range_of_type<decltype(zero)>(); });
 }
 
-/// The attribute of one number a point with that name: in its spelling, otherwise in other
-/// capitals.
-const Attribute* find_named(const PointCloud& cloud, const std::string& name,
-                            const std::set<std::string>& own) {
+/// The attribute of one number a point with that name; where names repeat, of that type if one is.
+const Attribute* find_single(const PointCloud& cloud, const std::string& name, ScalarType type) {
   const Attribute* found = nullptr;
   for (const Attribute& attribute : cloud.attributes) {
-    if (attribute.components != 1 || own.count(attribute.name) != 0) continue;
-    if (attribute.name == name) return &attribute;
-    if (!found && lower_case(attribute.name) == lower_case(name)) found = &attribute;
+    if (attribute.components != 1 || attribute.name != name) continue;
+    if (!found || (found->type != type && attribute.type == type)) found = &attribute;
+  }
+  return found;
+}
+
+/// The same for a field, otherwise with its name in other capitals; `own`: names that are none.
+const Attribute* find_named(const PointCloud& cloud, const std::string& name, ScalarType type,
+                            const std::set<std::string>& own) {
+  const Attribute* found = own.count(name) == 0 ? find_single(cloud, name, type) : nullptr;
+  for (std::size_t a = 0; !found && a < cloud.attributes.size(); ++a) {
+    const Attribute& attribute = cloud.attributes[a];
+    const bool is_similar = attribute.components == 1 && own.count(attribute.name) == 0 &&
+                            lower_case(attribute.name) == lower_case(name);
+    if (is_similar) found = find_single(cloud, attribute.name, type);
   }
   return found;
 }
@@ -71,9 +81,9 @@ std::vector<Candidate> candidates_of(const LasFile& file, bool is_new, const Poi
   std::vector<Candidate> candidates;
   for (const LasField& field : fields) {
     Candidate candidate{.field = field, .range = range_of(field)};
-    const Attribute* found = find_named(first, field.name, own);
+    const Attribute* found = find_named(first, field.name, field.type, own);
     if (!found && field.name == "ScanAngle") {  // in whole degrees
-      found = find_named(first, "ScanAngleRank", own);
+      found = find_named(first, "ScanAngleRank", field.type, own);
       candidate.range = range_of_type<std::int8_t>();
     }
     if (!found || (field.type == ScalarType::kFloat32 && found->type != field.type)) continue;
@@ -86,7 +96,7 @@ std::vector<Candidate> candidates_of(const LasFile& file, bool is_new, const Poi
 }
 
 void look_for_misfits(const PointCloud& part, Candidate& candidate) {
-  const Attribute* attribute = find_attribute(part, candidate.attribute);
+  const Attribute* attribute = find_single(part, candidate.attribute, candidate.field.type);
   if (!attribute) return;
   for (std::size_t i = 0; i < part.size(); ++i) {
     const double value = attribute->value(i);
@@ -134,10 +144,10 @@ const Attribute* las_source(const PointCloud& cloud, const LasSources& sources,
                             const std::string& field, ScalarType type) {
   if (sources.unfit.count(field) != 0) return nullptr;
   if (const auto source = sources.attributes.find(field); source != sources.attributes.end()) {
-    return find_attribute(cloud, source->second);
+    return find_single(cloud, source->second, type);
   }
-  const Attribute* attribute = find_attribute(cloud, field);
-  return attribute && attribute->type == type && attribute->components == 1 ? attribute : nullptr;
+  const Attribute* attribute = find_single(cloud, field, type);
+  return attribute && attribute->type == type ? attribute : nullptr;
 }
 
 std::array<const Attribute*, 3> las_channels(const PointCloud& cloud, const LasSources& sources) {
