@@ -93,6 +93,14 @@ void drop_results(std::vector<Job>& jobs) {
 
 }  // namespace
 
+std::vector<fs::path> without_results(const std::vector<fs::path>& inputs) {
+  std::vector<Job> jobs = jobs_for(inputs, {});
+  drop_results(jobs);
+  std::vector<fs::path> rest;
+  for (Job& job : jobs) rest.push_back(std::move(job.input));
+  return rest;
+}
+
 ResultPlan plan_results(const Inputs& inputs, const ResultArguments& arguments,
                         const Common& common) {
   if (!arguments.output.empty() && (inputs.count() > 1 || !arguments.folder.empty())) {

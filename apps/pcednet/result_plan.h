@@ -30,6 +30,10 @@ struct ResultPlan {
   std::size_t skipped = 0;
 };
 
+/// The inputs but for those that classify wrote beside others of them, for work that needs labels.
+std::vector<std::filesystem::path> without_results(
+    const std::vector<std::filesystem::path>& inputs);
+
 /// Plans the results of `inputs`, before any work: LAS for LAS and LAZ, PLY for everything else.
 /// Inputs that are results of others, those of an earlier run on the same folder, are left out.
 /// The folder must exist. Throws Error(kUsage) if results exist that may not be replaced, if two

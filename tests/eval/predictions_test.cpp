@@ -78,13 +78,14 @@ TEST_F(Predicted, PointsWithoutLabelsAreOnEdges) {
 }
 
 TEST_F(Predicted, AreFoundByTheStemOfTheCloud) {
-  EXPECT_TRUE(find_predictions(folder_, "a").empty());
+  const fs::path cloud = write("a.ply", "ply\n");
+  EXPECT_TRUE(find_predictions(folder_, "a", cloud).empty());
   write("a_output.xyz", "");
-  EXPECT_EQ(find_predictions(folder_, "a"), folder_ / "a_output.xyz");
+  EXPECT_EQ(find_predictions(folder_, "a", cloud), folder_ / "a_output.xyz");
   write("a_edges.laz", "LASF");
-  EXPECT_EQ(find_predictions(folder_, "a"), folder_ / "a_edges.laz");
+  EXPECT_EQ(find_predictions(folder_, "a", cloud), folder_ / "a_edges.laz");
   write("a.npy", "");
-  EXPECT_EQ(find_predictions(folder_, "a"), folder_ / "a.npy");
+  EXPECT_EQ(find_predictions(folder_, "a", cloud), folder_ / "a.npy");
 }
 
 }  // namespace

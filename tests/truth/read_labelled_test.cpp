@@ -56,6 +56,31 @@ TEST(AbcFeatures, AreFoundWhereTheDataSetHasThem) {
   }
 }
 
+/// Three points with a label and other columns, as a result of a classification.
+std::string result(const std::string& columns, const std::string& rows) {
+  return "ply\nformat ascii 1.0\ncomment pcednet model general\nelement vertex 3\nproperty float "
+         "x\n"
+         "property float y\nproperty float z\nproperty uchar label\n" +
+         columns + "end_header\n" + rows;
+}
+
+TEST(ReadLabelled, TakesNoResultForATruth) {
+  const Scratch scratch;
+  const auto read = [&](const std::string& columns, const std::string& rows) {
+    return read_labelled(scratch.file("a.ply", result(columns, rows)));
+  };
+  const std::string input = "property uchar scalar_input_label\n";
+  const LoadedCloud given = read(input, "0 0 0 2 1\n1 0 0 2 0\n0 1 0 0 255\n");
+  EXPECT_EQ(given.cloud.labels, (Labels{1, 0, 255}));
+  EXPECT_TRUE(contains(given.warnings.back(), "scalar_input_label"));
+  const LoadedCloud painted = read(input + "property uchar scalar_painted_label\n",
+                                   "0 0 0 2 1 255\n1 0 0 2 0 2\n0 1 0 0 255 0\n");
+  EXPECT_EQ(painted.cloud.labels, (Labels{255, 2, 0}));
+  const LoadedCloud neither = read("", "0 0 0 2\n1 0 0 2\n0 1 0 0\n");
+  EXPECT_EQ(neither.cloud.labels, (Labels{2, 2, 0}));
+  EXPECT_TRUE(contains(neither.warnings.back(), "no truth"));
+}
+
 TEST(AbcFeatures, RefuseWhatTheyCannotBe) {
   const Scratch scratch;
   const auto message = [&](const std::string& text) -> std::string {

@@ -17,6 +17,7 @@
 #include "pcednet/eval/report.h"
 #include "pcednet/formats/format.h"
 #include "prepare.h"
+#include "result_plan.h"
 #include "workbench/truth/read_labelled.h"
 
 namespace pcednet::app {
@@ -136,7 +137,7 @@ PointCloud read_truth(const fs::path& input, const Way& way, const Results& resu
 /// a method predicts.
 std::optional<fs::path> find_prediction(const fs::path& input, const std::string& folder) {
   if (folder.empty()) return fs::path();
-  fs::path found = eval::find_predictions(folder, formats::stem_of(input));
+  fs::path found = eval::find_predictions(folder, formats::stem_of(input), input);
   if (!found.empty()) return found;
   warn(fmt::format("{}: no prediction in {}: left out", input.string(), folder));
   return std::nullopt;
@@ -153,7 +154,7 @@ Results score_all(const EvaluateArguments& arguments, const Common& common) {
   Results results;
   if (model) results.classes.table = model->table;
   std::optional<Error> unlabelled;  // the first
-  const auto inputs = expand_inputs(arguments.inputs);
+  const auto inputs = without_results(expand_inputs(arguments.inputs));
   for (const fs::path& input : inputs) {
     const auto prediction = find_prediction(input, arguments.predictions);
     if (!prediction) continue;

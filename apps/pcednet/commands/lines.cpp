@@ -283,6 +283,7 @@ void run(LinesArguments arguments, const Common& common) {
   arguments.drawing.tolerance = arguments.lines.tolerance;
   arguments.drawing.coordinate_system = io::las_coordinate_system(cloud);
   for (const std::string& output : arguments.outputs) {
+    warn_of_losses(output, io::drawing_losses(output, arguments.drawing));
     io::write_drawing(output, curves, arguments.drawing);
   }
   if (!arguments.preview.path.empty()) {

@@ -18,6 +18,7 @@
 #include "models.h"
 #include "number_options.h"
 #include "pcednet/core/error.h"
+#include "result_plan.h"
 #include "workbench/shapes/default_set.h"
 #include "workbench/study/study_file.h"
 #include "workbench/truth/read_labelled.h"
@@ -56,7 +57,7 @@ std::pair<std::string, std::string> named(const std::string& argument, const cha
 study::CloudSet read_set(const std::string& name, const std::vector<std::string>& inputs) {
   study::CloudSet set{.name = name};
   std::set<std::string> names;
-  for (const fs::path& file : expand_inputs(inputs)) {
+  for (const fs::path& file : without_results(expand_inputs(inputs))) {
     auto loaded = truth::read_labelled(file);
     for (const std::string& warning : loaded.warnings) warn(file.string() + ": " + warning);
     const std::string stem = file.stem().string();

@@ -12,6 +12,7 @@
 #include "pcednet/core/error.h"
 #include "pcednet/detect/train.h"
 #include "prepare.h"
+#include "result_plan.h"
 #include "stage_clock.h"
 #include "workbench/annotate/learn.h"
 #include "workbench/truth/read_labelled.h"
@@ -139,7 +140,7 @@ void check_has_smooth(const std::vector<detect::TrainingCloud>& clouds,
 detect::TrainedModel train_clouds(const TrainArguments& arguments, const Common& common,
                                   const Progress& progress) {
   auto options = options_of(arguments);
-  const auto inputs = expand_inputs(arguments.inputs);
+  const auto inputs = without_results(expand_inputs(arguments.inputs));
   std::optional<detect::CloudKind> only;
   if (!arguments.only.empty()) only = take_kind("--only", arguments.only);
   std::vector<io::LoadedCloud> loaded;

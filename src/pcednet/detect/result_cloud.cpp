@@ -28,7 +28,7 @@ void replace_comments(PointCloud& cloud, bool estimated_normals, const EdgeModel
   std::erase_if(cloud.comments,
                 [](const std::string& comment) { return comment.starts_with("pcednet "); });
   cloud.comments.push_back(fmt::format("pcednet {}", kVersion));
-  cloud.comments.push_back(fmt::format("pcednet model {}", model.name));
+  cloud.comments.push_back(fmt::format("{}{}", kModelComment, model.name));
   cloud.comments.push_back(fmt::format("pcednet seed {}", model.seed));
   if (result.s_max > 0.0) {
     cloud.comments.push_back(

@@ -4,6 +4,9 @@
 
 namespace pcednet::detect {
 
+/// Begins the comment of a result that names its model.
+inline constexpr std::string_view kModelComment = "pcednet model ";
+
 struct ResultOptions {
   bool class_colours = false;  ///< colour by class even if the cloud has colours
 };

@@ -90,13 +90,14 @@ std::vector<std::uint8_t> nearest_to_edge_points(std::span<const Vec3> positions
 
 }  // namespace
 
-fs::path find_predictions(const fs::path& folder, const std::string& stem) {
+fs::path find_predictions(const fs::path& folder, const std::string& stem, const fs::path& cloud) {
   const auto extensions = extensions_of_predictions();
   for (const char* suffix : {"", "_edges", "_output"}) {
     for (const std::string_view extension : extensions) {
       fs::path file = folder / fmt::format("{}{}{}", stem, suffix, extension);
       std::error_code error;
-      if (fs::is_regular_file(file, error)) return file;
+      if (!fs::is_regular_file(file, error)) continue;
+      if (!fs::equivalent(file, cloud, error)) return file;
     }
   }
   return {};

@@ -11,7 +11,7 @@ eval::Predictions external_classes(const ExternalMethod& method, const std::stri
   if (const std::size_t place = folder.find(kSet); place != std::string::npos) {
     folder.replace(place, kSet.size(), set);
   }
-  const std::filesystem::path file = eval::find_predictions(folder, cloud.name);
+  const std::filesystem::path file = eval::find_predictions(folder, cloud.name, cloud.file);
   if (file.empty()) return {};
   auto predictions = eval::read_predictions(file, cloud.cloud.positions);
   if (!predictions.note.empty()) {
