@@ -84,7 +84,7 @@ class AnnotateClouds(AnnotateTest):
         model = pathlib.Path(server.post("/api/save", {"what": "model"})["path"])
         server.post("/api/save", {"what": "project"})
         server.post("/api/lines/find", {"cloud": 1})
-        lines = server.until("/api/lines", lambda lines: lines["version"] == 1)
+        lines = server.until("/api/lines?cloud=1", lambda lines: lines["version"] == 1)
         self.assertEqual(lines["cloud"], 1)
         self.assertEqual(server.end()[0], 0)
 
@@ -109,6 +109,34 @@ class AnnotateClouds(AnnotateTest):
         shutil.rmtree(self.other.parent)
         run("train", "--project", self.project, self.cloud, moved, "-o", again, "--overwrite")
         self.assertEqual(again.read_bytes(), model.read_bytes())
+
+    def test_keeps_the_lines_of_each(self):
+        server = self.quiet_both()
+        server.post("/api/lines/find", {"cloud": 2}, expect=404)
+        self.paint_both(server)
+        self.train(server, 1)
+        for cloud in (0, 1):
+            server.post("/api/lines/find", {"cloud": cloud})  # both, one after the other
+        found = [server.until(f"/api/lines?cloud={k}",
+                              lambda lines: lines["version"] == 1 and not lines["searching"])
+                 for k in (0, 1)]
+        self.assertTrue(all(f["lines"] for f in found))
+        for cloud, decision in ((0, "accepted"), (1, "rejected")):
+            server.post("/api/lines/decide", {"cloud": cloud, "version": 1, "decision": decision,
+                                              "lines": [0]})
+        self.assertEqual(server.request("/api/download/lines?cloud=1")[0], 409)
+        self.assertEqual(server.request("/api/download/lines")[0], 200)
+        server.post("/api/lines/find", {"cloud": 1})
+        again = server.until("/api/lines?cloud=1", lambda lines: lines["version"] == 2)
+        self.assertEqual({line["decision"] for line in again["lines"]}, {"open"})
+        first = server.get("/api/lines")
+        self.assertEqual(first["version"], 1)
+        self.assertEqual([line["decision"] for line in first["lines"]],
+                         ["accepted"] + ["open"] * (len(first["lines"]) - 1))
+        server.post("/api/lines/decide", {"cloud": 1, "version": 2, "decision": "accepted",
+                                          "lines": [0]})
+        path = pathlib.Path(server.post("/api/save", {"what": "lines", "cloud": 1})["path"])
+        self.assertEqual(path, self.other.parent / "hall_lines.dxf")
 
     def test_survives_being_killed_and_opens_all_again_by_the_first(self):
         server = self.quiet_both()

@@ -289,6 +289,25 @@ class AnnotateSession(AnnotateTest):
         server.post("/api/cancel")
         self.assertFalse(server.get("/api/lines")["searching"])
 
+    def test_tells_whether_strokes_are_newer_than_the_run(self):
+        server = self.quiet()
+        is_old = lambda: server.get("/api/session")["out_of_date"]
+        self.paint_edge_and_face(server)
+        self.assertFalse(is_old())  # there is no run
+        self.train(server, 1)
+        self.assertFalse(is_old())
+        server.post("/api/stroke", brush("more", 2, [(-0.5, -0.5, 0)], radius=0.05))
+        self.assertTrue(is_old())
+        self.train(server, 2)
+        self.assertFalse(is_old())
+        server.post("/api/undo")
+        self.assertTrue(is_old())
+        server.kill()
+        server = self.serve()
+        server.open()
+        server.until("/api/session", lambda s: s["prediction_version"] > 0)
+        self.assertTrue(is_old())
+
     def test_tells_of_what_happens(self):
         server = self.quiet()
         stream = http.client.HTTPConnection("127.0.0.1", server.port, timeout=20)

@@ -129,6 +129,7 @@ Json json_of(const Predicted& predicted) {
   return {{"prediction_version", predicted.prediction_version},
           {"run", predicted.run},
           {"counts", predicted.counts},
+          {"out_of_date", predicted.is_out_of_date},
           {"seconds_train", optional_number(predicted.facts.seconds_train)},
           {"seconds_classify", optional_number(predicted.facts.seconds_classify)}};
 }
@@ -138,11 +139,13 @@ Json json_of(const Judged& judged) {
 }
 
 Json json_of(const LinesChanged& changed) {
-  return {{"version", changed.version}, {"searching", changed.is_searching}};
+  return {
+      {"cloud", changed.cloud}, {"version", changed.version}, {"searching", changed.is_searching}};
 }
 
 Json json_of(const LinesDecided& decided) {
-  return {{"version", decided.version},
+  return {{"cloud", decided.cloud},
+          {"version", decided.version},
           {"decision", decision_name(decided.decision)},
           {"lines", decided.lines}};
 }
@@ -295,6 +298,7 @@ std::string to_json(const Summary& summary, Asking window) {
                {"undo", summary.undo},
                {"redo", summary.redo},
                {"run", summary.run ? json_of(*summary.run) : Json()},
+               {"out_of_date", summary.is_out_of_date},
                {"writer", window.is_writer},
                {"known", window.is_open},
                {"prediction_version", summary.prediction_version},

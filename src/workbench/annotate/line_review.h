@@ -12,11 +12,10 @@ namespace pcednet::annotate {
 /// The user's decision on a line.
 enum class Decision : std::uint8_t { kOpen, kAccepted, kRejected };
 
-/// The lines that were found last, and the decisions on them.
+/// The lines that were found last in a cloud, and the decisions on them.
 struct LineReview {
   int version = 0;             ///< number of searches for lines
   int prediction_version = 0;  ///< of the prediction that they were found in
-  std::size_t cloud = 0;       ///< and of which cloud
   bool is_searching = false;
   std::shared_ptr<const std::vector<lines::Curve>> curves = {};  ///< null before the first time
   std::vector<Decision> decisions = {};                          ///< one per curve
@@ -27,6 +26,7 @@ struct LinesDecided {
   int version = 0;
   Decision decision = Decision::kOpen;
   std::vector<std::uint32_t> lines = {};  ///< numbers from 0
+  std::size_t cloud = 0;                  ///< that they are in
 };
 
 /// Throws Error(kInsufficient) if new lines were found since, NotFound for a line that does not

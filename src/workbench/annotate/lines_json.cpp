@@ -56,7 +56,7 @@ std::string to_json(const LinesView& view) {
                {"prediction_version", review.prediction_version},
                {"searching", review.is_searching},
                {"lines", Json::array()}};
-  if (review.cloud > 0) json["cloud"] = review.cloud;
+  if (view.cloud > 0) json["cloud"] = view.cloud;
   for (std::size_t i = 0; i < review.decisions.size(); ++i) {
     json["lines"].push_back(line_of((*review.curves)[i], review.decisions[i], *view.scene));
   }
@@ -68,7 +68,8 @@ LinesDecided parse_decision(std::string_view text) {
     const Json json = Json::parse(text);
     return {.version = json.at("version").get<int>(),
             .decision = decision_of(json.at("decision").get<std::string>()),
-            .lines = json.at("lines").get<std::vector<std::uint32_t>>()};
+            .lines = json.at("lines").get<std::vector<std::uint32_t>>(),
+            .cloud = parse_cloud(text)};
   } catch (const Json::exception& error) {
     throw Error(ErrorKind::kUsage, fmt::format("decide: {}", error.what()));
   }

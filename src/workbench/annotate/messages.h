@@ -54,6 +54,7 @@ struct Summary {
   std::vector<std::string> starts = {};  ///< that settings may name
   std::vector<double> scales = {};       ///< of the description, as lengths; none while loading
   std::optional<RunView> run = {};       ///< the current one
+  bool is_out_of_date = false;           ///< see Predicted
   int prediction_version = 0, labels_version = 0;
 };
 
@@ -75,9 +76,10 @@ struct PointView {
   double distance = 0;                ///< from the eye
 };
 
-/// The lines and the scene that they are in.
+/// The lines of a cloud and the scene that they are in.
 struct LinesView {
   LineReview review = {};
+  std::size_t cloud = 0;
   std::shared_ptr<const Scene> scene = {};
 };
 
@@ -97,6 +99,7 @@ struct EpochDone {
 struct Predicted {
   int prediction_version = 0, run = 0;
   std::vector<std::size_t> counts = {};  ///< points by class
+  bool is_out_of_date = false;           ///< strokes are newer than the run
   RunFacts facts = {};
 };
 struct Judged {
@@ -108,6 +111,7 @@ struct ClassesChanged {
   Counts counts = {};
 };
 struct LinesChanged {
+  std::size_t cloud = 0;
   int version = 0;
   bool is_searching = false;
 };

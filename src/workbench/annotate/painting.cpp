@@ -76,4 +76,14 @@ bool Painting::is_trained() const {
          (last->kind == Record::Kind::kRun || last->kind == Record::Kind::kRestore);
 }
 
+bool Painting::is_painted_after(std::size_t records) const {
+  const auto first = std::min(records, records_.size());
+  return std::any_of(records_.begin() + static_cast<std::ptrdiff_t>(first), records_.end(),
+                     [](const Record& record) {
+                       return record.kind == Record::Kind::kStroke ||
+                              record.kind == Record::Kind::kUndo ||
+                              record.kind == Record::Kind::kRedo;
+                     });
+}
+
 }  // namespace pcednet::annotate

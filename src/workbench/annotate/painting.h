@@ -44,6 +44,9 @@ class Painting {
   /// Whether nothing has changed since the shown run.
   bool is_trained() const;
 
+  /// Whether a stroke, undo or redo follows the first `records` records.
+  bool is_painted_after(std::size_t records) const;
+
  private:
   std::unique_ptr<Journal> journal_;
   std::vector<Record> records_;

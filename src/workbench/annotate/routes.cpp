@@ -152,12 +152,12 @@ std::string wanted_name(const Call& call, const std::filesystem::path& usual) {
 }
 
 Response get_lines(const Call& call) {
-  return json_response(to_json(call.session.lines()));
+  return json_response(to_json(call.session.lines(cloud_of(call))));
 }
 
 Response get_download(const Call& call) {
   const Saved what = saved_of(call.name);
-  const std::size_t cloud = what == Saved::kLines ? call.session.cloud_of_lines() : cloud_of(call);
+  const std::size_t cloud = cloud_of(call);
   const auto usual = call.session.target(what, {}, cloud);
   const auto target = call.session.target(what, wanted_name(call, usual), cloud);
   std::string folder =
@@ -239,9 +239,8 @@ Response restore(const Call& call) {
 }
 
 Response save(const Call& call) {
-  SaveRequest wanted = parse_save(call.request.body);
+  const SaveRequest wanted = parse_save(call.request.body);
   const Saved what = saved_of(wanted.what);
-  if (what == Saved::kLines) wanted.cloud = call.session.cloud_of_lines();
   const auto path = call.session.target(what, wanted.name, wanted.cloud);
   const bool overwrite = wanted.overwrite || call.session.options().overwrite;
   std::error_code error;

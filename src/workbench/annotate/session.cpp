@@ -92,9 +92,9 @@ void Session::State::interrupt() {
   orders.train_at.reset();
   orders.restore.reset();
   orders.asked_for = false;
-  orders.find_lines.reset();
+  orders.find_lines.clear();
   orders.judge = false;
-  set_searching(false);
+  for (std::size_t cloud = 0; cloud < reviews.size(); ++cloud) set_searching(cloud, false);
   runs.stop_awaiting();
   changed.notify_all();
 }
@@ -269,10 +269,9 @@ std::uintmax_t Session::save(Saved what, const fs::path& path, Overwrite overwri
     return fs::file_size(path);
   }
   if (what == Saved::kLines) {
-    const auto accepted = accepted_curves(s.review);
-    const auto of_lines = s.scenes[s.review.cloud];
+    const auto accepted = accepted_curves(s.reviews[cloud]);
     lock.unlock();
-    write_lines(path, accepted, of_lines->cloud, overwrite);
+    write_lines(path, accepted, scene->cloud, overwrite);
     return fs::file_size(path);
   }
   const auto prediction = s.runs.settled_prediction(cloud);

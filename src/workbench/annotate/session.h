@@ -76,7 +76,7 @@ class Session {
   std::vector<RunView> runs() const;
   void restore(int run);
 
-  LinesView lines() const;
+  LinesView lines(std::size_t cloud = 0) const;
   /// Finds the lines in the present prediction of a cloud, on the session's thread.
   void find_lines(std::size_t cloud = 0);
   /// Throws as annotate::decide() does.
@@ -93,9 +93,6 @@ class Session {
   /// Writes `what` to `path` and returns the bytes written; of several clouds, the one of `cloud`.
   std::uintmax_t save(Saved what, const std::filesystem::path& path, Overwrite overwrite,
                       std::size_t cloud = 0) const;
-
-  /// The cloud of the lines found last.
-  std::size_t cloud_of_lines() const;
 
   const SessionOptions& options() const;
 

@@ -6,15 +6,10 @@ namespace pcednet::annotate {
 
 using Lock = std::unique_lock<std::mutex>;
 
-LinesView Session::lines() const {
+LinesView Session::lines(std::size_t cloud) const {
   const Lock lock(state_->mutex);
-  state_->check_ready();
-  return {state_->review, state_->scenes[state_->review.cloud]};
-}
-
-std::size_t Session::cloud_of_lines() const {
-  const Lock lock(state_->mutex);
-  return state_->review.cloud;
+  state_->check_cloud(cloud);
+  return {state_->reviews[cloud], cloud, state_->scenes[cloud]};
 }
 
 void Session::find_lines(std::size_t cloud) {
@@ -28,22 +23,23 @@ void Session::find_lines(std::size_t cloud) {
     throw Error(ErrorKind::kInsufficient,
                 "lines are of edges, which this project's classes are not");
   }
-  s.orders.find_lines = cloud;
-  s.set_searching(true);
+  s.orders.find_lines.insert(cloud);
+  s.set_searching(cloud, true);
   s.changed.notify_all();
 }
 
 void Session::decide(const LinesDecided& wanted) {
   const Lock lock(state_->mutex);
-  state_->check_ready();
-  annotate::decide(state_->review, wanted);
+  state_->check_cloud(wanted.cloud);
+  annotate::decide(state_->reviews[wanted.cloud], wanted);
   state_->emit(wanted);
 }
 
-void Session::State::set_searching(bool on) {
+void Session::State::set_searching(std::size_t cloud, bool on) {
+  LineReview& review = reviews[cloud];
   if (review.is_searching == on) return;
   review.is_searching = on;
-  emit(LinesChanged{.version = review.version, .is_searching = on});
+  emit(LinesChanged{.cloud = cloud, .version = review.version, .is_searching = on});
 }
 
 void Session::State::find_lines_once(std::size_t cloud, std::uint64_t mine) {
@@ -71,15 +67,15 @@ void Session::State::find_lines_once(std::size_t cloud, std::uint64_t mine) {
                           {}, &reporter));
     const Lock lock(mutex);
     if (orders.generation != mine || orders.stopping) return;
+    LineReview& review = reviews[cloud];
     review.decisions.assign(curves->size(), Decision::kOpen);
     review.curves = std::move(curves);
     review.prediction_version = version;
-    review.cloud = cloud;
     ++review.version;
-    set_searching(false);
+    set_searching(cloud, orders.find_lines.contains(cloud));
   } catch (...) {
     const Lock lock(mutex);
-    if (orders.generation == mine) set_searching(false);
+    if (orders.generation == mine) set_searching(cloud, false);
     throw;
   }
 }

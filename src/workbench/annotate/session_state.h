@@ -5,6 +5,7 @@
 #include <exception>
 #include <map>
 #include <mutex>
+#include <set>
 #include <thread>
 
 #include "workbench/annotate/painting.h"
@@ -24,10 +25,10 @@ struct Loading {
 /// The orders for the worker. Work begun under an older generation is void.
 struct Orders {
   std::optional<std::chrono::steady_clock::time_point> train_at = {};
-  bool asked_for = false;                      ///< by the user: failure is an error
-  std::optional<std::size_t> find_lines = {};  ///< in a cloud, when nothing else is to be done
-  bool judge = false;                          ///< the shown run, after everything else
-  std::optional<int> restore = {};             ///< a run
+  bool asked_for = false;                 ///< by the user: failure is an error
+  std::set<std::size_t> find_lines = {};  ///< in these clouds, when nothing else is to be done
+  bool judge = false;                     ///< the shown run, after everything else
+  std::optional<int> restore = {};        ///< a run
   std::uint64_t generation = 0;
   bool stopping = false;
 };
@@ -67,7 +68,7 @@ struct Session::State {
 
   Runs runs = {};
   mutable UncertainRanking uncertain = {};
-  LineReview review = {};
+  std::vector<LineReview> reviews = {};  ///< one per cloud
 
   void emit(const Event& event) const;
   Progress progress(std::uint64_t of_generation);
@@ -105,7 +106,8 @@ struct Session::State {
   void check_ready() const;
   void check_cloud(std::size_t cloud) const;
   void show(Run run);
-  void set_searching(bool on);
+  bool is_out_of_date() const;
+  void set_searching(std::size_t cloud, bool on);
   Painted answer_to(std::span<const std::uint32_t> points);
   Painted standing() const;
   void interrupt();

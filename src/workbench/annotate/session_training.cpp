@@ -226,6 +226,7 @@ void Session::State::show(Run run) {
   orders.judge = run.record.number > 0 && !run.held_out;
   runs.show(std::move(run));
   predicted.prediction_version = runs.version();
+  predicted.is_out_of_date = is_out_of_date();
   emit(predicted);
 }
 

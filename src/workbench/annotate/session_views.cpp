@@ -39,9 +39,18 @@ Summary Session::summary(std::size_t cloud) const {
   summary.redo = s.painting->labels().redo_steps();
   summary.settings = s.painting->settings();
   summary.run = s.runs.shown_view();
+  summary.is_out_of_date = s.is_out_of_date();
   summary.prediction_version = s.runs.version();
   summary.labels_version = s.labels_version;
   return summary;
+}
+
+/// Whether strokes, or steps back, are newer than the shown run.
+bool Session::State::is_out_of_date() const {
+  const Run* run = runs.shown();
+  if (!run) return false;
+  if (run->record.number == 0) return painting->labels().painted() > 0;
+  return painting->is_painted_after(run->record.records);
 }
 
 std::vector<RunView> Session::runs() const {

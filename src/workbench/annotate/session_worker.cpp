@@ -76,15 +76,16 @@ std::function<void()> Session::State::next_work() {
     orders.train_at.reset();
     return [this, mine] { train_once(mine); };
   }
-  if (const auto cloud = std::exchange(orders.find_lines, {})) {
-    return [this, mine, which = *cloud] { find_lines_once(which, mine); };
+  if (!orders.find_lines.empty()) {
+    const std::size_t cloud = orders.find_lines.extract(orders.find_lines.begin()).value();
+    return [this, mine, cloud] { find_lines_once(cloud, mine); };
   }
   orders.judge = false;
   return [this, mine] { judge_once(mine); };
 }
 
 void Session::State::wait_for_orders(std::unique_lock<std::mutex>& lock) {
-  while (!orders.stopping && !orders.restore && !orders.find_lines && !orders.judge &&
+  while (!orders.stopping && !orders.restore && orders.find_lines.empty() && !orders.judge &&
          !is_training_due()) {
     if (orders.train_at) {
       const auto until = *orders.train_at;  // may change while waiting
@@ -115,6 +116,7 @@ void Session::State::load() {
   {
     const Lock lock(mutex);
     described = std::move(first);
+    reviews.resize(scenes.size());
     loading.is_done = true;
     loading.stage = "ready";
   }
