@@ -164,7 +164,7 @@ export function writeStudy(folder) {
     experiment: "scales",
     title: "Scales",
     question: "How many?",
-    command: "pcednet study scales -o study",
+    command: "pcednet study scales --quick --test abc=/data/a/folder/with/a/long/name -o study --predictions parts",
     x_label: "scales",
     variants: [4, 8, 16, 32, 64, 128].map((x) => ({
       id: `pcednet-${x}`,

@@ -99,6 +99,7 @@ before(async () => {
   ({ methods, scales } = writeStudy(folder));
   const made = pcednet(folder, "-o", report, "--clouds-per-set", "2", "--points", "950");
   assert.equal(made.code, 0, made.words);
+  assert.match(made.words, /: 2 studies, \d+ clouds to look at/);
   browser = await launch();
   page = await open();
 });
@@ -121,6 +122,12 @@ test("says what is wrong with a folder", () => {
   const again = pcednet(folder, "-o", report);
   assert.equal(again.code, 2);
   assert.match(again.words, /--overwrite/);
+});
+
+test("counts one study as one", () => {
+  const one = fs.mkdtempSync(path.join(folder, "one-"));
+  fs.copyFileSync(path.join(folder, "scales.json"), path.join(one, "scales.json"));
+  assert.match(pcednet(one, "-o", path.join(one, "page.html")).words, /: 1 study, 0 clouds to look at/);
 });
 
 test("replaces nothing that it reads", () => {
@@ -240,6 +247,20 @@ test("draws charts for each method and the sweep", async () => {
 test("shows names as text, and the command", async () => {
   assert.equal(await page.locator("#experiment-0 h2").textContent(), methods.title);
   assert.equal(await page.locator("#experiment-1 code").textContent(), scales.command);
+});
+
+test("is printed with its colours, the whole command, and no buttons that do nothing on paper", async () => {
+  await page.emulateMedia({ media: "print" });
+  await page.setViewportSize({ width: 400, height: 800 });
+  const seen = await page.evaluate(() => ({
+    swatch: getComputedStyle(document.querySelector(".swatch")).printColorAdjust,
+    wide: [...document.querySelectorAll(".command code")].filter((code) => code.scrollWidth > code.clientWidth).length,
+    buttons: [...document.querySelectorAll("nav, .controls, .chips, .copy")].filter((one) => one.checkVisibility())
+      .length,
+  }));
+  assert.deepEqual(seen, { swatch: "exact", wide: 0, buttons: 0 });
+  await page.setViewportSize({ width: 1280, height: 800 });
+  await page.emulateMedia({ media: null });
 });
 
 test("draws the clouds in the colours of their classes", async () => {

@@ -51,8 +51,10 @@ void make_report(const ReportArguments& arguments, const Common& common) {
   if (!arguments.json.empty()) {
     write_text_file(arguments.json, merged.json + "\n", common.overwrite());
   }
-  say(fmt::format("{}: {} studies, {} clouds to look at, {:.1f} MB", arguments.output,
-                  merged.studies, merged.scenes, static_cast<double>(filled.size()) / 1e6));
+  say(fmt::format("{}: {} {}, {} {} to look at, {:.1f} MB", arguments.output, merged.studies,
+                  merged.studies == 1 ? "study" : "studies", merged.scenes,
+                  merged.scenes == 1 ? "cloud" : "clouds",
+                  static_cast<double>(filled.size()) / 1e6));
 }
 
 }  // namespace
