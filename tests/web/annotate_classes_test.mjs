@@ -27,7 +27,7 @@ test("replaces the edge classes by own ones before the first stroke", async () =
   await names.nth(0).fill("face");
   await names.nth(1).fill("face");
   await dialog.getByRole("button", { name: "Use these classes" }).click();
-  await dialog.getByText("Face is there twice").waitFor();
+  await dialog.getByText('There are two classes "face".').waitFor();
   await names.nth(1).fill("ledge");
   await dialog.getByRole("button", { name: "Add a class" }).click();
   await names.nth(2).fill("corner");

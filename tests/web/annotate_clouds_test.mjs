@@ -88,6 +88,99 @@ test("takes a stroke in the other cloud back, and says where it was", async () =
   assert.ok((await state("clouds"))[1].painted > 0);
 });
 
+/** Looks at the next cloud, or with PageUp at the one before. */
+async function go(key, file) {
+  await page.keyboard.press(key);
+  await looksAt(file);
+  await settled();
+}
+
+/** The middle of the view, in pixels of the window. */
+async function middle() {
+  const { x, y, width, height } = await page.locator("canvas").first().boundingBox();
+  return [x + width / 2, y + height / 2];
+}
+
+test("keeps the view, the clipping box, the uncertain place and the lines of each", async () => {
+  await page.waitForFunction(() => !annotator.store.now.training?.active);
+  const look = () =>
+    page.evaluate(() => {
+      const { clip, uncertain, lines, line } = annotator.store.now;
+      const { matrix } = annotator.stage.camera.view;
+      return {
+        clip,
+        rank: uncertain?.rank,
+        decisions: lines.lines.map((one) => one.decision),
+        line,
+        matrix: [...matrix],
+      };
+    });
+  const find = async () => {
+    await page.getByRole("button", { name: "Find lines" }).click();
+    await page.waitForFunction(() => {
+      const { lines } = annotator.store.now;
+      return lines.version > 0 && !lines.searching;
+    });
+  };
+  await find();
+  for (const key of ["n", "n", "j", "a", "d", "c"]) {
+    await page.keyboard.press(key);
+    await page.waitForTimeout(100);
+  }
+  await page.waitForTimeout(500); // the flight
+  await page.keyboard.press("ArrowLeft");
+  await settled();
+  const barn = await look();
+  assert.deepEqual([barn.rank, barn.clip.on, barn.line], [2, true, 2]);
+  assert.deepEqual(barn.decisions.slice(0, 3), ["accepted", "rejected", "open"]);
+  await go("PageDown", "roof.ply");
+  const roof = await look();
+  assert.deepEqual([roof.rank, roof.clip, roof.line, roof.decisions], [undefined, null, null, []]);
+  await find();
+  await go("PageUp", "barn.ply");
+  assert.deepEqual(await look(), barn);
+  assert.equal(await page.locator(".mark").getAttribute("visibility"), "visible");
+  await page.keyboard.press("c");
+  await page.keyboard.press("f");
+});
+
+test("ends a stroke, and cancels an outline, before another cloud is shown", async () => {
+  await settled();
+  await page.evaluate(() => annotator.stage.fit("first"));
+  await settled();
+  const painted = async () => (await state("clouds")).map((cloud) => cloud.painted);
+  const before = await painted();
+  const [x, y] = await middle();
+  await page.keyboard.press("b");
+  await page.keyboard.press("3");
+  await page.mouse.move(x - 40, y);
+  await page.mouse.down();
+  await page.mouse.move(x - 10, y, { steps: 3 });
+  await go("PageDown", "roof.ply");
+  await page.mouse.move(x + 40, y, { steps: 3 });
+  await page.mouse.up();
+  await settled();
+  const after = await painted();
+  assert.equal(after[0], before[0], "nothing in the roof");
+  assert.ok(after[1] > before[1], "what was drawn in the barn");
+  assert.equal(await page.locator(".notice", { hasText: "That was in barn" }).count(), 0);
+  await page.keyboard.press("g");
+  for (const [dx, dy] of [
+    [-40, -40],
+    [40, -40],
+    [40, 40],
+  ])
+    await page.mouse.click(x + dx, y + dy);
+  const outline = page.locator(".outline");
+  assert.notEqual(await outline.getAttribute("d"), "");
+  await go("PageUp", "barn.ply");
+  assert.equal(await outline.getAttribute("d"), "");
+  await page.keyboard.press("Enter");
+  await settled();
+  assert.deepEqual(await painted(), after);
+  await page.keyboard.press("b");
+});
+
 test("saves each beside its input", async () => {
   await page.waitForFunction(() => !annotator.store.now.training?.active);
   await page.getByRole("button", { name: "Save clouds" }).click();

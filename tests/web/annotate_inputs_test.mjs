@@ -10,7 +10,7 @@ import { roof, writeRoof } from "./annotate_cloud.mjs";
 import { complainedOfNothing, openAnnotator } from "./annotator.mjs";
 import { serve } from "./browser.mjs";
 
-const PLACE = [652000, 5412000, 300];
+const PLACE = [652000, 6862000, 300];
 const its = openAnnotator("inputs", { prepare: writesGrid, ready: () => (page = its.page) });
 const { folder, paint, settled, state } = its;
 let page;
@@ -41,6 +41,16 @@ test("tells the coordinates of a national grid apart in the clipping box", async
     assert.ok(Math.abs(from - PLACE[i]) < 0.02, `${axis} from ${from}`);
     assert.ok(Math.abs(to - PLACE[i] - size[i]) < 0.02, `${axis} to ${to}`);
   }
+  const cut = await panel.locator("output").evaluateAll(
+    (all) =>
+      all.filter((output) => {
+        const text = document.createRange();
+        text.selectNodeContents(output);
+        const { left, right } = text.getBoundingClientRect();
+        return left < output.previousElementSibling.getBoundingClientRect().right || right > innerWidth - 8;
+      }).length,
+  );
+  assert.equal(cut, 0, "every digit can be read");
   await page.getByRole("slider", { name: "x from" }).press("End");
   await settled();
   const [moved, end] = await limits("x");
@@ -92,6 +102,33 @@ test("opens three points and asks for no option that it lacks", () =>
     await few.getByText("This is what model general finds.").waitFor();
     assert.match(await few.locator("header").textContent(), /3 points/);
     assert.doesNotMatch(await few.locator("body").innerText(), /s_min|s_max|NaN|undefined/);
+  }));
+
+test("offers nothing of a model as long as there is none", () =>
+  withThree(["--model", "none", "--project", path.join(folder, "none.json")], async (few, address) => {
+    await few.goto(address);
+    await few.getByText("Paint points of two classes").waitFor();
+    assert.ok(await few.getByRole("button", { name: "Save model" }).isDisabled());
+    const colours = await few.getByLabel("Colour by").locator("option").allTextContents();
+    assert.deepEqual(colours, ["normals", "painted labels", "feature"]);
+    const menu = few.locator("details.more");
+    await menu.locator("summary").click();
+    const model = menu.getByText("model", { exact: true });
+    assert.deepEqual([await model.getAttribute("href"), await model.getAttribute("aria-disabled")], [null, "true"]);
+    // A click elsewhere closes the menu and paints nothing; so does Escape, and a choice.
+    const { x, y, width, height } = await few.locator("canvas").first().boundingBox();
+    await few.mouse.click(x + width / 2, y + height / 2);
+    assert.equal(await menu.getAttribute("open"), null);
+    await few.waitForTimeout(100);
+    assert.equal(await few.evaluate(() => annotator.store.now.undo), 0);
+    await menu.locator("summary").click();
+    await few.keyboard.press("Escape");
+    assert.equal(await menu.getAttribute("open"), null);
+    await menu.locator("summary").click();
+    const offer = few.waitForEvent("download");
+    await menu.getByText("project", { exact: true }).click();
+    assert.equal((await offer).suggestedFilename(), "none.json");
+    assert.equal(await menu.getAttribute("open"), null);
   }));
 
 test("shows a prediction that comes while the page opens", () =>

@@ -186,6 +186,11 @@ test("loses no stroke and goes on by itself when the program is killed and start
   await page.mouse.down();
   await page.mouse.up();
   await page.getByText("pcednet does not answer: nothing can be painted.").waitFor();
+  for (const name of ["Save project", "Save cloud", "Train now", "Find lines", /^Classes/]) {
+    assert.ok(await page.getByRole("button", { name }).isDisabled(), `${name}`);
+  }
+  await page.keyboard.press("Control+s");
+  await page.locator(".notice span", { hasText: /^pcednet does not answer$/ }).waitFor();
   const before = its.server.address;
   let asked = 0; // the first answer gets lost, and the program is ready before the second arrives
   const session = (url) => url.pathname === "/api/session";

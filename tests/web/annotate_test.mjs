@@ -601,7 +601,8 @@ test("opens the project as it was left, in a browser that the desktop starts", a
 
 test("restores a run of before the restart", async () => {
   const model = async () => {
-    const address = new URL(await page.evaluate(() => annotator.client.downloadAddress("model")), server.address).href;
+    const address = new URL(await page.evaluate(() => annotator.client.files.downloadAddress("model")), server.address)
+      .href;
     for (;;) {
       // refused as long as the run is being trained again
       const answer = await page.request.get(address);

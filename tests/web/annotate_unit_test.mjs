@@ -1,40 +1,10 @@
 // The annotator's pure functions, in node: normals, projection, level of detail, picking, painting.
 // Environment: PCEDNET_SOURCE_DIR the repository.
 import assert from "node:assert/strict";
-import { createRequire } from "node:module";
-import path from "node:path";
 import { test } from "node:test";
 
-const web = path.join(process.env.PCEDNET_SOURCE_DIR, "web");
-const { build } = createRequire(path.join(web, "package.json"))("esbuild");
+import { load } from "./bundle.mjs";
 
-const { outputFiles } = await build({
-  stdin: {
-    resolveDir: path.join(web, "annotate"),
-    contents: [
-      "geometry",
-      "detail",
-      "chunk",
-      "classes",
-      "paint",
-      "ramp",
-      "budget",
-      "commands",
-      "fingers",
-      "format",
-      "reviewer",
-      "clip_handles",
-      "measure",
-      "store",
-    ]
-      .map((name) => `export * as ${name} from "./${name}";`)
-      .join(""),
-  },
-  bundle: true,
-  write: false,
-  format: "esm",
-  platform: "node",
-});
 const {
   geometry,
   detail,
@@ -50,7 +20,22 @@ const {
   clip_handles,
   measure,
   store,
-} = await import(`data:text/javascript;base64,${Buffer.from(outputFiles[0].contents).toString("base64")}`);
+} = await load(
+  "geometry",
+  "detail",
+  "chunk",
+  "classes",
+  "paint",
+  "ramp",
+  "budget",
+  "commands",
+  "fingers",
+  "format",
+  "reviewer",
+  "clip_handles",
+  "measure",
+  "store",
+);
 
 /** Numbers in 0..1 by a linear congruential generator. */
 function random(seed) {
@@ -505,4 +490,23 @@ test("the editor's rows become a table: any before the first stroke, then with t
   const full = { classes: Array.from({ length: 8 }, (_, id) => row(id, `${id}`)), edges: false };
   const replaced = [...Array.from({ length: 7 }, (_, id) => draft(id, `${id}`)), draft(null, "new")];
   assert.equal(names(classes.wantedTable(full, replaced, false, true))[7], "new", "in the place of one removed");
+});
+
+test("a class that cannot be painted is not the chosen one", () => {
+  const state = (paintClass, more = {}) => ({
+    ...{ classes: edges, edges: true, counts: [0, 0, 0], settings: { classes: 3 }, paintClass },
+    ...more,
+  });
+  assert.equal(classes.usableClass(state(1)), 1);
+  assert.equal(classes.usableClass(state(1, { settings: { classes: 2 } })), 2, "two classes know no smooth edge");
+  assert.equal(classes.usableClass(state(255, { settings: { classes: 2 } })), 255);
+  const own = { classes: [row(0, "a", { removed: true }), row(1, "b")], edges: false };
+  assert.equal(classes.usableClass(state(0, own)), 1);
+  assert.equal(classes.usableClass(state(1, { ...own, settings: { classes: 2 } })), 1);
+});
+
+test("a name that is there twice is told as it was given", () => {
+  const named = (...names) => classes.repeatedName(names.map((name) => ({ name })));
+  assert.equal(named("a", "b", " a "), "a");
+  assert.equal(named("a", "A", "", ""), null);
 });

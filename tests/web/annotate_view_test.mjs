@@ -235,6 +235,52 @@ test("tells painted points from predicted ones by their rim", async () => {
   assert.equal((await look()).rims, 0);
 });
 
+test("says that strokes are newer than the prediction after a reload, too, and keeps how one likes to look", async () => {
+  await page.evaluate(() => {
+    const { store } = annotator;
+    store.set({ mode: "prediction", pointSize: 2.5, safePalette: true, radius: 4 * store.now.session.spacing });
+  });
+  await page.reload();
+  await arrived();
+  await page.getByText("prediction, out of date").waitFor();
+  const { pointSize, safePalette, radius, session } = await page.evaluate(() => annotator.store.now);
+  assert.deepEqual([pointSize, safePalette], [2.5, true]);
+  assert.ok(Math.abs(radius / session.spacing - 4) < 1e-9, `${radius / session.spacing}`);
+  await page.evaluate(() => annotator.store.set({ pointSize: 1.7, safePalette: false, mode: "labels" }));
+  await settled();
+});
+
+test("says that the graphics card is lost, and draws as before when it is back", async () => {
+  const before = await look();
+  const words = page.getByText("The browser has lost the graphics card");
+  assert.ok(await words.isHidden());
+  await page.evaluate(() => {
+    const gl = annotator.stage.canvas.getContext("webgl2");
+    window.card = gl.getExtension("WEBGL_lose_context");
+    window.card.loseContext();
+  });
+  await words.waitFor();
+  await page.evaluate(() => window.card.restoreContext());
+  await words.waitFor({ state: "hidden" });
+  await settled();
+  const { first, points } = await look();
+  assert.deepEqual(first, before.first);
+  assert.ok(Math.abs(points / before.points - 1) < 0.01, `${points} points, ${before.points} before`);
+});
+
+test("tells what is chosen, and the colours, in forced colours, too", async () => {
+  await page.emulateMedia({ forcedColors: "active" });
+  const style = (selector, key) =>
+    page.evaluate(([s, k]) => getComputedStyle(document.querySelector(s))[k], [selector, key]);
+  assert.equal(await style(".class .swatch", "backgroundColor"), "rgb(255, 255, 255)");
+  assert.equal(await style(".class:nth-child(3) .swatch", "backgroundColor"), "rgb(168, 0, 0)");
+  for (const selector of [".tool[aria-pressed=true]", ".class:has(input:checked)", ".segments input:checked + span"]) {
+    assert.equal(await style(selector, "outlineStyle"), "solid", selector);
+  }
+  assert.equal(await style(".tool[aria-pressed=false]", "outlineStyle"), "none");
+  await page.emulateMedia({ forcedColors: "none" });
+});
+
 test("is light or dark as the user likes", async () => {
   const lightness = async () => (await look()).first.reduce((sum, c) => sum + c) / 3;
   const light = await lightness();

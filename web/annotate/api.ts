@@ -31,7 +31,10 @@ export class Api {
     const headers: Record<string, string> = { "X-Pcednet-Token": this.token };
     if (this.window) headers["X-Window"] = this.window;
     if (options.body) headers["Content-Type"] = "application/json";
-    const answer = await fetch(options.method ? path : this.inView(path), { ...options, headers, cache: "no-store" });
+    const place = options.method ? path : this.inView(path);
+    const answer = await fetch(place, { ...options, headers, cache: "no-store" }).catch(() => {
+      throw new Error("pcednet does not answer");
+    });
     if (!answer.ok) throw await failure(answer);
     return answer;
   }

@@ -6,13 +6,17 @@ import { boxDiagonal } from "./geometry";
 import type { Client } from "./client";
 import type { Stage } from "./stage";
 import { activeClip, type AppStore } from "./store";
-import { NO_CLASS, type Vec3 } from "./types";
+import { NO_CLASS, type BrushStroke, type Session } from "./types";
 
 /** The radius of the smallest brush. */
 export const LEAST_SPACINGS = 0.5;
 
+export const usableRadius = (radius: number, { spacing, bounds }: Pick<Session, "spacing" | "bounds">): number =>
+  Math.min(Math.max(radius, spacing * LEAST_SPACINGS), boxDiagonal(bounds) / 4);
+
 export class Brush {
-  private centres: Vec3[] | null = null;
+  /** As it was when the stroke began: what is set meanwhile is for the next one. */
+  private stroke: BrushStroke | null = null;
   private last: [number, number] = [0, 0];
   private readonly shown = new Set<number>();
 
@@ -23,22 +27,32 @@ export class Brush {
   ) {}
 
   get isDown(): boolean {
-    return this.centres !== null;
+    return this.stroke !== null;
   }
 
   /** Starts a stroke at a pixel. */
   press(x: number, y: number): void {
-    this.centres = [];
+    const state = this.store.now;
+    this.stroke = {
+      id: crypto.randomUUID(),
+      tool: "brush",
+      class: state.paintClass,
+      centres: [],
+      radius: state.radius,
+      protect: state.protect,
+      hidden: [...state.hidden],
+      clip: activeClip(state),
+    };
     this.shown.clear();
     this.dab(x, y);
   }
 
   /** Goes on to a pixel; dabs overlap. */
   drag(x: number, y: number): void {
-    if (!this.centres) return;
+    if (!this.stroke) return;
     const picked = this.stage.pick(x, y);
     if (!picked) return;
-    const step = Math.max(2, (0.4 * this.store.now.radius * this.stage.camera.pixels) / picked.depth);
+    const step = Math.max(2, (0.4 * this.stroke.radius * this.stage.camera.pixels) / picked.depth);
     const [dx, dy] = [x - this.last[0], y - this.last[1]];
     const away = Math.hypot(dx, dy);
     if (away < step) return;
@@ -49,43 +63,32 @@ export class Brush {
 
   /** Ends the stroke: now the server hears of it. */
   release(): void {
-    const { centres } = this;
-    this.centres = null;
-    if (!centres) return;
-    if (centres.length === 0) return this.stage.loader.resume();
-    const state = this.store.now;
-    if (state.paintClass === NO_CLASS) this.stage.redraw(); // erased points are smaller than painted ones
-    this.client.paint({
-      id: crypto.randomUUID(),
-      tool: "brush",
-      class: state.paintClass,
-      centres,
-      radius: state.radius,
-      protect: state.protect,
-      hidden: [...state.hidden],
-      clip: activeClip(state),
-    });
+    const { stroke } = this;
+    this.stroke = null;
+    if (!stroke) return;
+    if (stroke.centres.length === 0) return this.stage.loader.resume();
+    if (stroke.class === NO_CLASS) this.stage.redraw(); // erased points are smaller than painted ones
+    this.client.paint(stroke);
   }
 
   /** Ends the stroke without painting: what was shown of it goes. */
   cancel(): void {
-    this.centres = null;
+    this.stroke = null;
     this.stage.loader.refresh("labels", this.shown);
   }
 
   private dab(x: number, y: number): void {
     const picked = this.stage.pick(x, y);
     this.last = [x, y];
-    if (!picked) return;
-    this.centres!.push(picked.position);
-    this.show(picked);
+    if (!picked || !this.stroke) return;
+    this.stroke.centres.push(picked.position);
+    this.show(picked, this.stroke);
   }
 
-  private show({ position, normal }: Picked): void {
-    const state = this.store.now;
-    const options = { class: state.paintClass, protect: state.protect, ...this.stage.visibility };
+  private show({ position, normal }: Picked, stroke: BrushStroke): void {
+    const options = { ...stroke, hidden: new Set(stroke.hidden) };
     for (const chunk of this.stage.chunks) {
-      if (paintBall(chunk, position, normal, state.radius, options)) {
+      if (paintBall(chunk, position, normal, stroke.radius, options)) {
         this.stage.touch(chunk.info.id, "labels");
         this.shown.add(chunk.info.id);
       }
@@ -94,8 +97,6 @@ export class Brush {
 
   grow(factor: number): void {
     const { session, radius } = this.store.now;
-    if (!session) return;
-    const most = boxDiagonal(session.bounds) / 4;
-    this.store.set({ radius: Math.min(Math.max(radius * factor, session.spacing * LEAST_SPACINGS), most) });
+    if (session) this.store.set({ radius: usableRadius(radius * factor, session) });
   }
 }

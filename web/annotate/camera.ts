@@ -44,6 +44,13 @@ const HALF_VIEW = Math.tan((FIELD_OF_VIEW * Math.PI) / 360);
 /** An orthographic view is one from so many radii away: its rays differ by a third of a degree at most. */
 const FAR_AWAY = 200;
 
+/** Where it is, how it is turned, and how far away what it looks at is. */
+export interface Pose {
+  position: Vec3;
+  turn: [number, number, number, number];
+  distance: number;
+}
+
 export class Camera {
   /** What is drawn with. */
   readonly three = new PerspectiveCamera(FIELD_OF_VIEW, 1, 0.01, 10);
@@ -90,6 +97,25 @@ export class Camera {
   get view(): View {
     const matrix = this.three.projectionMatrix.clone().multiply(this.three.matrixWorldInverse).elements;
     return { matrix, eye: this.three.position.toArray() as Vec3, pixels: this.pixels };
+  }
+
+  get pose(): Pose {
+    const { position, quaternion } = this.rig;
+    const { x, y, z, w } = quaternion;
+    return { position: position.toArray() as Vec3, turn: [x, y, z, w], distance: this.distance };
+  }
+
+  set pose({ position, turn, distance }: Pose) {
+    ++this.flight;
+    this.rig.position.set(...position);
+    this.rig.quaternion.set(...turn);
+    this.distance = distance;
+    this.changed();
+  }
+
+  /** Ends a flight where it is. */
+  stop(): void {
+    ++this.flight;
   }
 
   /** Where the view is centred, as far as what was last looked at. */

@@ -2,11 +2,13 @@
 
 import { BOUNDARY } from "../shared/colours";
 import { h } from "../shared/dom";
-import type { Client, Saved } from "./client";
+import { refusalOf, type Client } from "./client";
+import type { Saved } from "./files";
 import { NONE, paintable, paletteOf } from "./classes";
 import { isRamp, rampEnds, rampStops, FEATURE_NAMES } from "./colouring";
-import { MODES, type Command } from "./commands";
+import { MODES, PREDICTED, type Command } from "./commands";
 import { count, length, stageText } from "./format";
+import { downloadMenu } from "./download_menu";
 import { icon, type IconName } from "./icons";
 import { button } from "./panel";
 import type { AppStore, Tool } from "./store";
@@ -51,9 +53,9 @@ export function toolbar(store: AppStore, press: Press): HTMLElement {
     tools.forEach(({ tool, button: b }) => b.setAttribute("aria-pressed", String(tool === store.now.tool))),
   );
   store.watch(["clip"], () => clip.setAttribute("aria-pressed", String(store.now.clip?.on ?? false)));
-  store.watch(["undo", "redo", "writer"], () => {
-    undo.disabled = store.now.undo === 0 || !store.now.writer;
-    redo.disabled = store.now.redo === 0 || !store.now.writer;
+  store.watch(["undo", "redo", "writer", "connected"], () => {
+    undo.disabled = store.now.undo === 0 || refusalOf(store.now) !== "";
+    redo.disabled = store.now.redo === 0 || refusalOf(store.now) !== "";
   });
   return h(
     "div",
@@ -82,41 +84,19 @@ export function header(store: AppStore, save: (what: Saved) => void, client: Cli
     facts.textContent = `${count(session.points)} points${session.normals === "estimated" ? " · normals estimated" : ""}`;
   });
   const saves = (["project", "model", "cloud"] as Saved[]).map((what) => button(`Save ${what}`, () => save(what)));
-  const links = (["project", "model", "cloud"] as Saved[]).map((what) =>
-    h(
-      "a",
-      {
-        href: "#",
-        onclick: (e: Event) => {
-          (e.currentTarget as HTMLAnchorElement).href = client.downloadAddress(what); // now: it holds the token
-        },
-        download: "",
-      },
-      what,
-    ),
-  );
   store.watch(["clouds"], () => {
     saves[2].textContent = store.now.clouds.length > 1 ? "Save clouds" : "Save cloud";
   });
-  store.watch(["saving", "writer", "progress", "runs"], () =>
-    saves.forEach((b, i) => {
-      b.disabled =
-        store.now.saving ||
-        !store.now.writer ||
-        store.now.progress !== null ||
-        (i === 1 && store.now.runs.length === 0);
-    }),
-  );
+  store.watch(["saving", "writer", "connected", "progress", "hasPrediction"], () => {
+    const { saving, progress, hasPrediction } = store.now;
+    const off = saving || progress !== null || refusalOf(store.now) !== "";
+    saves.forEach((b, i) => (b.disabled = off || (i === 1 && !hasPrediction)));
+  });
   return h(
     "header",
     {},
     h("div", { class: "file" }, name, facts),
-    h(
-      "div",
-      { class: "saves" },
-      ...saves,
-      h("details", { class: "more" }, h("summary", {}, "Download"), h("div", {}, ...links)),
-    ),
+    h("div", { class: "saves" }, ...saves, downloadMenu(store, client)),
   );
 }
 
@@ -132,8 +112,7 @@ export function legend(store: AppStore): HTMLElement {
         const name = session.features[feature];
         title = `${FEATURE_NAMES[name] ?? name}, radius ${length(session.scales[scale] ?? 0)}`;
       }
-      const depends = ["prediction", "confidence", "p_sharp"].includes(mode);
-      if (depends && store.now.outOfDate) title += ", out of date";
+      if (PREDICTED.includes(mode) && store.now.outOfDate) title += ", out of date";
       element.replaceChildren(h("b", {}, title));
       if (isRamp(mode)) {
         const bar = h("span", { class: "ramp" });
@@ -165,12 +144,15 @@ export function hint(store: AppStore): HTMLElement {
     const { progress, undo, writer, counts, runs } = store.now;
     element.hidden = progress !== null || !writer || undo > 0 || counts.some((n) => n > 0);
     const what = runs.length > 0 ? "Paint where the prediction is wrong" : "Paint some points of each class";
-    element.textContent = `${what}. Right button: orbit. Wheel: zoom. ?: all keys.`;
+    const how = matchMedia("(pointer: coarse)").matches
+      ? "One finger paints, two pan and zoom; the Navigate tool orbits."
+      : "Right button: orbit. Wheel: zoom. ?: all keys.";
+    element.textContent = `${what}. ${how}`;
   });
   return element;
 }
 
-/** Loading, another window, a lost connection. */
+/** Loading, another window, a lost connection, a lost graphics card. */
 export function curtain(store: AppStore, client: Client): HTMLElement {
   const bar = h("progress", { max: 1 });
   const stage = h("p", {});
@@ -182,6 +164,11 @@ export function curtain(store: AppStore, client: Client): HTMLElement {
     button("Take over", () => client.takeOver()),
   );
   const lost = h("div", { class: "banner", role: "alert" });
+  const dark = h(
+    "div",
+    { class: "banner", role: "alert" },
+    "The browser has lost the graphics card and cannot draw. If the cloud does not come back, reload the page: all strokes are kept.",
+  );
   store.watch(["progress", "writer", "connected", "restarted", "waiting"], () => {
     const { progress, writer, connected, restarted, waiting } = store.now;
     const strokes = waiting === 1 ? " One stroke waits." : waiting > 1 ? ` ${waiting} strokes wait.` : "";
@@ -196,5 +183,6 @@ export function curtain(store: AppStore, client: Client): HTMLElement {
       bar.value = progress.fraction;
     }
   });
-  return h("div", { class: "curtain" }, loading, other, lost);
+  store.watch(["contextLost"], () => (dark.hidden = !store.now.contextLost));
+  return h("div", { class: "curtain" }, loading, h("div", { class: "banners" }, other, lost, dark));
 }

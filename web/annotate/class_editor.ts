@@ -1,7 +1,7 @@
 // The dialogue in which the classes are chosen.
 
 import { h } from "../shared/dom";
-import { EDGE_CLASSES, freshColour, hexOf, MOST_CLASSES, ownClasses, wantedTable } from "./classes";
+import { EDGE_CLASSES, freshColour, hexOf, MOST_CLASSES, ownClasses, repeatedName, wantedTable } from "./classes";
 import type { Draft, WantedClass } from "./classes";
 import { count } from "./format";
 import { button } from "./panel";
@@ -84,6 +84,8 @@ export function editClassesDialog(state: State, save: (table: WantedClass[]) => 
         onsubmit: (event: SubmitEvent) => {
           if ((event.submitter as HTMLButtonElement | null)?.value !== "yes") return;
           event.preventDefault();
+          const twice = repeatedName(drafts.map((one) => one.draft));
+          if (twice) return void (problem.textContent = `There are two classes "${twice}".`);
           const table = wantedTable(
             state,
             drafts.map((one) => one.draft),

@@ -2,9 +2,11 @@
 
 import { BOUNDARY, CLASS_PALETTES, NO_LABEL, type Meaning } from "../shared/colours";
 import type { State } from "./store";
-import type { ClassInfo, Vec3 } from "./types";
+import { NO_CLASS, type ClassInfo, type Vec3 } from "./types";
 
 export const MOST_CLASSES = 8;
+
+const SHARP_EDGE = 2;
 
 /** What stands for no class in a palette. */
 export const NONE = MOST_CLASSES;
@@ -49,6 +51,16 @@ export const paintable = ({ classes, edges, counts }: Pick<State, "classes" | "e
 export const isOff = (id: number, { edges, settings }: Pick<State, "edges" | "settings">): boolean =>
   edges && id === 1 && settings.classes === 2;
 
+/** The chosen class, or another one if that cannot be painted. */
+export function usableClass(state: Pick<State, "classes" | "edges" | "counts" | "settings" | "paintClass">): number {
+  const { paintClass, edges } = state;
+  const ids = paintable(state)
+    .map(({ id }) => id)
+    .filter((id) => !isOff(id, state));
+  if (paintClass === NO_CLASS || ids.includes(paintClass)) return paintClass;
+  return edges ? SHARP_EDGE : (ids[0] ?? NO_CLASS);
+}
+
 /** A class as the program takes it. */
 export interface WantedClass {
   name: string;
@@ -61,6 +73,12 @@ export interface Draft {
   id: number | null;
   name: string;
   colour: string;
+}
+
+/** A name that two rows have; null if there is none. */
+export function repeatedName(rows: Pick<Draft, "name">[]): string | null {
+  const names = rows.map(({ name }) => name.trim());
+  return names.find((name, k) => name !== "" && names.indexOf(name) < k) ?? null;
 }
 
 /** The table that rows stand for. Classes keep their numbers once there was a stroke: what is missing is removed. */

@@ -1,14 +1,17 @@
 // Keeps the page's state in step with the server's.
 
-import { h } from "../shared/dom";
 import { ApiError, type Api } from "./api";
-import { paintable, type WantedClass } from "./classes";
+import { usableRadius } from "./brush";
+import { paintable, usableClass, type WantedClass } from "./classes";
+import { Files } from "./files";
+import { PREDICTED } from "./commands";
 import { LineClient } from "./line_client";
 import type { Stage } from "./stage";
 import type { AppStore, State } from "./store";
 import type {
   DecidedEvent,
   Classes,
+  LinesEvent,
   Painted,
   PredictionEvent,
   Run,
@@ -18,15 +21,11 @@ import type {
   TrainingEvent,
   Uncertain,
 } from "./types";
-import { NO_CLASS } from "./types";
+import { resumed, viewOf, type CloudView } from "./views";
+import { ask } from "./words";
 import { LONGEST_PAUSE_MS, pause, WorkQueue } from "./work";
 
-export type Saved = "cloud" | "model" | "project" | "lines";
-
 export const READ_ONLY = "Another window is painting this cloud. Take over to paint here.";
-
-/** The brush at first: thin enough for an edge. */
-const BRUSH_SPACINGS = 1.75;
 
 /** Why this window cannot paint now; empty if it can. */
 export const refusalOf = ({ writer, connected }: Pick<State, "writer" | "connected">): string =>
@@ -40,6 +39,7 @@ export interface Words {
 export class Client {
   private readonly queue: WorkQueue;
   readonly lines: LineClient;
+  readonly files: Files;
   private events: EventSource | null = null;
   private opened = false;
   /** Of any cloud: what the user chose since then stays. */
@@ -48,36 +48,52 @@ export class Client {
   private loading = true;
   /** Events were not heard for a while. */
   private missed = false;
-  /** A prediction was shown before. */
-  private predicted = false;
   /** The start whose description the session told of. */
   private described = "";
   /** The last look at the session, done or not. */
   private looked: Promise<void> = Promise.resolve();
+  /** Of the clouds that were looked at before. */
+  private readonly views = new Map<number, CloudView>();
   stage!: Stage;
+  /** Before another cloud is looked at. */
+  leaving: () => void = () => {};
 
   constructor(
     private readonly api: Api,
     private readonly store: AppStore,
     private readonly words: Words,
   ) {
-    this.lines = new LineClient(api, store, words, () => this.mayPaint());
+    this.lines = new LineClient(api, store, words, () => this.mayPaint(), ask);
+    this.files = new Files(api, store, words);
     this.queue = new WorkQueue(api, {
-      painted: (answer) => {
+      painted: (answer, kind) => {
         this.takePainted(answer);
         const { cloud, clouds } = this.store.now;
-        if (answer.cloud !== cloud && answer.nodes.length > 0) {
+        if (kind !== "stroke" && answer.cloud !== cloud && answer.nodes.length > 0) {
           this.words.say(`That was in ${clouds[answer.cloud].file}.`);
         }
       },
-      failed: (error) => {
-        this.words.warn(`The stroke was not applied: ${error.message}`);
+      failed: (message) => {
+        this.words.warn(message);
         this.stage.loader.takeBack();
         this.stage.loader.refresh("labels");
       },
       waits: (waiting) => this.store.set({ waiting }),
       isOpen: () => this.store.now.connected && !this.loading,
+      steps: () => this.store.now,
+      askSteps: async () => {
+        const session = await this.api.get<Session>("/api/session");
+        if (session.state !== "ready") throw new Error("it is still loading");
+        return session;
+      },
       idle: () => this.stage.loader.resume(),
+    });
+    store.watch(["classes", "edges", "counts", "settings"], () => {
+      if (store.now.classes.length > 0) store.set({ paintClass: usableClass(store.now) });
+    });
+    store.watch(["radius"], () => {
+      const { session, radius } = store.now;
+      if (session) store.set({ brush: radius / session.spacing });
     });
   }
 
@@ -135,7 +151,7 @@ export class Client {
         this.takeClasses(event);
         if (edges !== event.edges) this.attempt(this.beginAnew());
       },
-      lines: ({ version, searching }) => this.attempt(this.lines.take(version, searching)),
+      lines: (event: LinesEvent) => this.attempt(this.lines.take(event)),
       decided: (event: DecidedEvent) => this.lines.takeDecisions(event),
       writer: ({ window: name }) => store.set({ writer: name === this.api.window }),
       problem: ({ message }) => {
@@ -181,6 +197,7 @@ export class Client {
       settings: session.settings,
       undo: session.undo,
       redo: session.redo,
+      outOfDate: session.out_of_date,
       predictionVersion: session.prediction_version,
       scale: Math.max(0, Math.min(store.now.scale, session.scales.length - 1)),
     });
@@ -195,16 +212,19 @@ export class Client {
     }
     this.opened = true;
     // A prediction may have come after the session was asked for.
-    const predicted = (this.predicted ||= session.prediction_version > 0 && session.run !== null);
-    const usual = predicted ? "prediction" : session.has_colours ? "rgb" : "labels";
+    const hasPrediction = store.now.hasPrediction || (session.prediction_version > 0 && session.run !== null);
+    const usual = hasPrediction ? "prediction" : session.has_colours ? "rgb" : "labels";
     const first = !this.wasOpened;
     this.wasOpened = true;
+    const view = this.views.get(session.cloud);
     store.set({
-      radius: session.spacing * BRUSH_SPACINGS,
+      radius: usableRadius(session.spacing * store.now.brush, session),
       mode: first || (store.now.mode === "rgb" && !session.has_colours) ? usual : store.now.mode,
-      scale: Math.floor(session.scales.length / 2),
+      ...(first ? { scale: Math.floor(session.scales.length / 2) } : {}),
+      hasPrediction,
+      ...resumed(view, store.now),
     });
-    this.stage.open(session, predicted);
+    this.stage.open(session, hasPrediction, view?.pose);
     if (store.now.mode === "feature") this.stage.loader.refresh("values");
   }
 
@@ -212,17 +232,18 @@ export class Client {
     const { store } = this;
     const counts = classes.map((one) => one.count);
     store.set({ classes, edges, counts });
-    const ids = paintable(store.now).map(({ id }) => id);
-    const { paintClass } = store.now;
-    if (paintClass !== NO_CLASS && !ids.includes(paintClass)) store.set({ paintClass: ids[0] });
   }
 
   /** Other classes than those of the start, or those again: what it found is of no use. */
   private async beginAnew(): Promise<void> {
     const { store } = this;
-    this.predicted = false;
-    if (["prediction", "confidence", "p_sharp"].includes(store.now.mode)) store.set({ mode: "labels" });
-    store.set({ uncertain: null, hidden: new Set(), paintClass: paintable(store.now)[store.now.edges ? 2 : 0].id });
+    if (PREDICTED.includes(store.now.mode)) store.set({ mode: "labels" });
+    store.set({
+      hasPrediction: false,
+      uncertain: null,
+      hidden: new Set(),
+      paintClass: paintable(store.now)[store.now.edges ? 2 : 0].id,
+    });
     await this.refresh();
     this.stage.loader.refresh("prediction");
   }
@@ -279,14 +300,13 @@ export class Client {
 
   private async takePrediction(event: PredictionEvent): Promise<void> {
     const { store } = this;
-    const first = !this.predicted;
-    this.predicted = true;
+    const first = !store.now.hasPrediction;
     this.endTraining();
     store.set({
-      predicted: event.counts,
+      hasPrediction: true,
       uncertain: null,
       predictionVersion: event.prediction_version,
-      outOfDate: false,
+      outOfDate: event.out_of_date,
     });
     this.stage.loader.refresh("prediction");
     if (["confidence", "p_sharp"].includes(store.now.mode)) this.stage.loader.refresh("values");
@@ -304,6 +324,8 @@ export class Client {
   look(cloud: number): void {
     const { store } = this;
     if (cloud === store.now.cloud || !store.now.clouds[cloud] || store.now.progress) return;
+    this.leaving();
+    this.views.set(store.now.cloud, viewOf(store.now, this.stage.camera.pose));
     this.api.cloud = cloud;
     store.set({
       uncertain: null,
@@ -377,36 +399,5 @@ export class Client {
       this.words.warn((error as Error).message);
       return null;
     }
-  }
-
-  /** The path it went to; null if refused. `confirm` is asked before an older file of ours is replaced. */
-  async save(what: Saved, cloud: number, confirm: (words: string) => Promise<boolean>): Promise<string | null> {
-    this.store.set({ saving: true });
-    try {
-      return (await this.api.post<{ path: string }>("/api/save", { what, cloud })).path;
-    } catch (error) {
-      const taken = error instanceof ApiError && error.status === 409 && error.message.endsWith(" exists");
-      if (!taken || !(await confirm((error as Error).message))) {
-        if (!taken) this.words.warn((error as Error).message);
-        return null;
-      }
-      return await this.api.post<{ path: string }>("/api/save", { what, cloud, overwrite: true }).then(
-        ({ path }) => path,
-        (problem: Error) => {
-          this.words.warn(problem.message);
-          return null;
-        },
-      );
-    } finally {
-      this.store.set({ saving: false });
-    }
-  }
-
-  downloadAddress(what: Saved, query = ""): string {
-    return this.api.address(`/api/download/${what}${query}`);
-  }
-
-  download(what: Saved, query: string): void {
-    h("a", { href: this.downloadAddress(what, query), download: "" }).click();
   }
 }

@@ -50,10 +50,16 @@ export const MODES: { mode: ColourMode; name: string }[] = [
   { mode: "feature", name: "feature" },
 ];
 
+/** Those that show a prediction. */
+export const PREDICTED: ColourMode[] = ["prediction", "confidence", "p_sharp"];
+
 /** The modes that this cloud has. */
-export function modesOf({ now }: AppStore): ColourMode[] {
+export function modesOf({ now }: Pick<AppStore, "now">): ColourMode[] {
   return MODES.map(({ mode }) => mode).filter(
-    (mode) => (mode !== "rgb" || now.session?.has_colours) && (mode !== "p_sharp" || now.edges),
+    (mode) =>
+      (mode !== "rgb" || now.session?.has_colours) &&
+      (mode !== "p_sharp" || now.edges) &&
+      (now.hasPrediction || !PREDICTED.includes(mode)),
   );
 }
 
@@ -66,29 +72,42 @@ export function toggled(set: ReadonlySet<number>, item: number): Set<number> {
 const TURN = 0.12;
 const SLIDE = 60;
 
-function viewCommands({ store, stage, slice, toggleClip }: Hands): Command[] {
+/** What moves the view does nothing while an outline is open, whose corners are pixels of it. */
+const unlessOutlined =
+  (outline: Pick<Outline, "isOpen">, run: () => void): (() => void) =>
+  () => {
+    if (!outline.isOpen) run();
+  };
+
+function viewCommands({ store, stage, outline, slice, toggleClip }: Hands): Command[] {
   const { camera } = stage;
+  const moves = (keys: string[], name: string, run: () => void): Command => ({
+    keys,
+    name,
+    group: "View",
+    run: unlessOutlined(outline, run),
+  });
   const command = (keys: string[], name: string, run: () => void): Command => ({ keys, name, group: "View", run });
   return [
-    command(["F", "Home"], "fit the cloud to the view", () => stage.fit("first")),
-    command(["Z"], "from above", () => stage.fit("top")),
-    command(["Shift+Z"], "from below", () => stage.fit("bottom")),
-    command(["W"], "from the front", () => stage.fit("front")),
-    command(["Shift+W"], "from the back", () => stage.fit("back")),
-    command(["Q"], "from the right", () => stage.fit("right")),
-    command(["Shift+Q"], "from the left", () => stage.fit("left")),
-    command(["Shift+F"], "orthographic or perspective", () => store.set({ orthographic: !store.now.orthographic })),
-    command(["ArrowLeft"], "orbit left", () => camera.turn(-TURN, 0, camera.target)),
-    command(["ArrowRight"], "orbit right", () => camera.turn(TURN, 0, camera.target)),
-    command(["ArrowUp"], "orbit up", () => camera.turn(0, -TURN, camera.target)),
-    command(["ArrowDown"], "orbit down", () => camera.turn(0, TURN, camera.target)),
-    command(["Shift+ArrowLeft"], "pan left", () => camera.slide(-SLIDE, 0, camera.target)),
-    command(["Shift+ArrowRight"], "pan right", () => camera.slide(SLIDE, 0, camera.target)),
-    command(["Shift+ArrowUp"], "pan up", () => camera.slide(0, -SLIDE, camera.target)),
-    command(["Shift+ArrowDown"], "pan down", () => camera.slide(0, SLIDE, camera.target)),
-    command(["+", "="], "zoom in", () => camera.approach(1 / 1.2, camera.target)),
-    command(["-"], "zoom out", () => camera.approach(1.2, camera.target)),
-    command(["R"], "roll", () => camera.roll(Math.PI / 12)),
+    moves(["F", "Home"], "fit the cloud to the view", () => stage.fit("first")),
+    moves(["Z"], "from above", () => stage.fit("top")),
+    moves(["Shift+Z"], "from below", () => stage.fit("bottom")),
+    moves(["W"], "from the front", () => stage.fit("front")),
+    moves(["Shift+W"], "from the back", () => stage.fit("back")),
+    moves(["Q"], "from the right", () => stage.fit("right")),
+    moves(["Shift+Q"], "from the left", () => stage.fit("left")),
+    moves(["Shift+F"], "orthographic or perspective", () => store.set({ orthographic: !store.now.orthographic })),
+    moves(["ArrowLeft"], "orbit left", () => camera.turn(-TURN, 0, camera.target)),
+    moves(["ArrowRight"], "orbit right", () => camera.turn(TURN, 0, camera.target)),
+    moves(["ArrowUp"], "orbit up", () => camera.turn(0, -TURN, camera.target)),
+    moves(["ArrowDown"], "orbit down", () => camera.turn(0, TURN, camera.target)),
+    moves(["Shift+ArrowLeft"], "pan left", () => camera.slide(-SLIDE, 0, camera.target)),
+    moves(["Shift+ArrowRight"], "pan right", () => camera.slide(SLIDE, 0, camera.target)),
+    moves(["Shift+ArrowUp"], "pan up", () => camera.slide(0, -SLIDE, camera.target)),
+    moves(["Shift+ArrowDown"], "pan down", () => camera.slide(0, SLIDE, camera.target)),
+    moves(["+", "="], "zoom in", () => camera.approach(1 / 1.2, camera.target)),
+    moves(["-"], "zoom out", () => camera.approach(1.2, camera.target)),
+    moves(["R"], "roll", () => camera.roll(Math.PI / 12)),
     command(["C"], "clipping box", toggleClip),
     command(["<"], "slice: one thickness back", () => slice(-1)),
     command([">"], "slice: one thickness on", () => slice(1)),
@@ -175,14 +194,24 @@ function colourCommands({ store }: Hands): Command[] {
   ];
 }
 
-function lineCommands({ store, reviewer }: Hands): Command[] {
-  const command = (keys: string[], name: string, run: () => void): Command => ({ keys, name, group: "Lines", run });
+function lineCommands({ store, outline, reviewer }: Hands): Command[] {
+  const moves = (keys: string[], name: string, run: () => void): Command => ({
+    keys,
+    name,
+    group: "Lines",
+    run: unlessOutlined(outline, run),
+  });
   return [
-    command(["J"], "next line", () => reviewer.step(1)),
-    command(["K"], "previous line", () => reviewer.step(-1)),
-    command(["A"], "accept the line", () => void reviewer.decide("accepted")),
-    command(["D"], "reject the line", () => void reviewer.decide("rejected")),
-    command(["H"], "hide or show lines", () => store.set({ showLines: !store.now.showLines })),
+    moves(["J"], "next line", () => reviewer.step(1)),
+    moves(["K"], "previous line", () => reviewer.step(-1)),
+    moves(["A"], "accept the line", () => reviewer.decide("accepted")),
+    moves(["D"], "reject the line", () => reviewer.decide("rejected")),
+    {
+      keys: ["H"],
+      name: "hide or show lines",
+      group: "Lines",
+      run: () => store.set({ showLines: !store.now.showLines }),
+    },
   ];
 }
 
@@ -198,16 +227,19 @@ export function commandsOf(hands: Hands): Command[] {
     group,
     run,
   });
+  const moves = (keys: string[], name: string, run: () => void): Command =>
+    command(keys, name, "Training", unlessOutlined(outline, run));
   return [
     ...toolCommands(hands),
     ...classCommands(hands),
     ...viewCommands(hands),
     ...colourCommands(hands),
-    command(["N"], "next uncertain place", "Training", () => hands.stepUncertain(1)),
-    command(["Shift+N"], "previous uncertain place", "Training", () => hands.stepUncertain(-1)),
-    command(["Y"], "the prediction at the uncertain place is right", "Training", hands.acceptUncertain),
+    moves(["N"], "next uncertain place", () => hands.stepUncertain(1)),
+    moves(["Shift+N"], "previous uncertain place", () => hands.stepUncertain(-1)),
+    moves(["Y"], "the prediction at the uncertain place is right", hands.acceptUncertain),
     command(["T"], "train now", "Training", () => client.train()),
-    command(["Escape"], "cancel the outline, the measurement, the training or the search for lines", "Training", () => {
+    command(["Escape"], "cancel the stroke, outline, measurement, training or search for lines", "Training", () => {
+      if (hands.pointer.cancel()) return;
       if (outline.isOpen) outline.cancel();
       else if (store.now.measured.length > 0) hands.clearMeasure();
       else if (store.now.training?.active || store.now.lines.searching) client.cancel();

@@ -6,7 +6,8 @@ import { Api } from "./api";
 import { Brush } from "./brush";
 import { curtain, header, hint, legend, presser, toolbar } from "./chrome";
 import { ClipHandles, stepped } from "./clip_handles";
-import { Client, refusalOf, type Saved } from "./client";
+import { Client, refusalOf } from "./client";
+import type { Saved } from "./files";
 import { appearanceOf, paintColour, strokesOf, valuesQuery } from "./colouring";
 import { bindKeys, commandsOf } from "./commands";
 import { Measure } from "./measure";
@@ -19,6 +20,7 @@ import { runsPanel, trainingPanel, uncertainPanel } from "./panel_training";
 import { clipPanel, toggledClip, viewPanel } from "./panel_view";
 import { linesPanel } from "./panel_lines";
 import { Pointer } from "./pointer";
+import { keepPreferences } from "./preferences";
 import { Reviewer } from "./reviewer";
 import { Stage } from "./stage";
 import { activeClip, initialState, Store, type State } from "./store";
@@ -48,8 +50,10 @@ function open(page: HTMLElement): void {
     },
     failed: (error) => notices.warn(error.message),
     isPainting: () => brush.isDown || client.isBusy,
+    contextLost: (contextLost) => store.set({ contextLost }),
   });
   client.stage = stage;
+  keepPreferences(store, () => localStorage);
   store.set({ eyeDome: !stage.isSoftware }); // a pass over all pixels costs a graphics card nothing
   const overlay: Overlay = new Overlay(stage);
   const brush: Brush = new Brush(stage, store, client);
@@ -60,6 +64,8 @@ function open(page: HTMLElement): void {
     colour: () => paintColour(store.now),
   });
 
+  client.leaving = () => pointer.finish();
+
   const measure = new Measure(overlay, store);
   new ClipHandles(overlay, store);
   const reviewer = new Reviewer(stage, store, client.lines);
@@ -67,7 +73,7 @@ function open(page: HTMLElement): void {
   const save = async (what: Saved): Promise<void> => {
     const clouds = what === "cloud" ? store.now.clouds.map((_, k) => k) : [0];
     for (const cloud of clouds) {
-      const path = await client.save(what, cloud, (problem) => ask(`${problem}. Replace the file?`, "Replace"));
+      const path = await client.files.save(what, cloud, (problem) => ask(`${problem}. Replace the file?`, "Replace"));
       if (path) notices.say(`Saved ${path}`);
     }
   };
@@ -83,7 +89,6 @@ function open(page: HTMLElement): void {
     const { session } = store.now;
     if (!place || !session) return;
     stage.camera.visit(place.position, place.normal, session.spacing * VISIT_SPACINGS);
-    overlay.setMark(place.position);
   };
   /** Paints the place with its own prediction and goes on. */
   const acceptUncertain = (): void => {
@@ -145,10 +150,10 @@ function open(page: HTMLElement): void {
       { "aria-label": "Settings" },
       cloudsPanel(store, client),
       classesPanel(store, brush, editClasses),
-      viewPanel(store, stage),
+      viewPanel(store, press),
       trainingPanel(store, client),
-      uncertainPanel(store, (by) => void stepUncertain(by), acceptUncertain),
-      linesPanel(store, client, reviewer),
+      uncertainPanel(store, press),
+      linesPanel(store, client, reviewer, press),
       clipPanel(store, stage, press),
       runsPanel(store, client),
     ),
@@ -163,9 +168,7 @@ function open(page: HTMLElement): void {
     stage.setLines(strokesOf(store.now), store.now.session?.spacing ?? 0),
   );
   store.watch(["clip"], () => overlay.setClip(activeClip(store.now)));
-  store.watch(["uncertain"], () => {
-    if (!store.now.uncertain) overlay.setMark(null);
-  });
+  store.watch(["uncertain"], () => overlay.setMark(store.now.uncertain?.position ?? null));
   const repaint = (): void => stage.setAppearance(appearanceOf(store.now, css("--stage")));
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", repaint);
   store.watch(["theme"], () => {

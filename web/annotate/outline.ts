@@ -30,6 +30,7 @@ export class Outline {
   press(x: number, y: number, free: boolean): void {
     this.free = free;
     if (free) this.points = [];
+    this.stage.camera.stop(); // corners are pixels of this view
     this.points.push([x, y]);
     this.show();
   }

@@ -2,6 +2,7 @@
 
 import { h } from "../shared/dom";
 import { LEAST_SPACINGS, type Brush } from "./brush";
+import { refusalOf } from "./client";
 import { isOff, paintable, paletteOf } from "./classes";
 import { toggled } from "./commands";
 import { boxDiagonal } from "./geometry";
@@ -93,7 +94,7 @@ export function classesPanel(store: AppStore, brush: Brush, edit: () => void): H
   });
   const change = button("Classes…", edit, "⇧E");
   change.title = "Add, rename, recolour or remove classes (Shift+E)";
-  store.watch(["writer"], () => (change.disabled = !store.now.writer));
+  store.watch(["writer", "connected"], () => (change.disabled = refusalOf(store.now) !== ""));
   return section(
     "Paint",
     true,

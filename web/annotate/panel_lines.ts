@@ -2,7 +2,8 @@
 
 import { CLASS_PALETTES } from "../shared/colours";
 import { h } from "../shared/dom";
-import type { Client } from "./client";
+import type { Press } from "./chrome";
+import { refusalOf, type Client } from "./client";
 import { count, length, percent } from "./format";
 import { button, checkbox, section } from "./panel";
 import { countDecisions, type Reviewer } from "./reviewer";
@@ -44,24 +45,24 @@ function facts(line: Line): [string, string][] {
   ];
 }
 
-export function linesPanel(store: AppStore, client: Client, reviewer: Reviewer): HTMLElement {
+export function linesPanel(store: AppStore, client: Client, reviewer: Reviewer, press: Press): HTMLElement {
   const words = h("p", { class: "summary", role: "status" });
-  const find = button("Find lines", () => client.lines.find());
+  const find = button("Find lines", () => void client.lines.find());
   const cancel = button("Cancel", () => client.cancel());
   const show = checkbox("Show lines", "H", (on) => store.set({ showLines: on }));
   const title = h("h3", {});
   const list = h("dl", { class: "line-facts" });
-  const accept = button("Accept", () => void reviewer.decide("accepted"), "A");
-  const reject = button("Reject", () => void reviewer.decide("rejected"), "D");
-  const rest = button("Accept the rest", () => void reviewer.acceptRest());
+  const accept = button("Accept", () => press("A"), "A");
+  const reject = button("Reject", () => press("D"), "D");
+  const rest = button("Accept the rest", () => reviewer.acceptRest());
   const walk = h(
     "div",
     { class: "buttons" },
-    button("Previous", () => reviewer.step(-1), "K"),
-    button("Next", () => reviewer.step(1), "J"),
+    button("Previous", () => press("K"), "K"),
+    button("Next", () => press("J"), "J"),
   );
   const downloads = FORMATS.map(([format, label]) =>
-    button(label, () => client.download("lines", `?format=${format}`)),
+    button(label, () => client.files.download("lines", `?format=${format}`)),
   );
   const review = h(
     "div",
@@ -74,26 +75,27 @@ export function linesPanel(store: AppStore, client: Client, reviewer: Reviewer):
     h("p", { class: "summary" }, "Download the accepted lines"),
     h("div", { class: "buttons" }, ...downloads),
   );
-  store.watch(["lines", "searchStage", "runs", "predictionVersion", "writer", "training", "edges"], () => {
-    const { lines, runs, writer, edges } = store.now;
+  store.watch(["lines", "searchStage", "runs", "predictionVersion", "writer", "connected", "training", "edges"], () => {
+    const { lines, runs, edges } = store.now;
+    const mayDecide = refusalOf(store.now) === "";
     const { open, accepted } = countDecisions(lines.lines);
     words.textContent = summary(store);
     find.hidden = lines.searching || !edges;
-    find.disabled = !writer || runs.length === 0;
+    find.disabled = !mayDecide || runs.length === 0;
     cancel.hidden = !lines.searching;
     review.hidden = lines.lines.length === 0;
-    rest.disabled = !writer || open === 0;
-    for (const download of downloads) download.disabled = accepted === 0;
+    rest.disabled = !mayDecide || open === 0;
+    for (const download of downloads) download.disabled = accepted === 0 || !store.now.connected;
   });
-  store.watch(["lines", "line", "writer", "showLines"], () => {
-    const { lines, line, writer } = store.now;
+  store.watch(["lines", "line", "writer", "connected", "showLines"], () => {
+    const { lines, line } = store.now;
     const chosen = line === null ? undefined : lines.lines[line];
     show.set(store.now.showLines);
     title.textContent = chosen ? `Line ${count(line! + 1)} of ${count(lines.lines.length)}` : "";
     list.replaceChildren(
       ...(chosen ? facts(chosen) : []).flatMap(([name, value]) => [h("dt", {}, name), h("dd", {}, value)]),
     );
-    accept.disabled = reject.disabled = !writer || !chosen;
+    accept.disabled = reject.disabled = refusalOf(store.now) !== "" || !chosen;
   });
   return section("Lines", true, words, h("div", { class: "buttons" }, find, cancel), review);
 }

@@ -2,7 +2,8 @@
 
 import { h } from "../shared/dom";
 import { linePlot } from "../shared/lines";
-import type { Client } from "./client";
+import type { Press } from "./chrome";
+import { refusalOf, type Client } from "./client";
 import { isOff, paletteOf } from "./classes";
 import { count, percent, seconds } from "./format";
 import { button, buttons, checkbox, list, section } from "./panel";
@@ -88,8 +89,9 @@ export function trainingPanel(store: AppStore, client: Client): HTMLElement {
     picker.set(settings.start);
     start.replaceChildren(picker.element);
   };
-  store.watch(["training", "runs", "counts", "settings", "edges"], () => {
+  store.watch(["training", "runs", "counts", "settings", "edges", "writer", "connected"], () => {
     const { training } = store.now;
+    train.disabled = refusalOf(store.now) !== "";
     const active = training?.active ?? false;
     words.textContent = summary(store);
     bar.hidden = cancel.hidden = !active;
@@ -121,8 +123,8 @@ export function trainingPanel(store: AppStore, client: Client): HTMLElement {
   );
 }
 
-export function uncertainPanel(store: AppStore, step: (by: 1 | -1) => void, accept: () => void): HTMLElement {
-  const right = button("It is right", accept, "Y");
+export function uncertainPanel(store: AppStore, press: Press): HTMLElement {
+  const right = button("It is right", () => press("Y"), "Y");
   const words = h("p", { class: "summary", role: "status" });
   store.watch(["uncertain", "runs"], () => {
     const { uncertain: place, runs } = store.now;
@@ -134,7 +136,7 @@ export function uncertainPanel(store: AppStore, step: (by: 1 | -1) => void, acce
         : "Available once there is a prediction.";
     right.disabled = !place;
   });
-  const steps = [button("Previous", () => step(-1), "⇧N"), button("Next", () => step(1), "N")];
+  const steps = [button("Previous", () => press("Shift+N"), "⇧N"), button("Next", () => press("N"), "N")];
   return section("Uncertain places", true, words, h("div", { class: "buttons" }, ...steps, right));
 }
 

@@ -22,7 +22,7 @@ const SIDES: [Side, string][] = [
   ["left", "⇧Q"],
 ];
 
-export function viewPanel(store: AppStore, stage: Stage): HTMLElement {
+export function viewPanel(store: AppStore, press: Press): HTMLElement {
   const lists = h("div", {}); // what this cloud offers
   const scale = slider("Scale", 0, 15, 1, (value) => store.set({ scale: value }));
   const size = slider("Point size", 0.3, 6, 0.05, (value) => store.set({ pointSize: value }));
@@ -41,15 +41,18 @@ export function viewPanel(store: AppStore, stage: Stage): HTMLElement {
     (["system", "light", "dark"] as Theme[]).map((value) => ({ value, label: value })),
     (chosen) => store.set({ theme: chosen }),
   );
-  const flat = checkbox("Orthographic", "⇧F", (orthographic) => store.set({ orthographic }));
+  const flat = checkbox("Orthographic", "⇧F", () => {
+    press("Shift+F");
+    flat.set(store.now.orthographic);
+  });
   const sides = h(
     "div",
     { class: "sides", role: "group", "aria-label": "Look from" },
-    ...SIDES.map(([side, key]) => button(side, () => stage.fit(side), key)),
+    ...SIDES.map(([side, key]) => button(side, () => press(key.replace("⇧", "Shift+")), key)),
   );
   let colours: Picker<ColourMode>;
   let features: Picker<number>;
-  store.watch(["session", "edges"], () => {
+  store.watch(["session", "edges", "hasPrediction"], () => {
     const names = store.now.session?.features ?? [];
     colours = list(
       "Colour by",
@@ -63,7 +66,7 @@ export function viewPanel(store: AppStore, stage: Stage): HTMLElement {
     );
     lists.replaceChildren(colours.element, features.element);
   });
-  store.watch(["mode", "feature", "scale", "session", "edges"], () => {
+  store.watch(["mode", "feature", "scale", "session", "edges", "hasPrediction"], () => {
     const { session, mode, feature } = store.now;
     features.element.hidden = scale.element.hidden = mode !== "feature";
     colours.set(mode);
@@ -147,7 +150,7 @@ export function clipPanel(store: AppStore, stage: Stage, press: Press): HTMLElem
     "Clipping box",
     false,
     use.element,
-    ...sides.map((side) => side.slider.element),
+    h("div", { class: "limits" }, ...sides.map((side) => side.slider.element)),
     h("p", { class: "summary" }, "Or drag the dots on its faces. Slices across an axis:"),
     h(
       "div",

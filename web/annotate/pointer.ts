@@ -104,6 +104,23 @@ export class Pointer {
     this.hoverSoon();
   }
 
+  /** Ends what is being painted: a stroke of the brush as far as it came, an outline for nothing. */
+  finish(): void {
+    if (this.brush.isDown) this.brush.release();
+    this.outline.cancel();
+    this.drag = null;
+    this.overlay.setPivot(null);
+  }
+
+  /** Takes back the stroke that is being drawn; false if there is none. */
+  cancel(): boolean {
+    if (!this.brush.isDown) return false;
+    this.brush.cancel();
+    this.drag = null;
+    this.hoverSoon();
+    return true;
+  }
+
   /** A second finger moves the view: what the first one had begun to paint is not meant. */
   private pressSecond(event: PointerEvent): void {
     if (this.fingers.count > 2 || (this.drag && !this.fingers.has(this.pointer))) return;

@@ -50,16 +50,16 @@ export class Reviewer {
   }
 
   /** Decides on the line that is looked at and goes to the next that is undecided. */
-  async decide(decision: Decision): Promise<void> {
+  decide(decision: Decision): void {
     const { line } = this.store.now;
-    if (line === null || !(await this.client.decide(decision, [line]))) return;
+    if (line === null || !this.client.decide(decision, [line])) return;
     const next = nextOpen(this.store.now.lines.lines, line);
-    if (next !== null && this.store.now.line === line) this.visit(next);
+    if (next !== null) this.visit(next);
   }
 
-  async acceptRest(): Promise<void> {
+  acceptRest(): void {
     const rest = this.store.now.lines.lines.flatMap(({ decision }, i) => (decision === "open" ? [i] : []));
-    await this.client.decide("accepted", rest);
+    this.client.decide("accepted", rest);
   }
 
   private visit(number: number | null): void {

@@ -3,7 +3,7 @@
 import type { Stroke } from "../shared/line_layer";
 import type { Api } from "./api";
 import { Budget } from "./budget";
-import { Camera, type Side } from "./camera";
+import { Camera, type Pose, type Side } from "./camera";
 import { pick, placesOf, type Chunk, type Picked, type Visibility } from "./chunk";
 import { drawnSpacings, selectNodes, withSpacings, type Take } from "./detail";
 import { boxCorners as corners } from "./geometry";
@@ -19,6 +19,8 @@ export interface StageEvents {
   moved(): void;
   failed(error: Error): void;
   isPainting(): boolean;
+  /** The graphics card was taken away, or is there again. */
+  contextLost(isLost: boolean): void;
 }
 
 export class Stage {
@@ -71,16 +73,23 @@ export class Stage {
       isPainting: () => on.isPainting(),
     });
     new ResizeObserver(() => this.resize()).observe(canvas.parentElement!);
-    canvas.addEventListener("webglcontextrestored", () => this.redraw());
+    canvas.addEventListener("webglcontextlost", () => on.contextLost(true));
+    canvas.addEventListener("webglcontextrestored", () => {
+      on.contextLost(false);
+      if (this.look) this.painter.setAppearance(this.look);
+      this.redraw();
+    });
   }
 
-  open({ nodes, spacing, bounds, has_colours: hasColours }: Session, hasPrediction: boolean): void {
+  /** Seen from the first direction, unless it was looked at before. */
+  open({ nodes, spacing, bounds, has_colours: hasColours }: Session, hasPrediction: boolean, pose?: Pose): void {
     this.loader.setNodes(withSpacings(nodes, spacing), hasColours, hasPrediction);
     this.bounds = bounds;
     this.camera.setBounds(bounds);
     this.resize();
-    this.awaitsFirst = true;
-    this.camera.fit("first", corners(bounds));
+    this.awaitsFirst = !pose;
+    if (pose) this.camera.pose = pose;
+    else this.camera.fit("first", corners(bounds));
     this.redraw();
   }
 

@@ -30,6 +30,8 @@ export interface State {
   connected: boolean;
   /** Another start of the program answers, which does not know this page. */
   restarted: boolean;
+  /** The graphics card was taken away. */
+  contextLost: boolean;
   /** Strokes that wait for the program to come back. */
   waiting: number;
   writer: boolean;
@@ -41,6 +43,8 @@ export interface State {
   paintClass: number;
   /** Of the brush, in units of the cloud. */
   radius: number;
+  /** The same in spacings of the cloud: as large the brush is in another one. */
+  brush: number;
   protect: boolean;
   frontOnly: boolean;
   hidden: ReadonlySet<number>;
@@ -64,8 +68,8 @@ export interface State {
   settings: Settings;
   runs: Run[];
   training: Training | null;
-  /** Shares of the classes in the prediction. */
-  predicted: number[] | null;
+  /** There is one to show. */
+  hasPrediction: boolean;
   uncertain: Uncertain | null;
   predictionVersion: number;
   /** Strokes that the prediction does not know yet. */
@@ -85,6 +89,7 @@ export const initialState: State = {
   progress: { stage: "Connecting", fraction: 0 },
   connected: true,
   restarted: false,
+  contextLost: false,
   waiting: 0,
   writer: false,
   tool: "brush",
@@ -92,6 +97,7 @@ export const initialState: State = {
   edges: true,
   paintClass: 2,
   radius: 1,
+  brush: 1.75, // thin enough for an edge
   protect: false,
   frontOnly: true,
   hidden: new Set(),
@@ -113,7 +119,7 @@ export const initialState: State = {
   settings: { classes: 3, auto: true, start: "random", seed: 1 },
   runs: [],
   training: null,
-  predicted: null,
+  hasPrediction: false,
   uncertain: null,
   predictionVersion: 0,
   outOfDate: false,

@@ -99,6 +99,8 @@ export interface Session extends Classes {
   redo: number;
   run: Run | number | null;
   writer: boolean;
+  /** Strokes are newer than the current run. */
+  out_of_date: boolean;
   /** Whether this start of the program knows the window. */
   known: boolean;
   prediction_version: number;
@@ -137,8 +139,7 @@ export interface TrainingEvent {
 export interface PredictionEvent {
   prediction_version: number;
   run: number;
-  /** By class, boundary too. */
-  counts: number[];
+  out_of_date: boolean;
   seconds_train: number | null;
   seconds_classify: number | null;
 }
@@ -171,8 +172,15 @@ export interface Lines {
   lines: Line[];
 }
 
+export interface LinesEvent {
+  cloud: number;
+  version: number;
+  searching: boolean;
+}
+
 /** Decisions of any window. */
 export interface DecidedEvent {
+  cloud: number;
   version: number;
   decision: Decision;
   lines: number[];
