@@ -390,6 +390,13 @@ for (const [name, width, height, room] of [
       return { canvas: { width, height }, cut: names };
     });
     assert.deepEqual(cut, []);
+    await page.keyboard.press("?");
+    const beyond = await page.locator("dialog.help").evaluate((dialog) => {
+      const edge = dialog.getBoundingClientRect().right - parseFloat(getComputedStyle(dialog).paddingRight);
+      return [...dialog.querySelectorAll("dd")].filter((dd) => dd.getBoundingClientRect().right > edge + 1).length;
+    });
+    assert.equal(beyond, 0, "the help keeps its margin");
+    await page.keyboard.press("Escape");
     assert.ok(canvas.width > room && canvas.height > 350, JSON.stringify(canvas));
     // What does not fit below can be scrolled to.
     const last = page.locator("aside button:visible, aside input:visible").last();

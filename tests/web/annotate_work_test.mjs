@@ -5,7 +5,7 @@ import { test } from "node:test";
 
 import { load } from "./bundle.mjs";
 
-const { api, brush, commands, line_client, preferences, reviewer, store, views, work } = await load(
+const { api, brush, commands, line_client, preferences, reviewer, store, views, words, work } = await load(
   "api",
   "brush",
   "commands",
@@ -14,6 +14,7 @@ const { api, brush, commands, line_client, preferences, reviewer, store, views, 
   "reviewer",
   "store",
   "views",
+  "words",
   "work",
 );
 
@@ -44,8 +45,8 @@ function review({ lines = [line(), line(), line()], ask = async () => true } = {
   });
   const warnings = [];
   const server = byHand();
-  const words = { say() {}, warn: (text) => warnings.push(text) };
-  const client = new line_client.LineClient(server, page, words, () => true, ask);
+  const telling = { say() {}, warn: (text) => warnings.push(text) };
+  const client = new line_client.LineClient(server, page, telling, () => true, ask);
   const stage = { camera: { visit() {} } };
   const its = new reviewer.Reviewer(stage, page, client);
   const decisions = () => page.now.lines.lines.map(({ decision }) => decision[0]).join("");
@@ -318,6 +319,11 @@ test("a cloud that is looked at again is as it was left, but for what the predic
   const later = views.resumed(view, { predictionVersion: 6, lines: { version: 3 } });
   assert.deepEqual([later.clip, later.uncertain, later.line, later.showLines], [left.clip, null, null, true]);
   assert.deepEqual(views.resumed(undefined, left).clip, null);
+});
+
+test("the first words are of fingers where there is no mouse", () => {
+  assert.match(words.hintWords(true, false), /^Paint where the prediction is wrong\. Right button/);
+  assert.match(words.hintWords(false, true), /^Paint some points of each class\. One finger paints/);
 });
 
 test("preferences come back; what is damaged does not", () => {

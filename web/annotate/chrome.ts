@@ -12,6 +12,7 @@ import { downloadMenu } from "./download_menu";
 import { icon, type IconName } from "./icons";
 import { button } from "./panel";
 import type { AppStore, Tool } from "./store";
+import { hintWords } from "./words";
 
 const TOOLS: { tool: Tool; icon: IconName; name: string; key: string }[] = [
   { tool: "brush", icon: "brush", name: "Brush", key: "B" },
@@ -143,11 +144,7 @@ export function hint(store: AppStore): HTMLElement {
   store.watch(["progress", "undo", "writer", "counts", "runs"], () => {
     const { progress, undo, writer, counts, runs } = store.now;
     element.hidden = progress !== null || !writer || undo > 0 || counts.some((n) => n > 0);
-    const what = runs.length > 0 ? "Paint where the prediction is wrong" : "Paint some points of each class";
-    const how = matchMedia("(pointer: coarse)").matches
-      ? "One finger paints, two pan and zoom; the Navigate tool orbits."
-      : "Right button: orbit. Wheel: zoom. ?: all keys.";
-    element.textContent = `${what}. ${how}`;
+    element.textContent = hintWords(runs.length > 0, matchMedia("(pointer: coarse)").matches);
   });
   return element;
 }

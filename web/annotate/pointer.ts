@@ -206,6 +206,7 @@ export class Pointer {
 
   /** A dab of the brush at the middle of the view. */
   dab(): void {
+    if (this.brush.isDown) return; // a stroke is under way
     if (refusalOf(this.store.now)) return this.on.refused();
     if (!this.byKeys) this.setByKeys(true);
     this.brush.press(this.stage.width / 2, this.stage.height / 2);

@@ -57,6 +57,15 @@ export function ask(question: string, yes: string): Promise<boolean> {
   });
 }
 
+/** How to begin. */
+export function hintWords(isPredicted: boolean, isTouched: boolean): string {
+  const what = isPredicted ? "Paint where the prediction is wrong" : "Paint some points of each class";
+  const how = isTouched
+    ? "One finger paints, two pan and zoom; the Navigate tool orbits."
+    : "Right button: orbit. Wheel: zoom. ?: all keys.";
+  return `${what}. ${how}`;
+}
+
 const MOUSE: [string, string][] = [
   ["left button", "paint"],
   ["right button, or left with space held", "orbit about the point under the pointer"],
