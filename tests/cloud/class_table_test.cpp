@@ -32,6 +32,14 @@ TEST(ClassTable, IsReadAsAUserWritesIt) {
   EXPECT_EQ(names_of(more), "edges, pipe");
 }
 
+TEST(ClassTable, GivesNoColourTwice) {
+  const ClassTable own = parse_classes("x=" + text_of(usual_colour(1)) + ", pipe, wall");
+  EXPECT_EQ(own[1].colour, usual_colour(2));
+  EXPECT_EQ(own[2].colour, usual_colour(3));
+  const ClassTable last = parse_classes("pipe, x=" + text_of(usual_colour(0)));
+  EXPECT_EQ(last[0].colour, usual_colour(1));
+}
+
 TEST(ClassTable, RefusesWhatIsNone) {
   for (const char* wrong : {"", "ground", "a,b,a", "a,,b", "a,b=red", "a,b=#12345",
                             "edges,a,b,c,d,e", "a,b,c,d,e,f,g,h,i", "a,b\tc", "a,\xff",

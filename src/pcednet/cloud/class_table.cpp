@@ -52,19 +52,33 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
 }
 
-void add_class(std::string_view text, ClassTable& table) {
+/// Adds the class that `text` describes; its number to `plain` if that gives no colour.
+void add_class(std::string_view text, ClassTable& table, std::vector<std::size_t>& plain) {
   if (table.empty() && text == kEdges) {
     table = edge_classes();
     return;
   }
   const std::size_t sign = text.rfind('=');
-  PointClass one{std::string(trimmed(text.substr(0, sign))), usual_colour(table.size())};
-  if (sign != std::string_view::npos) {
+  PointClass one{std::string(trimmed(text.substr(0, sign))), {}};
+  if (sign == std::string_view::npos) {
+    plain.push_back(table.size());
+  } else {
     const auto colour = colour_of(trimmed(text.substr(sign + 1)));
     if (!colour) refuse(fmt::format("\"{}\": a colour is #rrggbb", text));
     one.colour = *colour;
   }
   table.push_back(std::move(one));
+}
+
+/// Gives the class its usual colour, or the next that no other class has.
+void give_colour(std::size_t id, ClassTable& table) {
+  const auto is_taken = [&](const Rgb& colour) {
+    return std::any_of(table.begin(), table.end(),
+                       [&](const PointClass& other) { return other.colour == colour; });
+  };
+  std::size_t usual = id;
+  while (is_taken(usual_colour(usual)) && usual < id + kUsualColours.size()) ++usual;
+  table[id].colour = usual_colour(usual);
 }
 
 }  // namespace
@@ -122,19 +136,22 @@ void check_classes(const ClassTable& table) {
       refuse(fmt::format("a name has 1 to {} characters", kLongestName));
     }
     const auto same = [&](const PointClass& other) { return other.name == name; };
-    if (std::find_if(table.begin(), one, same) != one) refuse(name + " is there twice");
+    if (std::find_if(table.begin(), one, same) != one)
+      refuse(fmt::format("\"{}\" is there twice", name));
   }
 }
 
 ClassTable parse_classes(std::string_view text) {
   ClassTable table;
+  std::vector<std::size_t> plain;
   while (!text.empty()) {
     const std::size_t end = std::min(text.find_first_of(",\n"), text.size());
     const std::string_view one = trimmed(text.substr(0, end));
     const bool is_line = end < text.size() && text[end] == '\n';
-    if (!one.empty() || !(is_line || end == text.size())) add_class(one, table);
+    if (!one.empty() || !(is_line || end == text.size())) add_class(one, table, plain);
     text.remove_prefix(std::min(end + 1, text.size()));
   }
+  for (const std::size_t id : plain) give_colour(id, table);
   check_classes(table);
   return table;
 }

@@ -34,7 +34,7 @@ bool has_own_classes(const ClassTable& table);
 std::string text_of(const Rgb& colour);
 std::optional<Rgb> colour_of(std::string_view text);
 
-/// The colour of class `id` unless the user chooses another.
+/// The colour of class `id` unless the user chooses another, or has given it to another class.
 Rgb usual_colour(std::size_t id);
 
 /// Throws Error(kUsage) unless there are two to eight classes, of different names of one to 40
