@@ -7,7 +7,10 @@
 #include "pcednet/core/parallel.h"
 #include "pcednet/core/random.h"
 #include "pcednet/nn/gradient.h"
+#include "pcednet/nn/network.h"
+#include "pcednet/nn/plan.h"
 #include "pcednet/nn/predict.h"
+#include "pcednet/nn/standardise.h"
 #include "pcednet/nn/train.h"
 
 namespace pcednet::nn {

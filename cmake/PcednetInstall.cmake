@@ -11,17 +11,14 @@ install(TARGETS pcednet_all EXPORT pcednetTargets COMPONENT dev)
 # What a program may include: these headers include no others of pcednet, see tests/house.
 set(public_headers
   pcednet.h
-  cloud/attribute.h cloud/class_table.h cloud/edge_class.h cloud/point_cloud.h
+  cloud/attribute.h cloud/class_table.h cloud/point_cloud.h
   core/error.h core/output_file.h core/parallel.h core/progress.h core/vec3.h
-  detect/boundary.h detect/classify.h detect/cloud_kind.h detect/model.h detect/prepare.h detect/result_cloud.h
-  detect/train.h
-  eval/scores.h
+  detect/boundary.h detect/classify.h detect/model.h detect/prepare.h detect/result_cloud.h detect/train.h
   formats/read_cloud.h formats/write_cloud.h
-  gls/features.h gls/projection.h gls/scale_space_options.h gls/scales.h
+  gls/scale_space_options.h
   io/coordinate_system.h io/drawing/drawing.h io/loaded_cloud.h io/write_options.h
   lines/curve.h lines/find_lines.h
-  nn/architecture.h nn/model.h nn/network.h nn/optimiser.h nn/standardise.h nn/train.h
-  nn/training_set.h)
+  nn/model.h nn/train.h)
 foreach(header ${public_headers})
   cmake_path(GET header PARENT_PATH folder)
   install(FILES src/pcednet/${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/pcednet/${folder}

@@ -7,7 +7,7 @@
 #include <unordered_set>
 
 #include "byte_size.h"
-#include "pcednet/cloud/edge_class.h"
+#include "pcednet/cloud/class_table.h"
 #include "pcednet/core/error.h"
 #include "pcednet/spatial/morton.h"
 

@@ -6,6 +6,7 @@
 #include "arrays.h"
 #include "bindings.h"
 #include "pcednet/core/error.h"
+#include "pcednet/detect/cloud_kind.h"
 #include "pcednet/nn/model_file.h"
 #include "pcednet/nn/predict.h"
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "pcednet/cloud/edge_class.h"
+#include "pcednet/cloud/class_table.h"
 #include "pcednet/core/random.h"
 #include "pcednet/core/vec3.h"
 

@@ -6,6 +6,8 @@
 #include <numeric>
 
 #include "pcednet/core/parallel.h"
+#include "pcednet/nn/network.h"
+#include "pcednet/nn/standardise.h"
 #include "reference.h"
 
 namespace pcednet::nn {

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "pcednet/core/error.h"
+#include "pcednet/nn/plan.h"
 #include "reference.h"
 #include "support/expect_error.h"
 

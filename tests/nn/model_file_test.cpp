@@ -9,6 +9,8 @@
 #include <string>
 
 #include "pcednet/core/error.h"
+#include "pcednet/nn/network.h"
+#include "pcednet/nn/standardise.h"
 #include "reference.h"
 
 namespace pcednet::nn {

@@ -7,6 +7,8 @@
 
 #include "pcednet/core/error.h"
 #include "pcednet/core/parallel.h"
+#include "pcednet/nn/network.h"
+#include "pcednet/nn/standardise.h"
 #include "reference.h"
 #include "support/expect_error.h"
 

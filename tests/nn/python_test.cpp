@@ -9,7 +9,9 @@
 
 #include "pcednet/nn/gradient.h"
 #include "pcednet/nn/model_file.h"
+#include "pcednet/nn/network.h"
 #include "pcednet/nn/predict.h"
+#include "pcednet/nn/standardise.h"
 #include "reference.h"
 
 namespace pcednet::nn {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "pcednet/core/random.h"
-#include "pcednet/nn/architecture.h"
+#include "pcednet/nn/model.h"
 
 /// The networks written down once more from the paper, a number at a time and in double.
 namespace pcednet::nn::reference {

@@ -9,6 +9,7 @@
 #include "pcednet/core/error.h"
 #include "pcednet/core/parallel.h"
 #include "pcednet/nn/distil.h"
+#include "pcednet/nn/network.h"
 #include "pcednet/nn/predict.h"
 #include "reference.h"
 #include "support/expect_error.h"

@@ -7,6 +7,7 @@
 #include "pcednet/cloud/bounding_box.h"
 #include "pcednet/detect/classify.h"
 #include "pcednet/gls/engine.h"
+#include "pcednet/gls/scales.h"
 #include "workbench/shapes/default_set.h"
 
 // The default model's labels do not depend on the extent of a file: its scales are multiples of the

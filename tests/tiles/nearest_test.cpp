@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "pcednet/core/random.h"
+#include "pcednet/gls/scales.h"
 #include "pcednet/spatial/curve_order.h"
 
 namespace pcednet::tiles {

@@ -12,6 +12,7 @@
 #include "model_facts.h"
 #include "pcednet/core/error.h"
 #include "pcednet/core/output_file.h"
+#include "pcednet/detect/cloud_kind.h"
 #include "pcednet/formats/format.h"
 #include "pcednet/formats/virtual_cloud.h"
 #include "pcednet/io/input_file.h"

@@ -10,6 +10,7 @@
 #include "models.h"
 #include "number_options.h"
 #include "pcednet/core/error.h"
+#include "pcednet/detect/cloud_kind.h"
 #include "pcednet/detect/train.h"
 #include "prepare.h"
 #include "result_plan.h"

@@ -7,6 +7,7 @@
 
 #include "pcednet/core/blocks.h"
 #include "pcednet/core/error.h"
+#include "pcednet/detect/cloud_kind.h"
 #include "pcednet/detect/context.h"
 #include "pcednet/detect/crease_kind.h"
 #include "pcednet/detect/decide.h"

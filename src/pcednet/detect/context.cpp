@@ -12,6 +12,7 @@
 #include "pcednet/detect/decide.h"
 #include "pcednet/detect/describe.h"
 #include "pcednet/detect/principal_axes.h"
+#include "pcednet/gls/features.h"
 #include "pcednet/nn/predict.h"
 #include "pcednet/spatial/curve_order.h"
 

@@ -11,6 +11,7 @@
 #include "pcednet/cloud/point_cloud.h"
 #include "pcednet/core/error.h"
 #include "pcednet/core/version.h"
+#include "pcednet/detect/cloud_kind.h"
 #include "pcednet/detect/context.h"
 #include "pcednet/nn/metadata.h"
 #include "pcednet/nn/model_file.h"

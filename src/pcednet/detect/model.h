@@ -3,13 +3,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "pcednet/cloud/class_table.h"
 #include "pcednet/core/output_file.h"
-#include "pcednet/detect/cloud_kind.h"
 #include "pcednet/gls/scale_space_options.h"
 #include "pcednet/nn/model.h"
 
@@ -18,6 +18,29 @@ namespace pcednet::detect {
 /// Points with a lower edge probability stay non-edge without the context network: most points,
 /// which saves most of its time.
 inline constexpr float kLeastEdge = 0.01f;
+
+/// Facts about a cloud before its points are classified.
+struct CloudFacts {
+  std::size_t points =
+      std::numeric_limits<std::size_t>::max();  ///< distinct; the maximum unless counted
+  bool estimated = false;  ///< normals were missing and are estimated, or (below 20,000 points) the
+                           ///< given ones agree with estimated ones
+  bool exact = false;      ///< normals were missing, and is_exact() is true of the points, see
+                           ///< exact_points.h
+  bool noisy = false;  ///< normals were missing, and noise requires more neighbours than usual, see
+                       ///< normals::choose_neighbours()
+};
+
+/// The kind of clouds that an expert is for: all conditions must hold.
+struct CloudKind {
+  std::size_t below = 0;  ///< distinct points; 0: of any number
+  std::optional<bool> estimated = {};
+  bool exact = false;
+  bool noisy = false;
+
+  bool has(const CloudFacts& facts) const;
+  bool operator==(const CloudKind&) const = default;
+};
 
 /// The networks that replace a model's own for clouds of one kind, with the same description and
 /// classes.

@@ -8,6 +8,7 @@
 #include "pcednet/core/median.h"
 #include "pcednet/core/parallel_loops.h"
 #include "pcednet/detect/part_of_cloud.h"
+#include "pcednet/gls/scales.h"
 #include "pcednet/normals/neighbour_graph.h"
 
 namespace pcednet::detect {

@@ -5,7 +5,7 @@
 
 #include "pcednet/cloud/class_table.h"
 #include "pcednet/detect/model.h"
-#include "pcednet/nn/training_set.h"
+#include "pcednet/nn/train.h"
 
 namespace pcednet::detect {
 

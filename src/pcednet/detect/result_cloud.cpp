@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "pcednet/cloud/edge_class.h"
+#include "pcednet/cloud/class_table.h"
 #include "pcednet/core/version.h"
 
 namespace pcednet::detect {

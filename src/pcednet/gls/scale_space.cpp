@@ -7,9 +7,11 @@
 
 #include "pcednet/core/parallel.h"
 #include "pcednet/gls/descriptor.h"
+#include "pcednet/gls/features.h"
 #include "pcednet/gls/fit_limits.h"
 #include "pcednet/gls/moments.h"
 #include "pcednet/gls/plane_fit.h"
+#include "pcednet/gls/projection.h"
 #include "pcednet/gls/scales.h"
 #include "pcednet/gls/sphere_fit.h"
 

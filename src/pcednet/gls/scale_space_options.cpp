@@ -6,6 +6,7 @@
 #include <array>
 
 #include "pcednet/cloud/bounding_box.h"
+#include "pcednet/gls/scales.h"
 
 namespace pcednet::gls {
 

@@ -5,13 +5,9 @@
 #include <span>
 #include <vector>
 
-#include "pcednet/core/vec3.h"
+#include "pcednet/gls/scale_space_options.h"
 
 namespace pcednet::gls {
-
-inline constexpr int kMinScales = 4, kMaxScales = 128;
-
-inline constexpr double kPartOfDiagonal = 0.1;
 
 /// The largest scale over the smallest, for clouds too sparse for the paper's range.
 inline constexpr double kSparseRange = 2.0;

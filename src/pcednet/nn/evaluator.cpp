@@ -1,5 +1,7 @@
 #include "pcednet/nn/evaluator.h"
 
+#include "pcednet/nn/plan.h"
+
 namespace pcednet::nn {
 
 Evaluator::Evaluator(const Model& model, InstructionSet instructions)

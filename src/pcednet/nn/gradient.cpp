@@ -4,6 +4,7 @@
 #include <array>
 
 #include "pcednet/core/parallel.h"
+#include "pcednet/nn/plan.h"
 #include "pcednet/nn/targets.h"
 
 namespace pcednet::nn {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "pcednet/nn/evaluator.h"
-#include "pcednet/nn/training_set.h"
+#include "pcednet/nn/train.h"
 
 namespace pcednet::nn {
 

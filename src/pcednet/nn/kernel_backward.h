@@ -1,6 +1,7 @@
 #pragma once
 
 #include "pcednet/nn/kernel_weights.h"
+#include "pcednet/nn/plan.h"
 
 /// Derivatives of affine maps: see kernels.h.
 namespace pcednet::nn {

@@ -2,6 +2,7 @@
 
 #include "pcednet/core/simd.h"
 #include "pcednet/nn/kernels.h"
+#include "pcednet/nn/plan.h"
 
 /// Affine maps: see kernels.h.
 namespace pcednet::nn {

@@ -2,6 +2,7 @@
 
 #include "pcednet/nn/kernel_math.h"
 #include "pcednet/nn/kernels.h"
+#include "pcednet/nn/plan.h"
 
 /// Derivatives by the parameters of affine maps: see kernels.h.
 namespace pcednet::nn {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "pcednet/core/processor.h"
-#include "pcednet/nn/architecture.h"
+#include "pcednet/nn/plan.h"
 
 /// The inner loops, compiled once per vector instruction set and chosen at run time.
 ///

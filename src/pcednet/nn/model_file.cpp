@@ -11,6 +11,7 @@
 
 #include "pcednet/core/error.h"
 #include "pcednet/nn/metadata.h"
+#include "pcednet/nn/plan.h"
 
 namespace pcednet::nn {
 namespace {

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "pcednet/core/random.h"
+#include "pcednet/nn/plan.h"
 
 namespace pcednet::nn {
 

@@ -4,12 +4,9 @@
 #include <span>
 #include <vector>
 
-namespace pcednet::nn {
+#include "pcednet/nn/train.h"
 
-enum class OptimiserKind {
-  kAdam,      ///< Kingma and Ba 2015
-  kMomentum,  ///< v = momentum v + gradient; parameters -= rate v
-};
+namespace pcednet::nn {
 
 /// Moves parameters against their gradient. Uses only exactly rounded operations, so its bytes are
 /// the same on every processor.

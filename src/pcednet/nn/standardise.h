@@ -1,21 +1,11 @@
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <span>
-#include <vector>
 
-#include "pcednet/nn/training_set.h"
+#include "pcednet/nn/train.h"
 
 namespace pcednet::nn {
-
-/// Brings every input x to about the range the sigmoids resolve: u = (x - mean) / deviation,
-/// limited to +-bound. Inputs that are not finite become 0.
-struct Standardisation {
-  std::vector<float> mean;               ///< per scale and feature
-  std::vector<float> inverse_deviation;  ///< the same
-  float bound = 5.0f;
-};
 
 /// Leaves inputs unchanged, except for a limit of 1e6 that keeps the network's sums finite.
 Standardisation no_standardisation(int inputs);

@@ -4,7 +4,7 @@
 #include <span>
 
 #include "pcednet/nn/kernels.h"
-#include "pcednet/nn/training_set.h"
+#include "pcednet/nn/train.h"
 
 namespace pcednet::nn {
 

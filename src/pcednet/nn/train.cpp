@@ -10,7 +10,10 @@
 #include "pcednet/core/error.h"
 #include "pcednet/core/random.h"
 #include "pcednet/nn/gradient.h"
+#include "pcednet/nn/network.h"
+#include "pcednet/nn/optimiser.h"
 #include "pcednet/nn/sampler.h"
+#include "pcednet/nn/standardise.h"
 #include "pcednet/nn/validate.h"
 
 namespace pcednet::nn {

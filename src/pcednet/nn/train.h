@@ -1,16 +1,32 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "pcednet/core/progress.h"
 #include "pcednet/nn/model.h"
-#include "pcednet/nn/optimiser.h"
-#include "pcednet/nn/training_set.h"
 
 namespace pcednet::nn {
+
+/// The label of samples to leave out.
+constexpr std::uint8_t kIgnoredLabel = 255;
+
+/// Samples with the class of each; not owned.
+struct TrainingSet {
+  std::span<const float> samples;        ///< n x scales x features, row-major
+  std::span<const std::uint8_t> labels;  ///< n; a class, or kIgnoredLabel
+  /// n x classes, the probabilities to learn; empty: from the labels.
+  std::span<const float> targets = {};
+};
+
+enum class OptimiserKind {
+  kAdam,      ///< Kingma and Ba 2015
+  kMomentum,  ///< v = momentum v + gradient; parameters -= rate v
+};
 
 /// How to train. The defaults suit sets from some dozens of labelled points to tens of millions.
 struct TrainOptions {

@@ -6,6 +6,7 @@
 
 #include "pcednet/core/median.h"
 #include "pcednet/formats/format.h"
+#include "pcednet/gls/scales.h"
 #include "pcednet/spatial/kd_tree.h"
 #include "pcednet/tiles/inputs.h"
 #include "pcednet/tiles/layout.h"

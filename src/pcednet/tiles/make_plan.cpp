@@ -12,6 +12,7 @@
 #include "pcednet/detect/context.h"
 #include "pcednet/detect/octaves.h"
 #include "pcednet/formats/cloud_facts.h"
+#include "pcednet/gls/scales.h"
 #include "pcednet/normals/exact_planes.h"
 #include "pcednet/tiles/dense_sample.h"
 #include "pcednet/tiles/inputs.h"

@@ -10,6 +10,7 @@
 #include "pcednet/core/error.h"
 #include "pcednet/core/output_file.h"
 #include "pcednet/core/version.h"
+#include "pcednet/detect/cloud_kind.h"
 
 namespace pcednet::annotate {
 namespace {

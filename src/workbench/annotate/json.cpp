@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <span>
 
-#include "pcednet/cloud/edge_class.h"
+#include "pcednet/cloud/class_table.h"
 #include "pcednet/core/error.h"
 
 namespace pcednet::annotate {

@@ -3,7 +3,7 @@
 #include <array>
 #include <string_view>
 
-#include "pcednet/cloud/edge_class.h"
+#include "pcednet/cloud/class_table.h"
 #include "pcednet/cloud/point_cloud.h"
 
 namespace pcednet::io {

@@ -1,4 +1,4 @@
-#include "pcednet/nn/architecture.h"
+#include "pcednet/nn/plan.h"
 
 #include <fmt/format.h>
 

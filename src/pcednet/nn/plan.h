@@ -4,30 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "pcednet/nn/model.h"
+
 namespace pcednet::nn {
-
-enum class NetworkKind {
-  kPcednet,  ///< scales are joined pair by pair, each pair in a dense layer of its own
-  kFc,       ///< the same neurons, every layer connected to all of the one before
-  kCnn,      ///< two 1D convolutions over the features, with the scales as channels
-};
-
-/// The shape of a network: everything but its weights.
-///
-/// With 16 scales, 6 features, 3 classes and the default widths: PCEDNet has 1623 weights, FC 6663,
-/// CNN 9723.
-struct Architecture {
-  NetworkKind kind = NetworkKind::kPcednet;
-  int scales = 16;   ///< a power of two, at least 4
-  int features = 6;  ///< numbers per scale
-  int classes = 3;   ///< at least 2
-  int width = 0;     ///< neurons per pair of scales; 0: as many as features. CNN: not used
-  int hidden = 16;   ///< neurons of the classifier's two hidden layers. CNN: not used
-
-  int inputs() const { return scales * features; }
-  int pair_width() const { return width > 0 ? width : features; }
-  bool operator==(const Architecture&) const = default;
-};
 
 enum class Activation { kSigmoid, kRelu, kNone };
 
@@ -64,8 +43,5 @@ struct Plan {
 
 /// Throws Error(kUsage) for a shape that cannot be built.
 Plan make_plan(const Architecture& architecture);
-
-/// The number of parameters, biases included.
-std::size_t weight_count(const Architecture& architecture);
 
 }  // namespace pcednet::nn
