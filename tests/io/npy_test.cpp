@@ -89,7 +89,7 @@ TEST(Npy, RefusesHostileHeaders) {
       read_npy(scratch.file("a.npy", numpy_file(dictionary("<f4", "False", "2,"), numbers))).values,
       (std::vector<double>{1, 2}));
   for (const std::string& bad :
-       {dictionary("<f4", "True", "2,"), dictionary(">f4", "False", "2,"),
+       {dictionary("<f4", "Maybe", "2,"), dictionary(">f4", "False", "2,"),
         dictionary("<f4", "False", "3,"), dictionary("<f4", "False", "-2,"),
         dictionary("<f4", "False", "99999999999,"), dictionary("|O", "False", "2,"),
         dictionary("<f4", "False", "4294967296, 4294967296, 4294967296"),
@@ -100,6 +100,39 @@ TEST(Npy, RefusesHostileHeaders) {
   }
   error_of(ErrorKind::kUnreadable,
            [&] { read_npy(scratch.file("c.npy", "PK\3\4 and so on ...")); });
+}
+
+TEST(Npy, ReadsBoolHalfAndFortranOrder) {
+  const Scratch scratch;
+  const auto values_of = [&](const std::string& type, const std::string& order,
+                             const std::string& shape, const std::string& numbers) {
+    const std::string text =
+        "{'descr': '" + type + "', 'fortran_order': " + order + ", 'shape': (" + shape + "), }";
+    return read_npy(scratch.file("a.npy", numpy_file(text, numbers))).values;
+  };
+  EXPECT_EQ(values_of("|b1", "False", "3,", std::string("\x01\x00\x01", 3)),
+            (std::vector<double>{1, 0, 1}));
+  const auto half = [](auto... bits) { return packed(static_cast<std::uint16_t>(bits)...); };
+  EXPECT_EQ(values_of("<f2", "False", "6,", half(0x3c00, 0xc000, 0x3555, 0x0001, 0x7bff, 0x8000)),
+            (std::vector<double>{1, -2, 1365.0 / 4096, std::ldexp(1, -24), 65504, -0.0}));
+  EXPECT_EQ(values_of("<f2", "False", "2,", half(0x7c00, 0xfc00)),
+            (std::vector<double>{HUGE_VAL, -HUGE_VAL}));
+  EXPECT_TRUE(std::isnan(values_of("<f2", "False", "1,", half(0x7e00))[0]));
+  EXPECT_EQ(values_of("<f4", "True", "2, 3", packed(1.0F, 4.0F, 2.0F, 5.0F, 3.0F, 6.0F)),
+            (std::vector<double>{1, 2, 3, 4, 5, 6}));
+  EXPECT_EQ(values_of("|u1", "True", "2, 3, 2",
+                      std::string("\x00\x06\x02\x08\x04\x0a\x01\x07\x03\x09\x05\x0b", 12)),
+            (std::vector<double>{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11}));
+  EXPECT_EQ(values_of("<f4", "True", "0, 3", ""), (std::vector<double>{}));
+  EXPECT_EQ(values_of("<f4", "True", "2,", packed(1.0F, 2.0F)), (std::vector<double>{1, 2}));
+}
+
+TEST(Npy, NamesTheCause) {
+  const Scratch scratch;
+  const auto path = scratch.file(
+      "a.npy", numpy_file("{'descr': '>f4', 'fortran_order': False, 'shape': (1,), }", "1234"));
+  const std::string said = error_of(ErrorKind::kUnreadable, [&] { read_npy(path); });
+  EXPECT_TRUE(contains(said, "type \">f4\"; expected bool, or little-endian")) << said;
 }
 
 TEST(Npy, SurvivesTruncationAndFlippedBytes) {

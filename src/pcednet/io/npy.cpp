@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+#include <cstdint>
 #include <cstring>
 #include <optional>
 #include <string>
@@ -33,17 +35,51 @@ std::string header_of(const std::vector<std::size_t>& shape, ScalarType type) {
   return header + dictionary;
 }
 
-std::optional<ScalarType> parse_type(std::string_view descr) {
-  static constexpr std::pair<std::string_view, ScalarType> kTypes[] = {
-      {"<f4", ScalarType::kFloat32}, {"<f8", ScalarType::kFloat64}, {"|i1", ScalarType::kInt8},
-      {"|u1", ScalarType::kUint8},   {"<i2", ScalarType::kInt16},   {"<u2", ScalarType::kUint16},
-      {"<i4", ScalarType::kInt32},   {"<u4", ScalarType::kUint32},  {"<i8", ScalarType::kInt64},
-      {"<u8", ScalarType::kUint64},
+/// How a file holds its numbers.
+struct Storage {
+  std::size_t bytes = 0;                   ///< of a number
+  ScalarType type = ScalarType::kFloat64;  ///< that holds all of them
+};
+
+std::optional<Storage> parse_storage(std::string_view descr) {
+  static constexpr std::pair<std::string_view, Storage> kStorages[] = {
+      {"<f2", {2, ScalarType::kFloat32}}, {"<f4", {4, ScalarType::kFloat32}},
+      {"<f8", {8, ScalarType::kFloat64}}, {"|b1", {1, ScalarType::kUint8}},
+      {"|i1", {1, ScalarType::kInt8}},    {"|u1", {1, ScalarType::kUint8}},
+      {"<i2", {2, ScalarType::kInt16}},   {"<u2", {2, ScalarType::kUint16}},
+      {"<i4", {4, ScalarType::kInt32}},   {"<u4", {4, ScalarType::kUint32}},
+      {"<i8", {8, ScalarType::kInt64}},   {"<u8", {8, ScalarType::kUint64}},
   };
-  for (const auto& [name, type] : kTypes) {
-    if (name == descr) return type;
+  for (const auto& [name, storage] : kStorages) {
+    if (name == descr) return storage;
   }
   return std::nullopt;
+}
+
+/// The number in the 16 bits of IEEE 754's binary16.
+double half_of(const std::byte* bytes) {
+  std::uint16_t bits = 0;
+  std::memcpy(&bits, bytes, sizeof(bits));
+  const int exponent = (bits >> 10) & 31, fraction = bits & 1023;
+  const double size = exponent == 31  ? (fraction == 0 ? HUGE_VAL : std::nan(""))
+                      : exponent == 0 ? std::ldexp(fraction, -24)
+                                      : std::ldexp(1024 + fraction, exponent - 25);
+  return (bits & 0x8000) != 0 ? -size : size;
+}
+
+/// Numbers of which the first index varies fastest, so that the last does.
+std::vector<double> in_c_order(const std::vector<double>& values,
+                               const std::vector<std::size_t>& shape) {
+  std::vector<double> ordered;
+  ordered.reserve(values.size());
+  std::vector<std::size_t> index(shape.size(), 0);
+  while (ordered.size() < values.size()) {
+    std::size_t from = 0;
+    for (std::size_t k = shape.size(); k-- > 0;) from = from * shape[k] + index[k];
+    ordered.push_back(values[from]);
+    for (std::size_t k = shape.size(); k-- > 0 && ++index[k] == shape[k];) index[k] = 0;
+  }
+  return ordered;
 }
 
 /// The text behind `key` in the dictionary, up to `end`.
@@ -142,21 +178,32 @@ NpyArray read_npy(const std::filesystem::path& path) {
 
   NpyArray array;
   std::size_t product = 0;
-  const auto type = parse_type(trim(entry(dictionary, "'descr': '", '\'')));
+  const std::string_view descr = trim(entry(dictionary, "'descr': '", '\''));
+  const auto storage = parse_storage(descr);
   const auto shape = parse_shape(entry(dictionary, "'shape': (", ')'), product);
-  if (!type || !shape || entry(dictionary, "'fortran_order': ", ',') != "False") {
-    throw unreadable(path, "expected little-endian numbers in C order");
+  const std::string_view order = entry(dictionary, "'fortran_order': ", ',');
+  if (!storage && !descr.empty()) {
+    throw unreadable(path, fmt::format("its numbers are of numpy's type \"{}\"; expected bool, or "
+                                       "little-endian integers or floats of up to 64 bits",
+                                       descr));
   }
-  if (product > (file.size() - begin) / size_of(*type)) {
+  if (!storage || !shape || (order != "False" && order != "True")) {
+    throw unreadable(path, "its header is not that of an array of numbers");
+  }
+  if (product > (file.size() - begin) / storage->bytes) {
     throw unreadable(path, fmt::format("declares {} numbers, but ends {} bytes after byte {}",
                                        product, file.size() - begin, begin));
   }
-  Attribute numbers{"", *type, 1, std::vector<std::byte>(product * size_of(*type))};
+  Attribute numbers{"", storage->type, 1, std::vector<std::byte>(product * storage->bytes)};
   file.read(begin, numbers.bytes);
+  const bool is_half = storage->bytes < size_of(storage->type);
   array.shape = *shape;
-  array.type = *type;
+  array.type = storage->type;
   array.values.reserve(product);
-  for (std::size_t i = 0; i < product; ++i) array.values.push_back(numbers.value(i));
+  for (std::size_t i = 0; i < product; ++i) {
+    array.values.push_back(is_half ? half_of(numbers.bytes.data() + 2 * i) : numbers.value(i));
+  }
+  if (order == "True") array.values = in_c_order(array.values, array.shape);
   return array;
 }
 

@@ -44,12 +44,13 @@ class NpyWriter {
 /// An array read from a file, in C order.
 struct NpyArray {
   std::vector<std::size_t> shape;
-  ScalarType type = ScalarType::kFloat64;  ///< in the file
+  ScalarType type = ScalarType::kFloat64;  ///< in the file; of 16-bit floats kFloat32
   std::vector<double> values;
 };
 
-/// Reads a .npy file with numbers in C order and little-endian. Throws Error(kUnreadable) for any
-/// other, or one whose size does not fit its shape.
+/// Reads a .npy file with bools, or little-endian integers or floats, in C or in Fortran order.
+/// Throws Error(kUnreadable), naming the cause, for any other, or one whose size does not fit its
+/// shape.
 NpyArray read_npy(const std::filesystem::path& path);
 
 }  // namespace pcednet::io
