@@ -24,14 +24,18 @@ PointCloud labelled() {
   return cloud;
 }
 
-EdgeModel own_model(const char* classes = "ground,wall,pipe,a,b,rail=#102030") {
+TrainedModel train_own(const char* classes) {
   const PointCloud cloud = labelled();
   TrainOptions options;
   options.table = parse_classes(classes);
   options.training.epochs = 8;
   options.context = true;
   const TrainingCloud training{"cube", prepare(cloud), cloud.labels};
-  return train("own", {&training, 1}, options).model;
+  return train("own", {&training, 1}, options);
+}
+
+EdgeModel own_model(const char* classes = "ground,wall,pipe,a,b,rail=#102030") {
+  return train_own(classes).model;
 }
 
 std::filesystem::path scratch(const char* name) {
@@ -50,6 +54,14 @@ TEST(OwnClasses, GetAnOutputEachThatPointsHave) {
   EXPECT_GT(static_cast<double>(right) / static_cast<double>(cloud.size()), 0.8);
   EXPECT_EQ(found.p_sharp, std::vector<float>(cloud.size(), 0.0f));
   for (const float p : found.p_class) EXPECT_GE(p, 1.0f / 3 - 1e-5f);
+}
+
+TEST(OwnClasses, HaveNoContextForOneReason) {
+  const TrainedModel trained = train_own("ground,wall,pipe,a,b,rail");
+  EXPECT_EQ(trained.no_context, "");  // the first network's doubts do not matter
+  EXPECT_EQ(
+      trained.notes,
+      (std::vector<std::string>{"no context network was trained: context is of edge classes"}));
 }
 
 TEST(OwnClasses, KeepNamesAndColoursInTheModelFile) {

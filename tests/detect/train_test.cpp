@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 #include <numeric>
+#include <tuple>
 
 #include "labelled_cube.h"
 #include "pcednet/core/error.h"
@@ -108,6 +109,24 @@ TEST(TrainEdges, NamesTheCloudWithoutLabels) {
   }
 }
 
+TEST(TrainEdges, NamesAMissingClassByItsLabel) {
+  PointCloud cloud = cube(300, 1);
+  for (const auto& [without, classes, said] :
+       {std::tuple(kSharpEdge, 2, "no point is labelled sharp-edge (2)"),
+        std::tuple(kSmoothEdge, 3, "no point is labelled smooth-edge (1)")}) {
+    PointCloud poor = cloud;
+    std::replace(poor.labels.begin(), poor.labels.end(), std::uint8_t{without},
+                 std::uint8_t{kUnlabelled});
+    try {
+      train_on(poor, quick(classes));
+      FAIL();
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::kInsufficient);
+      EXPECT_STREQ(error.what(), said);
+    }
+  }
+}
+
 TEST(TrainEdges, LearnsFromTheAnswersAroundAPoint) {
   TrainOptions options;
   options.context = true;
@@ -131,7 +150,7 @@ TEST(TrainEdges, KeepsTheNetworkWhereThereIsNothingToLookAtTwice) {
   options.training.epochs = 200;
   const auto trained = train_on(cloud, options);
   EXPECT_FALSE(trained.model.context.has_value());
-  EXPECT_FALSE(trained.no_context.empty());
+  EXPECT_EQ(trained.no_context, "none is labelled non-edge (0)");
   EXPECT_GT(trained.epochs, 0);
 }
 

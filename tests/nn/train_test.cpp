@@ -267,6 +267,9 @@ TEST(Train, RefusesWhatDoesNotFit) {
   EXPECT_ERROR(ErrorKind::kUsage, train(kSmall, data.set(), {.epochs = 0}));
   EXPECT_ERROR(ErrorKind::kUsage, train(kSmall, data.set(), {.learning_rate = -1.0}));
   EXPECT_ERROR(ErrorKind::kUsage, train(kSmall, data.set(), {.batch = 0}));
+  for (const double balance : {-0.1, 1.5, static_cast<double>(NAN)}) {
+    EXPECT_ERROR(ErrorKind::kUsage, train(kSmall, data.set(), {.balance = balance}));
+  }
   EXPECT_ERROR(ErrorKind::kUsage, train({}, data.set(), {}));
   data.labels[7] = 3;
   EXPECT_ERROR(ErrorKind::kUsage, train(kSmall, data.set(), {}));

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <span>
+#include <string>
 
 #include "pcednet/cloud/class_table.h"
 #include "pcednet/detect/model.h"
@@ -24,6 +26,17 @@ inline std::uint8_t output_of(std::uint8_t label, const EdgeModel& model) {
   const bool counts_as_non_edge = has_edges(model.table) && label <= kBoundary &&
                                   !classes.empty() && classes.front() == kNonEdge;
   return counts_as_non_edge ? 0 : nn::kIgnoredLabel;
+}
+
+/// The first of `classes`, the classes of a network's outputs, that none of `outputs` stands for,
+/// as users know it: "sharp-edge (2)". Empty if there is none.
+inline std::string missing_class(std::span<const std::uint8_t> classes, const ClassTable& table,
+                                 std::span<const std::uint8_t> outputs) {
+  for (std::size_t c = 0; c < classes.size(); ++c) {
+    if (std::find(outputs.begin(), outputs.end(), c) != outputs.end()) continue;
+    return table[classes[c]].name + " (" + std::to_string(classes[c]) + ")";
+  }
+  return {};
 }
 
 /// The output of a context network, which knows the edge classes alone.

@@ -148,6 +148,12 @@ TrainedModel train(const std::string& name, const Samples& samples, const TrainO
   model.descriptor = samples.descriptor;
   model.table = options.table;
   model.classes = classes_of(options.architecture, options.table, samples.labels);
+  if (model.classes.size() == 1) {
+    const std::uint8_t only = model.classes.front();
+    throw Error(ErrorKind::kInsufficient,
+                fmt::format("all labelled points are {} ({}): two classes are needed",
+                            model.table[only].name, only));
+  }
 
   nn::Architecture architecture = options.architecture;
   architecture.classes = static_cast<int>(model.classes.size());
@@ -164,6 +170,9 @@ TrainedModel train(const std::string& name, const Samples& samples, const TrainO
   std::vector<std::uint8_t> outputs;
   for (const std::uint8_t label : samples.labels) {
     outputs.push_back(output_of(label, model));
+  }
+  if (const auto missing = missing_class(model.classes, model.table, outputs); !missing.empty()) {
+    throw Error(ErrorKind::kInsufficient, fmt::format("no point is labelled {}", missing));
   }
   nn::TrainResult result = nn::distil(architecture, {samples.values, outputs}, training,
                                       options.teachers, on_epoch, progress);

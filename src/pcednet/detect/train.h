@@ -52,7 +52,8 @@ struct TrainedModel {
   int epochs = 0;          ///< completed; after 0 epochs the model is not worth keeping
   bool validated = false;  ///< the best epoch was kept; otherwise the last, as nothing was held out
   std::vector<std::string> notes = {};  ///< for the user, one sentence each
-  std::string no_context = {};          ///< why there is no context network though one was wanted
+  /// Why the first network left nothing for a context network to learn from, though one was wanted.
+  std::string no_context = {};
 };
 
 /// Describes the clouds and trains a network on them. `name` goes into the model. The same clouds,

@@ -43,12 +43,15 @@ nn::TrainResult train_context(const EdgeModel& model, std::span<const TrainingCl
                               const std::function<void(const nn::EpochReport&)>& on_epoch,
                               const Progress* progress) {
   const ContextSamples samples = make_samples(model, clouds, progress);
-  const std::size_t classes = edge_outputs(model).size();
-  const auto architecture = context_architecture(static_cast<int>(classes));
+  const std::vector<std::uint8_t> classes = edge_outputs(model);
+  if (const auto missing = missing_class(classes, model.table, samples.outputs); !missing.empty()) {
+    throw Error(ErrorKind::kInsufficient, "none is labelled " + missing);
+  }
+  const auto architecture = context_architecture(static_cast<int>(classes.size()));
   nn::TrainOptions training = options.training;
   training.sign_rule = {};
   training.class_names = model.network.class_names;
-  training.class_names.resize(classes);
+  training.class_names.resize(classes.size());
   training.start = nullptr;
   return nn::distil(architecture, {samples.values, samples.outputs}, training, options.teachers,
                     on_epoch, progress);
@@ -62,7 +65,7 @@ void add_context(TrainedModel& trained, std::span<const TrainingCloud> clouds,
                  const Progress* progress) {
   if (trained.cancelled) return;
   if (edge_outputs(trained.model).size() < 2) {
-    trained.no_context = "context is of edge classes";
+    trained.notes.push_back("no context network was trained: context is of edge classes");
     return;
   }
   try {

@@ -39,6 +39,7 @@ void check_options(const TrainOptions& o) {
   };
   need(o.learning_rate > 0.0, "the learning rate must be positive");
   need(o.momentum >= 0.0 && o.momentum < 1.0, "the momentum must be in [0, 1)");
+  need(o.balance >= 0.0 && o.balance <= 1.0, "the balance must be in [0, 1]");
   need(o.held_out >= 0.0 && o.held_out < 1.0, "the share held out must be in [0, 1)");
   need(o.epochs > 0 && o.batch > 0, "at least one epoch and batches of one sample are needed");
   need(o.most_per_epoch > 0 && o.least_per_epoch <= o.most_per_epoch,
