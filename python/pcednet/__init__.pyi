@@ -18,7 +18,7 @@ from .errors import UsageError as UsageError
 _Path = str | os.PathLike[str]
 _Points = ArrayLike | "Cloud"
 _Labels = ArrayLike | Mapping[Any, ArrayLike]
-_Set = Literal["default", "cad", "worn", "scan", "varied", "lines", "sample"]
+_Set = Literal["default", "cad", "worn", "scan", "varied", "sparse", "drawn", "lines", "sample"]
 _Positive = Literal["sharp", "edge", "boundary"]
 _Class = Literal["smooth", "sharp", "boundary"]
 _Kind = Literal["segment", "arc", "circle", "polyline"]
@@ -47,6 +47,8 @@ class Cloud:
     scanners: Any
     curves: list[Curve]
     name: str
+    @property
+    def class_names(self) -> list[str]: ...
     def __init__(self, xyz: ArrayLike, normals: ArrayLike | None = None,
                  colours: ArrayLike | None = None, labels: ArrayLike | None = None,
                  attributes: Mapping[str, ArrayLike] | None = None, name: str = "") -> None: ...
@@ -94,6 +96,8 @@ class Result:
     labels: NDArray[np.uint8]
     p_sharp: NDArray[np.float32]
     p_smooth: NDArray[np.float32]
+    p_class: NDArray[np.float32] | None
+    class_names: list[str]
     normals: NDArray[np.float64]
     made_normals: bool
     scales: tuple[float, float]
@@ -135,6 +139,10 @@ class Model:
     @property
     def classes(self) -> list[int]: ...
     @property
+    def class_names(self) -> list[str]: ...
+    @property
+    def columns(self) -> list[str]: ...
+    @property
     def descriptor(self) -> dict[str, Any]: ...
     @property
     def has_context(self) -> bool: ...
@@ -162,7 +170,7 @@ def describe(xyz: _Points, normals: ArrayLike | None = None, *, scales: int = 16
                                      "plane-mls"] = "sphere",
              gate: float | None = None, second_gate: float | None = None, exact: bool = False,
              eps: float = 0.1, s_min: float = 0.0, s_max: float = 0.0, s_max_ratio: float = 0.0,
-             threads: int = 0, progress: _Progress = None, viewpoint: ArrayLike | None = None,
+             octaves: bool = False, threads: int = 0, progress: _Progress = None, viewpoint: ArrayLike | None = None,
              keep_orientation: bool = False, return_scales: bool = False) -> Any: ...
 def train(clouds: _Points | Sequence[_Points], labels: _Labels | Sequence[_Labels] | None = None,
           *, normals: ArrayLike | Sequence[ArrayLike] | None = None,

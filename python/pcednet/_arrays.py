@@ -10,7 +10,8 @@ import numpy as np
 
 from .errors import PcednetWarning, UsageError
 
-CLASSES = {"non-edge": 0, "smooth-edge": 1, "sharp-edge": 2, "boundary": 3, "unlabelled": 255}
+EDGES = ("non-edge", "smooth-edge", "sharp-edge", "boundary")
+UNLABELLED = 255
 SHORT = {"plain": 0, "smooth": 1, "sharp": 2}
 
 
@@ -59,39 +60,48 @@ def scanners(places, rows):
     return array if np.isfinite(array).all(axis=1).any() else None
 
 
-def class_number(name):
+def numbers_of(names):
+    """The number of each class, and of unlabelled, by name."""
+    return {**{name: number for number, name in enumerate(names)}, "unlabelled": UNLABELLED}
+
+
+def class_number(name, names=EDGES):
     """The number of a class from its name or number."""
+    known = numbers_of(names)
     if isinstance(name, str):
-        for known, number in {**CLASSES, **SHORT}.items():
-            if name == known:
-                return number
-        raise UsageError(f"class {name!r}: there are {', '.join(CLASSES)}")
+        short = SHORT if tuple(names[:len(EDGES)]) == EDGES else {}
+        if name in known or name in short:
+            return {**short, **known}[name]
+        raise UsageError(f"class {name!r}: there are {', '.join(known)}")
     number = int(name)
-    if number not in CLASSES.values():
-        raise UsageError(f"class {number}: there are {', '.join(map(str, CLASSES.values()))}")
+    if number not in known.values():
+        raise UsageError(f"class {number}: there are {', '.join(map(str, known.values()))}")
     return number
 
 
-def labels(values, rows, name="labels"):
+def labels(values, rows, name="labels", names=EDGES, strict=False):
     """One class per point as (n,) uint8: from an array of classes (-1 and 255 are unlabelled), or
-    from a dict that gives the indices, or the mask, of the points of each class."""
+    from a dict that gives the indices, or the mask, of the points of each class. `names` has the
+    classes by number; uint8, which files have, may hold other numbers unless `strict`."""
     if isinstance(values, dict):
-        array = np.full(rows, 255, np.uint8)
+        array = np.full(rows, UNLABELLED, np.uint8)
         for key, some in values.items():
-            array[indices(some, rows, f"{name}[{key!r}]")] = class_number(key)
+            array[indices(some, rows, f"{name}[{key!r}]")] = class_number(key, names)
         return array
     array = numbers(values, name)
     if array.ndim == 2 and 1 in array.shape:
         array = array.reshape(-1)
     if array.shape != (rows,):
         raise UsageError(f"{name}: shape ({rows},) is needed, not {array.shape}")
-    if array.dtype == np.uint8:
-        return np.require(array, np.uint8, ["C", "A"])
-    wrong = ~np.isin(array, [-1, 0, 1, 2, 3, 255])
-    if wrong.any():
-        raise UsageError(f"{name}: {array[wrong][0]} is no class: 0 non-edge, 1 smooth-edge, "
-                         "2 sharp-edge, 3 boundary, 255 or -1 unlabelled")
-    return np.where(array == -1, 255, array).astype(np.uint8)
+    if strict or array.dtype != np.uint8:
+        wrong = ~np.isin(array, [-1, *range(len(names)), UNLABELLED])
+        if wrong.any():
+            known = ", ".join(f"{number} {its}" for number, its in enumerate(names))
+            raise UsageError(f"{name}: {array[wrong][0]} is no class: {known}, 255 or -1 "
+                             "unlabelled")
+    if array.dtype != np.uint8:
+        array = np.where(array == -1, UNLABELLED, array)
+    return np.require(array, np.uint8, ["C", "A"])
 
 
 def indices(some, rows, name):
@@ -142,6 +152,14 @@ def real(value, name):
         return float(value)
     except (TypeError, ValueError):
         raise UsageError(f"{name}: a number is needed, not {value!r}") from None
+
+
+def share(value, name):
+    """A number from 0 to 1."""
+    number = real(value, name)
+    if not 0.0 <= number <= 1.0:
+        raise UsageError(f"{name}: {value}: a number from 0 to 1 is needed")
+    return number
 
 
 def text(value, name):

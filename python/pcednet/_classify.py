@@ -3,6 +3,7 @@
 import numpy as np
 
 from . import _arrays, _clouds, _core, _models
+from .errors import UsageError
 
 
 class Result:
@@ -12,9 +13,16 @@ class Result:
     ----------
     labels : ndarray, (n,) uint8
         0 non-edge, 1 smooth-edge, 2 sharp-edge, 3 boundary (the sampled surface ends there), 255
-        unlabelled (the position is not finite).
+        unlabelled (the position is not finite). Of a model of own classes: numbers of its
+        ``class_names``.
+    class_names : list of str
+        The model's classes, by number.
     p_sharp, p_smooth : ndarray, (n,) float32
-        The model's probabilities of sharp-edge and smooth-edge; 0 where unlabelled. Boundary points keep the model's probabilities.
+        The model's probabilities of sharp-edge and smooth-edge; 0 where unlabelled, and of a model
+        without these classes. Boundary points keep the model's probabilities.
+    p_class : ndarray, (n,) float32, or None
+        Of a model of own classes: the probability of the point's class. None for edge classes
+        alone, which have ``confidence``.
     normals : ndarray, (n, 3) float64
         The normals in use: the given ones, unit, or estimated; ``(0, 0, 0)`` where there is none.
     made_normals : bool
@@ -30,6 +38,8 @@ class Result:
         self.labels = parts["labels"]
         self.p_sharp = parts["p_sharp"]
         self.p_smooth = parts["p_smooth"]
+        self.p_class = parts["p_class"]
+        self.class_names = model.class_names
         self.normals = parts["normals"]
         self.made_normals = parts["made_normals"]
         self.scales = parts["scales"]
@@ -45,6 +55,11 @@ class Result:
     def confidence(self):
         """(n,) float32: the model's probability of the point's label; NaN for boundary, which
         geometry decides, and where unlabelled."""
+        if self.p_class is not None:
+            unknown = self.labels == _arrays.UNLABELLED
+            if self.class_names[3:4] == ["boundary"]:
+                unknown |= self.labels == 3
+            return np.where(unknown, np.float32(np.nan), self.p_class)
         of_label = np.select([self.labels == 2, self.labels == 1, self.labels == 0],
                              [self.p_sharp, self.p_smooth, 1 - self.p_sharp - self.p_smooth],
                              np.nan)
@@ -54,7 +69,7 @@ class Result:
     def counts(self):
         """dict: how many points have each label, by its name."""
         return {name: int(np.count_nonzero(self.labels == number))
-                for name, number in _arrays.CLASSES.items()}
+                for name, number in _arrays.numbers_of(self.class_names).items()}
 
     def __len__(self):
         return len(self.labels)
@@ -65,9 +80,10 @@ class Result:
 
     def _parts(self):
         rows = len(self.labels)
-        return {"labels": _arrays.labels(self.labels, rows),
+        return {"labels": _arrays.labels(self.labels, rows, names=self.class_names),
                 "p_sharp": _arrays.probabilities(self.p_sharp, rows, "p_sharp"),
                 "p_smooth": _arrays.probabilities(self.p_smooth, rows, "p_smooth"),
+                "p_class": _arrays.probabilities(self.p_class, rows, "p_class"),
                 "normals": _arrays.vectors(self.normals, "normals", rows),
                 "made_normals": self.made_normals, "scales": self.scales,
                 "model": self.model._core}
@@ -76,7 +92,8 @@ class Result:
 def classify(xyz, normals=None, *, model="general", threads=0, progress=None, viewpoint=None,
              context=True, boundary=True, keep_orientation=False, exact=False, s_min=0.0,
              s_max=0.0):
-    """Label every point: non-edge, smooth-edge, sharp-edge or boundary.
+    """Label every point: non-edge, smooth-edge, sharp-edge or boundary; or with the classes of a
+    model that was trained on others.
 
     The labels are those of ``pcednet classify``, the same for any number of threads and any order
     of the points.
@@ -118,7 +135,8 @@ def classify(xyz, normals=None, *, model="general", threads=0, progress=None, vi
     Raises
     ------
     UsageError
-        Arrays of the wrong shape or type, or options out of range (a ValueError).
+        Arrays of the wrong shape or type, or options out of range (a ValueError), such as an
+        `s_min` larger than the cloud.
     InsufficientError
         No finite point, or points that form no surface (a ValueError).
     ModelError, MissingFileError
@@ -129,7 +147,8 @@ def classify(xyz, normals=None, *, model="general", threads=0, progress=None, vi
     Warns
     -----
     PcednetWarning
-        Normals were estimated or oriented, points are not finite, scales are unusual.
+        Normals were estimated or oriented, points are not finite, scales are unusual, `s_max` is
+        larger than the cloud.
 
     Examples
     --------
@@ -161,7 +180,7 @@ def worded(notes, estimates=False):
 
 def describe(xyz, normals=None, *, scales=16, features=6, reconstruction="sphere", gate=None,
              second_gate=None, exact=False, eps=0.1, s_min=0.0, s_max=0.0, s_max_ratio=0.0,
-             threads=0, progress=None, viewpoint=None, keep_orientation=False,
+             octaves=False, threads=0, progress=None, viewpoint=None, keep_orientation=False,
              return_scales=False):
     """The scale-space matrix: each point described by algebraic spheres of several sizes.
 
@@ -189,6 +208,9 @@ def describe(xyz, normals=None, *, scales=16, features=6, reconstruction="sphere
         the diagonal of the bounding box.
     s_max_ratio : float
         If not 0 and `s_max` is: `s_max` over `s_min`, for any extent of the cloud.
+    octaves : bool
+        With `s_max_ratio`: in clouds of uneven spacing, describe points at 2, 4 or 8 times larger
+        scales where they are that much sparser. What models with octaves were made for.
     return_scales : bool
         Return the scales too.
 
@@ -197,7 +219,8 @@ def describe(xyz, normals=None, *, scales=16, features=6, reconstruction="sphere
     matrix : ndarray, (n, scales, features) float32
         Free of units; 0 where a scale has no fit. Never NaN.
     scales : ndarray, (scales,) float64
-        The support radii, smallest first; only if `return_scales`.
+        The support radii, smallest first, with octaves of the densest points; only if
+        `return_scales`.
 
     Raises
     ------
@@ -208,7 +231,7 @@ def describe(xyz, normals=None, *, scales=16, features=6, reconstruction="sphere
     settings = descriptor_settings({
         "scales": scales, "features": features, "reconstruction": reconstruction, "gate": gate,
         "second_gate": second_gate, "exact": exact, "eps": eps, "s_min": s_min, "s_max": s_max,
-        "s_max_ratio": s_max_ratio})
+        "s_max_ratio": s_max_ratio, "octaves": octaves})
     with _arrays.reporting(progress) as report:
         matrix, radii, notes = _core.describe(positions, given, scanners, bool(keep_orientation),
                                               settings, report, _arrays.thread_count(threads))
@@ -228,7 +251,10 @@ def descriptor_settings(options):
         without = value is None and name in ("gate", "second_gate")
         return None if without else _arrays.real(value, name)
 
-    return {name: checked(name, value) for name, value in options.items()}
+    settings = {name: checked(name, value) for name, value in options.items()}
+    if settings.get("octaves") and not settings.get("s_max_ratio"):
+        raise UsageError("octaves: an s_max_ratio is needed with it")
+    return settings
 
 
 def estimate_normals(xyz, normals=None, *, neighbours=0, viewpoint=None, threads=0,

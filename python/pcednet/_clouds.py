@@ -10,7 +10,7 @@ from .errors import MissingFileError, UsageError
 
 
 class Cloud:
-    """The points of a file, or of arrays, with all their fields.
+    """The points of a file, or of arrays, with all their fields. Clouds can be pickled and copied.
 
     Wherever a function takes `xyz` it takes a Cloud as well, and uses its normals and scanners.
 
@@ -22,7 +22,8 @@ class Cloud:
         Of any length; files hold unit normals.
     colours : array_like, (n, 3) uint8, optional
     labels : array_like, (n,), optional
-        0 non-edge, 1 smooth-edge, 2 sharp-edge, 3 boundary, 255 unlabelled.
+        0 non-edge, 1 smooth-edge, 2 sharp-edge, 3 boundary, 255 unlabelled; or numbers of
+        ``class_names``.
     attributes : dict of str to array_like, (n,) or (n, k), optional
         Other numbers of the points, by name.
     name : str, optional
@@ -32,6 +33,8 @@ class Cloud:
     xyz, normals, colours, labels, attributes, name
         As the parameters; unknown ones are None. Arrays may be changed in place or replaced.
     comments : list of str
+    class_names : list of str
+        The classes by number: those that the comments of the file name, or the edge classes.
     scanners : ndarray, (m, 3)
         Where the scanners of an E57 stood; the attribute ``scan`` says which saw a point.
     curves : list of Curve
@@ -65,6 +68,13 @@ class Cloud:
 
     def __len__(self):
         return len(self.xyz)
+
+    def _class_lines(self):
+        return _core.class_lines([str(line) for line in self.comments])
+
+    @property
+    def class_names(self):
+        return _core.class_names(self._class_lines())
 
     def _has_estimates(self):
         """Whether the normals are those that pcednet once estimated for these points, as the file says."""
@@ -218,7 +228,8 @@ def _parts_of(cloud):
     return {"xyz": _arrays.vectors(cloud.xyz, "xyz"),
             "normals": _arrays.optional_vectors(cloud.normals, "normals", rows),
             "colours": colours,
-            "labels": None if cloud.labels is None else _arrays.labels(cloud.labels, rows),
+            "labels": None if cloud.labels is None else _arrays.labels(
+                cloud.labels, rows, names=cloud.class_names),
             "attributes": attributes, "comments": comments,
             "scanners": _arrays.vectors(cloud.scanners, "scanners"),
             "kept": cloud._kept if rows == cloud._kept_rows else None, "is_float32": cloud._is_float32}
@@ -283,7 +294,7 @@ def generate(name="default", seed=1, only=""):
 
     Parameters
     ----------
-    name : {'default', 'cad', 'worn', 'scan', 'varied', 'lines', 'sample'}
+    name : {'default', 'cad', 'worn', 'scan', 'varied', 'sparse', 'drawn', 'lines', 'sample'}
         The set, as in ``pcednet generate``; ``'sample'`` is the building of the demo.
     seed : int
     only : str

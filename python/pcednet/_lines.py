@@ -112,12 +112,11 @@ def lines(xyz, labels=None, normals=None, *, p_sharp=None, p_smooth=None,
         As :func:`classify`.
     """
     classes, kinds = _some(classes, _SHORT.values(), "classes"), _some(kinds, _KINDS, "kinds")
-    if not 0.0 <= _arrays.real(min_confidence, "min_confidence") <= 1.0:
-        raise UsageError(f"min_confidence: {min_confidence}: a number from 0 to 1 is needed")
+    min_confidence = _arrays.share(min_confidence, "min_confidence")
     if labels is None and isinstance(xyz, _clouds.Cloud):
         labels = xyz._classes()
         if labels is not None:
-            _core.check_edges([str(line) for line in xyz.comments])
+            _core.check_edges(xyz._class_lines(), "lines", False)
             p_sharp = _probability(xyz, "p_sharp") if p_sharp is None else p_sharp
             p_smooth = _probability(xyz, "p_smooth") if p_smooth is None else p_smooth
     if labels is None:
@@ -126,8 +125,10 @@ def lines(xyz, labels=None, normals=None, *, p_sharp=None, p_smooth=None,
     rows = len(positions)
     prepared = isinstance(labels, Result)
     if prepared:
+        _core.check_edges(labels.model._core.class_lines, "lines", False)
         given = _arrays.vectors(labels.normals, "normals", rows)
-        p_sharp, p_smooth, labels = labels.p_sharp, labels.p_smooth, labels.labels
+        p_sharp, p_smooth, own = labels.p_sharp, labels.p_smooth, labels.class_names
+        labels = _arrays.labels(labels.labels, rows, names=own)
     if p_sharp is None:
         p_smooth = None
     elif p_smooth is None:
@@ -144,7 +145,7 @@ def lines(xyz, labels=None, normals=None, *, p_sharp=None, p_smooth=None,
             _arrays.probabilities(p_smooth, rows, "p_smooth"), settings, report,
             _arrays.thread_count(threads))
     others = int(np.isin(labels, [0, 1, 2, 3, 255], invert=True).sum())
-    if others:
+    if others and not prepared:
         notes.append(f"{others} labels are no classes of edges: 1 is smooth, 2 sharp, 3 boundary")
     _arrays.warn(notes)
     found = Lines(curve for curve in curves

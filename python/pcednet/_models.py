@@ -33,9 +33,15 @@ class Model:
     name : str
     seed : int
     classes : list of int
-        The class of each output: ``[0, 1, 2]``, or ``[0, 2]`` without smooth-edge.
+        The class of each output: ``[0, 1, 2]``, or ``[0, 2]`` without smooth-edge; of own classes
+        their numbers.
+    class_names : list of str
+        The names of classes by number: the edge classes or own ones.
     descriptor : dict
-        The description of a point: ``scales``, ``features`` per scale, ``columns`` (their names), ...
+        The description of a point: ``scales``, ``features`` per scale, ... as
+        ``describe(xyz, **model.descriptor)`` takes them.
+    columns : list of str
+        The names of the numbers per scale.
     has_context : bool
         Whether a context network refines the result from the predictions around each point.
     weights : int
@@ -76,9 +82,9 @@ class Model:
                               f"({', '.join(shipped_models())})") from None
 
     def save(self, path, *, overwrite=False):
-        """Write a model file (safetensors), which ``pcednet classify --model`` takes too.
+        """Write a model file (.safetensors), which ``pcednet classify --model`` takes too.
 
-        The same model gives the same bytes. A path that ends in ``.onnx`` gets the first network,
+        The same model gives the same bytes. A path that ends in ``.onnx`` (in any case) gets the first network,
         without a context network, for other runtimes: input ``descriptors``, (n, scales x
         columns) float32, the rows that :func:`describe` gives, flattened; output ``probabilities``, (n, classes), equal to
         :meth:`predict` up to rounding.
@@ -94,13 +100,16 @@ class Model:
         ExistsError
             The file exists and `overwrite` is False.
         UsageError
-            ONNX: of a CNN, or of a model trained with another symmetry than its average.
+            Another extension. ONNX: of a CNN, or of a model trained with another symmetry than its average.
         """
         path = os.fspath(path)
-        if not path.endswith(".onnx"):
+        extension = os.path.splitext(path)[1].lower()
+        if extension == ".safetensors":
             self._core.save(path, overwrite)
             return
-        facts = {"name": self.name, "classes": str(self.classes),
+        if extension != ".onnx":
+            raise UsageError(f"{path}: a name that ends in .safetensors or .onnx is needed")
+        facts = {"name": self.name, "classes": str(self.classes), "columns": str(self.columns),
                  **{key: str(value) for key, value in self.descriptor.items()}}
         content = _onnx.encode(self._core.network, facts, len(self.classes))
         _core.write_file(path, content, overwrite)
@@ -133,7 +142,7 @@ class Model:
             The probability of each of ``classes``; rows sum to 1.
         """
         rows = _arrays.numbers(descriptors, "descriptors")
-        shape = (self.descriptor["scales"], len(self.descriptor["columns"]))
+        shape = (self.descriptor["scales"], len(self.columns))
         if rows.shape[1:] not in (shape, (shape[0] * shape[1],)):
             raise UsageError(f"descriptors: shape (n, {shape[0]}, {shape[1]}) is needed, not "
                              f"{rows.shape}")
@@ -154,6 +163,14 @@ class Model:
     @property
     def classes(self):
         return self._core.classes
+
+    @property
+    def class_names(self):
+        return _core.class_names(self._core.class_lines)
+
+    @property
+    def columns(self):
+        return self._core.columns
 
     @property
     def descriptor(self):

@@ -23,7 +23,7 @@ class Scores:
 
 
 def evaluate(truth, predicted, positive="sharp"):
-    """Score predicted classes against true ones.
+    """Score predicted edge classes against true ones.
 
     Parameters
     ----------
@@ -41,14 +41,19 @@ def evaluate(truth, predicted, positive="sharp"):
     Raises
     ------
     UsageError
-        Different numbers of points, or numbers that are not classes.
+        Different numbers of points, numbers that are not classes, or own classes.
     """
+    for one in (truth, predicted):
+        if isinstance(one, Result):
+            _core.check_edges(one.model._core.class_lines, "scores", True)
+        elif isinstance(one, _clouds.Cloud):
+            _core.check_edges(one._class_lines(), "scores", True)
     truth = truth.labels if isinstance(truth, _clouds.Cloud) else truth
     if isinstance(predicted, Result):
         predicted = predicted.labels
     elif isinstance(predicted, _clouds.Cloud):
         predicted = predicted._classes()
     rows = len(_arrays.numbers(truth, "truth").reshape(-1))
-    return Scores(_core.evaluate(_arrays.labels(truth, rows, "truth"),
-                                 _arrays.labels(predicted, rows, "predicted"),
+    return Scores(_core.evaluate(_arrays.labels(truth, rows, "truth", strict=True),
+                                 _arrays.labels(predicted, rows, "predicted", strict=True),
                                  _arrays.text(positive, "positive")))

@@ -3,7 +3,7 @@
 import numpy as np
 
 from . import _arrays, _classify, _clouds, _core, _models
-from .errors import UsageError
+from .errors import InsufficientError, UsageError
 
 _DESCRIPTOR = ("scales", "features", "reconstruction", "gate", "second_gate", "exact", "eps", "s_min",
                "s_max", "s_max_ratio", "octaves")
@@ -35,13 +35,14 @@ def train(clouds, labels=None, *, normals=None, start=None, name="model", classe
         The class of every point: 0 non-edge, 1 smooth-edge, 2 sharp-edge, 3 boundary (learnt as
         non-edge), 255 or -1 not to learn from. Or a dict from class, by number or name, to indices
         or a mask: ``{"sharp-edge": painted, "non-edge": others}``. None: those of the Clouds.
+        Clouds with own ``class_names`` give a model of these; arrays have those of `start`.
     normals : array_like (n, 3), or a list of one per cloud, optional
     start : str, path-like or Model, optional
         The model to start from, such as ``"general"``. Only `name` and `seed` apply as well.
     name : str
         Goes into the model.
     classes : {3, 2}
-        2: sharp-edge and all other points.
+        2: sharp-edge and all other points. Own classes are all learnt.
     seed : int
         The same input and seed give the same model, for any number of threads.
     epochs : int, optional
@@ -67,9 +68,9 @@ def train(clouds, labels=None, *, normals=None, start=None, name="model", classe
     Raises
     ------
     UsageError
-        Arrays or options that do not fit.
+        Arrays or options that do not fit, or numbers that are no classes.
     InsufficientError
-        A cloud without a labelled point, or a class without points.
+        A cloud without a labelled point, a class without points, or Clouds of different classes.
     KeyboardInterrupt
         Ctrl-C.
     """
@@ -77,22 +78,28 @@ def train(clouds, labels=None, *, normals=None, start=None, name="model", classe
     clouds = list(clouds) if several else [clouds]
     labels = _one_each(labels, clouds, several, "labels")
     normals = _one_each(normals, clouds, several, "normals")
-    arrays = [_labelled(k, *one, keep_orientation) for k, one in enumerate(zip(clouds, normals, labels))]
-    if not arrays:
+    if not clouds:
         raise UsageError("train: no clouds")
+    start = None if start is None else _models.model_of(start)
+    table = _class_lines(clouds, start)
+    names = _core.class_names(table)
+    arrays = [_labelled(k, *one, names, keep_orientation)
+              for k, one in enumerate(zip(clouds, normals, labels))]
     seed = _arrays.seed(seed)
     settings = {"descriptor": _descriptor(descriptor),
                 "classes": _arrays.whole(classes, "classes", 2, 3), "seed": seed,
                 "epochs": None if epochs is None else _arrays.whole(epochs, "epochs"),
-                "context": bool(context), "balance": _arrays.real(balance, "balance"),
-                "distil": _arrays.whole(distil, "distil"), "recipe": _arrays.text(recipe, "recipe"),
+                "context": bool(context), "balance": _arrays.share(balance, "balance"),
+                "distil": _arrays.whole(distil, "distil", 0, 100), "recipe": _arrays.text(recipe, "recipe"),
                 "network": _arrays.text(network, "network")}
+    if start is None and settings["classes"] == 3:
+        _check_has_smooth(arrays, names)
     with _arrays.reporting(progress) as report:
         if start is None:
-            core, history, notes = _core.train(arrays, str(name), bool(keep_orientation), settings,
-                                               report, _arrays.thread_count(threads))
+            core, history, notes = _core.train(arrays, table, str(name), bool(keep_orientation),
+                                               settings, report, _arrays.thread_count(threads))
         else:
-            core, history, notes = _core.adapt(_models.model_of(start)._core, arrays, str(name),
+            core, history, notes = _core.adapt(start._core, arrays, table, str(name),
                                                bool(keep_orientation), seed, report,
                                                _arrays.thread_count(threads))
     _arrays.warn(_classify.worded(notes))
@@ -114,11 +121,39 @@ def _one_each(values, clouds, several, name):
     return values
 
 
-def _labelled(number, cloud, normals, labels, keep_orientation):
+def _name(number, cloud):
+    return getattr(cloud, "name", "") or f"cloud {number}"
+
+
+def _class_lines(clouds, start):
+    """The classes of all clouds. Arrays do not say theirs: those of the model to start from."""
+    of_arrays = _core.class_lines([]) if start is None else start._core.class_lines
+    tables = [cloud._class_lines() if isinstance(cloud, _clouds.Cloud) else of_arrays
+              for cloud in clouds]
+    for number, (cloud, table) in enumerate(zip(clouds, tables)):
+        if table != tables[0]:
+            its, first = (", ".join(_core.class_names(one)) for one in (table, tables[0]))
+            raise InsufficientError(f"{_name(number, cloud)}: its classes are {its}, those of the "
+                                    f"first cloud {first}")
+    return tables[0]
+
+
+def _check_has_smooth(arrays, names):
+    """Three edge classes cannot be learnt from labels of two."""
+    if tuple(names) != _arrays.EDGES:
+        return
+    present = set().union(*(np.unique(labels).tolist() for *_, labels in arrays))
+    if 2 in present and 1 not in present:
+        raise InsufficientError("train: no point is labelled smooth-edge (1); classes=2 learns "
+                                "sharp-edge (2) alone")
+
+
+def _labelled(number, cloud, normals, labels, names, keep_orientation):
     positions, given, scanners = _clouds.points_of(cloud, normals, estimates=keep_orientation)
-    name = getattr(cloud, "name", "") or f"cloud {number}"
+    name = _name(number, cloud)
     if labels is None:
         labels = getattr(cloud, "labels", None)
     if labels is None:
         raise UsageError(f"{name}: has no labels")
-    return name, positions, given, scanners, _arrays.labels(labels, len(positions))
+    return name, positions, given, scanners, _arrays.labels(
+        labels, len(positions), names=names, strict=True)

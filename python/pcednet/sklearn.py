@@ -7,6 +7,7 @@ from sklearn.utils.validation import check_is_fitted
 
 from . import _arrays
 from ._classify import classify
+from ._models import model_of
 from ._train import train
 from .errors import UsageError
 
@@ -66,6 +67,8 @@ class EdgeClassifier(ClassifierMixin, BaseEstimator):
         self
         """
         xyz, normals = self._split(X)
+        if self.start is not None and tuple(model_of(self.start).class_names) != _arrays.EDGES:
+            raise UsageError("start: a model of the edge classes alone is needed")
         self.model_ = train(xyz, y, normals=normals, start=self.start, classes=self.classes,
                             seed=self.seed, epochs=self.epochs, context=self.context,
                             balance=self.balance, threads=self.threads)

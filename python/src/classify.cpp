@@ -10,6 +10,7 @@
 #include "pcednet/core/blocks.h"
 #include "pcednet/detect/boundary.h"
 #include "pcednet/detect/describe.h"
+#include "pcednet/detect/octaves.h"
 
 namespace pcednet::python {
 namespace {
@@ -26,13 +27,17 @@ py::dict classify(const detect::EdgeModel& model, const Array<double>& xyz,
   detect::PreparedCloud prepared;
   detect::Classification found;
   std::optional<InputCloud> cloud;
+  std::string note;
   run_job({progress, threads}, [&](const Progress* job) {
     cloud.emplace(xyz, normals, scanners);
     prepared = cloud->prepare({.keep_orientation = keep_orientation}, job);
+    note = note_on_extent(model.descriptor, prepared.positions);
     found = detect::classify(prepared, model, job);
-    if (boundary) detect::mark_boundary(prepared, found, job);
+    if (boundary && has_edges(model.table)) detect::mark_boundary(prepared, found, job);
   });
-  if (!found.note.empty()) prepared.notes.push_back(found.note);
+  for (const std::string& one : {note, found.note}) {
+    if (!one.empty()) prepared.notes.push_back(one);
+  }
   py::dict result;
   result["made_normals"] = !prepared.made.empty();
   result["normals"] = normals_of(prepared);
@@ -41,35 +46,40 @@ py::dict classify(const detect::EdgeModel& model, const Array<double>& xyz,
   result["labels"] = give(std::move(found.classes));
   result["p_sharp"] = give(std::move(found.p_sharp));
   result["p_smooth"] = give(std::move(found.p_smooth));
+  result["p_class"] = py::none();
+  if (has_own_classes(model.table)) result["p_class"] = give(std::move(found.p_class));
   return result;
 }
 
-/// Describes every point into its row of `matrix`, which is all zeros; returns the scales.
+/// Describes every point into its row of `matrix`, which is all zeros; returns the scales, of
+/// octave 0 if there are several.
 std::vector<double> describe_all(const detect::PreparedCloud& cloud,
                                  const gls::ScaleSpaceOptions& descriptor,
                                  std::vector<std::string>& notes, std::span<float> matrix,
                                  const Progress* progress) {
   const Progress cancel_only = without_report(progress);
-  const gls::ScaleSpace space({cloud.positions, cloud.normals, cloud.curve}, descriptor,
-                              &cancel_only);
   const std::size_t width = detect::row_width(descriptor);
-  const auto order = space.order();
-  std::vector<float> rows(std::min(detect::kBlock, order.size()) * width);
-  Stage stage(progress, "describe", order.size());
-  for_each_block(order.size(), detect::kBlock, [&](std::size_t begin, std::size_t end) {
-    const auto points = order.subspan(begin, end - begin);
-    detect::describe(space, points, std::span(rows).first(points.size() * width), &cancel_only);
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      std::copy_n(rows.begin() + static_cast<std::ptrdiff_t>(i * width), width,
-                  matrix.begin() + static_cast<std::ptrdiff_t>(points[i] * width));
-    }
-    stage.advance(points.size());
-  });
   notes = cloud.notes;
-  if (const auto note = gls::note_on(descriptor, space.scales(), cloud.positions); !note.empty()) {
-    notes.push_back(note);
+  const std::string extent = note_on_extent(descriptor, cloud.positions);
+  std::vector<double> scales;
+  std::vector<float> rows;
+  Stage stage(progress, "describe", cloud.curve.size());
+  detect::for_each_octave(cloud, descriptor, &cancel_only, [&](const auto& space, const auto& all) {
+    if (scales.empty()) scales = space.scales();
+    for_each_block(all.size(), detect::kBlock, [&](std::size_t begin, std::size_t end) {
+      const auto points = all.subspan(begin, end - begin);
+      rows.resize(points.size() * width);
+      detect::describe(space, points, rows, &cancel_only);
+      for (std::size_t i = 0; i < points.size(); ++i) {
+        std::copy_n(rows.data() + i * width, width, matrix.data() + points[i] * width);
+      }
+      stage.advance(points.size());
+    });
+  });
+  for (const auto& note : {extent, gls::note_on(descriptor, scales, cloud.positions)}) {
+    if (!note.empty()) notes.push_back(note);
   }
-  return space.scales();
+  return scales;
 }
 
 py::tuple describe(const Array<double>& xyz, const OptionalArray<double>& normals,

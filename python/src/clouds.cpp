@@ -7,11 +7,12 @@
 #include <cstring>
 #include <iterator>
 #include <optional>
+#include <span>
+#include <tuple>
 
 #include "arrays.h"
 #include "bindings.h"
 #include "job.h"
-#include "pcednet/cloud/class_table.h"
 #include "pcednet/core/error.h"
 #include "pcednet/detect/result_cloud.h"
 #include "pcednet/formats/read_cloud.h"
@@ -104,12 +105,58 @@ Kept kept_of_part(const Kept& whole) {
   return {std::make_shared<const PointCloud>(std::move(part))};
 }
 
-/// Throws for classes other than edge classes, which comments tell of.
-void check_edges(const std::vector<std::string>& comments) {
-  const ClassTable table = classes_of(comments);
-  if (has_edges(table)) return;
+/// Throws for classes that lack the edge classes or, if `alone`, have others besides; `what` is
+/// made of edge classes.
+void check_edges(const std::vector<std::string>& lines, const std::string& what, bool alone) {
+  const ClassTable table = table_of_lines(lines);
+  if (has_edges(table) && !(alone && has_own_classes(table))) return;
   throw Error(ErrorKind::kUsage,
-              "labels: the classes are " + names_of(table) + "; lines are of edge classes");
+              "labels: the classes are " + names_of(table) + "; " + what + " are of edge classes");
+}
+
+/// The names by number.
+std::vector<std::string> class_names(const std::vector<std::string>& lines) {
+  std::vector<std::string> names;
+  for (const PointClass& one : table_of_lines(lines)) names.push_back(one.name);
+  return names;
+}
+
+py::tuple state_of(const std::string& text, const std::vector<std::byte>& bytes) {
+  return py::make_tuple(text, py::bytes(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+}
+
+std::vector<std::byte> bytes_of(const py::handle& object) {
+  const auto text = object.cast<std::string_view>();
+  const auto bytes = std::as_bytes(std::span(text));
+  return {bytes.begin(), bytes.end()};
+}
+
+/// For pickles and copies. The normals in a file are three columns of one type each.
+py::tuple state_of(const Kept& kept) {
+  py::list normals, elements;
+  for (const Attribute& one : kept.cloud->stored_normals) {
+    normals.append(
+        py::make_tuple(static_cast<int>(one.type), one.components, state_of(one.name, one.bytes)));
+  }
+  for (const ForeignElement& one : kept.cloud->foreign_elements) {
+    elements.append(state_of(one.header, one.bytes));
+  }
+  return py::make_tuple(static_cast<int>(kept.cloud->position_type), normals, elements);
+}
+
+Kept kept_of(const py::tuple& state) {
+  PointCloud cloud;
+  cloud.position_type = static_cast<ScalarType>(state[0].cast<int>());
+  for (const py::handle one : state[1]) {
+    const auto [type, components, rest] = one.cast<std::tuple<int, std::size_t, py::tuple>>();
+    cloud.stored_normals.push_back({rest[0].cast<std::string>(), static_cast<ScalarType>(type),
+                                    components, bytes_of(rest[1])});
+  }
+  for (const py::handle one : state[2]) {
+    const auto element = one.cast<py::tuple>();
+    cloud.foreign_elements.push_back({element[0].cast<std::string>(), bytes_of(element[1])});
+  }
+  return {std::make_shared<const PointCloud>(std::move(cloud))};
 }
 
 py::tuple read(const std::filesystem::path& path) {
@@ -136,6 +183,7 @@ ResultParts result_of(const py::dict& parts) {
   copy("labels", result.found.classes);
   copy("p_sharp", result.found.p_sharp);
   copy("p_smooth", result.found.p_smooth);
+  if (!parts["p_class"].is_none()) copy("p_class", result.found.p_class);
   const auto scales = parts["scales"].cast<std::pair<double, double>>();
   std::tie(result.found.s_min, result.found.s_max) = scales;
   return result;
@@ -165,6 +213,12 @@ std::vector<std::string> write(const std::filesystem::path& path, const py::dict
 }
 
 }  // namespace
+
+ClassTable table_of_lines(const std::vector<std::string>& lines) {
+  const auto table = table_of(lines);
+  if (!table) throw Error(ErrorKind::kUsage, "classes: not a table of classes");
+  return *table;
+}
 
 py::dict take_apart(PointCloud&& cloud) {
   const std::size_t points = cloud.size();
@@ -199,8 +253,15 @@ py::dict take_apart(PointCloud&& cloud) {
 }
 
 void add_clouds(py::module_& module) {
-  py::class_<Kept>(module, "Kept").def("of_part", kept_of_part);
+  py::class_<Kept>(module, "Kept")
+      .def("of_part", kept_of_part)
+      .def(py::pickle([](const Kept& kept) { return state_of(kept); },
+                      [](const py::tuple& state) { return kept_of(state); }));
   module.attr("ESTIMATED_NORMALS") = std::string(detect::kEstimatedNormals);
+  module.def("class_lines", [](const std::vector<std::string>& comments) {
+    return lines_of(classes_of(comments));
+  });
+  module.def("class_names", class_names);
   module.def("check_edges", check_edges);
   module.def("read", read);
   module.def("write", write);

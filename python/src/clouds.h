@@ -3,7 +3,10 @@
 #include <pybind11/pybind11.h>
 
 #include <memory>
+#include <string>
+#include <vector>
 
+#include "pcednet/cloud/class_table.h"
 #include "pcednet/cloud/point_cloud.h"
 
 namespace pcednet::python {
@@ -13,6 +16,9 @@ namespace pcednet::python {
 struct Kept {
   std::shared_ptr<const PointCloud> cloud;
 };
+
+/// The classes that lines_of() gave.
+ClassTable table_of_lines(const std::vector<std::string>& lines);
 
 /// The arrays of `cloud`, none of them copied, and the rest as Kept.
 pybind11::dict take_apart(PointCloud&& cloud);

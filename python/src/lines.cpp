@@ -104,10 +104,35 @@ py::array_t<double> row(const Vec3& place) {
   return py::array_t<double>(3, place.data());
 }
 
+/// For pickles and copies.
+py::tuple state_of(const Curve& curve) {
+  return py::make_tuple(static_cast<int>(curve.kind), static_cast<int>(curve.edge_class),
+                        give(std::vector<Vec3>(curve.points)), curve.closed, row(curve.centre),
+                        row(curve.axis), curve.radius, curve.confidence, curve.dihedral_angle,
+                        curve.support);
+}
+
+Curve curve_of(const py::tuple& state) {
+  const auto arrays = [&](std::size_t i) { return state[i].cast<Array<double>>(); };
+  const auto points = arrays(2), centre = arrays(4), axis = arrays(5);
+  return {.kind = static_cast<lines::CurveKind>(state[0].cast<int>()),
+          .edge_class = static_cast<EdgeClass>(state[1].cast<int>()),
+          .points = {vectors(points).begin(), vectors(points).end()},
+          .closed = state[3].cast<bool>(),
+          .centre = vectors(centre)[0],
+          .axis = vectors(axis)[0],
+          .radius = state[6].cast<double>(),
+          .confidence = state[7].cast<double>(),
+          .dihedral_angle = state[8].cast<double>(),
+          .support = state[9].cast<std::size_t>()};
+}
+
 }  // namespace
 
 void add_lines(py::module_& module) {
   py::class_<Curve>(module, "Curve", "An edge as a curve, in the unit and place of its cloud.")
+      .def(py::pickle([](const Curve& curve) { return state_of(curve); },
+                      [](const py::tuple& state) { return curve_of(state); }))
       .def_property_readonly(
           "kind", [](const Curve& curve) { return lines::name_of(curve.kind); },
           "``'segment'``, ``'arc'``, ``'circle'`` or ``'polyline'``.")

@@ -3,8 +3,11 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <sstream>
+
 #include "arrays.h"
 #include "bindings.h"
+#include "pcednet/cloud/bounding_box.h"
 #include "pcednet/core/error.h"
 #include "pcednet/detect/cloud_kind.h"
 #include "pcednet/nn/model_file.h"
@@ -31,11 +34,11 @@ gls::Reconstruction reconstruction_named(const std::string& name) {
   throw Error(ErrorKind::kUsage, "reconstruction \"" + name + "\": there are " + names);
 }
 
+/// The keyword arguments of describe().
 py::dict settings_of(const gls::ScaleSpaceOptions& options) {
   py::dict settings;
   settings["scales"] = options.scales;
   settings["features"] = gls::feature_count(options.features);
-  settings["columns"] = gls::column_names(options);
   settings["reconstruction"] = gls::name_of(options.reconstruction);
   settings["gate"] = options.side_gate;
   settings["second_gate"] = options.second_gate;
@@ -96,6 +99,20 @@ gls::ScaleSpaceOptions descriptor_of(const py::dict& settings) {
   return options;
 }
 
+std::string note_on_extent(const gls::ScaleSpaceOptions& options, std::span<const Vec3> positions,
+                           const std::string& whose) {
+  const double diagonal = bounding_box(positions).diagonal();
+  const auto larger = [&](const char* name, double scale) {
+    std::ostringstream text;
+    text << whose << name << " " << scale << " is larger than the cloud, whose diagonal is "
+         << diagonal;
+    return text.str();
+  };
+  if (!(diagonal > 0.0)) return {};
+  if (options.s_min > diagonal) throw Error(ErrorKind::kUsage, larger("s_min", options.s_min));
+  return options.s_max > diagonal ? larger("s_max", options.s_max) : std::string();
+}
+
 void add_models(py::module_& module) {
   module.def("write_file",
              [](const std::filesystem::path& path, const std::string& bytes, bool overwrite) {
@@ -115,7 +132,7 @@ void add_models(py::module_& module) {
            })
       .def("without_context",
            [](EdgeModel model) {
-             model.context.reset();
+             detect::drop_context(model);
              return model;
            })
       .def("with_scales",
@@ -131,6 +148,10 @@ void add_models(py::module_& module) {
                              [](const EdgeModel& model) {
                                return std::vector<int>(model.classes.begin(), model.classes.end());
                              })
+      .def_property_readonly("class_lines",
+                             [](const EdgeModel& model) { return lines_of(model.table); })
+      .def_property_readonly(
+          "columns", [](const EdgeModel& model) { return gls::column_names(model.descriptor); })
       .def_property_readonly("descriptor",
                              [](const EdgeModel& model) { return settings_of(model.descriptor); })
       .def_readonly("network", &EdgeModel::network)

@@ -2,6 +2,10 @@
 
 #include <pybind11/pybind11.h>
 
+#include <span>
+#include <string>
+
+#include "pcednet/core/vec3.h"
 #include "pcednet/detect/model.h"
 #include "pcednet/gls/scale_space_options.h"
 
@@ -10,5 +14,10 @@ namespace pcednet::python {
 /// The descriptor from keyword arguments named as the fields; missing ones have the library's
 /// defaults. The package has checked the names.
 gls::ScaleSpaceOptions descriptor_of(const pybind11::dict& settings);
+
+/// Throws Error(kUsage) if s_min is larger than the cloud. Returns a sentence for the user if s_max
+/// is, otherwise an empty one. Both begin with `whose`.
+std::string note_on_extent(const gls::ScaleSpaceOptions& options, std::span<const Vec3> positions,
+                           const std::string& whose = "");
 
 }  // namespace pcednet::python

@@ -12,6 +12,7 @@
 #include "workbench/shapes/line_set.h"
 #include "workbench/shapes/relief_set.h"
 #include "workbench/shapes/scan_set.h"
+#include "workbench/shapes/sparse_set.h"
 #include "workbench/shapes/terrain.h"
 #include "workbench/shapes/varied_set.h"
 
@@ -50,14 +51,20 @@ std::vector<Recipe> recipes_of(const std::string& set, std::uint64_t seed) {
     add(all, shapes::terrain_recipes(seed), seed);
   } else if (set == "scan") {
     add(all, shapes::scan_recipes(seed), seed);
+  } else if (set == "sparse") {
+    add(all, shapes::sparse_part_recipes(seed), seed);
+    add(all, shapes::sparse_shape_recipes(seed), seed);
+    add(all, shapes::sparse_roof_recipes(seed), seed);
+  } else if (set == "drawn") {
+    add(all, shapes::drawn_part_recipes(seed), seed);
   } else if (set == "lines") {
     add(all, shapes::line_recipes(), seed);
   } else if (set == "sample") {
     all.push_back({"sample", [seed] { return shapes::building_scan(seed); }});
   } else {
     throw Error(ErrorKind::kUsage, "generate \"" + set +
-                                       "\": there are default, cad, worn, scan, varied, lines, "
-                                       "sample");
+                                       "\": there are default, cad, worn, scan, varied, sparse, "
+                                       "drawn, lines, sample");
   }
   return all;
 }

@@ -5,10 +5,12 @@
 #include <deque>
 
 #include "bindings.h"
+#include "clouds.h"
 #include "input_cloud.h"
 #include "models.h"
 #include "pcednet/core/error.h"
 #include "workbench/annotate/adapt.h"
+#include "workbench/annotate/outputs.h"
 
 namespace pcednet::python {
 namespace {
@@ -41,15 +43,17 @@ struct TrainingClouds {
 };
 
 void prepare(const std::vector<LabelledArrays>& arrays, bool keep_orientation,
-             TrainingClouds& prepared, const Progress* progress) {
+             const gls::ScaleSpaceOptions& descriptor, TrainingClouds& prepared,
+             const Progress* progress) {
   for (const LabelledArrays& one : arrays) {
     const InputCloud& input = prepared.inputs.emplace_back(one.xyz, one.normals, one.scanners);
     prepared.clouds.push_back({one.name,
                                input.prepare({.keep_orientation = keep_orientation}, progress),
                                numbers(one.labels)});
-    for (const std::string& note : prepared.clouds.back().cloud.notes) {
-      prepared.notes.push_back(one.name + ": " + note);
-    }
+    const detect::PreparedCloud& cloud = prepared.clouds.back().cloud;
+    for (const std::string& note : cloud.notes) prepared.notes.push_back(one.name + ": " + note);
+    const auto note = note_on_extent(descriptor, cloud.positions, one.name + ": ");
+    if (!note.empty()) prepared.notes.push_back(note);
   }
 }
 
@@ -95,15 +99,17 @@ py::list list_of(const History& history) {
   return epochs;
 }
 
-py::tuple train(const py::list& clouds, const std::string& name, bool keep_orientation,
-                const py::dict& settings, const py::object& progress, int threads) {
+py::tuple train(const py::list& clouds, const std::vector<std::string>& classes,
+                const std::string& name, bool keep_orientation, const py::dict& settings,
+                const py::object& progress, int threads) {
   const auto arrays = clouds_of(clouds);
-  const detect::TrainOptions options = training_options_of(settings);
+  detect::TrainOptions options = training_options_of(settings);
+  options.table = table_of_lines(classes);
   TrainingClouds prepared;
   detect::TrainedModel trained;
   History history;
   run_job({progress, threads}, [&](const Progress* job) {
-    prepare(arrays, keep_orientation, prepared, job);
+    prepare(arrays, keep_orientation, options.descriptor, prepared, job);
     trained = detect::train(
         name, prepared.clouds, options,
         [&](const nn::EpochReport& report) { history.push_back(report); }, job);
@@ -111,22 +117,29 @@ py::tuple train(const py::list& clouds, const std::string& name, bool keep_orien
   std::vector<std::string>& notes = prepared.notes;
   notes.insert(notes.end(), trained.notes.begin(), trained.notes.end());
   if (!trained.no_context.empty()) {
-    notes.push_back("no context network was trained: " + trained.no_context);
+    notes.push_back("no context network was trained: the first network left no point in doubt: " +
+                    trained.no_context);
   }
   return py::make_tuple(std::move(trained.model), list_of(history), notes);
 }
 
 /// Fine-tunes on painted points, as the annotator does: see annotate::adapt().
-py::tuple adapt(const detect::EdgeModel& model, const py::list& clouds, const std::string& name,
+py::tuple adapt(const detect::EdgeModel& model, const py::list& clouds,
+                const std::vector<std::string>& classes, const std::string& name,
                 bool keep_orientation, std::uint64_t seed, const py::object& progress,
                 int threads) {
   const auto arrays = clouds_of(clouds);
+  const ClassTable table = table_of_lines(classes);
+  if (!annotate::can_start(model, table)) {
+    throw Error(ErrorKind::kUsage, "start: the model knows the classes " + names_of(model.table) +
+                                       ", the labels are " + names_of(table));
+  }
   TrainingClouds prepared;
   annotate::Adapted adapted;
   History history;
   run_job({progress, threads}, [&](const Progress* job) {
-    prepare(arrays, keep_orientation, prepared, job);
-    annotate::Subject subject;
+    prepare(arrays, keep_orientation, model.descriptor, prepared, job);
+    annotate::Subject subject{.clouds = {}, .table = table};
     std::vector<std::shared_ptr<const annotate::Described>> described;
     std::vector<std::uint8_t> labels;
     for (const detect::TrainingCloud& one : prepared.clouds) {

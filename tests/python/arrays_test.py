@@ -208,6 +208,20 @@ class Refusals(unittest.TestCase):
         with self.assertRaisesRegex(FileNotFoundError, "neither a file nor a shipped model .*gene"):
             pcednet.classify(good, model="no_such_model")
 
+    def test_scales_larger_than_the_cloud_are_refused_or_told(self):
+        good, normals, labels = cube(500)
+        for function in (pcednet.classify, pcednet.describe,
+                         lambda xyz, normals, **named: pcednet.train(
+                             xyz, labels, normals=normals, epochs=1, scales=4, **named)):
+            for named in ({"s_min": 1000.0}, {"s_min": 1e9, "s_max": 1e10}):
+                with self.assertRaisesRegex(
+                        pcednet.UsageError, r"s_min 1(000|e\+09) is larger than the cloud, whose "
+                                            r"diagonal is 1\.7\d"):
+                    quietly(function, good, normals, **named)
+            with self.assertWarnsRegex(pcednet.PcednetWarning,
+                                       r"s_max 1000 is larger than the cloud, whose diagonal is 1"):
+                function(good, normals, s_max=1000.0)
+
     def test_values_of_another_type_are_refused_by_name(self):
         good, _, labels = cube(500)
         for function, named in (

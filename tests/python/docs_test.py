@@ -27,7 +27,11 @@ class Docs(unittest.TestCase):
         intensity = np.arange(3000, dtype=np.uint16)
         for name in ("scan.laz", "scan.las"):
             pcednet.write(name, positions, attributes={"Intensity": intensity})
-        self.names = {"xyz": positions, "normals": normals, "other_xyz": positions + 5,
+        own = pcednet.Cloud(positions, normals, labels=labels)
+        own.comments = [f"pcednet class {number} #00000{number} {name}"
+                        for number, name in enumerate(("ground", "wall", "pipe"))]
+        pcednet.write("site.ply", own)
+        self.names = {"xyz": positions, "other": pcednet.Cloud(positions, normals), "normals": normals, "other_xyz": positions + 5,
                       "picked": np.flatnonzero(labels == 2), "others": labels == 0,
                       "a": positions, "b": positions, "c": positions, "labels_a": labels,
                       "labels_b": labels, "truth": labels}
@@ -39,7 +43,8 @@ class Docs(unittest.TestCase):
             for block in found:
                 with self.subTest(page, block=block):
                     exec(compile(block, page, "exec"), self.names)
-        for file in ("edges.dxf", "roof.dxf", "roof.gpkg", "edges.laz", "mine.safetensors", "points.ply"):
+        for file in ("edges.dxf", "roof.dxf", "roof.gpkg", "edges.laz", "mine.safetensors", "points.ply",
+                     "labelled.ply"):
             self.assertTrue(os.path.getsize(file), file)
 
 

@@ -1,6 +1,7 @@
 """Point files in and out, as the command line reads and writes them; generated clouds."""
 
 import pathlib
+import subprocess
 import tempfile
 import unittest
 import warnings
@@ -8,7 +9,7 @@ import warnings
 import numpy as np
 
 import pcednet
-from support import SOURCE, CliTest, cube, run, write_ply
+from support import PROGRAM, SOURCE, CliTest, cube, run, write_ply
 
 
 class Files(CliTest):
@@ -146,6 +147,20 @@ class Generated(unittest.TestCase):
             self.assertEqual(ours.read_bytes(), (theirs / f"{cloud.name}.ply").read_bytes())
             self.assertGreater(len(cloud.curves), 3)
             self.assertIn(cloud.curves[0].kind, ("segment", "arc", "circle", "polyline"))
+
+    def test_every_set_of_the_program_is_there(self):
+        for name in ("sparse", "drawn"):
+            with tempfile.TemporaryDirectory() as folder:
+                first, ours = next(pcednet.generate(name)), pathlib.Path(folder) / "ours.ply"
+                pcednet.write(ours, first)
+                with subprocess.Popen([PROGRAM, "generate", name, folder], text=True,
+                                      stderr=subprocess.PIPE) as work:
+                    lines = [work.stderr.readline() for _ in range(2)]  # the second: one is made
+                    work.terminate()
+                self.assertIn(first.name, lines[1])
+                self.assertEqual(ours.read_bytes(),
+                                 (pathlib.Path(folder) / f"{first.name}.ply").read_bytes())
+        self.assertTrue(pcednet.generate("sparse", only="roof"))
 
     def test_they_are_made_one_by_one(self):
         clouds = pcednet.generate("default")  # nine and more: only the first is made

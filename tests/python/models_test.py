@@ -57,6 +57,56 @@ class Training(CliTest):
         with self.assertRaises(FileNotFoundError):
             pcednet.Model.load("absent.safetensors")
 
+    def test_an_extension_decides_the_format(self):
+        self.model.save(self.path("m.ONNX"))
+        self.model.save(self.path("m.onnx"))
+        self.assertEqual(self.path("m.ONNX").read_bytes(), self.path("m.onnx").read_bytes())
+        self.model.save(self.path("M.SafeTensors"))
+        self.assertEqual(pcednet.Model.load(self.path("M.SafeTensors")).name, "cube")
+        for wrong in ("m.pth", "m", "m.onnx.gz", ".onnx"):
+            with self.assertRaisesRegex(pcednet.UsageError, "ends in .safetensors or .onnx"):
+                self.model.save(self.path(wrong))
+            self.assertFalse(self.path(wrong).exists())
+
+    def test_descriptors_go_round(self):
+        rows = self.positions[:1500]
+        for name in pcednet.shipped_models():
+            model = pcednet.Model.load(name)
+            matrix = pcednet.describe(rows, self.normals[:1500], **model.descriptor)
+            self.assertEqual(matrix.shape, (1500, model.descriptor["scales"], len(model.columns)))
+            self.assertEqual(model.predict(matrix).shape, (1500, len(model.classes)))
+            result = model.classify(rows, self.normals[:1500], context=False, boundary=False)
+            np.testing.assert_array_equal(model.predict(matrix)[:, -1], result.p_sharp, name)
+            trained = pcednet.train(rows, self.labels[:1500], normals=self.normals[:1500],
+                                    epochs=1, **model.descriptor)
+            self.assertEqual((trained.descriptor, trained.columns),
+                             (model.descriptor, model.columns), name)
+
+    def test_octaves_describe_uneven_clouds_as_the_classification_does(self):
+        model = pcednet.Model.load("general")
+        random = np.random.default_rng(3)
+        away = np.exp(random.uniform(np.log(0.01), 0, 4000))  # a floor and a wall, seen from near
+        angle = random.uniform(0, 2 * np.pi, 4000)
+        rows = np.column_stack([away * np.cos(angle), away * np.sin(angle), np.zeros(4000)])
+        normals = np.tile([0.0, 0.0, 1.0], (4000, 1))
+        wall = rows[:, 0] < 0
+        rows[wall], normals[wall] = rows[wall][:, [2, 1, 0]] * (1, 1, -1), (1, 0, 0)
+        matrix = pcednet.describe(rows, normals, **model.descriptor)
+        without = pcednet.describe(rows, normals, **{**model.descriptor, "octaves": False})
+        self.assertTrue((matrix != without).any())
+        found = model.classify(rows, normals, context=False, boundary=False)
+        np.testing.assert_array_equal(model.predict(matrix)[:, 2], found.p_sharp)
+        with self.assertRaisesRegex(pcednet.UsageError, "octaves: an s_max_ratio is needed"):
+            pcednet.describe(rows, normals, octaves=True)
+
+    def test_no_context_is_that_of_the_program(self):
+        """Also of experts, which decide for clouds such as this."""
+        write_ply(self.path("few.ply"), self.positions[:2000], position_type="double")
+        run("classify", self.path("few.ply"), "-o", self.path("theirs.ply"), "--no-context")
+        cloud = pcednet.read(self.path("few.ply"))
+        pcednet.write(self.path("ours.ply"), cloud, pcednet.classify(cloud, context=False))
+        self.assertEqual(self.path("ours.ply").read_bytes(), self.path("theirs.ply").read_bytes())
+
     def test_shipped_models_are_there(self):
         self.assertIn("general", pcednet.shipped_models())
         model = pcednet.Model.load()
@@ -106,6 +156,49 @@ class Training(CliTest):
             pcednet.train(self.positions, np.full(4000, 255), normals=self.normals)
         with self.assertRaises(pcednet.InsufficientError):
             pcednet.train(self.positions, np.zeros(4000, int), normals=self.normals)
+
+    def test_numbers_that_are_no_classes_are_named(self):
+        for number in (4, 7, 254):
+            for kind in (np.uint8, np.int32):
+                labels = self.labels.astype(kind)
+                labels[9] = number
+                cloud = pcednet.Cloud(self.positions, self.normals)
+                cloud.labels = labels
+                for arguments in ((self.positions, labels), (cloud,)):
+                    with self.assertRaisesRegex(pcednet.UsageError,
+                                                f"labels: {number} is no class: 0 non-edge"):
+                        pcednet.train(*arguments, epochs=1)
+                with self.assertRaisesRegex(pcednet.UsageError, f"truth: {number} is no class"):
+                    pcednet.evaluate(labels, self.labels)
+                with self.assertRaisesRegex(pcednet.UsageError, f"predicted: {number} is no"):
+                    pcednet.evaluate(self.labels, labels)
+
+    def test_a_missing_class_is_named_by_its_label(self):
+        def refused(said, labels, **options):
+            with self.assertRaisesRegex(pcednet.InsufficientError, f"^{said}$"):
+                pcednet.train(self.positions, labels, normals=self.normals, epochs=1, scales=4,
+                              **options)
+        without_sharp = np.where(self.labels == 2, 255, self.labels)
+        refused(r"no point is labelled sharp-edge \(2\)", without_sharp)
+        refused(r"no point is labelled sharp-edge \(2\)", without_sharp, classes=2)
+        refused(r"no point is labelled non-edge \(0\)", np.where(self.labels == 0, 255,
+                                                                 self.labels))
+        two = np.where(self.labels == 1, 255, self.labels)
+        refused(r"train: no point is labelled smooth-edge \(1\); classes=2 learns sharp-edge "
+                r"\(2\) alone", two)
+        pcednet.train(self.positions, two, normals=self.normals, epochs=1, scales=4, classes=2)
+
+    def test_options_out_of_range_are_refused(self):
+        for named in ({"balance": -0.1}, {"balance": 1.5}, {"balance": float("nan")},
+                      {"balance": float("inf")}, {"distil": 101}, {"distil": -1}, {"epochs": 0},
+                      {"eps": 0.0}, {"eps": float("nan")}, {"gate": 1.5}, {"gate": float("nan")},
+                      {"second_gate": -2.0}, {"s_min": -1.0}, {"s_min": float("nan")},
+                      {"s_max": float("nan")}, {"s_max": float("inf")}, {"s_max_ratio": -1.0},
+                      {"s_max_ratio": float("nan")}, {"s_max_ratio": 0.5}, {"octaves": True},
+                      {"scales": 5}, {"features": 5}, {"classes": 1}, {"seed": -1}):
+            with self.assertRaises(pcednet.UsageError, msg=named):
+                pcednet.train(self.positions, self.labels, normals=self.normals,
+                              **{"epochs": 1, "scales": 4, **named})
 
     def test_painted_points_teach_the_general_model(self):
         """The definition is changed: edges of the top face alone."""

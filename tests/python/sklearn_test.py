@@ -66,6 +66,13 @@ class Estimator(unittest.TestCase):
             EdgeClassifier().fit(X[:, :4], LABELS)
         with self.assertRaisesRegex(ValueError, "3 features, but EdgeClassifier is expecting 6"):
             self.fitted.predict(POSITIONS)
+        for balance in (-1.0, 2.0, np.nan):
+            with self.assertRaisesRegex(pcednet.UsageError, "balance: .* from 0 to 1 is needed"):
+                EdgeClassifier(balance=balance).fit(X, LABELS)
+        own = pcednet.Cloud(POSITIONS, labels=LABELS)
+        own.comments = [f"pcednet class {i} #00000{i} {name}" for i, name in enumerate("abc")]
+        with self.assertRaisesRegex(pcednet.UsageError, "start: a model of the edge classes"):
+            EdgeClassifier(start=pcednet.train(own, epochs=1, scales=4)).fit(X, LABELS)
         unknown = X.copy()
         unknown[5] = np.nan
         self.assertEqual(self.fitted.predict(unknown)[5], 255)
