@@ -109,7 +109,7 @@ def lines(xyz, labels=None, normals=None, *, p_sharp=None, p_smooth=None,
     Raises
     ------
     UsageError, InsufficientError, KeyboardInterrupt
-        As :func:`classify`.
+        As :func:`classify`. A UsageError also for own classes without the edge classes.
     """
     classes, kinds = _some(classes, _SHORT.values(), "classes"), _some(kinds, _KINDS, "kinds")
     min_confidence = _arrays.share(min_confidence, "min_confidence")

@@ -24,7 +24,7 @@ class EdgeClassifier(ClassifierMixin, BaseEstimator):
     Parameters
     ----------
     start : str, path-like or Model, optional
-        The model to start from, such as ``"general"``; None trains a new network.
+        The model of edge classes to start from, such as ``"general"``; None trains a new network.
     classes : {3, 2}
     seed : int
     epochs : int, optional

@@ -235,6 +235,24 @@ class Scoring(unittest.TestCase):
                 for name, value in vars(scores).items():
                     self.assertAlmostEqual(value, theirs[name], 6, name)
 
+    def test_the_program_reads_arrays_of_any_layout(self):
+        positions, _, labels = cube(600)
+        edge = labels > 0
+        scores = np.column_stack([~edge, edge]).astype(np.float16)
+        with tempfile.TemporaryDirectory() as folder:
+            folder = pathlib.Path(folder)
+            write_ply(folder / "cube.ply", positions, labels=labels)
+            for array in (edge, scores, np.asfortranarray(scores), labels.astype(np.float16),
+                          np.asfortranarray(scores.astype(np.float64))):
+                np.save(folder / "cube.npy", array)
+                done = run("evaluate", folder / "cube.ply", "--predictions", folder, "--positive",
+                           "edge", "--json", "-")
+                self.assertEqual(json.loads(done.stdout)["clouds"][0]["mcc"], 1, array.dtype)
+            for array, cause in ((labels.astype(">i4"), ">i4"), (labels.astype("c8"), "<c8")):
+                np.save(folder / "cube.npy", array)
+                done = run("evaluate", folder / "cube.ply", "--predictions", folder, expect=3)
+                self.assertIn(f'numpy\'s type "{cause}"; expected', done.stderr)
+
     def test_unlabelled_truth_is_left_out(self):
         scores = pcednet.evaluate([2, 0, 2, 255, -1], [2, 2, 0, 2, 0])
         self.assertEqual((scores.tp, scores.fp, scores.fn, scores.tn), (1, 1, 1, 0))
