@@ -88,7 +88,8 @@ void drop_results(std::vector<Job>& jobs) {
   const std::size_t dropped = std::erase_if(jobs, [&](const Job& job) {
     return jobs.size() > 1 && results.contains(job.input.lexically_normal());
   });
-  if (dropped > 0) say(fmt::format("{} files left out: they are results of other inputs", dropped));
+  if (dropped == 1) say("1 file left out: it is the result of another input");
+  if (dropped > 1) say(fmt::format("{} files left out: they are results of other inputs", dropped));
 }
 
 }  // namespace

@@ -33,12 +33,16 @@ class Methods(CliTest):
             run("evaluate", self.folder / "a.ply", *arguments, expect=2)
 
     def test_classify_without_a_model(self):
-        done = run("classify", self.folder / "a.ply", "--method", "ca", "-o", self.folder / "b.ply")
+        done = run("classify", self.folder / "a.ply", "--method", "ca")
         self.assertIn("4000 points:", done.stderr)
         self.assertNotIn("scales:", done.stderr)
         again = json.loads(run("evaluate", self.folder / "a.ply", "--predictions", self.folder,
                                "--json", "-").stdout)
         self.assertEqual(again["clouds"][0]["points"], 4000)
+        self.assertLess(again["clouds"][0]["mcc"], 1.0)  # of a_edges.ply, not of a.ply itself
+        alone = run("evaluate", self.folder, "--method", "ca", "--json", "-")
+        self.assertEqual(json.loads(alone.stdout), again)
+        self.assertIn("1 file left out: it is the result", alone.stderr)
 
 
 if __name__ == "__main__":

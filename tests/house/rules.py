@@ -133,7 +133,7 @@ def check_version(root):
 
 def check_colours(root):
     """The pages name and colour the classes as the library does."""
-    table = root / "src/pcednet/cloud/edge_class.h"
+    table = root / "src/pcednet/cloud/class_table.h"
     palette = root / "web/shared/colours.ts"
     classes = [(name, f"#{int(r):02x}{int(g):02x}{int(b):02x}") for name, r, g, b in
                re.findall(r'\{k\w+, "([\w-]+)", \{(\d+), (\d+), (\d+)\}\}', read(table))]
@@ -182,7 +182,7 @@ endforeach()
         "src/pcednet/gls/b.cpp": '#include "pcednet/core/a.h"\nint n = snprintf(b, 2, "x");\n',
         "src/workbench/study/CMakeLists.txt": "workbench_room(study USES gls)\n",
         "src/workbench/study/c.cpp": '#include "workbench/study/c.h"\n\n#include "pcednet/gls/b.h"\n',
-        "src/pcednet/cloud/edge_class.h": "// {kNonEdge, \"non-edge\", {255, 0, 16}}\n",
+        "src/pcednet/cloud/class_table.h": "// {kNonEdge, \"non-edge\", {255, 0, 16}}\n",
         "src/pcednet/cloud/CMakeLists.txt": "pcednet_room(cloud)\n",
         "web/shared/colours.ts": 'paper: [ { name: "non-edge", colour: "#ff0010" }, { name: "none", colour: "#0" } ],\n',
         "CHANGELOG.md": "# Changes\n\n## Unreleased\n\n## 1.2.3\n\n## 1.2.2\n",
@@ -211,7 +211,7 @@ endforeach()
         "version": [("CHANGELOG.md", "## 1.2.2\n"), ("CITATION.cff", "version: 1.2.4\n")],
         "colours": [("web/shared/colours.ts", 'paper: [ { name: "non-edge", colour: "#ff0011" } ]\n'),
                     ("web/shared/colours.ts", 'paper: [ { name: "edge", colour: "#ff0010" } ]\n'),
-                    ("src/pcednet/cloud/edge_class.h", "\n")],
+                    ("src/pcednet/cloud/class_table.h", "\n")],
         "style": [("src/pcednet/core/a.h", "int  a ;\n")],
     }
     for rule, check in RULES.items():

@@ -11,8 +11,8 @@
 namespace pcednet::eval {
 
 /// The file in `folder` with another program's predictions for the cloud `stem`: STEM, STEM_edges
-/// or STEM_output, with an extension that read_predictions() knows, but not the file `cloud` itself.
-/// Empty if there is none.
+/// or STEM_output, with an extension that read_predictions() knows, but not the file `cloud`
+/// itself. Empty if there is none.
 std::filesystem::path find_predictions(const std::filesystem::path& folder, const std::string& stem,
                                        const std::filesystem::path& cloud);
 
