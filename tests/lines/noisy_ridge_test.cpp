@@ -55,5 +55,53 @@ TEST(NoisyRidge, ShowsEdgesThatAreThreeSpacingsApart) {
   EXPECT_GT(length, 0.4 * 8.0 * kRidgeLength);  // without points along the edge it is 0.26
 }
 
+constexpr double kThick = 2.5;
+
+/// The end of a wall, along y: both sides and, at x = 0, the rim
+/// between its two edges. Of mixed signs, normals do not tell the sides apart.
+std::vector<Curve> lines_of_wall(std::uint64_t seed, bool mixed_signs) {
+  constexpr double kDeep = 30.0;
+  Random random(seed);
+  std::vector<Vec3> positions, normals;
+  std::vector<std::uint8_t> classes;
+  for (int i = 0; i < static_cast<int>((2.0 * kDeep + kThick) * kRidgeLength); ++i) {
+    const double across = (2.0 * kDeep + kThick) * random.uniform() - kDeep;
+    const double beside = across < 0.0 ? across : std::min(0.0, kThick - across);
+    const Vec3 place(beside, kRidgeLength * random.uniform(), std::clamp(across, 0.0, kThick));
+    const Vec3 normal = beside == 0.0  ? Vec3(Vec3::UnitX())
+                        : across < 0.0 ? Vec3(-Vec3::UnitZ())
+                                       : Vec3(Vec3::UnitZ());
+    const Vec3 noise(random.normal(), random.normal(), random.normal());
+    positions.push_back(place + kRidgeNoise * noise);
+    normals.push_back(mixed_signs && random.uniform() < 0.5 ? Vec3(-normal) : normal);
+    classes.push_back(beside > -1.5 ? kSharpEdge : kNonEdge);
+  }
+  return find_lines({positions, normals, classes});
+}
+
+/// The length of the curves along one of its edges.
+double length_on_wall(const std::vector<Curve>& curves) {
+  double length = 0.0;
+  for (const Curve& curve : curves) {
+    for (const double z : {0.0, kThick}) {
+      const bool on_edge =
+          std::all_of(curve.points.begin(), curve.points.end(),
+                      [&](const Vec3& p) { return std::hypot(p.x(), p.z() - z) < 1.0; });
+      if (on_edge) length += length_of(curve);
+    }
+  }
+  return length;
+}
+
+TEST(NoisyWall, HasTwoEdgesWhereNormalsTellItsSidesApart) {
+  double length = 0.0, mixed = 0.0;
+  for (const std::uint64_t seed : {1u, 2u, 3u, 4u}) {
+    length += length_on_wall(lines_of_wall(seed, false));
+    mixed += length_on_wall(lines_of_wall(seed, true));
+  }
+  EXPECT_GT(length, 0.9 * 8.0 * kRidgeLength);
+  EXPECT_GT(length, 1.2 * mixed);
+}
+
 }  // namespace
 }  // namespace pcednet::lines

@@ -32,7 +32,9 @@ struct LineOptions {
 /// may be empty.
 struct EdgePoints {
   std::span<const Vec3> positions;
-  std::span<const Vec3> normals;          ///< unit, or (0,0,0); their signs do not matter
+  /// Unit, or (0,0,0). Signs, in or out, do not matter, but where those of neighbours agree they
+  /// tell the sides of thin walls apart in noise.
+  std::span<const Vec3> normals;
   std::span<const std::uint8_t> classes;  ///< EdgeClass
   std::span<const float> p_sharp = {};
   std::span<const float> p_smooth = {};

@@ -21,7 +21,7 @@ constexpr int kDirections = 10;
 constexpr std::size_t kCuts = 9;  ///< of each direction
 constexpr int kImprovements = 4;
 constexpr double kMostOutliers = 0.12;   ///< share of the points
-constexpr double kPrice = 4.0;           ///< in squared standard deviations: of the choice of a cut
+constexpr double kPrice = 2.0;           ///< in squared standard deviations: of the choice of a cut
 constexpr double kMostMeanSquare = 1.7;  ///< of the distances, in squared standard deviations
 
 // In spacings.
@@ -150,8 +150,10 @@ void try_cuts(std::span<const HeightSums> places, const Frame& frame, double ang
   for (std::size_t cut = 0; cut < kCuts; ++cut) {
     before.add(strips[cut]);
     after.add(strips[cut], -1.0);
-    const auto a = part_of(before), b = part_of(after);
-    if (!a || !b || a->error + b->error >= least_error) continue;
+    const auto a = part_of(before);
+    if (!a || a->error >= least_error) continue;
+    const auto b = part_of(after);
+    if (!b || a->error + b->error >= least_error) continue;
     const auto halves = half_planes(plane_of(*a, frame), plane_of(*b, frame), frame.place(a->mean),
                                     frame.place(b->mean));
     if (!halves) continue;
