@@ -58,6 +58,14 @@ TEST_F(Predicted, ArraysOfClassesOrOfScores) {
   EXPECT_ERROR(ErrorKind::kInsufficient, npy({4}, {0, .5f, 0, 0}));
 }
 
+TEST_F(Predicted, TrueIsSharp) {
+  std::string header = "{'descr': '|b1', 'fortran_order': False, 'shape': (4,), }";
+  header.resize(117, ' ');
+  const auto file = write(
+      "a.npy", std::string("\x93NUMPY\1\0\x76\0", 10) + header + "\n" + std::string("\1\0\0\1", 4));
+  EXPECT_EQ(read_predictions(file, positions_).classes, (Classes{2, 0, 0, 2}));
+}
+
 TEST_F(Predicted, AnotherSamplingGivesTheLabelOfItsNearestPoint) {
   const auto file = write("a.ply",
                           "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\n"

@@ -199,6 +199,7 @@ NpyArray read_npy(const std::filesystem::path& path) {
   const bool is_half = storage->bytes < size_of(storage->type);
   array.shape = *shape;
   array.type = storage->type;
+  array.is_bool = descr == "|b1";
   array.values.reserve(product);
   for (std::size_t i = 0; i < product; ++i) {
     array.values.push_back(is_half ? half_of(numbers.bytes.data() + 2 * i) : numbers.value(i));

@@ -45,6 +45,7 @@ class NpyWriter {
 struct NpyArray {
   std::vector<std::size_t> shape;
   ScalarType type = ScalarType::kFloat64;  ///< in the file; of 16-bit floats kFloat32
+  bool is_bool = false;                    ///< the values are 0 and 1
   std::vector<double> values;
 };
 
