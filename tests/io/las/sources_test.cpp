@@ -61,6 +61,21 @@ TEST(LasSources, FillStandardFieldsFromColumnsOfAnyType) {
   EXPECT_EQ(get_number<std::uint64_t>(bytes, 263), 1u);  // second ones
 }
 
+TEST(LasSources, AreNamedAsByCloudCompare) {
+  const Scratch scratch;
+  PointCloud cloud;
+  cloud.positions = {{1, 2, 3}, {4, 5, 6}};
+  cloud.attributes = {make_attribute("scalar_Intensity", std::vector<float>{17, 900}),
+                      make_attribute("scalar_Return_Number", std::vector<float>{1, 2}),
+                      make_attribute("scalar_p_sharp", std::vector<float>{0.5F, 1.0F})};
+  const auto [back, losses] = through_las(scratch, cloud);
+  EXPECT_TRUE(losses.empty());
+  EXPECT_EQ(values(back, "Intensity"), (Values{17, 900}));
+  EXPECT_EQ(values(back, "ReturnNumber"), (Values{1, 2}));
+  EXPECT_EQ(find_attribute(back, "scalar_Intensity"), nullptr);
+  EXPECT_EQ(values(back, "scalar_p_sharp"), (Values{0.5, 1}));
+}
+
 TEST(LasSources, TakeNamesInOtherCapitals) {
   const Scratch scratch;
   PointCloud cloud;

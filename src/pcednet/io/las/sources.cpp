@@ -49,6 +49,15 @@ std::optional<WholeRange> range_of(const LasField& field) {
   return visit_scalar(field.type, [](auto zero) { return range_of_type<decltype(zero)>(); });
 }
 
+/// A name without the differences between programs: CloudCompare calls GpsTime `scalar_Gps_Time`.
+std::string plain_name(std::string_view name) {
+  constexpr std::string_view kScalar = "scalar_";
+  if (name.starts_with(kScalar)) name.remove_prefix(kScalar.size());
+  std::string plain = lower_case(name);
+  std::erase_if(plain, [](char c) { return c == '_' || c == ' '; });
+  return plain;
+}
+
 /// The attribute of one number a point with that name; where names repeat, of that type if one is.
 const Attribute* find_single(const PointCloud& cloud, const std::string& name, ScalarType type) {
   const Attribute* found = nullptr;
@@ -59,14 +68,15 @@ const Attribute* find_single(const PointCloud& cloud, const std::string& name, S
   return found;
 }
 
-/// The same for a field, otherwise with its name in other capitals; `own`: names that are none.
+/// The same for a field, otherwise with its name as other programs write it; `own`: names that are
+/// none.
 const Attribute* find_named(const PointCloud& cloud, const std::string& name, ScalarType type,
                             const std::set<std::string>& own) {
   const Attribute* found = own.count(name) == 0 ? find_single(cloud, name, type) : nullptr;
   for (std::size_t a = 0; !found && a < cloud.attributes.size(); ++a) {
     const Attribute& attribute = cloud.attributes[a];
     const bool is_similar = attribute.components == 1 && own.count(attribute.name) == 0 &&
-                            lower_case(attribute.name) == lower_case(name);
+                            plain_name(attribute.name) == plain_name(name);
     if (is_similar) found = find_single(cloud, attribute.name, type);
   }
   return found;
