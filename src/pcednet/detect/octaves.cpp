@@ -80,7 +80,8 @@ void for_each_octave(
     const std::function<void(const gls::ScaleSpace&, std::span<const std::uint32_t>)>& work) {
   const auto space_of = [&](std::size_t octave, const gls::ScaleSpaceOptions& options,
                             const Progress* its) {
-    const gls::PyramidPlan* whole = cloud.part ? &cloud.part->pyramids[octave] : nullptr;
+    const bool has_pyramid = cloud.part && !cloud.part->pyramids.empty();
+    const gls::PyramidPlan* whole = has_pyramid ? &cloud.part->pyramids[octave] : nullptr;
     return gls::ScaleSpace({cloud.positions, cloud.normals, cloud.curve, whole}, options, its);
   };
   std::vector<std::uint8_t> octaves;

@@ -10,9 +10,10 @@ namespace pcednet::detect {
 
 /// A part of a larger cloud, for points to get the same labels as in the whole.
 struct PartOfCloud {
-  std::vector<gls::PyramidPlan> pyramids = {};  ///< of the whole, one per octave in use
-  std::size_t points = 0;                       ///< of the whole
-  std::vector<std::uint8_t> wanted = {};        ///< 1: gets a label, 0: only a neighbour for others
+  /// Of the whole, one per octave in use; empty if the exact engine, which has none, describes.
+  std::vector<gls::PyramidPlan> pyramids = {};
+  std::size_t points = 0;                 ///< of the whole
+  std::vector<std::uint8_t> wanted = {};  ///< 1: gets a label, 0: only a neighbour for others
 };
 
 }  // namespace pcednet::detect
