@@ -6,6 +6,7 @@
 #include <set>
 
 #include "pcednet/core/error.h"
+#include "pcednet/nn/plan.h"
 
 namespace pcednet::annotate {
 namespace {
