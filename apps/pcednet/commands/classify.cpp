@@ -14,6 +14,7 @@
 #include "methods.h"
 #include "models.h"
 #include "pcednet/core/error.h"
+#include "pcednet/detect/cloud_kind.h"
 #include "pcednet/detect/result_cloud.h"
 #include "pcednet/formats/write_cloud.h"
 #include "prepare.h"

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "pcednet/core/parallel.h"
+#include "pcednet/tiles/grid.h"
 
 namespace pcednet::tiles {
 namespace {
