@@ -4,6 +4,7 @@
 
 #include "common.h"
 #include "number_options.h"
+#include "pcednet/gls/scales.h"
 
 namespace pcednet::app {
 namespace {
@@ -81,14 +82,9 @@ void add_engine_option(CLI::App& command, gls::ScaleSpaceOptions& options) {
 
 void check_scales(const std::filesystem::path& file, const BoundingBox& box,
                   const gls::ScaleSpaceOptions& options) {
-  const double diagonal = box.diagonal();
-  if (!(diagonal > 0.0)) return;
-  const auto larger = [&](const char* option, double scale) {
-    return fmt::format("{}: {} {:g} is larger than the cloud, whose diagonal is {:.4g}",
-                       file.string(), option, scale, diagonal);
-  };
-  if (options.s_min > diagonal) throw Error(ErrorKind::kUsage, larger("--s-min", options.s_min));
-  if (options.s_max > diagonal) warn(larger("--s-max", options.s_max));
+  const std::string note = gls::note_on_extent(options, box.diagonal(), file.string() + ": ",
+                                               {.s_min = "--s-min", .s_max = "--s-max"});
+  if (!note.empty()) warn(note);
 }
 
 }  // namespace pcednet::app

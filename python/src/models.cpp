@@ -3,13 +3,12 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
-#include <sstream>
-
 #include "arrays.h"
 #include "bindings.h"
 #include "pcednet/cloud/bounding_box.h"
 #include "pcednet/core/error.h"
 #include "pcednet/detect/cloud_kind.h"
+#include "pcednet/gls/scales.h"
 #include "pcednet/nn/model_file.h"
 #include "pcednet/nn/predict.h"
 
@@ -101,16 +100,8 @@ gls::ScaleSpaceOptions descriptor_of(const py::dict& settings) {
 
 std::string note_on_extent(const gls::ScaleSpaceOptions& options, std::span<const Vec3> positions,
                            const std::string& whose) {
-  const double diagonal = bounding_box(positions).diagonal();
-  const auto larger = [&](const char* name, double scale) {
-    std::ostringstream text;
-    text << whose << name << " " << scale << " is larger than the cloud, whose diagonal is "
-         << diagonal;
-    return text.str();
-  };
-  if (!(diagonal > 0.0)) return {};
-  if (options.s_min > diagonal) throw Error(ErrorKind::kUsage, larger("s_min", options.s_min));
-  return options.s_max > diagonal ? larger("s_max", options.s_max) : std::string();
+  return gls::note_on_extent(options, bounding_box(positions).diagonal(), whose,
+                             {.s_min = "s_min", .s_max = "s_max"});
 }
 
 void add_models(py::module_& module) {

@@ -15,8 +15,7 @@ namespace pcednet::python {
 /// defaults. The package has checked the names.
 gls::ScaleSpaceOptions descriptor_of(const pybind11::dict& settings);
 
-/// Throws Error(kUsage) if s_min is larger than the cloud. Returns a sentence for the user if s_max
-/// is, otherwise an empty one. Both begin with `whose`.
+/// gls::note_on_extent() of a cloud at these positions.
 std::string note_on_extent(const gls::ScaleSpaceOptions& options, std::span<const Vec3> positions,
                            const std::string& whose = "");
 

@@ -55,8 +55,9 @@ std::vector<std::uint8_t> classes_of_array(const fs::path& path, const io::NpyAr
     classes[i] = *label;
   }
   // Two columns are scores of non-edge and edge; of bool, true is an edge.
-  if (columns == 2 || array.is_bool)
+  if (columns == 2 || array.is_bool) {
     std::replace(classes.begin(), classes.end(), kSmoothEdge, kSharpEdge);
+  }
   return classes;
 }
 

@@ -135,6 +135,17 @@ ScaleRange scale_range(std::span<const Vec3> positions, const ScaleRange& given,
                   given.s_min > 0.0 ? "given" : "the spacing of the points if not given"));
 }
 
+std::string note_on_extent(const ScaleSpaceOptions& options, double diagonal,
+                           std::string_view whose, const RangeNames& names) {
+  if (!(diagonal > 0.0)) return {};
+  const auto larger = [&](std::string_view name, double scale) {
+    return fmt::format("{}{} {:g} is larger than the cloud, whose diagonal is {:.4g}", whose, name,
+                       scale, diagonal);
+  };
+  if (options.s_min > diagonal) throw Error(ErrorKind::kUsage, larger(names.s_min, options.s_min));
+  return options.s_max > diagonal ? larger(names.s_max, options.s_max) : std::string();
+}
+
 std::vector<double> sample_scales(const ScaleRange& range, int count) {
   if (count < kMinScales || count > kMaxScales ||
       !std::has_single_bit(static_cast<unsigned>(count))) {

@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <functional>
 #include <span>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "pcednet/gls/scale_space_options.h"
@@ -53,6 +55,16 @@ ScaleRange scale_range(std::span<const Vec3> positions, const ScaleRange& given,
 /// do not make the others denser.
 std::vector<double> spacings_of_places(std::span<const Vec3> positions,
                                        std::span<const std::uint32_t> curve);
+
+/// What a user calls the bounds of the range.
+struct RangeNames {
+  std::string_view s_min, s_max;
+};
+
+/// Throws Error(kUsage) if the given s_min is larger than a cloud of this diagonal. Returns a
+/// sentence for the user if the given s_max is, otherwise an empty one. Both begin with `whose`.
+std::string note_on_extent(const ScaleSpaceOptions& options, double diagonal,
+                           std::string_view whose, const RangeNames& names);
 
 /// `count` scales, smallest first: s_i = s_min (s_max / s_min)^((i - 1) / (count - 1)).
 /// Throws Error(kUsage) unless count is 4, 8, 16, 32, 64 or 128 and 0 < s_min < s_max.

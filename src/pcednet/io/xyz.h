@@ -20,8 +20,8 @@ namespace pcednet::io {
 /// among them names the columns, which CloudBuilder then reads as of type double. Without names,
 /// columns after the third are taken for normals, colours or labels by their values, with a
 /// warning. A first line with one whole number is the count of points; as many points later another
-/// count may follow, that of the next scan. Throws Error(kUnreadable)
-/// naming the line that does not fit the others.
+/// count may follow, that of the next scan. Throws Error(kUnreadable) naming the line that does not
+/// fit the others.
 LoadedCloud read_xyz(const InputFile& file);
 
 /// Writes points as text: comments and names behind #, then one point a line; .csv with commas and

@@ -27,10 +27,9 @@ struct PlanRequest {
 ///
 /// Inputs whose points are not in spatial order are rejected, after the first reading if that shows
 /// it, or get a note where the tiles read them fewer times, unless there is a folder for copies.
-/// Throws Error(kUnreadable) for inputs that cannot be
-/// read, Error(kUsage) for inputs that do not fit together, for one that is there twice, and for a
-/// tile or copy with the name of an input, Error(kInsufficient) if there is no finite point or no
-/// range of scales.
+/// Throws Error(kUnreadable) for inputs that cannot be read, Error(kUsage) for inputs that do not
+/// fit together, for one that is there twice, and for a tile or copy with the name of an input,
+/// Error(kInsufficient) if there is no finite point or no range of scales.
 Plan make_plan(const PlanRequest& request, const detect::EdgeModel& model,
                const Progress* progress = nullptr);
 

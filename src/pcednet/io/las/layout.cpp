@@ -119,7 +119,8 @@ LasFile new_file_for(const PartOutline& outline) {
   const PointCloud& first = *outline.first;
   const bool with_colours =
       !first.colours.empty() ||
-      las_channels(first, find_las_sources(file, true, outline))[0] != nullptr;
+      (may_have_channels(first) &&
+       las_channels(first, find_las_sources(file, true, outline))[0] != nullptr);
   return with_colours ? file : new_file(false);
 }
 

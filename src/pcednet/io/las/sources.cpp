@@ -15,6 +15,8 @@ namespace {
 /// Whole numbers up to here are doubles.
 constexpr double kLargestWhole = 9007199254740992.0;
 
+constexpr const char* kChannelNames[] = {"Red", "Green", "Blue"};
+
 /// The whole numbers that a field holds.
 struct WholeRange {
   double least = 0.0, largest = 0.0;
@@ -163,11 +165,16 @@ const Attribute* las_source(const PointCloud& cloud, const LasSources& sources,
 std::array<const Attribute*, 3> las_channels(const PointCloud& cloud, const LasSources& sources) {
   std::array<const Attribute*, 3> channels = {};
   for (std::size_t c = 0; c < 3; ++c) {
-    static constexpr const char* kNames[] = {"Red", "Green", "Blue"};
-    channels[c] = las_source(cloud, sources, kNames[c], ScalarType::kUint16);
+    channels[c] = las_source(cloud, sources, kChannelNames[c], ScalarType::kUint16);
     if (!channels[c]) return {};
   }
   return channels;
+}
+
+bool may_have_channels(const PointCloud& first) {
+  return std::all_of(std::begin(kChannelNames), std::end(kChannelNames), [&](const char* name) {
+    return find_named(first, name, ScalarType::kUint16, {}) != nullptr;
+  });
 }
 
 bool colours_are_new(const PartOutline& outline, const LasSources& sources) {

@@ -32,6 +32,9 @@ const Attribute* las_source(const PointCloud& cloud, const LasSources& sources,
 /// Those for Red, Green and Blue; all null unless all are there.
 std::array<const Attribute*, 3> las_channels(const PointCloud& cloud, const LasSources& sources);
 
+/// Whether there are attributes that las_channels() may be, if all their values fit.
+bool may_have_channels(const PointCloud& first);
+
 /// Whether the colours say anything that Red, Green and Blue do not: these must round to the
 /// colours, or have them as their high bytes.
 bool colours_are_new(const PartOutline& outline, const LasSources& sources);
