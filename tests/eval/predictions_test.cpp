@@ -56,6 +56,15 @@ TEST_F(Predicted, ArraysOfClassesOrOfScores) {
   EXPECT_EQ(npy({4, 2}, {.9f, .1f, .1f, .9f, 0, 1, 1, 0}), (Classes{0, 2, 2, 0}));
   EXPECT_ERROR(ErrorKind::kInsufficient, npy({3}, {0, 0, 0}));
   EXPECT_ERROR(ErrorKind::kInsufficient, npy({4}, {0, .5f, 0, 0}));
+  for (const std::size_t columns : {255u, 256u, 300u}) {
+    std::vector<float> scores(4 * columns, 0.0f);
+    for (std::size_t row = 0; row < 4; ++row) scores[row * columns + columns - 1 - row] = 1.0f;
+    if (columns == 255) {
+      EXPECT_EQ(npy({4, columns}, scores), (Classes{254, 253, 252, 251}));
+    } else {
+      EXPECT_ERROR(ErrorKind::kInsufficient, npy({4, columns}, scores));
+    }
+  }
 }
 
 TEST_F(Predicted, TrueIsSharp) {

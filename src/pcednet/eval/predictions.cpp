@@ -20,6 +20,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::size_t kMostClasses = kUnlabelled;
+
 /// Files with classes only come before point files.
 std::vector<std::string_view> extensions_of_predictions() {
   std::vector<std::string_view> extensions = {".u8", ".txt", ".csv", ".lbl", ".seg", ".npy"};
@@ -41,6 +43,11 @@ std::vector<std::uint8_t> classes_of_array(const fs::path& path, const io::NpyAr
   if (rows != points || array.shape.size() > 2 || columns == 0) {
     throw misfit(path, fmt::format("an array of {} values in {} rows", array.values.size(), rows),
                  points);
+  }
+  if (columns > kMostClasses) {
+    throw Error(ErrorKind::kInsufficient,
+                fmt::format("{}: scores of {} classes; at most {} can be told apart", path.string(),
+                            columns, kMostClasses));
   }
   std::vector<std::uint8_t> classes(points);
   for (std::size_t i = 0; i < points; ++i) {

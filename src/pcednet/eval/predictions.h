@@ -24,8 +24,8 @@ struct Predictions {
 /// The classes of a cloud at `positions` from another program's file:
 /// - a class per point in the cloud's order: what formats::read_labels() reads;
 /// - .npy: classes of shape (points) or (points, 1), of which true is sharp-edge, or scores of
-/// shape
-///   (points, classes), where the largest score wins, the lower class on ties;
+///   shape (points, classes) for at most 255 classes, where the largest score wins, the lower class
+///   on ties;
 /// - a point file with labels and another number of points, as from a method that resamples: every
 ///   position gets the label of its nearest point in the file, as in Himeur et al. 2021;
 /// - a point file without labels, with points on edges only: the position nearest to each is
