@@ -47,10 +47,10 @@ class TilesRun(TilesTest):
         self.assertRegex(said, r"missing +2 tiles, +\d+ points: 0, 2\n")
         self.assertIn(f"  next: pcednet tiles run {plan} --tile 1 --tile 3 --overwrite\n"
                       f"  then: pcednet tiles run {plan}, for the missing\n", said)
-        said = run("tiles", "run", plan, "--missing", expect=2).stderr
+        said = run("tiles", "run", plan, expect=2).stderr
         self.assertIn(f"{files[2]}: exists already", said)  # for all that is known, not a tile
         run("tiles", "run", plan, "--tile", 2, "--overwrite")
-        run("tiles", "run", plan, "--missing")
+        run("tiles", "run", plan)
         run("tiles", "run", plan, "--tile", 3, "--overwrite")
         self.assertEqual([f.read_bytes() for f in files], before)
         self.assertEqual(self.status(plan, "--verify")["done"], list(range(len(files))))

@@ -29,7 +29,6 @@ struct RunArguments {
   std::string plan, memory;
   std::vector<std::string> tiles;
   int jobs = 1;
-  bool missing = false;
 };
 
 /// Adds the numbers of "7" or "0-15".
@@ -278,9 +277,6 @@ void add_run(CLI::App& tiles, Common& common) {
   command->add_option("plan", arguments->plan, "The plan")->required();
   command->add_option("--tile", arguments->tiles,
                       "Number of a tile, or two with - between them; several times for more");
-  command->add_flag("--missing", arguments->missing,
-                    "Only what is missing or damaged, which is the default");
-  command->get_option("--missing")->excludes("--overwrite");
   command->add_option("--jobs", arguments->jobs, "Tiles at a time, each in its own process")
       ->capture_default_str()
       ->check(CLI::Range(1, 1024));
