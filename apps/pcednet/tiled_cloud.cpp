@@ -128,7 +128,7 @@ TiledCloud::TiledCloud(TiledRequest request, const detect::EdgeModel& model,
     tiles::label_points(plan_, nullptr, *labels_, &progress);
   } else {
     const detect::EdgeModel planned = tiles::load_planned_model(plan_);
-    counts_ = tiles::label_points(plan_, &planned, *labels_, &progress);
+    found_ = tiles::label_points(plan_, &planned, *labels_, &progress);
   }
 }
 

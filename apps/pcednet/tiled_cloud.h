@@ -70,7 +70,8 @@ class TiledCloud {
   TiledCloud(TiledRequest request, const detect::EdgeModel& model, const Progress& progress);
 
   const tiles::Plan& plan() const { return plan_; }
-  const detect::ClassCounts& counts() const { return counts_; }
+  /// What tiles::label_points() returned; nothing if labels were given.
+  const detect::Classification& found() const { return found_; }
   bool is_las() const { return reader_->is_las(); }
 
   /// Calls `visit` with part after part, in the order of the file, until it returns false.
@@ -82,7 +83,7 @@ class TiledCloud {
   PassingFolder sorted_;
   tiles::Plan plan_;
   std::optional<tiles::PointLabels> labels_ = {};
-  detect::ClassCounts counts_ = {};
+  detect::Classification found_ = {};
   std::unique_ptr<io::PartReader> reader_;
 };
 

@@ -1,5 +1,6 @@
 """pcednet classify --max-memory: clouds that memory does not hold, with the result of those that it does."""
 import os
+import re
 import resource
 import signal
 import subprocess
@@ -21,11 +22,14 @@ class Large(CliTest):
         whole, tiled = self.folder / ("whole" + ending), self.folder / ("tiled" + ending)
         said = run("classify", cloud, "-o", whole, *options).stderr
         self.assertNotIn("in tiles", said)
+        how = re.findall("  (?:scales|decided).*", said)
         before = set(os.listdir(self.folder))
         said = run("classify", cloud, "-o", tiled, "--max-memory", "101M", *options).stderr
         self.assertRegex(said, r"points may take \d+ MiB of memory, more than 101 MiB: classified in tiles")
         self.assertRegex(said, r"  \d+ tiles of length")
+        self.assertEqual(re.findall("  (?:scales|decided).*", said), how)
         self.assertEqual(set(os.listdir(self.folder)) - before, {tiled.name})
+        self.how = "".join(how)
         return whole, tiled
 
     def check_equal(self, whole, tiled, least):
@@ -63,6 +67,17 @@ class Large(CliTest):
         self.check_equal(*plys, 0.999)
         rows, _ = read_ply(plys[1])
         np.testing.assert_array_equal(rows["Classification"] == 64, rows["scalar_edge_class"] == 2)
+
+    def test_the_scales_and_the_networks_are_told(self):
+        p, random = field(4, normals=False)[0], np.random.default_rng(4)
+        kept = random.random(len(p)) < 0.04 + np.exp(-1.5 * p[:, 0])
+        q = field(3)[0]
+        for name, cloud, words in (
+                ("sparser", p[kept], "where points are sparser"),
+                ("noisy", q + 0.02 * random.normal(size=q.shape), "of the kind estimated,noisy")):
+            write_ply(self.folder / f"{name}.ply", cloud)
+            self.classified(self.folder / f"{name}.ply", f"_{name}.ply")
+            self.assertIn(words, self.how)
 
     def test_a_picture_is_drawn_and_copc_written(self):
         write_ply(self.folder / "a.ply", *field(3))

@@ -139,8 +139,7 @@ void classify_large_file(const Job& job, const ClassifyArguments& arguments,
                           .preparation = arguments.preparation,
                           .memory = needed.memory},
                          model, clock.progress());
-  const detect::Classification result{
-      .counts = cloud.counts(), .s_min = cloud.plan().s_min, .s_max = cloud.plan().s_max};
+  const detect::Classification& result = cloud.found();
   detect::KeptInput kept;
   PointCloud drawn;
   Counts counts = {};

@@ -20,6 +20,16 @@ std::size_t record_bytes(bool normals) {
   return kNormalAt + (normals ? kBytesOfNormal : 0);
 }
 
+void add_tile(const detect::Classification& tile, bool is_first, detect::Classification& whole) {
+  whole.counts += tile.counts;
+  whole.largest_scale = std::max(whole.largest_scale, tile.largest_scale);
+  if (is_first) {
+    whole.expert = tile.expert;
+  } else if (whole.expert != tile.expert) {
+    whole.expert.reset();
+  }
+}
+
 }  // namespace
 
 PointLabels::PointLabels(const std::filesystem::path& beside, bool own_classes, bool normals)
@@ -71,19 +81,19 @@ TileFindings PointLabels::get(std::size_t begin, std::size_t end) const {
   return findings;
 }
 
-detect::ClassCounts label_points(const Plan& plan, const detect::EdgeModel* model,
-                                 PointLabels& labels, const Progress* progress) {
-  detect::ClassCounts counts;
+detect::Classification label_points(const Plan& plan, const detect::EdgeModel* model,
+                                    PointLabels& labels, const Progress* progress) {
+  detect::Classification whole{.s_min = plan.s_min, .s_max = plan.s_max};
   const Progress quiet = without_report(progress);
   Stage stage(progress, "tiles", plan.points());
   for (std::size_t id = 0; id < plan.tiles.size(); ++id) {
     TileCloud points = read_tile(plan, id, &quiet);
     const TileFindings findings = classify_tile(plan, id, model, points, &quiet);
     labels.put(points.numbers, findings);
-    counts += findings.found.counts;
+    add_tile(findings.found, id == 0, whole);
     stage.advance(points.core.size());
   }
-  return counts;
+  return whole;
 }
 
 }  // namespace pcednet::tiles

@@ -30,9 +30,11 @@ class PointLabels {
   ScratchFile file_;
 };
 
-/// Classifies all points tile by tile, in the memory of one tile, and counts the classes; without a
-/// model only makes their normals. Throws as read_tile() does, and Error(kFailure) for a full disk.
-detect::ClassCounts label_points(const Plan& plan, const detect::EdgeModel* model,
-                                 PointLabels& labels, const Progress* progress = nullptr);
+/// Classifies all points tile by tile, in the memory of one tile; without a model only makes their
+/// normals. Returns what is true of the cloud as a whole, without its points: counts, scales, and
+/// the expert if the same one decided in all tiles. Throws as read_tile() does, and Error(kFailure)
+/// for a full disk.
+detect::Classification label_points(const Plan& plan, const detect::EdgeModel* model,
+                                    PointLabels& labels, const Progress* progress = nullptr);
 
 }  // namespace pcednet::tiles
