@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "pcednet/core/blocks.h"
 #include "pcednet/core/digest.h"
@@ -102,6 +103,13 @@ double scale_within(const io::LasFile& file, std::size_t axis, const BoundingBox
   return scale;
 }
 
+/// A part as read_cloud() gives a whole file, without its warnings.
+PointCloud finished(PointCloud part) {
+  io::PartTally known;
+  io::finish_part(part, known);
+  return part;
+}
+
 /// `part` without its points.
 PointCloud without_points(PointCloud part) {
   part.positions.clear(), part.normals.clear(), part.colours.clear(), part.labels.clear();
@@ -184,10 +192,7 @@ std::unique_ptr<io::PartReader> open_planned(const PlannedInput& input) {
 }
 
 PointCloud read_finished(const io::PartReader& reader, std::size_t chunk) {
-  PointCloud part = reader.read(chunk);
-  io::PartTally known;
-  io::finish_part(part, known);
-  return part;
+  return finished(reader.read(chunk));
 }
 
 PointCloud read_chunk(const io::PartReader& reader, const PlannedInput& input, std::size_t chunk) {
@@ -195,9 +200,7 @@ PointCloud read_chunk(const io::PartReader& reader, const PlannedInput& input, s
   if (digest_of(part) != input.chunks[chunk].digest) {
     changed(input.path, fmt::format("other points in chunk {}", chunk));
   }
-  io::PartTally known;
-  io::finish_part(part, known);
-  return part;
+  return finished(std::move(part));
 }
 
 void for_each_chunk(const PlannedInput& input, const std::function<bool(const Chunk&)>& is_wanted,
@@ -225,7 +228,7 @@ IndexedInput index_input(const fs::path& path, const Progress* progress,
   const auto reader = open_chunks(path);
   IndexedInput indexed;
   indexed.input = {.path = path,
-                   .bytes = fs::file_size(path),
+                   .bytes = io::InputFile(path).size(),
                    .narrow_colours = reader->narrow_colours(),
                    .chunks = {}};
   io::PartTally tally;

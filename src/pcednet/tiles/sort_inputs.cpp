@@ -171,7 +171,8 @@ void sort_file(const fs::path& from, const fs::path& to, const Plan& plan,
     copy.append(some);
   });
   copy.commit();
-  fs::remove(from);
+  std::error_code ignored;  // at the end it is tried again
+  fs::remove(from, ignored);
 }
 
 }  // namespace

@@ -42,7 +42,7 @@ void remove_claim(const fs::path& tile) {
 }
 
 void write_record(const fs::path& tile, TileRecord record) {
-  record.bytes = fs::file_size(tile);
+  record.bytes = io::InputFile(tile).size();
   record.sha256 = sha256_of_file(tile);
   write_claim(tile, record);
 }

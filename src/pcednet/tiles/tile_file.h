@@ -21,7 +21,8 @@ struct TileRecord {
 };
 
 /// Writes the record of a tile whose file is finished and in place. The tile's file is written
-/// first, then its record: a tile without one is not finished.
+/// first, then its record: a tile without one is not finished. Throws Error(kUnreadable) if the
+/// file is gone.
 void write_record(const std::filesystem::path& tile, TileRecord record);
 
 /// Writes the record of a tile that is begun, so that its file is known for one of a tile.
