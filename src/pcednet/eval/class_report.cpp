@@ -29,6 +29,21 @@ double share_of_right(const ClassReport& report) {
              : static_cast<double>(report.right) / static_cast<double>(report.points);
 }
 
+/// The macro average of the scores, over the classes that occur in the truth.
+Scores mean_scores(const ClassReport& report) {
+  Scores mean;
+  double classes = 0;
+  for (const ConfusionCounts& counts : report.counts) classes += points_of(counts) > 0 ? 1 : 0;
+  for (const ConfusionCounts& counts : report.counts) {
+    if (points_of(counts) == 0) continue;
+    const Scores its = scores_of(counts);
+    for (double Scores::*score : {&Scores::precision, &Scores::recall, &Scores::f1, &Scores::iou}) {
+      mean.*score += its.*score / classes;
+    }
+  }
+  return mean;
+}
+
 }  // namespace
 
 void add_cloud(std::span<const std::uint8_t> truth, std::span<const std::uint8_t> predicted,
@@ -45,20 +60,6 @@ void add_cloud(std::span<const std::uint8_t> truth, std::span<const std::uint8_t
     report.points += points_of(its);
   }
   ++report.clouds;
-}
-
-Scores mean_scores(const ClassReport& report) {
-  Scores mean;
-  double classes = 0;
-  for (const ConfusionCounts& counts : report.counts) classes += points_of(counts) > 0 ? 1 : 0;
-  for (const ConfusionCounts& counts : report.counts) {
-    if (points_of(counts) == 0) continue;
-    const Scores its = scores_of(counts);
-    for (double Scores::*score : {&Scores::precision, &Scores::recall, &Scores::f1, &Scores::iou}) {
-      mean.*score += its.*score / classes;
-    }
-  }
-  return mean;
 }
 
 std::string to_json(const ClassReport& report) {

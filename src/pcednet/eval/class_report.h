@@ -22,11 +22,9 @@ struct ClassReport {
 void add_cloud(std::span<const std::uint8_t> truth, std::span<const std::uint8_t> predicted,
                ClassReport& report);
 
-/// The macro average of the scores, over the classes that occur in the truth.
-Scores mean_scores(const ClassReport& report);
-
 /// {"classes":[{"id","name","points","precision","recall","f1","iou"}],"mean":{...},"accuracy",
-/// "points","clouds"}, indented, with a final newline.
+/// "points","clouds"}, indented, with a final newline. "mean" is the macro average over the classes
+/// that occur in the truth.
 std::string to_json(const ClassReport& report);
 
 /// A text table: a row per class, then their mean and the accuracy.

@@ -65,21 +65,23 @@ double largest_of(const BoundingBox& bounds) {
   return std::max(bounds.min.cwiseAbs().maxCoeff(), bounds.max.cwiseAbs().maxCoeff());
 }
 
+/// The step between the largest coordinate of the box and the next that float32 holds.
+double float_step(const BoundingBox& bounds) {
+  return std::ldexp(1.0, std::ilogb(std::max(largest_of(bounds), 1e-30)) - 23);
+}
+
+/// The largest coordinate of the box, as text: 5400000, or 1e+20.
+std::string largest_coordinate(const BoundingBox& bounds) {
+  const double largest = largest_of(bounds);
+  return largest < 1e15 ? fmt::format("{:.0f}", largest) : fmt::format("{:g}", largest);
+}
+
 /// Copies of points count for the median, which is then 0.
 double distance_of_points(const SampledSpacing& spacing) {
   return spacing.median > 0.0 ? spacing.median : spacing.mean;
 }
 
 }  // namespace
-
-double float_step(const BoundingBox& bounds) {
-  return std::ldexp(1.0, std::ilogb(std::max(largest_of(bounds), 1e-30)) - 23);
-}
-
-std::string largest_coordinate(const BoundingBox& bounds) {
-  const double largest = largest_of(bounds);
-  return largest < 1e15 ? fmt::format("{:.0f}", largest) : fmt::format("{:g}", largest);
-}
 
 std::string note_on_float(const BoundingBox& bounds, double apart) {
   const double step = float_step(bounds);

@@ -65,12 +65,6 @@ CloudFacts facts_of_header(const io::InputFile& file);
 /// Adds the counts of a finished part; the first part also gives what all have in common.
 void add_part(const PointCloud& part, CloudFacts& facts);
 
-/// The step between the largest coordinate of the box and the next that float32 holds.
-double float_step(const BoundingBox& bounds);
-
-/// The largest coordinate of the box, as text: 5400000, or 1e+20.
-std::string largest_coordinate(const BoundingBox& bounds);
-
 /// That float32 coordinates within `bounds` are rounded to more than the points are apart; empty if
 /// they are not.
 std::string note_on_float(const BoundingBox& bounds, double apart);

@@ -56,6 +56,17 @@ Attribute joined(const Attribute& low, const Attribute& high) {
   return whole;
 }
 
+/// The name that column_name(), and hidden() after it, made `column` from.
+std::string attribute_name(std::string_view column) {
+  std::string name;
+  while (!column.empty()) {
+    const auto character = decoded(column);
+    name += character.value_or(column[0]);
+    column.remove_prefix(character ? 3 : 1);
+  }
+  return name;
+}
+
 }  // namespace
 
 std::string column_name(std::string_view name) {
@@ -73,16 +84,6 @@ std::string hidden(std::string column) {
   while (decoded(std::string_view(column).substr(plain))) plain += 3;
   if (plain == column.size()) return column + '_';
   return column.replace(plain, 1, encoded(column[plain]));
-}
-
-std::string attribute_name(std::string_view column) {
-  std::string name;
-  while (!column.empty()) {
-    const auto character = decoded(column);
-    name += character.value_or(column[0]);
-    column.remove_prefix(character ? 3 : 1);
-  }
-  return name;
 }
 
 void restore_attributes(PointCloud& cloud) {

@@ -16,9 +16,6 @@ std::string column_name(std::string_view name);
 /// `column` already has another meaning.
 std::string hidden(std::string column);
 
-/// The name that either of them was made from.
-std::string attribute_name(std::string_view column);
-
 /// Suffixes of the columns for the halves of a 64-bit integer, in formats without such integers;
 /// column_name() hides these suffixes in other names.
 inline constexpr std::string_view kLowHalf = "_low32", kHighHalf = "_high32";

@@ -140,6 +140,26 @@ void append_rows(const std::vector<Attribute>& from, std::span<const std::uint32
   }
 }
 
+/// Throws Error(kUnreadable) if the size or chunks are not those of the planned file.
+std::unique_ptr<io::PartReader> open_planned(const PlannedInput& input) {
+  check_size(input);
+  auto reader = open_chunks(input.path);
+  if (reader->points() != input.points() || reader->parts() != input.chunks.size()) {
+    changed(input.path, fmt::format("{} points instead of {}", reader->points(), input.points()));
+  }
+  reader->set_narrow_colours(input.narrow_colours);
+  return reader;
+}
+
+/// Throws Error(kUnreadable) if the chunk has changed since the plan.
+PointCloud read_chunk(const io::PartReader& reader, const PlannedInput& input, std::size_t chunk) {
+  PointCloud part = reader.read(chunk);
+  if (digest_of(part) != input.chunks[chunk].digest) {
+    changed(input.path, fmt::format("other points in chunk {}", chunk));
+  }
+  return finished(std::move(part));
+}
+
 }  // namespace
 
 void read_in_turn(std::span<const std::size_t> parts,
@@ -181,26 +201,8 @@ void check_size(const PlannedInput& input) {
   }
 }
 
-std::unique_ptr<io::PartReader> open_planned(const PlannedInput& input) {
-  check_size(input);
-  auto reader = open_chunks(input.path);
-  if (reader->points() != input.points() || reader->parts() != input.chunks.size()) {
-    changed(input.path, fmt::format("{} points instead of {}", reader->points(), input.points()));
-  }
-  reader->set_narrow_colours(input.narrow_colours);
-  return reader;
-}
-
 PointCloud read_finished(const io::PartReader& reader, std::size_t chunk) {
   return finished(reader.read(chunk));
-}
-
-PointCloud read_chunk(const io::PartReader& reader, const PlannedInput& input, std::size_t chunk) {
-  PointCloud part = reader.read(chunk);
-  if (digest_of(part) != input.chunks[chunk].digest) {
-    changed(input.path, fmt::format("other points in chunk {}", chunk));
-  }
-  return finished(std::move(part));
 }
 
 void for_each_chunk(const PlannedInput& input, const std::function<bool(const Chunk&)>& is_wanted,

@@ -20,22 +20,15 @@ inline constexpr std::size_t kChunkPoints = 50'000;
 /// formats::open_parts() does, and Error(kUsage) for other formats.
 std::unique_ptr<io::PartReader> open_chunks(const std::filesystem::path& path);
 
-/// The same for an input of a plan. Throws Error(kUnreadable) if its size or chunks are not those
-/// of the planned file.
-std::unique_ptr<io::PartReader> open_planned(const PlannedInput& input);
-
 /// Throws Error(kUsage) if the output is one of the inputs.
 void check_not_input(const std::filesystem::path& output, std::span<const PlannedInput> inputs);
 
 /// Throws Error(kUnreadable) if an input of a plan is missing, or has another size.
 void check_size(const PlannedInput& input);
 
-/// A chunk of a planned input, finished. Throws Error(kUnreadable) if it has changed since.
-PointCloud read_chunk(const io::PartReader& reader, const PlannedInput& input, std::size_t chunk);
-
-/// Calls `use` with every chunk of a planned input that is wanted, in order, and with the number of
-/// its first point in the file; several are read at a time. Throws as open_planned() and
-/// read_chunk() do.
+/// Calls `use` with every chunk of a planned input that is wanted, finished and in order, and with
+/// the number of its first point in the file; several are read at a time. Throws Error(kUnreadable)
+/// if the file or a wanted chunk has changed since the plan.
 void for_each_chunk(const PlannedInput& input, const std::function<bool(const Chunk&)>& is_wanted,
                     const Progress* progress,
                     const std::function<void(PointCloud&, std::size_t first)>& use);

@@ -1,6 +1,7 @@
 #include "pcednet/tiles/tile_file.h"
 
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "pcednet/core/error.h"
 #include "pcednet/core/output_file.h"
@@ -17,6 +18,25 @@ constexpr const char* kRecordFormat = "pcednet-tile-1";
 
 fs::path record_path(const fs::path& tile) {
   return tile.string() + ".json";
+}
+
+/// The record of a tile; none if it is missing or damaged.
+std::optional<TileRecord> read_record(const fs::path& tile) {
+  try {
+    const json j = json::parse(io::InputFile(record_path(tile)).text());
+    if (j.at("format") != kRecordFormat) return std::nullopt;
+    return TileRecord{.plan = j.at("plan"),
+                      .tile = j.at("tile"),
+                      .points = j.at("points"),
+                      .bytes = j.at("bytes"),
+                      .sha256 = j.at("sha256"),
+                      .counts = {j.at("non_edge"), j.at("smooth_edge"), j.at("sharp_edge"),
+                                 j.at("boundary"), j.at("unlabelled")}};
+  } catch (const json::exception&) {
+    return std::nullopt;
+  } catch (const Error&) {
+    return std::nullopt;
+  }
 }
 
 }  // namespace
@@ -45,24 +65,6 @@ void write_record(const fs::path& tile, TileRecord record) {
   record.bytes = io::InputFile(tile).size();
   record.sha256 = sha256_of_file(tile);
   write_claim(tile, record);
-}
-
-std::optional<TileRecord> read_record(const fs::path& tile) {
-  try {
-    const json j = json::parse(io::InputFile(record_path(tile)).text());
-    if (j.at("format") != kRecordFormat) return std::nullopt;
-    return TileRecord{.plan = j.at("plan"),
-                      .tile = j.at("tile"),
-                      .points = j.at("points"),
-                      .bytes = j.at("bytes"),
-                      .sha256 = j.at("sha256"),
-                      .counts = {j.at("non_edge"), j.at("smooth_edge"), j.at("sharp_edge"),
-                                 j.at("boundary"), j.at("unlabelled")}};
-  } catch (const json::exception&) {
-    return std::nullopt;
-  } catch (const Error&) {
-    return std::nullopt;
-  }
 }
 
 void check_is_tile(const fs::path& tile) {

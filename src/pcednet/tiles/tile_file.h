@@ -2,7 +2,6 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <optional>
 #include <string>
 
 #include "pcednet/detect/classify.h"
@@ -29,9 +28,6 @@ void write_record(const std::filesystem::path& tile, TileRecord record);
 void write_claim(const std::filesystem::path& tile, TileRecord record);
 /// Removes it if there is no such file.
 void remove_claim(const std::filesystem::path& tile);
-
-/// The record of a tile; none if it is missing or damaged.
-std::optional<TileRecord> read_record(const std::filesystem::path& tile);
 
 /// Throws as check_writable() does unless there is a record: a file that is no tile's may have the
 /// name of the tile or of its record.
