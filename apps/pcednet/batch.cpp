@@ -9,7 +9,7 @@
 #include "pcednet/formats/format.h"
 #include "pcednet/formats/virtual_cloud.h"
 #include "pcednet/io/text_scan.h"
-#include "point_text.h"
+#include "pcednet/io/xyz.h"
 
 namespace pcednet::app {
 namespace {
@@ -23,7 +23,8 @@ bool is_prose(const fs::path& file) {
   if (extension != ".txt" && extension != ".csv" && extension != ".asc") return false;
   if (!fs::is_regular_file(file, ignored)) return false;
   try {
-    return formats::format_of(io::InputFile(file)).name == "text" && !begins_like_points(file);
+    const io::InputFile text(file);
+    return formats::format_of(text).name == "text" && !io::begins_as_points(text);
   } catch (const Error&) {
     return false;  // told where it is read
   }

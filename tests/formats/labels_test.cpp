@@ -18,6 +18,8 @@ TEST(Labels, ReadsEveryKindOfFile) {
     EXPECT_EQ(formats::read_labels(scratch.file(name, "# classes\n0\n2\r\n-1\n\n1")), expected)
         << name;
   }
+  EXPECT_EQ(formats::read_labels(scratch.file("marked.txt", "\xEF\xBB\xBF\x30\n2\n-1\n1\n")),
+            expected);
   PointCloud cloud;
   cloud.positions.resize(4, Vec3::Zero());
   cloud.labels = {1, 1, 1, 1};

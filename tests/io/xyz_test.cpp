@@ -5,6 +5,7 @@
 #include "io/sample_cloud.h"
 #include "io/scratch.h"
 #include "pcednet/formats/write_cloud.h"
+#include "pcednet/io/xyz.h"
 #include "pcednet/io/xyz_guess.h"
 
 namespace pcednet::io {
@@ -245,6 +246,30 @@ TEST(Xyz, WritesPlainColumnsPlainly) {
   EXPECT_EQ(bytes_of(scratch.path("a.xyz")), "0.1 -2 512049.781 0 0 1\n");
   formats::write_cloud(scratch.path("b.txt"), cloud);
   EXPECT_EQ(bytes_of(scratch.path("b.txt")), "# lost\n# x y z nx ny nz\n0.1 -2 512049.781 0 0 1\n");
+}
+
+TEST(Xyz, TellsPointsFromProse) {
+  const Scratch scratch;
+  const auto begins = [&](const std::string& text) {
+    return begins_as_points(InputFile(scratch.file("a.txt", text)));
+  };
+  const std::string mark = "\xEF\xBB\xBF", row = "1 2 3\n";
+  for (const std::string& start :
+       {std::string(), std::string("1\n"), std::string("1,,\n"), std::string("x y z\n1\n"),
+        std::string("// a\n\n# b\n"), std::string("Px;X;Y;Z\r\n"),
+        std::string("\"x\",\"y\",\"z\"\n"), std::string("a b,x,y,z\n")}) {
+    EXPECT_TRUE(begins(start + row)) << start;
+    EXPECT_TRUE(begins(mark + start + row)) << start;
+  }
+  EXPECT_TRUE(begins("1,5 2,5 3\n"));
+  EXPECT_TRUE(begins("x,y,z\n"));
+  EXPECT_TRUE(begins("\"1\",\"2\",\"3\"\n")) << "to be told of, not passed over";
+  EXPECT_TRUE(begins("#" + std::string(1 << 16, ' ') + "\nprose"));
+  for (const char* prose :
+       {"", "1\n", "# x y z\n", "1\n1\n1 2 3\n", "x y z\nx y z\n1 2 3\n",
+        "The axes x, y, z are those of the scanner.\n", "1 2\n", "one 2 3 4\n"}) {
+    EXPECT_FALSE(begins(prose)) << prose;
+  }
 }
 
 TEST(Xyz, NamesTheLineThatDoesNotFit) {

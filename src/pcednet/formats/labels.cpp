@@ -22,23 +22,19 @@ std::optional<std::uint8_t> parse_label(std::string_view word) {
   return io::to_label(*value);
 }
 
-bool is_comment(std::string_view line) {
-  return line.starts_with('#') || line.starts_with("//");
-}
-
 /// Labels from a text with one number a line; none if a line holds several, also after a line with
 /// one that is no label, such as the number of points.
 std::optional<std::vector<std::uint8_t>> read_text_labels(const io::InputFile& file) {
   const std::string text = file.text();
   std::vector<std::uint8_t> labels;
   std::vector<std::string_view> words;
-  io::Lines lines(text);
+  io::Lines lines(io::without_mark(text));
   std::string_view line;
   std::optional<Error> no_label;
   while (lines.next(line)) {
     line = io::trim(line);
-    if (line.empty() || is_comment(line)) continue;
-    io::split(line, words, io::Separators(" \t\r\v\f,;"));
+    if (line.empty() || io::is_comment(line)) continue;
+    io::split(line, words, io::kNumberSeparators);
     if (words.size() != 1) return std::nullopt;
     const auto label = parse_label(words[0]);
     if (!label && !no_label) {

@@ -47,6 +47,15 @@ class Separators {
 };
 inline constexpr Separators kBlankSeparators{kBlanks};
 
+/// Those between the numbers of a text, except for decimal commas.
+inline constexpr Separators kNumberSeparators{" \t\r\v\f,;"};
+
+/// Whether a line of a text of points or labels begins with # or //.
+bool is_comment(std::string_view line);
+
+/// `text` behind its byte-order mark, if it has that of UTF-8.
+std::string_view without_mark(std::string_view text);
+
 /// Replaces `fields` by the parts of `line` between runs of separators.
 void split(std::string_view line, std::vector<std::string_view>& fields,
            const Separators& separators = kBlankSeparators);

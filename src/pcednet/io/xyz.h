@@ -24,6 +24,11 @@ namespace pcednet::io {
 /// fit the others.
 LoadedCloud read_xyz(const InputFile& file);
 
+/// Whether a text begins as read_xyz() reads one: after comments, a count of points or names of
+/// columns with x, y and z, with at least three numbers in a line. True as well where that cannot
+/// be told from its first 64 KiB.
+bool begins_as_points(const InputFile& file);
+
 /// Writes points as text: comments and names behind #, then one point a line; .csv with commas and
 /// the names alone; .pts with a count first, then comments and names, and with its columns in the
 /// order x y z intensity red green blue. Positions alone, positions with normals in .xyz, and those

@@ -13,8 +13,9 @@
 namespace pcednet::io {
 namespace {
 
-constexpr Separators kAllSeparators{" \t\r\v\f,;"};
 constexpr Separators kBesideDecimalCommas{" \t\r\v\f;"};
+/// A table of quoted numbers is one of points, too, though read_xyz() refuses it.
+constexpr Separators kAroundNumbers{" \t\r\v\f,;\""};
 
 /// The names in a line of names; those of a .csv may hold blanks.
 std::vector<std::string> split_names(std::string_view line) {
@@ -44,12 +45,18 @@ bool names_positions(const std::vector<std::string>& names) {
   return has("x") && has("y") && has("z");
 }
 
+bool begin_with_numbers(const std::vector<std::string_view>& words) {
+  return words.size() >= 3 && std::all_of(words.begin(), words.begin() + 3, [](const auto& word) {
+           return parse_double(word).has_value();
+         });
+}
+
 class TableReader {
  public:
   explicit TableReader(const InputFile& file) : path_(file.path()), text_(file.text()) {}
 
   LoadedCloud read() {
-    Lines lines(text_.starts_with("\xEF\xBB\xBF") ? std::string_view(text_).substr(3) : text_);
+    Lines lines(without_mark(text_));
     std::string_view line;
     while (lines.next(line)) {
       line = trim(line);
@@ -83,13 +90,9 @@ class TableReader {
     }
   }
 
-  static bool is_comment(std::string_view line) {
-    return line.starts_with('#') || line.starts_with("//");
-  }
-
   /// A line before the first point: a count, names, or the first point; `after`: the lines behind.
   void take_first(std::string_view line, const Lines& after) {
-    split(line, words_, kAllSeparators);
+    split(line, words_, kNumberSeparators);
     if (take_count()) return;
     const bool is_number = !words_.empty() && parse_double(words_[0]).has_value();
     if (!is_number && names_.empty()) {
@@ -142,7 +145,7 @@ class TableReader {
   }
 
   const Separators& separators() const {
-    return commas_ == Commas::kDecimals ? kBesideDecimalCommas : kAllSeparators;
+    return commas_ == Commas::kDecimals ? kBesideDecimalCommas : kNumberSeparators;
   }
 
   void check_commas(std::string_view line) const {
@@ -222,6 +225,30 @@ class TableReader {
 
 LoadedCloud read_xyz(const InputFile& file) {
   return TableReader(file).read();
+}
+
+bool begins_as_points(const InputFile& file) {
+  constexpr std::uint64_t kSeen = 1 << 16;
+  const std::string text = file.text(0, kSeen);
+  const bool is_whole = file.size() <= kSeen;
+  std::string_view seen = without_mark(text);
+  if (!is_whole) seen = seen.substr(0, seen.find_last_of("\r\n") + 1);
+  Lines lines(seen);
+  std::string_view line;
+  std::vector<std::string_view> words;
+  bool named = false, counted = false;
+  while (lines.next(line)) {
+    line = trim(line);
+    if (line.empty() || is_comment(line)) continue;
+    split(line, words, kAroundNumbers);
+    if (begin_with_numbers(words)) return true;
+    const bool is_count = !counted && words.size() == 1 && parse_count(words[0]);
+    const bool is_names = !named && names_positions(split_names(line));
+    if (!is_count && !is_names) return false;
+    counted = counted || is_count;
+    named = named || is_names;
+  }
+  return named || !is_whole;
 }
 
 }  // namespace pcednet::io
