@@ -11,6 +11,7 @@
 #include "pcednet/core/error.h"
 #include "pcednet/io/column_names.h"
 #include "pcednet/io/promote.h"
+#include "pcednet/io/strided.h"
 #include "pcednet/io/text_scan.h"
 
 namespace pcednet::io {
@@ -27,34 +28,11 @@ std::string list_names(const std::vector<Column>& columns) {
   return names.empty() ? "nothing" : fmt::format("{}", fmt::join(names, " "));
 }
 
-/// dst[i * dst_stride] = src[i * src_stride] for numbers of `kSize` bytes.
-template <std::size_t kSize>
-void copy_strided(std::byte* dst, std::size_t dst_stride, const std::byte* src,
-                  std::size_t src_stride, std::size_t count) {
-  for (std::size_t i = 0; i < count; ++i) {
-    std::memcpy(dst + i * dst_stride, src + i * src_stride, kSize);
-  }
-}
-
 /// Takes the numbers of the points [begin, end).
-void copy_to(Attribute& attribute, const std::byte* src, std::size_t src_stride, std::size_t begin,
+void copy_to(Attribute& attribute, const std::byte* from, std::size_t stride, std::size_t begin,
              std::size_t end) {
-  const std::size_t bytes = attribute.stride(), count = end - begin;
-  std::byte* dst = attribute.bytes.data() + begin * bytes;
-  switch (bytes) {
-    case 1:
-      return copy_strided<1>(dst, bytes, src, src_stride, count);
-    case 2:
-      return copy_strided<2>(dst, bytes, src, src_stride, count);
-    case 4:
-      return copy_strided<4>(dst, bytes, src, src_stride, count);
-    case 8:
-      return copy_strided<8>(dst, bytes, src, src_stride, count);
-    default:
-      for (std::size_t i = 0; i < count; ++i) {
-        std::memcpy(dst + i * bytes, src + i * src_stride, bytes);
-      }
-  }
+  const std::size_t bytes = attribute.stride();
+  copy_numbers(from, stride, attribute.bytes.data() + begin * bytes, bytes, bytes, end - begin);
 }
 
 void decode_axis(std::vector<Vec3>& vectors, std::size_t axis, ScalarType type,

@@ -6,7 +6,6 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <cstring>
 #include <iterator>
 #include <limits>
 #include <set>
@@ -15,6 +14,7 @@
 #include "pcednet/core/error.h"
 #include "pcednet/io/column_names.h"
 #include "pcednet/io/promote.h"
+#include "pcednet/io/strided.h"
 #include "pcednet/io/text_scan.h"
 
 namespace pcednet::io {
@@ -139,29 +139,12 @@ void write_number(double value, ScalarType type, std::byte* to) {
   visit_scalar(type, [&](auto zero) { store(to, static_cast<decltype(zero)>(value)); });
 }
 
-template <std::size_t kSize>
-void copy_column(const std::byte* from, std::size_t from_stride, std::byte* to,
-                 std::size_t to_stride, std::size_t count) {
-  for (std::size_t i = 0; i < count; ++i) {
-    std::memcpy(to + i * to_stride, from + i * from_stride, kSize);
-  }
-}
-
 void convert_column(const ColumnView& column, const std::byte* from, std::byte* to,
                     std::size_t to_stride, std::size_t count) {
   const bool to_float =
       column.stored == ScalarType::kFloat64 && column.type == ScalarType::kFloat32;
   if (column.stored == column.type) {
-    switch (size_of(column.type)) {
-      case 1:
-        return copy_column<1>(from, column.stride, to, to_stride, count);
-      case 2:
-        return copy_column<2>(from, column.stride, to, to_stride, count);
-      case 4:
-        return copy_column<4>(from, column.stride, to, to_stride, count);
-      default:
-        return copy_column<8>(from, column.stride, to, to_stride, count);
-    }
+    return copy_numbers(from, column.stride, to, to_stride, size_of(column.type), count);
   }
   if (to_float) {  // positions and normals: the case that must be quick
     for (std::size_t i = 0; i < count; ++i) {

@@ -41,11 +41,7 @@ void write_obj(const std::filesystem::path& path, const PointCloud& cloud,
                       3 * sizeof(float), ScalarType::kFloat32});
   }
   OutputFile file(path, options.overwrite);
-  for (const std::string& comment : cloud.comments) {
-    Lines parts(comment);
-    std::string_view part;
-    while (parts.next(part)) file.write(fmt::format("# {}\n", part));
-  }
+  for (const auto line : split_lines(cloud.comments)) file.write(fmt::format("# {}\n", line));
   write_statements(file, "v ", cloud.size(), vertex);
   if (cloud.has_normals()) {
     const std::vector<ColumnView> normal(columns.begin() + 3, columns.begin() + 6);

@@ -31,23 +31,18 @@ KeptHeader kept_header(const PointCloud& cloud) {
   KeptHeader kept;
   kept.width = cloud.size();
   std::vector<std::string_view> words;
-  for (const std::string& comment : cloud.comments) {
-    Lines parts(comment);
-    std::string_view part;
-    while (parts.next(part)) {
-      split(part, words);
-      const bool is_grid = words.size() == 4 && words[0] == "WIDTH" && words[2] == "HEIGHT";
-      if (words.size() == 8 && words[0] == "VIEWPOINT") {
-        kept.viewpoint = part;
-      } else if (is_grid) {
-        const std::uint64_t width = parse_count(words[1]).value_or(0);
-        const std::uint64_t height = parse_count(words[3]).value_or(0);
-        const bool fits =
-            height != 0 && cloud.size() % height == 0 && cloud.size() / height == width;
-        if (fits) kept.width = width, kept.height = height;
-      } else {
-        kept.comments += fmt::format("# {}\n", part);
-      }
+  for (const auto line : split_lines(cloud.comments)) {
+    split(line, words);
+    const bool is_grid = words.size() == 4 && words[0] == "WIDTH" && words[2] == "HEIGHT";
+    if (words.size() == 8 && words[0] == "VIEWPOINT") {
+      kept.viewpoint = line;
+    } else if (is_grid) {
+      const std::uint64_t width = parse_count(words[1]).value_or(0);
+      const std::uint64_t height = parse_count(words[3]).value_or(0);
+      const bool fits = height != 0 && cloud.size() % height == 0 && cloud.size() / height == width;
+      if (fits) kept.width = width, kept.height = height;
+    } else {
+      kept.comments += fmt::format("# {}\n", line);
     }
   }
   return kept;

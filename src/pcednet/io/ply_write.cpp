@@ -23,11 +23,9 @@ std::string comment_lines(const PointCloud& cloud) {
   std::string lines;
   for (const std::string& comment : cloud.comments) {
     if (comment.empty()) lines += "comment\n";
-    Lines parts(comment);
-    std::string_view part;
-    while (parts.next(part)) {
-      const bool is_info = part.starts_with("obj_info ");
-      lines += fmt::format("{}{}\n", is_info ? "" : "comment ", part);
+    for (const auto line : split_lines({&comment, 1})) {
+      const bool is_info = line.starts_with("obj_info ");
+      lines += fmt::format("{}{}\n", is_info ? "" : "comment ", line);
     }
   }
   return lines;

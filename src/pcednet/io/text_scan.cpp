@@ -72,6 +72,16 @@ bool Lines::next(std::string_view& line) {
   return true;
 }
 
+std::vector<std::string_view> split_lines(std::span<const std::string> texts) {
+  std::vector<std::string_view> all;
+  for (const std::string& text : texts) {
+    Lines lines(text);
+    std::string_view line;
+    while (lines.next(line)) all.push_back(line);
+  }
+  return all;
+}
+
 bool is_comment(std::string_view line) {
   return line.starts_with('#') || line.starts_with("//");
 }

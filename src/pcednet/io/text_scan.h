@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -29,6 +30,9 @@ class Lines {
   std::size_t number_;
   char end_;
 };
+
+/// The lines of all texts, in order; an empty text has none.
+std::vector<std::string_view> split_lines(std::span<const std::string> texts);
 
 inline constexpr std::string_view kBlanks = " \t\r\v\f";
 

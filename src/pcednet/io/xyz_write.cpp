@@ -73,11 +73,7 @@ std::string header_of(const std::string& extension, const PointCloud& cloud,
   }
   if (extension == ".csv") return names + "\n";
   std::string header;
-  for (const std::string& comment : cloud.comments) {
-    Lines parts(comment);
-    std::string_view part;
-    while (parts.next(part)) header += fmt::format("# {}\n", part);
-  }
+  for (const auto line : split_lines(cloud.comments)) header += fmt::format("# {}\n", line);
   return header + "# " + names + "\n";
 }
 
