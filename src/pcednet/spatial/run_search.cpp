@@ -140,9 +140,9 @@ void RunSearch::put_in_order(const Query& query, std::size_t picked) {
     for (std::size_t i = 0; i < picked; ++i) {
       if (picked_[i] != query.point) sorted_.push_back({picked_[i], sq_distances_[i]});
     }
-    const auto last = sorted_.begin() + static_cast<std::ptrdiff_t>(count_);
-    std::partial_sort(sorted_.begin(), last, sorted_.end(), is_nearer);
-    std::copy(sorted_.begin(), last, query.found);
+    std::sort(sorted_.begin(), sorted_.end(),
+              [](const Neighbour& a, const Neighbour& b) { return is_nearer(a, b); });
+    std::copy_n(sorted_.begin(), count_, query.found);
     return;
   }
   rank(sq_distances_.data(), picked, ranks_.data());
