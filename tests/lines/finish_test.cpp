@@ -18,6 +18,15 @@ TEST(Finish, DropsFreePiecesWithHardlyAnEdgePoint) {
   EXPECT_EQ(finish({piece}, options).size(), 1u);
 }
 
+TEST(Finish, WeighsConfidenceByEdgePointsWhoseNumberNeedNotBeWhole) {
+  Piece piece = straight({0, 0, 0}, {12, 0, 0});
+  for (ChainNode& node : piece.nodes) node.edge_points = 1.5, node.probability = 1.0;
+  piece.nodes[0].edge_points = 0.5, piece.nodes[0].probability = 0.5;
+  const Curve curve = curve_of(piece, {.tolerance = 0.2, .noise = 0.0});
+  EXPECT_NEAR(curve.confidence, (18.0 + 0.25) / 18.5, 1e-12);
+  EXPECT_EQ(curve.support, 19u);
+}
+
 /// Whether a free piece stays whose nodes have so many edge points, so probable.
 bool stays(Piece piece, double edge_points, double probability, double noise) {
   for (ChainNode& node : piece.nodes) {

@@ -54,6 +54,21 @@ double mean_dihedral(const Piece& piece) {
   return sum / static_cast<double>(piece.nodes.size());
 }
 
+/// The edge points that a piece hangs on.
+struct EdgePointsOfPiece {
+  double count;
+  double probability;  ///< mean
+};
+
+EdgePointsOfPiece edge_points_of(const Piece& piece) {
+  double count = 0.0, probability = 0.0;
+  for (const ChainNode& node : piece.nodes) {
+    count += node.edge_points;
+    probability += node.edge_points * node.probability;
+  }
+  return {count, count > 0.0 ? probability / count : 0.0};
+}
+
 /// The circle about this centre and the axis of the fit through `place`.
 void set_circle(Curve& curve, const Fit& fit, const Vec3& centre, const Vec3& place) {
   curve.kind = CurveKind::kCircle;
@@ -104,31 +119,21 @@ Curve curve_between(const Piece& piece, const std::array<Vec3, 2>& ends,
   Curve curve{.edge_class = class_of(piece, options.noise)};
   set_shape(curve, piece, ends, options.tolerance);
   curve.dihedral_angle = mean_dihedral(piece);
-  for (const ChainNode& node : piece.nodes) {
-    curve.support += static_cast<std::size_t>(node.edge_points);
-    curve.confidence += node.edge_points * node.probability;
-  }
-  if (curve.support > 0) {
-    curve.confidence /= static_cast<double>(curve.support);
-  } else {
-    curve.confidence = mean_of(piece, &ChainNode::probability);
-  }
+  const EdgePointsOfPiece on_edge = edge_points_of(piece);
+  curve.support = static_cast<std::size_t>(std::lround(on_edge.count));
+  curve.confidence =
+      on_edge.count > 0.0 ? on_edge.probability : mean_of(piece, &ChainNode::probability);
   return curve;
 }
 
-/// The edge points that a piece hangs on: how many per spacing, and how probable in the mean.
+/// What edge points say for a piece: how many there are per spacing, and their mean probability.
 struct Evidence {
   double per_spacing, probability;
 };
 
 Evidence evidence_of(const Piece& piece) {
-  double edge_points = 0.0, probability = 0.0;
-  for (const ChainNode& node : piece.nodes) {
-    edge_points += node.edge_points;
-    probability += node.edge_points * node.probability;
-  }
-  return {edge_points * piece.spacing() / length_of(piece),
-          probability / std::max(edge_points, 1.0)};
+  const EdgePointsOfPiece on_edge = edge_points_of(piece);
+  return {on_edge.count * piece.spacing() / length_of(piece), on_edge.probability};
 }
 
 /// Whether the points that the piece hangs on are nearly all of no edge class.
