@@ -113,6 +113,30 @@ TEST(FindLines, DrawsBoundariesOnDemand) {
   }
 }
 
+TEST(FindLines, DrawsNoBoundariesOtherwise) {
+  Cloud cloud = cube(6000);
+  for (std::uint8_t& label : cloud.classes) label = label == kNonEdge ? kNonEdge : kBoundary;
+  for (const Curve& curve : lines_of(cloud)) EXPECT_NE(curve.edge_class, kBoundary);
+}
+
+TEST(FindLines, TakesEachStepOnce) {
+  const Cloud cloud = cube(20000);
+  std::vector<std::string> steps;
+  double last = 0.0;
+  const Progress watch = {.report =
+                              [&](const std::string& step, double done) {
+                                if (steps.empty() || steps.back() != step)
+                                  steps.push_back(step);
+                                else
+                                  EXPECT_GE(done, last) << step;
+                                last = done;
+                              },
+                          .cancelled = {}};
+  find_lines({cloud.positions, cloud.normals, cloud.classes}, {.boundaries = true}, &watch);
+  const std::set<std::string> different(steps.begin(), steps.end());
+  EXPECT_EQ(steps.size(), different.size());
+}
+
 TEST(FindLines, AreTheSameForAnyThreadsAndOrderAndSignsOfNormals) {
   Cloud cloud = cylinder(4000);
   Random disturbance(8);

@@ -85,7 +85,8 @@ TEST(Chains, CrossGapsUpToTheirWidth) {
         crease.at.y() += 0.07 * part * gap;  // within the cone
         creases.push_back(crease);
       }
-      const auto chains = trace(creases, gap, 0.0, nullptr);
+      Stage stage(nullptr, "chains", creases.size());
+      const auto chains = trace(creases, gap, 0.0, stage);
       EXPECT_EQ(chains.size(), part < 1.0 ? 1u : 2u) << gap << ", part " << part;
     }
   }
@@ -96,7 +97,9 @@ TEST(Chains, StopWhenTold) {
   const Progress stopping = {
       .report = [&](const std::string&, double fraction) { traces = fraction >= 1.0; },
       .cancelled = [&] { return traces; }};
-  EXPECT_ERROR(ErrorKind::kCancelled, trace(row_of_creases(0, 300), 6.0, 0.0, &stopping));
+  const auto creases = row_of_creases(0, 300);
+  Stage stage(&stopping, "chains", creases.size());
+  EXPECT_ERROR(ErrorKind::kCancelled, trace(creases, 6.0, 0.0, stage));
 }
 
 TEST(Pieces, OfOneLineStayApartIfTheirWedgesDiffer) {

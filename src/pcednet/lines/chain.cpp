@@ -46,15 +46,15 @@ bool continues(const A& a, const B& b) {
 /// Follows creases from one to the next and takes them on the way.
 class Tracer {
  public:
-  Tracer(std::span<const Crease> creases, double gap, double noise, const Progress* progress)
+  Tracer(std::span<const Crease> creases, double gap, double noise, Stage& stage)
       : creases_(creases),
         tree_(places_of(creases)),
         taken_(creases.size(), 0),
         gap_(gap),
         noise_(noise),
-        progress_(progress) {}
+        stage_(stage) {}
 
-  std::vector<std::size_t> densest_first() const;
+  std::vector<std::size_t> densest_first();
   Chain trace_from(std::size_t crease);
   bool is_taken(std::size_t crease) const { return taken_[crease] != 0; }
 
@@ -84,15 +84,14 @@ class Tracer {
   spatial::KdTree tree_;
   std::vector<std::uint8_t> taken_;
   double gap_, noise_;
-  const Progress* progress_;
+  Stage& stage_;
   std::size_t steps_ = 0;
   std::vector<spatial::Neighbour> found_;
   std::vector<Ahead> ahead_;
 };
 
-std::vector<std::size_t> Tracer::densest_first() const {
+std::vector<std::size_t> Tracer::densest_first() {
   std::vector<std::uint32_t> beside(creases_.size());
-  Stage stage(progress_, "chains", creases_.size());
   parallel_blocks(creases_.size(), kCreasesAtOnce, [&](std::size_t begin, std::size_t end) {
     std::vector<spatial::Neighbour> found;
     for (std::size_t i = begin; i < end; ++i) {
@@ -101,7 +100,7 @@ std::vector<std::size_t> Tracer::densest_first() const {
           found.begin(), found.end(),
           [&](const auto& near) { return continues(creases_[i], creases_[near.index]); }));
     }
-    stage.advance(end - begin);
+    stage_.advance(end - begin);
   });
   std::vector<std::size_t> order(creases_.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -202,7 +201,7 @@ std::optional<ChainNode> Tracer::next_beyond_gap(const ChainNode& node) {
 }
 
 std::optional<ChainNode> Tracer::next(const ChainNode& node) {
-  if (++steps_ % kNodesAtOnce == 0) throw_if_cancelled(progress_);
+  if (++steps_ % kNodesAtOnce == 0) stage_.advance(0);
   if (auto near = next_beside(node)) return near;
   if (gap_ <= kReach * node.spacing) return std::nullopt;
   return next_beyond_gap(node);
@@ -270,11 +269,10 @@ WedgeMatch match(const Vec3& side_a, const Vec3& side_b, const Vec3& other_a, co
   return straight >= crossed ? WedgeMatch{straight, false} : WedgeMatch{crossed, true};
 }
 
-std::vector<Crease> smoothed(std::span<const Crease> creases, double reach,
-                             const Progress* progress) {
+std::vector<Crease> smoothed(std::span<const Crease> creases, double reach, Stage& stage) {
+  if (creases.empty()) return {};
   const spatial::KdTree tree(places_of(creases));
   std::vector<Crease> result(creases.begin(), creases.end());
-  Stage stage(progress, "smooth creases", creases.size());
   parallel_blocks(creases.size(), kCreasesAtOnce, [&](std::size_t begin, std::size_t end) {
     std::vector<spatial::Neighbour> found;
     std::vector<std::uint32_t> members;
@@ -299,9 +297,9 @@ std::vector<Crease> smoothed(std::span<const Crease> creases, double reach,
   return result;
 }
 
-std::vector<Chain> trace(std::span<const Crease> creases, double gap, double noise,
-                         const Progress* progress) {
-  Tracer tracer(creases, gap, noise, progress);
+std::vector<Chain> trace(std::span<const Crease> creases, double gap, double noise, Stage& stage) {
+  if (creases.empty()) return {};
+  Tracer tracer(creases, gap, noise, stage);
   std::vector<Chain> chains;
   for (const std::size_t crease : tracer.densest_first()) {
     if (!tracer.is_taken(crease)) chains.push_back(tracer.trace_from(crease));

@@ -35,13 +35,12 @@ struct WedgeMatch {
 };
 WedgeMatch match(const Vec3& side_a, const Vec3& side_b, const Vec3& other_a, const Vec3& other_b);
 
-/// Every crease averaged with those nearer than `reach` (in spacings) that continue it.
-std::vector<Crease> smoothed(std::span<const Crease> creases, double reach,
-                             const Progress* progress);
+/// Every crease averaged with those nearer than `reach` (in spacings) that continue it. Advances
+/// `stage` by a step per crease.
+std::vector<Crease> smoothed(std::span<const Crease> creases, double reach, Stage& stage);
 
 /// Chains from end to end, those of the densest creases first. They cross gaps up to `gap` where
-/// creases beyond continue them.
-std::vector<Chain> trace(std::span<const Crease> creases, double gap, double noise,
-                         const Progress* progress);
+/// creases beyond continue them. Advances `stage` by a step per crease.
+std::vector<Chain> trace(std::span<const Crease> creases, double gap, double noise, Stage& stage);
 
 }  // namespace pcednet::lines

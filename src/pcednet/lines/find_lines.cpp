@@ -82,10 +82,19 @@ void check(const EdgePoints& points, const LineOptions& options) {
   }
 }
 
-std::vector<Chain> traced(std::span<const Crease> creases, const Limits& limits, double noise,
-                          const Progress* progress) {
-  if (creases.empty()) return {};
-  return trace(smoothed(creases, limits.smooth_within, progress), limits.gap, noise, progress);
+/// The chains of both kinds of creases; none is of both.
+std::vector<Chain> make_chains(std::span<const Crease> creases, std::span<const Crease> boundaries,
+                               const Limits& limits, double noise, const Progress* progress) {
+  Stage smoothing(progress, "smooth creases", creases.size() + boundaries.size());
+  const std::vector<Crease> smooth = smoothed(creases, limits.smooth_within, smoothing);
+  const std::vector<Crease> smooth_boundaries =
+      smoothed(boundaries, limits.smooth_within, smoothing);
+  Stage tracing(progress, "chains", creases.size() + boundaries.size());
+  std::vector<Chain> chains = trace(smooth, limits.gap, noise, tracing);
+  for (Chain& chain : trace(smooth_boundaries, limits.gap, noise, tracing)) {
+    chains.push_back(std::move(chain));
+  }
+  return chains;
 }
 
 std::vector<Piece> split_chains(const std::vector<Chain>& chains, double tolerance,
@@ -194,10 +203,8 @@ std::vector<Curve> find_lines(const EdgePoints& points, const LineOptions& optio
   }
 
   const FinishOptions finish_options = {limits.tolerance, sampling.noise};
-  std::vector<Chain> chains = traced(creases, limits, sampling.noise, progress);
-  for (Chain& chain : traced(boundaries, limits, sampling.noise, progress)) {
-    chains.push_back(std::move(chain));
-  }
+  const std::vector<Chain> chains =
+      make_chains(creases, boundaries, limits, sampling.noise, progress);
   if (chains.empty()) return {};
   if (options.stage == LineStage::kChains) return drawn(chains, finish_options);
   std::vector<Piece> pieces = split_chains(chains, limits.tolerance, progress);
