@@ -15,9 +15,12 @@
 
 namespace pcednet {
 
-/// std::max by value, which compiles without a branch in such loops.
+/// std::max and std::min by value, which compile without a branch in such loops.
 [[gnu::always_inline]] inline double larger(double a, double b) {
   return a < b ? b : a;
+}
+[[gnu::always_inline]] inline double smaller(double a, double b) {
+  return a < b ? a : b;
 }
 
 }  // namespace pcednet

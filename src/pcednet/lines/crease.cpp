@@ -13,6 +13,7 @@
 #include "pcednet/lines/local_planes.h"
 #include "pcednet/lines/noisy_wedge.h"
 #include "pcednet/lines/ordered_points.h"
+#include "pcednet/lines/plane_line.h"
 
 namespace pcednet::lines {
 namespace {
@@ -60,12 +61,6 @@ struct Tolerances {
   bool skips_other_side;  ///< of these, those that face away: beyond a thin wall
 };
 
-/// The wedge that two planes make at the edge point, which is the origin; all in spacings.
-struct Wedge {
-  Vec3 at, along, side_a, side_b;
-  double score;
-};
-
 /// The direction from the line into `plane` on which its points are near the line's point `at`, or
 /// none if they are on both sides, too few, or all far from it: beyond a chamfer or a fillet.
 std::optional<Vec3> side_of(const LocalPlane& plane, const Vec3& at, const Vec3& along,
@@ -76,7 +71,7 @@ std::optional<Vec3> side_of(const LocalPlane& plane, const Vec3& at, const Vec3&
   for (std::size_t i = 0; i < points.count; ++i) {
     const Vec3 offset = points.offset(i) - at;
     if (std::abs(offset.dot(along)) > kSliceAlong) continue;
-    if (std::abs(plane(points.offset(i))) > tolerance) continue;
+    if (std::abs(plane.height(points.offset(i))) > tolerance) continue;
     const double place = offset.dot(side);
     if (std::abs(place) < std::max(kLeastFromLine, 1.5 * tolerance) || std::abs(place) > kSideReach)
       continue;
@@ -88,20 +83,21 @@ std::optional<Vec3> side_of(const LocalPlane& plane, const Vec3& at, const Vec3&
   return before > after ? Vec3(-side) : side;
 }
 
+/// The wedge that two planes make at the edge point, which is the origin; all in spacings.
 std::optional<Wedge> wedge_of(const LocalPlane& a, const LocalPlane& b, const NearPoints& points,
                               const Tolerances& within) {
-  const double cosine = a.normal.dot(b.normal);
-  const double sq_sine = 1.0 - cosine * cosine;
-  if (sq_sine < std::pow(std::sin(kLeastAngle), 2)) return std::nullopt;
-  const Vec3 at = ((a.distance - cosine * b.distance) * a.normal +
-                   (b.distance - cosine * a.distance) * b.normal) /
-                  sq_sine;
-  if (at.norm() > kFarthest) return std::nullopt;
-  const Vec3 along = a.normal.cross(b.normal).normalized();
-  const auto side_a = side_of(a, at, along, points, within);
-  const auto side_b = side_of(b, at, along, points, within);
+  const auto line =
+      line_of_planes(a.normal, a.distance, b.normal, b.distance, std::sin(kLeastAngle));
+  if (!line || line->point.norm() > kFarthest) return std::nullopt;
+  const auto side_a = side_of(a, line->point, line->along, points, within);
+  const auto side_b = side_of(b, line->point, line->along, points, within);
   if (!side_a || !side_b) return std::nullopt;
-  return Wedge{at, along, *side_a, *side_b, std::sqrt(sq_sine) - 0.5 * at.norm()};
+  return Wedge{line->point, line->along, *side_a, *side_b};
+}
+
+/// Large for planes that meet at right angles in the edge point.
+double score_of(const Wedge& wedge) {
+  return wedge.side_a.cross(wedge.side_b).norm() - 0.5 * wedge.at.norm();
 }
 
 /// How much the points of a side bend towards the inside of the wedge: their mean distance to the
@@ -139,8 +135,8 @@ double bend_of(const Wedge& wedge, const NearPoints& points, double tolerance) {
 
 std::optional<Wedge> noisy_wedge(const NearPoints& points, double noise) {
   for (const std::size_t count : kNoisyNeighbours) {
-    const auto halves = fit_half_planes(points, count, kNoiseOfPlanes * noise);
-    if (halves) return Wedge{halves->at, halves->along, halves->side_a, halves->side_b, 0.0};
+    const auto wedge = fit_half_planes(points, count, kNoiseOfPlanes * noise);
+    if (wedge) return wedge;
   }
   return std::nullopt;
 }
@@ -156,7 +152,7 @@ std::optional<Wedge> best_wedge(const NearPoints& points, const Tolerances& with
   for (std::size_t a = 0; a < planes.size(); ++a) {
     for (std::size_t b = a + 1; b < planes.size(); ++b) {
       const auto wedge = wedge_of(planes[a], planes[b], points, within);
-      if (wedge && (!best || wedge->score > best->score)) best = wedge;
+      if (wedge && (!best || score_of(*wedge) > score_of(*best))) best = wedge;
     }
   }
   return best;
@@ -185,7 +181,7 @@ std::optional<Crease> crease_at(const OrderedPoints& cloud, std::uint32_t i,
                 .spacing = spacing,
                 .probability = cloud.probability(i),
                 .bend = static_cast<float>(bend_of(*wedge, near_points, within.plane)),
-                .edge_class = cloud.edge_class(i)};
+                .edge_class = cloud.is_edge(i) ? cloud.edge_class(i) : kNonEdge};
 }
 
 /// Of these, nearest first, those that are not near one chosen before: at most as many as

@@ -34,7 +34,7 @@ constexpr double kSag = 0.15;    ///< and their residual as one, in spacings
 /// Of points about an origin near them.
 struct Sums {
   Vec3 origin = Vec3::Zero();
-  Moments moments = {};
+  PointMoments moments = {};
 
   void add(const Vec3& place) { moments.add(place - origin); }
   double count() const { return moments.weight; }
@@ -245,7 +245,7 @@ void unite(const OrderedPoints& cloud, Faces& faces, double spacing) {
     const Fitted plane_a = fit_plane(sums[a]), plane_b = fit_plane(sums[b]);
     const double of_a = plane_a.residual, of_b = plane_b.residual;
     Sums both = sums[a];
-    both.moments.add(sums[b].moments);
+    both.moments += sums[b].moments;
     const double apart =
         std::sqrt((of_a * of_a * sums[a].count() + of_b * of_b * sums[b].count()) / both.count());
     const bool sags = plane_a.normal.cross(plane_b.normal).norm() < kNoFold;

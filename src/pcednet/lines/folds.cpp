@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "pcednet/lines/plane_edges.h"
+#include "pcednet/lines/plane_line.h"
 
 namespace pcednet::lines {
 namespace {
@@ -40,13 +41,10 @@ std::map<Pair, std::vector<Contact>> contacts_of(const Faces& faces) {
 }
 
 std::optional<Fit> line_of(const Face& a, const Face& b, const Vec3& near) {
-  const Vec3 cross = a.normal.cross(b.normal);
-  if (cross.norm() < kLeastSine) return std::nullopt;
-  const double cosine = a.normal.dot(b.normal), scale = 1.0 / (1.0 - cosine * cosine);
-  const double to_a = -a.height(near), to_b = -b.height(near);
-  const Vec3 point =
-      near + scale * ((to_a - cosine * to_b) * a.normal + (to_b - cosine * to_a) * b.normal);
-  return Fit{CurveKind::kSegment, point, cross.normalized(), 0.0, 0.0};
+  const auto line =
+      line_of_planes(a.normal, -a.height(near), b.normal, -b.height(near), kLeastSine);
+  if (!line) return std::nullopt;
+  return Fit{CurveKind::kSegment, near + line->point, line->along, 0.0, 0.0};
 }
 
 class Folds {

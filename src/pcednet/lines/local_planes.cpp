@@ -54,10 +54,10 @@ int support_of(const LocalPlane& plane, const NearPoints& points, const Tests& t
 /// The plane of least squares of the points near `plane`; weights fall to 0 at `reach`.
 LocalPlane refit(const LocalPlane& plane, const NearPoints& points, const Tests& tests,
                  double reach) {
-  Moments moments;
+  PointMoments moments;
   for (std::size_t i = 0; i < points.count; ++i) {
     const Vec3 offset = points.offset(i);
-    const double part = plane(offset) / reach;
+    const double part = plane.height(offset) / reach;
     if (part * part >= 1.0) continue;
     if (!(std::abs(plane.normal.dot(points.normal(i))) > tests.least_cosine[i])) continue;
     moments.add(offset, (1.0 - part * part) * (1.0 - part * part));
@@ -114,7 +114,7 @@ void NearPoints::add(const Vec3& offset, const Vec3& normal, double probability)
   ++count;
 }
 
-std::optional<LocalPlane> plane_of(const Moments& moments, double least_weight,
+std::optional<LocalPlane> plane_of(const PointMoments& moments, double least_weight,
                                    double least_width) {
   if (moments.weight < least_weight) return std::nullopt;
   const auto [variances, axes] = eigendecomposition(moments.covariance());
@@ -135,7 +135,7 @@ void find_planes(const NearPoints& points, double tolerance, std::vector<LocalPl
     fitted.support = support_of(fitted, points, tests, tolerance);
     if (fitted.support < best.support) fitted = best;
     for (std::size_t i = 0; i < points.count; ++i) {
-      if (std::abs(fitted(points.offset(i))) < 1.3 * tolerance) tests.taken[i] = kFar;
+      if (std::abs(fitted.height(points.offset(i))) < 1.3 * tolerance) tests.taken[i] = kFar;
     }
     planes.push_back(fitted);
   }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "pcednet/core/vec3.h"
+#include "pcednet/lines/moments.h"
 
 namespace pcednet::lines {
 
@@ -29,32 +30,20 @@ struct LocalPlane {
   double distance;  ///< points x of the plane: normal . x = distance
   int support;      ///< points on it and on no plane found before
 
-  double operator()(const Vec3& x) const { return normal.dot(x) - distance; }
+  double height(const Vec3& x) const { return normal.dot(x) - distance; }
 };
 
-/// Sums over weighted points, which determine their least-squares plane.
-struct Moments {
-  double weight = 0.0;
-  Vec3 sum = Vec3::Zero();
-  Mat3 products = Mat3::Zero();
-
-  void add(const Vec3& p, double w = 1.0) {
-    weight += w;
-    sum += w * p;
-    products += w * p * p.transpose();
-  }
-  void add(const Moments& other) {
-    weight += other.weight;
-    sum += other.sum;
-    products += other.products;
-  }
-  Vec3 mean() const { return sum / weight; }
-  Mat3 covariance() const { return products / weight - mean() * mean().transpose(); }
+/// Two half-planes that meet in a line.
+struct Wedge {
+  Vec3 at;              ///< the point of the line nearest to the origin
+  Vec3 along;           ///< unit
+  Vec3 side_a, side_b;  ///< unit, orthogonal to `along`: in each plane, away from the line
 };
 
-/// Their plane; none if their weight is below `least_weight`, or if they are collinear: the
-/// variance along their shorter side is not above `least_width`.
-std::optional<LocalPlane> plane_of(const Moments& moments, double least_weight, double least_width);
+/// The least-squares plane of points; none if their weight is below `least_weight`, or if they are
+/// collinear: the variance along their shorter side is not above `least_width`.
+std::optional<LocalPlane> plane_of(const PointMoments& moments, double least_weight,
+                                   double least_width);
 
 /// The planes that explain the points, at most four, the one with most support first. A point is on
 /// a plane if it is nearer than `tolerance`.

@@ -10,6 +10,8 @@
 
 #include "pcednet/core/eigendecomposition.h"
 #include "pcednet/core/half_space.h"
+#include "pcednet/core/vector_clones.h"
+#include "pcednet/lines/plane_line.h"
 
 namespace pcednet::lines {
 namespace {
@@ -45,7 +47,7 @@ struct Frame {
 };
 
 Frame frame_of(const NearPoints& points, std::size_t count) {
-  Moments moments;
+  PointMoments moments;
   for (std::size_t i = 0; i < count; ++i) moments.add(points.offset(i));
   const Mat3 axes = eigendecomposition(moments.covariance()).vectors;
   const Vec3 z = axes.col(0).normalized();
@@ -53,153 +55,155 @@ Frame frame_of(const NearPoints& points, std::size_t count) {
   return {moments.mean(), x, z.cross(x), z};
 }
 
-/// Sums over points (u, v, h) for heights h that are linear in u and v.
-struct HeightSums {
-  double n = 0.0, u = 0.0, v = 0.0, uu = 0.0, uv = 0.0, vv = 0.0;
-  double h = 0.0, hu = 0.0, hv = 0.0, hh = 0.0;
-
-  HeightSums() = default;
-  explicit HeightSums(const Vec3& p)
-      : n(1.0),
-        u(p.x()),
-        v(p.y()),
-        uu(p.x() * p.x()),
-        uv(p.x() * p.y()),
-        vv(p.y() * p.y()),
-        h(p.z()),
-        hu(p.z() * p.x()),
-        hv(p.z() * p.y()),
-        hh(p.z() * p.z()) {}
-
-  void add(const HeightSums& other, double sign = 1.0) {
-    n += sign * other.n;
-    u += sign * other.u;
-    v += sign * other.v;
-    uu += sign * other.uu;
-    uv += sign * other.uv;
-    vv += sign * other.vv;
-    h += sign * other.h;
-    hu += sign * other.hu;
-    hv += sign * other.hv;
-    hh += sign * other.hh;
-  }
-  Vec3 mean() const { return Vec3(u, v, h) / n; }
+struct HalfPlanes {
+  LocalPlane a, b;
+  Wedge wedge;
 };
-
-/// The least-squares plane of a part, by its slopes in the frame.
-struct Part {
-  Vec3 mean;
-  double slope_u, slope_v;
-  double error;  ///< sum of squared distances across the plane
-};
-
-std::optional<Part> part_of(const HeightSums& sums) {
-  constexpr double kLeastSpread = 0.02;  // of the points of a part over u and v
-  if (sums.n < static_cast<double>(kFewestOfSide)) return std::nullopt;
-  const Vec3 mean = sums.mean();
-  const double uu = sums.uu - sums.u * mean.x(), uv = sums.uv - sums.u * mean.y();
-  const double vv = sums.vv - sums.v * mean.y(), hh = sums.hh - sums.h * mean.z();
-  const double hu = sums.hu - sums.h * mean.x(), hv = sums.hv - sums.h * mean.y();
-  const double determinant = uu * vv - uv * uv;
-  if (!(determinant > kLeastSpread * sums.n * sums.n)) return std::nullopt;
-  const double slope_u = (hu * vv - hv * uv) / determinant;
-  const double slope_v = (hv * uu - hu * uv) / determinant;
-  const double error = std::max(0.0, hh - slope_u * hu - slope_v * hv) /
-                       (1.0 + slope_u * slope_u + slope_v * slope_v);
-  return Part{mean, slope_u, slope_v, error};
-}
-
-LocalPlane plane_of(const Part& part, const Frame& frame) {
-  const Vec3 normal = (frame.z - part.slope_u * frame.x - part.slope_v * frame.y).normalized();
-  return {normal, normal.dot(frame.place(part.mean)), 0};
-}
 
 /// The half-planes of two planes, each on the side of a point of its part.
 std::optional<HalfPlanes> half_planes(const LocalPlane& a, const LocalPlane& b, const Vec3& of_a,
                                       const Vec3& of_b) {
-  const double cosine = a.normal.dot(b.normal), sq_sine = 1.0 - cosine * cosine;
-  if (sq_sine < std::pow(std::sin(kSmallestAngle), 2)) return std::nullopt;
-  HalfPlanes halves{.a = a, .b = b, .at = {}, .along = {}, .side_a = {}, .side_b = {}};
-  halves.at = ((a.distance - cosine * b.distance) * a.normal +
-               (b.distance - cosine * a.distance) * b.normal) /
-              sq_sine;
-  halves.along = a.normal.cross(b.normal).normalized();
+  const auto line =
+      line_of_planes(a.normal, a.distance, b.normal, b.distance, std::sin(kSmallestAngle));
+  if (!line) return std::nullopt;
   const auto towards = [&](const Vec3& normal, const Vec3& place) {
-    const Vec3 side = halves.along.cross(normal);
-    return turned_to(side, place - halves.at);
+    return turned_to(line->along.cross(normal), place - line->point);
   };
-  halves.side_a = towards(a.normal, of_a);
-  halves.side_b = towards(b.normal, of_b);
-  return halves;
+  return HalfPlanes{
+      a, b, {line->point, line->along, towards(a.normal, of_a), towards(b.normal, of_b)}};
 }
 
-/// The best of the cuts along lines that pass the origin in one direction.
-void try_cuts(std::span<const HeightSums> places, const Frame& frame, double angle,
-              std::optional<HalfPlanes>& best, double& least_error) {
+/// The parts of the points before and after each cut, in a row each, so that a vector has a part
+/// per lane.
+struct Parts {
+  static constexpr std::size_t kCount = 2 * kCuts;
+  using Row = std::array<double, kCount>;
+
+  Row weight, x, y, z, xx, xy, yy, xz, yz, zz;  ///< their moments
+  Row slope_x, slope_y;  ///< of their least-squares planes, as heights z over x and y
+  Row error;  ///< sums of squared distances to these; infinite for a part too small or too narrow
+
+  void set(std::size_t i, const PointMoments& m) {
+    weight[i] = m.weight, x[i] = m.x, y[i] = m.y, z[i] = m.z;
+    xx[i] = m.xx, xy[i] = m.xy, yy[i] = m.yy, xz[i] = m.xz, yz[i] = m.yz, zz[i] = m.zz;
+  }
+  Vec3 mean(std::size_t i) const { return Vec3(x[i], y[i], z[i]) / weight[i]; }
+  LocalPlane plane(std::size_t i, const Frame& frame) const {
+    const Vec3 normal = (frame.z - slope_x[i] * frame.x - slope_y[i] * frame.y).normalized();
+    return {normal, normal.dot(frame.place(mean(i))), 0};
+  }
+};
+
+PCEDNET_VECTOR_CLONES
+void fit_planes(Parts& parts) {
+  constexpr double kLeastSpread = 0.02;  // of the points of a part over x and y
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < Parts::kCount; ++i) {
+    const double weight = parts.weight[i], x = parts.x[i], y = parts.y[i], z = parts.z[i];
+    const double mean_x = x / weight, mean_y = y / weight, mean_z = z / weight;
+    const double xx = parts.xx[i] - x * mean_x, xy = parts.xy[i] - x * mean_y;
+    const double yy = parts.yy[i] - y * mean_y, zz = parts.zz[i] - z * mean_z;
+    const double xz = parts.xz[i] - z * mean_x, yz = parts.yz[i] - z * mean_y;
+    const double determinant = xx * yy - xy * xy;
+    const double slope_x = (xz * yy - yz * xy) / determinant;
+    const double slope_y = (yz * xx - xz * xy) / determinant;
+    const double error = larger(0.0, zz - slope_x * xz - slope_y * yz) /
+                         (1.0 + slope_x * slope_x + slope_y * slope_y);
+    const bool sound = (weight >= static_cast<double>(kFewestOfSide)) &
+                       (determinant > kLeastSpread * weight * weight);
+    parts.slope_x[i] = slope_x, parts.slope_y[i] = slope_y;
+    parts.error[i] = sound ? error : kInfinity;
+  }
+}
+
+/// The parts that cuts along lines in one direction make; the middle one passes the origin.
+PCEDNET_VECTOR_CLONES
+void divide(std::span<const PointMoments> points, const Frame& frame, double angle, Parts& parts) {
   const Vec3 origin = frame.of(Vec3::Zero());
-  const double across_u = std::cos(angle), across_v = std::sin(angle);
+  const double across_x = std::cos(angle), across_y = std::sin(angle);
   constexpr double kMiddle = 0.5 * static_cast<double>(kCuts + 1);
-  std::array<HeightSums, kCuts + 1> strips{};
-  HeightSums before, after;
-  for (const HeightSums& place : places) {
-    const double away = (place.u - origin.x()) * across_u + (place.v - origin.y()) * across_v;
-    const double strip = away / kCutStep + kMiddle;
-    strips[static_cast<std::size_t>(std::clamp(strip, 0.0, static_cast<double>(kCuts)))].add(place);
+  std::array<PointMoments, kCuts + 1> strips{};
+  for (const PointMoments& point : points) {
+    const double away = (point.x - origin.x()) * across_x + (point.y - origin.y()) * across_y;
+    const double strip = smaller(larger(away / kCutStep + kMiddle, 0.0), kCuts);
+    strips[static_cast<std::size_t>(strip)] += point;
   }
-  for (const HeightSums& strip : strips) after.add(strip);
+  PointMoments before, after;
+  for (const PointMoments& strip : strips) after += strip;
   for (std::size_t cut = 0; cut < kCuts; ++cut) {
-    before.add(strips[cut]);
-    after.add(strips[cut], -1.0);
-    const auto a = part_of(before);
-    if (!a || a->error >= least_error) continue;
-    const auto b = part_of(after);
-    if (!b || a->error + b->error >= least_error) continue;
-    const auto halves = half_planes(plane_of(*a, frame), plane_of(*b, frame), frame.place(a->mean),
-                                    frame.place(b->mean));
-    if (!halves) continue;
-    least_error = a->error + b->error;
-    best = halves;
+    before += strips[cut];
+    after -= strips[cut];
+    parts.set(cut, before);
+    parts.set(kCuts + cut, after);
   }
 }
 
+/// The half-planes of the two parts with the least error.
 std::optional<HalfPlanes> best_cut(const NearPoints& points, std::size_t count,
                                    const Frame& frame) {
-  std::array<HeightSums, NearPoints::kMost> places;
-  for (std::size_t i = 0; i < count; ++i) places[i] = HeightSums(frame.of(points.offset(i)));
+  std::array<PointMoments, NearPoints::kMost> places;
+  for (std::size_t i = 0; i < count; ++i) places[i].add(frame.of(points.offset(i)));
   std::optional<HalfPlanes> best;
   double least_error = std::numeric_limits<double>::infinity();
+  Parts parts;
   for (int i = 0; i < kDirections; ++i) {
-    const double angle = std::numbers::pi * i / kDirections;
-    try_cuts(std::span(places).first(count), frame, angle, best, least_error);
+    divide(std::span(places).first(count), frame, std::numbers::pi * i / kDirections, parts);
+    fit_planes(parts);
+    for (std::size_t a = 0, b = kCuts; a < kCuts; ++a, ++b) {
+      const double error = parts.error[a] + parts.error[b];
+      if (!(error < least_error)) continue;
+      const auto halves = half_planes(parts.plane(a, frame), parts.plane(b, frame),
+                                      frame.place(parts.mean(a)), frame.place(parts.mean(b)));
+      if (!halves) continue;
+      least_error = error;
+      best = halves;
+    }
   }
   return best;
 }
 
-double sq_distance(const LocalPlane& plane, const Vec3& side, const HalfPlanes& halves,
-                   const Vec3& place) {
-  const Vec3 offset = place - halves.at;
-  if (offset.dot(side) >= 0.0) return std::pow(plane(place), 2);
-  return (offset - offset.dot(halves.along) * halves.along).squaredNorm();
+/// Squared distances of the points to a half-plane: beyond the line, to that.
+PCEDNET_VECTOR_CLONES
+void sq_distances(const LocalPlane& plane, const Vec3& side, const Wedge& wedge,
+                  const NearPoints& points, std::size_t count, NearPoints::Row& result) {
+  const double x = wedge.at.x(), y = wedge.at.y(), z = wedge.at.z();
+  const double normal_x = plane.normal.x(), normal_y = plane.normal.y(),
+               normal_z = plane.normal.z(), distance = plane.distance;
+  const double side_x = side.x(), side_y = side.y(), side_z = side.z();
+  const double along_x = wedge.along.x(), along_y = wedge.along.y(), along_z = wedge.along.z();
+  for (std::size_t i = 0; i < count; ++i) {
+    const double px = points.x[i], py = points.y[i], pz = points.z[i];
+    const double height = normal_x * px + normal_y * py + normal_z * pz - distance;
+    const double dx = px - x, dy = py - y, dz = pz - z;
+    const double along = dx * along_x + dy * along_y + dz * along_z;
+    const double ax = dx - along * along_x, ay = dy - along * along_y, az = dz - along * along_z;
+    const double to_line = ax * ax + ay * ay + az * az;
+    const double inside = dx * side_x + dy * side_y + dz * side_z;
+    result[i] = inside >= 0.0 ? height * height : to_line;
+  }
 }
 
-struct Nearer {
-  double sq_distance;
-  bool is_a;
+/// The same to the half-planes.
+struct SqDistances {
+  NearPoints::Row a, b;
+
+  SqDistances(const HalfPlanes& halves, const NearPoints& points, std::size_t count) {
+    sq_distances(halves.a, halves.wedge.side_a, halves.wedge, points, count, a);
+    sq_distances(halves.b, halves.wedge.side_b, halves.wedge, points, count, b);
+  }
 };
-
-Nearer nearer(const HalfPlanes& halves, const Vec3& place) {
-  const double a = sq_distance(halves.a, halves.side_a, halves, place);
-  const double b = sq_distance(halves.b, halves.side_b, halves, place);
-  return {std::min(a, b), a < b};
-}
 
 std::optional<HalfPlanes> improved(const HalfPlanes& halves, const NearPoints& points,
                                    std::size_t count, double reach) {
-  Moments a, b;
+  const SqDistances to(halves, points, count);
+  PointMoments a, b;
   for (std::size_t i = 0; i < count; ++i) {
-    const auto [sq_distance, is_a] = nearer(halves, points.offset(i));
-    const double part = sq_distance / (reach * reach);
-    if (part < 1.0) (is_a ? a : b).add(points.offset(i), (1.0 - part) * (1.0 - part));
+    const double rest = std::max(0.0, 1.0 - std::min(to.a[i], to.b[i]) / (reach * reach));
+    const double weight = rest * rest;
+    // Both without a branch: which of them is a matter of chance.
+    const bool is_a = to.a[i] < to.b[i];
+    a.add(points.offset(i), is_a ? weight : 0.0);
+    b.add(points.offset(i), is_a ? 0.0 : weight);
   }
   constexpr double kWeight = 4.0, kWidth = 0.15;
   const auto plane_a = plane_of(a, kWeight, kWidth);
@@ -242,12 +246,14 @@ double error_of_quadric(const NearPoints& points, std::size_t count, const Frame
 bool explain(const HalfPlanes& halves, const NearPoints& points, std::size_t count,
              const Frame& frame, double noise) {
   const double sq_outlier = std::pow(kOutlier * noise, 2), sq_noise = noise * noise;
+  const SqDistances to(halves, points, count);
   double error = 0.0;
   int on_a = 0, on_b = 0;
   for (std::size_t i = 0; i < count; ++i) {
-    const auto [sq_distance, is_a] = nearer(halves, points.offset(i));
-    error += std::min(sq_distance, sq_outlier);
-    if (sq_distance <= sq_outlier) ++(is_a ? on_a : on_b);
+    const double nearest = std::min(to.a[i], to.b[i]);
+    error += std::min(nearest, sq_outlier);
+    const int on = nearest <= sq_outlier ? 1 : 0, a = to.a[i] < to.b[i] ? on : 0;
+    on_a += a, on_b += on - a;
   }
   const double all = static_cast<double>(count);
   return std::min(on_a, on_b) >= kFewestOfSide && all - on_a - on_b <= kMostOutliers * all &&
@@ -257,8 +263,7 @@ bool explain(const HalfPlanes& halves, const NearPoints& points, std::size_t cou
 
 }  // namespace
 
-std::optional<HalfPlanes> fit_half_planes(const NearPoints& points, std::size_t count,
-                                          double noise) {
+std::optional<Wedge> fit_half_planes(const NearPoints& points, std::size_t count, double noise) {
   count = std::min(count, points.count);
   if (count < kFewestPoints) return std::nullopt;
   const Frame frame = frame_of(points, count);
@@ -266,9 +271,9 @@ std::optional<HalfPlanes> fit_half_planes(const NearPoints& points, std::size_t 
   for (int i = 0; i < kImprovements && halves; ++i) {
     halves = improved(*halves, points, count, kOutlier * noise);
   }
-  if (!halves || halves->at.norm() > kFromPoint) return std::nullopt;
+  if (!halves || halves->wedge.at.norm() > kFromPoint) return std::nullopt;
   if (!explain(*halves, points, count, frame, noise)) return std::nullopt;
-  return halves;
+  return halves->wedge;
 }
 
 }  // namespace pcednet::lines

@@ -7,22 +7,14 @@
 
 namespace pcednet::lines {
 
-/// Two half-planes that meet in a line; lengths in spacings.
-struct HalfPlanes {
-  LocalPlane a, b;
-  Vec3 at;              ///< the point of their line nearest to the origin
-  Vec3 along;           ///< unit
-  Vec3 side_a, side_b;  ///< unit, orthogonal to `along`: in each plane, away from the line
-};
-
-/// The half-planes that explain the nearest `count` points, with noise of standard deviation
-/// `noise` (in spacings); none if no pair does, or if a smooth surface explains them better.
+/// The wedge of two half-planes that explain the nearest `count` points, with noise of standard
+/// deviation `noise` (in spacings); none if no pair does, or if a smooth surface explains them
+/// better.
 ///
 /// find_planes() fits planes to some of the points and needs normals; in noise these are means over
 /// an area that reaches across the edge. Here all points count: they are divided along lines of
 /// several directions, each part gets its least-squares plane, and the best division is improved by
 /// assigning each point to the nearer half-plane.
-std::optional<HalfPlanes> fit_half_planes(const NearPoints& points, std::size_t count,
-                                          double noise);
+std::optional<Wedge> fit_half_planes(const NearPoints& points, std::size_t count, double noise);
 
 }  // namespace pcednet::lines

@@ -9,14 +9,18 @@
 #include "pcednet/core/eigendecomposition.h"
 #include "pcednet/core/half_space.h"
 #include "pcednet/core/parallel.h"
+#include "pcednet/lines/moments.h"
+#include "pcednet/lines/plane_line.h"
+#include "pcednet/lines/support_line.h"
 
 namespace pcednet::lines {
 namespace {
 
 constexpr std::size_t kNodesToRefine = 4;
-constexpr double kPlaneSide = 0.94;  ///< least cosine of a node's side and the mean
-constexpr std::size_t kLeastRefined = 8;
+constexpr double kPlaneSide = 0.94;    ///< least cosine of a node's side and the mean
+constexpr double kLeastRefined = 8.0;  ///< points
 constexpr int kPlaneFits = 3;
+constexpr double kLeastSineOfSides = 0.2;  ///< of the angle between the planes of a crease
 
 // In spacings.
 constexpr double kSideOfPlane = 4.0;  ///< of the points that place a crease
@@ -76,24 +80,18 @@ std::optional<Plane> plane_of_side(const Piece& piece, const std::vector<Vec3>& 
   Plane plane{piece.fit.point, along.cross(side)};
   for (int fit = 0; fit < kPlaneFits; ++fit) {
     const double reach = (fit == 0 ? 1.5 : 1.0) * tolerance * spacing;
-    std::vector<Vec3> on;
-    Vec3 mean = Vec3::Zero();
+    PointMoments on;  // from the fit's point, in spacings
     for (const Vec3& point : points) {
       const Vec3 offset = point - piece.ends[0];
       const double place = offset.dot(along), away = offset.dot(side) / spacing;
       if (place < 0.0 || place > length || away < kFromLine || away > kSideOfPlane) continue;
       if (std::abs((point - plane.point).dot(plane.normal)) > reach) continue;
-      on.push_back(point);
-      mean += point;
+      on.add((point - piece.fit.point) / spacing);
     }
-    if (on.size() < kLeastRefined) return std::nullopt;
-    mean /= static_cast<double>(on.size());
-    Mat3 products = Mat3::Zero();
-    for (const Vec3& point : on) products += (point - mean) * (point - mean).transpose();
-    const auto [variances, axes] =
-        eigendecomposition(products / (spacing * spacing * static_cast<double>(on.size())));
+    if (on.weight < kLeastRefined) return std::nullopt;
+    const auto [variances, axes] = eigendecomposition(on.covariance());
     if (!(variances[1] > 0.2)) return std::nullopt;
-    plane = {mean, axes.col(0).normalized()};
+    plane = {piece.fit.point + spacing * on.mean(), axes.col(0).normalized()};
   }
   return plane;
 }
@@ -108,14 +106,12 @@ std::optional<Placed> crease_line(const Piece& piece, const std::vector<Vec3>& p
   const auto a = plane_of_side(piece, points, *side_a, tolerance);
   const auto b = plane_of_side(piece, points, *side_b, tolerance);
   if (!a || !b) return std::nullopt;
-  const Vec3 cross = a->normal.cross(b->normal);
-  if (cross.norm() < 0.2) return std::nullopt;
-  const double cosine = a->normal.dot(b->normal), scale = 1.0 / (1.0 - cosine * cosine);
-  Vec3 point = piece.fit.point;
-  const double to_a = (a->point - point).dot(a->normal), to_b = (b->point - point).dot(b->normal);
-  point += scale * ((to_a - cosine * to_b) * a->normal + (to_b - cosine * to_a) * b->normal);
-  const Vec3 direction = turned_to(cross.normalized(), along);
-  return Placed{{CurveKind::kSegment, point, direction, 0.0, piece.fit.error},
+  const Vec3& from = piece.fit.point;
+  const auto line = line_of_planes(a->normal, (a->point - from).dot(a->normal), b->normal,
+                                   (b->point - from).dot(b->normal), kLeastSineOfSides);
+  if (!line) return std::nullopt;
+  const Vec3 direction = turned_to(line->along, along);
+  return Placed{{CurveKind::kSegment, from + line->point, direction, 0.0, piece.fit.error},
                 dihedral_angle(into(*a, direction, *side_a), into(*b, direction, *side_b))};
 }
 
@@ -136,19 +132,8 @@ std::optional<Placed> boundary_line(const Piece& piece, const std::vector<Vec3>&
     if (out < -kStripInside * spacing || out > kStripOutside * spacing) continue;
     strip.emplace_back(place, out);
   }
-  if (strip.size() < kLeastRefined) return std::nullopt;
-  std::sort(strip.begin(), strip.end(), [](const auto& a, const auto& b) {
-    return a.x() < b.x() || (a.x() == b.x() && a.y() < b.y());
-  });
-  std::vector<Eigen::Vector2d> hull;  // its outer side
-  for (const auto& point : strip) {
-    while (hull.size() > 1) {
-      const Eigen::Vector2d u = hull.back() - hull[hull.size() - 2], v = point - hull.back();
-      if (u.x() * v.y() - u.y() * v.x() < 0.0) break;
-      hull.pop_back();
-    }
-    hull.push_back(point);
-  }
+  if (static_cast<double>(strip.size()) < kLeastRefined) return std::nullopt;
+  const std::vector<Eigen::Vector2d> hull = outer_hull(strip);
   std::size_t i = 1;
   while (i + 1 < hull.size() && hull[i].x() < 0.5 * length) ++i;
   if (hull.size() < 2 || hull[i].x() - hull[i - 1].x() < 0.25 * length) return std::nullopt;
@@ -199,7 +184,7 @@ std::optional<Ray> ray_of_side(const Piece& piece, const std::vector<Eigen::Vect
       products += point * point.transpose();
       count += 1.0;
     }
-    if (count < static_cast<double>(kLeastRefined)) return std::nullopt;
+    if (count < kLeastRefined) return std::nullopt;
     mean /= count;
     const Eigen::Matrix2d covariance = products / count - mean * mean.transpose();
     Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver;

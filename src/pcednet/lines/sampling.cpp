@@ -10,6 +10,7 @@
 
 #include "pcednet/core/eigendecomposition.h"
 #include "pcednet/core/median.h"
+#include "pcednet/lines/moments.h"
 #include "pcednet/lines/ordered_points.h"
 
 namespace pcednet::lines {
@@ -94,13 +95,9 @@ void keep_own_sheet(std::vector<Vec3>& offsets, const std::vector<double>& heigh
 
 /// Root mean square of the distances to the plane of least squares.
 double distance_to_plane(const std::vector<Vec3>& offsets) {
-  const auto count = static_cast<double>(offsets.size());
-  Vec3 mean = Vec3::Zero();
-  for (const Vec3& offset : offsets) mean += offset;
-  mean /= count;
-  Mat3 covariance = Mat3::Zero();
-  for (const Vec3& offset : offsets) covariance += (offset - mean) * (offset - mean).transpose();
-  return std::sqrt(std::max(eigendecomposition(covariance / count).values[0], 0.0));
+  PointMoments moments;
+  for (const Vec3& offset : offsets) moments.add(offset);
+  return std::sqrt(std::max(eigendecomposition(moments.covariance()).values[0], 0.0));
 }
 
 std::vector<PlaneSample> samples_at(const OrderedPoints& cloud,

@@ -34,18 +34,8 @@ SupportLine supported(Points outline, std::size_t first, std::size_t last) {
     const Eigen::Vector2d offset = outline[i] - outline[first];
     points.emplace_back(offset.dot(along), offset.dot(outward));
   }
-  std::sort(points.begin(), points.end(), [](const auto& a, const auto& b) {
-    return std::pair(a.x(), a.y()) < std::pair(b.x(), b.y());
-  });
-  const double middle = 0.5 * (points.front().x() + points.back().x());
-  std::vector<Eigen::Vector2d> hull;  // its outer side
-  for (const Eigen::Vector2d& point : points) {
-    while (hull.size() > 1 &&
-           cross(hull.back() - hull[hull.size() - 2], point - hull.back()) >= 0.0) {
-      hull.pop_back();
-    }
-    hull.push_back(point);
-  }
+  const std::vector<Eigen::Vector2d> hull = outer_hull(std::move(points));
+  const double middle = 0.5 * (hull.front().x() + hull.back().x());
   std::size_t i = 1;
   while (i + 1 < hull.size() && hull[i].x() < middle) ++i;
   SupportLine line{first, last, outward, hull.front().y()};
@@ -96,6 +86,21 @@ std::vector<std::size_t> breaks_of(Points outline, double spacing) {
 }
 
 }  // namespace
+
+std::vector<Eigen::Vector2d> outer_hull(std::vector<Eigen::Vector2d> points) {
+  std::sort(points.begin(), points.end(), [](const auto& a, const auto& b) {
+    return std::pair(a.x(), a.y()) < std::pair(b.x(), b.y());
+  });
+  std::vector<Eigen::Vector2d> hull;
+  for (const Eigen::Vector2d& point : points) {
+    while (hull.size() > 1 &&
+           cross(hull.back() - hull[hull.size() - 2], point - hull.back()) >= 0.0) {
+      hull.pop_back();
+    }
+    hull.push_back(point);
+  }
+  return hull;
+}
 
 std::vector<SupportLine> straight_parts(Points outline, double spacing) {
   if (outline.size() < 2) return {};

@@ -15,6 +15,9 @@ struct SupportLine {
   double offset;
 };
 
+/// The upper side of the convex hull of some points, by x.
+std::vector<Eigen::Vector2d> outer_hull(std::vector<Eigen::Vector2d> points);
+
 /// The straight parts of an outline, in its order; the interior is on the left of consecutive
 /// points. They minimise
 ///

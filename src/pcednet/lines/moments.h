@@ -1,0 +1,40 @@
+#pragma once
+
+#include "pcednet/core/vec3.h"
+
+namespace pcednet::lines {
+
+/// Sums over weighted points, which determine their least-squares plane. Plain numbers, so that
+/// sums of sums stay in vector registers.
+struct PointMoments {
+  double weight = 0.0, x = 0.0, y = 0.0, z = 0.0;
+  double xx = 0.0, xy = 0.0, yy = 0.0, xz = 0.0, yz = 0.0, zz = 0.0;
+
+  void add(const Vec3& p, double w = 1.0) {
+    const double wx = w * p.x(), wy = w * p.y(), wz = w * p.z();
+    weight += w;
+    x += wx, y += wy, z += wz;
+    xx += wx * p.x(), xy += wy * p.x(), yy += wy * p.y();
+    xz += wz * p.x(), yz += wz * p.y(), zz += wz * p.z();
+  }
+  void operator+=(const PointMoments& other) {
+    weight += other.weight;
+    x += other.x, y += other.y, z += other.z;
+    xx += other.xx, xy += other.xy, yy += other.yy;
+    xz += other.xz, yz += other.yz, zz += other.zz;
+  }
+  void operator-=(const PointMoments& other) {
+    weight -= other.weight;
+    x -= other.x, y -= other.y, z -= other.z;
+    xx -= other.xx, xy -= other.xy, yy -= other.yy;
+    xz -= other.xz, yz -= other.yz, zz -= other.zz;
+  }
+  Vec3 mean() const { return Vec3(x, y, z) / weight; }
+  Mat3 covariance() const {
+    Mat3 products;
+    products << xx, xy, xz, xy, yy, yz, xz, yz, zz;
+    return products / weight - mean() * mean().transpose();
+  }
+};
+
+}  // namespace pcednet::lines
