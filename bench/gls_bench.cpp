@@ -10,8 +10,8 @@
 
 #include "pcednet/core/parallel.h"
 #include "pcednet/core/random.h"
+#include "pcednet/gls/exact_scale_space.h"
 #include "pcednet/gls/fast_scale_space.h"
-#include "pcednet/gls/scale_space.h"
 #include "pcednet/gls/target_groups.h"
 
 namespace pcednet::gls {

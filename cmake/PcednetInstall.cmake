@@ -15,7 +15,7 @@ set(public_headers
   core/error.h core/output_file.h core/parallel.h core/progress.h core/vec3.h
   detect/boundary.h detect/classify.h detect/model.h detect/prepare.h detect/result_cloud.h detect/train.h
   formats/read_cloud.h formats/write_cloud.h
-  gls/scale_space_options.h
+  gls/features.h gls/reconstruction.h gls/scale_space_options.h
   io/coordinate_system.h io/drawing/drawing.h io/loaded_cloud.h io/write_options.h
   lines/curve.h lines/find_lines.h
   nn/model.h nn/train.h)

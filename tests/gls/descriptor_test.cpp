@@ -7,8 +7,8 @@
 #include <numbers>
 
 #include "gls/neighbourhoods.h"
+#include "pcednet/gls/covariance_plane.h"
 #include "pcednet/gls/features.h"
-#include "pcednet/gls/plane_fit.h"
 
 namespace pcednet::gls {
 namespace {

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "gls/fast_clouds.h"
-#include "pcednet/gls/scale_space.h"
+#include "pcednet/gls/exact_scale_space.h"
 
 namespace pcednet::gls {
 namespace {

@@ -56,11 +56,5 @@ TEST(Projection, KeepsTheDistanceOfThePointItself) {
   EXPECT_NEAR(algebraic_distance(u, projection_move(u)), 0.0, 1e-15);
 }
 
-TEST(Projection, NamesEveryReconstruction) {
-  ASSERT_EQ(reconstruction_names().size(), 4u);
-  EXPECT_EQ(reconstruction_names()[static_cast<std::size_t>(Reconstruction::kSphereMls)],
-            "sphere-mls");
-}
-
 }  // namespace
 }  // namespace pcednet::gls

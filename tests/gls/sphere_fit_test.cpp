@@ -5,8 +5,8 @@
 #include <Eigen/Geometry>
 
 #include "gls/neighbourhoods.h"
+#include "pcednet/gls/covariance_plane.h"
 #include "pcednet/gls/descriptor.h"
-#include "pcednet/gls/plane_fit.h"
 
 namespace pcednet::gls {
 namespace {
@@ -131,7 +131,7 @@ TEST(SphereFit, IsUndefinedAtTheCentreOfASphere) {
   EXPECT_EQ(fit(sphere, 1.0).status, FitStatus::kUndefined);
 }
 
-TEST(PlaneFit, IsUndefinedForLinesSinglePlacesAndBalls) {
+TEST(CovariancePlane, IsUndefinedForLinesSinglePlacesAndBalls) {
   Neighbourhood line, place, ball;
   for (int i = 0; i < 9; ++i) {
     line.push_back(test::neighbour(0.1 * (i - 4) * Vec3(1, 2, 3).normalized(), Vec3::UnitZ()));

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "pcednet/core/vec3.h"
-#include "pcednet/gls/scale_space.h"
+#include "pcednet/gls/exact_scale_space.h"
 
 namespace pcednet::gls::test {
 

@@ -5,8 +5,8 @@
 #include <variant>
 #include <vector>
 
+#include "pcednet/gls/exact_scale_space.h"
 #include "pcednet/gls/fast_scale_space.h"
-#include "pcednet/gls/scale_space.h"
 
 namespace pcednet::gls {
 

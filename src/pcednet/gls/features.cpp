@@ -1,8 +1,9 @@
 #include "pcednet/gls/features.h"
-#include "pcednet/core/vec3.h"
-#include "pcednet/gls/descriptor.h"
 
 #include <array>
+
+#include "pcednet/core/vec3.h"
+#include "pcednet/gls/descriptor.h"
 
 namespace pcednet::gls {
 namespace {
@@ -16,6 +17,13 @@ constexpr std::array<std::string_view, 4> kSpatialNames = {"tau", "kappa", "k1",
 constexpr std::array<std::string_view, 3> kReliefNames = {"tau", "dtau", "phi"};
 
 }  // namespace
+
+std::span<const FeatureSet> feature_sets() {
+  static constexpr std::array kSets = {FeatureSet::kAll28, FeatureSet::kInvariant7,
+                                       FeatureSet::kPaper6, FeatureSet::kSpatial4,
+                                       FeatureSet::kRelief3};
+  return kSets;
+}
 
 std::span<const std::string_view> feature_names(FeatureSet set) {
   const std::span<const std::string_view> all = kAllNames;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "pcednet/gls/scale_space_options.h"
+#include "pcednet/core/vec3.h"
 
 namespace pcednet::gls {
 

@@ -2,27 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
-
 #include "pcednet/cloud/bounding_box.h"
 #include "pcednet/gls/scales.h"
 
 namespace pcednet::gls {
-
-std::span<const FeatureSet> feature_sets() {
-  static constexpr std::array kSets = {FeatureSet::kAll28, FeatureSet::kInvariant7,
-                                       FeatureSet::kPaper6, FeatureSet::kSpatial4,
-                                       FeatureSet::kRelief3};
-  return kSets;
-}
-
-std::optional<Reconstruction> reconstruction_of(std::string_view name) {
-  const auto names = reconstruction_names();
-  const auto found = std::find(names.begin(), names.end(), name);
-  if (found == names.end()) return std::nullopt;
-  return static_cast<Reconstruction>(found - names.begin());
-}
 
 std::vector<std::string> column_names(const ScaleSpaceOptions& options) {
   std::vector<std::string> names;

@@ -3,10 +3,11 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "pcednet/core/vec3.h"
+#include "pcednet/gls/features.h"
+#include "pcednet/gls/reconstruction.h"
 
 namespace pcednet::gls {
 
@@ -15,41 +16,6 @@ struct ScaleRange;
 inline constexpr int kMinScales = 4, kMaxScales = 128;
 
 inline constexpr double kPartOfDiagonal = 0.1;
-
-/// The features that describe a point at a scale; each enumerator's name ends in their number.
-enum class FeatureSet {
-  kAll28,       ///< all: kInvariant7, then eta and the Jacobian entries that rotate with the cloud
-  kInvariant7,  ///< kPaper6 and k2
-  kPaper6,      ///< tau kappa k1 dtau dkappa phi
-  kSpatial4,    ///< tau kappa k1 phi: no scale derivatives
-  kRelief3,     ///< tau dtau phi
-};
-
-int feature_count(FeatureSet set);
-
-/// Their names, in the order of a matrix's columns.
-std::span<const std::string_view> feature_names(FeatureSet set);
-
-/// The surface whose geometry is described.
-enum class Reconstruction {
-  kCovariancePlane,  ///< plane of the neighbours' covariance, where the point lies
-  kPlaneMls,   ///< the same, after moving the point onto it (Alexa et al. 2001, no polynomial)
-  kSphere,     ///< algebraic sphere, where the point lies
-  kSphereMls,  ///< the same, after moving the point onto it (APSS)
-};
-
-constexpr bool projects(Reconstruction reconstruction) {
-  return reconstruction == Reconstruction::kPlaneMls ||
-         reconstruction == Reconstruction::kSphereMls;
-}
-
-constexpr bool fits_spheres(Reconstruction reconstruction) {
-  return reconstruction == Reconstruction::kSphere || reconstruction == Reconstruction::kSphereMls;
-}
-
-/// Their names in files and on the command line, in the order of the enum.
-std::span<const std::string_view> reconstruction_names();
-std::string_view name_of(Reconstruction reconstruction);
 
 /// How a scale-space matrix is computed.
 enum class Engine {
@@ -78,12 +44,6 @@ struct ScaleSpaceOptions {
 
 /// The range in the options, for scale_range().
 ScaleRange given_range(const ScaleSpaceOptions& options);
-
-/// All sets of features, the largest first.
-std::span<const FeatureSet> feature_sets();
-
-/// The reconstruction of that name, see reconstruction_names(); nothing for another name.
-std::optional<Reconstruction> reconstruction_of(std::string_view name);
 
 /// The column names of a matrix for one scale; those of the second gate begin with "second_".
 std::vector<std::string> column_names(const ScaleSpaceOptions& options);

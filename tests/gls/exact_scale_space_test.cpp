@@ -1,4 +1,4 @@
-#include "pcednet/gls/scale_space.h"
+#include "pcednet/gls/exact_scale_space.h"
 
 #include <gtest/gtest.h>
 
@@ -44,9 +44,9 @@ void expect_near(const test::Matrix<double>& a, const test::Matrix<double>& b, d
   EXPECT_LE(worst, tolerance);
 }
 
-class ScaleSpaceInvariance : public testing::TestWithParam<test::Variant> {};
+class ExactScaleSpaceInvariance : public testing::TestWithParam<test::Variant> {};
 
-TEST_P(ScaleSpaceInvariance, SameBitsForAnyNumbering) {
+TEST_P(ExactScaleSpaceInvariance, SameBitsForAnyNumbering) {
   const test::Cloud cloud = test::awkward_cloud(1500);
   const ScaleSpaceOptions options = test::options_of(GetParam(), FeatureSet::kAll28);
   const auto expected = test::describe(cloud, options);
@@ -63,7 +63,7 @@ TEST_P(ScaleSpaceInvariance, SameBitsForAnyNumbering) {
   test::expect_same_bits(expected, test::describe(space, back));
 }
 
-TEST_P(ScaleSpaceInvariance, SameBitsOnAnyNumberOfThreads) {
+TEST_P(ExactScaleSpaceInvariance, SameBitsOnAnyNumberOfThreads) {
   const test::Cloud cloud = test::awkward_cloud(1500);
   const ScaleSpaceOptions options = test::options_of(GetParam(), FeatureSet::kPaper6);
   set_thread_count(1);
@@ -74,7 +74,7 @@ TEST_P(ScaleSpaceInvariance, SameBitsOnAnyNumberOfThreads) {
   test::expect_same_bits(one, five);
 }
 
-TEST_P(ScaleSpaceInvariance, TurningTheNormalsNegatesAllButPhi) {
+TEST_P(ExactScaleSpaceInvariance, TurningTheNormalsNegatesAllButPhi) {
   test::Cloud cloud = test::awkward_cloud(1500);
   const ScaleSpaceOptions options = test::options_of(GetParam(), FeatureSet::kInvariant7);
   const auto before = test::describe(cloud, options);
@@ -87,7 +87,7 @@ TEST_P(ScaleSpaceInvariance, TurningTheNormalsNegatesAllButPhi) {
   }
 }
 
-TEST_P(ScaleSpaceInvariance, TurnsWithTheCloud) {
+TEST_P(ExactScaleSpaceInvariance, TurnsWithTheCloud) {
   test::Cloud cloud = test::awkward_cloud(1500);
   ScaleSpaceOptions options = test::options_of(GetParam(), FeatureSet::kInvariant7);
   options.s_min = 0.05, options.s_max = 0.2;  // the bounding box does not turn
@@ -101,7 +101,7 @@ TEST_P(ScaleSpaceInvariance, TurnsWithTheCloud) {
   expect_near(before, test::describe(cloud, options), is_plane(GetParam()) ? 1e-6 : 1e-8);
 }
 
-TEST_P(ScaleSpaceInvariance, SameBitsWhenMovedExactly) {
+TEST_P(ExactScaleSpaceInvariance, SameBitsWhenMovedExactly) {
   // Coordinates on a grid of 2^-20 stay exact 2^24 away: a twin of a cloud in a national grid.
   test::Cloud cloud = test::awkward_cloud(1500);
   for (Vec3& p : cloud.positions) p = (p * 0x1p20).array().round().matrix() * 0x1p-20;
@@ -119,7 +119,7 @@ TEST_P(ScaleSpaceInvariance, SameBitsWhenMovedExactly) {
   }
 }
 
-TEST_P(ScaleSpaceInvariance, HoldsTenMillionUnitsAway) {
+TEST_P(ExactScaleSpaceInvariance, HoldsTenMillionUnitsAway) {
   test::Cloud cloud = test::awkward_cloud(1500);
   ScaleSpaceOptions options = test::options_of(GetParam(), FeatureSet::kPaper6);
   options.s_min = 0.06, options.s_max = 0.2;
@@ -129,7 +129,7 @@ TEST_P(ScaleSpaceInvariance, HoldsTenMillionUnitsAway) {
   expect_near(before, test::describe(cloud, options), is_plane(GetParam()) ? 1e-2 : 1e-4);
 }
 
-TEST_P(ScaleSpaceInvariance, IsFreeOfUnits) {
+TEST_P(ExactScaleSpaceInvariance, IsFreeOfUnits) {
   test::Cloud cloud = test::awkward_cloud(1500);
   const ScaleSpaceOptions options = test::options_of(GetParam(), FeatureSet::kAll28);
   const auto before = test::describe(cloud, options);
@@ -140,7 +140,7 @@ TEST_P(ScaleSpaceInvariance, IsFreeOfUnits) {
   test::expect_same_bits(before, test::describe(tiny, options));
 }
 
-TEST_P(ScaleSpaceInvariance, NeverLeavesANumberThatIsNotFinite) {
+TEST_P(ExactScaleSpaceInvariance, NeverLeavesANumberThatIsNotFinite) {
   const test::Cloud cloud = test::awkward_cloud(1500);
   const auto matrix =
       test::describe<float>(cloud, test::options_of(GetParam(), FeatureSet::kAll28));
@@ -152,10 +152,10 @@ TEST_P(ScaleSpaceInvariance, NeverLeavesANumberThatIsNotFinite) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Variants, ScaleSpaceInvariance, testing::ValuesIn(kVariants),
+INSTANTIATE_TEST_SUITE_P(Variants, ExactScaleSpaceInvariance, testing::ValuesIn(kVariants),
                          [](const auto& variant) { return std::string(variant.param.name); });
 
-TEST(ScaleSpace, SmallerFeatureSetsAreColumnsOfTheLargest) {
+TEST(ExactScaleSpace, SmallerFeatureSetsAreColumnsOfTheLargest) {
   const test::Cloud cloud = test::awkward_cloud(800);
   ScaleSpaceOptions options;
   options.features = FeatureSet::kAll28;
@@ -181,7 +181,7 @@ TEST(ScaleSpace, SmallerFeatureSetsAreColumnsOfTheLargest) {
   }
 }
 
-TEST(ScaleSpace, GivesOnePointTheSameRowAloneAndAmongOthers) {
+TEST(ExactScaleSpace, GivesOnePointTheSameRowAloneAndAmongOthers) {
   const test::Cloud cloud = test::awkward_cloud(800);
   const ExactScaleSpace space(cloud.points(), {});
   const auto all = test::describe(space, test::all_targets(cloud.positions.size()));
@@ -204,7 +204,7 @@ test::Cloud square_with_a_point_above(double height) {
   return cloud;
 }
 
-TEST(ScaleSpace, DescribesAPointOfUnusableNormalByItsNeighbours) {
+TEST(ExactScaleSpace, DescribesAPointOfUnusableNormalByItsNeighbours) {
   for (const test::Variant& variant : kVariants) {
     const test::Cloud cloud = square_with_a_point_above(0.02);
     ScaleSpaceOptions options = test::options_of(variant, FeatureSet::kInvariant7);
@@ -223,7 +223,7 @@ TEST(ScaleSpace, DescribesAPointOfUnusableNormalByItsNeighbours) {
   }
 }
 
-TEST(ScaleSpace, FindsTheAlgebraicDistanceToASphere) {
+TEST(ExactScaleSpace, FindsTheAlgebraicDistanceToASphere) {
   for (const auto reconstruction : {Reconstruction::kSphere, Reconstruction::kSphereMls}) {
     test::Cloud cloud = test::sphere(4000, 3);
     const double height = 0.05, radius = 2.0;
@@ -249,7 +249,7 @@ TEST(ScaleSpace, FindsTheAlgebraicDistanceToASphere) {
   }
 }
 
-TEST(ScaleSpace, MoreProjectionChangesNothingOnceThere) {
+TEST(ExactScaleSpace, MoreProjectionChangesNothingOnceThere) {
   // On a noisy sphere a few steps reach the surface; after that neither the number of steps allowed
   // nor the last step, shorter than a hundredth of t, matters much.
   test::Cloud cloud = test::sphere(3000, 9);
@@ -269,7 +269,7 @@ TEST(ScaleSpace, MoreProjectionChangesNothingOnceThere) {
   EXPECT_EQ(test::describe(cloud, options).features, none.features);
 }
 
-TEST(ScaleSpace, DoesNotProjectToWhereNothingIs) {
+TEST(ExactScaleSpace, DoesNotProjectToWhereNothingIs) {
   // A cap of a sphere that the point is inside of: the nearest place of the sphere is opposite the
   // cap, farther from it than the radius.
   const double radius = 0.85, shift = 0.05;
@@ -293,7 +293,7 @@ TEST(ScaleSpace, DoesNotProjectToWhereNothingIs) {
   }
 }
 
-TEST(ScaleSpace, CountsThePointItselfAndNeighboursWithinTheRadiusOnly) {
+TEST(ExactScaleSpace, CountsThePointItselfAndNeighboursWithinTheRadiusOnly) {
   // Seven points in a row, one apart: at radius t the middle one has those closer than t.
   test::Cloud cloud;
   for (int i = -3; i <= 3; ++i) cloud.add({double(i), 0, 0}, Vec3::UnitZ());
@@ -313,7 +313,7 @@ TEST(ScaleSpace, CountsThePointItselfAndNeighboursWithinTheRadiusOnly) {
   EXPECT_EQ(test::describe(cloud, options).status_at(3, 2), FitStatus::kUndefined);
 }
 
-TEST(ScaleSpace, GateHidesTheFarSideOfAThinWall) {
+TEST(ExactScaleSpace, GateHidesTheFarSideOfAThinWall) {
   test::Cloud front, wall;
   test::Stream stream(8);
   for (int i = 0; i < 1500; ++i) {
@@ -337,7 +337,7 @@ TEST(ScaleSpace, GateHidesTheFarSideOfAThinWall) {
   EXPECT_NE(alone.features, open.features);
 }
 
-TEST(ScaleSpace, GateOfAPointWithoutNormalIsOpen) {
+TEST(ExactScaleSpace, GateOfAPointWithoutNormalIsOpen) {
   test::Cloud cloud = test::awkward_cloud(800);
   ScaleSpaceOptions options;
   options.s_min = 0.05, options.s_max = 0.2;
@@ -348,7 +348,7 @@ TEST(ScaleSpace, GateOfAPointWithoutNormalIsOpen) {
                          test::describe(ExactScaleSpace(cloud.points(), options), without_normal));
 }
 
-TEST(ScaleSpace, SurvivesPilesAndLinesOfPoints) {
+TEST(ExactScaleSpace, SurvivesPilesAndLinesOfPoints) {
   // A cube with a pile of copies, a pile of cancelling normals and a line far from everything.
   test::Cloud cloud = test::cube(3000, 2);
   const auto first = static_cast<std::uint32_t>(cloud.positions.size());
@@ -371,7 +371,7 @@ TEST(ScaleSpace, SurvivesPilesAndLinesOfPoints) {
   }
 }
 
-TEST(ScaleSpace, RefusesWhatItCannotDescribe) {
+TEST(ExactScaleSpace, RefusesWhatItCannotDescribe) {
   const auto kind = [](const test::Cloud& cloud, const ScaleSpaceOptions& options) {
     try {
       ExactScaleSpace(cloud.points(), options);
@@ -413,7 +413,7 @@ TEST(ScaleSpace, RefusesWhatItCannotDescribe) {
   EXPECT_ERROR(ErrorKind::kUsage, space.describe(two, std::span(out), status));
 }
 
-TEST(ScaleSpace, StopsWhenToldTo) {
+TEST(ExactScaleSpace, StopsWhenToldTo) {
   const test::Cloud cube = test::cube(1000, 1);
   Progress progress;
   progress.cancelled = [] { return true; };

@@ -9,7 +9,7 @@
 
 namespace pcednet::gls {
 
-struct PlaneFit {
+struct CovariancePlane {
   AlgebraicSphere plane;  ///< uq = 0, ul = eta, pratt = 1
   FitStatus status = FitStatus::kUndefined;
   Descriptor descriptor;
@@ -29,6 +29,6 @@ struct PlaneFit {
 /// Undefined with fewer than 3 neighbours, where they are collinear, coincident or isotropic (the
 /// smallest eigenvalue is not below the next by 1e-9 of the largest), and where the mean normal
 /// lies in the plane.
-PlaneFit fit_covariance_plane(std::span<const LocalNeighbour> neighbours, double t);
+CovariancePlane fit_covariance_plane(std::span<const LocalNeighbour> neighbours, double t);
 
 }  // namespace pcednet::gls

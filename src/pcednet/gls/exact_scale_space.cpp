@@ -1,4 +1,4 @@
-#include "pcednet/gls/scale_space.h"
+#include "pcednet/gls/exact_scale_space.h"
 
 #include <algorithm>
 #include <array>
@@ -6,11 +6,11 @@
 #include <utility>
 
 #include "pcednet/core/parallel.h"
+#include "pcednet/gls/covariance_plane.h"
 #include "pcednet/gls/descriptor.h"
 #include "pcednet/gls/features.h"
 #include "pcednet/gls/fit_limits.h"
 #include "pcednet/gls/moments.h"
-#include "pcednet/gls/plane_fit.h"
 #include "pcednet/gls/projection.h"
 #include "pcednet/gls/scales.h"
 #include "pcednet/gls/sphere_fit.h"
@@ -94,7 +94,7 @@ ExactScaleSpace::Fit ExactScaleSpace::fit(std::span<const LocalNeighbour> neighb
   switch (options_.reconstruction) {
     case Reconstruction::kCovariancePlane:
     case Reconstruction::kPlaneMls: {
-      const PlaneFit plane = fit_covariance_plane(neighbours, t);
+      const CovariancePlane plane = fit_covariance_plane(neighbours, t);
       return {plane.status, plane.plane, plane.descriptor};
     }
     case Reconstruction::kSphere:

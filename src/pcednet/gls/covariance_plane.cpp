@@ -1,4 +1,4 @@
-#include "pcednet/gls/plane_fit.h"
+#include "pcednet/gls/covariance_plane.h"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -66,8 +66,8 @@ PlaneDerivative differentiate(const PlaneMoments& m, const Mat3& vectors, const 
 
 }  // namespace
 
-PlaneFit fit_covariance_plane(std::span<const LocalNeighbour> neighbours, double t) {
-  PlaneFit fit;
+CovariancePlane fit_covariance_plane(std::span<const LocalNeighbour> neighbours, double t) {
+  CovariancePlane fit;
   const auto count = static_cast<std::uint32_t>(neighbours.size());
   if (status_of_count(count) == FitStatus::kUndefined) return fit;
   const PlaneMomentSet set = sum_plane_moments(neighbours, t);
