@@ -15,7 +15,7 @@
 #include "pcednet/core/blocks.h"
 #include "pcednet/core/error.h"
 #include "pcednet/core/version.h"
-#include "pcednet/gls/engine.h"
+#include "pcednet/gls/scale_space.h"
 #include "pcednet/io/npy.h"
 #include "prepare.h"
 

@@ -6,7 +6,7 @@
 
 #include "pcednet/detect/cloud_kind.h"
 #include "pcednet/detect/prepare.h"
-#include "pcednet/gls/engine.h"
+#include "pcednet/gls/scale_space.h"
 
 namespace pcednet::detect {
 

@@ -1,4 +1,4 @@
-#include "pcednet/gls/engine.h"
+#include "pcednet/gls/scale_space.h"
 
 namespace pcednet::gls {
 namespace {

@@ -1,0 +1,63 @@
+#include "pcednet/gls/scale_space.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "gls/fast_clouds.h"
+#include "pcednet/core/error.h"
+#include "support/expect_error.h"
+
+namespace pcednet::gls {
+namespace {
+
+TEST(ScaleSpace, UsesTheEngineThatIsNamed) {
+  const test::Cloud cube = test::cube(2000, 1);
+  const auto targets = test::all_targets(2000);
+  std::vector<float> out(2000 * 16 * 6);
+  std::vector<FitStatus> status(2000 * 16);
+  ScaleSpaceOptions options;
+  ScaleSpace(cube.points(), options).describe(targets, out, status);
+  EXPECT_EQ(out, test::describe(FastScaleSpace(cube.points(), options), targets).features);
+  options.engine = Engine::kExact;
+  const ScaleSpace exact(cube.points(), options);
+  exact.describe(targets, out, status);
+  EXPECT_EQ(out, test::describe<float>(cube, options).features);
+  EXPECT_EQ(exact.order().size(), 2000u);
+  options.engine = Engine::kFast;
+  options.reconstruction = Reconstruction::kCovariancePlane;
+  const ScaleSpace planes(cube.points(), options);
+  EXPECT_EQ(planes.options().engine, Engine::kExact);
+  planes.describe(targets, out, status);
+  EXPECT_EQ(out, test::describe<float>(cube, options).features);
+}
+
+TEST(ScaleSpace, PutsTheFeaturesOfTheSecondGateAfterThoseOfTheFirst) {
+  const test::Cloud cube = test::cube(2000, 1);
+  const auto targets = test::all_targets(2000);
+  ScaleSpaceOptions tight, loose, both;
+  tight.side_gate = both.side_gate = 0.4;
+  loose.side_gate = both.second_gate = -0.3;
+  EXPECT_EQ(column_count(both), 12);
+  EXPECT_EQ(column_names(both)[5], "phi");
+  EXPECT_EQ(column_names(both)[6], "second_tau");
+  std::vector<float> out(2000 * 16 * 12);
+  std::vector<FitStatus> status(2000 * 16);
+  ScaleSpace(cube.points(), both).describe(targets, out, status);
+  const auto first = test::describe(FastScaleSpace(cube.points(), tight), targets);
+  const auto second = test::describe(FastScaleSpace(cube.points(), loose), targets);
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const std::size_t cell = i / 12, column = i % 12;
+    const auto& part = column < 6 ? first : second;
+    ASSERT_EQ(out[i], part.features[cell * 6 + column % 6]) << i;
+    ASSERT_EQ(status[cell], std::max(first.status[cell], second.status[cell])) << i;
+  }
+  both.second_gate = 1.5;
+  EXPECT_ERROR(ErrorKind::kUsage, ScaleSpace(cube.points(), both));
+  both.second_gate = 0.1;
+  both.side_gate.reset();
+  EXPECT_ERROR(ErrorKind::kUsage, ScaleSpace(cube.points(), both));
+}
+
+}  // namespace
+}  // namespace pcednet::gls
