@@ -2,12 +2,12 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <span>
 
 #include "pcednet/lines/coaxial.h"
+#include "pcednet/lines/curve.h"
 #include "pcednet/lines/ring.h"
 #include "pcednet/spatial/kd_tree.h"
 
@@ -27,7 +27,7 @@ constexpr std::size_t kSectors = 12, kLeastSectors = 8;
 constexpr std::size_t kLeastAcross = 3;  ///< nodes of a piece that ends on a polygon
 constexpr std::size_t kMostAcross = 1;   ///< pieces that end on a circle
 
-bool lies_on(const Fit& circle, const Piece& whole, const Piece& piece, double reach) {
+bool most_nodes_lie_on(const Fit& circle, const Piece& whole, const Piece& piece, double reach) {
   std::size_t on = 0;
   for (const ChainNode& node : piece.nodes) {
     const Vec3 nearest = nearest_on(circle, node.at);
@@ -48,7 +48,7 @@ std::vector<std::size_t> pieces_on_circle(const std::vector<Piece>& pieces, cons
   for (const auto& start : near) {
     const std::size_t j = start.index;
     if (j == arc || pieces[j].closed) continue;
-    if (lies_on(whole.fit, whole, pieces[j], reach)) found.push_back(j);
+    if (most_nodes_lie_on(whole.fit, whole, pieces[j], reach)) found.push_back(j);
   }
   std::sort(found.begin(), found.end());
   return found;
@@ -109,16 +109,13 @@ struct SmallCircle {
 SmallCircle nodes_on(const Fit& circle, const ChainNode& like,
                      std::span<const ChainNode* const> near) {
   SmallCircle found{.fit = circle, .nodes = {}};
-  const Vec3 x = circle.direction.unitOrthogonal();
-  std::array<bool, kSectors> seen = {};
+  Sectors sectors(circle, kSectors);
   for (const ChainNode* node : near) {
     if (!lies_on(circle, like, *node)) continue;
-    const double turn = angle_at(circle, x, node->at) / kWholeTurn + 0.5;
-    const auto sector = static_cast<std::size_t>(turn * static_cast<double>(kSectors));
-    seen[std::min(sector, kSectors - 1)] = true;
+    sectors.add(node->at);
     found.nodes.push_back(*node);
   }
-  found.sectors = static_cast<std::size_t>(std::count(seen.begin(), seen.end(), true));
+  found.sectors = sectors.covered();
   return found;
 }
 

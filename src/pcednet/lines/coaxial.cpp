@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "pcednet/lines/curve.h"
 #include "pcednet/lines/ring.h"
 
 namespace pcednet::lines {
@@ -27,25 +28,20 @@ struct AboutAxis {
 
 /// Mean radius and height of the nodes about the axis; nothing if one in five is not on that
 /// circle.
-std::optional<AboutAxis> about_axis(const Fit& axis, const Piece& piece, std::size_t index,
-                                    double reach) {
+std::optional<AboutAxis> piece_about(const Fit& axis, const Piece& piece, std::size_t index,
+                                     double reach) {
   const auto count = static_cast<double>(piece.nodes.size());
   AboutAxis found{index, 0.0, 0.0};
-  const auto place_of = [&](const Vec3& at) {
-    const Vec3 offset = at - axis.point;
-    const double height = offset.dot(axis.direction);
-    return std::pair((offset - height * axis.direction).norm(), height);
-  };
   for (const ChainNode& node : piece.nodes) {
-    const auto [radius, height] = place_of(node.at);
-    found.radius += radius / count;
-    found.height += height / count;
+    const Eigen::Vector2d place = about_axis(axis, node.at);
+    found.radius += place.x() / count;
+    found.height += place.y() / count;
   }
   if (found.radius < kSmallestRadius * piece.spacing()) return std::nullopt;
   std::size_t on = 0;
   for (const ChainNode& node : piece.nodes) {
-    const auto [radius, height] = place_of(node.at);
-    on += std::hypot(radius - found.radius, height - found.height) < reach * node.spacing &&
+    const Eigen::Vector2d place = about_axis(axis, node.at);
+    on += std::hypot(place.x() - found.radius, place.y() - found.height) < reach * node.spacing &&
           std::abs(tangent_at(axis, node.at).dot(node.along)) > 0.8;
   }
   if (5 * on < 4 * piece.nodes.size()) return std::nullopt;
@@ -55,15 +51,10 @@ std::optional<AboutAxis> about_axis(const Fit& axis, const Piece& piece, std::si
 /// The share of the circle that nodes lie along.
 double covered_share(const Fit& circle, const std::vector<ChainNode>& nodes) {
   const double around = kWholeTurn * circle.radius / nodes.front().spacing;
-  const auto sectors = static_cast<std::size_t>(std::clamp(around / 2.0, 6.0, 360.0));
-  std::vector<std::uint8_t> seen(sectors, 0);
-  const Vec3 x = circle.direction.unitOrthogonal();
-  for (const ChainNode& node : nodes) {
-    const double turn = angle_at(circle, x, node.at) / kWholeTurn + 0.5;
-    seen[std::min(static_cast<std::size_t>(turn * static_cast<double>(sectors)), sectors - 1)] = 1;
-  }
-  return static_cast<double>(std::count(seen.begin(), seen.end(), 1)) /
-         static_cast<double>(sectors);
+  const auto count = static_cast<std::size_t>(std::clamp(around / 2.0, 6.0, 360.0));
+  Sectors sectors(circle, count);
+  for (const ChainNode& node : nodes) sectors.add(node.at);
+  return static_cast<double>(sectors.covered()) / static_cast<double>(count);
 }
 
 /// How far from a circle others on its axis are sought: a sheet may have thousands of holes.
@@ -133,7 +124,7 @@ std::vector<AboutAxis> pieces_about(const Piece& circle, const std::vector<Piece
   for (const auto& other : near) {
     const std::size_t i = open.longest_first[other.index];
     if (pieces[i].closed) continue;
-    if (const auto about = about_axis(circle.fit, pieces[i], i, reach)) around.push_back(*about);
+    if (const auto about = piece_about(circle.fit, pieces[i], i, reach)) around.push_back(*about);
   }
   return around;
 }

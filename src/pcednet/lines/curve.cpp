@@ -3,19 +3,17 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace pcednet::lines {
 namespace {
-
-constexpr double kTurn = 2.0 * std::numbers::pi;
 
 /// A circle of more sides than these looks round at any size.
 constexpr double kMostSides = 4096.0;
 
 std::vector<Vec3> sampled_arc(const Curve& arc, double tolerance) {
   const double cosine = std::clamp(1.0 - tolerance / arc.radius, 0.0, 1.0);
-  const double largest_step = std::clamp(2.0 * std::acos(cosine), kTurn / kMostSides, kTurn / 8.0);
+  const double largest_step =
+      std::clamp(2.0 * std::acos(cosine), kWholeTurn / kMostSides, kWholeTurn / 8.0);
   const double angle = angle_of(arc);
   const auto steps = static_cast<std::size_t>(std::ceil(angle / largest_step));
   const Vec3 x = arc.points.front() - arc.centre;
@@ -47,11 +45,11 @@ const char* name_of(CurveKind kind) {
 
 double turn_about(const Vec3& axis, const Vec3& from, const Vec3& to) {
   const double angle = std::atan2(axis.dot(from.cross(to)), from.dot(to));
-  return angle > 0.0 ? angle : angle + kTurn;
+  return angle > 0.0 ? angle : angle + kWholeTurn;
 }
 
 double angle_of(const Curve& curve) {
-  if (curve.kind == CurveKind::kCircle) return kTurn;
+  if (curve.kind == CurveKind::kCircle) return kWholeTurn;
   return turn_about(curve.axis, curve.points.front() - curve.centre,
                     curve.points.back() - curve.centre);
 }

@@ -2,12 +2,16 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <numbers>
 #include <vector>
 
 #include "pcednet/cloud/point_cloud.h"
 #include "pcednet/core/vec3.h"
 
 namespace pcednet::lines {
+
+/// The angle of a circle.
+inline constexpr double kWholeTurn = 2.0 * std::numbers::pi;
 
 enum class CurveKind : std::uint8_t { kSegment, kArc, kCircle, kPolyline };
 

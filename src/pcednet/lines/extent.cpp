@@ -3,11 +3,11 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <optional>
 #include <utility>
 
 #include "pcednet/lines/corners.h"
+#include "pcednet/lines/curve.h"
 
 namespace pcednet::lines {
 namespace {
@@ -142,7 +142,7 @@ double limit_of(const std::vector<Piece>& pieces, const NodeIndex& index, std::s
   const Track track = track_of(piece, side);
   double limit = std::min(kFarthestOn * spacing, length_of(piece));
   if (piece.fit.kind == CurveKind::kArc) {
-    const double rest = 2.0 * std::numbers::pi * piece.fit.radius - length_of(piece);
+    const double rest = kWholeTurn * piece.fit.radius - length_of(piece);
     limit = std::min(limit, 0.5 * rest);
   }
   std::vector<spatial::Neighbour> near;

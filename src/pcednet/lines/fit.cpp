@@ -129,6 +129,12 @@ Fit fit_arc(std::span<const ChainNode> nodes) {
   return fit;
 }
 
+Eigen::Vector2d about_axis(const Fit& circle, const Vec3& place) {
+  const Vec3 offset = place - circle.point;
+  const double height = offset.dot(circle.direction);
+  return {(offset - height * circle.direction).norm(), height};
+}
+
 Vec3 nearest_on(const Fit& fit, const Vec3& place) {
   const Vec3 offset = place - fit.point;
   if (fit.kind == CurveKind::kSegment) return fit.point + offset.dot(fit.direction) * fit.direction;

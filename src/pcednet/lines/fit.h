@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <span>
 
 #include "pcednet/lines/chain.h"
@@ -20,6 +21,9 @@ Fit fit_segment(std::span<const ChainNode> nodes);
 
 /// kPolyline if no circle fits the nodes.
 Fit fit_arc(std::span<const ChainNode> nodes);
+
+/// The distance of `place` from the axis of the circle (x), and its height along it (y).
+Eigen::Vector2d about_axis(const Fit& circle, const Vec3& place);
 
 /// The point of the unbounded line or circle that is nearest to `place`.
 Vec3 nearest_on(const Fit& fit, const Vec3& place);

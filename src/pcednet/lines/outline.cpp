@@ -7,12 +7,11 @@
 #include <utility>
 
 #include "pcednet/core/vec3.h"
+#include "pcednet/lines/curve.h"
 #include "pcednet/spatial/kd_tree.h"
 
 namespace pcednet::lines {
 namespace {
-
-constexpr double kOutlineTurn = 2.0 * std::numbers::pi;
 
 /// Directions of the disc's centre from a point in which the disc holds no other point. It rolls
 /// from touching `before` to touching `after`.
@@ -33,7 +32,7 @@ void add_rests(std::size_t point, std::vector<Blocked>& blocked, std::vector<Res
   });
   Blocked last = *std::max_element(blocked.begin(), blocked.end(),
                                    [](const auto& a, const auto& b) { return a.to < b.to; });
-  last.to -= kOutlineTurn;
+  last.to -= kWholeTurn;
   for (const Blocked& next : blocked) {
     if (next.from > last.to) {
       rests.push_back({point, last.by, next.by, 0.5 * (last.to + next.from)});
@@ -58,7 +57,7 @@ std::vector<Rest> rests_of(std::span<const Eigen::Vector2d> points, double radiu
       const double half = std::acos(std::min(1.0, 0.5 * to.norm() / radius));
       const double angle = std::atan2(to.y(), to.x());
       const double from =
-          angle - half < -std::numbers::pi ? angle - half + kOutlineTurn : angle - half;
+          angle - half < -std::numbers::pi ? angle - half + kWholeTurn : angle - half;
       blocked.push_back({from, from + 2.0 * half, other.index});
     }
     if (!blocked.empty()) add_rests(i, blocked, rests);

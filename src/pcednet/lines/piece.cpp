@@ -134,7 +134,7 @@ void close_circles(std::vector<Piece>& pieces, double gap) {
   for (Piece& piece : pieces) {
     if (piece.closed || piece.fit.kind != CurveKind::kArc) continue;
     const double angle = arc_angle(piece);
-    const double open = (2.0 * std::numbers::pi - angle) * piece.fit.radius;
+    const double open = (kWholeTurn - angle) * piece.fit.radius;
     const double turn = 1.5 * std::numbers::pi;
     if (angle > turn && open < gap) piece.closed = true;
   }
@@ -225,7 +225,7 @@ double length_of(const Piece& piece) {
     case CurveKind::kSegment:
       return (piece.ends[1] - piece.ends[0]).norm();
     case CurveKind::kArc:
-      return piece.fit.radius * (piece.closed ? 2.0 * std::numbers::pi : arc_angle(piece));
+      return piece.fit.radius * (piece.closed ? kWholeTurn : arc_angle(piece));
     default:
       break;
   }

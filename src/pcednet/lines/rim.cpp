@@ -2,7 +2,6 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <span>
 #include <vector>
@@ -159,10 +158,8 @@ std::vector<Beside> points_beside(const Fit& circle, const OrderedPoints& cloud,
                                   std::span<const spatial::Neighbour> near, double spacing) {
   std::vector<Beside> points;
   for (const auto& point : near) {
-    const Vec3 offset = cloud.position(point.index) - circle.point;
-    const double height = offset.dot(circle.direction);
-    const double out = (offset - height * circle.direction).norm() - circle.radius;
-    points.push_back({point.index, out / spacing, height / spacing});
+    const Eigen::Vector2d place = about_axis(circle, cloud.position(point.index));
+    points.push_back({point.index, (place.x() - circle.radius) / spacing, place.y() / spacing});
   }
   return points;
 }
@@ -191,34 +188,15 @@ bool fit_to_wall(Fit& circle, const OrderedPoints& cloud, std::span<const Beside
   return has_radius_of_a_bore(fit.radius, spacing);
 }
 
-/// Points in equal parts of the circle.
-class Sectors {
- public:
-  explicit Sectors(const Fit& circle) : circle_(circle), x_(circle.direction.unitOrthogonal()) {}
-
-  void add(const Vec3& place) {
-    const double turn = angle_at(circle_, x_, place) / kWholeTurn + 0.5;
-    const auto sector = static_cast<std::size_t>(turn * static_cast<double>(kRimSectors));
-    seen_[std::min(sector, kRimSectors - 1)] = true;
-    ++points_;
-  }
-  std::size_t points() const { return points_; }
-  bool all_but_one() const {
-    return std::count(seen_.begin(), seen_.end(), true) + 1 >= std::ptrdiff_t{kRimSectors};
-  }
-
- private:
-  const Fit& circle_;
-  Vec3 x_;
-  std::array<bool, kRimSectors> seen_ = {};
-  std::size_t points_ = 0;
-};
+bool is_all_along(const Sectors& sectors) {
+  return sectors.covered() + 1 >= kRimSectors;
+}
 
 /// Whether the plane is around the circle (true) or within it (false); nothing if on both sides or
 /// not all along.
 std::optional<bool> plane_is_outside(const Fit& circle, const OrderedPoints& cloud,
                                      std::span<const Beside> points, double reach) {
-  Sectors outside(circle), inside(circle);
+  Sectors outside(circle, kRimSectors), inside(circle, kRimSectors);
   std::size_t far_out = 0, far_in = 0;
   for (const Beside& point : points) {
     if (std::abs(point.height) > reach || std::abs(point.out) > kPlaneEnds) continue;
@@ -230,7 +208,7 @@ std::optional<bool> plane_is_outside(const Fit& circle, const OrderedPoints& clo
   }
   const bool is_outside = outside.points() > inside.points();
   const Sectors& plane = is_outside ? outside : inside;
-  if (!plane.all_but_one()) return std::nullopt;
+  if (!is_all_along(plane)) return std::nullopt;
   if (kMostStray * (is_outside ? far_in : far_out) > plane.points()) return std::nullopt;
   return is_outside;
 }
@@ -238,7 +216,7 @@ std::optional<bool> plane_is_outside(const Fit& circle, const OrderedPoints& clo
 /// Whether there is a wall all along the circle, on one side of the plane alone.
 bool has_wall(const Fit& circle, const OrderedPoints& cloud, std::span<const Beside> points,
               double reach) {
-  Sectors wall(circle);
+  Sectors wall(circle, kRimSectors);
   std::size_t beyond = 0, off = 0;
   for (const Beside& point : points) {
     const bool on = std::abs(point.out) < reach;
@@ -246,7 +224,7 @@ bool has_wall(const Fit& circle, const OrderedPoints& cloud, std::span<const Bes
     beyond += on && has_height_of_wall(-point.height);
     off += !on && has_height_of_wall(point.height) && std::abs(point.out) < kOffWall;
   }
-  return wall.all_but_one() && kMostStray * beyond <= wall.points() && 3 * off <= wall.points();
+  return is_all_along(wall) && kMostStray * beyond <= wall.points() && 3 * off <= wall.points();
 }
 
 bool is_of_edges(const OrderedPoints& cloud, std::span<const Beside> points) {

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pcednet/lines/curve.h"
+
 namespace pcednet::lines {
 namespace {
 
@@ -27,6 +29,12 @@ ChainNode seen_from_axis(const Fit& circle, const ChainNode& node) {
           .side_b = turned(node.side_b)};
 }
 
+/// The angle of `place` about the axis, from `x`, which is unit and orthogonal to it.
+double angle_at(const Fit& circle, const Vec3& x, const Vec3& place) {
+  const Vec3 y = circle.direction.cross(x), offset = place - circle.point;
+  return std::atan2(y.dot(offset), x.dot(offset));
+}
+
 }  // namespace
 
 PieceIndex::PieceIndex(const std::vector<Piece>& pieces)
@@ -44,18 +52,26 @@ bool same_wedge(const Fit& circle, const ChainNode& a, const ChainNode& b) {
   return match(x.side_a, x.side_b, y.side_a, y.side_b).cosine > 0.6;
 }
 
-double angle_at(const Fit& circle, const Vec3& x, const Vec3& place) {
-  const Vec3 y = circle.direction.cross(x), offset = place - circle.point;
-  return std::atan2(y.dot(offset), x.dot(offset));
+Sectors::Sectors(const Fit& circle, std::size_t count)
+    : circle_(circle), x_(circle.direction.unitOrthogonal()), seen_(count, 0) {}
+
+void Sectors::add(const Vec3& place) {
+  const double turn = angle_at(circle_, x_, place) / kWholeTurn + 0.5;
+  const auto sector = static_cast<std::size_t>(turn * static_cast<double>(seen_.size()));
+  seen_[std::min(sector, seen_.size() - 1)] = 1;
+  ++points_;
+}
+
+std::size_t Sectors::covered() const {
+  return static_cast<std::size_t>(std::count(seen_.begin(), seen_.end(), 1));
 }
 
 bool belongs_to(const Fit& circle, const Piece& piece) {
   std::size_t beside = 0;
   for (const ChainNode& node : piece.nodes) {
-    const Vec3 offset = node.at - circle.point;
-    const double height = offset.dot(circle.direction);
-    const double out = (offset - height * circle.direction).norm() - circle.radius;
-    beside += std::abs(height) < kBeside * node.spacing && out < kBeside * node.spacing;
+    const Eigen::Vector2d place = about_axis(circle, node.at);
+    beside += std::abs(place.y()) < kBeside * node.spacing &&
+              place.x() - circle.radius < kBeside * node.spacing;
   }
   return 5 * beside >= 3 * piece.nodes.size();
 }

@@ -1,6 +1,7 @@
 #pragma once
 
-#include <numbers>
+#include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "pcednet/lines/ordered_points.h"
@@ -8,7 +9,6 @@
 
 namespace pcednet::lines {
 
-inline constexpr double kWholeTurn = 2.0 * std::numbers::pi;
 inline constexpr std::size_t kLeastArc = 5;     ///< nodes
 inline constexpr double kSmallestRadius = 1.2;  ///< in spacings
 
@@ -27,8 +27,21 @@ bool same_wedge(const Fit& circle, const ChainNode& a, const ChainNode& b);
 /// Whether the piece belongs to a small circle, or to the visible part of its wall.
 bool belongs_to(const Fit& circle, const Piece& piece);
 
-/// The angle of `place` about the axis, from `x`, which is unit and orthogonal to it.
-double angle_at(const Fit& circle, const Vec3& x, const Vec3& place);
+/// Equal parts of a circle, and which of them have points.
+class Sectors {
+ public:
+  Sectors(const Fit& circle, std::size_t count);
+
+  void add(const Vec3& place);
+  std::size_t points() const { return points_; }
+  std::size_t covered() const;  ///< parts with points
+
+ private:
+  Fit circle_;
+  Vec3 x_;
+  std::vector<std::uint8_t> seen_;
+  std::size_t points_ = 0;
+};
 
 /// A part of a circle without nodes.
 struct Gap {
