@@ -201,6 +201,23 @@ TEST(Circles, AreNotPutInPlaceOfPolygons) {
   EXPECT_EQ(prism.size(), 12u);
 }
 
+TEST(Strings, BeginAtFreeEndsBeforeTheyGoRound) {
+  std::vector<std::size_t> partner(10, kNoPartner);
+  const auto meet = [&](std::size_t a, std::size_t b) {
+    partner[a] = b;
+    partner[b] = a;
+  };
+  meet(1, 6), meet(7, 0);  // members 0 and 3, a ring
+  meet(3, 5);              // the last ends of members 1 and 2
+  const std::vector<EndString> strings = follow_partners(partner);
+  ASSERT_EQ(strings.size(), 3u);
+  EXPECT_EQ(strings[0].entries, (std::vector<std::size_t>{2, 5}));
+  EXPECT_EQ(strings[1].entries, std::vector<std::size_t>{8});
+  EXPECT_EQ(strings[2].entries, (std::vector<std::size_t>{0, 6}));
+  EXPECT_FALSE(strings[0].closed || strings[1].closed);
+  EXPECT_TRUE(strings[2].closed);
+}
+
 TEST(Strings, JoinWhatContinuesButNotALongLineAndALongArc) {
   std::vector<Piece> bent = {straight({0, 0, 0}, {10, 0, 0}), straight({11, 0, 0}, {20, 1.5, 0})};
   string_together(bent, 3.0, 0.5);

@@ -14,7 +14,6 @@
 namespace pcednet::lines {
 namespace {
 
-constexpr std::size_t kNoEnd = static_cast<std::size_t>(-1);
 constexpr double kTouching = 0.99;     ///< least cosine between a segment and an arc that touch
 constexpr std::size_t kMostRound = 3;  ///< curves round a circle: four are the sides of a rectangle
 constexpr double kLargestRound = 8.0;  ///< radius of such a circle, in spacings
@@ -59,7 +58,7 @@ std::vector<std::size_t> partners_of(const std::vector<Curve>& curves, const Tog
     return std::lexicographical_compare(p.begin(), p.end(), q.begin(), q.end());
   };
   std::stable_sort(ends.begin(), ends.end(), compare);
-  std::vector<std::size_t> partner(2 * curves.size(), kNoEnd);
+  std::vector<std::size_t> partner(2 * curves.size(), kNoPartner);
   for (std::size_t first = 0, next; first < ends.size(); first = next) {
     next = first + 1;
     while (next < ends.size() && !compare(ends[first], ends[next])) ++next;
@@ -114,7 +113,7 @@ std::vector<std::size_t> loop_of(std::size_t first, const std::vector<std::size_
   do {
     loop.push_back(entry / 2);
     entry = partner[entry ^ 1U];
-    if (entry == kNoEnd || loop.size() > kMostRound) return {};
+    if (entry == kNoPartner || loop.size() > kMostRound) return {};
   } while (entry / 2 != first);
   return loop.size() < 2 ? std::vector<std::size_t>() : loop;
 }
@@ -177,38 +176,23 @@ void join_smooth_corners(std::vector<Curve>& curves, double angle, double tolera
   const double cosine = std::cos(angle);
   const std::vector<std::size_t> partner = partners_of(
       curves, [&](std::size_t a, std::size_t b) { return are_one(curves, a, b, cosine); });
-  std::vector<std::uint8_t> done(curves.size(), 0);
   std::vector<Curve> result;
-  const auto follow = [&](std::size_t start) {
-    Curve whole{.edge_class = curves[start / 2].edge_class};
+  for (const auto& [entries, closed] : follow_partners(partner)) {
+    if (entries.size() == 1) {
+      result.push_back(std::move(curves[entries[0] / 2]));
+      continue;
+    }
+    Curve whole{.edge_class = curves[entries[0] / 2].edge_class, .closed = closed};
     double length = 0.0;
-    std::size_t entry = start;
-    do {
-      const Curve& curve = curves[entry / 2];
-      done[entry / 2] = 1;
-      append(whole, curve, entry, tolerance);
-      length += length_of(curve);
-      entry = partner[entry ^ 1U];
-    } while (entry != kNoEnd && !done[entry / 2]);
-    whole.closed = entry != kNoEnd;
+    for (const std::size_t entry : entries) {
+      append(whole, curves[entry / 2], entry, tolerance);
+      length += length_of(curves[entry / 2]);
+    }
     finish_measures(whole, length);
     whole.points = simplified(whole.points, tolerance);
-    if (whole.closed) whole.points.pop_back();
-    if (whole.points.size() == 2 && !whole.closed) whole.kind = CurveKind::kSegment;
+    if (closed) whole.points.pop_back();
+    if (whole.points.size() == 2 && !closed) whole.kind = CurveKind::kSegment;
     result.push_back(std::move(whole));
-  };
-  const auto joined = [&](std::size_t end) { return partner[end] != kNoEnd; };
-  for (std::size_t i = 0; i < curves.size(); ++i) {  // those that begin at an end
-    if (done[i] || (joined(2 * i) && joined(2 * i + 1))) continue;
-    if (joined(2 * i) || joined(2 * i + 1)) {
-      follow(joined(2 * i) ? 2 * i + 1 : 2 * i);
-    } else {
-      result.push_back(std::move(curves[i]));
-      done[i] = 1;
-    }
-  }
-  for (std::size_t i = 0; i < curves.size(); ++i) {
-    if (!done[i]) follow(2 * i);  // rings
   }
   curves = std::move(result);
 }

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <optional>
+#include <utility>
 
 #include "pcednet/lines/corners.h"
 #include "pcednet/spatial/kd_tree.h"
@@ -13,7 +16,6 @@ constexpr std::size_t kLong = 7;  ///< nodes
 // Of pieces that end free in noise, in spacings.
 constexpr double kAsideInNoise = 2.0;
 constexpr double kOverlapInNoise = 6.0;
-constexpr std::size_t kNone = static_cast<std::size_t>(-1);
 
 /// Whether a straight and a round piece touch: each is what it seems if both are long.
 bool stay_apart(const Piece& a, const Piece& b) {
@@ -34,24 +36,23 @@ struct Reach {
   bool kinds_stay_apart = true;
 };
 
-/// Whether and how well end b continues end a.
-bool continues(const Piece& a, std::size_t side_a, const Piece& b, std::size_t side_b,
-               const Reach& reach, double& cost) {
+/// How well end b continues end a, 0 the best; nothing if it does not.
+std::optional<double> cost_of_joint(const Piece& a, std::size_t side_a, const Piece& b,
+                                    std::size_t side_b, const Reach& reach) {
   if (a.fit.kind == CurveKind::kPolyline && b.fit.kind == CurveKind::kPolyline &&
       a.nodes.size() < 3 && b.nodes.size() < 3) {
-    return false;
+    return std::nullopt;
   }
-  if (reach.kinds_stay_apart && stay_apart(a, b)) return false;
+  if (reach.kinds_stay_apart && stay_apart(a, b)) return std::nullopt;
   const double spacing = a.spacing();
   const Vec3 out_a = outward(a, side_a), out_b = outward(b, side_b);
   const Vec3 offset = b.ends[side_b] - a.ends[side_a];
   const double ahead = offset.dot(out_a), aside = (offset - ahead * out_a).norm();
-  if (out_a.dot(-out_b) < reach.cosine || ahead < -reach.overlap * spacing) return false;
+  if (out_a.dot(-out_b) < reach.cosine || ahead < -reach.overlap * spacing) return std::nullopt;
   const double most_aside = reach.aside * spacing + 0.2 * std::abs(ahead);
-  if (offset.norm() > reach.gap || aside > most_aside) return false;
-  if (!same_wedge(node_at(a, side_a), node_at(b, side_b))) return false;
-  cost = (offset.norm() + 2.0 * aside) / spacing + 4.0 * (1.0 - out_a.dot(-out_b));
-  return true;
+  if (offset.norm() > reach.gap || aside > most_aside) return std::nullopt;
+  if (!same_wedge(node_at(a, side_a), node_at(b, side_b))) return std::nullopt;
+  return (offset.norm() + 2.0 * aside) / spacing + 4.0 * (1.0 - out_a.dot(-out_b));
 }
 
 /// Pairs of `ends` that continue each other, the best first.
@@ -64,10 +65,9 @@ std::vector<Link> links_between(std::vector<End> ends, const std::vector<Piece>&
     index.tree.within(index.places[e], reach.gap, near);
     for (const auto& other : near) {
       const End &a = index.ends[e], &b = index.ends[other.index];
-      double cost = 0.0;
       if (other.index <= e || a.piece == b.piece) continue;
-      if (!continues(pieces[a.piece], a.side, pieces[b.piece], b.side, reach, cost)) continue;
-      links.push_back({2 * a.piece + a.side, 2 * b.piece + b.side, cost});
+      const auto cost = cost_of_joint(pieces[a.piece], a.side, pieces[b.piece], b.side, reach);
+      if (cost) links.push_back({2 * a.piece + a.side, 2 * b.piece + b.side, *cost});
     }
   }
   std::stable_sort(links.begin(), links.end(),
@@ -92,45 +92,57 @@ void append_nodes(const Piece& piece, std::size_t side, std::vector<ChainNode>& 
 
 /// Makes polylines of the linked pieces.
 void string_along(const std::vector<Link>& links, std::vector<Piece>& pieces) {
-  std::vector<std::size_t> partner(2 * pieces.size(), kNone);
+  std::vector<std::size_t> partner(2 * pieces.size(), kNoPartner);
   for (const Link& link : links) {
-    if (partner[link.a] != kNone || partner[link.b] != kNone) continue;
+    if (partner[link.a] != kNoPartner || partner[link.b] != kNoPartner) continue;
     partner[link.a] = link.b;
     partner[link.b] = link.a;
   }
   std::vector<Piece> result;
-  std::vector<std::uint8_t> done(pieces.size(), 0);
-  const auto follow = [&](std::size_t start) {
-    std::size_t entry = start;
-    Piece string{.fit = {}, .nodes = {}, .ends = {}};
-    for (;;) {
-      const std::size_t piece = entry / 2, side = entry % 2;
-      done[piece] = 1;
-      append_nodes(pieces[piece], side, string.nodes);
-      entry = partner[2 * piece + 1 - side];
-      if (entry == kNone || done[entry / 2]) break;
+  for (const auto& [entries, closed] : follow_partners(partner)) {
+    if (entries.size() == 1) {
+      result.push_back(std::move(pieces[entries[0] / 2]));
+      continue;
     }
-    string.closed = entry != kNone && string.nodes.size() > 4;
+    Piece string{.fit = {}, .nodes = {}, .ends = {}};
+    for (const std::size_t entry : entries) {
+      append_nodes(pieces[entry / 2], entry % 2, string.nodes);
+    }
+    string.closed = closed && string.nodes.size() > 4;
     string.ends = {string.nodes.front().at, string.nodes.back().at};
     result.push_back(std::move(string));
-  };
-  for (std::size_t i = 0; i < pieces.size(); ++i) {  // those that begin at a free end
-    if (done[i]) continue;
-    const bool linked_first = partner[2 * i] != kNone, linked_last = partner[2 * i + 1] != kNone;
-    if (!linked_first && !linked_last) {
-      result.push_back(pieces[i]);
-      done[i] = 1;
-    } else if (!linked_first || !linked_last) {
-      follow(2 * i + (linked_first ? 1 : 0));
-    }
-  }
-  for (std::size_t i = 0; i < pieces.size(); ++i) {
-    if (!done[i]) follow(2 * i);  // rings
   }
   pieces = std::move(result);
 }
 
 }  // namespace
+
+std::vector<EndString> follow_partners(std::span<const std::size_t> partner) {
+  std::vector<EndString> strings;
+  std::vector<std::uint8_t> done(partner.size() / 2, 0);
+  const auto follow = [&](std::size_t entry) {
+    EndString string;
+    do {
+      done[entry / 2] = 1;
+      string.entries.push_back(entry);
+      entry = partner[entry ^ 1U];
+    } while (entry != kNoPartner && !done[entry / 2]);
+    string.closed = entry != kNoPartner;
+    strings.push_back(std::move(string));
+  };
+  for (std::size_t i = 0; i < done.size(); ++i) {
+    if (done[i]) continue;
+    if (partner[2 * i] == kNoPartner) {
+      follow(2 * i);
+    } else if (partner[2 * i + 1] == kNoPartner) {
+      follow(2 * i + 1);
+    }
+  }
+  for (std::size_t i = 0; i < done.size(); ++i) {
+    if (!done[i]) follow(2 * i);
+  }
+  return strings;
+}
 
 void string_together(std::vector<Piece>& pieces, double gap, double angle) {
   string_along(links_between(open_ends(pieces), pieces, {gap, std::cos(angle)}), pieces);

@@ -1,10 +1,25 @@
 #pragma once
 
+#include <cstddef>
+#include <span>
 #include <vector>
 
 #include "pcednet/lines/piece.h"
 
 namespace pcednet::lines {
+
+inline constexpr std::size_t kNoPartner = static_cast<std::size_t>(-1);
+
+/// What partners string together, each entered at an end; closed if the last leads to the first.
+struct EndString {
+  std::vector<std::size_t> entries;
+  bool closed = false;
+};
+
+/// Ends 2 i and 2 i + 1 are those of member i; `partner` has for each the end that it meets, or
+/// kNoPartner. Every member is in one string, alone if it meets none. Those that begin at a free
+/// end come first, in the order of their first members, then the closed ones.
+std::vector<EndString> follow_partners(std::span<const std::size_t> partner);
 
 /// Joins pieces that continue each other smoothly over gaps up to `gap` into polylines: edges that
 /// are neither straight nor round. They may bend by `angle` (radians) where they join. A segment
