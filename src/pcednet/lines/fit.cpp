@@ -11,7 +11,7 @@
 namespace pcednet::lines {
 namespace {
 
-constexpr std::size_t kMostNodes = 48;  ///< of longer runs, as many at even steps
+constexpr std::size_t kMostFitted = 48;  ///< of longer runs, as many at even steps
 constexpr int kGaussNewtonSteps = 4;
 constexpr double kLargestRadius = 1e4;  ///< in spacings: such an arc is a segment
 
@@ -21,17 +21,27 @@ struct Places {
   double spacing = 0.0;
 };
 
-Places places_of(std::span<const ChainNode> nodes) {
-  Places places;
-  const std::size_t step = (nodes.size() + kMostNodes - 1) / kMostNodes;
-  for (std::size_t i = 0; i < nodes.size(); i += step) places.at.push_back(nodes[i].at);
-  if ((nodes.size() - 1) % step != 0) places.at.push_back(nodes.back().at);
-  for (const ChainNode& node : nodes) {
-    places.spacing += node.spacing / static_cast<double>(nodes.size());
-  }
+Places places_of(std::span<const Vec3> all, double spacing) {
+  Places places{.at = {}, .spacing = spacing};
+  const std::size_t step = (all.size() + kMostFitted - 1) / kMostFitted;
+  for (std::size_t i = 0; i < all.size(); i += step) places.at.push_back(all[i]);
+  if ((all.size() - 1) % step != 0) places.at.push_back(all.back());
   for (const Vec3& at : places.at) places.mean += at / static_cast<double>(places.at.size());
   for (Vec3& at : places.at) at = (at - places.mean) / places.spacing;
   return places;
+}
+
+std::vector<Vec3> positions_of(std::span<const ChainNode> nodes) {
+  std::vector<Vec3> positions;
+  positions.reserve(nodes.size());
+  for (const ChainNode& node : nodes) positions.push_back(node.at);
+  return positions;
+}
+
+double mean_spacing_of(std::span<const ChainNode> nodes) {
+  double mean = 0.0;
+  for (const ChainNode& node : nodes) mean += node.spacing / static_cast<double>(nodes.size());
+  return mean;
 }
 
 Mat3 principal_axes(const std::vector<Vec3>& places) {
@@ -89,7 +99,7 @@ bool improve(const std::vector<Eigen::Vector2d>& places, Circle& circle) {
 }  // namespace
 
 Fit fit_segment(std::span<const ChainNode> nodes) {
-  const Places places = places_of(nodes);
+  const Places places = places_of(positions_of(nodes), mean_spacing_of(nodes));
   if (places.at.size() < 2) {
     return {CurveKind::kSegment, places.mean, nodes.front().along, 0.0, 0.0};
   }
@@ -101,9 +111,9 @@ Fit fit_segment(std::span<const ChainNode> nodes) {
           std::sqrt(sum / static_cast<double>(places.at.size()))};
 }
 
-Fit fit_arc(std::span<const ChainNode> nodes) {
-  if (nodes.size() < 4) return {};
-  const Places places = places_of(nodes);
+Fit fit_arc(std::span<const Vec3> all, double spacing) {
+  if (all.size() < 4) return {};
+  const Places places = places_of(all, spacing);
   const Mat3 axes = principal_axes(places.at);
   std::vector<Eigen::Vector2d> flat;
   for (const Vec3& at : places.at) flat.emplace_back(axes.col(2).dot(at), axes.col(1).dot(at));
@@ -121,12 +131,16 @@ Fit fit_arc(std::span<const ChainNode> nodes) {
           axes.col(0), places.spacing * circle.radius,
           std::sqrt(sum / static_cast<double>(places.at.size()))};
   double turn = 0.0;  // of the nodes about the axis
-  for (std::size_t i = 1; i < nodes.size(); ++i) {
-    const Vec3 from = nodes[i - 1].at - fit.point, to = nodes[i].at - fit.point;
+  for (std::size_t i = 1; i < all.size(); ++i) {
+    const Vec3 from = all[i - 1] - fit.point, to = all[i] - fit.point;
     turn += fit.direction.dot(from.cross(to));
   }
   if (turn < 0.0) fit.direction = -fit.direction;
   return fit;
+}
+
+Fit fit_arc(std::span<const ChainNode> nodes) {
+  return fit_arc(positions_of(nodes), mean_spacing_of(nodes));
 }
 
 Eigen::Vector2d about_axis(const Fit& circle, const Vec3& place) {

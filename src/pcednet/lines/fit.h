@@ -19,7 +19,8 @@ struct Fit {
 
 Fit fit_segment(std::span<const ChainNode> nodes);
 
-/// kPolyline if no circle fits the nodes.
+/// kPolyline if no circle fits the places; the axis is such that they run counter-clockwise.
+Fit fit_arc(std::span<const Vec3> places, double spacing);
 Fit fit_arc(std::span<const ChainNode> nodes);
 
 /// The distance of `place` from the axis of the circle (x), and its height along it (y).

@@ -171,17 +171,13 @@ bool has_height_of_wall(double height) {
 /// Moves the circle to the points of the wall, by least squares.
 bool fit_to_wall(Fit& circle, const OrderedPoints& cloud, std::span<const Beside> points,
                  double reach, double spacing) {
-  std::vector<ChainNode> nodes;
+  std::vector<Vec3> wall;  // in the plane of the circle
   for (const Beside& point : points) {
     if (!has_height_of_wall(point.height) || std::abs(point.out) > reach) continue;
-    nodes.push_back({.at = cloud.position(point.index) - point.height * spacing * circle.direction,
-                     .along = Vec3::Zero(),
-                     .side_a = Vec3::Zero(),
-                     .side_b = Vec3::Zero(),
-                     .spacing = spacing});
+    wall.push_back(cloud.position(point.index) - point.height * spacing * circle.direction);
   }
-  if (nodes.size() < kLeastWall) return false;
-  const Fit fit = fit_arc(nodes);
+  if (wall.size() < kLeastWall) return false;
+  const Fit fit = fit_arc(wall, spacing);
   if (fit.kind != CurveKind::kArc) return false;
   circle.point = fit.point;
   circle.radius = fit.radius;

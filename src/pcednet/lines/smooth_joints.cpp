@@ -123,30 +123,25 @@ std::optional<Curve> circle_of(const std::vector<std::size_t>& loop,
                                const std::vector<Curve>& curves, double spacing, double within) {
   Curve circle{
       .kind = CurveKind::kCircle, .edge_class = curves[loop[0]].edge_class, .closed = true};
-  std::vector<ChainNode> nodes;
+  std::vector<Vec3> places;
   double length = 0.0;
   for (const std::size_t i : loop) {
     const Curve& curve = curves[i];
-    for (const Vec3& at : densified(sampled(curve, 0.1 * within), 0.5 * spacing)) {
-      nodes.push_back({.at = at,
-                       .along = Vec3::Zero(),
-                       .side_a = Vec3::Zero(),
-                       .side_b = Vec3::Zero(),
-                       .spacing = spacing});
-    }
+    const std::vector<Vec3> dense = densified(sampled(curve, 0.1 * within), 0.5 * spacing);
+    places.insert(places.end(), dense.begin(), dense.end());
     add_measures(circle, curve);
     length += length_of(curve);
   }
   finish_measures(circle, length);
-  const Fit fit = fit_arc(nodes);
+  const Fit fit = fit_arc(places, spacing);
   if (fit.kind != CurveKind::kArc || fit.radius > kLargestRound * spacing) return std::nullopt;
-  for (const ChainNode& node : nodes) {
-    if (!((nearest_on(fit, node.at) - node.at).norm() < within)) return std::nullopt;
+  for (const Vec3& place : places) {
+    if (!((nearest_on(fit, place) - place).norm() < within)) return std::nullopt;
   }
   circle.centre = fit.point;
   circle.axis = fit.direction;
   circle.radius = fit.radius;
-  circle.points = {nearest_on(fit, nodes.front().at)};
+  circle.points = {nearest_on(fit, places.front())};
   return circle;
 }
 
