@@ -350,7 +350,7 @@ struct Strip {
 
 std::size_t bridged(std::vector<Piece> pieces, const Strip& strip = Strip()) {
   const OrderedPoints cloud({strip.positions, strip.normals, strip.classes});
-  bridge_gaps(pieces, cloud, {.tolerance = kWithin, .noise = 0.0});
+  bridge_gaps(pieces, cloud, kWithin, 0.0);
   return pieces.size();
 }
 

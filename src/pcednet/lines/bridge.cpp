@@ -101,10 +101,10 @@ bool bridge_once(std::vector<Piece>& pieces, FreeEnds& free, const OrderedPoints
 
 }  // namespace
 
-void bridge_gaps(std::vector<Piece>& pieces, const OrderedPoints& cloud,
-                 const BridgeOptions& options) {
-  FreeEnds free = ends_to_bridge(pieces, options.noise);
-  while (bridge_once(pieces, free, cloud, options.tolerance)) {
+void bridge_gaps(std::vector<Piece>& pieces, const OrderedPoints& cloud, double tolerance,
+                 double noise) {
+  FreeEnds free = ends_to_bridge(pieces, noise);
+  while (bridge_once(pieces, free, cloud, tolerance)) {
   }
 }
 

@@ -7,14 +7,10 @@
 
 namespace pcednet::lines {
 
-struct BridgeOptions {
-  double tolerance;  ///< of the joined piece, in spacings
-  double noise;      ///< in spacings
-};
-
 /// Joins pieces on one line or circle and with one wedge over gaps wider than those of
 /// join_pieces(), if neither meets another piece there and the surface continues between them.
-void bridge_gaps(std::vector<Piece>& pieces, const OrderedPoints& cloud,
-                 const BridgeOptions& options);
+/// `tolerance`, of the joined piece, and `noise` are in spacings.
+void bridge_gaps(std::vector<Piece>& pieces, const OrderedPoints& cloud, double tolerance,
+                 double noise);
 
 }  // namespace pcednet::lines

@@ -124,7 +124,7 @@ void join(std::vector<Piece>& pieces, const OrderedPoints& cloud, const Limits& 
   stage.advance();
   complete_circles(pieces, cloud, limits.tolerance);
   stage.advance();
-  bridge_gaps(pieces, cloud, {limits.tolerance, noise});
+  bridge_gaps(pieces, cloud, limits.tolerance, noise);
   stage.advance();
   string_together(pieces, limits.gap, limits.angle);
   stage.advance();
