@@ -134,6 +134,13 @@ class Large(CliTest):
                           "101 MiB: read in tiles; its labels are kept", said)
             self.assertAlmostEqual(tiled / count, 1, delta=0.02)
             self.assertAlmostEqual(tiled_length / length, 1, delta=0.01)
+        # Labels that are all 255 are none, wherever the file has a label.
+        p, n = field(3)[:2]
+        labels = np.full(len(p), 255, np.uint8)
+        for last, done in ((255, ": classified in tiles"), (2, "its labels are kept")):
+            labels[-1] = last
+            write_ply(self.folder / "c.ply", p, n, labels)
+            self.assertIn(done, self.lines(self.folder / "c.ply", "--max-memory", "101M")[2])
         # Labels without normals: these are estimated in tiles.
         rows, _ = read_ply(self.folder / "a_edges.ply")
         p = np.column_stack([rows[a] for a in "xyz"])

@@ -153,6 +153,7 @@ class Lines(CliTest):
         p, n, _ = cube(4000)
         write_ply(self.folder / "a.ply", p, n, np.zeros(len(p), np.uint8))
         done = run("lines", self.folder / "a.ply", *self.outputs("geojson"))
+        self.assertIn("its labels are used, and none is of an edge; --classify", done.stderr)
         self.assertIn("no edges", done.stderr)
         done = run("lines", self.folder / "a.ply", *self.outputs("geojson"), "--classify",
                    "--overwrite")
@@ -161,9 +162,25 @@ class Lines(CliTest):
                    "--overwrite")
         self.assertNotIn("no edges", done.stderr)
 
+    def test_says_whose_labels_it_uses(self):
+        done = run("lines", self.labelled_cube(), *self.outputs("obj"))
+        self.assertRegex(done.stderr, r"cube.ply: its labels are used: \d+ sharp-edge; --classify")
+        done = run("lines", self.labelled_cube(), *self.outputs("obj"), "--classify", "--overwrite")
+        self.assertNotIn("its labels", done.stderr)
+
+    def test_a_cloud_whose_points_are_all_unlabelled_is_classified(self):
+        p, n, _ = cube(4000)
+        write_ply(self.folder / "bare.ply", p, n)
+        run("lines", self.folder / "bare.ply", *self.outputs("obj"))
+        drawn = self.made["obj"].read_bytes()
+        write_ply(self.folder / "none.ply", p, n, np.full(len(p), 255, np.uint8))
+        done = run("lines", self.folder / "none.ply", *self.outputs("obj"), "--overwrite")
+        self.assertIn("all points are unlabelled (255): classified by model general", done.stderr)
+        self.assertEqual(self.made["obj"].read_bytes(), drawn)
+
     def test_no_edges_give_empty_files(self):
         p, n, _ = cube(2000)
-        write_ply(self.folder / "a.ply", p, n, np.full(len(p), 255, np.uint8))
+        write_ply(self.folder / "a.ply", p, n, np.zeros(len(p), np.uint8))
         done = run("lines", self.folder / "a.ply", *self.outputs())
         self.assertIn("0 curves", done.stderr)
         self.assertEqual(geojson(self.made["geojson"]), [])
@@ -202,6 +219,7 @@ class Lines(CliTest):
         write_ply(self.folder / "odd.ply", *cube(3000)[:2], np.full(3000, 17, np.uint8))
         done = run("lines", self.folder / "odd.ply", *self.outputs("obj"), "--overwrite")
         self.assertIn("3000 labels are no classes of edges", done.stderr)
+        self.assertIn("--classify finds edges", done.stderr)
 
     def test_options_out_of_range(self):
         path = self.labelled_cube()

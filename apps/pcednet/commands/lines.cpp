@@ -1,20 +1,16 @@
 #include "pcednet/lines/find_lines.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <functional>
 #include <memory>
-#include <numbers>
 #include <set>
 
 #include "batch.h"
 #include "classify_cloud.h"
 #include "commands.h"
 #include "lines_arguments.h"
+#include "lines_report.h"
 #include "lines_tiles.h"
 #include "models.h"
 #include "pcednet/core/error.h"
@@ -32,10 +28,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using lines::Curve;
-using lines::CurveKind;
-
-constexpr std::array kKinds = {CurveKind::kSegment, CurveKind::kArc, CurveKind::kCircle,
-                               CurveKind::kPolyline};
 
 /// The arguments of find_lines(), and the data behind them.
 struct LabelledCloud {
@@ -84,13 +76,32 @@ std::vector<float> probabilities(const std::string& file, const PointCloud& clou
   return {};
 }
 
-void warn_of_other_classes(const std::string& file, const std::vector<std::uint8_t>& classes) {
+/// Whether a point has a label.
+bool have_labels(const std::vector<std::uint8_t>& classes) {
+  return std::any_of(classes.begin(), classes.end(),
+                     [](std::uint8_t label) { return label != kUnlabelled; });
+}
+
+/// Says which labels of the file the lines come from.
+void tell_labels(const std::string& file, const std::vector<std::uint8_t>& classes) {
   const auto others = std::count_if(classes.begin(), classes.end(), [](std::uint8_t label) {
     return label > kBoundary && label != kUnlabelled;
   });
-  if (others == 0) return;
-  warn(fmt::format("{}: {} labels are no classes of edges: 1 is smooth, 2 sharp, 3 boundary", file,
-                   others));
+  if (others > 0) {
+    warn(fmt::format("{}: {} labels are no classes of edges: 1 is smooth, 2 sharp, 3 boundary",
+                     file, others));
+  }
+  std::string edges;
+  for (const io::LineClass& entry : io::kLineClasses) {
+    const auto points = std::count(classes.begin(), classes.end(), entry.edge_class);
+    if (points == 0) continue;
+    edges += fmt::format("{}{} {}", edges.empty() ? "" : ", ", points, entry.name);
+  }
+  if (edges.empty()) {
+    warn(file + ": its labels are used, and none is of an edge; --classify finds edges");
+  } else {
+    say(fmt::format("{}: its labels are used: {}; --classify finds others", file, edges));
+  }
 }
 
 /// Throws for classes other than edge classes.
@@ -102,7 +113,7 @@ void check_edges(const std::string& whose, const ClassTable& table) {
 
 void add_given_labels(const LinesArguments& arguments, std::vector<std::uint8_t> classes,
                       LabelledCloud& labelled, const Progress& progress) {
-  warn_of_other_classes(arguments.input, classes);
+  tell_labels(arguments.input, classes);
   const PointCloud& cloud = labelled.cloud;
   detect::PrepareOptions preparation = arguments.preparation;
   preparation.keep_orientation = true;  // lines do not depend on signs
@@ -123,13 +134,15 @@ void read_labelled(const LinesArguments& arguments, StageClock& clock, LabelledC
   std::vector<std::uint8_t> given = formats::labels_of(cloud, arguments.input);
   if (!arguments.classify) check_edges(arguments.input, classes_of(cloud.comments));
   clock.begin("normals");
-  if (!given.empty() && !arguments.classify) {
+  const bool labelled_before = have_labels(given);
+  if (labelled_before && !arguments.classify) {
     return add_given_labels(arguments, std::move(given), labelled, clock.progress());
   }
   const detect::EdgeModel model = load_model(arguments.model);
   check_edges(arguments.model.name, model.table);
-  if (given.empty()) {
-    say(fmt::format("{}: no labels: classified by model {}", arguments.input, model.name));
+  if (!labelled_before) {
+    say(fmt::format("{}: {}: classified by model {}", arguments.input,
+                    given.empty() ? "no labels" : "all points are unlabelled (255)", model.name));
   }
   ClassifiedCloud classified = classify_cloud(arguments.input, cloud,
                                               {.model = &model,
@@ -159,6 +172,17 @@ detect::Classification given_labels(const LinesArguments& arguments, const Point
   return found;
 }
 
+/// Whether a point of the file has a label: reads up to the first that has.
+bool has_labels(const LinesArguments& arguments, const Progress& progress) {
+  const auto reader = tiles::open_chunks(arguments.input);
+  for (std::size_t chunk = 0; chunk < reader->parts(); ++chunk) {
+    throw_if_cancelled(&progress);
+    const auto given = formats::labels_of(tiles::read_finished(*reader, chunk), arguments.input);
+    if (given.empty() || have_labels(given)) return !given.empty();
+  }
+  return false;
+}
+
 /// The same for a cloud larger than memory: its points near edges.
 void read_labelled_in_tiles(const LinesArguments& arguments, const TilesNeeded& needed,
                             StageClock& clock, LabelledCloud& labelled) {
@@ -167,13 +191,13 @@ void read_labelled_in_tiles(const LinesArguments& arguments, const TilesNeeded& 
                        .model = arguments.model,
                        .preparation = arguments.preparation,
                        .memory = needed.memory};
-  const auto first = tiles::read_finished(*tiles::open_chunks(arguments.input), 0);
-  if (!arguments.classify && !formats::labels_of(first, arguments.input).empty()) {
+  if (!arguments.classify && has_labels(arguments, clock.progress())) {
     request.preparation.keep_orientation = true;  // lines do not depend on signs
     request.given = [&](const PointCloud& part) { return given_labels(arguments, part); };
   }
+  const bool are_given = request.given != nullptr;
   say(needed.reason +
-      (request.given ? ": read in tiles; its labels are kept" : ": classified in tiles"));
+      (are_given ? ": read in tiles; its labels are kept" : ": classified in tiles"));
   const TiledCloud cloud(std::move(request), load_model(arguments.model), clock.progress());
   PointsNearEdges near = read_near_edges(cloud, memory_limit(arguments.memory), clock.progress());
   say(fmt::format("  lines are found from the {} of {} points that are near edges",
@@ -185,71 +209,13 @@ void read_labelled_in_tiles(const LinesArguments& arguments, const TilesNeeded& 
   labelled.p_sharp = std::move(near.p_sharp);
   labelled.p_smooth = std::move(near.p_smooth);
   labelled.partial = std::move(near.partial);
+  if (are_given) tell_labels(arguments.input, labelled.classes);
   if (arguments.lines.boundaries && std::find(labelled.classes.begin(), labelled.classes.end(),
                                               kBoundary) == labelled.classes.end()) {
     warn(
         fmt::format("{}: no point is of class boundary (3); in tiles, boundaries are found only "
                     "around such points",
                     arguments.input));
-  }
-}
-
-bool is_listed(const std::vector<std::string>& names, std::string_view name) {
-  return names.empty() || std::find(names.begin(), names.end(), name) != names.end();
-}
-
-/// Keeps the curves that the user asked for; says how many each option leaves out, the first of
-/// several that do.
-std::string filter(const LinesArguments& arguments, std::vector<Curve>& curves) {
-  struct Option {
-    std::string text;
-    std::function<bool(const Curve&)> keeps;
-  };
-  const Option options[] = {
-      {fmt::format("--class {}", fmt::join(arguments.classes, ",")),
-       [&](const Curve& curve) {
-         const std::string_view name = io::line_class(curve.edge_class).name;
-         return is_listed(arguments.classes, name.substr(0, name.find('-')));
-       }},
-      {fmt::format("--kind {}", fmt::join(arguments.kinds, ",")),
-       [&](const Curve& curve) { return is_listed(arguments.kinds, name_of(curve.kind)); }},
-      {fmt::format("--min-confidence {}", arguments.min_confidence),
-       [&](const Curve& curve) { return !(curve.confidence < arguments.min_confidence); }},
-      {fmt::format("--min-dihedral {}", arguments.min_dihedral),
-       [&](const Curve& curve) {
-         return !(curve.dihedral_angle < arguments.min_dihedral * std::numbers::pi / 180.0);
-       }},
-      {fmt::format("--min-points {}", arguments.min_points),
-       [&](const Curve& curve) { return curve.support >= arguments.min_points; }}};
-  std::vector<std::string> left_out;
-  for (const Option& option : options) {
-    const auto count =
-        std::erase_if(curves, [&](const Curve& curve) { return !option.keeps(curve); });
-    if (count > 0) left_out.push_back(fmt::format("{} by {}", count, option.text));
-  }
-  return left_out.empty() ? "" : fmt::format("; left out: {}", fmt::join(left_out, ", "));
-}
-
-void report(const LinesArguments& arguments, const std::vector<Curve>& curves,
-            const std::string& left_out) {
-  double length = 0.0;
-  for (const Curve& curve : curves) length += length_of(curve);
-  say(fmt::format("{}: {} curve{}, total length {:.6g}{}", arguments.input, curves.size(),
-                  curves.size() == 1 ? "" : "s", length, left_out));
-  for (const io::LineClass& entry : io::kLineClasses) {
-    std::string kinds;
-    double class_length = 0.0;
-    for (const CurveKind kind : kKinds) {
-      std::size_t count = 0;
-      for (const Curve& curve : curves) {
-        if (curve.edge_class != entry.edge_class || curve.kind != kind) continue;
-        ++count;
-        class_length += length_of(curve);
-      }
-      if (count == 0) continue;
-      kinds += fmt::format("{} {}{}, ", count, name_of(kind), count == 1 ? "" : "s");
-    }
-    if (!kinds.empty()) say(fmt::format("  {}: {}length {:.6g}", entry.name, kinds, class_length));
   }
 }
 
@@ -278,7 +244,7 @@ void run(LinesArguments arguments, const Common& common) {
                                 .curve = labelled.prepared.curve},
                                arguments.lines, &clock.progress());
   });
-  const std::string left_out = filter(arguments, curves);
+  const std::string left_out = filter_lines(arguments, curves);
   clock.begin("write");
   arguments.drawing.tolerance = arguments.lines.tolerance;
   arguments.drawing.coordinate_system = io::las_coordinate_system(cloud);
@@ -292,7 +258,7 @@ void run(LinesArguments arguments, const Common& common) {
         arguments.preview.path, cloud, {},
         {.view_direction = arguments.preview.direction, .overwrite = common.overwrite()}, curves);
   }
-  report(arguments, curves, left_out);
+  report_lines(arguments, curves, left_out);
   if (curves.empty()) say("  no edges: what was written holds no lines");
   say("  seconds: " + clock.seconds());
   for (const std::string& output : arguments.outputs) say("  -> " + output);

@@ -1,0 +1,83 @@
+#include "lines_report.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <functional>
+#include <numbers>
+#include <string_view>
+
+#include "common.h"
+#include "pcednet/io/drawing/line_classes.h"
+
+namespace pcednet::app {
+namespace {
+
+using lines::Curve;
+using lines::CurveKind;
+
+constexpr std::array kKinds = {CurveKind::kSegment, CurveKind::kArc, CurveKind::kCircle,
+                               CurveKind::kPolyline};
+
+bool is_listed(const std::vector<std::string>& names, std::string_view name) {
+  return names.empty() || std::find(names.begin(), names.end(), name) != names.end();
+}
+
+}  // namespace
+
+std::string filter_lines(const LinesArguments& arguments, std::vector<Curve>& curves) {
+  struct Option {
+    std::string text;
+    std::function<bool(const Curve&)> keeps;
+  };
+  const Option options[] = {
+      {fmt::format("--class {}", fmt::join(arguments.classes, ",")),
+       [&](const Curve& curve) {
+         const std::string_view name = io::line_class(curve.edge_class).name;
+         return is_listed(arguments.classes, name.substr(0, name.find('-')));
+       }},
+      {fmt::format("--kind {}", fmt::join(arguments.kinds, ",")),
+       [&](const Curve& curve) { return is_listed(arguments.kinds, name_of(curve.kind)); }},
+      {fmt::format("--min-confidence {}", arguments.min_confidence),
+       [&](const Curve& curve) { return !(curve.confidence < arguments.min_confidence); }},
+      {fmt::format("--min-dihedral {}", arguments.min_dihedral),
+       [&](const Curve& curve) {
+         return !(curve.dihedral_angle < arguments.min_dihedral * std::numbers::pi / 180.0);
+       }},
+      {fmt::format("--min-points {}", arguments.min_points),
+       [&](const Curve& curve) { return curve.support >= arguments.min_points; }}};
+  std::vector<std::string> left_out;
+  for (const Option& option : options) {
+    const auto count =
+        std::erase_if(curves, [&](const Curve& curve) { return !option.keeps(curve); });
+    if (count > 0) left_out.push_back(fmt::format("{} by {}", count, option.text));
+  }
+  return left_out.empty() ? "" : fmt::format("; left out: {}", fmt::join(left_out, ", "));
+}
+
+void report_lines(const LinesArguments& arguments, const std::vector<Curve>& curves,
+                  const std::string& left_out) {
+  double length = 0.0;
+  for (const Curve& curve : curves) length += length_of(curve);
+  say(fmt::format("{}: {} curve{}, total length {:.6g}{}", arguments.input, curves.size(),
+                  curves.size() == 1 ? "" : "s", length, left_out));
+  for (const io::LineClass& entry : io::kLineClasses) {
+    std::string kinds;
+    double class_length = 0.0;
+    for (const CurveKind kind : kKinds) {
+      std::size_t count = 0;
+      for (const Curve& curve : curves) {
+        if (curve.edge_class != entry.edge_class || curve.kind != kind) continue;
+        ++count;
+        class_length += length_of(curve);
+      }
+      if (count == 0) continue;
+      kinds += fmt::format("{} {}{}, ", count, name_of(kind), count == 1 ? "" : "s");
+    }
+    if (!kinds.empty()) say(fmt::format("  {}: {}length {:.6g}", entry.name, kinds, class_length));
+  }
+}
+
+}  // namespace pcednet::app

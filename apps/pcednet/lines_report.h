@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "lines_arguments.h"
+#include "pcednet/lines/curve.h"
+
+namespace pcednet::app {
+
+/// Keeps the curves that the user asked for; says how many each option leaves out, the first of
+/// several that do.
+std::string filter_lines(const LinesArguments& arguments, std::vector<lines::Curve>& curves);
+
+/// Says what was found, and what was left out.
+void report_lines(const LinesArguments& arguments, const std::vector<lines::Curve>& curves,
+                  const std::string& left_out);
+
+}  // namespace pcednet::app
