@@ -106,6 +106,9 @@ void check_format_options(const LinesArguments& arguments) {
     throw Error(ErrorKind::kUsage,
                 fmt::format("{} is for {} files, and none is an output", option, extension));
   }
+  if (arguments.drawing.unit && arguments.drawing.dxf_version == io::DxfVersion::kR12) {
+    throw Error(ErrorKind::kUsage, "--unit has no effect with --dxf-version r12: R12 has no unit");
+  }
 }
 
 }  // namespace pcednet::app

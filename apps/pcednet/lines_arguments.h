@@ -33,7 +33,7 @@ struct LinesArguments {
 /// Adds the options of finding curves.
 void add_line_options(CLI::App& command, lines::LineOptions& options);
 
-/// Throws Error(kUsage) for an option of a format that no output is of.
+/// Throws Error(kUsage) for an option of a format that no output is of, or that its version lacks.
 void check_format_options(const LinesArguments& arguments);
 
 /// Adds the options of choosing curves and writing them.

@@ -234,6 +234,9 @@ class Lines(CliTest):
             done = run("lines", path, "-o", self.folder / "a.dxf", option + "=" + value, expect=2)
             self.assertTrue(option in done.stderr or value in done.stderr, done.stderr)
         run("lines", path, expect=2)
+        done = run("lines", path, "-o", self.folder / "a.dxf", "--unit", "m", "--dxf-version", "r12",
+                   expect=2)
+        self.assertIn("R12 has no unit", done.stderr)
         run("lines", path, "-o", self.folder / "a.shp", expect=2)
         run("lines", path, "-o", self.folder / "a.obj", "-o", self.folder / "." / "a.obj", expect=2)
         self.assertEqual(set(os.listdir(self.folder)), before)
