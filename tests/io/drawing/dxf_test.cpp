@@ -5,6 +5,7 @@
 #include <numbers>
 #include <set>
 #include <sstream>
+#include <utility>
 
 #include "io/drawing/sample_curves.h"
 #include "io/scratch.h"
@@ -117,8 +118,9 @@ TEST(Dxf, ArcsAndCirclesOfAnyPlaneAreWhereTheyWere) {
         EXPECT_EQ(found[i].type, "ARC");
         const double from = found[i].number(50), to = found[i].number(51);
         const double span = to > from ? to - from : to - from + 360.0;
-        EXPECT_LT((place_on(found[i], from) - curves[i].points[0]).norm(), tolerance);
-        EXPECT_LT((place_on(found[i], to) - curves[i].points[1]).norm(), tolerance);
+        const bool turned = found[i].point(210).dot(curves[i].axis) < 0.0;
+        EXPECT_LT((place_on(found[i], turned ? to : from) - curves[i].points[0]).norm(), tolerance);
+        EXPECT_LT((place_on(found[i], turned ? from : to) - curves[i].points[1]).norm(), tolerance);
         EXPECT_NEAR(span, angle_of(curves[i]) * 180.0 / std::numbers::pi, 1e-6);
         const Vec3 middle =
             curves[i].centre + Eigen::AngleAxisd(0.5 * angle_of(curves[i]), curves[i].axis) *
@@ -129,11 +131,35 @@ TEST(Dxf, ArcsAndCirclesOfAnyPlaneAreWhereTheyWere) {
   }
 }
 
+TEST(Dxf, NormalsOfOppositeAxesAreAlikeAndPointUpwards) {
+  const Scratch scratch;
+  for (const Vec3& axis : kAxes) {
+    const Vec3 centre(7.0, -4.0, 3.0);
+    const Curve arc = make_arc(centre, axis, 2.5, 0.7, 4.0);
+    Curve reversed = arc;
+    reversed.axis = -arc.axis;
+    std::swap(reversed.points[0], reversed.points[1]);
+    const auto found = entities(written(scratch, {arc, reversed}));
+    EXPECT_EQ(found.at(0).point(210), found.at(1).point(210)) << axis.transpose();
+    EXPECT_GT(found[0].number(230), -1.0 / 64.0) << axis.transpose();
+    for (const int code : {10, 20, 30, 50, 51}) {
+      EXPECT_EQ(found[0].text(code), found[1].text(code)) << axis.transpose();
+    }
+  }
+  // The ends of a horizontal bore, each with the noise of its fit.
+  const auto bore =
+      entities(written(scratch, {make_circle(Vec3::Zero(), Vec3(1, 2e-3, -1e-3), 2.0),
+                                 make_circle(Vec3::UnitX(), Vec3(-1, 1e-3, -2e-3), 2.0)}));
+  EXPECT_GT(bore.at(0).point(210).dot(bore.at(1).point(210)), 0.99);
+}
+
 TEST(Dxf, FlatArcsKeepEveryBitOfTheirCentre) {
   const Scratch scratch;
   const Vec3 centre(500123.456789, 5400987.654321, 0.1);
   const auto found = entities(written(scratch, {make_circle(centre, Vec3::UnitZ(), 2.0)}));
   EXPECT_EQ(found.at(0).point(10), centre);
+  const auto turned = entities(written(scratch, {make_circle(centre, -Vec3::UnitZ(), 2.0)}));
+  EXPECT_EQ(turned.at(0).point(10), centre);
 }
 
 TEST(Dxf, KeepsEveryBitOfLinesOnTheirLayers) {

@@ -27,9 +27,20 @@ double degrees_in(const Mat3& axes, const Vec3& to) {
   return degrees < 0.0 ? degrees + 360.0 : degrees;
 }
 
-/// DXF has the centre in the axes of the curve's plane; arcs run counter-clockwise there.
+/// Whether a normal points down; of an upright plane, within the bound of the arbitrary axis
+/// algorithm, to smaller y, then x.
+bool is_downward(const Vec3& normal) {
+  constexpr double kUpright = 1.0 / 64.0;
+  if (std::abs(normal.z()) > kUpright) return normal.z() < 0.0;
+  return std::abs(normal.y()) > kUpright ? normal.y() < 0.0 : normal.x() < 0.0;
+}
+
+/// DXF has the centre in the axes of the curve's plane; arcs run counter-clockwise there. The
+/// normal points upwards: programs that ignore it then draw flat curves where they are.
 void write_round(DxfText& dxf, const Curve& curve, std::string_view layer, std::uint64_t owner) {
-  const Vec3 normal = curve.axis.normalized();
+  Vec3 normal = curve.axis.normalized();
+  const bool turn = is_downward(normal);
+  if (turn) normal = Vec3::Zero() - normal;  // no -0.0
   const Mat3 axes = dxf_plane_axes(normal);
   const bool whole =
       curve.kind == CurveKind::kCircle || curve.points.front() == curve.points.back();
@@ -40,8 +51,10 @@ void write_round(DxfText& dxf, const Curve& curve, std::string_view layer, std::
   dxf.point(210, normal);
   if (whole) return;
   dxf.subclass("AcDbArc");
-  dxf.number(50, degrees_in(axes, curve.points.front() - curve.centre));
-  dxf.number(51, degrees_in(axes, curve.points.back() - curve.centre));
+  const Vec3& from = turn ? curve.points.back() : curve.points.front();
+  const Vec3& to = turn ? curve.points.front() : curve.points.back();
+  dxf.number(50, degrees_in(axes, from - curve.centre));
+  dxf.number(51, degrees_in(axes, to - curve.centre));
 }
 
 void write_polyline(DxfText& dxf, const Curve& curve, std::string_view layer, std::uint64_t owner) {
