@@ -115,6 +115,7 @@ ordered_json json_of(const std::filesystem::path& path, const formats::CloudFact
   if (facts.spacing) {
     file["mean_spacing"] = facts.spacing->mean;
     file["median_spacing"] = facts.spacing->median;
+    file["spacing"] = facts.spacing->side;
   }
   file["normals"] = facts.has_normals;
   file["colours"] = facts.has_colours;

@@ -152,6 +152,10 @@ std::string text_of(const std::filesystem::path& path, const formats::CloudFacts
   if (facts.spacing) {
     lines.add("mean spacing", fmt::format("{:.6g}", facts.spacing->mean));
     lines.add("median spacing", fmt::format("{:.6g}", facts.spacing->median));
+    lines.add(
+        "spacing",
+        fmt::format("{:.6g}, the side of the square that holds one point: the unit of `lines`",
+                    facts.spacing->side));
   }
   if (!facts.spacing && facts.read < facts.points) {
     lines.add("spacing", "unknown: parts of the file overlap. --all determines it");

@@ -1,5 +1,6 @@
 """`pcednet info`: spacing, problems, folders with files that cannot be read."""
 import json
+import re
 import signal
 import subprocess
 import unittest
@@ -17,6 +18,16 @@ class Info(CliTest):
         grid = np.stack(np.meshgrid(*[np.arange(9.0)] * 3), -1).reshape(-1, 3) * 0.25
         write_ply(self.folder / "grid.ply", grid)
         self.assertEqual(self.info(self.folder / "grid.ply")[0]["median_spacing"], 0.25)
+
+    def test_spacing_is_the_side_of_the_square_of_a_point(self):
+        p, n, _ = cube(8000)
+        write_ply(self.folder / "a.ply", p, n)
+        spacing = self.info(self.folder / "a.ply")[0]["spacing"]
+        self.assertAlmostEqual(spacing / np.sqrt(6 / 8000), 1, delta=0.1)
+        said = run("lines", self.folder / "a.ply", "-o", self.folder / "a.obj").stderr
+        of_lines = float(re.search(r"\n  spacing (\S+),", said)[1])  # away from the edges
+        self.assertAlmostEqual(spacing / of_lines, 1, delta=0.05)
+        self.assertIn(f"spacing        {spacing:.6g}, ", run("info", self.folder / "a.ply").stdout)
 
     def test_problems_are_named(self):
         p, n, _ = cube(500)
@@ -63,6 +74,8 @@ class Info(CliTest):
             self.assertEqual(sum(part["labels"].values()), 800000)
             if name == "slabs":
                 self.assertEqual(part["median_spacing"], 0.25)
+                # Of a cubic grid, the tenth nearest is at the diagonal of a face.
+                self.assertAlmostEqual(part["spacing"], 0.25 * np.sqrt(2 * np.pi / 11), places=12)
             else:
                 self.assertNotIn("median_spacing", part)
             said = run("info", self.folder / "a.ply").stdout
@@ -70,6 +83,7 @@ class Info(CliTest):
         whole, = self.info(self.folder / "a.ply", "--all")
         self.assertNotIn("points_read", whole)
         self.assertEqual(whole["median_spacing"], 0.25)
+        self.assertAlmostEqual(whole["spacing"], 0.25 * np.sqrt(2 * np.pi / 11), places=12)
         self.assertEqual(whole["labels"]["1"], int(labels.sum()))
         self.assertEqual(whole["bounds"], {"min": [0, 0, 0], "max": [31.75] * 3})
         run("convert", self.folder / "a.ply", "-o", self.folder / "a.las")

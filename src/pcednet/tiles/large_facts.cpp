@@ -35,17 +35,18 @@ class Distances {
     if (sq_distances.size() < gls::kSpacingNeighbours || std::isinf(sq_distances.back())) return;
     for (const double sq : sq_distances) sum_ += std::sqrt(sq);
     nearest_.push_back(std::sqrt(sq_distances[1]));
+    sides_.push_back(formats::side_of_square(sq_distances));
   }
 
   std::optional<SampledSpacing> spacing() const {
     if (nearest_.empty()) return std::nullopt;
     const auto count = static_cast<double>(nearest_.size() * (gls::kSpacingNeighbours - 1));
-    return SampledSpacing{sum_ / count, upper_median(nearest_)};
+    return SampledSpacing{sum_ / count, upper_median(nearest_), upper_median(sides_)};
   }
 
  private:
   double sum_ = 0.0;
-  std::vector<double> nearest_ = {};
+  std::vector<double> nearest_ = {}, sides_ = {};
 };
 
 /// The squared distances at `places` places of the points, at equal steps.
