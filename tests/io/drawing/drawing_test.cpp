@@ -54,6 +54,22 @@ TEST(Drawing, ObjAndPlyGiveBackEveryBit) {
   }
 }
 
+TEST(Drawing, PolylinesOfArcsKeepToTheFitWhereThatIsFiner) {
+  const Scratch scratch;
+  const std::vector<Curve> tank = {make_circle(Vec3(3, 4, 5), Vec3::UnitZ(), 20.0)};
+  const auto vertices = [&](const DrawingOptions& options) {
+    write_drawing(scratch.path("a.obj"), tank, options);
+    return read_curves(scratch.path("a.obj")).at(0).points.size();
+  };
+  const auto sides_for = [&](double tolerance) { return sampled(tank[0], tolerance).size() - 1; };
+  constexpr auto kYes = Overwrite::kYes;
+  EXPECT_EQ(vertices({.overwrite = kYes}), sides_for(0.02));
+  EXPECT_EQ(vertices({.overwrite = kYes, .fit_tolerance = 0.002}), sides_for(0.002));
+  EXPECT_EQ(vertices({.overwrite = kYes, .fit_tolerance = 0.3}), sides_for(0.02));
+  EXPECT_EQ(vertices({.overwrite = kYes, .tolerance = 0.1, .fit_tolerance = 0.002}),
+            sides_for(0.1));
+}
+
 TEST(Drawing, CurvesShareTheirCornersInObjAndPly) {
   const Scratch scratch;
   const Vec3 a(0.1, 0, 0), b(1, 0, 0), c(1, 1, 0);

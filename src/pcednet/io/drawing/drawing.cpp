@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
@@ -101,7 +102,10 @@ std::vector<std::string> drawing_losses(const std::filesystem::path& path,
 }
 
 std::vector<Vec3> drawn(const Curve& curve, const DrawingOptions& options) {
-  return sampled(curve, options.tolerance > 0.0 ? options.tolerance : curve.radius / 1000.0);
+  if (options.tolerance > 0.0) return sampled(curve, options.tolerance);
+  const double of_radius = curve.radius / 1000.0;
+  return sampled(curve, options.fit_tolerance > 0.0 ? std::min(of_radius, options.fit_tolerance)
+                                                    : of_radius);
 }
 
 LineMesh line_mesh(Curves curves, const DrawingOptions& options) {

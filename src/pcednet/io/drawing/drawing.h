@@ -21,8 +21,9 @@ enum class View { kTop, kFront, kSide };
 struct DrawingOptions {
   Overwrite overwrite = Overwrite::kNo;
   /// Formats without arcs get polylines that are nowhere farther from them; 0: a thousandth of the
-  /// radius.
+  /// radius, or `fit_tolerance` if that is less.
   double tolerance = 0.0;
+  double fit_tolerance = 0.0;  ///< how far points may be from the curves; 0: unknown
   DxfVersion dxf_version = DxfVersion::k2000;
   /// DXF: of the coordinates; absent: that of the coordinate system.
   std::optional<LengthUnit> unit = std::nullopt;
