@@ -24,7 +24,8 @@ void add_line_options(CLI::App& command, lines::LineOptions& options) {
   command
       .add_option("--tolerance", options.tolerance,
                   "How far the points may be from their curve; also of the polylines that stand "
-                  "for arcs in formats without arcs (default there: a thousandth of the radius)")
+                  "for arcs in formats without arcs (default there: a thousandth of the radius, if "
+                  "that is less)")
       ->check(length);
   command
       .add_option("--angle", options.angle,

@@ -32,7 +32,11 @@ std::string filter_lines(const LinesArguments& arguments, std::vector<Curve>& cu
     std::string text;
     std::function<bool(const Curve&)> keeps;
   };
+  const double min_length =
+      arguments.lines.stage == lines::LineStage::kCurves ? arguments.lines.min_length : 0.0;
   const Option options[] = {
+      {fmt::format("--min-length {}", min_length),
+       [&](const Curve& curve) { return !(length_of(curve) < min_length); }},
       {fmt::format("--class {}", fmt::join(arguments.classes, ",")),
        [&](const Curve& curve) {
          const std::string_view name = io::line_class(curve.edge_class).name;
@@ -57,8 +61,8 @@ std::string filter_lines(const LinesArguments& arguments, std::vector<Curve>& cu
   return left_out.empty() ? "" : fmt::format("; left out: {}", fmt::join(left_out, ", "));
 }
 
-void report_lines(const LinesArguments& arguments, const std::vector<Curve>& curves,
-                  const std::string& left_out) {
+void report_lines(const LinesArguments& arguments, const lines::LineScale& scale,
+                  const std::vector<Curve>& curves, const std::string& left_out) {
   double length = 0.0;
   for (const Curve& curve : curves) length += length_of(curve);
   say(fmt::format("{}: {} curve{}, total length {:.6g}{}", arguments.input, curves.size(),
@@ -78,6 +82,15 @@ void report_lines(const LinesArguments& arguments, const std::vector<Curve>& cur
     }
     if (!kinds.empty()) say(fmt::format("  {}: {}length {:.6g}", entry.name, kinds, class_length));
   }
+  if (curves.empty()) {
+    say(fmt::format("  {}: what was written holds no lines",
+                    left_out.empty() ? "no edges" : "all curves were left out"));
+  }
+  if (!(scale.spacing > 0.0)) return;
+  say(
+      fmt::format("  spacing {:.3g}, noise {:.2g} of it: min-length {:.3g}, gap {:.3g}, "
+                  "tolerance {:.3g}",
+                  scale.spacing, scale.noise, scale.min_length, scale.gap, scale.tolerance));
 }
 
 }  // namespace pcednet::app

@@ -5,6 +5,7 @@
 
 #include "lines_arguments.h"
 #include "pcednet/lines/curve.h"
+#include "pcednet/lines/find_lines.h"
 
 namespace pcednet::app {
 
@@ -12,8 +13,8 @@ namespace pcednet::app {
 /// several that do.
 std::string filter_lines(const LinesArguments& arguments, std::vector<lines::Curve>& curves);
 
-/// Says what was found, and what was left out.
-void report_lines(const LinesArguments& arguments, const std::vector<lines::Curve>& curves,
-                  const std::string& left_out);
+/// Says what was found and what was left out, by which lengths.
+void report_lines(const LinesArguments& arguments, const lines::LineScale& scale,
+                  const std::vector<lines::Curve>& curves, const std::string& left_out);
 
 }  // namespace pcednet::app

@@ -127,6 +127,57 @@ class Lines(CliTest):
         run("lines", path, *self.outputs("dxf"), "--unit", "mm", "--overwrite")
         self.assertIn("$INSUNITS\n 70\n4\n", self.made["dxf"].read_text())
 
+    def test_says_what_left_everything_out(self):
+        path = self.labelled_cube()
+        for option in (("--min-length", "1000"), ("--kind", "circle"), ("--min-points", "9999")):
+            done = run("lines", path, *self.outputs("geojson"), *option, "--overwrite")
+            self.assertRegex(done.stderr, rf"left out: \d+ by {' '.join(option)}\b")
+            self.assertIn("all curves were left out: what was written holds no lines", done.stderr)
+            self.assertNotIn("no edges", done.stderr)
+            self.assertEqual(geojson(self.made["geojson"]), [])
+        run("lines", path, *self.outputs("geojson"), "--min-length", "0.9", "--overwrite")
+        self.assertEqual(len(geojson(self.made["geojson"])), 12)
+        done = run("lines", path, *self.outputs("geojson"), "--stage", "creases", "--min-length", "9",
+                   "--overwrite")
+        self.assertNotIn("by --min-length", done.stderr)
+
+    def lengths(self, *options):
+        """The lengths that lines states: spacing and noise, --min-length, --gap and --tolerance."""
+        said = run("lines", self.labelled_cube(), *self.outputs("obj"), "--overwrite", *options).stderr
+        self.assertRegex(said, r"\n  spacing .*, noise .* of it: min-length .*, gap .*, tolerance ")
+        line = re.search(r"\n  (spacing .*)\n", said)[1]
+        return dict(zip("spacing noise length gap tolerance".split(),
+                        map(float, re.findall(r"(?:spacing|noise|length|gap|tolerance) ([0-9.e-]+)", line))))
+
+    def test_states_the_lengths_that_it_used(self):
+        found = self.lengths()
+        spacing = found["spacing"]
+        self.assertAlmostEqual(spacing / np.sqrt(6 / 8000), 1, delta=0.1)
+        self.assertLess(found["noise"], 0.01)
+        for name, spacings in (("length", 3), ("gap", 6), ("tolerance", 0.2)):
+            self.assertAlmostEqual(found[name] / spacing, spacings, delta=0.03 * spacings)
+        found = self.lengths("--min-length", "0.5", "--gap", "0.25", "--tolerance", "0.125")
+        self.assertEqual([found[name] for name in ("length", "gap", "tolerance")], [0.5, 0.25, 0.125])
+        self.assertEqual(found["spacing"], spacing)
+
+    def test_round_curves_of_formats_without_arcs_keep_to_the_tolerance_of_their_points(self):
+        # The rim of a tank of 400 spacings' radius: the top, the wall, and the edge between.
+        random = np.random.default_rng(5)
+        turn, away = random.uniform(0, 2 * np.pi, 40000), random.uniform(0, 0.04, 40000)
+        top = np.arange(40000) % 2 == 0
+        r, z = np.where(top, 1 - away, 1), np.where(top, 0, -away)
+        p = np.column_stack([r * np.cos(turn), r * np.sin(turn), z])
+        n = np.where(top[:, None], [0, 0, 1.0], np.column_stack([np.cos(turn), np.sin(turn), 0 * z]))
+        write_ply(self.folder / "tank.ply", p, n, np.where(away < 0.003, 2, 0).astype(np.uint8))
+        said = run("lines", self.folder / "tank.ply", *self.outputs("geojson")).stderr
+        tolerance = float(re.search(r", tolerance (\S+)", said)[1])
+        self.assertLess(tolerance, 0.0008)
+        (properties, points), = geojson(self.made["geojson"])
+        self.assertEqual(properties["kind"], "circle")
+        middles = 0.5 * (points[1:] + points[:-1])
+        deviation = properties["radius"] - np.linalg.norm(middles[:, :2], axis=1)
+        self.assertLess(np.median(deviation), 1.01 * tolerance)
+
     @unittest.skipIf(WITHOUT_SQLITE, "no GeoPackage in this build")
     def test_las_without_labels_or_normals_is_classified_and_keeps_its_coordinate_system(self):
         p, _, _ = cube(8000)
@@ -253,6 +304,13 @@ class Lines(CliTest):
             "property float z\nproperty float edge_class\nend_header\n0 0 0 0.5\n")
         self.assertIn("no class", run("lines", self.folder / "half.ply", *out, expect=4).stderr)
         run("lines", self.labelled_cube(), "-o", self.folder / "no" / "a.dxf", expect=1)
+        done = run("lines", self.folder, *out, expect=2)
+        self.assertIn("lines takes one cloud", done.stderr)
+
+    def test_a_file_of_lines_is_told(self):
+        run("lines", self.labelled_cube(), *self.outputs("ply"), "--stage", "creases")
+        done = run("lines", self.made["ply"], "-o", self.folder / "again.obj")
+        self.assertIn("has lines (element edge): their vertices are taken", done.stderr)
 
     def test_the_input_is_never_an_output(self):
         path = self.folder / "in.ply"

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <memory>
 #include <set>
+#include <system_error>
 
 #include "batch.h"
 #include "classify_cloud.h"
@@ -37,6 +39,22 @@ struct LabelledCloud {
   std::vector<float> p_sharp, p_smooth;
   std::vector<std::uint8_t> partial = {};
 };
+
+void check_input(const std::string& input) {
+  std::error_code ignored;
+  if (!fs::is_directory(input, ignored)) return;
+  throw Error(ErrorKind::kUsage,
+              input + ": is a folder; lines takes one cloud: give its files one by one");
+}
+
+/// Lines that were drawn before are no points of a surface.
+void warn_of_lines(const std::string& file, const PointCloud& cloud) {
+  const auto is_edge = [](const ForeignElement& element) {
+    return element.header.starts_with("element edge ");
+  };
+  if (std::none_of(cloud.foreign_elements.begin(), cloud.foreign_elements.end(), is_edge)) return;
+  warn(file + ": has lines (element edge): their vertices are taken for points");
+}
 
 /// Throws before any work if the output could not be written after it.
 void check_outputs(const LinesArguments& arguments) {
@@ -130,6 +148,7 @@ void read_labelled(const LinesArguments& arguments, StageClock& clock, LabelledC
   clock.begin("read");
   PointCloud& cloud = labelled.cloud;
   cloud = read_cloud(arguments.input);
+  warn_of_lines(arguments.input, cloud);
   throw_if_cancelled(&clock.progress());
   std::vector<std::uint8_t> given = formats::labels_of(cloud, arguments.input);
   if (!arguments.classify) check_edges(arguments.input, classes_of(cloud.comments));
@@ -219,8 +238,30 @@ void read_labelled_in_tiles(const LinesArguments& arguments, const TilesNeeded& 
   }
 }
 
+/// Finds the curves; also those shorter than a given --min-length, which filter_lines() counts.
+std::vector<Curve> find_curves(const LinesArguments& arguments, const LabelledCloud& labelled,
+                               const Progress& progress, lines::LineScale& scale) {
+  const double min_length = arguments.lines.min_length;
+  lines::LineOptions options = arguments.lines;
+  if (min_length > 0.0) options.min_length = std::numeric_limits<double>::min();
+  std::vector<Curve> curves;
+  with_name_in_errors(arguments.input, [&] {
+    curves = lines::find_lines({.positions = labelled.prepared.positions,
+                                .normals = labelled.prepared.normals,
+                                .classes = labelled.classes,
+                                .p_sharp = labelled.p_sharp,
+                                .p_smooth = labelled.p_smooth,
+                                .partial = labelled.partial,
+                                .curve = labelled.prepared.curve},
+                               options, &progress, &scale);
+  });
+  if (min_length > 0.0) scale.min_length = min_length;
+  return curves;
+}
+
 void run(LinesArguments arguments, const Common& common) {
   arguments.drawing.overwrite = common.overwrite();
+  check_input(arguments.input);
   check_outputs(arguments);
   find_model(arguments.model.name);  // throws before the work
   StageClock clock(console_progress(common));
@@ -233,20 +274,12 @@ void run(LinesArguments arguments, const Common& common) {
   }
   const PointCloud& cloud = labelled.cloud;
   clock.begin("lines");
-  std::vector<Curve> curves;
-  with_name_in_errors(arguments.input, [&] {
-    curves = lines::find_lines({.positions = labelled.prepared.positions,
-                                .normals = labelled.prepared.normals,
-                                .classes = labelled.classes,
-                                .p_sharp = labelled.p_sharp,
-                                .p_smooth = labelled.p_smooth,
-                                .partial = labelled.partial,
-                                .curve = labelled.prepared.curve},
-                               arguments.lines, &clock.progress());
-  });
+  lines::LineScale scale;
+  std::vector<Curve> curves = find_curves(arguments, labelled, clock.progress(), scale);
   const std::string left_out = filter_lines(arguments, curves);
   clock.begin("write");
   arguments.drawing.tolerance = arguments.lines.tolerance;
+  arguments.drawing.fit_tolerance = scale.tolerance;
   arguments.drawing.coordinate_system = io::las_coordinate_system(cloud);
   for (const std::string& output : arguments.outputs) {
     warn_of_losses(output, io::drawing_losses(output, arguments.drawing));
@@ -258,8 +291,7 @@ void run(LinesArguments arguments, const Common& common) {
         arguments.preview.path, cloud, {},
         {.view_direction = arguments.preview.direction, .overwrite = common.overwrite()}, curves);
   }
-  report_lines(arguments, curves, left_out);
-  if (curves.empty()) say("  no edges: what was written holds no lines");
+  report_lines(arguments, scale, curves, left_out);
   say("  seconds: " + clock.seconds());
   for (const std::string& output : arguments.outputs) say("  -> " + output);
   if (!arguments.preview.path.empty()) say("  -> " + arguments.preview.path);

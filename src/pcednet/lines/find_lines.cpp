@@ -48,6 +48,11 @@ Limits limits_of(const LineOptions& options, const Sampling& sampling) {
           .angle = options.angle * std::numbers::pi / 180.0};
 }
 
+LineScale scale_of(const Sampling& sampling, const Limits& limits) {
+  return {sampling.spacing, sampling.noise, limits.min_length, limits.gap,
+          limits.tolerance * sampling.spacing};
+}
+
 void check(const EdgePoints& points, const LineOptions& options) {
   for (const double number : {options.min_length, options.gap, options.angle, options.tolerance}) {
     if (!(number >= 0.0) || !std::isfinite(number)) {
@@ -182,11 +187,12 @@ std::vector<Curve> long_ones(std::vector<Curve> curves, double min_length) {
 }  // namespace
 
 std::vector<Curve> find_lines(const EdgePoints& points, const LineOptions& options,
-                              const Progress* progress) {
+                              const Progress* progress, LineScale* scale) {
   check(points, options);
   const OrderedPoints cloud(points);
   const Sampling sampling = measure_sampling(cloud);
   const Limits limits = limits_of(options, sampling);
+  if (scale) *scale = scale_of(sampling, limits);
   if (options.boundaries && points.partial.empty()) {
     if (auto pieces = find_plane_edges(cloud, sampling, progress)) {
       if (options.regularise) regularise(*pieces);

@@ -43,6 +43,13 @@ struct EdgePoints {
   std::span<const std::uint32_t> curve = {};  ///< spatial::curve_order() of the positions, if known
 };
 
+/// What was measured of the cloud, and the lengths that the options came to, in its unit.
+struct LineScale {
+  double spacing = 0.0;  ///< the side of the square that holds one point, median
+  double noise = 0.0;    ///< of points about the plane of their neighbours, in spacings
+  double min_length = 0.0, gap = 0.0, tolerance = 0.0;
+};
+
 /// The edges of the cloud as curves that share their corners.
 ///
 /// 1. A crease is fitted beside every edge point: where the planes of two surfaces meet.
@@ -53,10 +60,10 @@ struct EdgePoints {
 /// With boundaries, the lines of a roof come from its planes instead: see find_plane_edges(). Gap,
 /// angle and tolerance are not used there, and every stage but the last returns its pieces.
 ///
-/// The result is the same for any number of threads and any order of the points. Throws
-/// Error(kUsage) if an option is negative or not finite, if the spans differ in length, or if a
-/// probability is not in [0, 1].
+/// Fills in `scale`, if given. The result is the same for any number of threads and any order of
+/// the points. Throws Error(kUsage) if an option is negative or not finite, if the spans differ in
+/// length, or if a probability is not in [0, 1].
 std::vector<Curve> find_lines(const EdgePoints& points, const LineOptions& options = {},
-                              const Progress* progress = nullptr);
+                              const Progress* progress = nullptr, LineScale* scale = nullptr);
 
 }  // namespace pcednet::lines

@@ -97,15 +97,15 @@ std::vector<std::string> drawing_losses(const std::filesystem::path& path,
   const CoordinateSystem& system = options.coordinate_system;
   if (!is_geojson || system.epsg > 0 || system.geographic) return {};
   return {
-      "that its coordinates are no degrees of WGS 84, for which readers take them without an EPSG "
-      "code; GeoPackage does"};
+      "that its coordinates are lengths: without an EPSG code, readers take them for degrees of "
+      "WGS 84; GeoPackage avoids that"};
 }
 
 std::vector<Vec3> drawn(const Curve& curve, const DrawingOptions& options) {
   if (options.tolerance > 0.0) return sampled(curve, options.tolerance);
   const double of_radius = curve.radius / 1000.0;
-  return sampled(curve, options.fit_tolerance > 0.0 ? std::min(of_radius, options.fit_tolerance)
-                                                    : of_radius);
+  return sampled(
+      curve, options.fit_tolerance > 0.0 ? std::min(of_radius, options.fit_tolerance) : of_radius);
 }
 
 LineMesh line_mesh(Curves curves, const DrawingOptions& options) {
