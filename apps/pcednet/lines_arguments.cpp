@@ -1,6 +1,7 @@
 #include "lines_arguments.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -8,6 +9,7 @@
 #include <string>
 
 #include "common.h"
+#include "crs_option.h"
 #include "number_options.h"
 #include "pcednet/io/length_units.h"
 #include "pcednet/io/text_scan.h"
@@ -75,37 +77,40 @@ void add_drawing_options(CLI::App& command, LinesArguments& arguments) {
   command
       .add_option("--min-points", arguments.min_points, "Leave out curves with fewer edge points")
       ->capture_default_str();
-  const auto of_format = [&arguments](CLI::Option* option, const std::string& extension) {
-    option->each([&arguments, name = option->get_name(), extension](const std::string&) {
-      arguments.of_formats.emplace_back(name, extension);
+  const auto of_formats = [&arguments](CLI::Option* option,
+                                       const std::vector<std::string>& extensions) {
+    option->each([&arguments, name = option->get_name(), extensions](const std::string&) {
+      arguments.of_formats.emplace_back(name, extensions);
     });
   };
-  of_format(add_choice(command, "--dxf-version", arguments.drawing.dxf_version,
-                       {{"2000", io::DxfVersion::k2000}, {"r12", io::DxfVersion::kR12}},
-                       "DXF: of AutoCAD 2000, which all later ones read, or R12 for old programs"),
-            ".dxf");
-  of_format(
+  of_formats(add_choice(command, "--dxf-version", arguments.drawing.dxf_version,
+                        {{"2000", io::DxfVersion::k2000}, {"r12", io::DxfVersion::kR12}},
+                        "DXF: of AutoCAD 2000, which all later ones read, or R12 for old programs"),
+             {".dxf"});
+  of_formats(
       add_choice(command, "--view", arguments.drawing.view,
                  {{"top", io::View::kTop}, {"front", io::View::kFront}, {"side", io::View::kSide}},
                  "SVG: seen from above, from the front (x, z) or from the side (y, z)"),
-      ".svg");
+      {".svg"});
   Choices<std::optional<io::LengthUnit>> units;
   for (const auto& entry : io::length_units()) units.emplace_back(entry.name, entry.unit);
-  of_format(add_choice(
-                command, "--unit", arguments.drawing.unit, units,
-                "DXF: the unit of the coordinates (default: that of the coordinate system of a LAS "
-                "file, otherwise none)"),
-            ".dxf");
+  of_formats(
+      add_choice(
+          command, "--unit", arguments.drawing.unit, units,
+          "DXF: the unit of the coordinates (default: that of the coordinate system of a LAS "
+          "file, otherwise none)"),
+      {".dxf"});
+  of_formats(add_crs_option(command, arguments.crs), {".gpkg", ".geojson", ".dxf"});
 }
 
 void check_format_options(const LinesArguments& arguments) {
-  for (const auto& [option, extension] : arguments.of_formats) {
-    const auto is_it = [&](const std::filesystem::path& output) {
-      return io::extension_of(output) == extension;
+  for (const auto& [option, extensions] : arguments.of_formats) {
+    const auto is_one = [&, &its = extensions](const std::filesystem::path& output) {
+      return std::find(its.begin(), its.end(), io::extension_of(output)) != its.end();
     };
-    if (std::any_of(arguments.outputs.begin(), arguments.outputs.end(), is_it)) continue;
-    throw Error(ErrorKind::kUsage,
-                fmt::format("{} is for {} files, and none is an output", option, extension));
+    if (std::any_of(arguments.outputs.begin(), arguments.outputs.end(), is_one)) continue;
+    throw Error(ErrorKind::kUsage, fmt::format("{} is for {} files, and none is an output", option,
+                                               fmt::join(extensions, " ")));
   }
   if (arguments.drawing.unit && arguments.drawing.dxf_version == io::DxfVersion::kR12) {
     throw Error(ErrorKind::kUsage, "--unit has no effect with --dxf-version r12: R12 has no unit");

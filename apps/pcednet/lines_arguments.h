@@ -1,12 +1,14 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "models.h"
 #include "pcednet/detect/prepare.h"
+#include "pcednet/io/coordinate_system.h"
 #include "pcednet/io/drawing/drawing.h"
 #include "pcednet/lines/find_lines.h"
 #include "preview_options.h"
@@ -26,8 +28,9 @@ struct LinesArguments {
   double min_confidence = 0.0, min_dihedral = 0.0;
   std::size_t min_points = 0;
   io::DrawingOptions drawing;
-  /// Options of one format that were given, each with the extension of that format.
-  std::vector<std::pair<std::string, std::string>> of_formats;
+  std::optional<io::CoordinateSystem> crs;  ///< absent: that of the file
+  /// Options of some formats that were given, each with the extensions of these.
+  std::vector<std::pair<std::string, std::vector<std::string>>> of_formats;
 };
 
 /// Adds the options of finding curves.

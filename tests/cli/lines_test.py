@@ -199,6 +199,35 @@ class Lines(CliTest):
         crs = json.loads(self.made["geojson"].read_text())["crs"]
         self.assertEqual(crs["properties"]["name"], "urn:ogc:def:crs:EPSG::25832")
         self.assertIn("$INSUNITS\n 70\n6\n", self.made["dxf"].read_text())
+        done = run("lines", path, *self.outputs("geojson"), "--crs", "EPSG:25833", "--overwrite")
+        self.assertIn("names another coordinate system, EPSG:25832: that of --crs", done.stderr)
+        self.assertIn("EPSG::25833", self.made["geojson"].read_text())
+
+    def test_crs_names_the_coordinate_system_of_a_file_that_does_not(self):
+        path = self.labelled_cube()
+        without = run("lines", path, *self.outputs("geojson")).stderr
+        self.assertIn("does not keep: that its coordinates are lengths", without)
+        done = run("lines", path, *self.outputs(), "--crs", "EPSG:25832", "--overwrite")
+        self.assertNotIn("does not keep", done.stderr)
+        self.assertNotIn("another coordinate system", done.stderr)
+        crs = json.loads(self.made["geojson"].read_text())["crs"]
+        self.assertEqual(crs["properties"]["name"], "urn:ogc:def:crs:EPSG::25832")
+        if "gpkg" in FORMATS:
+            database = sqlite3.connect(self.made["gpkg"])
+            srs, = database.execute("SELECT srs_id FROM gpkg_contents")
+            database.close()
+            self.assertEqual(srs, (25832,))
+        # A build without PROJ takes any code, and does not know its unit.
+        unknown = subprocess.run([PROGRAM, "lines", path, "-o", self.folder / "u.dxf", "--crs", "EPSG:999999"],
+                                 capture_output=True, text=True)
+        if unknown.returncode != 0:
+            self.assertEqual(unknown.returncode, 2)
+            self.assertIn("PROJ knows no such system", unknown.stderr)
+            self.assertIn("$INSUNITS\n 70\n6\n", self.made["dxf"].read_text())
+        run("lines", path, "-o", self.folder / "a.obj", "--crs", "epsg:25832", expect=2)
+        for bad in ("25832", "EPSG:", "EPSG:0", "EPSG:-1", "EPSG:1e4", "EPSG:99999999999", ""):
+            done = run("lines", path, "-o", self.folder / "b.dxf", "--crs=" + bad, expect=2)
+            self.assertIn("--crs", done.stderr)
 
     def test_labels_are_used_unless_asked_otherwise(self):
         p, n, _ = cube(4000)

@@ -259,6 +259,19 @@ std::vector<Curve> find_curves(const LinesArguments& arguments, const LabelledCl
   return curves;
 }
 
+/// That of --crs, otherwise of the file.
+io::CoordinateSystem coordinate_system(const LinesArguments& arguments, const PointCloud& cloud) {
+  io::CoordinateSystem own = io::las_coordinate_system(cloud);
+  if (!arguments.crs) return own;
+  const bool has_other =
+      own.epsg > 0 ? own.epsg != arguments.crs->epsg : !own.wkt.empty() || own.geographic;
+  if (has_other) {
+    warn(fmt::format("{}: names another coordinate system{}: that of --crs is used",
+                     arguments.input, own.epsg > 0 ? fmt::format(", EPSG:{}", own.epsg) : ""));
+  }
+  return *arguments.crs;
+}
+
 void run(LinesArguments arguments, const Common& common) {
   arguments.drawing.overwrite = common.overwrite();
   check_input(arguments.input);
@@ -280,7 +293,7 @@ void run(LinesArguments arguments, const Common& common) {
   clock.begin("write");
   arguments.drawing.tolerance = arguments.lines.tolerance;
   arguments.drawing.fit_tolerance = scale.tolerance;
-  arguments.drawing.coordinate_system = io::las_coordinate_system(cloud);
+  arguments.drawing.coordinate_system = coordinate_system(arguments, cloud);
   for (const std::string& output : arguments.outputs) {
     warn_of_losses(output, io::drawing_losses(output, arguments.drawing));
     io::write_drawing(output, curves, arguments.drawing);

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <optional>
+
+#include "pcednet/io/coordinate_system.h"
+
+namespace pcednet::app {
+
+/// Adds --crs, which sets `system` to that of a code of EPSG, as far as PROJ knows it. A code that
+/// PROJ does not know is refused.
+CLI::Option* add_crs_option(CLI::App& command, std::optional<io::CoordinateSystem>& system);
+
+}  // namespace pcednet::app
