@@ -81,6 +81,9 @@ TEST(Drawing, CurvesShareTheirCornersInObjAndPly) {
   EXPECT_TRUE(contains(obj, "\nv 0.1 0 0\nv 1 0 0\nv 1 1 0\no sharp-edge\n"));
   EXPECT_TRUE(contains(obj, "\nl 1 2\n"));
   EXPECT_TRUE(contains(obj, "\nl 3 1\n"));
+  EXPECT_FALSE(contains(obj, "radius"));
+  write_drawing(scratch.path("round.obj"), std::vector{make_circle(a, Vec3::UnitZ(), 0.75)});
+  EXPECT_TRUE(contains(bytes_of(scratch.path("round.obj")), ", radius 0.75\nl 1 2 "));
   write_drawing(scratch.path("a.ply"), triangle);
   EXPECT_TRUE(contains(bytes_of(scratch.path("a.ply")), "element vertex 3\n"));
 }

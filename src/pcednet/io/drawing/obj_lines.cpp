@@ -12,8 +12,10 @@ namespace {
 void append_curve(std::string& text, const lines::Curve& curve,
                   const std::vector<std::size_t>& chain) {
   const auto out = std::back_inserter(text);
-  fmt::format_to(out, "# {} {}, length {}, confidence {}\nl", line_class(curve.edge_class).name,
+  fmt::format_to(out, "# {} {}, length {}, confidence {}", line_class(curve.edge_class).name,
                  name_of(curve.kind), length_of(curve), curve.confidence);
+  if (curve.radius > 0.0) fmt::format_to(out, ", radius {}", curve.radius);
+  text += "\nl";
   for (const std::size_t vertex : chain) fmt::format_to(out, " {}", vertex + 1);
   text += '\n';
 }
