@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <numbers>
 #include <set>
@@ -184,7 +185,17 @@ TEST(Dxf, KeepsEveryBitOfLinesOnTheirLayers) {
     const std::vector<std::string> layers = {"sharp-edge", "smooth-edge", "boundary", "smooth-edge",
                                              "sharp-edge"};
     const std::size_t first[] = {0, 1, 6, 11, 12};
-    for (std::size_t i = 0; i < 5; ++i) EXPECT_EQ(found[first[i]].text(8), layers[i]);
+    for (std::size_t i = 0; i < 5; ++i) {
+      EXPECT_EQ(found[first[i]].text(8), layers[i]);
+      EXPECT_EQ(found[first[i]].text(1001), "PCEDNET");
+    }
+    // Values of one code stand in the order of the file.
+    const auto names = found[0].values.equal_range(1000),
+               numbers = found[0].values.equal_range(1040);
+    EXPECT_EQ(names.first->second, "confidence");
+    EXPECT_EQ(std::next(names.first)->second, "dihedral_angle");
+    EXPECT_EQ(numbers.first->second, "0.9375");
+    EXPECT_EQ(std::next(numbers.first)->second, "90.0");
   }
 }
 
@@ -204,6 +215,7 @@ TEST(Dxf, HasWhatItsVersionMustHave) {
     EXPECT_EQ(object.values.count(5) + object.values.count(100) + object.values.count(330), 0u)
         << object.type;
   }
+  EXPECT_EQ(names_in(old, "APPID").count("PCEDNET"), 1u);
   const auto layers = names_in(old, "LAYER");
   EXPECT_EQ(layers, (std::set<std::string>{"0", "sharp-edge", "smooth-edge", "boundary"}));
 

@@ -13,11 +13,21 @@ namespace {
 using lines::Curve;
 using lines::CurveKind;
 
+/// The attributes that DXF has no place for, as data of an application.
+void write_attributes(DxfText& dxf, const Curve& curve) {
+  dxf.text(1001, kDxfApplication);
+  dxf.text(1000, "confidence");
+  dxf.number(1040, curve.confidence);
+  dxf.text(1000, "dihedral_angle");
+  dxf.number(1040, dihedral_degrees(curve));
+}
+
 void write_line(DxfText& dxf, const Curve& curve, std::string_view layer, std::uint64_t owner) {
   dxf.begin_drawn("LINE", owner, layer);
   dxf.subclass("AcDbLine");
   dxf.point(10, curve.points.front());
   dxf.point(11, curve.points.back());
+  write_attributes(dxf, curve);
 }
 
 /// The direction of `to` seen from the centre, in degrees of [0, 360).
@@ -49,12 +59,13 @@ void write_round(DxfText& dxf, const Curve& curve, std::string_view layer, std::
   dxf.point(10, axes.transpose() * curve.centre);
   dxf.number(40, curve.radius);
   dxf.point(210, normal);
-  if (whole) return;
+  if (whole) return write_attributes(dxf, curve);
   dxf.subclass("AcDbArc");
   const Vec3& from = turn ? curve.points.back() : curve.points.front();
   const Vec3& to = turn ? curve.points.front() : curve.points.back();
   dxf.number(50, degrees_in(axes, from - curve.centre));
   dxf.number(51, degrees_in(axes, to - curve.centre));
+  write_attributes(dxf, curve);
 }
 
 void write_polyline(DxfText& dxf, const Curve& curve, std::string_view layer, std::uint64_t owner) {
@@ -64,6 +75,7 @@ void write_polyline(DxfText& dxf, const Curve& curve, std::string_view layer, st
   dxf.integer(66, 1);
   dxf.point(10, Vec3::Zero());
   dxf.integer(70, kInSpace | (curve.closed ? kClosed : 0));
+  write_attributes(dxf, curve);
   for (const Vec3& point : curve.points) {
     dxf.begin_drawn("VERTEX", own, layer);
     dxf.subclass("AcDbVertex");

@@ -109,6 +109,15 @@ void write_styles(DxfText& dxf) {
   end_table(dxf);
 }
 
+void write_applications(DxfText& dxf) {
+  const std::uint64_t table = begin_table(dxf, "APPID", 2);
+  for (const std::string_view name : {std::string_view("ACAD"), kDxfApplication}) {
+    begin_entry(dxf, "APPID", table, "AcDbRegAppTableRecord", name);
+    dxf.integer(70, 0);
+  }
+  end_table(dxf);
+}
+
 void write_dimension_styles(DxfText& dxf) {
   const std::uint64_t table = begin_table(dxf, "DIMSTYLE", 1);
   dxf.subclass("AcDbDimStyleTable");
@@ -141,10 +150,9 @@ DxfHandles write_dxf_tables(DxfText& dxf, const BoundingBox& box) {
     write_styles(dxf);
     write_empty_table(dxf, "VIEW");
     write_empty_table(dxf, "UCS");
-    const std::uint64_t table = begin_table(dxf, "APPID", 1);
-    begin_entry(dxf, "APPID", table, "AcDbRegAppTableRecord", "ACAD");
-    dxf.integer(70, 0);
-    end_table(dxf);
+  }
+  write_applications(dxf);
+  if (dxf.has_handles()) {
     write_dimension_styles(dxf);
     handles = write_block_records(dxf);
   }

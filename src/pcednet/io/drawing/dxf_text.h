@@ -48,6 +48,9 @@ class DxfText {
   std::uint64_t next_handle_ = 1;
 };
 
+/// The name under which the attributes of curves stand.
+inline constexpr std::string_view kDxfApplication = "PCEDNET";
+
 /// The axes of the plane with that normal, unit: DXF's arbitrary axis algorithm. Columns x, y, z.
 Mat3 dxf_plane_axes(const Vec3& normal);
 
@@ -56,7 +59,8 @@ struct DxfHandles {
   std::uint64_t model_space = 0, paper_space = 0;  ///< their block records
 };
 
-/// Tables of line types, layers and, from 2000 on, all others; the active view shows `box`.
+/// Tables of line types, layers, applications and, from 2000 on, all others; the active view shows
+/// `box`.
 DxfHandles write_dxf_tables(DxfText& dxf, const BoundingBox& box);
 
 /// The blocks and objects that a drawing must have from 2000 on.
