@@ -26,12 +26,13 @@ class PlanFile : public testing::Test, protected test::OwnFolder {
                    {"/elsewhere/b.laz", 99, false, {{10, 10, {}, "d2"}, {1, 0, {}, "d3"}}}};
     plan.las_steps = {0.01, 0, 0.01, 0, 0.01, 0.1};
     plan.box = {{0, 1, 2}, {3, 4, 0.1 + 0.2}};
-    plan.model = {"general", "/models/general.safetensors", "abc", false, true, true};
+    plan.model = {"general", "/models/general.safetensors", "abc", false, true, false};
     plan.s_min = 0.1, plan.s_max = 1.0 / 3.0;
     plan.normals = {true, 24, true, true, {0.01, {-1.0, 2.0, 0.5}, 0.04}};
     plan.pyramids = {
         {{0, 1, 2}, 3.0, {{false, gls::Crowd::kKeep}, {true, gls::Crowd::kMergeByAxis}}},
-        {{0, 1, 2}, 3.0, {{true, gls::Crowd::kKeep}}}};
+        {{0, 1, 2}, 3.0, {{true, gls::Crowd::kKeep}, {false, gls::Crowd::kMerge}}}};
+    plan.pyramids.resize(4, plan.pyramids.back());
     plan.grid = {0.1, 7};
     plan.buffer = 0.7, plan.reach = 0.3, plan.memory = 5'000'000'000;
     plan.tiles = {{0, -1, 50001, folder_ / "tiles/0.laz"}, {1, -1, 10, folder_ / "tiles/1.laz"}};
@@ -57,15 +58,15 @@ TEST_F(PlanFile, ComesBackAsItWas) {
   EXPECT_EQ(back.las_steps, plan.las_steps);
   EXPECT_EQ(back.box.max, plan.box.max);
   EXPECT_EQ(back.model.path, plan.model.path);
-  EXPECT_FALSE(back.model.context);
-  EXPECT_TRUE(back.model.exact);
+  EXPECT_FALSE(back.model.context || back.model.exact);
+  EXPECT_TRUE(back.model.boundary);
   EXPECT_EQ(back.s_max, 1.0 / 3.0);
   EXPECT_EQ(back.normals.neighbours, 24u);
   EXPECT_EQ(back.normals.rounding.step, 0.01);
   EXPECT_EQ(back.normals.rounding.origin, Vec3(-1.0, 2.0, 0.5));
   EXPECT_EQ(back.normals.rounding.spacing, 0.04);
   EXPECT_TRUE(back.normals.made && back.normals.exact_planes && back.normals.exact);
-  ASSERT_EQ(back.pyramids.size(), 2u);
+  ASSERT_EQ(back.pyramids.size(), 4u);
   EXPECT_EQ(back.pyramids[0].levels, plan.pyramids[0].levels);
   EXPECT_EQ(back.pyramids[1].levels, plan.pyramids[1].levels);
   EXPECT_EQ(back.grid.length(), plan.grid.length());
@@ -147,6 +148,32 @@ TEST_F(PlanFile, SaysWhatIsWrongInAPlainSentence) {
   wrong = whole;
   wrong["pyramids"][0]["levels"][0][1] = "heap";
   EXPECT_EQ(said(wrong), none + ": \"pyramids\" is missing or damaged");
+}
+
+TEST_F(PlanFile, HasPyramidsForEveryOctaveAndScale) {
+  const auto is_refused = [&](const auto& damage) {
+    Plan plan = some_plan();
+    damage(plan);
+    write_plan(folder_ / "p.json", plan, Overwrite::kYes);
+    try {
+      read_plan(folder_ / "p.json");
+    } catch (const Error& error) {
+      return std::string(error.what()).ends_with(": \"pyramids\" is damaged");
+    }
+    return false;
+  };
+  EXPECT_TRUE(is_refused([](Plan& plan) { plan.pyramids.clear(); }));
+  EXPECT_TRUE(is_refused([](Plan& plan) { plan.pyramids.pop_back(); }));
+  EXPECT_TRUE(is_refused([](Plan& plan) { plan.pyramids.resize(5, plan.pyramids.front()); }));
+  EXPECT_TRUE(is_refused([](Plan& plan) { plan.pyramids[2].levels.pop_back(); }));
+  EXPECT_TRUE(is_refused([](Plan& plan) { plan.pyramids[0].side = -3.0; }));
+  EXPECT_TRUE(is_refused([](Plan& plan) { plan.pyramids[3].corner.y() += 1.0; }));
+  EXPECT_TRUE(is_refused([](Plan& plan) { plan.model.exact = true; }));
+  EXPECT_FALSE(is_refused([](Plan& plan) { plan.pyramids.resize(1); }));
+  EXPECT_FALSE(is_refused([](Plan& plan) {
+    plan.model.exact = true;
+    for (auto& pyramid : plan.pyramids) pyramid.levels.clear();
+  }));
 }
 
 TEST_F(PlanFile, KnowsWhichTilesAreDone) {

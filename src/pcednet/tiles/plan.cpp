@@ -11,6 +11,7 @@
 
 #include "pcednet/core/error.h"
 #include "pcednet/core/version.h"
+#include "pcednet/detect/octaves.h"
 #include "pcednet/io/input_file.h"
 #include "pcednet/tiles/sha256.h"
 
@@ -222,6 +223,18 @@ Plan plan_of(const json& j, const Paths& paths, std::string& member) {
   return plan;
 }
 
+/// Whether a plan may have such pyramids; how many levels there are depends on the model.
+bool are_sound(const std::vector<gls::PyramidPlan>& pyramids, const Plan& plan) {
+  if (pyramids.size() != 1 && pyramids.size() != detect::kOctaves) return false;
+  const double side = (plan.box.max - plan.box.min).maxCoeff();
+  const std::size_t levels = pyramids.front().levels.size();
+  return (levels == 0 || !plan.model.exact) &&
+         std::all_of(pyramids.begin(), pyramids.end(), [&](const gls::PyramidPlan& pyramid) {
+           return pyramid.levels.size() == levels && pyramid.corner == plan.box.min &&
+                  pyramid.side == side;
+         });
+}
+
 /// The name of a member with a value that no plan has; empty if all are sound.
 std::string unsound_member(const Plan& plan) {
   const auto is_length = [](double v) { return std::isfinite(v) && v >= 0.0; };
@@ -230,6 +243,7 @@ std::string unsound_member(const Plan& plan) {
   if (!is_length(plan.buffer)) return "buffer";
   if (!is_length(plan.reach)) return "reach";
   if (!(0.0 < plan.s_min && plan.s_min < plan.s_max)) return "scales";
+  if (!are_sound(plan.pyramids, plan)) return "pyramids";
   if (plan.memory == 0) return "memory";
   if (!plan.las_steps.empty() && plan.las_steps.size() != 6) return "las_steps";
   if (plan.inputs.empty()) return "inputs";

@@ -8,6 +8,7 @@
 #include "pcednet/detect/boundary.h"
 #include "pcednet/detect/classify.h"
 #include "pcednet/detect/decide.h"
+#include "pcednet/detect/octaves.h"
 #include "pcednet/detect/part_of_cloud.h"
 #include "pcednet/detect/result_cloud.h"
 #include "pcednet/formats/write_cloud.h"
@@ -67,6 +68,20 @@ void keep_first(std::size_t points, detect::PreparedCloud& prepared,
   found.p_smooth.resize(points);
   found.p_class.resize(std::min(points, found.p_class.size()));
   found.counts = detect::count_classes(found.classes);
+}
+
+/// Throws where the decisions on voxels are not those that the model needs.
+void check_pyramids(const Plan& plan, const gls::ScaleSpaceOptions& descriptor) {
+  const bool has_octaves = detect::has_octaves(descriptor, plan.s_min, plan.s_max);
+  const bool has_levels = !plan.model.exact && gls::fits_spheres(descriptor.reconstruction);
+  const std::size_t levels = has_levels ? static_cast<std::size_t>(descriptor.scales) : 0;
+  if (plan.pyramids.size() == (has_octaves ? detect::kOctaves : 1) &&
+      plan.pyramids.front().levels.size() == levels) {
+    return;
+  }
+  throw Error(ErrorKind::kUnreadable,
+              fmt::format("{}: not a plan of tiles: \"pyramids\" does not fit the model",
+                          plan.path.string()));
 }
 
 /// Takes the numbers from sort_inputs(), if present; otherwise those of the reading order.
@@ -140,6 +155,7 @@ detect::EdgeModel load_planned_model(const Plan& plan) {
   model.descriptor.s_min = plan.s_min;
   model.descriptor.s_max = plan.s_max;
   model.descriptor.engine = plan.model.exact ? gls::Engine::kExact : gls::Engine::kFast;
+  check_pyramids(plan, model.descriptor);
   return model;
 }
 

@@ -29,7 +29,8 @@ struct TileFindings {
 /// planned.
 TileCloud read_tile(const Plan& plan, std::size_t tile, const Progress* progress = nullptr);
 
-/// The model of a plan, used as planned. Throws Error(kModelMismatch) if the file is another.
+/// The model of a plan, used as planned. Throws Error(kModelMismatch) if the file is another,
+/// Error(kUnreadable) for decisions on voxels that no plan with this model has.
 detect::EdgeModel load_planned_model(const Plan& plan);
 
 /// Classifies the core of a tile; without a model only makes its normals. Leaves `points.all`
