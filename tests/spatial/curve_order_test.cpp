@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "pcednet/core/random.h"
+#include "support/expect_error.h"
 
 namespace pcednet::spatial {
 namespace {
@@ -70,6 +71,13 @@ TEST(CurveOrder, SurvivesTheLargestCoordinates) {
   points.push_back(Vec3::Constant(-1.7e308));
   points.push_back(Vec3::Constant(1.7e308));
   EXPECT_EQ(curve_order(points).size(), points.size());
+}
+
+TEST(CurveOrder, RefusesMorePointsThanIndicesCount) {
+  const Vec3 point = Vec3::Zero();  // the others are not read
+  for (const std::size_t count : {std::size_t{0xffffffff}, std::size_t{1} << 32}) {
+    EXPECT_ERROR(ErrorKind::kFailure, curve_order({&point, count}));
+  }
 }
 
 }  // namespace

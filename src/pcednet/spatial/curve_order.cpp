@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <iterator>
+#include <limits>
+#include <string>
 
 #include "pcednet/cloud/bounding_box.h"
+#include "pcednet/core/error.h"
 #include "pcednet/core/parallel_loops.h"
 #include "pcednet/core/unset_array.h"
 #include "pcednet/spatial/morton.h"
@@ -15,6 +18,8 @@ namespace {
 constexpr int kBits = 21;
 constexpr double kCells = (1 << kBits) - 1;
 constexpr std::size_t kCodesAtOnce = 1 << 14;
+/// Indices have 32 bits, and the largest often stands for no point.
+constexpr std::size_t kMostPoints = std::numeric_limits<std::uint32_t>::max() - std::size_t{1};
 constexpr std::size_t kFew = 64;  // up to this many are compared instead of getting finer keys
 
 bool is_before(const Vec3& p, const Vec3& q) {
@@ -67,6 +72,10 @@ void sort_along_curve(std::span<const Vec3> positions, std::span<Keyed> keyed) {
 }  // namespace
 
 std::vector<std::uint32_t> curve_order(std::span<const Vec3> positions) {
+  if (positions.size() > kMostPoints) {
+    throw Error(ErrorKind::kFailure, std::to_string(positions.size()) +
+                                         " points: in one piece at most 2^32 - 2 are possible");
+  }
   const auto finite = counts_before_blocks(positions.size(), kCodesAtOnce,
                                            [&](std::size_t i) { return positions[i].allFinite(); });
   UnsetArray<Keyed> keyed(finite.back());

@@ -13,7 +13,8 @@ namespace pcednet::spatial {
 /// space at any density.
 ///
 /// The order depends on the set of positions, not on their numbering; coincident points keep the
-/// order of their indices. Points that are not finite are left out. At most 2^32 - 1 points.
+/// order of their indices. Points that are not finite are left out. Throws Error(kFailure) for more
+/// than 2^32 - 2 points.
 std::vector<std::uint32_t> curve_order(std::span<const Vec3> positions);
 
 /// Whether points at one place follow each other in their order along the curve.
