@@ -11,10 +11,6 @@
 namespace pcednet {
 namespace {
 
-bool lexicographically_less(const Vec3& a, const Vec3& b) {
-  return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3);
-}
-
 /// (0,0,0) for a vector that is zero or not finite.
 Vec3 unit(const Vec3& vector) {
   // The largest component first, so that neither huge nor tiny vectors overflow the square.
@@ -96,11 +92,10 @@ Defects find_defects(const PointCloud& cloud) {
     }
   }
   for (const Vec3& normal : cloud.normals) {
-    if (!normal.allFinite() || normal.isZero(0.0)) ++defects.normals;
+    if (!is_usable(normal)) ++defects.normals;
   }
   const auto& p = cloud.positions;
-  std::sort(order.begin(), order.end(),
-            [&](auto a, auto b) { return lexicographically_less(p[a], p[b]); });
+  std::sort(order.begin(), order.end(), [&](auto a, auto b) { return is_before(p[a], p[b]); });
   for (std::size_t i = 1; i < order.size(); ++i) {
     if (p[order[i]] == p[order[i - 1]]) ++defects.duplicates;
   }

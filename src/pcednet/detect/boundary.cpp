@@ -51,10 +51,6 @@ constexpr double kAcross = 0.7;  ///< and as much per length along the rim
 
 constexpr std::uint32_t kNone = 0xffffffff;
 
-bool is_before(const Vec3& a, const Vec3& b) {
-  return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
-}
-
 /// The finite positions along the curve, each once, in an order independent of their numbering.
 struct DistinctPoints {
   const PreparedCloud& cloud;

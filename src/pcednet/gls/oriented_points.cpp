@@ -17,7 +17,7 @@ namespace {
 bool is_less(const Vec3& a, const Vec3& b) {
   const Vec3 p = upward(a), q = upward(b);
   if (p == q) return points_down(a) && !points_down(b);
-  return std::lexicographical_compare(p.data(), p.data() + 3, q.data(), q.data() + 3);
+  return is_before(p, q);
 }
 
 bool are_copies(OrientedPoints points, std::uint32_t i, std::uint32_t j) {

@@ -22,10 +22,6 @@ constexpr std::size_t kCodesAtOnce = 1 << 14;
 constexpr std::size_t kMostPoints = std::numeric_limits<std::uint32_t>::max() - std::size_t{1};
 constexpr std::size_t kFew = 64;  // up to this many are compared instead of getting finer keys
 
-bool is_before(const Vec3& p, const Vec3& q) {
-  return std::lexicographical_compare(p.data(), p.data() + 3, q.data(), q.data() + 3);
-}
-
 /// Half the lower corner and half the longest side of the box (halves do not overflow).
 std::pair<Vec3, double> half_box(std::span<const Vec3> positions, std::span<const Keyed> keyed) {
   std::vector<BoundingBox> boxes((keyed.size() + kCodesAtOnce - 1) / kCodesAtOnce);

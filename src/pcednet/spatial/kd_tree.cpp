@@ -48,9 +48,7 @@ struct KdTree::Impl {
     std::sort(found.begin(), found.end(), [&](const Neighbour& a, const Neighbour& b) {
       if (a.sq_distance != b.sq_distance) return a.sq_distance < b.sq_distance;
       const Vec3 &p = points.positions[a.index], &q = points.positions[b.index];
-      if (p != q)
-        return std::lexicographical_compare(p.data(), p.data() + 3, q.data(), q.data() + 3);
-      return a.index < b.index;
+      return p != q ? is_before(p, q) : a.index < b.index;
     });
     renumber(found);
   }
