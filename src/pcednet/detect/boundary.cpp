@@ -13,9 +13,9 @@
 #include "pcednet/core/parallel.h"
 #include "pcednet/detect/decide.h"
 #include "pcednet/detect/part_of_cloud.h"
-#include "pcednet/spatial/curve_order.h"
 #include "pcednet/spatial/neighbour_search.h"
 #include "pcednet/spatial/opening.h"
+#include "pcednet/spatial/places.h"
 
 namespace pcednet::detect {
 namespace {
@@ -52,30 +52,19 @@ constexpr double kAcross = 0.7;  ///< and as much per length along the rim
 constexpr std::uint32_t kNone = 0xffffffff;
 
 /// The finite positions along the curve, each once, in an order independent of their numbering.
-struct DistinctPoints {
+struct DistinctPoints : spatial::Places {
   const PreparedCloud& cloud;
-  std::vector<Vec3> positions = {};
-  std::vector<std::uint32_t> first = {};  ///< place in the curve of each, and the curve's length
 
-  std::span<const std::uint32_t> copies(std::size_t point) const {
-    return std::span(cloud.curve).subspan(first[point], first[point + 1] - first[point]);
-  }
   /// The normal of a point; the first by its components if copies differ, zero if none is usable.
   Vec3 normal(std::size_t point) const {
     Vec3 found = Vec3::Zero();
-    for (const std::uint32_t copy : copies(point)) {
+    for (const std::uint32_t copy : points(point)) {
       const Vec3& normal = cloud.normals[copy];
       if (is_usable(normal) && (found.isZero(0.0) || is_before(normal, found))) found = normal;
     }
     return found;
   }
 };
-
-DistinctPoints distinct_points(const PreparedCloud& cloud) {
-  const auto firsts = spatial::firsts_of_places(cloud.positions, cloud.curve);
-  return {cloud, spatial::in_order(cloud.positions, firsts),
-          spatial::starts_of_places(cloud.positions, cloud.curve)};
-}
 
 /// A point with all its neighbours on one side.
 struct RimPoint {
@@ -244,15 +233,15 @@ std::vector<RimPoint> find_rims(const DistinctPoints& points, const Progress* pr
   const spatial::NeighbourSearch search(points.positions);
   if (search.available(kNeighbours) < kLeastNeighbours) return {};
   const PartOfCloud* part = points.cloud.part;
-  const bool whole = (part ? part->points : points.positions.size()) <= kMostWhole;
+  const bool whole = (part ? part->points : points.size()) <= kMostWhole;
   std::vector<std::uint32_t> todo;
-  for (std::size_t i = 0; i < points.positions.size(); ++i) {
+  for (std::size_t i = 0; i < points.size(); ++i) {
     if (whole || i % kStride < kTried) todo.push_back(static_cast<std::uint32_t>(i));
   }
-  std::vector<std::uint8_t> tried(points.positions.size(), 0);
+  std::vector<std::uint8_t> tried(points.size(), 0);
   for (const std::uint32_t i : todo) tried[i] = 1;
   std::vector<RimPoint> rims;
-  Stage stage(progress, "boundary", points.positions.size());
+  Stage stage(progress, "boundary", points.size());
   while (!todo.empty()) {
     const std::vector<RimPoint> found = rims_at(points, search, todo, stage);
     rims.insert(rims.end(), found.begin(), found.end());
@@ -291,7 +280,7 @@ bool goes_on(const RimPoint& rim, const DistinctPoints& points, std::span<const 
 
 /// Removes points whose rim does not continue, and the ends that this leaves.
 void remove_isolated(const DistinctPoints& points, std::vector<RimPoint>& rims) {
-  std::vector<std::uint32_t> rim_of(points.positions.size(), kNone);
+  std::vector<std::uint32_t> rim_of(points.size(), kNone);
   for (int round = 0; round < kBoundaryRounds; ++round) {
     for (std::size_t i = 0; i < rims.size(); ++i) {
       rim_of[rims[i].point] = static_cast<std::uint32_t>(i);
@@ -312,12 +301,12 @@ void remove_isolated(const DistinctPoints& points, std::vector<RimPoint>& rims) 
 }  // namespace
 
 std::vector<BoundaryPoint> find_boundary(const PreparedCloud& cloud, const Progress* progress) {
-  const DistinctPoints points = distinct_points(cloud);
+  const DistinctPoints points{spatial::places_of(cloud.positions, cloud.curve), cloud};
   std::vector<RimPoint> rims = find_rims(points, progress);
   remove_isolated(points, rims);
   std::vector<BoundaryPoint> boundary;
   for (const RimPoint& rim : rims) {
-    for (const std::uint32_t copy : points.copies(rim.point)) boundary.push_back({copy, rim.clear});
+    for (const std::uint32_t copy : points.points(rim.point)) boundary.push_back({copy, rim.clear});
   }
   std::sort(boundary.begin(), boundary.end(),
             [](const BoundaryPoint& a, const BoundaryPoint& b) { return a.point < b.point; });

@@ -14,7 +14,6 @@
 #include "pcednet/detect/principal_axes.h"
 #include "pcednet/gls/features.h"
 #include "pcednet/nn/predict.h"
-#include "pcednet/spatial/curve_order.h"
 
 namespace pcednet::detect {
 namespace {
@@ -116,6 +115,13 @@ void write_features(const Surroundings& around, const PrincipalAxes& axes, std::
                  [](double feature) { return static_cast<float>(feature); });
 }
 
+std::vector<std::uint32_t> labelled_points(std::span<const std::uint32_t> curve,
+                                           const Classification& found) {
+  std::vector<std::uint32_t> points(curve.begin(), curve.end());
+  std::erase_if(points, [&](std::uint32_t i) { return found.classes[i] == kUnlabelled; });
+  return points;
+}
+
 }  // namespace
 
 nn::Architecture context_architecture(int classes) {
@@ -126,20 +132,13 @@ nn::Architecture context_architecture(int classes) {
 
 ContextPlaces::ContextPlaces(std::span<const Vec3> positions, std::span<const std::uint32_t> curve,
                              const Classification& found)
-    : points_(curve.begin(), curve.end()) {
-  std::erase_if(points_, [&](std::uint32_t i) { return found.classes[i] == kUnlabelled; });
-  if (spatial::have_copies(positions, points_)) {
-    starts_ = spatial::starts_of_places(positions, points_);
-    positions_ = spatial::in_order(positions, spatial::firsts_of_places(positions, points_));
-  } else {
-    positions_ = spatial::in_order(positions, points_);
-  }
-  search_.emplace(positions_);
-}
+    : places_(spatial::places_of(positions, labelled_points(curve, found))),
+      search_(places_.positions) {}
 
-ContextMatrix::ContextMatrix(const ContextPlaces& places, const Classification& found, int classes,
+ContextMatrix::ContextMatrix(const ContextPlaces& around, const Classification& found, int classes,
                              float least_edge)
-    : around_(&places), kinds_(classes - 1) {
+    : around_(&around), kinds_(classes - 1) {
+  const spatial::Places& places = around.places();
   const auto probabilities_of = [&](std::uint32_t point) -> std::array<float, 2> {
     return {found.p_sharp[point], found.p_sharp[point] + found.p_smooth[point]};
   };
@@ -195,7 +194,7 @@ void ContextMatrix::describe_point(std::size_t place, const std::array<float, 2>
     std::size_t taken = 0;
     for (std::size_t size = 0; size < kSizes; ++size) {
       const std::size_t end = std::min(near.size(), static_cast<std::size_t>(kContextSizes[size]));
-      add_nearest(near.subspan(taken, end - taken), around_->positions().data(),
+      add_nearest(near.subspan(taken, end - taken), around_->places().positions.data(),
                   probabilities_.data(), kind, place, sums);
       if (end > 0) sq_r = near[end - 1].sq_distance;
       taken = end;

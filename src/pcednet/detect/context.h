@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -10,6 +9,7 @@
 #include "pcednet/core/vec3.h"
 #include "pcednet/detect/classify.h"
 #include "pcednet/spatial/neighbour_search.h"
+#include "pcednet/spatial/places.h"
 
 namespace pcednet::detect {
 
@@ -31,20 +31,12 @@ class ContextPlaces {
   ContextPlaces(std::span<const Vec3> positions, std::span<const std::uint32_t> curve,
                 const Classification& found);
 
-  std::size_t size() const { return positions_.size(); }
-  /// The points at a place: one, or points with the same position.
-  std::span<const std::uint32_t> points(std::size_t place) const {
-    if (starts_.empty()) return std::span(points_).subspan(place, 1);
-    return std::span(points_).subspan(starts_[place], starts_[place + 1] - starts_[place]);
-  }
-  std::span<const Vec3> positions() const { return positions_; }  ///< by place
-  const spatial::NeighbourSearch& search() const { return *search_; }
+  const spatial::Places& places() const { return places_; }
+  const spatial::NeighbourSearch& search() const { return search_; }
 
  private:
-  std::vector<std::uint32_t> points_;       ///< place by place, along the curve
-  std::vector<std::uint32_t> starts_ = {};  ///< of the places, and the end; empty: a point each
-  std::vector<Vec3> positions_;
-  std::optional<spatial::NeighbourSearch> search_ = {};
+  spatial::Places places_;
+  spatial::NeighbourSearch search_;
 };
 
 /// A network's predictions around each point, the input of the context network: edges are lines and
@@ -65,8 +57,8 @@ class ContextPlaces {
 /// the last feature gains 1e-6. None depends on the cloud's units, place or orientation.
 class ContextMatrix {
  public:
-  /// `found` has a class for the points of `places`, which must outlive this.
-  ContextMatrix(const ContextPlaces& places, const Classification& found, int classes,
+  /// `found` has a class for the points of `around`, which must outlive this.
+  ContextMatrix(const ContextPlaces& around, const Classification& found, int classes,
                 float least_edge = kLeastEdge);
 
   /// The points to describe: those with an edge probability of at least `least_edge` and no own

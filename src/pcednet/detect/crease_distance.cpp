@@ -8,8 +8,8 @@
 
 #include "pcednet/core/parallel.h"
 #include "pcednet/normals/exact_planes.h"
-#include "pcednet/spatial/curve_order.h"
 #include "pcednet/spatial/neighbour_search.h"
+#include "pcednet/spatial/places.h"
 
 namespace pcednet::detect {
 namespace {
@@ -110,10 +110,11 @@ float nearest_crease(const Vec3& own, NearFaces& around) {
 /// The places of a cloud's points along its curve.
 class FacePlaces {
  public:
-  FacePlaces(std::vector<Vec3> positions, double unit)
-      : unit_(unit), positions_(std::move(positions)), search_(positions_) {}
+  FacePlaces(spatial::Places places, double unit)
+      : unit_(unit), places_(std::move(places)), search_(places_.positions) {}
 
-  std::size_t size() const { return positions_.size(); }
+  std::size_t size() const { return places_.size(); }
+  std::span<const std::uint32_t> points(std::uint32_t place) const { return places_.points(place); }
   std::size_t available(std::size_t count) const { return search_.available(count); }
 
   /// The available(count) nearest others of each of `places`, which are ascending, row after row.
@@ -142,7 +143,7 @@ class FacePlaces {
         const auto near = std::span(rows).subspan(k * others, others);
         for (const double tolerance : kTolerances) {
           Vec3& normal = normals[some[k]];
-          normal = normals::face_normal(positions_, some[k], near, tolerance);
+          normal = normals::face_normal(places_.positions, some[k], near, tolerance);
           if (!normal.isZero(0.0)) break;
         }
       }
@@ -155,7 +156,7 @@ class FacePlaces {
     NearFaces around;
     around.count = near.size();
     for (std::size_t k = 0; k < near.size(); ++k) {
-      around.offsets[k] = (positions_[near[k]] - positions_[place]) / unit_;
+      around.offsets[k] = (places_.positions[near[k]] - places_.positions[place]) / unit_;
       around.normals[k] = normals[near[k]];
     }
     return around;
@@ -163,7 +164,7 @@ class FacePlaces {
 
  private:
   double unit_;
-  std::vector<Vec3> positions_;
+  spatial::Places places_;
   spatial::NeighbourSearch search_;
 };
 
@@ -189,19 +190,14 @@ std::vector<std::uint32_t> united(std::span<const std::uint32_t> places,
 std::vector<float> crease_distances(std::span<const Vec3> positions,
                                     std::span<const std::uint32_t> curve,
                                     std::span<const std::uint8_t> wanted, double unit) {
-  const std::vector<std::uint32_t> starts = spatial::starts_of_places(positions, curve);
-  const auto points_at = [&](std::uint32_t place) {
-    return curve.subspan(starts[place], starts[place + 1] - starts[place]);
-  };
+  const FacePlaces cloud(spatial::places_of(positions, {curve.begin(), curve.end()}), unit);
   std::vector<std::uint32_t> places;
-  for (std::uint32_t place = 0; place + 1 < starts.size(); ++place) {
-    const auto points = points_at(place);
+  for (std::uint32_t place = 0; place < cloud.size(); ++place) {
+    const auto points = cloud.points(place);
     if (std::any_of(points.begin(), points.end(), [&](auto i) { return wanted[i] != 0; })) {
       places.push_back(place);
     }
   }
-  const FacePlaces cloud(spatial::in_order(positions, spatial::firsts_of_places(positions, curve)),
-                         unit);
   const std::size_t others = cloud.available(kNearest);
   const auto rows = cloud.nearest_others(places, others);
   const auto normals = cloud.face_normals(united(places, rows, cloud.size()));
@@ -213,7 +209,7 @@ std::vector<float> crease_distances(std::span<const Vec3> positions,
       const auto near = std::span(rows).subspan(k * others, others);
       NearFaces around = cloud.near_faces(places[k], near, normals);
       const float distance = nearest_crease(own, around);
-      for (const std::uint32_t i : points_at(places[k])) {
+      for (const std::uint32_t i : cloud.points(places[k])) {
         if (wanted[i] != 0) distances[i] = distance;
       }
     }

@@ -93,17 +93,6 @@ bool have_copies(std::span<const Vec3> positions, std::span<const std::uint32_t>
          }) != order.end();
 }
 
-std::vector<std::uint32_t> starts_of_places(std::span<const Vec3> positions,
-                                            std::span<const std::uint32_t> order) {
-  std::vector<std::uint32_t> starts;
-  starts.reserve(order.size() + 1);
-  for (std::uint32_t i = 0; i < order.size(); ++i) {
-    if (i == 0 || positions[order[i]] != positions[order[i - 1]]) starts.push_back(i);
-  }
-  starts.push_back(static_cast<std::uint32_t>(order.size()));
-  return starts;
-}
-
 std::vector<std::uint32_t> firsts_of_places(std::span<const Vec3> positions,
                                             std::span<const std::uint32_t> order) {
   std::vector<std::uint32_t> firsts;

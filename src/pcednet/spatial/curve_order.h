@@ -20,11 +20,6 @@ std::vector<std::uint32_t> curve_order(std::span<const Vec3> positions);
 /// Whether points at one place follow each other in their order along the curve.
 bool have_copies(std::span<const Vec3> positions, std::span<const std::uint32_t> order);
 
-/// Where the points at each place begin in their order along the curve, and its length: copies of a
-/// point follow each other.
-std::vector<std::uint32_t> starts_of_places(std::span<const Vec3> positions,
-                                            std::span<const std::uint32_t> order);
-
 /// The first point at each place of such an order.
 std::vector<std::uint32_t> firsts_of_places(std::span<const Vec3> positions,
                                             std::span<const std::uint32_t> order);
