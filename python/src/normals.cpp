@@ -2,6 +2,7 @@
 
 #include "bindings.h"
 #include "input_cloud.h"
+#include "pcednet/normals/neighbour_count.h"
 #include "pcednet/normals/prepare.h"
 
 namespace pcednet::python {
@@ -15,13 +16,13 @@ py::tuple make_normals(const Array<double>& xyz, const OptionalArray<double>& gi
   normals::PreparedNormals made;
   run_job({progress, threads}, [&](const Progress* job) {
     const InputCloud cloud(xyz, given, {});
-    const normals::PrepareOptions options{.neighbours = neighbours};
+    const normals::OrientedNormalsOptions options{.choice = normals::given_neighbours(neighbours)};
     const auto positions = cloud.positions();
     made = given ? normals::complete_and_orient_normals(positions, cloud.normals(), options, job)
                  : normals::estimate_oriented_normals(positions, options, job);
     if (scanners) normals::face_viewpoints(positions, made.normals, vectors(scanners));
   });
-  return py::make_tuple(give(std::move(made.normals)), made.neighbours, made.unusable);
+  return py::make_tuple(give(std::move(made.normals)), made.choice.neighbours, made.unusable);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 
 #include "normals/shapes.h"
 #include "pcednet/core/parallel.h"
+#include "pcednet/normals/neighbour_count.h"
 #include "pcednet/spatial/kd_tree.h"
 #include "support/expect_error.h"
 
@@ -88,13 +89,13 @@ TEST(Estimate, IsExactOnABoxAwayFromItsEdges) {
 
 TEST(Estimate, TakesMoreNeighboursWhereThereIsNoise) {
   Shape shape = sphere(4000, 1.0);
-  EXPECT_EQ(make_neighbour_graph(shape.positions, 0, nullptr).degree, 12u);
+  EXPECT_EQ(make_neighbour_graph(shape.positions).degree, 12u);
   Random random(8);
   // The spacing is about 0.05.
   for (Vec3& p : shape.positions) p += 0.015 * p * random.normal();
-  EXPECT_EQ(make_neighbour_graph(shape.positions, 0, nullptr).degree, 48u);
+  EXPECT_EQ(make_neighbour_graph(shape.positions).degree, 48u);
   const auto mean_angle = [&](int neighbours) {
-    const auto normals = estimate_normals(shape.positions, {.neighbours = neighbours});
+    const auto normals = estimate_normals(shape.positions, given_neighbours(neighbours));
     double sum = 0.0;
     for (std::size_t i = 0; i < normals.size(); ++i) {
       sum += angle_between_lines(normals[i], shape.normals[i]);
@@ -113,7 +114,7 @@ TEST(Estimate, SeesASurfaceThroughNoiseOfItsSpacing) {
     positions.emplace_back(63 * random.uniform(), 63 * random.uniform(), 1.5 * random.normal());
   }
   const auto share_beyond_a_radian = [&](int neighbours) {
-    const auto normals = estimate_normals(positions, {.neighbours = neighbours});
+    const auto normals = estimate_normals(positions, given_neighbours(neighbours));
     const auto beyond = std::count_if(normals.begin(), normals.end(), [](const Vec3& n) {
       return angle_between_lines(n, Vec3::UnitZ()) > 1.0;
     });
@@ -125,7 +126,7 @@ TEST(Estimate, SeesASurfaceThroughNoiseOfItsSpacing) {
 
 TEST(Estimate, TakesFewNeighboursWhereTheSurfaceBends) {
   const Shape coarse = sphere(300, 1.0);  // thickness above 0.01 at 12 neighbours
-  EXPECT_EQ(make_neighbour_graph(coarse.positions, 0, nullptr).degree, 12u);
+  EXPECT_EQ(make_neighbour_graph(coarse.positions).degree, 12u);
 }
 
 TEST(Estimate, GivesTheSameBytesForAnyOrderAndNumberOfThreads) {
@@ -202,7 +203,7 @@ TEST(Estimate, LooksPastPointsThatAreNotFinite) {
 
 TEST(Estimate, RefusesTooFewNeighbours) {
   for (const int count : {1, -1}) {
-    EXPECT_ERROR(ErrorKind::kUsage, estimate_normals(std::vector<Vec3>(5), {.neighbours = count}));
+    EXPECT_ERROR(ErrorKind::kUsage, given_neighbours(count));
   }
 }
 
@@ -213,7 +214,7 @@ TEST(Estimate, TakesMoreNeighboursWhereTheSurfaceIsThickerThanAHundredth) {
     for (int i = 0; i < 3000; ++i) {
       positions.emplace_back(random.uniform(), random.uniform(), noise * random.normal());
     }
-    return make_neighbour_graph(positions, 0, nullptr).degree;
+    return make_neighbour_graph(positions).degree;
   };
   const double spacing = 1 / std::sqrt(3000.0);
   EXPECT_EQ(degree(0.01 * spacing), 12u);

@@ -9,6 +9,7 @@
 #include "normals/shapes.h"
 #include "pcednet/core/parallel.h"
 #include "pcednet/normals/estimate.h"
+#include "pcednet/normals/neighbour_count.h"
 #include "pcednet/normals/neighbour_graph.h"
 
 namespace pcednet::normals {
@@ -42,7 +43,7 @@ double share_beyond(double degrees, const Shape& shape, const std::vector<Vec3>&
 
 TEST(ExactPlanes, GiveSparsePointsTheNormalsOfTheirFaces) {
   const Shape shape = drawn_box(500, Vec3(1.0, 0.4, 0.15));
-  EXPECT_GT(share_beyond(5.0, shape, estimate_normals(shape.positions, {.neighbours = 12})), 0.3);
+  EXPECT_GT(share_beyond(5.0, shape, estimate_normals(shape.positions, NeighbourChoice{12})), 0.3);
   EXPECT_LT(share_beyond(5.0, shape, estimate_normals(shape.positions)), 0.1);
 }
 
@@ -69,8 +70,8 @@ TEST(ExactPlanes, AreNotTakenFromNoiseOrCurvedSurfaces) {
   for (Vec3& p : noisy.positions) {
     p += 0.01 * Vec3(random.normal(), random.normal(), random.normal());
   }
-  EXPECT_FALSE(make_neighbour_graph(noisy.positions, 0, nullptr).has_exact_planes);
-  EXPECT_FALSE(make_neighbour_graph(torus(600, 1.0, 0.4).positions, 0, nullptr).has_exact_planes);
+  EXPECT_FALSE(make_neighbour_graph(noisy.positions).choice.exact_planes);
+  EXPECT_FALSE(make_neighbour_graph(torus(600, 1.0, 0.4).positions).choice.exact_planes);
 }
 
 TEST(ExactPlanes, AreNotTakenFromScanLines) {
@@ -85,7 +86,7 @@ TEST(ExactPlanes, AreNotTakenFromScanLines) {
                              0.03 * random.normal());
     }
   }
-  EXPECT_FALSE(make_neighbour_graph(positions, 0, nullptr).has_exact_planes);
+  EXPECT_FALSE(make_neighbour_graph(positions).choice.exact_planes);
 }
 
 TEST(ExactPlanes, AreNotTakenFromTheSweepOfAScanner) {
@@ -103,7 +104,7 @@ TEST(ExactPlanes, AreNotTakenFromTheSweepOfAScanner) {
                              range * std::sin(elevation));
     }
   }
-  EXPECT_FALSE(make_neighbour_graph(positions, 0, nullptr).has_exact_planes);
+  EXPECT_FALSE(make_neighbour_graph(positions).choice.exact_planes);
 }
 
 TEST(ExactPlanes, AreFacesIfTheSurfaceStaysOnOneSide) {
@@ -137,7 +138,7 @@ TEST(ExactPlanes, NeedSixteenNeighbours) {
 TEST(ExactPlanes, HaveTheSameBytesForAnyOrderAndNumberOfThreads) {
   const Shape shape = drawn_box(500, Vec3(1.0, 0.4, 0.15));
   const auto normals = estimate_normals(shape.positions);
-  EXPECT_TRUE(make_neighbour_graph(shape.positions, 0, nullptr).has_exact_planes);
+  EXPECT_TRUE(make_neighbour_graph(shape.positions).choice.exact_planes);
   set_thread_count(1);
   EXPECT_EQ(estimate_normals(shape.positions), normals);
   set_thread_count(0);

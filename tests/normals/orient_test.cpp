@@ -167,7 +167,7 @@ TEST(Orient, CompletesGivenNormals) {
   const PreparedNormals prepared = complete_and_orient_normals(shape.positions, given);
   EXPECT_EQ(prepared.estimated, 334u);
   EXPECT_EQ(prepared.unusable, 0u);
-  EXPECT_EQ(prepared.neighbours, 12u);
+  EXPECT_EQ(prepared.choice.neighbours, 12u);
   EXPECT_EQ(agreement(shape, prepared.normals), 1.0);
   for (std::size_t i = 0; i < 1000; ++i) {
     if (i % 3 != 0) {

@@ -6,6 +6,7 @@
 
 #include "normals/shapes.h"
 #include "pcednet/normals/estimate.h"
+#include "pcednet/normals/neighbour_count.h"
 
 namespace pcednet::normals {
 namespace {
@@ -19,7 +20,7 @@ struct Scene {
     for (Vec3& p : shape.positions) {
       p += 0.03 * Vec3(random.normal(), random.normal(), random.normal());
     }
-    graph = make_neighbour_graph(shape.positions, 12, nullptr);
+    graph = make_neighbour_graph(shape.positions, NeighbourChoice{12});
     normals = estimate_normals(graph);
     for (std::size_t i = 0; i < normals.size(); i += 100) normals[i].setZero();
     links = make_adjacency(graph, 12);

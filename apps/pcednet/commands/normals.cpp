@@ -13,6 +13,7 @@
 #include "pcednet/core/error.h"
 #include "pcednet/detect/prepare.h"
 #include "pcednet/formats/write_cloud.h"
+#include "pcednet/normals/neighbour_count.h"
 #include "pcednet/normals/prepare.h"
 
 namespace pcednet::app {
@@ -35,7 +36,6 @@ struct NormalsRequest {
 /// New normals, or those of the cloud with new signs.
 normals::PreparedNormals make_normals(const NormalsRequest& request, const PointCloud& cloud,
                                       const Progress& progress) {
-  const normals::PrepareOptions options = {request.neighbours, request.eye()};
   if (request.keep && !cloud.has_normals()) {
     throw Error(
         ErrorKind::kInsufficient,
@@ -43,6 +43,8 @@ normals::PreparedNormals make_normals(const NormalsRequest& request, const Point
   }
   normals::PreparedNormals prepared;
   with_name_in_errors(request.input, [&] {
+    const normals::OrientedNormalsOptions options = {normals::given_neighbours(request.neighbours),
+                                                     request.eye()};
     prepared = request.keep
                    ? normals::complete_and_orient_normals(cloud.positions, cloud.normals, options,
                                                           &progress)
@@ -57,7 +59,7 @@ void report(const NormalsRequest& request, const normals::PreparedNormals& prepa
       fmt::format("{}: {} normals", request.output, prepared.normals.size() - prepared.unusable);
   if (prepared.estimated > 0) {
     line += fmt::format(", {} estimated from {} neighbours each", prepared.estimated,
-                        prepared.neighbours);
+                        prepared.choice.neighbours);
   }
   if (orientation.components > 0) {
     line += fmt::format("; {} connected part{}", orientation.components,

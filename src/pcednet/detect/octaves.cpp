@@ -9,6 +9,7 @@
 #include "pcednet/core/parallel_loops.h"
 #include "pcednet/detect/part_of_cloud.h"
 #include "pcednet/gls/scales.h"
+#include "pcednet/normals/neighbour_count.h"
 #include "pcednet/normals/neighbour_graph.h"
 
 namespace pcednet::detect {
@@ -59,7 +60,8 @@ gls::ScaleSpaceOptions at_octave(gls::ScaleSpaceOptions descriptor, double s_min
 
 std::vector<std::uint8_t> octaves_of(std::span<const Vec3> positions,
                                      std::span<const std::uint32_t> curve, double s_min) {
-  const auto graph = normals::make_neighbour_graph(positions, kForSpacing, nullptr, curve);
+  const auto graph = normals::make_neighbour_graph(positions, normals::NeighbourChoice{kForSpacing},
+                                                   nullptr, curve);
   std::vector<std::uint8_t> octaves(positions.size(), 0);
   if (graph.degree == 0) return octaves;
   const std::vector<double> spacings = spacings_in(graph);

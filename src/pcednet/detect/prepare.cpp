@@ -15,6 +15,7 @@
 #include "pcednet/detect/normal_fit.h"
 #include "pcednet/detect/rounding.h"
 #include "pcednet/normals/flat_pairs.h"
+#include "pcednet/normals/neighbour_count.h"
 #include "pcednet/normals/prepare.h"
 #include "pcednet/spatial/curve_order.h"
 
@@ -57,10 +58,11 @@ Oriented complete_and_orient(const Points& cloud, const PreparedCloud& prepared,
                              const Progress* progress) {
   const std::vector<Vec3> scanners = cloud.scanners();
   const auto is_known = [](const Vec3& place) { return place.allFinite(); };
-  normals::PrepareOptions options = {.neighbours = static_cast<int>(prepared.decision.neighbours),
-                                     .count_turned = cloud.has_normals(),
-                                     .curve = prepared.curve,
-                                     .exact_planes = prepared.decision.exact_planes};
+  normals::OrientedNormalsOptions options = {
+      .choice = normals::given_neighbours(static_cast<int>(prepared.decision.neighbours)),
+      .count_turned = cloud.has_normals(),
+      .curve = prepared.curve};
+  if (options.choice) options.choice->exact_planes = prepared.decision.exact_planes;
   // If every point has a scanner, the costly search for consistent signs is unnecessary.
   if (!scanners.empty() && std::all_of(scanners.begin(), scanners.end(), is_known)) {
     options.viewpoint = scanners.front();
@@ -97,8 +99,8 @@ std::string describe(const Oriented& oriented) {
 void use(Oriented&& oriented, const std::string& note, PreparedCloud& prepared) {
   prepared.notes.push_back(note);
   prepared.decision.made = true;
-  prepared.decision.neighbours = oriented.found.neighbours;
-  prepared.decision.exact_planes = oriented.found.exact_planes;
+  prepared.decision.neighbours = oriented.found.choice.neighbours;
+  prepared.decision.exact_planes = oriented.found.choice.exact_planes;
   prepared.made = std::move(oriented.found.normals);
   prepared.normals = prepared.made;
 }
@@ -129,9 +131,9 @@ void estimate(PreparedCloud& prepared, const Points& cloud, const std::string& w
               const Progress* progress) {
   Oriented oriented = complete_and_orient(cloud, prepared, progress);
   const bool signs = take_signs(cloud.estimates, prepared, oriented.found.normals);
-  const std::string note =
-      fmt::format("{}: estimated from the {} nearest points{}", why, oriented.found.neighbours,
-                  signs ? ", with the signs that they have" : " and " + describe(oriented));
+  const std::string note = fmt::format(
+      "{}: estimated from the {} nearest points{}", why, oriented.found.choice.neighbours,
+      signs ? ", with the signs that they have" : " and " + describe(oriented));
   use(std::move(oriented), note, prepared);
 }
 

@@ -1,25 +1,21 @@
 #include "pcednet/normals/estimate.h"
 
-#include <fmt/format.h>
-
 #include <numeric>
 
-#include "pcednet/core/error.h"
 #include "pcednet/core/parallel.h"
 #include "pcednet/normals/exact_planes.h"
 #include "pcednet/normals/plane_fit.h"
 
 namespace pcednet::normals {
-
 namespace {
 
-/// The first graph.fitted neighbours of the points from `begin` to `end`.
+/// The neighbours that planes are fitted to, of the points from `begin` to `end`.
 std::vector<std::uint32_t> nearest_rows(const NeighbourGraph& graph, std::size_t begin,
                                         std::size_t end) {
   std::vector<std::uint32_t> rows;
-  rows.reserve((end - begin) * graph.fitted);
+  rows.reserve((end - begin) * graph.choice.neighbours);
   for (std::size_t i = begin; i < end; ++i) {
-    const auto row = graph.of(i).first(graph.fitted);
+    const auto row = graph.of(i).first(graph.choice.neighbours);
     rows.insert(rows.end(), row.begin(), row.end());
   }
   return rows;
@@ -34,7 +30,7 @@ std::vector<Vec3> estimate_normals(const NeighbourGraph& graph, const Progress* 
     std::vector<std::uint32_t> some(end - begin);
     std::iota(some.begin(), some.end(), static_cast<std::uint32_t>(begin));
     std::vector<PlaneFit> fits(some.size());
-    if (graph.fitted < graph.degree) {
+    if (graph.choice.neighbours < graph.degree) {
       fit_planes(graph.points, some, nearest_rows(graph, begin, end), fits);
     } else {
       fit_planes(
@@ -43,8 +39,8 @@ std::vector<Vec3> estimate_normals(const NeighbourGraph& graph, const Progress* 
           fits);
     }
     for (std::size_t i = begin; i < end; ++i) {
-      normals[i] =
-          graph.has_exact_planes ? exact_normal(graph.points, i, graph.of(i)) : Vec3(Vec3::Zero());
+      normals[i] = graph.choice.exact_planes ? exact_normal(graph.points, i, graph.of(i))
+                                             : Vec3(Vec3::Zero());
       if (normals[i].isZero(0.0)) normals[i] = fits[i - begin].normal;
     }
     stage.advance(end - begin);
@@ -52,22 +48,10 @@ std::vector<Vec3> estimate_normals(const NeighbourGraph& graph, const Progress* 
   return normals;
 }
 
-NeighbourGraph make_estimation_graph(std::span<const Vec3> positions,
-                                     const EstimateOptions& options, const Progress* progress,
-                                     std::span<const std::uint32_t> curve) {
-  const int neighbours = options.neighbours;
-  if (neighbours < 0 || neighbours == 1) {
-    throw Error(
-        ErrorKind::kUsage,
-        fmt::format("normals need at least 2 neighbours, or 0 to choose; not {}", neighbours));
-  }
-  return make_neighbour_graph(positions, static_cast<std::size_t>(neighbours), progress, curve,
-                              options.exact_planes);
-}
-
-std::vector<Vec3> estimate_normals(std::span<const Vec3> positions, const EstimateOptions& options,
+std::vector<Vec3> estimate_normals(std::span<const Vec3> positions,
+                                   std::optional<NeighbourChoice> choice,
                                    const Progress* progress) {
-  const NeighbourGraph graph = make_estimation_graph(positions, options, progress);
+  const NeighbourGraph graph = make_neighbour_graph(positions, choice, progress);
   const std::vector<Vec3> of_points = estimate_normals(graph, progress);
   std::vector<Vec3> normals(positions.size(), Vec3::Zero());
   for (std::size_t i = 0; i < positions.size(); ++i) {

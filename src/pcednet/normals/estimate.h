@@ -1,25 +1,15 @@
 #pragma once
 
-#include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "pcednet/core/progress.h"
 #include "pcednet/core/vec3.h"
+#include "pcednet/normals/neighbour_count.h"
 #include "pcednet/normals/neighbour_graph.h"
 
 namespace pcednet::normals {
-
-struct EstimateOptions {
-  int neighbours = 0;         ///< distinct points around each point; 0: see choose_neighbours()
-  bool exact_planes = false;  ///< where `neighbours` are given, see NeighbourChoice
-};
-
-/// The graph for estimate_normals(), see make_neighbour_graph(). Throws the errors of
-/// estimate_normals().
-NeighbourGraph make_estimation_graph(std::span<const Vec3> positions,
-                                     const EstimateOptions& options, const Progress* progress,
-                                     std::span<const std::uint32_t> curve = {});
 
 /// The unit normal of the surface at every point, its sign arbitrary (see orient.h).
 ///
@@ -37,12 +27,12 @@ NeighbourGraph make_estimation_graph(std::span<const Vec3> positions,
 /// (0,0,0) where no plane can be fitted: the position is not finite, there are fewer than three
 /// distinct points, or the neighbours are collinear (second eigenvalue below 1e-10 of the largest).
 /// The result has the same bytes for any number of threads and any order of the points, and points
-/// at the same position get the same normal. Throws Error(kUsage) on 1 neighbour or fewer than 0.
+/// at the same position get the same normal.
 std::vector<Vec3> estimate_normals(std::span<const Vec3> positions,
-                                   const EstimateOptions& options = {},
+                                   std::optional<NeighbourChoice> choice = {},
                                    const Progress* progress = nullptr);
 
-/// The same for the points of a graph, from its nearest graph.fitted neighbours.
+/// The same for the points of a graph, as its choice says.
 std::vector<Vec3> estimate_normals(const NeighbourGraph& graph, const Progress* progress = nullptr);
 
 }  // namespace pcednet::normals

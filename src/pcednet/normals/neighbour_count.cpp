@@ -1,11 +1,14 @@
 #include "pcednet/normals/neighbour_count.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cstdint>
 #include <numeric>
 #include <vector>
 
+#include "pcednet/core/error.h"
 #include "pcednet/core/median.h"
 #include "pcednet/core/parallel.h"
 #include "pcednet/normals/exact_planes.h"
@@ -63,19 +66,27 @@ Measures measure(std::span<const Vec3> points, const spatial::NeighbourSearch& s
 
 }  // namespace
 
+std::optional<NeighbourChoice> given_neighbours(int neighbours) {
+  if (neighbours == 0) return std::nullopt;
+  if (neighbours >= 2) return NeighbourChoice{static_cast<std::size_t>(neighbours)};
+  throw Error(
+      ErrorKind::kUsage,
+      fmt::format("normals need at least 2 neighbours, or 0 to choose; not {}", neighbours));
+}
+
 NeighbourChoice choose_neighbours(std::span<const Vec3> points,
                                   const spatial::NeighbourSearch& search) {
   if (points.size() <= kCounts.back()) return {};
   const Measures measures = measure(points, search);
   if (measures.thickness[0] <= kClean) return {};
-  const bool has_exact_planes = measures.exact >= kExactShare;
-  if (measures.thickness[0] >= kBall && !has_exact_planes) return {.neighbours = kCounts.back()};
+  const bool exact_planes = measures.exact >= kExactShare;
+  if (measures.thickness[0] >= kBall && !exact_planes) return {.neighbours = kCounts.back()};
   std::size_t chosen = 0;
   while (chosen + 1 < kCounts.size() &&
          measures.thickness[chosen + 1] < measures.thickness[chosen]) {
     ++chosen;
   }
-  return {kCounts[chosen], has_exact_planes};
+  return {kCounts[chosen], exact_planes};
 }
 
 }  // namespace pcednet::normals

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 
 #include "pcednet/core/vec3.h"
@@ -10,9 +11,13 @@ namespace pcednet::normals {
 
 /// How normals are estimated.
 struct NeighbourChoice {
-  std::size_t neighbours = 12;    ///< that planes are fitted to
-  bool has_exact_planes = false;  ///< points on plane faces have the normal of exact_normal()
+  std::size_t neighbours = 12;  ///< that planes are fitted to
+  bool exact_planes = false;    ///< points on plane faces have the normal of exact_normal()
 };
+
+/// That many neighbours; nothing for 0, for which choose_neighbours() decides. Throws Error(kUsage)
+/// for 1 or fewer than 0.
+std::optional<NeighbourChoice> given_neighbours(int neighbours);
 
 /// 12 neighbours, or 24 or 48 on noisy clouds, and whether the surface consists of plane faces.
 ///

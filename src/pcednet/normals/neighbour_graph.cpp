@@ -7,7 +7,6 @@
 #include "pcednet/core/parallel_loops.h"
 #include "pcednet/core/vector_clones.h"
 #include "pcednet/normals/exact_planes.h"
-#include "pcednet/normals/neighbour_count.h"
 #include "pcednet/spatial/curve_order.h"
 #include "pcednet/spatial/neighbour_search.h"
 
@@ -57,9 +56,9 @@ void compare_with_reach(const Vec3* points, const double* sq_reach, std::size_t 
 
 }  // namespace
 
-NeighbourGraph make_neighbour_graph(std::span<const Vec3> positions, std::size_t count,
-                                    const Progress* progress, std::span<const std::uint32_t> curve,
-                                    bool exact_planes) {
+NeighbourGraph make_neighbour_graph(std::span<const Vec3> positions,
+                                    std::optional<NeighbourChoice> choice, const Progress* progress,
+                                    std::span<const std::uint32_t> curve) {
   NeighbourGraph graph;
   graph.order.assign(curve.begin(), curve.end());
   if (curve.empty()) graph.order = spatial::curve_order(positions);
@@ -68,12 +67,11 @@ NeighbourGraph make_neighbour_graph(std::span<const Vec3> positions, std::size_t
   if (points == 0) return graph;
   Stage stage(progress, "neighbours", points);
   const spatial::NeighbourSearch search(graph.points);
-  const NeighbourChoice choice =
-      count > 0 ? NeighbourChoice{count, exact_planes} : choose_neighbours(graph.points, search);
-  graph.fitted = search.available(choice.neighbours);
-  graph.has_exact_planes = choice.has_exact_planes;
-  graph.degree = search.available(
-      choice.has_exact_planes ? std::max(choice.neighbours, kExactNeighbours) : choice.neighbours);
+  graph.choice = choice ? *choice : choose_neighbours(graph.points, search);
+  const std::size_t wanted = graph.choice.neighbours;
+  graph.choice.neighbours = search.available(wanted);
+  graph.degree =
+      search.available(graph.choice.exact_planes ? std::max(wanted, kExactNeighbours) : wanted);
   graph.neighbours = UnsetArray<std::uint32_t>(points * graph.degree);
   parallel_blocks(points, kQueriesAtOnce, [&](std::size_t begin, std::size_t end) {
     std::vector<std::uint32_t> some(end - begin);

@@ -2,12 +2,14 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "pcednet/core/progress.h"
 #include "pcednet/core/unset_array.h"
 #include "pcednet/core/vec3.h"
+#include "pcednet/normals/neighbour_count.h"
 
 namespace pcednet::normals {
 
@@ -23,22 +25,20 @@ struct NeighbourGraph {
   std::vector<std::uint32_t> point_of;   ///< per position of the cloud, kNoPoint if not finite
   std::size_t degree = 0;                ///< neighbours of each point
   UnsetArray<std::uint32_t> neighbours;  ///< points x degree, nearest first, without the point
-  std::size_t fitted = 0;                ///< the nearest of them, which planes are fitted to
-  bool has_exact_planes = false;         ///< see NeighbourChoice
+  NeighbourChoice choice = {0};          ///< planes are fitted to the nearest of them
 
   std::span<const std::uint32_t> of(std::size_t point) const {
     return {neighbours.data() + point * degree, degree};
   }
 };
 
-/// `degree` becomes `count`, or less if there are too few distinct points; for `count` 0,
-/// choose_neighbours() chooses it. `curve` is spatial::curve_order() of the positions; if
-/// empty, it is computed. `exact_planes` becomes has_exact_planes where `count` is given. At most
-/// 2^32 - 1 positions.
-NeighbourGraph make_neighbour_graph(std::span<const Vec3> positions, std::size_t count,
-                                    const Progress* progress,
-                                    std::span<const std::uint32_t> curve = {},
-                                    bool exact_planes = false);
+/// `choice` is that of choose_neighbours() unless given, with fewer neighbours if there are too few
+/// distinct points. `degree` is as much, or kExactNeighbours if these are more and needed. `curve`
+/// is spatial::curve_order() of the positions; if empty, it is computed.
+NeighbourGraph make_neighbour_graph(std::span<const Vec3> positions,
+                                    std::optional<NeighbourChoice> choice = {},
+                                    const Progress* progress = nullptr,
+                                    std::span<const std::uint32_t> curve = {});
 
 /// The undirected graph: for every point its neighbours and the points that have it as a neighbour,
 /// each once.

@@ -8,6 +8,7 @@
 
 #include "pcednet/core/error.h"
 #include "pcednet/core/parallel_loops.h"
+#include "pcednet/normals/neighbour_count.h"
 #include "pcednet/normals/outward.h"
 #include "pcednet/normals/sign_votes.h"
 
@@ -155,7 +156,7 @@ Orientation orient_points(NeighbourGraph& graph, std::span<Vec3> normals,
   Stage stage(progress, "orientation", 4);
   const Adjacency links = make_adjacency(graph, static_cast<std::size_t>(options.neighbours));
   graph.neighbours = {};
-  graph.degree = graph.fitted = 0;
+  graph.degree = graph.choice.neighbours = 0;
   stage.advance();
   const SignVotes votes(graph.points, normals, links);
   Signs signs = contract(votes);
@@ -195,7 +196,7 @@ Orientation orient_normals(std::span<const Vec3> positions, std::span<Vec3> norm
   check(options);
   check_size(positions, normals);
   const std::size_t count = options.viewpoint ? 1 : static_cast<std::size_t>(options.neighbours);
-  NeighbourGraph graph = make_neighbour_graph(positions, count, progress);
+  NeighbourGraph graph = make_neighbour_graph(positions, NeighbourChoice{count}, progress);
   return orient_normals(graph, positions, normals, options, progress);
 }
 

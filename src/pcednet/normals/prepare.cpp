@@ -26,8 +26,8 @@ std::size_t count_where(std::size_t count, const Work& work) {
   return sum;
 }
 
-OrientOptions orientation_on(const NeighbourGraph& graph, const PrepareOptions& options) {
-  return {.neighbours = std::max(static_cast<int>(graph.fitted), 1),
+OrientOptions orientation_on(const NeighbourGraph& graph, const OrientedNormalsOptions& options) {
+  return {.neighbours = std::max(static_cast<int>(graph.choice.neighbours), 1),
           .viewpoint = options.viewpoint,
           .count_turned = options.count_turned};
 }
@@ -35,14 +35,13 @@ OrientOptions orientation_on(const NeighbourGraph& graph, const PrepareOptions& 
 }  // namespace
 
 PreparedNormals estimate_oriented_normals(std::span<const Vec3> positions,
-                                          const PrepareOptions& options, const Progress* progress) {
+                                          const OrientedNormalsOptions& options,
+                                          const Progress* progress) {
   check_extent(positions);
-  NeighbourGraph graph = make_estimation_graph(
-      positions, {options.neighbours, options.exact_planes}, progress, options.curve);
+  NeighbourGraph graph = make_neighbour_graph(positions, options.choice, progress, options.curve);
   std::vector<Vec3> of_points = estimate_normals(graph, progress);
   PreparedNormals prepared;
-  prepared.neighbours = graph.fitted;
-  prepared.exact_planes = graph.has_exact_planes;
+  prepared.choice = graph.choice;
   prepared.orientation = orient_points(graph, of_points, orientation_on(graph, options), progress);
   prepared.normals.resize(positions.size());
   prepared.unusable = count_where(positions.size(), [&](std::size_t i) {
@@ -58,15 +57,13 @@ PreparedNormals estimate_oriented_normals(std::span<const Vec3> positions,
 
 PreparedNormals complete_and_orient_normals(std::span<const Vec3> positions,
                                             std::span<const Vec3> given,
-                                            const PrepareOptions& options,
+                                            const OrientedNormalsOptions& options,
                                             const Progress* progress) {
   check_size(positions, given);
   check_extent(positions);
-  NeighbourGraph graph = make_estimation_graph(
-      positions, {options.neighbours, options.exact_planes}, progress, options.curve);
+  NeighbourGraph graph = make_neighbour_graph(positions, options.choice, progress, options.curve);
   PreparedNormals prepared;
-  prepared.neighbours = graph.fitted;
-  prepared.exact_planes = graph.has_exact_planes;
+  prepared.choice = graph.choice;
   prepared.normals.assign(given.begin(), given.end());
   if (std::any_of(given.begin(), given.end(), is_missing)) {
     const std::vector<Vec3> of_points = estimate_normals(graph, progress);
