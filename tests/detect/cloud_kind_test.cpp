@@ -9,8 +9,8 @@ namespace pcednet::detect {
 namespace {
 
 TEST(CloudKind, HasTheCloudsOfWhichAllHolds) {
-  const CloudFacts few = {.points = 10, .estimated = true}, many = {.estimated = true};
-  const CloudFacts given = {.points = 10};
+  const CloudTraits few = {.points = 10, .estimated = true}, many = {.estimated = true};
+  const CloudTraits given = {.points = 10};
   EXPECT_TRUE(CloudKind{}.has(few) && CloudKind{}.has(given));
   EXPECT_TRUE((CloudKind{.below = 11}.has(few)));
   EXPECT_FALSE((CloudKind{.below = 10}.has(few)));
@@ -46,36 +46,36 @@ TEST(CloudKind, CountsEachPlaceOnce) {
     cloud.normals.push_back(cloud.normals[i]);
   }
   const PreparedCloud prepared = prepare(cloud);
-  EXPECT_EQ(facts_of(prepared, {}).points, 500u);
+  EXPECT_EQ(traits_of(prepared, {}).points, 500u);
   gls::ScaleSpaceOptions scales_given;
   scales_given.s_min = 0.1, scales_given.s_max = 1.0;
-  EXPECT_EQ(facts_of(prepared, scales_given).points, CloudFacts{}.points);
-  EXPECT_FALSE(facts_of(prepared, {}).estimated);
+  EXPECT_EQ(traits_of(prepared, scales_given).points, CloudTraits{}.points);
+  EXPECT_FALSE(traits_of(prepared, {}).estimated);
 }
 
 TEST(CloudKind, TakesNormalsThatWereEstimatedBeforeForEstimated) {
   PointCloud cloud = with_own_normals(cube(600, 1));
-  EXPECT_FALSE(facts_of(prepare(cloud), {}).estimated);
+  EXPECT_FALSE(traits_of(prepare(cloud), {}).estimated);
   cloud.normals.clear();
   cloud.normals = prepare(cloud).made;
   const PreparedCloud prepared = prepare(cloud);
   EXPECT_FALSE(prepared.decision.made);
-  EXPECT_TRUE(facts_of(prepared, {}).estimated);
+  EXPECT_TRUE(traits_of(prepared, {}).estimated);
 }
 
 TEST(CloudKind, IsNoisyWhereMoreNeighboursEstimateTheNormals) {
   PointCloud cloud = cube(3000, 1);
   cloud.normals.clear();
-  EXPECT_FALSE(facts_of(prepare(cloud), {}).noisy);
+  EXPECT_FALSE(traits_of(prepare(cloud), {}).noisy);
   Random random(1);
   for (Vec3& position : cloud.positions) {  // half the spacing
     position += 0.02 * Vec3(random.normal(), random.normal(), random.normal());
   }
   const PreparedCloud prepared = prepare(cloud);
   EXPECT_GT(prepared.decision.neighbours, 12u);
-  EXPECT_TRUE(facts_of(prepared, {}).noisy);
+  EXPECT_TRUE(traits_of(prepared, {}).noisy);
   cloud.normals = prepared.made;  // such as others would have estimated
-  EXPECT_FALSE(facts_of(prepare(cloud), {}).noisy);
+  EXPECT_FALSE(traits_of(prepare(cloud), {}).noisy);
 }
 
 }  // namespace

@@ -158,7 +158,7 @@ detect::TrainedModel train_clouds(const TrainArguments& arguments, const Common&
     take_classes(input, cloud, loaded.size() == 1, options);
     check_scales(input, bounding_box(cloud.positions), options.descriptor);
     auto prepared = prepare(input, cloud, arguments.preparation, progress);
-    if (!only || only->has(detect::facts_of(prepared, options.descriptor))) {
+    if (!only || only->has(detect::traits_of(prepared, options.descriptor))) {
       clouds.push_back({input.string(), std::move(prepared), cloud.labels});
     } else {
       loaded.pop_back();

@@ -70,7 +70,7 @@ bool is_by_creases(const EdgeModel& model, const Expert* expert) {
 struct Subject {
   std::span<const Vec3> positions;
   std::span<const std::uint32_t> curve;  ///< spatial::curve_order() of the positions
-  CloudFacts facts;                      ///< if the model asks for any
+  CloudTraits traits;                    ///< if the model asks for any
 };
 
 /// decide(model) returns the classification by the model's networks from each point's description;
@@ -78,12 +78,12 @@ struct Subject {
 template <typename Decide>
 Classification classify_with(const Decide& decide, const Subject& subject, const EdgeModel& model,
                              const Progress* progress) {
-  const EdgeModel suited = suited_to(model, subject.facts);
+  const EdgeModel suited = suited_to(model, subject.traits);
   Classification found = decide(suited);
   if (suited.context) {
     apply_context(suited, subject.positions, subject.curve, found, progress);
   }
-  const Expert* expert = expert_for(model, subject.facts);
+  const Expert* expert = expert_for(model, subject.traits);
   if (expert) found.expert = expert->kind;
   if (is_by_creases(model, expert)) {
     apply_crease_kind(subject.positions, subject.curve, found.s_min, found);
@@ -106,10 +106,10 @@ void check_size(const Classification& found, std::size_t points) {
 
 Classification classify(const PreparedCloud& cloud, const EdgeModel& model,
                         const Progress* progress) {
-  const auto facts = model.experts.empty() ? CloudFacts{} : facts_of(cloud, model.descriptor);
+  const auto traits = model.experts.empty() ? CloudTraits{} : traits_of(cloud, model.descriptor);
   return classify_with(
       [&](const EdgeModel& suited) { return describe_and_decide(cloud, suited, progress); },
-      {cloud.positions, cloud.curve, facts}, model, progress);
+      {cloud.positions, cloud.curve, traits}, model, progress);
 }
 
 Classification classify(const DescribedCloud& cloud, std::span<const Vec3> positions,
@@ -131,7 +131,7 @@ Classification classify(const DescribedCloud& cloud, std::span<const Vec3> posit
     found.s_max = cloud.scales.back();
     return found;
   };
-  return classify_with(decide, {positions, cloud.order, cloud.facts}, model, progress);
+  return classify_with(decide, {positions, cloud.order, cloud.traits}, model, progress);
 }
 
 }  // namespace pcednet::detect

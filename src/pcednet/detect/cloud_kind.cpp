@@ -52,26 +52,20 @@ bool are_as_estimated(const PreparedCloud& cloud) {
 
 }  // namespace
 
-CloudFacts facts_of(const PreparedCloud& cloud, const gls::ScaleSpaceOptions& descriptor) {
+CloudTraits traits_of(const PreparedCloud& cloud, const gls::ScaleSpaceOptions& descriptor) {
   const bool estimated = cloud.decision.made && !cloud.reoriented;
-  CloudFacts facts{
+  CloudTraits traits{
       .estimated = estimated,
       .exact = cloud.decision.exact,
       .noisy = estimated && cloud.decision.neighbours > normals::NeighbourChoice{}.neighbours};
   if (cloud.part) {
-    facts.points = cloud.part->points;
+    traits.points = cloud.part->points;
   } else if (descriptor.s_min <= 0.0 || descriptor.s_max <= 0.0) {
-    facts.points = spatial::firsts_of_places(cloud.positions, cloud.curve).size();
+    traits.points = spatial::firsts_of_places(cloud.positions, cloud.curve).size();
   }
   constexpr std::size_t kFew = 20000;  // above, the same networks decide in either case
-  if (!facts.estimated && facts.points < kFew) facts.estimated = are_as_estimated(cloud);
-  return facts;
-}
-
-bool CloudKind::has(const CloudFacts& facts) const {
-  return (below == 0 || facts.points < below) &&
-         estimated.value_or(facts.estimated) == facts.estimated && (!exact || facts.exact) &&
-         (!noisy || facts.noisy);
+  if (!traits.estimated && traits.points < kFew) traits.estimated = are_as_estimated(cloud);
+  return traits;
 }
 
 std::string text_of(const CloudKind& kind) {

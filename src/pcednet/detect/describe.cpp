@@ -22,8 +22,9 @@ DescribedCloud describe(const PreparedCloud& cloud, const gls::ScaleSpaceOptions
                         const Progress* progress) {
   const Progress cancel_only = without_report(progress);
   const std::size_t width = row_width(descriptor);
-  DescribedCloud described{
-      .points = cloud.positions.size(), .order = cloud.curve, .facts = facts_of(cloud, descriptor)};
+  DescribedCloud described{.points = cloud.positions.size(),
+                           .order = cloud.curve,
+                           .traits = traits_of(cloud, descriptor)};
   described.values.resize(described.order.size() * width);
   std::vector<std::uint32_t> row_of(described.points);
   for (std::size_t row = 0; row < described.order.size(); ++row) {

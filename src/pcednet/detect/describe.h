@@ -27,7 +27,7 @@ struct DescribedCloud {
   std::vector<std::uint32_t> order = {};  ///< the point that each row describes
   std::vector<float> values = {};         ///< rows x scales x columns
   std::vector<double> scales = {};        ///< as lengths
-  CloudFacts facts = {};                  ///< of the cloud
+  CloudTraits traits = {};                ///< of the cloud
 };
 
 /// Describes every point with a finite position.

@@ -266,14 +266,20 @@ std::vector<std::uint8_t> edge_outputs(const EdgeModel& model) {
   return edges;
 }
 
-const Expert* expert_for(const EdgeModel& model, const CloudFacts& facts) {
+bool CloudKind::has(const CloudTraits& traits) const {
+  return (below == 0 || traits.points < below) &&
+         estimated.value_or(traits.estimated) == traits.estimated && (!exact || traits.exact) &&
+         (!noisy || traits.noisy);
+}
+
+const Expert* expert_for(const EdgeModel& model, const CloudTraits& traits) {
   const auto found = std::find_if(model.experts.begin(), model.experts.end(),
-                                  [&](const Expert& expert) { return expert.kind.has(facts); });
+                                  [&](const Expert& expert) { return expert.kind.has(traits); });
   return found == model.experts.end() ? nullptr : &*found;
 }
 
-EdgeModel suited_to(EdgeModel model, const CloudFacts& facts) {
-  if (const Expert* expert = expert_for(model, facts)) {
+EdgeModel suited_to(EdgeModel model, const CloudTraits& traits) {
+  if (const Expert* expert = expert_for(model, traits)) {
     model.network = expert->network;
     model.context = expert->context;
   }

@@ -20,7 +20,7 @@ namespace pcednet::detect {
 inline constexpr float kLeastEdge = 0.01f;
 
 /// Facts about a cloud before its points are classified.
-struct CloudFacts {
+struct CloudTraits {
   std::size_t points =
       std::numeric_limits<std::size_t>::max();  ///< distinct; the maximum unless counted
   bool estimated = false;  ///< normals were missing and are estimated, or (below 20,000 points) the
@@ -38,7 +38,7 @@ struct CloudKind {
   bool exact = false;
   bool noisy = false;
 
-  bool has(const CloudFacts& facts) const;
+  bool has(const CloudTraits& traits) const;
   bool operator==(const CloudKind&) const = default;
 };
 
@@ -72,11 +72,11 @@ struct EdgeModel {
 std::vector<std::uint8_t> edge_outputs(const EdgeModel& model);
 
 /// The expert that decides for such a cloud; nullptr if the model's own networks do.
-const Expert* expert_for(const EdgeModel& model, const CloudFacts& facts);
+const Expert* expert_for(const EdgeModel& model, const CloudTraits& traits);
 
 /// The model reduced to the networks that decide for such a cloud. classify() does this by itself;
 /// call it to inspect the networks or continue their training.
-EdgeModel suited_to(EdgeModel model, const CloudFacts& facts);
+EdgeModel suited_to(EdgeModel model, const CloudTraits& traits);
 
 /// Removes the context networks: faster, less accurate.
 void drop_context(EdgeModel& model);

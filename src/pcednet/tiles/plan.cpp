@@ -66,7 +66,7 @@ BoundingBox box_in(const json& j) {
 }
 
 /// A list with an element on each line, so that a person can read the file.
-std::string list_of(const std::vector<std::string>& elements, const char* indent) {
+std::string json_lines(const std::vector<std::string>& elements, const char* indent) {
   std::string text = "[";
   for (const std::string& element : elements) {
     text += fmt::format("{}\n{}{}", text.size() > 1 ? "," : "", indent, element);
@@ -83,7 +83,7 @@ std::string text_of(const PlannedInput& input, const Paths& paths) {
   return fmt::format(
       "{{\"path\":{},\"bytes\":{},\"points\":{},\"narrow_colours\":{},\"chunks\":{}}}",
       json(paths.written(input.path)).dump(), input.bytes, input.points(), input.narrow_colours,
-      list_of(chunks, "   "));
+      json_lines(chunks, "   "));
 }
 
 PlannedInput input_of(const json& j, const Paths& paths) {
@@ -178,15 +178,15 @@ std::string text_of(const Plan& plan, const Paths& paths) {
       {"model", json_of(plan.model, paths).dump()},
       {"scales", json{{"s_min", plan.s_min}, {"s_max", plan.s_max}}.dump()},
       {"normals", json_of(plan.normals).dump()},
-      {"pyramids", list_of(pyramids, "  ")},
+      {"pyramids", json_lines(pyramids, "  ")},
       {"cell", json(plan.grid.cell).dump()},
       {"cells_across", json(plan.grid.across).dump()},
       {"buffer", json(plan.buffer).dump()},
       {"reach", json(plan.reach).dump()},
       {"memory", json(plan.memory).dump()},
       {"notes", json(plan.notes).dump()},
-      {"tiles", list_of(tiles, "  ")},
-      {"inputs", list_of(inputs, "  ")}};
+      {"tiles", json_lines(tiles, "  ")},
+      {"inputs", json_lines(inputs, "  ")}};
   std::string text;
   for (const auto& [name, value] : members) {
     text += fmt::format("{}\n \"{}\": {}", text.empty() ? "{" : ",", name, value);

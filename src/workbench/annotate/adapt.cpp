@@ -33,7 +33,7 @@ constexpr std::size_t kPart = 1 << 15;  // rows of a task
 
 // The context network reconsiders points from this probability on: below it hardly ever changes a
 // prediction, and an adapted network leaves many points there.
-constexpr float kLeastEdge = 0.03f;
+constexpr float kLeastEdgeWhenAdapted = 0.03f;
 
 /// The training data of a network.
 struct Lesson {
@@ -249,9 +249,9 @@ class SecondLook {
 Start make_start(detect::EdgeModel model, const Subject& subject) {
   const auto largest = std::max_element(
       subject.clouds.begin(), subject.clouds.end(), [](const auto& a, const auto& b) {
-        return a.described.cloud.facts.points < b.described.cloud.facts.points;
+        return a.described.cloud.traits.points < b.described.cloud.traits.points;
       });
-  Start start{.model = detect::suited_to(std::move(model), largest->described.cloud.facts)};
+  Start start{.model = detect::suited_to(std::move(model), largest->described.cloud.traits)};
   std::optional<nn::Model> context = std::exchange(start.model.context, {});
   std::vector<detect::Classification> found = classify_each(subject, start.model);
   if (context) {
@@ -276,7 +276,7 @@ Adapted adapt(const std::string& name, const Start& start, const Subject& subjec
               const Progress* progress) {
   Adapted adapted{.model = with_outputs(start.model, subject.table, labels)};
   detect::EdgeModel& model = adapted.model;
-  model.least_edge = std::max(model.least_edge, kLeastEdge);
+  model.least_edge = std::max(model.least_edge, kLeastEdgeWhenAdapted);
   int epochs_before = 0;
   const auto learn = [&](nn::Model& network, const Rows& rows, bool is_context) {
     const Lesson lesson = LessonWriter(start, model, labels, seed, is_context).write(rows);

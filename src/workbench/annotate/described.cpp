@@ -102,7 +102,7 @@ std::shared_ptr<const Described> describe_once(const detect::PreparedCloud& clou
   const fs::path file = folder / fmt::format("{:016x}.description", header.key[0]);
   described->from_cache = !folder.empty() && read_cache(file, header, described->cloud);
   if (described->from_cache) {
-    described->cloud.facts = detect::facts_of(cloud, descriptor);
+    described->cloud.traits = detect::traits_of(cloud, descriptor);
   } else {
     described->cloud = detect::describe(cloud, descriptor, progress);
     try {
