@@ -153,6 +153,17 @@ void leave_out_far_points(PreparedCloud& prepared) {
   prepared.positions = prepared.moved;
 }
 
+/// Puts the points with a position in order, of which there must be one.
+void order_finite_points(PreparedCloud& prepared) {
+  leave_out_far_points(prepared);
+  prepared.curve = spatial::curve_order(prepared.positions);
+  const std::size_t points = prepared.positions.size(), finite = prepared.curve.size();
+  if (finite == 0) throw Error(ErrorKind::kInsufficient, "no point has a finite position");
+  if (finite == points) return;
+  prepared.notes.push_back(fmt::format("{} of {} points have no finite position: kept, unlabelled",
+                                       points - finite, points));
+}
+
 /// Spreads rounded positions.
 void spread_positions(const Rounding& rounding, PreparedCloud& prepared) {
   if (rounding.step == 0.0) return;
@@ -163,6 +174,45 @@ void spread_positions(const Rounding& rounding, PreparedCloud& prepared) {
       "coordinates are rounded to {:.6g}, about {:.2g} of the spacing: points are spread "
       "within such a step before they are described, and written as they were read",
       rounding.step, rounding.step / rounding.spacing));
+}
+
+std::size_t count_usable(const PreparedCloud& prepared) {
+  return static_cast<std::size_t>(
+      std::count_if(prepared.curve.begin(), prepared.curve.end(), [&](std::uint32_t i) {
+        return i < prepared.normals.size() && is_usable(prepared.normals[i]);
+      }));
+}
+
+std::string why_estimated(const PreparedCloud& prepared, const Points& cloud) {
+  if (!cloud.estimates.empty()) return "the normals in the file are estimates";
+  if (!cloud.has_normals()) return "no normals in the file";
+  const std::size_t usable = count_usable(prepared);
+  if (usable == 0) return "no normal is usable";
+  return fmt::format("{} of {} points have no usable normal", prepared.curve.size() - usable,
+                     cloud.size());
+}
+
+/// Estimates normals if so many are missing that it matters.
+void estimate_missing(PreparedCloud& prepared, const Points& cloud, const Progress* progress) {
+  const std::size_t finite = prepared.curve.size(), missing = finite - count_usable(prepared);
+  if (missing == 0 || missing < finite / kShareToEstimate) return;
+  const std::string why = why_estimated(prepared, cloud);
+  prepared.decision.rounding = find_rounding(prepared.positions, prepared.curve);
+  spread_positions(prepared.decision.rounding, prepared);
+  prepared.decision.exact = is_exact(prepared.positions, prepared.curve);
+  estimate(prepared, cloud, why, progress);
+  if (count_usable(prepared) > 0) return;
+  throw Error(ErrorKind::kInsufficient,
+              "no normals, and none can be estimated: the points form no surface");
+}
+
+void note_unusable(PreparedCloud& prepared) {
+  const std::size_t unusable = prepared.curve.size() - count_usable(prepared);
+  if (unusable == 0) return;
+  prepared.notes.push_back(
+      fmt::format("{} of {} points have no usable normal: left out of every neighbourhood, "
+                  "labelled all the same",
+                  unusable, prepared.positions.size()));
 }
 
 /// Says so if the normals of the cloud are not those of its surface.
@@ -209,54 +259,17 @@ PreparedCloud prepare_points(const Points& cloud, const PrepareOptions& options,
   PreparedCloud prepared;
   prepared.positions = cloud.positions;
   prepared.normals = cloud.normals;
-  leave_out_far_points(prepared);
-  prepared.curve = spatial::curve_order(prepared.positions);
-  const std::size_t finite = prepared.curve.size();
-  if (finite == 0) throw Error(ErrorKind::kInsufficient, "no point has a finite position");
-  if (finite < cloud.size()) {
-    prepared.notes.push_back(
-        fmt::format("{} of {} points have no finite position: kept, unlabelled",
-                    cloud.size() - finite, cloud.size()));
-  }
-  const auto count_usable = [&] {
-    return static_cast<std::size_t>(
-        std::count_if(prepared.curve.begin(), prepared.curve.end(), [&](std::uint32_t i) {
-          return i < prepared.normals.size() && is_usable(prepared.normals[i]);
-        }));
-  };
-  std::size_t usable = count_usable();
+  order_finite_points(prepared);
   if (options.decided) {
     prepared.decision = *options.decided;
     spread_positions(prepared.decision.rounding, prepared);
     if (options.decided->made) estimate(prepared, cloud, "normals as decided", progress);
     return prepared;
   }
-  if (usable < finite && finite - usable >= finite / kShareToEstimate) {
-    prepared.decision.rounding = find_rounding(prepared.positions, prepared.curve);
-    spread_positions(prepared.decision.rounding, prepared);
-    prepared.decision.exact = is_exact(prepared.positions, prepared.curve);
-    estimate(prepared, cloud,
-             !cloud.estimates.empty() ? "the normals in the file are estimates"
-             : !cloud.has_normals()   ? "no normals in the file"
-             : usable == 0            ? "no normal is usable"
-                           : fmt::format("{} of {} points have no usable normal", finite - usable,
-                                         cloud.size()),
-             progress);
-    usable = count_usable();
-    if (usable == 0) {
-      throw Error(ErrorKind::kInsufficient,
-                  "no normals, and none can be estimated: the points form no surface");
-    }
-  }
+  estimate_missing(prepared, cloud, progress);
   if (prepared.made.empty()) note_misfits(prepared);
   if (prepared.made.empty() && !options.keep_orientation) orient_mixed(prepared, cloud, progress);
-  usable = count_usable();
-  if (usable < finite) {
-    prepared.notes.push_back(
-        fmt::format("{} of {} points have no usable normal: left out of every neighbourhood, "
-                    "labelled all the same",
-                    finite - usable, cloud.size()));
-  }
+  note_unusable(prepared);
   return prepared;
 }
 

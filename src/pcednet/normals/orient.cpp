@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "pcednet/core/error.h"
+#include "pcednet/core/half_space.h"
 #include "pcednet/core/parallel_loops.h"
 #include "pcednet/normals/neighbour_count.h"
 #include "pcednet/normals/outward.h"
@@ -23,14 +24,6 @@ void check(const OrientOptions& options) {
   if (options.viewpoint && !options.viewpoint->allFinite()) {
     throw Error(ErrorKind::kUsage, "the viewpoint is not finite");
   }
-}
-
-/// Below zero if the vector points downwards; to the back or the left if it is horizontal.
-bool points_down(const Vec3& v) {
-  for (const int axis : {2, 1, 0}) {
-    if (v[axis] != 0.0) return v[axis] < 0.0;
-  }
-  return false;
 }
 
 /// Flips `normal`, or not. Either way no zero keeps a minus sign, which would reveal its former
