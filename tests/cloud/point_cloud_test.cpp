@@ -19,7 +19,7 @@ std::vector<Attribute> axes(const std::vector<Vec3>& vectors) {
   return found;
 }
 
-TEST(PointCloud, FindsAndReplacesAttributesByName) {
+TEST(PointCloud, FindsReplacesAndErasesAttributesByName) {
   PointCloud cloud;
   EXPECT_EQ(find_attribute(cloud, "a"), nullptr);
   set_attribute(cloud, make_attribute("a", std::vector<float>{1}));
@@ -31,6 +31,10 @@ TEST(PointCloud, FindsAndReplacesAttributesByName) {
   EXPECT_EQ(find_attribute(cloud, "a")->type, ScalarType::kUint8);
   EXPECT_EQ(find_attribute(cloud, "b")->value(0), 2.0);
   EXPECT_EQ(find_attribute(cloud, "ab"), nullptr);
+  erase_attribute(cloud, "a");
+  erase_attribute(cloud, "ab");
+  ASSERT_EQ(cloud.attributes.size(), 1u);
+  EXPECT_EQ(cloud.attributes[0].name, "b");
 }
 
 TEST(PointCloud, MakesNormalsUnitHoweverShortOrLong) {

@@ -38,6 +38,10 @@ void set_attribute(PointCloud& cloud, Attribute attribute) {
   cloud.attributes.push_back(std::move(attribute));
 }
 
+void erase_attribute(PointCloud& cloud, std::string_view name) {
+  std::erase_if(cloud.attributes, [&](const Attribute& a) { return a.name == name; });
+}
+
 std::size_t make_normals_unit(PointCloud& cloud) {
   std::size_t unusable = 0;
   for (Vec3& normal : cloud.normals) {

@@ -59,6 +59,9 @@ const Attribute* find_attribute(const PointCloud& cloud, std::string_view name);
 /// Adds `attribute`, replacing one of the same name.
 void set_attribute(PointCloud& cloud, Attribute attribute);
 
+/// Removes the attribute of that name, if there is one.
+void erase_attribute(PointCloud& cloud, std::string_view name);
+
 /// Whether a normal is finite and has a direction.
 inline bool is_usable(const Vec3& normal) {
   return normal.allFinite() && !normal.isZero(0.0);

@@ -45,10 +45,12 @@ void replace_comments(PointCloud& cloud, bool estimated_normals, const EdgeModel
 /// Adds the columns of the result, and removes those of other classes.
 void set_columns(PointCloud& cloud, const Classification& result, const ClassTable& table) {
   const bool edges = has_edges(table), own = has_own_classes(table);
-  for (const char* stale :
-       {edges ? "" : "scalar_edge_class", edges ? "" : "scalar_p_sharp",
-        edges ? "" : "scalar_p_smooth", edges ? "scalar_class" : "", own ? "" : "scalar_p_class"}) {
-    std::erase_if(cloud.attributes, [&](const Attribute& one) { return one.name == stale; });
+  if (edges) {
+    erase_attribute(cloud, "scalar_class");
+  } else {
+    erase_attribute(cloud, "scalar_edge_class");
+    erase_attribute(cloud, "scalar_p_sharp");
+    erase_attribute(cloud, "scalar_p_smooth");
   }
   if (own) {
     set_attribute(cloud, make_attribute("quality", result.p_class));
@@ -57,6 +59,7 @@ void set_columns(PointCloud& cloud, const Classification& result, const ClassTab
     set_attribute(cloud, make_attribute("scalar_p_class", result.p_class));
     if (!edges) return;
   } else {
+    erase_attribute(cloud, "scalar_p_class");
     std::vector<float> edge(result.classes.size());
     for (std::size_t i = 0; i < edge.size(); ++i) edge[i] = result.p_sharp[i] + result.p_smooth[i];
     set_attribute(cloud, make_attribute("quality", edge));

@@ -91,7 +91,7 @@ void take_numbers(TileCloud& points) {
   for (std::size_t i = 0; i < points.numbers.size(); ++i) {
     points.numbers[i] = static_cast<std::uint64_t>(column->value(i));
   }
-  std::erase_if(points.core.attributes, [](const Attribute& a) { return a.name == kNumberColumn; });
+  erase_attribute(points.core, kNumberColumn);
 }
 
 }  // namespace
