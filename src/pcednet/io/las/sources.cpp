@@ -24,7 +24,7 @@ struct WholeRange {
 
 struct Candidate {
   LasField field;
-  std::string attribute;
+  std::string attribute = {};
   std::optional<WholeRange> range = {};  ///< absent: any number
   std::optional<double> misfit = {};     ///< the first value that does not fit
   bool has_own_type = false;
