@@ -132,7 +132,9 @@ TEST_F(LabelPoints, FindingsComeBackInOrder) {
       EXPECT_EQ(back.found.classes[i], (i + 100) % 4);
       EXPECT_EQ(back.found.p_sharp[i], 1.0f / (1.0f + number));
       EXPECT_EQ(back.found.p_smooth[i], number);
-      if (own_classes) EXPECT_EQ(back.found.p_class[i], 0.5f * number);
+      if (own_classes) {
+        EXPECT_EQ(back.found.p_class[i], 0.5f * number);
+      }
       if (!normals) continue;
       EXPECT_EQ(back.prepared.made[i], Vec3(0.1 * number, 1.0 / 3.0, -number));
     }
