@@ -12,7 +12,7 @@ namespace pcednet::study {
 namespace {
 
 // The treatment of a cloud is the experiment; nothing is repaired.
-constexpr detect::PrepareOptions kAsGiven = {.keep_orientation = true};
+const detect::PrepareOptions kAsGiven = {.keep_orientation = true};
 
 /// The labels of the points to learn from, chosen by their positions.
 std::vector<std::uint8_t> thinned_labels(const PointCloud& cloud, int one_in) {
