@@ -7,13 +7,13 @@ namespace pcednet::io {
 namespace {
 
 constexpr LengthUnitEntry kUnits[] = {
-    {LengthUnit::kNone, "none", 0.0, 0, 0, false},
-    {LengthUnit::kMillimetre, "mm", 0.001, 0, 4, false},
-    {LengthUnit::kCentimetre, "cm", 0.01, 0, 5, false},
-    {LengthUnit::kMetre, "m", 1.0, 9001, 6, false},
-    {LengthUnit::kInch, "in", 0.0254, 0, 1, true},
-    {LengthUnit::kFoot, "ft", 0.3048, 9002, 2, true},
-    {LengthUnit::kUsSurveyFoot, "us-ft", 1200.0 / 3937.0, 9003, 21, true},
+    {LengthUnit::kNone, 0, "none", 0.0, 0, false},
+    {LengthUnit::kMillimetre, 0, "mm", 0.001, 4, false},
+    {LengthUnit::kCentimetre, 0, "cm", 0.01, 5, false},
+    {LengthUnit::kMetre, 9001, "m", 1.0, 6, false},
+    {LengthUnit::kInch, 0, "in", 0.0254, 1, true},
+    {LengthUnit::kFoot, 9002, "ft", 0.3048, 2, true},
+    {LengthUnit::kUsSurveyFoot, 9003, "us-ft", 1200.0 / 3937.0, 21, true},
 };
 
 /// Definitions round the US survey foot, which is two millionths longer than the foot.

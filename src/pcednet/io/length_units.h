@@ -10,9 +10,9 @@ namespace pcednet::io {
 /// What is known of a unit of length.
 struct LengthUnitEntry {
   LengthUnit unit;
+  int epsg;               ///< its code; 0: none
   std::string_view name;  ///< in options: "m"
   double metres;          ///< 0: unknown
-  int epsg;               ///< its code; 0: none
   int dxf_code;           ///< `$INSUNITS`
   bool imperial;          ///< DXF: `$MEASUREMENT` is 0
 };
