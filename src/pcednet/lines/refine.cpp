@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <optional>
 
 #include "pcednet/core/eigendecomposition.h"
@@ -19,6 +20,9 @@ namespace {
 constexpr std::size_t kNodesToRefine = 4;
 constexpr double kPlaneSide = 0.94;    ///< least cosine of a node's side and the mean
 constexpr double kLeastRefined = 8.0;  ///< points
+constexpr double kSlightTurn = 45.0 * std::numbers::pi / 180.0;  ///< arcs up to it may be straight
+/// They are if planes hold so many of the points that its surfaces do, so near.
+constexpr double kAsMany = 0.95, kAsNear = 1.1;
 constexpr int kPlaneFits = 3;
 constexpr double kLeastSineOfSides = 0.2;  ///< of the angle between the planes of a crease
 
@@ -29,14 +33,26 @@ constexpr double kMostShift = 0.8;
 constexpr double kStripInside = 1.6, kStripOutside = 1.0;
 constexpr double kEmptyStrip = 1.0;  ///< beyond the last points of a strip, in squared spacings
 
+/// How a surface explains the points of a side.
+struct Support {
+  double points = 0.0;       ///< on it, within the tolerance
+  double sq_distance = 0.0;  ///< their sum, in squared spacings
+};
+
+Support operator+(const Support& a, const Support& b) {
+  return {a.points + b.points, a.sq_distance + b.sq_distance};
+}
+
 struct Plane {
   Vec3 point, normal;
+  Support support = {};
 };
 
 /// Where a piece belongs, and the angle of the surfaces that meet there.
 struct Placed {
   Fit fit;
   std::optional<double> dihedral = {};
+  Support support = {};  ///< of both surfaces
 };
 
 /// The direction into the plane from a line in it, towards `side`.
@@ -91,7 +107,9 @@ std::optional<Plane> plane_of_side(const Piece& piece, const std::vector<Vec3>& 
     if (on.weight < kLeastRefined) return std::nullopt;
     const auto [variances, axes] = eigendecomposition(on.covariance());
     if (!(variances[1] > 0.2)) return std::nullopt;
-    plane = {piece.fit.point + spacing * on.mean(), axes.col(0).normalized()};
+    plane = {piece.fit.point + spacing * on.mean(),
+             axes.col(0).normalized(),
+             {on.weight, on.weight * variances[0]}};
   }
   return plane;
 }
@@ -112,7 +130,8 @@ std::optional<Placed> crease_line(const Piece& piece, const std::vector<Vec3>& p
   if (!line) return std::nullopt;
   const Vec3 direction = turned_to(line->along, along);
   return Placed{{CurveKind::kSegment, from + line->point, direction, 0.0, piece.fit.error},
-                dihedral_angle(into(*a, direction, *side_a), into(*b, direction, *side_b))};
+                dihedral_angle(into(*a, direction, *side_a), into(*b, direction, *side_b)),
+                a->support + b->support};
 }
 
 /// Where the strip of points along the piece ends: the side of their convex hull there, moved out
@@ -148,14 +167,8 @@ std::optional<Placed> boundary_line(const Piece& piece, const std::vector<Vec3>&
 /// A side of an arc in its half-plane (outward from the axis, along the axis).
 struct Ray {
   Eigen::Vector2d point, direction;
+  Support support = {};
 };
-
-/// Outward from the axis and along it, from the circle.
-Eigen::Vector2d in_half_plane(const Fit& circle, const Vec3& place) {
-  const Vec3 offset = place - circle.point;
-  const double height = offset.dot(circle.direction);
-  return {(offset - height * circle.direction).norm() - circle.radius, height};
-}
 
 /// Whether the place is beside the arc, not beyond its ends.
 bool is_beside(const Piece& piece, const Vec3& place) {
@@ -191,7 +204,9 @@ std::optional<Ray> ray_of_side(const Piece& piece, const std::vector<Eigen::Vect
     solver.computeDirect(covariance / (spacing * spacing));
     if (!(solver.eigenvalues()[1] > 0.2)) return std::nullopt;
     const Eigen::Vector2d direction = solver.eigenvectors().col(1);
-    ray = {mean, direction.dot(side) < 0.0 ? Eigen::Vector2d(-direction) : direction};
+    ray = {mean,
+           direction.dot(side) < 0.0 ? Eigen::Vector2d(-direction) : direction,
+           {count, count * solver.eigenvalues()[0]}};
   }
   return ray;
 }
@@ -224,7 +239,8 @@ std::optional<Placed> crease_circle(const Piece& piece, const std::vector<Vec3>&
   if (!sides) return std::nullopt;
   std::vector<Eigen::Vector2d> flat;
   for (const Vec3& point : points) {
-    if (is_beside(piece, point)) flat.push_back(in_half_plane(piece.fit, point));
+    if (is_beside(piece, point))
+      flat.push_back(about_axis(piece.fit, point) - Eigen::Vector2d(piece.fit.radius, 0.0));
   }
   const auto a = ray_of_side(piece, flat, (*sides)[0], tolerance);
   const auto b = ray_of_side(piece, flat, (*sides)[1], tolerance);
@@ -239,7 +255,24 @@ std::optional<Placed> crease_circle(const Piece& piece, const std::vector<Vec3>&
   fit.point += meet.y() * fit.direction;
   if (!(fit.radius > 0.0)) return std::nullopt;
   const auto in_space = [](const Eigen::Vector2d& v) { return Vec3(v.x(), v.y(), 0.0); };
-  return Placed{fit, dihedral_angle(in_space(a->direction), in_space(b->direction))};
+  return Placed{fit, dihedral_angle(in_space(a->direction), in_space(b->direction)),
+                a->support + b->support};
+}
+
+/// The piece as a segment between its ends.
+Piece straightened(const Piece& piece) {
+  Piece straight = piece;
+  straight.fit = fit_segment(piece.nodes);
+  for (Vec3& end : straight.ends) end = nearest_on(straight.fit, end);
+  return straight;
+}
+
+/// Whether planes explain the sides of an arc as well as surfaces of revolution do.
+bool is_straight(const Placed& line, const std::optional<Placed>& circle) {
+  if (!circle) return true;
+  const Support &planes = line.support, &round = circle->support;
+  return planes.points >= kAsMany * round.points &&
+         planes.sq_distance * round.points <= kAsNear * round.sq_distance * planes.points;
 }
 
 std::optional<Placed> better_fit(const Piece& piece, const std::vector<Vec3>& points,
@@ -252,9 +285,8 @@ std::optional<Placed> better_fit(const Piece& piece, const std::vector<Vec3>& po
   return crease_circle(piece, points, tolerance);
 }
 
-void place(Piece& piece, const OrderedPoints& cloud, double tolerance) {
-  if (piece.fit.kind == CurveKind::kPolyline || piece.nodes.size() < kNodesToRefine) return;
-  const auto better = better_fit(piece, points_beside(piece, cloud), tolerance);
+/// Moves the piece there, unless that is far from it.
+void move_to(const std::optional<Placed>& better, Piece& piece) {
   if (!better) return;
   const std::array<Vec3, 2> ends = {nearest_on(better->fit, piece.ends[0]),
                                     nearest_on(better->fit, piece.ends[1])};
@@ -264,6 +296,25 @@ void place(Piece& piece, const OrderedPoints& cloud, double tolerance) {
   piece.fit = better->fit;
   piece.ends = ends;
   piece.dihedral = better->dihedral;
+}
+
+void place(Piece& piece, const OrderedPoints& cloud, double tolerance) {
+  if (piece.fit.kind == CurveKind::kPolyline || piece.nodes.size() < kNodesToRefine) return;
+  const std::vector<Vec3> points = points_beside(piece, cloud);
+  const auto better = better_fit(piece, points, tolerance);
+  if (piece.fit.kind == CurveKind::kArc && !piece.closed &&
+      turn_about(piece.fit.direction, piece.ends[0] - piece.fit.point,
+                 piece.ends[1] - piece.fit.point) < kSlightTurn &&
+      !is_boundary(piece.middle())) {
+    Piece straight = straightened(piece);
+    const auto line = crease_line(straight, points, tolerance);
+    if (line && is_straight(*line, better)) {
+      move_to(line, straight);
+      piece = std::move(straight);
+      return;
+    }
+  }
+  move_to(better, piece);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "pcednet/core/eigendecomposition.h"
+#include "pcednet/lines/moments.h"
 #include "pcednet/lines/ring.h"
 
 namespace pcednet::lines {
@@ -35,15 +36,11 @@ struct Cap {
 
 /// The normal of the plane of least squares.
 Vec3 normal_of(const OrderedPoints& cloud, const std::vector<std::uint32_t>& points) {
-  Vec3 mean = Vec3::Zero();
-  for (const std::uint32_t i : points) mean += cloud.position(i);
-  mean /= static_cast<double>(points.size());
-  Mat3 products = Mat3::Zero();
+  PointMoments moments;
   for (const std::uint32_t i : points) {
-    const Vec3 offset = cloud.position(i) - mean;
-    products += offset * offset.transpose();
+    moments.add(cloud.position(i) - cloud.position(points.front()));
   }
-  return eigendecomposition(products / products.trace()).vectors.col(0).normalized();
+  return eigendecomposition(moments.covariance()).vectors.col(0).normalized();
 }
 
 /// The normals of planes that several points are on.

@@ -1,0 +1,87 @@
+#include "pcednet/lines/refine.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "lines/made_pieces.h"
+#include "pcednet/core/random.h"
+
+namespace pcednet::lines {
+namespace {
+
+/// About one point per unit of area, all of them edge points.
+struct Points {
+  std::vector<Vec3> positions = {}, normals = {};
+  std::vector<std::uint8_t> classes = {};
+  Random random = Random(4);
+
+  void add(const Vec3& position, const Vec3& normal) {
+    positions.push_back(position);
+    normals.push_back(normal);
+    classes.push_back(kSharpEdge);
+  }
+  Piece refined(const Piece& piece) const {
+    std::vector<Piece> pieces = {piece};
+    refine(pieces, OrderedPoints({positions, normals, classes}), {1.0, 0.0}, nullptr);
+    return pieces.front();
+  }
+};
+
+/// A slight arc through these places, between a surface towards `side_a` of the first and one
+/// below.
+Piece slight_arc(const std::vector<Vec3>& places, double radius) {
+  Piece piece;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const Vec3 along = (places[std::min(i + 1, places.size() - 1)] - places[i > 0 ? i - 1 : 0]);
+    piece.nodes.push_back({.at = places[i],
+                           .along = along.normalized(),
+                           .side_a = along.normalized().cross(Vec3::UnitZ()),
+                           .side_b = -Vec3::UnitZ(),
+                           .spacing = 1.0});
+  }
+  piece.fit = fit_arc(piece.nodes);
+  EXPECT_EQ(piece.fit.kind, CurveKind::kArc);
+  EXPECT_NEAR(piece.fit.radius, radius, 0.2 * radius);
+  piece.ends = {nearest_on(piece.fit, places.front()), nearest_on(piece.fit, places.back())};
+  return piece;
+}
+
+TEST(Refine, MakesASegmentOfAnArcBetweenPlanes) {
+  Points cloud;
+  for (int i = 0; i < 800; ++i) {
+    const double x = cloud.random.uniform() * 20.0 - 7.0, away = cloud.random.uniform() * 10.0;
+    if (i % 2 == 0) cloud.add({x, -away, 0.0}, Vec3::UnitZ());
+    if (i % 2 == 1) cloud.add({x, 0.0, -away}, Vec3::UnitY());
+  }
+  std::vector<Vec3> places;
+  for (int i = 0; i <= 6; ++i) places.emplace_back(i, 0.2 - 0.04 * (i - 3.0) * (i - 3.0), 0.0);
+  const Piece piece = cloud.refined(slight_arc(places, 12.5));
+  EXPECT_EQ(piece.fit.kind, CurveKind::kSegment);
+  EXPECT_NEAR(std::abs(piece.fit.direction.x()), 1.0, 1e-9);
+  EXPECT_NEAR(piece.ends[0].y(), 0.0, 1e-9);
+}
+
+TEST(Refine, LeavesAnArcWhereASurfaceIsRound) {
+  constexpr double kRadius = 16.0;
+  Points cloud;
+  for (int i = 0; i < 1200; ++i) {
+    const double angle = cloud.random.uniform() * 1.6;
+    const Vec3 out(std::sin(angle), std::cos(angle), 0.0);
+    const double away = cloud.random.uniform() * 8.0;
+    if (i % 2 == 0) cloud.add((kRadius - away) * out, Vec3::UnitZ());
+    if (i % 2 == 1) cloud.add(kRadius * out - away * Vec3::UnitZ(), out);
+  }
+  std::vector<Vec3> places;
+  for (int i = 0; i <= 8; ++i) {
+    const double angle = 0.5 + i / kRadius;
+    places.emplace_back(kRadius * std::sin(angle), kRadius * std::cos(angle), 0.0);
+  }
+  const Piece piece = cloud.refined(slight_arc(places, kRadius));
+  EXPECT_EQ(piece.fit.kind, CurveKind::kArc);
+  EXPECT_NEAR(piece.fit.radius, kRadius, 1e-6);
+}
+
+}  // namespace
+}  // namespace pcednet::lines
