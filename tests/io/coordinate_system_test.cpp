@@ -28,10 +28,13 @@ TEST(CoordinateSystem, TakesTheHorizontalPartOfACompoundSystem) {
   const std::string vertical =
       R"(,VERT_CS["DHHN",VERT_DATUM["D",2005],UNIT["metre",1],AUTHORITY["EPSG","7837"]])";
   const std::string parts = projected(R"("metre",1)", "25832") + vertical;
-  EXPECT_EQ(coordinate_system_of_wkt("COMPD_CS[\"both\"," + parts + "]").epsg, 25832);
+  const auto both = coordinate_system_of_wkt("COMPD_CS[\"both\"," + parts + "]");
+  EXPECT_EQ(both.epsg, 25832);
+  EXPECT_EQ(both.vertical_epsg, 7837);
   const auto named = coordinate_system_of_wkt("COMPD_CS[\"both\"," + parts +
                                               R"(, AUTHORITY [ "EPSG" , "5555" ] ])");
   EXPECT_EQ(named.epsg, 5555);
+  EXPECT_EQ(named.vertical_epsg, 0);  // the other code covers them
   EXPECT_EQ(named.unit, LengthUnit::kMetre);
   const std::string in_feet = projected(R"("foot",0.3048)", "2263") + vertical;
   EXPECT_EQ(coordinate_system_of_wkt("COMPD_CS[\"both\"," + in_feet + "]").unit, LengthUnit::kNone);

@@ -71,7 +71,7 @@ int epsg_of(const WktNode& node) {
 
 CoordinateSystem coordinate_system_of_wkt(std::string_view wkt) {
   CoordinateSystem system{.epsg = 0, .wkt = std::string(trim(wkt))};
-  int whole = 0, horizontal = 0;
+  int whole = 0, horizontal = 0, heights = 0;
   bool cartesian = false;  // as geocentric systems are, which share a keyword with geographic ones
   std::optional<LengthUnit> common;  // of all lengths so far
   visit_wkt(wkt, [&](const std::vector<WktNode>& open) {
@@ -80,9 +80,10 @@ CoordinateSystem coordinate_system_of_wkt(std::string_view wkt) {
     if (const int code = epsg_of(node)) {
       if (open.size() == 2) whole = code;
       const bool of_part = is_one_of(parent, {"projcs", "projcrs", "geogcs", "geogcrs", "geodcrs"});
-      if (open.size() == 3 && of_part && is_one_of(open[0].keyword, {"compd_cs", "compoundcrs"})) {
-        horizontal = code;
-      }
+      const bool in_compound =
+          open.size() == 3 && is_one_of(open[0].keyword, {"compd_cs", "compoundcrs"});
+      if (in_compound && of_part) horizontal = code;
+      if (in_compound && is_one_of(parent, {"vert_cs", "vertcrs"})) heights = code;
     }
     if (is_horizontal(open) && is_one_of(node.keyword, {"geogcs", "geogcrs", "geodcrs"})) {
       system.geographic = !cartesian;
@@ -98,6 +99,7 @@ CoordinateSystem coordinate_system_of_wkt(std::string_view wkt) {
     common = common.value_or(unit) == unit ? unit : LengthUnit::kNone;
   });
   system.epsg = whole ? whole : horizontal;
+  if (!whole) system.vertical_epsg = heights;
   // Degrees are no lengths, though heights above them are.
   if (!system.geographic) system.unit = common.value_or(LengthUnit::kNone);
   return system;

@@ -16,8 +16,8 @@ struct CoordinateSystem {
   bool geographic = false;  ///< x and y are angles: longitude and latitude
 };
 
-/// The system that a definition describes: its code is that of the outermost EPSG AUTHORITY or ID,
-/// or of the horizontal part of a compound system.
+/// The system that a definition describes: its code is that of the outermost EPSG AUTHORITY or ID;
+/// of a compound system without one, the codes are those of its parts.
 CoordinateSystem coordinate_system_of_wkt(std::string_view wkt);
 
 }  // namespace pcednet::io

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 #include <utility>
 
@@ -50,57 +49,33 @@ Chunk chunk_of(const PointCloud& part, std::string digest) {
   return chunk;
 }
 
-/// The columns of a cloud, as text to compare.
-std::string columns_of(const PointCloud& cloud) {
-  std::string text =
-      fmt::format("{}{}{}", cloud.has_normals() ? "normals, " : "",
-                  cloud.colours.empty() ? "" : "colours, ", cloud.has_labels() ? "labels, " : "");
+/// The columns of a cloud, as texts to compare.
+std::vector<std::string> columns_of(const PointCloud& cloud) {
+  std::vector<std::string> columns;
+  if (cloud.has_normals()) columns.emplace_back("normals");
+  if (!cloud.colours.empty()) columns.emplace_back("colours");
+  if (cloud.has_labels()) columns.emplace_back("labels");
   for (const Attribute& attribute : cloud.attributes) {
-    text += fmt::format("{} ({} of {} bytes), ", attribute.name, attribute.components,
-                        size_of(attribute.type));
+    columns.push_back(fmt::format("{} ({} of {} bytes)", attribute.name, attribute.components,
+                                  size_of(attribute.type)));
   }
-  return text.empty() ? "positions only" : text.substr(0, text.size() - 2);
+  return columns;
 }
 
-void check_agree(const IndexedInput& a, const IndexedInput& b) {
-  const std::string names = a.input.path.string() + " and " + b.input.path.string();
-  if (a.columns != b.columns) {
-    throw Error(ErrorKind::kUsage,
-                fmt::format("{} have different columns: {}; {}. Convert them to one form first, or "
-                            "plan them one by one",
-                            names, a.columns, b.columns));
-  }
-  if (detect::tells_of_estimated_normals(a.outline) !=
-      detect::tells_of_estimated_normals(b.outline)) {
-    throw Error(ErrorKind::kUsage, names + " differ in whether pcednet estimated their normals");
-  }
-  const auto first = io::las_coordinate_system(a.outline);
-  const auto other = io::las_coordinate_system(b.outline);
-  if (first.epsg != other.epsg || (first.epsg == 0 && first.wkt != other.wkt)) {
-    throw Error(ErrorKind::kUsage, names + " have different coordinate systems");
-  }
-}
-
-/// Whether the scale steps of a file coincide with steps of another.
-bool fits_steps(const io::LasFile& file, const io::LasFile& into) {
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const double steps = (file.offset(axis) - into.offset(axis)) / into.scale(axis);
-    const double ratio = file.scale(axis) / into.scale(axis);
-    if (std::abs(steps - std::round(steps)) > 1e-3 || std::abs(ratio - std::round(ratio)) > 1e-9) {
-      return false;
+/// Takes the least and largest numbers out of the description of extra bytes: those of one input
+/// are not those of several.
+void forget_extra_ranges(io::LasFile& file) {
+  using namespace io::las_descriptor;
+  for (io::LasRecord& record : file.records) {
+    if (!record.is(io::kExtraBytesRecord)) continue;
+    for (std::size_t at = 0; at + kBytes <= record.data.size(); at += kBytes) {
+      if (record.data[at + kType] == 0) continue;  // bytes, and the options are how many
+      const auto options = io::number_at<std::uint8_t>(record.data, at + kOptions);
+      io::put_number(record.data, at + kOptions,
+                     static_cast<std::uint8_t>(options & ~(kLeastBit | kMostBit)));
+      record.data.replace(at + kLeast, kScale - kLeast, kScale - kLeast, '\0');
     }
   }
-  return true;
-}
-
-/// The scale of a file, or its smallest power-of-ten multiple with which 32 bits hold the box.
-double scale_within(const io::LasFile& file, std::size_t axis, const BoundingBox& box) {
-  const int a = static_cast<int>(axis);
-  const double farthest =
-      std::max(std::abs(box.min[a] - file.offset(axis)), std::abs(box.max[a] - file.offset(axis)));
-  double scale = file.scale(axis);
-  while (std::isfinite(farthest) && farthest / std::abs(scale) > INT32_MAX) scale *= 10.0;
-  return scale;
 }
 
 /// A part as read_cloud() gives a whole file, without its warnings.
@@ -259,42 +234,6 @@ IndexedInput index_input(const fs::path& path, const Progress* progress,
   return indexed;
 }
 
-void settle_columns(const std::vector<IndexedInput>& inputs, Plan& plan) {
-  bool scanners = false, besides = false;
-  std::vector<io::LasFile> las;
-  for (const IndexedInput& input : inputs) {
-    const PointCloud& outline = input.outline;
-    check_agree(inputs.front(), input);
-    scanners = scanners || !outline.scanners.empty();
-    besides = besides || !std::all_of(outline.foreign_elements.begin(),
-                                      outline.foreign_elements.end(), io::is_las_element);
-    io::LasFile file = io::attached_las_file(outline);
-    if (!file.header.empty()) las.push_back(std::move(file));
-  }
-  if (scanners && inputs.size() > 1) {
-    plan.notes.emplace_back(
-        "several inputs: the places of their scanners do not orient the normals");
-  }
-  if (besides) plan.notes.emplace_back("other elements than points, such as faces, are left out");
-  if (las.size() < inputs.size()) return;
-  const io::LasFile& finest = *std::min_element(
-      las.begin(), las.end(),
-      [](const io::LasFile& a, const io::LasFile& b) { return a.scale(0) < b.scale(0); });
-  double coarsest = 0.0;
-  bool widened = false;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const double scale = scale_within(finest, axis, plan.box);
-    plan.las_steps.insert(plan.las_steps.end(), {scale, finest.offset(axis)});
-    widened = widened || scale != finest.scale(axis);
-    coarsest = std::max(coarsest, std::abs(scale));
-  }
-  const auto fits = [&](const io::LasFile& file) { return fits_steps(file, finest); };
-  if (!widened && std::all_of(las.begin(), las.end(), fits)) return;
-  plan.notes.push_back(fmt::format(
-      "the inputs have different scales and offsets: coordinates are rounded to steps of {:g}",
-      coarsest));
-}
-
 PointCloud outline_of(const Plan& plan) {
   const PlannedInput& input = plan.inputs.front();
   PointCloud outline = without_points(read_chunk(*open_planned(input), input, 0));
@@ -307,6 +246,7 @@ PointCloud outline_of(const Plan& plan) {
     io::put_number(file.header, io::las_header::kScales + 8 * axis, steps[0]);
     io::put_number(file.header, io::las_header::kOffsets + 8 * axis, steps[1]);
   }
+  if (plan.inputs.size() > 1) forget_extra_ranges(file);
   std::erase_if(outline.foreign_elements, io::is_las_element);
   io::attach_las_file(outline, file);
   return outline;

@@ -5,6 +5,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "pcednet/cloud/point_cloud.h"
 #include "pcednet/core/progress.h"
@@ -40,19 +41,14 @@ void read_in_turn(std::span<const std::size_t> parts,
 
 struct IndexedInput {
   PlannedInput input;
-  PointCloud outline;   ///< its columns and its content beside points, without points
-  std::string columns;  ///< as text, to compare
+  PointCloud outline;                ///< its columns and its content beside points, without points
+  std::vector<std::string> columns;  ///< as texts, to compare
 };
 
 /// Reads the whole file and lists its chunks; `see` gets each, finished.
 IndexedInput index_input(const std::filesystem::path& path, const Progress* progress,
                          std::vector<std::string>& notes,
                          const std::function<void(const PointCloud&)>& see);
-
-/// Throws Error(kUsage) if the inputs have different columns or coordinate systems. Chooses the
-/// plan's las_steps, the finest of the inputs that hold the plan's box, and notes data that the
-/// tiles cannot keep.
-void settle_columns(const std::vector<IndexedInput>& inputs, Plan& plan);
 
 /// The content of the tiles beside points, from the first input, and their columns.
 PointCloud outline_of(const Plan& plan);

@@ -14,8 +14,10 @@
 #include "pcednet/formats/cloud_facts.h"
 #include "pcednet/gls/scales.h"
 #include "pcednet/normals/exact_planes.h"
+#include "pcednet/tiles/agreement.h"
 #include "pcednet/tiles/dense_sample.h"
 #include "pcednet/tiles/inputs.h"
+#include "pcednet/tiles/las_steps.h"
 #include "pcednet/tiles/layout.h"
 #include "pcednet/tiles/sample.h"
 #include "pcednet/tiles/sha256.h"
@@ -195,7 +197,8 @@ Sample index_inputs(const PlanRequest& request, Plan& plan, const Progress* prog
                 fmt::format("the inputs have no point with a finite position up to {:g}",
                             detect::kSuspectCoordinate));
   }
-  settle_columns(indexed, plan);
+  check_agreement(indexed, plan);
+  choose_las_steps(indexed, plan);
   for (IndexedInput& input : indexed) plan.inputs.push_back(std::move(input.input));
   if (sample.seen() < plan.points()) {
     plan.notes.push_back(

@@ -17,8 +17,9 @@ inline constexpr std::size_t kSignature = 0, kGlobalEncoding = 6, kMajorVersion 
                              kBounds = 179;     ///< largest and least x, then y, then z
 inline constexpr std::size_t kWaveforms = 227;  ///< since 1.3
 inline constexpr std::size_t kExtendedRecords = 235, kExtendedCount = 243, kPointCount64 = 247,
-                             kByReturn64 = 255;                  ///< since 1.4
-inline constexpr std::size_t kLastTime = 375, kFirstTime = 383;  ///< since 1.5
+                             kByReturn64 = 255;  ///< since 1.4
+inline constexpr std::size_t kLastTime = 375, kFirstTime = 383,
+                             kTimeOffset = 391;  ///< since 1.5
 
 inline constexpr std::size_t kTextBytes = 32;  ///< of the system and of the software
 inline constexpr std::size_t kReturns32 = 5, kReturns64 = 15;
@@ -28,7 +29,8 @@ inline constexpr std::size_t kLeastBytes = 227, kBytes13 = 235, kBytes14 = 375, 
 
 /// Bits of the point format's byte: LASzip sets the upper two.
 inline constexpr unsigned kFormatBits = 0x3F, kCompressedBits = 0xC0, kCompressedBit = 0x80;
-inline constexpr unsigned kWktBit = 16, kTimeOffsetBit = 64;  ///< of the global encoding
+inline constexpr unsigned kStandardTimeBit = 1, kWktBit = 16,
+                          kTimeOffsetBit = 64;  ///< of the global encoding
 }  // namespace las_header
 
 /// A variable length record, before its data; the description is its last field.
@@ -41,8 +43,11 @@ inline constexpr std::size_t kHeadBytes = 54,
 
 /// One entry of the record that describes extra bytes.
 namespace las_descriptor {
-inline constexpr std::size_t kType = 2, kOptions = 3, kName = 4, kDescription = 160;
+inline constexpr std::size_t kType = 2, kOptions = 3, kName = 4, kNoData = 40, kLeast = 64,
+                             kScale = 112, kOffset = 136, kDescription = 160;
 inline constexpr std::size_t kNameBytes = 32, kDescriptionBytes = 32, kBytes = 192;
+inline constexpr unsigned kNoDataBit = 1, kLeastBit = 2, kMostBit = 4, kScaleBit = 8,
+                          kOffsetBit = 16;  ///< of the options
 }  // namespace las_descriptor
 
 /// The record of LASzip, and one of the items that follow it.
