@@ -149,6 +149,25 @@ TEST(PartChoices, ColoursOfLasAreWideIfOneIs) {
   EXPECT_EQ(reader->read(2).colours[9], (Rgb{200, 0, 0}));
 }
 
+TEST(PartChoices, WideColoursBesideBytesStayColumns) {
+  const Scratch scratch;
+  PointCloud cloud = grid_cloud(30);
+  cloud.colours.assign(30, Rgb{7, 8, 9});
+  for (const char* name : {"Red", "Green", "Blue"}) {
+    cloud.attributes.push_back(make_attribute(name, std::vector<std::uint16_t>(30, 1799)));
+  }
+  formats::write_cloud(scratch.path("a.ply"), cloud);
+  const auto reader = formats::open_parts(scratch.path("a.ply"), 10);
+  ASSERT_TRUE(reader);
+  const PointCloud part = reader->read(2), whole = formats::read_cloud(scratch.path("a.ply")).cloud;
+  EXPECT_EQ(part.colours[9], (Rgb{7, 8, 9}));
+  ASSERT_EQ(part.attributes.size(), whole.attributes.size());
+  EXPECT_EQ(find_attribute(part, "Blue")->value(9), 1799.0);
+  cloud.colours.clear();  // then numbers decide what the others are
+  formats::write_cloud(scratch.path("b.ply"), cloud);
+  EXPECT_FALSE(formats::open_parts(scratch.path("b.ply"), 10));
+}
+
 TEST(PartChoices, WhatOnlyTheWholeDecidesIsReadAsAWhole) {
   const Scratch scratch;
   PointCloud cloud = grid_cloud(40);

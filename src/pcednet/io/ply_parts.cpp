@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <set>
 
 #include "pcednet/io/ply.h"
 #include "pcednet/io/ply_body.h"
@@ -12,15 +13,22 @@ namespace {
 /// Bytes beside the vertices that are read with part 0.
 constexpr std::uint64_t kMostBesides = std::uint64_t{1} << 24;
 
-/// Whether the role of a column follows from its name and type, for any numbers.
-bool speaks_for_itself(const Column& column) {
-  if (column.type == ScalarType::kUint8) return true;
-  const std::string name = lower_case(column.name);
-  const auto names_it = [&](const std::vector<std::string>& names) {
-    return std::find(names.begin(), names.end(), name) != names.end();
-  };
-  return !names_it(label_names()) && !names_it({"rgb", "rgba"}) &&
-         std::none_of(colour_names().begin(), colour_names().end(), names_it);
+/// Whether the roles of all columns follow from their names and types, for any numbers.
+bool speak_for_themselves(const std::vector<Column>& columns) {
+  std::set<std::string> decided;  // names that columns of bytes have taken, as LAS colours do
+  return std::all_of(columns.begin(), columns.end(), [&](const Column& column) {
+    const std::string name = lower_case(column.name);
+    if (column.type == ScalarType::kUint8) {
+      decided.insert(name);
+      return true;
+    }
+    const auto names_it = [&](const std::vector<std::string>& names) {
+      return std::find(names.begin(), names.end(), name) != names.end();
+    };
+    if (names_it(label_names()) || names_it({"rgb", "rgba"})) return false;
+    return decided.contains(name) ||
+           std::none_of(colour_names().begin(), colour_names().end(), names_it);
+  });
 }
 
 bool is_readable_in_parts(const InputFile& file, const PlyHeader& header) {
@@ -28,8 +36,7 @@ bool is_readable_in_parts(const InputFile& file, const PlyHeader& header) {
   if (header.encoding == PlyEncoding::kAscii || vertices != 1) return false;
   const auto& vertex = *std::find_if(header.elements.begin(), header.elements.end(), is_vertex);
   const auto columns = scalar_columns(vertex);
-  if (vertex.has_lists() || vertex.fixed_bytes() == 0 ||
-      !std::all_of(columns.begin(), columns.end(), speaks_for_itself)) {
+  if (vertex.has_lists() || vertex.fixed_bytes() == 0 || !speak_for_themselves(columns)) {
     return false;
   }
   const std::uint64_t rest = file.size() - header.bytes;
