@@ -1,5 +1,6 @@
 """`pcednet info`: spacing, problems, folders with files that cannot be read."""
 import json
+import os
 import re
 import signal
 import subprocess
@@ -119,6 +120,11 @@ class Info(CliTest):
         said = run("info", self.folder / "a.ply", "--vpc", self.folder / "b.vpc", expect=2).stderr
         self.assertIn("a.ply: --vpc lists LAS, LAZ and COPC files, which pcednet convert writes", said)
         self.assertFalse((self.folder / "b.vpc").exists())
+        os.rename(tiles / "a.laz", os.fsencode(tiles) + b"/lat\xfcin.laz")
+        done = subprocess.run([PROGRAM, "info", str(tiles), "--vpc", str(self.folder / "c.vpc")], capture_output=True)
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertIn(b"lat\xfcin.laz: the name is not in UTF-8", done.stderr)
+        self.assertFalse((self.folder / "c.vpc").exists())
 
 
 if __name__ == "__main__":

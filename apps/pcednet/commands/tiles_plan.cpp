@@ -44,6 +44,14 @@ void check_plan_name(const PlanArguments& arguments) {
               "-o -: a plan is a file, beside which its tiles are; give a name such as plan.json");
 }
 
+/// Throws before the inputs are read if the plan could not name a file.
+void check_names(const fs::path& plan, const tiles::PlanRequest& request) {
+  std::vector<fs::path> files = request.inputs;
+  files.insert(files.end(), {request.model.path, request.folder / request.output});
+  if (!request.sort.folder.empty()) files.push_back(request.sort.folder);
+  tiles::check_can_name(plan, files);
+}
+
 /// Warns where the folder of the tiles holds some of an earlier plan.
 void warn_of_old_tiles(const PlanArguments& arguments) {
   const std::string digest = tiles::read_plan(arguments.plan).digest;
@@ -70,6 +78,7 @@ void plan_tiles(const PlanArguments& arguments, const Common& common) {
                              .memory = byte_size("--max-memory", arguments.memory),
                              .keep_orientation = arguments.preparation.keep_orientation,
                              .sort = {.folder = arguments.sorted, .overwrite = common.overwrite()}};
+  check_names(arguments.plan, request);
   const Progress progress = console_progress(common);
   const detect::EdgeModel loaded = load_model(model);
   if (has_own_classes(loaded.table)) {

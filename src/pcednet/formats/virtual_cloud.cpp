@@ -9,6 +9,7 @@
 #include <set>
 
 #include "pcednet/core/error.h"
+#include "pcednet/formats/file_name.h"
 #include "pcednet/formats/format.h"
 #include "pcednet/io/las/facts.h"
 #include "pcednet/io/projection.h"
@@ -88,8 +89,9 @@ ordered_json day_of(const VirtualFile& file) {
 std::string reference_to(const fs::path& file, const fs::path& folder) {
   std::error_code fault;
   const fs::path relative = fs::relative(file, folder, fault);
-  if (fault || relative.empty()) return fs::absolute(file).generic_string();
-  return "./" + relative.generic_string();
+  const bool is_relative = !fault && !relative.empty();
+  check_is_utf8(is_relative ? relative : fs::absolute(file));
+  return is_relative ? "./" + relative.generic_string() : fs::absolute(file).generic_string();
 }
 
 ordered_json properties_of(const VirtualFile& file, const std::string& definition) {
@@ -249,7 +251,7 @@ std::vector<std::string> write_virtual_cloud(const fs::path& path,
   }
   std::vector<std::string> remarks = remarks_on(files, files.size() - items.size(), items);
   const ordered_json whole = {{"type", "FeatureCollection"}, {"features", std::move(items)}};
-  // Names of files need not be UTF-8.
+  // Names of systems and of extra bytes need not be UTF-8.
   write_text_file(path, whole.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n",
                   overwrite);
   return remarks;

@@ -48,7 +48,8 @@ VirtualFile virtual_file(const std::filesystem::path& path);
 ///
 /// Outlines are in WGS 84 where PROJ knows the system; otherwise they are in the coordinates of the
 /// files and the system is left out, because with it QGIS would take them for WGS 84. Throws
-/// Error(kInsufficient) if no file has points, Error(kUsage) and Error(kFailure) as OutputFile.
+/// Error(kInsufficient) if no file has points, Error(kUsage) for a name that is not UTF-8, and as
+/// OutputFile does.
 std::vector<std::string> write_virtual_cloud(const std::filesystem::path& path,
                                              std::span<const VirtualFile> files,
                                              Overwrite overwrite = Overwrite::kNo);

@@ -12,6 +12,7 @@
 #include "pcednet/core/error.h"
 #include "pcednet/core/version.h"
 #include "pcednet/detect/octaves.h"
+#include "pcednet/formats/file_name.h"
 #include "pcednet/io/input_file.h"
 #include "pcednet/tiles/sha256.h"
 
@@ -30,11 +31,14 @@ class Paths {
   explicit Paths(const fs::path& plan)
       : folder_(fs::absolute(plan).lexically_normal().parent_path()) {}
 
+  /// Throws Error(kUsage) for a path that JSON cannot hold.
   std::string written(const fs::path& path) const {
     const fs::path full = fs::absolute(path).lexically_normal();
     const fs::path relative = full.lexically_relative(folder_);
     const bool is_below = !relative.empty() && *relative.begin() != "..";
-    return (is_below ? relative : full).string();
+    const fs::path& written = is_below ? relative : full;
+    formats::check_is_utf8(written);
+    return written.string();
   }
   fs::path read(const std::string& text) const { return folder_ / text; }
 
@@ -308,6 +312,11 @@ BoundingBox Plan::box_of(const Tile& tile, double around) const {
 
 void write_plan(const fs::path& path, const Plan& plan, Overwrite overwrite) {
   write_text_file(path, text_of(plan, Paths(path)), overwrite);
+}
+
+void check_can_name(const fs::path& plan, std::span<const fs::path> files) {
+  const Paths paths(plan);
+  for (const fs::path& file : files) paths.written(file);
 }
 
 Plan read_plan(const fs::path& path) {

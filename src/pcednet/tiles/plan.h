@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -73,6 +74,11 @@ struct Plan {
   /// The box of the core of a tile, extended by `around`, without bounds in z.
   BoundingBox box_of(const Tile& tile, double around) const;
 };
+
+/// Throws Error(kUsage), before any work, for a file that a plan of that path cannot name: JSON
+/// takes names in UTF-8 only.
+void check_can_name(const std::filesystem::path& plan,
+                    std::span<const std::filesystem::path> files);
 
 /// Writes a plan as JSON. Paths of files in or below the folder of `path` are written relative to
 /// it, so that a folder can be moved as a whole.
