@@ -273,7 +273,9 @@ Plan parse_plan(const std::string& text, const fs::path& path) {
                               "differ. Plan again, or run the other version",
                               path.string(), version, kVersion));
     }
-    Plan plan = plan_of(j, Paths(path), member);
+    std::error_code error;
+    const fs::path place = fs::canonical(path, error);  // paths are relative to it, not to a link
+    Plan plan = plan_of(j, Paths(error ? path : place), member);
     if (const std::string unsound = unsound_member(plan); !unsound.empty()) {
       throw refuse(fmt::format(": \"{}\" is damaged", unsound));
     }
