@@ -217,6 +217,11 @@ TEST(ModelFile, TellsAMissingFileFromADamagedOne) {
   EXPECT_EQ(kind_of_failure([] { read_safetensors("/no/such.safetensors"); }),
             ErrorKind::kUnreadable);
   EXPECT_EQ(kind_of_failure([] { read_safetensors(testing::TempDir()); }), ErrorKind::kUnreadable);
+  try {
+    read_safetensors("/no/such.safetensors");
+  } catch (const Error& error) {
+    EXPECT_STREQ(error.what(), "/no/such.safetensors: No such file or directory");
+  }
   const auto path = fresh_path("foreign.safetensors");
   write_text_file(path, "ply\nformat ascii 1.0\nelement vertex 0\nend_header\n");
   EXPECT_EQ(kind_of_failure([&] { read_safetensors(path); }), ErrorKind::kModelMismatch);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cerrno>
 #include <cstdint>
 #include <cstring>
 #include <fstream>
@@ -171,21 +172,27 @@ Safetensors decode_safetensors(std::string_view bytes, const std::string& name) 
 
 Safetensors read_safetensors(const std::filesystem::path& path) {
   const std::string name = path.string();
-  const auto unreadable = [&] {
-    throw Error(ErrorKind::kUnreadable, fmt::format("{}: cannot read the file", name));
+  const auto unreadable = [&](const std::string& why) {
+    return Error(ErrorKind::kUnreadable, fmt::format("{}: {}", name, why));
   };
   std::error_code error;
-  if (!std::filesystem::is_regular_file(path, error)) unreadable();
+  const std::filesystem::file_status status = std::filesystem::status(path, error);
+  if (is_directory(status)) throw unreadable("is a folder");
+  if (exists(status) && !is_regular_file(status)) throw unreadable("is not a regular file");
+  errno = 0;
   std::ifstream file(path, std::ios::binary);
+  if (!file) throw unreadable(std::strerror(errno));
   const std::uintmax_t size = std::filesystem::file_size(path, error);
-  if (!file || error) unreadable();
+  if (error) throw unreadable(error.message());
   std::string bytes(std::min<std::uintmax_t>(size, kPrefix), '\0');
-  if (!file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()))) unreadable();
+  const auto read = [&](char* to, std::uintmax_t count) {
+    if (!file.read(to, static_cast<std::streamsize>(count))) throw unreadable("cannot be read");
+  };
+  read(bytes.data(), bytes.size());
   // Before the rest is read, which for a foreign file may be large.
   header_length(bytes, static_cast<std::size_t>(size), name);
   bytes.resize(static_cast<std::size_t>(size));
-  if (!file.read(bytes.data() + kPrefix, static_cast<std::streamsize>(size - kPrefix)))
-    unreadable();
+  read(bytes.data() + kPrefix, size - kPrefix);
   return decode_safetensors(bytes, name);
 }
 
