@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
@@ -13,12 +14,13 @@ std::uint64_t byte_size(const std::string& option, const std::string& text) {
   double number = 0.0;
   const char* const end = text.data() + text.size();
   const auto [rest, error] = std::from_chars(text.data(), end, number);
-  double unit = 0.0;
-  if (rest == end) unit = 1.0;
-  if (rest + 1 == end) {
-    const std::size_t power = std::string("kmgt").find(static_cast<char>(*rest | 0x20));
-    if (power != std::string::npos) unit = std::pow(1024.0, static_cast<double>(power + 1));
-  }
+  std::string letters(rest, end);  // 2, 2G, 2GB and 2GiB are all powers of 1024
+  for (char& letter : letters) letter = static_cast<char>(letter | 0x20);
+  const std::size_t power = letters.empty() ? 0 : std::string("bkmgt").find(letters[0]);
+  const std::string after = letters.substr(std::min<std::size_t>(letters.size(), 1));
+  const bool is_known = power != std::string::npos &&
+                        (after.empty() || (power > 0 && (after == "b" || after == "ib")));
+  const double unit = is_known ? std::pow(1024.0, static_cast<double>(power)) : 0.0;
   const double bytes = number * unit;
   if (error == std::errc() && bytes >= 1.0 && bytes < 1e18)
     return static_cast<std::uint64_t>(bytes);
