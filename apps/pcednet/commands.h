@@ -25,5 +25,6 @@ void add_annotate(CLI::App& app, Common& common);
 
 // Commands of `tiles` with a file of their own.
 void add_tiles_plan(CLI::App& tiles, Common& common);
+void add_tiles_status(CLI::App& tiles, Common& common);
 
 }  // namespace pcednet::app

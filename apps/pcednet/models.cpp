@@ -69,6 +69,13 @@ tiles::PlannedModel planned_model(const ModelArguments& arguments) {
           .exact = arguments.scales.engine == gls::Engine::kExact};
 }
 
+void find_planned_model(tiles::PlannedModel& model) {
+  std::error_code error;
+  if (fs::exists(model.path, error)) return;
+  const auto models = shipped_models();
+  if (const auto found = models.find(model.name); found != models.end()) model.path = found->second;
+}
+
 std::filesystem::path model_file(const ModelArguments& arguments) {
   return arguments.name.empty() ? std::filesystem::path() : find_model(arguments.name);
 }

@@ -41,6 +41,10 @@ void add_model_options(CLI::App& command, ModelArguments& arguments);
 /// The model as a plan of tiles names it. Throws as find_model() does.
 tiles::PlannedModel planned_model(const ModelArguments& arguments);
 
+/// Takes the shipped model of the same name for a planned one whose file is not here, as where
+/// pcednet is installed elsewhere; its digest decides whether it is the same.
+void find_planned_model(tiles::PlannedModel& model);
+
 /// The file of the model, for check_not_input(); empty without a model. Throws as find_model()
 /// does.
 std::filesystem::path model_file(const ModelArguments& arguments);

@@ -5,6 +5,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <cstring>
@@ -24,8 +25,8 @@ pid_t start(const TileJobs& jobs, std::size_t tile) {
                                     "run",         jobs.plan,
                                     "--tile",      std::to_string(tile),
                                     "--threads",   std::to_string(jobs.threads),
-                                    "--overwrite", "--progress",
-                                    "none"};
+                                    "--overwrite", "--as-job",
+                                    "--progress",  "none"};
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
@@ -106,6 +107,7 @@ std::size_t run_tile_jobs(const TileJobs& jobs, const Progress& progress) {
     }
   }
   if (failed.empty()) return started;
+  std::sort(failed.begin(), failed.end());
   throw Error(static_cast<ErrorKind>(code),
               fmt::format("{} of {} tiles failed, for the reasons above: {}", failed.size(),
                           jobs.tiles.size(), tiles::list_of(failed)));

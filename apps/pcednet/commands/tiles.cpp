@@ -1,24 +1,24 @@
-#include "pcednet/tiles/plan.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
+#include <cstdlib>
 #include <functional>
 #include <memory>
-#include <nlohmann/json.hpp>
-#include <set>
 
 #include "byte_size.h"
 #include "commands.h"
+#include "models.h"
 #include "pcednet/core/stopwatch.h"
 #include "pcednet/formats/format.h"
 #include "pcednet/formats/virtual_cloud.h"
 #include "pcednet/tiles/inputs.h"
 #include "pcednet/tiles/join.h"
+#include "pcednet/tiles/plan.h"
 #include "pcednet/tiles/run_tile.h"
 #include "pcednet/tiles/tile_file.h"
+#include "shell_word.h"
 #include "tile_jobs.h"
+#include "tile_numbers.h"
 
 namespace pcednet::app {
 namespace {
@@ -29,38 +29,8 @@ struct RunArguments {
   std::string plan, memory;
   std::vector<std::string> tiles;
   int jobs = 1;
+  bool as_job = false;
 };
-
-/// Adds the numbers of "7" or "0-15".
-void add_numbers(const std::string& text, std::size_t tiles, std::set<std::size_t>& numbers) {
-  const auto refuse = [&] {
-    throw Error(ErrorKind::kUsage, fmt::format("--tile {}: not a tile of 0 to {}, or two with - "
-                                               "between them",
-                                               text, tiles - 1));
-  };
-  std::size_t first = 0, last = 0;
-  const char* const end = text.data() + text.size();
-  auto parsed = std::from_chars(text.data(), end, first);
-  if (parsed.ec != std::errc()) refuse();
-  last = first;
-  if (parsed.ptr != end) {
-    if (*parsed.ptr != '-') refuse();
-    parsed = std::from_chars(parsed.ptr + 1, end, last);
-    if (parsed.ec != std::errc() || parsed.ptr != end) refuse();
-  }
-  if (last < first || last >= tiles) refuse();
-  for (std::size_t id = first; id <= last; ++id) numbers.insert(id);
-}
-
-/// The tiles to run, in order.
-std::vector<std::size_t> chosen_tiles(const RunArguments& arguments, const tiles::Plan& plan) {
-  std::set<std::size_t> chosen;
-  for (const std::string& text : arguments.tiles) add_numbers(text, plan.tiles.size(), chosen);
-  if (arguments.tiles.empty()) {
-    for (std::size_t id = 0; id < plan.tiles.size(); ++id) chosen.insert(chosen.end(), id);
-  }
-  return {chosen.begin(), chosen.end()};
-}
 
 /// The number of tiles that may run at a time.
 int jobs_within(const RunArguments& arguments, const tiles::Plan& plan) {
@@ -114,18 +84,58 @@ void say_run(std::size_t all, std::size_t begun, std::size_t ran) {
   say(line);
 }
 
+/// Tiles that are not run, for a file that may be no tile is in their place.
+struct LeftOut {
+  std::vector<std::size_t> ids = {};
+  fs::path example = {};
+};
+
+/// Takes them out of `ids`, and makes the folders of the others.
+LeftOut leave_out(const tiles::Plan& plan, std::vector<std::size_t>& ids) {
+  LeftOut left;
+  std::erase_if(ids, [&](std::size_t id) {
+    const fs::path& tile = plan.tiles[id].output;
+    make_folder(tile.parent_path());
+    const fs::path strange = tiles::strange_file(tile);
+    if (strange.empty()) {
+      check_writable(tile, Overwrite::kYes);
+      return false;
+    }
+    if (left.ids.empty()) left.example = strange;
+    left.ids.push_back(id);
+    return true;
+  });
+  return left;
+}
+
+void report_left_out(const LeftOut& left, const RunArguments& arguments) {
+  if (left.ids.empty()) return;
+  throw Error(ErrorKind::kUsage,
+              fmt::format("{}: exists already, and no record tells that it is a tile{}: not "
+                          "replaced; pcednet tiles run {}{} --overwrite does that",
+                          left.example.string(),
+                          left.ids.size() == 1 ? ""
+                                               : fmt::format(" ({} such: {})", left.ids.size(),
+                                                             tiles::list_of(left.ids)),
+                          shell_word(arguments.plan), tile_options(left.ids)));
+}
+
 void run_tiles(const RunArguments& arguments, const Common& common) {
-  const tiles::Plan plan = tiles::read_plan(arguments.plan);
-  std::vector<std::size_t> ids = chosen_tiles(arguments, plan);
-  const std::size_t all = ids.size();
+  tiles::Plan plan = tiles::read_plan(arguments.plan);
+  find_planned_model(plan.model);
+  std::vector<std::size_t> ids = tile_numbers(arguments.tiles, plan.tiles.size());
+  std::size_t all = ids.size();
   const IsDone is_done = [&](std::size_t id) {
     return !common.overwrite_files && tiles::state_of(plan, id) == tiles::TileState::kDone;
   };
   std::erase_if(ids, is_done);
   const int jobs = jobs_within(arguments, plan);
-  for (const std::size_t id : ids) {
-    make_folder(plan.tiles[id].output.parent_path());
-    if (!common.overwrite_files) tiles::check_is_tile(plan.tiles[id].output);
+  LeftOut left;
+  if (common.overwrite_files) {
+    for (const std::size_t id : ids) make_folder(plan.tiles[id].output.parent_path());
+  } else {
+    left = leave_out(plan, ids);
+    all -= left.ids.size();
   }
   std::size_t ran = 0;
   if (jobs > 1 && ids.size() > 1) {
@@ -139,80 +149,18 @@ void run_tiles(const RunArguments& arguments, const Common& common) {
   } else if (!ids.empty()) {
     ran = run_here(plan, ids, is_done, common);
   }
-  if (all == 1 && ran == 1) return;  // the tile has reported
-  say_run(all, ids.size(), ran);
+  // A single tile has reported, or is left out.
+  if (all > 1 || (all == 1 && ran == 0)) say_run(all, ids.size(), ran);
+  report_left_out(left, arguments);
 }
 
-struct StatusArguments {
-  std::string plan, json;
-  bool verify = false;
-};
-
-constexpr std::array<const char*, 3> kStates = {"missing", "damaged", "done"};
-
-struct Group {
-  std::vector<std::size_t> ids = {};
-  std::size_t points = 0;
-};
-
-/// The next command for the plan. Tiles whose damage only digests show are run again only by
-/// number.
-std::string next_step(const tiles::Plan& plan, const std::array<Group, 3>& groups, bool verify) {
-  const std::string path = plan.path.string();
-  std::string damaged;
-  if (verify) {
-    for (const std::size_t id : groups[1].ids) damaged += fmt::format(" --tile {}", id);
-  }
-  if (!damaged.empty()) {
-    const bool more = !groups[0].ids.empty();
-    return fmt::format(
-        "run {}{} --overwrite{}", path, damaged,
-        more ? fmt::format("\n  then: pcednet tiles run {}, for the missing", path) : "");
-  }
-  const bool done = groups[0].ids.empty() && groups[1].ids.empty();
-  if (!done) return "run " + path;
-  const fs::path like = plan.tiles.front().output;
-  return fmt::format("join {} -o OUT{}", path, like.extension().string());
-}
-
-std::string status_text(const tiles::Plan& plan, const std::array<Group, 3>& groups, bool verify) {
-  std::string text = fmt::format("{}: {} points in {} tiles\n", plan.path.string(), plan.points(),
-                                 plan.tiles.size());
-  for (const std::size_t state : {2, 0, 1}) {
-    const Group& group = groups[state];
-    text += fmt::format("  {:<8} {:>6} tiles, {:>12} points", kStates[state], group.ids.size(),
-                        group.points);
-    if (state != 2 && !group.ids.empty()) text += ": " + tiles::list_of(group.ids);
-    text += "\n";
-  }
-  return text + "  next: pcednet tiles " + next_step(plan, groups, verify) + "\n";
-}
-
-nlohmann::ordered_json status_json(const tiles::Plan& plan, const std::array<Group, 3>& groups) {
-  nlohmann::ordered_json json = {{"plan", plan.path.string()},
-                                 {"digest", plan.digest},
-                                 {"points", plan.points()},
-                                 {"tiles", plan.tiles.size()},
-                                 {"done_points", groups[2].points}};
-  for (const std::size_t state : {2, 0, 1}) json[kStates[state]] = groups[state].ids;
-  return json;
-}
-
-void show_status(const StatusArguments& arguments, const Common& common) {
-  check_not_input(arguments.json, arguments.plan);
-  const tiles::Plan plan = tiles::read_plan(arguments.plan);
-  const Progress progress = console_progress(common);
-  std::array<Group, 3> groups;
-  for (std::size_t id = 0; id < plan.tiles.size(); ++id) {
-    throw_if_cancelled(&progress);
-    Group& group = groups[static_cast<std::size_t>(tiles::state_of(plan, id, arguments.verify))];
-    group.ids.push_back(id);
-    group.points += plan.tiles[id].points;
-  }
-  const std::string json = status_json(plan, groups).dump(1) + "\n";
-  fmt::print("{}", arguments.json == "-" ? json : status_text(plan, groups, arguments.verify));
-  if (!arguments.json.empty() && arguments.json != "-") {
-    write_text_file(arguments.json, json, common.overwrite());
+/// The same for a process of run_tile_jobs(), which tells itself that the user stopped it.
+void run_as_job(const RunArguments& arguments, const Common& common) {
+  try {
+    run_tiles(arguments, common);
+  } catch (const Error& error) {
+    if (error.kind() != ErrorKind::kCancelled) throw;
+    std::exit(static_cast<int>(ErrorKind::kCancelled));
   }
 }
 
@@ -257,6 +205,7 @@ void join_tiles(const JoinArguments& arguments, const Common& common) {
     check_not_input(file, arguments.plan);
     check_writable(file, common.overwrite());
   }
+  if (!arguments.output.empty()) tiles::check_joins(arguments.output);
   const tiles::Plan plan = tiles::read_plan(arguments.plan);
   for (const std::string& file : {arguments.output, arguments.vpc}) {
     tiles::check_not_input(file, plan.inputs);
@@ -282,20 +231,9 @@ void add_run(CLI::App& tiles, Common& common) {
       ->check(CLI::Range(1, 1024));
   command->add_option("--max-memory", arguments->memory,
                       "Memory for all jobs together, such as 8G: fewer at a time if needed");
-  command->callback([arguments, &common] { run_tiles(*arguments, common); });
-}
-
-void add_status(CLI::App& tiles, Common& common) {
-  auto arguments = std::make_shared<StatusArguments>();
-  CLI::App* command = add_command(tiles, common, "status", "Show which tiles of a plan are done",
-                                  "pcednet tiles status city.json\n"
-                                  "pcednet tiles status city.json --verify    digests as well\n"
-                                  "pcednet tiles status city.json --json -");
-  command->add_option("plan", arguments->plan, "The plan")->required();
-  command->add_flag("--verify", arguments->verify, "Read every tile and compare its SHA-256");
-  command->add_option("--json", arguments->json,
-                      "Write the result as JSON to this file; - for standard output only");
-  command->callback([arguments, &common] { show_status(*arguments, common); });
+  command->add_flag("--as-job", arguments->as_job)->group("");  // hidden: of run_tile_jobs()
+  command->callback(
+      [arguments, &common] { (arguments->as_job ? run_as_job : run_tiles)(*arguments, common); });
 }
 
 void add_join(CLI::App& tiles, Common& common) {
@@ -325,7 +263,7 @@ void add_tiles(CLI::App& app, Common& common) {
   tiles->require_subcommand(1);
   add_tiles_plan(*tiles, common);
   add_run(*tiles, common);
-  add_status(*tiles, common);
+  add_tiles_status(*tiles, common);
   add_join(*tiles, common);
 }
 

@@ -16,6 +16,8 @@
 #include "pcednet/tiles/plan.h"
 #include "pcednet/tiles/tile_file.h"
 #include "prepare.h"
+#include "result_plan.h"
+#include "shell_word.h"
 
 namespace pcednet::app {
 namespace {
@@ -100,7 +102,7 @@ void plan_tiles(const PlanArguments& arguments, const Common& common) {
                      arguments.tile_length > 0.0 ? "--tile is that long"
                                                  : "no tile is shorter than its buffer"));
   }
-  say(fmt::format("  next: pcednet tiles run {}", arguments.plan));
+  say(fmt::format("  next: pcednet tiles run {}", shell_word(arguments.plan)));
 }
 
 }  // namespace

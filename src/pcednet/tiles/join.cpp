@@ -66,8 +66,15 @@ void check_all_done(const Plan& plan) {
                           undone.size(), plan.tiles.size(), list_of(undone)));
 }
 
+void check_joins(const std::filesystem::path& path) {
+  if (formats::format_for(path).create_parts) return;
+  throw Error(ErrorKind::kUsage,
+              fmt::format("{}: tiles are joined as .laz, .las, .ply or text", path.string()));
+}
+
 Joined join(const Plan& plan, const std::filesystem::path& path, Overwrite overwrite,
             const Progress* progress) {
+  check_joins(path);
   check_all_done(plan);
   const TileStream tiles(plan);
   PointCloud first;
@@ -87,10 +94,6 @@ Joined join(const Plan& plan, const std::filesystem::path& path, Overwrite overw
   };
   const auto writer =
       formats::create_parts(path, outline, {.overwrite = overwrite, .progress = progress});
-  if (!writer) {
-    throw Error(ErrorKind::kUsage,
-                fmt::format("{}: tiles are joined as .laz, .las or .ply", path.string()));
-  }
   Joined joined{.points = 0, .losses = writer->losses};
   Stage stage(progress, "join", plan.points());
   tiles.each([&](const PointCloud& part) {

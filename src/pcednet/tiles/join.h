@@ -20,6 +20,9 @@ struct Joined {
 /// are.
 void check_all_done(const Plan& plan);
 
+/// Throws Error(kUsage) for a file in whose format tiles are not joined.
+void check_joins(const std::filesystem::path& path);
+
 /// Writes all tiles into one file, tile after tile, in memory that does not grow with them. Throws
 /// as check_all_done() and OutputFile do, Error(kFailure) if the points are not those planned, and
 /// Error(kUsage) for formats other than .laz, .las and .ply.

@@ -67,9 +67,13 @@ void write_record(const fs::path& tile, TileRecord record) {
   write_claim(tile, record);
 }
 
-void check_is_tile(const fs::path& tile) {
-  if (read_record(tile)) return;
-  for (const fs::path& path : {tile, record_path(tile)}) check_writable(path, Overwrite::kNo);
+fs::path strange_file(const fs::path& tile) {
+  if (read_record(tile)) return {};
+  std::error_code error;
+  for (const fs::path& path : {tile, record_path(tile)}) {
+    if (fs::exists(fs::symlink_status(path, error))) return path;
+  }
+  return {};
 }
 
 fs::path tile_of_another_plan(const fs::path& folder, const std::string& digest) {

@@ -29,9 +29,9 @@ void write_claim(const std::filesystem::path& tile, TileRecord record);
 /// Removes it if there is no such file.
 void remove_claim(const std::filesystem::path& tile);
 
-/// Throws as check_writable() does unless there is a record: a file that is no tile's may have the
-/// name of the tile or of its record.
-void check_is_tile(const std::filesystem::path& tile);
+/// A file with the name of the tile, or of its record, that may be no tile, for there is no record;
+/// empty if there is none.
+std::filesystem::path strange_file(const std::filesystem::path& tile);
 
 /// A tile in the folder whose record is of another plan than that of this digest; empty if there is
 /// none.
