@@ -1,4 +1,5 @@
 """pcednet tiles run: no point lost or doubled and nothing replaced, whatever happens on the way."""
+import json
 import os
 import pathlib
 import random
@@ -8,6 +9,8 @@ import shutil
 import signal
 import subprocess
 import unittest
+
+import numpy as np
 
 from support import PROGRAM, run, write_ply
 from tiles_support import TilesTest, field
@@ -45,10 +48,18 @@ class TilesRun(TilesTest):
         self.assertEqual(self.status(plan, "--verify")["damaged"], [1, 3])
         said = run("tiles", "status", plan, "--verify").stdout
         self.assertRegex(said, r"missing +2 tiles, +\d+ points: 0, 2\n")
-        self.assertIn(f"  next: pcednet tiles run {plan} --tile 1 --tile 3 --overwrite\n"
-                      f"  then: pcednet tiles run {plan}, for the missing\n", said)
+        self.assertEqual(state["in_the_way"], [2])
+        self.assertIn("  of the missing, in the place of 2: files without the record of a tile\n", said)
+        again = f"pcednet tiles run {plan} --tile 2 --overwrite"
+        self.assertIn(f"  next: pcednet tiles run {plan} --tile 1-3 --overwrite\n"
+                      f"  then: pcednet tiles run {plan}, for the others\n", said)
+        self.assertIn(f"  next: {again}\n", run("tiles", "status", plan).stdout)
+        # The file without a record is, for all that is known, not a tile: all others are run.
         said = run("tiles", "run", plan, expect=2).stderr
-        self.assertIn(f"{files[2]}: exists already", said)  # for all that is known, not a tile
+        self.assertIn(f"{files[2]}: exists already, and no record tells that it is a tile: not replaced; {again}", said)
+        self.assertEqual(self.status(plan)["missing"], [2])
+        said = run("tiles", "run", plan, "--tile", 2, expect=2).stderr
+        self.assertNotIn("tiles run,", said)
         run("tiles", "run", plan, "--tile", 2, "--overwrite")
         run("tiles", "run", plan)
         run("tiles", "run", plan, "--tile", 3, "--overwrite")
@@ -80,7 +91,8 @@ class TilesRun(TilesTest):
             there.write_text("precious")
             for jobs in (1, 2):
                 said = run("tiles", "run", plan, "--jobs", jobs, expect=2).stderr
-                self.assertIn(f"{there}: exists already; give --overwrite", said)
+                self.assertIn(f"{there}: exists already, and no record", said)
+                self.assertEqual(self.status(plan)["missing"], [2])
             self.assertEqual(there.read_text(), "precious")
             there.unlink()
         run("tiles", "run", plan)
@@ -118,6 +130,53 @@ class TilesRun(TilesTest):
         run("tiles", "run", plan, "--overwrite")
         self.assertEqual([t.read_bytes() for t in tiles], again)
         self.assertEqual(len(rows), content["points"])
+
+    def test_a_stop_is_told_once(self):
+        write_ply(self.folder / "a.ply", *field())
+        plan, _ = self.make_plan(self.folder / "a.ply")
+        process = subprocess.Popen([PROGRAM, "tiles", "run", str(plan), "--jobs", "2", "--progress", "json"],
+                                   stderr=subprocess.PIPE, text=True, start_new_session=True)
+        process.stderr.readline()
+        os.killpg(process.pid, signal.SIGINT)  # as a terminal does
+        said = process.communicate(timeout=60)[1]
+        self.assertEqual(process.returncode, 130)
+        self.assertEqual(said.count("stopped by the user"), 1, said)
+
+    def test_tiles_that_failed_are_listed_in_order(self):
+        plan, _ = self.small(tile=1.0)
+        tiles = json.loads(plan.read_text())
+        cloud = self.folder / "small.ply"
+        changed = bytearray(cloud.read_bytes())
+        changed[-20] ^= 1
+        cloud.write_bytes(changed)
+        said = run("tiles", "run", plan, "--jobs", 3, expect=3).stderr
+        self.assertIn(f"tiles failed, for the reasons above: 0 to {len(tiles['tiles']) - 1}\n", said)
+
+    def test_an_input_that_changed_is_found_where_all_is_done(self):
+        plan, content = self.small()
+        run("tiles", "run", plan)
+        cloud = self.folder / "small.ply"
+        changed = bytearray(cloud.read_bytes())
+        changed[-20] ^= 1
+        run("tiles", "status", plan, "--verify")
+        cloud.write_bytes(changed)
+        run("tiles", "status", plan)
+        done = run("tiles", "status", plan, "--verify", expect=3)
+        self.assertIn(f"{cloud}: has changed since the plan", done.stderr)
+        self.assertRegex(done.stdout, rf"done +{len(content['tiles'])} tiles")
+
+    def test_a_shipped_model_is_found_by_its_name(self):
+        plan, content = self.small()
+        content["model"]["path"] = "/elsewhere/general.safetensors"
+        plan.write_text(json.dumps(content))
+        run("tiles", "run", plan, "--tile", 0)
+        content["model"]["name"] = "mine"
+        plan.write_text(json.dumps(content))
+        said = run("tiles", "run", plan, "--tile", 1, expect=3).stderr
+        self.assertIn("/elsewhere/general.safetensors: No such file", said)
+        content["model"]["name"] = "worn"
+        plan.write_text(json.dumps(content))
+        self.assertIn("not the model", run("tiles", "run", plan, "--tile", 1, expect=5).stderr)
 
     def test_two_runs_at_once_do_no_harm(self):
         plan, content = self.small()
@@ -222,6 +281,44 @@ class TilesRun(TilesTest):
         self.assertIn("-o -: a plan is a file", said)
         self.assertEqual(sorted(os.listdir(self.folder)), before)
 
+    def test_names_of_files_that_are_not_utf8(self):
+        self.small()
+        odd = os.fsencode(str(self.folder)) + b"/lat\xfcin.ply"
+        os.rename(self.folder / "small.ply", odd)
+        for words in ((odd, "-o", self.folder / "q.json"),
+                      (self.folder, "-o", self.folder / "q.json"),
+                      (odd, "-o", self.folder / "q.json", "--out-dir", odd + b".d")):
+            done = subprocess.run([PROGRAM, "tiles", "plan", *words, "--progress", "plain"], capture_output=True)
+            self.assertEqual(done.returncode, 2, done.stderr)
+            self.assertIn(b"lat\xfcin.ply: the name is not in UTF-8", done.stderr)
+            self.assertNotIn(b"index", done.stderr)
+
+    def test_a_plan_behind_a_link_is_where_it_is(self):
+        plan, _ = self.small()
+        (self.folder / "links").mkdir()
+        link = self.folder / "links/l.json"
+        link.symlink_to(plan)
+        run("tiles", "run", link, "--tile", 0)
+        self.assertEqual(self.status(plan)["done"], [0])
+
+    def test_next_commands_can_be_pasted(self):
+        self.small()
+        plan = self.folder / "two words' ü.json"
+        said = run("tiles", "plan", self.folder / "small.ply", "-o", plan, "--tile", 1.4).stderr
+        quoted = "'" + str(plan).replace("'", "'\\''") + "'"
+        self.assertIn(f"next: pcednet tiles run {quoted}\n", said)
+        self.assertIn(f"next: pcednet tiles run {quoted}\n", run("tiles", "status", plan).stdout)
+        line = re.search("next: pcednet (.*)", said)[1]
+        subprocess.run(["sh", "-c", f'"$PCEDNET" {line}'], check=True, stderr=subprocess.DEVNULL)
+        self.assertIn("next: pcednet tiles join '", run("tiles", "status", plan).stdout)
+
+    def test_little_memory_is_not_taken_for_disorder(self):
+        p = np.random.default_rng(4).uniform(0, 100, (1_200_000, 3)).astype(np.float32)
+        write_ply(self.folder / "a.ply", p)
+        said = run("tiles", "plan", self.folder / "a.ply", "-o", self.folder / "p.json", "--max-memory", "10K",
+                   expect=2).stderr
+        self.assertIn("0.0102 MB of memory are less than one tile needs: 115 MB and more", said)
+
     def test_usage_errors(self):
         plan, content = self.small()
         run("tiles", "plan", self.folder / "none.laz", "-o", self.folder / "q.json", expect=3)
@@ -230,7 +327,12 @@ class TilesRun(TilesTest):
                       run("tiles", "plan", self.folder / "small.ply", expect=2).stderr)
         for bad in ("99", "x", "2-", "3-1", "-1"):
             run("tiles", "run", plan, "--tile=" + bad, expect=2)
-        run("tiles", "run", plan, "--max-memory", "lots", expect=2)
+        for bad in ("lots", "2GX", "2BB", "2Bi", "iB", "2 G"):
+            run("tiles", "run", plan, "--max-memory", bad, expect=2)
+        for fine in ("2G", "2gb", "2GiB", "2000000000B", "2000000000"):
+            run("tiles", "run", plan, "--tile", 0, "--overwrite", "--max-memory", fine)
+        said = run("tiles", "join", plan, "-o", self.folder / "j.pcd", expect=2).stderr  # before what is missing
+        self.assertIn("j.pcd: tiles are joined as .laz, .las, .ply or text", said)
         self.assertIn("smaller", run("tiles", "run", plan, "--max-memory", "1M", expect=2).stderr)
         self.assertIn("convert", run("tiles", "plan", self.text_cloud(), "-o",
                                      self.folder / "q.json", expect=2).stderr)

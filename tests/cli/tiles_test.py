@@ -152,7 +152,48 @@ class Tiles(TilesTest):
         self.assertGreater(np.mean(rows["scalar_edge_class"] == whole["scalar_edge_class"]), 0.9999)
         write_ply(self.folder / "in/other.ply", p, n, np.zeros(len(p), np.uint8))
         said = run("tiles", "plan", self.folder / "in", "-o", self.folder / "q.json", expect=2)
-        self.assertIn("different columns", said.stderr)
+        self.assertIn("different columns; only", said.stderr)
+        self.assertIn("other.ply has labels. Convert", said.stderr)
+
+    def test_results_and_files_without_points_are_no_inputs(self):
+        p, n = field(3, 300)
+        (self.folder / "in").mkdir()
+        for name, some in (("a", slice(0, 3000)), ("b", slice(3000, None)), ("empty", slice(0, 0))):
+            write_ply(self.folder / f"in/{name}.ply", p[some], n[some])
+        for name in ("a", "empty"):
+            run("convert", self.folder / f"in/{name}.ply", "-o", self.folder / f"in/{name}.laz")
+            (self.folder / f"in/{name}.ply").unlink()
+        run("convert", self.folder / "in/b.ply", "-o", self.folder / "in/b.laz")
+        (self.folder / "in/b.ply").unlink()
+        run("classify", self.folder / "in/a.laz")
+        said = run("tiles", "plan", self.folder / "in", "-o", self.folder / "p.json", "--tile", 1.4).stderr
+        self.assertIn("1 file left out: it is the result of another input", said)
+        self.assertIn("empty.laz: no points in it, left out", said)
+        content = json.loads((self.folder / "p.json").read_text())
+        self.assertEqual([i["path"] for i in content["inputs"]], ["in/a.laz", "in/b.laz"])
+        said = run("tiles", "plan", self.folder / "in/empty.laz", "-o", self.folder / "q.json", expect=4).stderr
+        self.assertIn("the inputs have no point with a finite position", said)
+
+    def test_the_same_points_twice_are_told(self):
+        p, n = field(3, 300)
+        for name in ("a.ply", "b.ply"):
+            write_ply(self.folder / name, p, n)
+        said = run("tiles", "plan", self.folder / "a.ply", self.folder / "b.ply", "-o", self.folder / "p.json").stderr
+        self.assertIn(f"b.ply: has the points of {self.folder}/a.ply, which are doubled", said)
+        said = run("tiles", "plan", self.folder / "a.ply", "-o", self.folder / "q.json").stderr
+        self.assertNotIn("doubled", said)
+
+    def test_ply_made_of_coloured_las_is_read_in_tiles(self):
+        p, n = field(3, 300)
+        write_ply(self.folder / "a.ply", p, n, red=7, green=8, blue=9)
+        run("convert", self.folder / "a.ply", "-o", self.folder / "a.las")
+        run("convert", self.folder / "a.las", "-o", self.folder / "b.ply")
+        self.assertIn(b"property ushort Red", (self.folder / "b.ply").read_bytes()[:4000])
+        plan, _ = self.make_plan(self.folder / "b.ply")
+        run("tiles", "run", plan)
+        run("tiles", "join", plan, "-o", self.folder / "joined.ply")
+        rows, _ = read_ply(self.folder / "joined.ply")
+        self.assertEqual({tuple(rows[c][5] for c in ("Red", "Green", "Blue"))}, {(7 * 257, 8 * 257, 9 * 257)})
 
     def test_inputs_in_random_order_can_be_sorted_first(self):
         p, n = field(3, 600)

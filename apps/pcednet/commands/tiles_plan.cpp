@@ -72,7 +72,7 @@ void plan_tiles(const PlanArguments& arguments, const Common& common) {
   check_not_input(arguments.plan, model_file(arguments.model));
   check_writable(arguments.plan, common.overwrite());
   const ModelArguments& model = arguments.model;
-  tiles::PlanRequest request{.inputs = expand_inputs(arguments.inputs),
+  tiles::PlanRequest request{.inputs = without_results(expand_inputs(arguments.inputs)),
                              .folder = folder_of(arguments),
                              .output = arguments.output,
                              .model = planned_model(model),

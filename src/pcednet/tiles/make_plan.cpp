@@ -133,7 +133,16 @@ void check_order_early(const PlanRequest& request, const Plan& plan, std::span<c
     }
   }
   const double times = tiles * sum / points;
-  if (is_too_often(times, plan)) refuse_order(tiles, times);
+  if (!is_too_often(times, plan)) return;
+  constexpr double kMegabyte = 1e6;
+  const std::uint64_t least = memory_for(kChunkPoints, {});
+  if (request.tile_length == 0.0 && request.memory < least) {
+    throw Error(ErrorKind::kUsage,
+                fmt::format("{:.3g} MB of memory are less than one tile needs: {:.0f} MB and more",
+                            static_cast<double>(request.memory) / kMegabyte,
+                            static_cast<double>(least) / kMegabyte));
+  }
+  refuse_order(tiles, times);
 }
 
 /// Throws if a file is there twice.
@@ -183,6 +192,19 @@ void settle_order(const PlanRequest& request, const CellCounts& counts, Plan& pl
   }
 }
 
+/// Notes inputs that hold the same points as another.
+void note_copies(Plan& plan) {
+  std::map<std::vector<std::string>, const PlannedInput*> seen;
+  for (const PlannedInput& input : plan.inputs) {
+    std::vector<std::string> digests;
+    for (const Chunk& chunk : input.chunks) digests.push_back(chunk.digest);
+    const auto [first, is_new] = seen.emplace(std::move(digests), &input);
+    if (is_new) continue;
+    plan.notes.push_back(fmt::format("{}: has the points of {}, which are doubled",
+                                     input.path.string(), first->second->path.string()));
+  }
+}
+
 /// The inputs of the plan, and a sample of their points.
 Sample index_inputs(const PlanRequest& request, Plan& plan, const Progress* progress) {
   Sample sample(kSampled);
@@ -191,6 +213,9 @@ Sample index_inputs(const PlanRequest& request, Plan& plan, const Progress* prog
     indexed.push_back(index_input(path, progress, plan.notes,
                                   [&](const PointCloud& part) { sample.add(part.positions); }));
     for (const Chunk& chunk : indexed.back().input.chunks) plan.box.add(chunk.box);
+    if (indexed.back().input.points() > 0) continue;
+    plan.notes.push_back(path.string() + ": no points in it, left out");
+    indexed.pop_back();
   }
   if (sample.seen() == 0) {
     throw Error(ErrorKind::kInsufficient,
@@ -200,6 +225,7 @@ Sample index_inputs(const PlanRequest& request, Plan& plan, const Progress* prog
   check_agreement(indexed, plan);
   choose_las_steps(indexed, plan);
   for (IndexedInput& input : indexed) plan.inputs.push_back(std::move(input.input));
+  note_copies(plan);
   if (sample.seen() < plan.points()) {
     plan.notes.push_back(
         fmt::format("{} of {} points have no finite position up to {:g}: kept, unlabelled",
