@@ -41,7 +41,7 @@ def main(plan, out, scheduler=None):
         for future in as_completed(tiles):
             if future.status != "finished":
                 print(f"dask_tiles.py: {future.exception()!r}", file=sys.stderr)
-    return subprocess.run([PCEDNET, "tiles", "join", plan, "-o", out]).returncode
+    return subprocess.run([PCEDNET, "tiles", "join", plan, "-o", out, "--overwrite"]).returncode
 
 
 if __name__ == "__main__":

@@ -251,6 +251,23 @@ class Parallel(Engine):
         self.check_joined(self.folder / "joined.ply")
 
 
+    def test_a_tile_that_cannot_be_written_is_told(self):
+        plan = self.folder / "two words.json"
+        self.plan.rename(plan)
+        tile = self.folder / json.loads(plan.read_text())["tiles"][3]["output"]
+        tile.parent.mkdir(exist_ok=True)
+        tile.write_text("no tile")
+        said = []
+        for code in (1, 0):
+            done = subprocess.run([EXAMPLES / "parallel.sh", plan], env=self.environment, capture_output=True,
+                                  text=True, timeout=120)
+            self.assertEqual(done.returncode, code, done.stderr)
+            said.append(done.stdout)
+            tile.unlink()
+        self.assertRegex(said[0], r"missing +1 tiles, +\d+ points: 3\n")
+        self.assertRegex(said[1], rf"done +{self.count} tiles")
+
+
 class Dask(Engine):
     def test_a_killed_task_and_a_killed_worker_lose_nothing(self):
         (self.folder / "hold").write_text("2 5")
