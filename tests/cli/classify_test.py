@@ -152,6 +152,20 @@ class Classify(CliTest):
         self.assertEqual(sorted(os.listdir(self.folder / "results")),
                          ["a_edges.ply", "b_edges.ply"])
 
+    def test_warns_once_of_files_that_adjoin(self):
+        p, n, _ = cube(2000)
+        for name, part, shift in (("a", p[:, 0] < -0.1, 0), ("b", p[:, 0] >= -0.1, 0), ("c", p[:, 0] < 9, 0),
+                                  ("d", p[:, 0] < 9, 5), ("e", p[:, 0] < 9, 6)):
+            write_ply(self.folder / "some.ply", p[part] + (shift, 0, 0), n[part])
+            run("convert", self.folder / "some.ply", "-o", self.folder / f"{name}.las")
+        for names, adjoin in (("ab", "ab"), ("cd", ""), ("ac", ""), ("a", ""), ("cde", "de"), ("edcba", "ab")):
+            said = run("classify", *(self.folder / f"{name}.las" for name in names), "--overwrite").stderr
+            self.assertEqual(said.count(" adjoin: "), 1 if adjoin else 0, (names, said))
+            if adjoin:
+                first, second = (str(self.folder / f"{name}.las") for name in adjoin)
+                self.assertIn(f"{first} and {second} adjoin: each file is classified by itself", said)
+                self.assertIn("pcednet tiles plan takes such files as one cloud", said)
+
     def test_goes_on_after_a_bad_file_and_says_so_in_the_end(self):
         write_ply(self.folder / "b.ply", *cube(400)[:2])
         (self.folder / "a.ply").write_text("ply\nnonsense\n")

@@ -5,6 +5,7 @@
 #include <memory>
 #include <numeric>
 
+#include "adjoining.h"
 #include "batch.h"
 #include "classify_cloud.h"
 #include "classify_tiles.h"
@@ -210,6 +211,16 @@ void classify_file(const Job& job, const ClassifyArguments& arguments,
   report(job, result, counts, model, clock.seconds());
 }
 
+/// Says that what is cut at the edge of a file looks like the end of a surface.
+void warn_of_seams(const std::vector<fs::path>& inputs) {
+  const auto adjoining = find_adjoining(inputs);
+  if (!adjoining) return;
+  warn(
+      fmt::format("{} and {} adjoin: each file is classified by itself, which gives false edges "
+                  "where it ends; pcednet tiles plan takes such files as one cloud",
+                  adjoining->first.string(), adjoining->second.string()));
+}
+
 void classify(ClassifyArguments arguments, const Common& common) {
   detect::EdgeModel model;
   if (arguments.method.name.empty()) {
@@ -222,8 +233,11 @@ void classify(ClassifyArguments arguments, const Common& common) {
   Batch batch(inputs);
   MadeFolder folder(arguments.results.folder);
   const auto [jobs, skipped] = plan_results(inputs, arguments.results, common);
-  std::vector<fs::path> outputs;
-  for (const Job& job : jobs) outputs.push_back(job.output);
+  std::vector<fs::path> used_inputs, outputs;
+  for (const Job& job : jobs) {
+    used_inputs.push_back(job.input);
+    outputs.push_back(job.output);
+  }
   check_ascii(arguments.ascii, outputs);
   check_codes_fit(arguments.codes, jobs);
   const fs::path used = model_file(arguments.model);
@@ -231,6 +245,7 @@ void classify(ClassifyArguments arguments, const Common& common) {
     for (const auto& file : {job.output, job.preview}) check_not_input(file, used);
   }
   folder.keep();
+  if (arguments.method.name.empty()) warn_of_seams(used_inputs);
   std::size_t done = 0;
   for (const Job& job : jobs) {
     done += batch.run(job.input, [&] { classify_file(job, arguments, model, common); }) ? 1 : 0;
