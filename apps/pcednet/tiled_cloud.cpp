@@ -14,6 +14,7 @@
 #include "pcednet/tiles/inputs.h"
 #include "pcednet/tiles/layout.h"
 #include "pcednet/tiles/make_plan.h"
+#include "rough_facts.h"
 
 namespace pcednet::app {
 namespace {
@@ -23,16 +24,31 @@ namespace fs = std::filesystem;
 /// Larger tiles repeat hardly less of their neighbours.
 constexpr std::uint64_t kMostForTile = std::uint64_t{4} << 30;
 
-/// The memory for classifying in one piece, estimated from the first points: without normals, for
-/// the largest possible number of neighbours.
-std::uint64_t memory_in_whole(const io::PartReader& reader) {
+/// A cloud as it would be in memory.
+struct InWhole {
+  std::uint64_t points = 0, bytes = 0;
+};
+
+/// The memory for classifying in one piece: without normals, for the largest possible number of
+/// neighbours.
+std::uint64_t bytes_in_whole(std::uint64_t points, bool has_normals) {
   constexpr std::size_t kMostNeighbours = 48;
+  return tiles::memory_for(points, {.made = !has_normals, .neighbours = kMostNeighbours});
+}
+
+/// Estimated from the first points.
+InWhole in_whole(const io::PartReader& reader) {
   const PointCloud first = tiles::read_finished(reader, 0);
   std::size_t columns = 0;
   for (const Attribute& attribute : first.attributes) columns += attribute.stride();
-  return tiles::memory_for(reader.points(),
-                           {.made = !first.has_normals(), .neighbours = kMostNeighbours}) +
-         columns * reader.points();
+  return {reader.points(),
+          bytes_in_whole(reader.points(), first.has_normals()) + columns * reader.points()};
+}
+
+/// The same for a file that is not read in parts.
+InWhole in_whole(const io::InputFile& file) {
+  const RoughFacts facts = rough_facts(file);
+  return {facts.points, bytes_in_whole(facts.points, facts.has_normals)};
 }
 
 /// A pipe can be read only once; a small file need not be inspected.
@@ -84,13 +100,12 @@ std::optional<TilesNeeded> tiles_needed(const fs::path& input, const fs::path& o
                                         std::uint64_t limit) {
   if (is_surely_small(input, limit)) return std::nullopt;
   const auto reader = formats::open_parts(input, tiles::kChunkPoints);
-  if (!reader) return std::nullopt;
-  const std::uint64_t whole = memory_in_whole(*reader);
-  if (whole <= limit) return std::nullopt;
+  const InWhole whole = reader ? in_whole(*reader) : in_whole(io::InputFile(input));
+  if (whole.bytes <= limit) return std::nullopt;
   const std::string much =
-      fmt::format("{}: {} points may take {} of memory, more than {}", input.string(),
-                  reader->points(), size_text(whole), size_text(limit));
-  if (!is_tiled_format(input)) {
+      fmt::format("{}: {}{} points may take {} of memory, more than {}", input.string(),
+                  reader ? "" : "about ", whole.points, size_text(whole.bytes), size_text(limit));
+  if (!reader || !is_tiled_format(input)) {
     warn(much + "; LAS, LAZ and binary PLY, which pcednet convert writes, are read in tiles");
     return std::nullopt;
   }

@@ -159,6 +159,13 @@ class Large(CliTest):
         run("convert", self.folder / "a.ply", "-o", self.folder / "a.pcd", "--overwrite")
         said = run("classify", self.folder / "a.pcd", "--max-memory", "101M").stderr
         self.assertNotIn("classified in tiles", said)
+        self.assertRegex(said, r"a.pcd: about 36000 points may take \d+ MiB of memory, more than 101 MiB; LAS, LAZ")
+        run("convert", self.folder / "a.ply", "-o", self.folder / "a.xyz")
+        said = run("classify", self.folder / "a.xyz", "--max-memory", "101M", "--overwrite").stderr
+        points = int(re.search(r"a.xyz: about (\d+) points may take", said)[1])
+        self.assertAlmostEqual(points / 36000, 1, delta=0.1)
+        said = run("classify", self.folder / "a.xyz", "--max-memory", "1G", "--overwrite").stderr
+        self.assertNotIn("may take", said)
         run("classify", self.folder / "a.ply", "--max-memory", "lots", expect=2)
         run("classify", self.folder / "a.ply", "--max-memory", "1G", "--method", "fee", expect=2)
 
