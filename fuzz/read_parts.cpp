@@ -1,6 +1,7 @@
 #include <cstdlib>
 
 #include "in_memory.h"
+#include "pcednet/formats/parts.h"
 #include "pcednet/formats/read_cloud.h"
 #include "pcednet/io/parts.h"
 

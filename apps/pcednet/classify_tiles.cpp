@@ -1,6 +1,6 @@
 #include "classify_tiles.h"
 
-#include "pcednet/formats/write_cloud.h"
+#include "pcednet/formats/parts.h"
 
 namespace pcednet::app {
 

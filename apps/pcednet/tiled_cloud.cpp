@@ -10,7 +10,7 @@
 #include "descriptor_options.h"
 #include "free_memory.h"
 #include "pcednet/formats/format.h"
-#include "pcednet/formats/read_cloud.h"
+#include "pcednet/formats/parts.h"
 #include "pcednet/tiles/inputs.h"
 #include "pcednet/tiles/layout.h"
 #include "pcednet/tiles/make_plan.h"

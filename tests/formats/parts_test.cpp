@@ -1,4 +1,4 @@
-#include "pcednet/formats/write_cloud.h"
+#include "pcednet/formats/parts.h"
 
 #include <gtest/gtest.h>
 
@@ -8,6 +8,7 @@
 #include "io/e57/e57_writer.h"
 #include "io/sample_cloud.h"
 #include "io/scratch.h"
+#include "pcednet/formats/write_cloud.h"
 #include "pcednet/io/parts.h"
 
 namespace pcednet::io {

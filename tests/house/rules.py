@@ -158,9 +158,24 @@ def check_style(root):
     yield from (line for line in done.stderr.splitlines() if ": error:" in line)
 
 
+def check_mentions(root):
+    """Comments of installed headers name functions and headers that are installed."""
+    (headers,) = [words[1:] for words in arguments(read(root / "cmake/PcednetInstall.cmake"), "set")
+                  if words[0] == "public_headers"]
+    texts = {header: read(root / "src/pcednet" / header).splitlines() for header in headers}
+    code = "\n".join(line.split("//")[0] for lines in texts.values() for line in lines)
+    known = set(re.findall(r"\w+", code)) | {pathlib.Path(header).name for header in headers}
+    for header, lines in texts.items():
+        for number, line in enumerate(lines, 1):
+            comment = line.partition("//")[2]
+            for name in re.findall(r"(\w+)\(\)|(\w+\.h)\b|\bsee (?:\w+::)*(\w+)", comment):
+                if "".join(name) not in known:
+                    yield f"src/pcednet/{header}:{number}: names {''.join(name)}, which is not installed"
+
+
 RULES = {"rooms": check_rooms, "sizes": check_sizes, "suffixes": check_suffixes,
          "silence": check_silence, "version": check_version, "colours": check_colours,
-         "style": check_style}
+         "mentions": check_mentions, "style": check_style}
 
 
 def check_self():
@@ -188,6 +203,8 @@ endforeach()
         "CHANGELOG.md": "# Changes\n\n## Unreleased\n\n## 1.2.3\n\n## 1.2.2\n",
         "CITATION.cff": 'cff-version: 1.2.0\nversion: "1.2.3"\n',
         ".clang-format": "BasedOnStyle: Google\n",
+        "cmake/PcednetInstall.cmake": "set(public_headers\n  core/a.h gls/p.h)\n",
+        "src/pcednet/gls/p.h": "/// As core/a.h has it, see fit().\nint fit();\n",
     }
     breaches = {
         "rooms": [("src/pcednet/core/a.h", '#include "pcednet/gls/b.h"\n'),
@@ -212,6 +229,8 @@ endforeach()
         "colours": [("web/shared/colours.ts", 'paper: [ { name: "non-edge", colour: "#ff0011" } ]\n'),
                     ("web/shared/colours.ts", 'paper: [ { name: "edge", colour: "#ff0010" } ]\n'),
                     ("src/pcednet/cloud/class_table.h", "\n")],
+        "mentions": [("src/pcednet/gls/p.h", text) for text in
+                     ("int fit();  ///< in place of find()\n", "/// As b.h has it.\n", "/// See, or see b::C\n")],
         "style": [("src/pcednet/core/a.h", "int  a ;\n")],
     }
     for rule, check in RULES.items():

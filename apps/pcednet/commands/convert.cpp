@@ -11,6 +11,7 @@
 #include "pcednet/core/error.h"
 #include "pcednet/detect/prepare.h"
 #include "pcednet/formats/format.h"
+#include "pcednet/formats/parts.h"
 #include "pcednet/formats/read_cloud.h"
 #include "pcednet/formats/write_cloud.h"
 #include "pcednet/io/faces.h"

@@ -31,7 +31,7 @@ struct Classification {
   std::vector<float> p_class = {};       ///< of the class itself; empty with edge classes alone
   ClassCounts counts = {};               ///< of edge classes
   double s_min = 0.0, s_max = 0.0;       ///< the scales of the description
-  double largest_scale = 0.0;            ///< of any point, see octaves.h
+  double largest_scale = 0.0;            ///< of any point: wider than s_max where points are sparse
   std::string note = {};                 ///< for the user, or empty
   std::optional<CloudKind> expert = {};  ///< the kind of cloud whose expert decided
 };
@@ -45,7 +45,7 @@ Classification nothing_found(std::size_t points, bool has_own_classes = false);
 
 /// Describes every point at every scale and classifies it by the network. A point is an edge where
 /// that is more probable than not, of the more probable kind; with own classes, the most probable
-/// class decides: see decide(). Works block by block: the scale-space matrix is never held whole. A
+/// class decides. Works block by block: the scale-space matrix is never held whole. A
 /// context network, if the model has one, then decides from the predictions around each point. The
 /// result is the same for any number of threads and any order of the points.
 Classification classify(const PreparedCloud& cloud, const EdgeModel& model,

@@ -25,10 +25,8 @@ struct CloudTraits {
       std::numeric_limits<std::size_t>::max();  ///< distinct; the maximum unless counted
   bool estimated = false;  ///< normals were missing and are estimated, or (below 20,000 points) the
                            ///< given ones agree with estimated ones
-  bool exact = false;      ///< normals were missing, and is_exact() is true of the points, see
-                           ///< exact_points.h
-  bool noisy = false;  ///< normals were missing, and noise requires more neighbours than usual, see
-                       ///< normals::choose_neighbours()
+  bool exact = false;      ///< normals were missing, and the points lie on surfaces without noise
+  bool noisy = false;      ///< normals were missing, and noise requires more neighbours than usual
 };
 
 /// The kind of clouds that an expert is for: all conditions must hold.

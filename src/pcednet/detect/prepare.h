@@ -25,8 +25,8 @@ struct NormalsDecision {
   bool made =
       false;  ///< missing normals are estimated and all are oriented; otherwise used as they are
   std::size_t neighbours = 0;  ///< of each point, where normals are estimated
-  bool exact_planes = false;   ///< see normals::NeighbourChoice
-  bool exact = false;          ///< normals were missing, and is_exact() is true of the points
+  bool exact_planes = false;   ///< points on plane faces get the normal of the face
+  bool exact = false;          ///< normals were missing, and the points are without noise
   Rounding rounding = {};      ///< of the positions, where normals were missing
 };
 
@@ -49,8 +49,8 @@ struct PartOfCloud;
 struct PreparedCloud {
   std::span<const Vec3> positions;    ///< the cloud's own, or `moved`
   std::span<const Vec3> normals;      ///< the cloud's own, or `made`; unit or (0,0,0)
-  std::vector<std::uint32_t> curve;   ///< spatial::curve_order() of the positions
-  std::vector<Vec3> moved;            ///< empty unless positions are rounded, see spread(), or far
+  std::vector<std::uint32_t> curve;   ///< the positions' order along a space-filling curve
+  std::vector<Vec3> moved;            ///< empty unless positions are rounded or far out
   std::vector<Vec3> made;             ///< empty when the cloud's normals are used as they are
   std::vector<std::string> notes;     ///< for the user, one sentence each
   bool reoriented = false;            ///< the signs of the cloud's normals were mixed
@@ -60,12 +60,12 @@ struct PreparedCloud {
 
 /// Makes `cloud` ready for description; it must outlive the result. Where one point in a hundred or
 /// more has no usable normal, missing normals are estimated from the positions and all are
-/// oriented: by the scanner positions if the cloud has them. If these positions are rounded
-/// coarsely, see find_rounding(), they are spread() before.
+/// oriented: by the scanner positions if the cloud has them. If the positions are rounded to a step
+/// near the spacing, they are spread within it before.
 ///
-/// Points of far_points() are taken for points without a position. Normals that are estimates, see
-/// has_estimated_normals(), are estimated again and get the signs that they have unless these are
-/// mixed: the result is that of the cloud without them.
+/// Points so far out that they stand for "no data" are taken for points without a position. Normals
+/// that are estimates, see has_estimated_normals(), are estimated again and get the signs that they
+/// have unless these are mixed: the result is that of the cloud without them.
 ///
 /// Normals with mixed signs are oriented in the same way. Signs are mixed where more flat pairs of
 /// neighbours oppose than at the border of a patch, not as on the two sides of thin walls, where

@@ -26,7 +26,7 @@ struct TrainOptions {
   ClassTable table = edge_classes();
   nn::TrainOptions training;  ///< sign rule and class names are set from the rest
   nn::Symmetry symmetry = nn::Symmetry::kAverage;  ///< flipped normals change no answer
-  int teachers = 0;      ///< networks to train first and distil from, see nn::distil()
+  int teachers = 0;                                ///< networks to train first and distil from
   bool context = false;  ///< train a context network too, where clouds are given
 };
 

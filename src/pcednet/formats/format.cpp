@@ -114,6 +114,14 @@ const Format& format_for(const fs::path& path) {
               fmt::format("{}: points are written as {}", path.string(), extensions_written()));
 }
 
+void add_lost_elements(const PointCloud& cloud, const Format& format,
+                       std::vector<std::string>& lost) {
+  for (const ForeignElement& element : cloud.foreign_elements) {
+    if (format.keeps && format.keeps(element)) continue;
+    lost.push_back(fmt::format("{:.60}", element.header.substr(0, element.header.find('\n'))));
+  }
+}
+
 std::string extensions_read(std::string_view last) {
   return list_extensions(last, [](const Format&) { return true; });
 }

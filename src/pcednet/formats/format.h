@@ -59,6 +59,10 @@ const Format* find_format(const std::filesystem::path& path);
 /// The name of a file without its folder and extension; .copc.laz counts as one extension.
 std::string stem_of(const std::filesystem::path& path);
 
+/// Adds the elements other than points that the format drops, as phrases.
+void add_lost_elements(const PointCloud& cloud, const Format& format,
+                       std::vector<std::string>& lost);
+
 /// The extensions of formats that can be read, or written, such as ".ply .pcd .las"; `last`
 /// separates the last one.
 std::string extensions_read(std::string_view last = " ");

@@ -19,17 +19,16 @@ inline constexpr double kPartOfDiagonal = 0.1;
 
 /// How a scale-space matrix is computed.
 enum class Engine {
-  kFast,   ///< from a voxel pyramid, in single precision: see FastScaleSpace
-  kExact,  ///< from exact neighbourhoods, in double precision: see ExactScaleSpace
+  kFast,   ///< from a voxel pyramid, in single precision
+  kExact,  ///< from exact neighbourhoods, in double precision
 };
 
 struct ScaleSpaceOptions {
   int scales = 16;                          ///< a power of two, 4 to 128
-  double s_min = 0.0, s_max = 0.0;          ///< 0: from the cloud, see scale_range()
+  double s_min = 0.0, s_max = 0.0;          ///< 0: from the cloud
   double s_max_fraction = kPartOfDiagonal;  ///< of the diagonal, where s_max is 0
   double s_max_ratio = 0.0;  ///< if not 0 while s_max is 0: s_max over s_min, in even clouds
-  bool octaves = false;      ///< in uneven clouds, larger scales where the spacing is wider: see
-                             ///< detect/octaves.h; a scale space itself has one range
+  bool octaves = false;      ///< in uneven clouds, larger scales where the spacing is wider
   FeatureSet features = FeatureSet::kPaper6;
   Reconstruction reconstruction = Reconstruction::kSphere;
   int max_projection_steps = 5;  ///< for the reconstructions that project
@@ -42,7 +41,7 @@ struct ScaleSpaceOptions {
   bool operator==(const ScaleSpaceOptions&) const = default;
 };
 
-/// The range in the options, for scale_range().
+/// The range in the options; a bound of 0 is to be found from the cloud.
 ScaleRange given_range(const ScaleSpaceOptions& options);
 
 /// The column names of a matrix for one scale; those of the second gate begin with "second_".
@@ -54,7 +53,7 @@ int column_count(const ScaleSpaceOptions& options);
 /// The gates to describe with: one, which may be open, or two.
 std::vector<std::optional<double>> gates_of(const ScaleSpaceOptions& options);
 
-/// A sentence for the user if `scales` are those that scale_range() gives to sparse clouds,
+/// A sentence for the user if `scales` are those that sparse clouds get,
 /// otherwise empty.
 std::string note_on(const ScaleSpaceOptions& options, std::span<const double> scales,
                     std::span<const Vec3> positions);

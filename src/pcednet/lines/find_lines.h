@@ -40,7 +40,7 @@ struct EdgePoints {
   std::span<const float> p_smooth = {};
   /// Not 0 where points around it are missing: no boundary is found there. May be empty.
   std::span<const std::uint8_t> partial = {};
-  std::span<const std::uint32_t> curve = {};  ///< spatial::curve_order() of the positions, if known
+  std::span<const std::uint32_t> curve = {};  ///< as in detect::PreparedCloud, if known
 };
 
 /// What was measured of the cloud, and the lengths that the options came to, in its unit.
@@ -57,8 +57,8 @@ struct LineScale {
 /// 3. A chain is split into the few segments and arcs that explain it.
 /// 4. Curves are extended to the corners in which they meet.
 ///
-/// With boundaries, the lines of a roof come from its planes instead: see find_plane_edges(). Gap,
-/// angle and tolerance are not used there, and every stage but the last returns its pieces.
+/// With boundaries, the lines of a roof come from its planes instead. Gap, angle and tolerance are
+/// not used there, and every stage but the last returns its pieces.
 ///
 /// Fills in `scale`, if given. The result is the same for any number of threads and any order of
 /// the points. Throws Error(kUsage) if an option is negative or not finite, if the spans differ in

@@ -34,8 +34,7 @@ struct Architecture {
 /// The number of parameters, biases included.
 std::size_t weight_count(const Architecture& architecture);
 
-/// A shape and its weights, layer by layer: the weights of a layer (row-major, shape as in
-/// Layer::weight_shape in plan.h), then its biases.
+/// A shape and its weights, layer by layer: the weights of a layer (row-major), then its biases.
 struct Network {
   Architecture architecture;
   std::vector<float> parameters;

@@ -36,7 +36,7 @@ struct TrainOptions {
   double momentum = 0.9;
   int epochs = 40;
   std::size_t batch = 512;
-  /// 1: every class comes equally often, by replication; 0: as often as it occurs; see Sampler
+  /// 1: every class comes equally often, by replication; 0: as often as it occurs
   double balance = 1.0;
   /// An epoch is one round through the largest class with all others replicated, within these
   /// bounds on the number of samples.

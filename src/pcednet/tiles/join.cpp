@@ -6,7 +6,7 @@
 
 #include "pcednet/core/error.h"
 #include "pcednet/formats/format.h"
-#include "pcednet/formats/write_cloud.h"
+#include "pcednet/formats/parts.h"
 #include "pcednet/io/parts.h"
 #include "pcednet/tiles/inputs.h"
 #include "pcednet/tiles/tile_file.h"

@@ -11,7 +11,7 @@
 #include "pcednet/detect/octaves.h"
 #include "pcednet/detect/part_of_cloud.h"
 #include "pcednet/detect/result_cloud.h"
-#include "pcednet/formats/write_cloud.h"
+#include "pcednet/formats/parts.h"
 #include "pcednet/io/parts.h"
 #include "pcednet/tiles/inputs.h"
 #include "pcednet/tiles/sha256.h"

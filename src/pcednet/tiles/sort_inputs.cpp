@@ -8,7 +8,7 @@
 #include <numeric>
 
 #include "pcednet/core/blocks.h"
-#include "pcednet/formats/write_cloud.h"
+#include "pcednet/formats/parts.h"
 #include "pcednet/io/parts.h"
 #include "pcednet/spatial/curve_order.h"
 #include "pcednet/tiles/inputs.h"
