@@ -8,7 +8,9 @@
 #include <numeric>
 
 #include "detect/labelled_cube.h"
+#include "pcednet/cloud/bounding_box.h"
 #include "pcednet/core/parallel.h"
+#include "pcednet/detect/part_of_cloud.h"
 #include "pcednet/detect/result_cloud.h"
 #include "support/expect_error.h"
 
@@ -88,6 +90,38 @@ TEST(Boundary, IsFoundInLargeCloudsOfWhichNotAllIsTried) {
   // Five points in six spacings: of the outermost points few are missing.
   EXPECT_GT(double(hole), 5.0 / 6.0 * 2.0 * 3.1416 * kHole / spacing);
   EXPECT_GT(double(found.size() - static_cast<std::size_t>(hole)), 5.0 / 6.0 * 4.0 / spacing);
+}
+
+TEST(Boundary, OfAPartIsThatOfTheLargeCloud) {
+  PointCloud cloud = sheet(200000);
+  std::erase_if(cloud.positions, [](const Vec3& p) {  // holes of a few spacings: some are missed
+    const Vec3 from_middle(std::fmod(p.x(), 0.04) - 0.02, std::fmod(p.y(), 0.04) - 0.02, 0.0);
+    return from_middle.norm() < 0.005;
+  });
+  cloud.normals.resize(cloud.size(), Vec3::UnitZ());
+  const PreparedCloud whole = prepare(cloud);
+  PointCloud half;
+  std::vector<std::uint32_t> numbers;
+  for (std::uint32_t i = 0; i < cloud.size(); ++i) {
+    if (cloud.positions[i].x() > 0.55) continue;
+    half.positions.push_back(cloud.positions[i]);
+    half.normals.push_back(cloud.normals[i]);
+    numbers.push_back(i);
+  }
+  const BoundingBox box = bounding_box(cloud.positions);
+  const PartOfCloud part{.pyramids = {{box.min, (box.max - box.min).maxCoeff(), {}}},
+                         .points = cloud.size()};
+  PreparedCloud prepared = prepare(half);
+  prepared.part = &part;
+  std::vector<std::uint32_t> of_whole, of_part;
+  for (const BoundaryPoint& found : find_boundary(whole)) {
+    if (cloud.positions[found.point].x() < 0.5) of_whole.push_back(found.point);
+  }
+  for (const BoundaryPoint& found : find_boundary(prepared)) {
+    if (half.positions[found.point].x() < 0.5) of_part.push_back(numbers[found.point]);
+  }
+  EXPECT_GT(of_whole.size(), 500u);
+  EXPECT_EQ(of_part, of_whole);
 }
 
 TEST(Boundary, OfAClosedSolidIsNone) {

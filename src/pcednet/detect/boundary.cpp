@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 #include <optional>
 #include <span>
 
+#include "pcednet/cloud/bounding_box.h"
 #include "pcednet/cloud/point_cloud.h"
 #include "pcednet/core/eigendecomposition.h"
 #include "pcednet/core/parallel.h"
@@ -21,10 +23,9 @@ namespace pcednet::detect {
 namespace {
 
 constexpr std::size_t kNeighbours = kBoundaryNeighbours, kLeastNeighbours = 12;
-/// Clouds with more points are first sampled, kTried of every kStride along the curve, then
-/// searched around the points found: a rim is a line of points.
+/// Clouds with more points are first searched in some cells, then around the points found: a rim is
+/// a line of points.
 constexpr std::size_t kMostWhole = std::size_t{1} << 17;
-constexpr std::size_t kTried = 8, kStride = 32;
 constexpr std::size_t kTogether = 1024;
 
 constexpr double kOpening = 105.0 * std::numbers::pi / 180.0;
@@ -227,6 +228,35 @@ std::vector<RimPoint> rims_at(const DistinctPoints& points, const spatial::Neigh
   return rims;
 }
 
+/// The cells, some three spacings long on a square sheet, in which the search begins: a quarter of
+/// them, drawn by their places in the whole cloud, so that a part of it begins in the same.
+class FirstCells {
+ public:
+  FirstCells(const DistinctPoints& points, const PartOfCloud* part) {
+    const BoundingBox box = bounding_box(points.positions);
+    const bool is_known = part && !part->pyramids.empty();
+    corner_ = is_known ? part->pyramids.front().corner : box.min;
+    const double side = is_known ? part->pyramids.front().side : (box.max - box.min).maxCoeff();
+    const auto count = static_cast<double>(part ? part->points : points.size());
+    per_length_ = std::exp2(std::round(std::log2(std::sqrt(count) / 3.0))) / side;
+  }
+
+  bool hold(const Vec3& position) const {
+    std::uint64_t bits = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double cell = std::floor((position[axis] - corner_[axis]) * per_length_);
+      bits = (bits ^ static_cast<std::uint64_t>(static_cast<std::int64_t>(cell))) *
+             0x9e3779b97f4a7c15;  // 2^64 over the golden ratio
+      bits ^= bits >> 32;
+    }
+    return bits % 4 == 0;
+  }
+
+ private:
+  Vec3 corner_;
+  double per_length_;
+};
+
 /// The points of all rims, and of gaps that look like one. Where one is found, all points around it
 /// are tried.
 std::vector<RimPoint> find_rims(const DistinctPoints& points, const Progress* progress) {
@@ -234,9 +264,10 @@ std::vector<RimPoint> find_rims(const DistinctPoints& points, const Progress* pr
   if (search.available(kNeighbours) < kLeastNeighbours) return {};
   const PartOfCloud* part = points.cloud.part;
   const bool whole = (part ? part->points : points.size()) <= kMostWhole;
+  const FirstCells first(points, part);
   std::vector<std::uint32_t> todo;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    if (whole || i % kStride < kTried) todo.push_back(static_cast<std::uint32_t>(i));
+    if (whole || first.hold(points.positions[i])) todo.push_back(static_cast<std::uint32_t>(i));
   }
   std::vector<std::uint8_t> tried(points.size(), 0);
   for (const std::uint32_t i : todo) tried[i] = 1;
