@@ -247,15 +247,17 @@ void align(std::vector<Eave>& eaves, const Faces& faces, double spacing,
   }
 }
 
-/// The widest gap between the depths of points behind the eave: rows along it are so far apart.
+/// The widest gap between the depths of points from the eave on: rows along it are so far apart.
+/// Points beyond it are of the other side of an opening, or of a wing.
 double row_gap(const Eave& eave, const std::vector<Vec2>& points, double spacing) {
   const Vec2 along = eave.along();
   const double from = std::min(along.dot(eave.points.front()), along.dot(eave.points.back()));
   const double to = std::max(along.dot(eave.points.front()), along.dot(eave.points.back()));
-  std::vector<double> depths;
+  std::vector<double> depths = {0.0};  // of the point on its line
   for (const Vec2& point : points) {
     const double depth = eave.line.offset - eave.line.normal.dot(point), at = along.dot(point);
-    if (depth < kRowDepth * spacing && at >= from && at <= to) depths.push_back(depth);
+    const bool behind = depth > 0.0 && depth < kRowDepth * spacing;
+    if (behind && at >= from && at <= to) depths.push_back(depth);
   }
   std::sort(depths.begin(), depths.end());
   double widest = 0.0;
