@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "pcednet/lines/outline.h"
+#include "pcednet/lines/outline_parts.h"
 #include "pcednet/lines/plane_edges.h"
 #include "pcednet/lines/support_line.h"
 
@@ -49,8 +50,9 @@ struct Eave {
   std::vector<Vec2> points;
   SupportLine line;
 
-  Vec2 along() const { return {-line.normal.y(), line.normal.x()}; }
-  double length() const { return (points.back() - points.front()).norm(); }
+  double length() const {
+    return line.to_corner[0] + (points.back() - points.front()).norm() + line.to_corner[1];
+  }
 };
 
 /// The place of the face straight above or below: a beam that meets an eave half knows where it is
@@ -88,6 +90,39 @@ std::vector<std::vector<std::uint32_t>> points_of(const OrderedPoints& cloud, co
   return points;
 }
 
+/// The last points along so long an edge are this far from it.
+double beyond_last(double length, double spacing) {
+  return kEmptyArea * spacing * spacing / std::max(length, spacing);
+}
+
+ChainNode edge_node(const Vec3& at, const Vec3& along, const Vec3& inward, double spacing) {
+  return {.at = at,
+          .along = along,
+          .side_a = inward,
+          .side_b = inward,
+          .spacing = spacing,
+          .edge_points = 1.0,
+          .probability = 1.0,
+          .boundary = 1.0};
+}
+
+Piece edge_of(const SupportArc& arc, const Face& face, double spacing) {
+  const Chart chart(face);
+  const double sense = arc.hollow ? -1.0 : 1.0;
+  const double radius = arc.radius + sense * beyond_last(arc.length(), spacing);
+  Piece piece;
+  for (const Vec2& point : arc.points) {
+    const Vec2 outward = (point - arc.centre).stableNormalized();
+    piece.nodes.push_back(edge_node(chart.place(arc.centre + radius * outward),
+                                    chart.direction(sense * Vec2(-outward.y(), outward.x())),
+                                    chart.direction(-sense * outward), spacing));
+  }
+  piece.fit = {CurveKind::kArc, chart.place(arc.centre), sense * face.normal, radius, 0.0};
+  piece.ends = {piece.nodes.front().at, piece.nodes.back().at};
+  piece.closed = arc.closed;
+  return piece;
+}
+
 class Outlines {
  public:
   Outlines(const OrderedPoints& cloud, const Faces& faces, double spacing,
@@ -95,6 +130,7 @@ class Outlines {
 
   void add(std::uint32_t face, const std::vector<std::uint32_t>& points);
   std::vector<Eave> found;
+  std::vector<Piece> arcs;
   std::vector<std::vector<Vec2>> charted;  ///< the points of each face
 
  private:
@@ -178,7 +214,12 @@ void Outlines::add_chain(std::uint32_t face, const std::vector<Vec2>& chain,
 }
 
 void Outlines::add_run(std::uint32_t face, const std::vector<Vec2>& run) {
-  for (const SupportLine& line : straight_parts(run, spacing_)) {
+  std::vector<SupportLine> lines = straight_parts(run, spacing_);
+  drop_cut_corners(lines, run, charted[face], kDisc * spacing_, spacing_);
+  for (const SupportArc& arc : take_round_parts(lines, run, spacing_)) {
+    arcs.push_back(edge_of(arc, faces_.faces[face], spacing_));
+  }
+  for (const SupportLine& line : lines) {
     const auto begin = run.begin();
     Eave eave{face,
               {begin + static_cast<std::ptrdiff_t>(line.first),
@@ -221,7 +262,7 @@ SupportLine aligned(const Eave& eave, const Face& face, const std::vector<Vec3>&
       const Vec3 own = crosswise ? Vec3(face.normal.cross(direction)) : direction;
       if (own.norm() < 0.2) continue;
       const Vec2 along = chart.turned(own).normalized();
-      const double cosine = along.dot(eave.along());
+      const double cosine = along.dot(eave.line.along());
       if (std::abs(cosine) < least) continue;
       const Vec2 normal = std::copysign(1.0, cosine) * Vec2(along.y(), -along.x());
       const auto line = turned(eave.line, normal, eave.points, spacing);
@@ -243,14 +284,14 @@ void align(std::vector<Eave>& eaves, const Faces& faces, double spacing,
   for (Eave& eave : eaves) {
     const Face& face = faces.faces[eave.face];
     eave.line = aligned(eave, face, directions, spacing);
-    directions.push_back(Chart(face).direction(eave.along()));
+    directions.push_back(Chart(face).direction(eave.line.along()));
   }
 }
 
 /// The widest gap between the depths of points from the eave on: rows along it are so far apart.
 /// Points beyond it are of the other side of an opening, or of a wing.
 double row_gap(const Eave& eave, const std::vector<Vec2>& points, double spacing) {
-  const Vec2 along = eave.along();
+  const Vec2 along = eave.line.along();
   const double from = std::min(along.dot(eave.points.front()), along.dot(eave.points.back()));
   const double to = std::max(along.dot(eave.points.front()), along.dot(eave.points.back()));
   std::vector<double> depths = {0.0};  // of the point on its line
@@ -270,25 +311,19 @@ double row_gap(const Eave& eave, const std::vector<Vec2>& points, double spacing
 Piece edge_of(const Eave& eave, const Faces& faces, const std::vector<Vec2>& points,
               double spacing) {
   const Chart chart(faces.faces[eave.face]);
-  const double beyond = std::max(kEmptyArea * spacing * spacing / std::max(eave.length(), spacing),
-                                 kBeyondRow * row_gap(eave, points, spacing));
+  const double beyond =
+      std::max(beyond_last(eave.length(), spacing), kBeyondRow * row_gap(eave, points, spacing));
   const double offset = eave.line.offset + beyond;
-  const Vec3 along = chart.direction(eave.along());
+  const Vec3 along = chart.direction(eave.line.along());
   const Vec3 inward = -chart.direction(eave.line.normal);
   Piece piece;
   for (const Vec2& point : eave.points) {
     const Vec2 on = point + (offset - eave.line.normal.dot(point)) * eave.line.normal;
-    piece.nodes.push_back({.at = chart.place(on),
-                           .along = along,
-                           .side_a = inward,
-                           .side_b = inward,
-                           .spacing = spacing,
-                           .edge_points = 1.0,
-                           .probability = 1.0,
-                           .boundary = 1.0});
+    piece.nodes.push_back(edge_node(chart.place(on), along, inward, spacing));
   }
   piece.fit = {CurveKind::kSegment, piece.nodes.front().at, along, 0.0, 0.0};
-  piece.ends = {piece.nodes.front().at, piece.nodes.back().at};
+  piece.ends = {piece.nodes.front().at - eave.line.to_corner[0] * along,
+                piece.nodes.back().at + eave.line.to_corner[1] * along};
   return piece;
 }
 
@@ -300,7 +335,7 @@ std::vector<Piece> find_eaves(const OrderedPoints& cloud, const Faces& faces, do
   const auto points = points_of(cloud, faces, spacing);
   for (std::uint32_t face = 0; face < points.size(); ++face) outlines.add(face, points[face]);
   align(outlines.found, faces, spacing, folds);
-  std::vector<Piece> edges;
+  std::vector<Piece> edges = std::move(outlines.arcs);
   for (const Eave& eave : outlines.found) {
     edges.push_back(edge_of(eave, faces, outlines.charted[eave.face], spacing));
   }

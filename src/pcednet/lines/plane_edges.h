@@ -18,8 +18,8 @@ struct Fold {
 /// The intersections of the planes of faces whose points are adjacent there.
 std::vector<Fold> find_folds(const OrderedPoints& cloud, const Faces& faces, double spacing);
 
-/// Straight parts of the outlines of faces away from folds. The foot of a step, above which another
-/// face begins, has none. `plan` holds the points of the cloud at height 0.
+/// Straight parts and arcs of the outlines of faces away from folds. The foot of a step, above
+/// which another face begins, has none. `plan` holds the points of the cloud at height 0.
 std::vector<Piece> find_eaves(const OrderedPoints& cloud, const Faces& faces, double spacing,
                               const std::vector<Fold>& folds, const spatial::KdTree& plan);
 

@@ -8,7 +8,6 @@
 namespace pcednet::lines {
 namespace {
 
-constexpr double kPieceCost = 8.0;
 constexpr double kMostEmpty = 7.0;       ///< more points that a turned line leaves empty
 constexpr double kBreakOff = 0.25;       ///< spacings from the chord at which a line may break
 constexpr std::size_t kMostBreaks = 64;  ///< that a line runs over
@@ -85,6 +84,13 @@ std::vector<std::size_t> breaks_of(Points outline, double spacing) {
   return breaks;
 }
 
+/// The line along these points, with its empty area.
+SupportLine measured(Points outline, std::size_t first, std::size_t last, double spacing) {
+  SupportLine line = supported(outline, first, last);
+  line.empty = empty_area(line, outline) / (spacing * spacing);
+  return line;
+}
+
 }  // namespace
 
 std::vector<Eigen::Vector2d> outer_hull(std::vector<Eigen::Vector2d> points) {
@@ -115,9 +121,8 @@ std::vector<SupportLine> straight_parts(Points outline, double spacing) {
   for (std::size_t to = 1; to < breaks.size(); ++to) {
     for (std::size_t from = to > kMostBreaks ? to - kMostBreaks : 0; from < to; ++from) {
       if (outline[breaks[from]] == outline[breaks[to]]) continue;  // all of a loop
-      const SupportLine line = supported(outline, breaks[from], breaks[to]);
-      const double empty = empty_area(line, outline) / (spacing * spacing);
-      const double cost = best[from].cost + kPieceCost + empty;
+      const SupportLine line = measured(outline, breaks[from], breaks[to], spacing);
+      const double cost = best[from].cost + kLinePrice + line.empty;
       if (cost < best[to].cost) best[to] = {cost, from, line};
     }
   }
@@ -131,12 +136,14 @@ std::vector<SupportLine> straight_parts(Points outline, double spacing) {
 
 std::optional<SupportLine> turned(const SupportLine& line, const Eigen::Vector2d& normal,
                                   Points outline, double spacing) {
-  SupportLine other{line.first, line.last, normal, -std::numeric_limits<double>::infinity()};
+  SupportLine other = line;
+  other.normal = normal;
+  other.offset = -std::numeric_limits<double>::infinity();
   for (std::size_t i = line.first; i <= line.last; ++i) {
     other.offset = std::max(other.offset, normal.dot(outline[i]));
   }
-  const double more = empty_area(other, outline) - empty_area(line, outline);
-  if (more > kMostEmpty * spacing * spacing) return std::nullopt;
+  other.empty = empty_area(other, outline) / (spacing * spacing);
+  if (other.empty > line.empty + kMostEmpty) return std::nullopt;
   return other;
 }
 

@@ -13,10 +13,16 @@ struct SupportLine {
   std::size_t first, last;
   Eigen::Vector2d normal;  ///< unit, outward
   double offset;
+  double empty = 0.0;        ///< area between line and outline, in squared spacings
+  double to_corner[2] = {};  ///< from its first and last point to corners that the outline cuts off
+
+  Eigen::Vector2d along() const { return {-normal.y(), normal.x()}; }
 };
 
 /// The upper side of the convex hull of some points, by x.
 std::vector<Eigen::Vector2d> outer_hull(std::vector<Eigen::Vector2d> points);
+
+inline constexpr double kLinePrice = 8.0;
 
 /// The straight parts of an outline, in its order; the interior is on the left of consecutive
 /// points. They minimise
