@@ -155,6 +155,22 @@ TEST(PlaneEdges, AreForSurfacesSeenFromAbove) {
   EXPECT_FALSE(found());
 }
 
+TEST(PlaneEdges, AreNotForThinPlates) {
+  for (const double spacings : {1.0, 2.0}) {
+    Random random(6);
+    PlainCloud plate;
+    const double spacing = std::sqrt(2.0 * kLength * kWidth / 4000.0);
+    for (int i = 0; i < 4000; ++i) {
+      const bool top = random.index(2) == 0;
+      const double x = random.uniform(0.0, kLength);
+      plate.add({x, random.uniform(0.0, kWidth), top ? spacings * spacing : 0.0});
+      if (!top) plate.normals.back() *= -1.0;
+    }
+    const OrderedPoints points(plate.points());
+    EXPECT_FALSE(find_plane_edges(points, measure_sampling(points), nullptr)) << spacings;
+  }
+}
+
 TEST(PlaneEdges, OfAStepAreTheUpperOnes) {
   Random random(3);
   PlainCloud cloud;

@@ -13,7 +13,7 @@ constexpr std::size_t kFaceSamples = 4000;
 constexpr double kAboveOthers = 0.03;  ///< largest share of points above or below others
 
 // In spacings.
-constexpr double kBesideInPlan = 0.3, kAbove = 3.0;
+constexpr double kBesideInPlan = 0.3, kAbove = 3.0, kPlate = 0.7;
 
 spatial::KdTree plan_of(const OrderedPoints& cloud) {
   std::vector<Vec3> places;
@@ -21,16 +21,20 @@ spatial::KdTree plan_of(const OrderedPoints& cloud) {
   return spatial::KdTree(places);
 }
 
-/// Whether few points have others straight above or below them.
-bool is_seen_from_above(const OrderedPoints& cloud, double spacing, const spatial::KdTree& plan) {
+/// Whether few points have others straight above or below them. Those of the other side of a thin
+/// plate have opposed normals.
+bool is_seen_from_above(const OrderedPoints& cloud, const Sampling& sampling,
+                        const spatial::KdTree& plan) {
   const std::size_t step = std::max<std::size_t>(1, cloud.size() / kFaceSamples);
   std::size_t seen = 0, above = 0;
   std::vector<spatial::Neighbour> near;
   for (std::size_t i = 0; i < cloud.size(); i += step) {
-    plan.within_unsorted(in_plan(cloud.position(i)), kBesideInPlan * spacing, near);
+    plan.within_unsorted(in_plan(cloud.position(i)), kBesideInPlan * sampling.spacing, near);
     ++seen;
     above += std::any_of(near.begin(), near.end(), [&](const spatial::Neighbour& other) {
-      return std::abs(cloud.position(other.index).z() - cloud.position(i).z()) > kAbove * spacing;
+      const bool opposed = sampling.oriented && cloud.cosine(i, other.index) < 0.0;
+      return std::abs(cloud.position(other.index).z() - cloud.position(i).z()) >
+             (opposed ? kPlate : kAbove) * sampling.spacing;
     });
   }
   return static_cast<double>(above) <= kAboveOthers * static_cast<double>(seen);
@@ -44,7 +48,7 @@ std::optional<std::vector<Piece>> find_plane_edges(const OrderedPoints& cloud,
   const double spacing = sampling.spacing;
   if (!(spacing > 0.0) || cloud.size() > kMostPoints) return std::nullopt;
   const spatial::KdTree plan = plan_of(cloud);
-  if (!is_seen_from_above(cloud, spacing, plan)) return std::nullopt;
+  if (!is_seen_from_above(cloud, sampling, plan)) return std::nullopt;
   const Faces faces = find_faces(cloud, sampling, progress);
   if (faces.share < kPlanePart) return std::nullopt;
   std::vector<Fold> folds = find_folds(cloud, faces, spacing);
