@@ -132,5 +132,14 @@ TEST(Outlines, HaveArcsWhereTheyAreRound) {
   EXPECT_EQ(segments, 6u);
 }
 
+TEST(Outlines, AreStraightHoweverLongInNoise) {
+  const Inside nowhere = [](double, double) { return false; };
+  for (const double noise : {0.0, 0.1, 0.2}) {  // spacings
+    const double spacing = 1.0 / std::sqrt(60.0);
+    const auto curves = roof_edges(flat_roof(60.0, nowhere, noise * spacing));
+    expect_corners(curves, {{0, 0}, {30, 0}, {30, 20}, {0, 20}}, (0.3 + 3.0 * noise) * spacing);
+  }
+}
+
 }  // namespace
 }  // namespace pcednet::lines

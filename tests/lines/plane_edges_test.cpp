@@ -407,7 +407,7 @@ TEST(StraightParts, AreTheSidesOfARectangle) {
       outline.push_back(points[chain[(start + k) % chain.size()].index]);
     }
   }
-  const auto lines = straight_parts(outline, spacing);
+  const auto lines = straight_parts(outline, spacing, 0.0);
   ASSERT_EQ(lines.size(), 4u);
   const Vec2 normals[] = {{0, -1}, {1, 0}, {0, 1}, {-1, 0}};
   const double offsets[] = {0.0, 10.0, 6.0, 0.0};

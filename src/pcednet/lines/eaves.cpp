@@ -125,7 +125,7 @@ Piece edge_of(const SupportArc& arc, const Face& face, double spacing) {
 
 class Outlines {
  public:
-  Outlines(const OrderedPoints& cloud, const Faces& faces, double spacing,
+  Outlines(const OrderedPoints& cloud, const Faces& faces, const Sampling& sampling,
            const std::vector<Fold>& folds, const spatial::KdTree& plan);
 
   void add(std::uint32_t face, const std::vector<std::uint32_t>& points);
@@ -142,7 +142,7 @@ class Outlines {
 
   const OrderedPoints& cloud_;
   const Faces& faces_;
-  double spacing_;
+  double spacing_, noise_;
   struct FoldSide {
     const Piece* fold;
     Vec3 inward;  ///< into the face
@@ -151,12 +151,13 @@ class Outlines {
   const spatial::KdTree& plan_;
 };
 
-Outlines::Outlines(const OrderedPoints& cloud, const Faces& faces, double spacing,
+Outlines::Outlines(const OrderedPoints& cloud, const Faces& faces, const Sampling& sampling,
                    const std::vector<Fold>& folds, const spatial::KdTree& plan)
     : charted(faces.faces.size()),
       cloud_(cloud),
       faces_(faces),
-      spacing_(spacing),
+      spacing_(sampling.spacing),
+      noise_(sampling.noise),
       folds_of_(faces.faces.size()),
       plan_(plan) {
   for (const Fold& fold : folds) {
@@ -214,7 +215,7 @@ void Outlines::add_chain(std::uint32_t face, const std::vector<Vec2>& chain,
 }
 
 void Outlines::add_run(std::uint32_t face, const std::vector<Vec2>& run) {
-  std::vector<SupportLine> lines = straight_parts(run, spacing_);
+  std::vector<SupportLine> lines = straight_parts(run, spacing_, noise_);
   drop_cut_corners(lines, run, charted[face], kDisc * spacing_, spacing_);
   for (const SupportArc& arc : take_round_parts(lines, run, spacing_)) {
     arcs.push_back(edge_of(arc, faces_.faces[face], spacing_));
@@ -329,9 +330,11 @@ Piece edge_of(const Eave& eave, const Faces& faces, const std::vector<Vec2>& poi
 
 }  // namespace
 
-std::vector<Piece> find_eaves(const OrderedPoints& cloud, const Faces& faces, double spacing,
-                              const std::vector<Fold>& folds, const spatial::KdTree& plan) {
-  Outlines outlines(cloud, faces, spacing, folds, plan);
+std::vector<Piece> find_eaves(const OrderedPoints& cloud, const Faces& faces,
+                              const Sampling& sampling, const std::vector<Fold>& folds,
+                              const spatial::KdTree& plan) {
+  const double spacing = sampling.spacing;
+  Outlines outlines(cloud, faces, sampling, folds, plan);
   const auto points = points_of(cloud, faces, spacing);
   for (std::uint32_t face = 0; face < points.size(); ++face) outlines.add(face, points[face]);
   align(outlines.found, faces, spacing, folds);

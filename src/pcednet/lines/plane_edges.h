@@ -20,8 +20,9 @@ std::vector<Fold> find_folds(const OrderedPoints& cloud, const Faces& faces, dou
 
 /// Straight parts and arcs of the outlines of faces away from folds. The foot of a step, above
 /// which another face begins, has none. `plan` holds the points of the cloud at height 0.
-std::vector<Piece> find_eaves(const OrderedPoints& cloud, const Faces& faces, double spacing,
-                              const std::vector<Fold>& folds, const spatial::KdTree& plan);
+std::vector<Piece> find_eaves(const OrderedPoints& cloud, const Faces& faces,
+                              const Sampling& sampling, const std::vector<Fold>& folds,
+                              const spatial::KdTree& plan);
 
 /// The folds and eaves of a roof: a surface seen from above (z is up), nowhere above itself, with
 /// nine in ten points on plane faces. None for other clouds.

@@ -10,7 +10,14 @@ namespace {
 
 constexpr double kMostEmpty = 7.0;       ///< more points that a turned line leaves empty
 constexpr double kBreakOff = 0.25;       ///< spacings from the chord at which a line may break
-constexpr std::size_t kMostBreaks = 64;  ///< that a line runs over
+constexpr std::size_t kMostBreaks = 64;  ///< that a line runs over at first
+
+// Parts that differ by noise.
+constexpr double kOutermost = 2.0;   ///< of their last points, in noise,
+constexpr double kByChoice = 0.02;   ///< and in spacings, of the best of many breaks
+constexpr double kLongRun = 32.0;    ///< spacings: the price of a line allows for so much
+constexpr double kSameWay = 0.1;     ///< sine of the turn between them,
+constexpr double kTurnByEnds = 6.0;  ///< and what noise at the ends of the shorter one adds
 
 using Points = std::span<const Eigen::Vector2d>;
 
@@ -91,6 +98,47 @@ SupportLine measured(Points outline, std::size_t first, std::size_t last, double
   return line;
 }
 
+/// Points that a line of both parts may leave empty more than they do where they differ by noise.
+double by_noise(const SupportLine& a, const SupportLine& b, Points outline, double spacing,
+                double noise) {
+  const auto length = [&](std::size_t from, std::size_t to) {
+    return (outline[to] - outline[from]).norm() / spacing;
+  };
+  const double shorter = std::min(length(a.first, a.last), length(b.first, b.last));
+  const double turn = std::abs(cross(a.normal, b.normal));
+  if (turn > kSameWay + kTurnByEnds * noise / shorter) return 0.0;
+  return (kOutermost * noise + kByChoice) * std::max(0.0, length(a.first, b.last) - kLongRun);
+}
+
+/// Unites neighbours as long as one line is cheaper, apart from noise; the best pair first.
+void unite_parts(std::vector<SupportLine>& lines, Points outline, double spacing, double noise) {
+  struct Pair {
+    SupportLine line;
+    double gain;
+  };
+  const auto pair_at = [&](std::size_t i) -> Pair {
+    const SupportLine &a = lines[i], &b = lines[i + 1];
+    if (outline[a.first] == outline[b.last]) return {a, -1.0};  // all of a loop
+    const SupportLine both = measured(outline, a.first, b.last, spacing);
+    const double gain = kLinePrice + a.empty + b.empty - both.empty;
+    return {both, gain + by_noise(a, b, outline, spacing, noise)};
+  };
+  std::vector<Pair> pairs;  // of each line and the next
+  for (std::size_t i = 0; i + 1 < lines.size(); ++i) pairs.push_back(pair_at(i));
+  while (!pairs.empty()) {
+    const auto best = std::max_element(
+        pairs.begin(), pairs.end(), [](const Pair& a, const Pair& b) { return a.gain < b.gain; });
+    if (!(best->gain > 0.0)) return;
+    const std::ptrdiff_t at = best - pairs.begin();
+    const auto i = static_cast<std::size_t>(at);
+    lines[i] = best->line;
+    lines.erase(lines.begin() + at + 1);
+    pairs.erase(best);
+    if (i > 0) pairs[i - 1] = pair_at(i - 1);
+    if (i < pairs.size()) pairs[i] = pair_at(i);
+  }
+}
+
 }  // namespace
 
 std::vector<Eigen::Vector2d> outer_hull(std::vector<Eigen::Vector2d> points) {
@@ -108,7 +156,7 @@ std::vector<Eigen::Vector2d> outer_hull(std::vector<Eigen::Vector2d> points) {
   return hull;
 }
 
-std::vector<SupportLine> straight_parts(Points outline, double spacing) {
+std::vector<SupportLine> straight_parts(Points outline, double spacing, double noise) {
   if (outline.size() < 2) return {};
   const std::vector<std::size_t> breaks = breaks_of(outline, spacing);
   struct Best {
@@ -131,6 +179,7 @@ std::vector<SupportLine> straight_parts(Points outline, double spacing) {
     lines.push_back(best[at].line);
   }
   std::reverse(lines.begin(), lines.end());
+  unite_parts(lines, outline, spacing, noise);
   return lines;
 }
 

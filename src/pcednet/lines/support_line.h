@@ -30,8 +30,10 @@ inline constexpr double kLinePrice = 8.0;
 ///     sum over lines of (a price + points that the empty area between line and outline would hold)
 ///
 /// which is the negative logarithm of the probability of such an outline if points are drawn at
-/// random: `spacing` squared is the area per point.
-std::vector<SupportLine> straight_parts(std::span<const Eigen::Vector2d> outline, double spacing);
+/// random: `spacing` squared is the area per point. Then parts become one that differ by less than
+/// noise (in spacings) explains: the last points along a line are as far out as it is long.
+std::vector<SupportLine> straight_parts(std::span<const Eigen::Vector2d> outline, double spacing,
+                                        double noise);
 
 /// The line of the same points with another direction, if the outline is consistent with it.
 std::optional<SupportLine> turned(const SupportLine& line, const Eigen::Vector2d& normal,
