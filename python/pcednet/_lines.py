@@ -17,6 +17,7 @@ class Lines(list):
     """A list of Curve, in the unit and coordinates of their cloud."""
 
     kept = None
+    _fit_tolerance = 0.0
 
     @property
     def length(self):
@@ -37,7 +38,7 @@ class Lines(list):
             DXF: of the coordinates.
         tolerance : float
             How far the polylines that stand for arcs may be from them, in formats without arcs;
-            0: a thousandth of the radius.
+            0: a thousandth of the radius, or the tolerance of the fit if that is less.
         dxf_version : {'2000', 'r12'}
         view : {'top', 'front', 'side'}
             SVG: where it is seen from.
@@ -55,7 +56,7 @@ class Lines(list):
             raise UsageError(f"tolerance: {tolerance}: a length of 0 or more is needed")
         settings = {"epsg": None if epsg is None else _arrays.whole(epsg, "epsg", 1),
                     "unit": None if unit is None else _arrays.text(unit, "unit"),
-                    "tolerance": float(tolerance), "dxf_version": str(dxf_version),
+                    "tolerance": float(tolerance), "fit_tolerance": self._fit_tolerance, "dxf_version": str(dxf_version),
                     "view": _arrays.text(view, "view"), "overwrite": bool(overwrite)}
         _core.write_lines(os.fspath(path), list(self), settings, self.kept)
 
@@ -76,8 +77,8 @@ def lines(xyz, labels=None, normals=None, *, p_sharp=None, p_smooth=None,
     xyz : array_like, (n, 3), or Cloud
     labels : Result or array_like (n,), optional
         A Result brings its normals and probabilities. None: those of a Cloud, its ``edge_class`` (which a
-        classification leaves) or else its labels, with its ``p_sharp`` and ``p_smooth``; without any
-        the points are classified first.
+        classification leaves) or else its labels, with its ``p_sharp`` and ``p_smooth``; without any,
+        or if all are 255, the points are classified first.
     normals : array_like, (n, 3), optional
         With an array of labels. Estimated if missing.
     p_sharp, p_smooth : array_like, (n,), optional
@@ -115,6 +116,8 @@ def lines(xyz, labels=None, normals=None, *, p_sharp=None, p_smooth=None,
     min_confidence = _arrays.share(min_confidence, "min_confidence")
     if labels is None and isinstance(xyz, _clouds.Cloud):
         labels = xyz._classes()
+        if labels is not None and (np.asarray(labels) == 255).all():
+            labels = None
         if labels is not None:
             _core.check_edges(xyz._class_lines(), "lines", False)
             p_sharp = _probability(xyz, "p_sharp") if p_sharp is None else p_sharp
@@ -139,7 +142,7 @@ def lines(xyz, labels=None, normals=None, *, p_sharp=None, p_smooth=None,
                 "regularise": bool(regularise), "boundaries": bool(boundaries),
                 "stage": _arrays.text(stage, "stage")}
     with _arrays.reporting(progress) as report:
-        curves, notes = _core.find_lines(
+        curves, notes, fit_tolerance = _core.find_lines(
             positions, given, scanners, prepared, labels,
             _arrays.probabilities(p_sharp, rows, "p_sharp"),
             _arrays.probabilities(p_smooth, rows, "p_smooth"), settings, report,
@@ -151,6 +154,7 @@ def lines(xyz, labels=None, normals=None, *, p_sharp=None, p_smooth=None,
     found = Lines(curve for curve in curves
                   if _SHORT[curve.label] in classes and curve.kind in kinds
                   and curve.confidence >= min_confidence)
+    found._fit_tolerance = fit_tolerance
     found.kept = xyz._kept if isinstance(xyz, _clouds.Cloud) else None
     return found
 

@@ -44,7 +44,8 @@ lines::LineOptions line_options_of(const py::dict& settings) {
   return options;
 }
 
-/// Curves, and notes on the normals. `prepared` says that the normals come from a classification.
+/// Curves, notes on the normals, and the tolerance of the fit. `prepared` says that the normals
+/// come from a classification.
 py::tuple find_lines(const Array<double>& xyz, const OptionalArray<double>& normals,
                      const OptionalArray<double>& scanners, bool prepared,
                      const Array<std::uint8_t>& labels, const OptionalArray<float>& p_sharp,
@@ -53,6 +54,7 @@ py::tuple find_lines(const Array<double>& xyz, const OptionalArray<double>& norm
   const lines::LineOptions options = line_options_of(settings);
   std::vector<Curve> curves;
   std::vector<std::string> notes;
+  lines::LineScale scale;
   run_job({progress, threads}, [&](const Progress* job) {
     const InputCloud cloud(xyz, normals, scanners);
     lines::EdgePoints points{.positions = cloud.positions(),
@@ -67,15 +69,16 @@ py::tuple find_lines(const Array<double>& xyz, const OptionalArray<double>& norm
       points.curve = made.curve;
       notes = made.notes;
     }
-    curves = lines::find_lines(points, options, job);
+    curves = lines::find_lines(points, options, job, &scale);
   });
-  return py::make_tuple(std::move(curves), notes);
+  return py::make_tuple(std::move(curves), notes, scale.tolerance);
 }
 
 io::DrawingOptions drawing_of(const py::dict& settings, const Kept* kept) {
   io::DrawingOptions options;
   options.overwrite = settings["overwrite"].cast<bool>() ? Overwrite::kYes : Overwrite::kNo;
   options.tolerance = settings["tolerance"].cast<double>();
+  options.fit_tolerance = settings["fit_tolerance"].cast<double>();
   options.dxf_version =
       named<io::DxfVersion>({{"2000", io::DxfVersion::k2000}, {"r12", io::DxfVersion::kR12}},
                             "dxf_version", settings["dxf_version"].cast<std::string>());

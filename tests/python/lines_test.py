@@ -56,6 +56,24 @@ class Lines(CliTest):
                     found.write(ours, overwrite=True)
                     self.assertEqual(ours.read_bytes(), theirs.read_bytes(), ending)
 
+    def test_large_arcs_are_drawn_as_finely_as_by_the_program(self):
+        angles, heights = np.meshgrid(np.linspace(0, 2 * np.pi, 3000, endpoint=False), np.arange(12) * 0.5)
+        side = np.c_[250 * np.cos(angles.ravel()), 250 * np.sin(angles.ravel()), -heights.ravel()]
+        top = np.concatenate([(side[:3000] * (1 - k / 500)) * [1, 1, 0] for k in range(1, 12)])
+        points = np.concatenate([side, top])
+        write_ply(self.path("tank.ply"), points, position_type="double")
+        cloud = pcednet.read(self.path("tank.ply"))
+        run("lines", self.path("tank.ply"), "-o", self.path("theirs.obj"))
+        found = pcednet.lines(cloud)
+        self.assertTrue(any(curve.kind in ("arc", "circle") and curve.radius > 200 for curve in found))
+        found.write(self.path("ours.obj"))
+        self.assertEqual(self.path("ours.obj").read_bytes(), self.path("theirs.obj").read_bytes())
+
+    def test_a_cloud_all_unlabelled_is_classified(self):
+        write_ply(self.path("unlabelled.ply"), self.positions, self.normals,
+                  labels=np.full(len(self.positions), 255, np.uint8))
+        self.assertEqual(len(pcednet.lines(pcednet.read(self.path("unlabelled.ply")))), 12)
+
     def test_labels_of_ones_own_are_drawn(self):
         given = pcednet.lines(self.positions, self.result.labels, self.normals,
                               p_sharp=self.result.p_sharp, p_smooth=self.result.p_smooth)

@@ -521,6 +521,11 @@ test("finds lines, goes through them, and downloads those that are accepted", as
   await page.keyboard.press("d");
   await page.waitForFunction(() => annotator.store.now.line === 2);
   await panel.getByText(`${found.length} lines: 1 accepted, 1 rejected.`).waitFor();
+  // Downloads wait for the program to have heard of it, however slowly.
+  await page.route("**/api/lines/decide", async (route) => {
+    await new Promise((resolve) => setTimeout(resolve, 400));
+    await route.continue();
+  });
   await page.getByRole("button", { name: "Accept the rest" }).click();
   await panel.getByText(`${found.length} lines: ${found.length - 1} accepted, 1 rejected.`).waitFor();
   const download = async (name) => {
@@ -532,6 +537,7 @@ test("finds lines, goes through them, and downloads those that are accepted", as
     return fs.readFileSync(await offer.path(), "utf8");
   };
   const { features } = JSON.parse(await download("GeoJSON"));
+  await page.unroute("**/api/lines/decide");
   const rejected = found[1];
   const accepted = found.filter((line) => line !== rejected);
   assert.deepEqual(

@@ -21,6 +21,7 @@ export interface DecisionEvents {
 export class DecisionQueue {
   private readonly waiting: DecidedEvent[] = [];
   private running = false;
+  private work = Promise.resolve();
 
   constructor(
     private readonly send: (decision: DecidedEvent) => Promise<unknown>,
@@ -34,7 +35,12 @@ export class DecisionQueue {
 
   add(decision: DecidedEvent): void {
     this.waiting.push(decision);
-    if (!this.running) void this.run();
+    if (!this.running) this.work = this.run();
+  }
+
+  /** Once the program has taken all, or refused one. */
+  settled(): Promise<void> {
+    return this.work;
   }
 
   private async run(): Promise<void> {

@@ -90,4 +90,9 @@ export class LineClient {
     this.show();
     return true;
   }
+
+  /** Once the program knows of every decision, as a download of the accepted lines needs. */
+  settled(): Promise<void> {
+    return this.queue.settled();
+  }
 }

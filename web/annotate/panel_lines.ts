@@ -61,9 +61,11 @@ export function linesPanel(store: AppStore, client: Client, reviewer: Reviewer, 
     button("Previous", () => press("K"), "K"),
     button("Next", () => press("J"), "J"),
   );
-  const downloads = FORMATS.map(([format, label]) =>
-    button(label, () => client.files.download("lines", `?format=${format}`)),
-  );
+  const download = async (format: string): Promise<void> => {
+    await client.lines.settled();
+    client.files.download("lines", `?format=${format}`);
+  };
+  const downloads = FORMATS.map(([format, label]) => button(label, () => void download(format)));
   const review = h(
     "div",
     {},
@@ -85,7 +87,7 @@ export function linesPanel(store: AppStore, client: Client, reviewer: Reviewer, 
     cancel.hidden = !lines.searching;
     review.hidden = lines.lines.length === 0;
     rest.disabled = !mayDecide || open === 0;
-    for (const download of downloads) download.disabled = accepted === 0 || !store.now.connected;
+    for (const each of downloads) each.disabled = accepted === 0 || !store.now.connected;
   });
   store.watch(["lines", "line", "writer", "connected", "showLines"], () => {
     const { lines, line } = store.now;
