@@ -59,10 +59,13 @@ std::vector<Crease> find_boundaries(const OrderedPoints& cloud, const Progress* 
     if (!cloud.is_partial(i)) points.push_back(i);
   }
   Stage stage(progress, "boundaries", points.size());
-  return creases_at(cloud, points, kNeighbours, stage,
-                    [&](std::uint32_t point, std::span<const spatial::Neighbour> others) {
-                      return boundary_at(cloud, point, others);
-                    });
+  std::vector<Crease> boundaries;
+  append_found(creases_at(cloud, points, kNeighbours, stage,
+                          [&](std::uint32_t point, std::span<const spatial::Neighbour> others) {
+                            return boundary_at(cloud, point, others);
+                          }),
+               boundaries);
+  return boundaries;
 }
 
 }  // namespace pcednet::lines

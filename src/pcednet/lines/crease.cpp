@@ -274,6 +274,13 @@ std::optional<Crease> lengthwise_crease(const OrderedPoints& cloud, std::uint32_
   return crease_at(cloud, point, along, within, spacing_of(others));
 }
 
+/// Whether some of these face away from the point.
+bool is_opposed(const OrderedPoints& cloud, std::uint32_t point,
+                std::span<const spatial::Neighbour> others) {
+  return std::any_of(others.begin(), others.end(),
+                     [&](const auto& other) { return cloud.cosine(point, other.index) < 0.0; });
+}
+
 /// The points of an edge class, those that may be, and the neighbours of both.
 std::vector<std::uint32_t> points_near_edges(const OrderedPoints& cloud, double noise,
                                              const Progress* progress) {
@@ -302,20 +309,53 @@ std::vector<std::uint32_t> points_near_edges(const OrderedPoints& cloud, double 
   return points;
 }
 
+/// The creases of the nearest points. Few points are beside a thin wall: only they need twice as
+/// many neighbours, half of which may be on its other side.
+std::vector<std::optional<Crease>> nearest_creases(const OrderedPoints& cloud,
+                                                   std::span<const std::uint32_t> points,
+                                                   const Tolerances& within,
+                                                   const Progress* progress) {
+  std::vector<std::uint8_t> is_thin(cloud.size(), 0);
+  const auto crease_of = [&](std::uint32_t point, std::span<const spatial::Neighbour> near) {
+    return crease_at(cloud, point, near, within, spacing_of(near));
+  };
+  Stage stage(progress, "creases", points.size());
+  std::vector<std::optional<Crease>> found =
+      creases_at(cloud, points, within.points - 1, stage,
+                 [&](std::uint32_t point, std::span<const spatial::Neighbour> near) {
+                   is_thin[point] = within.skips_other_side && is_opposed(cloud, point, near);
+                   return is_thin[point] ? std::nullopt : crease_of(point, near);
+                 });
+  std::vector<std::uint32_t> thin;
+  std::copy_if(points.begin(), points.end(), std::back_inserter(thin),
+               [&](std::uint32_t i) { return is_thin[i] != 0; });
+  Stage walls(progress, "creases of thin walls", thin.size());
+  const std::vector<std::optional<Crease>> of_thin =
+      creases_at(cloud, thin, 2 * (within.points - 1), walls, crease_of);
+  for (std::size_t k = 0, next = 0; k < points.size(); ++k) {
+    if (is_thin[points[k]]) found[k] = of_thin[next++];
+  }
+  return found;
+}
+
 }  // namespace
 
-std::vector<Crease> creases_at(const OrderedPoints& cloud, std::span<const std::uint32_t> points,
-                               std::size_t count, Stage& stage, const CreaseAt& crease_at) {
+std::vector<std::optional<Crease>> creases_at(const OrderedPoints& cloud,
+                                              std::span<const std::uint32_t> points,
+                                              std::size_t count, Stage& stage,
+                                              const CreaseAt& crease_at) {
   std::vector<std::optional<Crease>> found(points.size());
   cloud.for_each_neighbourhood(points, count, stage,
                                [&](std::size_t k, std::span<const spatial::Neighbour> others) {
                                  found[k] = crease_at(points[k], others);
                                });
-  std::vector<Crease> creases;
+  return found;
+}
+
+void append_found(std::span<const std::optional<Crease>> found, std::vector<Crease>& creases) {
   for (const auto& crease : found) {
     if (crease) creases.push_back(*crease);
   }
-  return creases;
 }
 
 std::vector<Crease> find_creases(const OrderedPoints& cloud, const Sampling& sampling,
@@ -327,21 +367,13 @@ std::vector<Crease> find_creases(const OrderedPoints& cloud, const Sampling& sam
                              .noise = sampling.noise,
                              .points = static_cast<std::size_t>(40.0 + 80.0 * sampling.noise),
                              .skips_other_side = noisy && sampling.oriented};
-  const std::size_t others = (within.skips_other_side ? 2 : 1) * (within.points - 1);
-  std::vector<std::uint8_t> has_crease(cloud.size(), 0);
-  Stage stage(progress, "creases", points.size());
-  std::vector<Crease> creases =
-      creases_at(cloud, points, others, stage,
-                 [&](std::uint32_t point, std::span<const spatial::Neighbour> near) {
-                   auto crease = crease_at(cloud, point, near, within, spacing_of(near));
-                   has_crease[point] = crease.has_value();
-                   return crease;
-                 });
+  std::vector<std::optional<Crease>> found = nearest_creases(cloud, points, within, progress);
   std::vector<std::uint32_t> rest;
-  std::copy_if(points.begin(), points.end(), std::back_inserter(rest),
-               [&](std::uint32_t i) { return (noisy || cloud.is_edge(i)) && has_crease[i] == 0; });
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    if (!found[k] && (noisy || cloud.is_edge(points[k]))) rest.push_back(points[k]);
+  }
   Stage again(progress, "creases of more points", rest.size());
-  const std::vector<Crease> more =
+  const std::vector<std::optional<Crease>> more =
       creases_at(cloud, rest, kFarNeighbours, again,
                  [&](std::uint32_t point, std::span<const spatial::Neighbour> near) {
                    std::optional<Crease> crease;
@@ -351,7 +383,9 @@ std::vector<Crease> find_creases(const OrderedPoints& cloud, const Sampling& sam
                    }
                    return crease;
                  });
-  creases.insert(creases.end(), more.begin(), more.end());
+  std::vector<Crease> creases;
+  append_found(found, creases);
+  append_found(more, creases);
   return creases;
 }
 

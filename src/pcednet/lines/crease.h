@@ -40,9 +40,14 @@ inline double dihedral_angle(const Vec3& side_a, const Vec3& side_b) {
 using CreaseAt = std::function<std::optional<Crease>(std::uint32_t point,
                                                      std::span<const spatial::Neighbour> others)>;
 
-/// The results of crease_at() at `points` (ascending), in their order, from `count` others of each.
-std::vector<Crease> creases_at(const OrderedPoints& cloud, std::span<const std::uint32_t> points,
-                               std::size_t count, Stage& stage, const CreaseAt& crease_at);
+/// The results of crease_at() at `points` (ascending), from `count` others of each.
+std::vector<std::optional<Crease>> creases_at(const OrderedPoints& cloud,
+                                              std::span<const std::uint32_t> points,
+                                              std::size_t count, Stage& stage,
+                                              const CreaseAt& crease_at);
+
+/// Appends those that there are.
+void append_found(std::span<const std::optional<Crease>> found, std::vector<Crease>& creases);
 
 /// The creases of the edge points; an edge point without two planes beside it has none.
 std::vector<Crease> find_creases(const OrderedPoints& cloud, const Sampling& sampling,

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <numbers>
-#include <span>
 
 #include "pcednet/core/eigendecomposition.h"
 #include "pcednet/core/half_space.h"
@@ -116,17 +116,37 @@ void fit_planes(Parts& parts) {
   }
 }
 
-/// The parts that cuts along lines in one direction make; the middle one passes the origin.
+/// The points in their frame.
+struct FramedPoints {
+  Frame frame;
+  Vec3 origin;  ///< the edge point
+  std::size_t count;
+  NearPoints::Row x, y, z;
+  std::array<PointMoments, NearPoints::kMost> moments;
+
+  FramedPoints(const NearPoints& points, std::size_t count_)
+      : frame(frame_of(points, count_)), origin(frame.of(Vec3::Zero())), count(count_) {
+    for (std::size_t i = 0; i < count; ++i) {
+      const Vec3 place = frame.of(points.offset(i));
+      moments[i].add(place);
+      x[i] = place.x(), y[i] = place.y(), z[i] = place.z();
+    }
+  }
+};
+
+/// The parts that cuts along lines in one direction make; the middle one passes the edge point.
 PCEDNET_VECTOR_CLONES
-void divide(std::span<const PointMoments> points, const Frame& frame, double angle, Parts& parts) {
-  const Vec3 origin = frame.of(Vec3::Zero());
-  const double across_x = std::cos(angle), across_y = std::sin(angle);
+void divide(const FramedPoints& points, double across_x, double across_y, Parts& parts) {
   constexpr double kMiddle = 0.5 * static_cast<double>(kCuts + 1);
+  const double origin_x = points.origin.x(), origin_y = points.origin.y();
+  std::array<std::int32_t, NearPoints::kMost> strip_of;
+  for (std::size_t i = 0; i < points.count; ++i) {
+    const double away = (points.x[i] - origin_x) * across_x + (points.y[i] - origin_y) * across_y;
+    strip_of[i] = static_cast<std::int32_t>(smaller(larger(away / kCutStep + kMiddle, 0.0), kCuts));
+  }
   std::array<PointMoments, kCuts + 1> strips{};
-  for (const PointMoments& point : points) {
-    const double away = (point.x - origin.x()) * across_x + (point.y - origin.y()) * across_y;
-    const double strip = smaller(larger(away / kCutStep + kMiddle, 0.0), kCuts);
-    strips[static_cast<std::size_t>(strip)] += point;
+  for (std::size_t i = 0; i < points.count; ++i) {
+    strips[static_cast<std::size_t>(strip_of[i])] += points.moments[i];
   }
   PointMoments before, after;
   for (const PointMoments& strip : strips) after += strip;
@@ -139,15 +159,14 @@ void divide(std::span<const PointMoments> points, const Frame& frame, double ang
 }
 
 /// The half-planes of the two parts with the least error.
-std::optional<HalfPlanes> best_cut(const NearPoints& points, std::size_t count,
-                                   const Frame& frame) {
-  std::array<PointMoments, NearPoints::kMost> places;
-  for (std::size_t i = 0; i < count; ++i) places[i].add(frame.of(points.offset(i)));
+std::optional<HalfPlanes> best_cut(const FramedPoints& points) {
+  const Frame& frame = points.frame;
   std::optional<HalfPlanes> best;
   double least_error = std::numeric_limits<double>::infinity();
   Parts parts;
   for (int i = 0; i < kDirections; ++i) {
-    divide(std::span(places).first(count), frame, std::numbers::pi * i / kDirections, parts);
+    const double angle = std::numbers::pi * i / kDirections;
+    divide(points, std::cos(angle), std::sin(angle), parts);
     fit_planes(parts);
     for (std::size_t a = 0, b = kCuts; a < kCuts; ++a, ++b) {
       const double error = parts.error[a] + parts.error[b];
@@ -212,40 +231,47 @@ std::optional<HalfPlanes> improved(const HalfPlanes& halves, const NearPoints& p
   return half_planes(*plane_a, *plane_b, a.mean(), b.mean());
 }
 
-/// Sum of squared distances to the best quadratic height, each at most that of an outlier.
-double error_of_quadric(const NearPoints& points, std::size_t count, const Frame& frame,
-                        double noise) {
-  using Row = Eigen::Matrix<double, 6, 1>;
-  const auto row_of = [](const Vec3& p) {
-    Row row;
-    row << 1.0, p.x(), p.y(), p.x() * p.x(), p.x() * p.y(), p.y() * p.y();
-    return row;
-  };
-  Eigen::Matrix<double, 6, 6> left = Eigen::Matrix<double, 6, 6>::Zero();
-  Row right = Row::Zero();
-  for (std::size_t i = 0; i < count; ++i) {
-    const Vec3 p = frame.of(points.offset(i));
-    const Row row = row_of(p);
-    left += row * row.transpose();
-    right += p.z() * row;
+/// The squared distances of points to the surface z = c0 + c1 x + c2 y + c3 x^2 + c4 x y + c5 y^2,
+/// to first order.
+PCEDNET_VECTOR_CLONES
+void sq_distances_to_quadric(const FramedPoints& points, const double* c, NearPoints::Row& result) {
+  const double c0 = c[0], c1 = c[1], c2 = c[2], c3 = c[3], c4 = c[4], c5 = c[5];
+  for (std::size_t i = 0; i < points.count; ++i) {
+    const double x = points.x[i], y = points.y[i];
+    const double away = points.z[i] - (c0 + c1 * x + c2 * y + c3 * x * x + c4 * x * y + c5 * y * y);
+    const double slope_x = c1 + 2.0 * c3 * x + c4 * y, slope_y = c2 + c4 * x + 2.0 * c5 * y;
+    result[i] = away * away / (1.0 + slope_x * slope_x + slope_y * slope_y);
   }
-  const Row c = left.ldlt().solve(right);
+}
+
+/// Sum of squared distances to the best quadratic height, each at most that of an outlier.
+double error_of_quadric(const FramedPoints& points, double noise) {
+  using Terms = Eigen::Matrix<double, 6, 1>;
+  Eigen::Matrix<double, 6, 6> left = Eigen::Matrix<double, 6, 6>::Zero();
+  Terms right = Terms::Zero();
+  for (std::size_t i = 0; i < points.count; ++i) {
+    const double x = points.x[i], y = points.y[i];
+    const double terms[6] = {1.0, x, y, x * x, x * y, y * y};
+    for (Eigen::Index a = 0; a < 6; ++a) {
+      for (Eigen::Index b = 0; b <= a; ++b) left(a, b) += terms[a] * terms[b];
+      right[a] += points.z[i] * terms[a];
+    }
+  }
+  const Terms c = left.ldlt().solve(right);  // reads the lower half
+  NearPoints::Row sq_distances;
+  sq_distances_to_quadric(points, c.data(), sq_distances);
   double error = 0.0;
-  for (std::size_t i = 0; i < count; ++i) {
-    const Vec3 p = frame.of(points.offset(i));
-    const double away = p.z() - row_of(p).dot(c);
-    const double slope_u = c[1] + 2.0 * c[3] * p.x() + c[4] * p.y();
-    const double slope_v = c[2] + c[4] * p.x() + 2.0 * c[5] * p.y();
-    error += std::min(std::pow(kOutlier * noise, 2),
-                      away * away / (1.0 + slope_u * slope_u + slope_v * slope_v));
+  for (std::size_t i = 0; i < points.count; ++i) {
+    error += std::min(std::pow(kOutlier * noise, 2), sq_distances[i]);
   }
   return error;
 }
 
 /// Whether the half-planes explain the points, and better than a smooth surface.
-bool explain(const HalfPlanes& halves, const NearPoints& points, std::size_t count,
-             const Frame& frame, double noise) {
+bool explain(const HalfPlanes& halves, const NearPoints& points, const FramedPoints& framed,
+             double noise) {
   const double sq_outlier = std::pow(kOutlier * noise, 2), sq_noise = noise * noise;
+  const std::size_t count = framed.count;
   const SqDistances to(halves, points, count);
   double error = 0.0;
   int on_a = 0, on_b = 0;
@@ -258,7 +284,7 @@ bool explain(const HalfPlanes& halves, const NearPoints& points, std::size_t cou
   const double all = static_cast<double>(count);
   return std::min(on_a, on_b) >= kFewestOfSide && all - on_a - on_b <= kMostOutliers * all &&
          error <= kMostMeanSquare * sq_noise * all &&
-         error + kPrice * sq_noise <= error_of_quadric(points, count, frame, noise);
+         error + kPrice * sq_noise <= error_of_quadric(framed, noise);
 }
 
 }  // namespace
@@ -266,13 +292,13 @@ bool explain(const HalfPlanes& halves, const NearPoints& points, std::size_t cou
 std::optional<Wedge> fit_half_planes(const NearPoints& points, std::size_t count, double noise) {
   count = std::min(count, points.count);
   if (count < kFewestPoints) return std::nullopt;
-  const Frame frame = frame_of(points, count);
-  auto halves = best_cut(points, count, frame);
+  const FramedPoints framed(points, count);
+  auto halves = best_cut(framed);
   for (int i = 0; i < kImprovements && halves; ++i) {
     halves = improved(*halves, points, count, kOutlier * noise);
   }
   if (!halves || halves->wedge.at.norm() > kFromPoint) return std::nullopt;
-  if (!explain(*halves, points, count, frame, noise)) return std::nullopt;
+  if (!explain(*halves, points, framed, noise)) return std::nullopt;
   return halves->wedge;
 }
 
