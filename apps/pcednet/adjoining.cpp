@@ -60,6 +60,7 @@ bool adjoin(const Footprint& a, const Footprint& b) {
 }  // namespace
 
 std::optional<std::pair<fs::path, fs::path>> find_adjoining(std::span<const fs::path> files) {
+  if (files.size() < 2) return std::nullopt;
   std::vector<Footprint> all = footprints(files);
   // Only files that begin before another ends along x can touch it.
   std::sort(all.begin(), all.end(),

@@ -27,16 +27,13 @@ bool is_listed(const std::vector<std::string>& names, std::string_view name) {
 
 }  // namespace
 
-std::string filter_lines(const LinesArguments& arguments, std::vector<Curve>& curves) {
+std::string filter_lines(const LinesArguments& arguments, const lines::LineScale& scale,
+                         std::vector<Curve>& curves) {
   struct Option {
     std::string text;
     std::function<bool(const Curve&)> keeps;
   };
-  const double min_length =
-      arguments.lines.stage == lines::LineStage::kCurves ? arguments.lines.min_length : 0.0;
   const Option options[] = {
-      {fmt::format("--min-length {}", min_length),
-       [&](const Curve& curve) { return !(length_of(curve) < min_length); }},
       {fmt::format("--class {}", fmt::join(arguments.classes, ",")),
        [&](const Curve& curve) {
          const std::string_view name = io::line_class(curve.edge_class).name;
@@ -53,6 +50,10 @@ std::string filter_lines(const LinesArguments& arguments, std::vector<Curve>& cu
       {fmt::format("--min-points {}", arguments.min_points),
        [&](const Curve& curve) { return curve.support >= arguments.min_points; }}};
   std::vector<std::string> left_out;
+  if (arguments.lines.min_length > 0.0 && scale.too_short > 0) {
+    left_out.push_back(
+        fmt::format("{} by --min-length {}", scale.too_short, arguments.lines.min_length));
+  }
   for (const Option& option : options) {
     const auto count =
         std::erase_if(curves, [&](const Curve& curve) { return !option.keeps(curve); });

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "pcednet/core/error.h"
+#include "pcednet/tiles/join.h"
 
 namespace pcednet::app {
 namespace {
@@ -44,12 +45,9 @@ std::vector<std::size_t> tile_numbers(const std::vector<std::string>& texts, std
 
 std::string tile_options(const std::vector<std::size_t>& numbers) {
   std::string text;
-  for (std::size_t i = 0; i < numbers.size();) {
-    std::size_t end = i + 1;
-    while (end < numbers.size() && numbers[end] == numbers[end - 1] + 1) ++end;
-    text += fmt::format(" --tile {}", numbers[i]);
-    if (end - i > 1) text += fmt::format("-{}", numbers[end - 1]);
-    i = end;
+  for (const auto& [first, last] : tiles::ranges_of(numbers)) {
+    text += fmt::format(" --tile {}", first);
+    if (last > first) text += fmt::format("-{}", last);
   }
   return text;
 }

@@ -56,8 +56,8 @@ class Lines(list):
             raise UsageError(f"tolerance: {tolerance}: a length of 0 or more is needed")
         settings = {"epsg": None if epsg is None else _arrays.whole(epsg, "epsg", 1),
                     "unit": None if unit is None else _arrays.text(unit, "unit"),
-                    "tolerance": float(tolerance), "fit_tolerance": self._fit_tolerance, "dxf_version": str(dxf_version),
-                    "view": _arrays.text(view, "view"), "overwrite": bool(overwrite)}
+                    "tolerance": float(tolerance), "fit_tolerance": self._fit_tolerance,
+                    "dxf_version": str(dxf_version), "view": _arrays.text(view, "view"), "overwrite": bool(overwrite)}
         _core.write_lines(os.fspath(path), list(self), settings, self.kept)
 
     def __repr__(self):

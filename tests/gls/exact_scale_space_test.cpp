@@ -349,14 +349,7 @@ TEST(ExactScaleSpace, GateOfAPointWithoutNormalIsOpen) {
 }
 
 TEST(ExactScaleSpace, SurvivesPilesAndLinesOfPoints) {
-  // A cube with a pile of copies, a pile of cancelling normals and a line far from everything.
-  test::Cloud cloud = test::cube(3000, 2);
-  const auto first = static_cast<std::uint32_t>(cloud.positions.size());
-  for (int i = 0; i < 20; ++i) {
-    cloud.add({3, 0, 0}, Vec3::UnitZ());
-    cloud.add({0, 3, 0}, Vec3(0, 0, i % 2 ? 1 : -1));
-    cloud.add({0.002 * i, 0, 3}, Vec3::UnitZ());
-  }
+  const auto [cloud, first] = test::cube_with_piles();
   for (const test::Variant& variant : kVariants) {
     const ExactScaleSpace space(cloud.points(), test::options_of(variant, FeatureSet::kAll28));
     const auto matrix = test::describe(space, {first, first + 1, first + 2});

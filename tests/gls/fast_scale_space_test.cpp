@@ -166,13 +166,7 @@ TEST(FastScaleSpace, GivesTheStatusesOfTheExactEngineOnAGrid) {
 
 TEST(FastScaleSpace, AgreesWithTheExactEngineOnDegenerateFits) {
   // Cancelling normals, a line, piles: what float cannot tell must come out as in double.
-  test::Cloud cloud = test::cube(3000, 2);
-  const auto first = static_cast<std::uint32_t>(cloud.positions.size());
-  for (int i = 0; i < 20; ++i) {
-    cloud.add({3, 0, 0}, Vec3::UnitZ());
-    cloud.add({0, 3, 0}, Vec3(0, 0, i % 2 ? 1 : -1));
-    cloud.add({0.002 * i, 0, 3}, Vec3::UnitZ());
-  }
+  const auto [cloud, first] = test::cube_with_piles();
   for (const test::Variant& variant : kFastVariants) {
     ScaleSpaceOptions options = test::options_of(variant, FeatureSet::kInvariant7);
     const FastScaleSpace fast(cloud.points(), options);

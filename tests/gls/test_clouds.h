@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "pcednet/core/vec3.h"
@@ -185,6 +186,23 @@ template <typename Number = double>
 Matrix<Number> describe(const Cloud& cloud, const ScaleSpaceOptions& options) {
   return describe<Number>(ExactScaleSpace(cloud.points(), options),
                           all_targets(cloud.positions.size()));
+}
+
+/// A cube, and from point `first` on three in turn, 20 times: of a pile of copies, of a pile of
+/// cancelling normals, and of a line far from everything.
+struct CubeWithPiles {
+  Cloud cloud;
+  std::uint32_t first;
+};
+inline CubeWithPiles cube_with_piles() {
+  Cloud cloud = cube(3000, 2);
+  const auto first = static_cast<std::uint32_t>(cloud.positions.size());
+  for (int i = 0; i < 20; ++i) {
+    cloud.add({3, 0, 0}, Vec3::UnitZ());
+    cloud.add({0, 3, 0}, Vec3(0, 0, i % 2 ? 1 : -1));
+    cloud.add({0.002 * i, 0, 3}, Vec3::UnitZ());
+  }
+  return {std::move(cloud), first};
 }
 
 }  // namespace pcednet::gls::test

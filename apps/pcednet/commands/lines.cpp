@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
 #include <memory>
 #include <set>
 #include <system_error>
@@ -94,12 +93,6 @@ std::vector<float> probabilities(const std::string& file, const PointCloud& clou
   return {};
 }
 
-/// Whether a point has a label.
-bool have_labels(const std::vector<std::uint8_t>& classes) {
-  return std::any_of(classes.begin(), classes.end(),
-                     [](std::uint8_t label) { return label != kUnlabelled; });
-}
-
 /// Says which labels of the file the lines come from.
 void tell_labels(const std::string& file, const std::vector<std::uint8_t>& classes) {
   const auto others = std::count_if(classes.begin(), classes.end(), [](std::uint8_t label) {
@@ -153,7 +146,7 @@ void read_labelled(const LinesArguments& arguments, StageClock& clock, LabelledC
   std::vector<std::uint8_t> given = formats::labels_of(cloud, arguments.input);
   if (!arguments.classify) check_edges(arguments.input, classes_of(cloud.comments));
   clock.begin("normals");
-  const bool labelled_before = have_labels(given);
+  const bool labelled_before = formats::have_labels(given);
   if (labelled_before && !arguments.classify) {
     return add_given_labels(arguments, std::move(given), labelled, clock.progress());
   }
@@ -197,7 +190,7 @@ bool has_labels(const LinesArguments& arguments, const Progress& progress) {
   for (std::size_t chunk = 0; chunk < reader->parts(); ++chunk) {
     throw_if_cancelled(&progress);
     const auto given = formats::labels_of(tiles::read_finished(*reader, chunk), arguments.input);
-    if (given.empty() || have_labels(given)) return !given.empty();
+    if (given.empty() || formats::have_labels(given)) return !given.empty();
   }
   return false;
 }
@@ -238,12 +231,8 @@ void read_labelled_in_tiles(const LinesArguments& arguments, const TilesNeeded& 
   }
 }
 
-/// Finds the curves; also those shorter than a given --min-length, which filter_lines() counts.
 std::vector<Curve> find_curves(const LinesArguments& arguments, const LabelledCloud& labelled,
                                const Progress& progress, lines::LineScale& scale) {
-  const double min_length = arguments.lines.min_length;
-  lines::LineOptions options = arguments.lines;
-  if (min_length > 0.0) options.min_length = std::numeric_limits<double>::min();
   std::vector<Curve> curves;
   with_name_in_errors(arguments.input, [&] {
     curves = lines::find_lines({.positions = labelled.prepared.positions,
@@ -253,9 +242,8 @@ std::vector<Curve> find_curves(const LinesArguments& arguments, const LabelledCl
                                 .p_smooth = labelled.p_smooth,
                                 .partial = labelled.partial,
                                 .curve = labelled.prepared.curve},
-                               options, &progress, &scale);
+                               arguments.lines, &progress, &scale);
   });
-  if (min_length > 0.0) scale.min_length = min_length;
   return curves;
 }
 
@@ -289,7 +277,7 @@ void run(LinesArguments arguments, const Common& common) {
   clock.begin("lines");
   lines::LineScale scale;
   std::vector<Curve> curves = find_curves(arguments, labelled, clock.progress(), scale);
-  const std::string left_out = filter_lines(arguments, curves);
+  const std::string left_out = filter_lines(arguments, scale, curves);
   clock.begin("write");
   arguments.drawing.tolerance = arguments.lines.tolerance;
   arguments.drawing.fit_tolerance = scale.tolerance;

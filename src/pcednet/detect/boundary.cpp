@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <numbers>
+#include <numeric>
 #include <optional>
 #include <span>
 
@@ -264,10 +265,11 @@ std::vector<RimPoint> find_rims(const DistinctPoints& points, const Progress* pr
   if (search.available(kNeighbours) < kLeastNeighbours) return {};
   const PartOfCloud* part = points.cloud.part;
   const bool whole = (part ? part->points : points.size()) <= kMostWhole;
-  const FirstCells first(points, part);
-  std::vector<std::uint32_t> todo;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    if (whole || first.hold(points.positions[i])) todo.push_back(static_cast<std::uint32_t>(i));
+  std::vector<std::uint32_t> todo(points.size());
+  std::iota(todo.begin(), todo.end(), 0u);
+  if (!whole) {
+    const FirstCells first(points, part);
+    std::erase_if(todo, [&](std::uint32_t i) { return !first.hold(points.positions[i]); });
   }
   std::vector<std::uint8_t> tried(points.size(), 0);
   for (const std::uint32_t i : todo) tried[i] = 1;

@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "pcednet/core/median.h"
 #include "pcednet/core/random.h"
 #include "pcednet/formats/format.h"
 #include "pcednet/formats/read_cloud.h"
 #include "pcednet/spatial/kd_tree.h"
+#include "pcednet/spatial/side_of_square.h"
 
 namespace pcednet::formats {
 namespace {
@@ -26,17 +26,15 @@ std::optional<SampledSpacing> find_spacing(const PointCloud& cloud) {
   Random random(1);
   const std::size_t sample = std::min(finite.size(), kSample);
   double sum = 0.0;
-  std::vector<double> nearest, sides, sq_distances;
+  std::vector<double> nearest, sides;
   std::vector<spatial::Neighbour> found;
   for (std::size_t s = 0; s < sample; ++s) {
     const std::size_t i = finite[sample == finite.size() ? s : random.index(finite.size())];
     // The nearest of all is the point itself.
     tree.nearest(cloud.positions[i], kNeighbours + 1, found);
-    sq_distances.clear();
-    for (const spatial::Neighbour& neighbour : found) sq_distances.push_back(neighbour.sq_distance);
-    for (const double sq : sq_distances) sum += std::sqrt(sq);
-    nearest.push_back(std::sqrt(sq_distances[1]));
-    sides.push_back(side_of_square(sq_distances));
+    for (const spatial::Neighbour& neighbour : found) sum += std::sqrt(neighbour.sq_distance);
+    nearest.push_back(std::sqrt(found[1].sq_distance));
+    sides.push_back(spatial::side_of_square(found.back().sq_distance, found.size()));
   }
   return SampledSpacing{sum / static_cast<double>(sample * kNeighbours),
                         upper_median(std::move(nearest)), upper_median(std::move(sides))};
@@ -86,11 +84,6 @@ double distance_of_points(const SampledSpacing& spacing) {
 }
 
 }  // namespace
-
-double side_of_square(std::span<const double> sq_distances) {
-  return std::sqrt(std::numbers::pi * sq_distances.back() /
-                   static_cast<double>(sq_distances.size()));
-}
 
 std::string note_on_float(const BoundingBox& bounds, double apart) {
   const double step = float_step(bounds);

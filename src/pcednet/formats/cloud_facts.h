@@ -6,7 +6,6 @@
 #include <filesystem>
 #include <map>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -24,10 +23,6 @@ struct SampledSpacing {
   double median = 0.0;  ///< of the distances to the nearest other
   double side = 0.0;    ///< of the square that holds one point, median
 };
-
-/// The side of the square that holds one point, from the squared distances of a point to itself and
-/// to its nearest others, of which there must be some.
-double side_of_square(std::span<const double> sq_distances);
 
 struct AttributeFacts {
   std::string name;

@@ -101,4 +101,9 @@ std::vector<std::uint8_t> read_labels(const std::filesystem::path& path) {
   return labels ? *std::move(labels) : read_cloud_labels(path);
 }
 
+bool have_labels(std::span<const std::uint8_t> labels) {
+  return std::any_of(labels.begin(), labels.end(),
+                     [](std::uint8_t label) { return label != kUnlabelled; });
+}
+
 }  // namespace pcednet::formats

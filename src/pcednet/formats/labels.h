@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "pcednet/cloud/point_cloud.h"
@@ -22,5 +23,8 @@ std::vector<std::uint8_t> read_labels(const std::filesystem::path& path);
 /// classification leaves, otherwise its labels; empty if it has neither. Throws
 /// Error(kInsufficient), naming `path`, if that attribute holds numbers outside 0 ... 255.
 std::vector<std::uint8_t> labels_of(const PointCloud& cloud, const std::filesystem::path& path);
+
+/// Whether a point has one: not all are kUnlabelled.
+bool have_labels(std::span<const std::uint8_t> labels);
 
 }  // namespace pcednet::formats

@@ -179,8 +179,10 @@ std::vector<Curve> drawn(const std::vector<Chain>& chains, const FinishOptions& 
   return drawn(std::span<const Piece>(pieces), options);
 }
 
-std::vector<Curve> long_ones(std::vector<Curve> curves, double min_length) {
-  std::erase_if(curves, [&](const Curve& curve) { return !(length_of(curve) >= min_length); });
+std::vector<Curve> long_ones(std::vector<Curve> curves, double min_length, LineScale* scale) {
+  const std::size_t too_short =
+      std::erase_if(curves, [&](const Curve& curve) { return !(length_of(curve) >= min_length); });
+  if (scale) scale->too_short = too_short;
   return curves;
 }
 
@@ -198,7 +200,7 @@ std::vector<Curve> find_lines(const EdgePoints& points, const LineOptions& optio
       if (options.regularise) regularise(*pieces);
       const FinishOptions exact = {limits.tolerance, 0.0, true};
       if (options.stage != LineStage::kCurves) return drawn(std::span(*pieces), exact);
-      return long_ones(finish(std::move(*pieces), exact), limits.min_length);
+      return long_ones(finish(std::move(*pieces), exact), limits.min_length, scale);
     }
   }
   std::vector<Crease> creases = find_creases(cloud, sampling, progress), boundaries;
@@ -233,7 +235,7 @@ std::vector<Curve> find_lines(const EdgePoints& points, const LineOptions& optio
   close_round_loops(curves, sampling.spacing, kRoundWithin * limits.tolerance * sampling.spacing);
   join_smooth_corners(curves, limits.angle, 0.5 * limits.tolerance * sampling.spacing);
   stage.advance();
-  return long_ones(std::move(curves), limits.min_length);
+  return long_ones(std::move(curves), limits.min_length, scale);
 }
 
 }  // namespace pcednet::lines

@@ -43,11 +43,13 @@ struct EdgePoints {
   std::span<const std::uint32_t> curve = {};  ///< as in detect::PreparedCloud, if known
 };
 
-/// What was measured of the cloud, and the lengths that the options came to, in its unit.
+/// What was measured of the cloud, what lengths the options came to, in its unit, and what these
+/// left out.
 struct LineScale {
   double spacing = 0.0;  ///< the side of the square that holds one point, median
   double noise = 0.0;    ///< of points about the plane of their neighbours, in spacings
   double min_length = 0.0, gap = 0.0, tolerance = 0.0;
+  std::size_t too_short = 0;  ///< curves left out for their length
 };
 
 /// The edges of the cloud as curves that share their corners.

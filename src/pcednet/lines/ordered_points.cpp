@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <tuple>
 
 #include "pcednet/core/parallel.h"
 #include "pcednet/spatial/curve_order.h"
+#include "pcednet/spatial/side_of_square.h"
 
 namespace pcednet::lines {
 namespace {
@@ -87,8 +87,7 @@ void OrderedPoints::for_each_neighbourhood(std::span<const std::uint32_t> points
 double spacing_of(std::span<const spatial::Neighbour> others) {
   const std::size_t count = std::min(others.size(), kSpacingNeighbours);
   if (count == 0) return 0.0;
-  return std::sqrt(std::numbers::pi * others[count - 1].sq_distance /
-                   static_cast<double>(count + 1));
+  return spatial::side_of_square(others[count - 1].sq_distance, count + 1);
 }
 
 }  // namespace pcednet::lines

@@ -54,8 +54,7 @@ std::vector<std::size_t> partners_of(const std::vector<Curve>& curves, const Tog
     if (!curves[i].closed) ends.insert(ends.end(), {2 * i, 2 * i + 1});
   }
   const auto compare = [&](std::size_t a, std::size_t b) {
-    const Vec3 &p = place_of(curves, a), &q = place_of(curves, b);
-    return std::lexicographical_compare(p.begin(), p.end(), q.begin(), q.end());
+    return is_before(place_of(curves, a), place_of(curves, b));
   };
   std::stable_sort(ends.begin(), ends.end(), compare);
   std::vector<std::size_t> partner(2 * curves.size(), kNoPartner);

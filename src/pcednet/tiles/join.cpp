@@ -40,17 +40,26 @@ class TileStream {
 
 }  // namespace
 
+std::vector<NumberRange> ranges_of(const std::vector<std::size_t>& numbers) {
+  std::vector<NumberRange> ranges;
+  for (const std::size_t number : numbers) {
+    if (!ranges.empty() && number == ranges.back().last + 1) {
+      ranges.back().last = number;
+    } else {
+      ranges.push_back({number, number});
+    }
+  }
+  return ranges;
+}
+
 std::string list_of(const std::vector<std::size_t>& numbers) {
   constexpr std::size_t kMost = 20;
   std::string text;
   std::size_t ranges = 0;
-  for (std::size_t i = 0; i < numbers.size();) {
-    std::size_t end = i + 1;
-    while (end < numbers.size() && numbers[end] == numbers[end - 1] + 1) ++end;
+  for (const auto& [first, last] : ranges_of(numbers)) {
     if (++ranges > kMost) return text + ", ...";
-    text += fmt::format("{}{}", text.empty() ? "" : ", ", numbers[i]);
-    if (end - i > 1) text += fmt::format(" to {}", numbers[end - 1]);
-    i = end;
+    text += fmt::format("{}{}", text.empty() ? "" : ", ", first);
+    if (last > first) text += fmt::format(" to {}", last);
   }
   return text;
 }

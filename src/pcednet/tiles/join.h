@@ -29,6 +29,13 @@ void check_joins(const std::filesystem::path& path);
 Joined join(const Plan& plan, const std::filesystem::path& path, Overwrite overwrite,
             const Progress* progress = nullptr);
 
+struct NumberRange {
+  std::size_t first, last;
+};
+
+/// Numbers that follow each other, as ranges.
+std::vector<NumberRange> ranges_of(const std::vector<std::size_t>& numbers);
+
 /// "0, 3, 5 to 9": no more than the first ranges.
 std::string list_of(const std::vector<std::size_t>& numbers);
 

@@ -8,6 +8,7 @@
 #include "pcednet/formats/format.h"
 #include "pcednet/gls/scales.h"
 #include "pcednet/spatial/kd_tree.h"
+#include "pcednet/spatial/side_of_square.h"
 #include "pcednet/tiles/inputs.h"
 #include "pcednet/tiles/layout.h"
 #include "pcednet/tiles/nearest.h"
@@ -35,7 +36,7 @@ class Distances {
     if (sq_distances.size() < gls::kSpacingNeighbours || std::isinf(sq_distances.back())) return;
     for (const double sq : sq_distances) sum_ += std::sqrt(sq);
     nearest_.push_back(std::sqrt(sq_distances[1]));
-    sides_.push_back(formats::side_of_square(sq_distances));
+    sides_.push_back(spatial::side_of_square(sq_distances.back(), sq_distances.size()));
   }
 
   std::optional<SampledSpacing> spacing() const {

@@ -8,6 +8,7 @@
 
 #include "pcednet/core/error.h"
 #include "pcednet/detect/result_cloud.h"
+#include "pcednet/formats/labels.h"
 #include "pcednet/formats/read_cloud.h"
 #include "pcednet/io/text_scan.h"
 #include "workbench/truth/abc_features.h"
@@ -31,9 +32,7 @@ std::vector<std::uint8_t> labels_in(const PointCloud& cloud, const char* column)
   for (std::size_t i = 0; i < labels.size(); ++i) {
     labels[i] = static_cast<std::uint8_t>(attribute->value(i));
   }
-  const bool any = std::any_of(labels.begin(), labels.end(),
-                               [](std::uint8_t label) { return label != kUnlabelled; });
-  return any ? labels : std::vector<std::uint8_t>();
+  return formats::have_labels(labels) ? labels : std::vector<std::uint8_t>();
 }
 
 /// The labels of a result are no truth: those that were painted, or those of its input, are.
