@@ -49,8 +49,8 @@ void apply_crease_kind(std::span<const Vec3> positions, std::span<const std::uin
     wanted[i] = may_be_edge && found.classes[i] <= kSharpEdge ? 1 : 0;
   }
   const std::vector<float> distances = crease_distances(positions, curve, wanted, smallest_scale);
-  constexpr std::size_t kPart = 1 << 12;
-  parallel_blocks(wanted.size(), kPart, [&](std::size_t begin, std::size_t end) {
+  constexpr std::size_t kPointsOfTask = 1 << 12;
+  parallel_blocks(wanted.size(), kPointsOfTask, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       if (std::isfinite(distances[i])) decide_kind(i, static_cast<double>(distances[i]), found);
     }

@@ -135,7 +135,7 @@ double bend_of(const Wedge& wedge, const NearPoints& points, double tolerance) {
 
 std::optional<Wedge> noisy_wedge(const NearPoints& points, double noise) {
   for (const std::size_t count : kNoisyNeighbours) {
-    const auto wedge = fit_half_planes(points, count, kNoiseOfPlanes * noise);
+    auto wedge = fit_half_planes(points, count, kNoiseOfPlanes * noise);
     if (wedge) return wedge;
   }
   return std::nullopt;

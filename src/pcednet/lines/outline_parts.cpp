@@ -188,7 +188,7 @@ std::optional<Cut> cut_after(const Row& row, std::size_t before, std::size_t cou
     if (!row.goes_on(i)) return std::nullopt;
   }
   const SupportLine &a = row.at(before), &b = row.at(after);
-  const Vec2 from = row.end(before), to = row.begin(after);
+  const Vec2 &from = row.end(before), &to = row.begin(after);
   const double length = (to - from).norm();
   const double ratio = length / std::min(row.length(before), row.length(after));
   const double turn = turn_of(a, b);
@@ -204,7 +204,8 @@ std::optional<Cut> cut_after(const Row& row, std::size_t before, std::size_t cou
 /// Whether there is no face between what is cut off and the corner: hardly a point.
 bool is_empty(const Row& row, const Cut& cut, Vec2s points, double spacing) {
   const SupportLine &a = row.at(cut.before), &b = row.at(cut.before + cut.count + 1);
-  const Vec2 from = row.end(cut.before), way = row.begin(cut.before + cut.count + 1) - from;
+  const Vec2& from = row.end(cut.before);
+  const Vec2 way = row.begin(cut.before + cut.count + 1) - from;
   const Vec2 outward = Vec2(way.y(), -way.x()).normalized();
   const double aside = kBesideLine * spacing;
   const auto found = std::count_if(points.begin(), points.end(), [&](const Vec2& point) {
