@@ -5,7 +5,6 @@
 #include <atomic>
 #include <cmath>
 #include <iterator>
-#include <numbers>
 #include <tuple>
 #include <utility>
 
@@ -13,12 +12,11 @@
 #include "pcednet/lines/local_planes.h"
 #include "pcednet/lines/noisy_wedge.h"
 #include "pcednet/lines/ordered_points.h"
-#include "pcednet/lines/plane_line.h"
+#include "pcednet/lines/plane_wedge.h"
 
 namespace pcednet::lines {
 namespace {
 
-constexpr double kLeastAngle = 20.0 * std::numbers::pi / 180.0;
 /// Nearest points that are tried with an edge point, itself among them: bands of smooth-edge are
 /// wide enough, sharp-edge may be a single row.
 constexpr std::size_t kWithSharp = 9, kWithSmooth = 3;
@@ -44,10 +42,8 @@ constexpr double kLeastVaried = 0.04, kMostAlong = 0.15;
 constexpr double kShortened = 8.0 / 9.0;  ///< the share of squared lengths that does not count
 
 // In spacings.
-constexpr double kFarthest = 2.2;       ///< of an edge point from its crease
-constexpr double kSliceAlong = 1.6;     ///< half the length of crease that its sides are seen from
-constexpr double kSideReach = 3.0;      ///< of the points of a side
-constexpr double kLeastFromLine = 0.4;  ///< of those that tell on which side the surface is
+constexpr double kSliceAlong = 1.6;  ///< half the length of crease that its sides are seen from
+constexpr double kSideReach = 3.0;   ///< of the points of a side
 
 /// Ends of the zones of a side: near the line, between, far.
 constexpr double kNearZone[] = {0.15, 0.9}, kMiddleZone = 1.9, kFarZone = 3.3;
@@ -60,45 +56,6 @@ struct Tolerances {
   std::size_t points;     ///< around an edge point
   bool skips_other_side;  ///< of these, those that face away: beyond a thin wall
 };
-
-/// The direction from the line into `plane` on which its points are near the line's point `at`, or
-/// none if they are on both sides, too few, or all far from it: beyond a chamfer or a fillet.
-std::optional<Vec3> side_of(const LocalPlane& plane, const Vec3& at, const Vec3& along,
-                            const NearPoints& points, const Tolerances& within) {
-  const double tolerance = within.plane, first = within.first;
-  const Vec3 side = along.cross(plane.normal).normalized();
-  double before = 0.0, after = 0.0, nearest = kSideReach;
-  for (std::size_t i = 0; i < points.count; ++i) {
-    const Vec3 offset = points.offset(i) - at;
-    if (std::abs(offset.dot(along)) > kSliceAlong) continue;
-    if (std::abs(plane.height(points.offset(i))) > tolerance) continue;
-    const double place = offset.dot(side);
-    if (std::abs(place) < std::max(kLeastFromLine, 1.5 * tolerance) || std::abs(place) > kSideReach)
-      continue;
-    nearest = std::min(nearest, std::abs(place));
-    (place < 0.0 ? before : after) += 1.0;
-  }
-  if (std::max(before, after) < 2.0 || nearest > first) return std::nullopt;
-  if (std::min(before, after) > 0.25 * std::max(before, after)) return std::nullopt;
-  return before > after ? Vec3(-side) : side;
-}
-
-/// The wedge that two planes make at the edge point, which is the origin; all in spacings.
-std::optional<Wedge> wedge_of(const LocalPlane& a, const LocalPlane& b, const NearPoints& points,
-                              const Tolerances& within) {
-  const auto line =
-      line_of_planes(a.normal, a.distance, b.normal, b.distance, std::sin(kLeastAngle));
-  if (!line || line->point.norm() > kFarthest) return std::nullopt;
-  const auto side_a = side_of(a, line->point, line->along, points, within);
-  const auto side_b = side_of(b, line->point, line->along, points, within);
-  if (!side_a || !side_b) return std::nullopt;
-  return Wedge{line->point, line->along, *side_a, *side_b};
-}
-
-/// Large for planes that meet at right angles in the edge point.
-double score_of(const Wedge& wedge) {
-  return wedge.side_a.cross(wedge.side_b).norm() - 0.5 * wedge.at.norm();
-}
 
 /// How much the points of a side bend towards the inside of the wedge: their mean distance to the
 /// plane near the line and far from it, less that between.
@@ -146,16 +103,7 @@ std::optional<Wedge> best_wedge(const NearPoints& points, const Tolerances& with
   if (within.noise > kMuchNoise) {
     if (auto wedge = noisy_wedge(points, within.noise)) return wedge;
   }
-  std::vector<LocalPlane> planes;
-  find_planes(points, within.plane, planes);
-  std::optional<Wedge> best;
-  for (std::size_t a = 0; a < planes.size(); ++a) {
-    for (std::size_t b = a + 1; b < planes.size(); ++b) {
-      const auto wedge = wedge_of(planes[a], planes[b], points, within);
-      if (wedge && (!best || score_of(*wedge) > score_of(*best))) best = wedge;
-    }
-  }
-  return best;
+  return best_plane_wedge(points, {within.plane, within.first, within.noise});
 }
 
 std::optional<Crease> crease_at(const OrderedPoints& cloud, std::uint32_t i,

@@ -1,0 +1,111 @@
+#include "pcednet/lines/plane_wedge.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "pcednet/lines/plane_line.h"
+
+namespace pcednet::lines {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr double kLeastAngle = 20.0 * kDegree;
+/// Strips of a rounded surface that are nearly flat meet at less.
+constexpr double kLeastAngleOfExact = 35.0 * kDegree;
+
+constexpr double kSameNormal = 0.75;  ///< cosine of normals on one plane
+constexpr double kFlat = 0.6;         ///< share of the points near a plane that are on it
+
+// In spacings.
+constexpr double kFarthest = 2.2;       ///< of a point from its crease
+constexpr double kSliceAlong = 1.6;     ///< half the length of crease that its sides are seen from
+constexpr double kSideReach = 3.0;      ///< of the points of a side
+constexpr double kLeastFromLine = 0.4;  ///< of those that tell on which side the surface is
+constexpr double kMostNoiseOfExact = 0.05;  ///< with less, planes are sought that points are on
+constexpr double kExact[] = {0.08, 0.2};    ///< exactly, or nearly so, where edges are curved
+constexpr double kNearPlane = 0.3;
+constexpr double kOnSurface = 1.0;  ///< from the line of such planes to the first points
+
+/// The direction from the line into `plane` on which its points are near the line's point `at`, or
+/// none if they are on both sides, too few, or all far from it.
+std::optional<Vec3> side_of(const LocalPlane& plane, const Vec3& at, const Vec3& along,
+                            const NearPoints& points, const WedgeTolerances& within) {
+  const Vec3 side = along.cross(plane.normal).normalized();
+  const double least = std::max(kLeastFromLine, 1.5 * within.plane);
+  double before = 0.0, after = 0.0, nearest = kSideReach;
+  for (std::size_t i = 0; i < points.count; ++i) {
+    const Vec3 offset = points.offset(i) - at;
+    if (std::abs(offset.dot(along)) > kSliceAlong) continue;
+    if (std::abs(plane.height(points.offset(i))) > within.plane) continue;
+    const double place = offset.dot(side);
+    if (std::abs(place) < least || std::abs(place) > kSideReach) continue;
+    nearest = std::min(nearest, std::abs(place));
+    (place < 0.0 ? before : after) += 1.0;
+  }
+  if (std::max(before, after) < 2.0 || nearest > within.first) return std::nullopt;
+  if (std::min(before, after) > 0.25 * std::max(before, after)) return std::nullopt;
+  return before > after ? Vec3(-side) : side;
+}
+
+std::optional<Wedge> wedge_of(const LocalPlane& a, const LocalPlane& b, double least_angle,
+                              const NearPoints& points, const WedgeTolerances& within) {
+  const auto line =
+      line_of_planes(a.normal, a.distance, b.normal, b.distance, std::sin(least_angle));
+  if (!line || line->point.norm() > kFarthest) return std::nullopt;
+  const auto side_a = side_of(a, line->point, line->along, points, within);
+  const auto side_b = side_of(b, line->point, line->along, points, within);
+  if (!side_a || !side_b) return std::nullopt;
+  return Wedge{line->point, line->along, *side_a, *side_b};
+}
+
+/// Large for planes that meet at right angles in the point.
+double score_of(const Wedge& wedge) {
+  return wedge.side_a.cross(wedge.side_b).norm() - 0.5 * wedge.at.norm();
+}
+
+std::optional<Wedge> best_of_pairs(const std::vector<LocalPlane>& planes, double least_angle,
+                                   const NearPoints& points, const WedgeTolerances& within) {
+  std::optional<Wedge> best;
+  for (std::size_t a = 0; a < planes.size(); ++a) {
+    for (std::size_t b = a + 1; b < planes.size(); ++b) {
+      const auto wedge = wedge_of(planes[a], planes[b], least_angle, points, within);
+      if (wedge && (!best || score_of(*wedge) > score_of(*best))) best = wedge;
+    }
+  }
+  return best;
+}
+
+/// Whether most points near the plane are on it: it is no tangent of a rounded surface.
+bool is_flat(const LocalPlane& plane, const NearPoints& points, double tolerance) {
+  double near = 0.0, on = 0.0;
+  for (std::size_t i = 0; i < points.count; ++i) {
+    if (std::abs(plane.normal.dot(points.normal(i))) < kSameNormal) continue;
+    const double away = std::abs(plane.height(points.offset(i)));
+    near += away < kNearPlane ? 1.0 : 0.0;
+    on += away < tolerance ? 1.0 : 0.0;
+  }
+  return on > kFlat * near;
+}
+
+}  // namespace
+
+std::optional<Wedge> best_plane_wedge(const NearPoints& points, const WedgeTolerances& within) {
+  std::vector<LocalPlane> planes;
+  if (within.noise < kMostNoiseOfExact) {
+    for (const double exact : kExact) {
+      const double tolerance = exact + within.noise;
+      find_planes(points, tolerance, planes);
+      std::erase_if(planes, [&](const auto& plane) { return !is_flat(plane, points, tolerance); });
+      const auto wedge =
+          best_of_pairs(planes, kLeastAngleOfExact, points, {tolerance, kOnSurface, within.noise});
+      if (wedge) return wedge;
+    }
+  }
+  find_planes(points, within.plane, planes);
+  return best_of_pairs(planes, kLeastAngle, points, within);
+}
+
+}  // namespace pcednet::lines
