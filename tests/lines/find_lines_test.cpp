@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -312,10 +313,12 @@ TEST(FindLines, StopAtAnyStepWhenTold) {
   find_lines(points, {}, &watch);
   EXPECT_TRUE(steps.contains("joins") && steps.contains("corners"));
   for (const std::string& last : steps) {
-    bool stop = false;
-    const Progress stopping = {
-        .report = [&](const std::string& step, double) { stop = stop || step == last; },
-        .cancelled = [&] { return stop; }};
+    std::atomic stop = false;
+    const Progress stopping = {.report =
+                                   [&](const std::string& step, double) {
+                                     if (step == last) stop = true;
+                                   },
+                               .cancelled = [&] { return stop.load(); }};
     EXPECT_ERROR(ErrorKind::kCancelled, find_lines(points, {}, &stopping)) << last;
   }
 }

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -93,10 +94,10 @@ TEST(Chains, CrossGapsUpToTheirWidth) {
 }
 
 TEST(Chains, StopWhenTold) {
-  bool traces = false;
+  std::atomic traces = false;
   const Progress stopping = {
       .report = [&](const std::string&, double fraction) { traces = fraction >= 1.0; },
-      .cancelled = [&] { return traces; }};
+      .cancelled = [&] { return traces.load(); }};
   const auto creases = row_of_creases(0, 300);
   Stage stage(&stopping, "chains", creases.size());
   EXPECT_ERROR(ErrorKind::kCancelled, trace(creases, 6.0, 0.0, stage));

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -276,10 +277,10 @@ TEST(Faces, AreNoneOfACableThatHangsBesideOne) {
 TEST(Faces, StopWhenTold) {
   const PlainCloud cloud = hip_roof(1000, 0.4, 0.0);
   const OrderedPoints points(cloud.points());
-  bool grows = false;
+  std::atomic grows = false;
   const Progress stopping = {
       .report = [&](const std::string&, double fraction) { grows = fraction >= 1.0; },
-      .cancelled = [&] { return grows; }};
+      .cancelled = [&] { return grows.load(); }};
   EXPECT_ERROR(ErrorKind::kCancelled, find_faces(points, measure_sampling(points), &stopping));
 }
 
