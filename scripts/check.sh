@@ -8,7 +8,7 @@
 #   address  the tests of every room under the address and undefined-behaviour sanitizers
 #   threads  the same under the thread sanitizer
 #   fuzz     half a minute of every reader finds nothing
-# Installs what is missing. About an hour on two cores; each check leaves its build in build/.
+# Installs what is missing. Two hours on two cores; each check leaves its build in build/.
 set -eu
 cd "$(dirname "$0")/.."
 scripts/setup.sh test python web check

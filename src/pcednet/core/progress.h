@@ -9,7 +9,7 @@
 namespace pcednet {
 
 /// The caller's callbacks for progress and cancellation of long work.
-/// Both functions may be empty. One thread at a time calls `report`.
+/// Both functions may be empty. One thread at a time calls `report`, several may call `cancelled`.
 struct Progress {
   std::function<void(const std::string& stage, double fraction)> report;
   std::function<bool()> cancelled;

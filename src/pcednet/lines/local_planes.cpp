@@ -13,8 +13,7 @@ namespace {
 constexpr std::size_t kMostPlanes = 4;
 constexpr std::size_t kMostSeeds = 16;
 constexpr int kLeastSupport = 4;
-constexpr double kSameNormal = 0.75;  ///< cosine of normals on one plane
-constexpr double kTrusted = 0.5;      ///< edginess up to which a normal counts
+constexpr double kTrusted = 0.5;  ///< edginess up to which a normal counts
 constexpr double kFar = 1e9;
 
 /// What decides whether points are on a plane.

@@ -33,6 +33,8 @@ struct LocalPlane {
   double height(const Vec3& x) const { return normal.dot(x) - distance; }
 };
 
+inline constexpr double kSameNormal = 0.75;  ///< cosine of a plane's normal and of its points'
+
 /// Two half-planes that meet in a line.
 struct Wedge {
   Vec3 at;              ///< the point of the line nearest to the origin

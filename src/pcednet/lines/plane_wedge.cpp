@@ -16,8 +16,7 @@ constexpr double kLeastAngle = 20.0 * kDegree;
 /// Strips of a rounded surface that are nearly flat meet at less.
 constexpr double kLeastAngleOfExact = 35.0 * kDegree;
 
-constexpr double kSameNormal = 0.75;  ///< cosine of normals on one plane
-constexpr double kFlat = 0.6;         ///< share of the points near a plane that are on it
+constexpr double kFlat = 0.6;  ///< share of the points near a plane that are on it
 
 // In spacings.
 constexpr double kFarthest = 2.2;       ///< of a point from its crease
