@@ -41,11 +41,7 @@ constexpr double kLeastProbability[] = {0.1, 0.9};
 constexpr double kLeastVaried = 0.04, kMostAlong = 0.15;
 constexpr double kShortened = 8.0 / 9.0;  ///< the share of squared lengths that does not count
 
-// In spacings.
-constexpr double kSliceAlong = 1.6;  ///< half the length of crease that its sides are seen from
-constexpr double kSideReach = 3.0;   ///< of the points of a side
-
-/// Ends of the zones of a side: near the line, between, far.
+/// Ends of the zones of a side: near the line, between, far; in spacings.
 constexpr double kNearZone[] = {0.15, 0.9}, kMiddleZone = 1.9, kFarZone = 3.3;
 
 /// In spacings.

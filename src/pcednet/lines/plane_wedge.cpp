@@ -19,10 +19,8 @@ constexpr double kLeastAngleOfExact = 35.0 * kDegree;
 constexpr double kFlat = 0.6;  ///< share of the points near a plane that are on it
 
 // In spacings.
-constexpr double kFarthest = 2.2;       ///< of a point from its crease
-constexpr double kSliceAlong = 1.6;     ///< half the length of crease that its sides are seen from
-constexpr double kSideReach = 3.0;      ///< of the points of a side
-constexpr double kLeastFromLine = 0.4;  ///< of those that tell on which side the surface is
+constexpr double kFarthest = 2.2;           ///< of a point from its crease
+constexpr double kLeastFromLine = 0.4;      ///< of those that tell on which side the surface is
 constexpr double kMostNoiseOfExact = 0.05;  ///< with less, planes are sought that points are on
 constexpr double kExact[] = {0.08, 0.2};    ///< exactly, or nearly so, where edges are curved
 constexpr double kNearPlane = 0.3;

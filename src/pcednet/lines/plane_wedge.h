@@ -6,6 +6,10 @@
 
 namespace pcednet::lines {
 
+// Of the points that a side of a wedge is seen from, in spacings.
+inline constexpr double kSliceAlong = 1.6;  ///< to both sides along the line
+inline constexpr double kSideReach = 3.0;   ///< away from it
+
 /// In spacings.
 struct WedgeTolerances {
   double plane;  ///< from a plane to its points
