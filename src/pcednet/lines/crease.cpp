@@ -44,11 +44,8 @@ constexpr double kShortened = 8.0 / 9.0;  ///< the share of squared lengths that
 /// Ends of the zones of a side: near the line, between, far; in spacings.
 constexpr double kNearZone[] = {0.15, 0.9}, kMiddleZone = 1.9, kFarZone = 3.3;
 
-/// In spacings.
 struct Tolerances {
-  double plane;  ///< from a plane to its points
-  double first;  ///< from a crease to the nearest points of a side
-  double noise;
+  WedgeTolerances wedge;
   std::size_t points;     ///< around an edge point
   bool skips_other_side;  ///< of these, those that face away: beyond a thin wall
 };
@@ -96,10 +93,10 @@ std::optional<Wedge> noisy_wedge(const NearPoints& points, double noise) {
 
 /// In noise one of all points, otherwise the best wedge of all pairs of planes.
 std::optional<Wedge> best_wedge(const NearPoints& points, const Tolerances& within) {
-  if (within.noise > kMuchNoise) {
-    if (auto wedge = noisy_wedge(points, within.noise)) return wedge;
+  if (within.wedge.noise > kMuchNoise) {
+    if (auto wedge = noisy_wedge(points, within.wedge.noise)) return wedge;
   }
-  return best_plane_wedge(points, {within.plane, within.first, within.noise});
+  return best_plane_wedge(points, within.wedge);
 }
 
 std::optional<Crease> crease_at(const OrderedPoints& cloud, std::uint32_t i,
@@ -124,7 +121,7 @@ std::optional<Crease> crease_at(const OrderedPoints& cloud, std::uint32_t i,
                 .side_b = wedge->side_b,
                 .spacing = spacing,
                 .probability = cloud.probability(i),
-                .bend = static_cast<float>(bend_of(*wedge, near_points, within.plane)),
+                .bend = static_cast<float>(bend_of(*wedge, near_points, within.wedge.plane)),
                 .edge_class = cloud.is_edge(i) ? cloud.edge_class(i) : kNonEdge};
 }
 
@@ -306,9 +303,9 @@ std::vector<Crease> find_creases(const OrderedPoints& cloud, const Sampling& sam
                                  const Progress* progress) {
   const std::vector<std::uint32_t> points = points_near_edges(cloud, sampling.noise, progress);
   const bool noisy = sampling.noise > kMuchNoise;
-  const Tolerances within = {.plane = 0.3 + 1.1 * sampling.noise,
-                             .first = 2.0 + 2.0 * sampling.noise,
-                             .noise = sampling.noise,
+  const Tolerances within = {.wedge = {.plane = 0.3 + 1.1 * sampling.noise,
+                                       .first = 2.0 + 2.0 * sampling.noise,
+                                       .noise = sampling.noise},
                              .points = static_cast<std::size_t>(40.0 + 80.0 * sampling.noise),
                              .skips_other_side = noisy && sampling.oriented};
   std::vector<std::optional<Crease>> found = nearest_creases(cloud, points, within, progress);

@@ -26,34 +26,41 @@ constexpr double kExact[] = {0.08, 0.2};    ///< exactly, or nearly so, where ed
 constexpr double kNearPlane = 0.3;
 constexpr double kOnSurface = 1.0;  ///< from the line of such planes to the first points
 
+/// What two planes must show, in spacings.
+struct PairTests {
+  double plane;  ///< from a plane to its points, at most
+  double first;  ///< from the line to the nearest points of a side, at most
+  double least_angle;
+};
+
 /// The direction from the line into `plane` on which its points are near the line's point `at`, or
 /// none if they are on both sides, too few, or all far from it.
 std::optional<Vec3> side_of(const LocalPlane& plane, const Vec3& at, const Vec3& along,
-                            const NearPoints& points, const WedgeTolerances& within) {
+                            const NearPoints& points, const PairTests& tests) {
   const Vec3 side = along.cross(plane.normal).normalized();
-  const double least = std::max(kLeastFromLine, 1.5 * within.plane);
+  const double least = std::max(kLeastFromLine, 1.5 * tests.plane);
   double before = 0.0, after = 0.0, nearest = kSideReach;
   for (std::size_t i = 0; i < points.count; ++i) {
     const Vec3 offset = points.offset(i) - at;
     if (std::abs(offset.dot(along)) > kSliceAlong) continue;
-    if (std::abs(plane.height(points.offset(i))) > within.plane) continue;
+    if (std::abs(plane.height(points.offset(i))) > tests.plane) continue;
     const double place = offset.dot(side);
     if (std::abs(place) < least || std::abs(place) > kSideReach) continue;
     nearest = std::min(nearest, std::abs(place));
     (place < 0.0 ? before : after) += 1.0;
   }
-  if (std::max(before, after) < 2.0 || nearest > within.first) return std::nullopt;
+  if (std::max(before, after) < 2.0 || nearest > tests.first) return std::nullopt;
   if (std::min(before, after) > 0.25 * std::max(before, after)) return std::nullopt;
   return before > after ? Vec3(-side) : side;
 }
 
-std::optional<Wedge> wedge_of(const LocalPlane& a, const LocalPlane& b, double least_angle,
-                              const NearPoints& points, const WedgeTolerances& within) {
+std::optional<Wedge> wedge_of(const LocalPlane& a, const LocalPlane& b, const NearPoints& points,
+                              const PairTests& tests) {
   const auto line =
-      line_of_planes(a.normal, a.distance, b.normal, b.distance, std::sin(least_angle));
+      line_of_planes(a.normal, a.distance, b.normal, b.distance, std::sin(tests.least_angle));
   if (!line || line->point.norm() > kFarthest) return std::nullopt;
-  const auto side_a = side_of(a, line->point, line->along, points, within);
-  const auto side_b = side_of(b, line->point, line->along, points, within);
+  const auto side_a = side_of(a, line->point, line->along, points, tests);
+  const auto side_b = side_of(b, line->point, line->along, points, tests);
   if (!side_a || !side_b) return std::nullopt;
   return Wedge{line->point, line->along, *side_a, *side_b};
 }
@@ -63,12 +70,12 @@ double score_of(const Wedge& wedge) {
   return wedge.side_a.cross(wedge.side_b).norm() - 0.5 * wedge.at.norm();
 }
 
-std::optional<Wedge> best_of_pairs(const std::vector<LocalPlane>& planes, double least_angle,
-                                   const NearPoints& points, const WedgeTolerances& within) {
+std::optional<Wedge> best_of_pairs(const std::vector<LocalPlane>& planes, const NearPoints& points,
+                                   const PairTests& tests) {
   std::optional<Wedge> best;
   for (std::size_t a = 0; a < planes.size(); ++a) {
     for (std::size_t b = a + 1; b < planes.size(); ++b) {
-      const auto wedge = wedge_of(planes[a], planes[b], least_angle, points, within);
+      const auto wedge = wedge_of(planes[a], planes[b], points, tests);
       if (wedge && (!best || score_of(*wedge) > score_of(*best))) best = wedge;
     }
   }
@@ -96,13 +103,12 @@ std::optional<Wedge> best_plane_wedge(const NearPoints& points, const WedgeToler
       const double tolerance = exact + within.noise;
       find_planes(points, tolerance, planes);
       std::erase_if(planes, [&](const auto& plane) { return !is_flat(plane, points, tolerance); });
-      const auto wedge =
-          best_of_pairs(planes, kLeastAngleOfExact, points, {tolerance, kOnSurface, within.noise});
+      const auto wedge = best_of_pairs(planes, points, {tolerance, kOnSurface, kLeastAngleOfExact});
       if (wedge) return wedge;
     }
   }
   find_planes(points, within.plane, planes);
-  return best_of_pairs(planes, kLeastAngle, points, within);
+  return best_of_pairs(planes, points, {within.plane, within.first, kLeastAngle});
 }
 
 }  // namespace pcednet::lines
