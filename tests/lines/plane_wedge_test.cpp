@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include "pcednet/core/random.h"
@@ -52,14 +53,26 @@ Place chamfered(double width, double length) {
   return {width * slope + (length - width) * Vec3::UnitZ(), -Vec3::UnitX()};
 }
 
+/// The same with the normals that are estimated: the mean over 1.5 spacings to both sides.
+Place with_mean_normal(double width, double length) {
+  Place place = chamfered(width, length);
+  place.normal = Vec3::Zero();
+  for (const double away : {-1.5, -0.75, 0.0, 0.75, 1.5}) {
+    place.normal += chamfered(width, length + away).normal;
+  }
+  place.normal.normalize();
+  return place;
+}
+
 /// The share of 40 samples in which the wedge at the foot of the chamfer is that of floor and
 /// slope.
-double share_at_foot(double width) {
+template <typename Profile>
+double share_at_foot(const Profile& profile, double noise) {
+  WedgeTolerances within = kTolerances;
+  within.noise = noise;
   int found = 0;
   for (std::uint64_t seed = 0; seed < 40; ++seed) {
-    const NearPoints points =
-        points_of(seed, 0.0, [&](double length) { return chamfered(width, length); });
-    const auto wedge = best_plane_wedge(points, kTolerances);
+    const auto wedge = best_plane_wedge(points_of(seed, 0.0, profile), within);
     if (!wedge) continue;
     const Vec3 away = wedge->at - wedge->at.y() * Vec3::UnitY();
     const double bend = std::acos(std::clamp(-wedge->side_a.dot(wedge->side_b), -1.0, 1.0));
@@ -69,8 +82,16 @@ double share_at_foot(double width) {
 }
 
 TEST(PlaneWedge, IsAtTheFootOfAChamferOfTwoSpacingsAndNotWhereFloorAndWallWouldMeet) {
-  EXPECT_GT(share_at_foot(1.8), 0.6);
-  EXPECT_GT(share_at_foot(5.0), 0.9);
+  for (const auto& [width, least] : {std::pair(1.8, 0.6), std::pair(5.0, 0.9)}) {
+    const auto profile = [&](double length) { return chamfered(width, length); };
+    EXPECT_GT(share_at_foot(profile, 0.0), least) << width;
+  }
+}
+
+TEST(PlaneWedge, OfExactPointsIsSoughtAmongSmallPlanesButNotOfMeasuredOnesAsInTrees) {
+  const auto profile = [](double length) { return with_mean_normal(1.8, length); };
+  EXPECT_GT(share_at_foot(profile, 0.0), 0.5);
+  EXPECT_LT(share_at_foot(profile, 0.01), 0.2);
 }
 
 TEST(PlaneWedge, IsWhereFloorAndWallWouldMeetBeyondANarrowFillet) {

@@ -19,10 +19,10 @@ constexpr double kLeastAngleOfExact = 35.0 * kDegree;
 constexpr double kFlat = 0.6;  ///< share of the points near a plane that are on it
 
 // In spacings.
-constexpr double kFarthest = 2.2;           ///< of a point from its crease
-constexpr double kLeastFromLine = 0.4;      ///< of those that tell on which side the surface is
-constexpr double kMostNoiseOfExact = 0.05;  ///< with less, planes are sought that points are on
-constexpr double kExact[] = {0.08, 0.2};    ///< exactly, or nearly so, where edges are curved
+constexpr double kFarthest = 2.2;            ///< of a point from its crease
+constexpr double kLeastFromLine = 0.4;       ///< of those that tell on which side the surface is
+constexpr double kMostNoiseOfExact = 0.005;  ///< with less, planes are sought that points are on
+constexpr double kExact[] = {0.08, 0.2};     ///< exactly, or nearly so, where edges are curved
 constexpr double kNearPlane = 0.3;
 constexpr double kOnSurface = 1.0;  ///< from the line of such planes to the first points
 
@@ -103,7 +103,7 @@ std::optional<Wedge> best_plane_wedge(const NearPoints& points, const WedgeToler
       const double tolerance = exact + within.noise;
       find_planes(points, tolerance, planes);
       std::erase_if(planes, [&](const auto& plane) { return !is_flat(plane, points, tolerance); });
-      const auto wedge = best_of_pairs(planes, points, {tolerance, kOnSurface, kLeastAngleOfExact});
+      auto wedge = best_of_pairs(planes, points, {tolerance, kOnSurface, kLeastAngleOfExact});
       if (wedge) return wedge;
     }
   }
