@@ -228,9 +228,11 @@ class Classify(CliTest):
             nearest = np.sort(np.partition(away, 10)[:, :11])[:, 1:]
             spacings.extend(np.sqrt(nearest).mean(axis=1))
         spacing = np.sort(spacings)[1200:3600].mean()  # the middle half
+        s_min = 0.045  # the nearest preferred number
+        self.assertLess(abs(np.log(s_min / spacing)), 0.06)
         own = self.classify(p, n, position_type="double")
         same = self.classify(p, n, position_type="double",
-                             extra=("--s-min", repr(spacing), "--s-max", repr(8 * spacing)))
+                             extra=("--s-min", s_min, "--s-max", 8 * s_min))
         other = self.classify(p, n, position_type="double", extra=("--s-max", 0.5))
         np.testing.assert_allclose(own["scalar_p_sharp"], same["scalar_p_sharp"], atol=1e-4)
         self.assertGreater(np.max(np.abs(own["scalar_p_sharp"] - other["scalar_p_sharp"])), 0.1)

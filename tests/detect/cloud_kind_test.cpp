@@ -53,6 +53,20 @@ TEST(CloudKind, CountsEachPlaceOnce) {
   EXPECT_FALSE(traits_of(prepared, {}).estimated);
 }
 
+TEST(CloudKind, TakesFewPointsOfVaryingSpacingForAPieceOfMore) {
+  PointCloud cloud = with_own_normals(cube(500, 1));
+  cloud.labels.clear();
+  for (std::size_t i = 0; i < 500; ++i) {
+    cloud.positions.push_back(Vec3(20.0, 0.0, 0.0) + 10.0 * cloud.positions[i]);
+    cloud.normals.push_back(cloud.normals[i]);
+  }
+  gls::ScaleSpaceOptions options;
+  options.s_max_ratio = 8.0;
+  EXPECT_EQ(traits_of(prepare(cloud), options).points, 1000u);
+  options.octaves = true;
+  EXPECT_EQ(traits_of(prepare(cloud), options).points, CloudTraits{}.points);
+}
+
 TEST(CloudKind, TakesNormalsThatWereEstimatedBeforeForEstimated) {
   PointCloud cloud = with_own_normals(cube(600, 1));
   EXPECT_FALSE(traits_of(prepare(cloud), {}).estimated);

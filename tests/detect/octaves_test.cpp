@@ -37,7 +37,11 @@ TEST(Octaves, AreTheSpacingInPowersOfTwo) {
   cloud.positions.push_back(cloud.positions.back());  // a copy
   cloud.positions.emplace_back(std::numeric_limits<double>::quiet_NaN(), 0.0, 0.0);
   const auto curve = spatial::curve_order(cloud.positions);
-  const auto octaves = octaves_of(cloud.positions, curve, 1.2);
+  const auto octaves_from = [&](double s_min, double s_max) {
+    return octaves_of(cloud.positions, curve,
+                      {.s_min = s_min, .s_max = s_max, .s_max_ratio = 8.0, .octaves = true});
+  };
+  const auto octaves = octaves_from(1.2, 8.0 * 9.6);
   ASSERT_EQ(octaves.size(), cloud.positions.size());
   for (std::size_t i = 0; i + 2 < octaves.size(); ++i) {
     const double x = cloud.positions[i].x();
@@ -46,19 +50,9 @@ TEST(Octaves, AreTheSpacingInPowersOfTwo) {
   }
   EXPECT_EQ(octaves[octaves.size() - 2], octaves[octaves.size() - 3]);
   EXPECT_EQ(octaves.back(), 0);
-  const auto far = octaves_of(cloud.positions, curve, 0.01);
-  EXPECT_EQ(far.front(), kOctaves - 1);
-}
-
-TEST(Octaves, AreOfUnevenCloudsIfAskedFor) {
-  gls::ScaleSpaceOptions options = with_octaves();
-  EXPECT_FALSE(has_octaves(options, 1.0, 8.0));
-  EXPECT_TRUE(has_octaves(options, 1.0, 9.0));
-  options.octaves = false;
-  EXPECT_FALSE(has_octaves(options, 1.0, 9.0));
-  options = with_octaves();
-  options.s_max_ratio = 0.0;
-  EXPECT_FALSE(has_octaves(options, 1.0, 9.0));
+  EXPECT_EQ(octaves_from(0.01, 0.64).front(), gls::kOctaves - 1);
+  EXPECT_EQ(octaves_from(0.01, 0.3).front(), 1);
+  EXPECT_EQ(octaves_from(0.01, 0.08).front(), 0);
 }
 
 TEST(Octaves, HaveEveryPointOnceAtScalesOfItsOwn) {
@@ -96,11 +90,14 @@ TEST(Octaves, DescribeEachPointInItsOwnSpace) {
   const PreparedCloud prepared = prepare(cloud);
   const gls::ScaleSpaceOptions options = with_octaves();
   const auto described = describe(prepared, options);
-  const auto octaves = octaves_of(cloud.positions, prepared.curve, described.scales.front());
+  const gls::ScaleSpace whole({cloud.positions, cloud.normals, prepared.curve}, options);
+  const gls::ScaleRange range = whole.range();
+  ASSERT_EQ(gls::octave_count(range), gls::kOctaves);
+  const auto octaves = octaves_of(cloud.positions, prepared.curve, range);
   const std::size_t width = row_width(options);
-  for (std::size_t octave = 0; octave < kOctaves; ++octave) {
+  for (std::size_t octave = 0; octave < gls::kOctaves; ++octave) {
     gls::ScaleSpaceOptions its = options;
-    if (octave > 0) its = at_octave(options, described.scales.front(), octave);
+    if (octave > 0) its = at_octave(options, range, octave);
     const gls::ScaleSpace space({cloud.positions, cloud.normals, prepared.curve}, its);
     for (std::size_t row = 0; row < described.order.size(); row += 17) {
       const std::uint32_t point = described.order[row];

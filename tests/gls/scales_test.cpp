@@ -127,7 +127,7 @@ TEST(Scales, AreThoseOfOnePointAtEachPlace) {
 
 TEST(Scales, OfARatioFollowTheSpacingAlone) {
   constexpr ScaleRange kTenfold = {.s_max_ratio = 10.0};
-  const auto cloud = test::cube(4000, 1);
+  const auto cloud = test::cube(3600, 1);
   const auto whole = range_of(cloud.positions, kTenfold);
   EXPECT_DOUBLE_EQ(whole.s_max, 10.0 * whole.s_min);
 
@@ -136,10 +136,25 @@ TEST(Scales, OfARatioFollowTheSpacingAlone) {
     if (p.z() > 0.0) side.push_back(p);
   }
   const auto half = range_of(side, kTenfold);
-  EXPECT_NEAR(half.s_min / whole.s_min, 1.0, 0.03);
+  EXPECT_EQ(half.s_min, whole.s_min);
   const auto given = range_of(side, {.s_min = 0.5, .s_max_ratio = 10.0});
   EXPECT_DOUBLE_EQ(given.s_max, 5.0);
   EXPECT_ERROR(ErrorKind::kUsage, range_of(side, {.s_max_ratio = 0.5}));
+}
+
+TEST(Scales, OfARatioBeginAtAPreferredNumber) {
+  const auto s_min_of = [](double step) {
+    std::vector<Vec3> grid;
+    for (int i = 0; i < 2500; ++i) grid.emplace_back(step * (i % 50), step * (i / 50), 0.0);
+    return range_of(grid, {.s_max_ratio = 10.0}).s_min;  // (4 + 4 sqrt(2) + 4) / 10 of the step
+  };
+  EXPECT_EQ(s_min_of(1.0), 1.4);
+  EXPECT_EQ(s_min_of(1.05), 1.4);
+  EXPECT_EQ(s_min_of(1.1), 1.6);
+  EXPECT_EQ(s_min_of(0.7), 1.0);
+  EXPECT_EQ(s_min_of(0.72), 1.0);
+  EXPECT_EQ(s_min_of(0.00001), 0.000014);
+  EXPECT_EQ(s_min_of(720000.0), 1000000.0);
 }
 
 TEST(Scales, OfARatioAreNotMovedByAThrownPoint) {
@@ -163,15 +178,33 @@ std::vector<Vec3> fan(double reach) {
   return positions;
 }
 
-TEST(Scales, OfARatioReachFurtherWhereTheSpacingVaries) {
-  const auto reach_of = [](const std::vector<Vec3>& positions) {
-    const auto range = range_of(positions, {.s_max_ratio = 10.0});
+TEST(Scales, OfARatioHaveOctavesWhereTheSpacingVaries) {
+  const auto reach_of = [](double reach, bool octaves) {
+    const auto range = range_of(fan(reach), {.s_max_ratio = 10.0, .octaves = octaves});
     return range.s_max / range.s_min;
   };
   // The quartiles of the spacing are sqrt(6) apart, but for the randomness of the points.
-  EXPECT_NEAR(reach_of(fan(6.0)), 10.0 * std::sqrt(6.0) / 1.6, 1.5);
-  EXPECT_DOUBLE_EQ(reach_of(fan(1.5)), 10.0);
-  EXPECT_DOUBLE_EQ(reach_of(fan(100.0)), 30.0);
+  EXPECT_DOUBLE_EQ(reach_of(6.0, true), 80.0);
+  EXPECT_DOUBLE_EQ(reach_of(6.0, false), 10.0);
+  EXPECT_DOUBLE_EQ(reach_of(1.5, true), 10.0);
+}
+
+TEST(Scales, HaveTheOctavesThatEndAtTheLargest) {
+  const auto count = [](double s_max, double ratio = 8.0) {
+    return octave_count({.s_min = 0.1, .s_max = s_max, .s_max_ratio = ratio, .octaves = true});
+  };
+  EXPECT_EQ(count(0.8), 1u);
+  EXPECT_EQ(count(1.5), 1u);
+  EXPECT_EQ(count(1.6), 2u);
+  EXPECT_EQ(count(6.39), 3u);
+  EXPECT_EQ(count(100.0), kOctaves);
+  EXPECT_EQ(count(100.0, 0.0), 1u);
+  EXPECT_EQ(octave_count({.s_min = 0.1, .s_max = 6.4, .s_max_ratio = 8.0}), 1u);
+  const ScaleRange whole = {.s_min = 0.1, .s_max = 6.4, .s_max_ratio = 8.0, .octaves = true};
+  EXPECT_DOUBLE_EQ(at_octave(whole, 2).s_min, 0.4);
+  EXPECT_DOUBLE_EQ(at_octave(whole, 2).s_max, 3.2);
+  EXPECT_DOUBLE_EQ(sample_scales(whole, 8).back(), 0.8);
+  EXPECT_DOUBLE_EQ(sample_scales({.s_min = 0.1, .s_max = 1.5, .s_max_ratio = 8.0}, 8).back(), 1.5);
 }
 
 TEST(Scales, AreTheSameFromBothEngines) {

@@ -44,7 +44,7 @@ gls::ScaleRange range_of(const PointCloud& cloud) {
   const auto prepared = detect::prepare(cloud);
   const gls::ScaleSpace space({prepared.positions, prepared.normals, prepared.curve},
                               default_model().descriptor);
-  return {.s_min = space.scales().front(), .s_max = space.scales().back()};
+  return space.range();
 }
 
 /// The share of points that keep their labels when the cloud is cut into n x n pieces along its two

@@ -25,7 +25,7 @@ class PlannedModelFile : public testing::Test {
 
 TEST_F(PlannedModelFile, IsUsedAsPlanned) {
   EXPECT_EQ(load_planned_model(plan_).descriptor.s_max, plan_.s_max);
-  plan_.s_max *= 2.0;  // an uneven cloud
+  plan_.s_max *= 8.0;  // an uneven cloud
   plan_.pyramids.resize(4, plan_.pyramids.front());
   EXPECT_EQ(load_planned_model(plan_).descriptor.s_max, plan_.s_max);
   plan_.model.exact = true;

@@ -167,8 +167,8 @@ export class Client {
       store.set({ connected: false, restarted });
     });
     this.events.addEventListener("open", () => {
-      if (!this.opened) this.attempt(this.refresh()); // what happened before this was not heard
       if (!store.now.connected) this.attempt(this.returned());
+      else this.attempt(this.refresh()); // what happened before this was not heard
     });
   }
 
@@ -183,6 +183,7 @@ export class Client {
     const session = await this.api.get<Session>("/api/session");
     const { store } = this;
     if (!session.known) await this.enter();
+    else if (session.writer) store.set({ writer: true }); // the one that painted has left
     this.loading = session.state !== "ready";
     if (this.loading) {
       if (!store.now.progress?.fraction) store.set({ progress: { stage: session.stage, fraction: 0 } });

@@ -88,11 +88,11 @@ void report(const Job& job, const detect::Classification& result, const Counts& 
                       ? std::string()
                       : fmt::format(", {} unlabelled", result.counts.unlabelled)));
   if (result.s_max > 0.0) {  // a method has none
+    gls::ScaleRange range = gls::given_range(model.descriptor);
+    range.s_min = result.s_min, range.s_max = result.s_max;
     say(fmt::format(
-        "  scales: {:.9g} to {:.9g}{}", result.s_min, result.s_max,
-        result.largest_scale <= result.s_max
-            ? std::string()
-            : fmt::format("; up to {:.4g} where points are sparser", result.largest_scale)));
+        "  scales: {:.9g} to {:.9g}{}", range.s_min, range.s_max,
+        gls::octave_count(range) > 1 ? ", the larger ones where points are sparser" : ""));
   }
   if (result.expert) {
     say(fmt::format("  decided by the networks for clouds of the kind {}",

@@ -297,8 +297,8 @@ void add_train(CLI::App& app, Common& common) {
   add_descriptor_options(*command, arguments->options.descriptor);
   command
       ->add_flag("--octaves", arguments->options.descriptor.octaves,
-                 "With --s-max-ratio: the model describes clouds of uneven spacing at larger "
-                 "scales where points are sparser; training does not")
+                 "With --s-max-ratio: describe clouds of uneven spacing at larger scales where "
+                 "points are sparser")
       ->needs("--s-max-ratio");
   add_network_options(*command, arguments->options);
   add_recipe_options(*command, *arguments);

@@ -46,10 +46,9 @@ Classification describe_and_decide(const PreparedCloud& cloud, const EdgeModel& 
     if (!stage) {
       stage.emplace(progress, "describe", cloud.curve.size());
       found.s_min = space.scales().front();
-      found.s_max = space.scales().back();
       found.note = gls::note_on(model.descriptor, space.scales(), cloud.positions);
     }
-    found.largest_scale = space.scales().back();
+    found.s_max = space.scales().back();
     const auto rows_of = [&](std::size_t begin, std::size_t end) {
       const auto some = std::span(rows).first((end - begin) * width);
       describe(space, points.subspan(begin, end - begin), some, &cancel_only);

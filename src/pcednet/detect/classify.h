@@ -30,8 +30,7 @@ struct Classification {
   std::vector<float> p_smooth = {};      ///< of smooth-edge; 0 throughout with a two-class model
   std::vector<float> p_class = {};       ///< of the class itself; empty with edge classes alone
   ClassCounts counts = {};               ///< of edge classes
-  double s_min = 0.0, s_max = 0.0;       ///< the scales of the description
-  double largest_scale = 0.0;            ///< of any point: wider than s_max where points are sparse
+  double s_min = 0.0, s_max = 0.0;       ///< the smallest and the largest scale of any point
   std::string note = {};                 ///< for the user, or empty
   std::optional<CloudKind> expert = {};  ///< the kind of cloud whose expert decided
 };

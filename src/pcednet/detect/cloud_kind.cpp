@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "pcednet/detect/part_of_cloud.h"
+#include "pcednet/gls/scales.h"
 #include "pcednet/normals/estimate.h"
 #include "pcednet/normals/neighbour_count.h"
 #include "pcednet/spatial/curve_order.h"
@@ -50,6 +51,23 @@ bool are_as_estimated(const PreparedCloud& cloud) {
   return quarter != cosines.end() && *quarter > least_cosine;
 }
 
+constexpr std::size_t kFew = 20000;  // above, the same networks decide in either case
+
+/// The networks for few points learnt from parts of even spacing.
+std::size_t points_of(const PreparedCloud& cloud, const gls::ScaleSpaceOptions& descriptor) {
+  constexpr std::size_t kPiece = CloudTraits{}.points;
+  const bool scales_given = descriptor.s_min > 0.0 && descriptor.s_max > 0.0;
+  if (cloud.part) {
+    const bool is_even = gls::octave_count(gls::given_range(descriptor)) == 1;
+    return is_even ? cloud.part->points : kPiece;
+  }
+  if (scales_given) return kPiece;
+  const std::size_t points = spatial::firsts_of_places(cloud.positions, cloud.curve).size();
+  const bool is_piece = points < kFew && descriptor.octaves &&
+                        gls::is_uneven(gls::spacings_of_places(cloud.positions, cloud.curve));
+  return is_piece ? kPiece : points;
+}
+
 }  // namespace
 
 CloudTraits traits_of(const PreparedCloud& cloud, const gls::ScaleSpaceOptions& descriptor) {
@@ -58,12 +76,7 @@ CloudTraits traits_of(const PreparedCloud& cloud, const gls::ScaleSpaceOptions& 
       .estimated = estimated,
       .exact = cloud.decision.exact,
       .noisy = estimated && cloud.decision.neighbours > normals::NeighbourChoice{}.neighbours};
-  if (cloud.part) {
-    traits.points = cloud.part->points;
-  } else if (descriptor.s_min <= 0.0 || descriptor.s_max <= 0.0) {
-    traits.points = spatial::firsts_of_places(cloud.positions, cloud.curve).size();
-  }
-  constexpr std::size_t kFew = 20000;  // above, the same networks decide in either case
+  traits.points = points_of(cloud, descriptor);
   if (!traits.estimated && traits.points < kFew) traits.estimated = are_as_estimated(cloud);
   return traits;
 }

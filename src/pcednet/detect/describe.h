@@ -26,7 +26,7 @@ struct DescribedCloud {
   std::size_t points = 0;                 ///< of the cloud
   std::vector<std::uint32_t> order = {};  ///< the point that each row describes
   std::vector<float> values = {};         ///< rows x scales x columns
-  std::vector<double> scales = {};        ///< as lengths
+  std::vector<double> scales = {};        ///< as lengths, of the first octave
   CloudTraits traits = {};                ///< of the cloud
 };
 

@@ -28,9 +28,10 @@ std::vector<double> spacings_in(const normals::NeighbourGraph& graph) {
   return spacings;
 }
 
-std::uint8_t octave_of(double spacing, double s_min) {
-  const double octave = std::round(std::log2(spacing / s_min));
-  return static_cast<std::uint8_t>(std::clamp(octave, 0.0, static_cast<double>(kOctaves - 1)));
+std::uint8_t octave_of(double spacing, const gls::ScaleRange& range) {
+  const double octave = std::round(std::log2(spacing / range.s_min));
+  const auto last = static_cast<double>(gls::octave_count(range) - 1);
+  return static_cast<std::uint8_t>(std::clamp(octave, 0.0, last));
 }
 
 std::vector<std::uint32_t> chosen_of(std::span<const std::uint32_t> order,
@@ -45,21 +46,16 @@ std::vector<std::uint32_t> chosen_of(std::span<const std::uint32_t> order,
 
 }  // namespace
 
-bool has_octaves(const gls::ScaleSpaceOptions& descriptor, double s_min, double s_max) {
-  constexpr double kRounding = 1e-6;
-  return descriptor.octaves && descriptor.s_max_ratio > 0.0 &&
-         s_max > (1.0 + kRounding) * descriptor.s_max_ratio * s_min;
-}
-
-gls::ScaleSpaceOptions at_octave(gls::ScaleSpaceOptions descriptor, double s_min,
+gls::ScaleSpaceOptions at_octave(gls::ScaleSpaceOptions descriptor, const gls::ScaleRange& range,
                                  std::size_t octave) {
-  descriptor.s_min = s_min * static_cast<double>(std::size_t{1} << octave);
-  descriptor.s_max = descriptor.s_max_ratio * descriptor.s_min;
+  const gls::ScaleRange own = gls::at_octave(range, octave);
+  descriptor.s_min = own.s_min, descriptor.s_max = own.s_max;
   return descriptor;
 }
 
 std::vector<std::uint8_t> octaves_of(std::span<const Vec3> positions,
-                                     std::span<const std::uint32_t> curve, double s_min) {
+                                     std::span<const std::uint32_t> curve,
+                                     const gls::ScaleRange& range) {
   const auto graph = normals::make_neighbour_graph(positions, normals::NeighbourChoice{kForSpacing},
                                                    nullptr, curve);
   std::vector<std::uint8_t> octaves(positions.size(), 0);
@@ -69,7 +65,7 @@ std::vector<std::uint8_t> octaves_of(std::span<const Vec3> positions,
   parallel_for_each(found.size(), [&](std::size_t i) {
     std::vector<double> around;
     for (const std::uint32_t k : graph.of(i)) around.push_back(spacings[k]);
-    found[i] = octave_of(upper_median(std::move(around)), s_min);
+    found[i] = octave_of(upper_median(std::move(around)), range);
   });
   parallel_for_each(octaves.size(), [&](std::size_t i) {
     if (graph.point_of[i] != normals::kNoPoint) octaves[i] = found[graph.point_of[i]];
@@ -87,21 +83,19 @@ void for_each_octave(
     return gls::ScaleSpace({cloud.positions, cloud.normals, cloud.curve, whole}, options, its);
   };
   std::vector<std::uint8_t> octaves;
-  double s_min = 0.0;
+  gls::ScaleRange range;
   {
     const gls::ScaleSpace space = space_of(0, descriptor, progress);
-    s_min = space.scales().front();
-    if (has_octaves(descriptor, s_min, space.scales().back())) {
-      octaves = octaves_of(cloud.positions, cloud.curve, s_min);
-    }
+    range = space.range();
+    if (gls::octave_count(range) > 1) octaves = octaves_of(cloud.positions, cloud.curve, range);
     if (octaves.empty() && !cloud.part) return work(space, space.order());
     work(space, chosen_of(space.order(), octaves, 0, cloud.part));
   }
   const Progress cancel_only = without_report(progress);
-  for (std::size_t octave = 1; octave < kOctaves; ++octave) {
+  for (std::size_t octave = 1; octave < gls::octave_count(range); ++octave) {
     if (chosen_of(cloud.curve, octaves, octave, cloud.part).empty()) continue;
     const gls::ScaleSpace space =
-        space_of(octave, at_octave(descriptor, s_min, octave), &cancel_only);
+        space_of(octave, at_octave(descriptor, range, octave), &cancel_only);
     work(space, chosen_of(space.order(), octaves, octave, cloud.part));
   }
 }

@@ -12,26 +12,22 @@
 
 namespace pcednet::detect {
 
-/// Where the spacing varies, as in scans from one place, no range of scales suits all points: what
-/// is fine near the scanner is below the spacing far from it. With ScaleSpaceOptions::octaves,
-/// points whose spacing is about 2, 4, 8 times s_min (octaves 1, 2, 3) are described at scales from
-/// that many times s_min on, up to s_max_ratio times that. Points of smaller spacing, and all
-/// points of even clouds, have octave 0: the scales of the cloud.
-inline constexpr std::size_t kOctaves = 4;
+// Where the spacing varies, as in scans from one place, no range of scales suits all points: what
+// is fine near the scanner is below the spacing far from it. With ScaleSpaceOptions::octaves,
+// points whose spacing is about 2, 4, 8 times s_min (octaves 1, 2, 3) are described at scales from
+// that many times s_min on, up to s_max_ratio times that. Points of smaller spacing, and all
+// points of even clouds, have octave 0: the scales of the cloud.
 
-/// Whether these, from smallest to largest, are the scales of an uneven cloud, which
-/// gls::scale_range() extends beyond s_max_ratio, and the options ask for octaves.
-bool has_octaves(const gls::ScaleSpaceOptions& descriptor, double s_min, double s_max);
-
-/// The options for the points of octave 1 or more.
-gls::ScaleSpaceOptions at_octave(gls::ScaleSpaceOptions descriptor, double s_min,
+/// The options for the points of an octave, 1 or more, of a range.
+gls::ScaleSpaceOptions at_octave(gls::ScaleSpaceOptions descriptor, const gls::ScaleRange& range,
                                  std::size_t octave);
 
-/// The octave of every point; 0 where it is not finite. The spacing at a point is the median over
-/// its 10 nearest others of the mean distance to theirs. `curve` is the spatial::curve_order() of
-/// the positions.
+/// The octave of every point, below the gls::octave_count() of the range; 0 where a point is not
+/// finite. The spacing at a point is the median over its 10 nearest others of the mean distance to
+/// theirs. `curve` is the spatial::curve_order() of the positions.
 std::vector<std::uint8_t> octaves_of(std::span<const Vec3> positions,
-                                     std::span<const std::uint32_t> curve, double s_min);
+                                     std::span<const std::uint32_t> curve,
+                                     const gls::ScaleRange& range);
 
 /// Calls work(space, points) with the scale space of each octave that has points, octave 0 first
 /// and always, and the points to be described in it, in the most efficient order. Together they

@@ -8,6 +8,7 @@
 
 #include "pcednet/core/error.h"
 #include "pcednet/detect/describe.h"
+#include "pcednet/detect/octaves.h"
 #include "pcednet/detect/outputs.h"
 #include "pcednet/detect/train_context.h"
 #include "pcednet/nn/distil.h"
@@ -109,16 +110,16 @@ Samples make_samples(std::span<const TrainingCloud> clouds,
   for (const TrainingCloud& cloud : clouds) {
     check_labels(cloud, table);
     const auto positions = cloud.cloud.positions;
-    const gls::ScaleSpace space({positions, cloud.cloud.normals, cloud.cloud.curve}, descriptor,
-                                &cancel_only);
-    if (const auto note = gls::note_on(descriptor, space.scales(), positions); !note.empty()) {
-      samples.notes.push_back(fmt::format("{}: {}", cloud.name, note));
-    }
-    const auto points = labelled_points(cloud, space.order(), table);
-    const std::size_t before = samples.values.size();
-    samples.values.resize(before + points.size() * width);
-    describe(space, points, std::span(samples.values).subspan(before), &cancel_only);
-    for (const std::uint32_t i : points) samples.labels.push_back(cloud.labels[i]);
+    for_each_octave(cloud.cloud, descriptor, &cancel_only, [&](const auto& space, const auto& all) {
+      if (const auto note = gls::note_on(descriptor, space.scales(), positions); !note.empty()) {
+        samples.notes.push_back(fmt::format("{}: {}", cloud.name, note));
+      }
+      const auto points = labelled_points(cloud, all, table);
+      const std::size_t before = samples.values.size();
+      samples.values.resize(before + points.size() * width);
+      describe(space, points, std::span(samples.values).subspan(before), &cancel_only);
+      for (const std::uint32_t i : points) samples.labels.push_back(cloud.labels[i]);
+    });
     stage.advance(positions.size());
   }
   return samples;
@@ -128,13 +129,10 @@ TrainedModel train(const std::string& name, std::span<const TrainingCloud> cloud
                    const TrainOptions& options,
                    const std::function<void(const nn::EpochReport&)>& on_epoch,
                    const Progress* progress) {
-  gls::ScaleSpaceOptions descriptor = options.descriptor;
-  descriptor.octaves = false;
-  const Samples samples = make_samples(clouds, descriptor, progress, options.table);
+  const Samples samples = make_samples(clouds, options.descriptor, progress, options.table);
   TrainedModel trained = train(name, samples, options, on_epoch, progress);
   trained.notes = samples.notes;
   if (options.context) add_context(trained, clouds, options, on_epoch, progress);
-  trained.model.descriptor.octaves = options.descriptor.octaves;
   return trained;
 }
 

@@ -58,8 +58,7 @@ struct TrainedModel {
 
 /// Describes the clouds and trains a network on them. `name` goes into the model. The same clouds,
 /// options and seed give the same bytes for any number of threads. With two classes, smooth-edge
-/// counts as non-edge. Clouds are described without octaves, and the model gets those of the
-/// options. A cancel during the training proper returns the best model so far; see
+/// counts as non-edge. A cancel during the training proper returns the best model so far; see
 /// TrainedModel::cancelled.
 TrainedModel train(const std::string& name, std::span<const TrainingCloud> clouds,
                    const TrainOptions& options,

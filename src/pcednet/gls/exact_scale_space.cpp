@@ -63,7 +63,8 @@ ExactScaleSpace::ExactScaleSpace(OrientedPoints points, const ScaleSpaceOptions&
   tree_ = spatial::KdTree(positions_);
   stage.advance();
   const auto spacings = [&] { return spacings_of_places(points.positions, distinct); };
-  scales_ = sample_scales(scale_range(positions_, given_range(options), spacings), options.scales);
+  range_ = scale_range(positions_, given_range(options), spacings);
+  scales_ = sample_scales(range_, options.scales);
   stage.advance();
 }
 

@@ -10,6 +10,7 @@
 #include "pcednet/gls/fit_status.h"
 #include "pcednet/gls/neighbourhood.h"
 #include "pcednet/gls/oriented_points.h"
+#include "pcednet/gls/scales.h"
 #include "pcednet/spatial/kd_tree.h"
 
 namespace pcednet::gls {
@@ -29,8 +30,9 @@ class ExactScaleSpace {
 
   const ScaleSpaceOptions& options() const { return options_; }
 
-  /// The support radii, smallest first.
+  /// The support radii, smallest first; of several octaves, those of the first.
   const std::vector<double>& scales() const { return scales_; }
+  const ScaleRange& range() const { return range_; }
 
   /// The finite points along a curve: targets may come in any order, but this one makes the best
   /// use of the caches.
@@ -69,6 +71,7 @@ class ExactScaleSpace {
   std::vector<Vec3> positions_;  ///< the finite points, in an order independent of their numbering
   std::vector<Vec3> normals_;    ///< (0,0,0) where unusable
   spatial::KdTree tree_;
+  ScaleRange range_;
   std::vector<double> scales_;
 };
 

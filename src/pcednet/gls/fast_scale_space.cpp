@@ -111,8 +111,8 @@ void FastScaleSpace::find_scales(OrientedPoints points, std::span<const std::uin
                ? spacings_of_places(points.positions, curve)
                : sampled_spacings(curve.size(), distance);
   };
-  scales_ = sample_scales(scale_range(points.positions, given_range(options_), spacings),
-                          options_.scales);
+  range_ = scale_range(points.positions, given_range(options_), spacings);
+  scales_ = sample_scales(range_, options_.scales);
 }
 
 void FastScaleSpace::describe(std::span<const std::uint32_t> targets, std::span<float> out,

@@ -8,6 +8,7 @@
 #include "pcednet/gls/fit_status.h"
 #include "pcednet/gls/lane_kernels.h"
 #include "pcednet/gls/oriented_points.h"
+#include "pcednet/gls/scales.h"
 #include "pcednet/gls/voxel_pyramid.h"
 
 namespace pcednet::gls {
@@ -38,8 +39,9 @@ class FastScaleSpace {
 
   const ScaleSpaceOptions& options() const { return options_; }
 
-  /// The support radii, smallest first.
+  /// The support radii, smallest first; of several octaves, those of the first.
   const std::vector<double>& scales() const { return scales_; }
+  const ScaleRange& range() const { return range_; }
 
   /// The plan of the voxels that these points decided; for a part of a cloud, the plan of the
   /// whole.
@@ -68,6 +70,7 @@ class FastScaleSpace {
   std::size_t places_ = 0;  ///< copies of a point share one
   double unit_ = 1.0;       ///< the factor of the pyramid's coordinates, a power of two
   VoxelPyramid pyramid_;
+  ScaleRange range_;
   std::vector<double> scales_;
 };
 

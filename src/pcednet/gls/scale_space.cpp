@@ -24,6 +24,11 @@ const std::vector<double>& ScaleSpace::scales() const {
       [](const auto& engine) -> const auto& { return engine.scales(); }, engine_);
 }
 
+const ScaleRange& ScaleSpace::range() const {
+  return std::visit(
+      [](const auto& engine) -> const auto& { return engine.range(); }, engine_);
+}
+
 std::span<const std::uint32_t> ScaleSpace::order() const {
   return std::visit([](const auto& engine) { return engine.order(); }, engine_);
 }

@@ -21,6 +21,7 @@ class ScaleSpace {
   /// The options as given, with `engine` the one in use.
   const ScaleSpaceOptions& options() const { return options_; }
   const std::vector<double>& scales() const;
+  const ScaleRange& range() const;
   std::span<const std::uint32_t> order() const;
 
   /// See ExactScaleSpace::describe() and FastScaleSpace::describe().

@@ -30,7 +30,8 @@ ScaleRange given_range(const ScaleSpaceOptions& options) {
   return {.s_min = options.s_min,
           .s_max = options.s_max,
           .s_max_fraction = options.s_max_fraction,
-          .s_max_ratio = options.s_max_ratio};
+          .s_max_ratio = options.s_max_ratio,
+          .octaves = options.octaves};
 }
 
 std::string note_on(const ScaleSpaceOptions& options, std::span<const double> scales,

@@ -27,8 +27,8 @@ struct ScaleSpaceOptions {
   int scales = 16;                          ///< a power of two, 4 to 128
   double s_min = 0.0, s_max = 0.0;          ///< 0: from the cloud
   double s_max_fraction = kPartOfDiagonal;  ///< of the diagonal, where s_max is 0
-  double s_max_ratio = 0.0;  ///< if not 0 while s_max is 0: s_max over s_min, in even clouds
-  bool octaves = false;      ///< in uneven clouds, larger scales where the spacing is wider
+  double s_max_ratio = 0.0;                 ///< if not 0 while s_max is 0: s_max over s_min
+  bool octaves = false;  ///< in uneven clouds, larger scales where the spacing is wider
   FeatureSet features = FeatureSet::kPaper6;
   Reconstruction reconstruction = Reconstruction::kSphere;
   int max_projection_steps = 5;  ///< for the reconstructions that project

@@ -19,7 +19,7 @@ namespace pcednet::gls {
 namespace {
 
 constexpr std::size_t kSample = 16384;
-constexpr double kEvenQuartiles = 1.6, kLargestSpread = 3.0;
+constexpr double kEvenQuartiles = 1.6;
 constexpr double kShortest = 1e-100, kLongest = 1e100;  // their squares and inverses are finite
 
 void check_given(double bound, const char* name) {
@@ -40,27 +40,44 @@ double mean_of(std::span<const double> values) {
   return values.empty() ? 0.0 : sum / static_cast<double>(values.size());
 }
 
-/// For a range tied to the spacing: a few outlying points change neither number.
-struct Spacing {
-  double middle = 0.0;  ///< the mean of the middle half
-  double spread = 1.0;  ///< how much larger s_max is because the spacing varies
-};
+/// Sorts the numbers and returns the middle half: a few outlying points change neither its mean nor
+/// its ends.
+std::span<const double> middle_half(std::vector<double>& values) {
+  std::sort(values.begin(), values.end());
+  const std::size_t quarter = values.size() / 4;
+  return std::span(values).subspan(quarter, values.size() - 2 * quarter);
+}
 
-Spacing spacing_of(std::vector<double> spacings) {
-  if (spacings.empty()) return {};
-  std::sort(spacings.begin(), spacings.end());
-  const std::size_t quarter = spacings.size() / 4;
-  const auto half = std::span(spacings).subspan(quarter, spacings.size() - 2 * quarter);
-  const double quartiles = half.back() / half.front();
-  return {mean_of(half), std::clamp(quartiles / kEvenQuartiles, 1.0, kLargestSpread)};
+bool ends_differ(std::span<const double> half) {
+  return !half.empty() && half.back() > kEvenQuartiles * half.front();
+}
+
+double factor_of(std::size_t octave) {
+  return static_cast<double>(std::size_t{1} << octave);
+}
+
+/// The nearest of the preferred numbers R 20 of ISO 3, which are about 12 % apart.
+double preferred_number(double value) {
+  if (!(value > kShortest)) return value;
+  constexpr std::array kNumbers = {1.0,  1.12, 1.25, 1.4, 1.6, 1.8, 2.0, 2.24, 2.5, 2.8,
+                                   3.15, 3.55, 4.0,  4.5, 5.0, 5.6, 6.3, 7.1,  8.0, 9.0};
+  constexpr int kOfDecade = static_cast<int>(kNumbers.size());
+  const int step = static_cast<int>(std::lround(kOfDecade * std::log10(value)));
+  const int decade = static_cast<int>(std::floor(step / static_cast<double>(kOfDecade)));
+  const double number = kNumbers[static_cast<std::size_t>(step - decade * kOfDecade)];
+  return decade < 0 ? number / std::pow(10.0, -decade) : number * std::pow(10.0, decade);
 }
 
 ScaleRange tied_range(const ScaleRange& given,
                       const std::function<std::vector<double>()>& spacings) {
-  const Spacing spacing = spacing_of(spacings());
+  std::vector<double> all = spacings();
+  const std::span<const double> half = middle_half(all);
   ScaleRange range = given;
-  if (range.s_min == 0.0) range.s_min = spacing.middle;
-  if (range.s_max == 0.0) range.s_max = given.s_max_ratio * spacing.spread * range.s_min;
+  if (range.s_min == 0.0) range.s_min = preferred_number(mean_of(half));
+  if (range.s_max == 0.0) {
+    const bool has_octaves = given.octaves && ends_differ(half);
+    range.s_max = range.s_max_ratio * range.s_min * (has_octaves ? factor_of(kOctaves - 1) : 1.0);
+  }
   return range;
 }
 
@@ -76,6 +93,26 @@ ScaleRange range_by_extent(const ScaleRange& given, double diagonal,
 }
 
 }  // namespace
+
+bool is_uneven(std::vector<double> spacings) {
+  return ends_differ(middle_half(spacings));
+}
+
+std::size_t octave_count(const ScaleRange& range) {
+  constexpr double kRounding = 1e-6;
+  if (!range.octaves || range.s_max_ratio <= 0.0) return 1;
+  const double first = (1.0 - kRounding) * range.s_max_ratio * range.s_min;
+  std::size_t count = 1;
+  while (count < kOctaves && range.s_max >= first * factor_of(count)) ++count;
+  return count;
+}
+
+ScaleRange at_octave(const ScaleRange& range, std::size_t octave) {
+  ScaleRange own = range;
+  own.s_min = factor_of(octave) * range.s_min;
+  own.s_max = range.s_max_ratio * own.s_min;
+  return own;
+}
 
 double mean_distance(std::span<const double> sq_distances) {
   double sum = 0.0;
@@ -146,7 +183,8 @@ std::string note_on_extent(const ScaleSpaceOptions& options, double diagonal,
   return options.s_max > diagonal ? larger(names.s_max, options.s_max) : std::string();
 }
 
-std::vector<double> sample_scales(const ScaleRange& range, int count) {
+std::vector<double> sample_scales(const ScaleRange& whole, int count) {
+  const ScaleRange range = octave_count(whole) > 1 ? at_octave(whole, 0) : whole;
   if (count < kMinScales || count > kMaxScales ||
       !std::has_single_bit(static_cast<unsigned>(count))) {
     throw Error(ErrorKind::kUsage,

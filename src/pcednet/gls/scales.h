@@ -18,8 +18,13 @@ struct ScaleRange {
   double s_min = 0.0;
   double s_max = 0.0;
   double s_max_fraction = kPartOfDiagonal;  ///< of the diagonal: s_max where it is not given
-  double s_max_ratio = 0.0;  ///< s_max over s_min in even clouds; 0: s_max_fraction rules
+  double s_max_ratio = 0.0;                 ///< s_max over s_min; 0: s_max_fraction rules
+  bool octaves = false;  ///< with a ratio: s_max is larger where the spacing varies
 };
+
+/// In uneven clouds points may be described at scales 2, 4 or 8 times larger than those of octave
+/// 0, which end s_max_ratio above s_min.
+inline constexpr std::size_t kOctaves = 4;
 
 /// Mean distances to the 10 nearest other places (to all others if there are fewer): for every
 /// place or, if there are more than 16384, for 16384 at equal steps along the curve order.
@@ -36,10 +41,10 @@ inline constexpr std::size_t kSpacingNeighbours = 11;
 
 /// The range of scales of the finite `positions`. Bounds other than 0 in `given` are kept.
 ///
-/// With an s_max_ratio: s_min is the mean of the middle half of `spacings()` and s_max =
-/// s_max_ratio s_min; where the third quartile of the spacings is more than 1.6 times the first, as
-/// in scans from one place, s_max is larger in proportion, up to three times. Neither the extent
-/// nor a few far points change the range.
+/// With an s_max_ratio: s_min is the mean of the middle half of `spacings()`, rounded to a
+/// preferred number (R 20 of ISO 3: 1, 1.12, 1.25, ... 9, 10), so that most pieces of a cloud have
+/// the same, and s_max = s_max_ratio s_min, or with octaves that of the last octave if the cloud
+/// is_uneven(). Neither the extent nor a few far points change the range.
 ///
 /// Without one, the paper's range: s_min = the mean of `spacings()`, s_max = s_max_fraction (10 %)
 /// of the diagonal of the bounding box. Where this gives no range, an s_max that was not given and
@@ -56,6 +61,16 @@ ScaleRange scale_range(std::span<const Vec3> positions, const ScaleRange& given,
 std::vector<double> spacings_of_places(std::span<const Vec3> positions,
                                        std::span<const std::uint32_t> curve);
 
+/// Whether the third quartile of these spacings is more than 1.6 times the first, as in scans from
+/// one place.
+bool is_uneven(std::vector<double> spacings);
+
+/// How many octaves a range has: 1 to kOctaves, as many as end at s_max or below.
+std::size_t octave_count(const ScaleRange& range);
+
+/// The range of an octave of several: from 2^octave s_min to s_max_ratio times that.
+ScaleRange at_octave(const ScaleRange& range, std::size_t octave);
+
 /// What a user calls the bounds of the range.
 struct RangeNames {
   std::string_view s_min, s_max;
@@ -66,8 +81,9 @@ struct RangeNames {
 std::string note_on_extent(const ScaleSpaceOptions& options, double diagonal,
                            std::string_view whose, const RangeNames& names);
 
-/// `count` scales, smallest first: s_i = s_min (s_max / s_min)^((i - 1) / (count - 1)).
+/// `count` scales, smallest first: s_i = s_min (s_max / s_min)^((i - 1) / (count - 1)); of several
+/// octaves, those of the first.
 /// Throws Error(kUsage) unless count is 4, 8, 16, 32, 64 or 128 and 0 < s_min < s_max.
-std::vector<double> sample_scales(const ScaleRange& range, int count);
+std::vector<double> sample_scales(const ScaleRange& whole, int count);
 
 }  // namespace pcednet::gls

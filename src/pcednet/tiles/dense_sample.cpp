@@ -150,9 +150,9 @@ void decide_voxels(const PreparedSample& sample, const detect::EdgeModel& model,
                    const Progress* progress) {
   gls::ScaleSpaceOptions descriptor = model.descriptor;
   descriptor.s_min = plan.s_min, descriptor.s_max = plan.s_max;
-  const bool has_octaves = detect::has_octaves(descriptor, plan.s_min, plan.s_max);
-  for (std::size_t octave = 0; octave < (has_octaves ? detect::kOctaves : 1); ++octave) {
-    if (octave > 0) descriptor = detect::at_octave(descriptor, plan.s_min, octave);
+  const gls::ScaleRange range = gls::given_range(descriptor);
+  for (std::size_t octave = 0; octave < gls::octave_count(range); ++octave) {
+    if (octave > 0) descriptor = detect::at_octave(descriptor, range, octave);
     gls::PyramidPlan& pyramid = plan.pyramids.emplace_back();
     pyramid.corner = plan.box.min;
     pyramid.side = (plan.box.max - plan.box.min).maxCoeff();

@@ -22,7 +22,7 @@ std::size_t record_bytes(bool normals) {
 
 void add_tile(const detect::Classification& tile, bool is_first, detect::Classification& whole) {
   whole.counts += tile.counts;
-  whole.largest_scale = std::max(whole.largest_scale, tile.largest_scale);
+  whole.s_max = std::max(whole.s_max, tile.s_max);
   if (is_first) {
     whole.expert = tile.expert;
   } else if (whole.expert != tile.expert) {
@@ -83,7 +83,7 @@ TileFindings PointLabels::get(std::size_t begin, std::size_t end) const {
 
 detect::Classification label_points(const Plan& plan, const detect::EdgeModel* model,
                                     PointLabels& labels, const Progress* progress) {
-  detect::Classification whole{.s_min = plan.s_min, .s_max = plan.s_max};
+  detect::Classification whole{.s_min = plan.s_min};
   const Progress quiet = without_report(progress);
   Stage stage(progress, "tiles", plan.points());
   for (std::size_t id = 0; id < plan.tiles.size(); ++id) {

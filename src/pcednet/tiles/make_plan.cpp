@@ -38,12 +38,6 @@ double reach_of(std::size_t neighbours, double mean_distance) {
 /// The sign of a normal depends on its connections within this many mean distances.
 constexpr double kSignReach = 64.0;
 
-double largest_scale(const gls::ScaleSpaceOptions& descriptor, const Plan& plan) {
-  if (plan.pyramids.size() < 2) return plan.s_max;
-  const std::size_t octave = plan.pyramids.size() - 1;
-  return std::max(plan.s_max, detect::at_octave(descriptor, plan.s_min, octave).s_max);
-}
-
 /// Whether a level of the pyramid merges crowds.
 bool is_crowded(const Plan& plan) {
   return std::any_of(plan.pyramids.begin(), plan.pyramids.end(), [](const auto& pyramid) {
@@ -55,10 +49,9 @@ bool is_crowded(const Plan& plan) {
 /// Sets the distance around a core within which points affect the points in it.
 void set_buffer(const detect::EdgeModel& model, const Spacing& spacing, Plan& plan) {
   // Voxels measure an eps of the scale; where a level merges crowds, blocks of 8 cells do.
-  const double largest = largest_scale(model.descriptor, plan);
-  const double cells = model.descriptor.eps * largest * (is_crowded(plan) ? 10.0 : 2.0);
+  const double cells = model.descriptor.eps * plan.s_max * (is_crowded(plan) ? 10.0 : 2.0);
   const bool moves = gls::projects(model.descriptor.reconstruction);
-  const double described = largest * (moves ? 2.0 : 1.0) + cells;
+  const double described = plan.s_max * (moves ? 2.0 : 1.0) + cells;
   const std::size_t fitted = std::max(plan.normals.neighbours, normals::kExactNeighbours);
   const double normals =
       plan.normals.made ? reach_of(fitted, spacing.wide) + kSignReach * spacing.median : 0.0;

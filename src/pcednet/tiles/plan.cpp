@@ -229,7 +229,7 @@ Plan plan_of(const json& j, const Paths& paths, std::string& member) {
 
 /// Whether a plan may have such pyramids; how many levels there are depends on the model.
 bool are_sound(const std::vector<gls::PyramidPlan>& pyramids, const Plan& plan) {
-  if (pyramids.size() != 1 && pyramids.size() != detect::kOctaves) return false;
+  if (pyramids.empty() || pyramids.size() > gls::kOctaves) return false;
   const double side = (plan.box.max - plan.box.min).maxCoeff();
   const std::size_t levels = pyramids.front().levels.size();
   return (levels == 0 || !plan.model.exact) &&

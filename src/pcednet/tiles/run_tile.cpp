@@ -72,10 +72,9 @@ void keep_first(std::size_t points, detect::PreparedCloud& prepared,
 
 /// Throws where the decisions on voxels are not those that the model needs.
 void check_pyramids(const Plan& plan, const gls::ScaleSpaceOptions& descriptor) {
-  const bool has_octaves = detect::has_octaves(descriptor, plan.s_min, plan.s_max);
   const bool has_levels = !plan.model.exact && gls::fits_spheres(descriptor.reconstruction);
   const std::size_t levels = has_levels ? static_cast<std::size_t>(descriptor.scales) : 0;
-  if (plan.pyramids.size() == (has_octaves ? detect::kOctaves : 1) &&
+  if (plan.pyramids.size() == gls::octave_count(gls::given_range(descriptor)) &&
       plan.pyramids.front().levels.size() == levels) {
     return;
   }
