@@ -46,7 +46,7 @@ for model in ${*:-general scan cad worn}; do
     $pcednet train "$folder/lines1" "$folder/lines2" "$folder/lines3" $clouds $more_in_noise \
       -o "$folder/noisy.safetensors" $options --natural --epochs 18 --no-normals --only estimated,noisy
     # shellcheck disable=SC2086
-    $pcednet train $clouds -o models/general.safetensors $options --balance 0.07 --overwrite \
+    $pcednet train $clouds -o models/general.safetensors $options --balance 0.07 --unrounded-scales --overwrite \
       --expert "$folder/sparse.safetensors" below=4000,estimated \
       --expert "$folder/exact.safetensors" estimated,exact \
       --expert "$folder/noisy.safetensors" estimated,noisy

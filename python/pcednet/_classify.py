@@ -207,7 +207,8 @@ def describe(xyz, normals=None, *, scales=16, features=6, reconstruction="sphere
         Smallest and largest scale in the unit of the cloud; 0: the mean point spacing, and 10 % of
         the diagonal of the bounding box.
     s_max_ratio : float
-        If not 0 and `s_max` is: `s_max` over `s_min`, for any extent of the cloud.
+        If not 0 and `s_max` is: `s_max` over `s_min`, for any extent of the cloud. A missing
+        `s_min` is then the preferred number (1, 1.12, 1.25, ...) nearest to the spacing.
     octaves : bool
         With `s_max_ratio`: in clouds of uneven spacing, describe points at 2, 4 or 8 times larger
         scales where they are that much sparser. What models with octaves were made for.

@@ -97,6 +97,21 @@ TEST(TrainEdges, TakesBoundaryForNonEdge) {
   EXPECT_EQ(train_on(cloud, quick(3)).model.network.network.parameters, reference);
 }
 
+TEST(TrainEdges, LearnsAtTheSpacingItselfIfAsked) {
+  const PointCloud cloud = cube(1500, 1);
+  TrainOptions options = quick(3);
+  const auto by_extent = train_on(cloud, options).model;
+  options.descriptor.s_max_ratio = 8.0;
+  const auto rounded = train_on(cloud, options).model;
+  options.unrounded_scales = true;
+  const auto model = train_on(cloud, options).model;
+  EXPECT_NE(model.network.network.parameters, rounded.network.network.parameters);
+  EXPECT_EQ(model.descriptor, rounded.descriptor);
+  options.descriptor.s_max_ratio = 0.0;
+  EXPECT_EQ(train_on(cloud, options).model.network.network.parameters,
+            by_extent.network.network.parameters);
+}
+
 TEST(TrainEdges, NamesTheCloudWithoutLabels) {
   PointCloud cloud = cube(100, 1);
   std::fill(cloud.labels.begin(), cloud.labels.end(), kUnlabelled);

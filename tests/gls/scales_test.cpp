@@ -143,11 +143,12 @@ TEST(Scales, OfARatioFollowTheSpacingAlone) {
 }
 
 TEST(Scales, OfARatioBeginAtAPreferredNumber) {
-  const auto s_min_of = [](double step) {
+  const auto s_min_of = [](double step, bool rounded = true) {
     std::vector<Vec3> grid;
     for (int i = 0; i < 2500; ++i) grid.emplace_back(step * (i % 50), step * (i / 50), 0.0);
-    return range_of(grid, {.s_max_ratio = 10.0}).s_min;  // (4 + 4 sqrt(2) + 4) / 10 of the step
+    return range_of(grid, {.s_max_ratio = 10.0, .rounded = rounded}).s_min;
   };
+  EXPECT_NEAR(s_min_of(1.0, false), (4.0 + 4.0 * std::sqrt(2.0) + 4.0) / 10.0, 1e-12);
   EXPECT_EQ(s_min_of(1.0), 1.4);
   EXPECT_EQ(s_min_of(1.05), 1.4);
   EXPECT_EQ(s_min_of(1.1), 1.6);

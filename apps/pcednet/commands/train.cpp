@@ -300,6 +300,11 @@ void add_train(CLI::App& app, Common& common) {
                  "With --s-max-ratio: describe clouds of uneven spacing at larger scales where "
                  "points are sparser")
       ->needs("--s-max-ratio");
+  command
+      ->add_flag("--unrounded-scales", arguments->options.unrounded_scales,
+                 "With --s-max-ratio: learn at the spacing of each cloud itself, not at the "
+                 "preferred number nearest to it, at which clouds are classified")
+      ->needs("--s-max-ratio");
   add_network_options(*command, arguments->options);
   add_recipe_options(*command, *arguments);
   for (const char* of_clouds : {"--s-min", "--s-max", "--context"}) {

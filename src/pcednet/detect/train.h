@@ -27,7 +27,9 @@ struct TrainOptions {
   nn::TrainOptions training;  ///< sign rule and class names are set from the rest
   nn::Symmetry symmetry = nn::Symmetry::kAverage;  ///< flipped normals change no answer
   int teachers = 0;                                ///< networks to train first and distil from
-  bool context = false;  ///< train a context network too, where clouds are given
+  bool context = false;           ///< train a context network too, where clouds are given
+  bool unrounded_scales = false;  ///< learn at the spacing of each cloud itself, not at the
+                                  ///< preferred number nearest to it; the model rounds
 };
 
 /// A scale-space matrix row and a label per labelled point of the clouds, cloud by cloud, each in

@@ -31,7 +31,8 @@ ScaleRange given_range(const ScaleSpaceOptions& options) {
           .s_max = options.s_max,
           .s_max_fraction = options.s_max_fraction,
           .s_max_ratio = options.s_max_ratio,
-          .octaves = options.octaves};
+          .octaves = options.octaves,
+          .rounded = options.rounded};
 }
 
 std::string note_on(const ScaleSpaceOptions& options, std::span<const double> scales,
@@ -46,14 +47,14 @@ std::string note_on(const ScaleSpaceOptions& options, std::span<const double> sc
 
 std::string text_of(const ScaleSpaceOptions& options) {
   // Names every member, so that a new one does not compile before it has its place in the text.
-  const auto& [scales, s_min, s_max, s_max_fraction, s_max_ratio, octaves, features, reconstruction,
-               steps, side_gate, second_gate, engine, eps] = options;
+  const auto& [scales, s_min, s_max, s_max_fraction, s_max_ratio, octaves, rounded, features,
+               reconstruction, steps, side_gate, second_gate, engine, eps] = options;
   return fmt::format(
-      "scales {} s_min {} s_max {} fraction {} ratio {}{} features {} reconstruction {} steps {} "
+      "scales {} s_min {} s_max {} fraction {} ratio {}{}{} features {} reconstruction {} steps {} "
       "gate {}{} engine {} eps {}",
       scales, s_min, s_max, s_max_fraction, s_max_ratio, octaves ? " octaves" : "",
-      static_cast<int>(features), static_cast<int>(reconstruction), steps,
-      side_gate ? fmt::format("{}", *side_gate) : "none",
+      rounded ? "" : " unrounded", static_cast<int>(features), static_cast<int>(reconstruction),
+      steps, side_gate ? fmt::format("{}", *side_gate) : "none",
       second_gate ? fmt::format(" and {}", *second_gate) : "", static_cast<int>(engine), eps);
 }
 

@@ -29,6 +29,7 @@ struct ScaleSpaceOptions {
   double s_max_fraction = kPartOfDiagonal;  ///< of the diagonal, where s_max is 0
   double s_max_ratio = 0.0;                 ///< if not 0 while s_max is 0: s_max over s_min
   bool octaves = false;  ///< in uneven clouds, larger scales where the spacing is wider
+  bool rounded = true;   ///< with a ratio: an s_min of the cloud is a preferred number
   FeatureSet features = FeatureSet::kPaper6;
   Reconstruction reconstruction = Reconstruction::kSphere;
   int max_projection_steps = 5;  ///< for the reconstructions that project

@@ -73,7 +73,9 @@ ScaleRange tied_range(const ScaleRange& given,
   std::vector<double> all = spacings();
   const std::span<const double> half = middle_half(all);
   ScaleRange range = given;
-  if (range.s_min == 0.0) range.s_min = preferred_number(mean_of(half));
+  if (range.s_min == 0.0) {
+    range.s_min = range.rounded ? preferred_number(mean_of(half)) : mean_of(half);
+  }
   if (range.s_max == 0.0) {
     const bool has_octaves = given.octaves && ends_differ(half);
     range.s_max = range.s_max_ratio * range.s_min * (has_octaves ? factor_of(kOctaves - 1) : 1.0);

@@ -20,6 +20,7 @@ struct ScaleRange {
   double s_max_fraction = kPartOfDiagonal;  ///< of the diagonal: s_max where it is not given
   double s_max_ratio = 0.0;                 ///< s_max over s_min; 0: s_max_fraction rules
   bool octaves = false;  ///< with a ratio: s_max is larger where the spacing varies
+  bool rounded = true;   ///< with a ratio: an s_min of the cloud is a preferred number
 };
 
 /// In uneven clouds points may be described at scales 2, 4 or 8 times larger than those of octave
@@ -41,10 +42,10 @@ inline constexpr std::size_t kSpacingNeighbours = 11;
 
 /// The range of scales of the finite `positions`. Bounds other than 0 in `given` are kept.
 ///
-/// With an s_max_ratio: s_min is the mean of the middle half of `spacings()`, rounded to a
-/// preferred number (R 20 of ISO 3: 1, 1.12, 1.25, ... 9, 10), so that most pieces of a cloud have
-/// the same, and s_max = s_max_ratio s_min, or with octaves that of the last octave if the cloud
-/// is_uneven(). Neither the extent nor a few far points change the range.
+/// With an s_max_ratio: s_min is the mean of the middle half of `spacings()`, if `rounded` the
+/// nearest preferred number (R 20 of ISO 3: 1, 1.12, 1.25, ... 9, 10), so that most pieces of a
+/// cloud have the same, and s_max = s_max_ratio s_min, or with octaves that of the last octave if
+/// the cloud is_uneven(). Neither the extent nor a few far points change the range.
 ///
 /// Without one, the paper's range: s_min = the mean of `spacings()`, s_max = s_max_fraction (10 %)
 /// of the diagonal of the bounding box. Where this gives no range, an s_max that was not given and

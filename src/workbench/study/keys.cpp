@@ -37,11 +37,13 @@ std::string text_of_training(const nn::TrainOptions& options) {
 }  // namespace
 
 std::string text_of(const detect::TrainOptions& options) {
-  const auto& [descriptor, architecture, table, training, symmetry, teachers, context] = options;
+  const auto& [descriptor, architecture, table, training, symmetry, teachers, context, unrounded] =
+      options;
   static_cast<void>(table);  // a study is of edge classes
-  return fmt::format("{}, {}, {}, symmetry {}, teachers {}{}", gls::text_of(descriptor),
+  return fmt::format("{}, {}, {}, symmetry {}, teachers {}{}{}", gls::text_of(descriptor),
                      text_of_network(architecture), text_of_training(training),
-                     static_cast<int>(symmetry), teachers, context ? ", context" : "");
+                     static_cast<int>(symmetry), teachers, context ? ", context" : "",
+                     unrounded ? ", unrounded" : "");
 }
 
 std::string text_of(const Treatment& treatment) {
