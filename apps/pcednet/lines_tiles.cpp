@@ -70,7 +70,8 @@ bool may_be_edge(const detect::Classification& found, std::size_t i) {
 
 Cubes cubes_near_edges(const TiledCloud& cloud, const Progress& progress) {
   const tiles::Plan& plan = cloud.plan();
-  Cubes cubes(plan.box, plan.s_max);
+  constexpr double kOfSpacing = 24.0;  // where octaves make s_max up to 64
+  Cubes cubes(plan.box, plan.pyramids.size() > 1 ? kOfSpacing * plan.s_min : plan.s_max);
   Stage stage(&progress, "edges", plan.points());
   cloud.each([&](const PointCloud& part, const tiles::TileFindings& findings) {
     for (std::size_t i = 0; i < part.size(); ++i) {
