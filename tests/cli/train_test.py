@@ -120,6 +120,12 @@ class Train(CliTest):
         self.assertIn("another descriptor", result.stderr)
         self.assertFalse((self.folder / "m.safetensors").exists())
 
+    def test_takes_experts_that_learnt_without_octaves(self):
+        tied = ("--epochs", 1, "--s-max-ratio", 8)
+        few = self.train("few.safetensors", *tied)
+        joined = tensors(self.train("m.safetensors", *tied, "--octaves", "--expert", few, "below=9"))[0]
+        self.assertEqual(joined["descriptor_octaves"], "1")
+
     def test_trains_with_two_gates_and_teachers(self):
         options = ["--gate", 0.4, "--second-gate", -0.3, "--distil", 2, "--epochs", 2]
         model = self.train("one.safetensors", *options, "--threads", 1)

@@ -294,7 +294,9 @@ void drop_context(EdgeModel& model) {
 
 void check_fits(const EdgeModel& expert, const gls::ScaleSpaceOptions& descriptor,
                 std::size_t classes) {
-  if (expert.descriptor == descriptor && expert.classes.size() == classes) return;
+  gls::ScaleSpaceOptions own = expert.descriptor;
+  own.octaves = descriptor.octaves;  // the model's hold: networks may learn without them
+  if (own == descriptor && expert.classes.size() == classes) return;
   throw Error(
       ErrorKind::kModelMismatch,
       fmt::format("{}: its networks need another descriptor, or other classes", expert.name));

@@ -79,8 +79,8 @@ EdgeModel suited_to(EdgeModel model, const CloudTraits& traits);
 /// Removes the context networks: faster, less accurate.
 void drop_context(EdgeModel& model);
 
-/// Throws Error(kModelMismatch) unless the networks of `expert` use `descriptor` and have that many
-/// classes.
+/// Throws Error(kModelMismatch) unless the networks of `expert` use `descriptor`, but for octaves,
+/// which they may have learnt without, and have that many classes.
 void check_fits(const EdgeModel& expert, const gls::ScaleSpaceOptions& descriptor,
                 std::size_t classes);
 
