@@ -167,9 +167,16 @@ export class Client {
       store.set({ connected: false, restarted });
     });
     this.events.addEventListener("open", () => {
+      if (!this.opened) this.attempt(this.refresh()); // what happened before this was not heard
+      else if (store.now.connected) this.attempt(this.lookWhoPaints());
       if (!store.now.connected) this.attempt(this.returned());
-      else this.attempt(this.refresh()); // what happened before this was not heard
     });
+  }
+
+  /** The window that painted may have left before this one heard of anything. */
+  private async lookWhoPaints(): Promise<void> {
+    const { known, writer } = await this.api.get<Session>("/api/session");
+    if (known && writer) this.store.set({ writer });
   }
 
   /** The session as it is now. One look at it after another: two at a time would open two windows. */
@@ -183,7 +190,6 @@ export class Client {
     const session = await this.api.get<Session>("/api/session");
     const { store } = this;
     if (!session.known) await this.enter();
-    else if (session.writer) store.set({ writer: true }); // the one that painted has left
     this.loading = session.state !== "ready";
     if (this.loading) {
       if (!store.now.progress?.fraction) store.set({ progress: { stage: session.stage, fraction: 0 } });
