@@ -233,6 +233,29 @@ TEST(Strings, JoinWhatContinuesButNotALongLineAndALongArc) {
   EXPECT_EQ(tangent.size(), 2u);
 }
 
+TEST(Strings, AreDividedWhereSegmentsAndArcsExplainThem) {
+  std::vector<Piece> tangent = {straight({10, -5, 0}, {10, -1, 0}, Vec3::UnitX(), Vec3::UnitZ()),
+                                round_piece(0.0, 1.5)};
+  string_together(tangent, 3.0, 0.5);
+  ASSERT_EQ(tangent.size(), 1u);
+  ASSERT_EQ(tangent[0].fit.kind, CurveKind::kPolyline);
+  const std::size_t nodes = tangent[0].nodes.size();
+  divide_strings(tangent, kWithin);
+  ASSERT_EQ(tangent.size(), 2u);
+  EXPECT_EQ(tangent[0].fit.kind, CurveKind::kSegment);
+  EXPECT_EQ(tangent[1].fit.kind, CurveKind::kArc);
+  EXPECT_NEAR(tangent[1].fit.radius, 10.0, 0.5);
+  EXPECT_EQ(tangent[0].nodes.size() + tangent[1].nodes.size(), nodes);
+
+  Piece wave = straight({0, 0, 0}, {30, 0, 0});
+  for (ChainNode& node : wave.nodes) node.at.y() = 2.0 * std::sin(node.at.x());
+  wave.fit = {};
+  std::vector<Piece> waves = {wave};
+  divide_strings(waves, kWithin);
+  ASSERT_EQ(waves.size(), 1u);
+  EXPECT_EQ(waves[0].fit.kind, CurveKind::kPolyline);
+}
+
 TEST(Strings, JoinWhatNoiseDrewSideBySideWhereItEndsFree) {
   const std::vector<Piece> beside = {straight({0, 0, 0}, {10, 0, 0}),
                                      straight({7, 2.4, 0}, {20, 2.4, 0})};

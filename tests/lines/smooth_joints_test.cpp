@@ -75,7 +75,8 @@ TEST(SmoothJoints, CurvesOfTwoKindsThatTouchStayTwoAsDoPolylines) {
   EXPECT_EQ(smoothly_joined({kToOrigin, arc_from_origin(60)}).size(), 2u);
   EXPECT_EQ(smoothly_joined({arc_from_origin(60), kToOrigin}).size(), 2u);
   EXPECT_EQ(smoothly_joined({arc_from_origin(60), turned_curve({0, 0, 0}, 195)}).size(),
-            1u);  // at 15 degrees
+            2u);  // at 15 degrees
+  EXPECT_EQ(smoothly_joined({arc_from_origin(60), turned_curve({0, 0, 0}, 205)}).size(), 1u);
   const Curve bent = {.points = {Vec3::Zero(), Vec3(10, 2, 0), Vec3(15, 9, 0)}};
   EXPECT_EQ(smoothly_joined({kToOrigin, bent}).size(), 2u);
 }

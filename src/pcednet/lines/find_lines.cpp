@@ -21,6 +21,7 @@
 #include "pcednet/lines/plane_edges.h"
 #include "pcednet/lines/refine.h"
 #include "pcednet/lines/regularise.h"
+#include "pcednet/lines/rounding.h"
 #include "pcednet/lines/sampling.h"
 #include "pcednet/lines/smooth_joints.h"
 #include "pcednet/lines/split.h"
@@ -132,6 +133,7 @@ void join(std::vector<Piece>& pieces, const OrderedPoints& cloud, const Limits& 
   bridge_gaps(pieces, cloud, limits.tolerance, noise);
   stage.advance();
   string_together(pieces, limits.gap, limits.angle);
+  if (noise <= kMuchNoise) divide_strings(pieces, limits.tolerance, progress);
   stage.advance();
   complete_coaxial(pieces, cloud, limits.tolerance);
   stage.advance();
@@ -218,6 +220,7 @@ std::vector<Curve> find_lines(const EdgePoints& points, const LineOptions& optio
   std::vector<Piece> pieces = split_chains(chains, limits.tolerance, progress);
   join(pieces, cloud, limits, sampling.noise, progress);
   refine(pieces, cloud, sampling, progress);
+  round_corners(pieces, limits.tolerance);
   extend_free_ends(pieces, cloud, sampling.noise);
   if (sampling.noise > kMuchNoise) {
     string_free_ends(pieces, limits.gap, limits.angle, sampling.noise);

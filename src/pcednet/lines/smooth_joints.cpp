@@ -14,7 +14,7 @@
 namespace pcednet::lines {
 namespace {
 
-constexpr double kTouching = 0.99;     ///< least cosine between a segment and an arc that touch
+constexpr double kTouching = 0.94;     ///< least cosine between a segment and an arc that touch
 constexpr std::size_t kMostRound = 3;  ///< curves round a circle: four are the sides of a rectangle
 constexpr double kLargestRound = 8.0;  ///< radius of such a circle, in spacings
 

@@ -3,16 +3,20 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <optional>
 #include <utility>
 
 #include "pcednet/lines/corners.h"
+#include "pcednet/lines/split.h"
 #include "pcednet/spatial/kd_tree.h"
 
 namespace pcednet::lines {
 namespace {
 
 constexpr std::size_t kLong = 7;  ///< nodes
+/// Of a polyline that is divided, and of its parts.
+constexpr std::size_t kLeastNodesDivided = 8, kLeastNodesOfPart = 3;
 // Of pieces that end free in noise, in spacings.
 constexpr double kAsideInNoise = 2.0;
 constexpr double kOverlapInNoise = 6.0;
@@ -115,6 +119,20 @@ void string_along(const std::vector<Link>& links, std::vector<Piece>& pieces) {
   pieces = std::move(result);
 }
 
+/// The segments and arcs that explain all nodes of a polyline; none if they do not.
+std::vector<Piece> parts_of(const Piece& piece, double tolerance, const Progress* progress) {
+  if (piece.fit.kind != CurveKind::kPolyline || is_boundary(piece.middle()) ||
+      piece.nodes.size() < kLeastNodesDivided) {
+    return {};
+  }
+  const Chain chain = {.nodes = piece.nodes, .closed = piece.closed};
+  const std::vector<Run> runs = split(chain, tolerance, progress);
+  const bool explained = std::all_of(runs.begin(), runs.end(), [](const Run& run) {
+    return run.fit.kind != CurveKind::kPolyline && run.last - run.first >= kLeastNodesOfPart;
+  });
+  return explained ? pieces_of(chain, runs, kLeastNodesOfPart) : std::vector<Piece>();
+}
+
 }  // namespace
 
 std::vector<EndString> follow_partners(std::span<const std::size_t> partner) {
@@ -146,6 +164,16 @@ std::vector<EndString> follow_partners(std::span<const std::size_t> partner) {
 
 void string_together(std::vector<Piece>& pieces, double gap, double angle) {
   string_along(links_between(open_ends(pieces), pieces, {gap, std::cos(angle)}), pieces);
+}
+
+void divide_strings(std::vector<Piece>& pieces, double tolerance, const Progress* progress) {
+  std::vector<Piece> result;
+  for (Piece& piece : pieces) {
+    std::vector<Piece> parts = parts_of(piece, tolerance, progress);
+    if (parts.empty()) parts.push_back(std::move(piece));
+    std::move(parts.begin(), parts.end(), std::back_inserter(result));
+  }
+  pieces = std::move(result);
 }
 
 void string_free_ends(std::vector<Piece>& pieces, double gap, double angle, double noise) {

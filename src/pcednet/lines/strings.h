@@ -26,9 +26,14 @@ std::vector<EndString> follow_partners(std::span<const std::size_t> partner);
 /// and an arc, or two segments, stay separate if both are long: their kind is certain.
 void string_together(std::vector<Piece>& pieces, double gap, double angle);
 
-/// The same for pieces of noisy points with their final extents: two that lie side by side, or
-/// overlap, and both end free, are one edge regardless of their kinds. Ends in corners (see
-/// free_ends(); `noise` is in spacings) stay.
+/// Polylines all nodes of which are within `tolerance` (in spacings) of a few segments and arcs
+/// become these. Throws Error(kCancelled) once the caller cancels.
+void divide_strings(std::vector<Piece>& pieces, double tolerance,
+                    const Progress* progress = nullptr);
+
+/// The same as string_together() for pieces of noisy points with their final extents: two that lie
+/// side by side, or overlap, and both end free, are one edge regardless of their kinds. Ends in
+/// corners (see free_ends(); `noise` is in spacings) stay.
 void string_free_ends(std::vector<Piece>& pieces, double gap, double angle, double noise);
 
 /// The vertices of a polyline that stays within `tolerance` of all `places`, the ends kept.

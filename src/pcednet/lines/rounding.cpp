@@ -1,0 +1,222 @@
+#include "pcednet/lines/rounding.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <utility>
+
+namespace pcednet::lines {
+namespace {
+
+constexpr double kLeastTurn = 0.906, kMostTurn = -0.866;  ///< cosines: of 25 and 150 degrees
+constexpr double kOnwards = 0.25;   ///< least cosine between a piece and the segment that follows
+constexpr double kAlongside = 0.8;  ///< an edge along the piece does not begin there
+constexpr double kMisses = 1.4;     ///< tolerances between nodes and arc
+constexpr std::size_t kLeastNodesOfSegment = 3, kLeastNodesLeft = 2, kLeastNodesOnArc = 2;
+
+// In spacings.
+constexpr double kLongestRounding = 24.0;
+constexpr double kToSegment = 4.5;   ///< from the piece between to a segment
+constexpr double kToOthers = 2.5;    ///< from the piece between to other edges
+constexpr double kLinesApart = 0.6;  ///< and the tolerance
+constexpr double kLeastRounding = 1.5;
+constexpr double kRestOfSegment = 2.0;
+constexpr double kTangentStep = 0.25;
+constexpr double kMostOffArc = 3.0;
+
+/// Where two lines meet, and the arcs that touch both at the distance `tangent` from there.
+struct Apex {
+  Vec3 at;
+  Vec3 in, out;  ///< directions of the line up to it and of the one from it on
+  Vec3 axis;     ///< of the turn, counter-clockwise
+  double turn;
+
+  double radius(double tangent) const { return tangent / std::tan(0.5 * turn); }
+  Vec3 first(double tangent) const { return at - tangent * in; }
+  Vec3 last(double tangent) const { return at + tangent * out; }
+  Vec3 centre(double tangent) const { return first(tangent) + radius(tangent) * axis.cross(in); }
+
+  /// Whether the place is beside the arc, not beside one of the lines.
+  bool is_on_arc(const Vec3& place, double tangent) const {
+    return (place - first(tangent)).dot(in) > 0.0 && (place - last(tangent)).dot(out) < 0.0;
+  }
+  double distance_to_arc(const Vec3& place, double tangent) const {
+    const Vec3 offset = place - centre(tangent);
+    const double height = offset.dot(axis);
+    return std::hypot((offset - height * axis).norm() - radius(tangent), height);
+  }
+  /// To the nearer of the lines.
+  double distance_to_lines(const Vec3& place) const {
+    const Vec3 offset = place - at;
+    return std::min(offset.cross(in).norm(), offset.cross(out).norm());
+  }
+};
+
+/// The piece between two segments, and their ends at its first and its last.
+struct Between {
+  std::size_t piece;
+  End before, after;
+};
+
+/// The segment that goes on nearest to an end of a piece.
+std::optional<End> segment_at(const End& end, const std::vector<Piece>& pieces,
+                              const EndIndex& index) {
+  const Piece& piece = pieces[end.piece];
+  std::vector<spatial::Neighbour> near;
+  index.tree.within(piece.ends[end.side], kToSegment * piece.spacing(), near);
+  for (const auto& other : near) {
+    const End& there = index.ends[other.index];
+    const Piece& segment = pieces[there.piece];
+    if (there.piece == end.piece || segment.fit.kind != CurveKind::kSegment) continue;
+    if (segment.nodes.size() < kLeastNodesOfSegment || is_boundary(segment.middle())) continue;
+    if (length_of(segment) < length_of(piece)) continue;
+    if (-outward(segment, there.side).dot(outward(piece, end.side)) < kOnwards) continue;
+    return there;
+  }
+  return std::nullopt;
+}
+
+/// Whether an edge that is none of the three begins at an end of the piece.
+bool is_junction(const Between& between, std::size_t side, const std::vector<Piece>& pieces,
+                 const EndIndex& index) {
+  const Piece& piece = pieces[between.piece];
+  std::vector<spatial::Neighbour> near;
+  index.tree.within(piece.ends[side], kToOthers * piece.spacing(), near);
+  return std::any_of(near.begin(), near.end(), [&](const auto& other) {
+    const auto [of, at] = index.ends[other.index];
+    if (of == between.piece || of == between.before.piece || of == between.after.piece)
+      return false;
+    return std::abs(outward(pieces[of], at).dot(outward(piece, side))) < kAlongside;
+  });
+}
+
+std::optional<Between> between_segments(std::size_t piece, const std::vector<Piece>& pieces,
+                                        const EndIndex& index) {
+  const auto before = segment_at({piece, 0}, pieces, index);
+  const auto after = segment_at({piece, 1}, pieces, index);
+  if (!before || !after || before->piece == after->piece) return std::nullopt;
+  const Between between = {piece, *before, *after};
+  if (is_junction(between, 0, pieces, index) || is_junction(between, 1, pieces, index))
+    return std::nullopt;
+  return between;
+}
+
+/// Nothing where the lines pass each other farther than `apart`, or turn too little or too much.
+std::optional<Apex> apex_of(const Piece& before, std::size_t side_before, const Piece& after,
+                            std::size_t side_after, double apart) {
+  const Vec3 in = outward(before, side_before), out = -outward(after, side_after);
+  const double cosine = in.dot(out);
+  if (!(cosine < kLeastTurn && cosine > kMostTurn)) return std::nullopt;
+  const Vec3 &from = before.ends[side_before], &to = after.ends[side_after];
+  const Vec3 axis = in.cross(out).normalized(), offset = to - from;
+  if (std::abs(offset.dot(axis)) > apart) return std::nullopt;
+  const double sq_sine = 1.0 - cosine * cosine;
+  const double ahead = (offset.dot(in) - cosine * offset.dot(out)) / sq_sine;
+  const double behind = (offset.dot(out) - cosine * offset.dot(in)) / sq_sine;
+  return Apex{0.5 * (from + ahead * in + to - behind * out), in, out, axis, std::acos(cosine)};
+}
+
+/// The nodes of all three in the order of the edge, in its sense.
+std::vector<ChainNode> nodes_along(const Between& between, const std::vector<Piece>& pieces) {
+  std::vector<ChainNode> nodes;
+  const auto add = [&](const std::vector<ChainNode>& more, bool in_order) {
+    for (std::size_t i = 0; i < more.size(); ++i) {
+      nodes.push_back(more[in_order ? i : more.size() - 1 - i]);
+      if (!in_order) nodes.back().along = -nodes.back().along;
+    }
+  };
+  add(pieces[between.before.piece].nodes, between.before.side == 1);
+  add(pieces[between.piece].nodes, true);
+  add(pieces[between.after.piece].nodes, between.after.side == 0);
+  return nodes;
+}
+
+/// The tangent of the arc that with the lines is nearest to the nodes, by least squares.
+std::optional<double> best_tangent(const Apex& apex, const std::vector<ChainNode>& nodes,
+                                   double spacing, double most) {
+  std::optional<double> best;
+  double least = std::numeric_limits<double>::infinity();
+  for (double tangent = kTangentStep * spacing; tangent < most; tangent += kTangentStep * spacing) {
+    if (apex.radius(tangent) < kLeastRounding * spacing) continue;
+    double sum = 0.0;
+    for (const ChainNode& node : nodes) {
+      const double off = apex.is_on_arc(node.at, tangent) ? apex.distance_to_arc(node.at, tangent)
+                                                          : apex.distance_to_lines(node.at);
+      sum += std::pow(std::min(off / spacing, kMostOffArc), 2);
+    }
+    if (sum < least) least = sum, best = tangent;
+  }
+  return best;
+}
+
+/// The segment up to the arc; nothing if hardly a node is left.
+std::optional<Piece> shortened(const Piece& segment, std::size_t side, const Vec3& end,
+                               const Apex& apex, double tangent) {
+  Piece rest = segment;
+  std::erase_if(rest.nodes,
+                [&](const ChainNode& node) { return apex.is_on_arc(node.at, tangent); });
+  if (rest.nodes.size() < kLeastNodesLeft) return std::nullopt;
+  rest.ends[side] = end;
+  return rest;
+}
+
+/// The arc with the nodes beside it; nothing if there are few or one of the pieces that it replaces
+/// is nearer to them.
+std::optional<Piece> arc_at(const Apex& apex, double tangent, const std::vector<ChainNode>& nodes,
+                            double spacing, double most_off) {
+  Piece arc{.fit = {CurveKind::kArc, apex.centre(tangent), apex.axis, apex.radius(tangent)},
+            .nodes = {},
+            .ends = {apex.first(tangent), apex.last(tangent)}};
+  double sum = 0.0;
+  for (const ChainNode& node : nodes) {
+    if (!apex.is_on_arc(node.at, tangent)) continue;
+    arc.nodes.push_back(node);
+    sum += std::pow(apex.distance_to_arc(node.at, tangent) / spacing, 2);
+  }
+  if (arc.nodes.size() < kLeastNodesOnArc) return std::nullopt;
+  arc.fit.error = std::sqrt(sum / static_cast<double>(arc.nodes.size()));
+  if (arc.fit.error > most_off) return std::nullopt;
+  return arc;
+}
+
+void round_corner(const Between& between, double tolerance, std::vector<Piece>& pieces) {
+  Piece& piece = pieces[between.piece];
+  const auto [before, side_before] = between.before;
+  const auto [after, side_after] = between.after;
+  const double spacing = piece.spacing();
+  const auto apex = apex_of(pieces[before], side_before, pieces[after], side_after,
+                            (kLinesApart + tolerance) * spacing);
+  if (!apex) return;
+  const double room = std::min((apex->at - pieces[before].ends[1 - side_before]).dot(apex->in),
+                               (pieces[after].ends[1 - side_after] - apex->at).dot(apex->out));
+  const std::vector<ChainNode> nodes = nodes_along(between, pieces);
+  const auto tangent = best_tangent(*apex, nodes, spacing, room - kRestOfSegment * spacing);
+  if (!tangent) return;
+  auto arc =
+      arc_at(*apex, *tangent, nodes, spacing, std::max(kMisses * tolerance, piece.fit.error));
+  auto up_to = shortened(pieces[before], side_before, apex->first(*tangent), *apex, *tangent);
+  auto from_on = shortened(pieces[after], side_after, apex->last(*tangent), *apex, *tangent);
+  if (!arc || !up_to || !from_on) return;
+  piece = std::move(*arc);
+  pieces[before] = std::move(*up_to);
+  pieces[after] = std::move(*from_on);
+}
+
+}  // namespace
+
+void round_corners(std::vector<Piece>& pieces, double tolerance) {
+  const EndIndex index(pieces, open_ends(pieces));
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    const Piece& piece = pieces[i];
+    if (piece.closed || is_boundary(piece.middle())) continue;
+    if (length_of(piece) > kLongestRounding * piece.spacing()) continue;
+    if (const auto between = between_segments(i, pieces, index)) {
+      round_corner(*between, tolerance, pieces);
+    }
+  }
+}
+
+}  // namespace pcednet::lines
