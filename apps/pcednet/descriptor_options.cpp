@@ -39,8 +39,7 @@ void add_descriptor_options(CLI::App& command, gls::ScaleSpaceOptions& options) 
   add_scale_range_options(command, options);
   command
       .add_option("--s-max-ratio", options.s_max_ratio,
-                  "Largest scale over the smallest, in place of 10 % of the diagonal; up to three "
-                  "times more where the spacing varies (0: off)")
+                  "Largest scale over the smallest, in place of 10 % of the diagonal (0: off)")
       ->capture_default_str()
       ->check(number_from_0());
 }

@@ -103,7 +103,7 @@ TEST(TrainEdges, LearnsAtTheSpacingItselfIfAsked) {
   const auto by_extent = train_on(cloud, options).model;
   options.descriptor.s_max_ratio = 8.0;
   const auto rounded = train_on(cloud, options).model;
-  options.unrounded_scales = true;
+  options.descriptor.rounded = false;
   const auto model = train_on(cloud, options).model;
   EXPECT_NE(model.network.network.parameters, rounded.network.network.parameters);
   EXPECT_EQ(model.descriptor, rounded.descriptor);

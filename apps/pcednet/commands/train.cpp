@@ -301,7 +301,7 @@ void add_train(CLI::App& app, Common& common) {
                  "points are sparser")
       ->needs("--s-max-ratio");
   command
-      ->add_flag("--unrounded-scales", arguments->options.unrounded_scales,
+      ->add_flag("--unrounded-scales{false}", arguments->options.descriptor.rounded,
                  "With --s-max-ratio: learn at the spacing of each cloud itself, not at the "
                  "preferred number nearest to it, at which clouds are classified")
       ->needs("--s-max-ratio");

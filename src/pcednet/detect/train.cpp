@@ -129,9 +129,7 @@ TrainedModel train(const std::string& name, std::span<const TrainingCloud> cloud
                    const TrainOptions& options,
                    const std::function<void(const nn::EpochReport&)>& on_epoch,
                    const Progress* progress) {
-  gls::ScaleSpaceOptions descriptor = options.descriptor;
-  descriptor.rounded = !options.unrounded_scales;
-  const Samples samples = make_samples(clouds, descriptor, progress, options.table);
+  const Samples samples = make_samples(clouds, options.descriptor, progress, options.table);
   TrainedModel trained = train(name, samples, options, on_epoch, progress);
   trained.notes = samples.notes;
   if (options.context) add_context(trained, clouds, options, on_epoch, progress);

@@ -19,7 +19,7 @@ struct TrainingCloud {
 };
 
 struct TrainOptions {
-  gls::ScaleSpaceOptions descriptor;
+  gls::ScaleSpaceOptions descriptor;  ///< if not `rounded`, that of training alone: models round
   nn::Architecture architecture;  ///< scales and features are set from `descriptor`
   /// The classes that labels index. With own classes the network has an output for each class that
   /// occurs, regardless of the architecture.
@@ -27,9 +27,7 @@ struct TrainOptions {
   nn::TrainOptions training;  ///< sign rule and class names are set from the rest
   nn::Symmetry symmetry = nn::Symmetry::kAverage;  ///< flipped normals change no answer
   int teachers = 0;                                ///< networks to train first and distil from
-  bool context = false;           ///< train a context network too, where clouds are given
-  bool unrounded_scales = false;  ///< learn at the spacing of each cloud itself, not at the
-                                  ///< preferred number nearest to it; the model rounds
+  bool context = false;  ///< train a context network too, where clouds are given
 };
 
 /// A scale-space matrix row and a label per labelled point of the clouds, cloud by cloud, each in

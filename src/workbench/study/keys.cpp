@@ -37,13 +37,11 @@ std::string text_of_training(const nn::TrainOptions& options) {
 }  // namespace
 
 std::string text_of(const detect::TrainOptions& options) {
-  const auto& [descriptor, architecture, table, training, symmetry, teachers, context, unrounded] =
-      options;
+  const auto& [descriptor, architecture, table, training, symmetry, teachers, context] = options;
   static_cast<void>(table);  // a study is of edge classes
-  return fmt::format("{}, {}, {}, symmetry {}, teachers {}{}{}", gls::text_of(descriptor),
+  return fmt::format("{}, {}, {}, symmetry {}, teachers {}{}", gls::text_of(descriptor),
                      text_of_network(architecture), text_of_training(training),
-                     static_cast<int>(symmetry), teachers, context ? ", context" : "",
-                     unrounded ? ", unrounded" : "");
+                     static_cast<int>(symmetry), teachers, context ? ", context" : "");
 }
 
 std::string text_of(const Treatment& treatment) {
