@@ -20,7 +20,7 @@ struct TrainingCloud {
 
 struct TrainOptions {
   gls::ScaleSpaceOptions descriptor;  ///< if not `rounded`, that of training alone: models round
-  nn::Architecture architecture;  ///< scales and features are set from `descriptor`
+  nn::Architecture architecture;      ///< scales and features are set from `descriptor`
   /// The classes that labels index. With own classes the network has an output for each class that
   /// occurs, regardless of the architecture.
   ClassTable table = edge_classes();
