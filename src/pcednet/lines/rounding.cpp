@@ -163,8 +163,7 @@ std::optional<Piece> shortened(const Piece& segment, std::size_t side, const Vec
   return rest;
 }
 
-/// The arc with the nodes beside it; nothing if there are few or one of the pieces that it replaces
-/// is nearer to them.
+/// The arc with the nodes beside it; nothing if there are few, or `most_off` spacings from it.
 std::optional<Piece> arc_at(const Apex& apex, double tangent, const std::vector<ChainNode>& nodes,
                             double spacing, double most_off) {
   Piece arc{.fit = {CurveKind::kArc, apex.centre(tangent), apex.axis, apex.radius(tangent)},
