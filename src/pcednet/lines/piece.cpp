@@ -34,18 +34,6 @@ double arc_angle(const Piece& piece) {
                     piece.ends[1] - piece.fit.point);
 }
 
-/// Appends the nodes, in their order or turned round.
-void append(std::vector<ChainNode>& nodes, const std::vector<ChainNode>& more, bool in_order) {
-  if (in_order) {
-    nodes.insert(nodes.end(), more.begin(), more.end());
-    return;
-  }
-  for (auto node = more.rbegin(); node != more.rend(); ++node) {
-    nodes.push_back(*node);
-    nodes.back().along = -node->along;
-  }
-}
-
 /// Both as one, from a's other end to b's; nothing if no segment or arc fits them together.
 std::optional<Piece> joined(const Piece& a, std::size_t side_a, const Piece& b, std::size_t side_b,
                             double tolerance) {
@@ -162,6 +150,17 @@ void drop_duplicates(std::vector<Piece>& pieces) {
 }
 
 }  // namespace
+
+void append(std::vector<ChainNode>& nodes, const std::vector<ChainNode>& more, bool in_order) {
+  if (in_order) {
+    nodes.insert(nodes.end(), more.begin(), more.end());
+    return;
+  }
+  for (auto node = more.rbegin(); node != more.rend(); ++node) {
+    nodes.push_back(*node);
+    nodes.back().along = -node->along;
+  }
+}
 
 Vec3 along_at(const Fit& fit, const ChainNode& node, const Vec3& place) {
   if (fit.kind == CurveKind::kPolyline) return node.along;

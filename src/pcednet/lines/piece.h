@@ -86,6 +86,9 @@ std::vector<std::size_t> longest_first(const std::vector<Piece>& pieces);
 /// Removes the pieces that are marked.
 void erase_marked(std::vector<Piece>& pieces, const std::vector<std::uint8_t>& marks);
 
+/// Appends the nodes, in their order or turned round.
+void append(std::vector<ChainNode>& nodes, const std::vector<ChainNode>& more, bool in_order);
+
 /// The pieces of a chain; those of fewer than `least_nodes` nodes are left out.
 std::vector<Piece> pieces_of(const Chain& chain, const std::vector<Run>& runs,
                              std::size_t least_nodes);

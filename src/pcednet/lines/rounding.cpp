@@ -3,7 +3,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -18,10 +17,10 @@ constexpr double kMisses = 1.4;     ///< tolerances between nodes and arc
 constexpr std::size_t kLeastNodesOfSegment = 3, kLeastNodesLeft = 2, kLeastNodesOnArc = 2;
 
 // In spacings.
-constexpr double kLongestRounding = 24.0;
-constexpr double kToSegment = 4.5;   ///< from the piece between to a segment
-constexpr double kToOthers = 2.5;    ///< from the piece between to other edges
-constexpr double kLinesApart = 0.6;  ///< and the tolerance
+constexpr double kLongestRounding = 24.0;  ///< of the piece, and of the tangents
+constexpr double kToSegment = 4.5;         ///< from the piece between to a segment
+constexpr double kToOthers = 2.5;          ///< from the piece between to other edges
+constexpr double kLinesApart = 0.6;        ///< and the tolerance
 constexpr double kLeastRounding = 1.5;
 constexpr double kRestOfSegment = 2.0;
 constexpr double kTangentStep = 0.25;
@@ -119,18 +118,15 @@ std::optional<Apex> apex_of(const Piece& before, std::size_t side_before, const 
   return Apex{0.5 * (from + ahead * in + to - behind * out), in, out, axis, std::acos(cosine)};
 }
 
-/// The nodes of all three in the order of the edge, in its sense.
-std::vector<ChainNode> nodes_along(const Between& between, const std::vector<Piece>& pieces) {
+/// The nodes of all three that may be on an arc with a tangent up to `most`, in the order and the
+/// sense of the edge.
+std::vector<ChainNode> nodes_along(const Between& between, const std::vector<Piece>& pieces,
+                                   const Apex& apex, double most) {
   std::vector<ChainNode> nodes;
-  const auto add = [&](const std::vector<ChainNode>& more, bool in_order) {
-    for (std::size_t i = 0; i < more.size(); ++i) {
-      nodes.push_back(more[in_order ? i : more.size() - 1 - i]);
-      if (!in_order) nodes.back().along = -nodes.back().along;
-    }
-  };
-  add(pieces[between.before.piece].nodes, between.before.side == 1);
-  add(pieces[between.piece].nodes, true);
-  add(pieces[between.after.piece].nodes, between.after.side == 0);
+  append(nodes, pieces[between.before.piece].nodes, between.before.side == 1);
+  append(nodes, pieces[between.piece].nodes, true);
+  append(nodes, pieces[between.after.piece].nodes, between.after.side == 0);
+  std::erase_if(nodes, [&](const ChainNode& node) { return !apex.is_on_arc(node.at, most); });
   return nodes;
 }
 
@@ -191,8 +187,9 @@ void round_corner(const Between& between, double tolerance, std::vector<Piece>& 
   if (!apex) return;
   const double room = std::min((apex->at - pieces[before].ends[1 - side_before]).dot(apex->in),
                                (pieces[after].ends[1 - side_after] - apex->at).dot(apex->out));
-  const std::vector<ChainNode> nodes = nodes_along(between, pieces);
-  const auto tangent = best_tangent(*apex, nodes, spacing, room - kRestOfSegment * spacing);
+  const double most = std::min(room - kRestOfSegment * spacing, kLongestRounding * spacing);
+  const std::vector<ChainNode> nodes = nodes_along(between, pieces, *apex, most);
+  const auto tangent = best_tangent(*apex, nodes, spacing, most);
   if (!tangent) return;
   auto arc =
       arc_at(*apex, *tangent, nodes, spacing, std::max(kMisses * tolerance, piece.fit.error));

@@ -10,11 +10,11 @@
 
 #include "pcednet/lines/fit.h"
 #include "pcednet/lines/strings.h"
+#include "pcednet/lines/touch.h"
 
 namespace pcednet::lines {
 namespace {
 
-constexpr double kTouching = 0.94;     ///< least cosine between a segment and an arc that touch
 constexpr std::size_t kMostRound = 3;  ///< curves round a circle: four are the sides of a rectangle
 constexpr double kLargestRound = 8.0;  ///< radius of such a circle, in spacings
 

@@ -7,8 +7,7 @@
 namespace pcednet::lines {
 namespace {
 
-constexpr double kLeastCosine = 0.94;  ///< of the directions where they touch
-constexpr double kLeastTouch = 0.35;   ///< of two centres, in the larger radius
+constexpr double kLeastTouch = 0.35;  ///< of two centres, in the larger radius
 
 /// The place of `circle` in the direction of `out` from its centre.
 Vec3 place_towards(const Fit& circle, const Vec3& out) {
@@ -35,8 +34,7 @@ std::optional<Vec3> touching_place(const Fit& a, const Fit& b, const Vec3& place
   if (!first) return std::nullopt;
   const Vec3 second = nearest_on(b, *first);
   if (!((second - *first).norm() < within)) return std::nullopt;
-  if (std::abs(tangent_at(a, *first).dot(tangent_at(b, second))) < kLeastCosine)
-    return std::nullopt;
+  if (std::abs(tangent_at(a, *first).dot(tangent_at(b, second))) < kTouching) return std::nullopt;
   return 0.5 * (*first + second);
 }
 
