@@ -39,7 +39,8 @@ bool stays(Piece piece, double edge_points, double probability, double noise) {
 TEST(Finish, DropsFreePiecesOfDoubtfulPointsInNoise) {
   const Piece piece = straight({0, 0, 0}, {12, 0, 0});
   EXPECT_FALSE(stays(piece, 1.0, 0.7, 0.5));
-  EXPECT_TRUE(stays(piece, 1.0, 0.9, 0.5));
+  EXPECT_FALSE(stays(piece, 1.0, 0.9, 0.5));
+  EXPECT_TRUE(stays(piece, 1.0, 0.96, 0.5));
   EXPECT_TRUE(stays(piece, 1.0, 0.7, 0.1));
 }
 

@@ -18,7 +18,7 @@ namespace {
 // number is added per spacing of noise. An end at the inside of a piece is free unless exact.
 constexpr double kLoose[] = {8.0, 4.0}, kHeldOnce[] = {5.0, 1.0};
 constexpr double kExactLoose = 8.0, kExactHeldOnce = 4.0;
-constexpr int kDropRounds = 3;  ///< those that hung on a dropped piece are loose now
+constexpr int kDropRounds = 9;  ///< those that hung on a dropped piece are loose now
 
 constexpr double kExactReach = 5.0, kExactTolerance = 0.6;  ///< of corners of exact pieces
 
@@ -30,7 +30,7 @@ constexpr double kLittleNoise = 0.1, kPointsForNoise = 1.5;
 
 /// In much noise, pieces of which corners hold no end, or one, need edge points as probable as
 /// this.
-constexpr double kLeastProbable[] = {0.78, 0.68};
+constexpr double kLeastProbable[] = {0.95, 0.68};
 
 /// Those of a long row may be less probable: so long, in spacings, with so many of them on each.
 constexpr double kLongRow = 16.0, kDenseRow = 0.9, kProbableRow = 0.65;
