@@ -49,37 +49,73 @@ Piece slight_arc(const std::vector<Vec3>& places, double radius) {
   return piece;
 }
 
-TEST(Refine, MakesASegmentOfAnArcBetweenPlanes) {
-  Points cloud;
-  for (int i = 0; i < 800; ++i) {
-    const double x = cloud.random.uniform() * 20.0 - 7.0, away = cloud.random.uniform() * 10.0;
-    if (i % 2 == 0) cloud.add({x, -away, 0.0}, Vec3::UnitZ());
-    if (i % 2 == 1) cloud.add({x, 0.0, -away}, Vec3::UnitY());
+/// The piece as a segment.
+Piece straightened(Piece piece) {
+  piece.fit = fit_segment(piece.nodes);
+  for (Vec3& end : piece.ends) end = nearest_on(piece.fit, end);
+  return piece;
+}
+
+/// Two planes that meet in the x axis, and nodes along it on an arc with a radius of 12.5.
+struct BetweenPlanes : Points {
+  explicit BetweenPlanes(int count) {
+    for (int i = 0; i < 800; ++i) {
+      const double x = random.uniform() * 20.0 - 7.0, away = random.uniform() * 10.0;
+      if (i % 2 == 0) add({x, -away, 0.0}, Vec3::UnitZ());
+      if (i % 2 == 1) add({x, 0.0, -away}, Vec3::UnitY());
+    }
+    for (int i = 0; i < count; ++i) {
+      places.emplace_back(i, 0.2 - 0.04 * std::pow(i - 0.5 * (count - 1), 2), 0.0);
+    }
   }
-  std::vector<Vec3> places;
-  for (int i = 0; i <= 6; ++i) places.emplace_back(i, 0.2 - 0.04 * (i - 3.0) * (i - 3.0), 0.0);
-  const Piece piece = cloud.refined(slight_arc(places, 12.5));
+  std::vector<Vec3> places = {};
+};
+
+TEST(Refine, MakesASegmentOfAnArcBetweenPlanes) {
+  const BetweenPlanes cloud(7);
+  const Piece piece = cloud.refined(slight_arc(cloud.places, 12.5));
   EXPECT_EQ(piece.fit.kind, CurveKind::kSegment);
   EXPECT_NEAR(std::abs(piece.fit.direction.x()), 1.0, 1e-9);
   EXPECT_NEAR(piece.ends[0].y(), 0.0, 1e-9);
 }
 
+TEST(Refine, LeavesASegmentBetweenPlanesThoughItsNodesBend) {
+  const BetweenPlanes cloud(9);
+  const Piece piece = cloud.refined(straightened(slight_arc(cloud.places, 12.5)));
+  EXPECT_EQ(piece.fit.kind, CurveKind::kSegment);
+  EXPECT_NEAR(piece.ends[0].y(), 0.0, 1e-9);
+}
+
+constexpr double kRadius = 16.0;
+
+/// The top and the wall of a cylinder, and nodes along its rim.
+struct OnCylinder : Points {
+  OnCylinder() {
+    for (int i = 0; i < 1200; ++i) {
+      const double angle = random.uniform() * 1.6;
+      const Vec3 out(std::sin(angle), std::cos(angle), 0.0);
+      const double away = random.uniform() * 8.0;
+      if (i % 2 == 0) add((kRadius - away) * out, Vec3::UnitZ());
+      if (i % 2 == 1) add(kRadius * out - away * Vec3::UnitZ(), out);
+    }
+    for (int i = 0; i <= 8; ++i) {
+      const double angle = 0.5 + i / kRadius;
+      places.emplace_back(kRadius * std::sin(angle), kRadius * std::cos(angle), 0.0);
+    }
+  }
+  std::vector<Vec3> places = {};
+};
+
 TEST(Refine, LeavesAnArcWhereASurfaceIsRound) {
-  constexpr double kRadius = 16.0;
-  Points cloud;
-  for (int i = 0; i < 1200; ++i) {
-    const double angle = cloud.random.uniform() * 1.6;
-    const Vec3 out(std::sin(angle), std::cos(angle), 0.0);
-    const double away = cloud.random.uniform() * 8.0;
-    if (i % 2 == 0) cloud.add((kRadius - away) * out, Vec3::UnitZ());
-    if (i % 2 == 1) cloud.add(kRadius * out - away * Vec3::UnitZ(), out);
-  }
-  std::vector<Vec3> places;
-  for (int i = 0; i <= 8; ++i) {
-    const double angle = 0.5 + i / kRadius;
-    places.emplace_back(kRadius * std::sin(angle), kRadius * std::cos(angle), 0.0);
-  }
-  const Piece piece = cloud.refined(slight_arc(places, kRadius));
+  const OnCylinder cloud;
+  const Piece piece = cloud.refined(slight_arc(cloud.places, kRadius));
+  EXPECT_EQ(piece.fit.kind, CurveKind::kArc);
+  EXPECT_NEAR(piece.fit.radius, kRadius, 1e-6);
+}
+
+TEST(Refine, MakesAnArcOfASegmentWhereASurfaceIsRound) {
+  const OnCylinder cloud;
+  const Piece piece = cloud.refined(straightened(slight_arc(cloud.places, kRadius)));
   EXPECT_EQ(piece.fit.kind, CurveKind::kArc);
   EXPECT_NEAR(piece.fit.radius, kRadius, 1e-6);
 }

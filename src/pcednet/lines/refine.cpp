@@ -23,6 +23,10 @@ constexpr double kLeastRefined = 8.0;  ///< points
 constexpr double kSlightTurn = 45.0 * std::numbers::pi / 180.0;  ///< arcs up to it may be straight
 /// They are if planes hold so many of the points that its surfaces do, so near.
 constexpr double kAsMany = 0.95, kAsNear = 1.1;
+/// Of segments that may be arcs: nodes, their distance from the arc to that from the segment, and
+/// how far the arc rises from its chord, in spacings.
+constexpr std::size_t kNodesToBend = 8;
+constexpr double kMuchNearer = 0.5, kLeastRise = 0.2;
 constexpr int kPlaneFits = 3;
 constexpr double kLeastSineOfSides = 0.2;  ///< of the angle between the planes of a crease
 
@@ -259,15 +263,34 @@ std::optional<Placed> crease_circle(const Piece& piece, const std::vector<Vec3>&
                 a->support + b->support};
 }
 
-/// The piece as a segment between its ends.
-Piece straightened(const Piece& piece) {
-  Piece straight = piece;
-  straight.fit = fit_segment(piece.nodes);
-  for (Vec3& end : straight.ends) end = nearest_on(straight.fit, end);
-  return straight;
+/// The piece with another fit, between the places on it that are nearest to its ends.
+Piece refitted(const Piece& piece, const Fit& fit) {
+  Piece other = piece;
+  other.fit = fit;
+  for (Vec3& end : other.ends) end = nearest_on(fit, end);
+  return other;
 }
 
-/// Whether planes explain the sides of an arc as well as surfaces of revolution do.
+/// A slight arc as a segment; a segment as an arc if that is much nearer to its nodes.
+std::optional<Piece> in_other_kind(const Piece& piece) {
+  if (piece.closed || is_boundary(piece.middle())) return std::nullopt;
+  if (piece.fit.kind == CurveKind::kArc) {
+    const double turn = turn_about(piece.fit.direction, piece.ends[0] - piece.fit.point,
+                                   piece.ends[1] - piece.fit.point);
+    if (!(turn < kSlightTurn)) return std::nullopt;
+    return refitted(piece, fit_segment(piece.nodes));
+  }
+  if (piece.nodes.size() < kNodesToBend) return std::nullopt;
+  const Fit arc = fit_arc(piece.nodes);
+  if (arc.kind != CurveKind::kArc || !(arc.error < kMuchNearer * piece.fit.error)) {
+    return std::nullopt;
+  }
+  const double rise = (piece.ends[1] - piece.ends[0]).squaredNorm() / (8.0 * arc.radius);
+  if (rise < kLeastRise * piece.spacing()) return std::nullopt;
+  return refitted(piece, arc);
+}
+
+/// Whether planes explain the sides of an edge as well as surfaces of revolution do.
 bool is_straight(const Placed& line, const std::optional<Placed>& circle) {
   if (!circle) return true;
   const Support &planes = line.support, &round = circle->support;
@@ -301,20 +324,15 @@ void move_to(const std::optional<Placed>& better, Piece& piece) {
 void place(Piece& piece, const OrderedPoints& cloud, double tolerance) {
   if (piece.fit.kind == CurveKind::kPolyline || piece.nodes.size() < kNodesToRefine) return;
   const std::vector<Vec3> points = points_beside(piece, cloud);
-  const auto better = better_fit(piece, points, tolerance);
-  if (piece.fit.kind == CurveKind::kArc && !piece.closed &&
-      turn_about(piece.fit.direction, piece.ends[0] - piece.fit.point,
-                 piece.ends[1] - piece.fit.point) < kSlightTurn &&
-      !is_boundary(piece.middle())) {
-    Piece straight = straightened(piece);
-    const auto line = crease_line(straight, points, tolerance);
-    if (line && is_straight(*line, better)) {
-      move_to(line, straight);
-      piece = std::move(straight);
-      return;
-    }
-  }
-  move_to(better, piece);
+  const auto other = in_other_kind(piece);
+  if (!other) return move_to(better_fit(piece, points, tolerance), piece);
+  const bool is_segment = piece.fit.kind == CurveKind::kSegment;
+  const Piece &straight = is_segment ? piece : *other, &round = is_segment ? *other : piece;
+  const auto line = crease_line(straight, points, tolerance);
+  const auto circle = crease_circle(round, points, tolerance);
+  const bool stays_straight = line ? is_straight(*line, circle) : is_segment;
+  if (stays_straight != is_segment) piece = *other;
+  move_to(stays_straight ? line : circle, piece);
 }
 
 }  // namespace
