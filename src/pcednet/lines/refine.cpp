@@ -330,9 +330,9 @@ void place(Piece& piece, const OrderedPoints& cloud, double tolerance) {
   const Piece &straight = is_segment ? piece : *other, &round = is_segment ? *other : piece;
   const auto line = crease_line(straight, points, tolerance);
   const auto circle = crease_circle(round, points, tolerance);
-  const bool stays_straight = line ? is_straight(*line, circle) : is_segment;
-  if (stays_straight != is_segment) piece = *other;
-  move_to(stays_straight ? line : circle, piece);
+  const bool as_segment = line ? is_straight(*line, circle) : is_segment;
+  if (as_segment != is_segment) piece = *other;
+  move_to(as_segment ? line : circle, piece);
 }
 
 }  // namespace
