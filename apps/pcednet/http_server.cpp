@@ -51,6 +51,7 @@ constexpr seconds kStrangerTime{5};  // for a request without the token and its 
 constexpr seconds kRequestTime{60};  // for a request with the token, idle time included
 constexpr seconds kEventTime{10};    // for a window to receive its events
 constexpr seconds kQuietTime{5};     // between keep-alive messages of the event stream
+constexpr seconds kSilentTime{3};    // for a window whose stream has ended to open another
 
 /// Resolves escapes such as %41, and + to a space.
 std::string decoded(std::string_view text) {
@@ -156,6 +157,7 @@ struct HttpServer::Impl {
   asio::awaitable<void> accept();
   asio::awaitable<void> converse(beast::tcp_stream stream);
   asio::awaitable<annotate::Response> answer(const annotate::Request& request);
+  asio::awaitable<void> attend(beast::tcp_stream& stream, const std::string& window);
   asio::awaitable<void> stream_events(beast::tcp_stream& stream);
 };
 
@@ -238,7 +240,9 @@ asio::awaitable<void> HttpServer::Impl::converse(beast::tcp_stream stream) {
     }
     co_await http::async_read(stream, buffer, parser, use_awaitable);
     request.body = std::move(parser.get().body());
-    if (request.path == "/api/events") co_await stream_events(stream);
+    if (request.path == "/api/events") {
+      co_return co_await attend(stream, request.query["window"]);
+    }
     keep_alive = parser.keep_alive();
     if (request.path == "/") {
       co_await send(stream, page, keep_alive);
@@ -256,6 +260,20 @@ asio::awaitable<annotate::Response> HttpServer::Impl::answer(const annotate::Req
     co_return api->handle(request);
   };
   co_return co_await asio::co_spawn(workers, work, use_awaitable);
+}
+
+/// Sends events to the window until it does not listen, and closes it unless it soon does again.
+asio::awaitable<void> HttpServer::Impl::attend(beast::tcp_stream& stream,
+                                               const std::string& window) {
+  api->begin_listening(window);
+  try {
+    co_await stream_events(stream);
+  } catch (const boost::system::system_error&) {
+    api->end_listening(window);
+  }
+  asio::steady_timer silence(io, kSilentTime);
+  co_await silence.async_wait(use_awaitable);
+  api->close_silent(window);
 }
 
 asio::awaitable<void> HttpServer::Impl::stream_events(beast::tcp_stream& stream) {

@@ -371,6 +371,16 @@ test("still paints after a reload, and in another window once the first is close
   page = second;
 });
 
+test("paints again when the window that painted ends without a word", async () => {
+  const second = await open();
+  await second.getByRole("button", { name: "Take over" }).click();
+  await page.waitForFunction(() => !annotator.store.now.writer);
+  const session = await second.context().newCDPSession(second);
+  session.send("Page.crash").catch(() => {}); // is never answered
+  await page.waitForFunction(() => annotator.store.now.writer);
+  await second.close();
+});
+
 for (const [name, width, height, room] of [
   ["phone", 390, 844, 300],
   ["tablet", 768, 1024, 450],

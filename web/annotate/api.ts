@@ -68,7 +68,7 @@ export class Api {
 
   /** Calls `on[name]` for each event; reconnects by itself and then calls `on.open`. */
   events(on: Record<string, (data: any) => void>): EventSource {
-    const source = new EventSource(this.address("/api/events"));
+    const source = new EventSource(this.address(`/api/events?window=${this.window}`));
     for (const [name, handle] of Object.entries(on)) {
       source.addEventListener(name, (event) => {
         const text = (event as MessageEvent).data;

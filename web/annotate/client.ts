@@ -190,6 +190,7 @@ export class Client {
     const session = await this.api.get<Session>("/api/session");
     const { store } = this;
     if (!session.known) await this.enter();
+    else if (this.missed) store.set({ writer: session.writer });
     this.loading = session.state !== "ready";
     if (this.loading) {
       if (!store.now.progress?.fraction) store.set({ progress: { stage: session.stage, fraction: 0 } });

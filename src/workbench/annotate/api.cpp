@@ -82,4 +82,8 @@ Response Api::handle(const Request& request) {
   }
 }
 
+void Api::close_silent(const std::string& window) {
+  if (const auto writer = windows_.close_silent(window)) events_.add(WriterChanged{*writer});
+}
+
 }  // namespace pcednet::annotate

@@ -24,6 +24,11 @@ class Api {
   /// The answer to any request under /api except /api/events.
   Response handle(const Request& request);
 
+  /// What a stream of events tells of the window that it is for; the last, some time after its end.
+  void begin_listening(const std::string& window) { windows_.begin_listening(window); }
+  void end_listening(const std::string& window) { windows_.end_listening(window); }
+  void close_silent(const std::string& window);
+
   /// Whether a page has loaded and asked for a window name.
   bool was_opened() const { return windows_.was_any_opened(); }
 

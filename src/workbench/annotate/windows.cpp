@@ -30,11 +30,28 @@ void Windows::take_over(const std::string& window) {
 
 std::optional<std::string> Windows::leave(const std::string& window) {
   const std::lock_guard lock(mutex_);
-  const int number = number_of(window);
-  open_.erase(number);
-  if (number != writer_) return {};
-  writer_ = open_.empty() ? 0 : *open_.rbegin();
-  return name_of(writer_);
+  return close(number_of(window));
+}
+
+void Windows::begin_listening(const std::string& window) {
+  const std::lock_guard lock(mutex_);
+  const int number = number_in_run(window);
+  if (number == 0) return;
+  ++streams_[number];
+  open_.insert(number);
+  if (writer_ == 0) writer_ = number;
+}
+
+void Windows::end_listening(const std::string& window) {
+  const std::lock_guard lock(mutex_);
+  if (const int number = number_in_run(window); number > 0) --streams_[number];
+}
+
+std::optional<std::string> Windows::close_silent(const std::string& window) {
+  const std::lock_guard lock(mutex_);
+  const int number = number_in_run(window);
+  if (!open_.contains(number) || streams_[number] > 0) return {};
+  return close(number);
 }
 
 bool Windows::is_writer(const std::string& window) const {
@@ -51,6 +68,24 @@ bool Windows::is_open(const std::string& window) const {
 bool Windows::was_any_opened() const {
   const std::lock_guard lock(mutex_);
   return count_ > 0;
+}
+
+std::optional<std::string> Windows::close(int number) {
+  open_.erase(number);
+  if (number != writer_) return {};
+  writer_ = open_.empty() ? 0 : *open_.rbegin();
+  for (const int other : open_) {
+    if (const auto found = streams_.find(other); found != streams_.end() && found->second > 0) {
+      writer_ = other;
+    }
+  }
+  return name_of(writer_);
+}
+
+int Windows::number_in_run(const std::string& window) const {
+  int number = count_;
+  while (number > 0 && name_of(number) != window) --number;
+  return number;
 }
 
 int Windows::number_of(const std::string& window) const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <mutex>
 #include <optional>
 #include <set>
@@ -23,9 +24,18 @@ class Windows {
   /// Makes `window` the one that paints. Throws NotFound if there is none of that name.
   void take_over(const std::string& window);
 
-  /// Closes the window. If it could paint, the one opened last can from now on: returns its name,
-  /// empty if there is none. Throws NotFound like take_over().
+  /// Closes the window. If it could paint, the one opened last of those that listen, or else of
+  /// all, can from now on: returns its name, empty if there is none. Throws NotFound like
+  /// take_over().
   std::optional<std::string> leave(const std::string& window);
+
+  /// The window receives events from now on. One that was closed for its silence is open again.
+  /// Nothing happens, here and in the next two, if it is not of this run.
+  void begin_listening(const std::string& window);
+  void end_listening(const std::string& window);
+
+  /// Closes the window like leave(), if it listens no longer: browsers end without a word, too.
+  std::optional<std::string> close_silent(const std::string& window);
 
   bool is_writer(const std::string& window) const;
 
@@ -36,11 +46,14 @@ class Windows {
  private:
   std::string name_of(int number) const;
   int number_of(const std::string& window) const;
+  int number_in_run(const std::string& window) const;  ///< 0 if there was none
+  std::optional<std::string> close(int number);
 
   const std::string start_;
   mutable std::mutex mutex_;
   std::set<int> open_;
-  int writer_ = 0;  ///< 0: none
+  std::map<int, int> streams_;  ///< of events, to each window
+  int writer_ = 0;              ///< 0: none
   int count_ = 0;
 };
 
