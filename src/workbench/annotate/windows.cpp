@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <chrono>
 
 #include "workbench/annotate/not_found.h"
@@ -61,8 +60,7 @@ bool Windows::is_writer(const std::string& window) const {
 
 bool Windows::is_open(const std::string& window) const {
   const std::lock_guard lock(mutex_);
-  return std::any_of(open_.begin(), open_.end(),
-                     [&](int number) { return name_of(number) == window; });
+  return open_.contains(number_in_run(window));
 }
 
 bool Windows::was_any_opened() const {
@@ -75,9 +73,7 @@ std::optional<std::string> Windows::close(int number) {
   if (number != writer_) return {};
   writer_ = open_.empty() ? 0 : *open_.rbegin();
   for (const int other : open_) {
-    if (const auto found = streams_.find(other); found != streams_.end() && found->second > 0) {
-      writer_ = other;
-    }
+    if (streams_[other] > 0) writer_ = other;
   }
   return name_of(writer_);
 }
@@ -89,10 +85,9 @@ int Windows::number_in_run(const std::string& window) const {
 }
 
 int Windows::number_of(const std::string& window) const {
-  const auto found = std::find_if(open_.begin(), open_.end(),
-                                  [&](int number) { return name_of(number) == window; });
-  if (found == open_.end()) throw NotFound("there is no such window");
-  return *found;
+  const int number = number_in_run(window);
+  if (!open_.contains(number)) throw NotFound("there is no such window");
+  return number;
 }
 
 }  // namespace pcednet::annotate
