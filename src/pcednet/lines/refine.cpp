@@ -275,9 +275,7 @@ Piece refitted(const Piece& piece, const Fit& fit) {
 std::optional<Piece> in_other_kind(const Piece& piece) {
   if (piece.closed || is_boundary(piece.middle())) return std::nullopt;
   if (piece.fit.kind == CurveKind::kArc) {
-    const double turn = turn_about(piece.fit.direction, piece.ends[0] - piece.fit.point,
-                                   piece.ends[1] - piece.fit.point);
-    if (!(turn < kSlightTurn)) return std::nullopt;
+    if (!(length_of(piece) < kSlightTurn * piece.fit.radius)) return std::nullopt;
     return refitted(piece, fit_segment(piece.nodes));
   }
   if (piece.nodes.size() < kNodesToBend) return std::nullopt;
