@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <iterator>
@@ -9,6 +10,7 @@
 #include <utility>
 
 #include "pcednet/core/eigendecomposition.h"
+#include "pcednet/core/vector_clones.h"
 #include "pcednet/lines/local_planes.h"
 #include "pcednet/lines/noisy_wedge.h"
 #include "pcednet/lines/ordered_points.h"
@@ -125,6 +127,22 @@ std::optional<Crease> crease_at(const OrderedPoints& cloud, std::uint32_t i,
                 .edge_class = cloud.is_edge(i) ? cloud.edge_class(i) : kNonEdge};
 }
 
+using FarRow = std::array<double, kFarNeighbours>;
+
+/// Places, and the squared distance of each to the nearest of those chosen.
+struct FarPlaces {
+  FarRow x, y, z, sq_nearest;
+};
+
+PCEDNET_VECTOR_CLONES
+void choose(FarPlaces& places, std::size_t chosen, std::size_t count) {
+  const double at_x = places.x[chosen], at_y = places.y[chosen], at_z = places.z[chosen];
+  for (std::size_t i = 0; i < count; ++i) {
+    const double x = places.x[i] - at_x, y = places.y[i] - at_y, z = places.z[i] - at_z;
+    places.sq_nearest[i] = smaller(places.sq_nearest[i], x * x + y * y + z * z);
+  }
+}
+
 /// Of these, nearest first, those that are not near one chosen before: at most as many as
 /// NearPoints has room for beside the point itself.
 std::vector<spatial::Neighbour> thinned(const OrderedPoints& cloud,
@@ -132,13 +150,16 @@ std::vector<spatial::Neighbour> thinned(const OrderedPoints& cloud,
   std::vector<spatial::Neighbour> kept;
   if (others.empty()) return kept;
   const double sq_apart = kApart * kApart * others.back().sq_distance;
-  for (const auto& near : others) {
-    if (kept.size() + 1 == NearPoints::kMost) break;
-    const Vec3& place = cloud.position(near.index);
-    const bool is_close = std::any_of(kept.begin(), kept.end(), [&](const auto& other) {
-      return (cloud.position(other.index) - place).squaredNorm() < sq_apart;
-    });
-    if (!is_close) kept.push_back(near);
+  FarPlaces places;
+  for (std::size_t i = 0; i < others.size(); ++i) {
+    const Vec3& place = cloud.position(others[i].index);
+    places.x[i] = place.x(), places.y[i] = place.y(), places.z[i] = place.z();
+    places.sq_nearest[i] = others.back().sq_distance;
+  }
+  for (std::size_t i = 0; i < others.size() && kept.size() + 1 < NearPoints::kMost; ++i) {
+    if (places.sq_nearest[i] < sq_apart) continue;
+    kept.push_back(others[i]);
+    choose(places, i, others.size());
   }
   return kept;
 }
@@ -215,11 +236,11 @@ std::optional<Crease> lengthwise_crease(const OrderedPoints& cloud, std::uint32_
   return crease_at(cloud, point, along, within, spacing_of(others));
 }
 
-/// Whether some of these face away from the point.
-bool is_opposed(const OrderedPoints& cloud, std::uint32_t point,
-                std::span<const spatial::Neighbour> others) {
-  return std::any_of(others.begin(), others.end(),
-                     [&](const auto& other) { return cloud.cosine(point, other.index) < 0.0; });
+/// How many of these do not face away from the point.
+std::size_t facing(const OrderedPoints& cloud, std::uint32_t point,
+                   std::span<const spatial::Neighbour> others) {
+  const auto faces = [&](const auto& other) { return !(cloud.cosine(point, other.index) < 0.0); };
+  return static_cast<std::size_t>(std::count_if(others.begin(), others.end(), faces));
 }
 
 /// The points of an edge class, those that may be, and the neighbours of both.
@@ -250,8 +271,9 @@ std::vector<std::uint32_t> points_near_edges(const OrderedPoints& cloud, double 
   return points;
 }
 
-/// The creases of the nearest points. Few points are beside a thin wall: only they need twice as
-/// many neighbours, half of which may be on its other side.
+/// The creases of the nearest points. Where some of them may face away, a quarter more are
+/// searched; few points are beside a thin wall: only they need twice as many, half of them on its
+/// other side.
 std::vector<std::optional<Crease>> nearest_creases(const OrderedPoints& cloud,
                                                    std::span<const std::uint32_t> points,
                                                    const Tolerances& within,
@@ -260,11 +282,13 @@ std::vector<std::optional<Crease>> nearest_creases(const OrderedPoints& cloud,
   const auto crease_of = [&](std::uint32_t point, std::span<const spatial::Neighbour> near) {
     return crease_at(cloud, point, near, within, spacing_of(near));
   };
+  const std::size_t others = within.points - 1;
+  const std::size_t searched = within.skips_other_side ? others + others / 4 : others;
   Stage stage(progress, "creases", points.size());
   std::vector<std::optional<Crease>> found =
-      creases_at(cloud, points, within.points - 1, stage,
+      creases_at(cloud, points, searched, stage,
                  [&](std::uint32_t point, std::span<const spatial::Neighbour> near) {
-                   is_thin[point] = within.skips_other_side && is_opposed(cloud, point, near);
+                   is_thin[point] = within.skips_other_side && facing(cloud, point, near) < others;
                    return is_thin[point] ? std::nullopt : crease_of(point, near);
                  });
   std::vector<std::uint32_t> thin;
@@ -272,7 +296,7 @@ std::vector<std::optional<Crease>> nearest_creases(const OrderedPoints& cloud,
                [&](std::uint32_t i) { return is_thin[i] != 0; });
   Stage walls(progress, "creases of thin walls", thin.size());
   const std::vector<std::optional<Crease>> of_thin =
-      creases_at(cloud, thin, 2 * (within.points - 1), walls, crease_of);
+      creases_at(cloud, thin, 2 * others, walls, crease_of);
   for (std::size_t k = 0, next = 0; k < points.size(); ++k) {
     if (is_thin[points[k]]) found[k] = of_thin[next++];
   }

@@ -22,14 +22,25 @@ struct Tests {
   NearPoints::Row taken;         ///< kFar for the points of planes found before, else 0
 };
 
-Tests tests_of(const NearPoints& points) {
-  Tests tests;
+PCEDNET_VECTOR_CLONES
+void set_tests(const NearPoints& points, Tests& tests) {
   for (std::size_t i = 0; i < points.count; ++i) {
-    const bool trusted = points.edginess[i] <= kTrusted && !points.normal(i).isZero(0.0);
+    const double size = std::fabs(points.normal_x[i]) + std::fabs(points.normal_y[i]) +
+                        std::fabs(points.normal_z[i]);
+    const bool trusted = (points.edginess[i] <= kTrusted) & (size > 0.0);
     tests.least_cosine[i] = trusted ? kSameNormal : -1.0;
     tests.taken[i] = 0.0;
   }
-  return tests;
+}
+
+PCEDNET_VECTOR_CLONES
+void take(const LocalPlane& plane, const NearPoints& points, double within, Tests& tests) {
+  const double a = plane.normal.x(), b = plane.normal.y(), c = plane.normal.z();
+  const double distance = plane.distance;
+  for (std::size_t i = 0; i < points.count; ++i) {
+    const double away = std::fabs(a * points.x[i] + b * points.y[i] + c * points.z[i] - distance);
+    tests.taken[i] = away < within ? kFar : tests.taken[i];
+  }
 }
 
 /// The points within `tolerance` of the plane that are not taken.
@@ -50,18 +61,28 @@ int support_of(const LocalPlane& plane, const NearPoints& points, const Tests& t
   return support;
 }
 
-/// The plane of least squares of the points near `plane`; weights fall to 0 at `reach`.
+/// Of the points near `plane`; they fall to 0 at `reach`.
+PCEDNET_VECTOR_CLONES
+void weigh(const LocalPlane& plane, const NearPoints& points, const Tests& tests, double reach,
+           NearPoints::Row& weights) {
+  const double a = plane.normal.x(), b = plane.normal.y(), c = plane.normal.z();
+  const double distance = plane.distance, per_reach = 1.0 / reach;
+  for (std::size_t i = 0; i < points.count; ++i) {
+    const double part =
+        (a * points.x[i] + b * points.y[i] + c * points.z[i] - distance) * per_reach;
+    const double cosine =
+        std::fabs(a * points.normal_x[i] + b * points.normal_y[i] + c * points.normal_z[i]);
+    const double rest = larger(1.0 - part * part, 0.0);
+    weights[i] = cosine > tests.least_cosine[i] ? rest * rest : 0.0;
+  }
+}
+
+/// The plane of least squares of the points near `plane`.
 LocalPlane refit(const LocalPlane& plane, const NearPoints& points, const Tests& tests,
                  double reach) {
-  PointMoments moments;
-  for (std::size_t i = 0; i < points.count; ++i) {
-    const Vec3 offset = points.offset(i);
-    const double part = plane.height(offset) / reach;
-    if (part * part >= 1.0) continue;
-    if (!(std::abs(plane.normal.dot(points.normal(i))) > tests.least_cosine[i])) continue;
-    moments.add(offset, (1.0 - part * part) * (1.0 - part * part));
-  }
-  const auto refitted = plane_of(moments, 3.0, 0.04);
+  NearPoints::Row weights{};
+  weigh(plane, points, tests, reach, weights);
+  const auto refitted = plane_of(points.moments(weights), 3.0, 0.04);
   return refitted ? LocalPlane{refitted->normal, refitted->distance, plane.support} : plane;
 }
 
@@ -124,7 +145,8 @@ std::optional<LocalPlane> plane_of(const PointMoments& moments, double least_wei
 
 void find_planes(const NearPoints& points, double tolerance, std::vector<LocalPlane>& planes) {
   planes.clear();
-  Tests tests = tests_of(points);
+  Tests tests;
+  set_tests(points, tests);
   const Seeds seeds = seeds_of(points);
   while (planes.size() < kMostPlanes) {
     const LocalPlane best = best_plane(points, tests, seeds, tolerance);
@@ -133,9 +155,7 @@ void find_planes(const NearPoints& points, double tolerance, std::vector<LocalPl
         refit(refit(best, points, tests, 2.0 * tolerance), points, tests, 1.5 * tolerance);
     fitted.support = support_of(fitted, points, tests, tolerance);
     if (fitted.support < best.support) fitted = best;
-    for (std::size_t i = 0; i < points.count; ++i) {
-      if (std::abs(fitted.height(points.offset(i))) < 1.3 * tolerance) tests.taken[i] = kFar;
-    }
+    take(fitted, points, 1.3 * tolerance, tests);
     planes.push_back(fitted);
   }
 }

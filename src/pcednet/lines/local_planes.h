@@ -15,14 +15,18 @@ struct NearPoints {
   static constexpr std::size_t kMost = 112;
   using Row = std::array<double, kMost>;
 
+  // 0 beyond the points.
   std::size_t count = 0;
-  Row x, y, z;
-  Row normal_x, normal_y, normal_z;  ///< unit or zero
-  Row edginess;                      ///< probability of an edge, where normals are unreliable
+  Row x{}, y{}, z{};
+  Row normal_x{}, normal_y{}, normal_z{};  ///< unit or zero
+  Row edginess{};                          ///< probability of an edge, where normals are unreliable
 
   void add(const Vec3& offset, const Vec3& normal, double probability);
   Vec3 offset(std::size_t i) const { return {x[i], y[i], z[i]}; }
   Vec3 normal(std::size_t i) const { return {normal_x[i], normal_y[i], normal_z[i]}; }
+  PointMoments moments(const Row& weight) const {
+    return moments_of(x.data(), y.data(), z.data(), weight.data(), count);
+  }
 };
 
 struct LocalPlane {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+
 #include "pcednet/core/vec3.h"
 
 namespace pcednet::lines {
@@ -36,5 +38,10 @@ struct PointMoments {
     return products / weight - mean() * mean().transpose();
   }
 };
+
+/// The moments of `count` points in rows, each with its weight. The rows go on to a multiple of
+/// four with weights of 0 and any finite places.
+PointMoments moments_of(const double* x, const double* y, const double* z, const double* weight,
+                        std::size_t count);
 
 }  // namespace pcednet::lines

@@ -212,18 +212,25 @@ struct SqDistances {
   }
 };
 
+/// The weights of the points in the fits of the half-planes that they are nearest to; they fall to
+/// 0 at `reach`.
+PCEDNET_VECTOR_CLONES
+void weigh(const SqDistances& to, std::size_t count, double reach, NearPoints::Row& a,
+           NearPoints::Row& b) {
+  const double per_sq_reach = 1.0 / (reach * reach);
+  for (std::size_t i = 0; i < count; ++i) {
+    const double rest = larger(1.0 - smaller(to.a[i], to.b[i]) * per_sq_reach, 0.0);
+    const bool is_a = to.a[i] < to.b[i];
+    a[i] = is_a ? rest * rest : 0.0;
+    b[i] = is_a ? 0.0 : rest * rest;
+  }
+}
+
 std::optional<HalfPlanes> improved(const HalfPlanes& halves, const NearPoints& points,
                                    std::size_t count, double reach) {
-  const SqDistances to(halves, points, count);
-  PointMoments a, b;
-  for (std::size_t i = 0; i < count; ++i) {
-    const double rest = std::max(0.0, 1.0 - std::min(to.a[i], to.b[i]) / (reach * reach));
-    const double weight = rest * rest;
-    // Both without a branch: which of them is a matter of chance.
-    const bool is_a = to.a[i] < to.b[i];
-    a.add(points.offset(i), is_a ? weight : 0.0);
-    b.add(points.offset(i), is_a ? 0.0 : weight);
-  }
+  NearPoints::Row weights_a{}, weights_b{};
+  weigh(SqDistances(halves, points, count), count, reach, weights_a, weights_b);
+  const PointMoments a = points.moments(weights_a), b = points.moments(weights_b);
   constexpr double kWeight = 4.0, kWidth = 0.15;
   const auto plane_a = plane_of(a, kWeight, kWidth);
   const auto plane_b = plane_of(b, kWeight, kWidth);

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <vector>
 
+#include "pcednet/core/vector_clones.h"
 #include "pcednet/lines/plane_line.h"
 
 namespace pcednet::lines {
@@ -16,7 +17,7 @@ constexpr double kLeastAngle = 20.0 * kDegree;
 /// Strips of a rounded surface that are nearly flat meet at less.
 constexpr double kLeastAngleOfExact = 35.0 * kDegree;
 
-constexpr double kFlat = 0.6;  ///< share of the points near a plane that are on it
+constexpr double kFlatShare = 0.6;  ///< share of the points near a plane that are on it
 
 // In spacings.
 constexpr double kFarthest = 2.2;            ///< of a point from its crease
@@ -33,25 +34,45 @@ struct PairTests {
   double least_angle;
 };
 
+/// The points of a plane near its line.
+struct SideCounts {
+  int before = 0, after = 0;  ///< on the two sides of the line
+  int first = 0;              ///< of these, near enough to it
+};
+
+PCEDNET_VECTOR_CLONES
+SideCounts count_sides(const LocalPlane& plane, const Vec3& at, const Vec3& along, const Vec3& side,
+                       const NearPoints& points, const PairTests& tests) {
+  const double at_x = at.x(), at_y = at.y(), at_z = at.z();
+  const double along_x = along.x(), along_y = along.y(), along_z = along.z();
+  const double side_x = side.x(), side_y = side.y(), side_z = side.z();
+  const double a = plane.normal.x(), b = plane.normal.y(), c = plane.normal.z();
+  const double distance = plane.distance, most_height = tests.plane, first = tests.first;
+  const double least = larger(kLeastFromLine, 1.5 * tests.plane);
+  SideCounts counts;
+  for (std::size_t i = 0; i < points.count; ++i) {
+    const double x = points.x[i] - at_x, y = points.y[i] - at_y, z = points.z[i] - at_z;
+    const double lengthwise = std::fabs(x * along_x + y * along_y + z * along_z);
+    const double height = std::fabs(a * points.x[i] + b * points.y[i] + c * points.z[i] - distance);
+    const double place = x * side_x + y * side_y + z * side_z, away = std::fabs(place);
+    const bool counts_here = (lengthwise <= kSliceAlong) & (height <= most_height) &
+                             (away >= least) & (away <= kSideReach);
+    counts.before += static_cast<int>(counts_here & (place < 0.0));
+    counts.after += static_cast<int>(counts_here & (place >= 0.0));
+    counts.first += static_cast<int>(counts_here & (away <= first));
+  }
+  return counts;
+}
+
 /// The direction from the line into `plane` on which its points are near the line's point `at`, or
 /// none if they are on both sides, too few, or all far from it.
 std::optional<Vec3> side_of(const LocalPlane& plane, const Vec3& at, const Vec3& along,
                             const NearPoints& points, const PairTests& tests) {
   const Vec3 side = along.cross(plane.normal).normalized();
-  const double least = std::max(kLeastFromLine, 1.5 * tests.plane);
-  double before = 0.0, after = 0.0, nearest = kSideReach;
-  for (std::size_t i = 0; i < points.count; ++i) {
-    const Vec3 offset = points.offset(i) - at;
-    if (std::abs(offset.dot(along)) > kSliceAlong) continue;
-    if (std::abs(plane.height(points.offset(i))) > tests.plane) continue;
-    const double place = offset.dot(side);
-    if (std::abs(place) < least || std::abs(place) > kSideReach) continue;
-    nearest = std::min(nearest, std::abs(place));
-    (place < 0.0 ? before : after) += 1.0;
-  }
-  if (std::max(before, after) < 2.0 || nearest > tests.first) return std::nullopt;
-  if (std::min(before, after) > 0.25 * std::max(before, after)) return std::nullopt;
-  return before > after ? Vec3(-side) : side;
+  const SideCounts counts = count_sides(plane, at, along, side, points, tests);
+  const auto [fewer, more] = std::minmax(counts.before, counts.after);
+  if (more < 2 || counts.first == 0 || 4 * fewer > more) return std::nullopt;
+  return counts.before > counts.after ? Vec3(-side) : side;
 }
 
 std::optional<Wedge> wedge_of(const LocalPlane& a, const LocalPlane& b, const NearPoints& points,
@@ -91,7 +112,7 @@ bool is_flat(const LocalPlane& plane, const NearPoints& points, double tolerance
     near += away < kNearPlane ? 1.0 : 0.0;
     on += away < tolerance ? 1.0 : 0.0;
   }
-  return on > kFlat * near;
+  return on > kFlatShare * near;
 }
 
 }  // namespace

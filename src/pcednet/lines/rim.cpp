@@ -2,11 +2,13 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <span>
 #include <vector>
 
 #include "pcednet/core/eigendecomposition.h"
+#include "pcednet/core/vector_clones.h"
 #include "pcednet/lines/moments.h"
 #include "pcednet/lines/ring.h"
 
@@ -31,37 +33,56 @@ constexpr double kLeastEdge = 0.5;  ///< share of the points near the rim that a
 
 /// A plane across the axis of a bore, perhaps.
 struct Cap {
-  Vec3 point, normal;
+  Vec3 point, normal;  ///< the point from the edge point
 };
 
-/// The normal of the plane of least squares.
-Vec3 normal_of(const OrderedPoints& cloud, const std::vector<std::uint32_t>& points) {
-  PointMoments moments;
-  for (const std::uint32_t i : points) {
-    moments.add(cloud.position(i) - cloud.position(points.front()));
+/// Places from an edge point, and the normals there.
+struct NearRows {
+  using Row = std::array<double, kMostNear>;
+
+  std::size_t count = 0;
+  Row x{}, y{}, z{}, normal_x, normal_y, normal_z;
+
+  void add(const Vec3& place, const Vec3& normal) {
+    x[count] = place.x(), y[count] = place.y(), z[count] = place.z();
+    normal_x[count] = normal.x(), normal_y[count] = normal.y(), normal_z[count] = normal.z();
+    ++count;
   }
-  return eigendecomposition(moments.covariance()).vectors.col(0).normalized();
+  Vec3 place(std::size_t i) const { return {x[i], y[i], z[i]}; }
+  Vec3 normal(std::size_t i) const { return {normal_x[i], normal_y[i], normal_z[i]}; }
+};
+
+/// Marks with 1 the points with like normals that are in the plane of the first one, and returns
+/// their number.
+PCEDNET_VECTOR_CLONES
+std::size_t mark_plane(const NearRows& near, std::size_t first, double reach, NearRows::Row& on) {
+  const double a = near.normal_x[first], b = near.normal_y[first], c = near.normal_z[first];
+  const double distance = a * near.x[first] + b * near.y[first] + c * near.z[first];
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < near.count; ++i) {
+    const double height = a * near.x[i] + b * near.y[i] + c * near.z[i] - distance;
+    const double cosine = a * near.normal_x[i] + b * near.normal_y[i] + c * near.normal_z[i];
+    const bool is_on = (std::fabs(height) < reach) & (std::fabs(cosine) > kAlongAxis);
+    on[i] = is_on ? 1.0 : 0.0;
+    count += static_cast<std::size_t>(is_on);
+  }
+  return count;
 }
 
 /// The normals of planes that several points are on.
-std::vector<Vec3> likely_axes(const OrderedPoints& cloud, std::span<const spatial::Neighbour> near,
-                              double reach) {
+std::vector<Vec3> likely_axes(const NearRows& near, double reach) {
   std::vector<Vec3> axes;
-  std::vector<std::uint32_t> on;
-  for (const auto& first : near) {
-    const Vec3 &at = cloud.position(first.index), normal = cloud.normal(first.index);
+  NearRows::Row on{};
+  for (std::size_t i = 0; i < near.count; ++i) {
+    const Vec3 normal = near.normal(i);
     const auto is_like = [&](const Vec3& other) {
       return std::abs(normal.dot(other)) > kAlongAxis;
     };
     if (std::any_of(axes.begin(), axes.end(), is_like)) continue;
-    on.clear();
-    for (const auto& other : near) {
-      if (!is_like(cloud.normal(other.index))) continue;
-      const double height = normal.dot(cloud.position(other.index) - at);
-      if (std::abs(height) < reach) on.push_back(other.index);
-    }
-    if (on.size() < kLeastPlane) continue;
-    const Vec3 axis = normal_of(cloud, on);
+    if (mark_plane(near, i, reach, on) < kLeastPlane) continue;
+    const PointMoments moments =
+        moments_of(near.x.data(), near.y.data(), near.z.data(), on.data(), near.count);
+    const Vec3 axis = eigendecomposition(moments.covariance()).vectors.col(0).normalized();
     if (is_like(axis)) axes.push_back(axis);
   }
   return axes;
@@ -85,17 +106,16 @@ std::vector<double> levels_of(const std::vector<double>& heights, double reach) 
   return levels;
 }
 
-/// The planes with many points that may be across the axis of a bore at `at`.
-std::vector<Cap> likely_caps(const OrderedPoints& cloud, std::span<const spatial::Neighbour> near,
-                             const Vec3& at, double reach, double spacing) {
+/// The planes with many points that may be across the axis of a bore at the edge point.
+std::vector<Cap> likely_caps(const NearRows& near, double reach, double spacing) {
   std::vector<Cap> caps;
   std::vector<double> heights;
-  for (const Vec3& axis : likely_axes(cloud, near, reach * spacing)) {
+  for (const Vec3& axis : likely_axes(near, reach * spacing)) {
     heights.clear();
-    for (const auto& point : near) heights.push_back(axis.dot(cloud.position(point.index) - at));
+    for (std::size_t i = 0; i < near.count; ++i) heights.push_back(axis.dot(near.place(i)));
     std::sort(heights.begin(), heights.end());
     for (const double level : levels_of(heights, reach * spacing)) {
-      if (std::abs(level) < kFromPlane * spacing) caps.push_back({at + level * axis, axis});
+      if (std::abs(level) < kFromPlane * spacing) caps.push_back({level * axis, axis});
     }
   }
   return caps;
@@ -121,24 +141,49 @@ bool has_radius_of_a_bore(double radius, double spacing) {
   return radius > kLeastRadius * spacing && radius < kMostRadius * spacing;
 }
 
+/// The places of a wall, seen along its axis.
+struct FlatPlaces {
+  using Row = std::array<double, kMostPlaces>;
+
+  std::size_t count = 0;
+  Row x{}, y{};
+
+  void add(double at_x, double at_y) {
+    x[count] = at_x, y[count] = at_y;
+    ++count;
+  }
+  Eigen::Vector2d operator[](std::size_t i) const { return {x[i], y[i]}; }
+};
+
+/// The places nearer to the circle than `reach`, which is below its radius.
+PCEDNET_VECTOR_CLONES
+int count_on(const FlatPlaces& places, const FlatCircle& circle, double reach) {
+  const double at_x = circle.centre.x(), at_y = circle.centre.y();
+  const double inner = circle.radius - reach, outer = circle.radius + reach;
+  const double sq_inner = inner * inner, sq_outer = outer * outer;
+  int on = 0;
+  for (std::size_t i = 0; i < places.count; ++i) {
+    const double x = places.x[i] - at_x, y = places.y[i] - at_y, sq_away = x * x + y * y;
+    on += static_cast<int>((sq_away > sq_inner) & (sq_away < sq_outer));
+  }
+  return on;
+}
+
 /// Of the circles through three of the places, that which the most of them are on.
-std::optional<FlatCircle> common_circle(const std::vector<Eigen::Vector2d>& places, double reach,
-                                        double spacing) {
-  const std::size_t n = places.size(), step = 1 + n * (n - 1) * (n - 2) / 6 / kMostTriples;
+std::optional<FlatCircle> common_circle(const FlatPlaces& places, double reach, double spacing) {
+  const std::size_t n = places.count, step = 1 + n * (n - 1) * (n - 2) / 6 / kMostTriples;
   FlatCircle best{Eigen::Vector2d::Zero(), 0.0};
-  std::size_t most = 0, number = 0;
+  std::size_t most = 0, skip = 0;
   for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t j = i + 1; j < n; ++j) {
-      for (std::size_t k = j + 1; k < n; ++k) {
-        if (number++ % step != 0) continue;
+      std::size_t k = j + 1 + skip;
+      for (; k < n; k += step) {
         const auto circle = circle_through(places[i], places[j], places[k]);
         if (!circle || !has_radius_of_a_bore(circle->radius, spacing)) continue;
-        std::size_t on = 0;
-        for (const Eigen::Vector2d& place : places) {
-          on += std::abs((place - circle->centre).norm() - circle->radius) < reach * spacing;
-        }
+        const auto on = static_cast<std::size_t>(count_on(places, *circle, reach * spacing));
         if (on > most) best = *circle, most = on;
       }
+      skip = k - n;
     }
   }
   if (most < kLeastWall || 3 * most < 2 * n) return std::nullopt;
@@ -253,25 +298,27 @@ std::optional<Rim> rim_near(const OrderedPoints& cloud, std::uint32_t edge_point
   std::vector<spatial::Neighbour> near;
   cloud.tree().within(at, kLook * spacing, near);
   if (near.size() > kMostNear) return std::nullopt;
-  std::vector<Eigen::Vector2d> places;
-  for (const Cap& cap : likely_caps(cloud, near, at, reach, spacing)) {
+  NearRows rows;
+  for (const auto& point : near) {
+    rows.add(cloud.position(point.index) - at, cloud.normal(point.index));
+  }
+  for (const Cap& cap : likely_caps(rows, reach, spacing)) {
     const Vec3 x = cap.normal.unitOrthogonal(), y = cap.normal.cross(x);
     for (const double side : {1.0, -1.0}) {
-      places.clear();
-      for (const auto& point : near) {  // the nearest first
-        const Vec3 offset = cloud.position(point.index) - cap.point;
+      FlatPlaces places;
+      for (std::size_t i = 0; i < rows.count && places.count < kMostPlaces; ++i) {  // nearest first
+        const Vec3 offset = rows.place(i) - cap.point;
         if (!has_height_of_wall(side * offset.dot(cap.normal) / spacing)) continue;
-        places.emplace_back(offset.dot(x), offset.dot(y));
-        if (places.size() == kMostPlaces) break;
+        places.add(offset.dot(x), offset.dot(y));
       }
-      if (places.size() < kLeastWall) continue;
+      if (places.count < kLeastWall) continue;
       const auto flat = common_circle(places, reach, spacing);
       if (!flat) continue;
-      const Eigen::Vector2d own((at - cap.point).dot(x), (at - cap.point).dot(y));
+      const Eigen::Vector2d own(-cap.point.dot(x), -cap.point.dot(y));
       const double away = std::abs((own - flat->centre).norm() - flat->radius);
       if (away > kFromWall * spacing) continue;
-      const Fit circle{CurveKind::kArc, cap.point + flat->centre.x() * x + flat->centre.y() * y,
-                       side * cap.normal, flat->radius, 0.0};
+      const Vec3 centre = cap.point + flat->centre.x() * x + flat->centre.y() * y;
+      const Fit circle{CurveKind::kArc, at + centre, side * cap.normal, flat->radius, 0.0};
       if (auto rim = rim_of(circle, cloud, reach, spacing)) return rim;
     }
   }

@@ -11,11 +11,40 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::uint32_t kNone = 0xffffffff;
 constexpr std::size_t kFanOut = RunTree::kFanOut;
-constexpr std::size_t kRanked = 64;  // more are sorted
+constexpr std::size_t kRanked = 64;      // more are sorted
+constexpr std::size_t kMoreAtOnce = 16;  // points of a search of the tree
 constexpr int kAttempts = 3;
 
 bool is_nearer(const Neighbour& a, const Neighbour& b) {
   return a.sq_distance < b.sq_distance || (a.sq_distance == b.sq_distance && a.index < b.index);
+}
+
+/// Sorts the many neighbours of a point, `from`, into `to`, nearest first. On a surface their
+/// squared distances are spread evenly: hardly more than one is in each of as many equal steps.
+void sort_by_distance(std::span<const Neighbour> from, std::vector<std::uint32_t>& ends,
+                      std::vector<Neighbour>& to) {
+  constexpr std::uint32_t kMostOfStep = 16;
+  to.assign(from.begin(), from.end());
+  double most = 0.0;
+  for (const Neighbour& near : from) most = std::max(most, near.sq_distance);
+  const double scale = 0.999 * static_cast<double>(from.size()) / most;
+  const bool can_be = scale > 0.0 && scale < kInfinity;
+  if (!can_be) return std::sort(to.begin(), to.end(), is_nearer);
+  const auto step_of = [&](const Neighbour& near) {
+    return static_cast<std::size_t>(near.sq_distance * scale);
+  };
+  ends.assign(from.size(), 0);
+  for (const Neighbour& near : from) ++ends[step_of(near)];
+  const bool is_even = *std::max_element(ends.begin(), ends.end()) <= kMostOfStep;
+  if (!is_even) return std::sort(to.begin(), to.end(), is_nearer);
+  std::partial_sum(ends.begin(), ends.end(), ends.begin());
+  for (const Neighbour& near : from) to[--ends[step_of(near)]] = near;
+  for (std::size_t i = 1; i < to.size(); ++i) {
+    const Neighbour near = to[i];
+    std::size_t place = i;
+    for (; place > 0 && is_nearer(near, to[place - 1]); --place) to[place] = to[place - 1];
+    to[place] = near;
+  }
 }
 
 struct Box {
@@ -136,12 +165,11 @@ bool RunSearch::select(const Query& query) {
 
 void RunSearch::put_in_order(const Query& query, std::size_t picked) {
   if (picked > kRanked) {
-    sorted_.clear();
+    many_.clear();
     for (std::size_t i = 0; i < picked; ++i) {
-      if (picked_[i] != query.point) sorted_.push_back({picked_[i], sq_distances_[i]});
+      if (picked_[i] != query.point) many_.push_back({picked_[i], sq_distances_[i]});
     }
-    std::sort(sorted_.begin(), sorted_.end(),
-              [](const Neighbour& a, const Neighbour& b) { return is_nearer(a, b); });
+    sort_by_distance(many_, ends_, sorted_);
     std::copy_n(sorted_.begin(), count_, query.found);
     return;
   }
@@ -176,26 +204,33 @@ double RunSearch::sq_distance(std::uint32_t p, std::uint32_t q) const {
 /// Finds the neighbours of one point from the root down, nearest boxes first.
 void RunSearch::descend(const Query& query) {
   const double at[3] = {tree_.x[query.point], tree_.y[query.point], tree_.z[query.point]};
-  std::fill_n(query.found, count_, Neighbour{kNone, kInfinity});
-  Neighbour& last = query.found[count_ - 1];
+  const auto last = static_cast<std::ptrdiff_t>(count_) - 1;
+  Neighbour bound = {kNone, kInfinity};  // the last of those found when it was set
+  const auto keep_nearest = [&] {
+    std::nth_element(many_.begin(), many_.begin() + last, many_.end(), is_nearer);
+    many_.resize(count_);
+    bound = many_.back();
+  };
+  many_.clear();
   branches_.clear();
-  push_branches(tree_.rows.size() - 1, 0, at, last.sq_distance);
+  push_branches(tree_.rows.size() - 1, 0, at, bound.sq_distance);
   while (!branches_.empty()) {
     const Branch branch = branches_.back();
     branches_.pop_back();
-    if (branch.sq_gap > last.sq_distance) continue;
+    if (branch.sq_gap > bound.sq_distance) continue;
     if (branch.row > 0) {
-      push_branches(branch.row - 1, branch.box, at, last.sq_distance);
+      push_branches(branch.row - 1, branch.box, at, bound.sq_distance);
       continue;
     }
     for (std::uint32_t i = tree_.first[branch.box]; i < tree_.first[branch.box + 1]; ++i) {
       const Neighbour other = {i, sq_distance(query.point, i)};
-      if (i == query.point || !is_nearer(other, last)) continue;
-      Neighbour* place = &last;
-      for (; place != query.found && is_nearer(other, place[-1]); --place) *place = place[-1];
-      *place = other;
+      if (i != query.point && is_nearer(other, bound)) many_.push_back(other);
     }
+    if (many_.size() >= count_ + std::max(kMoreAtOnce, count_ / 4)) keep_nearest();
   }
+  keep_nearest();
+  sort_by_distance(many_, ends_, sorted_);
+  std::copy(sorted_.begin(), sorted_.end(), query.found);
 }
 
 void RunSearch::push_branches(std::size_t row, std::size_t node, const double at[3], double bound) {

@@ -59,7 +59,8 @@ class RunSearch {
   std::vector<std::uint32_t> picked_;
   std::vector<double> sq_distances_;
   std::vector<std::int64_t> ranks_;
-  std::vector<Neighbour> sorted_;
+  std::vector<Neighbour> many_, sorted_;
+  std::vector<std::uint32_t> ends_;
   std::vector<Branch> branches_;
 };
 
