@@ -11,6 +11,7 @@
 
 #include "pcednet/core/eigendecomposition.h"
 #include "pcednet/core/vector_clones.h"
+#include "pcednet/lines/lanes.h"
 #include "pcednet/lines/local_planes.h"
 #include "pcednet/lines/noisy_wedge.h"
 #include "pcednet/lines/ordered_points.h"
@@ -52,25 +53,58 @@ struct Tolerances {
   bool skips_other_side;  ///< of these, those that face away: beyond a thin wall
 };
 
+/// Sums of heights over the points of a side that are near the line, beyond and far from it.
+struct ZoneSums {
+  double height[3], count[3];
+};
+
+PCEDNET_VECTOR_CLONES
+ZoneSums sum_zones(const Vec3& at, const Vec3& along, const Vec3& side, const Vec3& inward,
+                   const NearPoints& points, double most_height) {
+  const double ends[4] = {kNearZone[0], kNearZone[1], kMiddleZone, kFarZone};
+  const double at_x = at.x(), at_y = at.y(), at_z = at.z();
+  const double along_x = along.x(), along_y = along.y(), along_z = along.z();
+  const double side_x = side.x(), side_y = side.y(), side_z = side.z();
+  const double up_x = inward.x(), up_y = inward.y(), up_z = inward.z();
+  Lanes heights[3] = {}, counts[3] = {};
+  Lanes number = {0.0, 1.0, 2.0, 3.0};
+  const Lanes zero = {}, one = zero + 1.0;
+  const auto count = static_cast<double>(points.count);
+  for (std::size_t i = 0; i < points.count; i += kLanes, number += kLanes) {
+    Lanes x, y, z;
+    load(&points.x[i], x);
+    load(&points.y[i], y);
+    load(&points.z[i], z);
+    x -= at_x, y -= at_y, z -= at_z;
+    const Lanes lengthwise = x * along_x + y * along_y + z * along_z;
+    const Lanes place = x * side_x + y * side_y + z * side_z;
+    const Lanes height = x * up_x + y * up_y + z * up_z;
+    const auto is_near = (lengthwise <= kSliceAlong) & (lengthwise >= -kSliceAlong) &
+                         (height <= most_height) & (height >= -most_height) & (number < count);
+    for (int k = 0; k < 3; ++k) {
+      const auto in_zone = is_near & (place >= ends[k]) & (place < ends[k + 1]);
+      heights[k] += in_zone ? height : zero;
+      counts[k] += in_zone ? one : zero;
+    }
+  }
+  ZoneSums sums;
+  for (int k = 0; k < 3; ++k) {
+    sums.height[k] = sum_of(heights[k]);
+    sums.count[k] = sum_of(counts[k]);
+  }
+  return sums;
+}
+
 /// How much the points of a side bend towards the inside of the wedge: their mean distance to the
 /// plane near the line and far from it, less that between.
 double bend_of(const Vec3& at, const Vec3& along, const Vec3& side, const Vec3& inward,
                const NearPoints& points, double tolerance) {
-  double sum[3] = {}, count[3] = {};
-  for (std::size_t i = 0; i < points.count; ++i) {
-    const Vec3 offset = points.offset(i) - at;
-    if (std::abs(offset.dot(along)) > kSliceAlong) continue;
-    const double place = offset.dot(side), height = offset.dot(inward);
-    if (place < kNearZone[0] || place > kFarZone || std::abs(height) > tolerance + 0.3) continue;
-    const int zone = place < kNearZone[1] ? 0 : place < kMiddleZone ? 1 : 2;
-    sum[zone] += height;
-    count[zone] += 1.0;
-  }
-  if (count[1] == 0.0) return 0.0;
-  const double middle = sum[1] / count[1];
+  const ZoneSums sums = sum_zones(at, along, side, inward, points, tolerance + 0.3);
+  if (sums.count[1] == 0.0) return 0.0;
+  const double middle = sums.height[1] / sums.count[1];
   double bend = 0.0;
   for (const int zone : {0, 2}) {
-    if (count[zone] > 0.0) bend += sum[zone] / count[zone] - middle;
+    if (sums.count[zone] > 0.0) bend += sums.height[zone] / sums.count[zone] - middle;
   }
   return bend;
 }

@@ -7,10 +7,12 @@
 #include <cstdint>
 #include <limits>
 #include <numbers>
+#include <numeric>
 
 #include "pcednet/core/eigendecomposition.h"
 #include "pcednet/core/half_space.h"
 #include "pcednet/core/vector_clones.h"
+#include "pcednet/lines/lanes.h"
 #include "pcednet/lines/plane_line.h"
 
 namespace pcednet::lines {
@@ -19,9 +21,9 @@ namespace {
 constexpr std::size_t kFewestPoints = 14;
 constexpr int kFewestOfSide = 5;
 constexpr double kSmallestAngle = 22.0 * std::numbers::pi / 180.0;
-constexpr int kDirections = 10;
+constexpr int kDirections = 10;  ///< even
 constexpr std::size_t kCuts = 9;  ///< of each direction
-constexpr int kImprovements = 4;
+constexpr int kImprovements = 3;
 constexpr double kMostOutliers = 0.12;   ///< share of the points
 constexpr double kPrice = 2.0;           ///< in squared standard deviations: of the choice of a cut
 constexpr double kMostMeanSquare = 1.7;  ///< of the distances, in squared standard deviations
@@ -47,8 +49,9 @@ struct Frame {
 };
 
 Frame frame_of(const NearPoints& points, std::size_t count) {
-  PointMoments moments;
-  for (std::size_t i = 0; i < count; ++i) moments.add(points.offset(i));
+  NearPoints::Row weights{};
+  std::fill_n(weights.begin(), count, 1.0);
+  const PointMoments moments = points.moments(weights);
   const Mat3 axes = eigendecomposition(moments.covariance()).vectors;
   const Vec3 z = axes.col(0).normalized();
   const Vec3 x = axes.col(2).normalized();
@@ -100,13 +103,15 @@ void fit_planes(Parts& parts) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < Parts::kCount; ++i) {
     const double weight = parts.weight[i], x = parts.x[i], y = parts.y[i], z = parts.z[i];
-    const double mean_x = x / weight, mean_y = y / weight, mean_z = z / weight;
+    const double per_weight = 1.0 / weight;
+    const double mean_x = x * per_weight, mean_y = y * per_weight, mean_z = z * per_weight;
     const double xx = parts.xx[i] - x * mean_x, xy = parts.xy[i] - x * mean_y;
     const double yy = parts.yy[i] - y * mean_y, zz = parts.zz[i] - z * mean_z;
     const double xz = parts.xz[i] - z * mean_x, yz = parts.yz[i] - z * mean_y;
     const double determinant = xx * yy - xy * xy;
-    const double slope_x = (xz * yy - yz * xy) / determinant;
-    const double slope_y = (yz * xx - xz * xy) / determinant;
+    const double per_determinant = 1.0 / determinant;
+    const double slope_x = (xz * yy - yz * xy) * per_determinant;
+    const double slope_y = (yz * xx - xz * xy) * per_determinant;
     const double error = larger(0.0, zz - slope_x * xz - slope_y * yz) /
                          (1.0 + slope_x * slope_x + slope_y * slope_y);
     const bool sound = (weight >= static_cast<double>(kFewestOfSide)) &
@@ -121,18 +126,33 @@ struct FramedPoints {
   Frame frame;
   Vec3 origin;  ///< the edge point
   std::size_t count;
-  NearPoints::Row x, y, z;
+  NearPoints::Row x{}, y{}, z{};
   std::array<PointMoments, NearPoints::kMost> moments;
 
   FramedPoints(const NearPoints& points, std::size_t count_)
       : frame(frame_of(points, count_)), origin(frame.of(Vec3::Zero())), count(count_) {
+    project(points, frame.x, x);
+    project(points, frame.y, y);
+    project(points, frame.z, z);
     for (std::size_t i = 0; i < count; ++i) {
-      const Vec3 place = frame.of(points.offset(i));
-      moments[i].add(place);
-      x[i] = place.x(), y[i] = place.y(), z[i] = place.z();
+      moments[i] = {1.0,         x[i],        y[i],        z[i],        x[i] * x[i],
+                    x[i] * y[i], y[i] * y[i], x[i] * z[i], y[i] * z[i], z[i] * z[i]};
     }
   }
+
+ private:
+  void project(const NearPoints& points, const Vec3& axis, NearPoints::Row& row) const;
 };
+
+PCEDNET_VECTOR_CLONES
+void FramedPoints::project(const NearPoints& points, const Vec3& axis, NearPoints::Row& row) const {
+  const double axis_x = axis.x(), axis_y = axis.y(), axis_z = axis.z();
+  const double from_x = frame.origin.x(), from_y = frame.origin.y(), from_z = frame.origin.z();
+  for (std::size_t i = 0; i < count; ++i) {
+    row[i] = (points.x[i] - from_x) * axis_x + (points.y[i] - from_y) * axis_y +
+             (points.z[i] - from_z) * axis_z;
+  }
+}
 
 /// The parts that cuts along lines in one direction make; the middle one passes the edge point.
 PCEDNET_VECTOR_CLONES
@@ -158,27 +178,37 @@ void divide(const FramedPoints& points, double across_x, double across_y, Parts&
   }
 }
 
-/// The half-planes of the two parts with the least error.
-std::optional<HalfPlanes> best_cut(const FramedPoints& points) {
-  const Frame& frame = points.frame;
-  std::optional<HalfPlanes> best;
-  double least_error = std::numeric_limits<double>::infinity();
+struct BestCut {
+  std::optional<HalfPlanes> halves;
+  double error = std::numeric_limits<double>::infinity();
+  int direction = 0;
+};
+
+/// Looks for a better cut along lines in one direction.
+void try_direction(const FramedPoints& points, int direction, BestCut& best) {
+  const double angle = std::numbers::pi * direction / kDirections;
   Parts parts;
-  for (int i = 0; i < kDirections; ++i) {
-    const double angle = std::numbers::pi * i / kDirections;
-    divide(points, std::cos(angle), std::sin(angle), parts);
-    fit_planes(parts);
-    for (std::size_t a = 0, b = kCuts; a < kCuts; ++a, ++b) {
-      const double error = parts.error[a] + parts.error[b];
-      if (!(error < least_error)) continue;
-      const auto halves = half_planes(parts.plane(a, frame), parts.plane(b, frame),
-                                      frame.place(parts.mean(a)), frame.place(parts.mean(b)));
-      if (!halves) continue;
-      least_error = error;
-      best = halves;
-    }
+  divide(points, std::cos(angle), std::sin(angle), parts);
+  fit_planes(parts);
+  const Frame& frame = points.frame;
+  for (std::size_t a = 0, b = kCuts; a < kCuts; ++a, ++b) {
+    const double error = parts.error[a] + parts.error[b];
+    if (!(error < best.error)) continue;
+    const auto halves = half_planes(parts.plane(a, frame), parts.plane(b, frame),
+                                    frame.place(parts.mean(a)), frame.place(parts.mean(b)));
+    if (halves) best = {halves, error, direction};
   }
-  return best;
+}
+
+/// The half-planes of the two parts with the least error: of every other direction, and of those
+/// beside the best of them.
+std::optional<HalfPlanes> best_cut(const FramedPoints& points) {
+  BestCut best;
+  for (int i = 0; i < kDirections; i += 2) try_direction(points, i, best);
+  const int middle = best.direction;
+  try_direction(points, (middle + 1) % kDirections, best);
+  try_direction(points, (middle + kDirections - 1) % kDirections, best);
+  return best.halves;
 }
 
 /// Squared distances of the points to a half-plane: beyond the line, to that.
@@ -238,40 +268,84 @@ std::optional<HalfPlanes> improved(const HalfPlanes& halves, const NearPoints& p
   return half_planes(*plane_a, *plane_b, a.mean(), b.mean());
 }
 
-/// The squared distances of points to the surface z = c0 + c1 x + c2 y + c3 x^2 + c4 x y + c5 y^2,
-/// to first order.
+/// Sums over places: of x^i y^j with i + j <= 4 in the order 1, x, y, xx, xy, yy, xxx ..., and of z
+/// with each of the first six.
+struct QuadricSums {
+  std::array<double, 15> xy;
+  std::array<double, 6> z;
+};
+
 PCEDNET_VECTOR_CLONES
-void sq_distances_to_quadric(const FramedPoints& points, const double* c, NearPoints::Row& result) {
+void add_up(const FramedPoints& points, const NearPoints::Row& ones, QuadricSums& result) {
+  Lanes xy[15] = {}, of_z[6] = {};
+  for (std::size_t i = 0; i < points.count; i += kLanes) {
+    Lanes x, y, z, one;
+    load(&points.x[i], x);
+    load(&points.y[i], y);
+    load(&points.z[i], z);
+    load(&ones[i], one);
+    const Lanes xx = x * x, xy1 = x * y, yy = y * y;
+    const Lanes terms[15] = {one,     x,        y,        xx,       xy1,
+                             yy,      xx * x,   xx * y,   yy * x,   yy * y,
+                             xx * xx, xx * xy1, xx * yy,  xy1 * yy, yy * yy};
+    for (int k = 0; k < 15; ++k) xy[k] += terms[k];
+    for (int k = 0; k < 6; ++k) of_z[k] += terms[k] * z;
+  }
+  for (std::size_t k = 0; k < 15; ++k) result.xy[k] = sum_of(xy[k]);
+  for (std::size_t k = 0; k < 6; ++k) result.z[k] = sum_of(of_z[k]);
+}
+
+/// The sum of the squared distances of points to the surface z = c0 + c1 x + c2 y + c3 x^2 + c4 x y
+/// + c5 y^2, to first order, each at most `sq_most`.
+PCEDNET_VECTOR_CLONES
+void sq_distances_to_quadric(const FramedPoints& points, const double* c, double sq_most,
+                             NearPoints::Row& result) {
   const double c0 = c[0], c1 = c[1], c2 = c[2], c3 = c[3], c4 = c[4], c5 = c[5];
   for (std::size_t i = 0; i < points.count; ++i) {
     const double x = points.x[i], y = points.y[i];
     const double away = points.z[i] - (c0 + c1 * x + c2 * y + c3 * x * x + c4 * x * y + c5 * y * y);
     const double slope_x = c1 + 2.0 * c3 * x + c4 * y, slope_y = c2 + c4 * x + 2.0 * c5 * y;
-    result[i] = away * away / (1.0 + slope_x * slope_x + slope_y * slope_y);
+    result[i] = smaller(away * away / (1.0 + slope_x * slope_x + slope_y * slope_y), sq_most);
   }
 }
 
 /// Sum of squared distances to the best quadratic height, each at most that of an outlier.
-double error_of_quadric(const FramedPoints& points, double noise) {
-  using Terms = Eigen::Matrix<double, 6, 1>;
-  Eigen::Matrix<double, 6, 6> left = Eigen::Matrix<double, 6, 6>::Zero();
-  Terms right = Terms::Zero();
-  for (std::size_t i = 0; i < points.count; ++i) {
-    const double x = points.x[i], y = points.y[i];
-    const double terms[6] = {1.0, x, y, x * x, x * y, y * y};
-    for (Eigen::Index a = 0; a < 6; ++a) {
-      for (Eigen::Index b = 0; b <= a; ++b) left(a, b) += terms[a] * terms[b];
-      right[a] += points.z[i] * terms[a];
+double error_of_quadric(const FramedPoints& points, double sq_outlier) {
+  constexpr int kPowers[6][2] = {{0, 0}, {1, 0}, {0, 1}, {2, 0}, {1, 1}, {0, 2}};
+  NearPoints::Row row{};
+  std::fill_n(row.begin(), points.count, 1.0);
+  QuadricSums sums;
+  add_up(points, row, sums);
+  Eigen::Matrix<double, 6, 6> left;
+  Eigen::Matrix<double, 6, 1> right;
+  for (int a = 0; a < 6; ++a) {
+    for (int b = 0; b <= a; ++b) {
+      const int of_y = kPowers[a][1] + kPowers[b][1], all = kPowers[a][0] + kPowers[b][0] + of_y;
+      left(a, b) = sums.xy[static_cast<std::size_t>(all * (all + 1) / 2 + of_y)];
     }
+    right[a] = sums.z[static_cast<std::size_t>(a)];
   }
-  const Terms c = left.ldlt().solve(right);  // reads the lower half
-  NearPoints::Row sq_distances;
-  sq_distances_to_quadric(points, c.data(), sq_distances);
-  double error = 0.0;
-  for (std::size_t i = 0; i < points.count; ++i) {
-    error += std::min(std::pow(kOutlier * noise, 2), sq_distances[i]);
+  const Eigen::Matrix<double, 6, 1> c = left.ldlt().solve(right);  // reads the lower half
+  sq_distances_to_quadric(points, c.data(), sq_outlier, row);
+  return std::accumulate(row.begin(), row.begin() + points.count, 0.0);
+}
+
+/// The points near each half-plane, and the sum of squared distances, each at most that of an
+/// outlier.
+struct Explained {
+  std::array<int, 2> on;
+  double error;
+};
+
+Explained explained_by(const SqDistances& to, std::size_t count, double sq_outlier) {
+  Explained result{};
+  for (std::size_t i = 0; i < count; ++i) {
+    const double nearest = smaller(to.a[i], to.b[i]);
+    result.error += smaller(nearest, sq_outlier);
+    const int on = nearest <= sq_outlier ? 1 : 0, a = to.a[i] < to.b[i] ? on : 0;
+    result.on[0] += a, result.on[1] += on - a;
   }
-  return error;
+  return result;
 }
 
 /// Whether the half-planes explain the points, and better than a smooth surface.
@@ -280,18 +354,12 @@ bool explain(const HalfPlanes& halves, const NearPoints& points, const FramedPoi
   const double sq_outlier = std::pow(kOutlier * noise, 2), sq_noise = noise * noise;
   const std::size_t count = framed.count;
   const SqDistances to(halves, points, count);
-  double error = 0.0;
-  int on_a = 0, on_b = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    const double nearest = std::min(to.a[i], to.b[i]);
-    error += std::min(nearest, sq_outlier);
-    const int on = nearest <= sq_outlier ? 1 : 0, a = to.a[i] < to.b[i] ? on : 0;
-    on_a += a, on_b += on - a;
-  }
+  const Explained explained = explained_by(to, count, sq_outlier);
+  const auto [on_a, on_b] = explained.on;
   const double all = static_cast<double>(count);
   return std::min(on_a, on_b) >= kFewestOfSide && all - on_a - on_b <= kMostOutliers * all &&
-         error <= kMostMeanSquare * sq_noise * all &&
-         error + kPrice * sq_noise <= error_of_quadric(framed, noise);
+         explained.error <= kMostMeanSquare * sq_noise * all &&
+         explained.error + kPrice * sq_noise <= error_of_quadric(framed, sq_outlier);
 }
 
 }  // namespace
