@@ -168,10 +168,11 @@ struct FarPlaces {
   FarRow x, y, z, sq_nearest;
 };
 
+/// For the places from that one on.
 PCEDNET_VECTOR_CLONES
 void choose(FarPlaces& places, std::size_t chosen, std::size_t count) {
   const double at_x = places.x[chosen], at_y = places.y[chosen], at_z = places.z[chosen];
-  for (std::size_t i = 0; i < count; ++i) {
+  for (std::size_t i = chosen; i < count; ++i) {
     const double x = places.x[i] - at_x, y = places.y[i] - at_y, z = places.z[i] - at_z;
     places.sq_nearest[i] = smaller(places.sq_nearest[i], x * x + y * y + z * z);
   }

@@ -20,6 +20,7 @@ constexpr double kFar = 1e9;
 struct Tests {
   NearPoints::Row least_cosine;  ///< of the normals; below 0: any
   NearPoints::Row taken;         ///< kFar for the points of planes found before, else 0
+  int left;                      ///< the others
 };
 
 PCEDNET_VECTOR_CLONES
@@ -31,6 +32,7 @@ void set_tests(const NearPoints& points, Tests& tests) {
     tests.least_cosine[i] = trusted ? kSameNormal : -1.0;
     tests.taken[i] = 0.0;
   }
+  tests.left = static_cast<int>(points.count);
 }
 
 PCEDNET_VECTOR_CLONES
@@ -39,8 +41,11 @@ void take(const LocalPlane& plane, const NearPoints& points, double within, Test
   const double distance = plane.distance;
   for (std::size_t i = 0; i < points.count; ++i) {
     const double away = std::fabs(a * points.x[i] + b * points.y[i] + c * points.z[i] - distance);
-    tests.taken[i] = away < within ? kFar : tests.taken[i];
+    tests.taken[i] = larger(tests.taken[i], away < within ? kFar : 0.0);
   }
+  int left = 0;
+  for (std::size_t i = 0; i < points.count; ++i) left += tests.taken[i] > 0.0 ? 0 : 1;
+  tests.left = left;
 }
 
 /// The points within `tolerance` of the plane that are not taken.
@@ -92,16 +97,27 @@ struct Seeds {
   std::size_t count = 0;
 };
 
+/// The number of smaller ones of each of the distinct values.
+PCEDNET_VECTOR_CLONES
+void rank(const std::uint32_t* values, std::size_t count, std::uint32_t* ranks) {
+  for (std::size_t i = 0; i < count; ++i) ranks[i] = 0;
+  for (std::size_t j = 0; j < count; ++j) {
+    const std::uint32_t value = values[j];
+    for (std::size_t i = 0; i < count; ++i) ranks[i] += value < values[i] ? 1u : 0u;
+  }
+}
+
 Seeds seeds_of(const NearPoints& points) {
   constexpr double kSteps = 1 << 20;  // of edginess; then the order of the points decides
   Seeds seeds;
+  std::array<std::uint32_t, NearPoints::kMost> keys, ranks;
   for (std::uint32_t i = 0; i < points.count; ++i) {
     if (points.normal(i).isZero(0.0)) continue;
     const double edginess = std::clamp(points.edginess[i], 0.0, 4.0);
-    seeds.points[seeds.count++] = (static_cast<std::uint32_t>(edginess * kSteps) << 8) | i;
+    keys[seeds.count++] = (static_cast<std::uint32_t>(edginess * kSteps) << 8) | i;
   }
-  std::sort(seeds.points.begin(), seeds.points.begin() + seeds.count);
-  for (std::size_t k = 0; k < seeds.count; ++k) seeds.points[k] &= 0xff;
+  rank(keys.data(), seeds.count, ranks.data());
+  for (std::size_t k = 0; k < seeds.count; ++k) seeds.points[ranks[k]] = keys[k] & 0xff;
   return seeds;
 }
 
@@ -109,7 +125,7 @@ LocalPlane best_plane(const NearPoints& points, const Tests& tests, const Seeds&
                       double tolerance) {
   LocalPlane best{Vec3::Zero(), 0.0, 0};
   std::size_t tried = 0;
-  for (std::size_t k = 0; k < seeds.count; ++k) {
+  for (std::size_t k = 0; k < seeds.count && best.support < tests.left; ++k) {
     const std::size_t seed = seeds.points[k];
     if (tests.taken[seed] > 0.0) continue;
     if (tried++ == kMostSeeds) break;
@@ -137,10 +153,9 @@ void NearPoints::add(const Vec3& offset, const Vec3& normal, double probability)
 std::optional<LocalPlane> plane_of(const PointMoments& moments, double least_weight,
                                    double least_width) {
   if (moments.weight < least_weight) return std::nullopt;
-  const auto [variances, axes] = eigendecomposition(moments.covariance());
-  if (!(variances[1] > least_width)) return std::nullopt;
-  const Vec3 normal = axes.col(0).normalized();
-  return LocalPlane{normal, normal.dot(moments.mean()), 0};
+  const LeastAxis across = least_axis(moments.covariance());
+  if (!(across.next_value > least_width)) return std::nullopt;
+  return LocalPlane{across.axis, across.axis.dot(moments.mean()), 0};
 }
 
 void find_planes(const NearPoints& points, double tolerance, std::vector<LocalPlane>& planes) {
@@ -148,7 +163,7 @@ void find_planes(const NearPoints& points, double tolerance, std::vector<LocalPl
   Tests tests;
   set_tests(points, tests);
   const Seeds seeds = seeds_of(points);
-  while (planes.size() < kMostPlanes) {
+  while (planes.size() < kMostPlanes && tests.left >= kLeastSupport) {
     const LocalPlane best = best_plane(points, tests, seeds, tolerance);
     if (best.support < kLeastSupport) break;
     LocalPlane fitted =

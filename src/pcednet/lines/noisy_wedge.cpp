@@ -21,7 +21,7 @@ namespace {
 constexpr std::size_t kFewestPoints = 14;
 constexpr int kFewestOfSide = 5;
 constexpr double kSmallestAngle = 22.0 * std::numbers::pi / 180.0;
-constexpr int kDirections = 10;  ///< even
+constexpr int kDirections = 10;   ///< even
 constexpr std::size_t kCuts = 9;  ///< of each direction
 constexpr int kImprovements = 3;
 constexpr double kMostOutliers = 0.12;   ///< share of the points
@@ -285,9 +285,8 @@ void add_up(const FramedPoints& points, const NearPoints::Row& ones, QuadricSums
     load(&points.z[i], z);
     load(&ones[i], one);
     const Lanes xx = x * x, xy1 = x * y, yy = y * y;
-    const Lanes terms[15] = {one,     x,        y,        xx,       xy1,
-                             yy,      xx * x,   xx * y,   yy * x,   yy * y,
-                             xx * xx, xx * xy1, xx * yy,  xy1 * yy, yy * yy};
+    const Lanes terms[15] = {one,    x,      y,       xx,       xy1,     yy,       xx * x, xx * y,
+                             yy * x, yy * y, xx * xx, xx * xy1, xx * yy, xy1 * yy, yy * yy};
     for (int k = 0; k < 15; ++k) xy[k] += terms[k];
     for (int k = 0; k < 6; ++k) of_z[k] += terms[k] * z;
   }

@@ -53,7 +53,8 @@ std::vector<std::uint32_t> distinct_points(const EdgePoints& points) {
 OrderedPoints::OrderedPoints(const EdgePoints& points)
     : points_(points),
       order_(distinct_points(points)),
-      positions_(spatial::in_order(points.positions, order_)) {
+      positions_(spatial::in_order(points.positions, order_)),
+      normals_(spatial::in_order(points.normals, order_)) {
   parallel_blocks(2, 1, [&](std::size_t which, std::size_t) {  // side by side
     if (which == 0) tree_.emplace(positions_);
     if (which == 1) search_.emplace(positions_);

@@ -22,11 +22,9 @@ class OrderedPoints {
   std::size_t size() const { return positions_.size(); }
   const Vec3& position(std::size_t i) const { return positions_[i]; }
   /// One of a normal and its opposite, the same of both: nothing may depend on signs.
-  Vec3 normal(std::size_t i) const { return upward(points_.normals[order_[i]]); }
+  Vec3 normal(std::size_t i) const { return upward(normals_[i]); }
   /// Of the angle between the normals of two points, with their signs.
-  double cosine(std::size_t i, std::size_t j) const {
-    return points_.normals[order_[i]].dot(points_.normals[order_[j]]);
-  }
+  double cosine(std::size_t i, std::size_t j) const { return normals_[i].dot(normals_[j]); }
   EdgeClass edge_class(std::size_t i) const {
     return static_cast<EdgeClass>(points_.classes[order_[i]]);
   }
@@ -54,7 +52,7 @@ class OrderedPoints {
  private:
   EdgePoints points_;
   std::vector<std::uint32_t> order_;
-  std::vector<Vec3> positions_;
+  std::vector<Vec3> positions_, normals_;
   std::optional<spatial::KdTree> tree_;
   std::optional<spatial::NeighbourSearch> search_;
 };

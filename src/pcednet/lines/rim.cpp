@@ -82,7 +82,7 @@ std::vector<Vec3> likely_axes(const NearRows& near, double reach) {
     if (mark_plane(near, i, reach, on) < kLeastPlane) continue;
     const PointMoments moments =
         moments_of(near.x.data(), near.y.data(), near.z.data(), on.data(), near.count);
-    const Vec3 axis = eigendecomposition(moments.covariance()).vectors.col(0).normalized();
+    const Vec3 axis = least_axis(moments.covariance()).axis;
     if (is_like(axis)) axes.push_back(axis);
   }
   return axes;
@@ -121,73 +121,99 @@ std::vector<Cap> likely_caps(const NearRows& near, double reach, double spacing)
   return caps;
 }
 
-struct FlatCircle {
-  Eigen::Vector2d centre;
-  double radius;
-};
-
-std::optional<FlatCircle> circle_through(const Eigen::Vector2d& at, const Eigen::Vector2d& second,
-                                         const Eigen::Vector2d& third) {
-  const Eigen::Vector2d a = second - at, b = third - at;
-  const double twice_area = a.x() * b.y() - a.y() * b.x();
-  if (std::abs(twice_area) < 1e-9 * a.norm() * b.norm()) return std::nullopt;
-  const Eigen::Vector2d across(b.y() * a.squaredNorm() - a.y() * b.squaredNorm(),
-                               a.x() * b.squaredNorm() - b.x() * a.squaredNorm());
-  const Eigen::Vector2d offset = across / (2.0 * twice_area);
-  return FlatCircle{at + offset, offset.norm()};
-}
-
 bool has_radius_of_a_bore(double radius, double spacing) {
   return radius > kLeastRadius * spacing && radius < kMostRadius * spacing;
 }
 
 /// The places of a wall, seen along its axis.
 struct FlatPlaces {
-  using Row = std::array<double, kMostPlaces>;
-
   std::size_t count = 0;
-  Row x{}, y{};
+  std::array<double, kMostPlaces> x, y;
 
   void add(double at_x, double at_y) {
     x[count] = at_x, y[count] = at_y;
     ++count;
   }
-  Eigen::Vector2d operator[](std::size_t i) const { return {x[i], y[i]}; }
 };
 
-/// The places nearer to the circle than `reach`, which is below its radius.
-PCEDNET_VECTOR_CLONES
-int count_on(const FlatPlaces& places, const FlatCircle& circle, double reach) {
-  const double at_x = circle.centre.x(), at_y = circle.centre.y();
-  const double inner = circle.radius - reach, outer = circle.radius + reach;
-  const double sq_inner = inner * inner, sq_outer = outer * outer;
-  int on = 0;
-  for (std::size_t i = 0; i < places.count; ++i) {
-    const double x = places.x[i] - at_x, y = places.y[i] - at_y, sq_away = x * x + y * y;
-    on += static_cast<int>((sq_away > sq_inner) & (sq_away < sq_outer));
-  }
-  return on;
-}
+/// Circles through three places each, one per vector lane.
+struct FlatCircles {
+  using Row = std::array<double, kMostTriples>;
 
-/// Of the circles through three of the places, that which the most of them are on.
-std::optional<FlatCircle> common_circle(const FlatPlaces& places, double reach, double spacing) {
+  std::size_t count = 0;
+  Row x[3], y[3];  ///< of the places
+  Row centre_x, centre_y, radius;
+  std::array<std::int64_t, kMostTriples> on;  ///< places that are near the circle
+};
+
+/// At most kMostTriples of the triples, at even steps.
+void choose_triples(const FlatPlaces& places, FlatCircles& circles) {
   const std::size_t n = places.count, step = 1 + n * (n - 1) * (n - 2) / 6 / kMostTriples;
-  FlatCircle best{Eigen::Vector2d::Zero(), 0.0};
-  std::size_t most = 0, skip = 0;
+  std::size_t skip = 0;
   for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t j = i + 1; j < n; ++j) {
       std::size_t k = j + 1 + skip;
       for (; k < n; k += step) {
-        const auto circle = circle_through(places[i], places[j], places[k]);
-        if (!circle || !has_radius_of_a_bore(circle->radius, spacing)) continue;
-        const auto on = static_cast<std::size_t>(count_on(places, *circle, reach * spacing));
-        if (on > most) best = *circle, most = on;
+        const std::size_t triple[3] = {i, j, k};
+        for (std::size_t m = 0; m < 3; ++m) {
+          circles.x[m][circles.count] = places.x[triple[m]];
+          circles.y[m][circles.count] = places.y[triple[m]];
+        }
+        ++circles.count;
       }
       skip = k - n;
     }
   }
-  if (most < kLeastWall || 3 * most < 2 * n) return std::nullopt;
-  return best;
+}
+
+/// Sets the circles, and how many of the places are nearer to each than `reach`; none to one that
+/// cannot be of a bore.
+PCEDNET_VECTOR_CLONES
+void fit_circles(const FlatPlaces& places, double reach, double spacing, FlatCircles& circles) {
+  const double least = kLeastRadius * spacing, most = kMostRadius * spacing;
+  FlatCircles::Row sq_inner, sq_outer;
+  for (std::size_t i = 0; i < circles.count; ++i) {
+    const double at_x = circles.x[0][i], at_y = circles.y[0][i];
+    const double ax = circles.x[1][i] - at_x, ay = circles.y[1][i] - at_y;
+    const double bx = circles.x[2][i] - at_x, by = circles.y[2][i] - at_y;
+    const double sq_a = ax * ax + ay * ay, sq_b = bx * bx + by * by;
+    const double twice_area = ax * by - ay * bx, per_area = 0.5 / twice_area;
+    const double x = (by * sq_a - ay * sq_b) * per_area, y = (ax * sq_b - bx * sq_a) * per_area;
+    const double radius = std::sqrt(x * x + y * y);
+    const bool can_be =
+        (radius > least) & (radius < most) & (twice_area * twice_area >= 1e-18 * sq_a * sq_b);
+    circles.centre_x[i] = at_x + x, circles.centre_y[i] = at_y + y;
+    circles.radius[i] = radius;
+    sq_inner[i] = (radius - reach) * (radius - reach);
+    sq_outer[i] = can_be ? (radius + reach) * (radius + reach) : 0.0;
+    circles.on[i] = 0;
+  }
+  for (std::size_t k = 0; k < places.count; ++k) {
+    const double place_x = places.x[k], place_y = places.y[k];
+    for (std::size_t i = 0; i < circles.count; ++i) {
+      const double x = place_x - circles.centre_x[i], y = place_y - circles.centre_y[i];
+      const double sq_away = x * x + y * y;
+      circles.on[i] += (sq_away > sq_inner[i]) & (sq_away < sq_outer[i]) ? 1 : 0;
+    }
+  }
+}
+
+struct FlatCircle {
+  Eigen::Vector2d centre;
+  double radius;
+};
+
+/// Of the circles through three of the places, that which the most of them are on.
+std::optional<FlatCircle> common_circle(const FlatPlaces& places, double reach, double spacing) {
+  FlatCircles circles;
+  choose_triples(places, circles);
+  fit_circles(places, reach * spacing, spacing, circles);
+  const auto end = circles.on.begin() + static_cast<std::ptrdiff_t>(circles.count);
+  const auto best = std::max_element(circles.on.begin(), end);
+  const auto most = static_cast<std::size_t>(*best);
+  if (most < kLeastWall || 3 * most < 2 * places.count) return std::nullopt;
+  const auto i = static_cast<std::size_t>(best - circles.on.begin());
+  return FlatCircle{{circles.centre_x[i], circles.centre_y[i]}, circles.radius[i]};
 }
 
 /// Where a point is in the half-plane of a circle's axis, in spacings.
