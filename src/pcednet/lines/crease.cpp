@@ -2,16 +2,13 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <cmath>
 #include <iterator>
-#include <tuple>
 #include <utility>
 
-#include "pcednet/core/eigendecomposition.h"
-#include "pcednet/core/vector_clones.h"
-#include "pcednet/lines/lanes.h"
+#include "pcednet/lines/bend.h"
+#include "pcednet/lines/far_neighbours.h"
 #include "pcednet/lines/local_planes.h"
 #include "pcednet/lines/noisy_wedge.h"
 #include "pcednet/lines/ordered_points.h"
@@ -29,95 +26,20 @@ constexpr std::size_t kWithSharp = 9, kWithSmooth = 3;
 constexpr std::size_t kNoisyNeighbours[] = {80, 56, 40, 28};
 constexpr double kNoiseOfPlanes = 1.2;  ///< measured noise is too low: planes of few points bend
 
-/// Where one side of an edge is much denser than the other, the nearest points are all of the
-/// denser: so many are looked at then, thinned to a distance from each other, in that of the last.
-constexpr std::size_t kFarNeighbours = 300;
-constexpr double kApart = 0.16;
 constexpr std::size_t kUnevenSides = 3;  ///< times as many points
 constexpr double kAlmostAll = 0.95;
 constexpr double kOffSide = 0.5, kReachesLine = 0.5;  ///< spacings
 
+constexpr double kLittleNoise = 0.02;  ///< in less, creases beside others still tell of arcs
+
 /// Of points to be tried beside those of an edge class; the second is added per spacing of noise.
 constexpr double kLeastProbability[] = {0.1, 0.9};
-
-/// Mean squares of the normals across an edge at least, and along it as a share of that at most.
-constexpr double kLeastVaried = 0.04, kMostAlong = 0.15;
-constexpr double kShortened = 8.0 / 9.0;  ///< the share of squared lengths that does not count
-
-/// Ends of the zones of a side: near the line, between, far; in spacings.
-constexpr double kNearZone[] = {0.15, 0.9}, kMiddleZone = 1.9, kFarZone = 3.3;
 
 struct Tolerances {
   WedgeTolerances wedge;
   std::size_t points;     ///< around an edge point
   bool skips_other_side;  ///< of these, those that face away: beyond a thin wall
 };
-
-/// Sums of heights over the points of a side that are near the line, beyond and far from it.
-struct ZoneSums {
-  double height[3], count[3];
-};
-
-PCEDNET_VECTOR_CLONES
-ZoneSums sum_zones(const Vec3& at, const Vec3& along, const Vec3& side, const Vec3& inward,
-                   const NearPoints& points, double most_height) {
-  const double ends[4] = {kNearZone[0], kNearZone[1], kMiddleZone, kFarZone};
-  const double at_x = at.x(), at_y = at.y(), at_z = at.z();
-  const double along_x = along.x(), along_y = along.y(), along_z = along.z();
-  const double side_x = side.x(), side_y = side.y(), side_z = side.z();
-  const double up_x = inward.x(), up_y = inward.y(), up_z = inward.z();
-  Lanes heights[3] = {}, counts[3] = {};
-  Lanes number = {0.0, 1.0, 2.0, 3.0};
-  const Lanes zero = {}, one = zero + 1.0;
-  const auto count = static_cast<double>(points.count);
-  for (std::size_t i = 0; i < points.count; i += kLanes, number += kLanes) {
-    Lanes x, y, z;
-    load(&points.x[i], x);
-    load(&points.y[i], y);
-    load(&points.z[i], z);
-    x -= at_x, y -= at_y, z -= at_z;
-    const Lanes lengthwise = x * along_x + y * along_y + z * along_z;
-    const Lanes place = x * side_x + y * side_y + z * side_z;
-    const Lanes height = x * up_x + y * up_y + z * up_z;
-    const auto is_near = (lengthwise <= kSliceAlong) & (lengthwise >= -kSliceAlong) &
-                         (height <= most_height) & (height >= -most_height) & (number < count);
-    for (int k = 0; k < 3; ++k) {
-      const auto in_zone = is_near & (place >= ends[k]) & (place < ends[k + 1]);
-      heights[k] += in_zone ? height : zero;
-      counts[k] += in_zone ? one : zero;
-    }
-  }
-  ZoneSums sums;
-  for (int k = 0; k < 3; ++k) {
-    sums.height[k] = sum_of(heights[k]);
-    sums.count[k] = sum_of(counts[k]);
-  }
-  return sums;
-}
-
-/// How much the points of a side bend towards the inside of the wedge: their mean distance to the
-/// plane near the line and far from it, less that between.
-double bend_of(const Vec3& at, const Vec3& along, const Vec3& side, const Vec3& inward,
-               const NearPoints& points, double tolerance) {
-  const ZoneSums sums = sum_zones(at, along, side, inward, points, tolerance + 0.3);
-  if (sums.count[1] == 0.0) return 0.0;
-  const double middle = sums.height[1] / sums.count[1];
-  double bend = 0.0;
-  for (const int zone : {0, 2}) {
-    if (sums.count[zone] > 0.0) bend += sums.height[zone] / sums.count[zone] - middle;
-  }
-  return bend;
-}
-
-/// The mean of both sides.
-double bend_of(const Wedge& wedge, const NearPoints& points, double tolerance) {
-  Vec3 into_a = wedge.along.cross(wedge.side_a), into_b = wedge.along.cross(wedge.side_b);
-  if (into_a.dot(wedge.side_b) < 0.0) into_a = -into_a;
-  if (into_b.dot(wedge.side_a) < 0.0) into_b = -into_b;
-  const double a = bend_of(wedge.at, wedge.along, wedge.side_a, into_a, points, tolerance);
-  const double b = bend_of(wedge.at, wedge.along, wedge.side_b, into_b, points, tolerance);
-  return 0.5 * (a + b);
-}
 
 std::optional<Wedge> noisy_wedge(const NearPoints& points, double noise) {
   for (const std::size_t count : kNoisyNeighbours) {
@@ -159,71 +81,6 @@ std::optional<Crease> crease_at(const OrderedPoints& cloud, std::uint32_t i,
                 .probability = cloud.probability(i),
                 .bend = static_cast<float>(bend_of(*wedge, near_points, within.wedge.plane)),
                 .edge_class = cloud.is_edge(i) ? cloud.edge_class(i) : kNonEdge};
-}
-
-using FarRow = std::array<double, kFarNeighbours>;
-
-/// Places, and the squared distance of each to the nearest of those chosen.
-struct FarPlaces {
-  FarRow x, y, z, sq_nearest;
-};
-
-/// For the places from that one on.
-PCEDNET_VECTOR_CLONES
-void choose(FarPlaces& places, std::size_t chosen, std::size_t count) {
-  const double at_x = places.x[chosen], at_y = places.y[chosen], at_z = places.z[chosen];
-  for (std::size_t i = chosen; i < count; ++i) {
-    const double x = places.x[i] - at_x, y = places.y[i] - at_y, z = places.z[i] - at_z;
-    places.sq_nearest[i] = smaller(places.sq_nearest[i], x * x + y * y + z * z);
-  }
-}
-
-/// Of these, nearest first, those that are not near one chosen before: at most as many as
-/// NearPoints has room for beside the point itself.
-std::vector<spatial::Neighbour> thinned(const OrderedPoints& cloud,
-                                        std::span<const spatial::Neighbour> others) {
-  std::vector<spatial::Neighbour> kept;
-  if (others.empty()) return kept;
-  const double sq_apart = kApart * kApart * others.back().sq_distance;
-  FarPlaces places;
-  for (std::size_t i = 0; i < others.size(); ++i) {
-    const Vec3& place = cloud.position(others[i].index);
-    places.x[i] = place.x(), places.y[i] = place.y(), places.z[i] = place.z();
-    places.sq_nearest[i] = others.back().sq_distance;
-  }
-  for (std::size_t i = 0; i < others.size() && kept.size() + 1 < NearPoints::kMost; ++i) {
-    if (places.sq_nearest[i] < sq_apart) continue;
-    kept.push_back(others[i]);
-    choose(places, i, others.size());
-  }
-  return kept;
-}
-
-/// Of these, those that are nearest if lengths along the edge count for a third: as many as
-/// NearPoints has room for beside the point itself. The edge runs where the normals do not vary.
-/// None if they vary in no direction, or in all.
-std::vector<spatial::Neighbour> along_edge(const OrderedPoints& cloud, std::uint32_t point,
-                                           std::span<const spatial::Neighbour> others) {
-  Mat3 scatter = Mat3::Zero();
-  for (const auto& near : others) {
-    const Vec3 normal = cloud.normal(near.index);
-    scatter += normal * normal.transpose();
-  }
-  const Eigendecomposition axes = eigendecomposition(scatter / static_cast<double>(others.size()));
-  if (axes.values[1] < kLeastVaried || axes.values[0] > kMostAlong * axes.values[1]) return {};
-  const Vec3 along = axes.vectors.col(0);
-  std::vector<spatial::Neighbour> nearest(others.begin(), others.end());
-  for (auto& near : nearest) {
-    const double length = (cloud.position(near.index) - cloud.position(point)).dot(along);
-    near.sq_distance -= kShortened * length * length;
-  }
-  const std::size_t count = std::min(nearest.size(), NearPoints::kMost - 1);
-  std::partial_sort(nearest.begin(), nearest.begin() + static_cast<std::ptrdiff_t>(count),
-                    nearest.end(), [](const auto& a, const auto& b) {
-                      return std::tie(a.sq_distance, a.index) < std::tie(b.sq_distance, b.index);
-                    });
-  nearest.resize(count);
-  return nearest;
 }
 
 /// Whether the points around a crease explain why the nearest of them did not show it: they reach
@@ -338,6 +195,39 @@ std::vector<std::optional<Crease>> nearest_creases(const OrderedPoints& cloud,
   return found;
 }
 
+/// The points without a crease; in little noise those of an edge class.
+std::vector<std::uint32_t> points_without(std::span<const std::optional<Crease>> found,
+                                          std::span<const std::uint32_t> points,
+                                          const OrderedPoints& cloud, bool noisy) {
+  std::vector<std::uint32_t> without;
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    if (!found[k] && (noisy || cloud.is_edge(points[k]))) without.push_back(points[k]);
+  }
+  return without;
+}
+
+/// Those that are not among the points with creases: hardly a crease more is found there.
+std::vector<std::uint32_t> away_from(std::span<const std::optional<Crease>> found,
+                                     std::span<const std::uint32_t> points,
+                                     std::span<const std::uint32_t> without,
+                                     const OrderedPoints& cloud, const Progress* progress) {
+  constexpr std::size_t kNearest = 8;
+  constexpr std::ptrdiff_t kAmong = 2;
+  std::vector<std::uint8_t> has_crease(cloud.size(), 0), is_away(without.size(), 0);
+  for (std::size_t k = 0; k < points.size(); ++k) has_crease[points[k]] = found[k].has_value();
+  Stage stage(progress, "points without a crease", without.size());
+  cloud.for_each_neighbourhood(
+      without, kNearest, stage, [&](std::size_t k, std::span<const spatial::Neighbour> others) {
+        const auto has = [&](const auto& other) { return has_crease[other.index] != 0; };
+        is_away[k] = std::count_if(others.begin(), others.end(), has) < kAmong;
+      });
+  std::vector<std::uint32_t> away;
+  for (std::size_t k = 0; k < without.size(); ++k) {
+    if (is_away[k]) away.push_back(without[k]);
+  }
+  return away;
+}
+
 }  // namespace
 
 std::vector<std::optional<Crease>> creases_at(const OrderedPoints& cloud,
@@ -368,10 +258,8 @@ std::vector<Crease> find_creases(const OrderedPoints& cloud, const Sampling& sam
                              .points = static_cast<std::size_t>(40.0 + 80.0 * sampling.noise),
                              .skips_other_side = noisy && sampling.oriented};
   std::vector<std::optional<Crease>> found = nearest_creases(cloud, points, within, progress);
-  std::vector<std::uint32_t> rest;
-  for (std::size_t k = 0; k < points.size(); ++k) {
-    if (!found[k] && (noisy || cloud.is_edge(points[k]))) rest.push_back(points[k]);
-  }
+  std::vector<std::uint32_t> rest = points_without(found, points, cloud, noisy);
+  if (sampling.noise > kLittleNoise) rest = away_from(found, points, rest, cloud, progress);
   Stage again(progress, "creases of more points", rest.size());
   const std::vector<std::optional<Crease>> more =
       creases_at(cloud, rest, kFarNeighbours, again,

@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 
 #include "pcednet/core/eigendecomposition.h"
+#include "pcednet/core/rank.h"
 #include "pcednet/core/vector_clones.h"
 
 namespace pcednet::lines {
@@ -97,27 +100,23 @@ struct Seeds {
   std::size_t count = 0;
 };
 
-/// The number of smaller ones of each of the distinct values.
-PCEDNET_VECTOR_CLONES
-void rank(const std::uint32_t* values, std::size_t count, std::uint32_t* ranks) {
-  for (std::size_t i = 0; i < count; ++i) ranks[i] = 0;
-  for (std::size_t j = 0; j < count; ++j) {
-    const std::uint32_t value = values[j];
-    for (std::size_t i = 0; i < count; ++i) ranks[i] += value < values[i] ? 1u : 0u;
-  }
-}
-
 Seeds seeds_of(const NearPoints& points) {
   constexpr double kSteps = 1 << 20;  // of edginess; then the order of the points decides
   Seeds seeds;
-  std::array<std::uint32_t, NearPoints::kMost> keys, ranks;
+  std::array<std::uint32_t, NearPoints::kMost> with_normal;
+  std::array<double, NearPoints::kMost + kRankStep> keys;
+  std::array<std::int64_t, NearPoints::kMost + kRankStep> ranks;
   for (std::uint32_t i = 0; i < points.count; ++i) {
     if (points.normal(i).isZero(0.0)) continue;
     const double edginess = std::clamp(points.edginess[i], 0.0, 4.0);
-    keys[seeds.count++] = (static_cast<std::uint32_t>(edginess * kSteps) << 8) | i;
+    with_normal[seeds.count] = i;
+    keys[seeds.count++] = std::floor(edginess * kSteps) * NearPoints::kMost + i;
   }
+  std::fill_n(keys.begin() + seeds.count, kRankStep, std::numeric_limits<double>::infinity());
   rank(keys.data(), seeds.count, ranks.data());
-  for (std::size_t k = 0; k < seeds.count; ++k) seeds.points[ranks[k]] = keys[k] & 0xff;
+  for (std::size_t k = 0; k < seeds.count; ++k) {
+    seeds.points[static_cast<std::size_t>(ranks[k])] = with_normal[k];
+  }
   return seeds;
 }
 

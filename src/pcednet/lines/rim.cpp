@@ -4,10 +4,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
 #include "pcednet/core/eigendecomposition.h"
+#include "pcednet/core/rank.h"
 #include "pcednet/core/vector_clones.h"
 #include "pcednet/lines/moments.h"
 #include "pcednet/lines/ring.h"
@@ -31,17 +34,13 @@ constexpr std::size_t kRimSectors = 8;
 constexpr std::size_t kMostStray = 5;  ///< one such to so many of wall or plane
 constexpr double kLeastEdge = 0.5;  ///< share of the points near the rim that are of an edge class
 
-/// A plane across the axis of a bore, perhaps.
-struct Cap {
-  Vec3 point, normal;  ///< the point from the edge point
-};
-
 /// Places from an edge point, and the normals there.
 struct NearRows {
-  using Row = std::array<double, kMostNear>;
+  using Row = std::array<double, kMostNear + kRankStep>;
 
   std::size_t count = 0;
   Row x{}, y{}, z{}, normal_x, normal_y, normal_z;
+  Row height;  ///< along an axis
 
   void add(const Vec3& place, const Vec3& normal) {
     x[count] = place.x(), y[count] = place.y(), z[count] = place.z();
@@ -106,19 +105,27 @@ std::vector<double> levels_of(const std::vector<double>& heights, double reach) 
   return levels;
 }
 
-/// The planes with many points that may be across the axis of a bore at the edge point.
-std::vector<Cap> likely_caps(const NearRows& near, double reach, double spacing) {
-  std::vector<Cap> caps;
-  std::vector<double> heights;
-  for (const Vec3& axis : likely_axes(near, reach * spacing)) {
-    heights.clear();
-    for (std::size_t i = 0; i < near.count; ++i) heights.push_back(axis.dot(near.place(i)));
-    std::sort(heights.begin(), heights.end());
-    for (const double level : levels_of(heights, reach * spacing)) {
-      if (std::abs(level) < kFromPlane * spacing) caps.push_back({level * axis, axis});
-    }
+PCEDNET_VECTOR_CLONES
+void set_heights(NearRows& near, const Vec3& axis) {
+  const double x = axis.x(), y = axis.y(), z = axis.z();
+  for (std::size_t i = 0; i < near.count; ++i) {
+    near.height[i] = x * near.x[i] + y * near.y[i] + z * near.z[i];
   }
-  return caps;
+}
+
+/// The heights in ascending order.
+std::vector<double> sorted_heights(NearRows& near) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  std::array<std::int64_t, kMostNear + kRankStep> ranks;
+  std::fill_n(near.height.begin() + near.count, kRankStep, kInfinity);
+  rank(near.height.data(), near.count, ranks.data());
+  std::vector<double> sorted(near.count, -kInfinity);
+  for (std::size_t i = 0; i < near.count; ++i) {
+    sorted[static_cast<std::size_t>(ranks[i])] = near.height[i];
+  }
+  // Equal ones have one rank.
+  for (std::size_t i = 1; i < near.count; ++i) sorted[i] = std::max(sorted[i], sorted[i - 1]);
+  return sorted;
 }
 
 bool has_radius_of_a_bore(double radius, double spacing) {
@@ -316,6 +323,25 @@ std::optional<Rim> rim_of(Fit circle, const OrderedPoints& cloud, double reach, 
   return Rim{circle, *is_bore};
 }
 
+/// The first circle of the rim of a wall that rises from the plane at `level` along the axis
+/// (`side` 1) or against it (-1).
+std::optional<Fit> circle_of_wall(const NearRows& near, const Vec3& axis, double level, double side,
+                                  double reach, double spacing) {
+  const Vec3 x = axis.unitOrthogonal(), y = axis.cross(x);
+  FlatPlaces places;
+  for (std::size_t i = 0; i < near.count && places.count < kMostPlaces; ++i) {  // nearest first
+    if (!has_height_of_wall(side * (near.height[i] - level) / spacing)) continue;
+    places.add(near.place(i).dot(x), near.place(i).dot(y));
+  }
+  if (places.count < kLeastWall) return std::nullopt;
+  const auto circle = common_circle(places, reach, spacing);
+  if (!circle) return std::nullopt;
+  const double away = std::abs(circle->centre.norm() - circle->radius);
+  if (away > kFromWall * spacing) return std::nullopt;
+  const Vec3 centre = level * axis + circle->centre.x() * x + circle->centre.y() * y;
+  return Fit{CurveKind::kArc, centre, side * axis, circle->radius, 0.0};
+}
+
 }  // namespace
 
 std::optional<Rim> rim_near(const OrderedPoints& cloud, std::uint32_t edge_point, double reach,
@@ -328,24 +354,16 @@ std::optional<Rim> rim_near(const OrderedPoints& cloud, std::uint32_t edge_point
   for (const auto& point : near) {
     rows.add(cloud.position(point.index) - at, cloud.normal(point.index));
   }
-  for (const Cap& cap : likely_caps(rows, reach, spacing)) {
-    const Vec3 x = cap.normal.unitOrthogonal(), y = cap.normal.cross(x);
-    for (const double side : {1.0, -1.0}) {
-      FlatPlaces places;
-      for (std::size_t i = 0; i < rows.count && places.count < kMostPlaces; ++i) {  // nearest first
-        const Vec3 offset = rows.place(i) - cap.point;
-        if (!has_height_of_wall(side * offset.dot(cap.normal) / spacing)) continue;
-        places.add(offset.dot(x), offset.dot(y));
+  for (const Vec3& axis : likely_axes(rows, reach * spacing)) {
+    set_heights(rows, axis);
+    for (const double level : levels_of(sorted_heights(rows), reach * spacing)) {
+      if (std::abs(level) >= kFromPlane * spacing) continue;
+      for (const double side : {1.0, -1.0}) {
+        auto circle = circle_of_wall(rows, axis, level, side, reach, spacing);
+        if (!circle) continue;
+        circle->point += at;
+        if (auto rim = rim_of(*circle, cloud, reach, spacing)) return rim;
       }
-      if (places.count < kLeastWall) continue;
-      const auto flat = common_circle(places, reach, spacing);
-      if (!flat) continue;
-      const Eigen::Vector2d own(-cap.point.dot(x), -cap.point.dot(y));
-      const double away = std::abs((own - flat->centre).norm() - flat->radius);
-      if (away > kFromWall * spacing) continue;
-      const Vec3 centre = cap.point + flat->centre.x() * x + flat->centre.y() * y;
-      const Fit circle{CurveKind::kArc, at + centre, side * cap.normal, flat->radius, 0.0};
-      if (auto rim = rim_of(circle, cloud, reach, spacing)) return rim;
     }
   }
   return std::nullopt;

@@ -5,6 +5,8 @@
 #include <limits>
 #include <numeric>
 
+#include "pcednet/core/rank.h"
+
 namespace pcednet::spatial {
 namespace {
 

@@ -108,14 +108,4 @@ void sq_distances(const double* const positions[3], std::uint32_t query, const s
   for (std::size_t i = 0; i < kStep; ++i) out[count + i] = std::numeric_limits<double>::infinity();
 }
 
-PCEDNET_VECTOR_CLONES
-void rank(const double* __restrict values, std::size_t count, std::int64_t* __restrict ranks) {
-  const std::size_t padded = (count + 7) / 8 * 8;
-  for (std::size_t i = 0; i < padded; ++i) ranks[i] = 0;
-  for (std::size_t j = 0; j < count; ++j) {
-    const double value = values[j];
-    for (std::size_t i = 0; i < padded; ++i) ranks[i] += value < values[i] ? 1 : 0;
-  }
-}
-
 }  // namespace pcednet::spatial

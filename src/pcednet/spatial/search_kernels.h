@@ -50,8 +50,4 @@ std::size_t pick_nearest(Candidates& candidates, const float q[3], std::size_t w
 void sq_distances(const double* const positions[3], std::uint32_t query, const std::uint32_t* index,
                   std::size_t count, double* out);
 
-/// The rank of each of `count` values, that is the number of smaller ones. kStep infinities must
-/// follow.
-void rank(const double* __restrict values, std::size_t count, std::int64_t* __restrict ranks);
-
 }  // namespace pcednet::spatial
