@@ -103,6 +103,32 @@ TEST(NeighbourSearch, GivesAllOthersWhereThereAreFew) {
   }
 }
 
+TEST(NeighbourSearch, FindsAllWithinARadius) {
+  Random random(11);
+  for (const auto& [name, points] : distributions()) {
+    SCOPED_TRACE(name);
+    const NeighbourSearch search(points);
+    std::vector<Neighbour> found;
+    for (int trial = 0; trial < 40; ++trial) {
+      const Vec3 &at = points[random.index(points.size())],
+                 &b = points[random.index(points.size())];
+      const double radius = (b - at).norm();  // b itself is not within
+      search.within(at, radius, found);
+      std::vector<std::uint32_t> expected;
+      for (std::uint32_t i = 0; i < points.size(); ++i) {
+        const Vec3 d = points[i] - at;
+        const double sq_distance = d.x() * d.x() + d.y() * d.y() + d.z() * d.z();
+        if (sq_distance < radius * radius) expected.push_back(i);
+      }
+      ASSERT_EQ(found.size(), expected.size());
+      for (std::size_t k = 0; k < found.size(); ++k) ASSERT_EQ(found[k].index, expected[k]);
+    }
+  }
+  std::vector<Neighbour> none = {{7, 1.0}};
+  NeighbourSearch({}).within(Vec3::Zero(), 1.0, none);
+  EXPECT_TRUE(none.empty());
+}
+
 // A search that looks at every copy for every copy would run into the time limit.
 TEST(NeighbourSearch, TakesManyCopiesOfOnePoint) {
   std::vector<Vec3> points(200000, Vec3(1, 2, 3));

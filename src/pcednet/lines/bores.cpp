@@ -30,7 +30,7 @@ std::vector<std::uint32_t> unexplained(const std::vector<Piece>& pieces, const O
   std::vector<std::uint8_t> explained(cloud.size(), 0);
   std::vector<spatial::Neighbour> near;
   const auto explain = [&](const Vec3& place, double reach) {
-    cloud.tree().within_unsorted(place, reach * spacing, near);
+    cloud.within(place, reach * spacing, near);
     for (const auto& point : near) explained[point.index] = 1;
   };
   for (const Piece& piece : pieces) {
@@ -49,7 +49,7 @@ std::vector<std::uint32_t> unexplained(const std::vector<Piece>& pieces, const O
 /// What the edge points around say of the node.
 void observe(ChainNode& node, const OrderedPoints& cloud) {
   std::vector<spatial::Neighbour> near;
-  cloud.tree().within_unsorted(node.at, node.spacing, near);
+  cloud.within(node.at, node.spacing, near);
   std::erase_if(near, [&](const auto& point) { return !cloud.is_edge(point.index); });
   const auto edges = static_cast<double>(std::max<std::size_t>(near.size(), 1));
   for (const auto& point : near) {

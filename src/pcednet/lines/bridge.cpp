@@ -27,7 +27,7 @@ bool surface_between(const Fit& fit, const Vec3& from, const Vec3& to, double sp
   int there = 0;
   for (int i = 1; i < steps; ++i) {
     const Vec3 place = nearest_on(fit, from + (to - from) * i / steps);
-    cloud.tree().within_unsorted(place, kOnSurface * spacing, near);
+    cloud.within(place, kOnSurface * spacing, near);
     there += near.empty() ? 0 : 1;
   }
   return 5 * there >= 4 * (steps - 1);

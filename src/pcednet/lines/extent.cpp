@@ -96,7 +96,7 @@ std::vector<std::uint32_t> points_along(const Track& track, double from, double 
   std::vector<std::uint32_t> indices;
   std::vector<spatial::Neighbour> near;
   for (double along = from; along < to + 2.0 * spacing; along += 3.0 * spacing) {
-    cloud.tree().within_unsorted(track.at(along), 1.5 * kStripTo * spacing, near);
+    cloud.within(track.at(along), 1.5 * kStripTo * spacing, near);
     for (const auto& point : near) indices.push_back(point.index);
   }
   std::sort(indices.begin(), indices.end());

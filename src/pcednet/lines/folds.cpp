@@ -119,7 +119,7 @@ void Folds::add_part(const Pair& pair, const Fit& line, double from, double to) 
     node.at = line.point + place * line.direction;
     node.along = line.direction;
     node.spacing = spacing_;
-    cloud_.tree().within_unsorted(node.at, (kBesideFold + 1.0) * spacing_, near);
+    cloud_.within(node.at, (kBesideFold + 1.0) * spacing_, near);
     std::sort(near.begin(), near.end(),
               [](const auto& a, const auto& b) { return a.index < b.index; });
     for (const spatial::Neighbour& point : near) {

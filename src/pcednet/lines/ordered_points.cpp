@@ -54,12 +54,8 @@ OrderedPoints::OrderedPoints(const EdgePoints& points)
     : points_(points),
       order_(distinct_points(points)),
       positions_(spatial::in_order(points.positions, order_)),
-      normals_(spatial::in_order(points.normals, order_)) {
-  parallel_blocks(2, 1, [&](std::size_t which, std::size_t) {  // side by side
-    if (which == 0) tree_.emplace(positions_);
-    if (which == 1) search_.emplace(positions_);
-  });
-}
+      normals_(spatial::in_order(points.normals, order_)),
+      search_(positions_) {}
 
 float OrderedPoints::probability(std::size_t i) const {
   if (points_.p_sharp.empty()) return is_edge(i) ? 1.0f : 0.0f;
@@ -69,7 +65,7 @@ float OrderedPoints::probability(std::size_t i) const {
 void OrderedPoints::nearest_others(std::span<const std::uint32_t> points, std::size_t count,
                                    std::vector<spatial::Neighbour>& found) const {
   found.resize(points.size() * available(count));
-  search_->nearest_others(points, count, found);
+  search_.nearest_others(points, count, found);
 }
 
 void OrderedPoints::for_each_neighbourhood(std::span<const std::uint32_t> points, std::size_t count,

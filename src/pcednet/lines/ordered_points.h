@@ -2,14 +2,12 @@
 
 #include <cstdint>
 #include <functional>
-#include <optional>
 #include <span>
 #include <vector>
 
 #include "pcednet/core/half_space.h"
 #include "pcednet/core/progress.h"
 #include "pcednet/lines/find_lines.h"
-#include "pcednet/spatial/kd_tree.h"
 #include "pcednet/spatial/neighbour_search.h"
 
 namespace pcednet::lines {
@@ -37,12 +35,16 @@ class OrderedPoints {
   }
   /// The probability of an edge; from the class alone if there are no probabilities.
   float probability(std::size_t i) const;
-  const spatial::KdTree& tree() const { return *tree_; }
+
+  /// Every point closer to `at` than `radius`, in order.
+  void within(const Vec3& at, double radius, std::vector<spatial::Neighbour>& found) const {
+    search_.within(at, radius, found);
+  }
 
   /// The available(count) nearest others of each of `points` (ascending), row after row.
   void nearest_others(std::span<const std::uint32_t> points, std::size_t count,
                       std::vector<spatial::Neighbour>& found) const;
-  std::size_t available(std::size_t count) const { return search_->available(count); }
+  std::size_t available(std::size_t count) const { return search_.available(count); }
 
   /// Calls visit(k, row of nearest_others()) for each of `points`, on all threads.
   using Visit = std::function<void(std::size_t k, std::span<const spatial::Neighbour> others)>;
@@ -53,8 +55,7 @@ class OrderedPoints {
   EdgePoints points_;
   std::vector<std::uint32_t> order_;
   std::vector<Vec3> positions_, normals_;
-  std::optional<spatial::KdTree> tree_;
-  std::optional<spatial::NeighbourSearch> search_;
+  spatial::NeighbourSearch search_;
 };
 
 /// The side of the square that holds one point, from the nearest others of a point; 0 if there are

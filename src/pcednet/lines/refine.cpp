@@ -69,7 +69,7 @@ std::vector<Vec3> points_beside(const Piece& piece, const OrderedPoints& cloud) 
   std::vector<std::uint32_t> indices;
   std::vector<spatial::Neighbour> near;
   for (const ChainNode& node : piece.nodes) {
-    cloud.tree().within_unsorted(node.at, (kSideOfPlane + 1.0) * node.spacing, near);
+    cloud.within(node.at, (kSideOfPlane + 1.0) * node.spacing, near);
     for (const auto& point : near) indices.push_back(point.index);
   }
   std::sort(indices.begin(), indices.end());

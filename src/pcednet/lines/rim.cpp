@@ -311,7 +311,7 @@ bool is_of_edges(const OrderedPoints& cloud, std::span<const Beside> points) {
 /// The rim that a first circle is near, if the points speak for one.
 std::optional<Rim> rim_of(Fit circle, const OrderedPoints& cloud, double reach, double spacing) {
   std::vector<spatial::Neighbour> near;
-  cloud.tree().within_unsorted(circle.point, circle.radius + (1.0 + kPlaneEnds) * spacing, near);
+  cloud.within(circle.point, circle.radius + (1.0 + kPlaneEnds) * spacing, near);
   std::vector<Beside> points = points_beside(circle, cloud, near, spacing);
   for (const double within : {2.0 * reach, reach}) {
     if (!fit_to_wall(circle, cloud, points, within, spacing)) return std::nullopt;
@@ -348,8 +348,10 @@ std::optional<Rim> rim_near(const OrderedPoints& cloud, std::uint32_t edge_point
                             double spacing) {
   const Vec3& at = cloud.position(edge_point);
   std::vector<spatial::Neighbour> near;
-  cloud.tree().within(at, kLook * spacing, near);
+  cloud.within(at, kLook * spacing, near);
   if (near.size() > kMostNear) return std::nullopt;
+  std::stable_sort(near.begin(), near.end(),
+                   [](const auto& a, const auto& b) { return a.sq_distance < b.sq_distance; });
   NearRows rows;
   for (const auto& point : near) {
     rows.add(cloud.position(point.index) - at, cloud.normal(point.index));

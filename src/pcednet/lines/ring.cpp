@@ -114,7 +114,7 @@ bool edges_follow(const Fit& circle, const std::vector<Gap>& gaps, double spacin
       const double along = gap.length * static_cast<double>(i) / static_cast<double>(parts);
       const double angle = along / circle.radius;
       const Vec3 out = std::cos(angle) * x + std::sin(angle) * y;
-      cloud.tree().within_unsorted(circle.point + circle.radius * out, kOnGap * spacing, near);
+      cloud.within(circle.point + circle.radius * out, kOnGap * spacing, near);
       ++steps;
       on += std::any_of(near.begin(), near.end(),
                         [&](const auto& point) { return cloud.is_edge(point.index); });

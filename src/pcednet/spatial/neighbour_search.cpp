@@ -58,6 +58,18 @@ void NeighbourSearch::nearest_others(std::span<const std::uint32_t> points, std:
   }
 }
 
+void NeighbourSearch::within(const Vec3& at, double radius, std::vector<Neighbour>& found) const {
+  tree_.within(at, radius, found);
+  if (copies_.empty()) return;
+  std::vector<Neighbour> places;
+  places.swap(found);
+  for (const Neighbour& place : places) {
+    for (std::uint32_t i = copies_[place.index]; i < copies_[place.index + 1]; ++i) {
+      found.push_back({i, place.sq_distance});
+    }
+  }
+}
+
 /// Writes the points at the point's own place, and then those at the places near it.
 void NeighbourSearch::add_copies(std::uint32_t point, std::size_t count,
                                  std::span<const Neighbour> places, Neighbour* found) const {

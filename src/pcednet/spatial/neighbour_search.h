@@ -35,6 +35,10 @@ class NeighbourSearch {
   void nearest_others(std::span<const std::uint32_t> points, std::size_t count,
                       std::span<Neighbour> found) const;
 
+  /// Every point closer to `at` than `radius`, in the order of the points. Replaces the content of
+  /// `found`. May run in parallel.
+  void within(const Vec3& at, double radius, std::vector<Neighbour>& found) const;
+
  private:
   std::uint32_t place_of(std::uint32_t point) const;
   void add_copies(std::uint32_t point, std::size_t count, std::span<const Neighbour> places,

@@ -1,7 +1,9 @@
 #include "pcednet/spatial/run_tree.h"
 
 #include <algorithm>
+#include <array>
 #include <limits>
+#include <utility>
 
 #include "pcednet/cloud/bounding_box.h"
 #include "pcednet/core/parallel.h"
@@ -73,6 +75,40 @@ RunTree::RunTree(std::span<const Vec3> points) {
   first = cut_compact_runs(points, kRun);
   rows.push_back(boxes_of_runs(points, first));
   while (rows.back().size() > 1) rows.push_back(boxes_of_nodes(rows.back()));
+}
+
+void RunTree::within(const Vec3& at, double radius, std::vector<Neighbour>& found) const {
+  found.clear();
+  if (rows.empty()) return;
+  const double sq_radius = radius * radius, place[3] = {at.x(), at.y(), at.z()};
+  std::array<std::pair<std::size_t, std::size_t>, kFanOut * kMostRows> stack;
+  std::size_t depth = 0;
+  const auto push_near = [&](std::size_t row, std::size_t node) {
+    double gaps[kFanOut];
+    sq_gaps(rows[row][node], place, place, gaps);
+    // Backwards, so that boxes come off the stack in their order.
+    for (std::size_t b = kFanOut; b-- > 0;) {
+      stack[depth] = {row, node * kFanOut + b};
+      depth += gaps[b] < sq_radius;
+    }
+  };
+  push_near(rows.size() - 1, 0);
+  while (depth > 0) {
+    const auto [row, child] = stack[--depth];
+    if (row > 0) {
+      push_near(row - 1, child);
+      continue;
+    }
+    std::size_t count = found.size();
+    found.resize(count + first[child + 1] - first[child]);
+    for (std::uint32_t i = first[child]; i < first[child + 1]; ++i) {
+      const double dx = x[i] - place[0], dy = y[i] - place[1], dz = z[i] - place[2];
+      const double sq_distance = dx * dx + dy * dy + dz * dz;
+      found[count] = {i, sq_distance};
+      count += sq_distance < sq_radius;
+    }
+    found.resize(count);
+  }
 }
 
 }  // namespace pcednet::spatial

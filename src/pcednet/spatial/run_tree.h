@@ -8,6 +8,7 @@
 
 #include "pcednet/core/unset_array.h"
 #include "pcednet/core/vec3.h"
+#include "pcednet/spatial/kd_tree.h"
 #include "pcednet/spatial/search_kernels.h"
 
 namespace pcednet::spatial {
@@ -22,6 +23,9 @@ struct RunTree {
   RunTree() = default;
   /// `points` must be finite; in curve_order() the runs are compact.
   explicit RunTree(std::span<const Vec3> points);
+
+  /// Every point closer to `at` than `radius`, in order. Replaces the content of `found`.
+  void within(const Vec3& at, double radius, std::vector<Neighbour>& found) const;
 
   std::size_t size() const { return first.empty() ? 0 : first.back(); }
   std::array<const double*, 3> axes() const { return {x.data(), y.data(), z.data()}; }
