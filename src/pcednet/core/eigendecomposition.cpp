@@ -13,10 +13,10 @@ Eigendecomposition eigendecomposition(const Mat3& symmetric) {
 }
 
 LeastAxis least_axis(const Mat3& symmetric) {
-  const double trace = symmetric.trace();
-  const double a = symmetric(0, 0) / trace, b = symmetric(1, 0) / trace;
-  const double c = symmetric(1, 1) / trace, d = symmetric(2, 0) / trace;
-  const double e = symmetric(2, 1) / trace, f = symmetric(2, 2) / trace;
+  const double trace = symmetric.trace(), scale = 1.0 / trace;
+  const double a = symmetric(0, 0) * scale, b = symmetric(1, 0) * scale;
+  const double c = symmetric(1, 1) * scale, d = symmetric(2, 0) * scale;
+  const double e = symmetric(2, 1) * scale, f = symmetric(2, 2) * scale;
   // Newton's method on the characteristic polynomial x^3 - x^2 + minors x - determinant, which is
   // concave below its least root, comes to that from below.
   const double minors = (a * c - b * b) + (a * f - d * d) + (c * f - e * e);
