@@ -3,13 +3,16 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
+#include "pcednet/core/parallel.h"
 #include "pcednet/lines/touch.h"
 #include "pcednet/spatial/kd_tree.h"
 
 namespace pcednet::lines {
 namespace {
 
+constexpr std::size_t kEndsAtOnce = 64;
 constexpr int kMeetSteps = 6;
 constexpr double kCornerReach = 9.0, kCornerTolerance = 0.8;
 constexpr double kTouch = 0.5;  ///< spacings between curves that touch
@@ -45,6 +48,7 @@ class Meeting {
   Vec3 meet(const std::vector<std::size_t>& ends) const;
   double cost_at(const std::vector<std::size_t>& ends, const Vec3& place) const;
   std::vector<Candidate> candidates() const;
+  std::optional<Vec3> place_inside(std::size_t end, const NodeIndex& index) const;
   void to_insides(Corners& corners) const;
 
   const std::vector<Piece>& pieces_;
@@ -104,49 +108,67 @@ std::vector<Meeting::Candidate> Meeting::candidates() const {
   std::vector<Vec3> places;
   for (std::size_t e = 0; e < ends_.size(); ++e) places.push_back(place_of(e));
   const spatial::KdTree tree(places);
-  std::vector<Candidate> found;
-  std::vector<spatial::Neighbour> near;
-  for (std::size_t a = 0; a < ends_.size(); ++a) {
-    tree.within(places[a], 1.5 * reach_ * piece_of(a).spacing(), near);
-    for (const auto& other : near) {
-      const std::size_t b = other.index;
-      if (b <= a || ends_[a].piece == ends_[b].piece) continue;
-      const std::vector<std::size_t> both = {a, b};
-      const double cost = cost_at(both, meet(both));
-      if (std::isfinite(cost)) found.push_back({a, b, cost});
+  std::vector<std::vector<Candidate>> of_ends(ends_.size());
+  parallel_blocks(ends_.size(), kEndsAtOnce, [&](std::size_t begin, std::size_t end) {
+    std::vector<spatial::Neighbour> near;
+    for (std::size_t a = begin; a < end; ++a) {
+      tree.within(places[a], 1.5 * reach_ * piece_of(a).spacing(), near);
+      for (const auto& other : near) {
+        const std::size_t b = other.index;
+        if (b <= a || ends_[a].piece == ends_[b].piece) continue;
+        const std::vector<std::size_t> both = {a, b};
+        const double cost = cost_at(both, meet(both));
+        if (std::isfinite(cost)) of_ends[a].push_back({a, b, cost});
+      }
     }
-  }
+  });
+  std::vector<Candidate> found;
+  for (const auto& of_end : of_ends) found.insert(found.end(), of_end.begin(), of_end.end());
   std::stable_sort(found.begin(), found.end(),
                    [](const Candidate& a, const Candidate& b) { return a.cost < b.cost; });
   return found;
 }
 
+/// The place inside another piece where an end would meet it.
+std::optional<Vec3> Meeting::place_inside(std::size_t end, const NodeIndex& index) const {
+  const Piece& piece = piece_of(end);
+  const double spacing = piece.spacing();
+  const Vec3 t = outward(end);
+  std::vector<spatial::Neighbour> near;
+  index.tree.within(place_of(end), reach_ * spacing, near);
+  for (const auto& other : near) {
+    const Piece& target = pieces_[index.piece[other.index]];
+    if (&target == &piece || target.fit.kind == CurveKind::kPolyline) continue;
+    // Where the end's tangent passes the target nearest.
+    const Vec3& beside = index.nodes[other.index]->at;
+    Vec3 place = beside;
+    for (int step = 0; step < 20; ++step) place = nearest(end, nearest_on(target.fit, place));
+    const Vec3 on = nearest_on(target.fit, place);
+    const double ahead = (on - place_of(end)).dot(t) / spacing;
+    if ((on - place).norm() > tolerance_ * spacing || ahead > reach_ || ahead < -2.0) continue;
+    if ((on - beside).norm() > 2.0 * spacing) continue;  // beyond its end
+    if (std::abs(tangent_at(target.fit, on).dot(t)) > 0.94) continue;
+    return on;
+  }
+  return std::nullopt;
+}
+
 /// Ends that still are free go to the inside of a piece that they would meet.
 void Meeting::to_insides(Corners& corners) const {
   const NodeIndex index(pieces_);
-  std::vector<spatial::Neighbour> near;
-  for (std::size_t end = 0; end < ends_.size(); ++end) {
-    const auto [piece, side] = ends_[end];
-    if (corners.of_ends[piece][side] != Corners::kNoCorner) continue;
-    const double spacing = piece_of(end).spacing();
-    const Vec3 t = outward(end);
-    index.tree.within(place_of(end), reach_ * spacing, near);
-    for (const auto& other : near) {
-      const Piece& target = pieces_[index.piece[other.index]];
-      if (index.piece[other.index] == piece || target.fit.kind == CurveKind::kPolyline) continue;
-      // Where the end's tangent passes the target nearest.
-      const Vec3& beside = index.nodes[other.index]->at;
-      Vec3 place = beside;
-      for (int step = 0; step < 20; ++step) place = nearest(end, nearest_on(target.fit, place));
-      const Vec3 on = nearest_on(target.fit, place);
-      const double ahead = (on - place_of(end)).dot(t) / spacing;
-      if ((on - place).norm() > tolerance_ * spacing || ahead > reach_ || ahead < -2.0) continue;
-      if ((on - beside).norm() > 2.0 * spacing) continue;  // beyond its end
-      if (std::abs(tangent_at(target.fit, on).dot(t)) > 0.94) continue;
-      corners.of_ends[piece][side] = corners.places.size();
-      corners.places.push_back(on);
-      break;
+  const auto corner_of = [&](std::size_t end) -> std::size_t& {
+    return corners.of_ends[ends_[end].piece][ends_[end].side];
+  };
+  std::vector<std::optional<Vec3>> places(ends_.size());
+  parallel_blocks(ends_.size(), kEndsAtOnce, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t e = begin; e < end; ++e) {
+      if (corner_of(e) == Corners::kNoCorner) places[e] = place_inside(e, index);
     }
+  });
+  for (std::size_t e = 0; e < ends_.size(); ++e) {
+    if (!places[e]) continue;
+    corner_of(e) = corners.places.size();
+    corners.places.push_back(*places[e]);
   }
 }
 
