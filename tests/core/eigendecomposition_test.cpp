@@ -38,38 +38,5 @@ TEST(Eigendecomposition, OfPointsOnALineHasOneDirection) {
   EXPECT_NEAR(std::abs(vectors.col(2).dot(along)), 1.0, 1e-12);
 }
 
-TEST(LeastAxis, IsThatOfTheWholeDecomposition) {
-  Random random(4);
-  for (int trial = 0; trial < 200; ++trial) {
-    const double flatness = std::pow(0.1, trial % 6);
-    Mat3 rows;
-    for (int i = 0; i < 9; ++i) rows(i / 3, i % 3) = random.normal() * (i < 3 ? flatness : 1.0);
-    const Mat3 matrix = 1e-3 * rows.transpose() * rows;
-    const auto [values, vectors] = eigendecomposition(matrix);
-    const LeastAxis least = least_axis(matrix);
-    EXPECT_NEAR(least.value, values[0], 1e-8 * values[2]);
-    EXPECT_NEAR(least.next_value, values[1], 1e-8 * values[2]);
-    EXPECT_NEAR(least.axis.norm(), 1.0, 1e-12);
-    EXPECT_LT((matrix * least.axis - least.value * least.axis).norm(), 1e-8 * values[2]);
-  }
-}
-
-TEST(LeastAxis, OfPointsOnAPlaneIsItsNormal) {
-  const Vec3 normal = Vec3(2, -1, 2) / 3.0;
-  const LeastAxis least = least_axis(4.0 * (Mat3::Identity() - normal * normal.transpose()));
-  EXPECT_NEAR(std::abs(least.axis.dot(normal)), 1.0, 1e-12);
-  EXPECT_NEAR(least.value, 0.0, 1e-12);
-  EXPECT_NEAR(least.next_value, 4.0, 1e-7);
-}
-
-TEST(LeastAxis, OfAPointALineOrABallIsSomeAxisAcross) {
-  const Vec3 along = Vec3(1, 2, 2) / 3.0;
-  const LeastAxis of_line = least_axis(9.0 * along * along.transpose());
-  EXPECT_NEAR(of_line.axis.dot(along), 0.0, 1e-7);
-  EXPECT_NEAR(of_line.next_value, 0.0, 1e-7);
-  EXPECT_NEAR(least_axis(Mat3::Identity()).axis.norm(), 1.0, 1e-12);
-  EXPECT_NEAR(least_axis(Mat3::Zero()).axis.norm(), 1.0, 1e-12);
-}
-
 }  // namespace
 }  // namespace pcednet

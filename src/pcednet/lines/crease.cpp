@@ -30,8 +30,6 @@ constexpr std::size_t kUnevenSides = 3;  ///< times as many points
 constexpr double kAlmostAll = 0.95;
 constexpr double kOffSide = 0.5, kReachesLine = 0.5;  ///< spacings
 
-constexpr double kLittleNoise = 0.02;  ///< in less, creases beside others still tell of arcs
-
 /// Of points to be tried beside those of an edge class; the second is added per spacing of noise.
 constexpr double kLeastProbability[] = {0.1, 0.9};
 
@@ -195,39 +193,6 @@ std::vector<std::optional<Crease>> nearest_creases(const OrderedPoints& cloud,
   return found;
 }
 
-/// The points without a crease; in little noise those of an edge class.
-std::vector<std::uint32_t> points_without(std::span<const std::optional<Crease>> found,
-                                          std::span<const std::uint32_t> points,
-                                          const OrderedPoints& cloud, bool noisy) {
-  std::vector<std::uint32_t> without;
-  for (std::size_t k = 0; k < points.size(); ++k) {
-    if (!found[k] && (noisy || cloud.is_edge(points[k]))) without.push_back(points[k]);
-  }
-  return without;
-}
-
-/// Those that are not among the points with creases: hardly a crease more is found there.
-std::vector<std::uint32_t> away_from(std::span<const std::optional<Crease>> found,
-                                     std::span<const std::uint32_t> points,
-                                     std::span<const std::uint32_t> without,
-                                     const OrderedPoints& cloud, const Progress* progress) {
-  constexpr std::size_t kNearest = 8;
-  constexpr std::ptrdiff_t kAmong = 2;
-  std::vector<std::uint8_t> has_crease(cloud.size(), 0), is_away(without.size(), 0);
-  for (std::size_t k = 0; k < points.size(); ++k) has_crease[points[k]] = found[k].has_value();
-  Stage stage(progress, "points without a crease", without.size());
-  cloud.for_each_neighbourhood(
-      without, kNearest, stage, [&](std::size_t k, std::span<const spatial::Neighbour> others) {
-        const auto has = [&](const auto& other) { return has_crease[other.index] != 0; };
-        is_away[k] = std::count_if(others.begin(), others.end(), has) < kAmong;
-      });
-  std::vector<std::uint32_t> away;
-  for (std::size_t k = 0; k < without.size(); ++k) {
-    if (is_away[k]) away.push_back(without[k]);
-  }
-  return away;
-}
-
 }  // namespace
 
 std::vector<std::optional<Crease>> creases_at(const OrderedPoints& cloud,
@@ -258,8 +223,10 @@ std::vector<Crease> find_creases(const OrderedPoints& cloud, const Sampling& sam
                              .points = static_cast<std::size_t>(40.0 + 80.0 * sampling.noise),
                              .skips_other_side = noisy && sampling.oriented};
   std::vector<std::optional<Crease>> found = nearest_creases(cloud, points, within, progress);
-  std::vector<std::uint32_t> rest = points_without(found, points, cloud, noisy);
-  if (sampling.noise > kLittleNoise) rest = away_from(found, points, rest, cloud, progress);
+  std::vector<std::uint32_t> rest;
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    if (!found[k] && (noisy || cloud.is_edge(points[k]))) rest.push_back(points[k]);
+  }
   Stage again(progress, "creases of more points", rest.size());
   const std::vector<std::optional<Crease>> more =
       creases_at(cloud, rest, kFarNeighbours, again,

@@ -152,9 +152,10 @@ void NearPoints::add(const Vec3& offset, const Vec3& normal, double probability)
 std::optional<LocalPlane> plane_of(const PointMoments& moments, double least_weight,
                                    double least_width) {
   if (moments.weight < least_weight) return std::nullopt;
-  const LeastAxis across = least_axis(moments.covariance());
-  if (!(across.next_value > least_width)) return std::nullopt;
-  return LocalPlane{across.axis, across.axis.dot(moments.mean()), 0};
+  const auto [variances, axes] = eigendecomposition(moments.covariance());
+  if (!(variances[1] > least_width)) return std::nullopt;
+  const Vec3 normal = axes.col(0).normalized();
+  return LocalPlane{normal, normal.dot(moments.mean()), 0};
 }
 
 void find_planes(const NearPoints& points, double tolerance, std::vector<LocalPlane>& planes) {

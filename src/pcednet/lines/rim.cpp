@@ -81,7 +81,7 @@ std::vector<Vec3> likely_axes(const NearRows& near, double reach) {
     if (mark_plane(near, i, reach, on) < kLeastPlane) continue;
     const PointMoments moments =
         moments_of(near.x.data(), near.y.data(), near.z.data(), on.data(), near.count);
-    const Vec3 axis = least_axis(moments.covariance()).axis;
+    const Vec3 axis = eigendecomposition(moments.covariance()).vectors.col(0).normalized();
     if (is_like(axis)) axes.push_back(axis);
   }
   return axes;
