@@ -86,6 +86,7 @@ void Tree(benchmark::State& state, Kind kind, std::size_t count) {
 BENCHMARK_CAPTURE(Tree, sphere_12, kSphere, 12)->PCEDNET_SIZES;
 BENCHMARK_CAPTURE(Search, sphere_12, kSphere, 12)->PCEDNET_SIZES;
 BENCHMARK_CAPTURE(Search, sphere_32, kSphere, 32)->PCEDNET_SIZES;
+BENCHMARK_CAPTURE(Search, sphere_300, kSphere, 300)->PCEDNET_SIZES;
 BENCHMARK_CAPTURE(Search, foliage_12, kFoliage, 12)->PCEDNET_SIZES;
 BENCHMARK_CAPTURE(Search, clumps_12, kClumps, 12)->PCEDNET_SIZES;
 BENCHMARK_CAPTURE(Search, far_12, kFar, 12)->PCEDNET_SIZES;

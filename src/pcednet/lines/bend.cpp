@@ -29,7 +29,7 @@ ZoneSums sum_zones(const Vec3& at, const Vec3& along, const Vec3& side, const Ve
   Lanes number = {0.0, 1.0, 2.0, 3.0};
   const Lanes zero = {}, one = zero + 1.0;
   const auto count = static_cast<double>(points.count);
-  for (std::size_t i = 0; i < points.count; i += kLanes, number += kLanes) {
+  for (std::size_t i = 0; i < points.count; i += kLanes, number += static_cast<double>(kLanes)) {
     Lanes x, y, z;
     load(&points.x[i], x);
     load(&points.y[i], y);

@@ -69,7 +69,7 @@ int support_of(const LocalPlane& plane, const NearPoints& points, const Tests& t
   return support;
 }
 
-/// Of the points near `plane`; they fall to 0 at `reach`.
+/// Sets the weights of the points near `plane`, which fall to 0 at `reach`.
 PCEDNET_VECTOR_CLONES
 void weigh(const LocalPlane& plane, const NearPoints& points, const Tests& tests, double reach,
            NearPoints::Row& weights) {

@@ -294,8 +294,8 @@ void add_up(const FramedPoints& points, const NearPoints::Row& ones, QuadricSums
   for (std::size_t k = 0; k < 6; ++k) result.z[k] = sum_of(of_z[k]);
 }
 
-/// The sum of the squared distances of points to the surface z = c0 + c1 x + c2 y + c3 x^2 + c4 x y
-/// + c5 y^2, to first order, each at most `sq_most`.
+/// The squared distances of points to the surface z = c0 + c1 x + c2 y + c3 x^2 + c4 x y + c5 y^2,
+/// to first order, each at most `sq_most`.
 PCEDNET_VECTOR_CLONES
 void sq_distances_to_quadric(const FramedPoints& points, const double* c, double sq_most,
                              NearPoints::Row& result) {

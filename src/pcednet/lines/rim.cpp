@@ -200,7 +200,8 @@ void fit_circles(const FlatPlaces& places, double reach, double spacing, FlatCir
     for (std::size_t i = 0; i < circles.count; ++i) {
       const double x = place_x - circles.centre_x[i], y = place_y - circles.centre_y[i];
       const double sq_away = x * x + y * y;
-      circles.on[i] += (sq_away > sq_inner[i]) & (sq_away < sq_outer[i]) ? 1 : 0;
+      circles.on[i] +=
+          static_cast<int>(sq_away > sq_inner[i]) & static_cast<int>(sq_away < sq_outer[i]);
     }
   }
 }
