@@ -310,17 +310,18 @@ void sq_distances_to_quadric(const FramedPoints& points, const double* c, double
 
 /// Sum of squared distances to the best quadratic height, each at most that of an outlier.
 double error_of_quadric(const FramedPoints& points, double sq_outlier) {
-  constexpr int kPowers[6][2] = {{0, 0}, {1, 0}, {0, 1}, {2, 0}, {1, 1}, {0, 2}};
+  constexpr std::size_t kPowers[6][2] = {{0, 0}, {1, 0}, {0, 1}, {2, 0}, {1, 1}, {0, 2}};
   NearPoints::Row row{};
   std::fill_n(row.begin(), points.count, 1.0);
   QuadricSums sums;
   add_up(points, row, sums);
   Eigen::Matrix<double, 6, 6> left;
   Eigen::Matrix<double, 6, 1> right;
-  for (int a = 0; a < 6; ++a) {
-    for (int b = 0; b <= a; ++b) {
-      const int of_y = kPowers[a][1] + kPowers[b][1], all = kPowers[a][0] + kPowers[b][0] + of_y;
-      left(a, b) = sums.xy[static_cast<std::size_t>(all * (all + 1) / 2 + of_y)];
+  for (Eigen::Index a = 0; a < 6; ++a) {
+    for (Eigen::Index b = 0; b <= a; ++b) {
+      const std::size_t of_y = kPowers[a][1] + kPowers[b][1];
+      const std::size_t all = kPowers[a][0] + kPowers[b][0] + of_y;
+      left(a, b) = sums.xy[all * (all + 1) / 2 + of_y];
     }
     right[a] = sums.z[static_cast<std::size_t>(a)];
   }
