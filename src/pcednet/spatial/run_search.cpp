@@ -1,6 +1,7 @@
 #include "pcednet/spatial/run_search.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -121,30 +122,12 @@ bool RunSearch::gather(std::size_t run) {
   near_->sq_radius = local_radius * local_radius;
   near_->count = 0;
   sq_guess_ = near_->sq_radius;
-  depth_ = 0;
-  push_near(static_cast<std::uint32_t>(tree_.rows.size() - 1), 0, box.min, box.max);
-  while (depth_ > 0) {
-    const auto [row, child] = stack_[--depth_];
-    if (row > 0) {
-      push_near(row - 1, child, box.min, box.max);
-      continue;
-    }
+  return tree_.visit_runs(box.min, box.max, sq_radius_, [&](std::size_t near_run) {
     if (near_->count > Candidates::kMost) return false;
-    const std::size_t begin = tree_.first[child];
-    add_near(tree_.axes().data(), begin, tree_.first[child + 1] - begin, *near_);
-  }
-  return true;
-}
-
-void RunSearch::push_near(std::uint32_t row, std::size_t node, const double min[3],
-                          const double max[3]) {
-  double gaps[kFanOut];
-  sq_gaps(tree_.rows[row][node], min, max, gaps);
-  // Backwards, so that boxes come off the stack in their order.
-  for (std::size_t b = kFanOut; b-- > 0;) {
-    stack_[depth_] = {row, static_cast<std::uint32_t>(node * kFanOut + b)};
-    depth_ += gaps[b] <= sq_radius_;
-  }
+    const std::size_t begin = tree_.first[near_run];
+    add_near(tree_.axes().data(), begin, tree_.first[near_run + 1] - begin, *near_);
+    return true;
+  });
 }
 
 /// Writes the nearest points, and returns whether all of them are among the candidates.

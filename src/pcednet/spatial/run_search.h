@@ -1,11 +1,9 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "pcednet/spatial/kd_tree.h"
@@ -40,7 +38,6 @@ class RunSearch {
 
   double guess(std::size_t run) const;
   bool gather(std::size_t run);
-  void push_near(std::uint32_t row, std::size_t node, const double min[3], const double max[3]);
   bool select(const Query& query);
   void put_in_order(const Query& query, std::size_t picked);
   void descend(const Query& query);
@@ -53,8 +50,6 @@ class RunSearch {
   double sq_needed_ = 0.0;  ///< the largest distance to a last neighbour
   float sq_guess_ = 0.0f;   ///< predicted from the previous point, in the local frame
   std::unique_ptr<Candidates> near_;
-  std::array<std::pair<std::uint32_t, std::uint32_t>, RunTree::kFanOut * RunTree::kMostRows> stack_;
-  std::size_t depth_ = 0;
   std::vector<Query> open_;
   std::vector<std::uint32_t> picked_;
   std::vector<double> sq_distances_;

@@ -1,9 +1,7 @@
 #include "pcednet/spatial/run_tree.h"
 
 #include <algorithm>
-#include <array>
 #include <limits>
-#include <utility>
 
 #include "pcednet/cloud/bounding_box.h"
 #include "pcednet/core/parallel.h"
@@ -79,36 +77,20 @@ RunTree::RunTree(std::span<const Vec3> points) {
 
 void RunTree::within(const Vec3& at, double radius, std::vector<Neighbour>& found) const {
   found.clear();
-  if (rows.empty()) return;
   const double sq_radius = radius * radius, place[3] = {at.x(), at.y(), at.z()};
-  std::array<std::pair<std::size_t, std::size_t>, kFanOut * kMostRows> stack;
-  std::size_t depth = 0;
-  const auto push_near = [&](std::size_t row, std::size_t node) {
-    double gaps[kFanOut];
-    sq_gaps(rows[row][node], place, place, gaps);
-    // Backwards, so that boxes come off the stack in their order.
-    for (std::size_t b = kFanOut; b-- > 0;) {
-      stack[depth] = {row, node * kFanOut + b};
-      depth += gaps[b] < sq_radius;
-    }
-  };
-  push_near(rows.size() - 1, 0);
-  while (depth > 0) {
-    const auto [row, child] = stack[--depth];
-    if (row > 0) {
-      push_near(row - 1, child);
-      continue;
-    }
+  const double sq_finite = std::min(sq_radius, std::numeric_limits<double>::max());
+  visit_runs(place, place, sq_finite, [&](std::size_t run) {
     std::size_t count = found.size();
-    found.resize(count + first[child + 1] - first[child]);
-    for (std::uint32_t i = first[child]; i < first[child + 1]; ++i) {
+    found.resize(count + first[run + 1] - first[run]);
+    for (std::uint32_t i = first[run]; i < first[run + 1]; ++i) {
       const double dx = x[i] - place[0], dy = y[i] - place[1], dz = z[i] - place[2];
       const double sq_distance = dx * dx + dy * dy + dz * dz;
       found[count] = {i, sq_distance};
       count += sq_distance < sq_radius;
     }
     found.resize(count);
-  }
+    return true;
+  });
 }
 
 }  // namespace pcednet::spatial
