@@ -7,6 +7,8 @@
 #include <optional>
 
 #include "pcednet/core/parallel.h"
+#include "pcednet/lines/common_axes.h"
+#include "pcednet/lines/prism.h"
 #include "pcednet/lines/rim.h"
 #include "pcednet/lines/ring.h"
 
@@ -15,9 +17,16 @@ namespace {
 
 constexpr std::size_t kLongPiece = 8;    ///< nodes
 constexpr std::size_t kLeastAround = 8;  ///< nodes of a circle
+constexpr std::size_t kLeastAlong = 2;   ///< nodes of a side of a polygon
 constexpr std::size_t kSeedsAtOnce = 64;
 constexpr double kMostNoiseOfBores = 0.1;
-constexpr double kOnSurfaces = 0.15, kOnNoisySurfaces = 0.5;  ///< the second times the noise
+
+/// Of drawn points with less noise: a few on the circle are no accident.
+constexpr double kExactNoise = 0.005;
+constexpr RimTest kExactRim = {.reach = 0.03, .plane = 4, .missing = 2, .off = 1.0, .share = 0.0};
+constexpr RimTest kMeasuredRim = {
+    .reach = 0.15, .plane = 6, .missing = 1, .off = 1.0 / 3.0, .share = 2.0 / 3.0};
+constexpr double kReachInNoise = 0.5;  ///< added, times the noise
 
 // In spacings.
 constexpr double kExplained = 1.2;     ///< edge points nearer to a long piece start no search
@@ -59,6 +68,33 @@ void observe(ChainNode& node, const OrderedPoints& cloud) {
   node.edge_points = 0.5 * static_cast<double>(near.size());  // both nodes beside it see them, too
 }
 
+ChainNode node_of(const Rim& rim, const Vec3& at, const Vec3& out, double spacing) {
+  const Vec3& axis = rim.circle.direction;
+  return {.at = at,
+          .along = axis.cross(out),
+          .side_a = axis,
+          .side_b = rim.is_bore ? out : Vec3(-out),
+          .spacing = spacing};
+}
+
+/// The sides of the polygon with these corners.
+void add_sides(const std::vector<Vec3>& corners, const Rim& rim, const OrderedPoints& cloud,
+               double spacing, std::vector<Piece>& pieces) {
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const Vec3 &from = corners[i], &to = corners[(i + 1) % corners.size()];
+    const Vec3 along = (to - from).normalized(), out = along.cross(rim.circle.direction);
+    Piece piece{.fit = {CurveKind::kSegment, from, along}, .nodes = {}, .ends = {from, to}};
+    const auto count =
+        std::max(kLeastAlong, static_cast<std::size_t>((to - from).norm() / spacing));
+    for (std::size_t k = 0; k < count; ++k) {
+      const double share = (static_cast<double>(k) + 0.5) / static_cast<double>(count);
+      piece.nodes.push_back(node_of(rim, from + share * (to - from), out, spacing));
+      observe(piece.nodes.back(), cloud);
+    }
+    pieces.push_back(std::move(piece));
+  }
+}
+
 Piece piece_of(const Rim& rim, const OrderedPoints& cloud, double spacing) {
   const Fit& circle = rim.circle;
   Piece piece{.fit = circle, .nodes = {}, .ends = {}, .closed = true};
@@ -68,11 +104,7 @@ Piece piece_of(const Rim& rim, const OrderedPoints& cloud, double spacing) {
   for (std::size_t i = 0; i < count; ++i) {
     const double angle = kWholeTurn * static_cast<double>(i) / static_cast<double>(count);
     const Vec3 out = std::cos(angle) * x + std::sin(angle) * y;
-    piece.nodes.push_back({.at = circle.point + circle.radius * out,
-                           .along = circle.direction.cross(out),
-                           .side_a = circle.direction,
-                           .side_b = rim.is_bore ? out : Vec3(-out),
-                           .spacing = spacing});
+    piece.nodes.push_back(node_of(rim, circle.point + circle.radius * out, out, spacing));
     observe(piece.nodes.back(), cloud);
   }
   piece.ends = {piece.nodes.front().at, piece.nodes.front().at};
@@ -116,23 +148,46 @@ void erase_pieces_of(const std::vector<Rim>& rims, std::vector<Piece>& pieces, d
   erase_marked(pieces, gone);
 }
 
+EndIndex ends_of_segments(const std::vector<Piece>& pieces) {
+  std::vector<End> ends = open_ends(pieces);
+  std::erase_if(ends,
+                [&](const End& end) { return pieces[end.piece].fit.kind != CurveKind::kSegment; });
+  return EndIndex(pieces, std::move(ends));
+}
+
 }  // namespace
 
 void find_bores(std::vector<Piece>& pieces, const OrderedPoints& cloud, const Sampling& sampling,
                 const Progress* progress) {
   if (sampling.noise > kMostNoiseOfBores) return;
   const double spacing = sampling.spacing;
-  const double reach = kOnSurfaces + kOnNoisySurfaces * sampling.noise;
+  RimTest measured = kMeasuredRim;
+  measured.reach += kReachInNoise * sampling.noise;
   const std::vector<std::uint32_t> seeds = unexplained(pieces, cloud, spacing);
+  const bool is_exact = sampling.noise < kExactNoise;
+  const std::vector<Vec3> axes = is_exact ? common_axes(pieces) : std::vector<Vec3>();
   std::vector<std::optional<Rim>> found(seeds.size());
   Stage stage(progress, "bores", seeds.size());
   parallel_blocks(seeds.size(), kSeedsAtOnce, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) found[k] = rim_near(cloud, seeds[k], reach, spacing);
+    for (std::size_t k = begin; k < end; ++k) {
+      if (is_exact) found[k] = rim_near(cloud, seeds[k], axes, kExactRim, spacing);
+      if (!found[k]) found[k] = rim_near(cloud, seeds[k], {}, measured, spacing);
+    }
     stage.advance(end - begin);
   });
   const std::vector<Rim> rims = new_rims(found, pieces, spacing);
   erase_pieces_of(rims, pieces, spacing);
-  for (const Rim& rim : rims) pieces.push_back(piece_of(rim, cloud, spacing));
+  const EndIndex ends = ends_of_segments(pieces);
+  std::vector<Piece> added;
+  for (const Rim& rim : rims) {
+    const std::vector<Vec3> corners = corners_of_prism(rim, pieces, ends, cloud, spacing);
+    if (corners.empty()) {
+      added.push_back(piece_of(rim, cloud, spacing));
+    } else {
+      add_sides(corners, rim, cloud, spacing, added);
+    }
+  }
+  pieces.insert(pieces.end(), added.begin(), added.end());
 }
 
 }  // namespace pcednet::lines

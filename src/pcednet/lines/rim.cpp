@@ -27,8 +27,9 @@ constexpr double kWallBegins = 0.3, kWallEnds = 2.5;  ///< from the plane
 constexpr double kPlaneEnds = 2.0;                    ///< from the wall
 constexpr double kOffWall = 1.0;                      ///< from it, where few points may be
 
-constexpr double kAlongAxis = 0.97;  ///< of normals of the plane and the axis, cosine
-constexpr std::size_t kLeastPlane = 6, kLeastWall = 5;  ///< points
+constexpr double kAlongAxis = 0.97;      ///< of normals of the plane and the axis, cosine
+constexpr double kOneDirection = 0.999;  ///< of two axes, cosine
+constexpr std::size_t kLeastWall = 5;    ///< points
 constexpr std::size_t kMostPlaces = 16, kMostTriples = 40;
 constexpr std::size_t kRimSectors = 8;
 constexpr std::size_t kMostStray = 5;  ///< one such to so many of wall or plane
@@ -69,7 +70,7 @@ std::size_t mark_plane(const NearRows& near, std::size_t first, double reach, Ne
 }
 
 /// The normals of planes that several points are on.
-std::vector<Vec3> likely_axes(const NearRows& near, double reach) {
+std::vector<Vec3> likely_axes(const NearRows& near, double reach, std::size_t least) {
   std::vector<Vec3> axes;
   NearRows::Row on{};
   for (std::size_t i = 0; i < near.count; ++i) {
@@ -78,7 +79,7 @@ std::vector<Vec3> likely_axes(const NearRows& near, double reach) {
       return std::abs(normal.dot(other)) > kAlongAxis;
     };
     if (std::any_of(axes.begin(), axes.end(), is_like)) continue;
-    if (mark_plane(near, i, reach, on) < kLeastPlane) continue;
+    if (mark_plane(near, i, reach, on) < least) continue;
     const PointMoments moments =
         moments_of(near.x.data(), near.y.data(), near.z.data(), on.data(), near.count);
     const Vec3 axis = eigendecomposition(moments.covariance()).vectors.col(0).normalized();
@@ -88,13 +89,13 @@ std::vector<Vec3> likely_axes(const NearRows& near, double reach) {
 }
 
 /// The heights at which many points are, each once, from heights in ascending order.
-std::vector<double> levels_of(const std::vector<double>& heights, double reach) {
+std::vector<double> levels_of(const std::vector<double>& heights, double reach, std::size_t least) {
   std::vector<double> levels;
   std::size_t begin = 0, end = 0;
   while (begin < heights.size()) {
     while (end < heights.size() && heights[end] < heights[begin] + 2.0 * reach) ++end;
     const std::size_t count = end - begin;
-    if (count < kLeastPlane) {
+    if (count < least) {
       ++begin;
       continue;
     }
@@ -212,14 +213,16 @@ struct FlatCircle {
 };
 
 /// Of the circles through three of the places, that which the most of them are on.
-std::optional<FlatCircle> common_circle(const FlatPlaces& places, double reach, double spacing) {
+std::optional<FlatCircle> common_circle(const FlatPlaces& places, const RimTest& test,
+                                        double spacing) {
   FlatCircles circles;
   choose_triples(places, circles);
-  fit_circles(places, reach * spacing, spacing, circles);
+  fit_circles(places, test.reach * spacing, spacing, circles);
   const auto end = circles.on.begin() + static_cast<std::ptrdiff_t>(circles.count);
   const auto best = std::max_element(circles.on.begin(), end);
   const auto most = static_cast<std::size_t>(*best);
-  if (most < kLeastWall || 3 * most < 2 * places.count) return std::nullopt;
+  const double least = test.share * static_cast<double>(places.count);
+  if (most < kLeastWall || static_cast<double>(most) < least) return std::nullopt;
   const auto i = static_cast<std::size_t>(best - circles.on.begin());
   return FlatCircle{{circles.centre_x[i], circles.centre_y[i]}, circles.radius[i]};
 }
@@ -260,14 +263,15 @@ bool fit_to_wall(Fit& circle, const OrderedPoints& cloud, std::span<const Beside
   return has_radius_of_a_bore(fit.radius, spacing);
 }
 
-bool is_all_along(const Sectors& sectors) {
-  return sectors.covered() + 1 >= kRimSectors;
+bool is_all_along(const Sectors& sectors, const RimTest& test) {
+  return sectors.covered() + test.missing >= kRimSectors;
 }
 
 /// Whether the plane is around the circle (true) or within it (false); nothing if on both sides or
 /// not all along.
 std::optional<bool> plane_is_outside(const Fit& circle, const OrderedPoints& cloud,
-                                     std::span<const Beside> points, double reach) {
+                                     std::span<const Beside> points, const RimTest& test) {
+  const double reach = test.reach;
   Sectors outside(circle, kRimSectors), inside(circle, kRimSectors);
   std::size_t far_out = 0, far_in = 0;
   for (const Beside& point : points) {
@@ -280,23 +284,24 @@ std::optional<bool> plane_is_outside(const Fit& circle, const OrderedPoints& clo
   }
   const bool is_outside = outside.points() > inside.points();
   const Sectors& plane = is_outside ? outside : inside;
-  if (!is_all_along(plane)) return std::nullopt;
+  if (!is_all_along(plane, test)) return std::nullopt;
   if (kMostStray * (is_outside ? far_in : far_out) > plane.points()) return std::nullopt;
   return is_outside;
 }
 
 /// Whether there is a wall all along the circle, on one side of the plane alone.
 bool has_wall(const Fit& circle, const OrderedPoints& cloud, std::span<const Beside> points,
-              double reach) {
+              const RimTest& test) {
   Sectors wall(circle, kRimSectors);
   std::size_t beyond = 0, off = 0;
   for (const Beside& point : points) {
-    const bool on = std::abs(point.out) < reach;
+    const bool on = std::abs(point.out) < test.reach;
     if (on && has_height_of_wall(point.height)) wall.add(cloud.position(point.index));
     beyond += on && has_height_of_wall(-point.height);
     off += !on && has_height_of_wall(point.height) && std::abs(point.out) < kOffWall;
   }
-  return is_all_along(wall) && kMostStray * beyond <= wall.points() && 3 * off <= wall.points();
+  return is_all_along(wall, test) && kMostStray * beyond <= wall.points() &&
+         static_cast<double>(off) <= test.off * static_cast<double>(wall.points());
 }
 
 bool is_of_edges(const OrderedPoints& cloud, std::span<const Beside> points) {
@@ -310,16 +315,17 @@ bool is_of_edges(const OrderedPoints& cloud, std::span<const Beside> points) {
 }
 
 /// The rim that a first circle is near, if the points speak for one.
-std::optional<Rim> rim_of(Fit circle, const OrderedPoints& cloud, double reach, double spacing) {
+std::optional<Rim> rim_of(Fit circle, const OrderedPoints& cloud, const RimTest& test,
+                          double spacing) {
   std::vector<spatial::Neighbour> near;
   cloud.within(circle.point, circle.radius + (1.0 + kPlaneEnds) * spacing, near);
   std::vector<Beside> points = points_beside(circle, cloud, near, spacing);
-  for (const double within : {2.0 * reach, reach}) {
+  for (const double within : {2.0 * test.reach, test.reach}) {
     if (!fit_to_wall(circle, cloud, points, within, spacing)) return std::nullopt;
     points = points_beside(circle, cloud, near, spacing);
   }
-  if (!is_of_edges(cloud, points) || !has_wall(circle, cloud, points, reach)) return std::nullopt;
-  const auto is_bore = plane_is_outside(circle, cloud, points, reach);
+  if (!is_of_edges(cloud, points) || !has_wall(circle, cloud, points, test)) return std::nullopt;
+  const auto is_bore = plane_is_outside(circle, cloud, points, test);
   if (!is_bore) return std::nullopt;
   return Rim{circle, *is_bore};
 }
@@ -327,7 +333,7 @@ std::optional<Rim> rim_of(Fit circle, const OrderedPoints& cloud, double reach, 
 /// The first circle of the rim of a wall that rises from the plane at `level` along the axis
 /// (`side` 1) or against it (-1).
 std::optional<Fit> circle_of_wall(const NearRows& near, const Vec3& axis, double level, double side,
-                                  double reach, double spacing) {
+                                  const RimTest& test, double spacing) {
   const Vec3 x = axis.unitOrthogonal(), y = axis.cross(x);
   FlatPlaces places;
   for (std::size_t i = 0; i < near.count && places.count < kMostPlaces; ++i) {  // nearest first
@@ -335,7 +341,7 @@ std::optional<Fit> circle_of_wall(const NearRows& near, const Vec3& axis, double
     places.add(near.place(i).dot(x), near.place(i).dot(y));
   }
   if (places.count < kLeastWall) return std::nullopt;
-  const auto circle = common_circle(places, reach, spacing);
+  const auto circle = common_circle(places, test, spacing);
   if (!circle) return std::nullopt;
   const double away = std::abs(circle->centre.norm() - circle->radius);
   if (away > kFromWall * spacing) return std::nullopt;
@@ -345,7 +351,8 @@ std::optional<Fit> circle_of_wall(const NearRows& near, const Vec3& axis, double
 
 }  // namespace
 
-std::optional<Rim> rim_near(const OrderedPoints& cloud, std::uint32_t edge_point, double reach,
+std::optional<Rim> rim_near(const OrderedPoints& cloud, std::uint32_t edge_point,
+                            std::span<const Vec3> common_axes, const RimTest& test,
                             double spacing) {
   const Vec3& at = cloud.position(edge_point);
   std::vector<spatial::Neighbour> near;
@@ -357,15 +364,22 @@ std::optional<Rim> rim_near(const OrderedPoints& cloud, std::uint32_t edge_point
   for (const auto& point : near) {
     rows.add(cloud.position(point.index) - at, cloud.normal(point.index));
   }
-  for (const Vec3& axis : likely_axes(rows, reach * spacing)) {
+  std::vector<Vec3> axes = likely_axes(rows, test.reach * spacing, test.plane);
+  for (const Vec3& common : common_axes) {
+    const bool is_known = std::any_of(axes.begin(), axes.end(), [&](const Vec3& other) {
+      return std::abs(common.dot(other)) > kOneDirection;
+    });
+    if (!is_known) axes.push_back(common);
+  }
+  for (const Vec3& axis : axes) {
     set_heights(rows, axis);
-    for (const double level : levels_of(sorted_heights(rows), reach * spacing)) {
+    for (const double level : levels_of(sorted_heights(rows), test.reach * spacing, test.plane)) {
       if (std::abs(level) >= kFromPlane * spacing) continue;
       for (const double side : {1.0, -1.0}) {
-        auto circle = circle_of_wall(rows, axis, level, side, reach, spacing);
+        auto circle = circle_of_wall(rows, axis, level, side, test, spacing);
         if (!circle) continue;
         circle->point += at;
-        if (auto rim = rim_of(*circle, cloud, reach, spacing)) return rim;
+        if (auto rim = rim_of(*circle, cloud, test, spacing)) return rim;
       }
     }
   }
