@@ -8,6 +8,7 @@
 
 #include "pcednet/core/parallel.h"
 #include "pcednet/lines/common_axes.h"
+#include "pcednet/lines/observe.h"
 #include "pcednet/lines/prism.h"
 #include "pcednet/lines/rim.h"
 #include "pcednet/lines/ring.h"
@@ -21,8 +22,6 @@ constexpr std::size_t kLeastAlong = 2;   ///< nodes of a side of a polygon
 constexpr std::size_t kSeedsAtOnce = 64;
 constexpr double kMostNoiseOfBores = 0.1;
 
-/// Of drawn points with less noise: a few on the circle are no accident.
-constexpr double kExactNoise = 0.005;
 constexpr RimTest kExactRim = {.reach = 0.03, .plane = 4, .missing = 2, .off = 1.0, .share = 0.0};
 constexpr RimTest kMeasuredRim = {
     .reach = 0.15, .plane = 6, .missing = 1, .off = 1.0 / 3.0, .share = 2.0 / 3.0};
@@ -53,19 +52,6 @@ std::vector<std::uint32_t> unexplained(const std::vector<Piece>& pieces, const O
     explain(cloud.position(i), kBetweenSeeds);
   }
   return found;
-}
-
-/// What the edge points around say of the node.
-void observe(ChainNode& node, const OrderedPoints& cloud) {
-  std::vector<spatial::Neighbour> near;
-  cloud.within(node.at, node.spacing, near);
-  std::erase_if(near, [&](const auto& point) { return !cloud.is_edge(point.index); });
-  const auto edges = static_cast<double>(std::max<std::size_t>(near.size(), 1));
-  for (const auto& point : near) {
-    node.probability += static_cast<double>(cloud.probability(point.index)) / edges;
-    if (cloud.edge_class(point.index) == kSharpEdge) node.sharp += 1.0 / edges;
-  }
-  node.edge_points = 0.5 * static_cast<double>(near.size());  // both nodes beside it see them, too
 }
 
 ChainNode node_of(const Rim& rim, const Vec3& at, const Vec3& out, double spacing) {

@@ -15,8 +15,10 @@ namespace {
 constexpr std::size_t kEndsAtOnce = 64;
 constexpr int kMeetSteps = 6;
 constexpr double kCornerReach = 9.0, kCornerTolerance = 0.8;
-constexpr double kTouch = 0.5;  ///< spacings between curves that touch
-constexpr double kPull = 1e-3;  ///< towards the ends, where curves are parallel
+constexpr double kExactAside = 0.3;     ///< spacings of a corner from an exact line
+constexpr double kExactWeight = 100.0;  ///< of an exact line in its corner
+constexpr double kTouch = 0.5;          ///< spacings between curves that touch
+constexpr double kPull = 1e-3;          ///< towards the ends, where curves are parallel
 
 class Meeting {
  public:
@@ -77,8 +79,9 @@ Vec3 Meeting::meet(const std::vector<std::size_t>& ends) const {
       const Vec3 along =
           piece.fit.kind == CurveKind::kPolyline ? outward(end) : tangent_at(piece.fit, on);
       const Mat3 across = Mat3::Identity() - along * along.transpose();
-      left += across;
-      right += across * (on - place);
+      const double weight = piece.exact ? kExactWeight : 1.0;
+      left += weight * across;
+      right += weight * across * (on - place);
     }
     place += left.ldlt().solve(right);
   }
@@ -95,7 +98,8 @@ double Meeting::cost_at(const std::vector<std::size_t>& ends, const Vec3& place)
     const Vec3 offset = place - place_of(end);
     const double ahead = offset.dot(outward(end)) / spacing;
     const double length = length_of(piece_of(end)) / spacing;
-    if (!(aside < tolerance_) || offset.norm() > reach_ * spacing) {
+    if (!(aside < (piece_of(end).exact ? kExactAside : tolerance_)) ||
+        offset.norm() > reach_ * spacing) {
       return std::numeric_limits<double>::infinity();
     }
     if (ahead < -std::min(3.5, 0.5 * length)) return std::numeric_limits<double>::infinity();

@@ -14,6 +14,7 @@
 #include "pcednet/lines/circles.h"
 #include "pcednet/lines/coaxial.h"
 #include "pcednet/lines/crease.h"
+#include "pcednet/lines/exact_folds.h"
 #include "pcednet/lines/extent.h"
 #include "pcednet/lines/finish.h"
 #include "pcednet/lines/ordered_points.h"
@@ -35,14 +36,15 @@ constexpr double kRoundWithin = 6.5;  ///< tolerances from the curves round a ci
 
 /// The options, and what they are where the spacing decides.
 struct Limits {
-  double gap, min_length;           ///< in the unit of the cloud
-  double tolerance, smooth_within;  ///< in spacings
-  double angle;                     ///< radians
+  double gap, min_exact, min_length;  ///< in the unit of the cloud
+  double tolerance, smooth_within;    ///< in spacings
+  double angle;                       ///< radians
 };
 
 Limits limits_of(const LineOptions& options, const Sampling& sampling) {
   const auto given = [](double value, double otherwise) { return value > 0.0 ? value : otherwise; };
   return {.gap = given(options.gap, 6.0 * sampling.spacing),
+          .min_exact = given(options.min_length, sampling.spacing),
           .min_length = given(options.min_length, 3.0 * sampling.spacing),
           .tolerance = given(options.tolerance / sampling.spacing, 0.2 + 0.4 * sampling.noise),
           .smooth_within = 1.5 + 2.0 * sampling.noise,
@@ -181,10 +183,51 @@ std::vector<Curve> drawn(const std::vector<Chain>& chains, const FinishOptions& 
   return drawn(std::span<const Piece>(pieces), options);
 }
 
-std::vector<Curve> long_ones(std::vector<Curve> curves, double min_length, LineScale* scale) {
-  const std::size_t too_short =
-      std::erase_if(curves, [&](const Curve& curve) { return !(length_of(curve) >= min_length); });
+std::vector<Curve> long_ones(std::vector<Curve> curves, const Limits& limits, LineScale* scale) {
+  const std::size_t too_short = std::erase_if(curves, [&](const Curve& curve) {
+    return !(length_of(curve) >= (curve.exact ? limits.min_exact : limits.min_length));
+  });
   if (scale) scale->too_short = too_short;
+  return curves;
+}
+
+template <typename Each>
+std::vector<Each> both(std::vector<Each> these, const std::vector<Each>& those) {
+  these.insert(these.end(), those.begin(), those.end());
+  return these;
+}
+
+std::vector<Chain> chains_of(const std::vector<Piece>& pieces) {
+  std::vector<Chain> chains;
+  for (const Piece& piece : pieces) chains.push_back({piece.nodes, piece.closed});
+  return chains;
+}
+
+/// Makes one piece of those that are of one edge, and moves each to where the points say.
+void place_pieces(std::vector<Piece>& pieces, const OrderedPoints& cloud, const Sampling& sampling,
+                  const Limits& limits, const Progress* progress) {
+  join(pieces, cloud, limits, sampling.noise, progress);
+  refine(pieces, cloud, sampling, progress);
+  round_corners(pieces, limits.tolerance);
+  extend_free_ends(pieces, cloud, sampling.noise);
+  if (sampling.noise > kMuchNoise) {
+    string_free_ends(pieces, limits.gap, limits.angle, sampling.noise);
+  }
+  find_bores(pieces, cloud, sampling, progress);
+}
+
+/// The curves of the pieces, which meet in corners.
+std::vector<Curve> curves_of(std::vector<Piece> pieces, const FinishOptions& options,
+                             const Limits& limits, double spacing, const Progress* progress) {
+  Stage stage(progress, "corners", 3);
+  const std::vector<Piece> smooth = take_smooth(pieces, options.noise);
+  std::vector<Curve> curves = finish(std::move(pieces), options);
+  stage.advance();
+  curves = both(std::move(curves), finish(smooth, options));
+  stage.advance();
+  close_round_loops(curves, spacing, kRoundWithin * limits.tolerance * spacing);
+  join_smooth_corners(curves, limits.angle, 0.5 * limits.tolerance * spacing);
+  stage.advance();
   return curves;
 }
 
@@ -202,43 +245,32 @@ std::vector<Curve> find_lines(const EdgePoints& points, const LineOptions& optio
       if (options.regularise) regularise(*pieces);
       const FinishOptions exact = {limits.tolerance, 0.0, true};
       if (options.stage != LineStage::kCurves) return drawn(std::span(*pieces), exact);
-      return long_ones(finish(std::move(*pieces), exact), limits.min_length, scale);
+      return long_ones(finish(std::move(*pieces), exact), limits, scale);
     }
   }
   std::vector<Crease> creases = find_creases(cloud, sampling, progress), boundaries;
   if (options.boundaries) boundaries = find_boundaries(cloud, progress);
-  if (options.stage == LineStage::kCreases) {
-    creases.insert(creases.end(), boundaries.begin(), boundaries.end());
-    return drawn(creases);
+  if (options.stage == LineStage::kCreases) return drawn(both(creases, boundaries));
+  std::vector<Piece> folds;
+  if (sampling.noise < kExactNoise) {
+    folds = find_exact_folds(cloud, sampling.spacing, progress);
+    erase_explained(creases, folds);
   }
-
   const FinishOptions finish_options = {limits.tolerance, sampling.noise};
   const std::vector<Chain> chains =
       make_chains(creases, boundaries, limits, sampling.noise, progress);
-  if (chains.empty()) return {};
-  if (options.stage == LineStage::kChains) return drawn(chains, finish_options);
-  std::vector<Piece> pieces = split_chains(chains, limits.tolerance, progress);
-  join(pieces, cloud, limits, sampling.noise, progress);
-  refine(pieces, cloud, sampling, progress);
-  round_corners(pieces, limits.tolerance);
-  extend_free_ends(pieces, cloud, sampling.noise);
-  if (sampling.noise > kMuchNoise) {
-    string_free_ends(pieces, limits.gap, limits.angle, sampling.noise);
+  if (options.stage == LineStage::kChains) {
+    return drawn(both(chains, chains_of(folds)), finish_options);
   }
-  find_bores(pieces, cloud, sampling, progress);
+  std::vector<Piece> pieces = split_chains(chains, limits.tolerance, progress);
+  pieces.insert(pieces.end(), folds.begin(), folds.end());
+  if (pieces.empty()) return {};
+  place_pieces(pieces, cloud, sampling, limits, progress);
   if (options.regularise) regularise(pieces);
   if (options.stage == LineStage::kPieces) return drawn(std::span(pieces), finish_options);
-
-  Stage stage(progress, "corners", 3);
-  const std::vector<Piece> smooth = take_smooth(pieces, sampling.noise);
-  std::vector<Curve> curves = finish(std::move(pieces), finish_options);
-  stage.advance();
-  for (Curve& curve : finish(smooth, finish_options)) curves.push_back(std::move(curve));
-  stage.advance();
-  close_round_loops(curves, sampling.spacing, kRoundWithin * limits.tolerance * sampling.spacing);
-  join_smooth_corners(curves, limits.angle, 0.5 * limits.tolerance * sampling.spacing);
-  stage.advance();
-  return long_ones(std::move(curves), limits.min_length, scale);
+  std::vector<Curve> curves =
+      curves_of(std::move(pieces), finish_options, limits, sampling.spacing, progress);
+  return long_ones(std::move(curves), limits, scale);
 }
 
 }  // namespace pcednet::lines

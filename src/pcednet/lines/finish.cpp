@@ -18,7 +18,8 @@ namespace {
 // number is added per spacing of noise. An end at the inside of a piece is free unless exact.
 constexpr double kLoose[] = {8.0, 4.0}, kHeldOnce[] = {5.0, 1.0};
 constexpr double kExactLoose = 8.0, kExactHeldOnce = 4.0;
-constexpr int kDropRounds = 9;  ///< those that hung on a dropped piece are loose now
+constexpr double kExactFree = 2.5;  ///< where exact planes meet
+constexpr int kDropRounds = 9;      ///< those that hung on a dropped piece are loose now
 
 constexpr double kExactReach = 5.0, kExactTolerance = 0.6;  ///< of corners of exact pieces
 
@@ -117,6 +118,7 @@ void set_shape(Curve& curve, const Piece& piece, const std::array<Vec3, 2>& ends
 Curve curve_between(const Piece& piece, const std::array<Vec3, 2>& ends,
                     const FinishOptions& options) {
   Curve curve{.edge_class = class_of(piece, options.noise)};
+  curve.exact = piece.exact;
   set_shape(curve, piece, ends, options.tolerance);
   curve.dihedral_angle = mean_dihedral(piece);
   const EdgePointsOfPiece on_edge = edge_points_of(piece);
@@ -198,6 +200,7 @@ bool drop_loose(std::vector<Piece>& pieces, const Corners& corners, const Finish
            const auto held = std::count_if(own.begin(), own.end(), [&](std::size_t corner) {
              return corner != Corners::kNoCorner && ends[corner] >= to_hold;
            });
+           if (piece.exact) return held == 0 && length_of(piece) < kExactFree * piece.spacing();
            if (!options.exact) {
              const Evidence evidence = evidence_of(piece);
              if (has_few_edge_points(piece, evidence, options.noise, held == 2)) return true;

@@ -16,6 +16,8 @@ constexpr double kOneWedge = 0.7;            ///< least cosine of sides
 constexpr double kFacing = 0.5;              ///< least cosine of the ends of joined pieces
 constexpr double kSameDirectionTwice = 0.7;  ///< of an edge and its copy
 constexpr std::size_t kPiecesAtOnce = 64;    ///< between two looks at the progress
+constexpr double kOnExact = 0.1;             ///< spacings from one line to another that is the same
+constexpr double kBesideExact = 0.8;         ///< of copies of an exact one
 constexpr double kDuplicate = 1.2;           ///< spacings between copies of one edge
 
 void set_ends(Piece& piece) {
@@ -34,6 +36,25 @@ double arc_angle(const Piece& piece) {
                     piece.ends[1] - piece.fit.point);
 }
 
+/// Both as one on the line of the exact one, if the other is on it.
+std::optional<Piece> joined_on_exact(const Piece& a, const Piece& b, Piece both, double tolerance) {
+  if (a.fit.kind != CurveKind::kSegment || b.fit.kind != CurveKind::kSegment) return std::nullopt;
+  const bool a_rules = a.exact && (!b.exact || a.nodes.size() >= b.nodes.size());
+  const Piece &ruler = a_rules ? a : b, &other = a_rules ? b : a;
+  const double most = other.exact ? kOnExact : tolerance;
+  double sum = 0.0;
+  for (const ChainNode& node : other.nodes) {
+    sum += (nearest_on(ruler.fit, node.at) - node.at).squaredNorm() / (node.spacing * node.spacing);
+  }
+  if (sum > most * most * static_cast<double>(other.nodes.size())) return std::nullopt;
+  both.fit = ruler.fit;
+  const Vec3 along = both.nodes.back().at - both.nodes.front().at;
+  if (both.fit.direction.dot(along) < 0.0) both.fit.direction = -both.fit.direction;
+  both.exact = true;
+  set_ends(both);
+  return both;
+}
+
 /// Both as one, from a's other end to b's; nothing if no segment or arc fits them together.
 std::optional<Piece> joined(const Piece& a, std::size_t side_a, const Piece& b, std::size_t side_b,
                             double tolerance) {
@@ -41,6 +62,7 @@ std::optional<Piece> joined(const Piece& a, std::size_t side_a, const Piece& b, 
   both.nodes.reserve(a.nodes.size() + b.nodes.size());
   append(both.nodes, a.nodes, side_a == 1);
   append(both.nodes, b.nodes, side_b == 0);
+  if (a.exact || b.exact) return joined_on_exact(a, b, std::move(both), tolerance);
   const bool straight = a.fit.kind == CurveKind::kSegment && b.fit.kind == CurveKind::kSegment;
   both.fit = straight ? fit_segment(both.nodes) : fit_arc(both.nodes);
   const double within = tolerance_at(node_at(a, side_a), tolerance);
@@ -133,14 +155,20 @@ void drop_duplicates(std::vector<Piece>& pieces) {
   const NodeIndex index(pieces);
   std::vector<std::uint8_t> dropped(pieces.size(), 0), kept(pieces.size(), 0);
   std::vector<spatial::Neighbour> near;
+  for (std::size_t i = 0; i < pieces.size(); ++i) kept[i] = pieces[i].exact;
   for (const std::size_t i : longest_first(pieces)) {
+    if (pieces[i].exact) continue;
     std::size_t covered = 0;
     for (const ChainNode& node : pieces[i].nodes) {
       index.tree.within_unsorted(node.at, kDuplicate * node.spacing, near);
       covered += std::any_of(near.begin(), near.end(), [&](const auto& other) {
         const ChainNode& of_other = *index.nodes[other.index];
-        return kept[index.piece[other.index]] &&
-               std::abs(of_other.along.dot(node.along)) > kSameDirectionTwice;
+        const std::size_t j = index.piece[other.index];
+        if (!kept[j] || std::abs(of_other.along.dot(node.along)) < kSameDirectionTwice) {
+          return false;
+        }
+        return !pieces[j].exact || same_wedge(of_other, node) ||
+               (of_other.at - node.at).norm() < kBesideExact * node.spacing;
       });
     }
     dropped[i] = 2 * covered > pieces[i].nodes.size();

@@ -23,6 +23,7 @@ struct Piece {
   std::array<Vec3, 2> ends;  ///< on the fit; unused if closed
   bool closed = false;
   std::optional<double> dihedral = {};  ///< between the fitted surfaces, radians; else of the nodes
+  bool exact = false;                   ///< a segment where exact planes meet: it keeps its line
   bool regular = false;  ///< a segment whose direction is to be kept, see regularise()
 
   const ChainNode& middle() const { return nodes[nodes.size() / 2]; }

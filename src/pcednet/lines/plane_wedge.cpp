@@ -8,6 +8,7 @@
 
 #include "pcednet/core/vector_clones.h"
 #include "pcednet/lines/plane_line.h"
+#include "pcednet/lines/sampling.h"
 
 namespace pcednet::lines {
 namespace {
@@ -20,10 +21,9 @@ constexpr double kLeastAngleOfExact = 35.0 * kDegree;
 constexpr double kFlatShare = 0.6;  ///< share of the points near a plane that are on it
 
 // In spacings.
-constexpr double kFarthest = 2.2;            ///< of a point from its crease
-constexpr double kLeastFromLine = 0.4;       ///< of those that tell on which side the surface is
-constexpr double kMostNoiseOfExact = 0.005;  ///< with less, planes are sought that points are on
-constexpr double kExact[] = {0.08, 0.2};     ///< exactly, or nearly so, where edges are curved
+constexpr double kFarthest = 2.2;         ///< of a point from its crease
+constexpr double kLeastFromLine = 0.4;    ///< of those that tell on which side the surface is
+constexpr double kExact[] = {0.08, 0.2};  ///< exactly, or nearly so, where edges are curved
 constexpr double kNearPlane = 0.3;
 constexpr double kOnSurface = 1.0;  ///< from the line of such planes to the first points
 
@@ -119,7 +119,7 @@ bool is_flat(const LocalPlane& plane, const NearPoints& points, double tolerance
 
 std::optional<Wedge> best_plane_wedge(const NearPoints& points, const WedgeTolerances& within) {
   std::vector<LocalPlane> planes;
-  if (within.noise < kMostNoiseOfExact) {
+  if (within.noise < kExactNoise) {
     for (const double exact : kExact) {
       const double tolerance = exact + within.noise;
       find_planes(points, tolerance, planes);

@@ -340,7 +340,9 @@ void refine(std::vector<Piece>& pieces, const OrderedPoints& cloud, const Sampli
   Stage stage(progress, "refine", pieces.size());
   const double tolerance = 0.3 + 1.2 * sampling.noise;
   parallel_blocks(pieces.size(), 16, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) place(pieces[i], cloud, tolerance);
+    for (std::size_t i = begin; i < end; ++i) {
+      if (!pieces[i].exact) place(pieces[i], cloud, tolerance);
+    }
     stage.advance(end - begin);
   });
 }

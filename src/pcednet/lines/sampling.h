@@ -15,6 +15,10 @@ struct Sampling {
 /// Noise, in spacings, above which other rules apply to wedges, pieces and their ends.
 constexpr double kMuchNoise = 0.2;
 
+/// Points with less noise, in spacings, are drawn, not measured: a few on one plane, or on one
+/// circle, are no accident.
+constexpr double kExactNoise = 0.005;
+
 Sampling measure_sampling(const OrderedPoints& cloud);
 
 }  // namespace pcednet::lines

@@ -1,0 +1,303 @@
+#include "pcednet/lines/exact_folds.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <tuple>
+
+#include "pcednet/core/parallel.h"
+#include "pcednet/lines/exact_planes.h"
+#include "pcednet/lines/observe.h"
+#include "pcednet/lines/strip.h"
+
+namespace pcednet::lines {
+namespace {
+
+constexpr double kLeastSineOfFold = 0.34;  ///< of its planes: 20 degrees
+constexpr double kOnePlaneSine = 0.01;     ///< of planes that are one
+constexpr double kLeastProbability = 0.1;  ///< mean of the points at a fold
+constexpr double kOneCurve = 0.9;          ///< cosine of folds that approximate a curve
+constexpr double kOneLine = 0.9999;        ///< and of those that are on one line
+constexpr double kAlongFold = 0.8;         ///< cosine of a crease
+constexpr std::size_t kPointsAtOnce = 512, kPairsAtOnce = 8;
+constexpr std::uint32_t kNoPlane = std::numeric_limits<std::uint32_t>::max();
+
+// In spacings.
+constexpr double kContactReach = 2.5;
+constexpr double kLeastFoldLength = 0.8;
+constexpr double kLongFacet = 12.0;  ///< longer ones are edges of a face that bends
+constexpr double kAtFold = 0.7;
+constexpr double kOneEnd = 1.5;                       ///< of folds that continue each other
+constexpr double kExplained = 0.9, kBeyondEnd = 0.5;  ///< of creases from a fold
+
+/// A point of one of two planes near a point of the other.
+struct PlaneContact {
+  std::uint32_t a, b;  ///< the planes, a < b
+  std::uint32_t point;
+
+  auto planes() const { return std::tie(a, b); }
+  auto key() const { return std::tie(a, b, point); }
+};
+
+/// In the order of the planes, then of the points.
+std::vector<PlaneContact> contacts_of(const OrderedPoints& cloud,
+                                      const std::vector<PlanePatch>& planes, double spacing) {
+  std::vector<std::uint32_t> plane_at(cloud.size(), kNoPlane), points;
+  for (std::uint32_t p = 0; p < planes.size(); ++p) {
+    for (const std::uint32_t i : planes[p].members) plane_at[i] = p;
+  }
+  for (std::uint32_t i = 0; i < cloud.size(); ++i) {
+    if (plane_at[i] != kNoPlane) points.push_back(i);
+  }
+  std::vector<std::vector<PlaneContact>> of_blocks((points.size() + kPointsAtOnce - 1) /
+                                                   kPointsAtOnce);
+  parallel_blocks(points.size(), kPointsAtOnce, [&](std::size_t begin, std::size_t end) {
+    std::vector<spatial::Neighbour> near;
+    std::vector<std::uint32_t> others;
+    for (std::size_t k = begin; k < end; ++k) {
+      const std::uint32_t own = plane_at[points[k]];
+      cloud.within(cloud.position(points[k]), kContactReach * spacing, near);
+      others.clear();
+      for (const auto& other : near) {
+        const std::uint32_t plane = plane_at[other.index];
+        if (plane != own && plane != kNoPlane) others.push_back(plane);
+      }
+      std::sort(others.begin(), others.end());
+      others.erase(std::unique(others.begin(), others.end()), others.end());
+      for (const std::uint32_t other : others) {
+        of_blocks[begin / kPointsAtOnce].push_back(
+            {std::min(own, other), std::max(own, other), points[k]});
+      }
+    }
+  });
+  std::vector<PlaneContact> contacts;
+  for (const auto& block : of_blocks) contacts.insert(contacts.end(), block.begin(), block.end());
+  std::sort(contacts.begin(), contacts.end(),
+            [](const PlaneContact& a, const PlaneContact& b) { return a.key() < b.key(); });
+  return contacts;
+}
+
+std::vector<std::span<const PlaneContact>> by_planes(const std::vector<PlaneContact>& contacts) {
+  std::vector<std::span<const PlaneContact>> pairs;
+  for (std::size_t begin = 0, end = 0; begin < contacts.size(); begin = end) {
+    while (end < contacts.size() && contacts[end].planes() == contacts[begin].planes()) ++end;
+    pairs.push_back(std::span(contacts).subspan(begin, end - begin));
+  }
+  return pairs;
+}
+
+/// A segment where two planes meet.
+struct ExactFold {
+  Piece piece;
+  std::uint32_t a, b;  ///< its planes
+};
+
+/// Two planes that meet, their line, and the points in question.
+class FoldSearch {
+ public:
+  FoldSearch(const OrderedPoints& cloud, const PlanePatch& a, const PlanePatch& b, double spacing)
+      : cloud_(cloud), a_(a), b_(b), spacing_(spacing) {}
+
+  std::vector<Piece> folds(std::span<const PlaneContact> contacts);
+
+ private:
+  bool set_line(const Vec3& near);
+  std::vector<Interval> regions(std::span<const PlaneContact> contacts) const;
+  void gather(const Interval& region);
+  void add_folds(std::vector<Piece>& found) const;
+  double mean_probability(const Interval& interval) const;
+  Piece piece_along(const Interval& interval, const Vec3& side_a, const Vec3& side_b) const;
+  Vec3 place(double along) const { return line_.point + along * spacing_ * line_.along; }
+
+  const OrderedPoints& cloud_;
+  const PlanePatch &a_, &b_;
+  double spacing_;
+  PlaneLine line_ = {};
+  std::vector<std::uint32_t> beside_;  ///< the points beside the line, ascending
+};
+
+bool FoldSearch::set_line(const Vec3& near) {
+  const auto line =
+      line_of_planes(a_.normal, -a_.height(near), b_.normal, -b_.height(near), kLeastSineOfFold);
+  if (line) line_ = {near + line->point, line->along};
+  return line.has_value();
+}
+
+/// Where contacts are, with room for points that were not found on the planes.
+std::vector<Interval> FoldSearch::regions(std::span<const PlaneContact> contacts) const {
+  std::vector<double> places;
+  for (const PlaneContact& contact : contacts) {
+    const Vec3 offset = cloud_.position(contact.point) - line_.point;
+    const double along = offset.dot(line_.along);
+    if ((offset - along * line_.along).norm() > kStripWidth * spacing_) continue;
+    places.push_back(along / spacing_);
+  }
+  std::sort(places.begin(), places.end());
+  std::vector<Interval> found = intervals_of(places, 2.0 * kLongestStripGap);
+  for (Interval& region : found) {
+    region.from -= 0.5 * kLongestStripGap;
+    region.to += 0.5 * kLongestStripGap;
+  }
+  return found;
+}
+
+void FoldSearch::gather(const Interval& region) {
+  std::vector<spatial::Neighbour> near;
+  beside_.clear();
+  for (double along = region.from; along < region.to; along += 1.0) {
+    cloud_.within(place(along), (kStripWidth + 0.5) * spacing_, near);
+    for (const auto& point : near) beside_.push_back(point.index);
+  }
+  std::sort(beside_.begin(), beside_.end());
+  beside_.erase(std::unique(beside_.begin(), beside_.end()), beside_.end());
+}
+
+/// Of an edge, at the points beside the interval.
+double FoldSearch::mean_probability(const Interval& interval) const {
+  double sum = 0.0, count = 0.0;
+  for (const std::uint32_t i : beside_) {
+    const Vec3 offset = cloud_.position(i) - line_.point;
+    const double along = offset.dot(line_.along);
+    if (along < interval.from * spacing_ || along > interval.to * spacing_) continue;
+    if ((offset - along * line_.along).norm() > kAtFold * spacing_) continue;
+    sum += static_cast<double>(cloud_.probability(i));
+    count += 1.0;
+  }
+  return count > 0.0 ? sum / count : 0.0;
+}
+
+Piece FoldSearch::piece_along(const Interval& interval, const Vec3& side_a,
+                              const Vec3& side_b) const {
+  Piece piece{.fit = {CurveKind::kSegment, line_.point, line_.along},
+              .nodes = {},
+              .ends = {place(interval.from), place(interval.to)},
+              .exact = true};
+  const auto count = static_cast<std::size_t>(std::ceil(interval.length()));
+  for (std::size_t k = 0; k < count; ++k) {
+    const double share = (static_cast<double>(k) + 0.5) / static_cast<double>(count);
+    piece.nodes.push_back({.at = place(interval.from + share * interval.length()),
+                           .along = line_.along,
+                           .side_a = side_a,
+                           .side_b = side_b,
+                           .spacing = spacing_});
+    observe(piece.nodes.back(), cloud_);
+  }
+  return piece;
+}
+
+/// Those of each pair of sides of the line.
+void FoldSearch::add_folds(std::vector<Piece>& found) const {
+  const Vec3 out_a = a_.normal.cross(line_.along), out_b = b_.normal.cross(line_.along);
+  for (const Vec3& side_a : {out_a, Vec3(-out_a)}) {
+    const Strip a = strip_of(cloud_, beside_, a_, line_, side_a, spacing_);
+    for (const Vec3& side_b : {out_b, Vec3(-out_b)}) {
+      const Strip b = strip_of(cloud_, beside_, b_, line_, side_b, spacing_);
+      for (const Interval& interval : shared_intervals(a, b)) {
+        if (interval.length() < kLeastFoldLength || !end_at_line(a, b, interval)) continue;
+        if (mean_probability(interval) < kLeastProbability) continue;
+        found.push_back(piece_along(interval, side_a, side_b));
+      }
+    }
+  }
+}
+
+std::vector<Piece> FoldSearch::folds(std::span<const PlaneContact> contacts) {
+  std::vector<Piece> found;
+  if (!set_line(cloud_.position(contacts.front().point))) return found;
+  for (const Interval& region : regions(contacts)) {
+    gather(region);
+    add_folds(found);
+  }
+  return found;
+}
+
+/// Marks the planes beside others that are turned little: facets of a curved surface.
+std::vector<std::uint8_t> facets_of(const std::vector<PlanePatch>& planes,
+                                    const std::vector<std::span<const PlaneContact>>& pairs) {
+  std::vector<std::uint8_t> is_facet(planes.size(), 0);
+  for (const auto& contacts : pairs) {
+    const auto [a, b, point] = contacts.front();
+    const double sine = planes[a].normal.cross(planes[b].normal).norm();
+    if (sine > kOnePlaneSine && sine < kLeastSineOfFold) is_facet[a] = is_facet[b] = 1;
+  }
+  return is_facet;
+}
+
+/// Marks the folds of one plane that continue each other and turn little: they are of a curve.
+std::vector<std::uint8_t> parts_of_curves(const std::vector<ExactFold>& folds, double spacing) {
+  std::vector<Piece> pieces;
+  for (const ExactFold& fold : folds) pieces.push_back(fold.piece);
+  const EndIndex index(pieces, open_ends(pieces));
+  std::vector<std::uint8_t> is_part(folds.size(), 0);
+  std::vector<spatial::Neighbour> near;
+  for (std::size_t k = 0; k < index.ends.size(); ++k) {
+    const ExactFold& fold = folds[index.ends[k].piece];
+    index.tree.within_unsorted(index.places[k], kOneEnd * spacing, near);
+    for (const auto& end : near) {
+      const ExactFold& other = folds[index.ends[end.index].piece];
+      const int shared =
+          (fold.a == other.a) + (fold.a == other.b) + (fold.b == other.a) + (fold.b == other.b);
+      const double cosine = std::abs(fold.piece.fit.direction.dot(other.piece.fit.direction));
+      if (shared != 1 || cosine < kOneCurve || cosine > kOneLine) continue;
+      is_part[index.ends[k].piece] = 1;
+    }
+  }
+  return is_part;
+}
+
+}  // namespace
+
+std::vector<Piece> find_exact_folds(const OrderedPoints& cloud, double spacing,
+                                    const Progress* progress) {
+  const std::vector<PlanePatch> planes = find_exact_planes(cloud, spacing, progress);
+  const std::vector<PlaneContact> contacts = contacts_of(cloud, planes, spacing);
+  const auto pairs = by_planes(contacts);
+  std::vector<std::vector<Piece>> of_pairs(pairs.size());
+  Stage stage(progress, "exact folds", pairs.size());
+  parallel_blocks(pairs.size(), kPairsAtOnce, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      const auto [a, b, point] = pairs[k].front();
+      of_pairs[k] = FoldSearch(cloud, planes[a], planes[b], spacing).folds(pairs[k]);
+    }
+    stage.advance(end - begin);
+  });
+  const std::vector<std::uint8_t> is_facet = facets_of(planes, pairs);
+  std::vector<ExactFold> folds;
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    const auto [a, b, point] = pairs[k].front();
+    for (Piece& piece : of_pairs[k]) {
+      const bool is_short = length_of(piece) < kLongFacet * spacing;
+      if ((is_facet[a] || is_facet[b]) && is_short) continue;
+      folds.push_back({std::move(piece), a, b});
+    }
+  }
+  const std::vector<std::uint8_t> is_part = parts_of_curves(folds, spacing);
+  std::vector<Piece> found;
+  for (std::size_t i = 0; i < folds.size(); ++i) {
+    if (!is_part[i]) found.push_back(std::move(folds[i].piece));
+  }
+  return found;
+}
+
+void erase_explained(std::vector<Crease>& creases, const std::vector<Piece>& folds) {
+  if (folds.empty()) return;
+  const NodeIndex index(folds);
+  const auto explains = [](const Piece& fold, const Crease& crease) {
+    const double along = (crease.at - fold.ends[0]).dot(fold.fit.direction);
+    const double beyond = kBeyondEnd * crease.spacing;
+    return std::abs(fold.fit.direction.dot(crease.along)) > kAlongFold && along > -beyond &&
+           along < length_of(fold) + beyond &&
+           (nearest_on(fold.fit, crease.at) - crease.at).norm() < kExplained * crease.spacing;
+  };
+  std::vector<spatial::Neighbour> near;
+  std::erase_if(creases, [&](const Crease& crease) {
+    index.tree.within_unsorted(crease.at, 1.5 * crease.spacing, near);
+    return std::any_of(near.begin(), near.end(), [&](const auto& node) {
+      return explains(folds[index.piece[node.index]], crease);
+    });
+  });
+}
+
+}  // namespace pcednet::lines

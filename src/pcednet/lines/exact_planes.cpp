@@ -1,0 +1,258 @@
+#include "pcednet/lines/exact_planes.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <limits>
+#include <map>
+
+#include "pcednet/core/eigendecomposition.h"
+#include "pcednet/lines/moments.h"
+
+namespace pcednet::lines {
+namespace {
+
+constexpr double kProbable = 0.05;  ///< probability of an edge near which planes are sought
+constexpr std::size_t kNearby = 48;
+constexpr std::size_t kMostThrough = 10;     ///< of the nearest, to lay planes through
+constexpr std::size_t kOnFirst[] = {12, 6};  ///< points on a plane that grows; large ones go first
+constexpr std::size_t kLeastMembers = 8;
+constexpr double kLeastSineBetween = 0.25;  ///< of two places seen from a third
+constexpr double kReachOfPlane = 0.01;      ///< spacings
+constexpr double kMostResidual = 0.1;       ///< root mean square, to the reach
+constexpr double kLeastPatchSpread = 0.2;   ///< of the members, standard deviation in spacings
+constexpr double kOneNormal = 0.999;        ///< cosine of patches that may be of one plane
+constexpr std::size_t kSeedsBetweenLooks = 1024;
+constexpr std::uint32_t kNoRow = std::numeric_limits<std::uint32_t>::max();
+
+/// The points near probable edges, and the nearest others of each.
+struct Candidates {
+  std::vector<std::uint32_t> points;  ///< ascending
+  std::vector<std::uint32_t> rows;    ///< of each point of the cloud: its place among these
+  std::vector<std::uint32_t> others;
+  std::size_t others_of_each;
+
+  std::span<const std::uint32_t> near(std::uint32_t row) const {
+    return std::span(others).subspan(row * others_of_each, others_of_each);
+  }
+};
+
+/// The nearest others of each point, row after row.
+std::vector<std::uint32_t> others_of(const OrderedPoints& cloud,
+                                     std::span<const std::uint32_t> points, Stage& stage) {
+  const std::size_t count = cloud.available(kNearby);
+  std::vector<std::uint32_t> found(points.size() * count);
+  cloud.for_each_neighbourhood(points, kNearby, stage,
+                               [&](std::size_t k, std::span<const spatial::Neighbour> others) {
+                                 for (std::size_t m = 0; m < others.size(); ++m) {
+                                   found[k * count + m] = others[m].index;
+                                 }
+                               });
+  return found;
+}
+
+Candidates find_candidates(const OrderedPoints& cloud, const Progress* progress) {
+  std::vector<std::uint32_t> probable;
+  for (std::uint32_t i = 0; i < cloud.size(); ++i) {
+    if (cloud.is_edge(i) || cloud.probability(i) >= kProbable) probable.push_back(i);
+  }
+  Candidates found{.points = {}, .rows = {}, .others = {}, .others_of_each = 0};
+  found.rows.assign(cloud.size(), kNoRow);
+  Stage looking(progress, "points near edges", probable.size());
+  for (const std::uint32_t i : others_of(cloud, probable, looking)) found.rows[i] = 0;
+  for (const std::uint32_t i : probable) found.rows[i] = 0;
+  for (std::uint32_t i = 0; i < cloud.size(); ++i) {
+    if (found.rows[i] == kNoRow) continue;
+    found.rows[i] = static_cast<std::uint32_t>(found.points.size());
+    found.points.push_back(i);
+  }
+  Stage stage(progress, "exact planes", found.points.size());
+  found.others = others_of(cloud, found.points, stage);
+  found.others_of_each = cloud.available(kNearby);
+  return found;
+}
+
+/// A plane of least squares.
+struct FittedPlane {
+  Vec3 point, normal;
+  double residual, spread;  ///< standard deviations across it, and along its shorter side
+};
+
+FittedPlane fitted_to(const OrderedPoints& cloud, std::span<const std::uint32_t> members) {
+  const Vec3 origin = cloud.position(members.front());
+  PointMoments moments;
+  for (const std::uint32_t i : members) moments.add(cloud.position(i) - origin);
+  const auto [variances, axes] = eigendecomposition(moments.covariance());
+  return {origin + moments.mean(), axes.col(0).normalized(), std::sqrt(std::max(variances[0], 0.0)),
+          std::sqrt(std::max(variances[1], 0.0))};
+}
+
+/// Planes that grow from point to point.
+class PatchGrowth {
+ public:
+  PatchGrowth(const OrderedPoints& cloud, const Candidates& candidates, double spacing)
+      : cloud_(cloud),
+        candidates_(candidates),
+        spacing_(spacing),
+        reach_(kReachOfPlane * spacing),
+        taken_(candidates.points.size(), 0),
+        seen_(candidates.points.size(), 0) {}
+
+  /// Grows a plane from this row if so many points near it are on one.
+  void try_at(std::uint32_t row, std::size_t least_on);
+  std::vector<PlanePatch> found;
+
+ private:
+  bool is_free(std::uint32_t point) const {
+    return candidates_.rows[point] != kNoRow && !taken_[candidates_.rows[point]];
+  }
+  bool set_first(std::uint32_t row, std::size_t least_on);
+  void spread(std::uint32_t row);
+
+  const OrderedPoints& cloud_;
+  const Candidates& candidates_;
+  double spacing_, reach_;
+  std::vector<std::uint8_t> taken_;
+  std::vector<std::uint32_t> seen_;  ///< in which spread() a row was last seen
+  std::uint32_t spreads_ = 0;
+  FittedPlane plane_ = {};
+  std::vector<std::uint32_t> members_;
+};
+
+/// The plane through the point and two near it that the most of the free points there are on.
+bool PatchGrowth::set_first(std::uint32_t row, std::size_t least_on) {
+  const Vec3& at = cloud_.position(candidates_.points[row]);
+  std::vector<Vec3> offsets;
+  for (const std::uint32_t other : candidates_.near(row)) {
+    if (is_free(other)) offsets.push_back(cloud_.position(other) - at);
+  }
+  std::size_t most = least_on - 2;  // without the point itself
+  const std::size_t through = std::min(offsets.size(), kMostThrough);
+  bool is_set = false;
+  for (std::size_t j = 0; j < through; ++j) {
+    for (std::size_t k = j + 1; k < through; ++k) {
+      const Vec3 cross = offsets[j].cross(offsets[k]);
+      const double area = cross.norm();
+      if (!(area > kLeastSineBetween * offsets[j].norm() * offsets[k].norm())) continue;
+      const Vec3 normal = cross / area;
+      std::size_t on = 0;
+      for (const Vec3& offset : offsets) on += std::abs(normal.dot(offset)) < reach_;
+      if (on <= most) continue;
+      most = on;
+      plane_ = {.point = at, .normal = normal, .residual = 0.0, .spread = 0.0};
+      is_set = true;
+    }
+  }
+  return is_set;
+}
+
+/// Sets the members to the free points on the plane that hang together with the first one, and the
+/// plane to theirs.
+void PatchGrowth::spread(std::uint32_t row) {
+  ++spreads_;
+  members_ = {candidates_.points[row]};
+  seen_[row] = spreads_;
+  std::size_t next_fit = kLeastMembers;
+  for (std::size_t k = 0; k < members_.size(); ++k) {
+    for (const std::uint32_t other : candidates_.near(candidates_.rows[members_[k]])) {
+      if (!is_free(other) || seen_[candidates_.rows[other]] == spreads_) continue;
+      if (std::abs(plane_.normal.dot(cloud_.position(other) - plane_.point)) > reach_) continue;
+      seen_[candidates_.rows[other]] = spreads_;
+      members_.push_back(other);
+    }
+    if (members_.size() < next_fit) continue;
+    plane_ = fitted_to(cloud_, members_);
+    next_fit = 2 * members_.size();
+  }
+  if (members_.size() >= kLeastMembers) plane_ = fitted_to(cloud_, members_);
+}
+
+void PatchGrowth::try_at(std::uint32_t row, std::size_t least_on) {
+  if (taken_[row] || !set_first(row, least_on)) return;
+  for (int round = 0; round < 2; ++round) {
+    spread(row);
+    if (members_.size() < kLeastMembers) return;
+  }
+  if (plane_.residual > kMostResidual * reach_ || plane_.spread < kLeastPatchSpread * spacing_)
+    return;
+  for (const std::uint32_t i : members_) taken_[candidates_.rows[i]] = 1;
+  found.push_back({plane_.point, plane_.normal, reach_, members_});
+}
+
+/// Planes that grow together, to be found by their distance from an origin.
+class PlaneUnion {
+ public:
+  PlaneUnion(const OrderedPoints& cloud, double spacing)
+      : cloud_(cloud), origin_(cloud.position(0)), spacing_(spacing) {}
+
+  void add(PlanePatch patch);
+  std::vector<PlanePatch> planes;
+
+ private:
+  /// The plane at about this distance that all points of the patch are on.
+  PlanePatch* plane_of(const PlanePatch& patch, double distance);
+
+  const OrderedPoints& cloud_;
+  Vec3 origin_;
+  double spacing_;
+  std::multimap<double, std::size_t> by_distance_;
+};
+
+PlanePatch* PlaneUnion::plane_of(const PlanePatch& patch, double distance) {
+  const auto end = by_distance_.upper_bound(distance + spacing_);
+  for (auto entry = by_distance_.lower_bound(distance - spacing_); entry != end; ++entry) {
+    PlanePatch& plane = planes[entry->second];
+    const bool holds =
+        std::abs(plane.normal.dot(patch.normal)) > kOneNormal &&
+        std::all_of(patch.members.begin(), patch.members.end(),
+                    [&](std::uint32_t i) { return plane.is_on(cloud_.position(i)); });
+    if (holds) return &plane;
+  }
+  return nullptr;
+}
+
+void PlaneUnion::add(PlanePatch patch) {
+  const double distance = patch.height(origin_);
+  PlanePatch* plane = plane_of(patch, distance);
+  if (!plane) plane = plane_of(patch, -distance);  // its normal may be turned round
+  if (plane) {
+    plane->members.insert(plane->members.end(), patch.members.begin(), patch.members.end());
+    return;
+  }
+  by_distance_.emplace(distance, planes.size());
+  planes.push_back(std::move(patch));
+}
+
+/// One plane for all patches of it: those of a plate with a slot across it are two.
+std::vector<PlanePatch> united(const OrderedPoints& cloud, std::vector<PlanePatch> patches,
+                               double spacing) {
+  std::stable_sort(patches.begin(), patches.end(), [](const PlanePatch& a, const PlanePatch& b) {
+    return a.members.size() > b.members.size();
+  });
+  PlaneUnion whole(cloud, spacing);
+  for (PlanePatch& patch : patches) whole.add(std::move(patch));
+  for (PlanePatch& plane : whole.planes) {
+    std::sort(plane.members.begin(), plane.members.end());
+    const FittedPlane fitted = fitted_to(cloud, plane.members);
+    plane.point = fitted.point;
+    plane.normal = fitted.normal;
+  }
+  return std::move(whole.planes);
+}
+
+}  // namespace
+
+std::vector<PlanePatch> find_exact_planes(const OrderedPoints& cloud, double spacing,
+                                          const Progress* progress) {
+  if (cloud.size() <= kLeastMembers) return {};
+  const Candidates candidates = find_candidates(cloud, progress);
+  PatchGrowth growth(cloud, candidates, spacing);
+  for (const std::size_t least_on : kOnFirst) {
+    for (std::uint32_t row = 0; row < candidates.points.size(); ++row) {
+      if (row % kSeedsBetweenLooks == 0) throw_if_cancelled(progress);
+      growth.try_at(row, least_on);
+    }
+  }
+  return united(cloud, std::move(growth.found), spacing);
+}
+
+}  // namespace pcednet::lines

@@ -1,0 +1,182 @@
+#include "pcednet/lines/exact_folds.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "made_clouds.h"
+
+namespace pcednet::lines {
+namespace {
+
+constexpr double kTurn = 2.0 * std::numbers::pi;
+
+/// Parts of one point per unit of area.
+struct PlanePart : Cloud {
+  Random random = Random(7);
+
+  PlanePart() { spacing = 1.0; }
+
+  /// A parallelogram, labelled along its rim, or not at all.
+  void add_face(const Vec3& corner, const Vec3& u, const Vec3& v, bool labelled = true) {
+    const Vec3 normal = u.cross(v);
+    const auto count = static_cast<int>(normal.norm());
+    for (int i = 0; i < count; ++i) {
+      const double s = random.uniform(), t = random.uniform();
+      const double from_rim =
+          std::min(std::min(s, 1.0 - s) * u.norm(), std::min(t, 1.0 - t) * v.norm());
+      add(corner + s * u + t * v, normal.normalized(), labelled && from_rim < kNear);
+    }
+  }
+  void add_box(const Vec3& corner, const Vec3& size, bool labelled = true) {
+    for (int axis = 0; axis < 3; ++axis) {
+      Vec3 u = Vec3::Zero(), v = Vec3::Zero(), far = Vec3::Zero();
+      u[(axis + 1) % 3] = size[(axis + 1) % 3];
+      v[(axis + 2) % 3] = size[(axis + 2) % 3];
+      far[axis] = size[axis];
+      add_face(corner, u, v, labelled);
+      add_face(corner + far, u, v, labelled);
+    }
+  }
+  std::vector<Piece> folds() const {
+    return find_exact_folds(OrderedPoints({positions, normals, classes}), spacing, nullptr);
+  }
+};
+
+double total_length(const std::vector<Piece>& pieces) {
+  return std::accumulate(pieces.begin(), pieces.end(), 0.0, [](double sum, const Piece& piece) {
+    return sum + (piece.ends[1] - piece.ends[0]).norm();
+  });
+}
+
+/// Whether every fold lies on an edge of the box.
+void expect_on_edges(const std::vector<Piece>& folds, const Vec3& corner, const Vec3& size) {
+  for (const Piece& fold : folds) {
+    for (const Vec3& end : fold.ends) {
+      const Vec3 low = (end - corner).cwiseAbs(), high = (end - corner - size).cwiseAbs();
+      const Vec3 off = low.cwiseMin(high);
+      EXPECT_LT(off.sum() - off.maxCoeff(), 1e-6) << end.transpose();
+    }
+  }
+}
+
+TEST(ExactFolds, AreTheEdgesOfAThinPlate) {
+  const Vec3 size(40.0, 30.0, 1.3);
+  PlanePart plate;
+  plate.add_box(Vec3::Zero(), size);
+  for (std::size_t i = 0; i < plate.classes.size(); ++i) {
+    if (i % 4 != 0) plate.classes[i] = kNonEdge;  // labels miss most of it
+  }
+  const std::vector<Piece> folds = plate.folds();
+  expect_on_edges(folds, Vec3::Zero(), size);
+  EXPECT_GT(total_length(folds), 0.9 * 4.0 * (40.0 + 30.0));
+  for (const Piece& fold : folds) {
+    EXPECT_TRUE(fold.exact);
+    EXPECT_NEAR(dihedral_angle(fold.middle().side_a, fold.middle().side_b), 0.25 * kTurn, 1e-6);
+  }
+}
+
+TEST(ExactFolds, NeedPointsThatMayBeOfAnEdge) {
+  PlanePart box;
+  box.add_box(Vec3::Zero(), {20.0, 20.0, 20.0}, false);
+  EXPECT_TRUE(box.folds().empty());
+}
+
+TEST(ExactFolds, EndAtASlot) {
+  PlanePart halves;
+  const Vec3 size(15.0, 20.0, 10.0), second(18.0, 0.0, 0.0);
+  halves.add_box(Vec3::Zero(), size);
+  halves.add_box(second, size);
+  for (const Piece& fold : halves.folds()) {
+    const bool in_first = fold.ends[0].x() < 15.1, ends_in_first = fold.ends[1].x() < 15.1;
+    EXPECT_EQ(in_first, ends_in_first);
+  }
+}
+
+TEST(ExactFolds, AreNoLineAcrossAPlaneThatGoesOn) {
+  PlanePart rib;  // on a plate, which it divides
+  rib.add_face({-20.0, -20.0, 0.0}, {20.0, 0.0, 0.0}, {0.0, 40.0, 0.0});
+  rib.add_face({1.5, -20.0, 0.0}, {20.0, 0.0, 0.0}, {0.0, 40.0, 0.0});
+  for (const double x : {0.0, 1.5}) {
+    rib.add_face({x, -10.0, 0.0}, {0.0, 20.0, 0.0}, {0.0, 0.0, 8.0});
+  }
+  rib.add_face({0.0, -20.0, 0.0}, {1.5, 0.0, 0.0}, {0.0, 10.0, 0.0});  // the plate beyond the rib
+  rib.add_face({0.0, 10.0, 0.0}, {1.5, 0.0, 0.0}, {0.0, 10.0, 0.0});
+  const std::vector<Piece> folds = rib.folds();
+  double at_foot = 0.0;
+  for (const Piece& fold : folds) {
+    for (const Vec3& end : fold.ends) EXPECT_LT(std::abs(end.y()), 10.5);
+    if (std::abs(fold.middle().at.z()) < 1e-6) at_foot += total_length({fold});
+  }
+  EXPECT_GT(at_foot, 0.8 * 2.0 * 20.0);
+}
+
+/// The side and the top of a column with so many sides; round for none.
+PlanePart column(int sides, double radius, double height) {
+  PlanePart part;
+  const auto place = [&](double turn) {
+    const double angle = kTurn * turn;
+    if (sides == 0) return Vec3(radius * std::cos(angle), radius * std::sin(angle), 0.0);
+    const double side = std::floor(turn * sides), share = turn * sides - side;
+    const auto corner = [&](double k) {
+      return Vec3(radius * std::cos(kTurn * k / sides), radius * std::sin(kTurn * k / sides), 0.0);
+    };
+    return Vec3((1.0 - share) * corner(side) + share * corner(side + 1.0));
+  };
+  for (int i = 0; i < static_cast<int>(kTurn * radius * height); ++i) {
+    const Vec3 at = place(part.random.uniform());
+    const double down = height * part.random.uniform();
+    part.add(at - down * Vec3::UnitZ(), at.normalized(), down < kNear);
+  }
+  for (int i = 0; i < static_cast<int>(0.5 * kTurn * radius * radius); ++i) {
+    const double share = std::sqrt(part.random.uniform());
+    part.add(share * place(part.random.uniform()), Vec3::UnitZ(), radius * (1.0 - share) < kNear);
+  }
+  return part;
+}
+
+TEST(ExactFolds, LeaveRoundEdgesAlone) {
+  EXPECT_TRUE(column(0, 12.0, 15.0).folds().empty());
+  EXPECT_LT(total_length(column(48, 12.0, 15.0).folds()), 0.05 * kTurn * 12.0);
+  EXPECT_GT(total_length(column(6, 12.0, 15.0).folds()), 0.8 * (6 * 12.0));
+}
+
+TEST(ExactFolds, ReplaceTheCreasesThere) {
+  PlanePart box;
+  box.add_box(Vec3::Zero(), {20.0, 20.0, 20.0});
+  const std::vector<Piece> folds = box.folds();
+  ASSERT_FALSE(folds.empty());
+  const ChainNode& node = folds[0].middle();
+  Crease on{.at = node.at,
+            .along = -node.along,
+            .side_a = node.side_b,
+            .side_b = node.side_a,
+            .spacing = 1.0,
+            .probability = 1.0f,
+            .edge_class = kSharpEdge};
+  Crease across = on, beside = on;
+  across.along = node.side_a;
+  beside.at += 1.2 * node.side_a;
+  std::vector<Crease> creases = {on, across, beside};
+  erase_explained(creases, folds);
+  ASSERT_EQ(creases.size(), 2u);
+  EXPECT_EQ(creases[0].along, across.along);
+  EXPECT_EQ(creases[1].at, beside.at);
+}
+
+TEST(ExactFolds, AreTheSameForAnyOrderOfThePoints) {
+  PlanePart part;
+  part.add_box(Vec3::Zero(), {30.0, 12.0, 1.5});
+  PlanePart turned;
+  for (std::size_t i = part.positions.size(); i-- > 0;) {
+    turned.add(part.positions[i], -part.normals[i], part.classes[i] == kSharpEdge);
+  }
+  const std::vector<Piece> folds = part.folds(), others = turned.folds();
+  ASSERT_EQ(folds.size(), others.size());
+  for (std::size_t i = 0; i < folds.size(); ++i) EXPECT_EQ(folds[i].ends, others[i].ends);
+}
+
+}  // namespace
+}  // namespace pcednet::lines
