@@ -50,7 +50,8 @@ struct Part {
   }
   std::vector<Piece> bores(double noise = 0.0) const {
     std::vector<Piece> pieces;
-    find_bores(pieces, OrderedPoints({positions, normals, classes}), {1.0, noise}, nullptr);
+    find_bores(pieces, OrderedPoints({positions, normals, classes}),
+               {1.0, noise, true, noise < kExactNoise}, nullptr);
     return pieces;
   }
 };
@@ -97,8 +98,8 @@ TEST(Bores, TakeThePlaceOfThePiecesThere) {
   chord.fit = fit_segment(chord.nodes);
   chord.ends = {chord.nodes[0].at, chord.nodes[1].at};
   std::vector<Piece> pieces = {chord};
-  find_bores(pieces, OrderedPoints({part.positions, part.normals, part.classes}), {1.0, 0.0},
-             nullptr);
+  find_bores(pieces, OrderedPoints({part.positions, part.normals, part.classes}),
+             {1.0, 0.0, true, true}, nullptr);
   expect_the_rim(pieces);
 }
 
@@ -181,7 +182,8 @@ struct HexagonalHole : Part {
       edge.ends = {edge.nodes[0].at, edge.nodes[1].at};
       pieces.push_back(edge);
     }
-    find_bores(pieces, OrderedPoints({positions, normals, classes}), {1.0, 0.0}, nullptr);
+    find_bores(pieces, OrderedPoints({positions, normals, classes}), {1.0, 0.0, true, true},
+               nullptr);
     return pieces;
   }
 };

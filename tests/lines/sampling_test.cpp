@@ -24,6 +24,24 @@ TEST(Sampling, IsMeasuredAtAllPointsIfAllAreOfAnEdge) {
   EXPECT_NEAR(measured().spacing, cloud.spacing, 0.1 * cloud.spacing);
 }
 
+TEST(Sampling, TakesDrawnPointsForExactButNotRoundedOnes) {
+  const auto is_exact = [](double noise, double step) {
+    Random random(3);
+    Cloud cloud = cube(6000);
+    for (Vec3& p : cloud.positions) {
+      for (double& x : p) {
+        x += noise * cloud.spacing * random.normal();
+        if (step > 0.0) x = std::round(x / (step * cloud.spacing)) * step * cloud.spacing;
+      }
+    }
+    return measure_sampling(OrderedPoints({cloud.positions, cloud.normals, cloud.classes})).exact;
+  };
+  EXPECT_TRUE(is_exact(0.0, 0.0));
+  EXPECT_TRUE(is_exact(0.0, 0.001));
+  EXPECT_FALSE(is_exact(0.0, 0.7));
+  EXPECT_FALSE(is_exact(0.05, 0.0));
+}
+
 TEST(Sampling, TakesThinWallsForNoNoise) {
   const auto noise_of_walls = [](double noise) {
     Random random(9);

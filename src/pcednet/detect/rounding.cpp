@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <numbers>
 
 #include "pcednet/cloud/bounding_box.h"
+#include "pcednet/cloud/coordinate_step.h"
 #include "pcednet/core/median.h"
 #include "pcednet/core/parallel_loops.h"
 #include "pcednet/core/random.h"
@@ -18,47 +18,7 @@ namespace pcednet::detect {
 namespace {
 
 constexpr double kLeastStep = 0.1;       ///< that matters, over the spacing
-constexpr double kLeastExtent = 1e-8;    ///< a step is at least this part of the extent
-constexpr double kOff = 0.1;             ///< of a step: what a coordinate may be off its multiple
 constexpr std::size_t kShareMoved = 20;  ///< one point in so many lies on a surface that was moved
-
-/// The largest number of which all of these, sorted and beginning with 0, are multiples; infinite
-/// if all are 0, and 0 if it would be below `least`. Later numbers make it more precise.
-double common_step(std::span<const double> offsets, double least) {
-  double step = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 1; i < offsets.size(); ++i) {
-    const double gap = offsets[i] - offsets[i - 1];
-    if (gap >= least) step = std::min(step, gap);
-  }
-  if (std::isinf(step)) return step;
-  for (std::size_t i = 0; i < offsets.size();) {
-    const double multiple = std::round(offsets[i] / step);
-    const double off = std::abs(offsets[i] - multiple * step);
-    if (off > kOff * step) {  // as in Euclid's algorithm
-      if (off < least) return 0.0;
-      step = off, i = 0;
-      continue;
-    }
-    if (multiple > 0.0) step = offsets[i] / multiple;
-    ++i;
-  }
-  return step;
-}
-
-/// The smallest of the steps of x, y and z.
-double least_step(std::span<const Vec3> positions, std::span<const std::uint32_t> points) {
-  double step = std::numeric_limits<double>::infinity();
-  std::vector<double> offsets(points.size());
-  for (int axis = 0; axis < 3; ++axis) {
-    std::transform(points.begin(), points.end(), offsets.begin(),
-                   [&](std::uint32_t i) { return positions[i][axis]; });
-    std::sort(offsets.begin(), offsets.end());
-    const double first = offsets.front();
-    for (double& offset : offsets) offset -= first;
-    step = std::min(step, common_step(offsets, kLeastExtent * offsets.back()));
-  }
-  return std::isinf(step) ? 0.0 : step;
-}
 
 /// The median over the points. A circle about a point with `kInCircle` others in it has as many
 /// times the area that a point takes; further ones are often elsewhere on the curve.
@@ -90,7 +50,7 @@ bool is_moved(std::span<const Vec3> positions, std::uint32_t point,
 Rounding find_rounding(std::span<const Vec3> positions, std::span<const std::uint32_t> curve) {
   const NearOnCurve near = near_on_curve(positions, curve);
   if (near.points.empty()) return {};
-  const double step = least_step(positions, near.points);
+  const double step = coordinate_step(positions, near.points);
   const double spacing = spacing_of(positions, near);
   if (step < kLeastStep * spacing || step == 0.0) return {};
   std::vector<normals::PlaneFit> fits(near.points.size());

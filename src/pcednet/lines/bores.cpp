@@ -150,13 +150,12 @@ void find_bores(std::vector<Piece>& pieces, const OrderedPoints& cloud, const Sa
   RimTest measured = kMeasuredRim;
   measured.reach += kReachInNoise * sampling.noise;
   const std::vector<std::uint32_t> seeds = unexplained(pieces, cloud, spacing);
-  const bool is_exact = sampling.noise < kExactNoise;
-  const std::vector<Vec3> axes = is_exact ? common_axes(pieces) : std::vector<Vec3>();
+  const std::vector<Vec3> axes = sampling.exact ? common_axes(pieces) : std::vector<Vec3>();
   std::vector<std::optional<Rim>> found(seeds.size());
   Stage stage(progress, "bores", seeds.size());
   parallel_blocks(seeds.size(), kSeedsAtOnce, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
-      if (is_exact) found[k] = rim_near(cloud, seeds[k], axes, kExactRim, spacing);
+      if (sampling.exact) found[k] = rim_near(cloud, seeds[k], axes, kExactRim, spacing);
       if (!found[k]) found[k] = rim_near(cloud, seeds[k], {}, measured, spacing);
     }
     stage.advance(end - begin);

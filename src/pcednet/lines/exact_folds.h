@@ -10,7 +10,7 @@
 namespace pcednet::lines {
 
 /// The segments where exact planes meet: both have points along the line, each on one side of it
-/// alone, and the points there are perhaps of an edge. For clouds with less noise than kExactNoise.
+/// alone, and the points there are perhaps of an edge. For exact points (Sampling).
 /// Facets of curved surfaces are left to the chains.
 std::vector<Piece> find_exact_folds(const OrderedPoints& cloud, double spacing,
                                     const Progress* progress);

@@ -20,9 +20,9 @@ struct PlanePatch {
   bool is_on(const Vec3& place) const { return std::abs(height(place)) < reach; }
 };
 
-/// The planes near probable edges of a cloud with less noise than kExactNoise, each with eight
-/// points or more. They follow from positions alone, so that those of thin plates and narrow steps
-/// are found, where normals and labels mislead.
+/// The planes near probable edges of a cloud of exact points, each with eight points or more. They
+/// follow from positions alone, so that those of thin plates and narrow steps are found, where
+/// normals and labels mislead.
 std::vector<PlanePatch> find_exact_planes(const OrderedPoints& cloud, double spacing,
                                           const Progress* progress);
 

@@ -252,7 +252,7 @@ std::vector<Curve> find_lines(const EdgePoints& points, const LineOptions& optio
   if (options.boundaries) boundaries = find_boundaries(cloud, progress);
   if (options.stage == LineStage::kCreases) return drawn(both(creases, boundaries));
   std::vector<Piece> folds;
-  if (sampling.noise < kExactNoise) {
+  if (sampling.exact) {
     folds = find_exact_folds(cloud, sampling.spacing, progress);
     erase_explained(creases, folds);
   }

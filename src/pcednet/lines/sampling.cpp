@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "pcednet/cloud/coordinate_step.h"
 #include "pcednet/core/eigendecomposition.h"
 #include "pcednet/core/median.h"
 #include "pcednet/lines/moments.h"
@@ -22,6 +23,7 @@ constexpr std::size_t kFewSamples = 50;
 constexpr double kUneven = 1.5;            ///< times the spacing
 constexpr double kMostNoise = 0.7;         ///< in spacings: more is no surface
 constexpr double kLeastGapOfSheets = 0.5;  ///< between the two sides of a wall, of their heights
+constexpr double kLeastStep = 0.05;        ///< of rounded coordinates, in spacings
 constexpr std::size_t kOnOwnSide = 3;      ///< nearest others, hardly ever beyond a wall
 constexpr double kMostOpposed = 0.15;      ///< of these, where signs are alike
 
@@ -129,6 +131,16 @@ std::vector<PlaneSample> samples_at(const OrderedPoints& cloud,
   return samples;
 }
 
+/// Whether coordinates are multiples of a step: the planes of voxels are not those of the surface.
+bool is_rounded(const OrderedPoints& cloud, const std::vector<std::uint32_t>& points,
+                double spacing) {
+  std::vector<Vec3> positions;
+  for (const std::uint32_t i : points) positions.push_back(cloud.position(i));
+  std::vector<std::uint32_t> each(positions.size());
+  std::iota(each.begin(), each.end(), 0u);
+  return coordinate_step(positions, each) > kLeastStep * spacing;
+}
+
 }  // namespace
 
 Sampling measure_sampling(const OrderedPoints& cloud) {
@@ -141,9 +153,15 @@ Sampling measure_sampling(const OrderedPoints& cloud) {
   const std::vector<PlaneSample> around = samples_at(cloud, off.empty() ? all : off);
   const double spacing = typical_spacing(around);
   const double at_edges = typical_spacing(samples_at(cloud, some_of(on)));
-  const bool oriented = are_oriented(around);
-  if (at_edges < kUneven * spacing) return {spacing, noise_of(around), oriented};
-  return {at_edges, noise_of(like(around, at_edges)), oriented};
+  Sampling sampling{.spacing = spacing, .noise = 0.0, .oriented = are_oriented(around)};
+  if (at_edges < kUneven * spacing) {
+    sampling.noise = noise_of(around);
+  } else {
+    sampling.spacing = at_edges;
+    sampling.noise = noise_of(like(around, at_edges));
+  }
+  sampling.exact = sampling.noise < kExactNoise && !is_rounded(cloud, all, sampling.spacing);
+  return sampling;
 }
 
 }  // namespace pcednet::lines

@@ -10,13 +10,13 @@ struct Sampling {
   double spacing = 0.0;  ///< sqrt of the area per point, median
   double noise = 0.0;    ///< of points about the plane of their neighbours, in spacings
   bool oriented = true;  ///< the normals of neighbours have like signs
+  bool exact = false;    ///< drawn, not measured: a few points on a plane or circle are no accident
 };
 
 /// Noise, in spacings, above which other rules apply to wedges, pieces and their ends.
 constexpr double kMuchNoise = 0.2;
 
-/// Points with less noise, in spacings, are drawn, not measured: a few on one plane, or on one
-/// circle, are no accident.
+/// Exact points have less noise, in spacings.
 constexpr double kExactNoise = 0.005;
 
 Sampling measure_sampling(const OrderedPoints& cloud);
