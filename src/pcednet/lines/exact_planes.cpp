@@ -15,7 +15,7 @@ constexpr double kProbable = 0.05;  ///< probability of an edge near which plane
 constexpr std::size_t kNearby = 48;
 constexpr std::size_t kMostThrough = 10;     ///< of the nearest, to lay planes through
 constexpr std::size_t kOnFirst[] = {12, 6};  ///< points on a plane that grows; large ones go first
-constexpr std::size_t kLeastMembers = 8;
+constexpr std::size_t kLeastMembers = 8, kManyMembers = 64;
 constexpr double kLeastSineBetween = 0.25;  ///< of two places seen from a third
 constexpr double kReachOfPlane = 0.01;      ///< spacings
 constexpr double kMostResidual = 0.1;       ///< root mean square, to the reach
@@ -78,7 +78,7 @@ struct FittedPlane {
 };
 
 FittedPlane fitted_to(const OrderedPoints& cloud, std::span<const std::uint32_t> members) {
-  const Vec3 origin = cloud.position(members.front());
+  const Vec3& origin = cloud.position(members.front());
   PointMoments moments;
   for (const std::uint32_t i : members) moments.add(cloud.position(i) - origin);
   const auto [variances, axes] = eigendecomposition(moments.covariance());
@@ -168,10 +168,9 @@ void PatchGrowth::spread(std::uint32_t row) {
 
 void PatchGrowth::try_at(std::uint32_t row, std::size_t least_on) {
   if (taken_[row] || !set_first(row, least_on)) return;
-  for (int round = 0; round < 2; ++round) {
-    spread(row);
-    if (members_.size() < kLeastMembers) return;
-  }
+  spread(row);
+  if (members_.size() < kManyMembers) spread(row);  // as the first plane was that of three points
+  if (members_.size() < kLeastMembers) return;
   if (plane_.residual > kMostResidual * reach_ || plane_.spread < kLeastPatchSpread * spacing_)
     return;
   for (const std::uint32_t i : members_) taken_[candidates_.rows[i]] = 1;
