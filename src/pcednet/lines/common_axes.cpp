@@ -8,9 +8,10 @@ namespace pcednet::lines {
 namespace {
 
 constexpr std::size_t kMostAxes = 6;
-constexpr double kLikeAxis = 0.999;   ///< cosine
-constexpr double kLeastVotes = 0.04;  ///< share of all
-constexpr double kLeastSine = 0.5;    ///< of a segment and its side
+constexpr std::size_t kMostDirections = 256;  ///< to choose from, of the longest pieces
+constexpr double kLikeAxis = 0.999;           ///< cosine
+constexpr double kLeastVotes = 0.04;          ///< share of all
+constexpr double kLeastSine = 0.5;            ///< of a segment and its side
 
 struct CommonAxis {
   Vec3 sum;  ///< of the directions, by their votes
@@ -25,7 +26,7 @@ void vote(std::vector<CommonAxis>& axes, const Vec3& direction, double votes) {
     axis.votes += votes;
     return;
   }
-  axes.push_back({votes * direction, votes});
+  if (axes.size() < kMostDirections) axes.push_back({votes * direction, votes});
 }
 
 }  // namespace
