@@ -72,11 +72,7 @@ void add_sides(const std::vector<Vec3>& corners, const Rim& rim, const OrderedPo
     Piece piece{.fit = {CurveKind::kSegment, from, along}, .nodes = {}, .ends = {from, to}};
     const auto count =
         std::max(kLeastAlong, static_cast<std::size_t>((to - from).norm() / spacing));
-    for (std::size_t k = 0; k < count; ++k) {
-      const double share = (static_cast<double>(k) + 0.5) / static_cast<double>(count);
-      piece.nodes.push_back(node_of(rim, from + share * (to - from), out, spacing));
-      observe(piece.nodes.back(), cloud);
-    }
+    add_observed_nodes(piece, count, node_of(rim, from, out, spacing), cloud);
     pieces.push_back(std::move(piece));
   }
 }
@@ -161,6 +157,7 @@ void find_bores(std::vector<Piece>& pieces, const OrderedPoints& cloud, const Sa
     stage.advance(end - begin);
   });
   const std::vector<Rim> rims = new_rims(found, pieces, spacing);
+  if (rims.empty()) return;
   erase_pieces_of(rims, pieces, spacing);
   const EndIndex ends = ends_of_segments(pieces);
   std::vector<Piece> added;

@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "pcednet/lines/chart.h"
 #include "pcednet/lines/outline.h"
 #include "pcednet/lines/outline_parts.h"
 #include "pcednet/lines/plane_edges.h"
@@ -32,17 +33,9 @@ constexpr double kBeyondRow = 0.25;  ///< of an eave from its last row, in gaps 
 
 using Vec2 = Eigen::Vector2d;
 
-/// The plane of a face with coordinates.
-struct Chart {
-  Vec3 origin, x, y;
-
-  explicit Chart(const Face& face)
-      : origin(face.point), x(face.normal.unitOrthogonal()), y(face.normal.cross(x)) {}
-  Vec2 flat(const Vec3& place) const { return turned(place - origin); }
-  Vec2 turned(const Vec3& direction) const { return {x.dot(direction), y.dot(direction)}; }
-  Vec3 place(const Vec2& at) const { return origin + direction(at); }
-  Vec3 direction(const Vec2& to) const { return to.x() * x + to.y() * y; }
-};
+Chart chart_of(const Face& face) {
+  return {face.point, face.normal};
+}
 
 /// A straight part of the outline of a face.
 struct Eave {
@@ -107,7 +100,7 @@ ChainNode edge_node(const Vec3& at, const Vec3& along, const Vec3& inward, doubl
 }
 
 Piece edge_of(const SupportArc& arc, const Face& face, double spacing) {
-  const Chart chart(face);
+  const Chart chart = chart_of(face);
   const double sense = arc.hollow ? -1.0 : 1.0;
   const double radius = arc.radius + sense * beyond_last(arc.length(), spacing);
   Piece piece;
@@ -233,7 +226,7 @@ void Outlines::add_run(std::uint32_t face, const std::vector<Vec2>& run) {
 }
 
 void Outlines::add(std::uint32_t face, const std::vector<std::uint32_t>& points) {
-  const Chart chart(faces_.faces[face]);
+  const Chart chart = chart_of(faces_.faces[face]);
   std::vector<Vec2>& flat = charted[face];
   for (const std::uint32_t point : points) {
     flat.push_back(chart.flat(dropped(faces_.faces[face], cloud_.position(point))));
@@ -254,7 +247,7 @@ void Outlines::add(std::uint32_t face, const std::vector<std::uint32_t>& points)
 /// The best line of a direction parallel or orthogonal to one of `directions`, if there is one.
 SupportLine aligned(const Eave& eave, const Face& face, const std::vector<Vec3>& directions,
                     double spacing) {
-  const Chart chart(face);
+  const Chart chart = chart_of(face);
   std::optional<SupportLine> best;
   double least = kSameLine;
   for (const Vec3& direction : directions) {
@@ -285,7 +278,7 @@ void align(std::vector<Eave>& eaves, const Faces& faces, double spacing,
   for (Eave& eave : eaves) {
     const Face& face = faces.faces[eave.face];
     eave.line = aligned(eave, face, directions, spacing);
-    directions.push_back(Chart(face).direction(eave.line.along()));
+    directions.push_back(chart_of(face).direction(eave.line.along()));
   }
 }
 
@@ -311,7 +304,7 @@ double row_gap(const Eave& eave, const std::vector<Vec2>& points, double spacing
 
 Piece edge_of(const Eave& eave, const Faces& faces, const std::vector<Vec2>& points,
               double spacing) {
-  const Chart chart(faces.faces[eave.face]);
+  const Chart chart = chart_of(faces.faces[eave.face]);
   const double beyond =
       std::max(beyond_last(eave.length(), spacing), kBeyondRow * row_gap(eave, points, spacing));
   const double offset = eave.line.offset + beyond;

@@ -31,6 +31,7 @@ constexpr double kLongFacet = 12.0;  ///< longer ones are edges of a face that b
 constexpr double kAtFold = 0.7;
 constexpr double kOneEnd = 1.5;                       ///< of folds that continue each other
 constexpr double kExplained = 0.9, kBeyondEnd = 0.5;  ///< of creases from a fold
+constexpr double kNodesNear = 1.5;  ///< of a crease: nodes of all folds that may explain it
 
 /// A point of one of two planes near a point of the other.
 struct PlaneContact {
@@ -174,16 +175,12 @@ Piece FoldSearch::piece_along(const Interval& interval, const Vec3& side_a,
               .nodes = {},
               .ends = {place(interval.from), place(interval.to)},
               .exact = true};
-  const auto count = static_cast<std::size_t>(std::ceil(interval.length()));
-  for (std::size_t k = 0; k < count; ++k) {
-    const double share = (static_cast<double>(k) + 0.5) / static_cast<double>(count);
-    piece.nodes.push_back({.at = place(interval.from + share * interval.length()),
-                           .along = line_.along,
-                           .side_a = side_a,
-                           .side_b = side_b,
-                           .spacing = spacing_});
-    observe(piece.nodes.back(), cloud_);
-  }
+  const ChainNode like{.at = line_.point,
+                       .along = line_.along,
+                       .side_a = side_a,
+                       .side_b = side_b,
+                       .spacing = spacing_};
+  add_observed_nodes(piece, static_cast<std::size_t>(std::ceil(interval.length())), like, cloud_);
   return piece;
 }
 
@@ -293,7 +290,7 @@ void erase_explained(std::vector<Crease>& creases, const std::vector<Piece>& fol
   };
   std::vector<spatial::Neighbour> near;
   std::erase_if(creases, [&](const Crease& crease) {
-    index.tree.within_unsorted(crease.at, 1.5 * crease.spacing, near);
+    index.tree.within_unsorted(crease.at, kNodesNear * crease.spacing, near);
     return std::any_of(near.begin(), near.end(), [&](const auto& node) {
       return explains(folds[index.piece[node.index]], crease);
     });

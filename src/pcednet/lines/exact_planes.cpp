@@ -5,8 +5,7 @@
 #include <limits>
 #include <map>
 
-#include "pcednet/core/eigendecomposition.h"
-#include "pcednet/lines/moments.h"
+#include "pcednet/lines/plane_sums.h"
 
 namespace pcednet::lines {
 namespace {
@@ -19,7 +18,7 @@ constexpr std::size_t kLeastMembers = 8, kManyMembers = 64;
 constexpr double kLeastSineBetween = 0.25;  ///< of two places seen from a third
 constexpr double kReachOfPlane = 0.01;      ///< spacings
 constexpr double kMostResidual = 0.1;       ///< root mean square, to the reach
-constexpr double kLeastPatchSpread = 0.2;   ///< of the members, standard deviation in spacings
+constexpr double kLeastPatchWidth = 0.2;    ///< of the members, standard deviation in spacings
 constexpr double kOneNormal = 0.999;        ///< cosine of patches that may be of one plane
 constexpr std::size_t kSeedsBetweenLooks = 1024;
 constexpr std::uint32_t kNoRow = std::numeric_limits<std::uint32_t>::max();
@@ -71,19 +70,10 @@ Candidates find_candidates(const OrderedPoints& cloud, const Progress* progress)
   return found;
 }
 
-/// A plane of least squares.
-struct FittedPlane {
-  Vec3 point, normal;
-  double residual, spread;  ///< standard deviations across it, and along its shorter side
-};
-
 FittedPlane fitted_to(const OrderedPoints& cloud, std::span<const std::uint32_t> members) {
-  const Vec3& origin = cloud.position(members.front());
-  PointMoments moments;
-  for (const std::uint32_t i : members) moments.add(cloud.position(i) - origin);
-  const auto [variances, axes] = eigendecomposition(moments.covariance());
-  return {origin + moments.mean(), axes.col(0).normalized(), std::sqrt(std::max(variances[0], 0.0)),
-          std::sqrt(std::max(variances[1], 0.0))};
+  PlaneSums sums{.origin = cloud.position(members.front())};
+  for (const std::uint32_t i : members) sums.add(cloud.position(i));
+  return fit_plane(sums);
 }
 
 /// Planes that grow from point to point.
@@ -138,7 +128,7 @@ bool PatchGrowth::set_first(std::uint32_t row, std::size_t least_on) {
       for (const Vec3& offset : offsets) on += std::abs(normal.dot(offset)) < reach_;
       if (on <= most) continue;
       most = on;
-      plane_ = {.point = at, .normal = normal, .residual = 0.0, .spread = 0.0};
+      plane_ = {.point = at, .normal = normal, .residual = 0.0, .width = 0.0};
       is_set = true;
     }
   }
@@ -171,7 +161,7 @@ void PatchGrowth::try_at(std::uint32_t row, std::size_t least_on) {
   spread(row);
   if (members_.size() < kManyMembers) spread(row);  // as the first plane was that of three points
   if (members_.size() < kLeastMembers) return;
-  if (plane_.residual > kMostResidual * reach_ || plane_.spread < kLeastPatchSpread * spacing_)
+  if (plane_.residual > kMostResidual * reach_ || plane_.width < kLeastPatchWidth * spacing_)
     return;
   for (const std::uint32_t i : members_) taken_[candidates_.rows[i]] = 1;
   found.push_back({plane_.point, plane_.normal, reach_, members_});

@@ -7,11 +7,11 @@
 #include <set>
 #include <utility>
 
-#include "pcednet/core/eigendecomposition.h"
 #include "pcednet/core/median.h"
 #include "pcednet/core/parallel.h"
 #include "pcednet/lines/local_planes.h"
 #include "pcednet/lines/plane_share.h"
+#include "pcednet/lines/plane_sums.h"
 
 namespace pcednet::lines {
 namespace {
@@ -31,26 +31,6 @@ constexpr double kOnePlane = 1.25;            ///< residual of two faces as one,
 constexpr double kNoFold = 0.1;  ///< sine of the angle of faces without a fold between,
 constexpr double kSag = 0.15;    ///< and their residual as one, in spacings
 
-/// Of points about an origin near them.
-struct Sums {
-  Vec3 origin = Vec3::Zero();
-  PointMoments moments = {};
-
-  void add(const Vec3& place) { moments.add(place - origin); }
-  double count() const { return moments.weight; }
-};
-
-struct Fitted {
-  Vec3 point, normal;
-  double residual, width;  ///< standard deviations across the plane, and along its shorter side
-};
-
-Fitted fit_plane(const Sums& sums) {
-  const auto [variances, axes] = eigendecomposition(sums.moments.covariance());
-  return {sums.origin + sums.moments.mean(), axes.col(0).normalized(),
-          std::sqrt(std::max(variances[0], 0.0)), std::sqrt(std::max(variances[1], 0.0))};
-}
-
 /// Neighbours, and how flat the nearest of them lie.
 std::vector<double> look_around(const OrderedPoints& cloud, Faces& result,
                                 const Progress* progress) {
@@ -62,7 +42,7 @@ std::vector<double> look_around(const OrderedPoints& cloud, Faces& result,
   Stage stage(progress, "faces", points.size());
   cloud.for_each_neighbourhood(points, kOthers, stage,
                                [&](std::size_t i, std::span<const spatial::Neighbour> others) {
-                                 Sums sums{.origin = cloud.position(i)};
+                                 PlaneSums sums{.origin = cloud.position(i)};
                                  sums.add(cloud.position(i));
                                  for (std::size_t k = 0; k < others.size(); ++k) {
                                    result.others[i * result.others_of_each + k] = others[k].index;
@@ -87,7 +67,7 @@ class Growing {
 
  private:
   bool is_free(std::uint32_t i) const { return result_.of_points[i] == kNoFace; }
-  void spread(std::uint32_t seed, Fitted& plane);
+  void spread(std::uint32_t seed, FittedPlane& plane);
 
   const OrderedPoints& cloud_;
   double spacing_;
@@ -100,11 +80,11 @@ class Growing {
 };
 
 /// The free points that hang together with the seed within reach of the plane, which follows them.
-void Growing::spread(std::uint32_t seed, Fitted& plane) {
+void Growing::spread(std::uint32_t seed, FittedPlane& plane) {
   ++spreads_;
   members_ = {seed};
   seen_[seed] = spreads_;
-  Sums sums{.origin = cloud_.position(seed)};
+  PlaneSums sums{.origin = cloud_.position(seed)};
   sums.add(cloud_.position(seed));
   double next_fit = 2.0 * kLeastSeed;
   for (std::size_t k = 0; k < members_.size(); ++k) {
@@ -127,13 +107,13 @@ void Growing::spread(std::uint32_t seed, Fitted& plane) {
 void Growing::try_at(std::uint32_t seed) {
   // Every point of a cable would grow the whole of it again.
   if (!is_free(seed) || narrow_[seed]) return;
-  Sums sums{.origin = cloud_.position(seed)};
+  PlaneSums sums{.origin = cloud_.position(seed)};
   sums.add(cloud_.position(seed));
   for (const std::uint32_t other : result_.near(seed)) {
     if (is_free(other) && sums.count() <= kLocal) sums.add(cloud_.position(other));
   }
   if (sums.count() < kLeastSeed) return;
-  Fitted plane = fit_plane(sums);
+  FittedPlane plane = fit_plane(sums);
   if (plane.residual > 0.5 * result_.within || plane.width < 0.5 * kLeastWidth * spacing_) return;
   for (int growth = 0; growth < kGrowths; ++growth) {
     throw_if_cancelled(progress_);
@@ -184,9 +164,9 @@ void choose(const OrderedPoints& cloud, Faces& faces) {
   faces.of_points = std::move(chosen);
 }
 
-std::vector<Sums> sums_of(const OrderedPoints& cloud, const Faces& faces) {
-  std::vector<Sums> sums(faces.faces.size());
-  for (Sums& of_face : sums) of_face.origin = cloud.position(0);
+std::vector<PlaneSums> sums_of(const OrderedPoints& cloud, const Faces& faces) {
+  std::vector<PlaneSums> sums(faces.faces.size());
+  for (PlaneSums& of_face : sums) of_face.origin = cloud.position(0);
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     if (faces.of_points[i] != kNoFace) sums[faces.of_points[i]].add(cloud.position(i));
   }
@@ -194,13 +174,13 @@ std::vector<Sums> sums_of(const OrderedPoints& cloud, const Faces& faces) {
 }
 
 /// Planes of least squares; faces with too few points go.
-void refit(Faces& faces, const std::vector<Sums>& sums) {
+void refit(Faces& faces, const std::vector<PlaneSums>& sums) {
   std::vector<std::uint32_t> number(faces.faces.size(), kNoFace);
   std::vector<Face> kept;
   for (std::size_t f = 0; f < sums.size(); ++f) {
     if (sums[f].count() < kLeastPoints) continue;
     number[f] = static_cast<std::uint32_t>(kept.size());
-    const Fitted plane = fit_plane(sums[f]);
+    const FittedPlane plane = fit_plane(sums[f]);
     kept.push_back({plane.point, plane.normal, static_cast<std::size_t>(sums[f].count())});
   }
   faces.faces = std::move(kept);
@@ -231,7 +211,7 @@ std::set<std::pair<std::uint32_t, std::uint32_t>> pairs_of(const Faces& faces) {
 
 /// Unites faces that one plane explains nearly as well, or well enough where no fold is drawn.
 void unite(const OrderedPoints& cloud, Faces& faces, double spacing) {
-  std::vector<Sums> sums = sums_of(cloud, faces);
+  std::vector<PlaneSums> sums = sums_of(cloud, faces);
   std::vector<std::uint32_t> into(faces.faces.size());
   std::iota(into.begin(), into.end(), 0u);
   const auto root = [&](std::uint32_t face) {
@@ -242,9 +222,9 @@ void unite(const OrderedPoints& cloud, Faces& faces, double spacing) {
   for (const auto& [one, other] : pairs_of(faces)) {
     const std::uint32_t a = std::min(root(one), root(other)), b = std::max(root(one), root(other));
     if (a == b) continue;
-    const Fitted plane_a = fit_plane(sums[a]), plane_b = fit_plane(sums[b]);
+    const FittedPlane plane_a = fit_plane(sums[a]), plane_b = fit_plane(sums[b]);
     const double of_a = plane_a.residual, of_b = plane_b.residual;
-    Sums both = sums[a];
+    PlaneSums both = sums[a];
     both.moments += sums[b].moments;
     const double apart =
         std::sqrt((of_a * of_a * sums[a].count() + of_b * of_b * sums[b].count()) / both.count());
@@ -262,15 +242,15 @@ void unite(const OrderedPoints& cloud, Faces& faces, double spacing) {
 /// Planes through the points inside of faces only, where they suffice: a beam that meets two faces,
 /// or an eave, returns a height between.
 void fit_insides(const OrderedPoints& cloud, Faces& faces) {
-  std::vector<Sums> sums(faces.faces.size());
-  for (Sums& of_face : sums) of_face.origin = cloud.position(0);
+  std::vector<PlaneSums> sums(faces.faces.size());
+  for (PlaneSums& of_face : sums) of_face.origin = cloud.position(0);
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     if (faces.is_inside(i)) sums[faces.of_points[i]].add(cloud.position(i));
   }
   for (std::size_t f = 0; f < sums.size(); ++f) {
     const double least = kInside * static_cast<double>(faces.faces[f].count);
     if (sums[f].count() < std::max(2.0 * kLeastPoints, least)) continue;
-    const Fitted plane = fit_plane(sums[f]);
+    const FittedPlane plane = fit_plane(sums[f]);
     faces.faces[f].point = plane.point;
     faces.faces[f].normal = plane.normal;
   }

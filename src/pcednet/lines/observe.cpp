@@ -18,4 +18,16 @@ void observe(ChainNode& node, const OrderedPoints& cloud) {
   node.edge_points = 0.5 * static_cast<double>(near.size());  // both nodes beside it see them, too
 }
 
+void add_observed_nodes(Piece& segment, std::size_t count, const ChainNode& like,
+                        const OrderedPoints& cloud) {
+  const Vec3 whole = segment.ends[1] - segment.ends[0];
+  for (std::size_t k = 0; k < count; ++k) {
+    const double share = (static_cast<double>(k) + 0.5) / static_cast<double>(count);
+    ChainNode node = like;
+    node.at = segment.ends[0] + share * whole;
+    observe(node, cloud);
+    segment.nodes.push_back(node);
+  }
+}
+
 }  // namespace pcednet::lines

@@ -1,11 +1,18 @@
 #pragma once
 
-#include "pcednet/lines/chain.h"
+#include <cstddef>
+
 #include "pcednet/lines/ordered_points.h"
+#include "pcednet/lines/piece.h"
 
 namespace pcednet::lines {
 
 /// Sets what the edge points around a node that no crease made say of it.
 void observe(ChainNode& node, const OrderedPoints& cloud);
+
+/// Adds so many nodes at even distances between the ends of a segment, each as `like` but for its
+/// place and what edge points say.
+void add_observed_nodes(Piece& segment, std::size_t count, const ChainNode& like,
+                        const OrderedPoints& cloud);
 
 }  // namespace pcednet::lines

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "pcednet/lines/chart.h"
+
 namespace pcednet::lines {
 namespace {
 
@@ -20,7 +22,7 @@ constexpr double kCornerFromCircle = 0.5;  ///< more than the above
 constexpr double kOneCorner = 1.0;         ///< corners less apart are one
 constexpr double kSidesBegin = 0.3, kSidesEnd = 2.5, kBesideCircle = 1.0;
 
-using Flat = Eigen::Vector2d;
+using Flat = Chart::Flat;
 
 /// A corner seen along the axis.
 struct FlatCorner {
@@ -29,36 +31,25 @@ struct FlatCorner {
   Flat place() const { return {radius * std::cos(angle), radius * std::sin(angle)}; }
 };
 
-/// Places seen along the axis of a circle, from its centre.
-struct AxisFrame {
-  explicit AxisFrame(const Fit& circle)
-      : origin(circle.point), axis(circle.direction), x(axis.unitOrthogonal()), y(axis.cross(x)) {}
-
-  Flat flat(const Vec3& place) const { return {x.dot(place - origin), y.dot(place - origin)}; }
-  double height(const Vec3& place) const { return axis.dot(place - origin); }
-  Vec3 place(const Flat& flat) const { return origin + flat.x() * x + flat.y() * y; }
-
-  Vec3 origin, axis, x, y;
-};
-
 /// Where segments that come down along the axis meet the plane, their wedges open to it.
-std::vector<FlatCorner> corners_seen(const Rim& rim, const AxisFrame& frame,
+std::vector<FlatCorner> corners_seen(const Rim& rim, const Chart& chart,
                                      const std::vector<Piece>& pieces, const EndIndex& ends,
                                      double spacing) {
   const double radius = rim.circle.radius;
   const double most = (1.0 + kFarthestCorner) * radius + kCornerFromCircle * spacing;
   std::vector<spatial::Neighbour> near;
-  ends.tree.within(frame.origin, most + kEndFromPlane * spacing, near);
+  ends.tree.within(chart.origin, most + kEndFromPlane * spacing, near);
   std::vector<FlatCorner> corners;
   for (const auto& found : near) {
     const auto [i, side] = ends.ends[found.index];
     const Vec3 down = outward(pieces[i], side);
-    const double cosine = down.dot(frame.axis), height = frame.height(ends.places[found.index]);
+    const double cosine = down.dot(rim.circle.direction),
+                 height = about_axis(rim.circle, ends.places[found.index]).y();
     if (cosine > -kAlongPrism || std::abs(height) > kEndFromPlane * spacing) continue;
     const Vec3 meets = ends.places[found.index] - height / cosine * down;
-    const Flat flat = frame.flat(meets);
+    const Flat flat = chart.flat(meets);
     if (flat.norm() < radius - kCornerFromCircle * spacing || flat.norm() > most) continue;
-    const Vec3 out = meets - frame.origin;
+    const Vec3 out = meets - chart.origin;
     const ChainNode& node = pieces[i].middle();
     if (node.side_a.dot(out) > 0.0 || node.side_b.dot(out) > 0.0) continue;
     const bool is_known = std::any_of(corners.begin(), corners.end(), [&](const FlatCorner& other) {
@@ -110,16 +101,16 @@ double distance_from_sides(const std::vector<FlatCorner>& corners, const Flat& p
 }
 
 /// Whether the points of the wall are nearer to the polygon than to the circle.
-bool explains_wall(const std::vector<FlatCorner>& corners, const Rim& rim, const AxisFrame& frame,
+bool explains_wall(const std::vector<FlatCorner>& corners, const Rim& rim, const Chart& chart,
                    const OrderedPoints& cloud, double spacing) {
   std::vector<spatial::Neighbour> near;
-  cloud.within(frame.origin, rim.circle.radius + (kSidesEnd + kBesideCircle) * spacing, near);
+  cloud.within(chart.origin, rim.circle.radius + (kSidesEnd + kBesideCircle) * spacing, near);
   double from_polygon = 0.0, from_circle = 0.0;
   for (const auto& point : near) {
     const Vec3& place = cloud.position(point.index);
-    const double height = frame.height(place) / spacing;
+    const double height = about_axis(rim.circle, place).y() / spacing;
     if (height < kSidesBegin || height > kSidesEnd) continue;
-    const Flat flat = frame.flat(place);
+    const Flat flat = chart.flat(place);
     const double out = std::abs(flat.norm() - rim.circle.radius) / spacing;
     if (out > kBesideCircle) continue;
     from_circle += out;
@@ -133,13 +124,13 @@ bool explains_wall(const std::vector<FlatCorner>& corners, const Rim& rim, const
 std::vector<Vec3> corners_of_prism(const Rim& rim, const std::vector<Piece>& pieces,
                                    const EndIndex& ends, const OrderedPoints& cloud,
                                    double spacing) {
-  const AxisFrame frame(rim.circle);
-  std::vector<FlatCorner> corners = corners_seen(rim, frame, pieces, ends, spacing);
+  const Chart chart(rim.circle.point, rim.circle.direction);
+  std::vector<FlatCorner> corners = corners_seen(rim, chart, pieces, ends, spacing);
   if (corners.size() < kLeastSides || corners.size() > kMostSides) return {};
   corners = all_around(std::move(corners));
-  if (corners.empty() || !explains_wall(corners, rim, frame, cloud, spacing)) return {};
+  if (corners.empty() || !explains_wall(corners, rim, chart, cloud, spacing)) return {};
   std::vector<Vec3> places;
-  for (const FlatCorner& corner : corners) places.push_back(frame.place(corner.place()));
+  for (const FlatCorner& corner : corners) places.push_back(chart.place(corner.place()));
   return places;
 }
 
