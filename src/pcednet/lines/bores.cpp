@@ -28,13 +28,15 @@ constexpr RimTest kMeasuredRim = {
 constexpr double kReachInNoise = 0.5;  ///< added, times the noise
 
 // In spacings.
-constexpr double kExplained = 1.2;     ///< edge points nearer to a long piece start no search
-constexpr double kBetweenSeeds = 1.5;  ///< of those that do
-constexpr double kOneRim = 1.0;        ///< two circles less apart are one
+constexpr double kExplained = 1.2;  ///< edge points nearer to a long piece start no search
+constexpr double kBetweenExact = 1.5, kBetweenMeasured = 2.5;  ///< of those that do
+constexpr double kOneRim = 1.0;                                ///< two circles less apart are one
 
 /// Edge points that no long piece explains; one of those near each other.
 std::vector<std::uint32_t> unexplained(const std::vector<Piece>& pieces, const OrderedPoints& cloud,
-                                       double spacing) {
+                                       const Sampling& sampling) {
+  const double spacing = sampling.spacing;
+  const double between = sampling.exact ? kBetweenExact : kBetweenMeasured;
   std::vector<std::uint8_t> explained(cloud.size(), 0);
   std::vector<spatial::Neighbour> near;
   const auto explain = [&](const Vec3& place, double reach) {
@@ -49,7 +51,7 @@ std::vector<std::uint32_t> unexplained(const std::vector<Piece>& pieces, const O
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     if (!cloud.is_edge(i) || explained[i]) continue;
     found.push_back(static_cast<std::uint32_t>(i));
-    explain(cloud.position(i), kBetweenSeeds);
+    explain(cloud.position(i), between);
   }
   return found;
 }
@@ -145,7 +147,7 @@ void find_bores(std::vector<Piece>& pieces, const OrderedPoints& cloud, const Sa
   const double spacing = sampling.spacing;
   RimTest measured = kMeasuredRim;
   measured.reach += kReachInNoise * sampling.noise;
-  const std::vector<std::uint32_t> seeds = unexplained(pieces, cloud, spacing);
+  const std::vector<std::uint32_t> seeds = unexplained(pieces, cloud, sampling);
   const std::vector<Vec3> axes = sampling.exact ? common_axes(pieces) : std::vector<Vec3>();
   std::vector<std::optional<Rim>> found(seeds.size());
   Stage stage(progress, "bores", seeds.size());
