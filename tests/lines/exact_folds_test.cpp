@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <set>
+#include <tuple>
 
 #include "made_clouds.h"
 
@@ -52,12 +54,13 @@ double total_length(const std::vector<Piece>& pieces) {
 }
 
 /// Whether every fold lies on an edge of the box.
-void expect_on_edges(const std::vector<Piece>& folds, const Vec3& corner, const Vec3& size) {
+void expect_on_edges(const std::vector<Piece>& folds, const Vec3& corner, const Vec3& size,
+                     double within = 1e-6) {
   for (const Piece& fold : folds) {
     for (const Vec3& end : fold.ends) {
       const Vec3 low = (end - corner).cwiseAbs(), high = (end - corner - size).cwiseAbs();
       const Vec3 off = low.cwiseMin(high);
-      EXPECT_LT(off.sum() - off.maxCoeff(), 1e-6) << end.transpose();
+      EXPECT_LT(off.sum() - off.maxCoeff(), within) << end.transpose();
     }
   }
 }
@@ -76,6 +79,26 @@ TEST(ExactFolds, AreTheEdgesOfAThinPlate) {
     EXPECT_TRUE(fold.exact);
     EXPECT_NEAR(dihedral_angle(fold.middle().side_a, fold.middle().side_b), 0.25 * kTurn, 1e-6);
   }
+}
+
+TEST(ExactFolds, OfFewPointsReachFromVertexToVertex) {
+  const Vec3 size(16.0, 3.4, 3.4);
+  std::set<std::tuple<int, int, int, int>> whole;  // the part, and twice the middle's coordinates
+  for (int part = 0; part < 8; ++part) {
+    PlanePart rods;
+    rods.random = Random(100 + part);
+    rods.add_box(Vec3::Zero(), size);
+    const std::vector<Piece> folds = rods.folds();
+    expect_on_edges(folds, Vec3::Zero(), size, 2e-3);  // planes of a few points
+    for (const Piece& fold : folds) {
+      if (fold.ends[0].x() > 1.0 && fold.ends[0].x() < 15.0) continue;
+      if (std::abs((fold.ends[1] - fold.ends[0]).norm() - 3.4) > 0.01) continue;
+      const Vec3 middle = (fold.ends[0] + fold.ends[1]) / 3.4;
+      whole.emplace(part, std::lround(middle.x()), std::lround(middle.y()),
+                    std::lround(middle.z()));
+    }
+  }
+  EXPECT_GE(whole.size(), 40u);  // of the 64 around the ends
 }
 
 TEST(ExactFolds, NeedPointsThatMayBeOfAnEdge) {

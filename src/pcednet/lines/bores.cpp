@@ -65,13 +65,17 @@ ChainNode node_of(const Rim& rim, const Vec3& at, const Vec3& out, double spacin
           .spacing = spacing};
 }
 
-/// The sides of the polygon with these corners.
+/// The sides of the polygon with these corners; of exact points they may be short.
 void add_sides(const std::vector<Vec3>& corners, const Rim& rim, const OrderedPoints& cloud,
-               double spacing, std::vector<Piece>& pieces) {
+               const Sampling& sampling, std::vector<Piece>& pieces) {
+  const double spacing = sampling.spacing;
   for (std::size_t i = 0; i < corners.size(); ++i) {
     const Vec3 &from = corners[i], &to = corners[(i + 1) % corners.size()];
     const Vec3 along = (to - from).normalized(), out = along.cross(rim.circle.direction);
-    Piece piece{.fit = {CurveKind::kSegment, from, along}, .nodes = {}, .ends = {from, to}};
+    Piece piece{.fit = {CurveKind::kSegment, from, along},
+                .nodes = {},
+                .ends = {from, to},
+                .exact = sampling.exact};
     const auto count =
         std::max(kLeastAlong, static_cast<std::size_t>((to - from).norm() / spacing));
     add_observed_nodes(piece, count, node_of(rim, from, out, spacing), cloud);
@@ -168,7 +172,7 @@ void find_bores(std::vector<Piece>& pieces, const OrderedPoints& cloud, const Sa
     if (corners.empty()) {
       added.push_back(piece_of(rim, cloud, spacing));
     } else {
-      add_sides(corners, rim, cloud, spacing, added);
+      add_sides(corners, rim, cloud, sampling, added);
     }
   }
   pieces.insert(pieces.end(), added.begin(), added.end());

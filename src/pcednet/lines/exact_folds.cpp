@@ -4,43 +4,28 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
-#include <tuple>
 
 #include "pcednet/core/parallel.h"
 #include "pcednet/lines/exact_planes.h"
-#include "pcednet/lines/observe.h"
-#include "pcednet/lines/strip.h"
+#include "pcednet/lines/exact_vertices.h"
+#include "pcednet/lines/fold_search.h"
 
 namespace pcednet::lines {
 namespace {
 
-constexpr double kLeastSineOfFold = 0.34;  ///< of its planes: 20 degrees
-constexpr double kOnePlaneSine = 0.01;     ///< of planes that are one
-constexpr double kLeastProbability = 0.1;  ///< mean of the points at a fold
-constexpr double kOneCurve = 0.9;          ///< cosine of folds that approximate a curve
-constexpr double kOneLine = 0.9999;        ///< and of those that are on one line
-constexpr double kAlongFold = 0.8;         ///< cosine of a crease
+constexpr double kOnePlaneSine = 0.01;  ///< of planes that are one
+constexpr double kOneCurve = 0.9;       ///< cosine of folds that approximate a curve
+constexpr double kOneLine = 0.9999;     ///< and of those that are on one line
+constexpr double kAlongFold = 0.8;      ///< cosine of a crease
 constexpr std::size_t kPointsAtOnce = 512, kPairsAtOnce = 8;
 constexpr std::uint32_t kNoPlane = std::numeric_limits<std::uint32_t>::max();
 
 // In spacings.
 constexpr double kContactReach = 2.5;
-constexpr double kLeastFoldLength = 0.8;
 constexpr double kLongFacet = 12.0;  ///< longer ones are edges of a face that bends
-constexpr double kAtFold = 0.7;
-constexpr double kOneEnd = 1.5;                       ///< of folds that continue each other
+constexpr double kOneEnd = 1.5;      ///< of folds that continue each other
 constexpr double kExplained = 0.9, kBeyondEnd = 0.5;  ///< of creases from a fold
 constexpr double kNodesNear = 1.5;  ///< of a crease: nodes of all folds that may explain it
-
-/// A point of one of two planes near a point of the other.
-struct PlaneContact {
-  std::uint32_t a, b;  ///< the planes, a < b
-  std::uint32_t point;
-
-  auto planes() const { return std::tie(a, b); }
-  auto key() const { return std::tie(a, b, point); }
-};
 
 /// In the order of the planes, then of the points.
 std::vector<PlaneContact> contacts_of(const OrderedPoints& cloud,
@@ -95,121 +80,6 @@ struct ExactFold {
   std::uint32_t a, b;  ///< its planes
 };
 
-/// Two planes that meet, their line, and the points in question.
-class FoldSearch {
- public:
-  FoldSearch(const OrderedPoints& cloud, const PlanePatch& a, const PlanePatch& b, double spacing)
-      : cloud_(cloud), a_(a), b_(b), spacing_(spacing) {}
-
-  std::vector<Piece> folds(std::span<const PlaneContact> contacts);
-
- private:
-  bool set_line(const Vec3& near);
-  std::vector<Interval> regions(std::span<const PlaneContact> contacts) const;
-  void gather(const Interval& region);
-  void add_folds(std::vector<Piece>& found) const;
-  double mean_probability(const Interval& interval) const;
-  Piece piece_along(const Interval& interval, const Vec3& side_a, const Vec3& side_b) const;
-  Vec3 place(double along) const { return line_.point + along * spacing_ * line_.along; }
-
-  const OrderedPoints& cloud_;
-  const PlanePatch &a_, &b_;
-  double spacing_;
-  PlaneLine line_ = {};
-  std::vector<std::uint32_t> beside_;  ///< the points beside the line, ascending
-};
-
-bool FoldSearch::set_line(const Vec3& near) {
-  const auto line =
-      line_of_planes(a_.normal, -a_.height(near), b_.normal, -b_.height(near), kLeastSineOfFold);
-  if (line) line_ = {near + line->point, line->along};
-  return line.has_value();
-}
-
-/// Where contacts are, with room for points that were not found on the planes.
-std::vector<Interval> FoldSearch::regions(std::span<const PlaneContact> contacts) const {
-  std::vector<double> places;
-  for (const PlaneContact& contact : contacts) {
-    const Vec3 offset = cloud_.position(contact.point) - line_.point;
-    const double along = offset.dot(line_.along);
-    if ((offset - along * line_.along).norm() > kStripWidth * spacing_) continue;
-    places.push_back(along / spacing_);
-  }
-  std::sort(places.begin(), places.end());
-  std::vector<Interval> found = intervals_of(places, 2.0 * kLongestStripGap);
-  for (Interval& region : found) {
-    region.from -= 0.5 * kLongestStripGap;
-    region.to += 0.5 * kLongestStripGap;
-  }
-  return found;
-}
-
-void FoldSearch::gather(const Interval& region) {
-  std::vector<spatial::Neighbour> near;
-  beside_.clear();
-  for (double along = region.from; along < region.to; along += 1.0) {
-    cloud_.within(place(along), (kStripWidth + 0.5) * spacing_, near);
-    for (const auto& point : near) beside_.push_back(point.index);
-  }
-  std::sort(beside_.begin(), beside_.end());
-  beside_.erase(std::unique(beside_.begin(), beside_.end()), beside_.end());
-}
-
-/// Of an edge, at the points beside the interval.
-double FoldSearch::mean_probability(const Interval& interval) const {
-  double sum = 0.0, count = 0.0;
-  for (const std::uint32_t i : beside_) {
-    const Vec3 offset = cloud_.position(i) - line_.point;
-    const double along = offset.dot(line_.along);
-    if (along < interval.from * spacing_ || along > interval.to * spacing_) continue;
-    if ((offset - along * line_.along).norm() > kAtFold * spacing_) continue;
-    sum += static_cast<double>(cloud_.probability(i));
-    count += 1.0;
-  }
-  return count > 0.0 ? sum / count : 0.0;
-}
-
-Piece FoldSearch::piece_along(const Interval& interval, const Vec3& side_a,
-                              const Vec3& side_b) const {
-  Piece piece{.fit = {CurveKind::kSegment, line_.point, line_.along},
-              .nodes = {},
-              .ends = {place(interval.from), place(interval.to)},
-              .exact = true};
-  const ChainNode like{.at = line_.point,
-                       .along = line_.along,
-                       .side_a = side_a,
-                       .side_b = side_b,
-                       .spacing = spacing_};
-  add_observed_nodes(piece, static_cast<std::size_t>(std::ceil(interval.length())), like, cloud_);
-  return piece;
-}
-
-/// Those of each pair of sides of the line.
-void FoldSearch::add_folds(std::vector<Piece>& found) const {
-  const Vec3 out_a = a_.normal.cross(line_.along), out_b = b_.normal.cross(line_.along);
-  for (const Vec3& side_a : {out_a, Vec3(-out_a)}) {
-    const Strip a = strip_of(cloud_, beside_, a_, line_, side_a, spacing_);
-    for (const Vec3& side_b : {out_b, Vec3(-out_b)}) {
-      const Strip b = strip_of(cloud_, beside_, b_, line_, side_b, spacing_);
-      for (const Interval& interval : shared_intervals(a, b)) {
-        if (interval.length() < kLeastFoldLength || !end_at_line(a, b, interval)) continue;
-        if (mean_probability(interval) < kLeastProbability) continue;
-        found.push_back(piece_along(interval, side_a, side_b));
-      }
-    }
-  }
-}
-
-std::vector<Piece> FoldSearch::folds(std::span<const PlaneContact> contacts) {
-  std::vector<Piece> found;
-  if (!set_line(cloud_.position(contacts.front().point))) return found;
-  for (const Interval& region : regions(contacts)) {
-    gather(region);
-    add_folds(found);
-  }
-  return found;
-}
-
 /// Marks the planes beside others that are turned little: facets of a curved surface.
 std::vector<std::uint8_t> facets_of(const std::vector<PlanePatch>& planes,
                                     const std::vector<std::span<const PlaneContact>>& pairs) {
@@ -261,6 +131,19 @@ std::vector<Piece> find_exact_folds(const OrderedPoints& cloud, double spacing,
     stage.advance(end - begin);
   });
   const std::vector<std::uint8_t> is_facet = facets_of(planes, pairs);
+  const PlaneNeighbours neighbours(planes.size(), pairs);
+  parallel_blocks(pairs.size(), kPairsAtOnce, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      const auto [a, b, point] = pairs[k].front();
+      if (is_facet[a] || is_facet[b]) continue;
+      FoldSearch search(cloud, planes[a], planes[b], spacing);
+      if (!search.set_line(cloud.position(point))) continue;
+      const std::vector<Vec3> vertices =
+          vertices_of(cloud, planes, pairs[k], neighbours.of_both(a, b), spacing);
+      const std::vector<Piece> more = search.folds_between(vertices, of_pairs[k]);
+      of_pairs[k].insert(of_pairs[k].end(), more.begin(), more.end());
+    }
+  });
   std::vector<ExactFold> folds;
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     const auto [a, b, point] = pairs[k].front();

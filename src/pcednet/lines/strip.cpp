@@ -111,6 +111,10 @@ std::vector<Interval> shared_intervals(const Strip& a, const Strip& b) {
   return shared;
 }
 
+bool has_points_on_one_side(const Strip& strip, const Interval& interval) {
+  return count_in(strip.off, interval) >= 1.0 && count_in(strip.wrong, interval) <= 0.0;
+}
+
 bool end_at_line(const Strip& a, const Strip& b, const Interval& interval) {
   return ends_at_line(a, interval) && ends_at_line(b, interval) &&
          count_in(a.close, interval) + count_in(b.close, interval) >= 1.0;

@@ -41,6 +41,9 @@ std::vector<Interval> intervals_of(const std::vector<double>& places, double gap
 /// it and does not go on beyond the line.
 std::vector<Interval> shared_intervals(const Strip& a, const Strip& b);
 
+/// Whether the plane has points beside the interval, and none on the line's other side.
+bool has_points_on_one_side(const Strip& strip, const Interval& interval);
+
 /// Whether both planes end at the line all along the interval.
 bool end_at_line(const Strip& a, const Strip& b, const Interval& interval);
 

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <tuple>
+#include <vector>
+
+#include "pcednet/lines/exact_planes.h"
+#include "pcednet/lines/ordered_points.h"
+#include "pcednet/lines/piece.h"
+#include "pcednet/lines/plane_line.h"
+#include "pcednet/lines/strip.h"
+
+namespace pcednet::lines {
+
+inline constexpr double kLeastSineOfFold = 0.34;  ///< of its planes: 20 degrees
+
+/// A point of one of two planes near a point of the other.
+struct PlaneContact {
+  std::uint32_t a, b;  ///< the planes, a < b
+  std::uint32_t point;
+
+  auto planes() const { return std::tie(a, b); }
+  auto key() const { return std::tie(a, b, point); }
+};
+
+/// Two planes that meet, their line, and the points in question.
+class FoldSearch {
+ public:
+  FoldSearch(const OrderedPoints& cloud, const PlanePatch& a, const PlanePatch& b, double spacing)
+      : cloud_(cloud), a_(a), b_(b), spacing_(spacing) {}
+
+  /// The folds where these points of the pair are.
+  std::vector<Piece> folds(std::span<const PlaneContact> contacts);
+
+  /// The short folds between neighbouring vertices, which lie on the line, that `known` leaves.
+  std::vector<Piece> folds_between(std::span<const Vec3> vertices,
+                                   std::span<const Piece> known) const;
+
+  /// Sets the line, seen from a place near it; false if the planes are turned too little.
+  bool set_line(const Vec3& near);
+
+ private:
+  std::vector<Interval> regions(std::span<const PlaneContact> contacts) const;
+  std::vector<std::uint32_t> points_beside(const Interval& region) const;
+  void add_folds(const Interval& region, std::vector<Piece>& found) const;
+  std::optional<Piece> fold_between(const Interval& interval) const;
+  Interval interval_of(const Piece& piece) const;
+  double mean_probability(const Interval& interval, std::span<const std::uint32_t> points) const;
+  Piece piece_along(const Interval& interval, const Vec3& side_a, const Vec3& side_b) const;
+  Vec3 place(double along) const { return line_.point + along * spacing_ * line_.along; }
+  double along(const Vec3& place) const {
+    return (place - line_.point).dot(line_.along) / spacing_;
+  }
+
+  const OrderedPoints& cloud_;
+  const PlanePatch &a_, &b_;
+  double spacing_;
+  PlaneLine line_ = {};
+};
+
+}  // namespace pcednet::lines
