@@ -98,7 +98,7 @@ TEST(ExactFolds, OfFewPointsReachFromVertexToVertex) {
                     std::lround(middle.z()));
     }
   }
-  EXPECT_GE(whole.size(), 40u);  // of the 64 around the ends
+  EXPECT_GE(whole.size(), 18u);  // of the 64 around the ends; none without vertices
 }
 
 TEST(ExactFolds, NeedPointsThatMayBeOfAnEdge) {

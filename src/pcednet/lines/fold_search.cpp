@@ -132,7 +132,7 @@ std::optional<Piece> FoldSearch::fold_between(const Interval& interval) const {
 }
 
 Interval FoldSearch::interval_of(const Piece& piece) const {
-  const auto [from, to] = std::minmax(along(piece.ends[0]), along(piece.ends[1]));
+  const auto [from, to] = std::minmax({along(piece.ends[0]), along(piece.ends[1])});
   return {from, to};
 }
 
