@@ -92,26 +92,6 @@ std::vector<std::uint8_t> facets_of(const std::vector<PlanePatch>& planes,
   return is_facet;
 }
 
-/// Adds those from vertex to vertex that are too short to be seen by their points alone.
-void add_short_folds(const OrderedPoints& cloud, const std::vector<PlanePatch>& planes,
-                     const std::vector<std::span<const PlaneContact>>& pairs,
-                     const std::vector<std::uint8_t>& is_facet, double spacing,
-                     std::vector<std::vector<Piece>>& of_pairs) {
-  const PlaneNeighbours neighbours(planes.size(), pairs);
-  parallel_blocks(pairs.size(), kPairsAtOnce, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) {
-      const auto [a, b, point] = pairs[k].front();
-      if (is_facet[a] || is_facet[b]) continue;
-      FoldSearch search(cloud, planes[a], planes[b], spacing);
-      if (!search.set_line(cloud.position(point))) continue;
-      const std::vector<Vec3> vertices =
-          vertices_of(cloud, planes, pairs[k], neighbours.of_both(a, b), spacing);
-      const std::vector<Piece> more = search.folds_between(vertices, of_pairs[k]);
-      of_pairs[k].insert(of_pairs[k].end(), more.begin(), more.end());
-    }
-  });
-}
-
 /// Marks the folds of one plane that continue each other and turn little: they are of a curve.
 std::vector<std::uint8_t> parts_of_curves(const std::vector<ExactFold>& folds, double spacing) {
   std::vector<Piece> pieces;
@@ -141,17 +121,25 @@ std::vector<Piece> find_exact_folds(const OrderedPoints& cloud, double spacing,
   const std::vector<PlanePatch> planes = find_exact_planes(cloud, spacing, progress);
   const std::vector<PlaneContact> contacts = contacts_of(cloud, planes, spacing);
   const auto pairs = by_planes(contacts);
+  const PlaneNeighbours neighbours(planes.size(), pairs);
+  const std::vector<std::uint8_t> is_facet = facets_of(planes, pairs);
   std::vector<std::vector<Piece>> of_pairs(pairs.size());
   Stage stage(progress, "exact folds", pairs.size());
   parallel_blocks(pairs.size(), kPairsAtOnce, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       const auto [a, b, point] = pairs[k].front();
-      of_pairs[k] = FoldSearch(cloud, planes[a], planes[b], spacing).folds(pairs[k]);
+      const auto line = fold_line(planes[a], planes[b], cloud.position(point));
+      if (!line) continue;
+      const FoldSearch search(cloud, planes[a], planes[b], *line, spacing);
+      of_pairs[k] = search.folds(pairs[k]);
+      if (is_facet[a] || is_facet[b]) continue;
+      const std::vector<Vec3> vertices =
+          vertices_of(cloud, planes, pairs[k], neighbours.of_both(a, b), spacing);
+      const std::vector<Piece> between = search.folds_between(vertices, of_pairs[k]);
+      of_pairs[k].insert(of_pairs[k].end(), between.begin(), between.end());
     }
     stage.advance(end - begin);
   });
-  const std::vector<std::uint8_t> is_facet = facets_of(planes, pairs);
-  add_short_folds(cloud, planes, pairs, is_facet, spacing, of_pairs);
   std::vector<ExactFold> folds;
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     const auto [a, b, point] = pairs[k].front();

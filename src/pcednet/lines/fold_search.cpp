@@ -19,11 +19,11 @@ constexpr double kAtFold = 0.7;
 
 }  // namespace
 
-bool FoldSearch::set_line(const Vec3& near) {
-  const auto line =
-      line_of_planes(a_.normal, -a_.height(near), b_.normal, -b_.height(near), kLeastSineOfFold);
-  if (line) line_ = {near + line->point, line->along};
-  return line.has_value();
+std::optional<PlaneLine> fold_line(const PlanePatch& a, const PlanePatch& b, const Vec3& near) {
+  auto line =
+      line_of_planes(a.normal, -a.height(near), b.normal, -b.height(near), kLeastSineOfFold);
+  if (line) line->point += near;
+  return line;
 }
 
 /// Where contacts are, with room for points that were not found on the planes.
@@ -87,26 +87,34 @@ Piece FoldSearch::piece_along(const Interval& interval, const Vec3& side_a,
   return piece;
 }
 
+/// Both sides of the line in one of the planes.
+std::array<FoldSearch::Side, 2> FoldSearch::sides_of(const PlanePatch& plane,
+                                                     std::span<const std::uint32_t> points) const {
+  const Vec3 into = plane.normal.cross(line_.along);
+  const auto side = [&](const Vec3& to) {
+    return Side{to, strip_of(cloud_, points, plane, line_, to, spacing_)};
+  };
+  return {side(into), side(-into)};
+}
+
 /// Those of each pair of sides of the line.
 void FoldSearch::add_folds(const Interval& region, std::vector<Piece>& found) const {
   const std::vector<std::uint32_t> beside = points_beside(region);
-  const Vec3 out_a = a_.normal.cross(line_.along), out_b = b_.normal.cross(line_.along);
-  for (const Vec3& side_a : {out_a, Vec3(-out_a)}) {
-    const Strip a = strip_of(cloud_, beside, a_, line_, side_a, spacing_);
-    for (const Vec3& side_b : {out_b, Vec3(-out_b)}) {
-      const Strip b = strip_of(cloud_, beside, b_, line_, side_b, spacing_);
-      for (const Interval& interval : shared_intervals(a, b)) {
-        if (interval.length() < kLeastFoldLength || !end_at_line(a, b, interval)) continue;
+  const std::array<Side, 2> of_a = sides_of(a_, beside), of_b = sides_of(b_, beside);
+  for (const Side& a : of_a) {
+    for (const Side& b : of_b) {
+      for (const Interval& interval : shared_intervals(a.strip, b.strip)) {
+        if (interval.length() < kLeastFoldLength) continue;
+        if (!end_at_line(a.strip, b.strip, interval)) continue;
         if (mean_probability(interval, beside) < kLeastProbability) continue;
-        found.push_back(piece_along(interval, side_a, side_b));
+        found.push_back(piece_along(interval, a.into, b.into));
       }
     }
   }
 }
 
-std::vector<Piece> FoldSearch::folds(std::span<const PlaneContact> contacts) {
+std::vector<Piece> FoldSearch::folds(std::span<const PlaneContact> contacts) const {
   std::vector<Piece> found;
-  if (!set_line(cloud_.position(contacts.front().point))) return found;
   for (const Interval& region : regions(contacts)) add_folds(region, found);
   return found;
 }
@@ -116,19 +124,14 @@ std::vector<Piece> FoldSearch::folds(std::span<const PlaneContact> contacts) {
 std::optional<Piece> FoldSearch::fold_between(const Interval& interval) const {
   const std::vector<std::uint32_t> beside = points_beside(interval);
   if (mean_probability(interval, beside) < kLeastProbability) return std::nullopt;
-  const Vec3 out_a = a_.normal.cross(line_.along), out_b = b_.normal.cross(line_.along);
-  std::optional<Piece> found;
-  for (const Vec3& side_a : {out_a, Vec3(-out_a)}) {
-    const Strip a = strip_of(cloud_, beside, a_, line_, side_a, spacing_);
-    if (!has_points_on_one_side(a, interval)) continue;
-    for (const Vec3& side_b : {out_b, Vec3(-out_b)}) {
-      const Strip b = strip_of(cloud_, beside, b_, line_, side_b, spacing_);
-      if (!has_points_on_one_side(b, interval)) continue;
-      if (found) return std::nullopt;
-      found = piece_along(interval, side_a, side_b);
-    }
-  }
-  return found;
+  const std::array<Side, 2> of_a = sides_of(a_, beside), of_b = sides_of(b_, beside);
+  const auto on_one_side = [&](const Side& side) {
+    return has_points_on_one_side(side.strip, interval);
+  };
+  const auto a = std::ranges::find_if(of_a, on_one_side),
+             b = std::ranges::find_if(of_b, on_one_side);
+  if (a == of_a.end() || b == of_b.end()) return std::nullopt;
+  return piece_along(interval, a->into, b->into);
 }
 
 Interval FoldSearch::interval_of(const Piece& piece) const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -25,25 +26,35 @@ struct PlaneContact {
   auto key() const { return std::tie(a, b, point); }
 };
 
-/// Two planes that meet, their line, and the points in question.
+/// The line in which two planes meet, seen from a place near it; none if they are turned too
+/// little.
+std::optional<PlaneLine> fold_line(const PlanePatch& a, const PlanePatch& b, const Vec3& near);
+
+/// Two planes and the line in which they meet.
 class FoldSearch {
  public:
-  FoldSearch(const OrderedPoints& cloud, const PlanePatch& a, const PlanePatch& b, double spacing)
-      : cloud_(cloud), a_(a), b_(b), spacing_(spacing) {}
+  FoldSearch(const OrderedPoints& cloud, const PlanePatch& a, const PlanePatch& b,
+             const PlaneLine& line, double spacing)
+      : cloud_(cloud), a_(a), b_(b), line_(line), spacing_(spacing) {}
 
   /// The folds where these points of the pair are.
-  std::vector<Piece> folds(std::span<const PlaneContact> contacts);
+  std::vector<Piece> folds(std::span<const PlaneContact> contacts) const;
 
   /// The short folds between neighbouring vertices, which lie on the line, that `known` leaves.
   std::vector<Piece> folds_between(std::span<const Vec3> vertices,
                                    std::span<const Piece> known) const;
 
-  /// Sets the line, seen from a place near it; false if the planes are turned too little.
-  bool set_line(const Vec3& near);
-
  private:
+  /// The points of a plane on one side of the line.
+  struct Side {
+    Vec3 into;  ///< unit
+    Strip strip;
+  };
+
   std::vector<Interval> regions(std::span<const PlaneContact> contacts) const;
   std::vector<std::uint32_t> points_beside(const Interval& region) const;
+  std::array<Side, 2> sides_of(const PlanePatch& plane,
+                               std::span<const std::uint32_t> points) const;
   void add_folds(const Interval& region, std::vector<Piece>& found) const;
   std::optional<Piece> fold_between(const Interval& interval) const;
   Interval interval_of(const Piece& piece) const;
@@ -56,8 +67,8 @@ class FoldSearch {
 
   const OrderedPoints& cloud_;
   const PlanePatch &a_, &b_;
+  PlaneLine line_;
   double spacing_;
-  PlaneLine line_ = {};
 };
 
 }  // namespace pcednet::lines
