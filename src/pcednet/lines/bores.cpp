@@ -44,7 +44,7 @@ std::vector<std::uint32_t> unexplained(const std::vector<Piece>& pieces, const O
     for (const auto& point : near) explained[point.index] = 1;
   };
   for (const Piece& piece : pieces) {
-    if (!piece.closed && piece.nodes.size() < kLongPiece) continue;
+    if (!piece.closed && !is_exact_arc(piece) && piece.nodes.size() < kLongPiece) continue;
     for (const ChainNode& node : piece.nodes) explain(node.at, kExplained);
   }
   std::vector<std::uint32_t> found;
@@ -130,7 +130,8 @@ void erase_pieces_of(const std::vector<Rim>& rims, std::vector<Piece>& pieces, d
     index.tree.within_unsorted(rim.circle.point, rim.circle.radius + spacing, near);
     for (const auto& node : near) {
       const std::size_t j = index.piece[node.index];
-      if (!gone[j]) gone[j] = !pieces[j].closed && belongs_to(rim.circle, pieces[j]);
+      if (pieces[j].closed || is_exact_arc(pieces[j])) continue;
+      if (!gone[j]) gone[j] = belongs_to(rim.circle, pieces[j]);
     }
   }
   erase_marked(pieces, gone);

@@ -33,7 +33,7 @@ struct Curve {
   double confidence = 0.0;      ///< mean probability that its edge points are on an edge, 0 to 1
   double dihedral_angle = 0.0;  ///< mean angle between the surfaces' normals, radians; 0: flat
   std::size_t support = 0;      ///< edge points that it represents
-  bool exact = false;           ///< a segment where exact planes meet
+  bool exact = false;           ///< where exact surfaces meet
 };
 
 /// "segment", "arc", "circle" or "polyline".

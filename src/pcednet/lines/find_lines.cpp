@@ -14,7 +14,7 @@
 #include "pcednet/lines/circles.h"
 #include "pcednet/lines/coaxial.h"
 #include "pcednet/lines/crease.h"
-#include "pcednet/lines/exact_folds.h"
+#include "pcednet/lines/exact_edges.h"
 #include "pcednet/lines/extent.h"
 #include "pcednet/lines/finish.h"
 #include "pcednet/lines/ordered_points.h"
@@ -131,6 +131,7 @@ void join(std::vector<Piece>& pieces, const OrderedPoints& cloud, const Limits& 
   join_pieces(pieces, limits.gap, limits.tolerance, progress);
   stage.advance();
   complete_circles(pieces, cloud, limits.tolerance);
+  drop_beside_exact(pieces);
   stage.advance();
   bridge_gaps(pieces, cloud, limits.tolerance, noise);
   stage.advance();
@@ -243,27 +244,27 @@ std::vector<Curve> find_lines(const EdgePoints& points, const LineOptions& optio
   if (options.boundaries && points.partial.empty()) {
     if (auto pieces = find_plane_edges(cloud, sampling, progress)) {
       if (options.regularise) regularise(*pieces);
-      const FinishOptions exact = {limits.tolerance, 0.0, true};
-      if (options.stage != LineStage::kCurves) return drawn(std::span(*pieces), exact);
-      return long_ones(finish(std::move(*pieces), exact), limits, scale);
+      const FinishOptions of_planes = {limits.tolerance, 0.0, true};
+      if (options.stage != LineStage::kCurves) return drawn(std::span(*pieces), of_planes);
+      return long_ones(finish(std::move(*pieces), of_planes), limits, scale);
     }
   }
   std::vector<Crease> creases = find_creases(cloud, sampling, progress), boundaries;
   if (options.boundaries) boundaries = find_boundaries(cloud, progress);
   if (options.stage == LineStage::kCreases) return drawn(both(creases, boundaries));
-  std::vector<Piece> folds;
+  ExactEdges exact;
   if (sampling.exact) {
-    folds = find_exact_folds(cloud, sampling.spacing, progress);
-    erase_explained(creases, folds);
+    exact = find_exact_edges(cloud, sampling.spacing, progress);
+    erase_explained(creases, exact);
   }
   const FinishOptions finish_options = {limits.tolerance, sampling.noise};
   const std::vector<Chain> chains =
       make_chains(creases, boundaries, limits, sampling.noise, progress);
   if (options.stage == LineStage::kChains) {
-    return drawn(both(chains, chains_of(folds)), finish_options);
+    return drawn(both(chains, chains_of(exact.pieces)), finish_options);
   }
   std::vector<Piece> pieces = split_chains(chains, limits.tolerance, progress);
-  pieces.insert(pieces.end(), folds.begin(), folds.end());
+  append(pieces, std::move(exact.pieces));
   if (pieces.empty()) return {};
   place_pieces(pieces, cloud, sampling, limits, progress);
   if (options.regularise) regularise(pieces);

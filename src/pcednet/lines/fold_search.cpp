@@ -92,7 +92,13 @@ std::array<FoldSearch::Side, 2> FoldSearch::sides_of(const PlanePatch& plane,
                                                      std::span<const std::uint32_t> points) const {
   const Vec3 into = plane.normal.cross(line_.along);
   const auto side = [&](const Vec3& to) {
-    return Side{to, strip_of(cloud_, points, plane, line_, to, spacing_)};
+    std::vector<PlaceBeside> places;
+    for (const std::uint32_t i : points) {
+      const Vec3& position = cloud_.position(i);
+      if (!plane.is_on(position)) continue;
+      places.push_back({along(position), (position - line_.point).dot(to) / spacing_});
+    }
+    return Side{to, strip_of(places)};
   };
   return {side(into), side(-into)};
 }

@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <optional>
 #include <span>
-#include <tuple>
 #include <vector>
 
+#include "pcednet/lines/exact_contacts.h"
 #include "pcednet/lines/exact_planes.h"
 #include "pcednet/lines/ordered_points.h"
 #include "pcednet/lines/piece.h"
@@ -16,15 +16,6 @@
 namespace pcednet::lines {
 
 inline constexpr double kLeastSineOfFold = 0.34;  ///< of its planes: 20 degrees
-
-/// A point of one of two planes near a point of the other.
-struct PlaneContact {
-  std::uint32_t a, b;  ///< the planes, a < b
-  std::uint32_t point;
-
-  auto planes() const { return std::tie(a, b); }
-  auto key() const { return std::tie(a, b, point); }
-};
 
 /// The line in which two planes meet, seen from a place near it; none if they are turned too
 /// little.

@@ -36,11 +36,24 @@ double arc_angle(const Piece& piece) {
                     piece.ends[1] - piece.fit.point);
 }
 
-/// Both as one on the line of the exact one, if the other is on it.
+/// Whether nodes run against the direction of the line, or about the axis of the circle clockwise.
+bool run_backward(const Fit& fit, const std::vector<ChainNode>& nodes) {
+  if (fit.kind == CurveKind::kSegment) {
+    return fit.direction.dot(nodes.back().at - nodes.front().at) < 0.0;
+  }
+  double turn = 0.0;
+  for (std::size_t i = 1; i < nodes.size(); ++i) {
+    turn += fit.direction.dot((nodes[i - 1].at - fit.point).cross(nodes[i].at - fit.point));
+  }
+  return turn < 0.0;
+}
+
+/// Both as one on the line or circle of the exact one, if the other is on it.
 std::optional<Piece> joined_on_exact(const Piece& a, const Piece& b, Piece both, double tolerance) {
-  if (a.fit.kind != CurveKind::kSegment || b.fit.kind != CurveKind::kSegment) return std::nullopt;
   const bool a_rules = a.exact && (!b.exact || a.nodes.size() >= b.nodes.size());
   const Piece &ruler = a_rules ? a : b, &other = a_rules ? b : a;
+  const bool of_one_kind = other.fit.kind == ruler.fit.kind;
+  if (!of_one_kind && (other.exact || ruler.fit.kind == CurveKind::kSegment)) return std::nullopt;
   const double most = other.exact ? kOnExact : tolerance;
   double sum = 0.0;
   for (const ChainNode& node : other.nodes) {
@@ -48,8 +61,7 @@ std::optional<Piece> joined_on_exact(const Piece& a, const Piece& b, Piece both,
   }
   if (sum > most * most * static_cast<double>(other.nodes.size())) return std::nullopt;
   both.fit = ruler.fit;
-  const Vec3 along = both.nodes.back().at - both.nodes.front().at;
-  if (both.fit.direction.dot(along) < 0.0) both.fit.direction = -both.fit.direction;
+  if (run_backward(both.fit, both.nodes)) both.fit.direction = -both.fit.direction;
   both.exact = true;
   set_ends(both);
   return both;
@@ -150,8 +162,9 @@ void close_circles(std::vector<Piece>& pieces, double gap) {
   }
 }
 
-/// Drops the pieces most of whose nodes are beside nodes of longer ones that are kept.
-void drop_duplicates(std::vector<Piece>& pieces) {
+/// Drops the pieces most of whose nodes are beside nodes of longer ones that are kept, or of exact
+/// ones.
+void drop_beside(std::vector<Piece>& pieces, bool exact_alone) {
   const NodeIndex index(pieces);
   std::vector<std::uint8_t> dropped(pieces.size(), 0), kept(pieces.size(), 0);
   std::vector<spatial::Neighbour> near;
@@ -172,9 +185,13 @@ void drop_duplicates(std::vector<Piece>& pieces) {
       });
     }
     dropped[i] = 2 * covered > pieces[i].nodes.size();
-    kept[i] = !dropped[i];
+    kept[i] = !dropped[i] && !exact_alone;
   }
   erase_marked(pieces, dropped);
+}
+
+void drop_duplicates(std::vector<Piece>& pieces) {
+  drop_beside(pieces, false);
 }
 
 }  // namespace
@@ -288,6 +305,10 @@ std::optional<Piece> joined_at(const Piece& a, std::size_t side_a, const Piece& 
   const double back = std::min((start - end).dot(out), (start - end).dot(on));
   if (back < -a.spacing()) return std::nullopt;
   return joined(a, side_a, b, side_b, tolerance);
+}
+
+void drop_beside_exact(std::vector<Piece>& pieces) {
+  drop_beside(pieces, true);
 }
 
 void join_pieces(std::vector<Piece>& pieces, double gap, double tolerance,

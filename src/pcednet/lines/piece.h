@@ -23,7 +23,7 @@ struct Piece {
   std::array<Vec3, 2> ends;  ///< on the fit; unused if closed
   bool closed = false;
   std::optional<double> dihedral = {};  ///< between the fitted surfaces, radians; else of the nodes
-  bool exact = false;                   ///< a segment where exact planes meet: it keeps its line
+  bool exact = false;                   ///< where exact surfaces meet: it keeps its line or circle
   bool regular = false;  ///< a segment whose direction is to be kept, see regularise()
 
   const ChainNode& middle() const { return nodes[nodes.size() / 2]; }
@@ -32,6 +32,10 @@ struct Piece {
 
 inline bool is_boundary(const ChainNode& node) {
   return node.boundary > 0.5;
+}
+
+inline bool is_exact_arc(const Piece& piece) {
+  return piece.exact && piece.fit.kind == CurveKind::kArc;
 }
 
 /// `tolerance` (in spacings), or that of boundaries if the node is on one.
@@ -87,6 +91,11 @@ std::vector<std::size_t> longest_first(const std::vector<Piece>& pieces);
 /// Removes the pieces that are marked.
 void erase_marked(std::vector<Piece>& pieces, const std::vector<std::uint8_t>& marks);
 
+/// Appends pieces.
+inline void append(std::vector<Piece>& pieces, std::vector<Piece> more) {
+  for (Piece& piece : more) pieces.push_back(std::move(piece));
+}
+
 /// Appends the nodes, in their order or turned round.
 void append(std::vector<ChainNode>& nodes, const std::vector<ChainNode>& more, bool in_order);
 
@@ -101,6 +110,9 @@ double length_of(const Piece& piece);
 /// segment or arc fits both. `tolerance` is in spacings.
 std::optional<Piece> joined_at(const Piece& a, std::size_t side_a, const Piece& b,
                                std::size_t side_b, double tolerance);
+
+/// Drops the pieces beside exact ones.
+void drop_beside_exact(std::vector<Piece>& pieces);
 
 /// Joins pieces that lie on one line or circle and continue each other over gaps up to `gap`, and
 /// drops those that lie on a longer one. `tolerance` is in spacings. Throws Error(kCancelled) once

@@ -207,7 +207,7 @@ void round_corners(std::vector<Piece>& pieces, double tolerance) {
   const EndIndex index(pieces, open_ends(pieces));
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     const Piece& piece = pieces[i];
-    if (piece.closed || is_boundary(piece.middle())) continue;
+    if (piece.closed || piece.exact || is_boundary(piece.middle())) continue;
     if (length_of(piece) > kLongestRounding * piece.spacing()) continue;
     if (const auto between = between_segments(i, pieces, index)) {
       round_corner(*between, tolerance, pieces);

@@ -37,9 +37,14 @@ Vec3 outward(const std::vector<Curve>& curves, std::size_t end) {
   return (place_of(curves, end) - before).stableNormalized();
 }
 
+bool is_exact_arc(const Curve& curve) {
+  return curve.exact && curve.kind == CurveKind::kArc;
+}
+
 bool are_one(const std::vector<Curve>& curves, std::size_t a, std::size_t b, double cosine) {
   const Curve &of_a = curves[a / 2], &of_b = curves[b / 2];
   if (of_a.edge_class != of_b.edge_class) return false;
+  if (is_exact_arc(of_a) || is_exact_arc(of_b)) return false;
   const double along = -outward(curves, a).dot(outward(curves, b));
   const bool polyline = of_a.kind == CurveKind::kPolyline || of_b.kind == CurveKind::kPolyline;
   const bool touching = of_a.kind != of_b.kind && (polyline || along > kTouching);

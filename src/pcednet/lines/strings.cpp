@@ -21,8 +21,10 @@ constexpr std::size_t kLeastNodesDivided = 8, kLeastNodesOfPart = 3;
 constexpr double kAsideInNoise = 2.0;
 constexpr double kOverlapInNoise = 6.0;
 
-/// Whether a straight and a round piece touch: each is what it seems if both are long.
+/// Whether pieces that continue each other are two: an exact arc is what it seems, and a straight
+/// and a round piece, if both are long.
 bool stay_apart(const Piece& a, const Piece& b) {
+  if (is_exact_arc(a) || is_exact_arc(b)) return true;
   const bool both_long = a.nodes.size() >= kLong && b.nodes.size() >= kLong;
   return both_long && (a.fit.kind == CurveKind::kSegment) != (b.fit.kind == CurveKind::kSegment);
 }

@@ -58,25 +58,21 @@ bool ends_at_line(const Strip& strip, const Interval& interval) {
 
 }  // namespace
 
-Strip strip_of(const OrderedPoints& cloud, std::span<const std::uint32_t> points,
-               const PlanePatch& plane, const PlaneLine& line, const Vec3& side, double spacing) {
+Strip strip_of(std::span<const PlaceBeside> places) {
   Strip strip;
-  for (const std::uint32_t i : points) {
-    const Vec3 &position = cloud.position(i), offset = position - line.point;
-    const double away = offset.dot(side) / spacing;
-    if (away < -kNarrow || away > kStripWidth || !plane.is_on(position)) continue;
-    const double place = offset.dot(line.along) / spacing;
+  for (const auto& [along, away] : places) {
+    if (away < -kNarrow || away > kStripWidth) continue;
     if (away < -kOnLine) {
-      strip.wrong.push_back(place);
+      strip.wrong.push_back(along);
       continue;
     }
-    strip.all.push_back(place);
-    if (away < kNarrow) strip.right.push_back(place);
-    if (away < kNarrow && away > kOnLine) strip.off.push_back(place);
-    if (away < kClose) strip.close.push_back(place);
+    strip.all.push_back(along);
+    if (away < kNarrow) strip.right.push_back(along);
+    if (away < kNarrow && away > kOnLine) strip.off.push_back(along);
+    if (away < kClose) strip.close.push_back(along);
   }
-  for (auto* places : {&strip.all, &strip.right, &strip.off, &strip.close, &strip.wrong}) {
-    std::sort(places->begin(), places->end());
+  for (auto* row : {&strip.all, &strip.right, &strip.off, &strip.close, &strip.wrong}) {
+    std::sort(row->begin(), row->end());
   }
   return strip;
 }

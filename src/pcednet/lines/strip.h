@@ -1,26 +1,26 @@
 #pragma once
 
-#include <cstdint>
 #include <span>
 #include <vector>
-
-#include "pcednet/lines/exact_planes.h"
-#include "pcednet/lines/ordered_points.h"
-#include "pcednet/lines/plane_line.h"
 
 namespace pcednet::lines {
 
 inline constexpr double kStripWidth = 2.5;        ///< spacings
 inline constexpr double kLongestStripGap = 12.0;  ///< spacings
 
-/// A part of a line: places along it, in spacings.
+/// A part of a line or circle: places along it, in spacings.
 struct Interval {
   double from, to;
 
   double length() const { return to - from; }
 };
 
-/// The points of a plane beside a line in it, as their places along the line in ascending order.
+/// Where a point of a surface is beside a line or circle on it, in spacings.
+struct PlaceBeside {
+  double along, away;
+};
+
+/// The points of a surface beside a line on it, as their places along the line in ascending order.
 struct Strip {
   std::vector<double> all;    ///< up to 2.5 spacings from the line, on one side or on the line
   std::vector<double> right;  ///< of those up to one spacing from it
@@ -29,22 +29,20 @@ struct Strip {
   std::vector<double> wrong;  ///< up to one spacing from the line on its other side
 };
 
-/// The strip on the side `side`, a unit vector in the plane and across the line, of those of
-/// `points` that are on the plane.
-Strip strip_of(const OrderedPoints& cloud, std::span<const std::uint32_t> points,
-               const PlanePatch& plane, const PlaneLine& line, const Vec3& side, double spacing);
+/// The strip on the side where places are away by positive lengths.
+Strip strip_of(std::span<const PlaceBeside> places);
 
 /// From place to place, with gaps up to `gap`.
 std::vector<Interval> intervals_of(const std::vector<double>& places, double gap);
 
-/// Where both planes have points. A gap of one does not count where the other has points all along
-/// it and does not go on beyond the line.
+/// Where both surfaces have points. A gap of one does not count where the other has points all
+/// along it and does not go on beyond the line.
 std::vector<Interval> shared_intervals(const Strip& a, const Strip& b);
 
-/// Whether the plane has points beside the interval, and none on the line's other side.
+/// Whether the surface has points beside the interval, and none on the line's other side.
 bool has_points_on_one_side(const Strip& strip, const Interval& interval);
 
-/// Whether both planes end at the line all along the interval.
+/// Whether both surfaces end at the line all along the interval.
 bool end_at_line(const Strip& a, const Strip& b, const Interval& interval);
 
 }  // namespace pcednet::lines

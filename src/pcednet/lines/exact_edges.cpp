@@ -1,14 +1,16 @@
-#include "pcednet/lines/exact_folds.h"
+#include "pcednet/lines/exact_edges.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "pcednet/core/parallel.h"
+#include "pcednet/lines/exact_contacts.h"
 #include "pcednet/lines/exact_planes.h"
 #include "pcednet/lines/exact_vertices.h"
+#include "pcednet/lines/exact_walls.h"
 #include "pcednet/lines/fold_search.h"
+#include "pcednet/lines/wall_ends.h"
 
 namespace pcednet::lines {
 namespace {
@@ -16,63 +18,14 @@ namespace {
 constexpr double kOnePlaneSine = 0.01;  ///< of planes that are one
 constexpr double kOneCurve = 0.9;       ///< cosine of folds that approximate a curve
 constexpr double kOneLine = 0.9999;     ///< and of those that are on one line
-constexpr double kAlongFold = 0.8;      ///< cosine of a crease
-constexpr std::size_t kPointsAtOnce = 512, kPairsAtOnce = 8;
-constexpr std::uint32_t kNoPlane = std::numeric_limits<std::uint32_t>::max();
+constexpr double kAlongEdge = 0.8;      ///< cosine of a crease
+constexpr std::size_t kPairsAtOnce = 8;
 
 // In spacings.
-constexpr double kContactReach = 2.5;
 constexpr double kLongFacet = 12.0;  ///< longer ones are edges of a face that bends
 constexpr double kOneEnd = 1.5;      ///< of folds that continue each other
-constexpr double kExplained = 0.9, kBeyondEnd = 0.5;  ///< of creases from a fold
-constexpr double kNodesNear = 1.5;  ///< of a crease: nodes of all folds that may explain it
-
-/// In the order of the planes, then of the points.
-std::vector<PlaneContact> contacts_of(const OrderedPoints& cloud,
-                                      const std::vector<PlanePatch>& planes, double spacing) {
-  std::vector<std::uint32_t> plane_at(cloud.size(), kNoPlane), points;
-  for (std::uint32_t p = 0; p < planes.size(); ++p) {
-    for (const std::uint32_t i : planes[p].members) plane_at[i] = p;
-  }
-  for (std::uint32_t i = 0; i < cloud.size(); ++i) {
-    if (plane_at[i] != kNoPlane) points.push_back(i);
-  }
-  std::vector<std::vector<PlaneContact>> of_blocks((points.size() + kPointsAtOnce - 1) /
-                                                   kPointsAtOnce);
-  parallel_blocks(points.size(), kPointsAtOnce, [&](std::size_t begin, std::size_t end) {
-    std::vector<spatial::Neighbour> near;
-    std::vector<std::uint32_t> others;
-    for (std::size_t k = begin; k < end; ++k) {
-      const std::uint32_t own = plane_at[points[k]];
-      cloud.within(cloud.position(points[k]), kContactReach * spacing, near);
-      others.clear();
-      for (const auto& other : near) {
-        const std::uint32_t plane = plane_at[other.index];
-        if (plane != own && plane != kNoPlane) others.push_back(plane);
-      }
-      std::sort(others.begin(), others.end());
-      others.erase(std::unique(others.begin(), others.end()), others.end());
-      for (const std::uint32_t other : others) {
-        of_blocks[begin / kPointsAtOnce].push_back(
-            {std::min(own, other), std::max(own, other), points[k]});
-      }
-    }
-  });
-  std::vector<PlaneContact> contacts;
-  for (const auto& block : of_blocks) contacts.insert(contacts.end(), block.begin(), block.end());
-  std::sort(contacts.begin(), contacts.end(),
-            [](const PlaneContact& a, const PlaneContact& b) { return a.key() < b.key(); });
-  return contacts;
-}
-
-std::vector<std::span<const PlaneContact>> by_planes(const std::vector<PlaneContact>& contacts) {
-  std::vector<std::span<const PlaneContact>> pairs;
-  for (std::size_t begin = 0, end = 0; begin < contacts.size(); begin = end) {
-    while (end < contacts.size() && contacts[end].planes() == contacts[begin].planes()) ++end;
-    pairs.push_back(std::span(contacts).subspan(begin, end - begin));
-  }
-  return pairs;
-}
+constexpr double kExplained = 0.9, kBeyondEnd = 0.5;  ///< of creases from an edge
+constexpr double kNodesNear = 1.5;  ///< of a crease: nodes of all edges that may explain it
 
 /// A segment where two planes meet.
 struct ExactFold {
@@ -114,13 +67,10 @@ std::vector<std::uint8_t> parts_of_curves(const std::vector<ExactFold>& folds, d
   return is_part;
 }
 
-}  // namespace
-
-std::vector<Piece> find_exact_folds(const OrderedPoints& cloud, double spacing,
-                                    const Progress* progress) {
-  const std::vector<PlanePatch> planes = find_exact_planes(cloud, spacing, progress);
-  const std::vector<PlaneContact> contacts = contacts_of(cloud, planes, spacing);
-  const auto pairs = by_planes(contacts);
+/// The segments where planes meet.
+std::vector<Piece> find_folds(const OrderedPoints& cloud, const std::vector<PlanePatch>& planes,
+                              const std::vector<std::span<const PlaneContact>>& pairs,
+                              double spacing, const Progress* progress) {
   const PlaneNeighbours neighbours(planes.size(), pairs);
   const std::vector<std::uint8_t> is_facet = facets_of(planes, pairs);
   std::vector<std::vector<Piece>> of_pairs(pairs.size());
@@ -157,21 +107,75 @@ std::vector<Piece> find_exact_folds(const OrderedPoints& cloud, double spacing,
   return found;
 }
 
-void erase_explained(std::vector<Crease>& creases, const std::vector<Piece>& folds) {
-  if (folds.empty()) return;
-  const NodeIndex index(folds);
-  const auto explains = [](const Piece& fold, const Crease& crease) {
-    const double along = (crease.at - fold.ends[0]).dot(fold.fit.direction);
-    const double beyond = kBeyondEnd * crease.spacing;
-    return std::abs(fold.fit.direction.dot(crease.along)) > kAlongFold && along > -beyond &&
-           along < length_of(fold) + beyond &&
-           (nearest_on(fold.fit, crease.at) - crease.at).norm() < kExplained * crease.spacing;
+/// The arcs where planes meet cylinders among the free points near each.
+ExactEdges find_arcs(const OrderedPoints& cloud, const std::vector<PlanePatch>& planes,
+                     const std::vector<std::span<const PlaneContact>>& free_points, double spacing,
+                     const Progress* progress) {
+  std::vector<ExactEdges> of_planes(free_points.size());
+  Stage stage(progress, "exact arcs", free_points.size());
+  parallel_blocks(free_points.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      std::vector<std::uint32_t> points;
+      for (const PlaneContact& contact : free_points[k]) points.push_back(contact.point);
+      const PlanePatch& plane = planes[free_points[k].front().a];
+      for (const ExactWall& wall : find_exact_walls(cloud, plane, points, spacing)) {
+        append(of_planes[k].pieces,
+               arcs_of_wall(Profile(cloud, wall, spacing), of_planes[k].cut_off));
+      }
+    }
+    stage.advance(end - begin);
+  });
+  ExactEdges found;
+  for (ExactEdges& of_plane : of_planes) {
+    append(found.pieces, std::move(of_plane.pieces));
+    append(found.cut_off, std::move(of_plane.cut_off));
+  }
+  return found;
+}
+
+/// How far along a piece a place on its line or circle is, from its first end.
+double along(const Piece& piece, const Vec3& place) {
+  if (piece.fit.kind == CurveKind::kSegment) {
+    return (place - piece.ends[0]).dot(piece.fit.direction);
+  }
+  const Vec3& centre = piece.fit.point;
+  const auto turn = [&](const Vec3& to) {
+    return turn_about(piece.fit.direction, piece.ends[0] - centre, to - centre);
+  };
+  double angle = turn(place);
+  const double opposite = 0.5 * (turn(piece.ends[1]) + kWholeTurn);
+  if (!piece.closed && angle > opposite) angle -= kWholeTurn;
+  return angle * piece.fit.radius;
+}
+
+}  // namespace
+
+ExactEdges find_exact_edges(const OrderedPoints& cloud, double spacing, const Progress* progress) {
+  const std::vector<PlanePatch> planes = find_exact_planes(cloud, spacing, progress);
+  const std::vector<PlaneContact> contacts = contacts_of(cloud, planes, spacing);
+  const ContactPairs pairs = by_planes(contacts);
+  ExactEdges edges = find_arcs(cloud, planes, pairs.of_free_points, spacing, progress);
+  append(edges.pieces, find_folds(cloud, planes, pairs.of_planes, spacing, progress));
+  return edges;
+}
+
+void erase_explained(std::vector<Crease>& creases, const ExactEdges& edges) {
+  std::vector<Piece> all = edges.pieces;
+  append(all, edges.cut_off);
+  if (all.empty()) return;
+  const NodeIndex index(all);
+  const auto explains = [](const Piece& edge, const Crease& crease) {
+    const Vec3 nearest = nearest_on(edge.fit, crease.at);
+    const double at = along(edge, nearest), beyond = kBeyondEnd * crease.spacing;
+    return std::abs(tangent_at(edge.fit, nearest).dot(crease.along)) > kAlongEdge &&
+           (edge.closed || (at > -beyond && at < length_of(edge) + beyond)) &&
+           (nearest - crease.at).norm() < kExplained * crease.spacing;
   };
   std::vector<spatial::Neighbour> near;
   std::erase_if(creases, [&](const Crease& crease) {
     index.tree.within_unsorted(crease.at, kNodesNear * crease.spacing, near);
     return std::any_of(near.begin(), near.end(), [&](const auto& node) {
-      return explains(folds[index.piece[node.index]], crease);
+      return explains(all[index.piece[node.index]], crease);
     });
   });
 }

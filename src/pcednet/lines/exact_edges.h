@@ -1,0 +1,27 @@
+#pragma once
+
+#include <vector>
+
+#include "pcednet/core/progress.h"
+#include "pcednet/lines/crease.h"
+#include "pcednet/lines/ordered_points.h"
+#include "pcednet/lines/piece.h"
+
+namespace pcednet::lines {
+
+/// Exact edges, and those that they replace.
+struct ExactEdges {
+  std::vector<Piece> pieces;
+  std::vector<Piece> cut_off;  ///< where surfaces would meet without a chamfer: no edges
+};
+
+/// The segments where exact planes meet, and the arcs and circles where they meet cylinders across
+/// them: both surfaces have points along the line, each on one side of it alone, and the points
+/// there are perhaps of an edge. For exact points (Sampling). Facets of curved surfaces are left to
+/// the chains.
+ExactEdges find_exact_edges(const OrderedPoints& cloud, double spacing, const Progress* progress);
+
+/// Removes the creases along the edges and along those that they replace.
+void erase_explained(std::vector<Crease>& creases, const ExactEdges& edges);
+
+}  // namespace pcednet::lines
