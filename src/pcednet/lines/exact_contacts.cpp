@@ -8,7 +8,7 @@
 namespace pcednet::lines {
 namespace {
 
-constexpr std::size_t kPointsAtOnce = 512;
+constexpr std::size_t kMembersAtOnce = 512;
 
 // In spacings: of points of other planes, and of free ones, which may be beyond a chamfer.
 constexpr double kToPlanePoint = 2.5, kToFreePoint = 3.5;
@@ -48,10 +48,10 @@ std::vector<PlaneContact> contacts_of(const OrderedPoints& cloud,
   for (std::uint32_t i = 0; i < cloud.size(); ++i) {
     if (plane_at[i] != kNoPlane) points.push_back(i);
   }
-  std::vector<std::vector<PlaneContact>> of_blocks((points.size() + kPointsAtOnce - 1) /
-                                                   kPointsAtOnce);
-  parallel_blocks(points.size(), kPointsAtOnce, [&](std::size_t begin, std::size_t end) {
-    std::vector<PlaneContact>& found = of_blocks[begin / kPointsAtOnce];
+  std::vector<std::vector<PlaneContact>> of_blocks((points.size() + kMembersAtOnce - 1) /
+                                                   kMembersAtOnce);
+  parallel_blocks(points.size(), kMembersAtOnce, [&](std::size_t begin, std::size_t end) {
+    std::vector<PlaneContact>& found = of_blocks[begin / kMembersAtOnce];
     std::vector<spatial::Neighbour> near;
     for (std::size_t k = begin; k < end; ++k) {
       cloud.within(cloud.position(points[k]), kToFreePoint * spacing, near);

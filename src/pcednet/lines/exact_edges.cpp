@@ -24,7 +24,7 @@ constexpr std::size_t kPairsAtOnce = 8;
 // In spacings.
 constexpr double kLongFacet = 12.0;  ///< longer ones are edges of a face that bends
 constexpr double kOneEnd = 1.5;      ///< of folds that continue each other
-constexpr double kExplained = 0.9, kBeyondEnd = 0.5;  ///< of creases from an edge
+constexpr double kExplainedWithin = 0.9, kBeyondEnd = 0.5;  ///< of creases from an edge
 constexpr double kNodesNear = 1.5;  ///< of a crease: nodes of all edges that may explain it
 
 /// A segment where two planes meet.
@@ -169,7 +169,7 @@ void erase_explained(std::vector<Crease>& creases, const ExactEdges& edges) {
     const double at = along(edge, nearest), beyond = kBeyondEnd * crease.spacing;
     return std::abs(tangent_at(edge.fit, nearest).dot(crease.along)) > kAlongEdge &&
            (edge.closed || (at > -beyond && at < length_of(edge) + beyond)) &&
-           (nearest - crease.at).norm() < kExplained * crease.spacing;
+           (nearest - crease.at).norm() < kExplainedWithin * crease.spacing;
   };
   std::vector<spatial::Neighbour> near;
   std::erase_if(creases, [&](const Crease& crease) {

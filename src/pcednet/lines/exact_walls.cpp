@@ -21,26 +21,26 @@ constexpr std::size_t kMostRounds = 12;  ///< of the growth of a wall
 // In spacings.
 constexpr double kReachOfWall = 0.01;
 constexpr double kMostErrorOfWall = 0.2 * kReachOfWall;  ///< root mean square
-constexpr double kFromPlane = 0.05, kFarFromPlane = 3.0;
-constexpr double kLook = 2.5;
+constexpr double kWallFrom = 0.05, kWallTo = 3.0;
+constexpr double kLookForWall = 2.5;
 constexpr double kNarrowRadius = 20.0;
-constexpr double kLeastApart = 0.3;  ///< of the places that a circle is laid through
-constexpr double kLeastRadius = 0.5, kMostRadius = 500.0;
+constexpr double kLeastWallStep = 0.3;  ///< of the places that a circle is laid through
+constexpr double kLeastWallRadius = 0.5, kMostWallRadius = 500.0;
 /// Of the wall from its chord: others may be planes, and few points are on a flat arc by chance.
-constexpr double kLeastRise = 0.15, kLeastRiseOfFew = 0.5;
+constexpr double kLeastWallRise = 0.15, kLeastWallRiseOfFew = 0.5;
 
 /// Places beside a plane, seen along its normal and in spacings.
-struct FlatPoints {
+struct WallPoints {
   std::vector<std::uint32_t> indices;  ///< ascending
   std::vector<Vec3> places;            ///< z is 0
 };
 
-FlatPoints seen_from(const OrderedPoints& cloud, const PlanePatch& plane, const Chart& chart,
+WallPoints seen_from(const OrderedPoints& cloud, const PlanePatch& plane, const Chart& chart,
                      double side, std::span<const std::uint32_t> points, double spacing) {
-  FlatPoints found;
+  WallPoints found;
   for (const std::uint32_t i : points) {
     const double height = side * plane.height(cloud.position(i)) / spacing;
-    if (height < kFromPlane || height > kFarFromPlane) continue;
+    if (height < kWallFrom || height > kWallTo) continue;
     const Chart::Flat flat = chart.flat(cloud.position(i)) / spacing;
     found.indices.push_back(i);
     found.places.emplace_back(flat.x(), flat.y(), 0.0);
@@ -48,7 +48,7 @@ FlatPoints seen_from(const OrderedPoints& cloud, const PlanePatch& plane, const 
   return found;
 }
 
-struct FlatCircle {
+struct WallCircle {
   Vec3 centre = Vec3::Zero();
   double radius = 0.0;
 
@@ -58,23 +58,23 @@ struct FlatCircle {
 };
 
 /// The circle through the origin and two places; none if they are near each other or on a line.
-std::optional<FlatCircle> circle_through(const Vec3& a, const Vec3& b) {
+std::optional<WallCircle> circle_through(const Vec3& a, const Vec3& b) {
   const double sq_a = a.squaredNorm(), sq_b = b.squaredNorm();
-  if (std::min({sq_a, sq_b, (a - b).squaredNorm()}) < kLeastApart * kLeastApart) {
+  if (std::min({sq_a, sq_b, (a - b).squaredNorm()}) < kLeastWallStep * kLeastWallStep) {
     return std::nullopt;
   }
   const double twice_area = a.x() * b.y() - a.y() * b.x();
   const Vec3 centre =
       Vec3(b.y() * sq_a - a.y() * sq_b, a.x() * sq_b - b.x() * sq_a, 0.0) / (2.0 * twice_area);
   const double radius = centre.norm();
-  if (!(radius > kLeastRadius && radius < kMostRadius)) return std::nullopt;
-  return FlatCircle{centre, radius};
+  if (!(radius > kLeastWallRadius && radius < kMostWallRadius)) return std::nullopt;
+  return WallCircle{centre, radius};
 }
 
 /// Walls that grow from place to place.
 class WallGrowth {
  public:
-  explicit WallGrowth(const FlatPoints& points)
+  explicit WallGrowth(const WallPoints& points)
       : points_(points),
         tree_(points.places),
         taken_(points.places.size(), 0),
@@ -87,7 +87,7 @@ class WallGrowth {
   void unite();
 
   struct Wall {
-    FlatCircle circle;
+    WallCircle circle;
     std::vector<std::uint32_t> members;
   };
   std::vector<Wall> found;
@@ -97,7 +97,7 @@ class WallGrowth {
   bool spread(std::uint32_t first);
   bool fit_to_members();
   bool bends() const;
-  bool is_on(const FlatCircle& circle, const std::vector<std::uint32_t>& members) const;
+  bool is_on(const WallCircle& circle, const std::vector<std::uint32_t>& members) const;
   struct WallIndex {
     std::vector<Wall> walls;
     std::vector<std::size_t> wide;       ///< those of a large radius
@@ -105,12 +105,12 @@ class WallGrowth {
   };
   std::size_t wall_that_holds(const Wall& part, const WallIndex& index) const;
 
-  const FlatPoints& points_;
+  const WallPoints& points_;
   spatial::KdTree tree_;
   std::vector<std::uint8_t> taken_;
   std::vector<std::uint32_t> seen_;  ///< in which spread() a place was last seen
   std::uint32_t spreads_ = 0;
-  FlatCircle circle_;
+  WallCircle circle_;
   double error_ = 0.0;
   std::vector<std::uint32_t> members_;
 };
@@ -119,7 +119,7 @@ class WallGrowth {
 bool WallGrowth::set_first(std::uint32_t first, std::size_t least_on) {
   const Vec3& at = points_.places[first];
   std::vector<spatial::Neighbour> near;
-  tree_.within(at, kLook, near);
+  tree_.within(at, kLookForWall, near);
   std::vector<Vec3> offsets;
   for (const auto& other : near) {
     if (other.index != first && !taken_[other.index]) {
@@ -164,7 +164,7 @@ bool WallGrowth::spread(std::uint32_t first) {
   seen_[first] = spreads_;
   std::size_t next_fit = 2 * kLeastOnWall;
   for (std::size_t k = 0; k < members_.size(); ++k) {
-    tree_.within(points_.places[members_[k]], kLook, near);
+    tree_.within(points_.places[members_[k]], kLookForWall, near);
     for (const auto& other : near) {
       if (taken_[other.index] || seen_[other.index] == spreads_) continue;
       if (!circle_.holds(points_.places[other.index])) continue;
@@ -194,7 +194,7 @@ bool WallGrowth::bends() const {
     const double aside = along.x() * offset.y() - along.y() * offset.x();
     least = std::min(least, aside), most = std::max(most, aside);
   }
-  return most - least > (members_.size() < kManyOnWall ? kLeastRiseOfFew : kLeastRise);
+  return most - least > (members_.size() < kManyOnWall ? kLeastWallRiseOfFew : kLeastWallRise);
 }
 
 void WallGrowth::try_at(std::uint32_t first, std::size_t least_on) {
@@ -205,12 +205,12 @@ void WallGrowth::try_at(std::uint32_t first, std::size_t least_on) {
     if (round > 0 && members_.size() <= before) break;
     before = members_.size();
   }
-  if (error_ > kMostErrorOfWall || circle_.radius < kLeastRadius || !bends()) return;
+  if (error_ > kMostErrorOfWall || circle_.radius < kLeastWallRadius || !bends()) return;
   for (const std::uint32_t i : members_) taken_[i] = 1;
   found.push_back({circle_, members_});
 }
 
-bool WallGrowth::is_on(const FlatCircle& circle, const std::vector<std::uint32_t>& members) const {
+bool WallGrowth::is_on(const WallCircle& circle, const std::vector<std::uint32_t>& members) const {
   return std::ranges::all_of(members,
                              [&](std::uint32_t i) { return circle.holds(points_.places[i]); });
 }
@@ -266,7 +266,7 @@ std::vector<ExactWall> find_exact_walls(const OrderedPoints& cloud, const PlaneP
       cloud.position(points.front()) - plane.height(cloud.position(points.front())) * plane.normal,
       plane.normal);
   for (const double side : {1.0, -1.0}) {
-    const FlatPoints flat = seen_from(cloud, plane, chart, side, points, spacing);
+    const WallPoints flat = seen_from(cloud, plane, chart, side, points, spacing);
     if (flat.indices.size() < kLeastOnWall) continue;
     WallGrowth growth(flat);
     for (const std::size_t least_on : kOnFirstWall) {

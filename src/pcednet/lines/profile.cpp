@@ -12,8 +12,8 @@
 namespace pcednet::lines {
 namespace {
 
-constexpr double kLeastOfArc = 0.1;  ///< mean probability of the points at an arc
-constexpr double kOpenShare = 0.35;  ///< of a circle
+constexpr double kLeastArcProbability = 0.1;  ///< mean probability of the points at an arc
+constexpr double kOpenShare = 0.35;           ///< of a circle
 
 // In spacings.
 constexpr double kLeastArcLength = 0.8;
@@ -198,7 +198,7 @@ std::vector<Piece> Profile::arcs(const ProfileRay& a, const ProfileRay& b) const
        in_one_turn(bridged(shared_intervals(of_a, of_b), a, b), a.from.x())) {
     if (interval.length() < kLeastArcLength) continue;
     if (!end_at_line(of_a, of_b, interval)) continue;
-    if (mean_probability(interval, a.from) < kLeastOfArc) continue;
+    if (mean_probability(interval, a.from) < kLeastArcProbability) continue;
     Piece piece = piece_along(interval, a, b);
     const double rise = interval.length() * interval.length() / (8.0 * a.from.x());
     if (piece.closed || rise > kLeastRiseOfArc) found.push_back(std::move(piece));

@@ -15,6 +15,7 @@ constexpr double kLeastOfTurn = 0.6;     ///< of a chamfer, to that of its wall
 constexpr double kOffSurfaces = 0.02;  ///< from wall and plane
 constexpr double kLeastChamfer = 0.15, kMostChamfer = 2.5;
 constexpr double kOnCone = 0.01;
+constexpr double kLeastRimRadius = 0.5;
 
 /// A line across a corner: `out` from the wall and `up` from the plane.
 struct CornerCut {
@@ -123,7 +124,7 @@ std::vector<Piece> arcs_of_wall(const Profile& profile, std::vector<Piece>& cut_
   if (!found.empty()) return found;
   for (const double side : {1.0, -1.0}) {
     const auto cut = chamfer_of(places_in_corner(profile, side));
-    if (!cut || radius + side * cut->out < kLeastChamfer) continue;
+    if (!cut || radius + side * cut->out < kLeastRimRadius) continue;
     const Eigen::Vector2d on_plane(radius + side * cut->out, 0.0), on_wall(radius, cut->up);
     const Eigen::Vector2d down = (on_plane - on_wall).normalized();
     std::vector<Piece> below =
