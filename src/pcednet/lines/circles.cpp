@@ -67,13 +67,13 @@ std::optional<Piece> completed(const std::vector<Piece>& pieces, const PieceInde
   }
   const Fit fit = fit_arc(whole.nodes);
   if (fit.kind != CurveKind::kArc || fit.error > 2.0 * tolerance) return std::nullopt;
-  whole.fit = fit;
-  const std::vector<Gap> gaps = sort_about_axis(fit, whole.nodes);
+  if (!whole.exact) whole.fit = fit;
+  const std::vector<Gap> gaps = sort_about_axis(whole.fit, whole.nodes);
   double open = 0.0;
   for (const Gap& gap : gaps) open += gap.length;
-  const double share = open / (kWholeTurn * fit.radius);
+  const double share = open / (kWholeTurn * whole.fit.radius);
   if (share > kMostOpenOnEdges) return std::nullopt;
-  if (!edges_follow(fit, gaps, whole.spacing(), cloud)) {
+  if (!edges_follow(whole.fit, gaps, whole.spacing(), cloud)) {
     if (share > kMostOpen || is_blocked(gaps, pieces, index, joined)) return std::nullopt;
   }
   whole.closed = true;
