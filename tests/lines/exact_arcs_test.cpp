@@ -171,11 +171,7 @@ TEST(ExactArcs, EndAtANotch) {
 
 TEST(ExactArcs, AreTheSameForAnyOrderOfThePoints) {
   const PlanePart part = notched_disc(5.0);
-  PlanePart turned;
-  for (std::size_t i = part.positions.size(); i-- > 0;) {
-    turned.add(part.positions[i], -part.normals[i], part.classes[i] == kSharpEdge);
-  }
-  const std::vector<Piece> arcs = part.arcs(), others = turned.arcs();
+  const std::vector<Piece> arcs = part.arcs(), others = turned_round(part).arcs();
   ASSERT_EQ(arcs.size(), others.size());
   for (std::size_t i = 0; i < arcs.size(); ++i) EXPECT_EQ(arcs[i].ends, others[i].ends);
 }

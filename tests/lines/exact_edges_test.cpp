@@ -133,11 +133,7 @@ TEST(ExactFolds, ReplaceTheCreasesThere) {
 TEST(ExactFolds, AreTheSameForAnyOrderOfThePoints) {
   PlanePart part;
   part.add_box(Vec3::Zero(), {30.0, 12.0, 1.5});
-  PlanePart turned;
-  for (std::size_t i = part.positions.size(); i-- > 0;) {
-    turned.add(part.positions[i], -part.normals[i], part.classes[i] == kSharpEdge);
-  }
-  const std::vector<Piece> folds = part.folds(), others = turned.folds();
+  const std::vector<Piece> folds = part.folds(), others = turned_round(part).folds();
   ASSERT_EQ(folds.size(), others.size());
   for (std::size_t i = 0; i < folds.size(); ++i) EXPECT_EQ(folds[i].ends, others[i].ends);
 }

@@ -51,6 +51,15 @@ struct PlanePart : Cloud {
   std::vector<Piece> arcs() const { return of_kind(CurveKind::kArc); }
 };
 
+/// The same points the other way round, with opposite normals.
+inline PlanePart turned_round(const PlanePart& part) {
+  PlanePart turned;
+  for (std::size_t i = part.positions.size(); i-- > 0;) {
+    turned.add(part.positions[i], -part.normals[i], part.classes[i] == kSharpEdge);
+  }
+  return turned;
+}
+
 /// The side and the top of a column with so many sides; round for none.
 inline PlanePart column(int sides, double radius, double height) {
   PlanePart part;
