@@ -121,7 +121,8 @@ Strip Profile::strip_along(const ProfileRay& ray) const {
 double Profile::mean_probability(const Interval& interval, const Eigen::Vector2d& at) const {
   double sum = 0.0, count = 0.0;
   for (const Point& point : points_) {
-    const double along = point.angle * at.x();
+    double along = point.angle * at.x();
+    if (along < interval.from) along += kWholeTurn * at.x();
     if (along < interval.from || along > interval.to || (point.at - at).norm() > kAtArc) continue;
     sum += static_cast<double>(cloud_.probability(point.index));
     count += 1.0;
