@@ -176,7 +176,7 @@ void find_bores(std::vector<Piece>& pieces, const OrderedPoints& cloud, const Sa
       add_sides(corners, rim, cloud, sampling, added);
     }
   }
-  pieces.insert(pieces.end(), added.begin(), added.end());
+  append(pieces, std::move(added));
 }
 
 }  // namespace pcednet::lines

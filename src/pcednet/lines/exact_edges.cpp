@@ -85,8 +85,7 @@ std::vector<Piece> find_folds(const OrderedPoints& cloud, const std::vector<Plan
       if (is_facet[a] || is_facet[b]) continue;
       const std::vector<Vec3> vertices =
           vertices_of(cloud, planes, pairs[k], neighbours.of_both(a, b), spacing);
-      const std::vector<Piece> between = search.folds_between(vertices, of_pairs[k]);
-      of_pairs[k].insert(of_pairs[k].end(), between.begin(), between.end());
+      append(of_pairs[k], search.folds_between(vertices, of_pairs[k]));
     }
     stage.advance(end - begin);
   });

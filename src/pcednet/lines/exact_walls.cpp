@@ -240,18 +240,19 @@ void WallGrowth::unite() {
   WallIndex whole{.walls = {},
                   .wide = {},
                   .of_places = std::vector<std::size_t>(points_.places.size(), kNoWall)};
-  for (Wall& part : found) {
+  for (const Wall& part : found) {
     std::size_t wall = wall_that_holds(part, whole);
     if (wall == kNoWall) {
       wall = whole.walls.size();
       if (part.circle.radius > kNarrowRadius) whole.wide.push_back(wall);
-      whole.walls.push_back({part.circle, {}});
+      whole.walls.push_back(part);
+    } else {
+      members_ = std::move(whole.walls[wall].members);
+      members_.insert(members_.end(), part.members.begin(), part.members.end());
+      if (fit_to_members()) whole.walls[wall].circle = circle_;
+      whole.walls[wall].members = members_;
     }
     for (const std::uint32_t i : part.members) whole.of_places[i] = wall;
-    members_ = std::move(whole.walls[wall].members);
-    members_.insert(members_.end(), part.members.begin(), part.members.end());
-    if (fit_to_members()) whole.walls[wall].circle = circle_;
-    whole.walls[wall].members = members_;
   }
   for (Wall& wall : whole.walls) std::sort(wall.members.begin(), wall.members.end());
   found = std::move(whole.walls);

@@ -93,15 +93,11 @@ double end_of_run(std::vector<double>& places, double from, double spacing) {
 /// The indices of the points beside the track, each once.
 std::vector<std::uint32_t> points_along(const Track& track, double from, double to, double spacing,
                                         const OrderedPoints& cloud) {
-  std::vector<std::uint32_t> indices;
-  std::vector<spatial::Neighbour> near;
+  std::vector<Vec3> places;
   for (double along = from; along < to + 2.0 * spacing; along += 3.0 * spacing) {
-    cloud.within(track.at(along), 1.5 * kStripTo * spacing, near);
-    for (const auto& point : near) indices.push_back(point.index);
+    places.push_back(track.at(along));
   }
-  std::sort(indices.begin(), indices.end());
-  indices.erase(std::unique(indices.begin(), indices.end()), indices.end());
-  return indices;
+  return cloud.near_any(places, 1.5 * kStripTo * spacing);
 }
 
 /// How far both sides go on from the end, at most to `limit`; 0 if they do not reach it.

@@ -149,6 +149,11 @@ Eigen::Vector2d about_axis(const Fit& circle, const Vec3& place) {
   return {(offset - height * circle.direction).norm(), height};
 }
 
+double angle_at(const Fit& circle, const Vec3& x, const Vec3& place) {
+  const Vec3 y = circle.direction.cross(x), offset = place - circle.point;
+  return std::atan2(y.dot(offset), x.dot(offset));
+}
+
 Vec3 nearest_on(const Fit& fit, const Vec3& place) {
   const Vec3 offset = place - fit.point;
   if (fit.kind == CurveKind::kSegment) return fit.point + offset.dot(fit.direction) * fit.direction;

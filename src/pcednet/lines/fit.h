@@ -26,6 +26,9 @@ Fit fit_arc(std::span<const ChainNode> nodes);
 /// The distance of `place` from the axis of the circle (x), and its height along it (y).
 Eigen::Vector2d about_axis(const Fit& circle, const Vec3& place);
 
+/// The angle of `place` about the axis of the circle, from `x`, which is unit and orthogonal to it.
+double angle_at(const Fit& circle, const Vec3& x, const Vec3& place);
+
 /// The point of the unbounded line or circle that is nearest to `place`.
 Vec3 nearest_on(const Fit& fit, const Vec3& place);
 

@@ -9,13 +9,10 @@
 namespace pcednet::lines {
 namespace {
 
-constexpr double kLeastProbability = 0.1;  ///< mean of the points at a fold
-constexpr double kKnownShare = 0.2;        ///< of an interval that is a fold already
+constexpr double kKnownShare = 0.2;  ///< of an interval that is a fold already
 
 // In spacings.
-constexpr double kLeastFoldLength = 0.8;
 constexpr double kMostBetween = 5.0;  ///< longer folds are found without their vertices
-constexpr double kAtFold = 0.7;
 
 }  // namespace
 
@@ -46,15 +43,9 @@ std::vector<Interval> FoldSearch::regions(std::span<const PlaneContact> contacts
 
 /// Ascending.
 std::vector<std::uint32_t> FoldSearch::points_beside(const Interval& region) const {
-  std::vector<spatial::Neighbour> near;
-  std::vector<std::uint32_t> beside;
-  for (double at = region.from; at < region.to; at += 1.0) {
-    cloud_.within(place(at), (kStripWidth + 0.5) * spacing_, near);
-    for (const auto& point : near) beside.push_back(point.index);
-  }
-  std::sort(beside.begin(), beside.end());
-  beside.erase(std::unique(beside.begin(), beside.end()), beside.end());
-  return beside;
+  std::vector<Vec3> places;
+  for (double at = region.from; at < region.to; at += 1.0) places.push_back(place(at));
+  return cloud_.near_any(places, (kStripWidth + 0.5) * spacing_);
 }
 
 /// Of an edge, at those of the points that are beside the interval.
@@ -65,7 +56,7 @@ double FoldSearch::mean_probability(const Interval& interval,
     const Vec3& position = cloud_.position(i);
     const double at = along(position);
     if (at < interval.from || at > interval.to) continue;
-    if ((position - place(at)).norm() > kAtFold * spacing_) continue;
+    if ((position - place(at)).norm() > kAtExactEdge * spacing_) continue;
     sum += static_cast<double>(cloud_.probability(i));
     count += 1.0;
   }
@@ -110,9 +101,9 @@ void FoldSearch::add_folds(const Interval& region, std::vector<Piece>& found) co
   for (const Side& a : of_a) {
     for (const Side& b : of_b) {
       for (const Interval& interval : shared_intervals(a.strip, b.strip)) {
-        if (interval.length() < kLeastFoldLength) continue;
+        if (interval.length() < kLeastExactLength) continue;
         if (!end_at_line(a.strip, b.strip, interval)) continue;
-        if (mean_probability(interval, beside) < kLeastProbability) continue;
+        if (mean_probability(interval, beside) < kLeastExactProbability) continue;
         found.push_back(piece_along(interval, a.into, b.into));
       }
     }
@@ -129,7 +120,7 @@ std::vector<Piece> FoldSearch::folds(std::span<const PlaneContact> contacts) con
 /// one side of the line and none on the other.
 std::optional<Piece> FoldSearch::fold_between(const Interval& interval) const {
   const std::vector<std::uint32_t> beside = points_beside(interval);
-  if (mean_probability(interval, beside) < kLeastProbability) return std::nullopt;
+  if (mean_probability(interval, beside) < kLeastExactProbability) return std::nullopt;
   const std::array<Side, 2> of_a = sides_of(a_, beside), of_b = sides_of(b_, beside);
   const auto on_one_side = [&](const Side& side) {
     return has_points_on_one_side(side.strip, interval);
@@ -153,7 +144,7 @@ std::vector<Piece> FoldSearch::folds_between(std::span<const Vec3> vertices,
   std::vector<Piece> found;
   for (std::size_t i = 0; i + 1 < places.size(); ++i) {
     const Interval interval{places[i], places[i + 1]};
-    if (interval.length() < kLeastFoldLength || interval.length() > kMostBetween) continue;
+    if (interval.length() < kLeastExactLength || interval.length() > kMostBetween) continue;
     const bool is_known = std::any_of(known.begin(), known.end(), [&](const Piece& piece) {
       const Interval other = interval_of(piece);
       const double shared = std::min(interval.to, other.to) - std::max(interval.from, other.from);

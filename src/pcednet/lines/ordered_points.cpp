@@ -62,6 +62,19 @@ float OrderedPoints::probability(std::size_t i) const {
   return probability_of(points_, order_[i]);
 }
 
+std::vector<std::uint32_t> OrderedPoints::near_any(std::span<const Vec3> places,
+                                                   double radius) const {
+  std::vector<std::uint32_t> indices;
+  std::vector<spatial::Neighbour> near;
+  for (const Vec3& place : places) {
+    within(place, radius, near);
+    for (const auto& point : near) indices.push_back(point.index);
+  }
+  std::sort(indices.begin(), indices.end());
+  indices.erase(std::unique(indices.begin(), indices.end()), indices.end());
+  return indices;
+}
+
 void OrderedPoints::nearest_others(std::span<const std::uint32_t> points, std::size_t count,
                                    std::vector<spatial::Neighbour>& found) const {
   found.resize(points.size() * available(count));

@@ -41,6 +41,9 @@ class OrderedPoints {
     search_.within(at, radius, found);
   }
 
+  /// The points closer to any of these places than `radius`, each once, in curve order.
+  std::vector<std::uint32_t> near_any(std::span<const Vec3> places, double radius) const;
+
   /// The available(count) nearest others of each of `points` (ascending), row after row.
   void nearest_others(std::span<const std::uint32_t> points, std::size_t count,
                       std::vector<spatial::Neighbour>& found) const;

@@ -12,13 +12,10 @@
 namespace pcednet::lines {
 namespace {
 
-constexpr double kLeastArcProbability = 0.1;  ///< mean probability of the points at an arc
-constexpr double kOpenShare = 0.35;           ///< of a circle
+constexpr double kOpenShare = 0.35;  ///< of a circle
 
 // In spacings.
-constexpr double kLeastArcLength = 0.8;
-constexpr double kOpenLength = 2.5;  ///< of a circle
-constexpr double kAtArc = 0.7;
+constexpr double kOpenLength = 2.5;                   ///< of a circle
 constexpr double kBesideGap = 1.5, kBeforeGap = 0.5;  ///< of points that are of neither surface
 constexpr double kOffRays = 0.05;
 constexpr double kLeastRiseOfArc = 0.15;  ///< from its chord
@@ -28,9 +25,7 @@ constexpr double kOnRay = 0.01;
 Vec3 middle_of_gap(const Fit& circle, std::span<const Vec3> places) {
   const Vec3 x = circle.direction.unitOrthogonal(), y = circle.direction.cross(x);
   std::vector<double> angles;
-  for (const Vec3& place : places) {
-    angles.push_back(std::atan2(y.dot(place - circle.point), x.dot(place - circle.point)));
-  }
+  for (const Vec3& place : places) angles.push_back(angle_at(circle, x, place));
   std::sort(angles.begin(), angles.end());
   double largest = angles.front() + kWholeTurn - angles.back(), end = angles.front();
   for (std::size_t i = 1; i < angles.size(); ++i) {
@@ -71,8 +66,7 @@ Profile::Profile(const OrderedPoints& cloud, const ExactWall& wall, double spaci
 }
 
 double Profile::angle_of(const Vec3& place) const {
-  const Vec3 offset = place - circle_.point;
-  const double angle = std::atan2(left_.dot(offset), start_.dot(offset));
+  const double angle = angle_at(circle_, start_, place);
   return angle < 0.0 ? angle + kWholeTurn : angle;
 }
 
@@ -92,16 +86,11 @@ std::vector<std::uint32_t> Profile::indices_around(const ExactWall& wall) const 
   const bool is_round = last - first > 0.5 * kWholeTurn;
   const double beyond = is_round ? 0.5 * kWholeTurn : kLongestStripGap * step;
   const double end = std::min(last + beyond, first - beyond + kWholeTurn);
-  std::vector<std::uint32_t> indices;
-  std::vector<spatial::Neighbour> near;
+  std::vector<Vec3> places;
   for (double angle = first - beyond; angle < end; angle += step) {
-    const Vec3 at = circle_.point + circle_.radius * out_at(angle);
-    cloud_.within(at, (kStripWidth + 1.0) * spacing_, near);
-    for (const auto& point : near) indices.push_back(point.index);
+    places.push_back(circle_.point + circle_.radius * out_at(angle));
   }
-  std::sort(indices.begin(), indices.end());
-  indices.erase(std::unique(indices.begin(), indices.end()), indices.end());
-  return indices;
+  return cloud_.near_any(places, (kStripWidth + 1.0) * spacing_);
 }
 
 /// The points on the ray, by their places along the circle through its beginning: two turns of it,
@@ -123,7 +112,8 @@ double Profile::mean_probability(const Interval& interval, const Eigen::Vector2d
   for (const Point& point : points_) {
     double along = point.angle * at.x();
     if (along < interval.from) along += kWholeTurn * at.x();
-    if (along < interval.from || along > interval.to || (point.at - at).norm() > kAtArc) continue;
+    if (along < interval.from || along > interval.to || (point.at - at).norm() > kAtExactEdge)
+      continue;
     sum += static_cast<double>(cloud_.probability(point.index));
     count += 1.0;
   }
@@ -197,9 +187,9 @@ std::vector<Piece> Profile::arcs(const ProfileRay& a, const ProfileRay& b) const
   std::vector<Piece> found;
   for (const Interval& interval :
        in_one_turn(bridged(shared_intervals(of_a, of_b), a, b), a.from.x())) {
-    if (interval.length() < kLeastArcLength) continue;
+    if (interval.length() < kLeastExactLength) continue;
     if (!end_at_line(of_a, of_b, interval)) continue;
-    if (mean_probability(interval, a.from) < kLeastArcProbability) continue;
+    if (mean_probability(interval, a.from) < kLeastExactProbability) continue;
     Piece piece = piece_along(interval, a, b);
     const double rise = interval.length() * interval.length() / (8.0 * a.from.x());
     if (piece.closed || rise > kLeastRiseOfArc) found.push_back(std::move(piece));

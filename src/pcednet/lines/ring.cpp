@@ -29,12 +29,6 @@ ChainNode seen_from_axis(const Fit& circle, const ChainNode& node) {
           .side_b = turned(node.side_b)};
 }
 
-/// The angle of `place` about the axis, from `x`, which is unit and orthogonal to it.
-double angle_at(const Fit& circle, const Vec3& x, const Vec3& place) {
-  const Vec3 y = circle.direction.cross(x), offset = place - circle.point;
-  return std::atan2(y.dot(offset), x.dot(offset));
-}
-
 }  // namespace
 
 PieceIndex::PieceIndex(const std::vector<Piece>& pieces)
