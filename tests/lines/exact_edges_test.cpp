@@ -124,7 +124,7 @@ TEST(ExactFolds, ReplaceTheCreasesThere) {
   across.along = node.side_a;
   beside.at += 1.2 * node.side_a;
   std::vector<Crease> creases = {on, across, beside};
-  erase_explained(creases, {folds, {}});
+  erase_explained(creases, {folds, {}, {}});
   ASSERT_EQ(creases.size(), 2u);
   EXPECT_EQ(creases[0].along, across.along);
   EXPECT_EQ(creases[1].at, beside.at);

@@ -67,13 +67,13 @@ std::vector<std::uint8_t> parts_of_curves(const std::vector<ExactFold>& folds, d
   return is_part;
 }
 
-/// The segments where planes meet.
-std::vector<Piece> find_folds(const OrderedPoints& cloud, const std::vector<PlanePatch>& planes,
-                              const std::vector<std::span<const PlaneContact>>& pairs,
-                              double spacing, const Progress* progress) {
+/// The segments where planes meet, and the fillets between them.
+ExactEdges find_folds(const OrderedPoints& cloud, const std::vector<PlanePatch>& planes,
+                      const std::vector<std::span<const PlaneContact>>& pairs, double spacing,
+                      const Progress* progress) {
   const PlaneNeighbours neighbours(planes.size(), pairs);
   const std::vector<std::uint8_t> is_facet = facets_of(planes, pairs);
-  std::vector<std::vector<Piece>> of_pairs(pairs.size());
+  std::vector<std::vector<Piece>> of_pairs(pairs.size()), rounded(pairs.size());
   Stage stage(progress, "exact folds", pairs.size());
   parallel_blocks(pairs.size(), kPairsAtOnce, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
@@ -82,10 +82,15 @@ std::vector<Piece> find_folds(const OrderedPoints& cloud, const std::vector<Plan
       if (!line) continue;
       const FoldSearch search(cloud, planes[a], planes[b], *line, spacing);
       of_pairs[k] = search.folds(pairs[k]);
+      rounded[k] = search.fillets(pairs[k]);
+      std::erase_if(of_pairs[k],
+                    [&](const Piece& fold) { return search.is_rounded(fold, rounded[k]); });
       if (is_facet[a] || is_facet[b]) continue;
       const std::vector<Vec3> vertices =
           vertices_of(cloud, planes, pairs[k], neighbours.of_both(a, b), spacing);
-      append(of_pairs[k], search.folds_between(vertices, of_pairs[k]));
+      std::vector<Piece> known = of_pairs[k];
+      append(known, rounded[k]);
+      append(of_pairs[k], search.folds_between(vertices, known));
     }
     stage.advance(end - begin);
   });
@@ -99,10 +104,11 @@ std::vector<Piece> find_folds(const OrderedPoints& cloud, const std::vector<Plan
     }
   }
   const std::vector<std::uint8_t> is_part = parts_of_curves(folds, spacing);
-  std::vector<Piece> found;
+  ExactEdges found;
   for (std::size_t i = 0; i < folds.size(); ++i) {
-    if (!is_part[i]) found.push_back(std::move(folds[i].piece));
+    if (!is_part[i]) found.pieces.push_back(std::move(folds[i].piece));
   }
+  for (std::vector<Piece>& of_pair : rounded) append(found.rounded, std::move(of_pair));
   return found;
 }
 
@@ -118,17 +124,13 @@ ExactEdges find_arcs(const OrderedPoints& cloud, const std::vector<PlanePatch>& 
       for (const PlaneContact& contact : free_points[k]) points.push_back(contact.point);
       const PlanePatch& plane = planes[free_points[k].front().a];
       for (const ExactWall& wall : find_exact_walls(cloud, plane, points, spacing)) {
-        append(of_planes[k].pieces,
-               arcs_of_wall(Profile(cloud, wall, spacing), of_planes[k].cut_off));
+        append(of_planes[k], edges_of_wall(Profile(cloud, wall, spacing)));
       }
     }
     stage.advance(end - begin);
   });
   ExactEdges found;
-  for (ExactEdges& of_plane : of_planes) {
-    append(found.pieces, std::move(of_plane.pieces));
-    append(found.cut_off, std::move(of_plane.cut_off));
-  }
+  for (ExactEdges& of_plane : of_planes) append(found, std::move(of_plane));
   return found;
 }
 
@@ -154,12 +156,13 @@ ExactEdges find_exact_edges(const OrderedPoints& cloud, double spacing, const Pr
   const std::vector<PlaneContact> contacts = contacts_of(cloud, planes, spacing);
   const ContactPairs pairs = by_planes(contacts);
   ExactEdges edges = find_arcs(cloud, planes, pairs.of_free_points, spacing, progress);
-  append(edges.pieces, find_folds(cloud, planes, pairs.of_planes, spacing, progress));
+  append(edges, find_folds(cloud, planes, pairs.of_planes, spacing, progress));
   return edges;
 }
 
 void erase_explained(std::vector<Crease>& creases, const ExactEdges& edges) {
   std::vector<Piece> all = edges.pieces;
+  append(all, edges.rounded);
   append(all, edges.cut_off);
   if (all.empty()) return;
   const NodeIndex index(all);

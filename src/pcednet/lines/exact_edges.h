@@ -4,16 +4,10 @@
 
 #include "pcednet/core/progress.h"
 #include "pcednet/lines/crease.h"
+#include "pcednet/lines/exact_pieces.h"
 #include "pcednet/lines/ordered_points.h"
-#include "pcednet/lines/piece.h"
 
 namespace pcednet::lines {
-
-/// Exact edges, and those that they replace.
-struct ExactEdges {
-  std::vector<Piece> pieces;
-  std::vector<Piece> cut_off;  ///< where surfaces would meet without a chamfer: no edges
-};
 
 /// The segments where exact planes meet, and the arcs and circles where they meet cylinders across
 /// them: both surfaces have points along the line, each on one side of it alone, and the points

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <limits>
 #include <map>
+#include <optional>
 
 #include "pcednet/lines/plane_sums.h"
 
@@ -18,8 +19,12 @@ constexpr std::size_t kLeastMembers = 8, kManyMembers = 64;
 constexpr double kLeastSineBetween = 0.25;  ///< of two places seen from a third
 constexpr double kReachOfPlane = 0.01;      ///< spacings
 constexpr double kMostResidual = 0.1;       ///< root mean square, to the reach
-constexpr double kLeastPatchWidth = 0.2;    ///< of the members, standard deviation in spacings
-constexpr double kOneNormal = 0.999;        ///< cosine of patches that may be of one plane
+/// Of the reach, one after the other: members that are surely on the plane.
+constexpr double kCores[] = {0.4, 0.2, 0.1};
+constexpr double kLeastInCore = 0.7;      ///< of the members
+constexpr double kLeastPatchWidth = 0.2;  ///< of the members, standard deviation in spacings
+constexpr double kOneNormal = 0.999;      ///< cosine of patches that may be of one plane
+constexpr std::size_t kLeastOfCore = 24;  ///< members: fewer may be of a curved surface
 constexpr std::size_t kSeedsBetweenLooks = 1024;
 constexpr std::uint32_t kNoRow = std::numeric_limits<std::uint32_t>::max();
 
@@ -74,6 +79,24 @@ FittedPlane fitted_to(const OrderedPoints& cloud, std::span<const std::uint32_t>
   PlaneSums sums{.origin = cloud.position(members.front())};
   for (const std::uint32_t i : members) sums.add(cloud.position(i));
   return fit_plane(sums);
+}
+
+/// The plane of those members that are surely on it: beside a fillet others are on its beginning.
+/// None if too many are.
+std::optional<FittedPlane> fitted_to_core(const OrderedPoints& cloud,
+                                          std::span<const std::uint32_t> members, FittedPlane plane,
+                                          double reach) {
+  for (const double share : kCores) {
+    std::vector<std::uint32_t> core;
+    for (const std::uint32_t i : members) {
+      const double height = plane.normal.dot(cloud.position(i) - plane.point);
+      if (std::abs(height) < share * reach) core.push_back(i);
+    }
+    const auto least = kLeastInCore * static_cast<double>(members.size());
+    if (static_cast<double>(core.size()) < least || core.size() < kLeastOfCore) return std::nullopt;
+    plane = fitted_to(cloud, core);
+  }
+  return plane;
 }
 
 /// Planes that grow from point to point.
@@ -161,6 +184,11 @@ void PatchGrowth::try_at(std::uint32_t row, std::size_t least_on) {
   spread(row);
   if (members_.size() < kManyMembers) spread(row);  // as the first plane was that of three points
   if (members_.size() < kLeastMembers) return;
+  if (plane_.residual > kMostResidual * reach_) {
+    const auto core = fitted_to_core(cloud_, members_, plane_, reach_);
+    if (!core) return;
+    plane_ = *core;
+  }
   if (plane_.residual > kMostResidual * reach_ || plane_.width < kLeastPatchWidth * spacing_)
     return;
   for (const std::uint32_t i : members_) taken_[candidates_.rows[i]] = 1;
@@ -221,7 +249,11 @@ std::vector<PlanePatch> united(const OrderedPoints& cloud, std::vector<PlanePatc
   for (PlanePatch& patch : patches) whole.add(std::move(patch));
   for (PlanePatch& plane : whole.planes) {
     std::sort(plane.members.begin(), plane.members.end());
-    const FittedPlane fitted = fitted_to(cloud, plane.members);
+    FittedPlane fitted = fitted_to(cloud, plane.members);
+    if (fitted.residual > kMostResidual * plane.reach) {
+      if (const auto core = fitted_to_core(cloud, plane.members, fitted, plane.reach))
+        fitted = *core;
+    }
     plane.point = fitted.point;
     plane.normal = fitted.normal;
   }

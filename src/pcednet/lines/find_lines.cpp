@@ -217,14 +217,16 @@ void place_pieces(std::vector<Piece>& pieces, const OrderedPoints& cloud, const 
   find_bores(pieces, cloud, sampling, progress);
 }
 
-/// The curves of the pieces, which meet in corners.
-std::vector<Curve> curves_of(std::vector<Piece> pieces, const FinishOptions& options,
-                             const Limits& limits, double spacing, const Progress* progress) {
+/// The curves of the pieces, which meet in corners, and of fillets.
+std::vector<Curve> curves_of(std::vector<Piece> pieces, std::vector<Piece> rounded,
+                             const FinishOptions& options, const Limits& limits, double spacing,
+                             const Progress* progress) {
   Stage stage(progress, "corners", 3);
-  const std::vector<Piece> smooth = take_smooth(pieces, options.noise);
+  std::vector<Piece> smooth = take_smooth(pieces, options.noise);
+  append(smooth, std::move(rounded));
   std::vector<Curve> curves = finish(std::move(pieces), options);
   stage.advance();
-  curves = both(std::move(curves), finish(smooth, options));
+  curves = both(std::move(curves), finish(std::move(smooth), options));
   stage.advance();
   close_round_loops(curves, spacing, kRoundWithin * limits.tolerance * spacing);
   join_smooth_corners(curves, limits.angle, 0.5 * limits.tolerance * spacing);
@@ -261,16 +263,19 @@ std::vector<Curve> find_lines(const EdgePoints& points, const LineOptions& optio
   const std::vector<Chain> chains =
       make_chains(creases, boundaries, limits, sampling.noise, progress);
   if (options.stage == LineStage::kChains) {
+    append(exact.pieces, exact.rounded);
     return drawn(both(chains, chains_of(exact.pieces)), finish_options);
   }
   std::vector<Piece> pieces = split_chains(chains, limits.tolerance, progress);
   append(pieces, std::move(exact.pieces));
-  if (pieces.empty()) return {};
-  place_pieces(pieces, cloud, sampling, limits, progress);
+  if (!pieces.empty()) place_pieces(pieces, cloud, sampling, limits, progress);
   if (options.regularise) regularise(pieces);
-  if (options.stage == LineStage::kPieces) return drawn(std::span(pieces), finish_options);
-  std::vector<Curve> curves =
-      curves_of(std::move(pieces), finish_options, limits, sampling.spacing, progress);
+  if (options.stage == LineStage::kPieces) {
+    append(pieces, std::move(exact.rounded));
+    return drawn(std::span(pieces), finish_options);
+  }
+  std::vector<Curve> curves = curves_of(std::move(pieces), std::move(exact.rounded), finish_options,
+                                        limits, sampling.spacing, progress);
   return long_ones(std::move(curves), limits, scale);
 }
 

@@ -222,6 +222,7 @@ bool is_sound(const Curve& curve) {
 
 EdgeClass class_of(const Piece& piece, double noise) {
   if (is_of_boundary(piece)) return kBoundary;
+  if (piece.rounded) return kSmoothEdge;
   const double bend = mean_of(piece, &ChainNode::bend) - noise;
   const double sharp = mean_of(piece, &ChainNode::sharp);
   const bool rounded =

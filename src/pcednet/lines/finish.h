@@ -14,8 +14,8 @@ struct FinishOptions {
                        ///< their ends
 };
 
-/// The class of the piece's edge: kSmoothEdge if the adjacent surfaces bend into it and few of its
-/// points are sharp-edge.
+/// The class of the piece's edge: kSmoothEdge if it is a fillet, or if the adjacent surfaces bend
+/// into it and few of its points are sharp-edge.
 EdgeClass class_of(const Piece& piece, double noise);
 
 /// The piece between its own ends.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pcednet/lines/fillet.h"
 #include "pcednet/lines/observe.h"
 
 namespace pcednet::lines {
@@ -13,6 +14,16 @@ constexpr double kKnownShare = 0.2;  ///< of an interval that is a fold already
 
 // In spacings.
 constexpr double kMostBetween = 5.0;  ///< longer folds are found without their vertices
+
+double shared_length(const Interval& a, const Interval& b) {
+  return std::min(a.to, b.to) - std::max(a.from, b.from);
+}
+
+void move_by(Piece& segment, const Vec3& offset) {
+  segment.fit.point += offset;
+  for (Vec3& end : segment.ends) end += offset;
+  for (ChainNode& node : segment.nodes) node.at += offset;
+}
 
 }  // namespace
 
@@ -110,10 +121,48 @@ void FoldSearch::add_folds(const Interval& region, std::vector<Piece>& found) co
   }
 }
 
+/// Those in each of the four corners of the planes.
+void FoldSearch::add_fillets(const Interval& region, std::vector<Piece>& found) const {
+  const std::vector<std::uint32_t> beside = points_beside(region);
+  const Vec3 into_a = a_.normal.cross(line_.along), into_b = b_.normal.cross(line_.along);
+  for (const double sign_a : {1.0, -1.0}) {
+    for (const double sign_b : {1.0, -1.0}) {
+      const Vec3 side_a = sign_a * into_a, side_b = sign_b * into_b;
+      const Vec3 half_way = (side_a + side_b).normalized(), across = (side_a - side_b).normalized();
+      std::vector<CornerPoint> points;
+      for (const std::uint32_t i : beside) {
+        const Vec3 offset = (cloud_.position(i) - line_.point) / spacing_;
+        points.push_back({offset.dot(line_.along), {offset.dot(half_way), offset.dot(across)}});
+      }
+      const auto fillet = find_fillet(points, std::acos(side_a.dot(half_way)));
+      if (!fillet) continue;
+      for (const Interval& interval : fillet->intervals) {
+        Piece piece = piece_along(interval, side_a, side_b);
+        move_by(piece, fillet->depth * spacing_ * half_way);
+        piece.rounded = true;
+        found.push_back(std::move(piece));
+      }
+    }
+  }
+}
+
 std::vector<Piece> FoldSearch::folds(std::span<const PlaneContact> contacts) const {
   std::vector<Piece> found;
   for (const Interval& region : regions(contacts)) add_folds(region, found);
   return found;
+}
+
+std::vector<Piece> FoldSearch::fillets(std::span<const PlaneContact> contacts) const {
+  std::vector<Piece> found;
+  for (const Interval& region : regions(contacts)) add_fillets(region, found);
+  return found;
+}
+
+bool FoldSearch::is_rounded(const Piece& fold, std::span<const Piece> fillets) const {
+  const Interval interval = interval_of(fold);
+  return std::any_of(fillets.begin(), fillets.end(), [&](const Piece& fillet) {
+    return shared_length(interval, interval_of(fillet)) > 0.5 * interval.length();
+  });
 }
 
 /// The fold along all of the interval, between two vertices, if both planes have points there on
@@ -146,9 +195,7 @@ std::vector<Piece> FoldSearch::folds_between(std::span<const Vec3> vertices,
     const Interval interval{places[i], places[i + 1]};
     if (interval.length() < kLeastExactLength || interval.length() > kMostBetween) continue;
     const bool is_known = std::any_of(known.begin(), known.end(), [&](const Piece& piece) {
-      const Interval other = interval_of(piece);
-      const double shared = std::min(interval.to, other.to) - std::max(interval.from, other.from);
-      return shared > kKnownShare * interval.length();
+      return shared_length(interval, interval_of(piece)) > kKnownShare * interval.length();
     });
     if (is_known) continue;
     if (auto fold = fold_between(interval)) found.push_back(std::move(*fold));

@@ -31,6 +31,12 @@ class FoldSearch {
   /// The folds where these points of the pair are.
   std::vector<Piece> folds(std::span<const PlaneContact> contacts) const;
 
+  /// The fillets there: along the middle of the arc between the planes.
+  std::vector<Piece> fillets(std::span<const PlaneContact> contacts) const;
+
+  /// Whether half of the fold or more is along one of the fillets.
+  bool is_rounded(const Piece& fold, std::span<const Piece> fillets) const;
+
   /// The short folds between neighbouring vertices, which lie on the line, that `known` leaves.
   std::vector<Piece> folds_between(std::span<const Vec3> vertices,
                                    std::span<const Piece> known) const;
@@ -47,6 +53,7 @@ class FoldSearch {
   std::array<Side, 2> sides_of(const PlanePatch& plane,
                                std::span<const std::uint32_t> points) const;
   void add_folds(const Interval& region, std::vector<Piece>& found) const;
+  void add_fillets(const Interval& region, std::vector<Piece>& found) const;
   std::optional<Piece> fold_between(const Interval& interval) const;
   Interval interval_of(const Piece& piece) const;
   double mean_probability(const Interval& interval, std::span<const std::uint32_t> points) const;

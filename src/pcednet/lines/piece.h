@@ -24,6 +24,7 @@ struct Piece {
   bool closed = false;
   std::optional<double> dihedral = {};  ///< between the fitted surfaces, radians; else of the nodes
   bool exact = false;                   ///< where exact surfaces meet: it keeps its line or circle
+  bool rounded = false;                 ///< a fillet, whose class is smooth-edge
   bool regular = false;  ///< a segment whose direction is to be kept, see regularise()
 
   const ChainNode& middle() const { return nodes[nodes.size() / 2]; }

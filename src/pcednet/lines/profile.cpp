@@ -6,6 +6,7 @@
 #include <span>
 
 #include "pcednet/lines/curve.h"
+#include "pcednet/lines/fillet.h"
 #include "pcednet/lines/fold_search.h"
 #include "pcednet/lines/observe.h"
 
@@ -193,6 +194,31 @@ std::vector<Piece> Profile::arcs(const ProfileRay& a, const ProfileRay& b) const
     Piece piece = piece_along(interval, a, b);
     const double rise = interval.length() * interval.length() / (8.0 * a.from.x());
     if (piece.closed || rise > kLeastRiseOfArc) found.push_back(std::move(piece));
+  }
+  return found;
+}
+
+std::vector<Piece> Profile::fillets(const ProfileRay& a, const ProfileRay& b) const {
+  const Eigen::Vector2d half_way = (a.direction + b.direction).normalized(),
+                        across = (a.direction - b.direction).normalized();
+  std::vector<CornerPoint> corner;  // of two turns, as in strip_along()
+  for (const Point& point : points_) {
+    const Eigen::Vector2d offset = point.at - a.from;
+    for (const double turns : {0.0, kWholeTurn}) {
+      corner.push_back(
+          {(point.angle + turns) * a.from.x(), {offset.dot(half_way), offset.dot(across)}});
+    }
+  }
+  const auto fillet = find_fillet(corner, std::acos(a.direction.dot(half_way)));
+  if (!fillet) return {};
+  const Eigen::Vector2d middle = a.from + fillet->depth * half_way;
+  std::vector<Piece> found;
+  for (const Interval& interval : in_one_turn(fillet->intervals, a.from.x())) {
+    const double stretch = middle.x() / a.from.x();
+    Piece piece = piece_along({stretch * interval.from, stretch * interval.to},
+                              {middle, a.direction}, {middle, b.direction});
+    piece.rounded = true;
+    found.push_back(std::move(piece));
   }
   return found;
 }

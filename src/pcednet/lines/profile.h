@@ -47,6 +47,8 @@ class Profile {
   /// The arcs, or the circle, where two surfaces meet that go along these rays from one place: both
   /// have points there and end there.
   std::vector<Piece> arcs(const ProfileRay& a, const ProfileRay& b) const;
+  /// The fillets between such surfaces: along the middle of their arcs.
+  std::vector<Piece> fillets(const ProfileRay& a, const ProfileRay& b) const;
   /// The angle about the axis, all parts together, in which there are points on the ray.
   double turn_along(const ProfileRay& ray) const;
 

@@ -19,11 +19,6 @@ constexpr double kWrong = 0.15;      ///< to one on the right side
 constexpr double kDense = 0.2;       ///< to a spacing of the line
 constexpr double kCloseOnes = 0.15;  ///< to one on the right side
 
-double count_in(const std::vector<double>& places, const Interval& interval) {
-  return static_cast<double>(std::upper_bound(places.begin(), places.end(), interval.to) -
-                             std::lower_bound(places.begin(), places.end(), interval.from));
-}
-
 /// The intervals without gaps that are not chance: the sparser the points, the longer they may be.
 std::vector<Interval> likely_intervals(const std::vector<double>& places) {
   double length = 0.0;
@@ -57,6 +52,11 @@ bool ends_at_line(const Strip& strip, const Interval& interval) {
 }
 
 }  // namespace
+
+double count_in(const std::vector<double>& places, const Interval& interval) {
+  return static_cast<double>(std::upper_bound(places.begin(), places.end(), interval.to) -
+                             std::lower_bound(places.begin(), places.end(), interval.from));
+}
 
 Strip strip_of(std::span<const PlaceBeside> places) {
   Strip strip;

@@ -33,6 +33,9 @@ struct Strip {
   std::vector<double> wrong;  ///< up to one spacing from the line on its other side
 };
 
+/// How many of the places, which ascend, are in the interval.
+double count_in(const std::vector<double>& places, const Interval& interval);
+
 /// The strip on the side where places are away by positive lengths.
 Strip strip_of(std::span<const PlaceBeside> places);
 

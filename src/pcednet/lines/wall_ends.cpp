@@ -113,15 +113,16 @@ Piece moved(Piece arc, const Fit& circle) {
 
 }  // namespace
 
-std::vector<Piece> arcs_of_wall(const Profile& profile, std::vector<Piece>& cut_off) {
+ExactEdges edges_of_wall(const Profile& profile) {
   const double radius = profile.radius();
-  const Eigen::Vector2d up(0.0, 1.0);
-  std::vector<Piece> found;
+  const Eigen::Vector2d corner(radius, 0.0), up(0.0, 1.0);
+  ExactEdges found;
   for (const double side : {1.0, -1.0}) {
-    const Eigen::Vector2d corner(radius, 0.0), out(side, 0.0);
-    append(found, profile.arcs({corner, out}, {corner, up}));
+    const ProfileRay out{corner, {side, 0.0}};
+    append(found.pieces, profile.arcs(out, {corner, up}));
+    append(found.rounded, profile.fillets(out, {corner, up}));
   }
-  if (!found.empty()) return found;
+  if (!found.pieces.empty() || !found.rounded.empty()) return found;
   for (const double side : {1.0, -1.0}) {
     const auto cut = chamfer_of(places_in_corner(profile, side));
     if (!cut || radius + side * cut->out < kLeastRimRadius) continue;
@@ -132,9 +133,9 @@ std::vector<Piece> arcs_of_wall(const Profile& profile, std::vector<Piece>& cut_
     std::vector<Piece> above = profile.arcs({on_wall, up}, {on_wall, down});
     const double turn = std::max(turn_of(below), turn_of(above));
     if (turn < kLeastOfTurn * profile.turn_along({on_wall, up})) continue;
-    for (const Piece& arc : below) cut_off.push_back(moved(arc, profile.circle()));
-    append(found, std::move(below));
-    append(found, std::move(above));
+    for (const Piece& arc : below) found.cut_off.push_back(moved(arc, profile.circle()));
+    append(found.pieces, std::move(below));
+    append(found.pieces, std::move(above));
   }
   return found;
 }
