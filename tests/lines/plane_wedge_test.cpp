@@ -83,7 +83,7 @@ double share_at_foot(const Profile& profile, double noise) {
 
 TEST(PlaneWedge, IsAtTheFootOfAChamferOfTwoSpacingsAndNotWhereFloorAndWallWouldMeet) {
   for (const auto& [width, least] : {std::pair(1.8, 0.6), std::pair(5.0, 0.9)}) {
-    const auto profile = [&](double length) { return chamfered(width, length); };
+    const auto profile = [wide = width](double length) { return chamfered(wide, length); };
     EXPECT_GT(share_at_foot(profile, 0.0), least) << width;
   }
 }

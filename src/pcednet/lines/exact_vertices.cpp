@@ -2,6 +2,7 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <optional>
@@ -59,7 +60,8 @@ std::vector<Vec3> vertices_of(const OrderedPoints& cloud, const std::vector<Plan
     const auto vertex = vertex_of(planes[a], planes[b], planes[c], origin);
     if (!vertex || box.exteriorDistance(*vertex) > kFromContacts * spacing) continue;
     cloud.within(*vertex, kAtVertex * spacing, near);
-    const bool is_seen = std::ranges::all_of(std::initializer_list{a, b, c}, [&](std::uint32_t p) {
+    const std::array<std::uint32_t, 3> meeting = {a, b, c};
+    const bool is_seen = std::ranges::all_of(meeting, [&](std::uint32_t p) {
       return std::ranges::any_of(
           near, [&](const auto& point) { return planes[p].is_on(cloud.position(point.index)); });
     });
