@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 #include <numbers>
 
 #include "exact_parts.h"
@@ -124,20 +125,38 @@ PlanePart rounded_bar(double radius) {
   return bar;
 }
 
+/// The lengths of the curves of a bar by class.
+std::map<EdgeClass, double> lengths_of(const std::vector<Curve>& curves) {
+  std::map<EdgeClass, double> lengths;
+  for (const Curve& curve : curves) lengths[curve.edge_class] += length_of(curve);
+  return lengths;
+}
+
 TEST(Fillet, MakesTheEdgesOfABarSmooth) {
   for (const double radius : {0.4, 0.6, 1.0}) {
     const PlanePart bar = rounded_bar(radius);
-    const std::vector<Curve> curves = find_lines({bar.positions, bar.normals, bar.classes}, {});
-    double smooth = 0.0, sharp = 0.0;
+    std::vector<float> p_sharp;
+    for (const std::uint8_t label : bar.classes)
+      p_sharp.push_back(label == kSharpEdge ? 0.9f : 0.0f);
+    const std::vector<Curve> curves =
+        find_lines({bar.positions, bar.normals, bar.classes, p_sharp}, {});
+    std::map<EdgeClass, double> lengths = lengths_of(curves);
+    EXPECT_GT(lengths[kSmoothEdge], 140.0) << radius;  // of 160
+    EXPECT_LT(lengths[kSharpEdge], 8.0) << radius;
     for (const Curve& curve : curves) {
-      (curve.edge_class == kSmoothEdge ? smooth : sharp) += length_of(curve);
       if (curve.edge_class != kSmoothEdge) continue;
       const double off_axis = std::hypot(curve.points[0].y(), curve.points[0].z());
       EXPECT_NEAR(off_axis, std::sqrt(2.0) * (3.0 - radius) + radius, 1e-2) << radius;
     }
-    EXPECT_GT(smooth, 140.0) << radius;  // of 160
-    EXPECT_LT(sharp, 8.0) << radius;
   }
+}
+
+TEST(Fillet, StaysSharpWhereLabelsWithoutProbabilitiesSaySo) {
+  const PlanePart bar = rounded_bar(0.6);
+  std::map<EdgeClass, double> lengths =
+      lengths_of(find_lines({bar.positions, bar.normals, bar.classes}, {}));
+  EXPECT_GT(lengths[kSharpEdge], 140.0);
+  EXPECT_EQ(lengths[kSmoothEdge], 0.0);
 }
 
 TEST(Fillet, IsTheSameForAnyOrderOfThePoints) {

@@ -19,6 +19,7 @@ constexpr double kOnePlaneSine = 0.01;  ///< of planes that are one
 constexpr double kOneCurve = 0.9;       ///< cosine of folds that approximate a curve
 constexpr double kOneLine = 0.9999;     ///< and of those that are on one line
 constexpr double kAlongEdge = 0.8;      ///< cosine of a crease
+constexpr double kMostlySharp = 0.5;    ///< share of the edge points along a fillet
 constexpr std::size_t kPairsAtOnce = 8;
 
 // In spacings.
@@ -158,6 +159,17 @@ ExactEdges find_exact_edges(const OrderedPoints& cloud, double spacing, const Pr
   ExactEdges edges = find_arcs(cloud, planes, pairs.of_free_points, spacing, progress);
   append(edges, find_folds(cloud, planes, pairs.of_planes, spacing, progress));
   return edges;
+}
+
+void keep_labelled(ExactEdges& edges, const OrderedPoints& cloud) {
+  if (cloud.has_probabilities()) return;
+  for (Piece& piece : edges.rounded) {
+    double sharp = 0.0;
+    for (const ChainNode& node : piece.nodes) sharp += node.sharp;
+    piece.rounded = sharp < kMostlySharp * static_cast<double>(piece.nodes.size());
+    if (!piece.rounded) edges.pieces.push_back(piece);
+  }
+  std::erase_if(edges.rounded, [](const Piece& piece) { return !piece.rounded; });
 }
 
 void erase_explained(std::vector<Crease>& creases, const ExactEdges& edges) {

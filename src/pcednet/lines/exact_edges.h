@@ -15,6 +15,10 @@ namespace pcednet::lines {
 /// the chains.
 ExactEdges find_exact_edges(const OrderedPoints& cloud, double spacing, const Progress* progress);
 
+/// Makes sharp edges of fillets that labels call so, if there are no probabilities: these labels
+/// are not a model's, which takes narrow fillets for sharp.
+void keep_labelled(ExactEdges& edges, const OrderedPoints& cloud);
+
 /// Removes the creases along the edges and along those that they replace.
 void erase_explained(std::vector<Crease>& creases, const ExactEdges& edges);
 

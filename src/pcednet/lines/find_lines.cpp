@@ -257,6 +257,7 @@ std::vector<Curve> find_lines(const EdgePoints& points, const LineOptions& optio
   ExactEdges exact;
   if (sampling.exact) {
     exact = find_exact_edges(cloud, sampling.spacing, progress);
+    keep_labelled(exact, cloud);
     erase_explained(creases, exact);
   }
   const FinishOptions finish_options = {limits.tolerance, sampling.noise};

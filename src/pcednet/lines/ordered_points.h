@@ -33,6 +33,7 @@ class OrderedPoints {
   bool is_partial(std::size_t i) const {
     return !points_.partial.empty() && points_.partial[order_[i]] != 0;
   }
+  bool has_probabilities() const { return !points_.p_sharp.empty(); }
   /// The probability of an edge; from the class alone if there are no probabilities.
   float probability(std::size_t i) const;
 
