@@ -18,6 +18,7 @@
 #include "pcednet/detect/cloud_kind.h"
 #include "pcednet/detect/result_cloud.h"
 #include "pcednet/formats/write_cloud.h"
+#include "pcednet/gls/scales.h"
 #include "prepare.h"
 #include "result_plan.h"
 #include "stage_clock.h"
