@@ -81,11 +81,12 @@ FittedPlane fitted_to(const OrderedPoints& cloud, std::span<const std::uint32_t>
   return fit_plane(sums);
 }
 
-/// The plane of those members that are surely on it: beside a fillet others are on its beginning.
-/// None if too many are.
-std::optional<FittedPlane> fitted_to_core(const OrderedPoints& cloud,
-                                          std::span<const std::uint32_t> members, FittedPlane plane,
-                                          double reach) {
+/// The plane fitted to these members or, where its residual is too large, that of those that are
+/// surely on it: beside a fillet others are on its beginning. None if too many are.
+std::optional<FittedPlane> sure_plane(const OrderedPoints& cloud,
+                                      std::span<const std::uint32_t> members, FittedPlane plane,
+                                      double reach) {
+  if (plane.residual <= kMostResidual * reach) return plane;
   for (const double share : kCores) {
     std::vector<std::uint32_t> core;
     for (const std::uint32_t i : members) {
@@ -184,15 +185,10 @@ void PatchGrowth::try_at(std::uint32_t row, std::size_t least_on) {
   spread(row);
   if (members_.size() < kManyMembers) spread(row);  // as the first plane was that of three points
   if (members_.size() < kLeastMembers) return;
-  if (plane_.residual > kMostResidual * reach_) {
-    const auto core = fitted_to_core(cloud_, members_, plane_, reach_);
-    if (!core) return;
-    plane_ = *core;
-  }
-  if (plane_.residual > kMostResidual * reach_ || plane_.width < kLeastPatchWidth * spacing_)
-    return;
+  const auto plane = sure_plane(cloud_, members_, plane_, reach_);
+  if (!plane || plane->width < kLeastPatchWidth * spacing_) return;
   for (const std::uint32_t i : members_) taken_[candidates_.rows[i]] = 1;
-  found.push_back({plane_.point, plane_.normal, reach_, members_});
+  found.push_back({plane->point, plane->normal, reach_, members_});
 }
 
 /// Planes that grow together, to be found by their distance from an origin.
@@ -249,11 +245,9 @@ std::vector<PlanePatch> united(const OrderedPoints& cloud, std::vector<PlanePatc
   for (PlanePatch& patch : patches) whole.add(std::move(patch));
   for (PlanePatch& plane : whole.planes) {
     std::sort(plane.members.begin(), plane.members.end());
-    FittedPlane fitted = fitted_to(cloud, plane.members);
-    if (fitted.residual > kMostResidual * plane.reach) {
-      if (const auto core = fitted_to_core(cloud, plane.members, fitted, plane.reach))
-        fitted = *core;
-    }
+    const FittedPlane of_all = fitted_to(cloud, plane.members);
+    const FittedPlane fitted =
+        sure_plane(cloud, plane.members, of_all, plane.reach).value_or(of_all);
     plane.point = fitted.point;
     plane.normal = fitted.normal;
   }
