@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "pcednet/core/parallel.h"
 #include "pcednet/lines/exact_contacts.h"
@@ -11,6 +12,7 @@
 #include "pcednet/lines/exact_walls.h"
 #include "pcednet/lines/fold_search.h"
 #include "pcednet/lines/wall_ends.h"
+#include "pcednet/lines/wall_folds.h"
 
 namespace pcednet::lines {
 namespace {
@@ -81,7 +83,7 @@ ExactEdges find_folds(const OrderedPoints& cloud, const std::vector<PlanePatch>&
       const auto [a, b, point] = pairs[k].front();
       const auto line = fold_line(planes[a], planes[b], cloud.position(point));
       if (!line) continue;
-      const FoldSearch search(cloud, planes[a], planes[b], *line, spacing);
+      const FoldSearch search(cloud, surface_of(planes[a]), surface_of(planes[b]), *line, spacing);
       of_pairs[k] = search.folds(pairs[k]);
       rounded[k] = search.fillets(pairs[k]);
       std::erase_if(of_pairs[k],
@@ -113,25 +115,38 @@ ExactEdges find_folds(const OrderedPoints& cloud, const std::vector<PlanePatch>&
   return found;
 }
 
-/// The arcs where planes meet cylinders among the free points near each.
-ExactEdges find_arcs(const OrderedPoints& cloud, const std::vector<PlanePatch>& planes,
-                     const std::vector<std::span<const PlaneContact>>& free_points, double spacing,
-                     const Progress* progress) {
-  std::vector<ExactEdges> of_planes(free_points.size());
-  Stage stage(progress, "exact arcs", free_points.size());
+/// The cylinders among the free points near each plane, and across it.
+std::vector<ExactWall> find_walls(const OrderedPoints& cloud, const std::vector<PlanePatch>& planes,
+                                  const std::vector<std::span<const PlaneContact>>& free_points,
+                                  double spacing, const Progress* progress) {
+  std::vector<std::vector<ExactWall>> of_planes(free_points.size());
+  Stage stage(progress, "exact walls", free_points.size());
   parallel_blocks(free_points.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       std::vector<std::uint32_t> points;
       for (const PlaneContact& contact : free_points[k]) points.push_back(contact.point);
-      const PlanePatch& plane = planes[free_points[k].front().a];
-      for (const ExactWall& wall : find_exact_walls(cloud, plane, points, spacing)) {
-        append(of_planes[k], edges_of_wall(Profile(cloud, wall, spacing)));
-      }
+      of_planes[k] = find_exact_walls(cloud, planes[free_points[k].front().a], points, spacing);
+    }
+    stage.advance(end - begin);
+  });
+  std::vector<ExactWall> walls;
+  for (auto& of_plane : of_planes) std::ranges::move(of_plane, std::back_inserter(walls));
+  return walls;
+}
+
+/// The arcs where the walls meet the planes that they are across.
+ExactEdges find_arcs(const OrderedPoints& cloud, const std::vector<ExactWall>& walls,
+                     double spacing, const Progress* progress) {
+  std::vector<ExactEdges> of_walls(walls.size());
+  Stage stage(progress, "exact arcs", walls.size());
+  parallel_blocks(walls.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      of_walls[k] = edges_of_wall(Profile(cloud, walls[k], spacing));
     }
     stage.advance(end - begin);
   });
   ExactEdges found;
-  for (ExactEdges& of_plane : of_planes) append(found, std::move(of_plane));
+  for (ExactEdges& of_wall : of_walls) append(found, std::move(of_wall));
   return found;
 }
 
@@ -156,7 +171,11 @@ ExactEdges find_exact_edges(const OrderedPoints& cloud, double spacing, const Pr
   const std::vector<PlanePatch> planes = find_exact_planes(cloud, spacing, progress);
   const std::vector<PlaneContact> contacts = contacts_of(cloud, planes, spacing);
   const ContactPairs pairs = by_planes(contacts);
-  ExactEdges edges = find_arcs(cloud, planes, pairs.of_free_points, spacing, progress);
+  const std::vector<ExactWall> walls =
+      find_walls(cloud, planes, pairs.of_free_points, spacing, progress);
+  ExactEdges edges = find_arcs(cloud, walls, spacing, progress);
+  append(edges.pieces,
+         find_wall_folds(cloud, planes, walls, pairs.of_free_points, spacing, progress));
   append(edges, find_folds(cloud, planes, pairs.of_planes, spacing, progress));
   return edges;
 }

@@ -1,6 +1,7 @@
 #include "pcednet/lines/exact_walls.h"
 
 #include <Eigen/Geometry>
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -15,24 +16,30 @@ namespace {
 constexpr std::size_t kMostOnCircle = 12;        ///< places, to lay circles through
 constexpr std::size_t kOnFirstWall[] = {12, 6};  ///< on a wall that grows; large ones go first
 constexpr std::size_t kLeastOnWall = 6, kManyOnWall = 9;
+constexpr std::size_t kLeastOnFacets = 24;
+constexpr double kMostOfLean = 0.5;  ///< of the variance of the distances from a circle: the rest
 constexpr std::size_t kNoWall = std::numeric_limits<std::size_t>::max();
 constexpr std::size_t kMostRounds = 12;  ///< of the growth of a wall
 
 // In spacings.
-constexpr double kReachOfWall = 0.01;
-constexpr double kMostErrorOfWall = 0.2 * kReachOfWall;  ///< root mean square
+/// How near to a wall its points are, and the root mean square of that.
+struct Closeness {
+  double reach, most_error;
+};
+constexpr Closeness kCylinder{0.01, 0.002}, kFacets{0.03, 0.012};
 constexpr double kWallFrom = 0.05, kWallTo = 3.0;
 constexpr double kLookForWall = 2.5;
 constexpr double kNarrowRadius = 20.0;
 constexpr double kLeastWallStep = 0.3;  ///< of the places that a circle is laid through
 constexpr double kLeastWallRadius = 0.5, kMostWallRadius = 500.0;
 /// Of the wall from its chord: others may be planes, and few points are on a flat arc by chance.
-constexpr double kLeastWallRise = 0.15, kLeastWallRiseOfFew = 0.5;
+constexpr double kLeastWallRise = 0.15, kLeastWallRiseOfFew = 0.5, kLeastWallRiseOnFacets = 1.0;
 
 /// Places beside a plane, seen along its normal and in spacings.
 struct WallPoints {
   std::vector<std::uint32_t> indices;  ///< ascending
   std::vector<Vec3> places;            ///< z is 0
+  std::vector<double> heights;         ///< from the plane
 };
 
 WallPoints seen_from(const OrderedPoints& cloud, const PlanePatch& plane, const Chart& chart,
@@ -44,6 +51,7 @@ WallPoints seen_from(const OrderedPoints& cloud, const PlanePatch& plane, const 
     const Chart::Flat flat = chart.flat(cloud.position(i)) / spacing;
     found.indices.push_back(i);
     found.places.emplace_back(flat.x(), flat.y(), 0.0);
+    found.heights.push_back(height);
   }
   return found;
 }
@@ -51,14 +59,15 @@ WallPoints seen_from(const OrderedPoints& cloud, const PlanePatch& plane, const 
 struct WallCircle {
   Vec3 centre = Vec3::Zero();
   double radius = 0.0;
+  Closeness closeness = kCylinder;
 
   bool holds(const Vec3& place) const {
-    return std::abs((place - centre).norm() - radius) < kReachOfWall;
+    return std::abs((place - centre).norm() - radius) < closeness.reach;
   }
 };
 
 /// The circle through the origin and two places; none if they are near each other or on a line.
-std::optional<WallCircle> circle_through(const Vec3& a, const Vec3& b) {
+std::optional<WallCircle> circle_through(const Vec3& a, const Vec3& b, const Closeness& closeness) {
   const double sq_a = a.squaredNorm(), sq_b = b.squaredNorm();
   if (std::min({sq_a, sq_b, (a - b).squaredNorm()}) < kLeastWallStep * kLeastWallStep) {
     return std::nullopt;
@@ -68,7 +77,7 @@ std::optional<WallCircle> circle_through(const Vec3& a, const Vec3& b) {
       Vec3(b.y() * sq_a - a.y() * sq_b, a.x() * sq_b - b.x() * sq_a, 0.0) / (2.0 * twice_area);
   const double radius = centre.norm();
   if (!(radius > kLeastWallRadius && radius < kMostWallRadius)) return std::nullopt;
-  return WallCircle{centre, radius};
+  return WallCircle{centre, radius, closeness};
 }
 
 /// Walls that grow from place to place.
@@ -81,7 +90,7 @@ class WallGrowth {
         seen_(points.places.size(), 0) {}
 
   /// Grows a wall from this place if so many near it are on one.
-  void try_at(std::uint32_t first, std::size_t least_on);
+  void try_at(std::uint32_t first, std::size_t least_on, const Closeness& closeness);
 
   /// Makes one of the walls that are on one circle: there may be gaps between them.
   void unite();
@@ -93,10 +102,12 @@ class WallGrowth {
   std::vector<Wall> found;
 
  private:
-  bool set_first(std::uint32_t first, std::size_t least_on);
+  bool set_first(std::uint32_t first, std::size_t least_on, const Closeness& closeness);
   bool spread(std::uint32_t first);
   bool fit_to_members();
-  bool bends() const;
+  double rise() const;
+  bool leans() const;
+  bool is_wall() const;
   bool is_on(const WallCircle& circle, const std::vector<std::uint32_t>& members) const;
   struct WallIndex {
     std::vector<Wall> walls;
@@ -116,7 +127,7 @@ class WallGrowth {
 };
 
 /// The circle through the place and two near it that the most of the free places there are on.
-bool WallGrowth::set_first(std::uint32_t first, std::size_t least_on) {
+bool WallGrowth::set_first(std::uint32_t first, std::size_t least_on, const Closeness& closeness) {
   const Vec3& at = points_.places[first];
   std::vector<spatial::Neighbour> near;
   tree_.within(at, kLookForWall, near);
@@ -132,13 +143,13 @@ bool WallGrowth::set_first(std::uint32_t first, std::size_t least_on) {
   bool is_set = false;
   for (std::size_t j = 0; j < offsets.size(); j += step) {
     for (std::size_t k = j + step; k < offsets.size(); k += step) {
-      const auto circle = circle_through(offsets[j], offsets[k]);
+      const auto circle = circle_through(offsets[j], offsets[k], closeness);
       if (!circle) continue;
       const auto on = static_cast<std::size_t>(std::count_if(
           offsets.begin(), offsets.end(), [&](const Vec3& place) { return circle->holds(place); }));
       if (on <= most) continue;
       most = on;
-      circle_ = {at + circle->centre, circle->radius};
+      circle_ = {at + circle->centre, circle->radius, closeness};
       is_set = true;
     }
   }
@@ -150,7 +161,7 @@ bool WallGrowth::fit_to_members() {
   for (const std::uint32_t i : members_) places.push_back(points_.places[i]);
   const Fit fit = fit_arc(places, 1.0);
   if (fit.kind != CurveKind::kArc) return false;
-  circle_ = {fit.point, fit.radius};
+  circle_ = {fit.point, fit.radius, circle_.closeness};
   error_ = fit.error;
   return true;
 }
@@ -178,8 +189,8 @@ bool WallGrowth::spread(std::uint32_t first) {
   return members_.size() >= kLeastOnWall && fit_to_members();
 }
 
-/// Whether the members are on no line.
-bool WallGrowth::bends() const {
+/// How far the members are from one line.
+double WallGrowth::rise() const {
   const Vec3& from = points_.places[members_.front()];
   double longest = 0.0;
   Vec3 to = from;
@@ -194,18 +205,46 @@ bool WallGrowth::bends() const {
     const double aside = along.x() * offset.y() - along.y() * offset.x();
     least = std::min(least, aside), most = std::max(most, aside);
   }
-  return most - least > (members_.size() < kManyOnWall ? kLeastWallRiseOfFew : kLeastWallRise);
+  return most - least;
 }
 
-void WallGrowth::try_at(std::uint32_t first, std::size_t least_on) {
-  if (taken_[first] || !set_first(first, least_on)) return;
+/// Whether the distances of the members from the circle follow from their heights, as on a cone or
+/// a torus: on facets they do not.
+bool WallGrowth::leans() const {
+  const auto count = static_cast<Eigen::Index>(members_.size());
+  Eigen::MatrixX3d powers(count, 3);
+  Eigen::VectorXd off(count);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const std::uint32_t i = members_[static_cast<std::size_t>(k)];
+    const double height = points_.heights[i];
+    powers.row(k) << 1.0, height, height * height;
+    off[k] = (points_.places[i] - circle_.centre).norm() - circle_.radius;
+  }
+  const Eigen::VectorXd rest = off - powers * powers.colPivHouseholderQr().solve(off);
+  const auto n = static_cast<double>(count);
+  return rest.squaredNorm() / (n - 3.0) <
+         kMostOfLean * (off.array() - off.mean()).matrix().squaredNorm() / (n - 1.0);
+}
+
+/// Whether the members are enough, on a curve, and as near to it as they should be.
+bool WallGrowth::is_wall() const {
+  const Closeness& closeness = circle_.closeness;
+  if (error_ > closeness.most_error || circle_.radius < kLeastWallRadius) return false;
+  if (closeness.reach == kCylinder.reach) {
+    return rise() > (members_.size() < kManyOnWall ? kLeastWallRiseOfFew : kLeastWallRise);
+  }
+  return members_.size() >= kLeastOnFacets && rise() > kLeastWallRiseOnFacets && !leans();
+}
+
+void WallGrowth::try_at(std::uint32_t first, std::size_t least_on, const Closeness& closeness) {
+  if (taken_[first] || !set_first(first, least_on, closeness)) return;
   // The circle through three places is wrong farther on; that of all so far is less so.
   for (std::size_t before = 0, round = 0; round < kMostRounds; ++round) {
     if (!spread(first)) return;
     if (round > 0 && members_.size() <= before) break;
     before = members_.size();
   }
-  if (error_ > kMostErrorOfWall || circle_.radius < kLeastWallRadius || !bends()) return;
+  if (!is_wall()) return;
   for (const std::uint32_t i : members_) taken_[i] = 1;
   found.push_back({circle_, members_});
 }
@@ -247,6 +286,7 @@ void WallGrowth::unite() {
       if (part.circle.radius > kNarrowRadius) whole.wide.push_back(wall);
       whole.walls.push_back(part);
     } else {
+      circle_ = whole.walls[wall].circle;
       members_ = std::move(whole.walls[wall].members);
       members_.insert(members_.end(), part.members.begin(), part.members.end());
       if (fit_to_members()) whole.walls[wall].circle = circle_;
@@ -270,8 +310,12 @@ std::vector<ExactWall> find_exact_walls(const OrderedPoints& cloud, const PlaneP
     const WallPoints flat = seen_from(cloud, plane, chart, side, points, spacing);
     if (flat.indices.size() < kLeastOnWall) continue;
     WallGrowth growth(flat);
-    for (const std::size_t least_on : kOnFirstWall) {
-      for (std::uint32_t i = 0; i < flat.indices.size(); ++i) growth.try_at(i, least_on);
+    for (const Closeness& closeness : {kCylinder, kFacets}) {
+      for (const std::size_t least_on : kOnFirstWall) {
+        for (std::uint32_t i = 0; i < flat.indices.size(); ++i) {
+          growth.try_at(i, least_on, closeness);
+        }
+      }
     }
     growth.unite();
     for (const WallGrowth::Wall& wall : growth.found) {
@@ -279,6 +323,7 @@ std::vector<ExactWall> find_exact_walls(const OrderedPoints& cloud, const PlaneP
       ExactWall& exact = walls.emplace_back();
       exact.circle = {CurveKind::kArc, chart.place(centre), side * plane.normal,
                       spacing * wall.circle.radius, 0.0};
+      exact.reach = spacing * wall.circle.closeness.reach;
       for (const std::uint32_t i : wall.members) exact.members.push_back(flat.indices[i]);
     }
   }

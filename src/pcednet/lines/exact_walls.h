@@ -13,6 +13,7 @@ namespace pcednet::lines {
 /// A cylinder across an exact plane, as of a bore, a pin or a rounded corner.
 struct ExactWall {
   Fit circle;                          ///< in the plane; its axis points along the wall
+  double reach;                        ///< of its points: more of flat facets that approximate it
   std::vector<std::uint32_t> members;  ///< the points found on it, ascending
 };
 

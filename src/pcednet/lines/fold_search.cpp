@@ -14,6 +14,8 @@ constexpr double kKnownShare = 0.2;  ///< of an interval that is a fold already
 
 // In spacings.
 constexpr double kMostBetween = 5.0;  ///< longer folds are found without their vertices
+constexpr double kStepAlong = 0.5 * kLongestStripGap;  ///< where a line is followed
+constexpr double kAlongLine = 1.0;                     ///< of points that it has there
 
 double shared_length(const Interval& a, const Interval& b) {
   return std::min(a.to, b.to) - std::max(a.from, b.from);
@@ -50,6 +52,22 @@ std::vector<Interval> FoldSearch::regions(std::span<const PlaneContact> contacts
     region.to += 0.5 * kLongestStripGap;
   }
   return found;
+}
+
+/// As far as there are points beside the line without a gap that no strip may have.
+Interval FoldSearch::reachable_from(double start) const {
+  const auto end_towards = [&](double step) {
+    double end = start;
+    std::vector<Vec3> places(static_cast<std::size_t>(kStepAlong));
+    for (int empty = 0; empty < 2; end += step) {
+      for (std::size_t i = 0; i < places.size(); ++i) {
+        places[i] = place(end + step * static_cast<double>(i) / kStepAlong);
+      }
+      empty = cloud_.near_any(places, kAlongLine * spacing_).empty() ? empty + 1 : 0;
+    }
+    return end;
+  };
+  return {end_towards(-kStepAlong), end_towards(kStepAlong)};
 }
 
 /// Ascending.
@@ -89,15 +107,15 @@ Piece FoldSearch::piece_along(const Interval& interval, const Vec3& side_a,
   return piece;
 }
 
-/// Both sides of the line in one of the planes.
-std::array<FoldSearch::Side, 2> FoldSearch::sides_of(const PlanePatch& plane,
+/// Both sides of the line on one of the surfaces.
+std::array<FoldSearch::Side, 2> FoldSearch::sides_of(const FoldSurface& surface,
                                                      std::span<const std::uint32_t> points) const {
-  const Vec3 into = plane.normal.cross(line_.along);
+  const Vec3 into = surface.normal.cross(line_.along);
   const auto side = [&](const Vec3& to) {
     std::vector<PlaceBeside> places;
     for (const std::uint32_t i : points) {
       const Vec3& position = cloud_.position(i);
-      if (!plane.is_on(position)) continue;
+      if (!surface.is_on(position)) continue;
       places.push_back({along(position), (position - line_.point).dot(to) / spacing_});
     }
     return Side{to, strip_of(places)};
@@ -149,6 +167,12 @@ void FoldSearch::add_fillets(const Interval& region, std::vector<Piece>& found) 
 std::vector<Piece> FoldSearch::folds(std::span<const PlaneContact> contacts) const {
   std::vector<Piece> found;
   for (const Interval& region : regions(contacts)) add_folds(region, found);
+  return found;
+}
+
+std::vector<Piece> FoldSearch::folds_from(const Vec3& near) const {
+  std::vector<Piece> found;
+  add_folds(reachable_from(along(near)), found);
   return found;
 }
 

@@ -8,6 +8,7 @@
 
 #include "pcednet/lines/exact_contacts.h"
 #include "pcednet/lines/exact_planes.h"
+#include "pcednet/lines/fold_surface.h"
 #include "pcednet/lines/ordered_points.h"
 #include "pcednet/lines/piece.h"
 #include "pcednet/lines/plane_line.h"
@@ -21,15 +22,18 @@ inline constexpr double kLeastSineOfFold = 0.34;  ///< of its planes: 20 degrees
 /// little.
 std::optional<PlaneLine> fold_line(const PlanePatch& a, const PlanePatch& b, const Vec3& near);
 
-/// Two planes and the line in which they meet.
+/// Two surfaces and the line in which they meet.
 class FoldSearch {
  public:
-  FoldSearch(const OrderedPoints& cloud, const PlanePatch& a, const PlanePatch& b,
+  FoldSearch(const OrderedPoints& cloud, const FoldSurface& a, const FoldSurface& b,
              const PlaneLine& line, double spacing)
       : cloud_(cloud), a_(a), b_(b), line_(line), spacing_(spacing) {}
 
   /// The folds where these points of the pair are.
   std::vector<Piece> folds(std::span<const PlaneContact> contacts) const;
+
+  /// The folds as far as the cloud has points along the line from a place near it.
+  std::vector<Piece> folds_from(const Vec3& near) const;
 
   /// The fillets there: along the middle of the arc between the planes.
   std::vector<Piece> fillets(std::span<const PlaneContact> contacts) const;
@@ -42,15 +46,16 @@ class FoldSearch {
                                    std::span<const Piece> known) const;
 
  private:
-  /// The points of a plane on one side of the line.
+  /// The points of a surface on one side of the line.
   struct Side {
     Vec3 into;  ///< unit
     Strip strip;
   };
 
   std::vector<Interval> regions(std::span<const PlaneContact> contacts) const;
+  Interval reachable_from(double start) const;
   std::vector<std::uint32_t> points_beside(const Interval& region) const;
-  std::array<Side, 2> sides_of(const PlanePatch& plane,
+  std::array<Side, 2> sides_of(const FoldSurface& surface,
                                std::span<const std::uint32_t> points) const;
   void add_folds(const Interval& region, std::vector<Piece>& found) const;
   void add_fillets(const Interval& region, std::vector<Piece>& found) const;
@@ -64,7 +69,7 @@ class FoldSearch {
   }
 
   const OrderedPoints& cloud_;
-  const PlanePatch &a_, &b_;
+  FoldSurface a_, b_;
   PlaneLine line_;
   double spacing_;
 };

@@ -20,7 +20,6 @@ constexpr double kOpenLength = 2.5;                   ///< of a circle
 constexpr double kBesideGap = 1.5, kBeforeGap = 0.5;  ///< of points that are of neither surface
 constexpr double kOffRays = 0.05;
 constexpr double kLeastRiseOfArc = 0.15;  ///< from its chord
-constexpr double kOnRay = 0.01;
 
 /// The direction in the middle of the largest gap between these places about an axis.
 Vec3 middle_of_gap(const Fit& circle, std::span<const Vec3> places) {
@@ -55,7 +54,7 @@ std::vector<Interval> in_one_turn(const std::vector<Interval>& intervals, double
 }  // namespace
 
 Profile::Profile(const OrderedPoints& cloud, const ExactWall& wall, double spacing)
-    : cloud_(cloud), circle_(wall.circle), spacing_(spacing) {
+    : cloud_(cloud), circle_(wall.circle), spacing_(spacing), on_ray_(wall.reach / spacing) {
   std::vector<Vec3> places;
   for (const std::uint32_t i : wall.members) places.push_back(cloud.position(i));
   start_ = middle_of_gap(circle_, places);
@@ -99,7 +98,7 @@ std::vector<std::uint32_t> Profile::indices_around(const ExactWall& wall) const 
 Strip Profile::strip_along(const ProfileRay& ray) const {
   std::vector<PlaceBeside> places;
   for (const Point& point : points_) {
-    if (ray.off(point.at) > kOnRay) continue;
+    if (ray.off(point.at) > on_ray_) continue;
     for (const double turns : {0.0, kWholeTurn}) {
       places.push_back({(point.angle + turns) * ray.from.x(), ray.along(point.at)});
     }

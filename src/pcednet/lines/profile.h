@@ -65,6 +65,7 @@ class Profile {
   const OrderedPoints& cloud_;
   Fit circle_;
   double spacing_;
+  double on_ray_;      ///< how near to one, in spacings
   Vec3 start_, left_;  ///< unit: where angles begin, and a quarter turn on
   std::vector<Point> points_;
 };

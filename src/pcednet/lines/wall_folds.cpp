@@ -1,0 +1,205 @@
+#include "pcednet/lines/wall_folds.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "pcednet/core/parallel.h"
+#include "pcednet/lines/fold_search.h"
+#include "pcednet/lines/fold_surface.h"
+#include "pcednet/spatial/kd_tree.h"
+
+namespace pcednet::lines {
+namespace {
+
+constexpr double kParallelSine = 1e-3;  ///< of a wall and what meets it along its axis
+constexpr double kOneLine = 0.9999;     ///< cosine of folds that are the same
+constexpr std::size_t kWallsAtOnce = 8;
+
+// In spacings.
+constexpr double kBetweenWalls = 2.5;     ///< of their points, where they may meet
+constexpr double kSameEnds = 1.0;         ///< of folds that were found twice
+constexpr double kLeastOfWallFold = 2.0;  ///< length
+
+/// One end of the wall's arc or both: where a circle about its axis meets another curve.
+using TwoLines = std::optional<std::array<PlaneLine, 2>>;
+
+TwoLines two_lines(const Vec3& middle, const Vec3& half, const Vec3& along) {
+  return std::array<PlaneLine, 2>{PlaneLine{middle + half, along}, PlaneLine{middle - half, along}};
+}
+
+/// None if the plane is not along the wall, or meets it at less than 20 degrees.
+TwoLines lines_where_meet(const ExactWall& wall, const PlanePatch& plane) {
+  const Fit& circle = wall.circle;
+  if (std::abs(plane.normal.dot(circle.direction)) > kParallelSine) return std::nullopt;
+  const double height = plane.height(circle.point);
+  const double sq_sine = 1.0 - std::pow(height / circle.radius, 2);
+  if (sq_sine < kLeastSineOfFold * kLeastSineOfFold) return std::nullopt;
+  return two_lines(
+      circle.point - height * plane.normal,
+      circle.radius * std::sqrt(sq_sine) * circle.direction.cross(plane.normal).normalized(),
+      circle.direction);
+}
+
+TwoLines lines_where_meet(const ExactWall& a, const ExactWall& b) {
+  const Vec3& along = a.circle.direction;
+  if (along.cross(b.circle.direction).norm() > kParallelSine) return std::nullopt;
+  Vec3 across = b.circle.point - a.circle.point;
+  across -= along.dot(across) * along;
+  const double apart = across.norm(), r = a.circle.radius, s = b.circle.radius;
+  const double cosine = (r * r + s * s - apart * apart) / (2.0 * r * s);
+  const double sq_sine = 1.0 - cosine * cosine;
+  if (sq_sine < kLeastSineOfFold * kLeastSineOfFold) return std::nullopt;
+  across /= apart;
+  const double middle = (apart * apart + r * r - s * s) / (2.0 * apart);
+  return two_lines(a.circle.point + middle * across,
+                   (r * s * std::sqrt(sq_sine) / apart) * along.cross(across), along);
+}
+
+/// A member of the wall beside the line.
+std::optional<Vec3> member_beside(const OrderedPoints& cloud, const ExactWall& wall,
+                                  const PlaneLine& line, double spacing) {
+  for (const std::uint32_t i : wall.members) {
+    const Vec3& place = cloud.position(i);
+    if ((place - line.point).cross(line.along).norm() < kStripWidth * spacing) return place;
+  }
+  return std::nullopt;
+}
+
+/// The planes beside each point of none: pairs of point and plane, ascending.
+using PlanesOfPoints = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
+
+PlanesOfPoints planes_of_points(const std::vector<std::span<const PlaneContact>>& free_points) {
+  PlanesOfPoints pairs;
+  for (const auto& contacts : free_points) {
+    for (const PlaneContact& contact : contacts) pairs.emplace_back(contact.point, contact.a);
+  }
+  std::sort(pairs.begin(), pairs.end());
+  return pairs;
+}
+
+void keep_each_once(std::vector<std::uint32_t>& numbers) {
+  std::sort(numbers.begin(), numbers.end());
+  numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
+}
+
+std::vector<std::uint32_t> planes_beside(const ExactWall& wall, const PlanesOfPoints& pairs) {
+  std::vector<std::uint32_t> planes;
+  for (const std::uint32_t point : wall.members) {
+    auto pair = std::lower_bound(pairs.begin(), pairs.end(), std::pair(point, 0U));
+    for (; pair != pairs.end() && pair->first == point; ++pair) planes.push_back(pair->second);
+  }
+  keep_each_once(planes);
+  return planes;
+}
+
+/// All points of walls, to find the walls beside one.
+class WallIndex {
+ public:
+  WallIndex(const OrderedPoints& cloud, const std::vector<ExactWall>& walls) {
+    for (std::uint32_t w = 0; w < walls.size(); ++w) {
+      for (const std::uint32_t i : walls[w].members) {
+        places_.push_back(cloud.position(i));
+        wall_.push_back(w);
+      }
+    }
+    tree_.emplace(places_);
+  }
+
+  /// Those with a greater number.
+  std::vector<std::uint32_t> later_walls_beside(const OrderedPoints& cloud, const ExactWall& wall,
+                                                std::uint32_t number, double reach) const {
+    std::vector<std::uint32_t> walls;
+    std::vector<spatial::Neighbour> near;
+    for (const std::uint32_t i : wall.members) {
+      tree_->within_unsorted(cloud.position(i), reach, near);
+      for (const auto& other : near) {
+        if (wall_[other.index] > number) walls.push_back(wall_[other.index]);
+      }
+    }
+    keep_each_once(walls);
+    return walls;
+  }
+
+ private:
+  std::vector<Vec3> places_;
+  std::vector<std::uint32_t> wall_;
+  std::optional<spatial::KdTree> tree_;
+};
+
+/// Of folds that were found from both ends of a wall, the first.
+std::vector<Piece> each_once(std::vector<Piece> folds, double spacing) {
+  const EndIndex index(folds, open_ends(folds));
+  std::vector<std::uint8_t> is_again(folds.size(), 0);
+  std::vector<spatial::Neighbour> near;
+  const auto is_same = [&](const Piece& a, const Piece& b) {
+    if (std::abs(a.fit.direction.dot(b.fit.direction)) < kOneLine) return false;
+    const double reach = kSameEnds * spacing;
+    const auto& [first, last] = b.ends;
+    const bool same_way = (a.ends[0] - first).norm() < (a.ends[0] - last).norm();
+    return (a.ends[0] - (same_way ? first : last)).norm() < reach &&
+           (a.ends[1] - (same_way ? last : first)).norm() < reach;
+  };
+  for (std::size_t k = 0; k < index.ends.size(); ++k) {
+    const std::size_t fold = index.ends[k].piece;
+    index.tree.within_unsorted(index.places[k], kSameEnds * spacing, near);
+    for (const auto& end : near) {
+      const std::size_t other = index.ends[end.index].piece;
+      if (other < fold && is_same(folds[fold], folds[other])) is_again[fold] = 1;
+    }
+  }
+  std::vector<Piece> kept;
+  for (std::size_t i = 0; i < folds.size(); ++i) {
+    if (!is_again[i]) kept.push_back(std::move(folds[i]));
+  }
+  return kept;
+}
+
+}  // namespace
+
+std::vector<Piece> find_wall_folds(const OrderedPoints& cloud,
+                                   const std::vector<PlanePatch>& planes,
+                                   const std::vector<ExactWall>& walls,
+                                   const std::vector<std::span<const PlaneContact>>& free_points,
+                                   double spacing, const Progress* progress) {
+  if (walls.empty()) return {};
+  const PlanesOfPoints pairs = planes_of_points(free_points);
+  const WallIndex index(cloud, walls);
+  std::vector<std::vector<Piece>> of_walls(walls.size());
+  Stage stage(progress, "exact folds of walls", walls.size());
+  parallel_blocks(walls.size(), kWallsAtOnce, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t w = begin; w < end; ++w) {
+      const ExactWall& wall = walls[w];
+      const auto search = [&](const TwoLines& lines, const auto& other_surface) {
+        if (!lines) return;
+        for (const PlaneLine& line : *lines) {
+          const auto near = member_beside(cloud, wall, line, spacing);
+          if (!near) continue;
+          const FoldSearch folds(cloud, surface_of(wall, line), other_surface(line), line, spacing);
+          append(of_walls[w], folds.folds_from(*near));
+        }
+      };
+      for (const std::uint32_t p : planes_beside(wall, pairs)) {
+        search(lines_where_meet(wall, planes[p]),
+               [&](const PlaneLine&) { return surface_of(planes[p]); });
+      }
+      for (const std::uint32_t o : index.later_walls_beside(
+               cloud, wall, static_cast<std::uint32_t>(w), kBetweenWalls * spacing)) {
+        search(lines_where_meet(wall, walls[o]),
+               [&](const PlaneLine& line) { return surface_of(walls[o], line); });
+      }
+      std::erase_if(of_walls[w], [&](const Piece& fold) {
+        return length_of(fold) < kLeastOfWallFold * spacing;
+      });
+    }
+    stage.advance(end - begin);
+  });
+  std::vector<Piece> folds;
+  for (std::vector<Piece>& of_wall : of_walls) append(folds, std::move(of_wall));
+  return each_once(std::move(folds), spacing);
+}
+
+}  // namespace pcednet::lines
