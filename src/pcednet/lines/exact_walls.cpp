@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t kMostOnCircle = 12;        ///< places, to lay circles through
 constexpr std::size_t kOnFirstWall[] = {12, 6};  ///< on a wall that grows; large ones go first
 constexpr std::size_t kLeastOnWall = 6, kManyOnWall = 9;
-constexpr std::size_t kLeastOnFacets = 24;
+constexpr std::size_t kLeastOnFacets = 12;
 constexpr double kMostOfLean = 0.5;  ///< of the variance of the distances from a circle: the rest
 constexpr std::size_t kNoWall = std::numeric_limits<std::size_t>::max();
 constexpr std::size_t kMostRounds = 12;  ///< of the growth of a wall
