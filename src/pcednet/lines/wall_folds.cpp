@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <tuple>
 #include <utility>
 
 #include "pcednet/core/parallel.h"
@@ -59,11 +60,26 @@ TwoLines lines_where_meet(const ExactWall& a, const ExactWall& b) {
                    (r * s * std::sqrt(sq_sine) / apart) * along.cross(across), along);
 }
 
-/// A member of the wall beside the line.
-std::optional<Vec3> member_beside(const OrderedPoints& cloud, const ExactWall& wall,
-                                  const PlaneLine& line, double spacing) {
-  for (const std::uint32_t i : wall.members) {
-    const Vec3& place = cloud.position(i);
+/// A point of a wall near another surface.
+struct Meeting {
+  std::uint32_t other, point;
+
+  auto key() const { return std::tie(other, point); }
+};
+
+/// By the other surface, each once.
+void sort_unique(std::vector<Meeting>& meetings) {
+  const auto less = [](const Meeting& a, const Meeting& b) { return a.key() < b.key(); };
+  const auto same = [](const Meeting& a, const Meeting& b) { return a.key() == b.key(); };
+  std::sort(meetings.begin(), meetings.end(), less);
+  meetings.erase(std::unique(meetings.begin(), meetings.end(), same), meetings.end());
+}
+
+/// One of the points beside the line.
+std::optional<Vec3> place_beside(const OrderedPoints& cloud, std::span<const Meeting> meetings,
+                                 const PlaneLine& line, double spacing) {
+  for (const Meeting& meeting : meetings) {
+    const Vec3& place = cloud.position(meeting.point);
     if ((place - line.point).cross(line.along).norm() < kStripWidth * spacing) return place;
   }
   return std::nullopt;
@@ -81,19 +97,16 @@ PlanesOfPoints planes_of_points(const std::vector<std::span<const PlaneContact>>
   return pairs;
 }
 
-void keep_each_once(std::vector<std::uint32_t>& numbers) {
-  std::sort(numbers.begin(), numbers.end());
-  numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
-}
-
-std::vector<std::uint32_t> planes_beside(const ExactWall& wall, const PlanesOfPoints& pairs) {
-  std::vector<std::uint32_t> planes;
+std::vector<Meeting> planes_beside(const ExactWall& wall, const PlanesOfPoints& pairs) {
+  std::vector<Meeting> found;
   for (const std::uint32_t point : wall.members) {
     auto pair = std::lower_bound(pairs.begin(), pairs.end(), std::pair(point, 0U));
-    for (; pair != pairs.end() && pair->first == point; ++pair) planes.push_back(pair->second);
+    for (; pair != pairs.end() && pair->first == point; ++pair) {
+      found.push_back({pair->second, point});
+    }
   }
-  keep_each_once(planes);
-  return planes;
+  sort_unique(found);
+  return found;
 }
 
 /// All points of walls, to find the walls beside one.
@@ -110,18 +123,18 @@ class WallIndex {
   }
 
   /// Those with a greater number.
-  std::vector<std::uint32_t> later_walls_beside(const OrderedPoints& cloud, const ExactWall& wall,
-                                                std::uint32_t number, double reach) const {
-    std::vector<std::uint32_t> walls;
+  std::vector<Meeting> later_walls_beside(const OrderedPoints& cloud, const ExactWall& wall,
+                                          std::uint32_t number, double reach) const {
+    std::vector<Meeting> found;
     std::vector<spatial::Neighbour> near;
     for (const std::uint32_t i : wall.members) {
       tree_->within_unsorted(cloud.position(i), reach, near);
       for (const auto& other : near) {
-        if (wall_[other.index] > number) walls.push_back(wall_[other.index]);
+        if (wall_[other.index] > number) found.push_back({wall_[other.index], i});
       }
     }
-    keep_each_once(walls);
-    return walls;
+    sort_unique(found);
+    return found;
   }
 
  private:
@@ -129,6 +142,15 @@ class WallIndex {
   std::vector<std::uint32_t> wall_;
   std::optional<spatial::KdTree> tree_;
 };
+
+/// Calls visit(other, its meetings) for each other surface.
+template <typename Visit>
+void for_each_other(const std::vector<Meeting>& meetings, const Visit& visit) {
+  for (std::size_t begin = 0, end = 0; begin < meetings.size(); begin = end) {
+    while (end < meetings.size() && meetings[end].other == meetings[begin].other) ++end;
+    visit(meetings[begin].other, std::span(meetings).subspan(begin, end - begin));
+  }
+}
 
 /// Of folds that were found from both ends of a wall, the first.
 std::vector<Piece> each_once(std::vector<Piece> folds, double spacing) {
@@ -173,24 +195,26 @@ std::vector<Piece> find_wall_folds(const OrderedPoints& cloud,
   parallel_blocks(walls.size(), kWallsAtOnce, [&](std::size_t begin, std::size_t end) {
     for (std::size_t w = begin; w < end; ++w) {
       const ExactWall& wall = walls[w];
-      const auto search = [&](const TwoLines& lines, const auto& other_surface) {
+      const auto search = [&](const TwoLines& lines, std::span<const Meeting> meetings,
+                              const auto& other_surface) {
         if (!lines) return;
         for (const PlaneLine& line : *lines) {
-          const auto near = member_beside(cloud, wall, line, spacing);
+          const auto near = place_beside(cloud, meetings, line, spacing);
           if (!near) continue;
           const FoldSearch folds(cloud, surface_of(wall, line), other_surface(line), line, spacing);
           append(of_walls[w], folds.folds_from(*near));
         }
       };
-      for (const std::uint32_t p : planes_beside(wall, pairs)) {
-        search(lines_where_meet(wall, planes[p]),
+      for_each_other(planes_beside(wall, pairs), [&](std::uint32_t p, auto meetings) {
+        search(lines_where_meet(wall, planes[p]), meetings,
                [&](const PlaneLine&) { return surface_of(planes[p]); });
-      }
-      for (const std::uint32_t o : index.later_walls_beside(
-               cloud, wall, static_cast<std::uint32_t>(w), kBetweenWalls * spacing)) {
-        search(lines_where_meet(wall, walls[o]),
-               [&](const PlaneLine& line) { return surface_of(walls[o], line); });
-      }
+      });
+      const auto number = static_cast<std::uint32_t>(w);
+      for_each_other(index.later_walls_beside(cloud, wall, number, kBetweenWalls * spacing),
+                     [&](std::uint32_t o, auto meetings) {
+                       search(lines_where_meet(wall, walls[o]), meetings,
+                              [&](const PlaneLine& line) { return surface_of(walls[o], line); });
+                     });
       std::erase_if(of_walls[w], [&](const Piece& fold) {
         return length_of(fold) < kLeastOfWallFold * spacing;
       });
