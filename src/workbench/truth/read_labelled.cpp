@@ -32,7 +32,8 @@ std::vector<std::uint8_t> labels_in(const PointCloud& cloud, const char* column)
   for (std::size_t i = 0; i < labels.size(); ++i) {
     labels[i] = static_cast<std::uint8_t>(attribute->value(i));
   }
-  return formats::have_labels(labels) ? labels : std::vector<std::uint8_t>();
+  if (!formats::have_labels(labels)) labels.clear();
+  return labels;
 }
 
 /// The labels of a result are no truth: those that were painted, or those of its input, are.
