@@ -19,8 +19,8 @@ struct Bar : PlanePart {
 
   void add_point(double x, double y, double z) {
     const double from_end = std::min(z, kLong - z);
-    add({x, y, z}, Vec3::UnitX(),
-        from_end < kNear || is_at_edge(x, y));  // its normals are not used
+    const bool is_edge = from_end < kNear || is_at_edge(x, y);
+    add({x, y, z}, Vec3::UnitX(), is_edge);  // its normals are not used
   }
   void add_ends(double half) {
     for (const double z : {0.0, kLong}) {
@@ -46,7 +46,8 @@ struct Bar : PlanePart {
   }
   void add_flat(double x, double half) {
     for (int i = 0; i < static_cast<int>(2.0 * half * kLong); ++i) {
-      add_point(x, half * (2.0 * random.uniform() - 1.0), kLong * random.uniform());
+      const double y = half * (2.0 * random.uniform() - 1.0);
+      add_point(x, y, kLong * random.uniform());
     }
   }
 };

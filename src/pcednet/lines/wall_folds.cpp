@@ -25,7 +25,7 @@ constexpr double kBetweenWalls = 2.5;     ///< of their points, where they may m
 constexpr double kSameEnds = 1.0;         ///< of folds that were found twice
 constexpr double kLeastOfWallFold = 2.0;  ///< length
 
-/// One end of the wall's arc or both: where a circle about its axis meets another curve.
+/// The lines along a wall at both places where its circle meets another surface.
 using TwoLines = std::optional<std::array<PlaneLine, 2>>;
 
 TwoLines two_lines(const Vec3& middle, const Vec3& half, const Vec3& along) {
