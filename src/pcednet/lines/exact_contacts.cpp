@@ -30,13 +30,6 @@ void add_contacts(std::uint32_t point, std::span<const std::uint32_t> plane_at,
   }
 }
 
-void sort_unique(std::vector<PlaneContact>& contacts) {
-  const auto less = [](const PlaneContact& a, const PlaneContact& b) { return a.key() < b.key(); };
-  const auto same = [](const PlaneContact& a, const PlaneContact& b) { return a.key() == b.key(); };
-  std::sort(contacts.begin(), contacts.end(), less);
-  contacts.erase(std::unique(contacts.begin(), contacts.end(), same), contacts.end());
-}
-
 }  // namespace
 
 std::vector<PlaneContact> contacts_of(const OrderedPoints& cloud,

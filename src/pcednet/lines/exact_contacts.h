@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <compare>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -20,8 +22,15 @@ struct PlaneContact {
   std::uint32_t point;
 
   auto planes() const { return std::tie(a, b); }
-  auto key() const { return std::tie(a, b, point); }
+  auto operator<=>(const PlaneContact&) const = default;
 };
+
+/// Ascending, each once.
+template <typename Each>
+void sort_unique(std::vector<Each>& all) {
+  std::sort(all.begin(), all.end());
+  all.erase(std::unique(all.begin(), all.end()), all.end());
+}
 
 /// All contacts, each once, in the order of the planes, then of the points.
 std::vector<PlaneContact> contacts_of(const OrderedPoints& cloud,

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <compare>
 #include <optional>
-#include <tuple>
 #include <utility>
 
 #include "pcednet/core/parallel.h"
@@ -64,16 +64,8 @@ TwoLines lines_where_meet(const ExactWall& a, const ExactWall& b) {
 struct Meeting {
   std::uint32_t other, point;
 
-  auto key() const { return std::tie(other, point); }
+  auto operator<=>(const Meeting&) const = default;
 };
-
-/// By the other surface, each once.
-void sort_unique(std::vector<Meeting>& meetings) {
-  const auto less = [](const Meeting& a, const Meeting& b) { return a.key() < b.key(); };
-  const auto same = [](const Meeting& a, const Meeting& b) { return a.key() == b.key(); };
-  std::sort(meetings.begin(), meetings.end(), less);
-  meetings.erase(std::unique(meetings.begin(), meetings.end(), same), meetings.end());
-}
 
 /// One of the points beside the line.
 std::optional<Vec3> place_beside(const OrderedPoints& cloud, std::span<const Meeting> meetings,
