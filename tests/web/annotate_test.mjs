@@ -30,7 +30,7 @@ async function stop() {
   await ended;
 }
 
-async function open(address = server.address) {
+async function open(address = server.address, begin = async () => {}) {
   // In a context that outlives the page: to be closed with it cuts off what the page says as it leaves.
   const context = await browser.newContext({ viewport: { width: 960, height: 640 } });
   const opened = await context.newPage();
@@ -51,6 +51,7 @@ async function open(address = server.address) {
       r.url() !== address &&
       complaints.push(`asks for ${r.url()}`),
   );
+  await begin(opened);
   await opened.goto(address);
   await opened.waitForURL(server.address);
   await settled(opened);
@@ -369,6 +370,26 @@ test("still paints after a reload, and in another window once the first is close
   await page.close({ runBeforeUnload: true });
   await second.waitForFunction(() => annotator.store.now.writer);
   page = second;
+});
+
+test("paints if the window that painted leaves before this one hears of anything", async () => {
+  let entered, left;
+  const has = { entered: new Promise((done) => (entered = done)), left: new Promise((done) => (left = done)) };
+  const opening = open(server.address, async (opened) => {
+    await opened.route(/\/api\/(events|session)/, async (route) => {
+      await has.left;
+      await route.continue();
+    });
+    opened.on("response", (response) => new URL(response.url()).pathname === "/api/window" && entered());
+  });
+  await has.entered;
+  const first = page.context();
+  await page.close({ runBeforeUnload: true });
+  while (first.pages().length > 0) await new Promise((done) => setTimeout(done, 100));
+  left();
+  page = await opening;
+  await page.waitForFunction(() => annotator.store.now.writer);
+  await page.unrouteAll({ behavior: "wait" });
 });
 
 test("paints again when the window that painted ends without a word", async () => {

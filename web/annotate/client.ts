@@ -168,8 +168,7 @@ export class Client {
     });
     this.events.addEventListener("open", () => {
       if (!this.opened) this.attempt(this.refresh()); // what happened before this was not heard
-      else if (store.now.connected) this.attempt(this.lookWhoPaints());
-      if (!store.now.connected) this.attempt(this.returned());
+      this.attempt(store.now.connected ? this.lookWhoPaints() : this.returned());
     });
   }
 
