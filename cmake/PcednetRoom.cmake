@@ -1,10 +1,11 @@
-# pcednet_room(NAME USES room... LINKS library... PRIVATE_LINKS library...)
-# workbench_room(NAME USES room... LINKS library... PRIVATE_LINKS library...)
+# pcednet_room(NAME [QUICK] USES room... LINKS library... PRIVATE_LINKS library...)
+# workbench_room(NAME [QUICK] USES room... LINKS library... PRIVATE_LINKS library...)
 #
 # Makes the library target pcednet_NAME (alias pcednet::NAME, workbench::NAME) from every source of
 # the current folder; a room within another is named io/las, its target pcednet_io_las. USES names
 # the rooms whose headers it includes; LINKS are outside libraries that appear in its headers,
-# PRIVATE_LINKS those that appear only in its sources. Rooms of the library are installed, as part of
+# PRIVATE_LINKS those that appear only in its sources. A QUICK room takes little of the time of any
+# run, and is compiled for a quick build. Rooms of the library are installed, as part of
 # the package's component PCEDNET_COMPONENT; those of the workbench are not.
 function(pcednet_room name)
   pcednet_make_room(${name} pcednet ${ARGN})
@@ -22,7 +23,7 @@ function(workbench_room name)
 endfunction()
 
 function(pcednet_make_room name wing)
-  cmake_parse_arguments(room "" "" "USES;LINKS;PRIVATE_LINKS" ${ARGN})
+  cmake_parse_arguments(room "QUICK" "" "USES;LINKS;PRIVATE_LINKS" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
   file(GLOB headers CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.h)
   string(REPLACE "/" "_" flat ${name})
@@ -33,7 +34,12 @@ function(pcednet_make_room name wing)
     $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_compile_features(${target} PUBLIC cxx_std_20)
   pcednet_compile_options(${target})
-  pcednet_precompile(${target} pcednet_core)
+  if(room_QUICK)
+    target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
+    pcednet_precompile(${target} pcednet_formats <nlohmann/json.hpp>)
+  else()
+    pcednet_precompile(${target} pcednet_core)
+  endif()
   string(REPLACE "/" "_" used_rooms "${room_USES}")
   foreach(used ${used_rooms})
     target_link_libraries(${target} PUBLIC pcednet_${used})

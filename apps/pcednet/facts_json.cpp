@@ -7,23 +7,21 @@
 namespace pcednet::app {
 namespace {
 
-using nlohmann::ordered_json;
-
-ordered_json json_of(const Vec3& v) {
+OrderedJson json_of(const Vec3& v) {
   return {v.x(), v.y(), v.z()};
 }
 
 template <typename Value>
-ordered_json json_of(const std::map<Value, std::size_t>& counts) {
-  ordered_json described = ordered_json::object();
+OrderedJson json_of(const std::map<Value, std::size_t>& counts) {
+  OrderedJson described = OrderedJson::object();
   for (const auto& [value, count] : counts) described[std::to_string(value)] = count;
   return described;
 }
 
-ordered_json json_of(const formats::AttributeFacts& attribute) {
-  ordered_json described = {{"name", attribute.name},
-                            {"type", name_of(attribute.type)},
-                            {"components", attribute.components}};
+OrderedJson json_of(const formats::AttributeFacts& attribute) {
+  OrderedJson described = {{"name", attribute.name},
+                           {"type", name_of(attribute.type)},
+                           {"components", attribute.components}};
   if (attribute.has_numbers()) {
     described["min"] = attribute.least;
     described["max"] = attribute.largest;
@@ -31,8 +29,8 @@ ordered_json json_of(const formats::AttributeFacts& attribute) {
   return described;
 }
 
-ordered_json json_of(const io::E57Field& field) {
-  ordered_json described = {{"name", field.name}, {"kind", name_of(field.kind)}};
+OrderedJson json_of(const io::E57Field& field) {
+  OrderedJson described = {{"name", field.name}, {"kind", name_of(field.kind)}};
   if (field.is_integer()) {
     described["bits"] = field.bits();
     described["min"] = field.least;
@@ -45,8 +43,8 @@ ordered_json json_of(const io::E57Field& field) {
   return described;
 }
 
-ordered_json json_of(const io::E57Scan& scan) {
-  ordered_json described = {
+OrderedJson json_of(const io::E57Scan& scan) {
+  OrderedJson described = {
       {"name", scan.name}, {"guid", scan.guid}, {"sensor", scan.sensor}, {"points", scan.points}};
   if (scan.has_pose) {
     const Eigen::Quaterniond& q = scan.rotation;
@@ -54,19 +52,19 @@ ordered_json json_of(const io::E57Scan& scan) {
                          {"translation", json_of(scan.translation)}};
   }
   described["scanner_known"] = scan.knows_scanner();
-  described["fields"] = ordered_json::array();
+  described["fields"] = OrderedJson::array();
   for (const io::E57Field& field : scan.fields) described["fields"].push_back(json_of(field));
   return described;
 }
 
-ordered_json json_of(const io::E57Document& document) {
-  ordered_json scans = ordered_json::array();
+OrderedJson json_of(const io::E57Document& document) {
+  OrderedJson scans = OrderedJson::array();
   for (const io::E57Scan& scan : document.scans) scans.push_back(json_of(scan));
   return {{"coordinate_system", document.coordinate_system}, {"scans", scans}};
 }
 
-ordered_json json_of(const io::LasFacts& las) {
-  ordered_json records = ordered_json::array();
+OrderedJson json_of(const io::LasFacts& las) {
+  OrderedJson records = OrderedJson::array();
   for (const io::LasFacts::Record& record : las.records) {
     records.push_back({{"user_id", record.user_id},
                        {"record_id", record.record_id},
@@ -103,11 +101,11 @@ const char* name_of(io::E57Field::Kind kind) {
   return kNames[static_cast<std::size_t>(kind)];
 }
 
-ordered_json json_of(const std::filesystem::path& path, const formats::CloudFacts& facts) {
-  ordered_json file = {{"file", path.string()},
-                       {"format", facts.format},
-                       {"points", facts.points},
-                       {"position_type", name_of(facts.position_type)}};
+OrderedJson json_of(const std::filesystem::path& path, const formats::CloudFacts& facts) {
+  OrderedJson file = {{"file", path.string()},
+                      {"format", facts.format},
+                      {"points", facts.points},
+                      {"position_type", name_of(facts.position_type)}};
   if (facts.read < facts.points) file["points_read"] = facts.read;
   if (!facts.bounds.empty()) {
     file["bounds"] = {{"min", json_of(facts.bounds.min)}, {"max", json_of(facts.bounds.max)}};
@@ -120,7 +118,7 @@ ordered_json json_of(const std::filesystem::path& path, const formats::CloudFact
   file["normals"] = facts.has_normals;
   file["colours"] = facts.has_colours;
   if (!facts.labels.empty()) file["labels"] = json_of(facts.labels);
-  file["attributes"] = ordered_json::array();
+  file["attributes"] = OrderedJson::array();
   for (const auto& attribute : facts.attributes) file["attributes"].push_back(json_of(attribute));
   file["comments"] = facts.comments;
   file["elements"] = facts.elements;

@@ -16,7 +16,7 @@ std::string name_of_class(std::uint8_t label, const ClassTable& table) {
 
 /// As JSON spells it: with a point or an exponent even if the number is whole.
 std::string spelled(double number) {
-  return nlohmann::json(number).dump();
+  return to_text(Json(number));
 }
 
 template <typename Numbers>

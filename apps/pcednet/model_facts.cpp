@@ -22,8 +22,8 @@ bool is_model_file(const std::filesystem::path& path) {
   return path.extension() == ".safetensors";
 }
 
-nlohmann::ordered_json json_of(const std::filesystem::path& path, const detect::EdgeModel& model) {
-  nlohmann::ordered_json classes = nlohmann::ordered_json::array();
+OrderedJson json_of(const std::filesystem::path& path, const detect::EdgeModel& model) {
+  OrderedJson classes = OrderedJson::array();
   for (std::size_t id = 0; id < model.table.size(); ++id) {
     classes.push_back({{"id", id},
                        {"name", model.table[id].name},

@@ -1,9 +1,9 @@
 #pragma once
 
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <string>
 
+#include "pcednet/core/json.h"
 #include "pcednet/detect/model.h"
 
 namespace pcednet::app {
@@ -12,7 +12,7 @@ namespace pcednet::app {
 bool is_model_file(const std::filesystem::path& path);
 
 /// The output of `info` for a model, for programs and for people.
-nlohmann::ordered_json json_of(const std::filesystem::path& path, const detect::EdgeModel& model);
+OrderedJson json_of(const std::filesystem::path& path, const detect::EdgeModel& model);
 std::string text_of(const std::filesystem::path& path, const detect::EdgeModel& model);
 
 }  // namespace pcednet::app

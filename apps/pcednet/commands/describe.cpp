@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 
@@ -14,6 +13,7 @@
 #include "number_options.h"
 #include "pcednet/core/blocks.h"
 #include "pcednet/core/error.h"
+#include "pcednet/core/json.h"
 #include "pcednet/core/version.h"
 #include "pcednet/gls/scale_space.h"
 #include "pcednet/io/npy.h"
@@ -23,7 +23,6 @@ namespace pcednet::app {
 namespace {
 
 namespace fs = std::filesystem;
-using nlohmann::ordered_json;
 
 constexpr std::size_t kBlock = std::size_t{1} << 18;  // points described at a time
 
@@ -76,17 +75,17 @@ StatusCounts write_matrix(const gls::ScaleSpace& space, std::size_t points, io::
   return counts;
 }
 
-ordered_json to_json(const DescribeArguments& arguments, const gls::ScaleSpace& space,
-                     std::size_t points, const StatusCounts& counts) {
+OrderedJson to_json(const DescribeArguments& arguments, const gls::ScaleSpace& space,
+                    std::size_t points, const StatusCounts& counts) {
   const gls::ScaleSpaceOptions& options = space.options();
-  ordered_json json = {{"version", kVersion},
-                       {"input", fs::path(arguments.input).filename().string()},
-                       {"points", points},
-                       {"scales", space.scales()},
-                       {"features", gls::column_names(options)},
-                       {"reconstruction", gls::name_of(options.reconstruction)},
-                       {"gate", nullptr},
-                       {"engine", options.engine == gls::Engine::kExact ? "exact" : "fast"}};
+  OrderedJson json = {{"version", kVersion},
+                      {"input", fs::path(arguments.input).filename().string()},
+                      {"points", points},
+                      {"scales", space.scales()},
+                      {"features", gls::column_names(options)},
+                      {"reconstruction", gls::name_of(options.reconstruction)},
+                      {"gate", nullptr},
+                      {"engine", options.engine == gls::Engine::kExact ? "exact" : "fast"}};
   if (gls::projects(options.reconstruction)) {
     json["max_projection_steps"] = options.max_projection_steps;
   }
@@ -127,8 +126,7 @@ void describe(const DescribeArguments& arguments, const Common& common) {
                        common.overwrite());
   const StatusCounts counts = write_matrix(space, cloud.size(), matrix, progress);
   matrix.commit();
-  settings.write(to_json(arguments, space, cloud.size(), counts)
-                     .dump(2, ' ', false, ordered_json::error_handler_t::replace) +
+  settings.write(to_text(to_json(arguments, space, cloud.size(), counts), 2, NotUtf8::kReplace) +
                  "\n");
   settings.commit();
 }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include "batch.h"
@@ -11,6 +10,7 @@
 #include "facts.h"
 #include "model_facts.h"
 #include "pcednet/core/error.h"
+#include "pcednet/core/json.h"
 #include "pcednet/core/output_file.h"
 #include "pcednet/detect/cloud_kind.h"
 #include "pcednet/formats/format.h"
@@ -21,18 +21,16 @@
 namespace pcednet::app {
 namespace {
 
-using nlohmann::ordered_json;
-
 struct InfoRequest {
   std::vector<std::string> inputs;
   std::string json, vpc;
   bool all = false;
 };
 
-void write_json(const InfoRequest& request, const ordered_json& files, const Common& common) {
+void write_json(const InfoRequest& request, const OrderedJson& files, const Common& common) {
   if (request.json.empty()) return;
   // Names and comments of foreign files need not be UTF-8.
-  const std::string text = files.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+  const std::string text = to_text(files, 2, NotUtf8::kReplace) + "\n";
   if (request.json == "-") {
     fmt::print("{}", text);
   } else {
@@ -86,7 +84,7 @@ void info(const InfoRequest& request, const Common& common) {
   const Progress progress = console_progress(common);
   const Inputs inputs = find_inputs(request.inputs);
   Batch batch(inputs);
-  ordered_json files = ordered_json::array();
+  OrderedJson files = OrderedJson::array();
   const auto add_failure = [&](const Failure& failure) {
     files.push_back({{"file", failure.input}, {"error", failure.error.what()}});
   };

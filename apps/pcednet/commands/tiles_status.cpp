@@ -4,13 +4,13 @@
 #include <array>
 #include <filesystem>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "commands.h"
 #include "pcednet/core/error.h"
+#include "pcednet/core/json.h"
 #include "pcednet/tiles/inputs.h"
 #include "pcednet/tiles/join.h"
 #include "pcednet/tiles/plan.h"
@@ -80,12 +80,12 @@ std::string status_text(const tiles::Plan& plan, const Status& status) {
   return text + "  next: pcednet tiles " + next_step(plan, status) + "\n";
 }
 
-nlohmann::ordered_json status_json(const tiles::Plan& plan, const Status& status) {
-  nlohmann::ordered_json json = {{"plan", plan.path.string()},
-                                 {"digest", plan.digest},
-                                 {"points", plan.points()},
-                                 {"tiles", plan.tiles.size()},
-                                 {"done_points", status.groups[2].points}};
+OrderedJson status_json(const tiles::Plan& plan, const Status& status) {
+  OrderedJson json = {{"plan", plan.path.string()},
+                      {"digest", plan.digest},
+                      {"points", plan.points()},
+                      {"tiles", plan.tiles.size()},
+                      {"done_points", status.groups[2].points}};
   for (const std::size_t state : {2, 0, 1}) json[kStates[state]] = status.groups[state].ids;
   json["in_the_way"] = status.strange;
   return json;
@@ -137,10 +137,7 @@ void show_status(const StatusArguments& arguments, const Common& common) {
   check_not_input(arguments.json, arguments.plan);
   const tiles::Plan plan = tiles::read_plan(arguments.plan);
   const Status status = find_status(plan, arguments.verify, console_progress(common));
-  const std::string json =
-      status_json(plan, status)
-          .dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) +
-      "\n";
+  const std::string json = to_text(status_json(plan, status), 1, NotUtf8::kReplace) + "\n";
   fmt::print("{}", arguments.json == "-" ? json : status_text(plan, status));
   if (!arguments.json.empty() && arguments.json != "-") {
     write_text_file(arguments.json, json, common.overwrite());

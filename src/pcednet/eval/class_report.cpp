@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
+#include "pcednet/core/json.h"
 
 namespace pcednet::eval {
 namespace {
@@ -11,7 +11,7 @@ std::size_t points_of(const ConfusionCounts& counts) {
   return counts.tp + counts.fn;
 }
 
-nlohmann::ordered_json class_scores_json(const Scores& scores) {
+OrderedJson class_scores_json(const Scores& scores) {
   return {{"precision", scores.precision},
           {"recall", scores.recall},
           {"f1", scores.f1},
@@ -63,10 +63,10 @@ void add_cloud(std::span<const std::uint8_t> truth, std::span<const std::uint8_t
 }
 
 std::string to_json(const ClassReport& report) {
-  nlohmann::ordered_json json;
-  json["classes"] = nlohmann::ordered_json::array();
+  OrderedJson json;
+  json["classes"] = OrderedJson::array();
   for (std::size_t id = 0; id < report.counts.size(); ++id) {
-    nlohmann::ordered_json row = {
+    OrderedJson row = {
         {"id", id}, {"name", report.table[id].name}, {"points", points_of(report.counts[id])}};
     row.update(class_scores_json(scores_of(report.counts[id])));
     json["classes"].push_back(row);
@@ -75,7 +75,7 @@ std::string to_json(const ClassReport& report) {
   json["accuracy"] = share_of_right(report);
   json["points"] = report.points;
   json["clouds"] = report.clouds;
-  return json.dump(2) + "\n";
+  return to_text(json, 2) + "\n";
 }
 
 std::string to_table(const ClassReport& report) {

@@ -2,15 +2,13 @@
 
 #include <array>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
+#include "pcednet/core/json.h"
 #include "pcednet/core/median.h"
 #include "pcednet/eval/line_scores.h"
 
 namespace pcednet::eval {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 struct Column {
   const char* heading;
@@ -55,10 +53,10 @@ double middle(const std::vector<double>& values) {
   return median(values);
 }
 
-void put(Json& row, const LineScores& scores) {
+void put(OrderedJson& row, const LineScores& scores) {
   for (const Column& column : kColumns) {
     const double value = scores.*column.score;
-    row[column.key] = std::isnan(value) ? Json(nullptr) : Json(value);
+    row[column.key] = std::isnan(value) ? OrderedJson(nullptr) : OrderedJson(value);
   }
 }
 
@@ -76,19 +74,19 @@ std::string table_row(const std::string& name, const std::string& lines, const s
 }  // namespace
 
 std::string to_json(const std::vector<NamedLineScores>& clouds) {
-  Json report;
-  report["clouds"] = Json::array();
+  OrderedJson report;
+  report["clouds"] = OrderedJson::array();
   for (const auto& [name, scores] : clouds) {
-    Json row;
+    OrderedJson row;
     row["name"] = name;
     row["lines"] = scores.lines;
     row["true_curves"] = scores.true_curves;
     put(row, scores);
     report["clouds"].push_back(row);
   }
-  put(report["median"] = Json::object(), over(clouds, middle));
-  put(report["mean"] = Json::object(), over(clouds, mean));
-  return report.dump(2) + "\n";
+  put(report["median"] = OrderedJson::object(), over(clouds, middle));
+  put(report["mean"] = OrderedJson::object(), over(clouds, mean));
+  return to_text(report, 2) + "\n";
 }
 
 std::string to_table(const std::vector<NamedLineScores>& clouds) {

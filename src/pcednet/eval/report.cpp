@@ -2,16 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
-
+#include "pcednet/core/json.h"
 #include "pcednet/core/median.h"
 
 namespace pcednet::eval {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
-void put(Json& row, const ConfusionCounts& counts) {
+void put(OrderedJson& row, const ConfusionCounts& counts) {
   row["points"] = counts.total();
   row["tp"] = counts.tp;
   row["fp"] = counts.fp;
@@ -19,7 +16,7 @@ void put(Json& row, const ConfusionCounts& counts) {
   row["fn"] = counts.fn;
 }
 
-void put(Json& row, const Scores& scores) {
+void put(OrderedJson& row, const Scores& scores) {
   row["precision"] = scores.precision;
   row["recall"] = scores.recall;
   row["mcc"] = scores.mcc;
@@ -63,30 +60,30 @@ ConfusionCounts pooled_counts(const std::vector<CloudScore>& clouds) {
 }
 
 std::string to_json(const std::vector<CloudScore>& clouds, const Calibration* calibration) {
-  Json report;
-  report["clouds"] = Json::array();
+  OrderedJson report;
+  report["clouds"] = OrderedJson::array();
   for (const CloudScore& cloud : clouds) {
-    Json row;
+    OrderedJson row;
     row["name"] = cloud.name;
     put(row, cloud.counts);
     put(row, scores_of(cloud.counts));
     report["clouds"].push_back(row);
   }
-  put(report["median"] = Json::object(), median_scores(clouds));
+  put(report["median"] = OrderedJson::object(), median_scores(clouds));
   const ConfusionCounts pooled = pooled_counts(clouds);
-  put(report["pooled"] = Json::object(), pooled);
+  put(report["pooled"] = OrderedJson::object(), pooled);
   put(report["pooled"], scores_of(pooled));
   if (calibration) {
-    Json& json = report["calibration"];
+    OrderedJson& json = report["calibration"];
     json["error"] = calibration_error(*calibration);
-    json["bins"] = Json::array();
+    json["bins"] = OrderedJson::array();
     for (const CalibrationBin& bin : *calibration) {
       const auto [probability, positive] = means_of(bin);
       json["bins"].push_back(
           {{"points", bin.points}, {"probability", probability}, {"positive", positive}});
     }
   }
-  return report.dump(2) + "\n";
+  return to_text(report, 2) + "\n";
 }
 
 std::string to_table(const std::vector<CloudScore>& clouds) {

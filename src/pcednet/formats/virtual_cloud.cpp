@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <nlohmann/json.hpp>
 #include <set>
 
 #include "pcednet/core/error.h"
+#include "pcednet/core/json.h"
 #include "pcednet/formats/file_name.h"
 #include "pcednet/formats/format.h"
 #include "pcednet/io/las/facts.h"
@@ -19,8 +19,6 @@ namespace pcednet::formats {
 namespace {
 
 namespace fs = std::filesystem;
-using nlohmann::json;
-using nlohmann::ordered_json;
 using Ring = std::vector<std::array<double, 2>>;
 
 const char* stac_type(ScalarType type) {
@@ -64,11 +62,11 @@ Ring corners_of(const BoundingBox& box) {
           {box.min.x(), box.min.y()}};
 }
 
-ordered_json polygon(const Ring& ring) {
-  return {{"type", "Polygon"}, {"coordinates", ordered_json::array({ring})}};
+OrderedJson polygon(const Ring& ring) {
+  return {{"type", "Polygon"}, {"coordinates", OrderedJson::array({ring})}};
 }
 
-ordered_json box_around(const Ring& ring, const BoundingBox& heights) {
+OrderedJson box_around(const Ring& ring, const BoundingBox& heights) {
   const auto [west, east] = std::minmax_element(ring.begin(), ring.end());
   const auto by_latitude = [](const auto& a, const auto& b) { return a[1] < b[1]; };
   const auto [south, north] = std::minmax_element(ring.begin(), ring.end(), by_latitude);
@@ -76,7 +74,7 @@ ordered_json box_around(const Ring& ring, const BoundingBox& heights) {
 }
 
 /// The day as STAC writes it; null if it is invalid.
-ordered_json day_of(const VirtualFile& file) {
+OrderedJson day_of(const VirtualFile& file) {
   using namespace std::chrono;
   if (file.created_year == 0 || file.created_day == 0 || file.created_day > 366) return nullptr;
   const sys_days first = year(static_cast<int>(file.created_year)) / January / 1;
@@ -94,8 +92,8 @@ std::string reference_to(const fs::path& file, const fs::path& folder) {
   return is_relative ? "./" + relative.generic_string() : fs::absolute(file).generic_string();
 }
 
-ordered_json properties_of(const VirtualFile& file, const std::string& definition) {
-  ordered_json schemas = ordered_json::array();
+OrderedJson properties_of(const VirtualFile& file, const std::string& definition) {
+  OrderedJson schemas = OrderedJson::array();
   for (const VirtualFile::Field& field : file.fields) {
     schemas.push_back(
         {{"name", field.name}, {"size", size_of(field.type)}, {"type", stac_type(field.type)}});
@@ -113,7 +111,7 @@ ordered_json properties_of(const VirtualFile& file, const std::string& definitio
            {box.min.x(), box.min.y(), box.min.z(), box.max.x(), box.max.y(), box.max.z()}}};
 }
 
-ordered_json item_of(const VirtualFile& file, const std::string& id, const fs::path& folder) {
+OrderedJson item_of(const VirtualFile& file, const std::string& id, const fs::path& folder) {
   Ring ring = corners_of(file.bounds);
   const auto on_earth = io::to_wgs84(file.coordinate_system, ring);
   std::string definition;
@@ -131,19 +129,19 @@ ordered_json item_of(const VirtualFile& file, const std::string& id, const fs::p
       {"geometry", polygon(ring)},
       {"bbox", box_around(ring, file.bounds)},
       {"properties", properties_of(file, definition)},
-      {"links", ordered_json::array()},
+      {"links", OrderedJson::array()},
       {"assets",
        {{"data",
-         {{"href", reference_to(file.path, folder)}, {"roles", ordered_json::array({"data"})}}}}}};
+         {{"href", reference_to(file.path, folder)}, {"roles", OrderedJson::array({"data"})}}}}}};
 }
 
 std::vector<std::string> remarks_on(std::span<const VirtualFile> files, std::size_t empty,
-                                    const ordered_json& items) {
+                                    const OrderedJson& items) {
   std::vector<std::string> remarks;
   if (empty > 0)
     remarks.push_back(fmt::format("{} of {} files have no points", empty, files.size()));
   std::set<std::string> systems;
-  for (const ordered_json& item : items) systems.insert(item["properties"]["proj:wkt2"]);
+  for (const OrderedJson& item : items) systems.insert(item["properties"]["proj:wkt2"]);
   if (systems.size() > 1) {
     remarks.emplace_back("the files are not all of one coordinate system: QGIS takes the first");
   }
@@ -159,11 +157,11 @@ std::vector<std::string> remarks_on(std::span<const VirtualFile> files, std::siz
 }
 
 /// The assets of an item that are point data: by role, otherwise by name.
-std::vector<std::string> references_in(const json& item) {
+std::vector<std::string> references_in(const Json& item) {
   std::vector<std::string> references;
-  const json assets = item.is_object() ? item.value("assets", json::object()) : json::object();
+  const Json assets = item.is_object() ? item.value("assets", Json::object()) : Json::object();
   for (const auto& [name, asset] : assets.items()) {
-    const json roles = asset.is_object() ? asset.value("roles", json()) : json();
+    const Json roles = asset.is_object() ? asset.value("roles", Json()) : Json();
     const bool is_data = roles.is_array()
                              ? std::find(roles.begin(), roles.end(), "data") != roles.end()
                              : name == "data";
@@ -190,6 +188,15 @@ fs::path file_behind(const std::string& reference, const fs::path& cloud) {
   return path.lexically_normal();
 }
 
+/// Null where the file holds none.
+Json json_in(const fs::path& path) {
+  try {
+    return parse_json(io::InputFile(path).text());
+  } catch (const Json::parse_error&) {
+    return {};
+  }
+}
+
 }  // namespace
 
 bool is_virtual_cloud(const fs::path& path) {
@@ -197,13 +204,13 @@ bool is_virtual_cloud(const fs::path& path) {
 }
 
 std::vector<fs::path> files_of_virtual_cloud(const fs::path& path) {
-  const auto whole = json::parse(io::InputFile(path).text(), nullptr, false);
+  const Json whole = json_in(path);
   const auto items = whole.is_object() ? whole.find("features") : whole.end();
   if (!whole.is_object() || items == whole.end() || !items->is_array()) {
     throw io::unreadable(path, "not a virtual point cloud: no JSON with features");
   }
   std::vector<fs::path> files;
-  for (const json& item : *items) {
+  for (const Json& item : *items) {
     for (const std::string& reference : references_in(item)) {
       files.push_back(file_behind(reference, path));
     }
@@ -237,7 +244,7 @@ std::vector<std::string> write_virtual_cloud(const fs::path& path,
                                              std::span<const VirtualFile> files,
                                              Overwrite overwrite) {
   const fs::path folder = fs::absolute(path).parent_path();
-  ordered_json items = ordered_json::array();
+  OrderedJson items = OrderedJson::array();
   std::set<std::string> ids;
   for (const VirtualFile& file : files) {
     if (file.points == 0) continue;
@@ -250,10 +257,9 @@ std::vector<std::string> write_virtual_cloud(const fs::path& path,
     throw Error(ErrorKind::kInsufficient, path.string() + ": none of its files has points");
   }
   std::vector<std::string> remarks = remarks_on(files, files.size() - items.size(), items);
-  const ordered_json whole = {{"type", "FeatureCollection"}, {"features", std::move(items)}};
+  const OrderedJson whole = {{"type", "FeatureCollection"}, {"features", std::move(items)}};
   // Names of systems and of extra bytes need not be UTF-8.
-  write_text_file(path, whole.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n",
-                  overwrite);
+  write_text_file(path, to_text(whole, 2, NotUtf8::kReplace) + "\n", overwrite);
   return remarks;
 }
 

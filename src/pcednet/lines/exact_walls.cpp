@@ -1,7 +1,6 @@
 #include "pcednet/lines/exact_walls.h"
 
 #include <Eigen/Geometry>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -208,22 +207,30 @@ double WallGrowth::rise() const {
   return most - least;
 }
 
+/// Takes away from `values` what of them is proportional to `part`.
+void take_away(const Eigen::ArrayXd& part, Eigen::ArrayXd& values) {
+  const double square = part.square().sum();
+  if (square > 0.0) values -= (values * part).sum() / square * part;
+}
+
 /// Whether the distances of the members from the circle follow from their heights, as on a cone or
 /// a torus: on facets they do not.
 bool WallGrowth::leans() const {
   const auto count = static_cast<Eigen::Index>(members_.size());
-  Eigen::MatrixX3d powers(count, 3);
-  Eigen::VectorXd off(count);
+  Eigen::ArrayXd height(count), off(count);
   for (Eigen::Index k = 0; k < count; ++k) {
     const std::uint32_t i = members_[static_cast<std::size_t>(k)];
-    const double height = points_.heights[i];
-    powers.row(k) << 1.0, height, height * height;
+    height[k] = points_.heights[i];
     off[k] = (points_.places[i] - circle_.centre).norm() - circle_.radius;
   }
-  const Eigen::VectorXd rest = off - powers * powers.colPivHouseholderQr().solve(off);
+  off -= off.mean(), height -= height.mean();
+  const double before = off.square().sum();
+  take_away(height, off);
+  Eigen::ArrayXd bow = height.square();
+  bow -= bow.mean();
+  take_away(height, bow), take_away(bow, off);
   const auto n = static_cast<double>(count);
-  return rest.squaredNorm() / (n - 3.0) <
-         kMostOfLean * (off.array() - off.mean()).matrix().squaredNorm() / (n - 1.0);
+  return off.square().sum() / (n - 3.0) < kMostOfLean * before / (n - 1.0);
 }
 
 /// Whether the members are enough, on a curve, and as near to it as they should be.

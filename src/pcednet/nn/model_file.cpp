@@ -5,18 +5,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <span>
 #include <utility>
 
 #include "pcednet/core/error.h"
+#include "pcednet/core/json.h"
 #include "pcednet/nn/metadata.h"
 #include "pcednet/nn/plan.h"
 
 namespace pcednet::nn {
 namespace {
-
-using Json = nlohmann::json;
 
 constexpr std::string_view kOwn = "nn.";
 constexpr std::string_view kFormat = "pcednet network 1";
@@ -59,7 +57,7 @@ class Tensors {
     if (found == content_.tensors.end()) metadata_.refuse(fmt::format("no tensor \"{}\"", key));
     if (found->second.shape != shape) {
       metadata_.refuse(fmt::format("tensor \"{}\" is {}; the network needs {}", key,
-                                   Json(found->second.shape).dump(), Json(shape).dump()));
+                                   to_text(Json(found->second.shape)), to_text(Json(shape))));
     }
     for (const float value : found->second.values) {
       if (!std::isfinite(value)) {
@@ -85,7 +83,7 @@ class Tensors {
 template <typename T>
 std::vector<T> take_list(Metadata& metadata, const std::string& key) {
   try {
-    return Json::parse(metadata.take(key)).get<std::vector<T>>();
+    return parse_json(metadata.take(key)).get<std::vector<T>>();
   } catch (const Json::exception&) {
     metadata.refuse(fmt::format("metadata \"{}\" is not a list of the right kind", key));
   }
@@ -178,9 +176,9 @@ Safetensors to_safetensors(const Model& model) {
   content.metadata["nn.hidden"] = fmt::format("{}", a.hidden);
   content.metadata["nn.squash"] = kSquash;
   content.metadata["nn.symmetry"] = name_of(kSymmetries, model.sign_rule.symmetry);
-  content.metadata["nn.odd_features"] = Json(model.sign_rule.odd_features).dump();
+  content.metadata["nn.odd_features"] = to_text(Json(model.sign_rule.odd_features));
   content.metadata["nn.deciding_feature"] = fmt::format("{}", model.sign_rule.deciding_feature);
-  content.metadata["nn.class_names"] = Json(model.class_names).dump();
+  content.metadata["nn.class_names"] = to_text(Json(model.class_names));
   return content;
 }
 

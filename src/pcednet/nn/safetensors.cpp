@@ -9,17 +9,15 @@
 #include <cstring>
 #include <fstream>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <set>
 #include <utility>
 
 #include "pcednet/core/bytes.h"
 #include "pcednet/core/error.h"
+#include "pcednet/core/json.h"
 
 namespace pcednet::nn {
 namespace {
-
-using Json = nlohmann::json;
 
 constexpr std::size_t kPrefix = 8;               // the header's length, little-endian
 constexpr std::size_t kMostHeader = 100u << 20;  // as in the format's own reader
@@ -86,7 +84,8 @@ Placed place(const std::string& tensor, const Json& entry, std::size_t data_size
       !entry.contains("shape") || !entry.contains("data_offsets")) {
     bad("not the three entries dtype, shape and data_offsets");
   }
-  if (entry["dtype"] != "F32") bad(fmt::format("type {}; only F32 is used", entry["dtype"].dump()));
+  if (entry["dtype"] != "F32")
+    bad(fmt::format("type {}; only F32 is used", to_text(entry["dtype"])));
   const Json& offsets = entry["data_offsets"];
   if (!entry["shape"].is_array() || !offsets.is_array() || offsets.size() != 2) {
     bad("shape and data_offsets must be lists");
@@ -121,7 +120,7 @@ std::string encode_safetensors(const Safetensors& content) {
         {"dtype", "F32"}, {"shape", tensor.shape}, {"data_offsets", {offset, offset + size}}};
     offset += size;
   }
-  std::string text = header.dump(-1, ' ', false, Json::error_handler_t::replace);
+  std::string text = to_text(header, -1, NotUtf8::kReplace);
   text.resize((text.size() + 7) / 8 * 8, ' ');  // so that the data is aligned
   std::string bytes(kPrefix, '\0');
   store(bytes.data(), std::uint64_t{text.size()});

@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <numeric>
 #include <stdexcept>
 
 #include "pcednet/core/error.h"
+#include "pcednet/core/json.h"
 #include "pcednet/core/version.h"
 #include "pcednet/detect/octaves.h"
 #include "pcednet/formats/file_name.h"
@@ -20,7 +20,6 @@ namespace pcednet::tiles {
 namespace {
 
 namespace fs = std::filesystem;
-using nlohmann::json;
 
 constexpr const char* kFormat = "pcednet-tiles-2";
 constexpr std::array<const char*, 3> kCrowds = {"keep", "merge", "merge by axis"};
@@ -46,20 +45,20 @@ class Paths {
   fs::path folder_;
 };
 
-json json_of(const Vec3& v) {
+Json json_of(const Vec3& v) {
   return {v.x(), v.y(), v.z()};
 }
 
-Vec3 vec3_of(const json& j) {
+Vec3 vec3_of(const Json& j) {
   return {j.at(0).get<double>(), j.at(1).get<double>(), j.at(2).get<double>()};
 }
 
-json json_of(const BoundingBox& box) {
+Json json_of(const BoundingBox& box) {
   if (box.empty()) return nullptr;
   return {box.min.x(), box.min.y(), box.min.z(), box.max.x(), box.max.y(), box.max.z()};
 }
 
-BoundingBox box_in(const json& j) {
+BoundingBox box_in(const Json& j) {
   if (j.is_null()) return {};
   BoundingBox box;
   for (std::size_t a = 0; a < 3; ++a) {
@@ -82,20 +81,20 @@ std::string text_of(const PlannedInput& input, const Paths& paths) {
   std::vector<std::string> chunks;
   for (const Chunk& chunk : input.chunks) {
     chunks.push_back(
-        json{chunk.points, chunk.without_place, json_of(chunk.box), chunk.digest}.dump());
+        to_text(Json{chunk.points, chunk.without_place, json_of(chunk.box), chunk.digest}));
   }
   return fmt::format(
       "{{\"path\":{},\"bytes\":{},\"points\":{},\"narrow_colours\":{},\"chunks\":{}}}",
-      json(paths.written(input.path)).dump(), input.bytes, input.points(), input.narrow_colours,
+      to_text(Json(paths.written(input.path))), input.bytes, input.points(), input.narrow_colours,
       json_lines(chunks, "   "));
 }
 
-PlannedInput input_of(const json& j, const Paths& paths) {
+PlannedInput input_of(const Json& j, const Paths& paths) {
   PlannedInput input{.path = paths.read(j.at("path")),
                      .bytes = j.at("bytes"),
                      .narrow_colours = j.at("narrow_colours"),
                      .chunks = {}};
-  for (const json& chunk : j.at("chunks")) {
+  for (const Json& chunk : j.at("chunks")) {
     input.chunks.push_back({.points = chunk.at(0),
                             .without_place = chunk.at(1),
                             .box = box_in(chunk.at(2)),
@@ -110,16 +109,16 @@ std::string text_of(std::size_t id, const Tile& tile, const Plan& plan, const Pa
   // The corners are for readers; column and row decide.
   return fmt::format(
       "{{\"id\":{},\"column\":{},\"row\":{},\"core\":{},\"points\":{},\"output\":{}}}", id,
-      tile.column, tile.row, json{left, bottom, left + length, bottom + length}.dump(), tile.points,
-      json(paths.written(tile.output)).dump());
+      tile.column, tile.row, to_text(Json{left, bottom, left + length, bottom + length}),
+      tile.points, to_text(Json(paths.written(tile.output))));
 }
 
-json json_of(const PlannedModel& model, const Paths& paths) {
+Json json_of(const PlannedModel& model, const Paths& paths) {
   return {{"name", model.name},       {"path", paths.written(model.path)}, {"sha256", model.sha256},
           {"context", model.context}, {"boundary", model.boundary},        {"exact", model.exact}};
 }
 
-PlannedModel model_of(const json& j, const Paths& paths) {
+PlannedModel model_of(const Json& j, const Paths& paths) {
   return {.name = j.at("name"),
           .path = paths.read(j.at("path")),
           .sha256 = j.at("sha256"),
@@ -128,7 +127,7 @@ PlannedModel model_of(const json& j, const Paths& paths) {
           .exact = j.at("exact")};
 }
 
-json json_of(const detect::NormalsDecision& normals) {
+Json json_of(const detect::NormalsDecision& normals) {
   const detect::Rounding& rounding = normals.rounding;
   return {{"made", normals.made},
           {"neighbours", normals.neighbours},
@@ -139,7 +138,7 @@ json json_of(const detect::NormalsDecision& normals) {
           {"spacing", rounding.spacing}};
 }
 
-detect::NormalsDecision normals_in(const json& j) {
+detect::NormalsDecision normals_in(const Json& j) {
   return {j.at("made"),
           j.at("neighbours"),
           j.at("exact_planes"),
@@ -147,17 +146,17 @@ detect::NormalsDecision normals_in(const json& j) {
           {j.at("rounded_to"), vec3_of(j.at("rounded_from")), j.at("spacing")}};
 }
 
-json json_of(const gls::PyramidPlan& pyramid) {
-  json levels = json::array();
+Json json_of(const gls::PyramidPlan& pyramid) {
+  Json levels = Json::array();
   for (const auto& level : pyramid.levels) {
     levels.push_back({level.merges, kCrowds[static_cast<std::size_t>(level.crowd)]});
   }
   return {{"corner", json_of(pyramid.corner)}, {"side", pyramid.side}, {"levels", levels}};
 }
 
-gls::PyramidPlan pyramid_of(const json& j) {
+gls::PyramidPlan pyramid_of(const Json& j) {
   gls::PyramidPlan pyramid{.corner = vec3_of(j.at("corner")), .side = j.at("side")};
-  for (const json& level : j.at("levels")) {
+  for (const Json& level : j.at("levels")) {
     const std::string name = level.at(1);
     const auto found = std::find(kCrowds.begin(), kCrowds.end(), name);
     if (found == kCrowds.end()) throw std::runtime_error("no such crowd");
@@ -168,27 +167,27 @@ gls::PyramidPlan pyramid_of(const json& j) {
 
 std::string text_of(const Plan& plan, const Paths& paths) {
   std::vector<std::string> inputs, tiles, pyramids;
-  for (const auto& pyramid : plan.pyramids) pyramids.push_back(json_of(pyramid).dump());
+  for (const auto& pyramid : plan.pyramids) pyramids.push_back(to_text(json_of(pyramid)));
   for (const PlannedInput& input : plan.inputs) inputs.push_back(text_of(input, paths));
   for (std::size_t id = 0; id < plan.tiles.size(); ++id) {
     tiles.push_back(text_of(id, plan.tiles[id], plan, paths));
   }
   const std::vector<std::pair<const char*, std::string>> members = {
-      {"format", json(kFormat).dump()},
-      {"program", json(plan.version).dump()},
-      {"points", json(plan.points()).dump()},
-      {"box", json_of(plan.box).dump()},
-      {"las_steps", json(plan.las_steps).dump()},
-      {"model", json_of(plan.model, paths).dump()},
-      {"scales", json{{"s_min", plan.s_min}, {"s_max", plan.s_max}}.dump()},
-      {"normals", json_of(plan.normals).dump()},
+      {"format", to_text(Json(kFormat))},
+      {"program", to_text(Json(plan.version))},
+      {"points", to_text(Json(plan.points()))},
+      {"box", to_text(json_of(plan.box))},
+      {"las_steps", to_text(Json(plan.las_steps))},
+      {"model", to_text(json_of(plan.model, paths))},
+      {"scales", to_text(Json{{"s_min", plan.s_min}, {"s_max", plan.s_max}})},
+      {"normals", to_text(json_of(plan.normals))},
       {"pyramids", json_lines(pyramids, "  ")},
-      {"cell", json(plan.grid.cell).dump()},
-      {"cells_across", json(plan.grid.across).dump()},
-      {"buffer", json(plan.buffer).dump()},
-      {"reach", json(plan.reach).dump()},
-      {"memory", json(plan.memory).dump()},
-      {"notes", json(plan.notes).dump()},
+      {"cell", to_text(Json(plan.grid.cell))},
+      {"cells_across", to_text(Json(plan.grid.across))},
+      {"buffer", to_text(Json(plan.buffer))},
+      {"reach", to_text(Json(plan.reach))},
+      {"memory", to_text(Json(plan.memory))},
+      {"notes", to_text(Json(plan.notes))},
       {"tiles", json_lines(tiles, "  ")},
       {"inputs", json_lines(inputs, "  ")}};
   std::string text;
@@ -199,8 +198,8 @@ std::string text_of(const Plan& plan, const Paths& paths) {
 }
 
 /// Reads the members of a plan; `member` is then the name of the last one that was looked for.
-Plan plan_of(const json& j, const Paths& paths, std::string& member) {
-  const auto at = [&](const char* name) -> const json& {
+Plan plan_of(const Json& j, const Paths& paths, std::string& member) {
+  const auto at = [&](const char* name) -> const Json& {
     member = name;
     return j.at(name);
   };
@@ -212,15 +211,15 @@ Plan plan_of(const json& j, const Paths& paths, std::string& member) {
   plan.s_min = at("scales").at("s_min");
   plan.s_max = at("scales").at("s_max");
   plan.normals = normals_in(at("normals"));
-  for (const json& pyramid : at("pyramids")) plan.pyramids.push_back(pyramid_of(pyramid));
+  for (const Json& pyramid : at("pyramids")) plan.pyramids.push_back(pyramid_of(pyramid));
   plan.grid.cell = at("cell");
   plan.grid.across = at("cells_across");
   plan.buffer = at("buffer");
   plan.reach = at("reach");
   plan.memory = at("memory");
   plan.notes = at("notes").get<std::vector<std::string>>();
-  for (const json& input : at("inputs")) plan.inputs.push_back(input_of(input, paths));
-  for (const json& tile : at("tiles")) {
+  for (const Json& input : at("inputs")) plan.inputs.push_back(input_of(input, paths));
+  for (const Json& tile : at("tiles")) {
     plan.tiles.push_back(
         {tile.at("column"), tile.at("row"), tile.at("points"), paths.read(tile.at("output"))});
   }
@@ -263,7 +262,7 @@ Plan parse_plan(const std::string& text, const fs::path& path) {
   };
   std::string member;
   try {
-    const json j = json::parse(text);
+    const Json j = parse_json(text);
     if (!j.is_object() || !j.contains("format") || j["format"] != kFormat) throw refuse("");
     member = "program";
     const std::string version = j.at(member);
@@ -282,7 +281,7 @@ Plan parse_plan(const std::string& text, const fs::path& path) {
     return plan;
   } catch (const Error&) {
     throw;
-  } catch (const json::parse_error& error) {
+  } catch (const Json::parse_error& error) {
     throw refuse(fmt::format(": byte {} is not JSON", error.byte));
   } catch (const std::bad_alloc&) {
     throw;

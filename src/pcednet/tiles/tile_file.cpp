@@ -1,9 +1,9 @@
 #include "pcednet/tiles/tile_file.h"
 
-#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "pcednet/core/error.h"
+#include "pcednet/core/json.h"
 #include "pcednet/core/output_file.h"
 #include "pcednet/io/input_file.h"
 #include "pcednet/tiles/sha256.h"
@@ -12,7 +12,6 @@ namespace pcednet::tiles {
 namespace {
 
 namespace fs = std::filesystem;
-using nlohmann::json;
 
 constexpr const char* kRecordFormat = "pcednet-tile-1";
 
@@ -23,7 +22,7 @@ fs::path record_path(const fs::path& tile) {
 /// The record of a tile; none if it is missing or damaged.
 std::optional<TileRecord> read_record(const fs::path& tile) {
   try {
-    const json j = json::parse(io::InputFile(record_path(tile)).text());
+    const Json j = parse_json(io::InputFile(record_path(tile)).text());
     if (j.at("format") != kRecordFormat) return std::nullopt;
     return TileRecord{.plan = j.at("plan"),
                       .tile = j.at("tile"),
@@ -32,7 +31,7 @@ std::optional<TileRecord> read_record(const fs::path& tile) {
                       .sha256 = j.at("sha256"),
                       .counts = {j.at("non_edge"), j.at("smooth_edge"), j.at("sharp_edge"),
                                  j.at("boundary"), j.at("unlabelled")}};
-  } catch (const json::exception&) {
+  } catch (const Json::exception&) {
     return std::nullopt;
   } catch (const Error&) {
     return std::nullopt;
@@ -42,7 +41,7 @@ std::optional<TileRecord> read_record(const fs::path& tile) {
 }  // namespace
 
 void write_claim(const fs::path& tile, TileRecord record) {
-  const json j = {{"format", kRecordFormat},
+  const Json j = {{"format", kRecordFormat},
                   {"plan", record.plan},
                   {"tile", record.tile},
                   {"points", record.points},
@@ -53,7 +52,7 @@ void write_claim(const fs::path& tile, TileRecord record) {
                   {"sharp_edge", record.counts.sharp},
                   {"boundary", record.counts.boundary},
                   {"unlabelled", record.counts.unlabelled}};
-  write_text_file(record_path(tile), j.dump(1) + "\n", Overwrite::kYes);
+  write_text_file(record_path(tile), to_text(j, 1) + "\n", Overwrite::kYes);
 }
 
 void remove_claim(const fs::path& tile) {

@@ -3,16 +3,14 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <span>
 
 #include "pcednet/cloud/class_table.h"
 #include "pcednet/core/error.h"
+#include "pcednet/core/json.h"
 
 namespace pcednet::annotate {
 namespace {
-
-using Json = nlohmann::json;
 
 Json json_of(const Vec3& v) {
   return {v.x(), v.y(), v.z()};
@@ -26,7 +24,7 @@ Json optional_number(const std::optional<Number>& value) {
 
 /// File names may hold any bytes: those that are not UTF-8 are replaced.
 std::string dumped(const Json& json) {
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return to_text(json, -1, NotUtf8::kReplace);
 }
 
 Json classes_of(const ProjectClasses& classes, const Counts& counts) {
@@ -291,7 +289,7 @@ std::string to_json(const Summary& summary, Asking window) {
                {"features", Json::array()},
                {"classes", classes_of(summary.classes, summary.counts)},
                {"edges", summary.classes.has_edges()},
-               {"settings", Json::parse(to_line(summary.settings))},
+               {"settings", parse_json(to_line(summary.settings))},
                {"starts", summary.starts},
                {"scales", summary.scales},
                {"strokes", summary.undo},
@@ -366,7 +364,7 @@ std::string event_json(const Event& event) {
 
 Stroke parse_stroke(std::string_view text) {
   try {
-    return read(Json::parse(text));
+    return read(parse_json(text));
   } catch (const Json::exception& error) {
     throw Error(ErrorKind::kUsage, fmt::format("stroke: {}", error.what()));
   }
@@ -374,7 +372,7 @@ Stroke parse_stroke(std::string_view text) {
 
 std::size_t parse_cloud(std::string_view text) {
   try {
-    return cloud_in(Json::parse(text));
+    return cloud_in(parse_json(text));
   } catch (const Json::exception& error) {
     throw Error(ErrorKind::kUsage, fmt::format("cloud: {}", error.what()));
   }
@@ -382,7 +380,7 @@ std::size_t parse_cloud(std::string_view text) {
 
 SaveRequest parse_save(std::string_view text) {
   try {
-    const Json json = Json::parse(text);
+    const Json json = parse_json(text);
     return {.what = json.at("what").get<std::string>(),
             .name = json.value("name", std::string()),
             .cloud = cloud_in(json),

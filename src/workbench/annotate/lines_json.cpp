@@ -1,16 +1,14 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <nlohmann/json.hpp>
 #include <numbers>
 
 #include "pcednet/core/error.h"
+#include "pcednet/core/json.h"
 #include "workbench/annotate/json.h"
 
 namespace pcednet::annotate {
 namespace {
-
-using Json = nlohmann::json;
 
 /// By Decision.
 constexpr std::array kDecisions = {"open", "accepted", "rejected"};
@@ -60,12 +58,12 @@ std::string to_json(const LinesView& view) {
   for (std::size_t i = 0; i < review.decisions.size(); ++i) {
     json["lines"].push_back(line_of((*review.curves)[i], review.decisions[i], *view.scene));
   }
-  return json.dump();
+  return to_text(json);
 }
 
 LinesDecided parse_decision(std::string_view text) {
   try {
-    const Json json = Json::parse(text);
+    const Json json = parse_json(text);
     return {.version = json.at("version").get<int>(),
             .decision = decision_of(json.at("decision").get<std::string>()),
             .lines = json.at("lines").get<std::vector<std::uint32_t>>(),

@@ -4,18 +4,17 @@
 
 #include <algorithm>
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <numeric>
 
 #include "pcednet/core/digest.h"
 #include "pcednet/core/error.h"
+#include "pcednet/core/json.h"
 #include "pcednet/core/version.h"
 #include "pcednet/io/input_file.h"
 
 namespace pcednet::annotate {
 namespace {
 
-using Json = nlohmann::json;
 using Kind = Record::Kind;
 
 constexpr const char* kFormat = "pcednet-annotation-1";
@@ -255,32 +254,32 @@ std::string digest_of_file(const std::filesystem::path& path) {
 }
 
 std::string to_line(const Record& record) {
-  return json_of(record).dump();
+  return to_text(json_of(record));
 }
 
 std::string to_line(const Inputs& inputs) {
-  return head_of(inputs).dump();
+  return to_text(head_of(inputs));
 }
 
 Record parse_record(std::string_view line, std::size_t points) {
-  return strictly([&] { return record_of(Json::parse(line), points); });
+  return strictly([&] { return record_of(parse_json(line), points); });
 }
 
 Inputs parse_inputs(std::string_view line) {
-  return strictly([&] { return inputs_of(Json::parse(line)); });
+  return strictly([&] { return inputs_of(parse_json(line)); });
 }
 
 std::string to_line(const Settings& settings) {
-  return json_of(settings).dump();
+  return to_text(json_of(settings));
 }
 
 std::string to_line(const ProjectClasses& classes) {
-  return json_of(classes).dump();
+  return to_text(json_of(classes));
 }
 
 ProjectClasses parse_classes_change(std::string_view text) {
   try {
-    return classes_in(Json::parse(text).at("classes"));
+    return classes_in(parse_json(text).at("classes"));
   } catch (const Json::exception& error) {
     throw Error(ErrorKind::kUsage, fmt::format("classes: {}", error.what()));
   }
@@ -288,7 +287,7 @@ ProjectClasses parse_classes_change(std::string_view text) {
 
 SettingsChange parse_settings_change(std::string_view text) {
   try {
-    return settings_change_of(Json::parse(text));
+    return settings_change_of(parse_json(text));
   } catch (const Json::exception& error) {
     throw Error(ErrorKind::kUsage, fmt::format("settings: {}", error.what()));
   }
@@ -309,7 +308,7 @@ Project read_project(const std::filesystem::path& path) {
   const std::string text = io::InputFile(path).text();
   try {
     return strictly([&] {
-      const Json json = Json::parse(text);
+      const Json json = parse_json(text);
       Project project{.inputs = inputs_of(json), .records = {}};
       const std::size_t points = points_of(project.inputs);
       for (const Json& record : json.at("records")) {
@@ -329,8 +328,8 @@ void write_project(const std::filesystem::path& path, const Project& project, Ov
   std::string text = fmt::format(
       "{{\"format\":{},\"version\":\"{}\",\n\"{}\":{},\n\"settings\":{},\n\"run\":{},\n"
       "\"records\":[",
-      head.at("format").dump(), kVersion, name, head.at(name).dump(), json_of(end.settings).dump(),
-      end.run ? std::to_string(end.run->number) : "null");
+      to_text(head.at("format")), kVersion, name, to_text(head.at(name)),
+      to_text(json_of(end.settings)), end.run ? std::to_string(end.run->number) : "null");
   for (std::size_t i = 0; i < project.records.size(); ++i) {
     text += (i == 0 ? "\n" : ",\n") + to_line(project.records[i]);
   }

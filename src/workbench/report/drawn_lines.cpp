@@ -12,10 +12,10 @@ constexpr double kDrawnTolerance = 0.0002;  // of it: a tenth of a pixel in a pa
 
 }  // namespace
 
-nlohmann::ordered_json find_drawn_lines(const detect::PreparedCloud& cloud,
-                                        std::span<const std::uint8_t> classes, const Scene& scene,
-                                        const Progress* progress) {
-  auto drawn = nlohmann::ordered_json::array();
+OrderedJson find_drawn_lines(const detect::PreparedCloud& cloud,
+                             std::span<const std::uint8_t> classes, const Scene& scene,
+                             const Progress* progress) {
+  auto drawn = OrderedJson::array();
   if (!(scene.size > 0.0)) return drawn;
   const auto curves = lines::find_lines({.positions = cloud.positions,
                                          .normals = cloud.normals,
@@ -23,7 +23,7 @@ nlohmann::ordered_json find_drawn_lines(const detect::PreparedCloud& cloud,
                                          .curve = cloud.curve},
                                         {}, progress);
   for (const lines::Curve& curve : curves) {
-    auto path = nlohmann::ordered_json::array();
+    auto path = OrderedJson::array();
     for (const Vec3& vertex : lines::sampled(curve, kDrawnTolerance * scene.size)) {
       for (int axis = 0; axis < 3; ++axis) {
         path.push_back(std::lround((vertex[axis] - scene.min[axis]) / scene.size * kSteps));

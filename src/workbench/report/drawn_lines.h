@@ -1,9 +1,9 @@
 #pragma once
 
 #include <cstdint>
-#include <nlohmann/json.hpp>
 #include <span>
 
+#include "pcednet/core/json.h"
 #include "pcednet/core/progress.h"
 #include "pcednet/detect/prepare.h"
 #include "workbench/report/scene.h"
@@ -13,8 +13,8 @@ namespace pcednet::report {
 /// The edges of the cloud with these classes, as lines::find_lines() finds them, and how the page
 /// draws them: [{"class","length","path"}], the path's vertices as x, y, z, x, y, z, ... in
 /// 65535ths of scene.size from scene.min.
-nlohmann::ordered_json find_drawn_lines(const detect::PreparedCloud& cloud,
-                                        std::span<const std::uint8_t> classes, const Scene& scene,
-                                        const Progress* progress = nullptr);
+OrderedJson find_drawn_lines(const detect::PreparedCloud& cloud,
+                             std::span<const std::uint8_t> classes, const Scene& scene,
+                             const Progress* progress = nullptr);
 
 }  // namespace pcednet::report

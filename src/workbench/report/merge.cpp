@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "pcednet/core/error.h"
+#include "pcednet/core/json.h"
 #include "pcednet/detect/prepare.h"
 #include "pcednet/formats/labels.h"
 #include "pcednet/formats/read_cloud.h"
@@ -19,7 +19,6 @@ namespace pcednet::report {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
 
 constexpr const char* kStudySchema = "pcednet-study-1";
 constexpr std::string_view kPlace = "\"PCEDNET-REPORT-DATA\"";
@@ -39,10 +38,10 @@ std::vector<fs::path> json_files(const fs::path& folder) {
   return files;
 }
 
-Json read_json(const fs::path& file) {
+OrderedJson read_json(const fs::path& file) {
   try {
-    return Json::parse(io::InputFile(file).text());
-  } catch (const Json::parse_error& error) {
+    return parse_ordered_json(io::InputFile(file).text());
+  } catch (const OrderedJson::parse_error& error) {
     throw io::unreadable(file, fmt::format("no JSON at byte {}", error.byte));
   }
 }
@@ -53,31 +52,32 @@ struct Place {
   std::string where = {};
 };
 
-const Json& member(const Json& parent, const char* key, Json::value_t type, const Place& place) {
+const OrderedJson& member(const OrderedJson& parent, const char* key, OrderedJson::value_t type,
+                          const Place& place) {
   const auto found = parent.is_object() ? parent.find(key) : parent.end();
   if (!parent.is_object() || found == parent.end() || found->type() != type) {
     throw io::unreadable(place.file, fmt::format("{}\"{}\" is missing or not {}", place.where, key,
-                                                 Json(type).type_name()));
+                                                 OrderedJson(type).type_name()));
   }
   return *found;
 }
 
-const Json& array_of(const Json& parent, const char* key, const Place& place) {
-  return member(parent, key, Json::value_t::array, place);
+const OrderedJson& array_of(const OrderedJson& parent, const char* key, const Place& place) {
+  return member(parent, key, OrderedJson::value_t::array, place);
 }
 
-std::string text_of(const Json& parent, const char* key, const Place& place) {
-  return member(parent, key, Json::value_t::string, place).get<std::string>();
+std::string text_of(const OrderedJson& parent, const char* key, const Place& place) {
+  return member(parent, key, OrderedJson::value_t::string, place).get<std::string>();
 }
 
 /// The names that the objects of an array have under `key`.
-std::vector<std::string> names_in(const Json& array, const char* key, const Place& place) {
+std::vector<std::string> names_in(const OrderedJson& array, const char* key, const Place& place) {
   std::vector<std::string> names;
-  for (const Json& object : array) names.push_back(text_of(object, key, place));
+  for (const OrderedJson& object : array) names.push_back(text_of(object, key, place));
   return names;
 }
 
-void check_scores(const Json& scores, const Place& place) {
+void check_scores(const OrderedJson& scores, const Place& place) {
   for (const char* key : {"precision", "recall", "mcc", "f1", "accuracy", "iou"}) {
     if (!scores.contains(key) || !scores[key].is_number()) {
       throw io::unreadable(place.file, fmt::format("{}no number \"{}\"", place.where, key));
@@ -85,7 +85,7 @@ void check_scores(const Json& scores, const Place& place) {
   }
 }
 
-void check_result(const Json& result, const std::vector<std::string>& variants,
+void check_result(const OrderedJson& result, const std::vector<std::string>& variants,
                   const std::vector<std::string>& sets, const Place& place) {
   const auto known = [&](const char* key, const std::vector<std::string>& names) {
     const std::string name = text_of(result, key, place);
@@ -96,35 +96,35 @@ void check_result(const Json& result, const std::vector<std::string>& variants,
   };
   known("variant", variants);
   known("set", sets);
-  for (const Json& cloud : array_of(result, "clouds", place)) {
+  for (const OrderedJson& cloud : array_of(result, "clouds", place)) {
     text_of(cloud, "name", place);
     check_scores(cloud, place);
   }
   for (const char* key : {"median", "pooled"}) {
     const bool measured = result.contains(key) && !result[key].is_null();
-    if (measured) check_scores(member(result, key, Json::value_t::object, place), place);
+    if (measured) check_scores(member(result, key, OrderedJson::value_t::object, place), place);
   }
 }
 
 /// Throws unless `study` has everything the page relies on.
-void check_study(const Json& study, const fs::path& file) {
+void check_study(const OrderedJson& study, const fs::path& file) {
   for (const char* key : {"experiment", "title"}) text_of(study, key, {file});
-  const Json& sets = array_of(study, "sets", {file});
+  const OrderedJson& sets = array_of(study, "sets", {file});
   const auto set_names = names_in(sets, "name", {file, "a set: "});
-  for (const Json& set : sets) {
+  for (const OrderedJson& set : sets) {
     const Place place{file, fmt::format("set \"{}\": ", set["name"].get<std::string>())};
     names_in(array_of(set, "clouds", place), "name", place);
     names_in(array_of(set, "clouds", place), "file", place);
   }
   const auto variants = names_in(array_of(study, "variants", {file}), "id", {file, "a variant: "});
-  const Json& results = array_of(study, "results", {file});
+  const OrderedJson& results = array_of(study, "results", {file});
   for (std::size_t i = 0; i < results.size(); ++i) {
     check_result(results[i], variants, set_names, {file, fmt::format("result {}: ", i)});
   }
 }
 
 struct Studies {
-  std::vector<Json> texts = {};
+  std::vector<OrderedJson> texts = {};
   std::vector<fs::path> files = {};
   std::vector<std::string> warnings = {};
 };
@@ -132,8 +132,8 @@ struct Studies {
 Studies read_studies(const fs::path& folder) {
   Studies studies;
   for (const fs::path& file : json_files(folder)) {
-    Json text = read_json(file);
-    const bool is_study = text.is_object() && text.value("schema", Json()) == kStudySchema;
+    OrderedJson text = read_json(file);
+    const bool is_study = text.is_object() && text.value("schema", OrderedJson()) == kStudySchema;
     if (!is_study) {
       studies.warnings.push_back(
           fmt::format("{}: not of schema {}: left out", file.string(), kStudySchema));
@@ -158,7 +158,7 @@ struct Exhibit {
   struct Source {
     std::size_t study = 0;
     std::string variant;
-    Json seed;
+    OrderedJson seed;
     fs::path predictions;
   };
   std::vector<Source> sources = {};
@@ -173,24 +173,24 @@ fs::path find_cloud(const std::string& name, const fs::path& folder, const fs::p
                      fmt::format("{}: its cloud {} is not there", study.string(), name));
 }
 
-bool lists_cloud(const Json& result, const std::string& cloud) {
+bool lists_cloud(const OrderedJson& result, const std::string& cloud) {
   return std::any_of(result["clouds"].begin(), result["clouds"].end(),
-                     [&](const Json& row) { return row["name"] == cloud; });
+                     [&](const OrderedJson& row) { return row["name"] == cloud; });
 }
 
 /// The first result of each variant that keeps predictions for this cloud.
-std::vector<Exhibit::Source> sources_in(const Json& study, std::size_t number,
+std::vector<Exhibit::Source> sources_in(const OrderedJson& study, std::size_t number,
                                         const std::string& set, const std::string& cloud,
                                         const fs::path& folder) {
   std::vector<Exhibit::Source> sources;
-  for (const Json& result : study["results"]) {
+  for (const OrderedJson& result : study["results"]) {
     const auto kept = result.find("predictions");
     if (kept == result.end() || !kept->is_string()) continue;
     if (result["set"] != set || !lists_cloud(result, cloud)) continue;
     const auto variant = result["variant"].get<std::string>();
     const auto same = [&](const auto& source) { return source.variant == variant; };
     if (std::any_of(sources.begin(), sources.end(), same)) continue;
-    sources.push_back({number, variant, result.value("seed", Json()),
+    sources.push_back({number, variant, result.value("seed", OrderedJson()),
                        folder / kept->get<std::string>() / (cloud + ".u8")});
   }
   return sources;
@@ -207,11 +207,11 @@ std::vector<Exhibit> choose_exhibits(const Studies& studies, const fs::path& fol
     return exhibits.emplace_back(Exhibit{set, cloud, file});
   };
   for (std::size_t number = 0; number < studies.texts.size(); ++number) {
-    const Json& study = studies.texts[number];
-    for (const Json& set : study["sets"]) {
+    const OrderedJson& study = studies.texts[number];
+    for (const OrderedJson& set : study["sets"]) {
       const auto set_name = set["name"].get<std::string>();
       std::size_t shown = 0;
-      for (const Json& cloud : set["clouds"]) {
+      for (const OrderedJson& cloud : set["clouds"]) {
         const auto name = cloud["name"].get<std::string>();
         auto sources = sources_in(study, number, set_name, name, folder);
         if (sources.empty() || shown == clouds_per_set) continue;
@@ -245,38 +245,38 @@ std::vector<std::uint8_t> read_classes(const fs::path& predictions, const fs::pa
 }
 
 /// Advances `stage` by one for the truth and for each prediction.
-Json scene_of(const Exhibit& exhibit, const MergeOptions& options, const Progress* progress,
-              Stage& stage) {
+OrderedJson scene_of(const Exhibit& exhibit, const MergeOptions& options, const Progress* progress,
+                     Stage& stage) {
   const auto cloud = formats::read_cloud(exhibit.file).cloud;
   const Scene scene = make_scene(cloud, options.points_per_cloud, progress);
   const Progress quiet = without_report(progress);
   detect::PreparedCloud prepared;
   if (options.lines) prepared = detect::prepare(cloud, {}, &quiet);
-  const auto add_lines = [&](Json& json, const std::vector<std::uint8_t>& classes) {
+  const auto add_lines = [&](OrderedJson& json, const std::vector<std::uint8_t>& classes) {
     if (options.lines) json["lines"] = find_drawn_lines(prepared, classes, scene, &quiet);
     stage.advance();
   };
   const std::vector<std::uint8_t> truth =
       cloud.has_labels() ? cloud.labels : std::vector<std::uint8_t>(cloud.size(), kUnlabelled);
-  Json json = {{"set", exhibit.set},
-               {"cloud", exhibit.cloud},
-               {"file", exhibit.file.filename().string()},
-               {"points", cloud.size()},
-               {"shown", scene.shown.size()},
-               {"min", scene.min},
-               {"size", scene.size},
-               {"view", scene.view},
-               {"positions", scene.positions},
-               {"normals", scene.normals},
-               {"truth", pack_classes(truth, scene.shown)}};
+  OrderedJson json = {{"set", exhibit.set},
+                      {"cloud", exhibit.cloud},
+                      {"file", exhibit.file.filename().string()},
+                      {"points", cloud.size()},
+                      {"shown", scene.shown.size()},
+                      {"min", scene.min},
+                      {"size", scene.size},
+                      {"view", scene.view},
+                      {"positions", scene.positions},
+                      {"normals", scene.normals},
+                      {"truth", pack_classes(truth, scene.shown)}};
   add_lines(json, truth);
-  json["predictions"] = Json::array();
+  json["predictions"] = OrderedJson::array();
   for (const Exhibit::Source& source : exhibit.sources) {
     const auto classes = read_classes(source.predictions, exhibit.file, cloud.size());
-    Json prediction = {{"study", source.study},
-                       {"variant", source.variant},
-                       {"seed", source.seed},
-                       {"classes", pack_classes(classes, scene.shown)}};
+    OrderedJson prediction = {{"study", source.study},
+                              {"variant", source.variant},
+                              {"seed", source.seed},
+                              {"classes", pack_classes(classes, scene.shown)}};
     add_lines(prediction, classes);
     json["predictions"].push_back(std::move(prediction));
   }
@@ -289,7 +289,7 @@ MergedStudies merge_studies(const fs::path& folder, const MergeOptions& options,
                             const Progress* progress) {
   Studies studies = read_studies(folder);
   const auto exhibits = choose_exhibits(studies, folder, options.clouds_per_set);
-  Json scenes = Json::array();
+  OrderedJson scenes = OrderedJson::array();
   std::size_t labellings = exhibits.size();
   for (const Exhibit& exhibit : exhibits) labellings += exhibit.sources.size();
   Stage stage(progress, "clouds", labellings);
@@ -300,13 +300,13 @@ MergedStudies merge_studies(const fs::path& folder, const MergeOptions& options,
                        .scenes = scenes.size(),
                        .files = files_of(studies, exhibits),
                        .warnings = std::move(studies.warnings)};
-  Json whole = {{"schema", "pcednet-report-1"},
-                {"studies", std::move(studies.texts)},
-                {"scenes", std::move(scenes)}};
+  OrderedJson whole = {{"schema", "pcednet-report-1"},
+                       {"studies", std::move(studies.texts)},
+                       {"scenes", std::move(scenes)}};
   if (!options.title.empty()) whole["title"] = options.title;
   if (!options.date.empty()) whole["date"] = options.date;
   // Names in foreign files need not be UTF-8.
-  merged.json = whole.dump(-1, ' ', false, Json::error_handler_t::replace);
+  merged.json = to_text(whole, -1, NotUtf8::kReplace);
   return merged;
 }
 

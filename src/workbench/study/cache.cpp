@@ -2,10 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
-
 #include "pcednet/core/digest.h"
 #include "pcednet/core/error.h"
+#include "pcednet/core/json.h"
 #include "pcednet/core/output_file.h"
 #include "pcednet/formats/labels.h"
 #include "pcednet/io/input_file.h"
@@ -14,7 +13,6 @@ namespace pcednet::study {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
 
 constexpr std::pair<const char*, Cost Costs::*> kParts[] = {
     {"normals", &Costs::normals},
@@ -23,15 +21,15 @@ constexpr std::pair<const char*, Cost Costs::*> kParts[] = {
     {"train", &Costs::train},
     {"classify", &Costs::classify}};
 
-Json to_json(const Costs& costs) {
-  Json json = Json::object();
+OrderedJson to_json(const Costs& costs) {
+  OrderedJson json = OrderedJson::object();
   for (const auto& [name, part] : kParts) {
     json[name] = {(costs.*part).seconds, (costs.*part).joules};
   }
   return json;
 }
 
-Costs costs_of(const Json& json) {
+Costs costs_of(const OrderedJson& json) {
   Costs costs;
   for (const auto& [name, part] : kParts) {
     costs.*part = {json.at(name).at(0).get<double>(), json.at(name).at(1).get<double>()};
@@ -39,29 +37,29 @@ Costs costs_of(const Json& json) {
   return costs;
 }
 
-Json to_json(const EpochPoint& e) {
+OrderedJson to_json(const EpochPoint& e) {
   return {e.epoch, e.seconds, e.loss, e.held_out_loss, e.held_out_accuracy, e.held_out_mcc};
 }
 
-EpochPoint epoch_of(const Json& json) {
+EpochPoint epoch_of(const OrderedJson& json) {
   return {json.at(0).get<int>(),    json.at(1).get<double>(), json.at(2).get<double>(),
           json.at(3).get<double>(), json.at(4).get<double>(), json.at(5).get<double>()};
 }
 
-Json to_json(const eval::ConfusionCounts& c) {
+OrderedJson to_json(const eval::ConfusionCounts& c) {
   return {c.tp, c.fp, c.tn, c.fn};
 }
 
-eval::ConfusionCounts counts_of(const Json& json) {
+eval::ConfusionCounts counts_of(const OrderedJson& json) {
   const auto at = [&](std::size_t i) { return json.at(i).get<std::size_t>(); };
   return {at(0), at(1), at(2), at(3)};
 }
 
 /// The content of the file, if it exists, is complete, and has that key.
-std::optional<Json> read(const fs::path& path, const std::string& key) {
+std::optional<OrderedJson> read(const fs::path& path, const std::string& key) {
   std::error_code error;
   if (!fs::is_regular_file(path, error)) return std::nullopt;
-  Json json = Json::parse(io::InputFile(path).text(), nullptr, false);
+  OrderedJson json = parse_ordered_json(io::InputFile(path).text());
   if (!json.is_object() || json.value("key", "") != key) return std::nullopt;
   return json;
 }
@@ -71,7 +69,7 @@ template <typename Work>
 auto unless_damaged(const Work& work) -> decltype(work()) {
   try {
     return work();
-  } catch (const Json::exception&) {
+  } catch (const OrderedJson::exception&) {
     return std::nullopt;
   } catch (const Error&) {
     return std::nullopt;
@@ -95,7 +93,7 @@ std::optional<StoredModel> Cache::find_model(const std::string& key) const {
     if (!json) return std::nullopt;
     StoredModel stored{.model = detect::load_model(file("model", key, ".safetensors")),
                        .costs = costs_of(json->at("costs"))};
-    for (const Json& epoch : json->at("epochs")) stored.epochs.push_back(epoch_of(epoch));
+    for (const OrderedJson& epoch : json->at("epochs")) stored.epochs.push_back(epoch_of(epoch));
     return stored;
   });
 }
@@ -116,22 +114,23 @@ std::optional<StoredClasses> Cache::find_classes(const std::string& key) const {
 
 void Cache::keep(const std::string& key, const StoredModel& model) const {
   detect::save_model(file("model", key, ".safetensors"), model.model, Overwrite::kYes);
-  Json json = {{"key", key}, {"costs", to_json(model.costs)}, {"epochs", Json::array()}};
+  OrderedJson json = {
+      {"key", key}, {"costs", to_json(model.costs)}, {"epochs", OrderedJson::array()}};
   for (const EpochPoint& epoch : model.epochs) json["epochs"].push_back(to_json(epoch));
-  write_text_file(file("model", key, ".json"), json.dump() + "\n", Overwrite::kYes);
+  write_text_file(file("model", key, ".json"), to_text(json) + "\n", Overwrite::kYes);
 }
 
 void Cache::keep(const std::string& key, const StoredClasses& classes) const {
   const auto& bytes = classes.classes;
   write_text_file(file("classes", key, ".u8"),
                   {reinterpret_cast<const char*>(bytes.data()), bytes.size()}, Overwrite::kYes);
-  const Json json = {{"key", key},
-                     {"points", bytes.size()},
-                     {"sharp", to_json(classes.sharp)},
-                     {"edge", to_json(classes.edge)},
-                     {"failure", classes.failure},
-                     {"costs", to_json(classes.costs)}};
-  write_text_file(file("classes", key, ".json"), json.dump() + "\n", Overwrite::kYes);
+  const OrderedJson json = {{"key", key},
+                            {"points", bytes.size()},
+                            {"sharp", to_json(classes.sharp)},
+                            {"edge", to_json(classes.edge)},
+                            {"failure", classes.failure},
+                            {"costs", to_json(classes.costs)}};
+  write_text_file(file("classes", key, ".json"), to_text(json) + "\n", Overwrite::kYes);
 }
 
 }  // namespace pcednet::study

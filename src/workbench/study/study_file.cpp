@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
 #include "pcednet/core/error.h"
+#include "pcednet/core/json.h"
 #include "pcednet/core/version.h"
 #include "pcednet/io/input_file.h"
 #include "workbench/study/published.h"
@@ -14,16 +14,15 @@ namespace pcednet::study {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
 
 const char* name_of(eval::Positive positive) {
   return positive == eval::Positive::kEdge ? "edge" : "sharp";
 }
 
-Json sets_of(const Study& study) {
-  Json sets = Json::array();
+OrderedJson sets_of(const Study& study) {
+  OrderedJson sets = OrderedJson::array();
   for (const auto& set : study.sets) {
-    Json clouds = Json::array();
+    OrderedJson clouds = OrderedJson::array();
     for (const StudyCloud& cloud : set->clouds) {
       if (cloud.file.empty()) continue;  // not available to a page
       clouds.push_back(
@@ -40,11 +39,11 @@ const char* family_of(const Method& method) {
   return "network";
 }
 
-Json variants_of(const Study& study) {
-  Json variants = Json::array();
+OrderedJson variants_of(const Study& study) {
+  OrderedJson variants = OrderedJson::array();
   for (std::size_t v = 0; v < study.experiment.variants.size(); ++v) {
     const Variant& variant = study.experiment.variants[v];
-    Json row = {
+    OrderedJson row = {
         {"id", variant.id},      {"title", variant.title}, {"family", family_of(variant.method)},
         {"parameters", nullptr}, {"x", nullptr},           {"note", variant.note}};
     for (const Result& result : study.results) {
@@ -69,8 +68,8 @@ constexpr PhasePart kPhases[] = {
     {Phase::kTrain, "train", &Costs::train},
     {Phase::kClassify, "classify", &Costs::classify}};
 
-Json seconds_of(const Result& result, Phase phase) {
-  Json seconds = Json::object();
+OrderedJson seconds_of(const Result& result, Phase phase) {
+  OrderedJson seconds = OrderedJson::object();
   for (const auto& [own, name, part] : kPhases) {
     if (phase == Phase::kAll || phase == own) seconds[name] = (result.costs.*part).seconds;
   }
@@ -78,7 +77,7 @@ Json seconds_of(const Result& result, Phase phase) {
 }
 
 /// Joules per thousand points of the variant's phase.
-Json joules_of(const Result& result, Phase phase) {
+OrderedJson joules_of(const Result& result, Phase phase) {
   const bool training = phase == Phase::kTrain || phase == Phase::kDescribeTraining;
   const double points = training ? result.training_points : result.points;
   for (const auto& [own, name, part] : kPhases) {
@@ -94,16 +93,16 @@ std::string prediction_folder(const Study& study, const Result& result) {
                      study.experiment.variants[result.variant].id, result.set);
 }
 
-Json result_of(const Study& study, const Result& result) {
+OrderedJson result_of(const Study& study, const Result& result) {
   const Variant& variant = study.experiment.variants[result.variant];
-  Json row = {{"variant", variant.id}, {"set", result.set}, {"seed", nullptr}};
+  OrderedJson row = {{"variant", variant.id}, {"set", result.set}, {"seed", nullptr}};
   if (result.seed) row["seed"] = *result.seed;
   row["positive"] = name_of(result.positive);
   if (result.scores.empty() || study.experiment.timed) {
-    row["clouds"] = Json::array();
+    row["clouds"] = OrderedJson::array();
     row["median"] = row["pooled"] = nullptr;
   } else {
-    row.update(Json::parse(eval::to_json(result.scores)));
+    row.update(parse_ordered_json(eval::to_json(result.scores)));
   }
   row["seconds"] = seconds_of(result, variant.phase);
   row["joules"] = joules_of(result, variant.phase);
@@ -112,10 +111,10 @@ Json result_of(const Study& study, const Result& result) {
   return row;
 }
 
-Json curves_of(const Study& study) {
-  Json curves = Json::array();
+OrderedJson curves_of(const Study& study) {
+  OrderedJson curves = OrderedJson::array();
   for (const Curve& curve : study.curves) {
-    Json epochs = Json::array();
+    OrderedJson epochs = OrderedJson::array();
     for (const EpochPoint& point : curve.epochs) {
       epochs.push_back({{"epoch", point.epoch},
                         {"seconds", point.seconds},
@@ -132,8 +131,8 @@ Json curves_of(const Study& study) {
 }
 
 /// The published scores of these methods, trained as here, on sets of these names.
-Json expected_of(const Study& study) {
-  Json expected = Json::array();
+OrderedJson expected_of(const Study& study) {
+  OrderedJson expected = OrderedJson::array();
   if (study.experiment.name != "methods" || study.training != "default") return expected;
   for (const PublishedRow& row : published_rows()) {
     const auto is_row = [&](const Result& result) {
@@ -162,14 +161,26 @@ fs::path file_of(const fs::path& folder, const std::string& name) {
   return folder / (name + ".json");
 }
 
+/// Whether the file holds the study that this command makes.
+bool is_of_command(const fs::path& file, const std::string& command) {
+  std::error_code error;
+  if (!fs::is_regular_file(file, error)) return false;
+  try {
+    const Json study = parse_json(io::InputFile(file).text());
+    return study.is_object() && study.value("command", "") == command;
+  } catch (const Json::exception&) {
+    return false;
+  }
+}
+
 }  // namespace
 
 std::string to_json(const Study& study, const FileOptions& options) {
   const Experiment& experiment = study.experiment;
-  Json json = {{"schema", "pcednet-study-1"}, {"experiment", experiment.name},
-               {"title", experiment.title},   {"question", experiment.question},
-               {"command", options.command},  {"version", kVersion},
-               {"machine", machine_name()},   {"x_label", nullptr}};
+  OrderedJson json = {{"schema", "pcednet-study-1"}, {"experiment", experiment.name},
+                      {"title", experiment.title},   {"question", experiment.question},
+                      {"command", options.command},  {"version", kVersion},
+                      {"machine", machine_name()},   {"x_label", nullptr}};
   if (experiment.x_label) json["x_label"] = *experiment.x_label;
   if (experiment.timed) {
     json["energy"] =
@@ -179,23 +190,18 @@ std::string to_json(const Study& study, const FileOptions& options) {
   }
   json["sets"] = sets_of(study);
   json["variants"] = variants_of(study);
-  json["results"] = Json::array();
+  json["results"] = OrderedJson::array();
   for (const Result& result : study.results) json["results"].push_back(result_of(study, result));
   json["curves"] = curves_of(study);
   json["expected"] = expected_of(study);
   json["notes"] = study.notes;
-  return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return to_text(json, 1, NotUtf8::kReplace) + "\n";
 }
 
 void check_study_file(const fs::path& folder, const std::string& name, const std::string& command,
                       Overwrite overwrite) {
   const fs::path file = file_of(folder, name);
-  std::error_code error;
-  if (fs::is_regular_file(file, error)) {
-    const Json old = Json::parse(io::InputFile(file).text(), nullptr, false);
-    if (old.is_object() && old.value("command", "") == command) return;
-  }
-  check_writable(file, overwrite);
+  if (!is_of_command(file, command)) check_writable(file, overwrite);
 }
 
 void write_study(const fs::path& folder, const Study& study, const FileOptions& options,

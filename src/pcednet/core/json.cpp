@@ -1,0 +1,31 @@
+#include "pcednet/core/json.h"
+
+namespace pcednet {
+namespace {
+
+template <typename AnyJson>
+std::string text_of(const AnyJson& json, int indent, NotUtf8 bytes) {
+  using Handler = typename AnyJson::error_handler_t;
+  return json.dump(indent, ' ', false,
+                   bytes == NotUtf8::kReplace ? Handler::replace : Handler::strict);
+}
+
+}  // namespace
+
+Json parse_json(std::string_view text) {
+  return Json::parse(text);
+}
+
+OrderedJson parse_ordered_json(std::string_view text) {
+  return OrderedJson::parse(text);
+}
+
+std::string to_text(const Json& json, int indent, NotUtf8 bytes) {
+  return text_of(json, indent, bytes);
+}
+
+std::string to_text(const OrderedJson& json, int indent, NotUtf8 bytes) {
+  return text_of(json, indent, bytes);
+}
+
+}  // namespace pcednet

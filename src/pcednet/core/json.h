@@ -1,0 +1,29 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+
+/// The reader and the writer of JSON, compiled once for all rooms; in sources alone, so that no
+/// installed header asks for the library. Members are sorted by name in `Json` and keep their order
+/// in `OrderedJson`, which is for writing: of a file with many members it reads slowly.
+namespace pcednet {
+
+using Json = nlohmann::json;
+using OrderedJson = nlohmann::ordered_json;
+
+/// Throws Json::parse_error.
+Json parse_json(std::string_view text);
+OrderedJson parse_ordered_json(std::string_view text);
+
+/// What becomes of bytes that are not UTF-8, as names of files may hold.
+enum class NotUtf8 {
+  kRefuse,   ///< throws Json::type_error
+  kReplace,  ///< each becomes U+FFFD
+};
+
+/// On one line or, with `indent` spaces a level, on many. Numbers that are not finite become null.
+std::string to_text(const Json& json, int indent = -1, NotUtf8 bytes = NotUtf8::kRefuse);
+std::string to_text(const OrderedJson& json, int indent = -1, NotUtf8 bytes = NotUtf8::kRefuse);
+
+}  // namespace pcednet
