@@ -12,14 +12,12 @@ function(pcednet_room name)
   string(REPLACE "/" "_" flat ${name})
   set(target pcednet_${flat})
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${flat})
-  set_property(GLOBAL APPEND PROPERTY PCEDNET_ROOMS ${target})
   install(TARGETS ${target} EXPORT ${PCEDNET_COMPONENT}Targets
           ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT dev)
 endfunction()
 
 function(workbench_room name)
   pcednet_make_room(${name} workbench ${ARGN})
-  set_property(GLOBAL APPEND PROPERTY WORKBENCH_ROOMS pcednet_${name})
 endfunction()
 
 function(pcednet_make_room name wing)
@@ -47,6 +45,8 @@ function(pcednet_make_room name wing)
   # Who uses the installed room need not have what is only headers of its sources.
   list(TRANSFORM room_PRIVATE_LINKS REPLACE "^(nlohmann_json|nanoflann)::.*$" "$<BUILD_INTERFACE:\\0>")
   target_link_libraries(${target} PUBLIC ${room_LINKS} PRIVATE ${room_PRIVATE_LINKS})
+  target_link_libraries(pcednet_rooms INTERFACE ${target})
+  add_dependencies(rooms ${target})
 endfunction()
 
 # Warnings, and no contraction of a*b+c, so that copies for several instruction sets give the same
