@@ -4,18 +4,17 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
-#include <iterator>
 
 #include "pcednet/io/drawing/writers.h"
 
 namespace pcednet::io {
 
 void DxfText::text(int code, std::string_view value) {
-  fmt::format_to(std::back_inserter(bytes_), "{:3}\n{}\n", code, value);
+  bytes_ += fmt::format("{:3}\n{}\n", code, value);
 }
 
 void DxfText::integer(int code, long value) {
-  fmt::format_to(std::back_inserter(bytes_), "{:3}\n{}\n", code, value);
+  bytes_ += fmt::format("{:3}\n{}\n", code, value);
 }
 
 void DxfText::number(int code, double value) {

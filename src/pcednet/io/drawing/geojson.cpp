@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include <iterator>
-
 #include "pcednet/io/drawing/line_classes.h"
 #include "pcednet/io/drawing/writers.h"
 
@@ -16,18 +14,16 @@ std::string crs_member(const CoordinateSystem& system) {
 }
 
 void append_feature(std::string& text, const lines::Curve& curve, const DrawingOptions& options) {
-  const auto out = std::back_inserter(text);
-  fmt::format_to(out,
-                 R"({{"type":"Feature","properties":{{"class":"{}","kind":"{}","length":{},)"
-                 R"("confidence":{},"dihedral_angle":{},"points":{},"radius":{}}},)"
-                 R"("geometry":{{"type":"LineString","coordinates":[)",
-                 line_class(curve.edge_class).name, name_of(curve.kind),
-                 real_digits(length_of(curve)), real_digits(curve.confidence),
-                 real_digits(dihedral_degrees(curve)), curve.support,
-                 curve.radius > 0.0 ? real_digits(curve.radius) : "null");
+  text += fmt::format(R"({{"type":"Feature","properties":{{"class":"{}","kind":"{}","length":{},)"
+                      R"("confidence":{},"dihedral_angle":{},"points":{},"radius":{}}},)"
+                      R"("geometry":{{"type":"LineString","coordinates":[)",
+                      line_class(curve.edge_class).name, name_of(curve.kind),
+                      real_digits(length_of(curve)), real_digits(curve.confidence),
+                      real_digits(dihedral_degrees(curve)), curve.support,
+                      curve.radius > 0.0 ? real_digits(curve.radius) : "null");
   bool is_first = true;
   for (const Vec3& p : drawn(curve, options)) {
-    fmt::format_to(out, "{}[{},{},{}]", is_first ? "" : ",", p.x(), p.y(), p.z());
+    text += fmt::format("{}[{},{},{}]", is_first ? "" : ",", p.x(), p.y(), p.z());
     is_first = false;
   }
   text += "]}}";

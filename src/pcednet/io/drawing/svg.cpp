@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <iterator>
 
 #include "pcednet/io/drawing/line_classes.h"
 #include "pcednet/io/drawing/writers.h"
@@ -46,8 +45,8 @@ void append_path(std::string& text, const lines::Curve& curve, const Sheet& shee
   text += "<polyline points=\"";
   bool is_first = true;
   for (const Vec3& p : drawn(curve, options)) {
-    fmt::format_to(std::back_inserter(text), "{}{},{}", is_first ? "" : " ",
-                   p[axes.right] - sheet.left, sheet.top - p[axes.up]);
+    text += fmt::format("{}{},{}", is_first ? "" : " ", p[axes.right] - sheet.left,
+                        sheet.top - p[axes.up]);
     is_first = false;
   }
   text += "\"/>\n";
@@ -64,11 +63,11 @@ void write_svg(const std::filesystem::path& path, Curves curves, const DrawingOp
       sheet.width, sheet.height, curves.size(), "xyz"[axes.right], sheet.left, "xyz"[axes.up],
       sheet.top);
   for (const LineClass& layer : kLineClasses) {
-    fmt::format_to(std::back_inserter(text),
-                   "<g id=\"{}\" fill=\"none\" stroke=\"rgb({},{},{})\" stroke-width=\"{}\" "
-                   "stroke-linecap=\"round\" stroke-linejoin=\"round\">\n",
-                   layer.name, layer.colour[0], layer.colour[1], layer.colour[2],
-                   std::max(sheet.width, sheet.height) / 500.0);
+    text += fmt::format(
+        "<g id=\"{}\" fill=\"none\" stroke=\"rgb({},{},{})\" stroke-width=\"{}\" "
+        "stroke-linecap=\"round\" stroke-linejoin=\"round\">\n",
+        layer.name, layer.colour[0], layer.colour[1], layer.colour[2],
+        std::max(sheet.width, sheet.height) / 500.0);
     for (const lines::Curve& curve : curves) {
       if (&line_class(curve.edge_class) == &layer) append_path(text, curve, sheet, axes, options);
     }
