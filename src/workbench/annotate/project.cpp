@@ -273,10 +273,6 @@ std::string to_line(const Settings& settings) {
   return to_text(json_of(settings));
 }
 
-std::string to_line(const ProjectClasses& classes) {
-  return to_text(json_of(classes));
-}
-
 ProjectClasses parse_classes_change(std::string_view text) {
   try {
     return classes_in(parse_json(text).at("classes"));

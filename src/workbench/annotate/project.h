@@ -67,9 +67,6 @@ struct Record {
   RunRecord run = {};  ///< of kRestore the number alone
 };
 
-/// A project's classes as a record has them.
-std::string to_line(const ProjectClasses& classes);
-
 /// Reads `{"classes": [...]}` of the page. Throws Error(kUsage), naming the fault.
 ProjectClasses parse_classes_change(std::string_view json);
 
