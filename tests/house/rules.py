@@ -173,7 +173,32 @@ def check_mentions(root):
                     yield f"src/pcednet/{header}:{number}: names {''.join(name)}, which is not installed"
 
 
-RULES = {"rooms": check_rooms, "sizes": check_sizes, "suffixes": check_suffixes,
+def calls(text):
+    """Every pair of parentheses: where it opens, and what it holds between its commas."""
+    opened = []
+    for end, sign in enumerate(text):
+        if sign in "([{":
+            opened.append((sign, end, [end + 1]))
+        elif sign == "," and opened:
+            opened[-1][2].append(end + 1)
+        elif sign in ")]}" and opened:
+            bracket, begin, starts = opened.pop()
+            if bracket == "(":
+                yield begin, [text[a:b] for a, b in zip(starts, [*starts[1:], end])]
+
+
+def check_draws(root):
+    """At most one argument of a call draws from `random`: their order is left to the compiler."""
+    draw = re.compile(r"\brandom_?\s*\.\s*\w+\s*\(|[(,{]\s*random_?\s*[,)}]")
+    for path in sources(root, "src"):
+        text = re.sub(r"//.*", lambda comment: " " * len(comment[0]), read(path))
+        for begin, parts in calls(text):
+            if sum(bool(draw.search(part)) for part in parts) > 1 and ";" not in "".join(parts):
+                line = text.count("\n", 0, begin) + 1
+                yield f"{path}:{line}: draws random numbers in more than one argument"
+
+
+RULES = {"rooms": check_rooms, "sizes": check_sizes, "suffixes": check_suffixes, "draws": check_draws,
          "silence": check_silence, "version": check_version, "colours": check_colours,
          "mentions": check_mentions, "style": check_style}
 
@@ -194,7 +219,8 @@ endforeach()
         "src/pcednet/core/fast/CMakeLists.txt": "pcednet_room(core/fast USES core)\n",
         "src/pcednet/core/fast/d.h": '#include "pcednet/core/a.h"\n#include "pcednet/core/fast/e.h"\n',
         "src/pcednet/gls/CMakeLists.txt": "pcednet_room(gls\n  USES core)\n",
-        "src/pcednet/gls/b.cpp": '#include "pcednet/core/a.h"\nint n = snprintf(b, 2, "x");\n',
+        "src/pcednet/gls/b.cpp": '#include "pcednet/core/a.h"\nint n = snprintf(b, 2, "x");\n'
+                                 "f(a, random, {random.next(), random.next()});  // g(random), g(random)\n",
         "src/workbench/study/CMakeLists.txt": "workbench_room(study USES gls)\n",
         "src/workbench/study/c.cpp": '#include "workbench/study/c.h"\n\n#include "pcednet/gls/b.h"\n',
         "src/pcednet/cloud/class_table.h": "// {kNonEdge, \"non-edge\", {255, 0, 16}}\n",
@@ -232,6 +258,8 @@ endforeach()
         "mentions": [("src/pcednet/gls/p.h", text) for text in
                      ("int fit();  ///< in place of find()\n", "/// As b.h has it.\n", "/// See, or see b::C\n")],
         "style": [("src/pcednet/core/a.h", "int  a ;\n")],
+        "draws": [("src/pcednet/gls/b.cpp", text) for text in
+                  ("Vec3 v(random.uniform(), 0,\n       random.normal());\n", "f(g(random), {random.next()});\n")],
     }
     for rule, check in RULES.items():
         for breach in [None, *breaches[rule]]:

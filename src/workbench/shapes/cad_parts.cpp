@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "workbench/shapes/part_pieces.h"
+#include "workbench/shapes/random_vectors.h"
 #include "workbench/shapes/turned_parts.h"
 
 namespace pcednet::shapes {
@@ -20,17 +21,18 @@ Solid plate(Random& random) {
   const CornerShape rim = any_shape(random);
   const double rim_size = random.uniform(0.1, 0.45) * z;
   if (chance(random, 0.5)) {
-    part.add(prism(rectangle(x, y, any_shape(random), random.uniform(0.1, 0.9) * y), z,
-                   at(Vec3::Zero()), rim, rim_size));
+    const double round = random.uniform(0.1, 0.9) * y;
+    part.add(prism(rectangle(x, y, any_shape(random), round), z, at(Vec3::Zero()), rim, rim_size));
   } else {
     part.add(prism(random_outline(random, 0.5), z, at(Vec3::Zero()), rim, rim_size));
   }
   const int holes = 1 + static_cast<int>(random.index(7));
   for (int i = 0; i < holes; ++i) {
     const bool blind = chance(random, 0.35);
-    drill(part, random, {random.uniform(-0.75, 0.75) * x, random.uniform(-0.7, 0.7) * y},
-          size_between(random, 0.015, 0.3) * std::min(y, 0.35), z,
-          blind ? random.uniform(0.6, 1.4) * z : 2.0 * z + 1.0);
+    const double depth = blind ? random.uniform(0.6, 1.4) * z : 2.0 * z + 1.0;
+    const double radius = size_between(random, 0.015, 0.3) * std::min(y, 0.35);
+    const double u = random.uniform(-0.75, 0.75) * x, v = random.uniform(-0.7, 0.7) * y;
+    drill(part, random, {u, v}, radius, z, depth);
   }
   return part;
 }
@@ -78,25 +80,32 @@ Solid bracket(Random& random) {
 }
 
 Solid block(Random& random) {
-  const Vec3 half(random.uniform(0.2, 0.5), random.uniform(0.2, 0.5), random.uniform(0.1, 0.35));
+  const Vec3 half = uniform_vector(random, {0.2, 0.2, 0.1}, {0.5, 0.5, 0.35});
   Solid part;
-  part.add(prism(rectangle(half.x(), half.y(), any_shape(random), random.uniform(0.02, 0.1)),
-                 half.z(), at(Vec3::Zero()), any_shape(random), random.uniform(0.01, 0.06)));
+  const double rim_size = random.uniform(0.01, 0.06);
+  const CornerShape rim = any_shape(random);
+  const double round = random.uniform(0.02, 0.1);
+  part.add(prism(rectangle(half.x(), half.y(), any_shape(random), round), half.z(),
+                 at(Vec3::Zero()), rim, rim_size));
   const int features = 2 + static_cast<int>(random.index(6));
   for (int i = 0; i < features; ++i) {
-    const Vec3 place(random.uniform(-0.8, 0.8) * half.x(), random.uniform(-0.8, 0.8) * half.y(),
-                     half.z());
+    const double v = random.uniform(-0.8, 0.8) * half.y(), u = random.uniform(-0.8, 0.8) * half.x();
+    const Vec3 place(u, v, half.z());
     const double size = size_between(random, 0.03, 0.25);
     switch (random.index(6)) {
-      case 0:
-        part.cut(
-            prism(rectangle(size, random.uniform(0.4, 1.0) * size, any_shape(random), 0.3 * size),
-                  random.uniform(0.05, 0.3), at(place)));
+      case 0: {
+        const double depth = random.uniform(0.05, 0.3);
+        const CornerShape shape = any_shape(random);
+        const double width = random.uniform(0.4, 1.0) * size;
+        part.cut(prism(rectangle(size, width, shape, 0.3 * size), depth, at(place)));
         break;
-      case 1:
-        part.add(cylinder(0.6 * size, random.uniform(0.03, 0.2), at(place), any_shape(random),
-                          0.15 * size));
+      }
+      case 1: {
+        const CornerShape rim_there = any_shape(random);
+        const double height = random.uniform(0.03, 0.2);
+        part.add(cylinder(0.6 * size, height, at(place), rim_there, 0.15 * size));
         break;
+      }
       case 2:
         part.add(box(0.2 * size, size, random.uniform(0.03, 0.2), place));
         break;
@@ -106,11 +115,11 @@ Solid block(Random& random) {
         part.cut(prism(rectangle(size, 2.0), 0.5 * size, frame));
         break;
       }
-      case 4:
-        part.cut(cylinder(0.5 * size, 2.0,
-                          along(static_cast<int>(random.index(3)),
-                                place - Vec3(0, 0, random.uniform(0, 1) * half.z()))));
+      case 4: {
+        const Vec3 within = place - Vec3(0, 0, random.uniform(0, 1) * half.z());
+        part.cut(cylinder(0.5 * size, 2.0, along(static_cast<int>(random.index(3)), within)));
         break;
+      }
       default:
         drill(part, random, {place.x(), place.y()}, 0.5 * size, half.z(),
               random.uniform(0.3, 3.0) * half.z());
@@ -122,8 +131,9 @@ Solid block(Random& random) {
 Solid grille(Random& random) {
   const double thick = size_between(random, 0.01, 0.06);
   Solid part;
-  part.add(prism(rectangle(0.5, 0.4, any_shape(random), 0.08), thick, at(Vec3::Zero()),
-                 any_shape(random), 0.3 * thick));
+  const CornerShape rim = any_shape(random);
+  part.add(prism(rectangle(0.5, 0.4, any_shape(random), 0.08), thick, at(Vec3::Zero()), rim,
+                 0.3 * thick));
   const int columns = 3 + static_cast<int>(random.index(6)),
             rows = 2 + static_cast<int>(random.index(5));
   const int kind = static_cast<int>(random.index(4));
@@ -152,20 +162,22 @@ Solid housing(Random& random) {
   const CornerShape shape = any_shape(random);
   const double round = random.uniform(0.05, 0.15);
   Solid part;
+  const double outer_rim = random.uniform(0.2, 1.2) * wall;
   part.add(prism(rectangle(x, y, shape, round + wall), z, at(Vec3::Zero()), any_shape(random),
-                 random.uniform(0.2, 1.2) * wall));
+                 outer_rim));
+  const double inner_rim = random.uniform(0.3, 1.5) * wall;
   part.cut(prism(rectangle(x - wall, y - wall, shape, round), z, at({0, 0, 1.2 * wall}),
-                 any_shape(random), random.uniform(0.3, 1.5) * wall));
+                 any_shape(random), inner_rim));
   for (int i = 0; i < 4; ++i) {  // posts in the corners, holes in the walls
     const double px = (i % 2 ? 1 : -1) * (x - 3.0 * wall), py = (i / 2 ? 1 : -1) * (y - 3.0 * wall);
     if (chance(random, 0.7)) {
       part.add(cylinder(1.6 * wall, 0.8 * z, at({px, py, -0.2 * z})));
       part.cut(cylinder(0.8 * wall, 0.5 * z, at({px, py, 0.6 * z})));
     }
-    if (chance(random, 0.5))
-      part.cut(
-          cylinder(random.uniform(0.1, 0.4) * z, 0.5,
-                   along(i % 2, {i % 2 ? px : x, i % 2 ? y : py, random.uniform(-0.2, 0.4) * z})));
+    if (chance(random, 0.5)) {
+      const Vec3 place(i % 2 ? px : x, i % 2 ? y : py, random.uniform(-0.2, 0.4) * z);
+      part.cut(cylinder(random.uniform(0.1, 0.4) * z, 0.5, along(i % 2, place)));
+    }
   }
   if (chance(random, 0.5))
     part.add(
@@ -173,26 +185,31 @@ Solid housing(Random& random) {
   return part;
 }
 
+Volume any_volume(Random& random, double size, double tall, const Eigen::Isometry3d& frame) {
+  const bool is_prism = chance(random, 0.4), is_cylinder = !is_prism && chance(random, 0.5);
+  const CornerShape rim = any_shape(random);
+  const double rim_size = 0.1 * std::min(size, tall);
+  if (is_prism) return prism(random_outline(random, size), tall, frame, rim, rim_size);
+  if (is_cylinder) return cylinder(0.7 * size, tall, frame, rim, 0.2 * std::min(size, tall));
+  const CornerShape shape = any_shape(random);
+  const double width = random.uniform(0.3, 1) * size;
+  return prism(rectangle(size, width, shape, 0.2 * size), tall, frame, rim, rim_size);
+}
+
 /// Anything joined to anything, at any angle.
 Solid assembly(Random& random) {
   Solid part;
   const int pieces = 2 + static_cast<int>(random.index(4));
   for (int i = 0; i < pieces; ++i) {
-    Eigen::Isometry3d frame = at(Vec3(random.uniform(-0.25, 0.25), random.uniform(-0.25, 0.25),
-                                      random.uniform(-0.25, 0.25)));
+    Eigen::Isometry3d frame =
+        at(uniform_vector(random, Vec3::Constant(-0.25), Vec3::Constant(0.25)));
     const double tilt = chance(random, 0.5)
                             ? 0.5 * std::numbers::pi * static_cast<double>(random.index(4))
                             : random.uniform(0, 2 * std::numbers::pi);
     const Vec3 axes[] = {Vec3::UnitX(), Vec3::UnitY(), Vec3(1, 1, 1).normalized()};
     frame.rotate(Eigen::AngleAxisd(tilt, axes[random.index(3)]));
     const double size = random.uniform(0.12, 0.35), tall = size_between(random, 0.03, 0.4);
-    Volume volume =
-        chance(random, 0.4) ? prism(random_outline(random, size), tall, frame, any_shape(random),
-                                    0.1 * std::min(size, tall))
-        : chance(random, 0.5)
-            ? cylinder(0.7 * size, tall, frame, any_shape(random), 0.2 * std::min(size, tall))
-            : prism(rectangle(size, random.uniform(0.3, 1) * size, any_shape(random), 0.2 * size),
-                    tall, frame, any_shape(random), 0.1 * std::min(size, tall));
+    Volume volume = any_volume(random, size, tall, frame);
     if (i > 1 && chance(random, 0.35)) {
       part.cut(std::move(volume));
     } else {

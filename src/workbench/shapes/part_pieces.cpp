@@ -4,6 +4,8 @@
 #include <numbers>
 #include <utility>
 
+#include "workbench/shapes/random_vectors.h"
+
 namespace pcednet::shapes {
 
 Eigen::Isometry3d at(const Vec3& place) {
@@ -30,7 +32,7 @@ std::size_t points_between(Random& random, double low, double high) {
 }
 
 Vec3 any_direction(Random& random) {
-  return Vec3(random.normal(), random.normal(), random.normal()).normalized();
+  return normal_vector(random).normalized();
 }
 
 CornerShape any_shape(Random& random) {
@@ -88,11 +90,12 @@ void drill(Solid& part, Random& random, const Vec2& place, double radius, double
   const Eigen::Isometry3d frame = at({place.x(), place.y(), top - 0.5 * depth + 0.5});
   const double half = 0.5 * depth + 0.5;
   switch (random.index(6)) {
-    case 0:
-      part.cut(prism(
-          rectangle(radius, radius * random.uniform(0.5, 1.0), any_shape(random), 0.4 * radius),
-          half, frame));
+    case 0: {
+      const CornerShape shape = any_shape(random);
+      const double width = radius * random.uniform(0.5, 1.0);
+      part.cut(prism(rectangle(radius, width, shape, 0.4 * radius), half, frame));
       break;
+    }
     case 1: {
       const double t = random.uniform(0.0, std::numbers::pi);
       const Vec2 reach = radius * random.uniform(0.5, 1.5) * Vec2(std::cos(t), std::sin(t));

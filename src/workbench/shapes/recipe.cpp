@@ -12,6 +12,7 @@
 #include "pcednet/core/random.h"
 #include "pcednet/normals/estimate.h"
 #include "workbench/shapes/acquisition.h"
+#include "workbench/shapes/random_vectors.h"
 #include "workbench/shapes/rims.h"
 #include "workbench/shapes/sampling.h"
 #include "workbench/shapes/true_curves.h"
@@ -28,7 +29,7 @@ std::uint64_t hash_of(std::string_view text) {
 
 Vec3 random_direction(Random& random) {
   for (;;) {
-    const Vec3 v(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+    const Vec3 v = uniform_vector(random, -Vec3::Ones(), Vec3::Ones());
     if (v.squaredNorm() <= 1.0 && v.squaredNorm() > 0.01) return v.normalized();
   }
 }

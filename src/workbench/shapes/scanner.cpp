@@ -8,6 +8,7 @@
 
 #include "pcednet/core/parallel.h"
 #include "pcednet/spatial/kd_tree.h"
+#include "workbench/shapes/random_vectors.h"
 
 namespace pcednet::shapes {
 namespace {
@@ -165,7 +166,7 @@ Scan scan_scene(const Scene& scene, const ScannerOptions& options, std::uint64_t
       }
     });
     const double shift = i == 0 ? 0.0 : options.misalignment;
-    const Vec3 offset = shift * Vec3(random.normal(), random.normal(), 0.5 * random.normal());
+    const Vec3 offset = shift * normal_vector(random).cwiseProduct(Vec3(1.0, 1.0, 0.5));
     for (std::size_t r = 0; r < directions.size(); ++r) {
       if (hits[r].distance == 0.0) continue;
       double distance = hits[r].distance;

@@ -82,9 +82,9 @@ Scene facade(Random& random) {
     solid.add(box(1.0, 0.03, 0.4, {0, front - 0.87, 0.55 * height + 0.4}));
   }
   for (int i = 0; i < 3; ++i) {
+    const double radius = random.uniform(0.2, 0.8);
     add_bush(scene, random,
-             {random.uniform(-4, 4), random.uniform(-1, 1.5), random.uniform(0.3, 0.8)},
-             random.uniform(0.2, 0.8));
+             {random.uniform(-4, 4), random.uniform(-1, 1.5), random.uniform(0.3, 0.8)}, radius);
   }
   if (chance(random, 0.5))
     solid.add(prism(rectangle(0.9, 0.45, CornerShape::kFillet, 0.15), 0.5, at({2, 0, 0.5}),
@@ -109,9 +109,11 @@ Scene yard(Random& random) {
   solid.add(box(0.12, 0.5 * tread * steps, 0.5, {-1.5 + width, 3.0 - 0.5 * tread * steps, 0.5}));
   for (int i = 0; i < 4; ++i) {
     const double radius = size_between(random, 0.03, 0.2);
+    const double length = random.uniform(1, 4);
+    const int axis = static_cast<int>(random.index(3));
     add_pipe(solid,
-             {random.uniform(0, 3), 3.0 - random.uniform(0.1, 1.5), random.uniform(0.2, 2.5)},
-             static_cast<int>(random.index(3)), random.uniform(1, 4), radius);
+             {random.uniform(0, 3), 3.0 - random.uniform(0.1, 1.5), random.uniform(0.2, 2.5)}, axis,
+             length, radius);
   }
   solid.add(box(4, 0.15, 1.4, {0, 3.2, 1.4}));
   for (int i = 0; i < 4; ++i) {
@@ -120,14 +122,17 @@ Scene yard(Random& random) {
     frame.rotate(Eigen::AngleAxisd(random.uniform(0, 6), Vec3::UnitZ()));
     if (chance(random, 0.4))
       frame.rotate(Eigen::AngleAxisd(random.uniform(-0.4, 0.4), Vec3::UnitX()));
-    solid.add(chance(random, 0.3) ? cylinder(0.6 * size, size, frame, any_shape(random), 0.1 * size)
-                                  : prism(rectangle(size, random.uniform(0.4, 1) * size), size,
-                                          frame, any_shape(random), 0.1 * size));
+    const bool is_round = chance(random, 0.3);
+    const CornerShape rim = any_shape(random);
+    solid.add(is_round ? cylinder(0.6 * size, size, frame, rim, 0.1 * size)
+                       : prism(rectangle(size, random.uniform(0.4, 1) * size), size, frame, rim,
+                               0.1 * size));
   }
   solid.add(prism(outline({{{-1, 0}}, {{1, 0}}, {{1, 0.5}}}), 0.6, along(1, {3, 1, 0})));
   for (int i = 0; i < 4; ++i) {
+    const double radius = random.uniform(0.2, 0.7);
     add_bush(scene, random, {random.uniform(-4, 4), random.uniform(0, 3), random.uniform(0.2, 1.5)},
-             random.uniform(0.2, 0.7));
+             radius);
   }
   scene.scanners = {{{random.uniform(-2, 2), -4, 1.7}, {0, 2, 0.8}},
                     {{4, -2, 1.7}, {0, 2, 0.8}},
@@ -143,15 +148,17 @@ Scene room(Random& random) {
   solid.add(box(x + 0.3, y + 0.3, z + 0.3, {0, 0, z}));
   solid.cut(box(x, y, z, {0, 0, z}));
   solid.cut(box(0.2, 0.45, 1.05, {x, random.uniform(-0.5, 0.5) * y, 1.05}));  // door
-  solid.cut(box(random.uniform(0.4, 0.9), 0.2, 0.6, {random.uniform(-0.4, 0.4) * x, y, 1.4}));
+  const Vec3 window(random.uniform(-0.4, 0.4) * x, y, 1.4);
+  solid.cut(box(random.uniform(0.4, 0.9), 0.2, 0.6, window));
   solid.add(box(x, 0.02, 0.08, {0, y, 0.08}));  // skirting
   const int beams = static_cast<int>(random.index(4));
   for (int i = 0; i < beams; ++i) {
     solid.add(box(x, 0.1, 0.12, {0, (2.0 * i + 1 - beams) * y / beams, 2 * z - 0.12}));
   }
   for (int i = 0; i < 3; ++i) {
+    const double radius = random.uniform(0.02, 0.1);
     add_pipe(solid, {-x + random.uniform(0.08, 0.3), -y + 0.15, random.uniform(0.3, 2.0) * z}, 1,
-             2.0 * y - 0.3, random.uniform(0.02, 0.1));
+             2.0 * y - 0.3, radius);
   }
   if (chance(random, 0.7))
     solid.add(
@@ -159,11 +166,12 @@ Scene room(Random& random) {
   solid.add(box(0.6, 0.35, 0.03, {random.uniform(-0.4, 0.4) * x, 0.5 * y, 0.75}));  // table
   solid.add(box(0.05, 0.05, 0.36, {0.2, 0.5 * y, 0.36}));
   for (int i = 0; i < 4; ++i) {
-    solid.add(prism(
-        rectangle(random.uniform(0.15, 0.5), random.uniform(0.15, 0.4), any_shape(random), 0.05),
-        random.uniform(0.2, 0.9),
-        at({random.uniform(-0.8, 0.8) * x, random.uniform(-0.8, 0.8) * y, 0}), any_shape(random),
-        0.04));
+    const CornerShape rim = any_shape(random);
+    const double u = random.uniform(-0.8, 0.8) * x, v = random.uniform(-0.8, 0.8) * y;
+    const double height = random.uniform(0.2, 0.9);
+    const CornerShape shape = any_shape(random);
+    const double depth = random.uniform(0.15, 0.4), width = random.uniform(0.15, 0.5);
+    solid.add(prism(rectangle(width, depth, shape, 0.05), height, at({u, v, 0}), rim, 0.04));
   }
   add_bush(scene, random, {0.6 * x, 0.6 * y, 0.9}, 0.3);
   scene.scanners = {{{0.1, -0.1, 1.5}, {0, 0, 1.4}},
@@ -179,8 +187,9 @@ Scene monument(Random& random) {
   const int steps = 2 + static_cast<int>(random.index(4));
   double top = 0.0, half = random.uniform(1.5, 2.2);
   for (int i = 0; i < steps; ++i, half -= 0.25) {
-    solid.add(prism(rectangle(half, half, any_shape(random), 0.1), 0.1, at({0, 1, top + 0.1}),
-                    any_shape(random), 0.03));
+    const CornerShape rim = any_shape(random);
+    solid.add(prism(rectangle(half, half, any_shape(random), 0.1), 0.1, at({0, 1, top + 0.1}), rim,
+                    0.03));
     top += 0.2;
   }
   if (chance(random, 0.5)) {  // columns carry a slab
@@ -207,9 +216,10 @@ Scene monument(Random& random) {
                         {{-0.6, top + 2.6}}}),
                at({0, 1, 0})));
   }
-  for (int i = 0; i < 3; ++i)
-    add_bush(scene, random, {random.uniform(-4, 4), random.uniform(-1, 3), 0.4},
-             random.uniform(0.2, 0.6));
+  for (int i = 0; i < 3; ++i) {
+    const double radius = random.uniform(0.2, 0.6);
+    add_bush(scene, random, {random.uniform(-4, 4), random.uniform(-1, 3), 0.4}, radius);
+  }
   scene.scanners = {{{random.uniform(-2, 2), -4, 1.7}, {0, 1, 1.2}},
                     {{4, 0, 1.7}, {0, 1, 1.2}},
                     {{-4, 3, 1.7}, {0, 1, 1.2}}};

@@ -9,6 +9,7 @@
 #include "pcednet/core/parallel.h"
 #include "pcednet/core/random.h"
 #include "pcednet/spatial/kd_tree.h"
+#include "workbench/shapes/random_vectors.h"
 
 namespace pcednet::shapes {
 namespace {
@@ -75,8 +76,8 @@ SolidSamples sample_solid(const Solid& solid, std::size_t count, std::uint64_t s
     const std::size_t most = kTries * (end - begin);
     while (!cells.empty() && parts[block].size() < end - begin && tries[block] < most) {
       ++tries[block];
-      const Vec3 p = cells[random.index(cells.size())] +
-                     size * Vec3(random.uniform(), random.uniform(), random.uniform());
+      const Vec3 within = uniform_vector(random, Vec3::Zero(), Vec3::Ones());
+      const Vec3 p = cells[random.index(cells.size())] + size * within;
       if (std::abs(solid.value(p).distance) > kShell * size) continue;
       ++hits[block];
       const auto point = onto_surface(solid, p);

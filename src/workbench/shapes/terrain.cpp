@@ -12,6 +12,7 @@
 #include "workbench/shapes/cad_set.h"
 #include "workbench/shapes/local_spacing.h"
 #include "workbench/shapes/part_pieces.h"
+#include "workbench/shapes/random_vectors.h"
 #include "workbench/shapes/roofs.h"
 #include "workbench/shapes/sampling.h"
 
@@ -99,7 +100,7 @@ House random_house(View view, const Ground& ground, Random& random) {
     std::erase_if(solid.faces, [&](const std::vector<int>& face) {
       return std::all_of(face.begin(), face.end(), is_low);
     });
-    const Vec3 size(random.uniform(1, 6), random.uniform(1, 6), random.uniform(0.5, 6));
+    const Vec3 size = uniform_vector(random, {1, 1, 0.5}, {6, 6, 6});
     for (Vec3& corner : solid.corners) corner = corner.cwiseProduct(size);
   } else {
     foot.z() += random.uniform(3.0, 8.0);
@@ -169,7 +170,7 @@ void scan_ground(const TerrainRecipe& recipe, Land& land, Random& random) {
 class Plant {
  public:
   Plant(const Land& land, Random& random)
-      : size_(random.uniform(0.3, 3.0), random.uniform(0.3, 3.0), random.uniform(0.4, 3.0)),
+      : size_(uniform_vector(random, {0.3, 0.3, 0.4}, {3.0, 3.0, 3.0})),
         hollow_(random.uniform(0.0, 0.9)),
         box_(random.index(4) == 0),
         trunk_(random.index(2) ? 0.0 : random.uniform(0.03, 0.2)) {
@@ -188,7 +189,7 @@ class Plant {
       land.add(foot_ + trunk_ * side + Vec3(0, 0, size_.z() * random.uniform()), side);
       return;
     }
-    const Vec3 in_box(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+    const Vec3 in_box = uniform_vector(random, -Vec3::Ones(), Vec3::Ones());
     const Vec3 in_crown = box_ ? in_box : std::cbrt(random.uniform(hollow_, 1.0)) * out;
     land.add(foot_ + size_.cwiseProduct(in_crown + Vec3(0, 0, trunk_ > 0.0 ? 1.7 : 0.9)),
              any_direction(random));

@@ -32,12 +32,14 @@ Solid shaft(Random& random) {
   corners.push_back({{-0.6, 0.5}});
   Solid part;
   part.add(turned(outline(corners), at(Vec3::Zero())));
-  if (chance(random, 0.5))
-    part.cut(cylinder(size_between(random, 0.01, 0.04), 0.6,
-                      along(0, {0, 0, random.uniform(-0.4, 0.4)})));
-  if (chance(random, 0.4))
-    part.cut(
-        cylinder(random.uniform(0.01, 0.035), chance(random, 0.5) ? 0.6 : 0.2, at({0, 0, 0.4})));
+  if (chance(random, 0.5)) {
+    const double height = random.uniform(-0.4, 0.4);
+    part.cut(cylinder(size_between(random, 0.01, 0.04), 0.6, along(0, {0, 0, height})));
+  }
+  if (chance(random, 0.4)) {
+    const double depth = chance(random, 0.5) ? 0.6 : 0.2;
+    part.cut(cylinder(random.uniform(0.01, 0.035), depth, at({0, 0, 0.4})));
+  }
   if (chance(random, 0.4))
     part.cut(box(0.3, 0.3, 0.1, {random.uniform(0.31, 0.36), 0, random.uniform(-0.4, 0.4)}));
   if (chance(random, 0.3))
@@ -149,12 +151,15 @@ Solid dome(Random& random) {
                                   random.uniform(0.05, 0.3)},
                                  {{-0.6, random.uniform(0.45, 0.6)}}};
   part.add(turned(outline(corners), at(Vec3::Zero())));
-  if (chance(random, 0.5))
-    part.add(turned(circle_profile({0, 0.4}, random.uniform(0.08, 0.2)),
-                    at({random.uniform(-0.2, 0.2), 0, 0})));
-  if (chance(random, 0.6))
+  if (chance(random, 0.5)) {
+    const double aside = random.uniform(-0.2, 0.2);
+    part.add(turned(circle_profile({0, 0.4}, random.uniform(0.08, 0.2)), at({aside, 0, 0})));
+  }
+  if (chance(random, 0.6)) {
+    const double bore = random.uniform(0.03, 0.1);
     drill(part, random, {random.uniform(-0.4, 0.4) * radius, random.uniform(-0.4, 0.4) * radius},
-          random.uniform(0.03, 0.1), 0.6, 0.4);
+          bore, 0.6, 0.4);
+  }
   if (chance(random, 0.4)) part.cut(box(0.3, 1.0, 1.0, {random.uniform(0.45, 0.6), 0, 0}));
   return part;
 }
@@ -163,15 +168,17 @@ Solid knob(Random& random) {
   Solid part;
   const int grips = 4 + static_cast<int>(random.index(8));
   const double radius = random.uniform(0.3, 0.5), z = random.uniform(0.08, 0.25);
-  part.add(cylinder(radius, z, at(Vec3::Zero()), any_shape(random), random.uniform(0.1, 0.6) * z));
+  const double rim_size = random.uniform(0.1, 0.6) * z;
+  part.add(cylinder(radius, z, at(Vec3::Zero()), any_shape(random), rim_size));
   const double grip = random.uniform(0.3, 0.9) * std::numbers::pi * radius / grips,
                out = radius + random.uniform(0.0, 0.7) * grip;
   for (int i = 0; i < grips; ++i) {
     const double t = 2.0 * std::numbers::pi * i / grips;
     part.cut(cylinder(grip, 1.0, at({out * std::cos(t), out * std::sin(t), 0})));
   }
-  part.add(cylinder(random.uniform(0.3, 0.5) * radius, 0.5 * z, at({0, 0, -1.3 * z}),
-                    any_shape(random), 0.1 * z));
+  const CornerShape rim = any_shape(random);
+  part.add(
+      cylinder(random.uniform(0.3, 0.5) * radius, 0.5 * z, at({0, 0, -1.3 * z}), rim, 0.1 * z));
   if (chance(random, 0.7))
     drill(part, random, Vec2::Zero(), 0.2 * radius, z, random.uniform(0.5, 4.0) * z);
   return part;

@@ -8,6 +8,7 @@
 #include "pcednet/normals/prepare.h"
 #include "pcednet/spatial/kd_tree.h"
 #include "workbench/shapes/part_pieces.h"
+#include "workbench/shapes/random_vectors.h"
 
 namespace pcednet::shapes {
 namespace {
@@ -36,7 +37,8 @@ void wear_off(MeshVertices& vertices, const SurfaceSamples& surface, std::span<c
   const spatial::KdTree edge_tree(edges), tree(surface.positions);
   std::array<Vec3, 3> waves;
   for (Vec3& wave : waves) {
-    wave = random.uniform(5.0, 25.0) * Vec3(random.normal(), random.normal(), random.normal());
+    const Vec3 direction = normal_vector(random);
+    wave = random.uniform(5.0, 25.0) * direction;
   }
   parallel_blocks(vertices.positions.size(), 256, [&](std::size_t begin, std::size_t end) {
     std::vector<spatial::Neighbour> near;
@@ -60,7 +62,7 @@ void wear_off(MeshVertices& vertices, const SurfaceSamples& surface, std::span<c
 
 Mat3 gaussian_rotation(Random& random) {
   const Vec3 x = any_direction(random);
-  const Vec3 y = x.cross(Vec3(random.normal(), random.normal(), random.normal())).normalized();
+  const Vec3 y = x.cross(normal_vector(random)).normalized();
   Mat3 rotation;
   rotation << x, y, x.cross(y);
   return rotation;

@@ -1,0 +1,26 @@
+#pragma once
+
+#include "pcednet/core/random.h"
+#include "pcednet/core/vec3.h"
+
+/// Random vectors, whose numbers are drawn one after another. In the arguments of a call at most
+/// one number is drawn: their order is left to the compiler, and clouds must be the same from each.
+namespace pcednet::shapes {
+
+/// In the box between the corners.
+inline Vec3 uniform_vector(Random& random, const Vec3& low, const Vec3& high) {
+  const double z = random.uniform(low.z(), high.z());
+  const double y = random.uniform(low.y(), high.y());
+  const double x = random.uniform(low.x(), high.x());
+  return {x, y, z};
+}
+
+/// Of normal numbers.
+inline Vec3 normal_vector(Random& random) {
+  const double z = random.normal();
+  const double y = random.normal();
+  const double x = random.normal();
+  return {x, y, z};
+}
+
+}  // namespace pcednet::shapes
