@@ -20,12 +20,15 @@ constexpr double kMostOfLean = 0.5;  ///< of the variance of the distances from 
 constexpr std::size_t kNoWall = std::numeric_limits<std::size_t>::max();
 constexpr std::size_t kMostRounds = 12;  ///< of the growth of a wall
 
-// In spacings.
-/// How near to a wall its points are, and the root mean square of that.
-struct Closeness {
+/// What a wall's points lie on, and how near they are to its circle, each and as a root mean
+/// square, in spacings.
+struct WallKind {
+  bool has_facets;
   double reach, most_error;
 };
-constexpr Closeness kCylinder{0.01, 0.002}, kFacets{0.03, 0.012};
+constexpr WallKind kCylinder{false, 0.01, 0.002}, kFacets{true, 0.03, 0.012};
+
+// In spacings.
 constexpr double kWallFrom = 0.05, kWallTo = 3.0;
 constexpr double kLookForWall = 2.5;
 constexpr double kNarrowRadius = 20.0;
@@ -58,15 +61,15 @@ WallPoints seen_from(const OrderedPoints& cloud, const PlanePatch& plane, const 
 struct WallCircle {
   Vec3 centre = Vec3::Zero();
   double radius = 0.0;
-  Closeness closeness = kCylinder;
+  WallKind kind = kCylinder;
 
   bool holds(const Vec3& place) const {
-    return std::abs((place - centre).norm() - radius) < closeness.reach;
+    return std::abs((place - centre).norm() - radius) < kind.reach;
   }
 };
 
 /// The circle through the origin and two places; none if they are near each other or on a line.
-std::optional<WallCircle> circle_through(const Vec3& a, const Vec3& b, const Closeness& closeness) {
+std::optional<WallCircle> circle_through(const Vec3& a, const Vec3& b, const WallKind& kind) {
   const double sq_a = a.squaredNorm(), sq_b = b.squaredNorm();
   if (std::min({sq_a, sq_b, (a - b).squaredNorm()}) < kLeastWallStep * kLeastWallStep) {
     return std::nullopt;
@@ -76,7 +79,7 @@ std::optional<WallCircle> circle_through(const Vec3& a, const Vec3& b, const Clo
       Vec3(b.y() * sq_a - a.y() * sq_b, a.x() * sq_b - b.x() * sq_a, 0.0) / (2.0 * twice_area);
   const double radius = centre.norm();
   if (!(radius > kLeastWallRadius && radius < kMostWallRadius)) return std::nullopt;
-  return WallCircle{centre, radius, closeness};
+  return WallCircle{centre, radius, kind};
 }
 
 /// Walls that grow from place to place.
@@ -89,7 +92,7 @@ class WallGrowth {
         seen_(points.places.size(), 0) {}
 
   /// Grows a wall from this place if so many near it are on one.
-  void try_at(std::uint32_t first, std::size_t least_on, const Closeness& closeness);
+  void try_at(std::uint32_t first, std::size_t least_on, const WallKind& kind);
 
   /// Makes one of the walls that are on one circle: there may be gaps between them.
   void unite();
@@ -101,7 +104,7 @@ class WallGrowth {
   std::vector<Wall> found;
 
  private:
-  bool set_first(std::uint32_t first, std::size_t least_on, const Closeness& closeness);
+  bool set_first(std::uint32_t first, std::size_t least_on, const WallKind& kind);
   bool spread(std::uint32_t first);
   bool fit_to_members();
   double rise() const;
@@ -126,7 +129,7 @@ class WallGrowth {
 };
 
 /// The circle through the place and two near it that the most of the free places there are on.
-bool WallGrowth::set_first(std::uint32_t first, std::size_t least_on, const Closeness& closeness) {
+bool WallGrowth::set_first(std::uint32_t first, std::size_t least_on, const WallKind& kind) {
   const Vec3& at = points_.places[first];
   std::vector<spatial::Neighbour> near;
   tree_.within(at, kLookForWall, near);
@@ -142,13 +145,13 @@ bool WallGrowth::set_first(std::uint32_t first, std::size_t least_on, const Clos
   bool is_set = false;
   for (std::size_t j = 0; j < offsets.size(); j += step) {
     for (std::size_t k = j + step; k < offsets.size(); k += step) {
-      const auto circle = circle_through(offsets[j], offsets[k], closeness);
+      const auto circle = circle_through(offsets[j], offsets[k], kind);
       if (!circle) continue;
       const auto on = static_cast<std::size_t>(std::count_if(
           offsets.begin(), offsets.end(), [&](const Vec3& place) { return circle->holds(place); }));
       if (on <= most) continue;
       most = on;
-      circle_ = {at + circle->centre, circle->radius, closeness};
+      circle_ = {at + circle->centre, circle->radius, kind};
       is_set = true;
     }
   }
@@ -160,7 +163,7 @@ bool WallGrowth::fit_to_members() {
   for (const std::uint32_t i : members_) places.push_back(points_.places[i]);
   const Fit fit = fit_arc(places, 1.0);
   if (fit.kind != CurveKind::kArc) return false;
-  circle_ = {fit.point, fit.radius, circle_.closeness};
+  circle_ = {fit.point, fit.radius, circle_.kind};
   error_ = fit.error;
   return true;
 }
@@ -235,16 +238,16 @@ bool WallGrowth::leans() const {
 
 /// Whether the members are enough, on a curve, and as near to it as they should be.
 bool WallGrowth::is_wall() const {
-  const Closeness& closeness = circle_.closeness;
-  if (error_ > closeness.most_error || circle_.radius < kLeastWallRadius) return false;
-  if (closeness.reach == kCylinder.reach) {
-    return rise() > (members_.size() < kManyOnWall ? kLeastWallRiseOfFew : kLeastWallRise);
+  const WallKind& kind = circle_.kind;
+  if (error_ > kind.most_error || circle_.radius < kLeastWallRadius) return false;
+  if (kind.has_facets) {
+    return members_.size() >= kLeastOnFacets && rise() > kLeastWallRiseOnFacets && !leans();
   }
-  return members_.size() >= kLeastOnFacets && rise() > kLeastWallRiseOnFacets && !leans();
+  return rise() > (members_.size() < kManyOnWall ? kLeastWallRiseOfFew : kLeastWallRise);
 }
 
-void WallGrowth::try_at(std::uint32_t first, std::size_t least_on, const Closeness& closeness) {
-  if (taken_[first] || !set_first(first, least_on, closeness)) return;
+void WallGrowth::try_at(std::uint32_t first, std::size_t least_on, const WallKind& kind) {
+  if (taken_[first] || !set_first(first, least_on, kind)) return;
   // The circle through three places is wrong farther on; that of all so far is less so.
   for (std::size_t before = 0, round = 0; round < kMostRounds; ++round) {
     if (!spread(first)) return;
@@ -317,10 +320,10 @@ std::vector<ExactWall> find_exact_walls(const OrderedPoints& cloud, const PlaneP
     const WallPoints flat = seen_from(cloud, plane, chart, side, points, spacing);
     if (flat.indices.size() < kLeastOnWall) continue;
     WallGrowth growth(flat);
-    for (const Closeness& closeness : {kCylinder, kFacets}) {
+    for (const WallKind& kind : {kCylinder, kFacets}) {
       for (const std::size_t least_on : kOnFirstWall) {
         for (std::uint32_t i = 0; i < flat.indices.size(); ++i) {
-          growth.try_at(i, least_on, closeness);
+          growth.try_at(i, least_on, kind);
         }
       }
     }
@@ -330,7 +333,7 @@ std::vector<ExactWall> find_exact_walls(const OrderedPoints& cloud, const PlaneP
       ExactWall& exact = walls.emplace_back();
       exact.circle = {CurveKind::kArc, chart.place(centre), side * plane.normal,
                       spacing * wall.circle.radius, 0.0};
-      exact.reach = spacing * wall.circle.closeness.reach;
+      exact.reach = spacing * wall.circle.kind.reach;
       for (const std::uint32_t i : wall.members) exact.members.push_back(flat.indices[i]);
     }
   }
