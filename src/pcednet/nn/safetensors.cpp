@@ -84,8 +84,9 @@ Placed place(const std::string& tensor, const Json& entry, std::size_t data_size
       !entry.contains("shape") || !entry.contains("data_offsets")) {
     bad("not the three entries dtype, shape and data_offsets");
   }
-  if (entry["dtype"] != "F32")
+  if (entry["dtype"] != "F32") {
     bad(fmt::format("type {}; only F32 is used", to_text(entry["dtype"])));
+  }
   const Json& offsets = entry["data_offsets"];
   if (!entry["shape"].is_array() || !offsets.is_array() || offsets.size() != 2) {
     bad("shape and data_offsets must be lists");

@@ -29,7 +29,7 @@ OrderedJson to_json(const Costs& costs) {
   return json;
 }
 
-Costs costs_of(const OrderedJson& json) {
+Costs costs_of(const Json& json) {
   Costs costs;
   for (const auto& [name, part] : kParts) {
     costs.*part = {json.at(name).at(0).get<double>(), json.at(name).at(1).get<double>()};
@@ -41,7 +41,7 @@ OrderedJson to_json(const EpochPoint& e) {
   return {e.epoch, e.seconds, e.loss, e.held_out_loss, e.held_out_accuracy, e.held_out_mcc};
 }
 
-EpochPoint epoch_of(const OrderedJson& json) {
+EpochPoint epoch_of(const Json& json) {
   return {json.at(0).get<int>(),    json.at(1).get<double>(), json.at(2).get<double>(),
           json.at(3).get<double>(), json.at(4).get<double>(), json.at(5).get<double>()};
 }
@@ -50,16 +50,16 @@ OrderedJson to_json(const eval::ConfusionCounts& c) {
   return {c.tp, c.fp, c.tn, c.fn};
 }
 
-eval::ConfusionCounts counts_of(const OrderedJson& json) {
+eval::ConfusionCounts counts_of(const Json& json) {
   const auto at = [&](std::size_t i) { return json.at(i).get<std::size_t>(); };
   return {at(0), at(1), at(2), at(3)};
 }
 
 /// The content of the file, if it exists, is complete, and has that key.
-std::optional<OrderedJson> read(const fs::path& path, const std::string& key) {
+std::optional<Json> read(const fs::path& path, const std::string& key) {
   std::error_code error;
   if (!fs::is_regular_file(path, error)) return std::nullopt;
-  OrderedJson json = parse_ordered_json(io::InputFile(path).text());
+  Json json = parse_json(io::InputFile(path).text());
   if (!json.is_object() || json.value("key", "") != key) return std::nullopt;
   return json;
 }
@@ -69,7 +69,7 @@ template <typename Work>
 auto unless_damaged(const Work& work) -> decltype(work()) {
   try {
     return work();
-  } catch (const OrderedJson::exception&) {
+  } catch (const Json::exception&) {
     return std::nullopt;
   } catch (const Error&) {
     return std::nullopt;
@@ -93,7 +93,7 @@ std::optional<StoredModel> Cache::find_model(const std::string& key) const {
     if (!json) return std::nullopt;
     StoredModel stored{.model = detect::load_model(file("model", key, ".safetensors")),
                        .costs = costs_of(json->at("costs"))};
-    for (const OrderedJson& epoch : json->at("epochs")) stored.epochs.push_back(epoch_of(epoch));
+    for (const Json& epoch : json->at("epochs")) stored.epochs.push_back(epoch_of(epoch));
     return stored;
   });
 }
