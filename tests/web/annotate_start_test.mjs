@@ -126,6 +126,19 @@ test("judges by whole strokes once there are two of two classes", async () => {
   await page.getByText(/Right on held-out strokes: [\d.]+ %; model scan: [\d.]+ %\./).waitFor();
 });
 
+test("takes every step between uncertain places, however slow the answers", async () => {
+  await page.route("**/api/uncertain*", async (route) => {
+    await new Promise((resolve) => setTimeout(resolve, 300));
+    await route.continue();
+  });
+  for (const key of ["n", "n", "Shift+N", "Shift+N"]) await page.keyboard.press(key);
+  await page.waitForFunction(() => {
+    const { uncertain } = annotator.store.now;
+    return uncertain && uncertain.rank === uncertain.of; // before the first
+  });
+  await page.unroute("**/api/uncertain*");
+});
+
 test("accepts what is predicted at an uncertain place", async () => {
   await page.keyboard.press("n");
   await page.waitForFunction(() => annotator.store.now.uncertain?.rank === 1);

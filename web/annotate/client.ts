@@ -52,6 +52,8 @@ export class Client {
   private described = "";
   /** The last look at the session, done or not. */
   private looked: Promise<void> = Promise.resolve();
+  /** The last step to an uncertain place, likewise. */
+  private stepped: Promise<Uncertain | null> = Promise.resolve(null);
   /** Of the clouds that were looked at before. */
   private readonly views = new Map<number, CloudView>();
   stage!: Stage;
@@ -394,8 +396,14 @@ export class Client {
     this.attempt(this.api.post(`/api/window/${this.api.window}/take`).then(() => this.store.set({ writer: true })));
   }
 
-  /** The next place where the network is unsure, or the one before, round and round. */
-  async stepUncertain(by: 1 | -1): Promise<Uncertain | null> {
+  /** The next place where the network is unsure, or the one before, round and round. One step after another: two at a
+   *  time would lead to the same place. */
+  stepUncertain(by: 1 | -1): Promise<Uncertain | null> {
+    this.stepped = this.stepped.then(() => this.takeStep(by));
+    return this.stepped;
+  }
+
+  private async takeStep(by: 1 | -1): Promise<Uncertain | null> {
     const last = this.store.now.uncertain;
     const after = last ? (last.rank - 1 + by + last.of) % last.of : 0;
     try {
