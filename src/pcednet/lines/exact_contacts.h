@@ -22,7 +22,7 @@ struct PlaneContact {
   std::uint32_t point;
 
   auto planes() const { return std::tie(a, b); }
-  auto operator<=>(const PlaneContact&) const = default;
+  auto operator<=>(const PlaneContact&) const = default;  // NOLINT: no pointer; clang-tidy 14 errs
 };
 
 /// Ascending, each once.
