@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "pcednet/core/error.h"
-#include "pcednet/core/random.h"
+#include "pcednet/core/random_vectors.h"
 
 namespace pcednet::bench {
 namespace {
@@ -15,7 +15,7 @@ constexpr double kPi = 3.14159265358979323846;
 
 Vec3 direction(Random& random) {
   for (;;) {
-    const Vec3 v(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+    const Vec3 v = uniform_vector(random, -Vec3::Ones(), Vec3::Ones());
     if (v.squaredNorm() > 0.01 && v.squaredNorm() < 1) return v.normalized();
   }
 }
@@ -93,8 +93,8 @@ Cloud rough(std::size_t points) {
     const double range =
         kNearest * std::pow(kFarthest / kNearest, random.uniform()) + kRangeNoise * random.normal();
     const double x = range * std::cos(angle), y = range * std::sin(angle);
-    cloud.add({x, y, height(x, y) + kRangeNoise * random.normal()},
-              (ground_normal(x, y) + kNormalNoise * normal3(random)).normalized());
+    const Vec3 normal = (ground_normal(x, y) + kNormalNoise * normal3(random)).normalized();
+    cloud.add({x, y, height(x, y) + kRangeNoise * random.normal()}, normal);
   }
   return cloud;
 }
@@ -106,7 +106,8 @@ Cloud vegetation(std::size_t points) {
   while (cloud.positions.size() < points) {
     const double x = random.uniform(), y = random.uniform();
     if (random.uniform() < 0.4) {
-      cloud.add({x, y, random.uniform(0, 0.1)}, direction(random));
+      const Vec3 normal = direction(random);
+      cloud.add({x, y, random.uniform(0, 0.1)}, normal);
     } else {
       cloud.add({x, y, 0}, Vec3::UnitZ());
     }
@@ -133,7 +134,8 @@ Cloud blob(std::size_t points) {
     const double x = random.uniform(), y = random.uniform(), z = random.uniform();
     const bool dense = random.uniform() < 0.9;
     const Vec3 p(x, y, z);
-    cloud.add(dense ? Vec3(0.5, 0.5, 0.5) + 0.001 * normal3(random) : p, direction(random));
+    const Vec3 normal = direction(random);
+    cloud.add(dense ? Vec3(0.5, 0.5, 0.5) + 0.001 * normal3(random) : p, normal);
   }
   return cloud;
 }

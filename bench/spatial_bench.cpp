@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "pcednet/core/parallel.h"
-#include "pcednet/core/random.h"
+#include "pcednet/core/random_vectors.h"
 #include "pcednet/spatial/curve_order.h"
 #include "pcednet/spatial/kd_tree.h"
 #include "pcednet/spatial/neighbour_search.h"
@@ -17,10 +17,10 @@ namespace {
 enum Kind { kSphere, kFoliage, kClumps, kFar, kCopies };
 
 Vec3 place(Kind kind, Random& random) {
-  const Vec3 p(random.uniform(), random.uniform(), random.uniform());
+  const Vec3 p = uniform_vector(random, Vec3::Zero(), Vec3::Ones());
   switch (kind) {
     case kSphere:
-      return Vec3(random.normal(), random.normal(), random.normal()).normalized();
+      return normal_vector(random).normalized();
     case kFoliage:
       return p;
     case kClumps:  // a thousand times as dense

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "pcednet/core/random.h"
+#include "pcednet/core/random_vectors.h"
 #include "workbench/annotate/held_out.h"
 
 namespace pcednet::annotate {
@@ -20,7 +20,7 @@ class Adapting : public testing::Test {
     cloud_ = {};
     for (int i = 0; i < 8000; ++i) {
       const int axis = static_cast<int>(random.index(3));
-      Vec3 p(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+      Vec3 p = uniform_vector(random, -Vec3::Ones(), Vec3::Ones());
       Vec3 normal = Vec3::Zero();
       p[axis] = normal[axis] = random.uniform() < 0.5 ? -1 : 1;
       cloud_.positions.push_back(p);

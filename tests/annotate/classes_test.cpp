@@ -108,7 +108,8 @@ class OwnClasses : public testing::Test {
     Random random(3);
     for (int i = 0; i < 6000; ++i) {
       if (i % 2 == 0) {
-        cloud_.positions.emplace_back(random.uniform(-1, 1), random.uniform(-1, 1), 0);
+        const double y = random.uniform(-1, 1), x = random.uniform(-1, 1);
+        cloud_.positions.emplace_back(x, y, 0);
         cloud_.normals.emplace_back(0, 0, 1);
       } else {
         const double a = random.uniform(0, 6.2831853);

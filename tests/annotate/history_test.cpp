@@ -10,7 +10,7 @@
 #include <thread>
 
 #include "pcednet/core/error.h"
-#include "pcednet/core/random.h"
+#include "pcednet/core/random_vectors.h"
 #include "pcednet/formats/write_cloud.h"
 #include "support/expect_error.h"
 #include "workbench/annotate/json.h"
@@ -83,7 +83,7 @@ class RunHistory : public testing::Test {
     Random random(1);
     PointCloud cloud;
     for (int i = 0; i < 6000; ++i) {
-      Vec3 p(random.uniform() - 0.5, random.uniform() - 0.5, random.uniform() - 0.5);
+      Vec3 p = uniform_vector(random, Vec3::Constant(-0.5), Vec3::Constant(0.5));
       Vec3 n = Vec3::Zero();
       const int axis = i % 3;
       n[axis] = i % 2 == 0 ? 1 : -1;

@@ -7,7 +7,7 @@
 #include <limits>
 #include <set>
 
-#include "pcednet/core/random.h"
+#include "pcednet/core/random_vectors.h"
 
 namespace pcednet::annotate {
 namespace {
@@ -15,8 +15,7 @@ namespace {
 std::vector<Vec3> random_points(std::size_t count, double scale = 1.0) {
   Random random(7);
   std::vector<Vec3> points(count);
-  for (Vec3& p : points)
-    p = Vec3(random.uniform(), random.uniform(), 0.3 * random.uniform()) * scale;
+  for (Vec3& p : points) p = uniform_vector(random, Vec3::Zero(), {1.0, 1.0, 0.3}) * scale;
   return points;
 }
 

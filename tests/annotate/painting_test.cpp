@@ -5,7 +5,7 @@
 #include <iterator>
 
 #include "pcednet/core/error.h"
-#include "pcednet/core/random.h"
+#include "pcednet/core/random_vectors.h"
 #include "support/expect_error.h"
 #include "workbench/annotate/journal.h"
 #include "workbench/annotate/places.h"
@@ -198,7 +198,7 @@ TEST(Places, AreTheLeastCertainAndApart) {
   std::vector<Vec3> points(2000);
   std::vector<float> confidence;
   for (Vec3& p : points) {
-    p = Vec3(random.uniform(), random.uniform(), random.uniform());
+    p = uniform_vector(random, Vec3::Zero(), Vec3::Ones());
     confidence.push_back(static_cast<float>(random.uniform()));
   }
   const auto places = rank_uncertain(points, spatial::KdTree(points), confidence, 0.2, 10);

@@ -20,7 +20,8 @@ std::vector<Vec3> multiples_of(const Vec3& steps, const Vec3& origin) {
   Random random(4);
   std::vector<Vec3> positions;
   for (int i = 0; i < 200; ++i) {
-    const Vec3 multiples(random.index(500), random.index(500), random.index(500));
+    const std::size_t z = random.index(500), y = random.index(500), x = random.index(500);
+    const Vec3 multiples(x, y, z);
     positions.push_back(origin + multiples.cwiseProduct(steps));
   }
   return positions;

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "pcednet/core/random.h"
+#include "pcednet/core/random_vectors.h"
 
 namespace pcednet {
 namespace {
@@ -17,7 +17,7 @@ Vec3 direction_at(const Eigen::Vector2d& place) {
 TEST(Octahedral, GivesEveryDirectionAPlaceThatLeadsBackToIt) {
   Random random(1);
   for (int i = 0; i < 10000; ++i) {
-    const Vec3 direction(random.normal(), random.normal(), random.normal());
+    const Vec3 direction = normal_vector(random);
     const Eigen::Vector2d place = octahedral(direction);
     ASSERT_LE(place.cwiseAbs().maxCoeff(), 1.0);
     ASSERT_LT((direction_at(place) - direction.normalized()).norm(), 1e-14) << direction;

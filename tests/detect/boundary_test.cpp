@@ -1,4 +1,5 @@
 #include "pcednet/detect/boundary.h"
+#include "pcednet/core/random_vectors.h"
 
 #include <gtest/gtest.h>
 
@@ -25,9 +26,10 @@ PointCloud sheet(std::size_t points, double noise = 0.0) {
   PointCloud cloud;
   const double sigma = noise / std::sqrt(static_cast<double>(points));
   while (cloud.size() < points) {
-    const Vec3 p(random.uniform(), random.uniform(), 0.0);
+    const double y = random.uniform(), x = random.uniform();
+    const Vec3 p(x, y, 0.0);
     if ((p - Vec3(0.5, 0.5, 0.0)).norm() < kHole) continue;
-    cloud.positions.push_back(p + sigma * Vec3(random.normal(), random.normal(), random.normal()));
+    cloud.positions.push_back(p + sigma * normal_vector(random));
     cloud.normals.push_back(Vec3::UnitZ());
   }
   return cloud;
@@ -129,7 +131,7 @@ TEST(Boundary, OfAClosedSolidIsNone) {
   PointCloud noisy = cube(8000, 3);
   Random random(5);
   for (Vec3& p : noisy.positions) {
-    p += 0.5 * std::sqrt(6.0 / 8000.0) * Vec3(random.normal(), random.normal(), random.normal());
+    p += 0.5 * std::sqrt(6.0 / 8000.0) * normal_vector(random);
   }
   noisy.normals.clear();
   EXPECT_LT(share_found(noisy), 0.005);
@@ -157,7 +159,7 @@ TEST(Boundary, OfAThinWallIsNone) {
   Random random(4);
   constexpr double kThick = 0.03;
   while (wall.size() < 9000) {
-    Vec3 p(random.uniform(), random.uniform(), random.uniform(0.0, kThick));
+    Vec3 p = uniform_vector(random, Vec3::Zero(), {1.0, 1.0, kThick});
     const bool side = random.uniform() < 4.0 * kThick / (2.0 + 4.0 * kThick);
     const auto axis = side ? static_cast<Eigen::Index>(random.index(2)) : Eigen::Index{2};
     const bool up = random.index(2) == 1;

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "labelled_cube.h"
-#include "pcednet/core/random.h"
+#include "pcednet/core/random_vectors.h"
 
 namespace pcednet::detect {
 namespace {
@@ -83,7 +83,7 @@ TEST(CloudKind, IsNoisyWhereMoreNeighboursEstimateTheNormals) {
   EXPECT_FALSE(traits_of(prepare(cloud), {}).noisy);
   Random random(1);
   for (Vec3& position : cloud.positions) {  // half the spacing
-    position += 0.02 * Vec3(random.normal(), random.normal(), random.normal());
+    position += 0.02 * normal_vector(random);
   }
   const PreparedCloud prepared = prepare(cloud);
   EXPECT_GT(prepared.decision.neighbours, 12u);

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "pcednet/cloud/point_cloud.h"
-#include "pcednet/core/random.h"
+#include "pcednet/core/random_vectors.h"
 
 namespace pcednet {
 
@@ -15,7 +15,7 @@ inline PointCloud cube(std::size_t points, std::uint64_t seed) {
   for (std::size_t i = 0; i < points; ++i) {
     const auto axis = static_cast<Eigen::Index>(random.index(3));
     const double side = random.index(2) == 0 ? -0.5 : 0.5;
-    Vec3 p(random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5));
+    Vec3 p = uniform_vector(random, Vec3::Constant(-0.5), Vec3::Constant(0.5));
     p[axis] = side;
     Vec3 away = (0.5 - p.cwiseAbs().array()).matrix();
     std::sort(away.data(), away.data() + 3);

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "pcednet/core/random.h"
+#include "pcednet/core/random_vectors.h"
 #include "support/expect_error.h"
 
 namespace pcednet::detect {
@@ -15,7 +15,7 @@ PointCloud sphere(std::size_t points, std::size_t nth) {
   Random random(3);
   PointCloud cloud;
   for (std::size_t i = 0; i < points; ++i) {
-    const Vec3 normal = Vec3(random.normal(), random.normal(), random.normal()).normalized();
+    const Vec3 normal = normal_vector(random).normalized();
     cloud.positions.push_back(normal);
     cloud.normals.push_back(i % nth == 0 ? Vec3::Zero() : normal);
   }
@@ -109,7 +109,7 @@ TEST(Prepare, LeavesSurfacesAloneWithSomeNormalsThatPointAnywhere) {
   Random random(9);
   PointCloud cloud = solids([](std::size_t) { return false; });
   for (std::size_t i = 0; i < cloud.size(); i += 10) {
-    cloud.normals[i] = Vec3(random.normal(), random.normal(), random.normal()).normalized();
+    cloud.normals[i] = normal_vector(random).normalized();
   }
   EXPECT_TRUE(prepare(cloud).notes.empty());
 }
@@ -121,7 +121,8 @@ TEST(Prepare, LeavesTheSidesOfThinWallsAlone) {
     PointCloud cloud;
     for (int i = 0; i < 20000; ++i) {
       const double up = i % 2 ? 1.0 : -1.0;
-      cloud.positions.emplace_back(random.uniform(), random.uniform(), 0.0015 * up);
+      const double y = random.uniform(), x = random.uniform();
+      cloud.positions.emplace_back(x, y, 0.0015 * up);
       cloud.normals.emplace_back(0, 0, side * up);
     }
     EXPECT_TRUE(prepare(cloud).notes.empty());
@@ -133,8 +134,8 @@ TEST(Prepare, LeavesNormalsAloneThatNoOrientationMakesAgree) {
   Random random(8);
   PointCloud cloud;
   for (int i = 0; i < 20000; ++i) {
-    cloud.positions.emplace_back(random.uniform(), random.uniform(), random.uniform());
-    Vec3 normal = Vec3(random.normal(), random.normal(), random.normal()).normalized();
+    cloud.positions.push_back(uniform_vector(random, Vec3::Zero(), Vec3::Ones()));
+    Vec3 normal = normal_vector(random).normalized();
     cloud.normals.push_back(normal.z() > 0 ? normal : Vec3(-normal));
   }
   EXPECT_TRUE(prepare(cloud).notes.empty());
@@ -195,7 +196,7 @@ TEST(Prepare, SaysThatNormalsAreNotThoseOfThePoints) {
   EXPECT_TRUE(prepare(cloud).notes.empty());
   Random random(2);
   for (Vec3& normal : cloud.normals) {
-    normal = Vec3(random.normal(), random.normal(), random.normal()).normalized();
+    normal = normal_vector(random).normalized();
   }
   const auto notes = prepare(cloud, {.keep_orientation = true}).notes;
   ASSERT_EQ(notes.size(), 1U);

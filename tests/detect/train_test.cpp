@@ -11,7 +11,7 @@
 #include "labelled_cube.h"
 #include "pcednet/core/error.h"
 #include "pcednet/core/parallel.h"
-#include "pcednet/core/random.h"
+#include "pcednet/core/random_vectors.h"
 #include "pcednet/detect/classify.h"
 #include "pcednet/detect/result_cloud.h"
 #include "pcednet/nn/model_file.h"
@@ -37,7 +37,7 @@ PointCloud permuted(const PointCloud& cloud) {
 PointCloud noisy(PointCloud cloud) {
   Random random(8);
   for (Vec3& n : cloud.normals) {
-    n = (n + 0.3 * Vec3(random.normal(), random.normal(), random.normal())).normalized();
+    n = (n + 0.3 * normal_vector(random)).normalized();
   }
   return cloud;
 }

@@ -9,7 +9,7 @@
 #include <numbers>
 
 #include "pcednet/core/error.h"
-#include "pcednet/core/random.h"
+#include "pcednet/core/random_vectors.h"
 #include "support/expect_error.h"
 
 namespace pcednet::eval {
@@ -150,7 +150,7 @@ TEST(LineScores, DoNotDependOnPlaceAndSize) {
   Random random(3);
   std::vector<Vec3> cloud;
   for (int i = 0; i < 500; ++i) {
-    cloud.emplace_back(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+    cloud.push_back(uniform_vector(random, -Vec3::Ones(), Vec3::Ones()));
   }
   const std::vector<Curve> truth = cube_edges();
   const std::vector<Curve> found = shifted(truth, {0.012, 0.003, 0.0});

@@ -142,8 +142,10 @@ TEST(Robustness, SurvivesFlippedBytes) {
           case 2:
             bytes.erase(place, 1 + random.index(4));
             break;
-          default:
-            bytes.insert(place, bytes.substr(random.index(bytes.size()), random.index(20)));
+          default: {
+            const std::size_t length = random.index(20);
+            bytes.insert(place, bytes.substr(random.index(bytes.size()), length));
+          }
         }
         if (bytes.empty()) bytes = "\n";
       }

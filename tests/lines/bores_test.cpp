@@ -29,7 +29,8 @@ struct Part {
   }
   void add_plane_with_hole() {
     for (int i = 0; i < static_cast<int>(kSide * kSide); ++i) {
-      const Vec3 p((random.uniform() - 0.5) * kSide, (random.uniform() - 0.5) * kSide, 0.0);
+      const double y = random.uniform() - 0.5, x = random.uniform() - 0.5;
+      const Vec3 p(x * kSide, y * kSide, 0.0);
       if (std::hypot(p.x(), p.y()) > kBoreRadius) add(p, Vec3::UnitZ());
     }
   }
@@ -118,7 +119,8 @@ TEST(Bores, NeedAPlaneThatEndsAtTheWall) {
 TEST(Bores, OfExactPointsNeedFewOfThem) {
   Part tube;  // a ring around the bore ends 0.9 spacings from it in a wall of its own
   for (int i = 0; i < static_cast<int>(kSide * kSide); ++i) {
-    const Vec3 p((tube.random.uniform() - 0.5) * kSide, (tube.random.uniform() - 0.5) * kSide, 0.0);
+    const double y = tube.random.uniform() - 0.5, x = tube.random.uniform() - 0.5;
+    const Vec3 p(x * kSide, y * kSide, 0.0);
     const double out = std::hypot(p.x(), p.y()) - kBoreRadius;
     if (out > 0.0 && out < 0.9) tube.add(p, Vec3::UnitZ());
   }
@@ -156,7 +158,8 @@ struct HexagonalHole : Part {
       classes.back() = std::hypot(out_of(position), position.z()) < 0.7 ? kSharpEdge : kNonEdge;
     };
     for (int i = 0; i < static_cast<int>(kSide * kSide); ++i) {
-      const Vec3 p((random.uniform() - 0.5) * kSide, (random.uniform() - 0.5) * kSide, 0.0);
+      const double y = random.uniform() - 0.5, x = random.uniform() - 0.5;
+      const Vec3 p(x * kSide, y * kSide, 0.0);
       if (out_of(p) > 0.0) add_point(p, Vec3::UnitZ());
     }
     for (int i = 0; i < 6; ++i) {

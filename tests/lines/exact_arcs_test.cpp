@@ -31,8 +31,9 @@ double radius_at(const Vec3& place) {
 /// A square plane of this half side with a hole about the z axis.
 void add_holed_plane(PlanePart& part, double half, double radius, double z) {
   for (int i = 0; i < static_cast<int>(4.0 * half * half); ++i) {
-    const Vec3 at(half * (2.0 * part.random.uniform() - 1.0),
-                  half * (2.0 * part.random.uniform() - 1.0), z);
+    const double y = half * (2.0 * part.random.uniform() - 1.0);
+    const double x = half * (2.0 * part.random.uniform() - 1.0);
+    const Vec3 at(x, y, z);
     if (radius_at(at) > radius) part.add(at, Vec3::UnitZ(), radius_at(at) < radius + kNear);
   }
 }

@@ -14,7 +14,7 @@
 #include "lines/made_clouds.h"
 #include "pcednet/core/error.h"
 #include "pcednet/core/parallel.h"
-#include "pcednet/core/random.h"
+#include "pcednet/core/random_vectors.h"
 #include "support/expect_error.h"
 
 namespace pcednet::lines {
@@ -347,7 +347,7 @@ TEST(FindLines, AreNoneWhereThereIsNothingToSee) {
   EXPECT_GE(lines_of(without_normals).size(), 10u);  // exact planes need none
   Random random(2);
   for (Vec3& p : without_normals.positions) {
-    p += 0.03 * without_normals.spacing * Vec3(random.normal(), random.normal(), random.normal());
+    p += 0.03 * without_normals.spacing * normal_vector(random);
   }
   EXPECT_TRUE(lines_of(without_normals).empty());
   Cloud all_edges = cube(1000);
@@ -359,9 +359,9 @@ TEST(FindLines, StayFiniteOnAnyPoints) {
   Random random(5);
   Cloud cloud;
   for (int i = 0; i < 3000; ++i) {
-    const Vec3 p(random.normal(), random.normal(), i % 3 == 0 ? 0.0 : random.normal());
-    cloud.add(p, Vec3(random.normal(), random.normal(), random.normal()).normalized(),
-              random.index(2) == 0);
+    const double z = i % 3 == 0 ? 0.0 : random.normal(), y = random.normal(), x = random.normal();
+    const bool on_edge = random.index(2) == 0;
+    cloud.add({x, y, z}, normal_vector(random).normalized(), on_edge);
   }
   for (const Curve& curve : lines_of(cloud, {.regularise = true, .boundaries = true})) {
     EXPECT_TRUE(std::isfinite(length_of(curve)));

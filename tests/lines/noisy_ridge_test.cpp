@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "pcednet/core/random.h"
+#include "pcednet/core/random_vectors.h"
 #include "pcednet/lines/find_lines.h"
 
 namespace pcednet::lines {
@@ -25,7 +25,7 @@ struct Ridge {
     for (int i = 0; i < static_cast<int>(kRidgeLength * kRidgeLength); ++i) {
       const double x = kRidgeLength * (random.uniform() - 0.5), y = kRidgeLength * random.uniform();
       const double beyond = std::max(0.0, std::abs(x) - kHalfTop);
-      const Vec3 noise(random.normal(), random.normal(), random.normal());
+      const Vec3 noise = normal_vector(random);
       positions.push_back(Vec3(x, y, -slope * beyond) + kRidgeNoise * noise);
       normals.push_back(beyond == 0.0 ? Vec3(0.0, 0.0, 1.0)
                                       : Vec3(std::copysign(slope, x), 0.0, 1.0).normalized());
@@ -71,7 +71,7 @@ std::vector<Curve> lines_of_wall(std::uint64_t seed, bool mixed_signs) {
     const Vec3 normal = beside == 0.0  ? Vec3(Vec3::UnitX())
                         : across < 0.0 ? Vec3(-Vec3::UnitZ())
                                        : Vec3(Vec3::UnitZ());
-    const Vec3 noise(random.normal(), random.normal(), random.normal());
+    const Vec3 noise = normal_vector(random);
     positions.push_back(place + kRidgeNoise * noise);
     normals.push_back(mixed_signs && random.uniform() < 0.5 ? Vec3(-normal) : normal);
     classes.push_back(beside > -1.5 ? kSharpEdge : kNonEdge);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "lines/made_clouds.h"
+#include "pcednet/core/random_vectors.h"
 #include "pcednet/lines/find_lines.h"
 
 namespace pcednet::lines {
@@ -21,7 +22,7 @@ Cloud flat_roof(double density, const Inside& open, double noise = 0.0) {
   for (std::size_t i = 0; i < count; ++i) {
     const double x = random.uniform(0.0, 30.0), y = random.uniform(0.0, 20.0);
     if (open(x, y)) continue;
-    const Vec3 jitter(random.normal(), random.normal(), random.normal());
+    const Vec3 jitter = normal_vector(random);
     cloud.add(Vec3(x, y, 1.0) + noise * jitter, Vec3::UnitZ(), false);
   }
   return cloud;

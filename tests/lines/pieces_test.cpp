@@ -363,7 +363,8 @@ struct Strip {
   explicit Strip(double from = 0.0, double to = 0.0) {
     Random random(7);
     for (int i = 0; i < 1200; ++i) {
-      const Vec3 place(100.0 * random.uniform(), 12.0 * random.uniform() - 6.0, 0.0);
+      const double y = 12.0 * random.uniform() - 6.0, x = 100.0 * random.uniform();
+      const Vec3 place(x, y, 0.0);
       if (place.x() > from && place.x() < to) continue;
       positions.push_back(place);
       normals.push_back(Vec3::UnitZ());

@@ -12,7 +12,7 @@
 #include <set>
 
 #include "pcednet/core/parallel.h"
-#include "pcednet/core/random.h"
+#include "pcednet/core/random_vectors.h"
 #include "pcednet/lines/find_lines.h"
 #include "pcednet/lines/outline.h"
 #include "pcednet/lines/support_line.h"
@@ -200,7 +200,7 @@ TEST(Faces, AreNotThePartsOfACurvedSurface) {
     Random random(4);
     PlainCloud sphere;
     for (std::size_t i = 0; i < count; ++i) {
-      sphere.add(Vec3(random.normal(), random.normal(), random.normal()).normalized());
+      sphere.add(normal_vector(random).normalized());
     }
     EXPECT_LT(share_of(sphere), 0.2) << count;
     PlainCloud cylinder;

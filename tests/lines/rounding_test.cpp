@@ -104,7 +104,8 @@ Cloud rounded_block() {
     return kRounding - std::max(q.x(), q.y());
   };
   for (int i = 0; i < static_cast<int>(kBlockSide * kBlockSide); ++i) {
-    const Vec3 p((random.uniform() - 0.5) * kBlockSide, (random.uniform() - 0.5) * kBlockSide, 0.0);
+    const double y = random.uniform() - 0.5, x = random.uniform() - 0.5;
+    const Vec3 p(x * kBlockSide, y * kBlockSide, 0.0);
     const double inside = depth_of(p);
     if (inside > 0.0) cloud.add(p, Vec3::UnitZ(), inside < kNear);
   }

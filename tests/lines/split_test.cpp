@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "pcednet/core/random.h"
+#include "pcednet/core/random_vectors.h"
 #include "support/expect_error.h"
 
 namespace pcednet::lines {
@@ -118,7 +118,7 @@ TEST(Split, IsTheCheapestOfAllWays) {
       }
       heading += bend;
       at += Vec3(std::cos(heading), std::sin(heading), 0);
-      const Vec3 off(random.normal(), random.normal(), random.normal());
+      const Vec3 off = normal_vector(random);
       chain.nodes.push_back(node(at + noise * off, {std::cos(heading), std::sin(heading), 0}));
     }
     double cost = 0.0;

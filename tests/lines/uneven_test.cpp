@@ -33,8 +33,8 @@ struct Faces {
 
   void add_ground(double spacing, Random& random) {
     for (int i = 0; i < 30000; ++i) {
-      positions.emplace_back(1000.0 + 170.0 * spacing * random.uniform(),
-                             170.0 * spacing * random.uniform(), 0.0);
+      const double y = 170.0 * spacing * random.uniform(), x = 170.0 * spacing * random.uniform();
+      positions.emplace_back(1000.0 + x, y, 0.0);
       normals.push_back(Vec3::UnitZ());
       classes.push_back(kNonEdge);
     }

@@ -111,7 +111,8 @@ TEST(Estimate, SeesASurfaceThroughNoiseOfItsSpacing) {
   Random random(9);
   std::vector<Vec3> positions;  // spacing 1, within which 12 neighbours are a ball
   for (int i = 0; i < 4000; ++i) {
-    positions.emplace_back(63 * random.uniform(), 63 * random.uniform(), 1.5 * random.normal());
+    const double z = 1.5 * random.normal(), y = random.uniform(), x = random.uniform();
+    positions.emplace_back(63 * x, 63 * y, z);
   }
   const auto share_beyond_a_radian = [&](int neighbours) {
     const auto normals = estimate_normals(positions, given_neighbours(neighbours));
@@ -182,7 +183,8 @@ TEST(Estimate, TakesFewPointsOfAnExactPlane) {
     Random random(7);
     std::vector<Vec3> positions;
     for (int i = 0; i < points; ++i) {
-      positions.emplace_back(random.uniform(0, 1), random.uniform(0, 1), 1e-12 * i);
+      const double y = random.uniform(), x = random.uniform();
+      positions.emplace_back(x, y, 1e-12 * i);
     }
     for (const Vec3& n : estimate_normals(positions)) {
       EXPECT_LT(angle_between_lines(n, Vec3::UnitZ()), 1e-6) << points << " points";
@@ -212,7 +214,8 @@ TEST(Estimate, TakesMoreNeighboursWhereTheSurfaceIsThickerThanAHundredth) {
     Random random(4);
     std::vector<Vec3> positions;
     for (int i = 0; i < 3000; ++i) {
-      positions.emplace_back(random.uniform(), random.uniform(), noise * random.normal());
+      const double z = noise * random.normal(), y = random.uniform(), x = random.uniform();
+      positions.emplace_back(x, y, z);
     }
     return make_neighbour_graph(positions).degree;
   };

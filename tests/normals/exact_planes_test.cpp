@@ -1,4 +1,5 @@
 #include "pcednet/normals/exact_planes.h"
+#include "pcednet/core/random_vectors.h"
 
 #include <gtest/gtest.h>
 
@@ -24,7 +25,7 @@ Shape drawn_box(std::size_t count, const Vec3& size) {
     const double at = random.uniform(0.0, areas.sum());
     const int axis = at < areas[0] ? 0 : at < areas[0] + areas[1] ? 1 : 2;
     const bool far = random.index(2) == 1;
-    Vec3 p(random.uniform(), random.uniform(), random.uniform());
+    Vec3 p = uniform_vector(random, Vec3::Zero(), Vec3::Ones());
     p[axis] = far ? 1.0 : 0.0;
     shape.positions.push_back(p.cwiseProduct(size));
     shape.normals.push_back(far ? Vec3::Unit(axis) : Vec3(-Vec3::Unit(axis)));
@@ -68,7 +69,7 @@ TEST(ExactPlanes, AreNotTakenFromNoiseOrCurvedSurfaces) {
   Shape noisy = drawn_box(2000, Vec3::Ones());
   Random random(6);
   for (Vec3& p : noisy.positions) {
-    p += 0.01 * Vec3(random.normal(), random.normal(), random.normal());
+    p += 0.01 * normal_vector(random);
   }
   EXPECT_FALSE(make_neighbour_graph(noisy.positions).choice.exact_planes);
   EXPECT_FALSE(make_neighbour_graph(torus(600, 1.0, 0.4).positions).choice.exact_planes);

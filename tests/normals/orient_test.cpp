@@ -1,4 +1,5 @@
 #include "pcednet/normals/orient.h"
+#include "pcednet/core/random_vectors.h"
 
 #include <gtest/gtest.h>
 
@@ -76,7 +77,7 @@ TEST(Orient, StandsNoise) {
   Random random(9);
   // The spacing is about 0.04.
   for (Vec3& p : shape.positions) {
-    p += 0.01 * Vec3(random.normal(), random.normal(), random.normal());
+    p += 0.01 * normal_vector(random);
   }
   EXPECT_GT(agreement(shape, estimate_oriented_normals(shape.positions).normals), 0.995);
 }

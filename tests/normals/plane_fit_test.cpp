@@ -8,7 +8,7 @@
 #include <numeric>
 #include <vector>
 
-#include "pcednet/core/random.h"
+#include "pcednet/core/random_vectors.h"
 
 namespace pcednet::normals {
 namespace {
@@ -41,7 +41,7 @@ struct Neighbourhoods {
       const Mat3 turned = any.householderQr().householderQ();
       some.push_back(static_cast<std::uint32_t>(points.size()));
       for (std::size_t k = 0; k <= degree; ++k) {
-        const Vec3 p(random.normal(), random.normal(), random.normal());
+        const Vec3 p = normal_vector(random);
         if (k > 0) neighbours.push_back(static_cast<std::uint32_t>(points.size()));
         points.push_back(turned * sides.cwiseProduct(p) + Vec3::Constant(static_cast<double>(i)));
       }

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <vector>
 
-#include "pcednet/core/random.h"
+#include "pcednet/core/random_vectors.h"
 #include "pcednet/core/vec3.h"
 
 namespace pcednet::normals {
@@ -26,7 +26,7 @@ inline Shape sphere(std::size_t count, double radius, std::uint64_t seed = 1) {
   Random random(seed);
   Shape shape;
   while (shape.positions.size() < count) {
-    const Vec3 v(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+    const Vec3 v = uniform_vector(random, -Vec3::Ones(), Vec3::Ones());
     if (v.norm() > 1.0 || v.norm() < 0.1) continue;
     shape.normals.push_back(v.normalized());
     shape.positions.push_back(radius * shape.normals.back());

@@ -1,4 +1,5 @@
 #include "pcednet/normals/sign_votes.h"
+#include "pcednet/core/random_vectors.h"
 
 #include <gtest/gtest.h>
 
@@ -18,7 +19,7 @@ struct Scene {
     append(shape, sphere(700, 1.0, 4), Vec3(9, 0, 0));
     Random random(3);
     for (Vec3& p : shape.positions) {
-      p += 0.03 * Vec3(random.normal(), random.normal(), random.normal());
+      p += 0.03 * normal_vector(random);
     }
     graph = make_neighbour_graph(shape.positions, NeighbourChoice{12});
     normals = estimate_normals(graph);

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "pcednet/core/random.h"
+#include "pcednet/core/random_vectors.h"
 
 namespace pcednet::render {
 namespace {
@@ -13,7 +13,7 @@ namespace {
 std::vector<Vec3> random_sphere(std::size_t count) {
   Random random(3);
   std::vector<Vec3> points(count);
-  for (Vec3& p : points) p = Vec3(random.normal(), random.normal(), random.normal()).normalized();
+  for (Vec3& p : points) p = normal_vector(random).normalized();
   return points;
 }
 

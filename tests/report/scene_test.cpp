@@ -7,7 +7,7 @@
 #include <limits>
 #include <numeric>
 
-#include "pcednet/core/random.h"
+#include "pcednet/core/random_vectors.h"
 #include "support/expect_error.h"
 #include "workbench/report/base64.h"
 
@@ -40,9 +40,9 @@ PointCloud random_cloud(std::size_t count) {
   Random random(3);
   PointCloud cloud;
   for (std::size_t i = 0; i < count; ++i) {
-    cloud.positions.emplace_back(1e6 + random.uniform(), 5e6 + 2 * random.uniform(),
-                                 -random.uniform());
-    cloud.normals.push_back(Vec3(random.normal(), random.normal(), random.normal()).normalized());
+    const double z = random.uniform(), y = random.uniform(), x = random.uniform();
+    cloud.positions.emplace_back(1e6 + x, 5e6 + 2 * y, -z);
+    cloud.normals.push_back(normal_vector(random).normalized());
     cloud.labels.push_back(static_cast<std::uint8_t>(i % 4 == 3 ? 255 : i % 4));
   }
   return cloud;

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "pcednet/cloud/bounding_box.h"
+#include "pcednet/core/random_vectors.h"
 #include "pcednet/spatial/kd_tree.h"
 #include "workbench/shapes/acquisition.h"
 #include "workbench/shapes/default_set.h"
@@ -140,7 +141,7 @@ TEST(DefaultSet, LabelsAreTheDistanceToTheEdgesOfTheCube) {
   std::vector<Vec3> positions;
   std::vector<std::uint8_t> expected;
   for (int i = 0; i < 20000; ++i) {
-    const Vec3 p(random.uniform(-0.7, 0.7), random.uniform(-0.7, 0.7), random.uniform(-0.7, 0.7));
+    const Vec3 p = uniform_vector(random, Vec3::Constant(-0.7), Vec3::Constant(0.7));
     positions.push_back(p);
     // Distance to the twelve edges, one family of four per axis.
     double nearest = 10.0;

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "detect/labelled_cube.h"
-#include "pcednet/core/random.h"
+#include "pcednet/core/random_vectors.h"
 #include "pcednet/detect/boundary.h"
 #include "pcednet/detect/classify.h"
 
@@ -120,7 +120,7 @@ Form uneven_ridge() {
     for (double across = -2.0; across < 2.0; across += spacing) {
       const double x = across + spacing * random.uniform(-0.3, 0.3);
       const Vec3 p(x, y + spacing * random.uniform(-0.3, 0.3), -std::abs(x));
-      const Vec3 noise(random.normal(), random.normal(), random.normal());
+      const Vec3 noise = normal_vector(random);
       form.positions.push_back(p + 0.002 * noise);
       form.away.push_back(y < 8.0 ? 2.0 : std::sqrt(2.0) * std::abs(x) / spacing);
     }

@@ -11,7 +11,7 @@
 #include <set>
 
 #include "pcednet/cloud/bounding_box.h"
-#include "pcednet/core/random.h"
+#include "pcednet/core/random_vectors.h"
 #include "support/expect_error.h"
 
 namespace pcednet::shapes {
@@ -23,8 +23,8 @@ PointCloud box_of_points(std::size_t points) {
   PointCloud cloud;
   std::vector<std::uint16_t> numbers;
   for (std::size_t i = 0; i < points; ++i) {
-    cloud.positions.emplace_back(random.uniform(0, 1), random.uniform(0, 2), random.uniform(0, 2));
-    cloud.normals.push_back(Vec3(random.normal(), random.normal(), random.normal()).normalized());
+    cloud.positions.push_back(uniform_vector(random, Vec3::Zero(), {1.0, 2.0, 2.0}));
+    cloud.normals.push_back(normal_vector(random).normalized());
     cloud.labels.push_back(static_cast<std::uint8_t>(i % 3));
     cloud.colours.push_back({static_cast<std::uint8_t>(i), 0, 0});
     numbers.push_back(static_cast<std::uint16_t>(i));

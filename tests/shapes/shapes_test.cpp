@@ -4,6 +4,7 @@
 #include <limits>
 #include <numbers>
 
+#include "pcednet/core/random_vectors.h"
 #include "pcednet/spatial/kd_tree.h"
 #include "workbench/shapes/boxes.h"
 #include "workbench/shapes/default_set.h"
@@ -173,7 +174,7 @@ TEST(Shapes, DistancesAgreeWithDenseSamplingOfTheCurves) {
   const Arc arc{Vec3(0.2, -0.1, 0.4), Vec3(0.6, 0.8, 0.0), Vec3(0.0, 0.0, 1.0), 0.7, 4.0};
   const Segment segment{Vec3(0.1, 0.2, 0.3), Vec3(0.9, -0.4, 0.5)};
   for (int i = 0; i < 50; ++i) {
-    const Vec3 point(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+    const Vec3 point = uniform_vector(random, -Vec3::Ones(), Vec3::Ones());
     double to_arc = std::numeric_limits<double>::infinity();
     double to_segment = to_arc;
     for (int k = 0; k <= kSteps; ++k) {

@@ -55,7 +55,8 @@ TEST(Profile, OfAWheelLooksTheSameFromEveryTooth) {
   const std::size_t sides = wheel.size() / kTeeth;
   Random random(3);
   for (int i = 0; i < 200; ++i) {
-    const Vec2 p(random.uniform(-1.5, 1.5), random.uniform(-1.5, 1.5));
+    const double y = random.uniform(-1.5, 1.5), x = random.uniform(-1.5, 1.5);
+    const Vec2 p(x, y);
     std::size_t nearest = 0, turned = 0;
     const double distance = wheel.distance(p, nearest);
     for (int tooth = 1; tooth < kTeeth; ++tooth) {

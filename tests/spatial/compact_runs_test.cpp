@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "pcednet/core/random.h"
+#include "pcednet/core/random_vectors.h"
 
 namespace pcednet::spatial {
 namespace {
@@ -19,7 +19,7 @@ TEST(CompactRuns, EndWhereTheCurveJumps) {
     const Vec3 centre(100.0 * (clump % 14), 100.0 * (clump * 5 % 14), 0);
     const std::size_t size = 17 + random.index(30);  // more than a run holds
     for (std::size_t i = 0; i < size; ++i) {
-      points.push_back(centre + Vec3(random.uniform(), random.uniform(), random.uniform()));
+      points.push_back(centre + uniform_vector(random, Vec3::Zero(), Vec3::Ones()));
     }
   }
   const auto first = cut_compact_runs(points, 16);
@@ -48,7 +48,7 @@ TEST(CompactRuns, CutWhereTheTwoSidesWeighLeast) {
   for (std::size_t size = 2; size < 40; ++size) {
     std::vector<Vec3> points(size, Vec3::Zero());
     for (std::size_t i = 1; i < size; ++i) {
-      points[i] = points[i - 1] + Vec3(random.normal(), random.normal(), random.normal());
+      points[i] = points[i - 1] + normal_vector(random);
     }
     const auto weight = [&](std::size_t begin, std::size_t end) {
       Vec3 min = points[begin], max = min;

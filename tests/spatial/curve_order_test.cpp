@@ -6,7 +6,7 @@
 #include <limits>
 #include <numeric>
 
-#include "pcednet/core/random.h"
+#include "pcednet/core/random_vectors.h"
 #include "support/expect_error.h"
 
 namespace pcednet::spatial {
@@ -16,7 +16,7 @@ std::vector<Vec3> random_points(std::size_t count, double size) {
   Random random(7);
   std::vector<Vec3> points;
   for (std::size_t i = 0; i < count; ++i) {
-    points.push_back(size * Vec3(random.uniform(), random.uniform(), random.uniform()));
+    points.push_back(size * uniform_vector(random, Vec3::Zero(), Vec3::Ones()));
   }
   return points;
 }

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "pcednet/core/random.h"
+#include "pcednet/core/random_vectors.h"
 #include "pcednet/spatial/curve_order.h"
 
 namespace pcednet::spatial {
@@ -59,7 +59,7 @@ void expect_exact(const std::vector<Vec3>& points, std::size_t count, std::size_
 
 std::map<std::string, std::vector<Vec3>> distributions() {
   Random random(7);
-  const auto place = [&] { return Vec3(random.uniform(), random.uniform(), random.uniform()); };
+  const auto place = [&] { return uniform_vector(random, Vec3::Zero(), Vec3::Ones()); };
   const std::map<std::string, std::function<Vec3(int)>> kinds = {
       {"a ball's surface", [&](int) { return (place() - Vec3::Constant(0.5)).normalized(); }},
       {"vegetation", [&](int) { return place(); }},

@@ -28,7 +28,8 @@ TEST(Grid, CountsThePointsOfEachCoreAsItAsksForThem) {
   Random random(5);
   std::vector<Vec3> positions;
   for (int i = 0; i < 20000; ++i) {
-    positions.emplace_back(random.uniform(-30, 30), random.uniform(-30, 30), 0.0);
+    const double y = random.uniform(-30, 30), x = random.uniform(-30, 30);
+    positions.emplace_back(x, y, 0.0);
     positions.emplace_back(0.1 * static_cast<double>(i % 600 - 300), 0.7 * (i % 90 - 45), 0.0);
   }
   positions.push_back(Vec3::Constant(NAN));

@@ -80,7 +80,8 @@ TEST_F(LabelPoints, SortingThatStopsLeavesNothing) {
   Random random(6);
   std::vector<Vec3> positions;
   for (int i = 0; i < 20'000; ++i) {
-    positions.emplace_back(random.uniform(-2, 2), random.uniform(-2, 2), 0.0);
+    const double y = random.uniform(-2, 2), x = random.uniform(-2, 2);
+    positions.emplace_back(x, y, 0.0);
   }
   Plan plan = plan_of(positions);
   int asked = 0, stop_at = 0;  // counts until nothing is left to stop

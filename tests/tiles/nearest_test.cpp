@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "pcednet/core/random.h"
+#include "pcednet/core/random_vectors.h"
 #include "pcednet/gls/scales.h"
 #include "pcednet/spatial/curve_order.h"
 
@@ -17,8 +17,7 @@ TEST(NearestInStream, FindsWhatBruteForceFinds) {
   for (int i = 0; i < 3000; ++i) {
     // Clusters of very different density, copies, and a point far away.
     const double size = std::pow(10.0, random.uniform(-4, 2));
-    points.push_back(Vec3(size, 2 * size, 0) +
-                     size * Vec3(random.normal(), random.normal(), random.normal()));
+    points.push_back(Vec3(size, 2 * size, 0) + size * normal_vector(random));
     if (i % 50 == 0) points.push_back(points.back());
   }
   points.emplace_back(-7e5, 3e5, 1e3);

@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "pcednet/core/random_vectors.h"
 #include "workbench/shapes/part_pieces.h"
-#include "workbench/shapes/random_vectors.h"
 #include "workbench/shapes/turned_parts.h"
 
 namespace pcednet::shapes {

@@ -7,8 +7,8 @@
 #include <cmath>
 
 #include "pcednet/core/random.h"
+#include "pcednet/core/random_vectors.h"
 #include "workbench/shapes/mesh_vertices.h"
-#include "workbench/shapes/random_vectors.h"
 
 namespace pcednet::shapes {
 namespace {

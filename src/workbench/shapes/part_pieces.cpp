@@ -4,7 +4,7 @@
 #include <numbers>
 #include <utility>
 
-#include "workbench/shapes/random_vectors.h"
+#include "pcednet/core/random_vectors.h"
 
 namespace pcednet::shapes {
 

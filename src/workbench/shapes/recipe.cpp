@@ -10,9 +10,9 @@
 
 #include "pcednet/cloud/bounding_box.h"
 #include "pcednet/core/random.h"
+#include "pcednet/core/random_vectors.h"
 #include "pcednet/normals/estimate.h"
 #include "workbench/shapes/acquisition.h"
-#include "workbench/shapes/random_vectors.h"
 #include "workbench/shapes/rims.h"
 #include "workbench/shapes/sampling.h"
 #include "workbench/shapes/true_curves.h"

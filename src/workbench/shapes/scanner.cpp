@@ -7,8 +7,8 @@
 #include <optional>
 
 #include "pcednet/core/parallel.h"
+#include "pcednet/core/random_vectors.h"
 #include "pcednet/spatial/kd_tree.h"
-#include "workbench/shapes/random_vectors.h"
 
 namespace pcednet::shapes {
 namespace {

@@ -8,8 +8,8 @@
 #include "pcednet/core/error.h"
 #include "pcednet/core/parallel.h"
 #include "pcednet/core/random.h"
+#include "pcednet/core/random_vectors.h"
 #include "pcednet/spatial/kd_tree.h"
-#include "workbench/shapes/random_vectors.h"
 
 namespace pcednet::shapes {
 namespace {

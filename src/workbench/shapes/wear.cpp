@@ -5,10 +5,10 @@
 #include <utility>
 
 #include "pcednet/core/parallel.h"
+#include "pcednet/core/random_vectors.h"
 #include "pcednet/normals/prepare.h"
 #include "pcednet/spatial/kd_tree.h"
 #include "workbench/shapes/part_pieces.h"
-#include "workbench/shapes/random_vectors.h"
 
 namespace pcednet::shapes {
 namespace {

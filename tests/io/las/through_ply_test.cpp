@@ -149,7 +149,8 @@ std::vector<std::array<T, 3>> normals_of_all_lengths() {
       {0, 0, 0}, {-T(0), 0, T(3)}, {kNan, 0, 1}, {T(1e-30), T(1e30), 0}, {0, 0, T(0.999)}};
   Random random(5);
   for (int i = 0; i < 500; ++i) {
-    const Vec3 n = random.uniform(0.5, 2.0) * Vec3(random.normal(), random.normal(), 0.1);
+    const double y = random.normal(), x = random.normal();
+    const Vec3 n = random.uniform(0.5, 2.0) * Vec3(x, y, 0.1);
     const Vec3 made = i % 2 == 0 ? n : n.normalized();
     normals.push_back({T(made.x()), T(made.y()), T(made.z())});
   }

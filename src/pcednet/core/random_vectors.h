@@ -5,7 +5,7 @@
 
 /// Random vectors, whose numbers are drawn one after another. In the arguments of a call at most
 /// one number is drawn: their order is left to the compiler, and clouds must be the same from each.
-namespace pcednet::shapes {
+namespace pcednet {
 
 /// In the box between the corners.
 inline Vec3 uniform_vector(Random& random, const Vec3& low, const Vec3& high) {
@@ -23,4 +23,4 @@ inline Vec3 normal_vector(Random& random) {
   return {x, y, z};
 }
 
-}  // namespace pcednet::shapes
+}  // namespace pcednet
