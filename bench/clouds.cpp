@@ -20,11 +20,6 @@ Vec3 direction(Random& random) {
   }
 }
 
-Vec3 normal3(Random& random) {
-  const double x = random.normal(), y = random.normal(), z = random.normal();
-  return {x, y, z};
-}
-
 /// A point of the unit cube at 0 or of the sphere of radius 0.5 beside it, by area.
 void add_scene_point(Random& random, Cloud& cloud) {
   if (random.uniform(0, 6 + kPi) < 6) {
@@ -93,7 +88,7 @@ Cloud rough(std::size_t points) {
     const double range =
         kNearest * std::pow(kFarthest / kNearest, random.uniform()) + kRangeNoise * random.normal();
     const double x = range * std::cos(angle), y = range * std::sin(angle);
-    const Vec3 normal = (ground_normal(x, y) + kNormalNoise * normal3(random)).normalized();
+    const Vec3 normal = (ground_normal(x, y) + kNormalNoise * normal_vector(random)).normalized();
     cloud.add({x, y, height(x, y) + kRangeNoise * random.normal()}, normal);
   }
   return cloud;
@@ -135,7 +130,7 @@ Cloud blob(std::size_t points) {
     const bool dense = random.uniform() < 0.9;
     const Vec3 p(x, y, z);
     const Vec3 normal = direction(random);
-    cloud.add(dense ? Vec3(0.5, 0.5, 0.5) + 0.001 * normal3(random) : p, normal);
+    cloud.add(dense ? Vec3(0.5, 0.5, 0.5) + 0.001 * normal_vector(random) : p, normal);
   }
   return cloud;
 }

@@ -17,7 +17,7 @@ namespace {
 enum Kind { kSphere, kFoliage, kClumps, kFar, kCopies };
 
 Vec3 place(Kind kind, Random& random) {
-  const Vec3 p = uniform_vector(random, Vec3::Zero(), Vec3::Ones());
+  const Vec3 p = uniform_vector(random);
   switch (kind) {
     case kSphere:
       return normal_vector(random).normalized();

@@ -198,7 +198,7 @@ TEST(Places, AreTheLeastCertainAndApart) {
   std::vector<Vec3> points(2000);
   std::vector<float> confidence;
   for (Vec3& p : points) {
-    p = uniform_vector(random, Vec3::Zero(), Vec3::Ones());
+    p = uniform_vector(random);
     confidence.push_back(static_cast<float>(random.uniform()));
   }
   const auto places = rank_uncertain(points, spatial::KdTree(points), confidence, 0.2, 10);

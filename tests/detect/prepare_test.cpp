@@ -134,7 +134,7 @@ TEST(Prepare, LeavesNormalsAloneThatNoOrientationMakesAgree) {
   Random random(8);
   PointCloud cloud;
   for (int i = 0; i < 20000; ++i) {
-    cloud.positions.push_back(uniform_vector(random, Vec3::Zero(), Vec3::Ones()));
+    cloud.positions.push_back(uniform_vector(random));
     Vec3 normal = normal_vector(random).normalized();
     cloud.normals.push_back(normal.z() > 0 ? normal : Vec3(-normal));
   }

@@ -33,7 +33,7 @@ inline Cloud cube(std::size_t points) {
   for (std::size_t i = 0; i < points; ++i) {
     const auto axis = static_cast<Eigen::Index>(random.index(3));
     const double side = random.index(2) == 0 ? 0.0 : 1.0;
-    Vec3 p = uniform_vector(random, Vec3::Zero(), Vec3::Ones());
+    Vec3 p = uniform_vector(random);
     p[axis] = side;
     double nearest = 1.0;
     for (Eigen::Index other = 0; other < 3; ++other) {

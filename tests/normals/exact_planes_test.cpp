@@ -25,7 +25,7 @@ Shape drawn_box(std::size_t count, const Vec3& size) {
     const double at = random.uniform(0.0, areas.sum());
     const int axis = at < areas[0] ? 0 : at < areas[0] + areas[1] ? 1 : 2;
     const bool far = random.index(2) == 1;
-    Vec3 p = uniform_vector(random, Vec3::Zero(), Vec3::Ones());
+    Vec3 p = uniform_vector(random);
     p[axis] = far ? 1.0 : 0.0;
     shape.positions.push_back(p.cwiseProduct(size));
     shape.normals.push_back(far ? Vec3::Unit(axis) : Vec3(-Vec3::Unit(axis)));

@@ -14,7 +14,7 @@ namespace {
 std::vector<Vec3> ordered_points() {
   Random random(3);
   std::vector<Vec3> points;
-  const auto place = [&] { return uniform_vector(random, Vec3::Zero(), Vec3::Ones()); };
+  const auto place = [&] { return uniform_vector(random); };
   for (int i = 0; i < 3000; ++i) points.push_back(place());
   for (int i = 0; i < 1000; ++i) points.push_back(Vec3(0.3, 0.2, 0.1) + 1e-4 * place());
   for (int i = 0; i < 50; ++i) points.push_back(Vec3(0.7, 0.7, 0.7));
@@ -32,7 +32,7 @@ TEST(BoxTree, FindsAllNearABox) {
   const BoxTree tree(points.size(), points.front(), [&](std::size_t i) { return points[i]; });
   Random random(4);
   for (int query = 0; query < 200; ++query) {
-    const Vec3 min = uniform_vector(random, Vec3::Zero(), Vec3::Ones());
+    const Vec3 min = uniform_vector(random);
     const Vec3 max = min + Vec3::Constant(query % 2 ? 0.05 : 0.0);
     const double distance = query % 3 ? 0.1 : 1e-5;
     std::vector<std::uint32_t> runs;
@@ -55,8 +55,7 @@ TEST(BoxTree, FindsTheNearestAsASortOfAllDistances) {
   const BoxTree tree(points.size(), points.front(), position_at);
   Random random(5);
   for (int query = 0; query < 100; ++query) {
-    const Vec3 q = query % 2 ? points[random.index(points.size())]
-                             : uniform_vector(random, Vec3::Zero(), Vec3::Ones());
+    const Vec3 q = query % 2 ? points[random.index(points.size())] : uniform_vector(random);
     std::vector<double> expected;
     for (const Vec3& p : points) {
       const Vec3 d = p - q;

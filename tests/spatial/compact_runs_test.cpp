@@ -19,7 +19,7 @@ TEST(CompactRuns, EndWhereTheCurveJumps) {
     const Vec3 centre(100.0 * (clump % 14), 100.0 * (clump * 5 % 14), 0);
     const std::size_t size = 17 + random.index(30);  // more than a run holds
     for (std::size_t i = 0; i < size; ++i) {
-      points.push_back(centre + uniform_vector(random, Vec3::Zero(), Vec3::Ones()));
+      points.push_back(centre + uniform_vector(random));
     }
   }
   const auto first = cut_compact_runs(points, 16);

@@ -16,7 +16,7 @@ std::vector<Vec3> random_points(std::size_t count, double size) {
   Random random(7);
   std::vector<Vec3> points;
   for (std::size_t i = 0; i < count; ++i) {
-    points.push_back(size * uniform_vector(random, Vec3::Zero(), Vec3::Ones()));
+    points.push_back(size * uniform_vector(random));
   }
   return points;
 }

@@ -59,7 +59,7 @@ void expect_exact(const std::vector<Vec3>& points, std::size_t count, std::size_
 
 std::map<std::string, std::vector<Vec3>> distributions() {
   Random random(7);
-  const auto place = [&] { return uniform_vector(random, Vec3::Zero(), Vec3::Ones()); };
+  const auto place = [&] { return uniform_vector(random); };
   const std::map<std::string, std::function<Vec3(int)>> kinds = {
       {"a ball's surface", [&](int) { return (place() - Vec3::Constant(0.5)).normalized(); }},
       {"vegetation", [&](int) { return place(); }},

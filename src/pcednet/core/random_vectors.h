@@ -7,8 +7,9 @@
 /// one number is drawn: their order is left to the compiler, and clouds must be the same from each.
 namespace pcednet {
 
-/// In the box between the corners.
-inline Vec3 uniform_vector(Random& random, const Vec3& low, const Vec3& high) {
+/// In the box between the corners: the unit cube if none are given.
+inline Vec3 uniform_vector(Random& random, const Vec3& low = Vec3::Zero(),
+                           const Vec3& high = Vec3::Ones()) {
   const double z = random.uniform(low.z(), high.z());
   const double y = random.uniform(low.y(), high.y());
   const double x = random.uniform(low.x(), high.x());

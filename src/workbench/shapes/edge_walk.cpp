@@ -31,7 +31,7 @@ SurfaceIndex::SurfaceIndex(const Solid& solid) : solid_(solid) {
   Random random(1);
   const Vec3 extent = solid.box().max - solid.box().min;
   for (int i = 0; i < kProbes; ++i) {
-    const Vec3 place = uniform_vector(random, Vec3::Zero(), Vec3::Ones());
+    const Vec3 place = uniform_vector(random);
     probes_.push_back(solid.box().min + extent.cwiseProduct(place));
   }
 }

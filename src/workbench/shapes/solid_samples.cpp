@@ -76,7 +76,7 @@ SolidSamples sample_solid(const Solid& solid, std::size_t count, std::uint64_t s
     const std::size_t most = kTries * (end - begin);
     while (!cells.empty() && parts[block].size() < end - begin && tries[block] < most) {
       ++tries[block];
-      const Vec3 within = uniform_vector(random, Vec3::Zero(), Vec3::Ones());
+      const Vec3 within = uniform_vector(random);
       const Vec3 p = cells[random.index(cells.size())] + size * within;
       if (std::abs(solid.value(p).distance) > kShell * size) continue;
       ++hits[block];
