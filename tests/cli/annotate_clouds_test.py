@@ -56,6 +56,7 @@ class AnnotateClouds(AnnotateTest):
         first, second = self.paint_both(server)
         self.assertEqual((first["cloud"], second["cloud"]), (0, 1))
         self.assertEqual(second["counts"], [second["changed"], 0, first["changed"]])
+        self.assertEqual(second["painted"], [first["changed"], second["changed"]])
         painted = [c["painted"] for c in server.get("/api/session?cloud=1")["clouds"]]
         self.assertEqual(painted, [first["changed"], second["changed"]])
         for cloud, label, answer in ((0, 2, first), (1, 0, second)):

@@ -181,6 +181,34 @@ test("ends a stroke, and cancels an outline, before another cloud is shown", asy
   await page.keyboard.press("b");
 });
 
+test("knows what was painted, and set, while another cloud was opened", async () => {
+  const painted = async () => (await state("clouds")).map((cloud) => cloud.painted);
+  const [roof, barn] = await painted();
+  await page.evaluate(() => {
+    const { api } = annotator.client;
+    const get = api.get.bind(api);
+    annotator.asked = 0;
+    api.get = async (path) => {
+      const answer = await get(path);
+      if (path === "/api/session" && ++annotator.asked === 1) await new Promise((go) => (annotator.answer = go));
+      return answer;
+    };
+  });
+  await page.keyboard.press("PageDown");
+  await page.waitForFunction(() => annotator.answer);
+  await its.stroke(1, [[50.8, 50, 50.2]], 0.15);
+  await page.waitForFunction((before) => annotator.store.now.clouds[1].painted !== before, barn);
+  await its.trainAfterStrokes(true);
+  await page.evaluate(() => annotator.answer()); // of before the stroke
+  await looksAt("roof.ply");
+  await settled();
+  const after = await painted();
+  assert.equal(after[0], roof);
+  assert.ok(after[1] > barn, `${after[1]} points, ${barn} before`);
+  assert.ok((await state("settings")).auto, "what was set meanwhile");
+  assert.ok((await page.evaluate(() => annotator.asked)) > 1, "asked again");
+});
+
 test("saves each beside its input", async () => {
   await page.waitForFunction(() => !annotator.store.now.training?.active);
   await page.getByRole("button", { name: "Save clouds" }).click();

@@ -46,7 +46,13 @@ export function openAnnotator(name, { height = 720, prepare = writesRoof, ready 
 
     /** A stroke of the brush round places of the cloud, by the page's own means. */
     async paint(edgeClass, places, radius) {
-      await its.page.evaluate(
+      await its.stroke(edgeClass, places, radius);
+      await its.settled();
+    },
+
+    /** As paint() without waiting. */
+    stroke: (edgeClass, places, radius) =>
+      its.page.evaluate(
         ([c, centres, r]) => {
           const { origin } = annotator.store.now.session;
           annotator.client.paint({
@@ -61,9 +67,7 @@ export function openAnnotator(name, { height = 720, prepare = writesRoof, ready 
           });
         },
         [edgeClass, places, radius],
-      );
-      await its.settled();
-    },
+      ),
   };
 
   before(async () => {
@@ -72,6 +76,8 @@ export function openAnnotator(name, { height = 720, prepare = writesRoof, ready 
     its.page = await its.browser.newPage({ viewport: { width: 1280, height } });
     its.page.setDefaultTimeout(120_000);
     its.page.on("pageerror", (e) => its.complaints.push(e.message));
+    // From the start: the first requests after a later first route would pass it by.
+    await its.page.route(/^about:/, (route) => route.continue());
     await its.page.goto(its.server.address);
     await its.settled();
     await its.shown();

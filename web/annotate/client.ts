@@ -46,6 +46,10 @@ export class Client {
   private wasOpened = false;
   /** The program is computing what it needs to answer. */
   private loading = true;
+  /** The newest labels that this start of the program told of. */
+  private labelsVersion = 0;
+  /** How often it told of what a session holds: one that was asked for before may be older. */
+  private heard = 0;
   /** Events were not heard for a while. */
   private missed = false;
   /** The start whose description the session told of. */
@@ -150,6 +154,7 @@ export class Client {
       judged: () => this.attempt(this.refreshRuns()),
       classes: (event: Classes) => {
         const { edges } = store.now;
+        ++this.heard;
         this.takeClasses(event);
         if (edges !== event.edges) this.attempt(this.beginAnew());
       },
@@ -186,9 +191,20 @@ export class Client {
     return this.looked;
   }
 
+  /** The session, not older than what was heard of while it was on its way. */
+  private async getSession(): Promise<Session> {
+    for (;;) {
+      const { heard } = this;
+      const session = await this.api.get<Session>("/api/session");
+      if (session.known && heard !== this.heard) continue;
+      this.labelsVersion = session.labels_version;
+      return session;
+    }
+  }
+
   /** The first time that it is ready, the cloud too. */
   private async takeSession(): Promise<void> {
-    const session = await this.api.get<Session>("/api/session");
+    const session = await this.getSession();
     const { store } = this;
     if (!session.known) await this.enter();
     else if (this.missed) store.set({ writer: session.writer });
@@ -282,14 +298,16 @@ export class Client {
   }
 
   private takePainted(answer: Painted): void {
-    const { counts, cloud } = this.store.now;
-    const more = answer.counts.reduce((sum, n, id) => sum + n - counts[id], 0);
-    const clouds = this.store.now.clouds.map((its, k) =>
-      k === answer.cloud && more !== 0 ? { ...its, painted: its.painted + more } : its,
-    );
-    this.store.set({ clouds, counts: answer.counts, undo: answer.undo, redo: answer.redo });
-    if (answer.nodes.length > 0) this.store.set({ outOfDate: true });
-    if (answer.cloud === cloud) this.stage.loader.refresh("labels", answer.nodes);
+    const { store } = this;
+    ++this.heard;
+    // An answer may come after that to a later stroke.
+    if (answer.labels_version >= this.labelsVersion) {
+      this.labelsVersion = answer.labels_version;
+      const clouds = store.now.clouds.map((its, k) => ({ ...its, painted: answer.painted[k] }));
+      store.set({ clouds, counts: answer.counts, undo: answer.undo, redo: answer.redo });
+    }
+    if (answer.nodes.length > 0) store.set({ outOfDate: true });
+    if (answer.cloud === store.now.cloud) this.stage.loader.refresh("labels", answer.nodes);
   }
 
   private takeTraining(event: TrainingEvent): void {
@@ -371,7 +389,10 @@ export class Client {
     this.attempt(
       this.api
         .post<Settings>("/api/settings", wanted)
-        .then((settings) => this.store.set({ settings }))
+        .then((settings) => {
+          ++this.heard;
+          this.store.set({ settings });
+        })
         .catch((error: Error) => {
           this.store.set({ settings: before });
           throw error;

@@ -111,8 +111,10 @@ export interface Session extends Classes {
 export interface Painted {
   changed?: number;
   cloud: number;
-  /** By class. */
+  /** By class, of all clouds. */
   counts: number[];
+  /** Points of each cloud. */
+  painted: number[];
   labels_version: number;
   nodes: number[];
   undo: number;

@@ -97,10 +97,15 @@ Json json_of(const RunView& view) {
 }
 
 Json json_of(const Painted& painted) {
-  return {{"stroke", painted.stroke}, {"changed", painted.changed},
-          {"counts", painted.counts}, {"labels_version", painted.labels_version},
-          {"nodes", painted.nodes},   {"undo", painted.undo},
-          {"redo", painted.redo},     {"cloud", painted.cloud}};
+  return {{"stroke", painted.stroke},
+          {"changed", painted.changed},
+          {"counts", painted.counts},
+          {"painted", painted.painted},
+          {"labels_version", painted.labels_version},
+          {"nodes", painted.nodes},
+          {"undo", painted.undo},
+          {"redo", painted.redo},
+          {"cloud", painted.cloud}};
 }
 
 Json json_of(const FileSaved& saved) {

@@ -23,6 +23,7 @@ struct Painted {
   std::size_t changed = 0;  ///< points
   std::size_t cloud = 0;    ///< that they are of
   Counts counts = {};       ///< of all labels
+  std::vector<std::size_t> painted = {};  ///< points of each cloud
   int labels_version = 0;
   std::vector<std::uint32_t> nodes = {};  ///< nodes with changed labels, ascending
   std::size_t undo = 0, redo = 0;         ///< steps

@@ -86,6 +86,17 @@ std::span<const std::uint8_t> Session::State::part(std::span<const std::uint8_t>
   return all.subspan(firsts[cloud], scenes[cloud]->cloud.size());
 }
 
+/// Painted points of each cloud.
+std::vector<std::size_t> Session::State::painted_of_each() const {
+  std::vector<std::size_t> painted(scenes.size());
+  for (std::size_t k = 0; k < scenes.size(); ++k) {
+    const auto labels = part(painting->labels().classes(), k);
+    const auto none = std::count(labels.begin(), labels.end(), kUnlabelled);
+    painted[k] = labels.size() - static_cast<std::size_t>(none);
+  }
+  return painted;
+}
+
 /// Stops the worker and clears its orders.
 void Session::State::interrupt() {
   ++orders.generation;
@@ -113,6 +124,7 @@ void Session::State::schedule() {
 Painted Session::State::standing() const {
   const Labels& labels = painting->labels();
   return {.counts = counts_of(labels.counts(), painting->classes()),
+          .painted = painted_of_each(),
           .labels_version = labels_version,
           .undo = labels.undo_steps(),
           .redo = labels.redo_steps()};

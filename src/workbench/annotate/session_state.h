@@ -110,6 +110,7 @@ struct Session::State {
   void set_searching(std::size_t cloud, bool on);
   Painted answer_to(std::span<const std::uint32_t> points);
   Painted standing() const;
+  std::vector<std::size_t> painted_of_each() const;
   void interrupt();
   void schedule();
   void begin_anew();

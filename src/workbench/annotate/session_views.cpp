@@ -23,12 +23,11 @@ Summary Session::summary(std::size_t cloud) const {
   if (!s.loading.is_done) return summary;
   summary.scene = s.scenes[cloud];
   summary.scales = s.described[cloud]->cloud.scales;
+  const auto painted = s.painted_of_each();
   for (std::size_t k = 0; k < s.scenes.size(); ++k) {
-    const auto labels = s.part(s.painting->labels().classes(), k);
-    const auto none = std::count(labels.begin(), labels.end(), kUnlabelled);
     summary.clouds.push_back({.file = s.input_of(k).filename().string(),
-                              .points = labels.size(),
-                              .painted = labels.size() - static_cast<std::size_t>(none)});
+                              .points = s.scenes[k]->cloud.size(),
+                              .painted = painted[k]});
   }
   summary.classes = s.painting->classes();
   if (summary.classes.has_own()) {
