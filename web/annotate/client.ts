@@ -328,6 +328,7 @@ export class Client {
   private async takePrediction(event: PredictionEvent): Promise<void> {
     const { store } = this;
     const first = !store.now.hasPrediction;
+    ++this.heard;
     this.endTraining();
     store.set({
       hasPrediction: true,
