@@ -182,9 +182,10 @@ void Session::State::open_project() {
   const Lock lock(mutex);
   painting = std::move(opened);
   labels_version = painting->records().empty() ? 0 : 1;
+  const Painted now = standing();
   for (const Record& record : painting->records()) {
     if (record.kind != Record::Kind::kStroke) continue;
-    Painted& answer = answers[record.id] = standing();
+    Painted& answer = answers[record.id] = now;
     answer.changed = record.points.size();
   }
   const bool is_new = painting->records().empty();
