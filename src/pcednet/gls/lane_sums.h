@@ -1,54 +1,10 @@
 #pragma once
 
-#include "pcednet/gls/lane_terms.h"
+#include "pcednet/gls/lane_turns.h"
 
 /// The sums over a neighbourhood, a target per lane.
 namespace pcednet::gls {
 namespace {  // each unit has its own copy, see simd.h
-
-/// The two kinds of sums do not fit the registers together: they take turns on this many sources,
-/// and the second reads from the nearest cache what the first knows of them. Each turn is summed by
-/// itself, so that rounding hardly grows with the number of sources.
-constexpr std::size_t kTurn = 48;
-
-/// Adds the sums over some sources, turn by turn.
-template <int W, bool kGated, bool kPoints>
-inline void add_turns(const Source* sources, const std::uint32_t* indices, std::size_t count,
-                      const Targets<W, kGated>& lanes, PositionSums<W, kPoints>& position,
-                      NormalSums<W, kPoints>& normal) {
-  Interaction<W> turn[kTurn];
-  for (std::size_t begin = 0; begin < count; begin += kTurn) {
-    const std::size_t here = count - begin < kTurn ? count - begin : kTurn;
-    PositionSums<W, kPoints> position_turn;
-    for (std::size_t j = 0; j < here; ++j) {
-      turn[j] = position_turn.add(sources[indices[begin + j]], lanes);
-    }
-    position += position_turn;
-    NormalSums<W, kPoints> normal_turn;
-    for (std::size_t j = 0; j < here; ++j) normal_turn.add(sources[indices[begin + j]], turn[j]);
-    normal += normal_turn;
-  }
-}
-
-/// Of the sources of a turn, those that each of two gates lets in for some target: what is shut out
-/// adds nothing.
-template <int W>
-struct GatedTurn {
-  std::uint32_t let_in[2][kTurn];
-  std::size_t count[2];
-
-  void take(const Source* sources, const std::uint32_t* indices, std::size_t from,
-            const Targets<W, true> (&lanes)[2]) {
-    count[0] = count[1] = 0;
-    for (std::size_t j = 0; j < from; ++j) {
-      const Source& s = sources[indices[j]];
-      for (int g = 0; g < 2; ++g) {
-        let_in[g][count[g]] = indices[j];
-        count[g] += any_positive(lanes[g].slope(s)) ? 1 : 0;
-      }
-    }
-  }
-};
 
 /// Sums over open sources first, once for all gates, then over the rest for each gate.
 template <int W, int kGates, bool kPoints>
@@ -66,12 +22,12 @@ void sum_lanes(const LaneSources& sources, const LaneTargets& targets,
     if constexpr (kGates == 2) {
       position[1] = position[0], normal[1] = normal[0];
       const Targets<W, true> lanes[2] = {{targets, first, gates[0]}, {targets, first, gates[1]}};
-      GatedTurn<W> gated;
+      GatedTurn<W, kPoints> gated;
       for (std::size_t begin = 0; begin < rest_count; begin += kTurn) {
         const std::size_t left = rest_count - begin;
         gated.take(all, rest + begin, left < kTurn ? left : kTurn, lanes);
         for (int g = 0; g < 2; ++g) {
-          add_turns(all, gated.let_in[g], gated.count[g], lanes[g], position[g], normal[g]);
+          gated.add_to(g, all, rest + begin, position[g], normal[g]);
         }
       }
       position[1].store_to(sums[1], first), normal[1].store_to(sums[1], first);

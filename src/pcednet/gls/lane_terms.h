@@ -39,8 +39,29 @@ struct Targets {
   Floats<W> gate(const Source& s) const { return at_most(positive_part(slope(s)), 1.0f); }
 };
 
-/// S of everything that needs no normal. Where every source is a single point, count is 1 and qq
-/// and qn are 0, so that two sums are traces of others.
+/// Where a source is to each target, and what it weighs before any gate.
+template <int W>
+struct Relation {
+  Lanes3<W> y;
+  Floats<W> rr, yn, rest, weight;
+};
+
+/// Where every source is a single point, count is 1 and qq and qn are 0.
+template <bool kPoints, int W, bool kGated>
+inline Relation<W> relate(const Source& s, const Targets<W, kGated>& targets) {
+  Relation<W> r;
+  r.y = targets.relative(s);
+  r.rr = r.y.x * r.y.x + r.y.y * r.y.y + r.y.z * r.y.z;
+  r.yn = r.y.x * s.nx + r.y.y * s.ny + r.y.z * s.nz;
+  if constexpr (!kPoints) r.rr += s.qq, r.yn += s.qn;
+  r.rest = positive_part(1.0f - r.rr);
+  r.weight = r.rest;
+  if constexpr (!kPoints) r.weight *= s.count;
+  return r;
+}
+
+/// S of everything that needs no normal. Where every source is a single point, two sums are traces
+/// of others.
 template <int W, bool kPoints>
 struct PositionSums {
   Floats<W> u{}, uyy{}, wyy{}, xx{}, xy{}, xz{}, yy{}, yz{}, zz{};
@@ -48,21 +69,20 @@ struct PositionSums {
 
   template <bool kGated>
   Interaction<W> add(const Source& s, const Targets<W, kGated>& targets) {
-    const Lanes3<W> y = targets.relative(s);
-    Floats<W> rr = y.x * y.x + y.y * y.y + y.z * y.z;
-    Floats<W> yn = y.x * s.nx + y.y * s.ny + y.z * s.nz;
-    if constexpr (!kPoints) rr += s.qq, yn += s.qn;
-    const Floats<W> rest = positive_part(1.0f - rr);
-    Floats<W> weight = rest;
-    if constexpr (!kPoints) weight *= s.count;
+    const Relation<W> r = relate<kPoints>(s, targets);
+    Floats<W> weight = r.weight;
     if constexpr (kGated) weight *= targets.gate(s);
-    const Interaction<W> i = {weight * y, weight, weight * rest, yn};
+    return add(r, weight);
+  }
+
+  Interaction<W> add(const Relation<W>& r, const Floats<W>& weight) {
+    const Interaction<W> i = {weight * r.y, weight, weight * r.rest, r.yn};
     u += i.u, uy = uy + i.uy;
-    if constexpr (!kPoints) uyy += i.u * rr;
-    wyy += i.w * rr;
-    u_yy_y = u_yy_y + rr * i.uy;
-    xx += i.uy.x * y.x, xy += i.uy.x * y.y, xz += i.uy.x * y.z;
-    yy += i.uy.y * y.y, yz += i.uy.y * y.z, zz += i.uy.z * y.z;
+    if constexpr (!kPoints) uyy += i.u * r.rr;
+    wyy += i.w * r.rr;
+    u_yy_y = u_yy_y + r.rr * i.uy;
+    xx += i.uy.x * r.y.x, xy += i.uy.x * r.y.y, xz += i.uy.x * r.y.z;
+    yy += i.uy.y * r.y.y, yz += i.uy.y * r.y.z, zz += i.uy.z * r.y.z;
     return i;
   }
 
