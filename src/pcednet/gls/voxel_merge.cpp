@@ -4,7 +4,6 @@
 #include <bit>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 #include "pcednet/core/parallel.h"
 #include "pcednet/gls/normal_spread.h"
@@ -223,49 +222,73 @@ class BlockPlan {
   std::uint32_t count_ = 0;
 };
 
-/// Calls `use(members, voxel_of, plan)` for every block that begins within [begin, end).
+/// Calls `use(members, voxel_of, plan)` for every block of `keyed`, which begins and ends with one.
 template <typename Use>
 void for_blocks(std::span<const Voxel> from, const Grid& grid, Crowd crowd,
-                std::span<const Keyed> keyed, std::size_t begin, std::size_t end, Use&& use) {
-  const auto continues = [&](std::size_t i) {
-    return grid.are_together(keyed[i - 1], keyed[i], kBlockBits);
-  };
+                std::span<const Keyed> keyed, Use&& use) {
   BlockPlan plan(from, grid, crowd);
-  while (begin > 0 && begin < end && continues(begin)) ++begin;
-  while (begin < end) {
-    std::size_t last = begin + 1;
-    while (last < keyed.size() && continues(last)) ++last;
-    const auto members = keyed.subspan(begin, last - begin);
+  for (std::size_t begin = 0, end; begin < keyed.size(); begin = end) {
+    end = begin + 1;
+    while (end < keyed.size() && grid.are_together(keyed[end - 1], keyed[end], kBlockBits)) ++end;
+    const auto members = keyed.subspan(begin, end - begin);
     const std::span<const std::uint32_t> voxel_of = plan.plan(members);
     use(members, voxel_of, plan);
-    begin = last;
   }
 }
 
-/// The number of voxels that the blocks beginning within [begin, end) become.
-std::size_t count_voxels(std::span<const Voxel> from, const Grid& grid, Crowd crowd,
-                         std::span<const Keyed> keyed, std::size_t begin, std::size_t end) {
-  std::size_t count = 0;
-  for_blocks(from, grid, crowd, keyed, begin, end,
-             [&](std::span<const Keyed>, std::span<const std::uint32_t>, const BlockPlan& plan) {
-               count += plan.count();
-             });
-  return count;
+/// Where the stretches begin that threads merge by themselves, and the end: every `length` members,
+/// or where the next block does.
+std::vector<std::size_t> stretches_of(std::span<const Keyed> keyed, const Grid& grid,
+                                      std::size_t length) {
+  std::vector<std::size_t> starts((keyed.size() + length - 1) / length + 1, keyed.size());
+  for (std::size_t s = starts.size() - 1; s-- > 0;) {
+    const std::size_t end = starts[s + 1];
+    std::size_t& start = starts[s] = std::min(s * length, end);
+    while (start > 0 && start < end &&
+           grid.are_together(keyed[start - 1], keyed[start], kBlockBits))
+      ++start;
+  }
+  return starts;
 }
 
-/// Writes them.
-void merge_stretch(std::span<const Voxel> from, const Grid& grid, Crowd crowd,
-                   std::span<const Keyed> keyed, std::size_t begin, std::size_t end, Voxel* to) {
-  std::vector<VoxelSums> sums;
-  for_blocks(from, grid, crowd, keyed, begin, end,
+/// How a stretch becomes voxels.
+struct StretchPlan {
+  struct Block {
+    std::uint32_t members, voxels;
+  };
+  std::vector<Block> blocks;  ///< along the curve
+  std::size_t voxels = 0;     ///< of all blocks
+};
+
+/// Plans the blocks of `keyed`, where the number of each member's voxel in its block replaces the
+/// key.
+StretchPlan plan_stretch(std::span<const Voxel> from, const Grid& grid, Crowd crowd,
+                         std::span<Keyed> keyed) {
+  StretchPlan stretch;
+  auto next = keyed.begin();
+  for_blocks(from, grid, crowd, keyed,
              [&](std::span<const Keyed> members, std::span<const std::uint32_t> voxel_of,
                  const BlockPlan& plan) {
-               sums.assign(plan.count(), {});
-               for (std::size_t i = 0; i < members.size(); ++i) {
-                 if (voxel_of[i] != kNone) sums[voxel_of[i]].add(from[members[i].index]);
-               }
-               for (const VoxelSums& sum : sums) *to++ = sum.voxel();
+               stretch.blocks.push_back({static_cast<std::uint32_t>(members.size()),
+                                         static_cast<std::uint32_t>(plan.count())});
+               stretch.voxels += plan.count();
+               for (const std::uint32_t voxel : voxel_of) (next++)->key = voxel;
              });
+  return stretch;
+}
+
+/// Writes the voxels of a planned stretch.
+void merge_stretch(std::span<const Voxel> from, const StretchPlan& stretch,
+                   std::span<const Keyed> keyed, Voxel* to) {
+  std::vector<VoxelSums> sums;
+  auto member = keyed.begin();
+  for (const StretchPlan::Block& block : stretch.blocks) {
+    sums.assign(block.voxels, {});
+    for (const auto end = member + block.members; member != end; ++member) {
+      if (member->key != kNone) sums[member->key].add(from[member->index]);
+    }
+    for (const VoxelSums& sum : sums) *to++ = sum.voxel();
+  }
 }
 
 /// MergeForecast, each number summed over `points`.
@@ -286,7 +309,7 @@ ForecastSums forecast_stretch(std::span<const Voxel> from, const Grid& grid, Cro
   });
   ForecastSums sums;
   std::vector<double> merged, count;
-  for_blocks(from, grid, crowd, keyed, 0, keyed.size(),
+  for_blocks(from, grid, crowd, keyed,
              [&](std::span<const Keyed> members, std::span<const std::uint32_t> voxel_of,
                  const BlockPlan& plan) {
                const double filling = crowd == Crowd::kKeep ? plan.filling() : 0.0;
@@ -318,15 +341,19 @@ UnsetArray<Voxel> merge_voxels(std::span<const Voxel> from, const MergeCells& ce
   });
   spatial::sort_by_key(keyed, grid.key_bits());
 
-  // Planned twice, which costs less than holding the voxels of all ranges beside the result.
-  std::vector<std::size_t> first((keyed.size() + kStretch - 1) / kStretch + 1);
-  parallel_blocks(keyed.size(), kStretch, [&](std::size_t begin, std::size_t end) {
-    first[begin / kStretch + 1] = count_voxels(from, grid, cells.crowd, keyed, begin, end);
+  const std::vector<std::size_t> starts = stretches_of(keyed, grid, kStretch);
+  const auto members = [&](std::size_t s) {
+    return std::span<Keyed>(keyed).subspan(starts[s], starts[s + 1] - starts[s]);
+  };
+  std::vector<StretchPlan> plans(starts.size() - 1);
+  parallel_blocks(plans.size(), 1, [&](std::size_t s, std::size_t) {
+    plans[s] = plan_stretch(from, grid, cells.crowd, members(s));
   });
-  std::partial_sum(first.begin(), first.end(), first.begin());
+  std::vector<std::size_t> first(starts.size());
+  for (std::size_t s = 0; s < plans.size(); ++s) first[s + 1] = first[s] + plans[s].voxels;
   UnsetArray<Voxel> to(first.back());
-  parallel_blocks(keyed.size(), kStretch, [&](std::size_t begin, std::size_t end) {
-    merge_stretch(from, grid, cells.crowd, keyed, begin, end, &to[first[begin / kStretch]]);
+  parallel_blocks(plans.size(), 1, [&](std::size_t s, std::size_t) {
+    merge_stretch(from, plans[s], members(s), to.data() + first[s]);
   });
   return to;
 }
