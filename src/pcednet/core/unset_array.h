@@ -5,6 +5,8 @@
 #include <type_traits>
 #include <utility>
 
+#include "pcednet/core/large_pages.h"
+
 namespace pcednet {
 
 /// An array whose values are undefined until they are written, for results that threads fill in:
@@ -16,7 +18,9 @@ class UnsetArray {
  public:
   UnsetArray() = default;
   explicit UnsetArray(std::size_t size)
-      : values_(std::make_unique_for_overwrite<Value[]>(size)), size_(size) {}
+      : values_(std::make_unique_for_overwrite<Value[]>(size)), size_(size) {
+    prefer_large_pages(data(), size * sizeof(Value));
+  }
   UnsetArray(UnsetArray&& other) noexcept { *this = std::move(other); }
   UnsetArray& operator=(UnsetArray&& other) noexcept {
     values_ = std::move(other.values_);
