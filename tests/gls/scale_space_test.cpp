@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "gls/fast_clouds.h"
+#include "gls/variants.h"
 #include "pcednet/core/error.h"
 #include "support/expect_error.h"
 
@@ -57,6 +58,35 @@ TEST(ScaleSpace, PutsTheFeaturesOfTheSecondGateAfterThoseOfTheFirst) {
   both.second_gate = 0.1;
   both.side_gate.reset();
   EXPECT_ERROR(ErrorKind::kUsage, ScaleSpace(cube.points(), both));
+}
+
+TEST(ScaleSpace, TakesAnOctaveAsIfMadeForIt) {
+  const test::Cloud cube = test::cube(2000, 1);
+  const auto targets = test::all_targets(2000);
+  ScaleSpaceOptions options;
+  options.s_min = 0.05, options.s_max = 0.8;
+  options.s_max_ratio = 2.0;
+  options.octaves = true;
+  const auto described = [&](const ScaleSpace& space) {
+    test::Matrix<float> matrix{16, 6, std::vector<float>(2000 * 16 * 6),
+                               std::vector<FitStatus>(2000 * 16)};
+    space.describe(targets, matrix.features, matrix.status);
+    return matrix;
+  };
+  for (const Engine engine : {Engine::kFast, Engine::kExact}) {
+    options.engine = engine;
+    ScaleSpace space(cube.points(), options);
+    ASSERT_EQ(octave_count(space.range()), kOctaves);
+    const auto first = described(space);
+    ScaleSpaceOptions its = options;
+    its.s_min = 0.2, its.s_max = 0.4;
+    space.take_octave(2);
+    const ScaleSpace made(cube.points(), its);
+    EXPECT_EQ(space.scales(), made.scales());
+    test::expect_same_bits(described(space), described(made));
+    space.take_octave(0);
+    test::expect_same_bits(described(space), first);
+  }
 }
 
 }  // namespace

@@ -108,7 +108,7 @@ TEST(VoxelPyramid, HoldsFewVoxelsPerNeighbourhoodOfNoiseAsOfASurface) {
     VoxelPyramid pyramid =
         make_pyramid(cloud.positions, cloud.normals, point_order(cloud.points()), 1.0);
     const std::vector<double> scales = {0.12, 0.17};
-    add_levels(pyramid, scales, {.eps = 0.1, .gated = gated});
+    make_levels(pyramid, scales, {.eps = 0.1, .gated = gated});
     for (std::size_t s = 0; s < scales.size(); ++s) {
       const VoxelLevel& level = pyramid.levels[pyramid.level_of[s]];
       std::size_t near = 0;

@@ -32,7 +32,7 @@ VoxelPyramid pyramid_of(const test::Cloud& cloud, const std::vector<double>& sca
                         double eps = 0.2) {
   const auto order = point_order(cloud.points());
   VoxelPyramid pyramid = make_pyramid(cloud.positions, cloud.normals, order, 1.0);
-  add_levels(pyramid, scales, {.eps = eps});
+  make_levels(pyramid, scales, {.eps = eps});
   return pyramid;
 }
 
@@ -146,7 +146,7 @@ TEST(VoxelPyramid, OfAPartHasTheVoxelsOfTheWholeAwayFromItsRim) {
   const PyramidPlan plan = {whole.origin, whole.side, whole.plan};
   VoxelPyramid pyramid =
       make_pyramid(part.positions, part.normals, point_order(part.points()), 1.0, &plan);
-  add_levels(pyramid, scales, {.eps = 0.2, .whole = &plan});
+  make_levels(pyramid, scales, {.eps = 0.2, .whole = &plan});
   ASSERT_EQ(pyramid.level_of, whole.level_of);
   using Key = std::array<float, 3>;
   for (std::size_t l = 1; l < pyramid.levels.size(); ++l) {

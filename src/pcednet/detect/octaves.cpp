@@ -76,27 +76,22 @@ std::vector<std::uint8_t> octaves_of(std::span<const Vec3> positions,
 void for_each_octave(
     const PreparedCloud& cloud, const gls::ScaleSpaceOptions& descriptor, const Progress* progress,
     const std::function<void(const gls::ScaleSpace&, std::span<const std::uint32_t>)>& work) {
-  const auto space_of = [&](std::size_t octave, const gls::ScaleSpaceOptions& options,
-                            const Progress* its) {
-    const bool has_pyramid = cloud.part && !cloud.part->pyramids.empty();
-    const gls::PyramidPlan* whole = has_pyramid ? &cloud.part->pyramids[octave] : nullptr;
-    return gls::ScaleSpace({cloud.positions, cloud.normals, cloud.curve, whole}, options, its);
+  const PartOfCloud* const part = cloud.part;
+  const auto plan_of = [&](std::size_t octave) {
+    return part && !part->pyramids.empty() ? &part->pyramids[octave] : nullptr;
   };
+  gls::ScaleSpace space({cloud.positions, cloud.normals, cloud.curve, plan_of(0)}, descriptor,
+                        progress);
+  const std::size_t count = gls::octave_count(space.range());
   std::vector<std::uint8_t> octaves;
-  gls::ScaleRange range;
-  {
-    const gls::ScaleSpace space = space_of(0, descriptor, progress);
-    range = space.range();
-    if (gls::octave_count(range) > 1) octaves = octaves_of(cloud.positions, cloud.curve, range);
-    if (octaves.empty() && !cloud.part) return work(space, space.order());
-    work(space, chosen_of(space.order(), octaves, 0, cloud.part));
-  }
+  if (count > 1) octaves = octaves_of(cloud.positions, cloud.curve, space.range());
+  if (octaves.empty() && !part) return work(space, space.order());
   const Progress cancel_only = without_report(progress);
-  for (std::size_t octave = 1; octave < gls::octave_count(range); ++octave) {
-    if (chosen_of(cloud.curve, octaves, octave, cloud.part).empty()) continue;
-    const gls::ScaleSpace space =
-        space_of(octave, at_octave(descriptor, range, octave), &cancel_only);
-    work(space, chosen_of(space.order(), octaves, octave, cloud.part));
+  for (std::size_t octave = 0; octave < count; ++octave) {
+    const auto chosen = chosen_of(space.order(), octaves, octave, part);
+    if (octave > 0 && chosen.empty()) continue;
+    if (octave > 0) space.take_octave(octave, plan_of(octave), &cancel_only);
+    work(space, chosen);
   }
 }
 

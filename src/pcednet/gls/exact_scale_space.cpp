@@ -68,6 +68,10 @@ ExactScaleSpace::ExactScaleSpace(OrientedPoints points, const ScaleSpaceOptions&
   stage.advance();
 }
 
+void ExactScaleSpace::take_octave(std::size_t octave) {
+  scales_ = sample_scales(at_octave(range_, octave), options_.scales);
+}
+
 /// The points `found` relative to a position at `offset` from the point at `place`, whose normal
 /// the gate uses. An offset, not a position, so that differences of large coordinates are taken
 /// before anything small is added.

@@ -30,9 +30,14 @@ class ExactScaleSpace {
 
   const ScaleSpaceOptions& options() const { return options_; }
 
-  /// The support radii, smallest first; of several octaves, those of the first.
+  /// The support radii, smallest first; of several octaves, those of the first, or those of the one
+  /// taken since.
   const std::vector<double>& scales() const { return scales_; }
   const ScaleRange& range() const { return range_; }
+
+  /// Changes to the scales of an octave, below the octave_count() of the range. Not while others
+  /// describe.
+  void take_octave(std::size_t octave);
 
   /// The finite points along a curve: targets may come in any order, but this one makes the best
   /// use of the caches.

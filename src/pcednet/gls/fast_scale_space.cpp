@@ -81,23 +81,34 @@ FastScaleSpace::FastScaleSpace(OrientedPoints points, const ScaleSpaceOptions& o
     place_ = places_in(groups, points.positions.size());
     pyramid_ = make_pyramid(points.positions, points.normals, groups, unit_, points.whole);
     stage.advance();
-    find_scales(points, distinct);
+    find_range(points, distinct);
     add_copies(points, groups, order_, place_);
   }
   std::vector<std::uint32_t>().swap(distinct);  // before the levels take their memory
   stage.advance();
+  take_scales(range_, points.whole, progress);
+}
+
+void FastScaleSpace::take_octave(std::size_t octave, const PyramidPlan* whole,
+                                 const Progress* progress) {
+  take_scales(at_octave(range_, octave), whole, progress);
+}
+
+void FastScaleSpace::take_scales(const ScaleRange& range, const PyramidPlan* whole,
+                                 const Progress* progress) {
+  scales_ = sample_scales(range, options_.scales);
   std::vector<double> scaled = scales_;
   for (double& scale : scaled) scale *= unit_;
-  add_levels(pyramid_, scaled,
-             {.eps = options.eps, .gated = options.side_gate.has_value(), .whole = points.whole},
-             progress);
+  make_levels(pyramid_, scaled,
+              {.eps = options_.eps, .gated = options_.side_gate.has_value(), .whole = whole},
+              progress);
 }
 
 PyramidPlan FastScaleSpace::pyramid_plan() const {
   return {pyramid_.origin / unit_, pyramid_.side / unit_, pyramid_.plan};
 }
 
-void FastScaleSpace::find_scales(OrientedPoints points, std::span<const std::uint32_t> curve) {
+void FastScaleSpace::find_range(OrientedPoints points, std::span<const std::uint32_t> curve) {
   const VoxelLevel& level = pyramid_.levels.front();
   const auto distance = [&](std::size_t place) {
     std::array<double, kSpacingNeighbours> sq_distances;
@@ -112,7 +123,6 @@ void FastScaleSpace::find_scales(OrientedPoints points, std::span<const std::uin
                : sampled_spacings(curve.size(), distance);
   };
   range_ = scale_range(points.positions, given_range(options_), spacings);
-  scales_ = sample_scales(range_, options_.scales);
 }
 
 void FastScaleSpace::describe(std::span<const std::uint32_t> targets, std::span<float> out,

@@ -39,9 +39,15 @@ class FastScaleSpace {
 
   const ScaleSpaceOptions& options() const { return options_; }
 
-  /// The support radii, smallest first; of several octaves, those of the first.
+  /// The support radii, smallest first; of several octaves, those of the first, or those of the one
+  /// taken since.
   const std::vector<double>& scales() const { return scales_; }
   const ScaleRange& range() const { return range_; }
+
+  /// Changes to the scales of an octave, below the octave_count() of the range. `whole` is as in
+  /// OrientedPoints. Not while others describe.
+  void take_octave(std::size_t octave, const PyramidPlan* whole = nullptr,
+                   const Progress* progress = nullptr);
 
   /// The plan of the voxels that these points decided; for a part of a cloud, the plan of the
   /// whole.
@@ -60,7 +66,8 @@ class FastScaleSpace {
                 std::span<FitStatus> status, const Progress* progress = nullptr) const;
 
  private:
-  void find_scales(OrientedPoints points, std::span<const std::uint32_t> curve);
+  void find_range(OrientedPoints points, std::span<const std::uint32_t> curve);
+  void take_scales(const ScaleRange& range, const PyramidPlan* whole, const Progress* progress);
   void describe_block(std::span<const Visit> visits, std::span<float> out,
                       std::span<FitStatus> status) const;
 

@@ -29,6 +29,15 @@ const ScaleRange& ScaleSpace::range() const {
       [](const auto& engine) -> const auto& { return engine.range(); }, engine_);
 }
 
+void ScaleSpace::take_octave(std::size_t octave, const PyramidPlan* whole,
+                             const Progress* progress) {
+  if (auto* const fast = std::get_if<FastScaleSpace>(&engine_)) {
+    fast->take_octave(octave, whole, progress);
+  } else {
+    std::get<ExactScaleSpace>(engine_).take_octave(octave);
+  }
+}
+
 std::span<const std::uint32_t> ScaleSpace::order() const {
   return std::visit([](const auto& engine) { return engine.order(); }, engine_);
 }

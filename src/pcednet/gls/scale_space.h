@@ -22,6 +22,11 @@ class ScaleSpace {
   const ScaleSpaceOptions& options() const { return options_; }
   const std::vector<double>& scales() const;
   const ScaleRange& range() const;
+
+  /// See FastScaleSpace::take_octave().
+  void take_octave(std::size_t octave, const PyramidPlan* whole = nullptr,
+                   const Progress* progress = nullptr);
+
   std::span<const std::uint32_t> order() const;
 
   /// See ExactScaleSpace::describe() and FastScaleSpace::describe().

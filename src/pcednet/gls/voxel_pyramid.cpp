@@ -81,10 +81,12 @@ VoxelPyramid make_pyramid(std::span<const Vec3> positions, std::span<const Vec3>
   return pyramid;
 }
 
-void add_levels(VoxelPyramid& pyramid, std::span<const double> scales, const LevelOptions& options,
-                const Progress* progress) {
+void make_levels(VoxelPyramid& pyramid, std::span<const double> scales, const LevelOptions& options,
+                 const Progress* progress) {
   Stage stage(progress, "resolutions", scales.size());
+  pyramid.levels.resize(1);
   pyramid.levels.reserve(1 + scales.size());
+  pyramid.level_of.clear(), pyramid.plan.clear();
   Crowd crowd = Crowd::kKeep;
   for (std::size_t i = 0; i < scales.size(); ++i) {
     MergeCells cells = {.origin = pyramid.origin,

@@ -59,14 +59,15 @@ struct LevelOptions {
   const PyramidPlan* whole = nullptr;  ///< decides which levels exist, and how they merge
 };
 
-/// Adds levels so that scale t reads voxels of cells of edge at most eps t; a level that would
-/// merge next to nothing is left out, and the scale reads the preceding finer level.
+/// Makes the levels above the first, anew if there are some, so that scale t reads voxels of cells
+/// of edge at most eps t; a level that would merge next to nothing is left out, and the scale reads
+/// the preceding finer level.
 ///
 /// See merge_voxels() for the rule. Where the average neighbourhood is filled with leaves or noise
 /// rather than crossed by surfaces, these are merged further, so that it costs about as much as
 /// elsewhere. `scales` must be positive and ascending. Work and memory are linear in the points:
 /// together the levels hold about two and a half voxels per point.
-void add_levels(VoxelPyramid& pyramid, std::span<const double> scales, const LevelOptions& options,
-                const Progress* progress = nullptr);
+void make_levels(VoxelPyramid& pyramid, std::span<const double> scales, const LevelOptions& options,
+                 const Progress* progress = nullptr);
 
 }  // namespace pcednet::gls
