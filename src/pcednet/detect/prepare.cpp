@@ -10,6 +10,7 @@
 #include "pcednet/cloud/bounding_box.h"
 #include "pcednet/core/error.h"
 #include "pcednet/core/half_space.h"
+#include "pcednet/core/parallel_loops.h"
 #include "pcednet/detect/exact_points.h"
 #include "pcednet/detect/far_points.h"
 #include "pcednet/detect/normal_fit.h"
@@ -176,11 +177,12 @@ void spread_positions(const Rounding& rounding, PreparedCloud& prepared) {
       rounding.step, rounding.step / rounding.spacing));
 }
 
+/// Of the points in order. They are counted as they lie in memory.
 std::size_t count_usable(const PreparedCloud& prepared) {
-  return static_cast<std::size_t>(
-      std::count_if(prepared.curve.begin(), prepared.curve.end(), [&](std::uint32_t i) {
-        return i < prepared.normals.size() && is_usable(prepared.normals[i]);
-      }));
+  const auto counts = [&](std::size_t i) {
+    return is_usable(prepared.normals[i]) && prepared.positions[i].allFinite();
+  };
+  return counts_before_blocks(prepared.normals.size(), 1 << 14, counts).back();
 }
 
 std::string why_estimated(const PreparedCloud& prepared, const Points& cloud) {

@@ -62,6 +62,7 @@ std::vector<std::uint32_t> point_order(OrientedPoints points) {
   };
   std::vector<std::uint32_t> order(points.curve.begin(), points.curve.end());
   if (order.empty()) order = spatial::curve_order(points.positions);
+  if (!spatial::have_copies(points.positions, order)) return order;
   for (auto first = order.begin(); first != order.end();) {
     const auto last = std::find_if(first + 1, order.end(), [&](std::uint32_t i) {
       return points.positions[i] != points.positions[*first];
@@ -83,6 +84,7 @@ std::vector<std::uint32_t> places_in(std::span<const std::uint32_t> order, std::
 
 std::vector<std::uint32_t> distinct_points(OrientedPoints points,
                                            std::span<const std::uint32_t> order) {
+  if (!spatial::have_copies(points.positions, order)) return {order.begin(), order.end()};
   std::vector<std::uint32_t> distinct;
   distinct.reserve(order.size());
   for (const std::uint32_t i : order) {

@@ -1,7 +1,6 @@
 #include "pcednet/spatial/curve_order.h"
 
 #include <algorithm>
-#include <iterator>
 #include <limits>
 #include <string>
 
@@ -65,6 +64,18 @@ void sort_along_curve(std::span<const Vec3> positions, std::span<Keyed> keyed) {
   }
 }
 
+/// Whether the i-th point of the order lies where the one before it does.
+bool is_copy(std::span<const Vec3> positions, std::span<const std::uint32_t> order, std::size_t i) {
+  return i > 0 && positions[order[i]] == positions[order[i - 1]];
+}
+
+/// counts_before_blocks() of these.
+std::vector<std::size_t> count_copies(std::span<const Vec3> positions,
+                                      std::span<const std::uint32_t> order) {
+  return counts_before_blocks(order.size(), kCodesAtOnce,
+                              [&](std::size_t i) { return is_copy(positions, order, i); });
+}
+
 }  // namespace
 
 std::vector<std::uint32_t> curve_order(std::span<const Vec3> positions) {
@@ -88,17 +99,19 @@ std::vector<std::uint32_t> curve_order(std::span<const Vec3> positions) {
 }
 
 bool have_copies(std::span<const Vec3> positions, std::span<const std::uint32_t> order) {
-  return std::adjacent_find(order.begin(), order.end(), [&](std::uint32_t i, std::uint32_t j) {
-           return positions[i] == positions[j];
-         }) != order.end();
+  return count_copies(positions, order).back() > 0;
 }
 
 std::vector<std::uint32_t> firsts_of_places(std::span<const Vec3> positions,
                                             std::span<const std::uint32_t> order) {
-  std::vector<std::uint32_t> firsts;
-  firsts.reserve(order.size());
-  std::unique_copy(order.begin(), order.end(), std::back_inserter(firsts),
-                   [&](std::uint32_t i, std::uint32_t j) { return positions[i] == positions[j]; });
+  const std::vector<std::size_t> copies = count_copies(positions, order);
+  std::vector<std::uint32_t> firsts(order.size() - copies.back());
+  parallel_blocks(order.size(), kCodesAtOnce, [&](std::size_t begin, std::size_t end) {
+    std::size_t to = begin - copies[begin / kCodesAtOnce];
+    for (std::size_t i = begin; i < end; ++i) {
+      if (!is_copy(positions, order, i)) firsts[to++] = order[i];
+    }
+  });
   return firsts;
 }
 
