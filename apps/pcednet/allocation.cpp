@@ -1,7 +1,24 @@
 #include <cstdlib>
 #include <new>
+#if defined(__GLIBC__)
+#include <malloc.h>
+#endif
 
 #include "pcednet/core/large_pages.h"
+
+namespace {
+
+/// Lets threads use again what they free: blocks of points need buffers of some megabytes one after
+/// another, which would go back to the system and come as new pages each time.
+[[maybe_unused]] const bool keeps_freed_memory = [] {
+#if defined(__GLIBC__)
+  mallopt(M_MMAP_THRESHOLD, 32 << 20);
+  mallopt(M_TRIM_THRESHOLD, 128 << 20);
+#endif
+  return true;
+}();
+
+}  // namespace
 
 // Large vectors get large pages, too: the library asks for them where it allocates itself.
 

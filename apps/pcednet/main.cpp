@@ -1,7 +1,4 @@
 #include <fmt/format.h>
-#if defined(__GLIBC__)
-#include <malloc.h>
-#endif
 
 #include <cerrno>
 #include <cstdio>
@@ -23,15 +20,6 @@
 
 namespace pcednet::app {
 namespace {
-
-/// Lets threads use again what they free: blocks of points need buffers of some megabytes one after
-/// another, which would go back to the system and come as new pages each time.
-void keep_freed_memory() {
-#if defined(__GLIBC__)
-  mallopt(M_MMAP_THRESHOLD, 32 << 20);
-  mallopt(M_TRIM_THRESHOLD, 128 << 20);
-#endif
-}
 
 /// Throws if what was printed could not be written, as on a full disk.
 void check_printed() {
@@ -93,7 +81,6 @@ int run(int argc, char** argv) {
 }  // namespace pcednet::app
 
 int main(int argc, char** argv) {
-  pcednet::app::keep_freed_memory();
   try {
     return pcednet::app::run(argc, argv);
   } catch (const pcednet::Error& error) {

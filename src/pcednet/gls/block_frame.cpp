@@ -4,7 +4,7 @@
 
 namespace pcednet::gls {
 
-constexpr std::size_t kAhead = 3;
+constexpr std::size_t kAhead = 16;
 
 void CandidateList::reserve(std::size_t count) {
   const std::size_t room = count + kLanes;

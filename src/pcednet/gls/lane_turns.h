@@ -26,7 +26,7 @@ inline void add_turn(std::size_t count, const Interact& interact, const SourceAt
 
 /// Adds the sums over some sources, turn by turn.
 template <int W, bool kGated, bool kPoints>
-inline void add_turns(const Source* sources, const std::uint32_t* indices, std::size_t count,
+[[gnu::noinline]] void add_turns(const Source* sources, const std::uint32_t* indices, std::size_t count,
                       const Targets<W, kGated>& lanes, PositionSums<W, kPoints>& position,
                       NormalSums<W, kPoints>& normal) {
   for (std::size_t begin = 0; begin < count; begin += kTurn) {
@@ -66,7 +66,7 @@ struct GatedTurn {
     }
   }
 
-  void add_to(int g, const Source* sources, const std::uint32_t* indices,
+  [[gnu::noinline]] void add_to(int g, const Source* sources, const std::uint32_t* indices,
               PositionSums<W, kPoints>& position, NormalSums<W, kPoints>& normal) const {
     add_turn(
         count[g],
