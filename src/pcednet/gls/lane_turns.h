@@ -24,11 +24,12 @@ inline void add_turn(std::size_t count, const Interact& interact, const SourceAt
   normal += normal_turn;
 }
 
-/// Adds the sums over some sources, turn by turn.
+/// Adds the sums over some sources, turn by turn. Not inlined: the sums take nearly all registers.
 template <int W, bool kGated, bool kPoints>
-[[gnu::noinline]] void add_turns(const Source* sources, const std::uint32_t* indices, std::size_t count,
-                      const Targets<W, kGated>& lanes, PositionSums<W, kPoints>& position,
-                      NormalSums<W, kPoints>& normal) {
+[[gnu::noinline]] void add_turns(const Source* sources, const std::uint32_t* indices,
+                                 std::size_t count, const Targets<W, kGated>& lanes,
+                                 PositionSums<W, kPoints>& position,
+                                 NormalSums<W, kPoints>& normal) {
   for (std::size_t begin = 0; begin < count; begin += kTurn) {
     const std::size_t here = count - begin < kTurn ? count - begin : kTurn;
     const auto source_at = [&](std::size_t j) -> const Source& {
@@ -67,7 +68,8 @@ struct GatedTurn {
   }
 
   [[gnu::noinline]] void add_to(int g, const Source* sources, const std::uint32_t* indices,
-              PositionSums<W, kPoints>& position, NormalSums<W, kPoints>& normal) const {
+                                PositionSums<W, kPoints>& position,
+                                NormalSums<W, kPoints>& normal) const {
     add_turn(
         count[g],
         [&](PositionSums<W, kPoints>& sums, std::size_t j) {
