@@ -10,13 +10,12 @@ namespace pcednet {
 
 void prefer_large_pages([[maybe_unused]] void* memory, [[maybe_unused]] std::size_t bytes) {
 #if defined(__linux__) && defined(MADV_HUGEPAGE)
-  constexpr std::uintptr_t kPage = 2 << 20;
+  constexpr std::size_t kPage = 2 << 20;
   if (bytes < 2 * kPage) return;
-  const auto begin = reinterpret_cast<std::uintptr_t>(memory);
-  const std::uintptr_t first = (begin + kPage - 1) / kPage * kPage;
-  const std::uintptr_t last = (begin + bytes) / kPage * kPage;
+  const std::size_t before = (kPage - reinterpret_cast<std::uintptr_t>(memory) % kPage) % kPage;
+  const std::size_t whole = (bytes - before) / kPage * kPage;
   // A system without them refuses, and all is as it was.
-  madvise(reinterpret_cast<void*>(first), last - first, MADV_HUGEPAGE);
+  madvise(static_cast<char*>(memory) + before, whole, MADV_HUGEPAGE);
 #endif
 }
 
