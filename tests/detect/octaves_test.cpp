@@ -97,7 +97,10 @@ TEST(Octaves, DescribeEachPointInItsOwnSpace) {
   const std::size_t width = row_width(options);
   for (std::size_t octave = 0; octave < gls::kOctaves; ++octave) {
     gls::ScaleSpaceOptions its = options;
-    if (octave > 0) its = at_octave(options, range, octave);
+    if (octave > 0) {
+      its.s_min = gls::at_octave(range, octave).s_min;
+      its.s_max = gls::at_octave(range, octave).s_max;
+    }
     const gls::ScaleSpace space({cloud.positions, cloud.normals, prepared.curve}, its);
     for (std::size_t row = 0; row < described.order.size(); row += 17) {
       const std::uint32_t point = described.order[row];

@@ -46,13 +46,6 @@ std::vector<std::uint32_t> chosen_of(std::span<const std::uint32_t> order,
 
 }  // namespace
 
-gls::ScaleSpaceOptions at_octave(gls::ScaleSpaceOptions descriptor, const gls::ScaleRange& range,
-                                 std::size_t octave) {
-  const gls::ScaleRange own = gls::at_octave(range, octave);
-  descriptor.s_min = own.s_min, descriptor.s_max = own.s_max;
-  return descriptor;
-}
-
 std::vector<std::uint8_t> octaves_of(std::span<const Vec3> positions,
                                      std::span<const std::uint32_t> curve,
                                      const gls::ScaleRange& range) {

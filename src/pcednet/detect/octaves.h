@@ -18,10 +18,6 @@ namespace pcednet::detect {
 // that many times s_min on, up to s_max_ratio times that. Points of smaller spacing, and all
 // points of even clouds, have octave 0: the scales of the cloud.
 
-/// The options for the points of an octave, 1 or more, of a range.
-gls::ScaleSpaceOptions at_octave(gls::ScaleSpaceOptions descriptor, const gls::ScaleRange& range,
-                                 std::size_t octave);
-
 /// The octave of every point, below the gls::octave_count() of the range; 0 where a point is not
 /// finite. The spacing at a point is the median over its 10 nearest others of the mean distance to
 /// theirs. `curve` is the spatial::curve_order() of the positions.

@@ -242,11 +242,13 @@ std::vector<std::size_t> stretches_of(std::span<const Keyed> keyed, const Grid& 
                                       std::size_t length) {
   std::vector<std::size_t> starts((keyed.size() + length - 1) / length + 1, keyed.size());
   for (std::size_t s = starts.size() - 1; s-- > 0;) {
-    const std::size_t end = starts[s + 1];
-    std::size_t& start = starts[s] = std::min(s * length, end);
-    while (start > 0 && start < end &&
-           grid.are_together(keyed[start - 1], keyed[start], kBlockBits))
+    const std::size_t last = std::min((s + 1) * length, keyed.size());
+    std::size_t start = s * length;
+    while (start > 0 && start < last &&
+           grid.are_together(keyed[start - 1], keyed[start], kBlockBits)) {
       ++start;
+    }
+    starts[s] = start < last ? start : starts[s + 1];
   }
   return starts;
 }

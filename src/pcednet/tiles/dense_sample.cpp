@@ -4,12 +4,13 @@
 #include <array>
 #include <limits>
 #include <numeric>
+#include <optional>
 
 #include "pcednet/core/median.h"
 #include "pcednet/core/parallel_loops.h"
-#include "pcednet/detect/octaves.h"
 #include "pcednet/detect/rounding.h"
 #include "pcednet/gls/fast_scale_space.h"
+#include "pcednet/gls/scales.h"
 #include "pcednet/spatial/curve_order.h"
 #include "pcednet/tiles/inputs.h"
 
@@ -150,16 +151,20 @@ void decide_voxels(const PreparedSample& sample, const detect::EdgeModel& model,
                    const Progress* progress) {
   gls::ScaleSpaceOptions descriptor = model.descriptor;
   descriptor.s_min = plan.s_min, descriptor.s_max = plan.s_max;
-  const gls::ScaleRange range = gls::given_range(descriptor);
-  for (std::size_t octave = 0; octave < gls::octave_count(range); ++octave) {
-    if (octave > 0) descriptor = detect::at_octave(descriptor, range, octave);
+  const std::size_t octaves = gls::octave_count(gls::given_range(descriptor));
+  std::optional<gls::FastScaleSpace> space;
+  for (std::size_t octave = 0; octave < octaves; ++octave) {
     gls::PyramidPlan& pyramid = plan.pyramids.emplace_back();
     pyramid.corner = plan.box.min;
     pyramid.side = (plan.box.max - plan.box.min).maxCoeff();
     if (plan.model.exact || !gls::fits_spheres(descriptor.reconstruction)) continue;
-    const gls::FastScaleSpace space({sample.positions, sample.normals, sample.curve}, descriptor,
-                                    progress);
-    pyramid.levels = space.pyramid_plan().levels;
+    if (octave == 0) {
+      space.emplace(gls::OrientedPoints{sample.positions, sample.normals, sample.curve}, descriptor,
+                    progress);
+    } else {
+      space->take_octave(octave, nullptr, progress);
+    }
+    pyramid.levels = space->pyramid_plan().levels;
   }
 }
 

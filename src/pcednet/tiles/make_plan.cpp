@@ -10,7 +10,6 @@
 #include "pcednet/core/version.h"
 #include "pcednet/detect/boundary.h"
 #include "pcednet/detect/context.h"
-#include "pcednet/detect/octaves.h"
 #include "pcednet/formats/cloud_facts.h"
 #include "pcednet/gls/scales.h"
 #include "pcednet/normals/exact_planes.h"

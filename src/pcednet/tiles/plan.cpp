@@ -11,8 +11,8 @@
 #include "pcednet/core/error.h"
 #include "pcednet/core/json.h"
 #include "pcednet/core/version.h"
-#include "pcednet/detect/octaves.h"
 #include "pcednet/formats/file_name.h"
+#include "pcednet/gls/scales.h"
 #include "pcednet/io/input_file.h"
 #include "pcednet/tiles/sha256.h"
 
