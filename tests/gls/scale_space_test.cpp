@@ -86,6 +86,10 @@ TEST(ScaleSpace, TakesAnOctaveAsIfMadeForIt) {
     test::expect_same_bits(described(space), described(made));
     space.take_octave(0);
     test::expect_same_bits(described(space), first);
+    its.s_max_ratio = 0.0;  // one octave, of any extent
+    ScaleSpace even(cube.points(), its);
+    even.take_octave(0);
+    EXPECT_EQ(even.scales(), made.scales());
   }
 }
 

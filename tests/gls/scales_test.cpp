@@ -204,6 +204,7 @@ TEST(Scales, HaveTheOctavesThatEndAtTheLargest) {
   const ScaleRange whole = {.s_min = 0.1, .s_max = 6.4, .s_max_ratio = 8.0, .octaves = true};
   EXPECT_DOUBLE_EQ(at_octave(whole, 2).s_min, 0.4);
   EXPECT_DOUBLE_EQ(at_octave(whole, 2).s_max, 3.2);
+  EXPECT_EQ(at_octave({.s_min = 0.1, .s_max = 1.5, .s_max_ratio = 8.0}, 0).s_max, 1.5);
   EXPECT_DOUBLE_EQ(sample_scales(whole, 8).back(), 0.8);
   EXPECT_DOUBLE_EQ(sample_scales({.s_min = 0.1, .s_max = 1.5, .s_max_ratio = 8.0}, 8).back(), 1.5);
 }

@@ -110,6 +110,7 @@ std::size_t octave_count(const ScaleRange& range) {
 }
 
 ScaleRange at_octave(const ScaleRange& range, std::size_t octave) {
+  if (octave_count(range) == 1) return range;
   ScaleRange own = range;
   own.s_min = factor_of(octave) * range.s_min;
   own.s_max = range.s_max_ratio * own.s_min;
@@ -186,7 +187,7 @@ std::string note_on_extent(const ScaleSpaceOptions& options, double diagonal,
 }
 
 std::vector<double> sample_scales(const ScaleRange& whole, int count) {
-  const ScaleRange range = octave_count(whole) > 1 ? at_octave(whole, 0) : whole;
+  const ScaleRange range = at_octave(whole, 0);
   if (count < kMinScales || count > kMaxScales ||
       !std::has_single_bit(static_cast<unsigned>(count))) {
     throw Error(ErrorKind::kUsage,

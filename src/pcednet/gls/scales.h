@@ -69,7 +69,7 @@ bool is_uneven(std::vector<double> spacings);
 /// How many octaves a range has: 1 to kOctaves, as many as end at s_max or below.
 std::size_t octave_count(const ScaleRange& range);
 
-/// The range of an octave of several: from 2^octave s_min to s_max_ratio times that.
+/// The range of an octave: of several, from 2^octave s_min to s_max_ratio times that.
 ScaleRange at_octave(const ScaleRange& range, std::size_t octave);
 
 /// What a user calls the bounds of the range.

@@ -22,11 +22,10 @@ std::vector<std::uint32_t> starts_of_places(std::span<const Vec3> positions,
 
 Places places_of(std::span<const Vec3> positions, std::vector<std::uint32_t> order) {
   Places places{.order = std::move(order)};
-  if (have_copies(positions, places.order)) {
-    places.positions = in_order(positions, firsts_of_places(positions, places.order));
+  const std::vector<std::uint32_t> firsts = firsts_of_places(positions, places.order);
+  places.positions = in_order(positions, firsts);
+  if (firsts.size() < places.order.size()) {
     places.starts = starts_of_places(positions, places.order);
-  } else {
-    places.positions = in_order(positions, places.order);
   }
   return places;
 }
