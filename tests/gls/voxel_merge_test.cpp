@@ -24,7 +24,7 @@ test::Cloud noise(std::size_t count) {
 }
 
 UnsetArray<Voxel> points_of(const test::Cloud& cloud) {
-  const auto order = point_order(cloud.points());
+  const auto order = point_order(cloud.points()).order;
   VoxelPyramid pyramid = make_pyramid(cloud.positions, cloud.normals, order, 1.0);
   return std::move(pyramid.levels.front().voxels);
 }
@@ -106,7 +106,7 @@ TEST(VoxelPyramid, HoldsFewVoxelsPerNeighbourhoodOfNoiseAsOfASurface) {
   for (const bool gated : {false, true}) {
     const test::Cloud cloud = noise(200000);
     VoxelPyramid pyramid =
-        make_pyramid(cloud.positions, cloud.normals, point_order(cloud.points()), 1.0);
+        make_pyramid(cloud.positions, cloud.normals, point_order(cloud.points()).order, 1.0);
     const std::vector<double> scales = {0.12, 0.17};
     make_levels(pyramid, scales, {.eps = 0.1, .gated = gated});
     for (std::size_t s = 0; s < scales.size(); ++s) {

@@ -30,7 +30,7 @@ struct Totals {
 
 VoxelPyramid pyramid_of(const test::Cloud& cloud, const std::vector<double>& scales,
                         double eps = 0.2) {
-  const auto order = point_order(cloud.points());
+  const auto order = point_order(cloud.points()).order;
   VoxelPyramid pyramid = make_pyramid(cloud.positions, cloud.normals, order, 1.0);
   make_levels(pyramid, scales, {.eps = eps});
   return pyramid;
@@ -145,7 +145,7 @@ TEST(VoxelPyramid, OfAPartHasTheVoxelsOfTheWholeAwayFromItsRim) {
   }
   const PyramidPlan plan = {whole.origin, whole.side, whole.plan};
   VoxelPyramid pyramid =
-      make_pyramid(part.positions, part.normals, point_order(part.points()), 1.0, &plan);
+      make_pyramid(part.positions, part.normals, point_order(part.points()).order, 1.0, &plan);
   make_levels(pyramid, scales, {.eps = 0.2, .whole = &plan});
   ASSERT_EQ(pyramid.level_of, whole.level_of);
   using Key = std::array<float, 3>;

@@ -55,15 +55,15 @@ TEST(BoxTree, FindsTheNearestAsASortOfAllDistances) {
   const BoxTree tree(points.size(), points.front(), position_at);
   Random random(5);
   for (int query = 0; query < 100; ++query) {
-    const Vec3 q = query % 2 ? points[random.index(points.size())] : uniform_vector(random);
+    const std::size_t item = random.index(points.size());
     std::vector<double> expected;
     for (const Vec3& p : points) {
-      const Vec3 d = p - q;
+      const Vec3 d = p - points[item];
       expected.push_back(d.x() * d.x() + d.y() * d.y() + d.z() * d.z());
     }
     std::sort(expected.begin(), expected.end());
     std::array<double, 11> found;
-    ASSERT_EQ(tree.nearest(q, found, position_at), 11u);
+    ASSERT_EQ(tree.nearest(item, found, position_at), 11u);
     for (std::size_t i = 0; i < 11; ++i) EXPECT_EQ(found[i], expected[i]);
   }
 }
@@ -74,12 +74,11 @@ TEST(BoxTree, IsContentWithFewOrNoThings) {
   std::array<double, 11> found;
   std::vector<std::uint32_t> runs;
   const BoxTree none(0, Vec3::Zero(), position_at);
-  EXPECT_EQ(none.nearest(Vec3::Zero(), found, position_at), 0u);
   none.runs_near(Vec3::Zero(), Vec3::Ones(), 1.0, runs);
   EXPECT_TRUE(runs.empty());
   points = {Vec3::Zero(), Vec3::UnitX()};
   const BoxTree two(2, Vec3::Zero(), position_at);
-  EXPECT_EQ(two.nearest(Vec3::Zero(), found, position_at), 2u);
+  EXPECT_EQ(two.nearest(0, found, position_at), 2u);
   EXPECT_EQ(found[1], 1.0);
 }
 

@@ -51,8 +51,9 @@ ExactScaleSpace::ExactScaleSpace(OrientedPoints points, const ScaleSpaceOptions&
     : options_(options), gates_(gates_of(options)), tree_({}) {
   check(points, options);
   Stage stage(progress, "prepare", 3);
-  order_ = point_order(points);
-  const std::vector<std::uint32_t> distinct = distinct_points(points, order_);
+  PointOrder ordered = point_order(points);
+  const std::vector<std::uint32_t> distinct = distinct_points(points, ordered);
+  order_ = std::move(ordered.order);
   place_ = places_in(distinct, points.positions.size());
   add_copies(points, distinct, order_, place_);
   for (const std::uint32_t i : distinct) {

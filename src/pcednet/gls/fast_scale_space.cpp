@@ -70,9 +70,10 @@ FastScaleSpace::FastScaleSpace(OrientedPoints points, const ScaleSpaceOptions& o
     throw Error(ErrorKind::kUsage, "the fast engine reconstructs with algebraic spheres only");
   }
   Stage stage(progress, "prepare", 3);
-  order_ = point_order(points);
+  PointOrder ordered = point_order(points);
   stage.advance();
-  std::vector<std::uint32_t> distinct = distinct_points(points, order_);
+  std::vector<std::uint32_t> distinct = distinct_points(points, ordered);
+  order_ = std::move(ordered.order);
   places_ = distinct.size();
   unit_ = unit_for(bounding_box(points.positions));
   {
@@ -81,7 +82,7 @@ FastScaleSpace::FastScaleSpace(OrientedPoints points, const ScaleSpaceOptions& o
     place_ = places_in(groups, points.positions.size());
     pyramid_ = make_pyramid(points.positions, points.normals, groups, unit_, points.whole);
     stage.advance();
-    find_range(points, distinct);
+    find_range(points, distinct, ordered.shares_places);
     add_copies(points, groups, order_, place_);
   }
   std::vector<std::uint32_t>().swap(distinct);  // before the levels take their memory
@@ -108,17 +109,18 @@ PyramidPlan FastScaleSpace::pyramid_plan() const {
   return {pyramid_.origin / unit_, pyramid_.side / unit_, pyramid_.plan};
 }
 
-void FastScaleSpace::find_range(OrientedPoints points, std::span<const std::uint32_t> curve) {
+void FastScaleSpace::find_range(OrientedPoints points, std::span<const std::uint32_t> curve,
+                                bool may_share_places) {
   const VoxelLevel& level = pyramid_.levels.front();
-  const auto distance = [&](std::size_t place) {
+  const auto distance = [&](std::size_t i) {
     std::array<double, kSpacingNeighbours> sq_distances;
     const std::size_t found =
-        level.boxes.nearest(points.positions[curve[place]] * unit_, sq_distances,
-                            [&](std::size_t i) { return level.voxels[i].position; });
+        level.boxes.nearest(place_[curve[i]], sq_distances,
+                            [&](std::size_t place) { return level.voxels[place].position; });
     return mean_distance(std::span(sq_distances).first(found)) / unit_;
   };
   const auto spacings = [&] {
-    return spatial::have_copies(points.positions, curve)
+    return may_share_places && spatial::have_copies(points.positions, curve)
                ? spacings_of_places(points.positions, curve)
                : sampled_spacings(curve.size(), distance);
   };

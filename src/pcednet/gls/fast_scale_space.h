@@ -66,7 +66,8 @@ class FastScaleSpace {
                 std::span<FitStatus> status, const Progress* progress = nullptr) const;
 
  private:
-  void find_range(OrientedPoints points, std::span<const std::uint32_t> curve);
+  void find_range(OrientedPoints points, std::span<const std::uint32_t> curve,
+                  bool may_share_places);
   void take_scales(const ScaleRange& range, const PyramidPlan* whole, const Progress* progress);
   void describe_block(std::span<const Visit> visits, std::span<float> out,
                       std::span<FitStatus> status) const;

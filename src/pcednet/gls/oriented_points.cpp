@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "pcednet/core/error.h"
 #include "pcednet/core/half_space.h"
@@ -56,13 +57,13 @@ void check(OrientedPoints points, const ScaleSpaceOptions& options) {
   }
 }
 
-std::vector<std::uint32_t> point_order(OrientedPoints points) {
+PointOrder point_order(OrientedPoints points) {
   const auto usable = [&](std::uint32_t i) {
     return is_usable(points.normals[i]) ? points.normals[i] : Vec3::Zero().eval();
   };
   std::vector<std::uint32_t> order(points.curve.begin(), points.curve.end());
   if (order.empty()) order = spatial::curve_order(points.positions);
-  if (!spatial::have_copies(points.positions, order)) return order;
+  if (!spatial::have_copies(points.positions, order)) return {std::move(order), false};
   for (auto first = order.begin(); first != order.end();) {
     const auto last = std::find_if(first + 1, order.end(), [&](std::uint32_t i) {
       return points.positions[i] != points.positions[*first];
@@ -73,7 +74,7 @@ std::vector<std::uint32_t> point_order(OrientedPoints points) {
     }
     first = last;
   }
-  return order;
+  return {std::move(order), true};
 }
 
 std::vector<std::uint32_t> places_in(std::span<const std::uint32_t> order, std::size_t count) {
@@ -82,9 +83,9 @@ std::vector<std::uint32_t> places_in(std::span<const std::uint32_t> order, std::
   return places;
 }
 
-std::vector<std::uint32_t> distinct_points(OrientedPoints points,
-                                           std::span<const std::uint32_t> order) {
-  if (!spatial::have_copies(points.positions, order)) return {order.begin(), order.end()};
+std::vector<std::uint32_t> distinct_points(OrientedPoints points, const PointOrder& ordered) {
+  const std::vector<std::uint32_t>& order = ordered.order;
+  if (!ordered.shares_places) return order;
   std::vector<std::uint32_t> distinct;
   distinct.reserve(order.size());
   for (const std::uint32_t i : order) {

@@ -28,7 +28,12 @@ void check(OrientedPoints points, const ScaleSpaceOptions& options);
 
 /// The finite points by position along a curve and, at one position, by normal: results computed in
 /// this order do not depend on the numbering.
-std::vector<std::uint32_t> point_order(OrientedPoints points);
+struct PointOrder {
+  std::vector<std::uint32_t> order;
+  bool shares_places;  ///< some points lie in one place
+};
+
+PointOrder point_order(OrientedPoints points);
 
 /// The place of a point that is not in an order.
 inline constexpr std::uint32_t kNowhere = std::numeric_limits<std::uint32_t>::max();
@@ -36,10 +41,8 @@ inline constexpr std::uint32_t kNowhere = std::numeric_limits<std::uint32_t>::ma
 /// The place of each of `count` points in `order`.
 std::vector<std::uint32_t> places_in(std::span<const std::uint32_t> order, std::size_t count);
 
-/// The points without copies: of those with equal position and normal the first in `order`, which
-/// is that of point_order().
-std::vector<std::uint32_t> distinct_points(OrientedPoints points,
-                                           std::span<const std::uint32_t> order);
+/// The points without copies: of those with equal position and normal the first in the order.
+std::vector<std::uint32_t> distinct_points(OrientedPoints points, const PointOrder& order);
 
 /// Gives copies of the points in `distinct` their places, and puts them after them in `order`, that
 /// of point_order().

@@ -1,6 +1,8 @@
 #include "pcednet/gls/target_groups.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <vector>
 
 #include "pcednet/core/parallel.h"
@@ -12,15 +14,65 @@ constexpr std::size_t kSmallest = 8;
 
 struct Member {
   Vec3 position;
-  std::uint32_t place, index;  ///< place in the curve order decides between equal coordinates
+  std::uint32_t index;
 };
 
-void arrange(std::span<Member> members) {
-  if (members.size() <= kSmallest) {
-    std::sort(members.begin(), members.end(),
-              [](const Member& a, const Member& b) { return a.place < b.place; });
-    return;
+/// Memory to work in, as large as the members.
+struct Room {
+  std::span<double> values;
+  std::span<Member> members;
+};
+
+/// Moves the values below `bound` to the front and returns their number. Nothing branches on a
+/// value: on which side one lies cannot be predicted.
+std::size_t move_below(std::span<double> values, double bound) {
+  std::size_t below = 0;
+  for (double& value : values) {
+    const double one = value;
+    value = values[below];
+    values[below] = one;
+    below += one < bound ? 1 : 0;
   }
+  return below;
+}
+
+/// The value of rank n among a few.
+double value_of_rank_among_few(std::span<const double> values, std::size_t n) {
+  for (const double value : values) {
+    std::size_t below = 0, up_to = 0;
+    for (const double other : values) {
+      below += other < value ? 1 : 0;
+      up_to += other <= value ? 1 : 0;
+    }
+    if (below <= n && n < up_to) return value;
+  }
+  return values.front();
+}
+
+/// The value that would be at `n` if they were sorted; reorders them.
+double value_of_rank(std::span<double> values, std::size_t n) {
+  constexpr std::size_t kFew = 16, kMostTurns = 64;
+  for (std::size_t turn = 0; turn < kMostTurns && values.size() > kFew; ++turn) {
+    const double a = values.front(), b = values[values.size() / 2], c = values.back();
+    const double middle = std::max(std::min(a, b), std::min(std::max(a, b), c));
+    const std::size_t below = move_below(values, middle);
+    if (n < below) {
+      values = values.first(below);
+    } else if (below > 0) {
+      values = values.subspan(below), n -= below;
+    } else {  // none is smaller: set apart its equals
+      const std::size_t equal =
+          move_below(values, std::nextafter(middle, std::numeric_limits<double>::infinity()));
+      if (n < equal) return middle;
+      values = values.subspan(equal), n -= equal;
+    }
+  }
+  if (values.size() <= kFew) return value_of_rank_among_few(values, n);
+  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(n), values.end());
+  return values[n];
+}
+
+Eigen::Index longest_axis(std::span<const Member> members) {
   Vec3 min = members.front().position, max = min;
   for (const Member& member : members) {
     min = min.cwiseMin(member.position);
@@ -28,27 +80,49 @@ void arrange(std::span<Member> members) {
   }
   Eigen::Index axis;
   (0.5 * max - 0.5 * min).maxCoeff(&axis);
+  return axis;
+}
+
+/// Moves the `half` members that are lowest along an axis to the front, of equally low ones the
+/// first. Both parts keep their order.
+void divide(std::span<Member> members, std::size_t half, Eigen::Index axis, const Room& room) {
+  const auto values = room.values.first(members.size());
+  for (std::size_t i = 0; i < members.size(); ++i) values[i] = members[i].position[axis];
+  const double middle = value_of_rank(values, half);
+  std::size_t at_middle = half;  // of those, which go to the front
+  for (const Member& member : members) at_middle -= member.position[axis] < middle ? 1 : 0;
+  std::size_t front = 0, back = 0;
+  for (std::size_t i = 0; i < members.size(); ++i) {
+    const Member member = members[i];
+    const bool is_middle = member.position[axis] == middle && at_middle > 0;
+    const bool is_low = member.position[axis] < middle || is_middle;
+    at_middle -= is_middle ? 1 : 0;
+    members[front] = room.members[back] = member;
+    front += is_low ? 1 : 0;
+    back += is_low ? 0 : 1;
+  }
+  std::copy_n(room.members.begin(), back, members.begin() + static_cast<std::ptrdiff_t>(front));
+}
+
+/// Halves the members, given in the order of the curve, until few are left.
+void arrange(std::span<Member> members, const Room& room) {
+  if (members.size() <= kSmallest) return;
   const std::size_t runs = (members.size() + kSmallest - 1) / kSmallest;
   const std::size_t half = (runs + 1) / 2 * kSmallest;
-  std::nth_element(members.begin(), members.begin() + static_cast<std::ptrdiff_t>(half),
-                   members.end(), [axis](const Member& a, const Member& b) {
-                     const double pa = a.position[axis], pb = b.position[axis];
-                     return pa != pb ? pa < pb : a.place < b.place;
-                   });
-  arrange(members.first(half));
-  arrange(members.subspan(half));
+  divide(members, half, longest_axis(members), room);
+  arrange(members.first(half), room);
+  arrange(members.subspan(half), room);
 }
 
 }  // namespace
 
 void arrange_in_groups(std::span<const Vec3> positions, std::span<std::uint32_t> order) {
   parallel_blocks(order.size(), kPointsTogether, [&](std::size_t begin, std::size_t end) {
-    std::vector<Member> members;
+    std::vector<Member> members, other_members(end - begin);
+    std::vector<double> values(end - begin);
     members.reserve(end - begin);
-    for (std::size_t i = begin; i < end; ++i) {
-      members.push_back({positions[order[i]], static_cast<std::uint32_t>(i), order[i]});
-    }
-    arrange(members);
+    for (std::size_t i = begin; i < end; ++i) members.push_back({positions[order[i]], order[i]});
+    arrange(members, {values, other_members});
     for (std::size_t i = begin; i < end; ++i) order[i] = members[i - begin].index;
   });
 }

@@ -33,33 +33,32 @@ class BoxTree {
   void runs_near(const Vec3& min, const Vec3& max, double distance,
                  std::vector<std::uint32_t>& runs) const;
 
-  /// Fills `sq_distances` with the squared distances from `query` to its nearest items, ascending.
-  /// Returns their number, less than the size if there are fewer items.
+  /// Fills `sq_distances` with the squared distances from an item to its nearest, the first of
+  /// which is itself, ascending. Returns their number, less than the size if there are fewer items.
   template <typename PositionAt>
-  std::size_t nearest(const Vec3& query, std::span<double> sq_distances,
+  std::size_t nearest(std::size_t item, std::span<double> sq_distances,
                       PositionAt&& position_at) const;
 
  private:
   struct Box {
     std::array<float, 3> min, max;
 
-    Box();
+    Box() {
+      min.fill(std::numeric_limits<float>::max());
+      max.fill(std::numeric_limits<float>::lowest());
+    }
     void grow(const Box& box);
     float sq_gap(const Box& box) const;
   };
   Box outward(const Vec3& min, const Vec3& max) const;
   static constexpr std::size_t kMostRows = 21;  ///< 8^21 items
+  static constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
   void add_rows();
 
   std::size_t count_ = 0;
   Vec3 origin_ = Vec3::Zero();
   std::vector<std::vector<Box>> rows_;  ///< from the runs up
 };
-
-inline BoxTree::Box::Box() {
-  min.fill(std::numeric_limits<float>::max());
-  max.fill(std::numeric_limits<float>::lowest());
-}
 
 inline void BoxTree::Box::grow(const Box& box) {
   for (std::size_t a = 0; a < 3; ++a) {
@@ -97,11 +96,11 @@ BoxTree::BoxTree(std::size_t count, const Vec3& origin, PositionAt&& position_at
 }
 
 template <typename PositionAt>
-std::size_t BoxTree::nearest(const Vec3& query, std::span<double> sq_distances,
+std::size_t BoxTree::nearest(std::size_t item, std::span<double> sq_distances,
                              PositionAt&& position_at) const {
-  if (count_ == 0) return 0;
   constexpr double kSlack = 1.0 - 1e-5;  // the gaps are floats
   std::fill(sq_distances.begin(), sq_distances.end(), std::numeric_limits<double>::infinity());
+  const Vec3 query = position_at(item);
   const Box at = outward(query, query);
   const auto add_run = [&](std::size_t run) {
     for (std::size_t i = kLeaf * run; i < std::min(count_, kLeaf * (run + 1)); ++i) {
@@ -119,9 +118,10 @@ std::size_t BoxTree::nearest(const Vec3& query, std::span<double> sq_distances,
   };
   std::array<Branch, kFanOut * kMostRows> stack;  // the nearest of each family on top
   std::size_t depth = 0;
-  const auto push = [&](std::size_t row, std::size_t begin, std::size_t end) {
-    const std::size_t first = depth;
-    for (std::size_t b = begin; b < std::min(end, rows_[row].size()); ++b) {
+  const auto push_family = [&](std::size_t row, std::size_t family, std::size_t without) {
+    const std::size_t first = depth, begin = family * kFanOut;
+    for (std::size_t b = begin; b < std::min(begin + kFanOut, rows_[row].size()); ++b) {
+      if (b == without) continue;
       const float sq_gap = rows_[row][b].sq_gap(at);
       if (sq_gap * kSlack >= sq_distances.back()) continue;
       std::size_t place = depth++;
@@ -131,14 +131,15 @@ std::size_t BoxTree::nearest(const Vec3& query, std::span<double> sq_distances,
       stack[place] = {sq_gap, row, b};
     }
   };
-  push(rows_.size() - 1, 0, rows_.back().size());
-  while (depth > 0) {
-    const Branch branch = stack[--depth];
-    if (branch.sq_gap * kSlack >= sq_distances.back()) continue;
-    if (branch.row == 0) {
-      add_run(branch.box);
-    } else {
-      push(branch.row - 1, branch.box * kFanOut, (branch.box + 1) * kFanOut);
+  std::size_t own = item / kLeaf;
+  add_run(own);
+  for (std::size_t row = 0; row < rows_.size(); ++row, own /= kFanOut) {
+    push_family(row, own / kFanOut, own);
+    while (depth > 0) {
+      const Branch branch = stack[--depth];
+      if (branch.sq_gap * kSlack >= sq_distances.back()) continue;
+      if (branch.row == 0) add_run(branch.box);
+      if (branch.row > 0) push_family(branch.row - 1, branch.box, kNone);
     }
   }
   return std::min(count_, sq_distances.size());
