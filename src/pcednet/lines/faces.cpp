@@ -9,6 +9,7 @@
 
 #include "pcednet/core/median.h"
 #include "pcednet/core/parallel.h"
+#include "pcednet/lines/folded_faces.h"
 #include "pcednet/lines/local_planes.h"
 #include "pcednet/lines/plane_share.h"
 #include "pcednet/lines/plane_sums.h"
@@ -182,6 +183,7 @@ void refit(Faces& faces, const std::vector<PlaneSums>& sums) {
     number[f] = static_cast<std::uint32_t>(kept.size());
     const FittedPlane plane = fit_plane(sums[f]);
     kept.push_back({plane.point, plane.normal, static_cast<std::size_t>(sums[f].count())});
+    kept.back().is_curved = faces.faces[f].is_curved;
   }
   faces.faces = std::move(kept);
   for (std::uint32_t& face : faces.of_points) face = face == kNoFace ? kNoFace : number[face];
@@ -261,8 +263,8 @@ void fit_insides(const OrderedPoints& cloud, Faces& faces) {
 bool Faces::is_inside(std::size_t point) const {
   const std::uint32_t own = of_points[point];
   if (own == kNoFace) return false;
-  const auto nearest = near(point).first(kLocal);
-  return std::all_of(nearest.begin(), nearest.end(),
+  const auto eight = nearest(point);
+  return std::all_of(eight.begin(), eight.end(),
                      [&](std::uint32_t other) { return of_points[other] == own; });
 }
 
@@ -289,8 +291,18 @@ Faces find_faces(const OrderedPoints& cloud, const Sampling& sampling, const Pro
     choose(cloud, faces);
     refit(faces, sums_of(cloud, faces));
   }
+  for (int round = 0; round < kChoices && divide_folded(cloud, sampling.spacing, faces); ++round) {
+    refit(faces, sums_of(cloud, faces));
+    measure_noise(cloud, faces, kPlaneReach[0] * sampling.spacing);
+    choose(cloud, faces);
+    refit(faces, sums_of(cloud, faces));
+  }
   fit_insides(cloud, faces);
   faces.share = plane_share(cloud, faces, sampling.spacing);
+  if (straighten_folds(cloud, sampling.spacing, faces)) {
+    refit(faces, sums_of(cloud, faces));
+    fit_insides(cloud, faces);
+  }
   return faces;
 }
 

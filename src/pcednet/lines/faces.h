@@ -15,9 +15,10 @@ inline constexpr std::uint32_t kNoFace = std::numeric_limits<std::uint32_t>::max
 
 /// A plane part of the surface.
 struct Face {
-  Vec3 point, normal;   ///< the sign of the normal is arbitrary
-  std::size_t count;    ///< of its points
-  double within = 0.0;  ///< largest distance of its points, by that of most of them
+  Vec3 point, normal;     ///< the sign of the normal is arbitrary
+  std::size_t count;      ///< of its points
+  double within = 0.0;    ///< largest distance of its points, by that of most of them
+  bool is_curved = true;  ///< unless folds explain its heights better than a parabola
 
   double height(const Vec3& place) const { return normal.dot(place - point); }
 };
@@ -34,6 +35,7 @@ struct Faces {
   std::span<const std::uint32_t> near(std::size_t point) const {
     return std::span(others).subspan(point * others_of_each, others_of_each);
   }
+  std::span<const std::uint32_t> nearest(std::size_t point) const { return near(point).first(8); }
   /// Whether the eight nearest others are on the point's own face.
   bool is_inside(std::size_t point) const;
   /// Calls work(point, other) for each point and each of its near others on another face.

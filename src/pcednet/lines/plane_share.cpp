@@ -18,6 +18,7 @@ constexpr double kByChance = 6.0;          ///< and more of few points, where ch
 constexpr double kFaceTurn = 0.35;         ///< radians from side to side of a plane face,
 constexpr double kFaceTurnOfAngle = 0.33;  ///< and in the angle to the face it goes on in
 constexpr double kLeastBeside = 3.0;       ///< pairs of points of faces that go on in each other
+constexpr double kMostUndecided = 0.2;     ///< of all points
 constexpr double kOwnAngle = 0.5;          ///< radians: of a plane face of few points
 
 /// Heights of points over a plane, and the squares of their coordinates in it.
@@ -101,22 +102,23 @@ double plane_share(const OrderedPoints& cloud, const Faces& faces, double spacin
                  faces.faces[f].normal.dot(offset));
   }
   const std::vector<double> angles = smallest_angles(cloud, faces);
-  double plane = 0.0;
+  double plane = 0.0, undecided = 0.0;
   for (std::size_t f = 0; f < bends.size(); ++f) {
     const Bend& bend = bends[f];
-    if (bend.count < kLeastInside) {
-      if (angles[f] > kOwnAngle && angles[f] < std::numbers::pi) {
-        plane += static_cast<double>(faces.faces[f].count);
-      }
-      continue;
-    }
-    const double chance = kByChance / bend.count;
-    if (bend.variance() < kFlat * kFlat || bend.explained() < kMostBend + chance ||
-        bend.turn() < std::min(kFaceTurn, kFaceTurnOfAngle * angles[f])) {
-      plane += static_cast<double>(faces.faces[f].count);
+    const auto count = static_cast<double>(faces.faces[f].count);
+    if (!faces.faces[f].is_curved) {
+      plane += count;
+    } else if (bend.count < kLeastInside) {
+      const bool is_own = angles[f] > kOwnAngle && angles[f] < std::numbers::pi;
+      (is_own ? plane : undecided) += count;
+    } else if (bend.variance() < kFlat * kFlat ||
+               bend.explained() < kMostBend + kByChance / bend.count ||
+               bend.turn() < std::min(kFaceTurn, kFaceTurnOfAngle * angles[f])) {
+      plane += count;
     }
   }
-  return plane / static_cast<double>(cloud.size());
+  const auto all = static_cast<double>(cloud.size());
+  return undecided < kMostUndecided * all ? plane / (all - undecided) : plane / all;
 }
 
 }  // namespace pcednet::lines
