@@ -23,7 +23,9 @@ std::vector<std::size_t> counts_before_blocks(std::size_t count, std::size_t blo
                                               const Counted& counted) {
   std::vector<std::size_t> before((count + block - 1) / block + 1);
   parallel_blocks(count, block, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) before[begin / block + 1] += counted(i) ? 1 : 0;
+    std::size_t here = 0;
+    for (std::size_t i = begin; i < end; ++i) here += counted(i) ? 1 : 0;
+    before[begin / block + 1] = here;
   });
   std::partial_sum(before.begin(), before.end(), before.begin());
   return before;

@@ -36,22 +36,32 @@ std::size_t move_below(std::span<double> values, double bound) {
   return below;
 }
 
-/// The value of rank n among a few.
-double value_of_rank_among_few(std::span<const double> values, std::size_t n) {
+/// A value by its rank, and how many are smaller.
+struct Ranked {
+  double value;
+  std::size_t smaller;
+};
+
+Ranked of_rank_among_few(std::span<const double> values, std::size_t n) {
   for (const double value : values) {
     std::size_t below = 0, up_to = 0;
     for (const double other : values) {
       below += other < value ? 1 : 0;
       up_to += other <= value ? 1 : 0;
     }
-    if (below <= n && n < up_to) return value;
+    if (below <= n && n < up_to) return {value, below};
   }
-  return values.front();
+  return {values.front(), 0};
 }
 
-/// The value that would be at `n` if they were sorted; reorders them.
-double value_of_rank(std::span<double> values, std::size_t n) {
+/// What would be at `n` if the values were sorted; reorders them.
+Ranked of_rank(std::span<double> values, std::size_t n) {
   constexpr std::size_t kFew = 16, kMostTurns = 64;
+  const auto all = values;
+  std::size_t smaller = 0;  // than all that are left
+  const auto skip = [&](std::size_t count) {
+    values = values.subspan(count), n -= count, smaller += count;
+  };
   for (std::size_t turn = 0; turn < kMostTurns && values.size() > kFew; ++turn) {
     const double a = values.front(), b = values[values.size() / 2], c = values.back();
     const double middle = std::max(std::min(a, b), std::min(std::max(a, b), c));
@@ -59,17 +69,22 @@ double value_of_rank(std::span<double> values, std::size_t n) {
     if (n < below) {
       values = values.first(below);
     } else if (below > 0) {
-      values = values.subspan(below), n -= below;
+      skip(below);
     } else {  // none is smaller: set apart its equals
       const std::size_t equal =
           move_below(values, std::nextafter(middle, std::numeric_limits<double>::infinity()));
-      if (n < equal) return middle;
-      values = values.subspan(equal), n -= equal;
+      if (n < equal) return {middle, smaller};
+      skip(equal);
     }
   }
-  if (values.size() <= kFew) return value_of_rank_among_few(values, n);
+  if (values.size() <= kFew) {
+    const auto [value, below] = of_rank_among_few(values, n);
+    return {value, smaller + below};
+  }
   std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(n), values.end());
-  return values[n];
+  const double value = values[n];
+  return {value, static_cast<std::size_t>(std::count_if(
+                     all.begin(), all.end(), [&](double other) { return other < value; }))};
 }
 
 Eigen::Index longest_axis(std::span<const Member> members) {
@@ -88,9 +103,8 @@ Eigen::Index longest_axis(std::span<const Member> members) {
 void divide(std::span<Member> members, std::size_t half, Eigen::Index axis, const Room& room) {
   const auto values = room.values.first(members.size());
   for (std::size_t i = 0; i < members.size(); ++i) values[i] = members[i].position[axis];
-  const double middle = value_of_rank(values, half);
-  std::size_t at_middle = half;  // of those, which go to the front
-  for (const Member& member : members) at_middle -= member.position[axis] < middle ? 1 : 0;
+  const auto [middle, lower] = of_rank(values, half);
+  std::size_t at_middle = half - lower;  // of those, which go to the front
   std::size_t front = 0, back = 0;
   for (std::size_t i = 0; i < members.size(); ++i) {
     const Member member = members[i];
