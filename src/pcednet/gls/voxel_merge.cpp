@@ -222,14 +222,24 @@ class BlockPlan {
   std::uint32_t count_ = 0;
 };
 
+/// Asks for the voxel that will be read some members later: neighbours along the curve may be
+/// anywhere in memory.
+void ask_ahead(std::span<const Voxel> from, std::span<const Keyed> keyed, std::size_t i) {
+  constexpr std::size_t kAhead = 16;
+  if (i + kAhead < keyed.size()) __builtin_prefetch(&from[keyed[i + kAhead].index].normal);
+}
+
 /// Calls `use(members, voxel_of, plan)` for every block of `keyed`, which begins and ends with one.
 template <typename Use>
 void for_blocks(std::span<const Voxel> from, const Grid& grid, Crowd crowd,
                 std::span<const Keyed> keyed, Use&& use) {
   BlockPlan plan(from, grid, crowd);
   for (std::size_t begin = 0, end; begin < keyed.size(); begin = end) {
-    end = begin + 1;
-    while (end < keyed.size() && grid.are_together(keyed[end - 1], keyed[end], kBlockBits)) ++end;
+    ask_ahead(from, keyed, begin);
+    for (end = begin + 1; end < keyed.size(); ++end) {
+      if (!grid.are_together(keyed[end - 1], keyed[end], kBlockBits)) break;
+      ask_ahead(from, keyed, end);
+    }
     const auto members = keyed.subspan(begin, end - begin);
     const std::span<const std::uint32_t> voxel_of = plan.plan(members);
     use(members, voxel_of, plan);
@@ -283,11 +293,12 @@ StretchPlan plan_stretch(std::span<const Voxel> from, const Grid& grid, Crowd cr
 void merge_stretch(std::span<const Voxel> from, const StretchPlan& stretch,
                    std::span<const Keyed> keyed, Voxel* to) {
   std::vector<VoxelSums> sums;
-  auto member = keyed.begin();
+  std::size_t i = 0;
   for (const StretchPlan::Block& block : stretch.blocks) {
     sums.assign(block.voxels, {});
-    for (const auto end = member + block.members; member != end; ++member) {
-      if (member->key != kNone) sums[member->key].add(from[member->index]);
+    for (const std::size_t end = i + block.members; i < end; ++i) {
+      ask_ahead(from, keyed, i);
+      if (keyed[i].key != kNone) sums[keyed[i].key].add(from[keyed[i].index]);
     }
     for (const VoxelSums& sum : sums) *to++ = sum.voxel();
   }
