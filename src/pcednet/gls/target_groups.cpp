@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "pcednet/core/parallel.h"
+#include "pcednet/core/prefetch.h"
 
 namespace pcednet::gls {
 namespace {
@@ -135,7 +136,10 @@ void arrange_in_groups(std::span<const Vec3> positions, std::span<std::uint32_t>
     std::vector<Member> members, other_members(end - begin);
     std::vector<double> values(end - begin);
     members.reserve(end - begin);
-    for (std::size_t i = begin; i < end; ++i) members.push_back({positions[order[i]], order[i]});
+    for (std::size_t i = begin; i < end; ++i) {
+      if (i + kAskAhead < end) prefetch(positions[order[i + kAskAhead]]);
+      members.push_back({positions[order[i]], order[i]});
+    }
     arrange(members, {values, other_members});
     for (std::size_t i = begin; i < end; ++i) order[i] = members[i - begin].index;
   });

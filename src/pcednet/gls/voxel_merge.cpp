@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "pcednet/core/parallel.h"
+#include "pcednet/core/prefetch.h"
 #include "pcednet/gls/normal_spread.h"
 #include "pcednet/spatial/morton.h"
 #include "pcednet/spatial/radix_sort.h"
@@ -222,11 +223,8 @@ class BlockPlan {
   std::uint32_t count_ = 0;
 };
 
-/// Asks for the voxel that will be read some members later: neighbours along the curve may be
-/// anywhere in memory.
 void ask_ahead(std::span<const Voxel> from, std::span<const Keyed> keyed, std::size_t i) {
-  constexpr std::size_t kAhead = 16;
-  if (i + kAhead < keyed.size()) __builtin_prefetch(&from[keyed[i + kAhead].index].normal);
+  if (i + kAskAhead < keyed.size()) prefetch(from[keyed[i + kAskAhead].index]);
 }
 
 /// Calls `use(members, voxel_of, plan)` for every block of `keyed`, which begins and ends with one.

@@ -5,6 +5,7 @@
 
 #include "pcednet/cloud/point_cloud.h"
 #include "pcednet/core/parallel.h"
+#include "pcednet/core/prefetch.h"
 #include "pcednet/gls/voxel_merge.h"
 
 namespace pcednet::gls {
@@ -32,9 +33,6 @@ PyramidPlan::Level plan_level(std::span<const Voxel> finer, MergeCells cells, bo
   return {forecast.merged >= kWorthwhileMerge, cells.crowd};
 }
 
-/// Points in file order may be anywhere in memory: they are asked for this many points early.
-constexpr std::size_t kPointsAhead = 16;
-
 void add_boxes(VoxelLevel& level, const Vec3& origin) {
   level.boxes = spatial::BoxTree(level.voxels.size(), origin,
                                  [&](std::size_t i) { return level.voxels[i].position; });
@@ -53,9 +51,9 @@ VoxelPyramid make_pyramid(std::span<const Vec3> positions, std::span<const Vec3>
   parallel_blocks(order.size(), kStretch, [&](std::size_t begin, std::size_t end) {
     Vec3 min = positions[order[begin]] * unit, max = min;
     for (std::size_t i = begin; i < end; ++i) {
-      if (i + kPointsAhead < end) {
-        __builtin_prefetch(&positions[order[i + kPointsAhead]]);
-        __builtin_prefetch(&normals[order[i + kPointsAhead]]);
+      if (i + kAskAhead < end) {
+        prefetch(positions[order[i + kAskAhead]]);
+        prefetch(normals[order[i + kAskAhead]]);
       }
       const Vec3& n = normals[order[i]];
       Voxel& point = points.voxels[i];

@@ -7,6 +7,7 @@
 #include "pcednet/cloud/bounding_box.h"
 #include "pcednet/core/error.h"
 #include "pcednet/core/parallel_loops.h"
+#include "pcednet/core/prefetch.h"
 #include "pcednet/core/unset_array.h"
 #include "pcednet/spatial/morton.h"
 #include "pcednet/spatial/radix_sort.h"
@@ -72,8 +73,10 @@ bool is_copy(std::span<const Vec3> positions, std::span<const std::uint32_t> ord
 /// counts_before_blocks() of these.
 std::vector<std::size_t> count_copies(std::span<const Vec3> positions,
                                       std::span<const std::uint32_t> order) {
-  return counts_before_blocks(order.size(), kCodesAtOnce,
-                              [&](std::size_t i) { return is_copy(positions, order, i); });
+  return counts_before_blocks(order.size(), kCodesAtOnce, [&](std::size_t i) {
+    if (i + kAskAhead < order.size()) prefetch(positions[order[i + kAskAhead]]);
+    return is_copy(positions, order, i);
+  });
 }
 
 }  // namespace
