@@ -4,11 +4,6 @@
 
 namespace pcednet::lines {
 
-/// A point in the coordinates of a face's plane, in spacings.
-struct PlacedPoint {
-  double x, y, height;
-};
-
 /// Divides faces that two or three planes, which meet in parallel folds, explain better than one
 /// plane, and better than a parabola: within the noise of few points, slopes that differ little
 /// grow into one face. Tells of the others whether the parabola explains them better. Returns
