@@ -223,6 +223,7 @@ class BlockPlan {
   std::uint32_t count_ = 0;
 };
 
+/// Asks for the voxel of a later member.
 void ask_ahead(std::span<const Voxel> from, std::span<const Keyed> keyed, std::size_t i) {
   if (i + kAskAhead < keyed.size()) prefetch(from[keyed[i + kAskAhead].index]);
 }
