@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <set>
 #include <utility>
 
 #include "pcednet/core/median.h"
@@ -155,16 +154,6 @@ std::uint32_t choice_of(const OrderedPoints& cloud, const Faces& faces, std::uin
   return best;
 }
 
-void choose(const OrderedPoints& cloud, Faces& faces) {
-  std::vector<std::uint32_t> chosen(cloud.size());
-  parallel_blocks(cloud.size(), 1024, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      chosen[i] = choice_of(cloud, faces, static_cast<std::uint32_t>(i));
-    }
-  });
-  faces.of_points = std::move(chosen);
-}
-
 std::vector<PlaneSums> sums_of(const OrderedPoints& cloud, const Faces& faces) {
   std::vector<PlaneSums> sums(faces.faces.size());
   for (PlaneSums& of_face : sums) of_face.origin = cloud.position(0);
@@ -202,13 +191,17 @@ void measure_noise(const OrderedPoints& cloud, Faces& faces, double least) {
   }
 }
 
-/// Pairs of faces with points beside each other.
-std::set<std::pair<std::uint32_t, std::uint32_t>> pairs_of(const Faces& faces) {
-  std::set<std::pair<std::uint32_t, std::uint32_t>> pairs;
-  faces.for_each_contact([&](std::uint32_t point, std::uint32_t other) {
-    pairs.insert(std::minmax(faces.of_points[point], faces.of_points[other]));
+/// Every point chooses among the faces beside it; each is fitted to its points.
+void choose(const OrderedPoints& cloud, double spacing, Faces& faces) {
+  measure_noise(cloud, faces, kPlaneReach[0] * spacing);
+  std::vector<std::uint32_t> chosen(cloud.size());
+  parallel_blocks(cloud.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      chosen[i] = choice_of(cloud, faces, static_cast<std::uint32_t>(i));
+    }
   });
-  return pairs;
+  faces.of_points = std::move(chosen);
+  refit(faces, sums_of(cloud, faces));
 }
 
 /// Unites faces that one plane explains nearly as well, or well enough where no fold is drawn.
@@ -221,7 +214,8 @@ void unite(const OrderedPoints& cloud, Faces& faces, double spacing) {
     return face;
   };
   const double floor = 0.1 * faces.within;
-  for (const auto& [one, other] : pairs_of(faces)) {
+  for (const auto& [pair, contacts] : count_contacts(faces)) {
+    const auto& [one, other] = pair;
     const std::uint32_t a = std::min(root(one), root(other)), b = std::max(root(one), root(other));
     if (a == b) continue;
     const FittedPlane plane_a = fit_plane(sums[a]), plane_b = fit_plane(sums[b]);
@@ -262,10 +256,22 @@ void fit_insides(const OrderedPoints& cloud, Faces& faces) {
 
 bool Faces::is_inside(std::size_t point) const {
   const std::uint32_t own = of_points[point];
-  if (own == kNoFace) return false;
-  const auto eight = nearest(point);
-  return std::all_of(eight.begin(), eight.end(),
-                     [&](std::uint32_t other) { return of_points[other] == own; });
+  return own != kNoFace && is_inside(point, own, own);
+}
+
+bool Faces::is_inside(std::size_t point, std::uint32_t a, std::uint32_t b) const {
+  const auto nearest = near(point).first(kLocal);
+  return std::all_of(nearest.begin(), nearest.end(), [&](std::uint32_t other) {
+    return of_points[other] == a || of_points[other] == b;
+  });
+}
+
+std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> count_contacts(const Faces& faces) {
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> contacts;
+  faces.for_each_contact([&](std::uint32_t point, std::uint32_t other) {
+    ++contacts[std::minmax(faces.of_points[point], faces.of_points[other])];
+  });
+  return contacts;
 }
 
 Faces find_faces(const OrderedPoints& cloud, const Sampling& sampling, const Progress* progress) {
@@ -287,15 +293,11 @@ Faces find_faces(const OrderedPoints& cloud, const Sampling& sampling, const Pro
   }
   for (int round = 0; round < kChoices; ++round) {
     unite(cloud, faces, sampling.spacing);
-    measure_noise(cloud, faces, kPlaneReach[0] * sampling.spacing);
-    choose(cloud, faces);
-    refit(faces, sums_of(cloud, faces));
+    choose(cloud, sampling.spacing, faces);
   }
   for (int round = 0; round < kChoices && divide_folded(cloud, sampling.spacing, faces); ++round) {
     refit(faces, sums_of(cloud, faces));
-    measure_noise(cloud, faces, kPlaneReach[0] * sampling.spacing);
-    choose(cloud, faces);
-    refit(faces, sums_of(cloud, faces));
+    choose(cloud, sampling.spacing, faces);
   }
   fit_insides(cloud, faces);
   faces.share = plane_share(cloud, faces, sampling.spacing);

@@ -2,7 +2,9 @@
 
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "pcednet/core/vec3.h"
@@ -35,9 +37,10 @@ struct Faces {
   std::span<const std::uint32_t> near(std::size_t point) const {
     return std::span(others).subspan(point * others_of_each, others_of_each);
   }
-  std::span<const std::uint32_t> nearest(std::size_t point) const { return near(point).first(8); }
   /// Whether the eight nearest others are on the point's own face.
   bool is_inside(std::size_t point) const;
+  /// Whether they are on one of two faces.
+  bool is_inside(std::size_t point, std::uint32_t a, std::uint32_t b) const;
   /// Calls work(point, other) for each point and each of its near others on another face.
   template <typename Work>
   void for_each_contact(const Work& work) const {
@@ -49,6 +52,9 @@ struct Faces {
     }
   }
 };
+
+/// How many points are near one of another face, for each pair of faces with such points.
+std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> count_contacts(const Faces& faces);
 
 /// Grows faces from the flattest points over their neighbours, lets every point choose among the
 /// adjacent faces, and merges faces that one plane explains. No faces, and a share of 0, if there

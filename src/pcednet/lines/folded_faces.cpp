@@ -2,13 +2,12 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <iterator>
-#include <map>
 #include <utility>
 #include <vector>
 
+#include "pcednet/lines/chart.h"
 #include "pcednet/lines/parallel_folds.h"
 
 namespace pcednet::lines {
@@ -24,22 +23,16 @@ constexpr double kAsGood = 1.05;  ///< sums of squares, of a fold
 using Points = std::vector<std::uint32_t>;
 
 /// Coordinates in the plane of a face, in spacings.
-class FaceFrame {
- public:
-  FaceFrame(const Face& face, double spacing)
-      : face_(face),
-        x_(face.normal.unitOrthogonal()),
-        y_(face.normal.cross(x_)),
-        spacing_(spacing) {}
+struct FaceFrame {
+  FaceFrame(const Face& of, double unit) : face(of), chart(of.point, of.normal), spacing(unit) {}
   PlacedPoint operator()(const Vec3& place) const {
-    const Vec3 offset = (place - face_.point) / spacing_;
-    return {x_.dot(offset), y_.dot(offset), face_.normal.dot(offset)};
+    const Chart::Flat at = chart.flat(place) / spacing;
+    return {at.x(), at.y(), face.height(place) / spacing};
   }
 
- private:
-  Face face_;
-  Vec3 x_, y_;
-  double spacing_;
+  Face face;
+  Chart chart;
+  double spacing;
 };
 
 /// Whether a point has others on every side. At an eave, beams that meet it half return heights
@@ -64,18 +57,12 @@ std::vector<Points> members_of(const Faces& faces) {
   return members;
 }
 
-/// Some of those points that lie inside of these faces, which they are of.
+/// Some of those points, of one of two faces, whose nearest others are, too.
 Points inside_of(const OrderedPoints& cloud, const Faces& faces, const Points& points,
-                 std::array<std::uint32_t, 2> these) {
-  const auto is_theirs = [&](std::uint32_t point) {
-    return faces.of_points[point] == these[0] || faces.of_points[point] == these[1];
-  };
+                 std::uint32_t a, std::uint32_t b) {
   Points inside;
   for (const std::uint32_t i : points) {
-    const auto nearest = faces.nearest(i);
-    if (std::all_of(nearest.begin(), nearest.end(), is_theirs) && is_surrounded(cloud, faces, i)) {
-      inside.push_back(i);
-    }
+    if (faces.is_inside(i, a, b) && is_surrounded(cloud, faces, i)) inside.push_back(i);
   }
   const std::size_t step = std::max<std::size_t>(1, inside.size() / kSamples);
   Points some;
@@ -111,7 +98,7 @@ bool straighten(const OrderedPoints& cloud, double spacing, std::uint32_t a, std
   Points all;
   std::merge(members[a].begin(), members[a].end(), members[b].begin(), members[b].end(),
              std::back_inserter(all));
-  const Points inside = inside_of(cloud, faces, all, {a, b});
+  const Points inside = inside_of(cloud, faces, all, a, b);
   if (inside.size() < kLeastInside) return false;
   double sq_heights = 0.0;
   for (const std::uint32_t i : inside) {
@@ -146,7 +133,7 @@ bool divide_folded(const OrderedPoints& cloud, double spacing, Faces& faces) {
   const std::vector<Points> members = members_of(faces);
   std::vector<Points> inside;  // before any is divided
   for (std::uint32_t f = 0; f < members.size(); ++f) {
-    inside.push_back(inside_of(cloud, faces, members[f], {f, f}));
+    inside.push_back(inside_of(cloud, faces, members[f], f, f));
   }
   bool any = false;
   for (std::uint32_t f = 0; f < members.size(); ++f) {
@@ -156,13 +143,9 @@ bool divide_folded(const OrderedPoints& cloud, double spacing, Faces& faces) {
 }
 
 bool straighten_folds(const OrderedPoints& cloud, double spacing, Faces& faces) {
-  std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> contacts;
-  faces.for_each_contact([&](std::uint32_t point, std::uint32_t other) {
-    ++contacts[std::minmax(faces.of_points[point], faces.of_points[other])];
-  });
   std::vector<Points> members = members_of(faces);
   bool any = false;
-  for (const auto& [pair, count] : contacts) {
+  for (const auto& [pair, count] : count_contacts(faces)) {
     const auto [a, b] = pair;
     const double sine = faces.faces[a].normal.cross(faces.faces[b].normal).norm();
     if (count < kLeastFoldContacts || sine > kLowSine) continue;
