@@ -94,6 +94,10 @@ classic::EdgeMeasure feature_edge_estimation(const PointCloud& cloud, const FeeO
                 "libcgal-dev)");
   }
   const BoundingBox box = bounding_box(cloud.positions);
+  if (!(box.diagonal() > 0.0)) {
+    throw Error(ErrorKind::kInsufficient,
+                "method fee: finite points at two places or more are needed");
+  }
   const double offset =
       positive(options.offset_radius.value_or(0.05 * box.diagonal()), "the offset radius");
   const double convolution =

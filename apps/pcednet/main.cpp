@@ -71,7 +71,7 @@ int run(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     const bool asked_for_help = error.get_exit_code() == 0;
     app.exit(error, asked_for_help ? std::cout : std::cerr, std::cerr);
-    return asked_for_help ? 0 : static_cast<int>(ErrorKind::kUsage);
+    if (!asked_for_help) return static_cast<int>(ErrorKind::kUsage);
   }
   check_printed();
   return 0;

@@ -8,6 +8,7 @@
 #include "fee.h"
 #include "number_options.h"
 #include "pcednet/core/error.h"
+#include "pcednet/detect/decide.h"
 #include "workbench/classic/edge_measure.h"
 
 namespace pcednet::app {
@@ -89,16 +90,12 @@ detect::Classification classify_by_method(const PointCloud& cloud, const MethodA
   detect::Classification result = detect::nothing_found(cloud.size());
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const double value = edges.values[i];
-    if (std::isnan(value)) {
-      ++result.counts.unlabelled;
-      continue;
-    }
-    const bool sharp = value > edges.threshold;
-    result.classes[i] = sharp ? kSharpEdge : kNonEdge;
-    ++(sharp ? result.counts.sharp : result.counts.non_edge);
+    if (std::isnan(value)) continue;
+    result.classes[i] = value > edges.threshold ? kSharpEdge : kNonEdge;
     const double sum = value + edges.threshold;
     result.p_sharp[i] = sum > 0.0 ? static_cast<float>(value / sum) : 0.0f;
   }
+  result.counts = detect::count_classes(result.classes);
   return result;
 }
 

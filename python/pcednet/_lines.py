@@ -124,11 +124,12 @@ def lines(xyz, labels=None, normals=None, *, p_sharp=None, p_smooth=None,
             p_smooth = _probability(xyz, "p_smooth") if p_smooth is None else p_smooth
     if labels is None:
         labels = classify(xyz, normals, viewpoint=viewpoint, threads=threads, progress=progress)
-    positions, given, scanners = _clouds.points_of(xyz, normals, viewpoint)
+    positions, given, scanners = _clouds.points_of(xyz, normals, viewpoint, estimates=False)
     rows = len(positions)
     prepared = isinstance(labels, Result)
     if prepared:
         _core.check_edges(labels.model._core.class_lines, "lines", False)
+        positions = positions if labels._moved is None else _arrays.vectors(labels._moved, "positions", rows)
         given = _arrays.vectors(labels.normals, "normals", rows)
         p_sharp, p_smooth, own = labels.p_sharp, labels.p_smooth, labels.class_names
         labels = _arrays.labels(labels.labels, rows, names=own)

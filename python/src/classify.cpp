@@ -41,6 +41,8 @@ py::dict classify(const detect::EdgeModel& model, const Array<double>& xyz,
   py::dict result;
   result["made_normals"] = !prepared.made.empty();
   result["normals"] = normals_of(prepared);
+  result["moved"] = py::none();
+  if (!prepared.moved.empty()) result["moved"] = give(std::move(prepared.moved));
   result["notes"] = prepared.notes;
   result["scales"] = py::make_tuple(found.s_min, found.s_max);
   result["labels"] = give(std::move(found.classes));

@@ -44,8 +44,8 @@ lines::LineOptions line_options_of(const py::dict& settings) {
   return options;
 }
 
-/// Curves, notes on the normals, and the tolerance of the fit. `prepared` says that the normals
-/// come from a classification.
+/// Curves, notes on the normals, and the tolerance of the fit. `prepared` says that positions and
+/// normals come from a classification.
 py::tuple find_lines(const Array<double>& xyz, const OptionalArray<double>& normals,
                      const OptionalArray<double>& scanners, bool prepared,
                      const Array<std::uint8_t>& labels, const OptionalArray<float>& p_sharp,
@@ -64,7 +64,8 @@ py::tuple find_lines(const Array<double>& xyz, const OptionalArray<double>& norm
                              .p_smooth = numbers(p_smooth)};
     detect::PreparedCloud made;
     if (!prepared) {
-      made = cloud.prepare({.keep_orientation = true}, job);  // lines do not depend on signs
+      made = cloud.prepare({}, job);
+      points.positions = made.positions;
       points.normals = made.normals;
       points.curve = made.curve;
       notes = made.notes;

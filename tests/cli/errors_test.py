@@ -78,7 +78,7 @@ class Errors(CliTest):
 
     def test_what_is_printed_and_lost_is_an_error(self):
         write_ply(self.folder / "a.ply", *cube(500))
-        for arguments in (("info", "a.ply"), ("info", "a.ply", "--json", "-")):
+        for arguments in (("info", "a.ply"), ("info", "a.ply", "--json", "-"), ("--help",), ("--version",)):
             with open("/dev/full", "w") as full:
                 done = subprocess.run([PROGRAM, *arguments], stdout=full, stderr=subprocess.PIPE,
                                       text=True, cwd=self.folder)

@@ -248,6 +248,20 @@ class Lines(CliTest):
         done = run("lines", self.labelled_cube(), *self.outputs("obj"), "--classify", "--overwrite")
         self.assertNotIn("its labels", done.stderr)
 
+    def test_a_classified_file_has_the_lines_of_the_cloud_itself(self):
+        """Its normals are estimates of what it was written with, its coordinates are rounded."""
+        p, _, _ = cube(8000)
+        for name, text in {"rounded": "%.2f", "exact": "%.17g"}.items():
+            raw, labelled = self.folder / f"{name}.xyz", self.folder / f"{name}.ply"
+            np.savetxt(raw, p, fmt=text)
+            run("lines", raw, *self.outputs("obj"), "--overwrite")
+            drawn = self.made["obj"].read_bytes()
+            self.assertGreater(len(drawn), 500)
+            run("classify", raw, "-o", labelled)
+            done = run("lines", labelled, *self.outputs("obj"), "--overwrite")
+            self.assertIn("its labels are used", done.stderr)
+            self.assertEqual(self.made["obj"].read_bytes(), drawn, name)
+
     def test_a_cloud_whose_points_are_all_unlabelled_is_classified(self):
         p, n, _ = cube(4000)
         write_ply(self.folder / "bare.ply", p, n)

@@ -51,6 +51,7 @@ class Options(CliTest):
         classify = ("classify", self.cloud, "-o", self.out)
         plan = ("tiles", "plan", self.cloud, "-o", self.folder / "p.json", "--tile")
         for arguments in ((*convert, "--noise", "nan"), (*convert, "--noise", "-1"),
+                          (*convert, "--noise", "1e300"),
                           (*convert, "--subsample", "nan"), (*convert, "--subsample", "2"),
                           (*classify, "--method", "ca", "--threshold", "nan"),
                           (*classify, "--method", "ca", "--threshold", "-1"),

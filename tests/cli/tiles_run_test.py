@@ -153,6 +153,19 @@ class TilesRun(TilesTest):
         said = run("tiles", "run", plan, "--jobs", 3, expect=3).stderr
         self.assertIn(f"tiles failed, for the reasons above: 0 to {len(tiles['tiles']) - 1}\n", said)
 
+    def test_a_result_replaces_no_file_of_the_plan(self):
+        plan, content = self.small()
+        run("tiles", "run", plan)
+        tile = self.folder / content["tiles"][0]["output"]
+        model = self.folder / content["model"]["path"]
+        for needed in (self.folder / "small.ply", tile, f"{tile}.json", model, plan):
+            before = pathlib.Path(needed).read_bytes()
+            for command in (("status", plan, "--json"), ("join", plan, "-o"), ("join", plan, "--vpc")):
+                done = run("tiles", *command, needed, "--overwrite", expect=2)
+                self.assertNotIn("No such file", done.stderr)
+            self.assertEqual(pathlib.Path(needed).read_bytes(), before)
+        run("tiles", "status", plan)
+
     def test_an_input_that_changed_is_found_where_all_is_done(self):
         plan, content = self.small()
         run("tiles", "run", plan)

@@ -85,7 +85,7 @@ class Train(CliTest):
         few = self.train("few.safetensors", "--epochs", 2, "--seed", 5)
         joined = ["--epochs", 2, "--expert", few]
         model = self.train("m.safetensors", *joined, "below=5000")
-        self.assertEqual(tensors(model)[0]["format"], "pcednet-edge-model-3")
+        self.assertEqual(tensors(model)[0]["format"], "pcednet-edge-model-4")
         p, n, _ = cube(seed=9)
         write_ply(self.folder / "c.ply", p, n)
         self.assertLess(len(p), 5000)

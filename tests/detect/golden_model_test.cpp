@@ -17,8 +17,7 @@
 //   pcednet train DIR/cube_0.ply DIR/icosahedron_0.ply -o model_2.safetensors --natural --context
 //     --epochs 40
 //   the same with --seed 2 -o few.safetensors, and with
-//     --expert few.safetensors below=1000 -o model_3.safetensors
-//   and with --expert few.safetensors below=1000,estimated -o model_4.safetensors
+//     --expert few.safetensors below=1000,estimated -o model_4.safetensors
 //   the command of model_2 with -o model_5.safetensors, without --context, after comments with the
 //     three classes of kOwn were put into the headers of both clouds; with -o model_6.safetensors
 //     after those of edges and `upper part`, 4, which the highest fifth of the non-edge points got
@@ -63,10 +62,10 @@ TEST_P(GoldenModel, GivesItsKnownAnswers) {
   expect_answers(model.network, "");
   ASSERT_EQ(model.context.has_value(), answers_.tensors.contains("context_samples"));
   if (model.context) expect_answers(*model.context, "context_");
-  ASSERT_EQ(model.experts.size(), answers_.tensors.contains("sparse_samples") ? 1u : 0u);
+  ASSERT_EQ(model.experts.size(), answers_.tensors.contains("expert_samples") ? 1u : 0u);
   if (model.experts.empty()) return;
-  expect_answers(model.experts[0].network, "sparse_");
-  expect_answers(*model.experts[0].context, "sparse_context_");
+  expect_answers(model.experts[0].network, "expert_");
+  expect_answers(*model.experts[0].context, "expert_context_");
 }
 
 TEST_P(GoldenModel, IsWrittenWithTheSameBytes) {
@@ -82,8 +81,7 @@ TEST_P(GoldenModel, IsWrittenWithTheSameBytes) {
 }
 
 INSTANTIATE_TEST_SUITE_P(OfFormat, GoldenModel,
-                         testing::Values("model_1", "model_2", "model_3", "model_4", "model_5",
-                                         "model_6"),
+                         testing::Values("model_1", "model_2", "model_4", "model_5", "model_6"),
                          [](const auto& tested) { return tested.param; });
 
 TEST(GoldenModels, SayHowPointsAreDescribed) {
@@ -100,7 +98,6 @@ TEST(GoldenModels, SayHowPointsAreDescribed) {
   EXPECT_FALSE(two.descriptor.side_gate);
   EXPECT_FALSE(two.descriptor.second_gate);
   EXPECT_EQ(two.network.sign_rule.symmetry, nn::Symmetry::kAverage);
-  EXPECT_EQ(load_model(kFolder / "model_3.safetensors").experts[0].kind, CloudKind{.below = 1000});
   EXPECT_EQ(load_model(kFolder / "model_4.safetensors").experts[0].kind,
             (CloudKind{.below = 1000, .estimated = true}));
 }

@@ -214,7 +214,9 @@ TEST(Bores, OfPrismsArePolygons) {
 }
 
 TEST(Bores, OfPrismsNeedEdgesAllAround) {
-  for (const Piece& piece : HexagonalHole().with_edges(2)) {
+  const auto pieces = HexagonalHole().with_edges(2);
+  EXPECT_FALSE(pieces.empty());
+  for (const Piece& piece : pieces) {
     EXPECT_TRUE(piece.closed || std::abs(piece.fit.direction.z()) > 0.99);
   }
 }

@@ -115,9 +115,13 @@ TEST(FindLines, DrawsBoundariesOnDemand) {
 }
 
 TEST(FindLines, DrawsNoBoundariesOtherwise) {
-  Cloud cloud = cube(6000);
-  for (std::uint8_t& label : cloud.classes) label = label == kNonEdge ? kNonEdge : kBoundary;
-  for (const Curve& curve : lines_of(cloud)) EXPECT_NE(curve.edge_class, kBoundary);
+  Cloud cloud = cube(6000);  // around whose floor points are called boundary
+  for (std::size_t i = 0; i < cloud.positions.size(); ++i) {
+    if (cloud.positions[i].z() < cloud.spacing) cloud.classes[i] = kBoundary;
+  }
+  const auto curves = lines_of(cloud);
+  EXPECT_GE(curves.size(), 8u);
+  for (const Curve& curve : curves) EXPECT_NE(curve.edge_class, kBoundary);
 }
 
 TEST(FindLines, TakesEachStepOnce) {
@@ -187,6 +191,24 @@ TEST(FindLines, FollowTheCloudToANationalGrid) {
   }
 }
 
+TEST(FindLines, AreTheSameElsewhereThoughDistancesAreEqualByRounding) {
+  Cloud cloud = cube(20000);
+  for (Vec3& position : cloud.positions) position = (64.0 * position).array().round() / 64.0;
+  const auto curves = lines_of(cloud);
+  ASSERT_GE(curves.size(), 8u);
+  const Vec3 shift(524288.0, 5242880.0, 512.0);  // keeps every digit
+  Cloud moved = cloud;
+  for (Vec3& position : moved.positions) position += shift;
+  const auto there = lines_of(moved);
+  ASSERT_EQ(there.size(), curves.size());
+  for (std::size_t i = 0; i < curves.size(); ++i) {
+    ASSERT_EQ(there[i].points.size(), curves[i].points.size());
+    for (std::size_t k = 0; k < curves[i].points.size(); ++k) {
+      EXPECT_LT((there[i].points[k] - shift - curves[i].points[k]).norm(), 1e-8);
+    }
+  }
+}
+
 TEST(FindLines, RegulariseMakesRightAnglesExact) {
   const auto curves = lines_of(cube(3000), {.regularise = true});
   ASSERT_EQ(curves.size(), 12u);
@@ -201,10 +223,13 @@ TEST(FindLines, RegulariseMakesRightAnglesExact) {
 }
 
 TEST(FindLines, GiveTheAngleBetweenTheSurfaces) {
-  for (const Curve& curve : lines_of(cube(6000))) {
+  const auto straight = lines_of(cube(6000)), round = lines_of(cylinder(6000));
+  ASSERT_EQ(straight.size(), 12u);
+  ASSERT_FALSE(round.empty());
+  for (const Curve& curve : straight) {
     EXPECT_NEAR(curve.dihedral_angle, 0.5 * std::numbers::pi, 0.01);
   }
-  for (const Curve& curve : lines_of(cylinder(6000))) {
+  for (const Curve& curve : round) {
     EXPECT_NEAR(curve.dihedral_angle, 0.5 * std::numbers::pi, 0.02);
   }
 }

@@ -95,7 +95,11 @@ TEST(PlaneEdges, DrawASparseHipRoofWithItsSixCorners) {
 
 TEST(PlaneEdges, KeepTheirDihedralAngle) {
   const double slope = 0.5;
-  for (const Curve& curve : roof_lines(hip_roof(700, slope, 0.005))) {
+  const auto curves = roof_lines(hip_roof(700, slope, 0.005));
+  EXPECT_EQ(std::count_if(curves.begin(), curves.end(),
+                          [](const Curve& curve) { return curve.edge_class == kSharpEdge; }),
+            5);
+  for (const Curve& curve : curves) {
     if (curve.edge_class != kSharpEdge) continue;
     const bool ridge = std::abs(curve.points[0].z() - curve.points[1].z()) < 0.1;
     const double cosine = (ridge ? 1.0 - slope * slope : 1.0) / (1.0 + slope * slope);

@@ -53,6 +53,23 @@ TEST(SmoothJoints, CurvesThatContinueEachOtherBecomeOne) {
   EXPECT_NEAR(curves[0].confidence, 0.875, 1e-12);
 }
 
+TEST(SmoothJoints, CurvesWithoutEdgePointsCountByTheirLength) {
+  Curve first = straight_curve({-30, 0, 0}, Vec3::Zero()), next = turned_curve(Vec3::Zero(), 10);
+  first.support = next.support = 0;
+  next.confidence = 0.1;
+  const auto curves = smoothly_joined({first, next});
+  ASSERT_EQ(curves.size(), 1u);
+  EXPECT_NEAR(curves[0].confidence, 0.4, 1e-12);
+}
+
+TEST(SmoothJoints, AJoinOfExactCurvesIsExact) {
+  Curve first = kToOrigin, next = turned_curve(Vec3::Zero(), 10);
+  first.exact = true;
+  EXPECT_FALSE(smoothly_joined({first, next})[0].exact);
+  next.exact = true;
+  EXPECT_TRUE(smoothly_joined({first, next})[0].exact);
+}
+
 TEST(SmoothJoints, SegmentsOfOneLineBecomeASegment) {
   const auto curves = smoothly_joined({kToOrigin, turned_curve(Vec3::Zero(), 0)});
   ASSERT_EQ(curves.size(), 1u);
@@ -150,6 +167,9 @@ TEST(RoundLoops, OthersStay) {
   curves = polygon(3, 4.0);
   curves.pop_back();
   EXPECT_EQ(rounded(curves).size(), 2u) << "open";
+  curves = polygon(3, 4.0);
+  for (Curve& curve : curves) curve.exact = true;
+  EXPECT_EQ(rounded(curves).size(), 3u) << "of exact planes";
 }
 
 }  // namespace

@@ -69,6 +69,20 @@ class Lines(CliTest):
         found.write(self.path("ours.obj"))
         self.assertEqual(self.path("ours.obj").read_bytes(), self.path("theirs.obj").read_bytes())
 
+    def test_rounded_coordinates_are_spread_as_by_the_program(self):
+        np.savetxt(self.path("rounded.xyz"), self.positions, fmt="%.2f")
+        run("lines", self.path("rounded.xyz"), "-o", self.path("theirs.obj"))
+        theirs = self.path("theirs.obj").read_bytes()
+        self.assertGreater(len(theirs), 500)
+        cloud = pcednet.read(self.path("rounded.xyz"))
+        found = pcednet.classify(cloud)
+        ways = {"alone": pcednet.lines(cloud), "of a result": pcednet.lines(cloud, found),
+                "of labels": pcednet.lines(cloud, found.labels, p_sharp=found.p_sharp,
+                                           p_smooth=found.p_smooth)}
+        for name, way in ways.items():
+            way.write(self.path("ours.obj"), overwrite=True)
+            self.assertEqual(self.path("ours.obj").read_bytes(), theirs, name)
+
     def test_a_cloud_all_unlabelled_is_classified(self):
         write_ply(self.path("unlabelled.ply"), self.positions, self.normals,
                   labels=np.full(len(self.positions), 255, np.uint8))

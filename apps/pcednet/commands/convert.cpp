@@ -171,7 +171,8 @@ void add_convert(CLI::App& app, Common& common) {
                            ->add_option("--noise", request->noise,
                                         "Add Gaussian noise with this standard deviation, as a "
                                         "fraction of the bounding box diagonal")
-                           ->check(number_from_0());
+                           ->check(number("a number from 0 to 1000",
+                                          [](double v) { return v >= 0.0 && v <= 1000.0; }));
   command
       ->add_flag("--noise-along-normal", request->along_normal,
                  "Add the noise along the normals only")

@@ -46,6 +46,7 @@ StatusCounts write_matrix(const gls::ScaleSpace& space, std::size_t points, io::
   std::vector<std::uint32_t> targets;
   std::vector<float> features;
   std::vector<gls::FitStatus> status;
+  const Progress cancel_only = without_report(&progress);
   Stage stage(&progress, "describe", points);
   const auto put_rows = [&] {  // runs of rows at once
     for (std::size_t i = 0, next = 0; i < targets.size(); i = next) {
@@ -60,7 +61,7 @@ StatusCounts write_matrix(const gls::ScaleSpace& space, std::size_t points, io::
     std::sort(targets.begin(), targets.end());
     features.resize(targets.size() * row);
     status.resize(targets.size() * scales);
-    space.describe(targets, std::span(features), status);
+    space.describe(targets, std::span(features), status, &cancel_only);
     for (const gls::FitStatus s : status) ++counts[static_cast<std::size_t>(s)];
     for (const std::uint32_t point : targets) described[point] = 1;
     put_rows();

@@ -126,9 +126,7 @@ void add_given_labels(const LinesArguments& arguments, std::vector<std::uint8_t>
                       LabelledCloud& labelled, const Progress& progress) {
   tell_labels(arguments.input, classes);
   const PointCloud& cloud = labelled.cloud;
-  detect::PrepareOptions preparation = arguments.preparation;
-  preparation.keep_orientation = true;  // lines do not depend on signs
-  labelled.prepared = prepare(arguments.input, cloud, preparation, progress);
+  labelled.prepared = prepare(arguments.input, cloud, arguments.preparation, progress);
   labelled.classes = std::move(classes);
   labelled.p_sharp = probabilities(arguments.input, cloud, "p_sharp");
   labelled.p_smooth = probabilities(arguments.input, cloud, "p_smooth");
@@ -156,11 +154,13 @@ void read_labelled(const LinesArguments& arguments, StageClock& clock, LabelledC
     say(fmt::format("{}: {}: classified by model {}", arguments.input,
                     given.empty() ? "no labels" : "all points are unlabelled (255)", model.name));
   }
-  ClassifiedCloud classified = classify_cloud(arguments.input, cloud,
-                                              {.model = &model,
-                                               .preparation = arguments.preparation,
-                                               .boundary = !arguments.model.no_boundary},
-                                              clock.progress());
+  const Classifier classifier = {.model = &model,
+                                 .preparation = arguments.preparation,
+                                 .boundary = !arguments.model.no_boundary};
+  ClassifiedCloud classified;
+  with_name_in_errors(arguments.input, [&] {
+    classified = classify_cloud(arguments.input, cloud, classifier, clock.progress());
+  });
   labelled.prepared = std::move(classified.prepared);
   labelled.classes = std::move(classified.found.classes);
   labelled.p_sharp = std::move(classified.found.p_sharp);
@@ -204,7 +204,6 @@ void read_labelled_in_tiles(const LinesArguments& arguments, const TilesNeeded& 
                        .preparation = arguments.preparation,
                        .memory = needed.memory};
   if (!arguments.classify && has_labels(arguments, clock.progress())) {
-    request.preparation.keep_orientation = true;  // lines do not depend on signs
     request.given = [&](const PointCloud& part) { return given_labels(arguments, part); };
   }
   const bool are_given = request.given != nullptr;

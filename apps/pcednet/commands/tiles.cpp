@@ -206,10 +206,12 @@ void join_tiles(const JoinArguments& arguments, const Common& common) {
     check_writable(file, common.overwrite());
   }
   if (!arguments.output.empty()) tiles::check_joins(arguments.output);
+  if (fs::path(arguments.output).lexically_normal() == fs::path(arguments.vpc).lexically_normal()) {
+    throw Error(ErrorKind::kUsage, arguments.vpc + ": named twice");
+  }
   const tiles::Plan plan = tiles::read_plan(arguments.plan);
   for (const std::string& file : {arguments.output, arguments.vpc}) {
-    tiles::check_not_input(file, plan.inputs);
-    for (const tiles::Tile& tile : plan.tiles) check_not_input(file, tile.output);
+    tiles::check_not_of_plan(file, plan);
   }
   if (!arguments.vpc.empty()) list_tiles(plan, arguments.vpc, common);
   if (!arguments.output.empty()) join_into_file(plan, arguments.output, common);

@@ -88,7 +88,9 @@ void plan_tiles(const PlanArguments& arguments, const Common& common) {
                                                "edges, classify takes it",
                                                model.name, pcednet::names_of(loaded.table)));
   }
-  const tiles::Plan plan = tiles::make_plan(request, loaded, &progress);
+  tiles::Plan plan;
+  with_name_in_errors(arguments.inputs.size() == 1 ? arguments.inputs.front() : arguments.plan,
+                      [&] { plan = tiles::make_plan(request, loaded, &progress); });
   check_scales(arguments.inputs.front(), plan.box, loaded.descriptor);
   tiles::write_plan(arguments.plan, plan, common.overwrite());
   for (const std::string& note : plan.notes) warn(note);

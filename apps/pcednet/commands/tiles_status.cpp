@@ -136,6 +136,7 @@ void report_changed(const std::vector<Error>& changed) {
 void show_status(const StatusArguments& arguments, const Common& common) {
   check_not_input(arguments.json, arguments.plan);
   const tiles::Plan plan = tiles::read_plan(arguments.plan);
+  tiles::check_not_of_plan(arguments.json, plan);
   const Status status = find_status(plan, arguments.verify, console_progress(common));
   const std::string json = to_text(status_json(plan, status), 1, NotUtf8::kReplace) + "\n";
   fmt::print("{}", arguments.json == "-" ? json : status_text(plan, status));

@@ -21,12 +21,11 @@ namespace {
 
 constexpr const char* kFormat = "pcednet-edge-model-1";
 constexpr const char* kContextFormat = "pcednet-edge-model-2";  // with a context network
-constexpr const char* kSparseFormat = "pcednet-edge-model-3";   // with one expert, for few points
 constexpr const char* kExpertFormat = "pcednet-edge-model-4";   // with experts
 constexpr const char* kOwnFormat = "pcednet-class-model-1";     // with own classes
 constexpr const char* kOwnContextFormat = "pcednet-class-model-2";
-constexpr std::string_view kContext = "context.", kSparse = "sparse.";
-constexpr const char *kFewerThan = "fewer_than", *kKind = "kind";  // of experts
+constexpr std::string_view kContext = "context.";
+constexpr const char* kKind = "kind";  // of experts
 const std::array<std::vector<std::uint8_t>, 2> kClassLists = {
     {{kNonEdge, kSmoothEdge, kSharpEdge}, {kNonEdge, kSharpEdge}}};
 
@@ -52,9 +51,9 @@ gls::Reconstruction take_reconstruction(nn::Metadata& metadata) {
   metadata.refuse_value(key, name);
 }
 
-const char* format_of(bool has_own_classes, bool has_context, const char* with_experts) {
+const char* format_of(bool has_own_classes, bool has_context, bool has_experts) {
   if (has_own_classes) return has_context ? kOwnContextFormat : kOwnFormat;
-  if (with_experts) return with_experts;
+  if (has_experts) return kExpertFormat;
   return has_context ? kContextFormat : kFormat;
 }
 
@@ -203,58 +202,32 @@ Expert read_expert(const std::filesystem::path& path, nn::Safetensors content,
   const std::string where = path.string() + ": networks for clouds of a kind";
   expert.network = nn::from_safetensors(content, where);
   nn::Metadata metadata(std::move(expert.network.metadata), where);
-  if (metadata.has(kFewerThan)) {
-    expert.kind.below = metadata.take_number<std::size_t>(kFewerThan);
-  } else {
-    const std::string text = metadata.take(kKind);
-    const auto kind = cloud_kind_of(text);
-    if (!kind) metadata.refuse_value(kKind, text);
-    expert.kind = *kind;
-  }
+  const std::string text = metadata.take(kKind);
+  const auto kind = cloud_kind_of(text);
+  if (!kind) metadata.refuse_value(kKind, text);
+  expert.kind = *kind;
   if (!fits(expert.network, model)) metadata.refuse("they do not fit the descriptor and classes");
   expert.network.metadata = std::move(metadata.rest());
   expert.context = read_context(path, context, edge_outputs(model).size());
   return expert;
 }
 
-/// The experts of a file, in stored form.
-struct StoredExperts {
-  const char* format = nullptr;  ///< of a file with them; nullptr if there are none
-  bool is_sparse = false;        ///< a single one, for clouds of few points
-  std::vector<nn::Safetensors> parts = {};
-};
-
-StoredExperts take_experts(nn::Safetensors& content) {
-  if (nn::Safetensors sparse = take_part(content, kSparse); !sparse.tensors.empty()) {
-    return {kSparseFormat, true, {std::move(sparse)}};
-  }
-  StoredExperts stored;
+/// The parts of a file that hold the experts.
+std::vector<nn::Safetensors> take_experts(nn::Safetensors& content) {
+  std::vector<nn::Safetensors> experts;
   for (;;) {
-    nn::Safetensors part = take_part(content, expert_prefix(stored.parts.size()));
-    if (part.tensors.empty()) return stored;
-    stored.format = kExpertFormat;
-    stored.parts.push_back(std::move(part));
+    nn::Safetensors part = take_part(content, expert_prefix(experts.size()));
+    if (part.tensors.empty()) return experts;
+    experts.push_back(std::move(part));
   }
 }
 
-/// A single expert for clouds of few points of any kind gives a file that earlier versions can
-/// read.
-StoredExperts to_store(const std::vector<Expert>& experts) {
-  StoredExperts stored;
-  if (experts.empty()) return stored;
-  const CloudKind& first = experts.front().kind;
-  const bool is_sparse = experts.size() == 1 && first == CloudKind{.below = first.below};
-  stored.format = is_sparse ? kSparseFormat : kExpertFormat;
-  stored.is_sparse = is_sparse;
-  for (const Expert& expert : experts) {
-    nn::Model network = expert.network;
-    network.metadata[is_sparse ? kFewerThan : kKind] =
-        is_sparse ? std::to_string(first.below) : text_of(expert.kind);
-    nn::Safetensors part = nn::to_safetensors(network);
-    if (expert.context) add_part(nn::to_safetensors(*expert.context), kContext, part);
-    stored.parts.push_back(std::move(part));
-  }
-  return stored;
+nn::Safetensors to_store(const Expert& expert) {
+  nn::Model network = expert.network;
+  network.metadata[kKind] = text_of(expert.kind);
+  nn::Safetensors part = nn::to_safetensors(network);
+  if (expert.context) add_part(nn::to_safetensors(*expert.context), kContext, part);
+  return part;
 }
 
 }  // namespace
@@ -310,13 +283,13 @@ void join_expert(EdgeModel& model, const EdgeModel& expert, const CloudKind& kin
 EdgeModel load_model(const std::filesystem::path& path) {
   EdgeModel model;
   nn::Safetensors content = nn::read_safetensors(path);
-  const StoredExperts experts = take_experts(content);
+  const std::vector<nn::Safetensors> experts = take_experts(content);
   const nn::Safetensors context = take_part(content, kContext);
   model.network = nn::from_safetensors(content, path.string());
   nn::Metadata metadata(std::move(model.network.metadata), path.string());
   if (metadata.has("class_table")) model.table = take_table(metadata);
-  metadata.take_fixed(
-      "format", format_of(has_own_classes(model.table), !context.tensors.empty(), experts.format));
+  metadata.take_fixed("format", format_of(has_own_classes(model.table), !context.tensors.empty(),
+                                          !experts.empty()));
   metadata.take_fixed("undefined", "zero");
   metadata.take("version");
   model.name = metadata.take("name");
@@ -331,7 +304,7 @@ EdgeModel load_model(const std::filesystem::path& path) {
   }
   model.network.metadata = std::move(metadata.rest());
   model.context = read_context(path, context, edge_outputs(model).size());
-  for (const nn::Safetensors& part : experts.parts) {
+  for (const nn::Safetensors& part : experts) {
     model.experts.push_back(read_expert(path, part, model));
   }
   return model;
@@ -340,9 +313,8 @@ EdgeModel load_model(const std::filesystem::path& path) {
 void save_model(const std::filesystem::path& path, const EdgeModel& model, Overwrite overwrite) {
   nn::Model network = model.network;
   auto& metadata = network.metadata;
-  const StoredExperts experts = to_store(model.experts);
   metadata["format"] =
-      format_of(has_own_classes(model.table), model.context.has_value(), experts.format);
+      format_of(has_own_classes(model.table), model.context.has_value(), !model.experts.empty());
   metadata["version"] = kVersion;
   metadata["undefined"] = "zero";
   metadata["name"] = model.name;
@@ -355,9 +327,8 @@ void save_model(const std::filesystem::path& path, const EdgeModel& model, Overw
   }
   nn::Safetensors content = nn::to_safetensors(network);
   if (model.context) add_part(nn::to_safetensors(*model.context), kContext, content);
-  for (std::size_t number = 0; number < experts.parts.size(); ++number) {
-    add_part(experts.parts[number],
-             experts.is_sparse ? std::string(kSparse) : expert_prefix(number), content);
+  for (std::size_t number = 0; number < model.experts.size(); ++number) {
+    add_part(to_store(model.experts[number]), expert_prefix(number), content);
   }
   nn::write_safetensors(path, content, overwrite);
 }

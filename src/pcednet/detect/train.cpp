@@ -110,7 +110,7 @@ Samples make_samples(std::span<const TrainingCloud> clouds,
   for (const TrainingCloud& cloud : clouds) {
     check_labels(cloud, table);
     const auto positions = cloud.cloud.positions;
-    for_each_octave(cloud.cloud, descriptor, &cancel_only, [&](const auto& space, const auto& all) {
+    const auto add_octave = [&](const gls::ScaleSpace& space, std::span<const std::uint32_t> all) {
       if (const auto note = gls::note_on(descriptor, space.scales(), positions); !note.empty()) {
         samples.notes.push_back(fmt::format("{}: {}", cloud.name, note));
       }
@@ -119,7 +119,13 @@ Samples make_samples(std::span<const TrainingCloud> clouds,
       samples.values.resize(before + points.size() * width);
       describe(space, points, std::span(samples.values).subspan(before), &cancel_only);
       for (const std::uint32_t i : points) samples.labels.push_back(cloud.labels[i]);
-    });
+    };
+    try {
+      for_each_octave(cloud.cloud, descriptor, &cancel_only, add_octave);
+    } catch (const Error& error) {
+      if (error.kind() == ErrorKind::kCancelled) throw;
+      throw Error(error.kind(), fmt::format("{}: {}", cloud.name, error.what()));
+    }
     stage.advance(positions.size());
   }
   return samples;

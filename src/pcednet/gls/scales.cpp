@@ -159,9 +159,10 @@ ScaleRange scale_range(std::span<const Vec3> positions, const ScaleRange& given,
   if (!both_given && !(diagonal > kShortest && diagonal < kLongest)) {
     throw Error(
         ErrorKind::kInsufficient,
-        fmt::format("no scales: the bounding box of the points has a diagonal of {}; finite "
-                    "points at two places or more are needed",
-                    diagonal));
+        fmt::format("no scales: the bounding box of the points has a diagonal of {:.6g}; {}",
+                    diagonal,
+                    diagonal > 0.0 ? "lengths from 1e-100 to 1e100 can be described"
+                                   : "finite points at two places or more are needed"));
   }
   const ScaleRange range = both_given                ? given
                            : given.s_max_ratio > 0.0 ? tied_range(given, spacings)

@@ -13,6 +13,8 @@
 namespace pcednet::io {
 namespace {
 
+constexpr std::size_t kMostColumns = 16384;
+
 constexpr Separators kBesideDecimalCommas{" \t\r\v\f;"};
 /// A table of quoted numbers is one of points, too, though read_xyz() refuses it.
 constexpr Separators kAroundNumbers{" \t\r\v\f,;\""};
@@ -103,6 +105,9 @@ class TableReader {
     decide_on_commas(line, after);
     split(line, words_, separators());
     if (words_.size() < 3) throw error("expected at least three numbers");
+    if (words_.size() > kMostColumns) {
+      throw error(fmt::format("{} numbers: at most {} are read", words_.size(), kMostColumns));
+    }
     if (!naming_comment_.empty() && names_.size() != words_.size()) {
       comments_.push_back(naming_comment_);  // prose that happens to hold x, y and z
       names_.clear();

@@ -240,16 +240,10 @@ void Tracer::extend(std::vector<ChainNode>& nodes, bool& closed) {
 
 Chain Tracer::trace_from(std::size_t crease) {
   const Crease& seed = creases_[crease];
-  const ChainNode first{.at = seed.at,
-                        .along = seed.along,
-                        .side_a = seed.side_a,
-                        .side_b = seed.side_b,
-                        .spacing = seed.spacing,
-                        .edge_points = seed.edge_class == kNonEdge ? 0.0 : 1.0,
-                        .probability = seed.probability,
-                        .bend = seed.bend,
-                        .sharp = seed.edge_class == kSharpEdge ? 1.0 : 0.0,
-                        .boundary = seed.edge_class == kBoundary ? 1.0 : 0.0};
+  const auto member = static_cast<std::uint32_t>(crease);
+  const ChainNode turned{
+      .at = seed.at, .along = seed.along, .side_a = seed.side_a, .side_b = seed.side_b};
+  const ChainNode first = mean_of(creases_, {&member, 1}, turned);
   Chain chain{.nodes = {first}};
   taken_[crease] = 1;
   take_beside(first);

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <span>
 
-#include "pcednet/lines/coaxial.h"
+#include "pcednet/core/sort_unique.h"
 #include "pcednet/lines/curve.h"
 #include "pcednet/lines/ring.h"
 #include "pcednet/spatial/kd_tree.h"
@@ -195,8 +195,7 @@ void find_small_circles(std::vector<Piece>& pieces) {
     }
     const auto circle = best_small_circle(piece.middle(), near);
     if (!circle) continue;
-    std::sort(of_pieces.begin(), of_pieces.end());
-    of_pieces.erase(std::unique(of_pieces.begin(), of_pieces.end()), of_pieces.end());
+    sort_unique(of_pieces);
     if (is_polygon(circle->fit, pieces, of_pieces)) continue;
     Piece whole{.fit = circle->fit, .nodes = circle->nodes, .ends = {}, .closed = true};
     sort_about_axis(whole.fit, whole.nodes);
@@ -230,7 +229,6 @@ void complete_circles(std::vector<Piece>& pieces, const OrderedPoints& cloud, do
     pieces[i] = std::move(*circle);
   }
   erase_marked(pieces, gone);
-  complete_coaxial(pieces, cloud, tolerance);
 }
 
 }  // namespace pcednet::lines

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "pcednet/core/parallel.h"
+#include "pcednet/core/sort_unique.h"
 
 namespace pcednet::lines {
 namespace {

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <compare>
 #include <cstdint>
 #include <limits>
@@ -24,13 +23,6 @@ struct PlaneContact {
   auto planes() const { return std::tie(a, b); }
   auto operator<=>(const PlaneContact&) const = default;  // NOLINT: no pointer; clang-tidy 14 errs
 };
-
-/// Ascending, each once.
-template <typename Each>
-void sort_unique(std::vector<Each>& all) {
-  std::sort(all.begin(), all.end());
-  all.erase(std::unique(all.begin(), all.end()), all.end());
-}
 
 /// All contacts, each once, in the order of the planes, then of the points.
 std::vector<PlaneContact> contacts_of(const OrderedPoints& cloud,

@@ -8,6 +8,7 @@
 
 #include "pcednet/lines/corners.h"
 #include "pcednet/lines/curve.h"
+#include "pcednet/lines/mean_sides.h"
 
 namespace pcednet::lines {
 namespace {
@@ -60,23 +61,14 @@ Track track_of(const Piece& piece, std::size_t side) {
 }
 
 /// Both sides seen across the curve, from the nodes at the end; nothing if they turn.
-std::optional<std::array<Eigen::Vector2d, 2>> sides_of(const Track& track, const Piece& piece,
-                                                       std::size_t side) {
-  std::array<Eigen::Vector2d, 2> sides = {Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero()};
-  const std::size_t count = piece.nodes.size(), used = std::min(count, kNodesOfSides);
-  for (std::size_t i = 0; i < used; ++i) {
+std::optional<Sides> sides_of(const Track& track, const Piece& piece, std::size_t side) {
+  std::vector<Sides> sides;
+  const std::size_t count = piece.nodes.size();
+  for (std::size_t i = 0; i < std::min(count, kNodesOfSides); ++i) {
     const ChainNode& node = piece.nodes[side == 0 ? i : count - 1 - i];
-    const Eigen::Vector2d a = track.across(node.at, node.side_a);
-    const Eigen::Vector2d b = track.across(node.at, node.side_b);
-    const bool crossed = a.dot(sides[0]) + b.dot(sides[1]) < a.dot(sides[1]) + b.dot(sides[0]);
-    sides[0] += crossed ? b : a;
-    sides[1] += crossed ? a : b;
+    sides.push_back({track.across(node.at, node.side_a), track.across(node.at, node.side_b)});
   }
-  for (Eigen::Vector2d& of_side : sides) {
-    if (of_side.norm() < 0.9 * static_cast<double>(used)) return std::nullopt;
-    of_side.normalize();
-  }
-  return sides;
+  return mean_sides(sides, 0.9);
 }
 
 /// How far along the track the points of a side go without a gap.

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "pcednet/lines/moments.h"
+
 namespace pcednet::lines {
 namespace {
 
@@ -80,15 +82,14 @@ std::optional<double> radius_of(const Corner& corner, std::span<const CornerPoin
 
 /// Whether the points of the arc are on a line across the corner rather than on the arc.
 bool is_chamfer(const Corner& corner, double radius, std::span<const CornerPoint> points) {
-  double count = 0.0, sq_off_arc = 0.0;
-  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
-  Eigen::Matrix2d products = Eigen::Matrix2d::Zero();
+  FlatMoments on;
+  double sq_off_arc = 0.0;
   for (const auto& [along, at] : points) {
     if (corner.depth_at(at) < kOffLines || !is_on_arc(corner, at, radius)) continue;
-    count += 1.0, sum += at, products += at * at.transpose();
+    on.add(at);
     sq_off_arc += std::pow(corner.off_arc(at, radius), 2);
   }
-  const Eigen::Matrix2d spread = products - sum * sum.transpose() / count;
+  const Eigen::Matrix2d spread = on.count * on.covariance();
   const double sq_off_line = spread(0, 0) - spread(0, 1) * spread(0, 1) / spread(1, 1);
   return !(sq_off_line > kFlat * sq_off_arc);
 }

@@ -27,6 +27,7 @@
 #include "pcednet/lines/smooth_joints.h"
 #include "pcednet/lines/split.h"
 #include "pcednet/lines/strings.h"
+#include "pcednet/spatial/curve_order.h"
 
 namespace pcednet::lines {
 namespace {
@@ -131,6 +132,7 @@ void join(std::vector<Piece>& pieces, const OrderedPoints& cloud, const Limits& 
   join_pieces(pieces, limits.gap, limits.tolerance, progress);
   stage.advance();
   complete_circles(pieces, cloud, limits.tolerance);
+  complete_coaxial(pieces, cloud, limits.tolerance);
   drop_beside_exact(pieces);
   stage.advance();
   bridge_gaps(pieces, cloud, limits.tolerance, noise);
@@ -172,16 +174,25 @@ std::vector<Curve> drawn(std::span<const Piece> pieces, const FinishOptions& opt
   return curves;
 }
 
-std::vector<Curve> drawn(const std::vector<Chain>& chains, const FinishOptions& options) {
-  std::vector<Piece> pieces;
+template <typename Each>
+std::vector<Each> both(std::vector<Each> these, const std::vector<Each>& those) {
+  these.insert(these.end(), those.begin(), those.end());
+  return these;
+}
+
+/// The chains and exact edges as polylines.
+std::vector<Piece> unsplit(const std::vector<Chain>& chains, const ExactEdges& exact) {
+  constexpr CurveKind kAsItIs = CurveKind::kPolyline;
+  std::vector<Piece> pieces = both(exact.pieces, exact.rounded);
+  for (Piece& piece : pieces) piece.fit.kind = kAsItIs;
   for (const Chain& chain : chains) {
     if (chain.nodes.size() < kLeastNodes) continue;
-    pieces.push_back({.fit = {.kind = CurveKind::kPolyline},
+    pieces.push_back({.fit = {.kind = kAsItIs},
                       .nodes = chain.nodes,
                       .ends = {chain.nodes.front().at, chain.nodes.back().at},
                       .closed = chain.closed});
   }
-  return drawn(std::span<const Piece>(pieces), options);
+  return pieces;
 }
 
 std::vector<Curve> long_ones(std::vector<Curve> curves, const Limits& limits, LineScale* scale) {
@@ -190,18 +201,6 @@ std::vector<Curve> long_ones(std::vector<Curve> curves, const Limits& limits, Li
   });
   if (scale) scale->too_short = too_short;
   return curves;
-}
-
-template <typename Each>
-std::vector<Each> both(std::vector<Each> these, const std::vector<Each>& those) {
-  these.insert(these.end(), those.begin(), those.end());
-  return these;
-}
-
-std::vector<Chain> chains_of(const std::vector<Piece>& pieces) {
-  std::vector<Chain> chains;
-  for (const Piece& piece : pieces) chains.push_back({piece.nodes, piece.closed});
-  return chains;
 }
 
 /// Makes one piece of those that are of one edge, and moves each to where the points say.
@@ -234,16 +233,12 @@ std::vector<Curve> curves_of(std::vector<Piece> pieces, std::vector<Piece> round
   return curves;
 }
 
-}  // namespace
-
-std::vector<Curve> find_lines(const EdgePoints& points, const LineOptions& options,
-                              const Progress* progress, LineScale* scale) {
-  check(points, options);
-  const OrderedPoints cloud(points);
+std::vector<Curve> lines_of(const OrderedPoints& cloud, bool is_whole, const LineOptions& options,
+                            const Progress* progress, LineScale* scale) {
   const Sampling sampling = measure_sampling(cloud);
   const Limits limits = limits_of(options, sampling);
   if (scale) *scale = scale_of(sampling, limits);
-  if (options.boundaries && points.partial.empty()) {
+  if (options.boundaries && is_whole) {
     if (auto pieces = find_plane_edges(cloud, sampling, progress)) {
       if (options.regularise) regularise(*pieces);
       const FinishOptions of_planes = {limits.tolerance, 0.0, true};
@@ -263,10 +258,7 @@ std::vector<Curve> find_lines(const EdgePoints& points, const LineOptions& optio
   const FinishOptions finish_options = {limits.tolerance, sampling.noise};
   const std::vector<Chain> chains =
       make_chains(creases, boundaries, limits, sampling.noise, progress);
-  if (options.stage == LineStage::kChains) {
-    append(exact.pieces, exact.rounded);
-    return drawn(both(chains, chains_of(exact.pieces)), finish_options);
-  }
+  if (options.stage == LineStage::kChains) return drawn(unsplit(chains, exact), finish_options);
   std::vector<Piece> pieces = split_chains(chains, limits.tolerance, progress);
   append(pieces, std::move(exact.pieces));
   if (!pieces.empty()) place_pieces(pieces, cloud, sampling, limits, progress);
@@ -278,6 +270,26 @@ std::vector<Curve> find_lines(const EdgePoints& points, const LineOptions& optio
   std::vector<Curve> curves = curves_of(std::move(pieces), std::move(exact.rounded), finish_options,
                                         limits, sampling.spacing, progress);
   return long_ones(std::move(curves), limits, scale);
+}
+
+}  // namespace
+
+std::vector<Curve> find_lines(const EdgePoints& points, const LineOptions& options,
+                              const Progress* progress, LineScale* scale) {
+  check(points, options);
+  EdgePoints along = points;
+  std::vector<std::uint32_t> order;
+  if (points.curve.empty()) along.curve = order = spatial::curve_order(points.positions);
+  // Seen from a point in its midst, curves do not depend on where the cloud lies.
+  const Vec3 origin = along.curve.empty() ? Vec3(Vec3::Zero())
+                                          : points.positions[along.curve[along.curve.size() / 2]];
+  std::vector<Curve> curves =
+      lines_of(OrderedPoints(along, origin), points.partial.empty(), options, progress, scale);
+  for (Curve& curve : curves) {
+    for (Vec3& point : curve.points) point += origin;
+    if (curve.radius > 0.0) curve.centre += origin;
+  }
+  return curves;
 }
 
 }  // namespace pcednet::lines

@@ -155,7 +155,7 @@ bool is_long_row(const Piece& piece, const Evidence& evidence, std::ptrdiff_t he
 
 /// Whether the piece ends free, in noise, and hangs on points that are edges only perhaps.
 bool is_doubtful(const Piece& piece, const Evidence& evidence, double noise, std::ptrdiff_t held) {
-  if (noise < kMuchNoise || held == 2) return false;
+  if (!(noise > kMuchNoise) || held == 2) return false;
   const bool row = is_long_row(piece, evidence, held);
   return evidence.probability < (row ? kProbableRow : kLeastProbable[held]);
 }

@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "pcednet/core/sort_unique.h"
 #include "pcednet/lines/plane_edges.h"
 #include "pcednet/lines/plane_line.h"
 
@@ -134,8 +135,7 @@ void Folds::add_part(const Pair& pair, const Fit& line, double from, double to) 
     node.sharp = 1.0;
     piece.nodes.push_back(node);
   }
-  std::sort(beside.begin(), beside.end());
-  beside.erase(std::unique(beside.begin(), beside.end()), beside.end());
+  sort_unique(beside);
   const auto side_a = side_of(pair.first, beside, line, from, to);
   const auto side_b = side_of(pair.second, beside, line, from, to);
   if (!side_a || !side_b) return;

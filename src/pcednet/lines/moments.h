@@ -39,6 +39,19 @@ struct PointMoments {
   }
 };
 
+/// Sums over places in a plane, which determine their least-squares line.
+struct FlatMoments {
+  double count = 0.0;
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  Eigen::Matrix2d products = Eigen::Matrix2d::Zero();
+
+  void add(const Eigen::Vector2d& place) {
+    count += 1.0, sum += place, products += place * place.transpose();
+  }
+  Eigen::Vector2d mean() const { return sum / count; }
+  Eigen::Matrix2d covariance() const { return products / count - mean() * mean().transpose(); }
+};
+
 /// The moments of `count` points in rows, each with its weight. The rows go on to a multiple of
 /// four with weights of 0 and any finite places.
 PointMoments moments_of(const double* x, const double* y, const double* z, const double* weight,

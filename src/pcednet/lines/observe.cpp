@@ -9,13 +9,16 @@ namespace pcednet::lines {
 void observe(ChainNode& node, const OrderedPoints& cloud) {
   std::vector<spatial::Neighbour> near;
   cloud.within(node.at, node.spacing, near);
-  std::erase_if(near, [&](const auto& point) { return !cloud.is_edge(point.index); });
-  const auto edges = static_cast<double>(std::max<std::size_t>(near.size(), 1));
+  const auto edge = std::stable_partition(
+      near.begin(), near.end(), [&](const auto& point) { return cloud.is_edge(point.index); });
+  node.edge_points =
+      0.5 * static_cast<double>(edge - near.begin());  // its neighbours see them, too
+  if (edge != near.begin()) near.erase(edge, near.end());
+  const auto count = static_cast<double>(near.size());
   for (const auto& point : near) {
-    node.probability += static_cast<double>(cloud.probability(point.index)) / edges;
-    if (cloud.edge_class(point.index) == kSharpEdge) node.sharp += 1.0 / edges;
+    node.probability += static_cast<double>(cloud.probability(point.index)) / count;
+    if (cloud.edge_class(point.index) == kSharpEdge) node.sharp += 1.0 / count;
   }
-  node.edge_points = 0.5 * static_cast<double>(near.size());  // both nodes beside it see them, too
 }
 
 void add_observed_nodes(Piece& segment, std::size_t count, const ChainNode& like,

@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "pcednet/core/parallel.h"
+#include "pcednet/core/sort_unique.h"
 #include "pcednet/spatial/curve_order.h"
 #include "pcednet/spatial/side_of_square.h"
 
@@ -48,12 +49,17 @@ std::vector<std::uint32_t> distinct_points(const EdgePoints& points) {
   return order;
 }
 
+std::vector<Vec3> seen_from(const Vec3& origin, std::vector<Vec3> positions) {
+  for (Vec3& position : positions) position -= origin;
+  return positions;
+}
+
 }  // namespace
 
-OrderedPoints::OrderedPoints(const EdgePoints& points)
+OrderedPoints::OrderedPoints(const EdgePoints& points, const Vec3& origin)
     : points_(points),
       order_(distinct_points(points)),
-      positions_(spatial::in_order(points.positions, order_)),
+      positions_(seen_from(origin, spatial::in_order(points.positions, order_))),
       normals_(spatial::in_order(points.normals, order_)),
       search_(positions_) {}
 
@@ -70,8 +76,7 @@ std::vector<std::uint32_t> OrderedPoints::near_any(std::span<const Vec3> places,
     within(place, radius, near);
     for (const auto& point : near) indices.push_back(point.index);
   }
-  std::sort(indices.begin(), indices.end());
-  indices.erase(std::unique(indices.begin(), indices.end()), indices.end());
+  sort_unique(indices);
   return indices;
 }
 

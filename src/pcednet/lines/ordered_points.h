@@ -15,7 +15,8 @@ namespace pcednet::lines {
 /// The finite points along the space-filling curve, so that nothing depends on their numbering.
 class OrderedPoints {
  public:
-  explicit OrderedPoints(const EdgePoints& points);
+  /// Positions are seen from `origin`.
+  explicit OrderedPoints(const EdgePoints& points, const Vec3& origin = Vec3::Zero());
 
   std::size_t size() const { return positions_.size(); }
   const Vec3& position(std::size_t i) const { return positions_[i]; }

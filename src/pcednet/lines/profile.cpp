@@ -9,6 +9,7 @@
 #include "pcednet/lines/fillet.h"
 #include "pcednet/lines/fold_search.h"
 #include "pcednet/lines/observe.h"
+#include "pcednet/spatial/opening.h"
 
 namespace pcednet::lines {
 namespace {
@@ -21,18 +22,14 @@ constexpr double kBesideGap = 1.5, kBeforeGap = 0.5;  ///< of points that are of
 constexpr double kOffRays = 0.05;
 constexpr double kLeastRiseOfArc = 0.15;  ///< from its chord
 
-/// The direction in the middle of the largest gap between these places about an axis.
-Vec3 middle_of_gap(const Fit& circle, std::span<const Vec3> places) {
-  const Vec3 x = circle.direction.unitOrthogonal(), y = circle.direction.cross(x);
+/// The direction in the middle of the largest gap between the wall's points about its axis.
+Vec3 middle_of_gap(const OrderedPoints& cloud, const ExactWall& wall) {
+  const Vec3 x = wall.circle.direction.unitOrthogonal(), y = wall.circle.direction.cross(x);
   std::vector<double> angles;
-  for (const Vec3& place : places) angles.push_back(angle_at(circle, x, place));
-  std::sort(angles.begin(), angles.end());
-  double largest = angles.front() + kWholeTurn - angles.back(), end = angles.front();
-  for (std::size_t i = 1; i < angles.size(); ++i) {
-    const double gap = angles[i] - angles[i - 1];
-    if (gap > largest) largest = gap, end = angles[i];
+  for (const std::uint32_t i : wall.members) {
+    angles.push_back(angle_at(wall.circle, x, cloud.position(i)));
   }
-  const double middle = end - 0.5 * largest;
+  const double middle = spatial::widest_opening(angles).middle;
   return std::cos(middle) * x + std::sin(middle) * y;
 }
 
@@ -55,9 +52,7 @@ std::vector<Interval> in_one_turn(const std::vector<Interval>& intervals, double
 
 Profile::Profile(const OrderedPoints& cloud, const ExactWall& wall, double spacing)
     : cloud_(cloud), circle_(wall.circle), spacing_(spacing), on_ray_(wall.reach / spacing) {
-  std::vector<Vec3> places;
-  for (const std::uint32_t i : wall.members) places.push_back(cloud.position(i));
-  start_ = middle_of_gap(circle_, places);
+  start_ = middle_of_gap(cloud, wall);
   left_ = circle_.direction.cross(start_);
   for (const std::uint32_t i : indices_around(wall)) {
     const Vec3& position = cloud.position(i);

@@ -10,6 +10,8 @@
 #include "pcednet/core/eigendecomposition.h"
 #include "pcednet/core/half_space.h"
 #include "pcednet/core/parallel.h"
+#include "pcednet/core/sort_unique.h"
+#include "pcednet/lines/mean_sides.h"
 #include "pcednet/lines/moments.h"
 #include "pcednet/lines/plane_line.h"
 #include "pcednet/lines/support_line.h"
@@ -72,8 +74,7 @@ std::vector<Vec3> points_beside(const Piece& piece, const OrderedPoints& cloud) 
     cloud.within(node.at, (kSideOfPlane + 1.0) * node.spacing, near);
     for (const auto& point : near) indices.push_back(point.index);
   }
-  std::sort(indices.begin(), indices.end());
-  indices.erase(std::unique(indices.begin(), indices.end()), indices.end());
+  sort_unique(indices);
   std::vector<Vec3> points;
   points.reserve(indices.size());
   for (const std::uint32_t index : indices) points.push_back(cloud.position(index));
@@ -190,50 +191,37 @@ std::optional<Ray> ray_of_side(const Piece& piece, const std::vector<Eigen::Vect
   for (int fit = 0; fit < kPlaneFits; ++fit) {
     const double reach = (fit == 0 ? 1.5 : 1.0) * tolerance * spacing;
     const Eigen::Vector2d normal(-ray.direction.y(), ray.direction.x());
-    Eigen::Vector2d mean = Eigen::Vector2d::Zero();
-    Eigen::Matrix2d products = Eigen::Matrix2d::Zero();
-    double count = 0.0;
+    FlatMoments on;
     for (const Eigen::Vector2d& point : points) {
       const double away = point.dot(side) / spacing;
       if (away < kFromLine || away > kSideOfPlane) continue;
       if (std::abs((point - ray.point).dot(normal)) > reach) continue;
-      mean += point;
-      products += point * point.transpose();
-      count += 1.0;
+      on.add(point);
     }
-    if (count < kLeastRefined) return std::nullopt;
-    mean /= count;
-    const Eigen::Matrix2d covariance = products / count - mean * mean.transpose();
+    if (on.count < kLeastRefined) return std::nullopt;
     Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver;
-    solver.computeDirect(covariance / (spacing * spacing));
+    solver.computeDirect(on.covariance() / (spacing * spacing));
     if (!(solver.eigenvalues()[1] > 0.2)) return std::nullopt;
     const Eigen::Vector2d direction = solver.eigenvectors().col(1);
-    ray = {mean,
+    ray = {on.mean(),
            direction.dot(side) < 0.0 ? Eigen::Vector2d(-direction) : direction,
-           {count, count * solver.eigenvalues()[0]}};
+           {on.count, on.count * solver.eigenvalues()[0]}};
   }
   return ray;
 }
 
-/// The mean of a side over the nodes in the half-plane; sides are told apart by the first node.
-std::optional<std::array<Eigen::Vector2d, 2>> sides_about_axis(const Piece& piece) {
-  std::array<Eigen::Vector2d, 2> mean = {Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero()};
+/// The mean of each side over the nodes in the half-plane.
+std::optional<Sides> sides_about_axis(const Piece& piece) {
+  std::vector<Sides> sides;
   for (const ChainNode& node : piece.nodes) {
     const Vec3 tangent = tangent_at(piece.fit, node.at);
     const Vec3 outward = tangent.cross(piece.fit.direction);
     const auto turned = [&](const Vec3& side) {
       return Eigen::Vector2d(side.dot(outward), side.dot(piece.fit.direction));
     };
-    const Eigen::Vector2d a = turned(node.side_a), b = turned(node.side_b);
-    const bool crossed = a.dot(mean[0]) + b.dot(mean[1]) < a.dot(mean[1]) + b.dot(mean[0]);
-    mean[0] += crossed ? b : a;
-    mean[1] += crossed ? a : b;
+    sides.push_back({turned(node.side_a), turned(node.side_b)});
   }
-  for (Eigen::Vector2d& side : mean) {
-    if (side.norm() < 0.8 * static_cast<double>(piece.nodes.size())) return std::nullopt;
-    side.normalize();
-  }
-  return mean;
+  return mean_sides(sides, 0.8);
 }
 
 /// The circle in which the two surfaces of revolution about the piece's axis meet.

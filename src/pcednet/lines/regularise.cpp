@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "pcednet/core/half_space.h"
+#include "pcednet/core/sort_unique.h"
 
 namespace pcednet::lines {
 namespace {
@@ -101,8 +102,7 @@ Group corners_of(const std::vector<HeldSegment>& held, const Corners& corners) {
   Group group;
   for (const HeldSegment& segment : held)
     group.corners.insert(group.corners.end(), {segment.a, segment.b});
-  std::sort(group.corners.begin(), group.corners.end());
-  group.corners.erase(std::unique(group.corners.begin(), group.corners.end()), group.corners.end());
+  sort_unique(group.corners);
   for (const std::size_t c : group.corners) group.places.push_back(corners.places[c]);
   return group;
 }

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 
 #include "pcednet/lines/fit.h"
 #include "pcednet/lines/strings.h"
@@ -75,17 +76,24 @@ std::vector<std::size_t> partners_of(const std::vector<Curve>& curves, const Tog
   return partner;
 }
 
-/// Adds confidence and dihedral angle of a part as sums over its points and its length.
-void add_measures(Curve& whole, const Curve& part) {
-  whole.confidence += static_cast<double>(part.support) * part.confidence;
-  whole.dihedral_angle += length_of(part) * part.dihedral_angle;
-  whole.support += part.support;
-}
-
-/// Makes means of the sums.
-void finish_measures(Curve& whole, double length) {
-  whole.confidence /= std::max(static_cast<double>(whole.support), 1.0);
+/// Gives `whole` the class and the means of the curves that it is made of: of their dihedral angles
+/// by length, of their confidences by edge points, or by length if there are none.
+void take_attributes(Curve& whole, std::span<const Curve* const> parts) {
+  double length = 0.0, by_support = 0.0, by_length = 0.0;
+  whole.edge_class = parts.front()->edge_class;
+  whole.exact = true;
+  for (const Curve* part : parts) {
+    const double its_length = length_of(*part);
+    length += its_length;
+    by_length += its_length * part->confidence;
+    by_support += static_cast<double>(part->support) * part->confidence;
+    whole.dihedral_angle += its_length * part->dihedral_angle;
+    whole.support += part->support;
+    whole.exact &= part->exact;
+  }
   whole.dihedral_angle /= length;
+  whole.confidence =
+      whole.support > 0 ? by_support / static_cast<double>(whole.support) : by_length / length;
 }
 
 /// The polyline with points no further apart than `step`.
@@ -107,7 +115,6 @@ void append(Curve& whole, const Curve& next, std::size_t entry, double tolerance
   const std::size_t shared = whole.points.empty() ? 0 : 1;
   whole.points.insert(whole.points.end(), points.begin() + static_cast<std::ptrdiff_t>(shared),
                       points.end());
-  add_measures(whole, next);
 }
 
 /// The curves of the loop that begins with `first`, if it is one of so few.
@@ -125,18 +132,16 @@ std::vector<std::size_t> loop_of(std::size_t first, const std::vector<std::size_
 /// The circle that the curves of a loop are near to.
 std::optional<Curve> circle_of(const std::vector<std::size_t>& loop,
                                const std::vector<Curve>& curves, double spacing, double within) {
-  Curve circle{
-      .kind = CurveKind::kCircle, .edge_class = curves[loop[0]].edge_class, .closed = true};
   std::vector<Vec3> places;
-  double length = 0.0;
+  std::vector<const Curve*> parts;
   for (const std::size_t i : loop) {
-    const Curve& curve = curves[i];
-    const std::vector<Vec3> dense = densified(sampled(curve, 0.1 * within), 0.5 * spacing);
+    const std::vector<Vec3> dense = densified(sampled(curves[i], 0.1 * within), 0.5 * spacing);
     places.insert(places.end(), dense.begin(), dense.end());
-    add_measures(circle, curve);
-    length += length_of(curve);
+    parts.push_back(&curves[i]);
   }
-  finish_measures(circle, length);
+  Curve circle{.kind = CurveKind::kCircle, .closed = true};
+  take_attributes(circle, parts);
+  if (circle.exact) return std::nullopt;  // it has corners
   const Fit fit = fit_arc(places, spacing);
   if (fit.kind != CurveKind::kArc || fit.radius > kLargestRound * spacing) return std::nullopt;
   for (const Vec3& place : places) {
@@ -181,13 +186,13 @@ void join_smooth_corners(std::vector<Curve>& curves, double angle, double tolera
       result.push_back(std::move(curves[entries[0] / 2]));
       continue;
     }
-    Curve whole{.edge_class = curves[entries[0] / 2].edge_class, .closed = closed};
-    double length = 0.0;
+    Curve whole{.closed = closed};
+    std::vector<const Curve*> parts;
     for (const std::size_t entry : entries) {
       append(whole, curves[entry / 2], entry, tolerance);
-      length += length_of(curves[entry / 2]);
+      parts.push_back(&curves[entry / 2]);
     }
-    finish_measures(whole, length);
+    take_attributes(whole, parts);
     whole.points = simplified(whole.points, tolerance);
     if (closed) whole.points.pop_back();
     if (whole.points.size() == 2 && !closed) whole.kind = CurveKind::kSegment;

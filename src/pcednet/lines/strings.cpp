@@ -9,6 +9,7 @@
 
 #include "pcednet/lines/corners.h"
 #include "pcednet/lines/split.h"
+#include "pcednet/lines/turning_points.h"
 #include "pcednet/spatial/kd_tree.h"
 
 namespace pcednet::lines {
@@ -185,31 +186,9 @@ void string_free_ends(std::vector<Piece>& pieces, double gap, double angle, doub
 
 std::vector<Vec3> simplified(const std::vector<Vec3>& places, double tolerance) {
   if (places.size() < 3) return places;
-  std::vector<std::uint8_t> kept(places.size(), 0);
-  kept.front() = kept.back() = 1;
-  std::vector<std::pair<std::size_t, std::size_t>> spans = {{0, places.size() - 1}};
-  while (!spans.empty()) {
-    const auto [first, last] = spans.back();
-    spans.pop_back();
-    const Vec3 chord = (places[last] - places[first]).stableNormalized();
-    std::size_t farthest = first;
-    double most = tolerance;
-    for (std::size_t i = first + 1; i < last; ++i) {
-      const Vec3 offset = places[i] - places[first];
-      const double distance = (offset - offset.dot(chord) * chord).norm();
-      if (distance > most) {
-        most = distance;
-        farthest = i;
-      }
-    }
-    if (farthest == first) continue;
-    kept[farthest] = 1;
-    spans.emplace_back(first, farthest);
-    spans.emplace_back(farthest, last);
-  }
   std::vector<Vec3> vertices;
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    if (kept[i]) vertices.push_back(places[i]);
+  for (const std::size_t i : turning_points(std::span(places), tolerance)) {
+    vertices.push_back(places[i]);
   }
   return vertices;
 }

@@ -5,6 +5,8 @@
 #include <limits>
 #include <utility>
 
+#include "pcednet/lines/turning_points.h"
+
 namespace pcednet::lines {
 namespace {
 
@@ -64,31 +66,6 @@ double empty_area(const SupportLine& line, Points outline) {
     area += depth * (outline[i + 1] - outline[i]).norm();
   }
   return area;
-}
-
-/// The points at which the outline turns (Douglas and Peucker), and its ends.
-std::vector<std::size_t> breaks_of(Points outline, double spacing) {
-  std::vector<std::pair<std::size_t, std::size_t>> open = {{0, outline.size() - 1}};
-  std::vector<std::size_t> breaks = {0};
-  while (!open.empty()) {
-    const auto [a, b] = open.back();
-    open.pop_back();
-    const Eigen::Vector2d along = (outline[b] - outline[a]).stableNormalized();
-    double farthest = kBreakOff * spacing;
-    std::size_t split = a;
-    for (std::size_t i = a + 1; i < b; ++i) {
-      const Eigen::Vector2d offset = outline[i] - outline[a];
-      const double away = along.isZero(0.0) ? offset.norm() : std::abs(cross(along, offset));
-      if (away > farthest) farthest = away, split = i;
-    }
-    if (split == a) {
-      breaks.push_back(b);
-    } else {
-      open.push_back({split, b});
-      open.push_back({a, split});
-    }
-  }
-  return breaks;
 }
 
 /// The line along these points, with its empty area.
@@ -158,7 +135,7 @@ std::vector<Eigen::Vector2d> outer_hull(std::vector<Eigen::Vector2d> points) {
 
 std::vector<SupportLine> straight_parts(Points outline, double spacing, double noise) {
   if (outline.size() < 2) return {};
-  const std::vector<std::size_t> breaks = breaks_of(outline, spacing);
+  const std::vector<std::size_t> breaks = turning_points(outline, kBreakOff * spacing);
   struct Best {
     double cost = std::numeric_limits<double>::infinity();
     std::size_t from = 0;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pcednet/lines/moments.h"
+
 namespace pcednet::lines {
 namespace {
 
@@ -44,20 +46,14 @@ std::size_t count_on(const CornerCut& cut, const std::vector<Eigen::Vector2d>& p
 
 /// The line of least squares through the places on the cut.
 std::optional<CornerCut> fitted(const CornerCut& cut, const std::vector<Eigen::Vector2d>& places) {
-  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
-  Eigen::Matrix2d products = Eigen::Matrix2d::Zero();
-  double count = 0.0;
+  FlatMoments on;
   for (const Eigen::Vector2d& at : places) {
-    if (std::abs(cut.height(at)) >= kOnCone) continue;
-    mean += at;
-    products += at * at.transpose();
-    count += 1.0;
+    if (std::abs(cut.height(at)) < kOnCone) on.add(at);
   }
-  mean /= count;
-  const Eigen::Matrix2d covariance = products / count - mean * mean.transpose();
+  const Eigen::Matrix2d covariance = on.covariance();
   const double angle =
       0.5 * std::atan2(2.0 * covariance(0, 1), covariance(0, 0) - covariance(1, 1));
-  return cut_through(mean, mean + Eigen::Vector2d(std::cos(angle), std::sin(angle)));
+  return cut_through(on.mean(), on.mean() + Eigen::Vector2d(std::cos(angle), std::sin(angle)));
 }
 
 /// The cone that the most of the places in the corner are on, if nearly none are beside it.

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "pcednet/core/parallel.h"
+#include "pcednet/core/sort_unique.h"
 #include "pcednet/lines/fold_search.h"
 #include "pcednet/lines/fold_surface.h"
 #include "pcednet/spatial/kd_tree.h"

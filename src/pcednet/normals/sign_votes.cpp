@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "pcednet/core/parallel_loops.h"
+#include "pcednet/core/sort_unique.h"
 #include "pcednet/core/vector_clones.h"
 
 namespace pcednet::normals {
@@ -267,8 +268,7 @@ void turn_outvoted_points(const SignVotes& votes, std::vector<std::int8_t>& sign
       const auto row = votes.links().of(i);
       touched.insert(touched.end(), row.begin(), row.end());
     }
-    std::sort(touched.begin(), touched.end());
-    touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
+    sort_unique(touched);
     waiting = std::move(touched);
   }
 }

@@ -247,6 +247,7 @@ std::string unsound_member(const Plan& plan) {
   if (!is_length(plan.reach)) return "reach";
   if (!(0.0 < plan.s_min && plan.s_min < plan.s_max)) return "scales";
   if (!are_sound(plan.pyramids, plan)) return "pyramids";
+  if (plan.normals.neighbours == 1 || plan.normals.neighbours > 10'000) return "normals";
   if (plan.memory == 0) return "memory";
   if (!plan.las_steps.empty() && plan.las_steps.size() != 6) return "las_steps";
   if (plan.inputs.empty()) return "inputs";

@@ -6,6 +6,7 @@
 #include "pcednet/core/json.h"
 #include "pcednet/core/output_file.h"
 #include "pcednet/io/input_file.h"
+#include "pcednet/tiles/inputs.h"
 #include "pcednet/tiles/sha256.h"
 
 namespace pcednet::tiles {
@@ -58,6 +59,15 @@ void write_claim(const fs::path& tile, TileRecord record) {
 void remove_claim(const fs::path& tile) {
   std::error_code ignored;
   if (!fs::exists(tile, ignored)) fs::remove(record_path(tile), ignored);
+}
+
+void check_not_of_plan(const fs::path& output, const Plan& plan) {
+  check_not_input(output, plan.inputs);
+  pcednet::check_not_input(output, plan.model.path);
+  for (const Tile& tile : plan.tiles) {
+    pcednet::check_not_input(output, tile.output);
+    pcednet::check_not_input(output, record_path(tile.output));
+  }
 }
 
 void write_record(const fs::path& tile, TileRecord record) {

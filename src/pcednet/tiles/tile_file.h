@@ -29,6 +29,10 @@ void write_claim(const std::filesystem::path& tile, TileRecord record);
 /// Removes it if there is no such file.
 void remove_claim(const std::filesystem::path& tile);
 
+/// Throws Error(kUsage) if the output is a file that the plan needs: an input, its model, a tile or
+/// the record of one.
+void check_not_of_plan(const std::filesystem::path& output, const Plan& plan);
+
 /// A file with the name of the tile, or of its record, that may be no tile, for there is no record;
 /// empty if there is none.
 std::filesystem::path strange_file(const std::filesystem::path& tile);

@@ -50,6 +50,7 @@ std::vector<double> surface_variation(std::span<const Vec3> positions, int neigh
     std::vector<spatial::Neighbour> near;
     for (std::size_t i = begin; i < end; ++i) {
       if (!positions[i].allFinite()) continue;
+      throw_if_cancelled(progress);  // with many neighbours a point takes long
       tree.nearest(positions[i], count, near);
       values[i] = variation(positions, near);
     }

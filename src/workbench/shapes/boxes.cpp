@@ -4,6 +4,7 @@
 #include <array>
 #include <vector>
 
+#include "pcednet/core/sort_unique.h"
 #include "workbench/shapes/patches.h"
 
 namespace pcednet::shapes {
@@ -34,8 +35,7 @@ CellGrid make_grid(std::span<const Box> boxes) {
   for (int axis = 0; axis < 3; ++axis) {
     std::vector<double>& planes = grid.planes[axis];
     for (const Box& box : boxes) planes.insert(planes.end(), {box.low[axis], box.high[axis]});
-    std::sort(planes.begin(), planes.end());
-    planes.erase(std::unique(planes.begin(), planes.end()), planes.end());
+    sort_unique(planes);
   }
   grid.filled.resize(static_cast<std::size_t>(grid.cells(0)) * grid.cells(1) * grid.cells(2));
   Cell c;

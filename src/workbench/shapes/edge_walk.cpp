@@ -8,6 +8,7 @@
 
 #include "pcednet/core/random.h"
 #include "pcednet/core/random_vectors.h"
+#include "pcednet/core/sort_unique.h"
 #include "workbench/shapes/mesh_vertices.h"
 
 namespace pcednet::shapes {
@@ -231,8 +232,7 @@ std::vector<std::size_t> EdgeWalk::thirds_at(const WalkedEdge& edge, const Vec3&
       }
     }
   }
-  std::sort(thirds.begin(), thirds.end());
-  thirds.erase(std::unique(thirds.begin(), thirds.end()), thirds.end());
+  sort_unique(thirds);
   return thirds;
 }
 
