@@ -17,7 +17,7 @@ namespace {
 constexpr double kMostOpen = 0.55;        ///< of a circle that is to be closed
 constexpr double kMostOpenOnEdges = 0.7;  ///< the same where edge points follow it
 
-// Of small circles, which are found in pieces that fit none of them alone; in spacings.
+// Small circles are found in pieces each of which alone fits none. In spacings.
 constexpr double kLargestSmall = 5.0;                ///< radius
 constexpr double kLeastApart = 1.5, kOnSmall = 0.7;  ///< of two nodes; of a node from a circle
 constexpr double kAcross = 1.5;                      ///< of ends on a circle

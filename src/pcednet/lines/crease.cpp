@@ -30,7 +30,8 @@ constexpr std::size_t kUnevenSides = 3;  ///< times as many points
 constexpr double kAlmostAll = 0.95;
 constexpr double kOffSide = 0.5, kReachesLine = 0.5;  ///< spacings
 
-/// Of points to be tried beside those of an edge class; the second is added per spacing of noise.
+/// Points of no edge class are tried from this probability on; the second is added per spacing of
+/// noise.
 constexpr double kLeastProbability[] = {0.1, 0.9};
 
 struct Tolerances {

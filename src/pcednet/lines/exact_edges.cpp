@@ -6,13 +6,13 @@
 #include <iterator>
 
 #include "pcednet/core/parallel.h"
+#include "pcednet/lines/cylinder_ends.h"
+#include "pcednet/lines/cylinder_folds.h"
 #include "pcednet/lines/exact_contacts.h"
+#include "pcednet/lines/exact_cylinders.h"
 #include "pcednet/lines/exact_planes.h"
 #include "pcednet/lines/exact_vertices.h"
-#include "pcednet/lines/exact_walls.h"
 #include "pcednet/lines/fold_search.h"
-#include "pcednet/lines/wall_ends.h"
-#include "pcednet/lines/wall_folds.h"
 
 namespace pcednet::lines {
 namespace {
@@ -116,37 +116,38 @@ ExactEdges find_folds(const OrderedPoints& cloud, const std::vector<PlanePatch>&
 }
 
 /// The cylinders among the free points near each plane, and across it.
-std::vector<ExactWall> find_walls(const OrderedPoints& cloud, const std::vector<PlanePatch>& planes,
-                                  const std::vector<std::span<const PlaneContact>>& free_points,
-                                  double spacing, const Progress* progress) {
-  std::vector<std::vector<ExactWall>> of_planes(free_points.size());
-  Stage stage(progress, "exact walls", free_points.size());
+std::vector<ExactCylinder> find_cylinders(
+    const OrderedPoints& cloud, const std::vector<PlanePatch>& planes,
+    const std::vector<std::span<const PlaneContact>>& free_points, double spacing,
+    const Progress* progress) {
+  std::vector<std::vector<ExactCylinder>> of_planes(free_points.size());
+  Stage stage(progress, "exact cylinders", free_points.size());
   parallel_blocks(free_points.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       std::vector<std::uint32_t> points;
       for (const PlaneContact& contact : free_points[k]) points.push_back(contact.point);
-      of_planes[k] = find_exact_walls(cloud, planes[free_points[k].front().a], points, spacing);
+      of_planes[k] = find_exact_cylinders(cloud, planes[free_points[k].front().a], points, spacing);
     }
     stage.advance(end - begin);
   });
-  std::vector<ExactWall> walls;
-  for (auto& of_plane : of_planes) std::ranges::move(of_plane, std::back_inserter(walls));
-  return walls;
+  std::vector<ExactCylinder> cylinders;
+  for (auto& of_plane : of_planes) std::ranges::move(of_plane, std::back_inserter(cylinders));
+  return cylinders;
 }
 
-/// The arcs where the walls meet the planes that they are across.
-ExactEdges find_arcs(const OrderedPoints& cloud, const std::vector<ExactWall>& walls,
+/// The arcs where the cylinders meet the planes that they are across.
+ExactEdges find_arcs(const OrderedPoints& cloud, const std::vector<ExactCylinder>& cylinders,
                      double spacing, const Progress* progress) {
-  std::vector<ExactEdges> of_walls(walls.size());
-  Stage stage(progress, "exact arcs", walls.size());
-  parallel_blocks(walls.size(), 1, [&](std::size_t begin, std::size_t end) {
+  std::vector<ExactEdges> of_cylinders(cylinders.size());
+  Stage stage(progress, "exact arcs", cylinders.size());
+  parallel_blocks(cylinders.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
-      of_walls[k] = edges_of_wall(Profile(cloud, walls[k], spacing));
+      of_cylinders[k] = edges_of_cylinder(Profile(cloud, cylinders[k], spacing));
     }
     stage.advance(end - begin);
   });
   ExactEdges found;
-  for (ExactEdges& of_wall : of_walls) append(found, std::move(of_wall));
+  for (ExactEdges& of_cylinder : of_cylinders) append(found, std::move(of_cylinder));
   return found;
 }
 
@@ -171,11 +172,11 @@ ExactEdges find_exact_edges(const OrderedPoints& cloud, double spacing, const Pr
   const std::vector<PlanePatch> planes = find_exact_planes(cloud, spacing, progress);
   const std::vector<PlaneContact> contacts = contacts_of(cloud, planes, spacing);
   const ContactPairs pairs = by_planes(contacts);
-  const std::vector<ExactWall> walls =
-      find_walls(cloud, planes, pairs.of_free_points, spacing, progress);
-  ExactEdges edges = find_arcs(cloud, walls, spacing, progress);
+  const std::vector<ExactCylinder> cylinders =
+      find_cylinders(cloud, planes, pairs.of_free_points, spacing, progress);
+  ExactEdges edges = find_arcs(cloud, cylinders, spacing, progress);
   append(edges.pieces,
-         find_wall_folds(cloud, planes, walls, pairs.of_free_points, spacing, progress));
+         find_cylinder_folds(cloud, planes, cylinders, pairs.of_free_points, spacing, progress));
   append(edges, find_folds(cloud, planes, pairs.of_planes, spacing, progress));
   return edges;
 }

@@ -19,7 +19,7 @@ constexpr std::size_t kLeastMembers = 8, kManyMembers = 64;
 constexpr double kLeastSineBetween = 0.25;  ///< of two places seen from a third
 constexpr double kReachOfPlane = 0.01;      ///< spacings
 constexpr double kMostResidual = 0.1;       ///< root mean square, to the reach
-/// Of the reach, one after the other: members that are surely on the plane.
+/// Members this near, as shares of the reach, are surely on the plane; one after the other.
 constexpr double kCores[] = {0.4, 0.2, 0.1};
 constexpr double kLeastInCore = 0.7;      ///< of the members
 constexpr double kLeastPatchWidth = 0.2;  ///< of the members, standard deviation in spacings
@@ -111,7 +111,7 @@ class PatchGrowth {
         taken_(candidates.points.size(), 0),
         seen_(candidates.points.size(), 0) {}
 
-  /// Grows a plane from this row if so many points near it are on one.
+  /// Grows a plane from this row if `least_on` points near it are on one.
   void try_at(std::uint32_t row, std::size_t least_on);
   std::vector<PlanePatch> found;
 

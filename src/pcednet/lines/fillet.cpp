@@ -15,7 +15,7 @@ constexpr double kDense = 0.2;          ///< points on the arc, to a square spac
 constexpr double kMostBeside = 0.15;    ///< points in the corner off the arc, to one on it
 constexpr double kFlat = 2.0;           ///< square distance from a line, to that from the arc
 constexpr double kLeastOnLine = 0.2;    ///< points on each line beyond the arc, to a spacing
-constexpr double kPointsToEnd = 4.0;    ///< of an arc: so many are missing by chance
+constexpr double kPointsToEnd = 4.0;    ///< of an arc: fewer are missing by chance
 
 // In spacings.
 constexpr double kOffLines = 0.02;

@@ -26,14 +26,14 @@ constexpr double kExactReach = 5.0, kExactTolerance = 0.6;  ///< of corners of e
 /// Edge points per spacing: shorter pieces with fewer are kept only if corners hold both ends.
 constexpr double kFewEdgePoints = 0.1, kLongAnyway = 15.0;
 
-/// With noise beyond kLittleNoise, all pieces need edge points: so many more per spacing of noise.
+/// Beyond kLittleNoise all pieces need edge points: kPointsForNoise more per spacing of noise.
 constexpr double kLittleNoise = 0.1, kPointsForNoise = 1.5;
 
 /// In much noise, pieces of which corners hold no end, or one, need edge points as probable as
 /// this.
 constexpr double kLeastProbable[] = {0.95, 0.68};
 
-/// Those of a long row may be less probable: so long, in spacings, with so many of them on each.
+/// A row of kLongRow spacings or more, with kDenseRow edge points in each, may be less probable.
 constexpr double kLongRow = 16.0, kDenseRow = 0.9, kProbableRow = 0.65;
 
 /// Surfaces that bend by more are rounded at the edge unless as many of its points are sharp-edge.
@@ -160,7 +160,7 @@ bool is_doubtful(const Piece& piece, const Evidence& evidence, double noise, std
   return evidence.probability < (row ? kProbableRow : kLeastProbable[held]);
 }
 
-/// Of a piece of which corners hold so many ends, in spacings.
+/// The least length of a piece of which corners hold `held` ends, in spacings.
 double least_length(std::ptrdiff_t held, const FinishOptions& options) {
   if (held == 2) return 0.0;
   if (options.exact) return held == 0 ? kExactLoose : kExactHeldOnce;

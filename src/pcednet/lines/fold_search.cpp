@@ -77,7 +77,6 @@ std::vector<std::uint32_t> FoldSearch::points_beside(const Interval& region) con
   return cloud_.near_any(places, (kStripWidth + 0.5) * spacing_);
 }
 
-/// Of an edge, at those of the points that are beside the interval.
 double FoldSearch::mean_probability(const Interval& interval,
                                     std::span<const std::uint32_t> points) const {
   double sum = 0.0, count = 0.0;

@@ -61,6 +61,7 @@ class FoldSearch {
   void add_fillets(const Interval& region, std::vector<Piece>& found) const;
   std::optional<Piece> fold_between(const Interval& interval) const;
   Interval interval_of(const Piece& piece) const;
+  /// That the points beside the interval, among these, are of an edge.
   double mean_probability(const Interval& interval, std::span<const std::uint32_t> points) const;
   Piece piece_along(const Interval& interval, const Vec3& side_a, const Vec3& side_b) const;
   Vec3 place(double along) const { return line_.point + along * spacing_ * line_.along; }

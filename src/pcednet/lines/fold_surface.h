@@ -2,8 +2,8 @@
 
 #include <cmath>
 
+#include "pcednet/lines/exact_cylinders.h"
 #include "pcednet/lines/exact_planes.h"
-#include "pcednet/lines/exact_walls.h"
 #include "pcednet/lines/plane_line.h"
 
 namespace pcednet::lines {
@@ -28,12 +28,12 @@ inline FoldSurface surface_of(const PlanePatch& plane) {
   return {plane.normal, plane.point, plane.reach};
 }
 
-/// The line is along the wall.
-inline FoldSurface surface_of(const ExactWall& wall, const PlaneLine& line) {
-  const Vec3 spoke = line.point - wall.circle.point;
-  const Vec3& axis = wall.circle.direction;
-  return {(spoke - axis.dot(spoke) * axis).normalized(), wall.circle.point, wall.reach,
-          wall.circle.radius, axis};
+/// The line is along the cylinder.
+inline FoldSurface surface_of(const ExactCylinder& cylinder, const PlaneLine& line) {
+  const Vec3 spoke = line.point - cylinder.circle.point;
+  const Vec3& axis = cylinder.circle.direction;
+  return {(spoke - axis.dot(spoke) * axis).normalized(), cylinder.circle.point, cylinder.reach,
+          cylinder.circle.radius, axis};
 }
 
 }  // namespace pcednet::lines

@@ -31,7 +31,7 @@ struct Contact {
   std::uint32_t a, b;  ///< of the face of the lower number, of the other
 };
 
-std::map<Pair, std::vector<Contact>> contacts_of(const Faces& faces) {
+std::map<Pair, std::vector<Contact>> face_contacts(const Faces& faces) {
   std::map<Pair, std::vector<Contact>> contacts;
   faces.for_each_contact([&](std::uint32_t point, std::uint32_t other) {
     const std::uint32_t own = faces.of_points[point], face = faces.of_points[other];
@@ -146,9 +146,9 @@ void Folds::add_part(const Pair& pair, const Fit& line, double from, double to) 
 
 }  // namespace
 
-std::vector<Fold> find_folds(const OrderedPoints& cloud, const Faces& faces, double spacing) {
+std::vector<Fold> find_roof_folds(const OrderedPoints& cloud, const Faces& faces, double spacing) {
   Folds folds(cloud, faces, spacing);
-  for (const auto& [pair, contacts] : contacts_of(faces)) folds.add(pair, contacts);
+  for (const auto& [pair, contacts] : face_contacts(faces)) folds.add(pair, contacts);
   return std::move(folds.found);
 }
 

@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t kPointsAtOnce = 256;
 constexpr std::size_t kSpacingNeighbours = 15;
 
-/// Of an edge; 0 without probabilities.
+/// The probability of an edge; 0 without probabilities.
 float probability_of(const EdgePoints& points, std::uint32_t i) {
   if (points.p_sharp.empty()) return 0.0f;
   return points.p_sharp[i] + (points.p_smooth.empty() ? 0.0f : points.p_smooth[i]);

@@ -22,7 +22,7 @@ class OrderedPoints {
   const Vec3& position(std::size_t i) const { return positions_[i]; }
   /// One of a normal and its opposite, the same of both: nothing may depend on signs.
   Vec3 normal(std::size_t i) const { return upward(normals_[i]); }
-  /// Of the angle between the normals of two points, with their signs.
+  /// The cosine of the angle between the normals of two points, with their signs.
   double cosine(std::size_t i, std::size_t j) const { return normals_[i].dot(normals_[j]); }
   EdgeClass edge_class(std::size_t i) const {
     return static_cast<EdgeClass>(points_.classes[order_[i]]);

@@ -26,7 +26,7 @@ constexpr double kCutToBeside = 2.0;     ///< and in that of the parts beside
 constexpr double kCornerAhead = 8.0;     ///< spacings from the end of a part to its corner
 constexpr double kBesideLine = 0.35;     ///< spacings beyond a line that chance explains
 constexpr double kMostFilled = 0.1;      ///< share of the points that a face would have there,
-constexpr double kEnoughToTell = 3.0;    ///< which must be so many,
+constexpr double kEnoughToTell = 3.0;    ///< which must be this many,
 constexpr double kClearlyCut = 0.5;      ///< unless what is cut off is so short beside the others
 constexpr std::size_t kMostCutting = 2;  ///< parts that cut off one corner
 
@@ -93,7 +93,7 @@ class Row {
   bool loop_;
 };
 
-/// An arc in place of so many lines.
+/// An arc in place of `count` lines.
 struct Rounding {
   std::size_t first, count;
   double saving;

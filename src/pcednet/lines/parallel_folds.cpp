@@ -14,10 +14,10 @@ constexpr double kLeastBetween = 10.0;                  ///< points before, betw
 constexpr double kLeastStrip = 2.2;                     ///< spacings that they cover across
 constexpr int kFoldDirections = 24, kFoldOffsets = 24;  ///< of folds that are tried
 constexpr double kLeastFoldSine = 0.115;
-// Folds must leave less than these by so many variances of the noise.
+// Folds must leave less than each of these, by this many variances of the noise.
 constexpr double kThanPlane = 40.0, kThanParabola = 4.0, kThanOneFold = 12.0;
 
-/// Of a point: 1, its place across the folds and along them, its height.
+/// A point: 1, its place across the folds and along them, its height.
 using PointRow = Eigen::Vector4d;
 using Products = Eigen::Matrix4d;
 using Terms = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 5, 1>;

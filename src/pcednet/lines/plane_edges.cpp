@@ -51,7 +51,7 @@ std::optional<std::vector<Piece>> find_plane_edges(const OrderedPoints& cloud,
   if (!is_seen_from_above(cloud, sampling, plan)) return std::nullopt;
   const Faces faces = find_faces(cloud, sampling, progress);
   if (faces.share < kPlanePart) return std::nullopt;
-  std::vector<Fold> folds = find_folds(cloud, faces, spacing);
+  std::vector<Fold> folds = find_roof_folds(cloud, faces, spacing);
   std::vector<Piece> pieces = find_eaves(cloud, faces, sampling, folds, plan);
   for (Fold& fold : folds) pieces.push_back(std::move(fold.piece));
   return pieces;

@@ -16,7 +16,7 @@ struct Fold {
 };
 
 /// The intersections of the planes of faces whose points are adjacent there.
-std::vector<Fold> find_folds(const OrderedPoints& cloud, const Faces& faces, double spacing);
+std::vector<Fold> find_roof_folds(const OrderedPoints& cloud, const Faces& faces, double spacing);
 
 /// Straight parts and arcs of the outlines of faces away from folds. The foot of a step, above
 /// which another face begins, has none. `plan` holds the points of the cloud at height 0.

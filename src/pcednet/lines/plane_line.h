@@ -12,8 +12,8 @@ struct PlaneLine {
   Vec3 along;  ///< unit
 };
 
-/// Of the planes normal . x = distance, with unit normals; none if the sine of their angle is below
-/// `least_sine`.
+/// The line in which the planes normal . x = distance meet, with unit normals; none if the sine of
+/// their angle is below `least_sine`.
 inline std::optional<PlaneLine> line_of_planes(const Vec3& normal_a, double distance_a,
                                                const Vec3& normal_b, double distance_b,
                                                double least_sine) {

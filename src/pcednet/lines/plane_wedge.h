@@ -6,7 +6,7 @@
 
 namespace pcednet::lines {
 
-// Of the points that a side of a wedge is seen from, in spacings.
+// Where the points lie that a side of a wedge is judged by, in spacings.
 inline constexpr double kSliceAlong = 1.6;  ///< to both sides along the line
 inline constexpr double kSideReach = 3.0;   ///< away from it
 

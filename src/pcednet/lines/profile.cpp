@@ -22,18 +22,18 @@ constexpr double kBesideGap = 1.5, kBeforeGap = 0.5;  ///< of points that are of
 constexpr double kOffRays = 0.05;
 constexpr double kLeastRiseOfArc = 0.15;  ///< from its chord
 
-/// The direction in the middle of the largest gap between the wall's points about its axis.
-Vec3 middle_of_gap(const OrderedPoints& cloud, const ExactWall& wall) {
-  const Vec3 x = wall.circle.direction.unitOrthogonal(), y = wall.circle.direction.cross(x);
+/// The direction in the middle of the largest gap between the cylinder's points about its axis.
+Vec3 middle_of_gap(const OrderedPoints& cloud, const ExactCylinder& cylinder) {
+  const Vec3 x = cylinder.circle.direction.unitOrthogonal(), y = cylinder.circle.direction.cross(x);
   std::vector<double> angles;
-  for (const std::uint32_t i : wall.members) {
-    angles.push_back(angle_at(wall.circle, x, cloud.position(i)));
+  for (const std::uint32_t i : cylinder.members) {
+    angles.push_back(angle_at(cylinder.circle, x, cloud.position(i)));
   }
   const double middle = spatial::widest_opening(angles).middle;
   return std::cos(middle) * x + std::sin(middle) * y;
 }
 
-/// Of the intervals of two turns those of one, or one that is a whole turn.
+/// The intervals of the first of two turns, or the one that goes all around.
 std::vector<Interval> in_one_turn(const std::vector<Interval>& intervals, double radius) {
   const double around = kWholeTurn * radius;
   double known = 0.0;  // where the last that goes on beyond the first turn ends in the next
@@ -50,11 +50,14 @@ std::vector<Interval> in_one_turn(const std::vector<Interval>& intervals, double
 
 }  // namespace
 
-Profile::Profile(const OrderedPoints& cloud, const ExactWall& wall, double spacing)
-    : cloud_(cloud), circle_(wall.circle), spacing_(spacing), on_ray_(wall.reach / spacing) {
-  start_ = middle_of_gap(cloud, wall);
+Profile::Profile(const OrderedPoints& cloud, const ExactCylinder& cylinder, double spacing)
+    : cloud_(cloud),
+      circle_(cylinder.circle),
+      spacing_(spacing),
+      on_ray_(cylinder.reach / spacing) {
+  start_ = middle_of_gap(cloud, cylinder);
   left_ = circle_.direction.cross(start_);
-  for (const std::uint32_t i : indices_around(wall)) {
+  for (const std::uint32_t i : indices_around(cylinder)) {
     const Vec3& position = cloud.position(i);
     points_.push_back({i, angle_of(position), about_axis(circle_, position) / spacing});
   }
@@ -69,11 +72,11 @@ Vec3 Profile::out_at(double angle) const {
   return std::cos(angle) * start_ + std::sin(angle) * left_;
 }
 
-/// Those near the circle, each once, in curve order: all around it if the members of the wall go
-/// half around, else as far as they go and a gap beyond.
-std::vector<std::uint32_t> Profile::indices_around(const ExactWall& wall) const {
+/// Those near the circle, each once, in curve order: all around it if the members of the cylinder
+/// go half around, else as far as they go and a gap beyond.
+std::vector<std::uint32_t> Profile::indices_around(const ExactCylinder& cylinder) const {
   double first = kWholeTurn, last = 0.0;
-  for (const std::uint32_t i : wall.members) {
+  for (const std::uint32_t i : cylinder.members) {
     const double angle = angle_of(cloud_.position(i));
     first = std::min(first, angle), last = std::max(last, angle);
   }
@@ -101,7 +104,6 @@ Strip Profile::strip_along(const ProfileRay& ray) const {
   return strip_of(places);
 }
 
-/// Of an edge, at those of the points that are beside the interval.
 double Profile::mean_probability(const Interval& interval, const Eigen::Vector2d& at) const {
   double sum = 0.0, count = 0.0;
   for (const Point& point : points_) {

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "pcednet/lines/exact_walls.h"
+#include "pcednet/lines/exact_cylinders.h"
 #include "pcednet/lines/ordered_points.h"
 #include "pcednet/lines/piece.h"
 #include "pcednet/lines/strip.h"
@@ -26,22 +26,22 @@ struct ProfileRay {
   }
 };
 
-/// The points around the circle of a wall, seen in the half-plane of its axis: planes across the
-/// axis, cylinders and cones about it are lines there.
+/// The points around the circle of a cylinder, seen in the half-plane of its axis: planes across
+/// the axis, cylinders and cones about it are lines there.
 class Profile {
  public:
   struct Point {
     std::uint32_t index;
-    double angle;        ///< about the axis, from the middle of the largest gap of the wall
+    double angle;        ///< about the axis, from the middle of the largest gap of the cylinder
     Eigen::Vector2d at;  ///< from the axis, from the plane of the circle; spacings
   };
 
-  Profile(const OrderedPoints& cloud, const ExactWall& wall, double spacing);
+  Profile(const OrderedPoints& cloud, const ExactCylinder& cylinder, double spacing);
 
   const std::vector<Point>& points() const { return points_; }
-  /// Of the wall, in the plane.
+  /// The cylinder, cut by the plane.
   const Fit& circle() const { return circle_; }
-  /// Of that circle, in spacings.
+  /// Its radius, in spacings.
   double radius() const { return circle_.radius / spacing_; }
 
   /// The arcs, or the circle, where two surfaces meet that go along these rays from one place: both
@@ -55,10 +55,11 @@ class Profile {
  private:
   double angle_of(const Vec3& place) const;
   Vec3 out_at(double angle) const;
-  std::vector<std::uint32_t> indices_around(const ExactWall& wall) const;
+  std::vector<std::uint32_t> indices_around(const ExactCylinder& cylinder) const;
   Strip strip_along(const ProfileRay& ray) const;
   std::vector<Interval> bridged(const std::vector<Interval>& intervals, const ProfileRay& a,
                                 const ProfileRay& b) const;
+  /// That the points beside the interval are of an edge.
   double mean_probability(const Interval& interval, const Eigen::Vector2d& at) const;
   Piece piece_along(const Interval& interval, const ProfileRay& a, const ProfileRay& b) const;
 

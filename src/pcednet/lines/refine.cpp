@@ -23,10 +23,10 @@ constexpr std::size_t kNodesToRefine = 4;
 constexpr double kPlaneSide = 0.94;    ///< least cosine of a node's side and the mean
 constexpr double kLeastRefined = 8.0;  ///< points
 constexpr double kSlightTurn = 45.0 * std::numbers::pi / 180.0;  ///< arcs up to it may be straight
-/// They are if planes hold so many of the points that its surfaces do, so near.
+/// They are if planes hold this share of the points that the arc's surfaces do, about as near.
 constexpr double kAsMany = 0.95, kAsNear = 1.1;
-/// Of segments that may be arcs: nodes, their distance from the arc to that from the segment, and
-/// how far the arc rises from its chord, in spacings.
+/// Segments of this many nodes may be arcs, by the distance of nodes from the arc to that from the
+/// segment, and the rise of the arc from its chord, in spacings.
 constexpr std::size_t kNodesToBend = 8;
 constexpr double kMuchNearer = 0.5, kLeastRise = 0.2;
 constexpr int kPlaneFits = 3;

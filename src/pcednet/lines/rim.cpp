@@ -32,7 +32,7 @@ constexpr double kOneDirection = 0.999;  ///< of two axes, cosine
 constexpr std::size_t kLeastWall = 5;    ///< points
 constexpr std::size_t kMostPlaces = 16, kMostTriples = 40;
 constexpr std::size_t kRimSectors = 8;
-constexpr std::size_t kMostStray = 5;  ///< one such to so many of wall or plane
+constexpr std::size_t kMostStray = 5;  ///< points of wall or plane to one of neither
 constexpr double kLeastEdge = 0.5;  ///< share of the points near the rim that are of an edge class
 
 /// Places from an edge point, and the normals there.
@@ -212,7 +212,7 @@ struct FlatCircle {
   double radius;
 };
 
-/// Of the circles through three of the places, that which the most of them are on.
+/// The circle through three of the places that the most of them are on.
 std::optional<FlatCircle> common_circle(const FlatPlaces& places, const RimTest& test,
                                         double spacing) {
   FlatCircles circles;

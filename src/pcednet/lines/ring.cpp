@@ -12,7 +12,7 @@ namespace {
 constexpr double kBlocking = 2.5;  ///< spacings from the end of a piece to a gap
 constexpr double kBeside = 1.2;    ///< spacings from a circle to nodes that are of it
 
-// Of edge points along a gap.
+// Edge points that follow a circle through a gap.
 constexpr double kLeastFollowed = 6.0;  ///< radius, in spacings: edges of small details are near
 constexpr double kOnGap = 1.2;          ///< spacings from the circle
 constexpr double kLeastOnGap = 0.85;    ///< share of the gaps

@@ -25,9 +25,9 @@ constexpr double kMostNoise = 0.7;         ///< in spacings: more is no surface
 constexpr double kLeastGapOfSheets = 0.5;  ///< between the two sides of a wall, of their heights
 constexpr double kLeastStep = 0.05;        ///< of rounded coordinates, in spacings
 constexpr std::size_t kOnOwnSide = 3;      ///< nearest others, hardly ever beyond a wall
-constexpr double kMostOpposed = 0.15;      ///< of these, where signs are alike
+constexpr double kMostOpposed = 0.15;      ///< of these, where signs agree
 
-/// Of a point and its nearest others.
+/// A point and its nearest others.
 struct PlaneSample {
   double spacing;
   double noise;         ///< of them about their plane; below 0: unknown

@@ -63,7 +63,7 @@ double free_cost(std::size_t count) {
   return kFreePrice + kFreeNodePrice * static_cast<double>(count);
 }
 
-/// Of equal costs that of the longer run counts, whichever was computed first.
+/// Takes the cheaper of two ways to an end: of equal ones, that with the longer last run.
 void Splitter::offer(std::size_t end, double cost, std::size_t from, const Fit& fit) {
   Best& best = best_[end];
   if (cost < best.cost || (cost == best.cost && from < best.from)) best = {cost, from, fit};

@@ -16,9 +16,9 @@ namespace pcednet::lines {
 namespace {
 
 constexpr std::size_t kLong = 7;  ///< nodes
-/// Of a polyline that is divided, and of its parts.
+/// A polyline that is divided has the first, its parts the second.
 constexpr std::size_t kLeastNodesDivided = 8, kLeastNodesOfPart = 3;
-// Of pieces that end free in noise, in spacings.
+// Between pieces that end free in noise, in spacings.
 constexpr double kAsideInNoise = 2.0;
 constexpr double kOverlapInNoise = 6.0;
 

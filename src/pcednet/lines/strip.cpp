@@ -11,7 +11,7 @@ constexpr double kNarrow = 1.0, kClose = 0.35;  ///< from the line
 constexpr double kOnLine = 0.05;
 constexpr double kLeastShared = 0.5;
 constexpr double kShortestGap = 2.5;
-constexpr double kPointsInGap = 6.0;  ///< so many are not missing by chance
+constexpr double kPointsInGap = 6.0;  ///< more are not missing by chance
 constexpr double kGapMargin = 0.3;
 
 // Shares of points.

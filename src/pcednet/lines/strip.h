@@ -8,8 +8,8 @@ namespace pcednet::lines {
 inline constexpr double kStripWidth = 2.5;        ///< spacings
 inline constexpr double kLongestStripGap = 12.0;  ///< spacings
 
-// Of an exact edge: its least length and the reach of the points at it, in spacings, and their
-// least mean probability of an edge.
+// An exact edge: its least length and the reach of the points at it, in spacings, and their least
+// mean probability of an edge.
 inline constexpr double kLeastExactLength = 0.8, kAtExactEdge = 0.7, kLeastExactProbability = 0.1;
 
 /// A part of a line or circle: places along it, in spacings.

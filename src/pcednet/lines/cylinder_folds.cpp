@@ -1,4 +1,4 @@
-#include "pcednet/lines/wall_folds.h"
+#include "pcednet/lines/cylinder_folds.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -17,25 +17,25 @@
 namespace pcednet::lines {
 namespace {
 
-constexpr double kParallelSine = 1e-3;  ///< of a wall and what meets it along its axis
-constexpr double kOneLine = 0.9999;     ///< cosine of folds that are the same
-constexpr std::size_t kWallsAtOnce = 8;
+constexpr double kParallelSine = 1e-3;  ///< of a cylinder and what meets it along its axis
+constexpr double kSameFold = 0.9999;     ///< cosine of folds that are the same
+constexpr std::size_t kCylindersAtOnce = 8;
 
 // In spacings.
-constexpr double kBetweenWalls = 2.5;     ///< of their points, where they may meet
-constexpr double kSameEnds = 1.0;         ///< of folds that were found twice
-constexpr double kLeastOfWallFold = 2.0;  ///< length
+constexpr double kBetweenCylinders = 2.5;     ///< of their points, where they may meet
+constexpr double kSameEnds = 1.0;             ///< of folds that were found twice
+constexpr double kLeastOfCylinderFold = 2.0;  ///< length
 
-/// The lines along a wall at both places where its circle meets another surface.
+/// The lines along a cylinder at both places where its circle meets another surface.
 using TwoLines = std::optional<std::array<PlaneLine, 2>>;
 
 TwoLines two_lines(const Vec3& middle, const Vec3& half, const Vec3& along) {
   return std::array<PlaneLine, 2>{PlaneLine{middle + half, along}, PlaneLine{middle - half, along}};
 }
 
-/// None if the plane is not along the wall, or meets it at less than 20 degrees.
-TwoLines lines_where_meet(const ExactWall& wall, const PlanePatch& plane) {
-  const Fit& circle = wall.circle;
+/// None if the plane is not along the cylinder, or meets it at less than 20 degrees.
+TwoLines lines_where_meet(const ExactCylinder& cylinder, const PlanePatch& plane) {
+  const Fit& circle = cylinder.circle;
   if (std::abs(plane.normal.dot(circle.direction)) > kParallelSine) return std::nullopt;
   const double height = plane.height(circle.point);
   const double sq_sine = 1.0 - std::pow(height / circle.radius, 2);
@@ -46,7 +46,7 @@ TwoLines lines_where_meet(const ExactWall& wall, const PlanePatch& plane) {
       circle.direction);
 }
 
-TwoLines lines_where_meet(const ExactWall& a, const ExactWall& b) {
+TwoLines lines_where_meet(const ExactCylinder& a, const ExactCylinder& b) {
   const Vec3& along = a.circle.direction;
   if (along.cross(b.circle.direction).norm() > kParallelSine) return std::nullopt;
   Vec3 across = b.circle.point - a.circle.point;
@@ -61,7 +61,7 @@ TwoLines lines_where_meet(const ExactWall& a, const ExactWall& b) {
                    (r * s * std::sqrt(sq_sine) / apart) * along.cross(across), along);
 }
 
-/// A point of a wall near another surface.
+/// A point of a cylinder near another surface.
 struct Meeting {
   std::uint32_t other, point;
 
@@ -90,9 +90,9 @@ PlanesOfPoints planes_of_points(const std::vector<std::span<const PlaneContact>>
   return pairs;
 }
 
-std::vector<Meeting> planes_beside(const ExactWall& wall, const PlanesOfPoints& pairs) {
+std::vector<Meeting> planes_beside(const ExactCylinder& cylinder, const PlanesOfPoints& pairs) {
   std::vector<Meeting> found;
-  for (const std::uint32_t point : wall.members) {
+  for (const std::uint32_t point : cylinder.members) {
     auto pair = std::lower_bound(pairs.begin(), pairs.end(), std::pair(point, 0U));
     for (; pair != pairs.end() && pair->first == point; ++pair) {
       found.push_back({pair->second, point});
@@ -102,28 +102,29 @@ std::vector<Meeting> planes_beside(const ExactWall& wall, const PlanesOfPoints& 
   return found;
 }
 
-/// All points of walls, to find the walls beside one.
-class WallIndex {
+/// All points of cylinders, to find the cylinders beside one.
+class CylinderIndex {
  public:
-  WallIndex(const OrderedPoints& cloud, const std::vector<ExactWall>& walls) {
-    for (std::uint32_t w = 0; w < walls.size(); ++w) {
-      for (const std::uint32_t i : walls[w].members) {
+  CylinderIndex(const OrderedPoints& cloud, const std::vector<ExactCylinder>& cylinders) {
+    for (std::uint32_t w = 0; w < cylinders.size(); ++w) {
+      for (const std::uint32_t i : cylinders[w].members) {
         places_.push_back(cloud.position(i));
-        wall_.push_back(w);
+        cylinder_.push_back(w);
       }
     }
     tree_.emplace(places_);
   }
 
   /// Those with a greater number.
-  std::vector<Meeting> later_walls_beside(const OrderedPoints& cloud, const ExactWall& wall,
-                                          std::uint32_t number, double reach) const {
+  std::vector<Meeting> later_cylinders_beside(const OrderedPoints& cloud,
+                                              const ExactCylinder& cylinder, std::uint32_t number,
+                                              double reach) const {
     std::vector<Meeting> found;
     std::vector<spatial::Neighbour> near;
-    for (const std::uint32_t i : wall.members) {
+    for (const std::uint32_t i : cylinder.members) {
       tree_->within_unsorted(cloud.position(i), reach, near);
       for (const auto& other : near) {
-        if (wall_[other.index] > number) found.push_back({wall_[other.index], i});
+        if (cylinder_[other.index] > number) found.push_back({cylinder_[other.index], i});
       }
     }
     sort_unique(found);
@@ -132,7 +133,7 @@ class WallIndex {
 
  private:
   std::vector<Vec3> places_;
-  std::vector<std::uint32_t> wall_;
+  std::vector<std::uint32_t> cylinder_;
   std::optional<spatial::KdTree> tree_;
 };
 
@@ -145,13 +146,13 @@ void for_each_other(const std::vector<Meeting>& meetings, const Visit& visit) {
   }
 }
 
-/// Of folds that were found from both ends of a wall, the first.
+/// Leaves out folds that were found before, from the other end of a cylinder.
 std::vector<Piece> each_once(std::vector<Piece> folds, double spacing) {
   const EndIndex index(folds, open_ends(folds));
   std::vector<std::uint8_t> is_again(folds.size(), 0);
   std::vector<spatial::Neighbour> near;
   const auto is_same = [&](const Piece& a, const Piece& b) {
-    if (std::abs(a.fit.direction.dot(b.fit.direction)) < kOneLine) return false;
+    if (std::abs(a.fit.direction.dot(b.fit.direction)) < kSameFold) return false;
     const double reach = kSameEnds * spacing;
     const auto& [first, last] = b.ends;
     const bool same_way = (a.ends[0] - first).norm() < (a.ends[0] - last).norm();
@@ -175,47 +176,49 @@ std::vector<Piece> each_once(std::vector<Piece> folds, double spacing) {
 
 }  // namespace
 
-std::vector<Piece> find_wall_folds(const OrderedPoints& cloud,
-                                   const std::vector<PlanePatch>& planes,
-                                   const std::vector<ExactWall>& walls,
-                                   const std::vector<std::span<const PlaneContact>>& free_points,
-                                   double spacing, const Progress* progress) {
-  if (walls.empty()) return {};
+std::vector<Piece> find_cylinder_folds(
+    const OrderedPoints& cloud, const std::vector<PlanePatch>& planes,
+    const std::vector<ExactCylinder>& cylinders,
+    const std::vector<std::span<const PlaneContact>>& free_points, double spacing,
+    const Progress* progress) {
+  if (cylinders.empty()) return {};
   const PlanesOfPoints pairs = planes_of_points(free_points);
-  const WallIndex index(cloud, walls);
-  std::vector<std::vector<Piece>> of_walls(walls.size());
-  Stage stage(progress, "exact folds of walls", walls.size());
-  parallel_blocks(walls.size(), kWallsAtOnce, [&](std::size_t begin, std::size_t end) {
+  const CylinderIndex index(cloud, cylinders);
+  std::vector<std::vector<Piece>> of_cylinders(cylinders.size());
+  Stage stage(progress, "exact folds of cylinders", cylinders.size());
+  parallel_blocks(cylinders.size(), kCylindersAtOnce, [&](std::size_t begin, std::size_t end) {
     for (std::size_t w = begin; w < end; ++w) {
-      const ExactWall& wall = walls[w];
+      const ExactCylinder& cylinder = cylinders[w];
       const auto search = [&](const TwoLines& lines, std::span<const Meeting> meetings,
                               const auto& other_surface) {
         if (!lines) return;
         for (const PlaneLine& line : *lines) {
           const auto near = place_beside(cloud, meetings, line, spacing);
           if (!near) continue;
-          const FoldSearch folds(cloud, surface_of(wall, line), other_surface(line), line, spacing);
-          append(of_walls[w], folds.folds_from(*near));
+          const FoldSearch folds(cloud, surface_of(cylinder, line), other_surface(line), line,
+                                 spacing);
+          append(of_cylinders[w], folds.folds_from(*near));
         }
       };
-      for_each_other(planes_beside(wall, pairs), [&](std::uint32_t p, auto meetings) {
-        search(lines_where_meet(wall, planes[p]), meetings,
+      for_each_other(planes_beside(cylinder, pairs), [&](std::uint32_t p, auto meetings) {
+        search(lines_where_meet(cylinder, planes[p]), meetings,
                [&](const PlaneLine&) { return surface_of(planes[p]); });
       });
       const auto number = static_cast<std::uint32_t>(w);
-      for_each_other(index.later_walls_beside(cloud, wall, number, kBetweenWalls * spacing),
-                     [&](std::uint32_t o, auto meetings) {
-                       search(lines_where_meet(wall, walls[o]), meetings,
-                              [&](const PlaneLine& line) { return surface_of(walls[o], line); });
-                     });
-      std::erase_if(of_walls[w], [&](const Piece& fold) {
-        return length_of(fold) < kLeastOfWallFold * spacing;
+      for_each_other(
+          index.later_cylinders_beside(cloud, cylinder, number, kBetweenCylinders * spacing),
+          [&](std::uint32_t o, auto meetings) {
+            search(lines_where_meet(cylinder, cylinders[o]), meetings,
+                   [&](const PlaneLine& line) { return surface_of(cylinders[o], line); });
+          });
+      std::erase_if(of_cylinders[w], [&](const Piece& fold) {
+        return length_of(fold) < kLeastOfCylinderFold * spacing;
       });
     }
     stage.advance(end - begin);
   });
   std::vector<Piece> folds;
-  for (std::vector<Piece>& of_wall : of_walls) append(folds, std::move(of_wall));
+  for (std::vector<Piece>& of_cylinder : of_cylinders) append(folds, std::move(of_cylinder));
   return each_once(std::move(folds), spacing);
 }
 

@@ -1,4 +1,4 @@
-#include "pcednet/lines/wall_ends.h"
+#include "pcednet/lines/cylinder_ends.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,15 +11,15 @@ namespace {
 constexpr std::size_t kMostTried = 24;   ///< points, to lay lines through
 constexpr std::size_t kLeastOnCone = 6;  ///< points
 constexpr double kMostBesideCone = 0.3;  ///< points off it in its box, to one of it
-constexpr double kLeastOfTurn = 0.6;     ///< of a chamfer, to that of its wall
+constexpr double kLeastOfTurn = 0.6;     ///< of a chamfer, to that of its cylinder
 
 // In spacings.
-constexpr double kOffSurfaces = 0.02;  ///< from wall and plane
+constexpr double kOffSurfaces = 0.02;  ///< from cylinder and plane
 constexpr double kLeastChamfer = 0.15, kMostChamfer = 2.5;
 constexpr double kOnCone = 0.01;
 constexpr double kLeastRimRadius = 0.5;
 
-/// A line across a corner: `out` from the wall and `up` from the plane.
+/// A line across a corner: `out` from the cylinder and `up` from the plane.
 struct CornerCut {
   double out, up;
 
@@ -81,8 +81,8 @@ std::optional<CornerCut> chamfer_of(const std::vector<Eigen::Vector2d>& places) 
   return best;
 }
 
-/// The places off both surfaces in the corner on one side of the wall: away from it, and from the
-/// plane.
+/// The places off both surfaces in the corner on one side of the cylinder: away from it, and from
+/// the plane.
 std::vector<Eigen::Vector2d> places_in_corner(const Profile& profile, double side) {
   std::vector<Eigen::Vector2d> places;
   for (const Profile::Point& point : profile.points()) {
@@ -109,7 +109,7 @@ Piece moved(Piece arc, const Fit& circle) {
 
 }  // namespace
 
-ExactEdges edges_of_wall(const Profile& profile) {
+ExactEdges edges_of_cylinder(const Profile& profile) {
   const double radius = profile.radius();
   const Eigen::Vector2d corner(radius, 0.0), up(0.0, 1.0);
   ExactEdges found;
@@ -122,13 +122,13 @@ ExactEdges edges_of_wall(const Profile& profile) {
   for (const double side : {1.0, -1.0}) {
     const auto cut = chamfer_of(places_in_corner(profile, side));
     if (!cut || radius + side * cut->out < kLeastRimRadius) continue;
-    const Eigen::Vector2d on_plane(radius + side * cut->out, 0.0), on_wall(radius, cut->up);
-    const Eigen::Vector2d down = (on_plane - on_wall).normalized();
+    const Eigen::Vector2d on_plane(radius + side * cut->out, 0.0), on_cylinder(radius, cut->up);
+    const Eigen::Vector2d down = (on_plane - on_cylinder).normalized();
     std::vector<Piece> below =
         profile.arcs({on_plane, Eigen::Vector2d(side, 0.0)}, {on_plane, -down});
-    std::vector<Piece> above = profile.arcs({on_wall, up}, {on_wall, down});
+    std::vector<Piece> above = profile.arcs({on_cylinder, up}, {on_cylinder, down});
     const double turn = std::max(turn_of(below), turn_of(above));
-    if (turn < kLeastOfTurn * profile.turn_along({on_wall, up})) continue;
+    if (turn < kLeastOfTurn * profile.turn_along({on_cylinder, up})) continue;
     for (const Piece& arc : below) found.cut_off.push_back(moved(arc, profile.circle()));
     append(found.pieces, std::move(below));
     append(found.pieces, std::move(above));

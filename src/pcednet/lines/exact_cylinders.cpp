@@ -1,4 +1,4 @@
-#include "pcednet/lines/exact_walls.h"
+#include "pcednet/lines/exact_cylinders.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -12,44 +12,46 @@
 namespace pcednet::lines {
 namespace {
 
-constexpr std::size_t kMostOnCircle = 12;        ///< places, to lay circles through
-constexpr std::size_t kOnFirstWall[] = {12, 6};  ///< on a wall that grows; large ones go first
-constexpr std::size_t kLeastOnWall = 6, kManyOnWall = 9;
+constexpr std::size_t kMostOnCircle = 12;  ///< places, to lay circles through
+/// Points on a circle from which a cylinder grows: large ones go first.
+constexpr std::size_t kOnFirstCylinder[] = {12, 6};
+constexpr std::size_t kLeastOnCylinder = 6, kManyOnCylinder = 9;
 constexpr std::size_t kLeastOnFacets = 12;
 constexpr double kMostOfLean = 0.5;  ///< of the variance of the distances from a circle: the rest
-constexpr std::size_t kNoWall = std::numeric_limits<std::size_t>::max();
-constexpr std::size_t kMostRounds = 12;  ///< of the growth of a wall
+constexpr std::size_t kNoCylinder = std::numeric_limits<std::size_t>::max();
+constexpr std::size_t kMostRounds = 12;  ///< of the growth of a cylinder
 
-/// What a wall's points lie on, and how near they are to its circle, each and as a root mean
+/// What a cylinder's points lie on, and how near they are to its circle, each and as a root mean
 /// square, in spacings.
-struct WallKind {
+struct CylinderKind {
   bool has_facets;
   double reach, most_error;
 };
-constexpr WallKind kCylinder{false, 0.01, 0.002}, kFacets{true, 0.03, 0.012};
+constexpr CylinderKind kCylinder{false, 0.01, 0.002}, kFacets{true, 0.03, 0.012};
 
 // In spacings.
-constexpr double kWallFrom = 0.05, kWallTo = 3.0;
-constexpr double kLookForWall = 2.5;
+constexpr double kCylinderFrom = 0.05, kCylinderTo = 3.0;
+constexpr double kLookForCylinder = 2.5;
 constexpr double kNarrowRadius = 20.0;
-constexpr double kLeastWallStep = 0.3;  ///< of the places that a circle is laid through
-constexpr double kLeastWallRadius = 0.5, kMostWallRadius = 500.0;
-/// Of the wall from its chord: others may be planes, and few points are on a flat arc by chance.
-constexpr double kLeastWallRise = 0.15, kLeastWallRiseOfFew = 0.5, kLeastWallRiseOnFacets = 1.0;
+constexpr double kLeastCylinderStep = 0.3;  ///< of the places that a circle is laid through
+constexpr double kLeastCylinderRadius = 0.5, kMostCylinderRadius = 500.0;
+/// A flatter arc may be a plane, and few points are on one by chance.
+constexpr double kLeastCylinderRise = 0.15, kLeastCylinderRiseOfFew = 0.5,
+                 kLeastCylinderRiseOnFacets = 1.0;
 
 /// Places beside a plane, seen along its normal and in spacings.
-struct WallPoints {
+struct CylinderPoints {
   std::vector<std::uint32_t> indices;  ///< ascending
   std::vector<Vec3> places;            ///< z is 0
   std::vector<double> heights;         ///< from the plane
 };
 
-WallPoints seen_from(const OrderedPoints& cloud, const PlanePatch& plane, const Chart& chart,
-                     double side, std::span<const std::uint32_t> points, double spacing) {
-  WallPoints found;
+CylinderPoints seen_from(const OrderedPoints& cloud, const PlanePatch& plane, const Chart& chart,
+                         double side, std::span<const std::uint32_t> points, double spacing) {
+  CylinderPoints found;
   for (const std::uint32_t i : points) {
     const double height = side * plane.height(cloud.position(i)) / spacing;
-    if (height < kWallFrom || height > kWallTo) continue;
+    if (height < kCylinderFrom || height > kCylinderTo) continue;
     const Chart::Flat flat = chart.flat(cloud.position(i)) / spacing;
     found.indices.push_back(i);
     found.places.emplace_back(flat.x(), flat.y(), 0.0);
@@ -58,10 +60,10 @@ WallPoints seen_from(const OrderedPoints& cloud, const PlanePatch& plane, const 
   return found;
 }
 
-struct WallCircle {
+struct CylinderCircle {
   Vec3 centre = Vec3::Zero();
   double radius = 0.0;
-  WallKind kind = kCylinder;
+  CylinderKind kind = kCylinder;
 
   bool holds(const Vec3& place) const {
     return std::abs((place - centre).norm() - radius) < kind.reach;
@@ -69,70 +71,72 @@ struct WallCircle {
 };
 
 /// The circle through the origin and two places; none if they are near each other or on a line.
-std::optional<WallCircle> circle_through(const Vec3& a, const Vec3& b, const WallKind& kind) {
+std::optional<CylinderCircle> circle_through(const Vec3& a, const Vec3& b,
+                                             const CylinderKind& kind) {
   const double sq_a = a.squaredNorm(), sq_b = b.squaredNorm();
-  if (std::min({sq_a, sq_b, (a - b).squaredNorm()}) < kLeastWallStep * kLeastWallStep) {
+  if (std::min({sq_a, sq_b, (a - b).squaredNorm()}) < kLeastCylinderStep * kLeastCylinderStep) {
     return std::nullopt;
   }
   const double twice_area = a.x() * b.y() - a.y() * b.x();
   const Vec3 centre =
       Vec3(b.y() * sq_a - a.y() * sq_b, a.x() * sq_b - b.x() * sq_a, 0.0) / (2.0 * twice_area);
   const double radius = centre.norm();
-  if (!(radius > kLeastWallRadius && radius < kMostWallRadius)) return std::nullopt;
-  return WallCircle{centre, radius, kind};
+  if (!(radius > kLeastCylinderRadius && radius < kMostCylinderRadius)) return std::nullopt;
+  return CylinderCircle{centre, radius, kind};
 }
 
-/// Walls that grow from place to place.
-class WallGrowth {
+/// Cylinders that grow from place to place.
+class CylinderGrowth {
  public:
-  explicit WallGrowth(const WallPoints& points)
+  explicit CylinderGrowth(const CylinderPoints& points)
       : points_(points),
         tree_(points.places),
         taken_(points.places.size(), 0),
         seen_(points.places.size(), 0) {}
 
-  /// Grows a wall from this place if so many near it are on one.
-  void try_at(std::uint32_t first, std::size_t least_on, const WallKind& kind);
+  /// Grows a cylinder from this place if `least_on` places near it are on one.
+  void try_at(std::uint32_t first, std::size_t least_on, const CylinderKind& kind);
 
-  /// Makes one of the walls that are on one circle: there may be gaps between them.
+  /// Makes one of the cylinders that are on one circle: there may be gaps between them.
   void unite();
 
-  struct Wall {
-    WallCircle circle;
+  struct Cylinder {
+    CylinderCircle circle;
     std::vector<std::uint32_t> members;
   };
-  std::vector<Wall> found;
+  std::vector<Cylinder> found;
 
  private:
-  bool set_first(std::uint32_t first, std::size_t least_on, const WallKind& kind);
+  bool set_first(std::uint32_t first, std::size_t least_on, const CylinderKind& kind);
   bool spread(std::uint32_t first);
   bool fit_to_members();
   double rise() const;
   bool leans() const;
-  bool is_wall() const;
-  bool is_on(const WallCircle& circle, const std::vector<std::uint32_t>& members) const;
-  struct WallIndex {
-    std::vector<Wall> walls;
+  bool is_cylinder() const;
+  bool is_on(const CylinderCircle& circle, const std::vector<std::uint32_t>& members) const;
+  struct CylinderIndex {
+    std::vector<Cylinder> cylinders;
     std::vector<std::size_t> wide;       ///< those of a large radius
-    std::vector<std::size_t> of_places;  ///< the wall of each place
+    std::vector<std::size_t> of_places;  ///< the cylinder of each place
   };
-  std::size_t wall_that_holds(const Wall& part, const WallIndex& index) const;
+  std::size_t cylinder_that_holds(const Cylinder& part, const CylinderIndex& index) const;
 
-  const WallPoints& points_;
+  const CylinderPoints& points_;
   spatial::KdTree tree_;
   std::vector<std::uint8_t> taken_;
   std::vector<std::uint32_t> seen_;  ///< in which spread() a place was last seen
   std::uint32_t spreads_ = 0;
-  WallCircle circle_;
+  CylinderCircle circle_;
   double error_ = 0.0;
   std::vector<std::uint32_t> members_;
 };
 
 /// The circle through the place and two near it that the most of the free places there are on.
-bool WallGrowth::set_first(std::uint32_t first, std::size_t least_on, const WallKind& kind) {
+bool CylinderGrowth::set_first(std::uint32_t first, std::size_t least_on,
+                               const CylinderKind& kind) {
   const Vec3& at = points_.places[first];
   std::vector<spatial::Neighbour> near;
-  tree_.within(at, kLookForWall, near);
+  tree_.within(at, kLookForCylinder, near);
   std::vector<Vec3> offsets;
   for (const auto& other : near) {
     if (other.index != first && !taken_[other.index]) {
@@ -158,7 +162,7 @@ bool WallGrowth::set_first(std::uint32_t first, std::size_t least_on, const Wall
   return is_set;
 }
 
-bool WallGrowth::fit_to_members() {
+bool CylinderGrowth::fit_to_members() {
   std::vector<Vec3> places;
   for (const std::uint32_t i : members_) places.push_back(points_.places[i]);
   const Fit fit = fit_arc(places, 1.0);
@@ -170,14 +174,14 @@ bool WallGrowth::fit_to_members() {
 
 /// Sets the members to the free places on the circle that hang together with the first one, and
 /// the circle to theirs.
-bool WallGrowth::spread(std::uint32_t first) {
+bool CylinderGrowth::spread(std::uint32_t first) {
   std::vector<spatial::Neighbour> near;
   ++spreads_;
   members_ = {first};
   seen_[first] = spreads_;
-  std::size_t next_fit = 2 * kLeastOnWall;
+  std::size_t next_fit = 2 * kLeastOnCylinder;
   for (std::size_t k = 0; k < members_.size(); ++k) {
-    tree_.within(points_.places[members_[k]], kLookForWall, near);
+    tree_.within(points_.places[members_[k]], kLookForCylinder, near);
     for (const auto& other : near) {
       if (taken_[other.index] || seen_[other.index] == spreads_) continue;
       if (!circle_.holds(points_.places[other.index])) continue;
@@ -188,11 +192,11 @@ bool WallGrowth::spread(std::uint32_t first) {
     if (!fit_to_members()) return false;
     next_fit = 2 * members_.size();
   }
-  return members_.size() >= kLeastOnWall && fit_to_members();
+  return members_.size() >= kLeastOnCylinder && fit_to_members();
 }
 
 /// How far the members are from one line.
-double WallGrowth::rise() const {
+double CylinderGrowth::rise() const {
   const Vec3& from = points_.places[members_.front()];
   double longest = 0.0;
   Vec3 to = from;
@@ -218,7 +222,7 @@ void take_away(const Eigen::ArrayXd& part, Eigen::ArrayXd& values) {
 
 /// Whether the distances of the members from the circle follow from their heights, as on a cone or
 /// a torus: on facets they do not.
-bool WallGrowth::leans() const {
+bool CylinderGrowth::leans() const {
   const auto count = static_cast<Eigen::Index>(members_.size());
   Eigen::ArrayXd height(count), off(count);
   for (Eigen::Index k = 0; k < count; ++k) {
@@ -237,16 +241,17 @@ bool WallGrowth::leans() const {
 }
 
 /// Whether the members are enough, on a curve, and as near to it as they should be.
-bool WallGrowth::is_wall() const {
-  const WallKind& kind = circle_.kind;
-  if (error_ > kind.most_error || circle_.radius < kLeastWallRadius) return false;
+bool CylinderGrowth::is_cylinder() const {
+  const CylinderKind& kind = circle_.kind;
+  if (error_ > kind.most_error || circle_.radius < kLeastCylinderRadius) return false;
   if (kind.has_facets) {
-    return members_.size() >= kLeastOnFacets && rise() > kLeastWallRiseOnFacets && !leans();
+    return members_.size() >= kLeastOnFacets && rise() > kLeastCylinderRiseOnFacets && !leans();
   }
-  return rise() > (members_.size() < kManyOnWall ? kLeastWallRiseOfFew : kLeastWallRise);
+  return rise() >
+         (members_.size() < kManyOnCylinder ? kLeastCylinderRiseOfFew : kLeastCylinderRise);
 }
 
-void WallGrowth::try_at(std::uint32_t first, std::size_t least_on, const WallKind& kind) {
+void CylinderGrowth::try_at(std::uint32_t first, std::size_t least_on, const CylinderKind& kind) {
   if (taken_[first] || !set_first(first, least_on, kind)) return;
   // The circle through three places is wrong farther on; that of all so far is less so.
   for (std::size_t before = 0, round = 0; round < kMostRounds; ++round) {
@@ -254,90 +259,94 @@ void WallGrowth::try_at(std::uint32_t first, std::size_t least_on, const WallKin
     if (round > 0 && members_.size() <= before) break;
     before = members_.size();
   }
-  if (!is_wall()) return;
+  if (!is_cylinder()) return;
   for (const std::uint32_t i : members_) taken_[i] = 1;
   found.push_back({circle_, members_});
 }
 
-bool WallGrowth::is_on(const WallCircle& circle, const std::vector<std::uint32_t>& members) const {
+bool CylinderGrowth::is_on(const CylinderCircle& circle,
+                           const std::vector<std::uint32_t>& members) const {
   return std::ranges::all_of(members,
                              [&](std::uint32_t i) { return circle.holds(points_.places[i]); });
 }
 
-/// The number of a wall whose circle all members of this one are on; kNoWall if there is none. The
-/// places of a narrow one are near each other.
-std::size_t WallGrowth::wall_that_holds(const Wall& part, const WallIndex& index) const {
-  for (const std::size_t wall : index.wide) {
-    if (is_on(index.walls[wall].circle, part.members)) return wall;
+/// The number of a cylinder whose circle all members of this one are on; kNoCylinder if there is
+/// none. The places of a narrow one are near each other.
+std::size_t CylinderGrowth::cylinder_that_holds(const Cylinder& part,
+                                                const CylinderIndex& index) const {
+  for (const std::size_t cylinder : index.wide) {
+    if (is_on(index.cylinders[cylinder].circle, part.members)) return cylinder;
   }
   std::vector<spatial::Neighbour> near;
   tree_.within(points_.places[part.members.front()], 2.0 * kNarrowRadius, near);
-  std::size_t last = kNoWall;
+  std::size_t last = kNoCylinder;
   for (const auto& other : near) {
-    const std::size_t wall = index.of_places[other.index];
-    if (wall == kNoWall || wall == last) continue;
-    if (is_on(index.walls[wall].circle, part.members)) return wall;
-    last = wall;
+    const std::size_t cylinder = index.of_places[other.index];
+    if (cylinder == kNoCylinder || cylinder == last) continue;
+    if (is_on(index.cylinders[cylinder].circle, part.members)) return cylinder;
+    last = cylinder;
   }
-  return kNoWall;
+  return kNoCylinder;
 }
 
-void WallGrowth::unite() {
-  std::stable_sort(found.begin(), found.end(), [](const Wall& a, const Wall& b) {
+void CylinderGrowth::unite() {
+  std::stable_sort(found.begin(), found.end(), [](const Cylinder& a, const Cylinder& b) {
     return a.members.size() > b.members.size();
   });
-  WallIndex whole{.walls = {},
-                  .wide = {},
-                  .of_places = std::vector<std::size_t>(points_.places.size(), kNoWall)};
-  for (const Wall& part : found) {
-    std::size_t wall = wall_that_holds(part, whole);
-    if (wall == kNoWall) {
-      wall = whole.walls.size();
-      if (part.circle.radius > kNarrowRadius) whole.wide.push_back(wall);
-      whole.walls.push_back(part);
+  CylinderIndex whole{.cylinders = {},
+                      .wide = {},
+                      .of_places = std::vector<std::size_t>(points_.places.size(), kNoCylinder)};
+  for (const Cylinder& part : found) {
+    std::size_t cylinder = cylinder_that_holds(part, whole);
+    if (cylinder == kNoCylinder) {
+      cylinder = whole.cylinders.size();
+      if (part.circle.radius > kNarrowRadius) whole.wide.push_back(cylinder);
+      whole.cylinders.push_back(part);
     } else {
-      circle_ = whole.walls[wall].circle;
-      members_ = std::move(whole.walls[wall].members);
+      circle_ = whole.cylinders[cylinder].circle;
+      members_ = std::move(whole.cylinders[cylinder].members);
       members_.insert(members_.end(), part.members.begin(), part.members.end());
-      if (fit_to_members()) whole.walls[wall].circle = circle_;
-      whole.walls[wall].members = members_;
+      if (fit_to_members()) whole.cylinders[cylinder].circle = circle_;
+      whole.cylinders[cylinder].members = members_;
     }
-    for (const std::uint32_t i : part.members) whole.of_places[i] = wall;
+    for (const std::uint32_t i : part.members) whole.of_places[i] = cylinder;
   }
-  for (Wall& wall : whole.walls) std::sort(wall.members.begin(), wall.members.end());
-  found = std::move(whole.walls);
+  for (Cylinder& cylinder : whole.cylinders)
+    std::sort(cylinder.members.begin(), cylinder.members.end());
+  found = std::move(whole.cylinders);
 }
 
 }  // namespace
 
-std::vector<ExactWall> find_exact_walls(const OrderedPoints& cloud, const PlanePatch& plane,
-                                        std::span<const std::uint32_t> points, double spacing) {
-  std::vector<ExactWall> walls;
+std::vector<ExactCylinder> find_exact_cylinders(const OrderedPoints& cloud, const PlanePatch& plane,
+                                                std::span<const std::uint32_t> points,
+                                                double spacing) {
+  std::vector<ExactCylinder> cylinders;
   const Chart chart(
       cloud.position(points.front()) - plane.height(cloud.position(points.front())) * plane.normal,
       plane.normal);
   for (const double side : {1.0, -1.0}) {
-    const WallPoints flat = seen_from(cloud, plane, chart, side, points, spacing);
-    if (flat.indices.size() < kLeastOnWall) continue;
-    WallGrowth growth(flat);
-    for (const WallKind& kind : {kCylinder, kFacets}) {
-      for (const std::size_t least_on : kOnFirstWall) {
+    const CylinderPoints flat = seen_from(cloud, plane, chart, side, points, spacing);
+    if (flat.indices.size() < kLeastOnCylinder) continue;
+    CylinderGrowth growth(flat);
+    for (const CylinderKind& kind : {kCylinder, kFacets}) {
+      for (const std::size_t least_on : kOnFirstCylinder) {
         for (std::uint32_t i = 0; i < flat.indices.size(); ++i) {
           growth.try_at(i, least_on, kind);
         }
       }
     }
     growth.unite();
-    for (const WallGrowth::Wall& wall : growth.found) {
-      const Chart::Flat centre = spacing * wall.circle.centre.head<2>();
-      ExactWall& exact = walls.emplace_back();
+    for (const CylinderGrowth::Cylinder& cylinder : growth.found) {
+      const Chart::Flat centre = spacing * cylinder.circle.centre.head<2>();
+      ExactCylinder& exact = cylinders.emplace_back();
       exact.circle = {CurveKind::kArc, chart.place(centre), side * plane.normal,
-                      spacing * wall.circle.radius, 0.0};
-      exact.reach = spacing * wall.circle.kind.reach;
-      for (const std::uint32_t i : wall.members) exact.members.push_back(flat.indices[i]);
+                      spacing * cylinder.circle.radius, 0.0};
+      exact.reach = spacing * cylinder.circle.kind.reach;
+      for (const std::uint32_t i : cylinder.members) exact.members.push_back(flat.indices[i]);
     }
   }
-  return walls;
+  return cylinders;
 }
 
 }  // namespace pcednet::lines

@@ -1,4 +1,4 @@
-#include "pcednet/lines/wall_folds.h"
+#include "pcednet/lines/cylinder_folds.h"
 
 #include <gtest/gtest.h>
 
@@ -82,15 +82,15 @@ void expect_two_long_folds(const std::vector<Piece>& folds, double x, double y, 
   EXPECT_LT(folds[0].ends[0].y() * folds[1].ends[0].y(), 0.0);
 }
 
-TEST(WallFolds, AreWhereAPlaneMeetsACylinder) {
+TEST(CylinderFolds, AreWhereAPlaneMeetsACylinder) {
   expect_two_long_folds(flattened_bar().folds_along(), 3.0, std::sqrt(27.0), 1e-4);
 }
 
-TEST(WallFolds, AreFoundAtFacetsOfACylinder) {
+TEST(CylinderFolds, AreFoundAtFacetsOfACylinder) {
   expect_two_long_folds(flattened_bar(0.02).folds_along(), 3.0, std::sqrt(27.0), 0.05);
 }
 
-TEST(WallFolds, AreWhereCylindersMeet) {
+TEST(CylinderFolds, AreWhereCylindersMeet) {
   Bar bar;  // two arcs about axes 10 apart
   const double radius = 8.0, half = 5.0, y = std::sqrt(39.0), angle = std::asin(y / radius);
   bar.is_inside = [=](double at_x, double at_y) {
@@ -105,7 +105,7 @@ TEST(WallFolds, AreWhereCylindersMeet) {
   expect_two_long_folds(bar.folds_along(), 0.0, y, 1e-4);
 }
 
-TEST(WallFolds, AreNotWhereAPlaneTouchesACylinder) {
+TEST(CylinderFolds, AreNotWhereAPlaneTouchesACylinder) {
   Bar bar;  // half round, with a box of the same width: the planes y = 4 and -4 go on in the
             // cylinder
   const double radius = 4.0;
@@ -121,7 +121,7 @@ TEST(WallFolds, AreNotWhereAPlaneTouchesACylinder) {
   EXPECT_TRUE(bar.folds_along().empty());
 }
 
-TEST(WallFolds, AreTheSameForAnyOrderOfThePoints) {
+TEST(CylinderFolds, AreTheSameForAnyOrderOfThePoints) {
   const Bar bar = flattened_bar();
   const std::vector<Piece> folds = bar.folds(), others = turned_round(bar).folds();
   ASSERT_EQ(folds.size(), others.size());
