@@ -11,6 +11,7 @@
 #include "detect/labelled_cube.h"
 #include "pcednet/cloud/bounding_box.h"
 #include "pcednet/core/parallel.h"
+#include "pcednet/detect/decide.h"
 #include "pcednet/detect/part_of_cloud.h"
 #include "pcednet/detect/result_cloud.h"
 #include "support/expect_error.h"

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "labelled_cube.h"
+#include "pcednet/detect/decide.h"
 #include "pcednet/detect/describe.h"
 #include "pcednet/detect/train.h"
 #include "pcednet/spatial/curve_order.h"

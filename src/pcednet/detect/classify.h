@@ -9,8 +9,6 @@
 
 namespace pcednet::detect {
 
-struct DescribedCloud;
-
 struct ClassCounts {
   std::size_t non_edge = 0, smooth = 0, sharp = 0, boundary = 0, unlabelled = 0;
 
@@ -35,13 +33,6 @@ struct Classification {
   std::optional<CloudKind> expert = {};  ///< the kind of cloud whose expert decided
 };
 
-/// Throws Error(kUsage) if the result is not one of so many points.
-void check_size(const Classification& found, std::size_t points);
-
-/// A result with all of `points` unlabelled, for a model with own classes or with edge classes
-/// only.
-Classification nothing_found(std::size_t points, bool has_own_classes = false);
-
 /// Describes every point at every scale and classifies it by the network. A point is an edge where
 /// that is more probable than not, of the more probable kind; with own classes, the most probable
 /// class decides. Works block by block: the scale-space matrix is never held whole. A
@@ -49,10 +40,5 @@ Classification nothing_found(std::size_t points, bool has_own_classes = false);
 /// result is the same for any number of threads and any order of the points.
 Classification classify(const PreparedCloud& cloud, const EdgeModel& model,
                         const Progress* progress = nullptr);
-
-/// The same for a cloud described as the model requires. Throws Error(kModelMismatch) if the rows
-/// are not of the model's size, or the positions not those of the cloud.
-Classification classify(const DescribedCloud& cloud, std::span<const Vec3> positions,
-                        const EdgeModel& model, const Progress* progress = nullptr);
 
 }  // namespace pcednet::detect

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "pcednet/detect/classify.h"
 #include "pcednet/detect/cloud_kind.h"
 #include "pcednet/detect/prepare.h"
 #include "pcednet/gls/scale_space.h"
@@ -33,5 +34,10 @@ struct DescribedCloud {
 /// Describes every point with a finite position.
 DescribedCloud describe(const PreparedCloud& cloud, const gls::ScaleSpaceOptions& descriptor,
                         const Progress* progress = nullptr);
+
+/// classify() for a cloud described as the model requires. Throws Error(kModelMismatch) if the rows
+/// are not of the model's size, or the positions not those of the cloud.
+Classification classify(const DescribedCloud& cloud, std::span<const Vec3> positions,
+                        const EdgeModel& model, const Progress* progress = nullptr);
 
 }  // namespace pcednet::detect

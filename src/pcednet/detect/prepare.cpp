@@ -54,8 +54,11 @@ struct Oriented {
   std::size_t faced;  ///< turned towards their scanner
 };
 
+/// How the signs of normals are found.
+enum class Signs { kConsistent, kAny };
+
 /// Estimates the normals that are missing and orients all.
-Oriented complete_and_orient(const Points& cloud, const PreparedCloud& prepared,
+Oriented complete_and_orient(const Points& cloud, const PreparedCloud& prepared, Signs signs,
                              const Progress* progress) {
   const std::vector<Vec3> scanners = cloud.scanners();
   const auto is_known = [](const Vec3& place) { return place.allFinite(); };
@@ -67,6 +70,8 @@ Oriented complete_and_orient(const Points& cloud, const PreparedCloud& prepared,
   // If every point has a scanner, the costly search for consistent signs is unnecessary.
   if (!scanners.empty() && std::all_of(scanners.begin(), scanners.end(), is_known)) {
     options.viewpoint = scanners.front();
+  } else if (signs == Signs::kAny) {
+    options.viewpoint = Vec3::Zero();
   }
   std::vector<Vec3> given(cloud.size(), Vec3::Zero());
   if (cloud.has_normals()) {
@@ -103,6 +108,7 @@ void use(Oriented&& oriented, const std::string& note, PreparedCloud& prepared) 
   prepared.decision.neighbours = oriented.found.choice.neighbours;
   prepared.decision.exact_planes = oriented.found.choice.exact_planes;
   prepared.made = std::move(oriented.found.normals);
+  for (Vec3& normal : prepared.made) normal += Vec3::Zero();  // no zero keeps a minus sign
   prepared.normals = prepared.made;
 }
 
@@ -130,8 +136,13 @@ bool take_signs(std::span<const Vec3> earlier, const PreparedCloud& prepared,
 
 void estimate(PreparedCloud& prepared, const Points& cloud, const std::string& why,
               const Progress* progress) {
-  Oriented oriented = complete_and_orient(cloud, prepared, progress);
+  const bool had_signs = !cloud.estimates.empty();
+  Oriented oriented =
+      complete_and_orient(cloud, prepared, had_signs ? Signs::kAny : Signs::kConsistent, progress);
   const bool signs = take_signs(cloud.estimates, prepared, oriented.found.normals);
+  if (had_signs && !signs) {
+    oriented = complete_and_orient(cloud, prepared, Signs::kConsistent, progress);
+  }
   const std::string note = fmt::format(
       "{}: estimated from the {} nearest points{}", why, oriented.found.choice.neighbours,
       signs ? ", with the signs that they have" : " and " + describe(oriented));
@@ -243,7 +254,7 @@ void orient_mixed(PreparedCloud& prepared, const Points& cloud, const Progress* 
   const normals::FlatPairs pairs(prepared.positions, cloud.normals, prepared.curve);
   if (!oppose_often(pairs, cloud.normals)) return;
   if (pairs.one_sidedness(prepared.positions, cloud.normals) > kWalls) return;
-  Oriented oriented = complete_and_orient(cloud, prepared, progress);
+  Oriented oriented = complete_and_orient(cloud, prepared, Signs::kConsistent, progress);
   const std::size_t turned = count_turned(cloud, oriented);
   if (pairs.opposed(oriented.found.normals) * kMended > pairs.opposed(cloud.normals)) return;
   if (turned * kShareToOrient < cloud.size()) return;

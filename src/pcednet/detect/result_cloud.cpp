@@ -7,6 +7,7 @@
 
 #include "pcednet/cloud/class_table.h"
 #include "pcednet/core/version.h"
+#include "pcednet/detect/decide.h"
 
 namespace pcednet::detect {
 namespace {

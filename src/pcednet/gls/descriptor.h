@@ -1,6 +1,9 @@
 #pragma once
 
+#include <span>
+
 #include "pcednet/core/vec3.h"
+#include "pcednet/gls/features.h"
 #include "pcednet/gls/moments.h"
 #include "pcednet/gls/sphere_fit.h"
 
@@ -22,6 +25,11 @@ struct Descriptor {
   Mat3 deta_dx = Mat3::Zero();  ///< row i, column k: d eta_i / d x_k
   Vec3 dkappa_dx = Vec3::Zero();
 };
+
+/// Writes the features of `set`, made dimensionless by the support radius t: lengths are divided by
+/// t, curvatures multiplied by t, derivatives in x or t by one more t. `out` has feature_count(set)
+/// numbers.
+void write_features(FeatureSet set, const Descriptor& descriptor, double t, std::span<double> out);
 
 /// The description of `fit`, made from `moments.value`:
 ///

@@ -5,8 +5,6 @@
 
 namespace pcednet::gls {
 
-struct Descriptor;
-
 /// The features that describe a point at a scale; each enumerator's name ends in their number.
 enum class FeatureSet {
   kAll28,       ///< all: kInvariant7, then eta and the Jacobian entries that rotate with the cloud
@@ -23,10 +21,5 @@ int feature_count(FeatureSet set);
 
 /// Their names, in the order of a matrix's columns.
 std::span<const std::string_view> feature_names(FeatureSet set);
-
-/// Writes the features of `set`, made dimensionless by the support radius t: lengths are divided by
-/// t, curvatures multiplied by t, derivatives in x or t by one more t. `out` has feature_count(set)
-/// numbers.
-void write_features(FeatureSet set, const Descriptor& descriptor, double t, std::span<double> out);
 
 }  // namespace pcednet::gls

@@ -11,8 +11,6 @@
 
 namespace pcednet::gls {
 
-struct ScaleRange;
-
 inline constexpr int kMinScales = 4, kMaxScales = 128;
 
 inline constexpr double kPartOfDiagonal = 0.1;
@@ -41,9 +39,6 @@ struct ScaleSpaceOptions {
 
   bool operator==(const ScaleSpaceOptions&) const = default;
 };
-
-/// The range in the options; a bound of 0 is to be found from the cloud.
-ScaleRange given_range(const ScaleSpaceOptions& options);
 
 /// The column names of a matrix for one scale; those of the second gate begin with "second_".
 std::vector<std::string> column_names(const ScaleSpaceOptions& options);

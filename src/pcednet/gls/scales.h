@@ -23,6 +23,9 @@ struct ScaleRange {
   bool rounded = true;   ///< with a ratio: an s_min of the cloud is a preferred number
 };
 
+/// The range in the options; a bound of 0 is to be found from the cloud.
+ScaleRange given_range(const ScaleSpaceOptions& options);
+
 /// In uneven clouds points may be described at scales 2, 4 or 8 times larger than those of octave
 /// 0, which end s_max_ratio above s_min.
 inline constexpr std::size_t kOctaves = 4;

@@ -18,7 +18,7 @@ namespace pcednet::lines {
 namespace {
 
 constexpr double kParallelSine = 1e-3;  ///< of a cylinder and what meets it along its axis
-constexpr double kSameFold = 0.9999;     ///< cosine of folds that are the same
+constexpr double kSameFold = 0.9999;    ///< cosine of folds that are the same
 constexpr std::size_t kCylindersAtOnce = 8;
 
 // In spacings.
