@@ -1,6 +1,5 @@
 #include "crs_option.h"
 
-#include <charconv>
 #include <string>
 #include <string_view>
 
@@ -12,12 +11,9 @@ namespace pcednet::app {
 namespace {
 
 /// The code of "EPSG:25832"; 0 if it is none.
-int epsg_code(std::string_view word) {
+int code_of(std::string_view word) {
   if (io::lower_case(word.substr(0, 5)) != "epsg:") return 0;
-  word.remove_prefix(5);
-  int code = 0;
-  const auto [end, fault] = std::from_chars(word.data(), word.data() + word.size(), code);
-  return fault == std::errc{} && end == word.data() + word.size() && code > 0 ? code : 0;
+  return io::epsg_code(word.substr(5));
 }
 
 io::CoordinateSystem system_of_code(int epsg) {
@@ -39,11 +35,11 @@ io::CoordinateSystem system_of_code(int epsg) {
 CLI::Option* add_crs_option(CLI::App& command, std::optional<io::CoordinateSystem>& system) {
   return command
       .add_option_function<std::string>(
-          "--crs", [&system](const std::string& word) { system = system_of_code(epsg_code(word)); },
+          "--crs", [&system](const std::string& word) { system = system_of_code(code_of(word)); },
           "The coordinate system, such as EPSG:25832, where the file does not name it")
       ->check(CLI::Validator(
           [](const std::string& word) {
-            return epsg_code(word) > 0 ? "" : word + " is not a code such as EPSG:25832";
+            return code_of(word) > 0 ? "" : word + " is not a code such as EPSG:25832";
           },
           "EPSG:CODE"));
 }

@@ -1,7 +1,7 @@
 #include "pcednet/io/coordinate_system.h"
 
 #include <algorithm>
-#include <charconv>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -61,13 +61,15 @@ bool is_horizontal(const std::vector<WktNode>& open) {
 int epsg_of(const WktNode& node) {
   if (!is_one_of(node.keyword, {"authority", "id"})) return 0;
   if (node.values.size() < 2 || lower_case(node.values[0]) != "epsg") return 0;
-  int code = 0;
-  const std::string_view word = node.values[1];
-  const auto [end, fault] = std::from_chars(word.data(), word.data() + word.size(), code);
-  return fault == std::errc{} && end == word.data() + word.size() && code > 0 ? code : 0;
+  return epsg_code(node.values[1]);
 }
 
 }  // namespace
+
+int epsg_code(std::string_view word) {
+  const auto code = parse_count(word);
+  return code && *code <= std::numeric_limits<int>::max() ? static_cast<int>(*code) : 0;
+}
 
 CoordinateSystem coordinate_system_of_wkt(std::string_view wkt) {
   CoordinateSystem system{.epsg = 0, .wkt = std::string(trim(wkt))};

@@ -16,6 +16,9 @@ struct CoordinateSystem {
   bool geographic = false;  ///< x and y are angles: longitude and latitude
 };
 
+/// The code that a word of digits stands for; 0 if it stands for none.
+int epsg_code(std::string_view word);
+
 /// The system that a definition describes: its code is that of the outermost EPSG AUTHORITY or ID;
 /// of a compound system without one, the codes are those of its parts.
 CoordinateSystem coordinate_system_of_wkt(std::string_view wkt);

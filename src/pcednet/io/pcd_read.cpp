@@ -30,13 +30,11 @@ std::uint64_t read_ascii(const InputFile& file, const PcdHeader& header, CloudBu
   const std::size_t numbers = header.numbers_per_point();
   for (std::uint64_t i = 0; i < header.points; ++i) {
     std::string_view line;
-    do {
-      if (!lines.next(line)) {
-        throw unreadable(file.path(),
-                         fmt::format("the file ends after {} of {} points", i, header.points),
-                         lines.number());
-      }
-    } while (trim(line).empty());
+    if (!lines.next_filled(line)) {
+      throw unreadable(file.path(),
+                       fmt::format("the file ends after {} of {} points", i, header.points),
+                       lines.number());
+    }
     split(line, words);
     if (words.size() != numbers) {
       throw unreadable(file.path(), fmt::format("{} numbers instead of {}", words.size(), numbers),
@@ -54,12 +52,7 @@ std::uint64_t read_ascii(const InputFile& file, const PcdHeader& header, CloudBu
     }
   }
   feeder.flush();
-  std::string_view line;
-  while (lines.next(line)) {
-    if (!trim(line).empty())
-      return text.size() - static_cast<std::size_t>(line.data() - text.data());
-  }
-  return 0;
+  return lines.unread();
 }
 
 void read_binary(const InputFile& file, const PcdHeader& header, CloudBuilder& builder) {

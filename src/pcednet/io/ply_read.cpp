@@ -63,14 +63,7 @@ class AsciiBody {
   }
 
   /// Bytes after the rows read so far, without blank lines between.
-  std::uint64_t unread() {
-    std::string_view line;
-    while (lines_.next(line)) {
-      if (!trim(line).empty())
-        return text_.size() - static_cast<std::size_t>(line.data() - text_.data());
-    }
-    return 0;
-  }
+  std::uint64_t unread() { return lines_.unread(); }
 
  private:
   Error error(const std::string& what) const { return unreadable(path_, what, lines_.number()); }
@@ -84,12 +77,10 @@ class AsciiBody {
   template <typename Take>
   void read_row(const PlyElement& element, Take&& take) {
     std::string_view line;
-    do {
-      if (!lines_.next(line)) {
-        throw error(fmt::format("the file ends within element {}, which declares {} rows",
-                                element.name, element.count));
-      }
-    } while (trim(line).empty());
+    if (!lines_.next_filled(line)) {
+      throw error(fmt::format("the file ends within element {}, which declares {} rows",
+                              element.name, element.count));
+    }
     split(line, words_);
     std::size_t used = 0;
     const auto next_word = [&] {

@@ -72,6 +72,19 @@ bool Lines::next(std::string_view& line) {
   return true;
 }
 
+bool Lines::next_filled(std::string_view& line) {
+  while (next(line)) {
+    if (!trim(line).empty()) return true;
+  }
+  return false;
+}
+
+std::size_t Lines::unread() {
+  std::string_view line;
+  const char* const end = rest_.data() + rest_.size();
+  return next_filled(line) ? static_cast<std::size_t>(end - line.data()) : 0;
+}
+
 std::vector<std::string_view> split_lines(std::span<const std::string> texts) {
   std::vector<std::string_view> all;
   for (const std::string& text : texts) {

@@ -21,6 +21,10 @@ class Lines {
 
   /// Moves to the next line and puts it, without its end, in `line`; false after the last.
   bool next(std::string_view& line);
+  /// The same to the next line that is not blank.
+  bool next_filled(std::string_view& line);
+  /// Moves to the next line that is not blank; gives the number of bytes from there to the end.
+  std::size_t unread();
 
   /// Number of the line that next() gave last, counted from 1 (plus `lines_before`).
   std::size_t number() const { return number_; }
