@@ -131,6 +131,7 @@ std::string explain(const Error& error) {
 }
 
 void say(const std::string& line) {
+  std::fflush(stdout);  // both may go to one file
   if (progress_line_open) fmt::print(stderr, "\n");
   progress_line_open = false;
   fmt::print(stderr, "{}\n", line);

@@ -54,7 +54,7 @@ void add_drawing_options(CLI::App& command, LinesArguments& arguments) {
                       "The classes to draw, with commas between: sharp, smooth (rounded edges, at "
                       "the cost of some that are none), boundary (where the surface ends)")
           ->delimiter(',')
-          ->default_str("sharp,boundary")
+          ->default_str("sharp, with --boundaries sharp,boundary")
           ->check(CLI::IsMember({"sharp", "smooth", "boundary"}));
   classes->each([&arguments](const std::string& name) {
     arguments.lines.boundaries = arguments.lines.boundaries || name == "boundary";

@@ -25,6 +25,13 @@ bool is_listed(const std::vector<std::string>& names, std::string_view name) {
   return names.empty() || std::find(names.begin(), names.end(), name) != names.end();
 }
 
+/// The classes that are drawn.
+std::vector<std::string> drawn_classes(const LinesArguments& arguments) {
+  std::vector<std::string> classes = arguments.classes;
+  if (!arguments.lines.boundaries) std::erase(classes, "boundary");
+  return classes;
+}
+
 }  // namespace
 
 std::string filter_lines(const LinesArguments& arguments, const lines::LineScale& scale,
@@ -34,7 +41,7 @@ std::string filter_lines(const LinesArguments& arguments, const lines::LineScale
     std::function<bool(const Curve&)> keeps;
   };
   const Option options[] = {
-      {fmt::format("--class {}", fmt::join(arguments.classes, ",")),
+      {fmt::format("--class {}", fmt::join(drawn_classes(arguments), ",")),
        [&](const Curve& curve) {
          const std::string_view name = io::line_class(curve.edge_class).name;
          return is_listed(arguments.classes, name.substr(0, name.find('-')));

@@ -56,6 +56,9 @@ class Errors(CliTest):
         self.classify_fails(4, "copies.ply", nothing % 50 + 50 * b"1 2 3\n")
         line = b"".join(b"%d 0 0\n" % i for i in range(100))
         self.classify_fails(4, "line.ply", nothing % 100 + line)
+        (self.folder / "line.ply").write_bytes(nothing % 100 + line)
+        self.fails(4, "normals", self.folder / "line.ply", "-o", self.folder / "n.ply", naming="line.ply")
+        (self.folder / "line.ply").unlink()
         write_ply(self.folder / "plain.ply", *cube(200)[:2])
         self.fails(4, "train", self.folder / "plain.ply", "-o", self.folder / "m.safetensors",
                    naming="plain.ply")

@@ -10,7 +10,7 @@
 namespace pcednet::lines {
 namespace {
 
-constexpr double kLong = 30.0;
+constexpr double kBarLength = 30.0;
 
 /// A bar along z between two flat ends.
 struct Bar : PlanePart {
@@ -18,12 +18,12 @@ struct Bar : PlanePart {
   std::function<bool(double x, double y)> is_at_edge;  ///< along the bar
 
   void add_point(double x, double y, double z) {
-    const double from_end = std::min(z, kLong - z);
+    const double from_end = std::min(z, kBarLength - z);
     const bool is_edge = from_end < kNear || is_at_edge(x, y);
     add({x, y, z}, Vec3::UnitX(), is_edge);  // its normals are not used
   }
   void add_ends(double half) {
-    for (const double z : {0.0, kLong}) {
+    for (const double z : {0.0, kBarLength}) {
       for (int i = 0; i < static_cast<int>(4.0 * half * half); ++i) {
         const double x = half * (2.0 * random.uniform() - 1.0);
         const double y = half * (2.0 * random.uniform() - 1.0);
@@ -33,10 +33,10 @@ struct Bar : PlanePart {
   }
   /// From one angle to another, points up to `facet` within it.
   void add_cylinder(double x, double radius, double from, double to, double facet = 0.0) {
-    for (int i = 0; i < static_cast<int>(radius * (to - from) * kLong); ++i) {
+    for (int i = 0; i < static_cast<int>(radius * (to - from) * kBarLength); ++i) {
       const double angle = from + (to - from) * random.uniform();
       const double r = radius - facet * random.uniform();
-      add_point(x + r * std::cos(angle), r * std::sin(angle), kLong * random.uniform());
+      add_point(x + r * std::cos(angle), r * std::sin(angle), kBarLength * random.uniform());
     }
   }
   std::vector<Piece> folds_along() const {
@@ -45,9 +45,9 @@ struct Bar : PlanePart {
     return found;
   }
   void add_flat(double x, double half) {
-    for (int i = 0; i < static_cast<int>(2.0 * half * kLong); ++i) {
+    for (int i = 0; i < static_cast<int>(2.0 * half * kBarLength); ++i) {
       const double y = half * (2.0 * random.uniform() - 1.0);
-      add_point(x, y, kLong * random.uniform());
+      add_point(x, y, kBarLength * random.uniform());
     }
   }
 };
@@ -73,7 +73,7 @@ void expect_two_long_folds(const std::vector<Piece>& folds, double x, double y, 
   ASSERT_EQ(folds.size(), 2u);
   for (const Piece& fold : folds) {
     EXPECT_TRUE(fold.exact);
-    EXPECT_GT(length_of(fold), 0.9 * kLong);
+    EXPECT_GT(length_of(fold), 0.9 * kBarLength);
     for (const Vec3& end : fold.ends) {
       EXPECT_NEAR(end.x(), x, within);
       EXPECT_NEAR(std::abs(end.y()), y, within);
@@ -116,7 +116,7 @@ TEST(CylinderFolds, AreNotWhereAPlaneTouchesACylinder) {
   bar.add_ends(radius);
   bar.add_cylinder(0.0, radius, 0.25 * kTurn, 0.75 * kTurn);
   for (const double y : {radius, -radius}) {
-    bar.add_face({0.0, y, 0.0}, {radius, 0.0, 0.0}, {0.0, 0.0, kLong});
+    bar.add_face({0.0, y, 0.0}, {radius, 0.0, 0.0}, {0.0, 0.0, kBarLength});
   }
   EXPECT_TRUE(bar.folds_along().empty());
 }

@@ -86,6 +86,18 @@ TEST(Refine, LeavesASegmentBetweenPlanesThoughItsNodesBend) {
   EXPECT_NEAR(piece.ends[0].y(), 0.0, 1e-9);
 }
 
+TEST(Refine, MakesASegmentOfABoundaryThatNoiseMayHaveBent) {
+  const auto boundary = [](double rise) {  // 21 long
+    std::vector<Vec3> places;
+    for (int i = 0; i <= 20; ++i) places.emplace_back(i, rise * i * (20 - i) / 100.0, 0.0);
+    Piece piece = slight_arc(places, 50.0 / rise);
+    for (ChainNode& node : piece.nodes) node.boundary = 1.0;
+    return Points().refined(piece).fit.kind;
+  };
+  EXPECT_EQ(boundary(0.6), CurveKind::kSegment);
+  EXPECT_EQ(boundary(1.2), CurveKind::kArc);
+}
+
 constexpr double kRadius = 16.0;
 
 /// The top and the wall of a cylinder, and nodes along its rim.

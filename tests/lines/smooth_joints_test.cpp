@@ -10,7 +10,7 @@ namespace pcednet::lines {
 namespace {
 
 constexpr double kOneDegree = std::numbers::pi / 180.0, kLeastTurn = 30.0 * kOneDegree,
-                 kOfPolyline = 0.1;
+                 kWithinOfChord = 0.2;
 
 Curve straight_curve(const Vec3& from, const Vec3& to) {
   return {.kind = CurveKind::kSegment, .points = {from, to}, .confidence = 0.5, .support = 10};
@@ -34,7 +34,7 @@ Curve arc_from_origin(double degrees) {
 const Curve kToOrigin = straight_curve({-20, 0, 0}, Vec3::Zero());
 
 std::vector<Curve> smoothly_joined(std::vector<Curve> curves) {
-  join_smooth_corners(curves, kLeastTurn, kOfPolyline);
+  join_smooth_corners(curves, kLeastTurn, kWithinOfChord, 1.0);
   return curves;
 }
 
@@ -75,6 +75,20 @@ TEST(SmoothJoints, SegmentsOfOneLineBecomeASegment) {
   ASSERT_EQ(curves.size(), 1u);
   EXPECT_EQ(curves[0].kind, CurveKind::kSegment);
   EXPECT_NEAR(length_of(curves[0]), 30.0, 1e-12);
+}
+
+TEST(SmoothJoints, SegmentsThatHardlyTurnBecomeASegment) {
+  const double bend = 0.15 / (20.0 * 10.0 / 30.0) / kOneDegree;  // 0.15 from the chord
+  Curve first = kToOrigin, next = turned_curve(Vec3::Zero(), bend);
+  EXPECT_EQ(smoothly_joined({first, next})[0].kind, CurveKind::kSegment);
+  EXPECT_EQ(smoothly_joined({first, turned_curve(Vec3::Zero(), 2.0 * bend)})[0].kind,
+            CurveKind::kPolyline);
+  first.edge_class = next.edge_class = kBoundary;
+  next.points[1] = turned_curve(Vec3::Zero(), 2.0 * bend).points[1];
+  EXPECT_EQ(smoothly_joined({first, next})[0].kind, CurveKind::kSegment) << "less is known of it";
+  first = kToOrigin, next = turned_curve(Vec3::Zero(), bend);
+  first.exact = next.exact = true;
+  EXPECT_EQ(smoothly_joined({first, next})[0].kind, CurveKind::kPolyline);
 }
 
 TEST(SmoothJoints, CurvesStayApartAtTurnsAtThirdEndsAndIfTheirClassesDiffer) {

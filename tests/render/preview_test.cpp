@@ -255,6 +255,15 @@ TEST_F(Preview, LeavesOutFarOutliers) {
   EXPECT_TRUE(bytes_of(shape.cloud, shape.classes) == bytes);
 }
 
+TEST_F(Preview, LeavesOutAPlaceThatStandsForNoData) {
+  Labelled shape = cube();
+  const std::string bytes = bytes_of(shape.cloud, shape.classes);
+  const std::size_t many = shape.cloud.size() / 5;
+  shape.cloud.positions.insert(shape.cloud.positions.end(), many, Vec3(-5e5, -5e6, -100.0));
+  shape.classes.insert(shape.classes.end(), many, kSharpEdge);
+  EXPECT_TRUE(bytes_of(shape.cloud, shape.classes) == bytes);
+}
+
 TEST_F(Preview, LeavesOutStraysButNotThinlySampledParts) {
   Labelled shape = cube();
   std::fill(shape.classes.begin(), shape.classes.end(), kNonEdge);

@@ -16,6 +16,7 @@
 #include "models.h"
 #include "pcednet/core/error.h"
 #include "pcednet/formats/labels.h"
+#include "pcednet/formats/virtual_cloud.h"
 #include "pcednet/io/drawing/drawing.h"
 #include "pcednet/io/drawing/line_classes.h"
 #include "pcednet/io/las/las.h"
@@ -41,9 +42,12 @@ struct LabelledCloud {
 
 void check_input(const std::string& input) {
   std::error_code ignored;
-  if (!fs::is_directory(input, ignored)) return;
+  const char* const what = fs::is_directory(input, ignored)   ? "is a folder"
+                           : formats::is_virtual_cloud(input) ? "names other files"
+                                                              : nullptr;
+  if (!what) return;
   throw Error(ErrorKind::kUsage,
-              input + ": is a folder; lines takes one cloud: give its files one by one");
+              fmt::format("{}: {}; lines takes one cloud: give its files one by one", input, what));
 }
 
 /// Lines that were drawn before are no points of a surface.

@@ -49,6 +49,10 @@ normals::PreparedNormals make_normals(const NormalsRequest& request, const Point
                    ? normals::complete_and_orient_normals(cloud.positions, cloud.normals, options,
                                                           &progress)
                    : normals::estimate_oriented_normals(cloud.positions, options, &progress);
+    if (prepared.unusable == cloud.size()) {
+      throw Error(ErrorKind::kInsufficient,
+                  "no point has a normal: all are on a line, or not finite");
+    }
   });
   return prepared;
 }

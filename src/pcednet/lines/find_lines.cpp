@@ -228,7 +228,7 @@ std::vector<Curve> curves_of(std::vector<Piece> pieces, std::vector<Piece> round
   curves = both(std::move(curves), finish(std::move(smooth), options));
   stage.advance();
   close_round_loops(curves, spacing, kRoundWithin * limits.tolerance * spacing);
-  join_smooth_corners(curves, limits.angle, 0.5 * limits.tolerance * spacing);
+  join_smooth_corners(curves, limits.angle, limits.tolerance, spacing);
   stage.advance();
   return curves;
 }

@@ -29,6 +29,7 @@ constexpr double kAsMany = 0.95, kAsNear = 1.1;
 /// segment, and the rise of the arc from its chord, in spacings.
 constexpr std::size_t kNodesToBend = 8;
 constexpr double kMuchNearer = 0.5, kLeastRise = 0.2;
+constexpr double kStraightRise = 2.0 * kBoundaryTolerance;  ///< of an arc, in spacings
 constexpr int kPlaneFits = 3;
 constexpr double kLeastSineOfSides = 0.2;  ///< of the angle between the planes of a crease
 
@@ -307,8 +308,18 @@ void move_to(const std::optional<Placed>& better, Piece& piece) {
   piece.dihedral = better->dihedral;
 }
 
+/// Whether a boundary rises so little from a chord that noise may have bent it.
+bool is_hardly_bent(const Piece& piece) {
+  if (!is_boundary(piece.middle()) || piece.fit.kind != CurveKind::kArc || piece.closed)
+    return false;
+  const double length = length_of(piece), radius = piece.fit.radius;
+  return length < kSlightTurn * radius &&
+         length * length < 8.0 * radius * kStraightRise * piece.spacing();
+}
+
 void place(Piece& piece, const OrderedPoints& cloud, double tolerance) {
   if (piece.fit.kind == CurveKind::kPolyline || piece.nodes.size() < kNodesToRefine) return;
+  if (is_hardly_bent(piece)) piece = refitted(piece, fit_segment(piece.nodes));
   const std::vector<Vec3> points = points_beside(piece, cloud);
   const auto other = in_other_kind(piece);
   if (!other) return move_to(better_fit(piece, points, tolerance), piece);

@@ -10,6 +10,7 @@
 #include <span>
 
 #include "pcednet/lines/fit.h"
+#include "pcednet/lines/piece.h"
 #include "pcednet/lines/strings.h"
 #include "pcednet/lines/touch.h"
 
@@ -154,6 +155,17 @@ std::optional<Curve> circle_of(const std::vector<std::size_t>& loop,
   return circle;
 }
 
+/// Makes a segment of an open polyline whose vertices are within the tolerance of its class from
+/// the chord; of exact surfaces, if it has no other vertices.
+void straighten(Curve& curve, double tolerance, double spacing) {
+  if (curve.kind != CurveKind::kPolyline || curve.closed) return;
+  if (curve.edge_class == kBoundary) tolerance = std::max(tolerance, kBoundaryTolerance);
+  const double within = curve.exact ? 0.0 : tolerance * spacing;
+  if (simplified(curve.points, within).size() != 2) return;
+  curve.points = {curve.points.front(), curve.points.back()};
+  curve.kind = CurveKind::kSegment;
+}
+
 }  // namespace
 
 void close_round_loops(std::vector<Curve>& curves, double spacing, double within) {
@@ -176,8 +188,9 @@ void close_round_loops(std::vector<Curve>& curves, double spacing, double within
   curves.insert(curves.end(), circles.begin(), circles.end());
 }
 
-void join_smooth_corners(std::vector<Curve>& curves, double angle, double tolerance) {
-  const double cosine = std::cos(angle);
+void join_smooth_corners(std::vector<Curve>& curves, double angle, double tolerance,
+                         double spacing) {
+  const double cosine = std::cos(angle), within = 0.5 * tolerance * spacing;
   const std::vector<std::size_t> partner = partners_of(
       curves, [&](std::size_t a, std::size_t b) { return are_one(curves, a, b, cosine); });
   std::vector<Curve> result;
@@ -189,15 +202,15 @@ void join_smooth_corners(std::vector<Curve>& curves, double angle, double tolera
     Curve whole{.closed = closed};
     std::vector<const Curve*> parts;
     for (const std::size_t entry : entries) {
-      append(whole, curves[entry / 2], entry, tolerance);
+      append(whole, curves[entry / 2], entry, within);
       parts.push_back(&curves[entry / 2]);
     }
     take_attributes(whole, parts);
-    whole.points = simplified(whole.points, tolerance);
+    whole.points = simplified(whole.points, within);
     if (closed) whole.points.pop_back();
-    if (whole.points.size() == 2 && !closed) whole.kind = CurveKind::kSegment;
     result.push_back(std::move(whole));
   }
+  for (Curve& curve : result) straighten(curve, tolerance, spacing);
   curves = std::move(result);
 }
 

@@ -40,8 +40,15 @@ Points finite_points(const PointCloud& cloud, std::size_t max_count) {
   return points;
 }
 
-/// The box of the middle 96 % along each axis, widened on all sides by twice its longest side:
-/// points outside are not part of the scene.
+/// Each place of points once: scanners give pulses without an echo one place, often (0, 0, 0).
+std::vector<Vec3> places_of(const std::vector<Vec3>& positions) {
+  std::vector<Vec3> places = spatial::in_order(positions, spatial::curve_order(positions));
+  places.erase(std::unique(places.begin(), places.end()), places.end());
+  return places;
+}
+
+/// The box of the middle 96 % of the places along each axis, widened on all sides by twice its
+/// longest side: points outside are not part of the scene.
 BoundingBox scene_box(const std::vector<Vec3>& positions) {
   BoundingBox box;
   std::vector<double> values(positions.size());
@@ -57,7 +64,7 @@ BoundingBox scene_box(const std::vector<Vec3>& positions) {
 }
 
 void remove_outliers(Points& points) {
-  const BoundingBox box = scene_box(points.positions);
+  const BoundingBox box = scene_box(places_of(points.positions));
   std::size_t kept = 0;
   for (std::size_t i = 0; i < points.positions.size(); ++i) {
     const Vec3& p = points.positions[i];
