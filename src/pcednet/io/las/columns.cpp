@@ -8,6 +8,7 @@
 #include "pcednet/core/bytes.h"
 #include "pcednet/core/error.h"
 #include "pcednet/io/las/comments.h"
+#include "pcednet/io/las/extra_names.h"
 #include "pcednet/io/las/layout.h"
 #include "pcednet/io/text_scan.h"
 
@@ -218,15 +219,12 @@ class LayoutBuilder {
         add_normal(new_field(kAxes[axis], wide ? ScalarType::kFloat64 : ScalarType::kFloat32));
       }
     }
-    const bool has_result = find_attribute(cloud_, "scalar_p_sharp") != nullptr;
-    for (const Attribute& attribute : cloud_.attributes) {
-      const bool derived = attribute.name == "quality" && has_result;
-      if (used_.count(&attribute) != 0 || derived || is_replaced(attribute.name)) continue;
+    const std::vector<const Attribute*> left = attributes_left();
+    const auto names = las_extra_names(left, taken_, layout_.losses);
+    for (std::size_t a = 0; a < left.size(); ++a) {
+      const Attribute& attribute = *left[a];
       for (std::size_t c = 0; c < attribute.components; ++c) {
-        const std::string name = attribute.components > 1
-                                     ? fmt::format("{}[{}]", attribute.name.substr(0, 26), c)
-                                     : attribute.name;
-        layout_.columns.push_back({new_field(name, attribute.type),
+        layout_.columns.push_back({new_field(names[a][c], attribute.type),
                                    attribute.bytes.data() + c * size_of(attribute.type),
                                    attribute.stride()});
       }
@@ -234,6 +232,18 @@ class LayoutBuilder {
     if (cloud_.has_labels() && !has_label_ && !choices_.label_is_class) {
       add_label(new_field("label", ScalarType::kUint8));
     }
+  }
+
+  /// Those that no field has taken.
+  std::vector<const Attribute*> attributes_left() const {
+    const bool has_result = find_attribute(cloud_, "scalar_p_sharp") != nullptr;
+    std::vector<const Attribute*> left;
+    for (const Attribute& attribute : cloud_.attributes) {
+      const bool derived = attribute.name == "quality" && has_result;
+      if (used_.count(&attribute) != 0 || derived || is_replaced(attribute.name)) continue;
+      left.push_back(&attribute);
+    }
+    return left;
   }
 
   /// Whether the colours are written in its place.

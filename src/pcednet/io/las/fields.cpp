@@ -108,7 +108,7 @@ std::string to_file_name(const std::string& name) {
   for (const char* ours : kOurs) {
     if (name == fmt::format("scalar_{}", ours)) return ours;
   }
-  return name.substr(0, las_descriptor::kNameBytes);
+  return name;
 }
 
 LasField read_descriptor(std::string_view bytes) {

@@ -36,8 +36,9 @@ std::unique_ptr<PartReader> open_las_parts(std::unique_ptr<InputFile> file, std:
 /// LAS 1.4 of point format 6, 7 or 8, with its points reordered. Attributes of any type with the
 /// name of a field, in any capitals, go into it if it holds all their values. Others become extra
 /// bytes: scalar_edge_class, scalar_p_sharp and scalar_p_smooth as edge_class, p_sharp and
-/// p_smooth. append() throws Error(kInsufficient) for positions that are not finite,
-/// Error(kFailure) for a number that its field cannot hold; both name the point.
+/// p_smooth, names of more than 32 bytes cut. append() throws Error(kInsufficient) for positions
+/// that are not finite, Error(kFailure) for a number that its field cannot hold; both name the
+/// point.
 std::unique_ptr<PartWriter> create_las_parts(const std::filesystem::path& path,
                                              const PartOutline& outline,
                                              const WriteOptions& options);

@@ -184,7 +184,11 @@ LasChoices las_choices(const std::filesystem::path& path, const PartOutline& out
 }
 
 std::vector<std::string> las_losses(const std::filesystem::path& path, const PointCloud& cloud) {
-  return las_losses(cloud, las_choices(path, outline_of(cloud)));
+  const LasChoices choices = las_choices(path, outline_of(cloud));
+  std::vector<std::string> losses = las_losses(cloud, choices);
+  const LasLayout layout = las_layout(cloud, {.new_normals = false}, choices);
+  losses.insert(losses.end(), layout.losses.begin(), layout.losses.end());
+  return losses;
 }
 
 std::vector<std::string> las_losses(const PointCloud& first, const LasChoices& choices) {

@@ -34,14 +34,15 @@ struct LasChoices {
 };
 LasChoices las_choices(const std::filesystem::path& path, const PartOutline& outline);
 
-/// The parts of the cloud that LAS loses; see losses().
+/// The parts of the cloud that LAS loses, names of attributes aside; see losses().
 std::vector<std::string> las_losses(const PointCloud& first, const LasChoices& choices);
 
 /// How a part is laid out as LAS: the header, as far as it does not depend on the points, the
 /// records about the file, the columns. Points into the part.
 struct LasLayout {
   LasFile file = {};
-  std::vector<LasColumn> columns;  ///< all but X, Y and Z
+  std::vector<LasColumn> columns;        ///< all but X, Y and Z
+  std::vector<std::string> losses = {};  ///< names that LAS has no room for
 };
 LasLayout las_layout(const PointCloud& part, const WriteOptions& options,
                      const LasChoices& choices);

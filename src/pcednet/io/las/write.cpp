@@ -139,7 +139,9 @@ class LasPartWriter : public PartWriter {
                 const WriteOptions& options)
       : path_(path), options_(options), choices_(las_choices(path, outline)) {
     losses = las_losses(*outline.first, choices_);
-    file_ = las_layout(*outline.first, options, choices_).file;
+    LasLayout layout = las_layout(*outline.first, options, choices_);
+    file_ = std::move(layout.file);
+    losses.insert(losses.end(), layout.losses.begin(), layout.losses.end());
     const bool is_copc = is_copc_name(path);
     const bool compress = extension_of(path) == ".laz";
     if (compress) add_laz_record(file_, is_copc ? LazChunks::kVariable : LazChunks::kEqual);
