@@ -214,6 +214,18 @@ TEST(LasWrite, DescribesNewFieldsBehindThoseOfTheFile) {
   EXPECT_TRUE(read_and_written(scratch, bytes) == bytes);
 }
 
+TEST(LasWrite, DescribesTheEdgeClasses) {
+  const Scratch scratch;
+  PointCloud cloud;
+  cloud.positions = {Vec3(1, 2, 3)};
+  cloud.attributes = {make_attribute("scalar_edge_class", std::vector<std::uint8_t>{3})};
+  const std::string found = descriptors_of(written(scratch, cloud));
+  ASSERT_EQ(found.size(), 192u);
+  EXPECT_EQ(found.substr(4, 11), std::string("edge_class\0", 11));
+  // It ends with a zero, since many readers take the 32 bytes for such a text.
+  EXPECT_EQ(found.substr(160), "1 smooth 2 sharp 3 boundary" + std::string(5, '\0'));
+}
+
 TEST(LasWrite, NamesTheTypeOfEveryKindOfNumber) {
   const Scratch scratch;
   PointCloud cloud;

@@ -179,7 +179,7 @@ std::string las_extra_descriptor(const LasField& field) {
       plain ? 0 : static_cast<std::uint8_t>(field.components * size_of(field.type)));
   to_file_name(field.name).copy(&bytes[las_descriptor::kName], las_descriptor::kNameBytes);
   if (field.name == "scalar_edge_class") {
-    std::string("0 non-edge 1 smooth 2 sharp")
+    std::string("1 smooth 2 sharp 3 boundary")
         .copy(&bytes[las_descriptor::kDescription], las_descriptor::kDescriptionBytes);
   }
   return bytes;
