@@ -116,8 +116,11 @@ const Format& format_for(const fs::path& path) {
 
 void add_lost_elements(const PointCloud& cloud, const Format& format,
                        std::vector<std::string>& lost) {
+  // A format that keeps any elements keeps those of LAS.
+  const auto of_las = format.keeps ? std::vector<std::string>() : io::las_element_losses(cloud);
+  lost.insert(lost.end(), of_las.begin(), of_las.end());
   for (const ForeignElement& element : cloud.foreign_elements) {
-    if (format.keeps && format.keeps(element)) continue;
+    if (io::is_las_element(element) || (format.keeps && format.keeps(element))) continue;
     lost.push_back(fmt::format("{:.60}", element.header.substr(0, element.header.find('\n'))));
   }
 }

@@ -42,6 +42,36 @@ TEST(LasCoordinateSystem, IsThatOfTheWktOrOfTheKeys) {
   EXPECT_EQ(las_coordinate_system(ply).wkt, kWkt);
 }
 
+TEST(LasCoordinateSystem, IsReportedWhereAFormatLosesIt) {
+  const Scratch scratch;
+  using Strings = std::vector<std::string>;
+  const auto losses = [&](const std::vector<LasTestRecord>& records, const char* output) {
+    PointCloud cloud = cloud_with(scratch, records);
+    cloud.attributes.clear();
+    cloud.foreign_elements.push_back({"element face 0\nproperty uchar a\n", {}});
+    return formats::losses(output, cloud);
+  };
+  const auto record_of = [](unsigned id, const std::string& data) {
+    return LasTestRecord{"LASF_Projection", id, data};
+  };
+  const std::string rest = "header and records of LAS", face = "element face 0";
+  const LasTestRecord wkt = record_of(2112, std::string(kWkt) + '\0');
+  for (const char* output : {"a.pcd", "a.obj", "a.xyz", "a.csv"}) {
+    EXPECT_EQ(losses({}, output), (Strings{rest, face})) << output;
+    EXPECT_EQ(losses({wkt}, output), (Strings{"coordinate system EPSG:25833", rest, face}));
+  }
+  const auto with_heights =
+      record_of(34735, keys({1, 1, 0, 3, 1024, 0, 1, 1, 3072, 0, 1, 25832, 4096, 0, 1, 7837}));
+  EXPECT_EQ(losses({with_heights}, "a.csv")[0], "coordinate system EPSG:25832+7837");
+  const LasTestRecord own = record_of(2112, R"(PROJCS["ours",UNIT["metre",1]])");
+  EXPECT_EQ(losses({own}, "a.csv")[0], "coordinate system");
+  const auto user_defined = record_of(34735, keys({1, 1, 0, 1, 3072, 0, 1, 32767, 1024, 0, 1, 1}));
+  EXPECT_EQ(losses({user_defined}, "a.csv")[0], "coordinate system");
+  EXPECT_EQ(losses({record_of(34735, keys({1, 1, 0, 0}))}, "a.csv")[0], rest);
+  EXPECT_EQ(losses({wkt}, "a.laz"), Strings{face});
+  EXPECT_EQ(losses({wkt}, "a.ply"), Strings{});
+}
+
 TEST(LasCoordinateSystem, HasTheUnitOfItsKeysIfHeightsHaveItToo) {
   const Scratch scratch;
   const auto unit_of_keys = [&](std::uint16_t plan, std::uint16_t heights) {

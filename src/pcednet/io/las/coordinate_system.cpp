@@ -1,6 +1,10 @@
 #include "pcednet/io/coordinate_system.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <map>
+#include <utility>
 
 #include "pcednet/io/las/file.h"
 #include "pcednet/io/las/las.h"
@@ -71,6 +75,15 @@ CoordinateSystem find_system(const LasFile& file, bool ask_for_unit) {
   return system;
 }
 
+/// Whether they have any, with a code or without.
+bool has_geo_keys(const LasFile& file) {
+  const auto names_keys = [](const LasRecord& record) {
+    return record.is(kGeoKeysRecord) && !geo_keys(record.data).empty();
+  };
+  return std::any_of(file.records.begin(), file.records.end(), names_keys) ||
+         std::any_of(file.extended_records.begin(), file.extended_records.end(), names_keys);
+}
+
 }  // namespace
 
 CoordinateSystem coordinate_system_of(const LasFile& file) {
@@ -79,6 +92,23 @@ CoordinateSystem coordinate_system_of(const LasFile& file) {
 
 CoordinateSystem las_coordinate_system(const PointCloud& cloud) {
   return find_system(attached_las_file(cloud), true);
+}
+
+std::vector<std::string> las_element_losses(const PointCloud& cloud) {
+  const auto& elements = cloud.foreign_elements;
+  if (std::none_of(elements.begin(), elements.end(), is_las_element)) return {};
+  std::vector<std::string> losses;
+  const LasFile file = attached_las_file(cloud);
+  const CoordinateSystem system = coordinate_system_of(file);
+  if (system.epsg > 0 || !system.wkt.empty() || has_geo_keys(file)) {
+    std::string lost = "coordinate system";
+    if (system.epsg > 0) lost += fmt::format(" EPSG:{}", system.epsg);
+    if (system.epsg > 0 && system.vertical_epsg > 0)
+      lost += fmt::format("+{}", system.vertical_epsg);
+    losses.push_back(std::move(lost));
+  }
+  losses.emplace_back("header and records of LAS");
+  return losses;
 }
 
 }  // namespace pcednet::io

@@ -48,6 +48,10 @@ std::unique_ptr<PartWriter> create_las_parts(const std::filesystem::path& path,
 /// knows of their codes.
 CoordinateSystem las_coordinate_system(const PointCloud& cloud);
 
+/// What a format loses that keeps neither header nor records of LAS, as phrases: the coordinate
+/// system, by its EPSG code if it has one, and the others. None if the cloud has no such elements.
+std::vector<std::string> las_element_losses(const PointCloud& cloud);
+
 /// The parts of `cloud` that create_las_parts() does not keep, as phrases.
 std::vector<std::string> las_losses(const std::filesystem::path& path, const PointCloud& cloud);
 
