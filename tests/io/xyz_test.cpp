@@ -101,6 +101,75 @@ TEST(Xyz, ReadsColumnsByTheirNames) {
   EXPECT_EQ(csv.attributes[1].name, "scalar_5");
 }
 
+TEST(Xyz, ReadsPositionsUnderTheNamesOfSurveyors) {
+  const Scratch scratch;
+  for (const std::string header :
+       {"Easting,Northing,Elevation", "EASTING NORTHING HEIGHT", "easting;northing;altitude",
+        "# Easting Northing Z", "Rechtswert;Hochwert;H\xC3\xB6he",
+        "RECHTSWERT,HOCHWERT,H\xC3\x96HE", "Rechtswert;Hochwert;H\xF6he",
+        "rechtswert\thochwert\thoehe", "E,N,H", "e n h", "\"Easting\",\"Northing\",\"Height\""}) {
+    const auto loaded = scratch.read("a.csv", header + "\n1 2 3\n");
+    EXPECT_EQ(loaded.cloud.positions, std::vector<Vec3>{Vec3(1, 2, 3)}) << header;
+    EXPECT_TRUE(loaded.cloud.attributes.empty() && loaded.warnings.empty()) << header;
+  }
+  // By name, not by place; the other columns keep theirs.
+  const auto cloud = scratch.read("a.csv", "Point,Height,Northing,Easting,H\n7,3,2,1,9\n").cloud;
+  EXPECT_EQ(cloud.positions.at(0), Vec3(1, 2, 3));
+  ASSERT_EQ(cloud.attributes.size(), 2u);
+  EXPECT_EQ(cloud.attributes[0].name, "Point");
+  EXPECT_EQ(cloud.attributes[1].name, "H");
+  EXPECT_EQ(scratch.read("a.csv", "n,e,h\n2,1,3\n").cloud.positions.at(0), Vec3(1, 2, 3));
+  // Of several heights that above the sea.
+  const auto both = scratch.read("a.csv", "easting,northing,height,elevation\n1,2,9,3\n").cloud;
+  EXPECT_EQ(both.positions.at(0), Vec3(1, 2, 3));
+  EXPECT_EQ(both.attributes.at(0).name, "height");
+}
+
+TEST(Xyz, LeavesTheNamesOfSurveyorsBesideXAndY) {
+  const Scratch scratch;
+  const auto cloud =
+      scratch.read("a.csv", "easting,northing,height,e,n,h,x,y,z\n9,8,7,6,5,4,1,2,3\n").cloud;
+  EXPECT_EQ(cloud.positions.at(0), Vec3(1, 2, 3));
+  ASSERT_EQ(cloud.attributes.size(), 6u);
+  EXPECT_EQ(cloud.attributes[0].name, "easting");
+  EXPECT_EQ(cloud.attributes[5].name, "h");
+  for (const char* header :
+       {"x,y,height", "x,y,easting,northing,z1", "x,northing,easting,z", "easting,northing",
+        "longitude,latitude,height", "lon,lat,z", "e,n,z", "e,n,h,z", "e,n,h,height", "e,n",
+        "easting,n,h", "east,north,up", "Easting (m),Northing (m),Height (m)"}) {
+    const std::string message =
+        error_of(ErrorKind::kUnreadable, [&] { scratch.read("a.csv", header); });
+    EXPECT_TRUE(contains(message, ":1: expected numbers, or names of columns")) << header;
+  }
+  const auto prose = scratch.read("a.xyz", "# easting northing height of a scan\n1 2 3\n").cloud;
+  EXPECT_EQ(prose.comments, std::vector<std::string>{"easting northing height of a scan"});
+  EXPECT_EQ(prose.positions.at(0), Vec3(1, 2, 3));
+}
+
+TEST(Xyz, ReadsQuotedNumbersUnderQuotedNames) {
+  const Scratch scratch;
+  const std::string names = "\"X\",\"Y\",\"Z\"\n";
+  for (const std::string& text :
+       {names + "\"1.5\",\"2.5\",\"-3e2\"\n\"4\",5,\" 6 \"\n",
+        names + "\"1.5\", \"2.5\", \"-300\"\r\n\"4\", \"5\", \"6\"\r\n",
+        std::string("\"E\";\"N\";\"H\"\n\"1.5\";\"2.5\";\"-300\"\n4;5;6\n"),
+        std::string("\"x\" \"y\" \"z\"\n2\n\"1.5\" \"2.5\" \"-300\"\n\"4\" 5 6\n")}) {
+    const auto cloud = scratch.read("a.csv", text).cloud;
+    EXPECT_EQ(cloud.positions, (std::vector<Vec3>{{1.5, 2.5, -300}, {4, 5, 6}})) << text;
+    EXPECT_TRUE(cloud.attributes.empty()) << text;
+  }
+  // Commas between quotes may be decimal; without names in quotes nothing tells what quotes mean.
+  const std::string twice = "\"x\",\"y\",\"z\",\"a\",\"b\",\"c\"\n";
+  for (const std::string& text :
+       {names + "\"1,5\",\"2,5\",\"3,5\"\n", twice + "\"1,5\",\"2,5\",\"3,5\"\n",
+        std::string("\"x\";\"y\";\"z\"\n\"1,5\";\"2,5\";\"3,5\"\n"), names + "1,\"2,5\",3\n",
+        names + "\"1\"\"2\",3,4\n", names + "\"1\",\"\",\"3\"\n", names + "\"1\",\"2\",\"3\n",
+        names + "\"1 000\",\"2\",\"3\"\n", std::string("x,y,z\n\"1\",\"2\",\"3\"\n"),
+        std::string("\"1\",\"2\",\"3\"\n")}) {
+    error_of(ErrorKind::kUnreadable, [&] { scratch.read("a.csv", text); });
+  }
+}
+
 TEST(Xyz, TellsProseFromNames) {
   const Scratch scratch;
   const auto cloud = scratch.read("a.xyz", "# the x y z of a scan\n1 2 3\n").cloud;
@@ -257,7 +326,8 @@ TEST(Xyz, TellsPointsFromProse) {
   for (const std::string& start :
        {std::string(), std::string("1\n"), std::string("1,,\n"), std::string("x y z\n1\n"),
         std::string("// a\n\n# b\n"), std::string("Px;X;Y;Z\r\n"),
-        std::string("\"x\",\"y\",\"z\"\n"), std::string("a b,x,y,z\n")}) {
+        std::string("\"x\",\"y\",\"z\"\n"), std::string("a b,x,y,z\n"),
+        std::string("Easting Northing Height\n"), std::string("Nr;E;N;H\n")}) {
     EXPECT_TRUE(begins(start + row)) << start;
     EXPECT_TRUE(begins(mark + start + row)) << start;
   }

@@ -9,6 +9,7 @@
 #include "pcednet/io/xyz.h"
 #include "pcednet/io/xyz_commas.h"
 #include "pcednet/io/xyz_guess.h"
+#include "pcednet/io/xyz_names.h"
 
 namespace pcednet::io {
 namespace {
@@ -16,35 +17,27 @@ namespace {
 constexpr std::size_t kMostColumns = 16384;
 
 constexpr Separators kBesideDecimalCommas{" \t\r\v\f;"};
-/// A table of quoted numbers is one of points, too, though read_xyz() refuses it.
+/// A table of quoted numbers is one of points, too, though read_xyz() refuses it without quoted
+/// names.
 constexpr Separators kAroundNumbers{" \t\r\v\f,;\""};
 
-/// The names in a line of names; those of a .csv may hold blanks.
-std::vector<std::string> split_names(std::string_view line) {
-  std::vector<std::string> names;
-  const std::size_t separator = line.find_first_of(";,\t");
-  if (separator == std::string_view::npos) {
-    std::vector<std::string_view> words;
-    split(line, words);
-    names.assign(words.begin(), words.end());
-  } else {
-    const char mark = line[separator];
-    for (std::size_t begin = 0; begin <= line.size();) {
-      const std::size_t end = std::min(line.find(mark, begin), line.size());
-      names.emplace_back(trim(line.substr(begin, end - begin)));
-      begin = end + 1;
-    }
+/// The line without the quotes around its numbers. Others stay, so that the error shows them: a
+/// comma between quotes may be decimal.
+std::string without_quotes(std::string_view line) {
+  std::string plain;
+  std::size_t at = 0;
+  for (;;) {
+    const std::size_t begin = line.find('"', at);
+    const std::size_t end = begin == std::string_view::npos ? begin : line.find('"', begin + 1);
+    if (end == std::string_view::npos) return plain.append(line.substr(at));
+    const bool is_apart = (begin == 0 || kNumberSeparators(line[begin - 1])) &&
+                          (end + 1 == line.size() || kNumberSeparators(line[end + 1]));
+    const std::string_view word = trim(line.substr(begin + 1, end - begin - 1));
+    const bool is_number = is_apart && parse_double(word);
+    plain.append(line.substr(at, begin - at));
+    plain.append(is_number ? word : line.substr(begin, end + 1 - begin));
+    at = end + 1;
   }
-  for (std::string& name : names) std::erase(name, '"');
-  return names;
-}
-
-bool names_positions(const std::vector<std::string>& names) {
-  const auto has = [&](std::string_view wanted) {
-    return std::any_of(names.begin(), names.end(),
-                       [&](const std::string& name) { return lower_case(name) == wanted; });
-  };
-  return has("x") && has("y") && has("z");
 }
 
 bool begin_with_numbers(const std::vector<std::string_view>& words) {
@@ -64,6 +57,7 @@ class TableReader {
       line = trim(line);
       if (line.empty()) continue;
       number_ = lines.number();
+      if (quoted_ && !is_comment(line)) line = plain_ = without_quotes(line);
       if (is_comment(line)) {
         take_comment(trim(line.substr(std::min(line.find_first_not_of("#/"), line.size()))));
       } else if (table_.columns > 0) {
@@ -84,7 +78,7 @@ class TableReader {
 
   void take_comment(std::string_view comment) {
     std::vector<std::string> names = split_names(comment);
-    if (table_.columns == 0 && names_.empty() && names_positions(names)) {
+    if (table_.columns == 0 && names_.empty() && name_positions(names)) {
       names_ = std::move(names);
       naming_comment_ = comment;
     } else {
@@ -99,8 +93,11 @@ class TableReader {
     const bool is_number = !words_.empty() && parse_double(words_[0]).has_value();
     if (!is_number && names_.empty()) {
       names_ = split_names(line);
-      if (names_positions(names_)) return;
-      throw error("expected numbers, or names of columns with x, y and z among them");
+      quoted_ = line.find('"') != std::string_view::npos;
+      if (name_positions(names_)) return;
+      throw error(
+          "expected numbers, or names of columns with x, y and z (easting, northing and height) "
+          "among them");
     }
     decide_on_commas(line, after);
     split(line, words_, separators());
@@ -218,6 +215,8 @@ class TableReader {
   std::size_t number_ = 0;
   std::vector<std::string> names_;
   std::string naming_comment_;  ///< the comment that the names come from, if they do
+  bool quoted_ = false;         ///< the line of names has quotes, so that numbers may have them
+  std::string plain_;           ///< the line at hand without them
   std::vector<std::string> comments_;
   std::vector<std::string_view> words_;
   std::optional<std::uint64_t> promised_;
@@ -248,7 +247,8 @@ bool begins_as_points(const InputFile& file) {
     split(line, words, kAroundNumbers);
     if (begin_with_numbers(words)) return true;
     const bool is_count = !counted && words.size() == 1 && parse_count(words[0]);
-    const bool is_names = !named && names_positions(split_names(line));
+    std::vector<std::string> names = split_names(line);
+    const bool is_names = !named && name_positions(names);
     if (!is_count && !is_names) return false;
     counted = counted || is_count;
     named = named || is_names;
