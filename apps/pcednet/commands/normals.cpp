@@ -69,7 +69,9 @@ void report(const NormalsRequest& request, const normals::PreparedNormals& prepa
     line += fmt::format("; {} connected part{}", orientation.components,
                         orientation.components == 1 ? "" : "s");
     if (orientation.undecided > 0) {
-      line += fmt::format(", {} of them open, turned upwards", orientation.undecided);
+      line += orientation.components == 1
+                  ? ", open, turned upwards"
+                  : fmt::format(", {} of them open, turned upwards", orientation.undecided);
     }
   }
   say(line);

@@ -90,8 +90,9 @@ Oriented complete_and_orient(const Points& cloud, const PreparedCloud& prepared,
 std::string describe(const Oriented& oriented) {
   if (oriented.faced == oriented.found.normals.size()) return "turned towards the scanner";
   const normals::Orientation& orientation = oriented.found.orientation;
-  const std::string open = orientation.undecided == 0
-                               ? ", outwards"
+  const std::string open = orientation.undecided == 0 ? ", outwards"
+                           : orientation.components == 1
+                               ? ", open: upwards"
                                : fmt::format(", {} of them open: upwards", orientation.undecided);
   std::string text =
       fmt::format("oriented consistently ({} connected part{}{})", orientation.components,
