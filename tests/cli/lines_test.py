@@ -246,7 +246,7 @@ class Lines(CliTest):
         done = run("lines", self.labelled_cube(), *self.outputs("obj"))
         self.assertRegex(done.stderr, r"cube.ply: its labels are used: \d+ sharp-edge; --classify")
         done = run("lines", self.labelled_cube(), *self.outputs("obj"), "--classify", "--overwrite")
-        self.assertNotIn("its labels", done.stderr)
+        self.assertIn("its labels are not used: classified by model general", done.stderr)
 
     def test_a_classified_file_has_the_lines_of_the_cloud_itself(self):
         """Its normals are estimates of what it was written with, its coordinates are rounded."""

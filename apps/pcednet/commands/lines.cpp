@@ -154,10 +154,10 @@ void read_labelled(const LinesArguments& arguments, StageClock& clock, LabelledC
   }
   const detect::EdgeModel model = load_model(arguments.model);
   check_edges(arguments.model.name, model.table);
-  if (!labelled_before) {
-    say(fmt::format("{}: {}: classified by model {}", arguments.input,
-                    given.empty() ? "no labels" : "all points are unlabelled (255)", model.name));
-  }
+  const char* const why = labelled_before ? "its labels are not used"
+                          : given.empty() ? "no labels"
+                                          : "all points are unlabelled (255)";
+  say(fmt::format("{}: {}: classified by model {}", arguments.input, why, model.name));
   const Classifier classifier = {.model = &model,
                                  .preparation = arguments.preparation,
                                  .boundary = !arguments.model.no_boundary};
