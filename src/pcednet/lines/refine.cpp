@@ -260,11 +260,15 @@ Piece refitted(const Piece& piece, const Fit& fit) {
   return other;
 }
 
+bool is_slight(const Piece& arc) {
+  return length_of(arc) < kSlightTurn * arc.fit.radius;
+}
+
 /// A slight arc as a segment; a segment as an arc if that is much nearer to its nodes.
 std::optional<Piece> in_other_kind(const Piece& piece) {
   if (piece.closed || is_boundary(piece.middle())) return std::nullopt;
   if (piece.fit.kind == CurveKind::kArc) {
-    if (!(length_of(piece) < kSlightTurn * piece.fit.radius)) return std::nullopt;
+    if (!is_slight(piece)) return std::nullopt;
     return refitted(piece, fit_segment(piece.nodes));
   }
   if (piece.nodes.size() < kNodesToBend) return std::nullopt;
@@ -312,9 +316,8 @@ void move_to(const std::optional<Placed>& better, Piece& piece) {
 bool is_hardly_bent(const Piece& piece) {
   if (!is_boundary(piece.middle()) || piece.fit.kind != CurveKind::kArc || piece.closed)
     return false;
-  const double length = length_of(piece), radius = piece.fit.radius;
-  return length < kSlightTurn * radius &&
-         length * length < 8.0 * radius * kStraightRise * piece.spacing();
+  const double rise = std::pow(length_of(piece), 2) / (8.0 * piece.fit.radius);
+  return is_slight(piece) && rise < kStraightRise * piece.spacing();
 }
 
 void place(Piece& piece, const OrderedPoints& cloud, double tolerance) {

@@ -41,10 +41,9 @@ Points finite_points(const PointCloud& cloud, std::size_t max_count) {
 }
 
 /// Each place of points once: scanners give pulses without an echo one place, often (0, 0, 0).
-std::vector<Vec3> places_of(const std::vector<Vec3>& positions) {
-  std::vector<Vec3> places = spatial::in_order(positions, spatial::curve_order(positions));
-  places.erase(std::unique(places.begin(), places.end()), places.end());
-  return places;
+std::vector<Vec3> distinct(const std::vector<Vec3>& positions) {
+  return spatial::in_order(positions,
+                           spatial::firsts_of_places(positions, spatial::curve_order(positions)));
 }
 
 /// The box of the middle 96 % of the places along each axis, widened on all sides by twice its
@@ -64,7 +63,7 @@ BoundingBox scene_box(const std::vector<Vec3>& positions) {
 }
 
 void remove_outliers(Points& points) {
-  const BoundingBox box = scene_box(places_of(points.positions));
+  const BoundingBox box = scene_box(distinct(points.positions));
   std::size_t kept = 0;
   for (std::size_t i = 0; i < points.positions.size(); ++i) {
     const Vec3& p = points.positions[i];
