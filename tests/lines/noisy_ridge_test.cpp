@@ -93,14 +93,14 @@ double length_on_wall(const std::vector<Curve>& curves) {
   return length;
 }
 
-TEST(NoisyWall, HasTwoEdgesWhereNormalsTellItsSidesApart) {
+TEST(NoisyWall, HasTwoEdgesWhateverTheSignsOfItsNormals) {
   double length = 0.0, mixed = 0.0;
   for (const std::uint64_t seed : {1u, 2u, 3u, 4u}) {
     length += length_on_wall(lines_of_wall(seed, false));
     mixed += length_on_wall(lines_of_wall(seed, true));
   }
   EXPECT_GT(length, 0.9 * 8.0 * kRidgeLength);
-  EXPECT_GT(length, 1.2 * mixed);
+  EXPECT_GT(mixed, 0.9 * 8.0 * kRidgeLength);
 }
 
 }  // namespace

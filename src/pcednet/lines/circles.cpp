@@ -24,8 +24,11 @@ constexpr double kAcross = 1.5;                      ///< of ends on a circle
 constexpr double kMostTurn = 0.28, kTurnBySpacing = 0.78;  ///< sine between node and circle
 constexpr double kSmallError = 0.3;                        ///< root mean square of the nodes
 constexpr std::size_t kSectors = 12, kLeastSectors = 8;
-constexpr std::size_t kLeastAcross = 3;  ///< nodes of a piece that ends on a polygon
-constexpr std::size_t kMostAcross = 1;   ///< pieces that end on a circle
+constexpr std::size_t kLeastAcross = 3;   ///< nodes of a piece that ends on a polygon
+constexpr std::size_t kMostAcross = 1;    ///< pieces that end on a circle
+constexpr std::size_t kLeastOff = 2;      ///< nodes beyond the end of an arc
+constexpr std::size_t kMostLeaving = 1;   ///< pieces that lead on from a circle
+constexpr std::size_t kNearlyWhole = 11;  ///< sectors of a circle, whatever leads on from it
 
 bool most_nodes_lie_on(const Fit& circle, const Piece& whole, const Piece& piece, double reach) {
   std::size_t on = 0;
@@ -174,6 +177,29 @@ bool is_polygon(const Fit& circle, const std::vector<Piece>& pieces,
   return across > kMostAcross;
 }
 
+/// How many ends of the piece lead off the circle from nodes on it: the arc at the end of a slot
+/// goes on as a line.
+std::size_t ends_off(const Fit& circle, const ChainNode& like, const Piece& piece) {
+  const auto& nodes = piece.nodes;
+  const auto is_on = [&](const ChainNode& node) { return lies_on(circle, like, node); };
+  const auto first = std::find_if(nodes.begin(), nodes.end(), is_on);
+  if (first == nodes.end()) return 0;
+  const auto last = std::find_if(nodes.rbegin(), nodes.rend(), is_on);
+  const auto before = static_cast<std::size_t>(first - nodes.begin());
+  const auto after = static_cast<std::size_t>(last - nodes.rbegin());
+  return static_cast<std::size_t>(before >= kLeastOff) +
+         static_cast<std::size_t>(after >= kLeastOff);
+}
+
+/// Whether the circle is only the arc at the end of a slot or a rounded corner.
+bool is_arc_between_lines(const SmallCircle& circle, const ChainNode& like,
+                          const std::vector<Piece>& pieces, const std::vector<std::size_t>& near) {
+  if (circle.sectors >= kNearlyWhole) return false;
+  std::size_t leaving = 0;
+  for (const std::size_t j : near) leaving += ends_off(circle.fit, like, pieces[j]);
+  return leaving > kMostLeaving;
+}
+
 /// Puts circles in place of the pieces that are of small ones.
 void find_small_circles(std::vector<Piece>& pieces) {
   std::vector<Piece> circles;
@@ -197,6 +223,7 @@ void find_small_circles(std::vector<Piece>& pieces) {
     if (!circle) continue;
     sort_unique(of_pieces);
     if (is_polygon(circle->fit, pieces, of_pieces)) continue;
+    if (is_arc_between_lines(*circle, piece.middle(), pieces, of_pieces)) continue;
     Piece whole{.fit = circle->fit, .nodes = circle->nodes, .ends = {}, .closed = true};
     sort_about_axis(whole.fit, whole.nodes);
     whole.ends = {whole.nodes.front().at, whole.nodes.front().at};

@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <optional>
 
 #include "pcednet/core/parallel.h"
@@ -15,10 +16,27 @@ namespace {
 constexpr std::size_t kEndsAtOnce = 64;
 constexpr int kMeetSteps = 6;
 constexpr double kCornerReach = 9.0, kCornerTolerance = 0.8;
-constexpr double kExactAside = 0.3;     ///< spacings of a corner from an exact line
-constexpr double kExactWeight = 100.0;  ///< of an exact line in its corner
-constexpr double kTouch = 0.5;          ///< spacings between curves that touch
-constexpr double kPull = 1e-3;          ///< towards the ends, where curves are parallel
+constexpr double kExactAside = 0.3;  ///< spacings of a corner from an exact line
+constexpr double kLeastWeight = 4.0, kMostWeight = 20.0;  ///< of a curve in its corner
+constexpr double kExactWeight = 100.0;                    ///< the same of an exact one
+constexpr double kTouch = 0.5;                            ///< spacings between curves that touch
+constexpr double kPull = 1e-3;   ///< towards the ends, where curves are parallel
+constexpr double kOneEnd = 2.0;  ///< spacings between both ends of a line that may be one
+constexpr double kLeastClosing =
+    1.2 * std::numbers::pi;  ///< radians of an arc whose ends may be one
+
+/// How well the points determine the place of a curve: by their number, within limits.
+double weight_of(const Piece& piece) {
+  if (piece.exact) return kExactWeight;
+  if (piece.fit.kind == CurveKind::kPolyline) return kLeastWeight;
+  return std::clamp(static_cast<double>(piece.nodes.size()), kLeastWeight, kMostWeight);
+}
+
+/// Whether both ends may be one: the arc at the end of a slot is half a circle.
+bool may_close(const Piece& piece) {
+  if (piece.fit.kind != CurveKind::kArc) return true;
+  return length_of(piece) > kLeastClosing * piece.fit.radius;
+}
 
 class Meeting {
  public:
@@ -49,6 +67,7 @@ class Meeting {
   }
   Vec3 meet(const std::vector<std::size_t>& ends) const;
   double cost_at(const std::vector<std::size_t>& ends, const Vec3& place) const;
+  bool closes_a_piece(const std::vector<std::size_t>& ends) const;
   std::vector<Candidate> candidates() const;
   std::optional<Vec3> place_inside(std::size_t end, const NodeIndex& index) const;
   void to_insides(Corners& corners) const;
@@ -79,7 +98,7 @@ Vec3 Meeting::meet(const std::vector<std::size_t>& ends) const {
       const Vec3 along =
           piece.fit.kind == CurveKind::kPolyline ? outward(end) : tangent_at(piece.fit, on);
       const Mat3 across = Mat3::Identity() - along * along.transpose();
-      const double weight = piece.exact ? kExactWeight : 1.0;
+      const double weight = weight_of(piece);
       left += weight * across;
       right += weight * across * (on - place);
     }
@@ -106,6 +125,17 @@ double Meeting::cost_at(const std::vector<std::size_t>& ends, const Vec3& place)
     cost += std::abs(ahead) + 2.0 * aside;
   }
   return cost;
+}
+
+/// Whether both ends of one piece are among these that is not nearly a circle.
+bool Meeting::closes_a_piece(const std::vector<std::size_t>& ends) const {
+  for (std::size_t i = 0; i < ends.size(); ++i) {
+    for (std::size_t j = i + 1; j < ends.size(); ++j) {
+      if (ends_[ends[i]].piece == ends_[ends[j]].piece && !may_close(piece_of(ends[i])))
+        return true;
+    }
+  }
+  return false;
 }
 
 std::vector<Meeting::Candidate> Meeting::candidates() const {
@@ -182,7 +212,8 @@ Corners Meeting::solve() {
     if (a == b) continue;
     std::vector<std::size_t> all = members_[a];
     all.insert(all.end(), members_[b].begin(), members_[b].end());
-    if (all.size() > 2 && !std::isfinite(cost_at(all, meet(all)))) continue;
+    if (all.size() > 2 && (closes_a_piece(all) || !std::isfinite(cost_at(all, meet(all)))))
+      continue;
     for (const std::size_t end : members_[b]) group_[end] = a;
     members_[a] = std::move(all);
     members_[b].clear();

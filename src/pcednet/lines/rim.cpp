@@ -32,6 +32,7 @@ constexpr double kOneDirection = 0.999;  ///< of two axes, cosine
 constexpr std::size_t kLeastWall = 5;    ///< points
 constexpr std::size_t kMostPlaces = 16, kMostTriples = 40;
 constexpr std::size_t kRimSectors = 8;
+constexpr double kMostOpenWall = 2.3;  ///< radians without points; half a turn at the end of a slot
 constexpr std::size_t kMostStray = 5;  ///< points of wall or plane to one of neither
 constexpr double kLeastEdge = 0.5;  ///< share of the points near the rim that are of an edge class
 
@@ -289,18 +290,34 @@ std::optional<bool> plane_is_outside(const Fit& circle, const OrderedPoints& clo
   return is_outside;
 }
 
+/// The largest angle between neighbours of these about an axis; there must be one.
+double widest_gap(std::vector<double>& angles) {
+  std::sort(angles.begin(), angles.end());
+  double widest = kWholeTurn - (angles.back() - angles.front());
+  for (std::size_t i = 1; i < angles.size(); ++i) {
+    widest = std::max(widest, angles[i] - angles[i - 1]);
+  }
+  return widest;
+}
+
 /// Whether there is a wall all along the circle, on one side of the plane alone.
 bool has_wall(const Fit& circle, const OrderedPoints& cloud, std::span<const Beside> points,
               const RimTest& test) {
   Sectors wall(circle, kRimSectors);
+  std::vector<double> angles;
+  const Vec3 x = circle.direction.unitOrthogonal();
   std::size_t beyond = 0, off = 0;
   for (const Beside& point : points) {
     const bool on = std::abs(point.out) < test.reach;
-    if (on && has_height_of_wall(point.height)) wall.add(cloud.position(point.index));
+    if (on && has_height_of_wall(point.height)) {
+      wall.add(cloud.position(point.index));
+      angles.push_back(angle_at(circle, x, cloud.position(point.index)));
+    }
     beyond += on && has_height_of_wall(-point.height);
     off += !on && has_height_of_wall(point.height) && std::abs(point.out) < kOffWall;
   }
-  return is_all_along(wall, test) && kMostStray * beyond <= wall.points() &&
+  return is_all_along(wall, test) && widest_gap(angles) < kMostOpenWall &&
+         kMostStray * beyond <= wall.points() &&
          static_cast<double>(off) <= test.off * static_cast<double>(wall.points());
 }
 
