@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <new>
+#include <optional>
+#include <string_view>
+#include <utility>
 
 #include "common.h"
 #include "pcednet/formats/format.h"
@@ -126,20 +129,22 @@ void Batch::finish() const {
 }
 
 void with_name_in_errors(const fs::path& file, const std::function<void()>& work) {
-  const auto named = [&](ErrorKind kind, const std::string& message) {
-    return Error(kind, fmt::format("{}: {}", file.string(), message));
-  };
-  try {
-    work();
-  } catch (const Error& error) {
-    if (error.kind() == ErrorKind::kCancelled) throw;
-    // Explained here: the rethrown error no longer has the type ExistsAlready.
-    const std::string message = explain(error);
-    if (message.find(file.string()) != std::string::npos) throw Error(error.kind(), message);
-    throw named(error.kind(), message);
-  } catch (const std::bad_alloc&) {
-    throw named(ErrorKind::kFailure, "not enough memory");
-  }
+  const std::string name = file.string();
+  std::optional<Error> named;  // by itself
+  pcednet::with_name_in_errors(name, [&] {
+    try {
+      work();
+    } catch (const Error& error) {
+      if (error.kind() == ErrorKind::kCancelled) throw;
+      // Explained here: the rethrown error no longer has the type ExistsAlready.
+      Error explained(error.kind(), explain(error));
+      if (std::string_view(explained.what()).find(name) == std::string_view::npos) throw explained;
+      named = std::move(explained);
+    } catch (const std::bad_alloc&) {
+      throw Error(ErrorKind::kFailure, "not enough memory");
+    }
+  });
+  if (named) throw *named;
 }
 
 }  // namespace pcednet::app

@@ -2,6 +2,7 @@
 
 #include <stdexcept>
 #include <string>
+#include <string_view>
 
 namespace pcednet {
 
@@ -24,5 +25,16 @@ class Error : public std::runtime_error {
  private:
   ErrorKind kind_;
 };
+
+/// Runs `work`; the message of an Error from it gets "name: " in front, unless it is kCancelled.
+template <typename Work>
+void with_name_in_errors(std::string_view name, const Work& work) {
+  try {
+    work();
+  } catch (const Error& error) {
+    if (error.kind() == ErrorKind::kCancelled) throw;
+    throw Error(error.kind(), std::string(name) + ": " + error.what());
+  }
+}
 
 }  // namespace pcednet

@@ -120,12 +120,8 @@ Samples make_samples(std::span<const TrainingCloud> clouds,
       describe(space, points, std::span(samples.values).subspan(before), &cancel_only);
       for (const std::uint32_t i : points) samples.labels.push_back(cloud.labels[i]);
     };
-    try {
-      for_each_octave(cloud.cloud, descriptor, &cancel_only, add_octave);
-    } catch (const Error& error) {
-      if (error.kind() == ErrorKind::kCancelled) throw;
-      throw Error(error.kind(), fmt::format("{}: {}", cloud.name, error.what()));
-    }
+    with_name_in_errors(
+        cloud.name, [&] { for_each_octave(cloud.cloud, descriptor, &cancel_only, add_octave); });
     stage.advance(positions.size());
   }
   return samples;

@@ -215,11 +215,7 @@ IndexedInput index_input(const fs::path& path, const Progress* progress,
   const auto take = [&](PointCloud& part, std::size_t) {
     std::string digest = digest_of(part);
     io::finish_part(part, tally);
-    try {
-      check_extent(part.positions);
-    } catch (const Error& error) {
-      throw Error(error.kind(), fmt::format("{}: {}", path.string(), error.what()));
-    }
+    with_name_in_errors(path.string(), [&] { check_extent(part.positions); });
     see(part);
     stage.advance(part.size());
     const bool is_first = indexed.input.chunks.empty();

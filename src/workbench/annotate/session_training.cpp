@@ -136,19 +136,17 @@ void Session::State::train_once(std::uint64_t mine) {
 /// Restores the model of a run of an earlier start.
 bool Session::State::train_again(Run& run, std::uint64_t mine) {
   const RunFacts then = run.record.facts;
-  try {
+  bool trained = false;
+  with_name_in_errors(fmt::format("run {} cannot be trained again", run.record.number), [&] {
     std::optional<Labels> its;
     {
       const Lock lock(mutex);
       its = labels_of(run.record, painting->records(), annotate::points_of(inputs()));
     }
-    if (!train(run, its->classes(), mine)) return false;
-    run.record.facts.painted = its->painted();
-  } catch (const Error& error) {
-    if (error.kind() == ErrorKind::kCancelled) throw;
-    throw Error(error.kind(),
-                fmt::format("run {} cannot be trained again: {}", run.record.number, error.what()));
-  }
+    trained = train(run, its->classes(), mine);
+    if (trained) run.record.facts.painted = its->painted();
+  });
+  if (!trained) return false;
   if (!then.painted) return true;  // of the first version, without facts
   if (then.loss != run.record.facts.loss) {
     emit(
