@@ -69,8 +69,8 @@ EdgeModel trained(int classes) {
   options.descriptor.scales = 4;
   options.architecture.classes = classes;
   options.training.epochs = 2;
-  return train("cube", std::vector<TrainingCloud>{{"cube", prepare(cloud), cloud.labels}}, options)
-      .model;
+  const TrainingCloud training{"cube", prepare(cloud), cloud.labels};
+  return train("cube", {&training, 1}, options).model;
 }
 
 TEST(CreaseKind, IsAskedForByNetworksForExactPointsOfThreeClasses) {

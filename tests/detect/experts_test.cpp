@@ -23,8 +23,8 @@ EdgeModel trained(const std::string& name, std::uint64_t seed, double gate = 0.4
   options.training.epochs = 2;
   options.training.seed = seed;
   options.context = true;
-  return train(name, std::vector<TrainingCloud>{{name, prepare(cloud), cloud.labels}}, options)
-      .model;
+  const TrainingCloud training{name, prepare(cloud), cloud.labels};
+  return train(name, {&training, 1}, options).model;
 }
 
 struct ExpertsTest : testing::Test {

@@ -171,7 +171,6 @@ TEST(TrainEdges, KeepsTheNetworkWhereThereIsNothingToLookAtTwice) {
 
 TEST(TrainEdges, KeepsTheNetworkWhenStoppedBeforeItsContext) {
   const PointCloud cloud = cube(1500, 1);
-  const TrainingCloud training{"cube", prepare(cloud), cloud.labels};
   auto options = quick(2);
   options.context = true;
   bool stop = false;
@@ -179,7 +178,8 @@ TEST(TrainEdges, KeepsTheNetworkWhenStoppedBeforeItsContext) {
       .report = [&](const std::string& stage, double) { stop = stop || stage == "look around"; },
       .cancelled = [&] { return stop; }};
   // A cloud more, so that there is a next one to stop before.
-  const std::vector<TrainingCloud> clouds = {training, training};
+  std::vector<TrainingCloud> clouds;
+  for (int i = 0; i < 2; ++i) clouds.push_back({"cube", prepare(cloud), cloud.labels});
   const auto trained = train("test", clouds, options, {}, &progress);
   EXPECT_TRUE(trained.cancelled);
   EXPECT_FALSE(trained.model.context.has_value());

@@ -45,7 +45,8 @@ struct PrepareOptions {
 
 struct PartOfCloud;
 
-/// The input of the descriptors, and the record of its preparation.
+/// The input of the descriptors, and the record of its preparation. The spans may be of its own
+/// vectors: it can be moved, not copied.
 struct PreparedCloud {
   std::span<const Vec3> positions;    ///< the cloud's own, or `moved`
   std::span<const Vec3> normals;      ///< the cloud's own, or `made`; unit or (0,0,0)
@@ -56,6 +57,10 @@ struct PreparedCloud {
   bool reoriented = false;            ///< the signs of the cloud's normals were mixed
   NormalsDecision decision = {};      ///< made here, or given
   const PartOfCloud* part = nullptr;  ///< for classify() and find_boundary(); must outlive both
+
+  PreparedCloud() = default;
+  PreparedCloud(PreparedCloud&&) noexcept = default;
+  PreparedCloud& operator=(PreparedCloud&&) noexcept = default;
 };
 
 /// Makes `cloud` ready for description; it must outlive the result. Where one point in a hundred or
