@@ -1,4 +1,7 @@
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -171,6 +174,26 @@ TEST_F(JournalTest, KeepsEveryWholeLineWhereverItsEndIsLost) {
     expected.push_back(to_line(records_[1]));
     EXPECT_EQ(lines(again), expected) << size;
   }
+}
+
+TEST_F(JournalTest, StaysAsItIsWhereItCannotBeRead) {
+  {
+    std::vector<Record> known = records_;
+    const Journal journal(path_, input_, known);
+  }
+  const auto size = std::filesystem::file_size(path_);
+  // One more file can be open: the journal itself, but none to read it by.
+  const int next = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
+  ::close(next);
+  rlimit before = {};
+  ASSERT_EQ(getrlimit(RLIMIT_NOFILE, &before), 0);
+  rlimit few = before;
+  few.rlim_cur = static_cast<rlim_t>(next) + 1;
+  ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &few), 0);
+  std::vector<Record> found;
+  EXPECT_ERROR(ErrorKind::kUnreadable, Journal(path_, input_, found));
+  ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &before), 0);
+  EXPECT_EQ(std::filesystem::file_size(path_), size);
 }
 
 TEST_F(JournalTest, RefusesWhatIsDamagedOrOfAnotherInput) {

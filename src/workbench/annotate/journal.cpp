@@ -7,11 +7,10 @@
 
 #include <cerrno>
 #include <cstring>
-#include <fstream>
-#include <iterator>
 
 #include "pcednet/core/error.h"
 #include "pcednet/core/output_file.h"
+#include "pcednet/io/input_file.h"
 
 namespace pcednet::annotate {
 namespace {
@@ -72,8 +71,7 @@ void Journal::fail(const char* what) const {
 }
 
 void Journal::read(const Inputs& inputs, std::vector<Record>& records) {
-  std::ifstream stream(path_, std::ios::binary);
-  const std::string text(std::istreambuf_iterator<char>(stream), {});
+  const std::string text = io::InputFile(path_).text();
   std::vector<Record> found;
   Inputs known;
   std::size_t lines = 0, head = 0;
@@ -120,17 +118,19 @@ void Journal::write_line(const std::string& line) {
   while (written < bytes.size()) {
     const ssize_t count = ::write(file_, bytes.data() + written, bytes.size() - written);
     if (count < 0 && errno == EINTR) continue;
-    if (count <= 0) {
-      const int why = errno;
-      // An incomplete line must not stay: the next one would join it.
-      if (::ftruncate(file_, static_cast<off_t>(size_)) == 0) ::lseek(file_, 0, SEEK_END);
-      errno = why;
-      fail("cannot be written");
-    }
+    if (count <= 0) take_back();
     written += static_cast<std::size_t>(count);
   }
-  ::fdatasync(file_);
+  if (::fdatasync(file_) != 0) take_back();
   size_ += bytes.size();
+}
+
+/// Fails with the present errno, without the line that was begun: the next one would join it.
+void Journal::take_back() {
+  const int why = errno;
+  if (::ftruncate(file_, static_cast<off_t>(size_)) == 0) ::lseek(file_, 0, SEEK_END);
+  errno = why;
+  fail("cannot be written");
 }
 
 }  // namespace pcednet::annotate

@@ -13,8 +13,8 @@ class Journal {
  public:
   /// Opens the journal at `path`, or begins one with `records`. `records` becomes the content of
   /// the journal. A journal of the first inputs is extended to all `inputs`. Throws
-  /// Error(kUnreadable), naming the line, if it is damaged before its end, Error(kInsufficient) if
-  /// it is of other inputs, Error(kFailure) if it cannot be written.
+  /// Error(kUnreadable) if it cannot be read or, naming the line, if it is damaged before its end,
+  /// Error(kInsufficient) if it is of other inputs, Error(kFailure) if it cannot be written.
   Journal(std::filesystem::path path, const Inputs& inputs, std::vector<Record>& records);
   ~Journal();
   Journal(const Journal&) = delete;
@@ -29,6 +29,7 @@ class Journal {
   void read(const Inputs& inputs, std::vector<Record>& records);
   void rewrite(const std::string& text);
   void write_line(const std::string& line);
+  [[noreturn]] void take_back();
   [[noreturn]] void fail(const char* what) const;
 
   std::filesystem::path path_;
