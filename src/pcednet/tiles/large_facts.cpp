@@ -97,7 +97,9 @@ double share_of(const BoundingBox& box, const BoundingBox& whole) {
 /// The spacing of all points, which are read once more.
 std::optional<SampledSpacing> spacing_of_all(const io::PartReader& reader, Sample& sample,
                                              const Progress* progress) {
-  const std::vector<Vec3> positions = sample.take();
+  std::vector<Vec3> positions = sample.take();
+  // A place counts once, as in the stream.
+  positions.erase(std::unique(positions.begin(), positions.end()), positions.end());
   std::vector<Vec3> places;
   std::vector<double> reach;
   measure(positions, kPlaces, [&](const Vec3& place, std::span<const double> sq_distances) {

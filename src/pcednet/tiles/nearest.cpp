@@ -11,8 +11,11 @@
 namespace pcednet::tiles {
 namespace {
 
+/// Places too far from the origin for their number are in one cell.
 std::int64_t cell_along(double coordinate, int size) {
-  return static_cast<std::int64_t>(std::floor(std::ldexp(coordinate, -size)));
+  constexpr double kMost = 0x1p62;
+  const double cell = std::floor(std::ldexp(coordinate, -size));
+  return static_cast<std::int64_t>(std::clamp(cell, -kMost, kMost));
 }
 
 double sq_distance(const Vec3& a, const Vec3& b) {
