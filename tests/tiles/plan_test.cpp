@@ -25,6 +25,7 @@ class PlanFile : public testing::Test, protected test::OwnFolder {
     plan.inputs = {{folder_ / "in/a.laz", 1234, true, {{50000, 0, {{0, 1, 2}, {3, 4, 5.1}}, "d1"}}},
                    {"/elsewhere/b.laz", 99, false, {{10, 10, {}, "d2"}, {1, 0, {}, "d3"}}}};
     plan.las_steps = {0.01, 0, 0.01, 0, 0.01, 0.1};
+    plan.places = 50000;
     plan.box = {{0, 1, 2}, {3, 4, 0.1 + 0.2}};
     plan.model = {"general", "/models/general.safetensors", "abc", false, true, false};
     plan.s_min = 0.1, plan.s_max = 1.0 / 3.0;
@@ -55,6 +56,7 @@ TEST_F(PlanFile, ComesBackAsItWas) {
   EXPECT_EQ(back.inputs[1].chunks[0].without_place, 10u);
   EXPECT_EQ(back.inputs[1].chunks[1].digest, "d3");
   EXPECT_EQ(back.points(), 50011u);
+  EXPECT_EQ(back.places, 50000u);
   EXPECT_EQ(back.las_steps, plan.las_steps);
   EXPECT_EQ(back.box.max, plan.box.max);
   EXPECT_EQ(back.model.path, plan.model.path);

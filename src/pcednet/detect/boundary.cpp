@@ -235,9 +235,8 @@ class FirstCells {
  public:
   FirstCells(const DistinctPoints& points, const PartOfCloud* part) {
     const BoundingBox box = bounding_box(points.positions);
-    const bool is_known = part && !part->pyramids.empty();
-    corner_ = is_known ? part->pyramids.front().corner : box.min;
-    const double side = is_known ? part->pyramids.front().side : (box.max - box.min).maxCoeff();
+    corner_ = part ? part->pyramids.front().corner : box.min;
+    const double side = part ? part->pyramids.front().side : (box.max - box.min).maxCoeff();
     const auto count = static_cast<double>(part ? part->points : points.size());
     per_length_ = std::exp2(std::round(std::log2(std::sqrt(count) / 3.0))) / side;
   }

@@ -70,9 +70,7 @@ void for_each_octave(
     const PreparedCloud& cloud, const gls::ScaleSpaceOptions& descriptor, const Progress* progress,
     const std::function<void(const gls::ScaleSpace&, std::span<const std::uint32_t>)>& work) {
   const PartOfCloud* const part = cloud.part;
-  const auto plan_of = [&](std::size_t octave) {
-    return part && !part->pyramids.empty() ? &part->pyramids[octave] : nullptr;
-  };
+  const auto plan_of = [&](std::size_t octave) { return part ? &part->pyramids[octave] : nullptr; };
   gls::ScaleSpace space({cloud.positions, cloud.normals, cloud.curve, plan_of(0)}, descriptor,
                         progress);
   const std::size_t count = gls::octave_count(space.range());

@@ -226,6 +226,13 @@ Sample index_inputs(const PlanRequest& request, Plan& plan, const Progress* prog
   return sample;
 }
 
+/// The places among these, which are in curve order.
+std::size_t count_places(std::span<const Vec3> positions) {
+  std::size_t copies = 0;
+  for (std::size_t i = 1; i < positions.size(); ++i) copies += positions[i] == positions[i - 1];
+  return positions.size() - copies;
+}
+
 /// Of coordinates of this type, where s_min is the spacing.
 void note_float_rounding(const detect::EdgeModel& model, ScalarType type, Plan& plan) {
   const bool is_spacing = model.descriptor.s_min == 0.0 && plan.normals.rounding.step == 0.0;
@@ -247,6 +254,13 @@ double counting_cell(const PlanRequest& request, const BoundingBox& box) {
   }
   double cell = request.tile_length;  // halves of it are exact
   while (cell > cell_length(box)) cell *= 0.5;
+  constexpr double kMostNumber = 0x1p62;  // of a cell
+  const double farthest = std::max(box.min.cwiseAbs().maxCoeff(), box.max.cwiseAbs().maxCoeff());
+  if (!(farthest / cell < kMostNumber)) {
+    throw Error(ErrorKind::kUsage,
+                fmt::format("tiles of length {:g} at coordinates up to {:g}: too short",
+                            request.tile_length, farthest));
+  }
   return cell;
 }
 
@@ -269,8 +283,9 @@ Plan make_plan(const PlanRequest& request, const detect::EdgeModel& model,
   Sample some = index_inputs(request, plan, progress);
   const bool is_all = some.is_all();
   const std::vector<Vec3> sample = some.take();
-  check_order_early(request, plan, sample);
+  plan.places = is_all ? count_places(sample) : some.seen();
   const double cell = counting_cell(request, plan.box);
+  check_order_early(request, plan, sample);
   CellCounts counts(cell);
 
   const PointCloud dense = read_dense_sample(sample, plan, progress);

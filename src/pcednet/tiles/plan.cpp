@@ -176,6 +176,7 @@ std::string text_of(const Plan& plan, const Paths& paths) {
       {"format", to_text(Json(kFormat))},
       {"program", to_text(Json(plan.version))},
       {"points", to_text(Json(plan.points()))},
+      {"places", to_text(Json(plan.places))},
       {"box", to_text(json_of(plan.box))},
       {"las_steps", to_text(Json(plan.las_steps))},
       {"model", to_text(json_of(plan.model, paths))},
@@ -205,6 +206,7 @@ Plan plan_of(const Json& j, const Paths& paths, std::string& member) {
   };
   Plan plan;
   plan.version = at("program");
+  plan.places = at("places");
   plan.box = box_in(at("box"));
   plan.las_steps = at("las_steps").get<std::vector<double>>();
   plan.model = model_of(at("model"), paths);

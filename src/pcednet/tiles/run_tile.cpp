@@ -51,7 +51,7 @@ void add_core(const PointCloud& core, PointCloud& all) {
 }
 
 detect::PartOfCloud part_of(const Plan& plan, std::size_t tile, const TileCloud& points) {
-  detect::PartOfCloud part{.pyramids = plan.pyramids, .points = plan.points(), .wanted = {}};
+  detect::PartOfCloud part{.pyramids = plan.pyramids, .points = plan.places, .wanted = {}};
   part.wanted.assign(points.all.size(), 1);
   const BoundingBox near = plan.box_of(plan.tiles[tile], plan.reach);
   for (std::size_t i = points.core.size(); i < part.wanted.size(); ++i) {
