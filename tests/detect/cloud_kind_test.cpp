@@ -77,6 +77,16 @@ TEST(CloudKind, TakesNormalsThatWereEstimatedBeforeForEstimated) {
   EXPECT_TRUE(traits_of(prepared, {}).estimated);
 }
 
+TEST(CloudKind, TakesAFewNormalsThatAreNoNumbersForUnusable) {
+  PointCloud cloud = cube(1000, 1);
+  cloud.normals.clear();
+  cloud.normals = prepare(cloud).made;
+  for (std::size_t i = 0; i < 9; ++i) cloud.normals[100 * i + 50].setConstant(NAN);
+  const PreparedCloud prepared = prepare(cloud);
+  ASSERT_FALSE(prepared.decision.made);
+  EXPECT_TRUE(traits_of(prepared, {}).estimated);
+}
+
 TEST(CloudKind, IsNoisyWhereMoreNeighboursEstimateTheNormals) {
   PointCloud cloud = cube(3000, 1);
   cloud.normals.clear();

@@ -35,7 +35,7 @@ struct ForeignElement {
 /// Positions and normals may hold NaN or infinity: see find_defects().
 struct PointCloud {
   std::vector<Vec3> positions;
-  std::vector<Vec3> normals;  ///< unit length, or (0,0,0) where the file's normal was unusable
+  std::vector<Vec3> normals;  ///< unit length; where the file's is unusable, readers give (0,0,0)
   /// The normals as in the file, of any length: x, y and z, or empty. Writers use them while
   /// normals_are_stored().
   std::vector<Attribute> stored_normals;

@@ -44,7 +44,8 @@ bool are_as_estimated(const PreparedCloud& cloud) {
   const auto estimated = normals::estimate_normals(cloud.positions);
   std::vector<double> cosines;
   for (const std::uint32_t i : spatial::firsts_of_places(cloud.positions, cloud.curve)) {
-    cosines.push_back(std::abs(estimated[i].dot(cloud.normals[i])));
+    const Vec3& given = cloud.normals[i];  // agrees with nothing if it is unusable
+    cosines.push_back(is_usable(given) ? std::abs(estimated[i].dot(given)) : 0.0);
   }
   const auto quarter = cosines.begin() + static_cast<std::ptrdiff_t>(cosines.size() / 4);
   std::nth_element(cosines.begin(), quarter, cosines.end());
