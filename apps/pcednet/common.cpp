@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <csignal>
 #include <cstdio>
 #include <memory>
@@ -17,7 +18,9 @@
 namespace pcednet::app {
 namespace {
 
-volatile std::sig_atomic_t interrupted = 0, ends_at_once = 0;
+// Set by the signal handler, read by every thread.
+std::atomic<int> interrupted = 0, ends_at_once = 0;
+static_assert(std::atomic<int>::is_always_lock_free);  // or a handler may not use it
 
 [[noreturn]] void end_at_once() {
   constexpr std::string_view kSaid = "pcednet: stopped by the user\n";
