@@ -4,7 +4,6 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
-#include <cstdio>
 #include <filesystem>
 #include <optional>
 
@@ -12,6 +11,7 @@
 #include "pcednet/formats/format.h"
 #include "pcednet/io/las/copc.h"
 #include "pcednet/io/las/file.h"
+#include "pcednet/io/text_scan.h"
 #include "pcednet/tiles/inputs.h"
 
 namespace pcednet::app {
@@ -60,17 +60,15 @@ LasCodes las_codes(const std::string& pairs, std::size_t classes) {
   LasCodes codes;
   if (pairs.empty()) return codes;
   for (const std::string& pair : CLI::detail::split(pairs, ',')) {
-    int edge_class = -1, code = -1, used = 0;
-    const bool sound = std::sscanf(pair.c_str(), "%d=%d%n", &edge_class, &code, &used) == 2 &&
-                       static_cast<std::size_t>(used) == pair.size() && edge_class >= 0 &&
-                       static_cast<std::size_t>(edge_class) < classes && code >= 0 && code <= 255;
-    if (!sound) {
+    const std::vector<std::string> words = CLI::detail::split(CLI::detail::trim_copy(pair), '=');
+    const auto edge_class = io::parse_count(words.front()), code = io::parse_count(words.back());
+    if (words.size() != 2 || !edge_class || *edge_class >= classes || !code || *code > 255) {
       throw Error(ErrorKind::kUsage,
                   fmt::format("--las-classification: \"{}\" is not class=code, class 0 to {}, code "
                               "0 to 255",
                               pair, classes - 1));
     }
-    codes.emplace_back(edge_class, code);
+    codes.emplace_back(static_cast<int>(*edge_class), static_cast<int>(*code));
   }
   return codes;
 }

@@ -31,6 +31,12 @@ class Fee(CliTest):
         nothing = self.scores(*radii, "--threshold", "0.5")
         self.assertEqual(nothing["tp"] + nothing["fp"], 0)
 
+    def test_radii_of_a_study_are_numbers_to_their_end(self):
+        for bad in ("a=0.1,0.2junk", "a=0.1", "a=0.1,0.2,0.3,0.4", "a=nan,0.2"):
+            said = run("study", "classes", "--test", f"a={self.folder / 'a.ply'}", "--train", self.folder / "a.ply",
+                       "-o", self.folder / "out", "--fee", bad, expect=2).stderr
+            self.assertIn("give SET=R,r", said)
+
     def test_says_what_is_missing(self):
         alone = self.folder / "pcednet"  # pcednet-fee is looked for beside it
         shutil.copy(PROGRAM, alone)

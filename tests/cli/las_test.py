@@ -240,7 +240,8 @@ class Las(CliTest):
         before = self.scan(6)["Classification"]
         expected = np.choose(got["edge_class"], [before, 65, 64])
         np.testing.assert_array_equal(got["Classification"], expected)
-        run("classify", source, "--las-classification", "3=1", expect=2)
+        for bad in ("3=1", "2=64x", "2=", "2", "2=4=6", "-1=6", "4294967298=64"):
+            run("classify", source, "--las-classification", bad, expect=2)
         old = self.write("old.las", las(3, self.scan(3)))
         done = run("classify", old, "--las-classification", "2=64", expect=2)
         self.assertIn("does not fit point format 3", done.stderr)

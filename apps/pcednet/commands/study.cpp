@@ -2,11 +2,13 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <iostream>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 
 #include "batch.h"
@@ -18,6 +20,7 @@
 #include "models.h"
 #include "number_options.h"
 #include "pcednet/core/error.h"
+#include "pcednet/io/text_scan.h"
 #include "result_plan.h"
 #include "workbench/shapes/default_set.h"
 #include "workbench/study/study_file.h"
@@ -114,12 +117,21 @@ std::map<std::string, MethodArguments> fee_settings(const std::vector<std::strin
     const auto [set, value] = named(argument, "--fee");
     MethodArguments& fee = settings[set];
     fee.name = "fee";
-    const int read = std::sscanf(value.c_str(), "%lf,%lf,%lf", &fee.offset_radius,
-                                 &fee.convolution_radius, &fee.threshold);
-    if (read < 2) {
+    std::vector<std::optional<double>> numbers;
+    for (const std::string& token : CLI::detail::split(value, ',')) {
+      numbers.push_back(io::parse_double(CLI::detail::trim_copy(token)));
+    }
+    const bool sound = (numbers.size() == 2 || numbers.size() == 3) &&
+                       std::all_of(numbers.begin(), numbers.end(), [](const auto& number) {
+                         return number && std::isfinite(*number);
+                       });
+    if (!sound) {
       throw Error(ErrorKind::kUsage,
                   fmt::format("--fee {}: give SET=R,r or SET=R,r,THRESHOLD", argument));
     }
+    fee.offset_radius = *numbers[0];
+    fee.convolution_radius = *numbers[1];
+    if (numbers.size() == 3) fee.threshold = *numbers[2];
   }
   return settings;
 }
