@@ -107,6 +107,11 @@ TEST(TrainEdges, LearnsAtTheSpacingItselfIfAsked) {
   const auto model = train_on(cloud, options).model;
   EXPECT_NE(model.network.network.parameters, rounded.network.network.parameters);
   EXPECT_EQ(model.descriptor, rounded.descriptor);
+  const TrainingCloud training{"cube", prepare(cloud), cloud.labels};
+  const Samples samples = make_samples({&training, 1}, options.descriptor);
+  const auto of_samples = train("test", samples, options).model;
+  EXPECT_EQ(of_samples.network.network.parameters, model.network.network.parameters);
+  EXPECT_EQ(of_samples.descriptor, rounded.descriptor);
   options.descriptor.s_max_ratio = 0.0;
   EXPECT_EQ(train_on(cloud, options).model.network.network.parameters,
             by_extent.network.network.parameters);

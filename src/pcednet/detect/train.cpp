@@ -134,6 +134,8 @@ TrainedModel train(const std::string& name, std::span<const TrainingCloud> cloud
   const Samples samples = make_samples(clouds, options.descriptor, progress, options.table);
   TrainedModel trained = train(name, samples, options, on_epoch, progress);
   trained.notes = samples.notes;
+  // The context network learns from the descriptions that the network learnt from.
+  trained.model.descriptor.rounded = samples.descriptor.rounded;
   if (options.context) add_context(trained, clouds, options, on_epoch, progress);
   trained.model.descriptor.rounded = true;
   return trained;
@@ -182,6 +184,7 @@ TrainedModel train(const std::string& name, const Samples& samples, const TrainO
   trained.validated = is_validated(result);
   model.network = std::move(result.best);
   model.network.metadata = summary_of(result, samples);
+  model.descriptor.rounded = true;
   return trained;
 }
 
