@@ -189,13 +189,20 @@ Painted Session::redo() {
 }
 
 Settings Session::change_settings(const SettingsChange& change) {
-  const Lock lock(state_->mutex);
   State& s = *state_;
-  s.check_ready();
-  Settings wanted = annotate::changed(s.painting->settings(), change);
-  if (wanted.start != kRandomStart) {
-    check_start(s.options.load_model(wanted.start), wanted.start, s.painting->classes().table);
-  }
+  const auto wanted_now = [&] {
+    s.check_ready();
+    return annotate::changed(s.painting->settings(), change);
+  };
+  Lock lock(s.mutex);
+  const std::string name = wanted_now().start;
+  lock.unlock();  // others need not wait for the file
+  std::optional<detect::EdgeModel> start;
+  if (name != kRandomStart) start = s.options.load_model(name);
+  lock.lock();
+  Settings wanted = wanted_now();
+  // A start that another request has chosen since was checked by that.
+  if (start && wanted.start == name) check_start(*start, name, s.painting->classes().table);
   if (wanted != s.painting->settings()) {
     s.painting->add({.kind = Record::Kind::kSettings, .settings = wanted});
     s.schedule();
