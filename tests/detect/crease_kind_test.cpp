@@ -29,7 +29,8 @@ TEST(CreaseKind, TellsSharpEdgeFromWhatIsBeside) {
   const PointCloud cloud = cube(kKindPoints, 1);
   const double unit = 1.2 * std::sqrt(6.0 / kKindPoints);
   Classification found = undecided(kKindPoints);
-  apply_crease_kind(cloud.positions, spatial::curve_order(cloud.positions), unit, found);
+  apply_crease_kind(cloud.positions, spatial::curve_order(cloud.positions), unit, kLeastEdge,
+                    found);
   std::size_t near = 0, near_sharp = 0, beside = 0, beside_smooth = 0;
   for (std::size_t i = 0; i < kKindPoints; ++i) {
     EXPECT_NEAR(found.p_sharp[i] + found.p_smooth[i], 0.8f, 1e-6f);
@@ -54,13 +55,17 @@ TEST(CreaseKind, LeavesAloneWhatIsNoEdgeOrOfAnotherClass) {
   }
   const Classification before = found;
   apply_crease_kind(cloud.positions, spatial::curve_order(cloud.positions),
-                    1.2 * std::sqrt(6.0 / kKindPoints), found);
+                    1.2 * std::sqrt(6.0 / kKindPoints), kLeastEdge, found);
   EXPECT_EQ(found.classes, before.classes);
   for (std::size_t i = 0; i < kKindPoints; ++i) {
     if (i >= 2 && i % 2 == 1) continue;
     EXPECT_EQ(found.p_sharp[i], before.p_sharp[i]) << i;
   }
   EXPECT_NE(found.p_sharp, before.p_sharp);
+  found = before;
+  apply_crease_kind(cloud.positions, spatial::curve_order(cloud.positions),
+                    1.2 * std::sqrt(6.0 / kKindPoints), 0.5f, found);
+  EXPECT_EQ(found.p_sharp, before.p_sharp);
 }
 
 EdgeModel trained(int classes) {

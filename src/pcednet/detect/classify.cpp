@@ -85,7 +85,7 @@ Classification classify_with(const Decide& decide, const Subject& subject, const
   const Expert* expert = expert_for(model, subject.traits);
   if (expert) found.expert = expert->kind;
   if (is_by_creases(model, expert)) {
-    apply_crease_kind(subject.positions, subject.curve, found.s_min, found);
+    apply_crease_kind(subject.positions, subject.curve, found.s_min, suited.least_edge, found);
   }
   found.counts = count_classes(found.classes);
   return found;

@@ -42,10 +42,10 @@ void decide_kind(std::size_t point, double distance, Classification& found) {
 }  // namespace
 
 void apply_crease_kind(std::span<const Vec3> positions, std::span<const std::uint32_t> curve,
-                       double smallest_scale, Classification& found) {
+                       double smallest_scale, float least_edge, Classification& found) {
   std::vector<std::uint8_t> wanted(positions.size());
   for (std::size_t i = 0; i < wanted.size(); ++i) {
-    const bool may_be_edge = found.p_sharp[i] + found.p_smooth[i] >= kLeastEdge;
+    const bool may_be_edge = found.p_sharp[i] + found.p_smooth[i] >= least_edge;
     wanted[i] = may_be_edge && found.classes[i] <= kSharpEdge ? 1 : 0;
   }
   const std::vector<float> distances = crease_distances(positions, curve, wanted, smallest_scale);

@@ -16,8 +16,9 @@ namespace pcednet::detect {
 /// clean parts (`pcednet generate lines`, seeds 901 and 902).
 ///
 /// `curve` is the spatial::curve_order() of the positions, `smallest_scale` that of the networks'
-/// description, about 1.2 spacings.
+/// description, about 1.2 spacings. Points with an edge probability below `least_edge` stay, as for
+/// the context network.
 void apply_crease_kind(std::span<const Vec3> positions, std::span<const std::uint32_t> curve,
-                       double smallest_scale, Classification& found);
+                       double smallest_scale, float least_edge, Classification& found);
 
 }  // namespace pcednet::detect
