@@ -315,9 +315,9 @@ PreparedCloud prepare(const PointCloud& cloud, const PrepareOptions& options,
 
 PreparedCloud prepare(const PointArrays& cloud, const PrepareOptions& options,
                       const Progress* progress) {
-  for (const auto vectors : {cloud.normals, cloud.scanners}) {
-    if (!vectors.empty()) normals::check_size(cloud.positions, vectors);
-  }
+  const std::size_t points = cloud.positions.size();
+  if (!cloud.normals.empty()) normals::check_size("normals", cloud.normals.size(), points);
+  if (!cloud.scanners.empty()) normals::check_size("scanners", cloud.scanners.size(), points);
   const auto scanners = [&cloud] {
     return std::vector<Vec3>(cloud.scanners.begin(), cloud.scanners.end());
   };

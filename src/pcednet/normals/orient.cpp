@@ -118,16 +118,15 @@ std::vector<Vec3> first_normals(const NeighbourGraph& graph, std::span<const Vec
 
 }  // namespace
 
-void check_size(std::span<const Vec3> positions, std::span<const Vec3> normals) {
-  if (normals.size() == positions.size()) return;
-  throw Error(ErrorKind::kUsage,
-              fmt::format("{} normals for {} positions", normals.size(), positions.size()));
+void check_size(std::string_view what, std::size_t count, std::size_t positions) {
+  if (count == positions) return;
+  throw Error(ErrorKind::kUsage, fmt::format("{} {} for {} positions", count, what, positions));
 }
 
 std::size_t face_viewpoints(std::span<const Vec3> positions, std::span<Vec3> normals,
                             std::span<const Vec3> viewpoints) {
-  check_size(positions, normals);
-  check_size(positions, viewpoints);
+  check_size("normals", normals.size(), positions.size());
+  check_size("viewpoints", viewpoints.size(), positions.size());
   std::size_t faced = 0;
   for (std::size_t i = 0; i < positions.size(); ++i) {
     if (!viewpoints[i].allFinite()) continue;
@@ -169,7 +168,7 @@ Orientation orient_normals(NeighbourGraph& graph, std::span<const Vec3> position
                            std::span<Vec3> normals, const OrientOptions& options,
                            const Progress* progress) {
   check(options);
-  check_size(positions, normals);
+  check_size("normals", normals.size(), positions.size());
   if (options.viewpoint) {
     parallel_for_each(positions.size(),
                       [&](std::size_t i) { face(positions[i], normals[i], *options.viewpoint); });
@@ -187,7 +186,7 @@ Orientation orient_normals(NeighbourGraph& graph, std::span<const Vec3> position
 Orientation orient_normals(std::span<const Vec3> positions, std::span<Vec3> normals,
                            const OrientOptions& options, const Progress* progress) {
   check(options);
-  check_size(positions, normals);
+  check_size("normals", normals.size(), positions.size());
   const std::size_t count = options.viewpoint ? 1 : static_cast<std::size_t>(options.neighbours);
   NeighbourGraph graph = make_neighbour_graph(positions, NeighbourChoice{count}, progress);
   return orient_normals(graph, positions, normals, options, progress);

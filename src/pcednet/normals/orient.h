@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <optional>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "pcednet/core/progress.h"
@@ -65,7 +66,7 @@ Orientation orient_points(NeighbourGraph& graph, std::span<Vec3> normals,
 std::size_t face_viewpoints(std::span<const Vec3> positions, std::span<Vec3> normals,
                             std::span<const Vec3> viewpoints);
 
-/// Throws Error(kUsage) unless there is one normal per position.
-void check_size(std::span<const Vec3> positions, std::span<const Vec3> normals);
+/// Throws Error(kUsage) unless there are as many of `what` ("normals") as positions.
+void check_size(std::string_view what, std::size_t count, std::size_t positions);
 
 }  // namespace pcednet::normals

@@ -59,7 +59,7 @@ PreparedNormals complete_and_orient_normals(std::span<const Vec3> positions,
                                             std::span<const Vec3> given,
                                             const OrientedNormalsOptions& options,
                                             const Progress* progress) {
-  check_size(positions, given);
+  check_size("normals", given.size(), positions.size());
   check_extent(positions);
   NeighbourGraph graph = make_neighbour_graph(positions, options.choice, progress, options.curve);
   PreparedNormals prepared;
