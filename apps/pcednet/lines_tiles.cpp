@@ -105,7 +105,7 @@ PointsNearEdges read_near_edges(const TiledCloud& cloud, std::uint64_t limit,
   Stage stage(&progress, "points near edges", cloud.plan().points());
   cloud.each([&](const PointCloud& part, const tiles::TileFindings& findings) {
     if (near.cloud.foreign_elements.empty()) near.cloud.foreign_elements = part.foreign_elements;
-    const std::vector<Vec3>& made = findings.prepared.made;
+    const std::vector<Vec3>& made = findings.made;
     const std::vector<Vec3>& normals = made.empty() ? part.normals : made;
     for (std::size_t i = 0; i < part.size(); ++i) {
       const Vec3& position = part.positions[i];

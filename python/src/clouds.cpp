@@ -167,14 +167,14 @@ py::tuple read(const std::filesystem::path& path) {
 
 /// A result, added to the cloud as the command line does.
 struct ResultParts {
-  detect::PreparedCloud prepared = {};
+  std::vector<Vec3> made = {};
   detect::Classification found = {};
   const detect::EdgeModel* model = nullptr;
 };
 
 ResultParts result_of(const py::dict& parts) {
   ResultParts result{.model = parts["model"].cast<const detect::EdgeModel*>()};
-  if (parts["made_normals"].cast<bool>()) result.prepared.made = copied(parts["normals"]);
+  if (parts["made_normals"].cast<bool>()) result.made = copied(parts["normals"]);
   const auto copy = [&](const char* name, auto& values) {
     using Number = typename std::remove_reference_t<decltype(values)>::value_type;
     const auto given = parts[name].cast<Array<Number>>();
@@ -201,9 +201,9 @@ std::vector<std::string> write(const std::filesystem::path& path, const py::dict
   std::vector<std::string> losses;
   run_job({py::none()}, [&](const Progress*) {
     if (found) {
-      detect::add_result(cloud, found->prepared, found->found, *found->model,
+      detect::add_result(cloud, found->made, found->found, *found->model,
                          {.class_colours = class_colours});
-      options.new_normals = found->prepared.made.empty();
+      options.new_normals = found->made.empty();
     }
     check_consistent(cloud);
     losses = formats::losses(path, cloud);

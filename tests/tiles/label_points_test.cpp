@@ -111,21 +111,20 @@ TEST_F(LabelPoints, FindingsComeBackInOrder) {
       for (std::uint64_t i = 1000; i-- > 0;) {
         if (i / 10 % 3 == tile) numbers.push_back(i);
       }
-      TileFindings some{.prepared = {},
-                        .found = detect::nothing_found(numbers.size(), own_classes)};
+      TileFindings some{.found = detect::nothing_found(numbers.size(), own_classes)};
       for (std::size_t k = 0; k < numbers.size(); ++k) {
         const auto number = static_cast<float>(numbers[k]);
         some.found.classes[k] = static_cast<std::uint8_t>(numbers[k] % 4);
         some.found.p_sharp[k] = 1.0f / (1.0f + number);
         some.found.p_smooth[k] = number;
         if (own_classes) some.found.p_class[k] = 0.5f * number;
-        if (normals) some.prepared.made.emplace_back(0.1 * number, 1.0 / 3.0, -number);
+        if (normals) some.made.emplace_back(0.1 * number, 1.0 / 3.0, -number);
       }
       labels.put(numbers, some);
     }
     const TileFindings back = labels.get(100, 1000);
     ASSERT_EQ(back.found.classes.size(), 900u);
-    EXPECT_EQ(back.prepared.made.size(), normals ? 900u : 0u);
+    EXPECT_EQ(back.made.size(), normals ? 900u : 0u);
     EXPECT_EQ(back.found.p_class.size(), own_classes ? 900u : 0u);
     EXPECT_EQ(back.found.counts.sharp, 225u);
     for (std::size_t i = 0; i < 900; ++i) {
@@ -137,7 +136,7 @@ TEST_F(LabelPoints, FindingsComeBackInOrder) {
         EXPECT_EQ(back.found.p_class[i], 0.5f * number);
       }
       if (!normals) continue;
-      EXPECT_EQ(back.prepared.made[i], Vec3(0.1 * number, 1.0 / 3.0, -number));
+      EXPECT_EQ(back.made[i], Vec3(0.1 * number, 1.0 / 3.0, -number));
     }
   }
 }

@@ -110,11 +110,11 @@ void say_kept(const detect::KeptInput& kept) {
 }
 
 /// Adds the result to the cloud, with the user's options.
-detect::KeptInput add_found(const detect::PreparedCloud& prepared,
-                            const detect::Classification& found, const ClassifyArguments& arguments,
-                            const detect::EdgeModel& model, PointCloud& cloud) {
+detect::KeptInput add_found(std::span<const Vec3> made, const detect::Classification& found,
+                            const ClassifyArguments& arguments, const detect::EdgeModel& model,
+                            PointCloud& cloud) {
   const detect::KeptInput kept =
-      detect::add_result(cloud, prepared, found, model, {.class_colours = arguments.class_colours});
+      detect::add_result(cloud, made, found, model, {.class_colours = arguments.class_colours});
   set_las_codes(arguments.codes, found.classes, cloud);
   return kept;
 }
@@ -148,7 +148,7 @@ void classify_large_file(const Job& job, const ClassifyArguments& arguments,
   const auto add_result = [&](PointCloud& part, const tiles::TileFindings& findings) {
     detect::Classification found = findings.found;
     found.s_min = result.s_min, found.s_max = result.s_max;
-    kept = add_found(findings.prepared, found, arguments, model, part);
+    kept = add_found(findings.made, found, arguments, model, part);
   };
   const auto see = [&](const PointCloud& part, std::size_t before) {
     count(part.labels, counts);
@@ -195,7 +195,7 @@ void classify_file(const Job& job, const ClassifyArguments& arguments,
                                                   .boundary = !arguments.model.no_boundary},
                                                  progress);
   clock.begin("write");
-  say_kept(add_found(prepared, result, arguments, model, cloud));
+  say_kept(add_found(prepared.made, result, arguments, model, cloud));
   warn_of_losses(job.output.string(), formats::losses(job.output, cloud));
   formats::write_cloud(job.output, cloud,
                        {.overwrite = common.overwrite(),

@@ -82,6 +82,11 @@ void add_class_comments(PointCloud& cloud, const ClassTable& table) {
 
 KeptInput add_result(PointCloud& cloud, const PreparedCloud& prepared, const Classification& result,
                      const EdgeModel& model, const ResultOptions& options) {
+  return add_result(cloud, prepared.made, result, model, options);
+}
+
+KeptInput add_result(PointCloud& cloud, std::span<const Vec3> made, const Classification& result,
+                     const EdgeModel& model, const ResultOptions& options) {
   check_size(result, cloud.size());
   KeptInput kept;
   const bool classified_before = find_attribute(cloud, "scalar_edge_class") != nullptr ||
@@ -90,10 +95,10 @@ KeptInput add_result(PointCloud& cloud, const PreparedCloud& prepared, const Cla
     set_attribute(cloud, make_attribute("scalar_input_label", cloud.labels));
     kept.labels = true;
   }
-  const bool estimated = has_estimated_normals(cloud) ||
-                         (!prepared.made.empty() &&
-                          std::none_of(cloud.normals.begin(), cloud.normals.end(), is_usable));
-  if (!prepared.made.empty()) cloud.normals = prepared.made;
+  const bool estimated =
+      has_estimated_normals(cloud) ||
+      (!made.empty() && std::none_of(cloud.normals.begin(), cloud.normals.end(), is_usable));
+  if (!made.empty()) cloud.normals.assign(made.begin(), made.end());
   if (cloud.colours.empty() || options.class_colours) {
     cloud.colours.resize(cloud.size());
     std::transform(result.classes.begin(), result.classes.end(), cloud.colours.begin(),

@@ -37,4 +37,9 @@ void add_class_comments(PointCloud& cloud, const ClassTable& table);
 KeptInput add_result(PointCloud& cloud, const PreparedCloud& prepared, const Classification& result,
                      const EdgeModel& model, const ResultOptions& options = {});
 
+/// The same with the normals that were made, which are those of PreparedCloud: one per point, or
+/// none.
+KeptInput add_result(PointCloud& cloud, std::span<const Vec3> made, const Classification& result,
+                     const EdgeModel& model, const ResultOptions& options = {});
+
 }  // namespace pcednet::detect

@@ -49,8 +49,8 @@ void PointLabels::put(std::span<const std::uint64_t> numbers, const TileFindings
     store(row + kSharpAt, findings.found.p_sharp[i]);
     store(row + kSmoothAt, findings.found.p_smooth[i]);
     if (own_classes_) store(row + kClassAt, findings.found.p_class[i]);
-    if (!normals_ || findings.prepared.made.empty()) continue;
-    std::memcpy(row + kNormalAt, findings.prepared.made[i].data(), kBytesOfNormal);
+    if (!normals_ || findings.made.empty()) continue;
+    std::memcpy(row + kNormalAt, findings.made[i].data(), kBytesOfNormal);
   }
   // Numbers that follow each other are written together.
   for (std::size_t k = 0, end = 0; k < order.size(); k = end) {
@@ -66,8 +66,8 @@ TileFindings PointLabels::get(std::size_t begin, std::size_t end) const {
   const std::size_t stride = record_bytes(normals_);
   std::vector<std::byte> rows((end - begin) * stride);
   file_.read(begin * stride, rows);
-  TileFindings findings{.prepared = {}, .found = detect::nothing_found(end - begin, own_classes_)};
-  if (normals_) findings.prepared.made.resize(end - begin);
+  TileFindings findings{.found = detect::nothing_found(end - begin, own_classes_)};
+  if (normals_) findings.made.resize(end - begin);
   for (std::size_t i = 0; i < end - begin; ++i) {
     const std::byte* const row = &rows[i * stride];
     findings.found.classes[i] = load<std::uint8_t>(row);
@@ -75,7 +75,7 @@ TileFindings PointLabels::get(std::size_t begin, std::size_t end) const {
     findings.found.p_smooth[i] = load<float>(row + kSmoothAt);
     if (own_classes_) findings.found.p_class[i] = load<float>(row + kClassAt);
     if (!normals_) continue;
-    std::memcpy(findings.prepared.made[i].data(), row + kNormalAt, kBytesOfNormal);
+    std::memcpy(findings.made[i].data(), row + kNormalAt, kBytesOfNormal);
   }
   findings.found.counts = detect::count_classes(findings.found.classes);
   return findings;

@@ -60,9 +60,9 @@ detect::PartOfCloud part_of(const Plan& plan, std::size_t tile, const TileCloud&
   return part;
 }
 
-void keep_first(std::size_t points, detect::PreparedCloud& prepared,
-                detect::Classification& found) {
-  if (!prepared.made.empty()) prepared.made.resize(points);
+void keep_first(std::size_t points, TileFindings& findings) {
+  if (!findings.made.empty()) findings.made.resize(points);
+  detect::Classification& found = findings.found;
   found.classes.resize(points);
   found.p_sharp.resize(points);
   found.p_smooth.resize(points);
@@ -98,22 +98,18 @@ void take_numbers(TileCloud& points) {
 TileFindings classify_tile(const Plan& plan, std::size_t tile, const detect::EdgeModel* model,
                            TileCloud& points, const Progress* progress) {
   const bool own_classes = model && has_own_classes(model->table);
-  TileFindings findings{.prepared = {},
-                        .found = detect::nothing_found(points.core.size(), own_classes)};
+  TileFindings findings{.found = detect::nothing_found(points.core.size(), own_classes)};
   if (std::any_of(points.all.positions.begin(), points.all.positions.end(), has_place)) {
     const detect::PartOfCloud part = part_of(plan, tile, points);
-    detect::PreparedCloud& prepared = findings.prepared;
-    prepared = detect::prepare(points.all, {.decided = plan.normals}, progress);
+    auto prepared = detect::prepare(points.all, {.decided = plan.normals}, progress);
     prepared.part = &part;
     if (model) findings.found = detect::classify(prepared, *model, progress);
     if (model && plan.model.boundary && has_edges(model->table)) {
       detect::mark_boundary(prepared, findings.found, progress);
     }
-    std::vector<Vec3> made = std::move(prepared.made);
-    prepared = {};
-    prepared.made = std::move(made);
+    findings.made = std::move(prepared.made);
   }
-  keep_first(points.core.size(), findings.prepared, findings.found);
+  keep_first(points.core.size(), findings);
   points.all = {};
   return findings;
 }
@@ -163,15 +159,14 @@ void run_tile(const Plan& plan, std::size_t tile, const detect::EdgeModel& model
   const std::filesystem::path& path = plan.tiles[tile].output;
   TileCloud points = read_tile(plan, tile, progress);
   const TileFindings findings = classify_tile(plan, tile, &model, points, progress);
-  detect::add_result(points.core, findings.prepared, findings.found, model);
+  detect::add_result(points.core, findings.made, findings.found, model);
   io::PartOutline outline = io::outline_of(points.core);
   outline.is_las = !plan.las_steps.empty();
   TileRecord record{.plan = plan.digest, .tile = tile, .points = points.core.size()};
   write_claim(path, record);
   try {
     const auto writer = formats::create_parts(
-        path, outline,
-        {.overwrite = Overwrite::kYes, .new_normals = findings.prepared.made.empty()});
+        path, outline, {.overwrite = Overwrite::kYes, .new_normals = findings.made.empty()});
     writer->append(points.core);
     writer->commit();
   } catch (...) {

@@ -20,8 +20,8 @@ struct TileCloud {
 
 /// The findings for the points of a core.
 struct TileFindings {
-  detect::PreparedCloud prepared;  ///< without its cloud: only `made`
-  detect::Classification found;
+  std::vector<Vec3> made = {};  ///< as in detect::PreparedCloud
+  detect::Classification found = {};
 };
 
 /// Reads only the chunks of the inputs that the tile intersects. Throws Error(kUnreadable) where an
