@@ -7,10 +7,8 @@
 #include "bindings.h"
 #include "input_cloud.h"
 #include "models.h"
-#include "pcednet/core/blocks.h"
 #include "pcednet/detect/boundary.h"
 #include "pcednet/detect/describe.h"
-#include "pcednet/detect/octaves.h"
 
 namespace pcednet::python {
 namespace {
@@ -59,25 +57,15 @@ std::vector<double> describe_all(const detect::PreparedCloud& cloud,
                                  const gls::ScaleSpaceOptions& descriptor,
                                  std::vector<std::string>& notes, std::span<float> matrix,
                                  const Progress* progress) {
-  const Progress cancel_only = without_report(progress);
   const std::size_t width = detect::row_width(descriptor);
   notes = cloud.notes;
   const std::string extent = note_on_extent(descriptor, cloud.positions);
-  std::vector<double> scales;
-  std::vector<float> rows;
-  Stage stage(progress, "describe", cloud.curve.size());
-  detect::for_each_octave(cloud, descriptor, &cancel_only, [&](const auto& space, const auto& all) {
-    if (scales.empty()) scales = space.scales();
-    for_each_block(all.size(), detect::kBlock, [&](std::size_t begin, std::size_t end) {
-      const auto points = all.subspan(begin, end - begin);
-      rows.resize(points.size() * width);
-      detect::describe(space, points, rows, &cancel_only);
-      for (std::size_t i = 0; i < points.size(); ++i) {
-        std::copy_n(rows.data() + i * width, width, matrix.data() + points[i] * width);
-      }
-      stage.advance(points.size());
-    });
-  });
+  const auto take = [&](std::span<const std::uint32_t> points, std::span<const float> rows) {
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      std::copy_n(rows.data() + i * width, width, matrix.data() + points[i] * width);
+    }
+  };
+  const std::vector<double> scales = detect::describe_rows(cloud, descriptor, take, progress);
   for (const auto& note : {extent, gls::note_on(descriptor, scales, cloud.positions)}) {
     if (!note.empty()) notes.push_back(note);
   }

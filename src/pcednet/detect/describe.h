@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -22,6 +23,15 @@ std::size_t row_width(const gls::ScaleSpaceOptions& descriptor);
 void describe(const gls::ScaleSpace& space, std::span<const std::uint32_t> points,
               std::span<float> rows, const Progress* progress = nullptr);
 
+/// Describes every point with a finite position, or those wanted of a part of a cloud, a block at a
+/// time: take(points, rows) gets points and their rows of row_width() numbers. Returns the scales,
+/// as lengths, of the first octave. Throws as classify() does.
+std::vector<double> describe_rows(const PreparedCloud& cloud,
+                                  const gls::ScaleSpaceOptions& descriptor,
+                                  const std::function<void(std::span<const std::uint32_t> points,
+                                                           std::span<const float> rows)>& take,
+                                  const Progress* progress = nullptr);
+
 /// The whole scale-space matrix of a cloud, for classification by several networks.
 struct DescribedCloud {
   std::size_t points = 0;                 ///< of the cloud
@@ -31,7 +41,7 @@ struct DescribedCloud {
   CloudTraits traits = {};                ///< of the cloud
 };
 
-/// Describes every point with a finite position.
+/// Describes every point with a finite position. Throws as classify() does.
 DescribedCloud describe(const PreparedCloud& cloud, const gls::ScaleSpaceOptions& descriptor,
                         const Progress* progress = nullptr);
 

@@ -87,7 +87,7 @@ Oriented complete_and_orient(const Points& cloud, const PreparedCloud& prepared,
   return oriented;
 }
 
-std::string describe(const Oriented& oriented) {
+std::string how_oriented(const Oriented& oriented) {
   if (oriented.faced == oriented.found.normals.size()) return "turned towards the scanner";
   const normals::Orientation& orientation = oriented.found.orientation;
   const std::string open = orientation.undecided == 0 ? ", outwards"
@@ -146,7 +146,7 @@ void estimate(PreparedCloud& prepared, const Points& cloud, const std::string& w
   }
   const std::string note = fmt::format(
       "{}: estimated from the {} nearest points{}", why, oriented.found.choice.neighbours,
-      signs ? ", with the signs that they have" : " and " + describe(oriented));
+      signs ? ", with the signs that they have" : " and " + how_oriented(oriented));
   use(std::move(oriented), note, prepared);
 }
 
@@ -260,8 +260,9 @@ void orient_mixed(PreparedCloud& prepared, const Points& cloud, const Progress* 
   if (pairs.opposed(oriented.found.normals) * kMended > pairs.opposed(cloud.normals)) return;
   if (turned * kShareToOrient < cloud.size()) return;
   const double percent = 100.0 * static_cast<double>(turned) / static_cast<double>(cloud.size());
-  const std::string note = fmt::format(
-      "{:.0f} % of the normals oppose the rest of their surface: {}", percent, describe(oriented));
+  const std::string note =
+      fmt::format("{:.0f} % of the normals oppose the rest of their surface: {}", percent,
+                  how_oriented(oriented));
   use(std::move(oriented), note, prepared);
   prepared.reoriented = true;
 }
