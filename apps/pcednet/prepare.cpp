@@ -18,6 +18,7 @@ detect::PreparedCloud prepare(const std::filesystem::path& file, const PointClou
   with_name_in_errors(file, [&] { prepared = detect::prepare(cloud, options, &progress); });
   for (const std::string& note : prepared.notes) warn(fmt::format("{}: {}", file.string(), note));
   if (prepared.reoriented) say("  --keep-orientation uses them as they are");
+  if (prepared.misfits) say("  pcednet normals makes new ones");
   return prepared;
 }
 

@@ -79,7 +79,8 @@ void plan_tiles(const PlanArguments& arguments, const Common& common) {
                              .tile_length = arguments.tile_length,
                              .memory = byte_size("--max-memory", arguments.memory),
                              .keep_orientation = arguments.preparation.keep_orientation,
-                             .sort = {.folder = arguments.sorted, .overwrite = common.overwrite()}};
+                             .sort = {.folder = arguments.sorted, .overwrite = common.overwrite()},
+                             .sort_name = "--sort FOLDER"};
   check_names(arguments.plan, request);
   const Progress progress = console_progress(common);
   const detect::EdgeModel loaded = load_model(model);

@@ -235,8 +235,9 @@ void note_misfits(PreparedCloud& prepared) {
   if (share < kMisfits) return;
   prepared.notes.push_back(fmt::format(
       "the normals are not those of the points: they lie across the surface in {:.0f} % "
-      "of its flat places; `pcednet normals` makes new ones",
+      "of its flat places",
       100.0 * share));
+  prepared.misfits = true;
 }
 
 /// The number of points with another sign than before, relative to the majority of their part or,

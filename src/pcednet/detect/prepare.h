@@ -55,6 +55,7 @@ struct PreparedCloud {
   std::vector<Vec3> made;             ///< empty when the cloud's normals are used as they are
   std::vector<std::string> notes;     ///< for the user, one sentence each
   bool reoriented = false;            ///< the signs of the cloud's normals were mixed
+  bool misfits = false;               ///< they are used, but are not those of its points
   NormalsDecision decision = {};      ///< made here, or given
   const PartOfCloud* part = nullptr;  ///< for classify() and find_boundary(); must outlive both
 

@@ -159,7 +159,7 @@ std::unique_ptr<io::PartReader> open_chunks(const fs::path& path) {
   if (reader) return reader;
   throw Error(ErrorKind::kUsage,
               fmt::format("{}: tiles are read from LAS, LAZ and binary PLY without lists; "
-                          "pcednet convert writes these",
+                          "convert it to one of these",
                           path.string()));
 }
 

@@ -92,12 +92,13 @@ bool is_too_often(double times, const Plan& plan) {
   return times > kMostTimes && times * static_cast<double>(plan.points()) > kFewPoints;
 }
 
-[[noreturn]] void refuse_order(double tiles, double times) {
+[[noreturn]] void refuse_order(const PlanRequest& request, double tiles, double times) {
+  const std::string& name = request.sort_name;
   throw Error(ErrorKind::kUsage,
               fmt::format("the points of the inputs are in no order in space: {:.0f} tiles would "
-                          "read each point {:.0f} times: choose longer tiles, or sort the inputs: "
-                          "--sort FOLDER makes copies in order",
-                          tiles, times));
+                          "read each point {:.0f} times: choose longer tiles, or sort the inputs{}",
+                          tiles, times,
+                          name.empty() ? "" : fmt::format(": {} makes copies in order", name)));
 }
 
 /// The least number of tiles.
@@ -134,7 +135,7 @@ void check_order_early(const PlanRequest& request, const Plan& plan, std::span<c
                             static_cast<double>(request.memory) / kMegabyte,
                             static_cast<double>(least) / kMegabyte));
   }
-  refuse_order(tiles, times);
+  refuse_order(request, tiles, times);
 }
 
 /// Throws if a file is there twice.
@@ -159,16 +160,17 @@ double times_read_in_order(const CellCounts& counts, const Plan& plan) {
 }
 
 /// Notes how often the tiles read each point, if that is often and copies in order would help.
-void note_reading(double times, const CellCounts& counts, Plan& plan) {
+void note_reading(const PlanRequest& request, double times, const CellCounts& counts, Plan& plan) {
   constexpr double kMostTimes = 3.0, kLeastGain = 1.5;
   if (times <= kMostTimes) return;
   const double in_order = times_read_in_order(counts, plan);
   if (times <= kLeastGain * in_order) return;
+  const std::string& name = request.sort_name;
   plan.notes.push_back(
       fmt::format("neighbours in space are far apart in the inputs: the {} tiles will read each "
-                  "point {:.1f} times, but about {:.1f} times from copies in order, which --sort "
-                  "FOLDER makes",
-                  plan.tiles.size(), times, in_order));
+                  "point {:.1f} times, but about {:.1f} times from copies in order{}",
+                  plan.tiles.size(), times, in_order,
+                  name.empty() ? "" : fmt::format(", which {} makes", name)));
 }
 
 /// Copies the inputs if the request says so; otherwise throws for inputs that need it.
@@ -177,8 +179,8 @@ void settle_order(const PlanRequest& request, const CellCounts& counts, Plan& pl
   const double times = times_read(plan);
   const bool in_order = !is_too_often(times, plan);
   if (request.sort.folder.empty()) {
-    if (!in_order) refuse_order(static_cast<double>(plan.tiles.size()), times);
-    note_reading(times, counts, plan);
+    if (!in_order) refuse_order(request, static_cast<double>(plan.tiles.size()), times);
+    note_reading(request, times, counts, plan);
   } else if (!in_order || !request.sort.if_needed) {
     sort_inputs(request.sort, plan, progress);
   }

@@ -20,6 +20,7 @@ struct PlanRequest {
   std::uint64_t memory = std::uint64_t{2} << 30;  ///< bytes allowed for one tile
   bool keep_orientation = false;
   SortRequest sort = {};
+  std::string sort_name = {};  ///< what a user calls `sort`, for messages; empty: not offered
 };
 
 /// Plans the tiles of the inputs in memory that does not grow with them; reads large inputs twice.
