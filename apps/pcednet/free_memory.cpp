@@ -1,6 +1,7 @@
 #include "free_memory.h"
 
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -15,7 +16,7 @@ namespace fs = std::filesystem;
 
 constexpr std::uint64_t kUnlimited = std::numeric_limits<std::uint64_t>::max();
 
-/// The number in a one-number file; kUnlimited if the file is missing or says max.
+/// The first number in a file; kUnlimited if the file is missing or says max.
 std::uint64_t number_in(const fs::path& file) {
   std::uint64_t number = 0;
   return std::ifstream(file) >> number ? number : kUnlimited;
@@ -72,17 +73,20 @@ std::uint64_t left_by_groups() {
   return least;
 }
 
-/// ulimit -v
-std::uint64_t address_space() {
+/// What ulimit -v leaves.
+std::uint64_t left_in_address_space() {
   rlimit limit = {};
-  const bool limited = getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY;
-  return limited ? static_cast<std::uint64_t>(limit.rlim_cur) : kUnlimited;
+  if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return kUnlimited;
+  const auto most = static_cast<std::uint64_t>(limit.rlim_cur);
+  const std::uint64_t pages = number_in("/proc/self/statm");
+  if (pages == kUnlimited) return most;
+  return most - std::min(most, pages * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE)));
 }
 
 }  // namespace
 
 std::uint64_t free_memory() {
-  return std::min({available_on_machine(), left_by_groups(), address_space()});
+  return std::min({available_on_machine(), left_by_groups(), left_in_address_space()});
 }
 
 }  // namespace pcednet::app
