@@ -93,16 +93,6 @@ Classification classify_with(const Decide& decide, const Subject& subject, const
 
 }  // namespace
 
-void check_size(const Classification& found, std::size_t points) {
-  const auto fits = [&](std::size_t size) { return size == points; };
-  if (fits(found.classes.size()) && fits(found.p_sharp.size()) && fits(found.p_smooth.size()) &&
-      (found.p_class.empty() || fits(found.p_class.size()))) {
-    return;
-  }
-  throw Error(ErrorKind::kUsage, fmt::format("a result of {} points, not of the {} of the cloud",
-                                             found.classes.size(), points));
-}
-
 Classification classify(const PreparedCloud& cloud, const EdgeModel& model,
                         const Progress* progress) {
   const auto traits = model.experts.empty() ? CloudTraits{} : traits_of(cloud, model.descriptor);

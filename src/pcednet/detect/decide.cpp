@@ -1,8 +1,11 @@
 #include "pcednet/detect/decide.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "pcednet/cloud/point_cloud.h"
+#include "pcednet/core/error.h"
 #include "pcednet/core/parallel.h"
 
 namespace pcednet::detect {
@@ -67,6 +70,16 @@ void decide_own(std::span<const float> probabilities, const EdgeModel& model, bo
 }
 
 }  // namespace
+
+void check_size(const Classification& found, std::size_t points) {
+  const auto fits = [&](std::size_t size) { return size == points; };
+  if (fits(found.classes.size()) && fits(found.p_sharp.size()) && fits(found.p_smooth.size()) &&
+      (found.p_class.empty() || fits(found.p_class.size()))) {
+    return;
+  }
+  throw Error(ErrorKind::kUsage, fmt::format("a result of {} points, not of the {} of the cloud",
+                                             found.classes.size(), points));
+}
 
 Classification nothing_found(std::size_t points, bool has_own_classes) {
   return {.classes = std::vector<std::uint8_t>(points, kUnlabelled),

@@ -1,9 +1,10 @@
+#include "pcednet/lines/boundary.h"
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "pcednet/lines/crease.h"
 #include "pcednet/lines/ordered_points.h"
 #include "pcednet/spatial/opening.h"
 

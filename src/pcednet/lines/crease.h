@@ -53,8 +53,4 @@ void append_found(std::span<const std::optional<Crease>> found, std::vector<Crea
 std::vector<Crease> find_creases(const OrderedPoints& cloud, const Sampling& sampling,
                                  const Progress* progress);
 
-/// The creases where the surface ends: the line of its end, beside points that have no neighbours
-/// on one side. Both sides of such a crease point into the surface.
-std::vector<Crease> find_boundaries(const OrderedPoints& cloud, const Progress* progress);
-
 }  // namespace pcednet::lines

@@ -1,3 +1,5 @@
+#include "pcednet/lines/eaves.h"
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
@@ -8,7 +10,6 @@
 #include "pcednet/lines/chart.h"
 #include "pcednet/lines/outline.h"
 #include "pcednet/lines/outline_parts.h"
-#include "pcednet/lines/plane_edges.h"
 #include "pcednet/lines/support_line.h"
 
 namespace pcednet::lines {

@@ -9,6 +9,7 @@
 #include "pcednet/core/error.h"
 #include "pcednet/core/parallel.h"
 #include "pcednet/lines/bores.h"
+#include "pcednet/lines/boundary.h"
 #include "pcednet/lines/bridge.h"
 #include "pcednet/lines/chain.h"
 #include "pcednet/lines/circles.h"

@@ -1,3 +1,5 @@
+#include "pcednet/lines/folds.h"
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
@@ -7,7 +9,6 @@
 #include <utility>
 
 #include "pcednet/core/sort_unique.h"
-#include "pcednet/lines/plane_edges.h"
 #include "pcednet/lines/plane_line.h"
 
 namespace pcednet::lines {

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "pcednet/lines/eaves.h"
+
 namespace pcednet::lines {
 namespace {
 
