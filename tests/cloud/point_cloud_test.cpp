@@ -165,17 +165,17 @@ TEST(PointCloud, IsConsistentWhenEveryPointHasAsMuchAsTheOthers) {
     damage(cloud);
     return cloud;
   };
-  EXPECT_ERROR(ErrorKind::kFailure,
+  EXPECT_ERROR(ErrorKind::kUsage,
                check_consistent(broken([](PointCloud& c) { c.normals.pop_back(); })));
-  EXPECT_ERROR(ErrorKind::kFailure,
+  EXPECT_ERROR(ErrorKind::kUsage,
                check_consistent(broken([](PointCloud& c) { c.colours.resize(4); })));
-  EXPECT_ERROR(ErrorKind::kFailure,
+  EXPECT_ERROR(ErrorKind::kUsage,
                check_consistent(broken([](PointCloud& c) { c.labels.resize(1); })));
-  EXPECT_ERROR(ErrorKind::kFailure,
+  EXPECT_ERROR(ErrorKind::kUsage,
                check_consistent(broken([](PointCloud& c) { c.attributes[0].bytes.clear(); })));
-  EXPECT_ERROR(ErrorKind::kFailure,
+  EXPECT_ERROR(ErrorKind::kUsage,
                check_consistent(broken([](PointCloud& c) { c.attributes[1].components = 1; })));
-  EXPECT_ERROR(ErrorKind::kFailure,
+  EXPECT_ERROR(ErrorKind::kUsage,
                check_consistent(broken([](PointCloud& c) { c.positions.clear(); })));
 }
 

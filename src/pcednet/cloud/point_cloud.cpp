@@ -109,8 +109,7 @@ Defects find_defects(const PointCloud& cloud) {
 void check_consistent(const PointCloud& cloud) {
   const auto check = [&](std::size_t size, std::string_view what) {
     if (size != 0 && size != cloud.size()) {
-      throw Error(ErrorKind::kFailure,
-                  fmt::format("{} {} for {} points", size, what, cloud.size()));
+      throw Error(ErrorKind::kUsage, fmt::format("{} {} for {} points", size, what, cloud.size()));
     }
   };
   check(cloud.normals.size(), "normals");
@@ -119,8 +118,8 @@ void check_consistent(const PointCloud& cloud) {
   for (const Attribute& attribute : cloud.attributes) {
     const std::size_t wanted = cloud.size() * attribute.stride();
     if (attribute.bytes.size() != wanted) {
-      throw Error(ErrorKind::kFailure, fmt::format("attribute {}: {} bytes instead of {}",
-                                                   attribute.name, attribute.bytes.size(), wanted));
+      throw Error(ErrorKind::kUsage, fmt::format("attribute {}: {} bytes instead of {}",
+                                                 attribute.name, attribute.bytes.size(), wanted));
     }
   }
 }

@@ -32,7 +32,7 @@ struct ForeignElement {
 /// The points of a file with all their fields.
 ///
 /// Every per-point vector but `positions` may be empty; otherwise it has the size of `positions`.
-/// Positions and normals may hold NaN or infinity: see find_defects().
+/// Positions may hold NaN or infinity, and so may normals that no reader made: see find_defects().
 struct PointCloud {
   std::vector<Vec3> positions;
   std::vector<Vec3> normals;  ///< unit length; where the file's is unusable, readers give (0,0,0)
@@ -90,7 +90,7 @@ struct Defects {
 };
 Defects find_defects(const PointCloud& cloud);
 
-/// Throws Error(kFailure) unless every per-point vector has the size of `positions`.
+/// Throws Error(kUsage) unless every per-point vector has the size of `positions`.
 void check_consistent(const PointCloud& cloud);
 
 }  // namespace pcednet

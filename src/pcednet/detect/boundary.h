@@ -32,7 +32,8 @@ struct BoundaryPoint {
 /// side in the same direction, and so on: a point at a chance gap has no such neighbours.
 ///
 /// The result is the same for any number of threads, any order of the points and after a flip of
-/// all normals. A point without a usable normal is judged by the positions alone.
+/// all normals. A point without a usable normal is judged by the positions alone. Throws
+/// Error(kCancelled) when `progress` asks to cancel.
 std::vector<BoundaryPoint> find_boundary(const PreparedCloud& cloud,
                                          const Progress* progress = nullptr);
 
@@ -41,7 +42,8 @@ std::vector<BoundaryPoint> find_boundary(const PreparedCloud& cloud,
 void mark_boundary(std::span<const BoundaryPoint> boundary, std::span<std::uint8_t> classes);
 
 /// The same for the points of find_boundary(). Their probabilities stay those of the network.
-/// `found` must be of the cloud, its classes of a table that has_edges().
+/// `found` must be of the cloud, its classes of a table that has_edges(). Throws Error(kUsage) if
+/// it has another number of points, and as find_boundary() does.
 void mark_boundary(const PreparedCloud& cloud, Classification& found,
                    const Progress* progress = nullptr);
 

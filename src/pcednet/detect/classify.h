@@ -39,6 +39,10 @@ struct Classification {
 /// class decides. Works block by block: the scale-space matrix is never held whole. A
 /// context network, if the model has one, then decides from the predictions around each point. The
 /// result is the same for any number of threads and any order of the points.
+///
+/// Throws Error(kUsage) for a descriptor that is not possible or leaves no range of scales,
+/// Error(kInsufficient) for fewer than two distinct points unless it gives both bounds of the
+/// scales, and Error(kCancelled) when `progress` asks to cancel.
 Classification classify(const PreparedCloud& cloud, const EdgeModel& model,
                         const Progress* progress = nullptr);
 

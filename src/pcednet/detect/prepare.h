@@ -79,8 +79,9 @@ struct PreparedCloud {
 /// more against the rest of its surface. A cloud whose normals all point inwards is not mixed.
 /// Given decisions are carried out, not made again.
 ///
-/// Throws Error(kInsufficient) for a cloud without a finite point and, unless the decision is
-/// given, without any usable or estimable normal.
+/// Throws Error(kUsage) as check_consistent() does, Error(kInsufficient) for a cloud without a
+/// finite point, with a coordinate above 1e150 and, unless the decision is given, without any
+/// usable or estimable normal, and Error(kCancelled) when `progress` asks to cancel.
 PreparedCloud prepare(const PointCloud& cloud, const PrepareOptions& options = {},
                       const Progress* progress = nullptr);
 PreparedCloud prepare(PointCloud&& cloud, const PrepareOptions& options = {},

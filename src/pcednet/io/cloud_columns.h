@@ -33,8 +33,8 @@ struct ColumnNames {
 /// column_name(). An attribute of several components gives as many adjacent columns.
 ///
 /// Positions get the cloud's position_type if it represents all of them exactly, otherwise double;
-/// normals are those of the file, or float. The views point into `cloud`. Throws Error(kFailure)
-/// unless check_consistent(cloud) holds.
+/// normals are those of the file, or float. The views point into `cloud`. Throws as
+/// check_consistent() does.
 std::vector<ColumnView> columns_of(const PointCloud& cloud, const ColumnNames& names);
 
 /// Throws Error(kFailure) unless both have the same names and types.
