@@ -45,7 +45,7 @@ ClassifiedCloud classify_cloud(const std::filesystem::path& file, const PointClo
     if (classifier.boundary && has_edges(classifier.model->table)) {
       detect::mark_boundary(result.prepared, result.found, &progress);
     }
-    const bool is_spacing = classifier.model->descriptor.s_min == 0.0;  // what s_min is then
+    const bool is_spacing = classifier.model->descriptor.range.s_min == 0.0;  // what s_min is then
     if (is_spacing) warn_of_rounding(file, cloud, bounds, result);
   } else {
     result.found = classify_by_method(cloud, classifier.method, &progress);

@@ -38,7 +38,7 @@ void add_descriptor_options(CLI::App& command, gls::ScaleSpaceOptions& options) 
   add_engine_option(command, options);
   add_scale_range_options(command, options);
   command
-      .add_option("--s-max-ratio", options.s_max_ratio,
+      .add_option("--s-max-ratio", options.range.s_max_ratio,
                   "Largest scale over the smallest, in place of 10 % of the diagonal (0: off)")
       ->capture_default_str()
       ->check(number_from_0());
@@ -60,13 +60,13 @@ void add_gate_options(CLI::App& command, gls::ScaleSpaceOptions& options) {
 
 void add_scale_range_options(CLI::App& command, gls::ScaleSpaceOptions& options) {
   command
-      .add_option("--s-min", options.s_min,
+      .add_option("--s-min", options.range.s_min,
                   "Smallest scale, in the unit of the cloud (0: from the cloud and, if there is "
                   "one, the model)")
       ->capture_default_str()
       ->check(number_from_0());
   command
-      .add_option("--s-max", options.s_max,
+      .add_option("--s-max", options.range.s_max,
                   "Largest scale, in the unit of the cloud (0: from the cloud and, if there is "
                   "one, the model)")
       ->capture_default_str()

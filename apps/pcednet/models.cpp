@@ -83,8 +83,8 @@ std::filesystem::path model_file(const ModelArguments& arguments) {
 detect::EdgeModel load_model(const ModelArguments& arguments) {
   detect::EdgeModel model = detect::load_model(find_model(arguments.name));
   if (arguments.no_context) detect::drop_context(model);
-  model.descriptor.s_min = arguments.scales.s_min;
-  model.descriptor.s_max = arguments.scales.s_max;
+  model.descriptor.range.s_min = arguments.scales.range.s_min;
+  model.descriptor.range.s_max = arguments.scales.range.s_max;
   model.descriptor.engine = arguments.scales.engine;
   return model;
 }

@@ -41,8 +41,8 @@ py::dict settings_of(const gls::ScaleSpaceOptions& options) {
   settings["reconstruction"] = gls::name_of(options.reconstruction);
   settings["gate"] = options.side_gate;
   settings["second_gate"] = options.second_gate;
-  settings["s_max_ratio"] = options.s_max_ratio;
-  settings["octaves"] = options.octaves;
+  settings["s_max_ratio"] = options.range.s_max_ratio;
+  settings["octaves"] = options.range.octaves;
   return settings;
 }
 
@@ -79,10 +79,10 @@ gls::ScaleSpaceOptions descriptor_of(const py::dict& settings) {
     }
   };
   set("scales", options.scales);
-  set("s_min", options.s_min);
-  set("s_max", options.s_max);
-  set("s_max_ratio", options.s_max_ratio);
-  set("octaves", options.octaves);
+  set("s_min", options.range.s_min);
+  set("s_max", options.range.s_max);
+  set("s_max_ratio", options.range.s_max_ratio);
+  set("octaves", options.range.octaves);
   set("gate", options.side_gate);
   set("second_gate", options.second_gate);
   set("eps", options.eps);
@@ -128,8 +128,8 @@ void add_models(py::module_& module) {
            })
       .def("with_scales",
            [](EdgeModel model, double s_min, double s_max, bool exact) {
-             model.descriptor.s_min = s_min;
-             model.descriptor.s_max = s_max;
+             model.descriptor.range.s_min = s_min;
+             model.descriptor.range.s_max = s_max;
              if (exact) model.descriptor.engine = gls::Engine::kExact;
              return model;
            })

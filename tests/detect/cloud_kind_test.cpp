@@ -48,7 +48,7 @@ TEST(CloudKind, CountsEachPlaceOnce) {
   const PreparedCloud prepared = prepare(cloud);
   EXPECT_EQ(traits_of(prepared, {}).points, 500u);
   gls::ScaleSpaceOptions scales_given;
-  scales_given.s_min = 0.1, scales_given.s_max = 1.0;
+  scales_given.range.s_min = 0.1, scales_given.range.s_max = 1.0;
   EXPECT_EQ(traits_of(prepared, scales_given).points, CloudTraits{}.points);
   EXPECT_FALSE(traits_of(prepared, {}).estimated);
 }
@@ -61,9 +61,9 @@ TEST(CloudKind, TakesFewPointsOfVaryingSpacingForAPieceOfMore) {
     cloud.normals.push_back(cloud.normals[i]);
   }
   gls::ScaleSpaceOptions options;
-  options.s_max_ratio = 8.0;
+  options.range.s_max_ratio = 8.0;
   EXPECT_EQ(traits_of(prepare(cloud), options).points, 1000u);
-  options.octaves = true;
+  options.range.octaves = true;
   EXPECT_EQ(traits_of(prepare(cloud), options).points, CloudTraits{}.points);
 }
 

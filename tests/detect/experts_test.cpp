@@ -67,9 +67,9 @@ TEST_F(ExpertsTest, DoNotCountCopies) {
 TEST_F(ExpertsTest, LeaveACloudOfGivenScalesToTheOthers) {
   const PointCloud below = cube(kFewer - 1, 3);
   EdgeModel model = *both_;
-  model.descriptor.s_max = 0.5;
+  model.descriptor.range.s_max = 0.5;
   EXPECT_TRUE(classify(prepare(below), model).expert);
-  model.descriptor.s_min = 0.05;
+  model.descriptor.range.s_min = 0.05;
   EXPECT_FALSE(classify(prepare(below), model).expert);
 }
 

@@ -27,8 +27,8 @@ PointCloud two_spacings(int wide) {
 gls::ScaleSpaceOptions with_octaves() {
   gls::ScaleSpaceOptions options;
   options.scales = 4;
-  options.s_max_ratio = 8.0;
-  options.octaves = true;
+  options.range.s_max_ratio = 8.0;
+  options.range.octaves = true;
   return options;
 }
 
@@ -79,7 +79,7 @@ TEST(Octaves, OfAnEvenCloudAreOne) {
   cloud.normals.assign(cloud.size(), Vec3::UnitZ());
   const PreparedCloud prepared = prepare(cloud);
   gls::ScaleSpaceOptions plain = with_octaves();
-  plain.octaves = false;
+  plain.range.octaves = false;
   const auto described = describe(prepared, with_octaves());
   EXPECT_EQ(described.values, describe(prepared, plain).values);
   EXPECT_EQ(described.order, prepared.curve);
@@ -98,8 +98,8 @@ TEST(Octaves, DescribeEachPointInItsOwnSpace) {
   for (std::size_t octave = 0; octave < gls::kOctaves; ++octave) {
     gls::ScaleSpaceOptions its = options;
     if (octave > 0) {
-      its.s_min = gls::at_octave(range, octave).s_min;
-      its.s_max = gls::at_octave(range, octave).s_max;
+      its.range.s_min = gls::at_octave(range, octave).s_min;
+      its.range.s_max = gls::at_octave(range, octave).s_max;
     }
     const gls::ScaleSpace space({cloud.positions, cloud.normals, prepared.curve}, its);
     for (std::size_t row = 0; row < described.order.size(); row += 17) {

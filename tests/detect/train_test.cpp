@@ -101,9 +101,9 @@ TEST(TrainEdges, LearnsAtTheSpacingItselfIfAsked) {
   const PointCloud cloud = cube(1500, 1);
   TrainOptions options = quick(3);
   const auto by_extent = train_on(cloud, options).model;
-  options.descriptor.s_max_ratio = 8.0;
+  options.descriptor.range.s_max_ratio = 8.0;
   const auto rounded = train_on(cloud, options).model;
-  options.descriptor.rounded = false;
+  options.descriptor.range.rounded = false;
   const auto model = train_on(cloud, options).model;
   EXPECT_NE(model.network.network.parameters, rounded.network.network.parameters);
   EXPECT_EQ(model.descriptor, rounded.descriptor);
@@ -112,7 +112,7 @@ TEST(TrainEdges, LearnsAtTheSpacingItselfIfAsked) {
   const auto of_samples = train("test", samples, options).model;
   EXPECT_EQ(of_samples.network.network.parameters, model.network.network.parameters);
   EXPECT_EQ(of_samples.descriptor, rounded.descriptor);
-  options.descriptor.s_max_ratio = 0.0;
+  options.descriptor.range.s_max_ratio = 0.0;
   EXPECT_EQ(train_on(cloud, options).model.network.network.parameters,
             by_extent.network.network.parameters);
 }

@@ -69,7 +69,7 @@ TEST_F(DescribeCommand, WritesTheMatrixOfTheLibrary) {
   ScaleSpaceOptions options;
   options.features = FeatureSet::kInvariant7;
   options.scales = 8;
-  options.s_max = 0.15;
+  options.range.s_max = 0.15;
   options.side_gate = -0.2;
   options.reconstruction = Reconstruction::kSphereMls;
   const ExactScaleSpace space(cloud.points(), options);

@@ -90,7 +90,7 @@ TEST_P(ExactScaleSpaceInvariance, TurningTheNormalsNegatesAllButPhi) {
 TEST_P(ExactScaleSpaceInvariance, TurnsWithTheCloud) {
   test::Cloud cloud = test::awkward_cloud(1500);
   ScaleSpaceOptions options = test::options_of(GetParam(), FeatureSet::kInvariant7);
-  options.s_min = 0.05, options.s_max = 0.2;  // the bounding box does not turn
+  options.range.s_min = 0.05, options.range.s_max = 0.2;  // the bounding box does not turn
   const auto before = test::describe(cloud, options);
   const Mat3 rotation = Eigen::AngleAxisd(0.7, Vec3(1, -2, 3).normalized()).toRotationMatrix();
   for (Vec3& p : cloud.positions) p = rotation * p;
@@ -122,7 +122,7 @@ TEST_P(ExactScaleSpaceInvariance, SameBitsWhenMovedExactly) {
 TEST_P(ExactScaleSpaceInvariance, HoldsTenMillionUnitsAway) {
   test::Cloud cloud = test::awkward_cloud(1500);
   ScaleSpaceOptions options = test::options_of(GetParam(), FeatureSet::kPaper6);
-  options.s_min = 0.06, options.s_max = 0.2;
+  options.range.s_min = 0.06, options.range.s_max = 0.2;
   const auto before = test::describe(cloud, options);
   for (Vec3& p : cloud.positions) p += Vec3(1e7, -1e7, 1e7);
   // The coordinates themselves are rounded to 1e-9, 2e-8 of the smallest scale; see above.
@@ -208,7 +208,7 @@ TEST(ExactScaleSpace, DescribesAPointOfUnusableNormalByItsNeighbours) {
   for (const test::Variant& variant : kVariants) {
     const test::Cloud cloud = square_with_a_point_above(0.02);
     ScaleSpaceOptions options = test::options_of(variant, FeatureSet::kInvariant7);
-    options.s_min = 0.05;
+    options.range.s_min = 0.05;
     const ExactScaleSpace space(cloud.points(), options);
     const auto matrix = test::describe(space, {0});
     for (std::size_t s = 0; s < 16; ++s) {
@@ -232,7 +232,7 @@ TEST(ExactScaleSpace, FindsTheAlgebraicDistanceToASphere) {
     ScaleSpaceOptions options;
     options.features = FeatureSet::kInvariant7;
     options.reconstruction = reconstruction;
-    options.s_min = 0.3;
+    options.range.s_min = 0.3;
     const ExactScaleSpace space(cloud.points(), options);
     const auto matrix = test::describe(space, {4000});
     for (std::size_t s = 0; s < 16; ++s) {
@@ -257,7 +257,7 @@ TEST(ExactScaleSpace, MoreProjectionChangesNothingOnceThere) {
   for (Vec3& p : cloud.positions) p += 0.02 * stream.normal3();
   ScaleSpaceOptions options;
   options.reconstruction = Reconstruction::kSphereMls;
-  options.s_min = 0.5;
+  options.range.s_min = 0.5;
   options.max_projection_steps = 50;
   const auto fifty = test::describe(cloud, options);
   options.max_projection_steps = 8;
@@ -282,7 +282,7 @@ TEST(ExactScaleSpace, DoesNotProjectToWhereNothingIs) {
   }
   ScaleSpaceOptions options;
   options.reconstruction = Reconstruction::kSphereMls;
-  options.s_min = 0.95, options.s_max = 1.0;
+  options.range.s_min = 0.95, options.range.s_max = 1.0;
   const ExactScaleSpace space(cloud.points(), options);
   const auto matrix = test::describe(space, {0});
   for (std::size_t s = 0; s < 16; ++s) {
@@ -299,7 +299,7 @@ TEST(ExactScaleSpace, CountsThePointItselfAndNeighboursWithinTheRadiusOnly) {
   for (int i = -3; i <= 3; ++i) cloud.add({double(i), 0, 0}, Vec3::UnitZ());
   ScaleSpaceOptions options;
   options.scales = 4;
-  options.s_min = 0.5, options.s_max = 4.0;
+  options.range.s_min = 0.5, options.range.s_max = 4.0;
   const auto matrix = test::describe(cloud, options);  // radii 0.5, 1, 2, 4
   EXPECT_EQ(matrix.status_at(3, 0), FitStatus::kUndefined);
   EXPECT_EQ(matrix.status_at(3, 1), FitStatus::kUndefined);  // those at distance 1 are not closer
@@ -326,7 +326,7 @@ TEST(ExactScaleSpace, GateHidesTheFarSideOfAThinWall) {
     wall.add(front.positions[i] - 0.03 * Vec3::UnitZ(), -front.normals[i]);
   }
   ScaleSpaceOptions options;
-  options.s_min = 0.05, options.s_max = 0.2;
+  options.range.s_min = 0.05, options.range.s_max = 0.2;
   options.side_gate = -0.5;
   const auto targets = test::all_targets(1500);
   const auto alone = test::describe(ExactScaleSpace(front.points(), options), targets);
@@ -340,7 +340,7 @@ TEST(ExactScaleSpace, GateHidesTheFarSideOfAThinWall) {
 TEST(ExactScaleSpace, GateOfAPointWithoutNormalIsOpen) {
   test::Cloud cloud = test::awkward_cloud(800);
   ScaleSpaceOptions options;
-  options.s_min = 0.05, options.s_max = 0.2;
+  options.range.s_min = 0.05, options.range.s_max = 0.2;
   const std::vector<std::uint32_t> without_normal = {40, 140};
   const auto open = test::describe(ExactScaleSpace(cloud.points(), options), without_normal);
   options.side_gate = 0.1;

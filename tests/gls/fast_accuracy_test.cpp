@@ -47,7 +47,7 @@ TEST_P(FastAccuracy, IsBoundedAgainstTheExactEngine) {
   options.side_gate = c.gate;
   options.reconstruction = c.reconstruction;
   options.scales = c.scales;
-  options.s_min = c.s_min, options.s_max = c.s_max;
+  options.range.s_min = c.s_min, options.range.s_max = c.s_max;
   const FastScaleSpace fast(cloud.points(), options);
   const ExactScaleSpace exact(cloud.points(), options);
   EXPECT_EQ(fast.scales(), exact.scales());

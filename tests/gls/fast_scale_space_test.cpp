@@ -46,7 +46,7 @@ TEST_P(FastScaleSpaceInvariance, SameBitsForPointsThatAreEqual) {
   for (std::size_t i = 0; i < 6000; i += 3) cloud.add(cloud.positions[i], cloud.normals[i]);
   for (int i = 0; i < 5000; ++i) cloud.add(cloud.positions[1], cloud.normals[1]);
   ScaleSpaceOptions options = test::options_of(GetParam(), FeatureSet::kInvariant7);
-  options.s_min = 0.02;
+  options.range.s_min = 0.02;
   const auto matrix = test::describe(FastScaleSpace(cloud.points(), options),
                                      test::all_targets(cloud.positions.size()));
   const std::size_t row = matrix.scales * matrix.width;
@@ -155,7 +155,7 @@ TEST(FastScaleSpace, GivesTheStatusesOfTheExactEngineOnAGrid) {
     ScaleSpaceOptions options;
     options.scales = 4;
     options.side_gate = gate;
-    options.s_min = 0.125, options.s_max = 1.0;  // radii 0.125, 0.25, 0.5, 1
+    options.range.s_min = 0.125, options.range.s_max = 1.0;  // radii 0.125, 0.25, 0.5, 1
     const auto targets = test::all_targets(3600);
     const auto fast = test::describe(FastScaleSpace(cloud.points(), options), targets);
     const auto exact = test::describe(ExactScaleSpace(cloud.points(), options), targets);
@@ -187,7 +187,7 @@ TEST(FastScaleSpace, CostsNoMoreWhereThousandsOfPointsAreOne) {
   test::Cloud cloud = test::cube(30000, 3);
   for (int i = 0; i < 60000; ++i) cloud.add(Vec3(0.5, 0.1, 0.2), Vec3::UnitX());
   ScaleSpaceOptions options;
-  options.s_min = 0.03;
+  options.range.s_min = 0.03;
   const FastScaleSpace space(cloud.points(), options);
   const auto matrix = test::describe(space, test::all_targets(cloud.positions.size()));
   for (const float f : matrix.features) ASSERT_TRUE(std::isfinite(f));

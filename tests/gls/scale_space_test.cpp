@@ -64,9 +64,9 @@ TEST(ScaleSpace, TakesAnOctaveAsIfMadeForIt) {
   const test::Cloud cube = test::cube(2000, 1);
   const auto targets = test::all_targets(2000);
   ScaleSpaceOptions options;
-  options.s_min = 0.05, options.s_max = 0.8;
-  options.s_max_ratio = 2.0;
-  options.octaves = true;
+  options.range.s_min = 0.05, options.range.s_max = 0.8;
+  options.range.s_max_ratio = 2.0;
+  options.range.octaves = true;
   const auto described = [&](const ScaleSpace& space) {
     test::Matrix<float> matrix{16, 6, std::vector<float>(2000 * 16 * 6),
                                std::vector<FitStatus>(2000 * 16)};
@@ -79,14 +79,14 @@ TEST(ScaleSpace, TakesAnOctaveAsIfMadeForIt) {
     ASSERT_EQ(octave_count(space.range()), kOctaves);
     const auto first = described(space);
     ScaleSpaceOptions its = options;
-    its.s_min = 0.2, its.s_max = 0.4;
+    its.range.s_min = 0.2, its.range.s_max = 0.4;
     space.take_octave(2);
     const ScaleSpace made(cube.points(), its);
     EXPECT_EQ(space.scales(), made.scales());
     test::expect_same_bits(described(space), described(made));
     space.take_octave(0);
     test::expect_same_bits(described(space), first);
-    its.s_max_ratio = 0.0;  // one octave, of any extent
+    its.range.s_max_ratio = 0.0;  // one octave, of any extent
     ScaleSpace even(cube.points(), its);
     even.take_octave(0);
     EXPECT_EQ(even.scales(), made.scales());

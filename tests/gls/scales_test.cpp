@@ -102,7 +102,7 @@ TEST(Scales, AreThoseOfOnePointAtEachPlace) {
   constexpr ScaleRange kTenfold = {.s_max_ratio = 10.0};
   const auto cloud = test::cube(3000, 1);
   ScaleSpaceOptions options;
-  options.s_max_ratio = 10.0;
+  options.range.s_max_ratio = 10.0;
   const FastScaleSpace fast({cloud.positions, cloud.normals}, options);
   for (const std::size_t copies : {1u, 700u, 3000u, 33000u}) {
     test::Cloud with = cloud;
@@ -228,7 +228,7 @@ TEST(Scales, AreTheSameFromBothEngines) {
     }
     EXPECT_NE(note_on({}, fast.scales(), cloud.positions), "");
     ScaleSpaceOptions given;
-    given.s_max = 1.0;
+    given.range.s_max = 1.0;
     EXPECT_EQ(note_on(given, fast.scales(), cloud.positions), "");
   }
   const auto dense = test::cube(2000, 2);

@@ -85,8 +85,8 @@ double share_kept(const PointCloud& cloud, int n, double halo, const detect::Edg
 TEST(CutCloud, KeepsItsLabels) {
   const gls::ScaleRange range = range_of(wall());
   detect::EdgeModel given = default_model();
-  given.descriptor.s_min = range.s_min;
-  given.descriptor.s_max = range.s_max;
+  given.descriptor.range.s_min = range.s_min;
+  given.descriptor.range.s_max = range.s_max;
   for (const int n : {2, 4}) EXPECT_GE(share_kept(wall(), n, range.s_max, given), 0.995) << n;
   EXPECT_GE(share_kept(wall(), 2, range.s_max, default_model()), 0.97);
   // Pieces of fewer points than 4,000 would be left to the networks for sparse clouds.

@@ -14,8 +14,8 @@ class PlannedModelFile : public testing::Test {
     plan_.model.path = PCEDNET_SOURCE_DIR "/models/general.safetensors";
     plan_.model.sha256 = sha256_of_file(plan_.model.path);
     const gls::ScaleSpaceOptions descriptor = detect::load_model(plan_.model.path).descriptor;
-    ASSERT_TRUE(descriptor.octaves);
-    plan_.s_min = 0.1, plan_.s_max = descriptor.s_max_ratio * plan_.s_min;
+    ASSERT_TRUE(descriptor.range.octaves);
+    plan_.s_min = 0.1, plan_.s_max = descriptor.range.s_max_ratio * plan_.s_min;
     plan_.pyramids.resize(1);
     plan_.pyramids[0].levels.resize(static_cast<std::size_t>(descriptor.scales));
   }
@@ -24,10 +24,10 @@ class PlannedModelFile : public testing::Test {
 };
 
 TEST_F(PlannedModelFile, IsUsedAsPlanned) {
-  EXPECT_EQ(load_planned_model(plan_).descriptor.s_max, plan_.s_max);
+  EXPECT_EQ(load_planned_model(plan_).descriptor.range.s_max, plan_.s_max);
   plan_.s_max *= 8.0;  // an uneven cloud
   plan_.pyramids.resize(4, plan_.pyramids.front());
-  EXPECT_EQ(load_planned_model(plan_).descriptor.s_max, plan_.s_max);
+  EXPECT_EQ(load_planned_model(plan_).descriptor.range.s_max, plan_.s_max);
   plan_.model.exact = true;
   for (auto& pyramid : plan_.pyramids) pyramid.levels.clear();
   EXPECT_EQ(load_planned_model(plan_).descriptor.engine, gls::Engine::kExact);

@@ -89,7 +89,7 @@ void report(const Job& job, const detect::Classification& result, const Counts& 
                       ? std::string()
                       : fmt::format(", {} unlabelled", result.counts.unlabelled)));
   if (result.s_max > 0.0) {  // a method has none
-    gls::ScaleRange range = gls::given_range(model.descriptor);
+    gls::ScaleRange range = model.descriptor.range;
     range.s_min = result.s_min, range.s_max = result.s_max;
     say(fmt::format(
         "  scales: {:.9g} to {:.9g}{}", range.s_min, range.s_max,

@@ -296,12 +296,12 @@ void add_train(CLI::App& app, Common& common) {
   add_data_options(*command, *arguments);
   add_descriptor_options(*command, arguments->options.descriptor);
   command
-      ->add_flag("--octaves", arguments->options.descriptor.octaves,
+      ->add_flag("--octaves", arguments->options.descriptor.range.octaves,
                  "With --s-max-ratio: describe clouds of uneven spacing at larger scales where "
                  "points are sparser")
       ->needs("--s-max-ratio");
   command
-      ->add_flag("--unrounded-scales{false}", arguments->options.descriptor.rounded,
+      ->add_flag("--unrounded-scales{false}", arguments->options.descriptor.range.rounded,
                  "With --s-max-ratio: learn at the spacing of each cloud itself, not at the "
                  "preferred number nearest to it, at which clouds are classified")
       ->needs("--s-max-ratio");

@@ -57,14 +57,14 @@ constexpr std::size_t kFew = 20000;  // above, the same networks decide in eithe
 /// The networks for few points learnt from parts of even spacing.
 std::size_t points_of(const PreparedCloud& cloud, const gls::ScaleSpaceOptions& descriptor) {
   constexpr std::size_t kPiece = CloudTraits{}.points;
-  const bool scales_given = descriptor.s_min > 0.0 && descriptor.s_max > 0.0;
+  const bool scales_given = descriptor.range.s_min > 0.0 && descriptor.range.s_max > 0.0;
   if (cloud.part) {
-    const bool is_even = gls::octave_count(gls::given_range(descriptor)) == 1;
+    const bool is_even = gls::octave_count(descriptor.range) == 1;
     return is_even ? cloud.part->points : kPiece;
   }
   if (scales_given) return kPiece;
   const std::size_t points = spatial::firsts_of_places(cloud.positions, cloud.curve).size();
-  const bool is_piece = points < kFew && descriptor.octaves &&
+  const bool is_piece = points < kFew && descriptor.range.octaves &&
                         gls::is_uneven(gls::spacings_of_places(cloud.positions, cloud.curve));
   return is_piece ? kPiece : points;
 }

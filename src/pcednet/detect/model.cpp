@@ -116,14 +116,14 @@ gls::ScaleSpaceOptions take_descriptor(nn::Metadata& metadata) {
     descriptor.second_gate = metadata.take_number<double>("descriptor_second_gate");
   }
   if (metadata.has("descriptor_s_max_fraction")) {
-    descriptor.s_max_fraction = metadata.take_number<double>("descriptor_s_max_fraction");
+    descriptor.range.s_max_fraction = metadata.take_number<double>("descriptor_s_max_fraction");
   }
   if (metadata.has("descriptor_s_max_ratio")) {
-    descriptor.s_max_ratio = metadata.take_number<double>("descriptor_s_max_ratio");
+    descriptor.range.s_max_ratio = metadata.take_number<double>("descriptor_s_max_ratio");
   }
   if (metadata.has("descriptor_octaves")) {
     metadata.take_fixed("descriptor_octaves", "1");
-    descriptor.octaves = true;
+    descriptor.range.octaves = true;
   }
   return descriptor;
 }
@@ -140,13 +140,13 @@ void put_descriptor(const gls::ScaleSpaceOptions& descriptor,
   if (descriptor.second_gate) {
     metadata["descriptor_second_gate"] = fmt::format("{}", *descriptor.second_gate);
   }
-  if (descriptor.s_max_fraction != gls::kPartOfDiagonal) {
-    metadata["descriptor_s_max_fraction"] = fmt::format("{}", descriptor.s_max_fraction);
+  if (descriptor.range.s_max_fraction != gls::kPartOfDiagonal) {
+    metadata["descriptor_s_max_fraction"] = fmt::format("{}", descriptor.range.s_max_fraction);
   }
-  if (descriptor.s_max_ratio > 0.0) {
-    metadata["descriptor_s_max_ratio"] = fmt::format("{}", descriptor.s_max_ratio);
+  if (descriptor.range.s_max_ratio > 0.0) {
+    metadata["descriptor_s_max_ratio"] = fmt::format("{}", descriptor.range.s_max_ratio);
   }
-  if (descriptor.octaves) metadata["descriptor_octaves"] = "1";
+  if (descriptor.range.octaves) metadata["descriptor_octaves"] = "1";
 }
 
 /// Moves entries whose names have `prefix` out of `all`, and strips the prefix.
@@ -268,7 +268,8 @@ void drop_context(EdgeModel& model) {
 void check_fits(const EdgeModel& expert, const gls::ScaleSpaceOptions& descriptor,
                 std::size_t classes) {
   gls::ScaleSpaceOptions own = expert.descriptor;
-  own.octaves = descriptor.octaves;  // the model's hold: networks may learn without them
+  own.range.octaves =
+      descriptor.range.octaves;  // the model's hold: networks may learn without them
   if (own == descriptor && expert.classes.size() == classes) return;
   throw Error(
       ErrorKind::kModelMismatch,

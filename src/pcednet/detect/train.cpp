@@ -135,9 +135,9 @@ TrainedModel train(const std::string& name, std::span<const TrainingCloud> cloud
   TrainedModel trained = train(name, samples, options, on_epoch, progress);
   trained.notes = samples.notes;
   // The context network learns from the descriptions that the network learnt from.
-  trained.model.descriptor.rounded = samples.descriptor.rounded;
+  trained.model.descriptor.range.rounded = samples.descriptor.range.rounded;
   if (options.context) add_context(trained, clouds, options, on_epoch, progress);
-  trained.model.descriptor.rounded = true;
+  trained.model.descriptor.range.rounded = true;
   return trained;
 }
 
@@ -184,7 +184,7 @@ TrainedModel train(const std::string& name, const Samples& samples, const TrainO
   trained.validated = is_validated(result);
   model.network = std::move(result.best);
   model.network.metadata = summary_of(result, samples);
-  model.descriptor.rounded = true;
+  model.descriptor.range.rounded = true;
   return trained;
 }
 

@@ -64,7 +64,7 @@ ExactScaleSpace::ExactScaleSpace(OrientedPoints points, const ScaleSpaceOptions&
   tree_ = spatial::KdTree(positions_);
   stage.advance();
   const auto spacings = [&] { return spacings_of_places(points.positions, distinct); };
-  range_ = scale_range(positions_, given_range(options), spacings);
+  range_ = scale_range(positions_, options.range, spacings);
   scales_ = sample_scales(range_, options.scales);
   stage.advance();
 }

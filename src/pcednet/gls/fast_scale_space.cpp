@@ -124,7 +124,7 @@ void FastScaleSpace::find_range(OrientedPoints points, std::span<const std::uint
                ? spacings_of_places(points.positions, curve)
                : sampled_spacings(curve.size(), distance);
   };
-  range_ = scale_range(points.positions, given_range(options_), spacings);
+  range_ = scale_range(points.positions, options_.range, spacings);
 }
 
 void FastScaleSpace::describe(std::span<const std::uint32_t> targets, std::span<float> out,

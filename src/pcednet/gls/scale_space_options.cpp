@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include "pcednet/cloud/bounding_box.h"
-#include "pcednet/gls/scales.h"
 
 namespace pcednet::gls {
 
@@ -26,29 +25,22 @@ std::vector<std::optional<double>> gates_of(const ScaleSpaceOptions& options) {
   return {options.side_gate, options.second_gate};
 }
 
-ScaleRange given_range(const ScaleSpaceOptions& options) {
-  return {.s_min = options.s_min,
-          .s_max = options.s_max,
-          .s_max_fraction = options.s_max_fraction,
-          .s_max_ratio = options.s_max_ratio,
-          .octaves = options.octaves,
-          .rounded = options.rounded};
-}
-
 std::string note_on(const ScaleSpaceOptions& options, std::span<const double> scales,
                     std::span<const Vec3> positions) {
-  const double usual = options.s_max_fraction * bounding_box(positions).diagonal();
-  if (options.s_max > 0.0 || options.s_max_ratio > 0.0 || scales.front() < usual) return {};
+  const double usual = options.range.s_max_fraction * bounding_box(positions).diagonal();
+  if (options.range.s_max > 0.0 || options.range.s_max_ratio > 0.0 || scales.front() < usual)
+    return {};
   return fmt::format(
       "too few points for scales up to {:.4g}, {:g} % of the diagonal: scales from {:.4g} to "
       "{:.4g}; expect false edges",
-      usual, 100.0 * options.s_max_fraction, scales.front(), scales.back());
+      usual, 100.0 * options.range.s_max_fraction, scales.front(), scales.back());
 }
 
 std::string text_of(const ScaleSpaceOptions& options) {
   // Names every member, so that a new one does not compile before it has its place in the text.
-  const auto& [scales, s_min, s_max, s_max_fraction, s_max_ratio, octaves, rounded, features,
-               reconstruction, steps, side_gate, second_gate, engine, eps] = options;
+  const auto& [scales, range, features, reconstruction, steps, side_gate, second_gate, engine,
+               eps] = options;
+  const auto& [s_min, s_max, s_max_fraction, s_max_ratio, octaves, rounded] = range;
   return fmt::format(
       "scales {} s_min {} s_max {} fraction {} ratio {}{}{} features {} reconstruction {} steps {} "
       "gate {}{} engine {} eps {}",

@@ -21,13 +21,20 @@ enum class Engine {
   kExact,  ///< from exact neighbourhoods, in double precision
 };
 
-struct ScaleSpaceOptions {
-  int scales = 16;                          ///< a power of two, 4 to 128
+/// The smallest and the largest scale, as lengths, or how a cloud's own are found.
+struct ScaleRange {
   double s_min = 0.0, s_max = 0.0;          ///< 0: from the cloud
   double s_max_fraction = kPartOfDiagonal;  ///< of the diagonal, where s_max is 0
   double s_max_ratio = 0.0;                 ///< if not 0 while s_max is 0: s_max over s_min
-  bool octaves = false;  ///< in uneven clouds, larger scales where the spacing is wider
+  bool octaves = false;  ///< with a ratio: larger scales where the spacing of a cloud is wider
   bool rounded = true;   ///< with a ratio: an s_min of the cloud is a preferred number
+
+  bool operator==(const ScaleRange&) const = default;
+};
+
+struct ScaleSpaceOptions {
+  int scales = 16;  ///< a power of two, 4 to 128
+  ScaleRange range = {};
   FeatureSet features = FeatureSet::kPaper6;
   Reconstruction reconstruction = Reconstruction::kSphere;
   int max_projection_steps = 5;  ///< for the reconstructions that project

@@ -183,8 +183,9 @@ std::string note_on_extent(const ScaleSpaceOptions& options, double diagonal,
     return fmt::format("{}{} {:g} is larger than the cloud, whose diagonal is {:.4g}", whose, name,
                        scale, diagonal);
   };
-  if (options.s_min > diagonal) throw Error(ErrorKind::kUsage, larger(names.s_min, options.s_min));
-  return options.s_max > diagonal ? larger(names.s_max, options.s_max) : std::string();
+  if (options.range.s_min > diagonal)
+    throw Error(ErrorKind::kUsage, larger(names.s_min, options.range.s_min));
+  return options.range.s_max > diagonal ? larger(names.s_max, options.range.s_max) : std::string();
 }
 
 std::vector<double> sample_scales(const ScaleRange& whole, int count) {

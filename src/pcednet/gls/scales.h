@@ -14,18 +14,6 @@ namespace pcednet::gls {
 /// The largest scale over the smallest, for clouds too sparse for the paper's range.
 inline constexpr double kSparseRange = 2.0;
 
-struct ScaleRange {
-  double s_min = 0.0;
-  double s_max = 0.0;
-  double s_max_fraction = kPartOfDiagonal;  ///< of the diagonal: s_max where it is not given
-  double s_max_ratio = 0.0;                 ///< s_max over s_min; 0: s_max_fraction rules
-  bool octaves = false;  ///< with a ratio: s_max is larger where the spacing varies
-  bool rounded = true;   ///< with a ratio: an s_min of the cloud is a preferred number
-};
-
-/// The range in the options; a bound of 0 is to be found from the cloud.
-ScaleRange given_range(const ScaleSpaceOptions& options);
-
 /// In uneven clouds points may be described at scales 2, 4 or 8 times larger than those of octave
 /// 0, which end s_max_ratio above s_min.
 inline constexpr std::size_t kOctaves = 4;

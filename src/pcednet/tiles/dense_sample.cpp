@@ -150,8 +150,8 @@ PreparedSample decide_normals(const PointCloud& dense, const detect::PrepareOpti
 void decide_voxels(const PreparedSample& sample, const detect::EdgeModel& model, Plan& plan,
                    const Progress* progress) {
   gls::ScaleSpaceOptions descriptor = model.descriptor;
-  descriptor.s_min = plan.s_min, descriptor.s_max = plan.s_max;
-  const std::size_t octaves = gls::octave_count(gls::given_range(descriptor));
+  descriptor.range.s_min = plan.s_min, descriptor.range.s_max = plan.s_max;
+  const std::size_t octaves = gls::octave_count(descriptor.range);
   std::optional<gls::FastScaleSpace> space;
   for (std::size_t octave = 0; octave < octaves; ++octave) {
     gls::PyramidPlan& pyramid = plan.pyramids.emplace_back();

@@ -237,7 +237,7 @@ std::size_t count_places(std::span<const Vec3> positions) {
 
 /// Of coordinates of this type, where s_min is the spacing.
 void note_float_rounding(const detect::EdgeModel& model, ScalarType type, Plan& plan) {
-  const bool is_spacing = model.descriptor.s_min == 0.0 && plan.normals.rounding.step == 0.0;
+  const bool is_spacing = model.descriptor.range.s_min == 0.0 && plan.normals.rounding.step == 0.0;
   if (!is_spacing || type != ScalarType::kFloat32) return;
   const std::string note = formats::note_on_float(plan.box, plan.s_min);
   if (!note.empty()) plan.notes.push_back(note);
@@ -294,7 +294,7 @@ Plan make_plan(const PlanRequest& request, const detect::EdgeModel& model,
   const PreparedSample prepared =
       decide_normals(dense, {.keep_orientation = request.keep_orientation}, plan, progress);
   const Spacing spacing =
-      find_spacing({sample, is_all}, plan, gls::given_range(model.descriptor), counts, progress);
+      find_spacing({sample, is_all}, plan, model.descriptor.range, counts, progress);
   plan.s_min = spacing.range.s_min, plan.s_max = spacing.range.s_max;
   note_float_rounding(model, dense.position_type, plan);
   decide_voxels(prepared, model, plan, progress);

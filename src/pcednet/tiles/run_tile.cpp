@@ -74,7 +74,7 @@ void keep_first(std::size_t points, TileFindings& findings) {
 void check_pyramids(const Plan& plan, const gls::ScaleSpaceOptions& descriptor) {
   const bool has_levels = !plan.model.exact && gls::fits_spheres(descriptor.reconstruction);
   const std::size_t levels = has_levels ? static_cast<std::size_t>(descriptor.scales) : 0;
-  if (plan.pyramids.size() == gls::octave_count(gls::given_range(descriptor)) &&
+  if (plan.pyramids.size() == gls::octave_count(descriptor.range) &&
       plan.pyramids.front().levels.size() == levels) {
     return;
   }
@@ -147,8 +147,8 @@ detect::EdgeModel load_planned_model(const Plan& plan) {
   }
   detect::EdgeModel model = detect::load_model(plan.model.path);
   if (!plan.model.context) detect::drop_context(model);
-  model.descriptor.s_min = plan.s_min;
-  model.descriptor.s_max = plan.s_max;
+  model.descriptor.range.s_min = plan.s_min;
+  model.descriptor.range.s_max = plan.s_max;
   model.descriptor.engine = plan.model.exact ? gls::Engine::kExact : gls::Engine::kFast;
   check_pyramids(plan, model.descriptor);
   return model;

@@ -150,7 +150,8 @@ std::vector<TrainingTask> Runner::plan_networks() {
                             .descriptor = task.options.descriptor,
                             .training = task.training,
                             .seed = seed};
-      if (network->s_max_fraction) classifier.descriptor.s_max_fraction = *network->s_max_fraction;
+      if (network->s_max_fraction)
+        classifier.descriptor.range.s_max_fraction = *network->s_max_fraction;
       classifiers_[v].push_back(std::move(classifier));
       if (models_.contains(task.key)) continue;
       auto stored = cache_.find_model(task.key);
