@@ -65,7 +65,7 @@ std::vector<fs::path> files_of(const std::string& argument, std::vector<fs::path
 
 void warn_of_passed_over(const Inputs& inputs) {
   for (const fs::path& file : inputs.passed_over) {
-    warn(fmt::format("{}: a text that does not begin like points: passed over", file.string()));
+    warn(fmt::format("{}: does not look like a text of points: skipped", file.string()));
   }
 }
 

@@ -150,7 +150,8 @@ def lines(xyz, labels=None, normals=None, *, p_sharp=None, p_smooth=None,
             _arrays.thread_count(threads))
     others = int(np.isin(labels, [0, 1, 2, 3, 255], invert=True).sum())
     if others and not prepared:
-        notes.append(f"{others} labels are no classes of edges: 1 is smooth, 2 sharp, 3 boundary")
+        notes.append(f"{others} labels are not edge classes (1 smooth, 2 sharp, 3 boundary): "
+                     "counted as non-edge")
     _arrays.warn(notes)
     found = Lines(curve for curve in curves
                   if _SHORT[curve.label] in classes and curve.kind in kinds

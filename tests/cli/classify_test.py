@@ -310,9 +310,9 @@ class Classify(CliTest):
         self.assertNotIn("keep", run("classify", self.folder / "a.ply").stderr)
         write_ply(self.folder / "far.ply", p + [500_000, 5_400_000, 0], n)
         said = run("classify", self.folder / "far.ply").stderr
-        self.assertRegex(said, r"far.ply: coordinates up to 540000\d are rounded to 0.5")
+        self.assertRegex(said, r"far.ply: float coordinates up to 540000\d are rounded to steps of 0.5")
         said = run("tiles", "plan", self.folder / "far.ply", "-o", self.folder / "far.json").stderr
-        self.assertRegex(said, r"coordinates up to 540000\d are rounded to 0.5")
+        self.assertRegex(said, r"float coordinates up to 540000\d are rounded to steps of 0.5")
         p[7] = 1e30
         write_ply(self.folder / "no_data.ply", p, n)
         self.assertNotIn("rounded", run("classify", self.folder / "no_data.ply").stderr)

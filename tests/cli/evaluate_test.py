@@ -124,7 +124,7 @@ class Evaluate(CliTest):
         label[:5] = 8
         write_ply(self.folder / "some.ply", p, n, label)
         said = run("evaluate", self.folder / "some.ply", "--method", "ca").stderr
-        self.assertIn("some.ply: 5 labels are no classes of edges", said)
+        self.assertIn("some.ply: 5 labels are not edge classes", said)
 
     def test_unlabelled_clouds_among_others_are_left_out(self):
         p, n, label = cube(300)

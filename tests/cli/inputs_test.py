@@ -64,7 +64,7 @@ class Inputs(CliTest):
         said = run("classify", folder, "--out-dir", out).stderr
         self.assertIn(f"{len(points) + 1} classified, 0 skipped", said)
         for name in prose:
-            self.assertEqual(said.count(f"warning: {folder}/{name}: a text that does not begin like points: passed over"),
+            self.assertEqual(said.count(f"warning: {folder}/{name}: does not look like a text of points: skipped"),
                              1, said)
         said = run("classify", folder, "--out-dir", out, "--skip-existing").stderr
         self.assertIn(f"0 classified, {len(points) + 1} skipped because their results exist, 0 failed", said)

@@ -233,7 +233,7 @@ class Lines(CliTest):
         p, n, _ = cube(4000)
         write_ply(self.folder / "a.ply", p, n, np.zeros(len(p), np.uint8))
         done = run("lines", self.folder / "a.ply", *self.outputs("geojson"))
-        self.assertIn("its labels are used, and none is of an edge; --classify", done.stderr)
+        self.assertIn("its labels are used, but none is an edge class; --classify", done.stderr)
         self.assertIn("no edges", done.stderr)
         done = run("lines", self.folder / "a.ply", *self.outputs("geojson"), "--classify",
                    "--overwrite")
@@ -312,8 +312,8 @@ class Lines(CliTest):
             self.assertTrue(np.isfinite(points).all())
         write_ply(self.folder / "odd.ply", *cube(3000)[:2], np.full(3000, 17, np.uint8))
         done = run("lines", self.folder / "odd.ply", *self.outputs("obj"), "--overwrite")
-        self.assertIn("3000 labels are no classes of edges", done.stderr)
-        self.assertIn("--classify finds edges", done.stderr)
+        self.assertIn("3000 labels are not edge classes", done.stderr)
+        self.assertIn("--classify labels the cloud anew", done.stderr)
 
     def test_options_out_of_range(self):
         path = self.labelled_cube()

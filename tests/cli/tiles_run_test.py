@@ -56,7 +56,7 @@ class TilesRun(TilesTest):
         self.assertIn(f"  next: {again}\n", run("tiles", "status", plan).stdout)
         # The file without a record is, for all that is known, not a tile: all others are run.
         said = run("tiles", "run", plan, expect=2).stderr
-        self.assertIn(f"{files[2]}: exists already, and no record tells that it is a tile: not replaced; {again}", said)
+        self.assertIn(f"{files[2]}: exists, but has no record of being a tile: not replaced; to replace it: {again}", said)
         self.assertEqual(self.status(plan)["missing"], [2])
         said = run("tiles", "run", plan, "--tile", 2, expect=2).stderr
         self.assertNotIn("tiles run,", said)
@@ -91,7 +91,7 @@ class TilesRun(TilesTest):
             there.write_text("precious")
             for jobs in (1, 2):
                 said = run("tiles", "run", plan, "--jobs", jobs, expect=2).stderr
-                self.assertIn(f"{there}: exists already, and no record", said)
+                self.assertIn(f"{there}: exists, but has no record", said)
                 self.assertEqual(self.status(plan)["missing"], [2])
             self.assertEqual(there.read_text(), "precious")
             there.unlink()

@@ -135,7 +135,7 @@ class Tiles(TilesTest):
                          ["left_edges.las", "right_edges.las"])
         (self.folder / "in/left.copc.laz").unlink()
         said = run("tiles", "plan", self.folder / "in.vpc", "-o", self.folder / "q.json", expect=3).stderr
-        self.assertIn("in.vpc: names ./in/left.copc.laz, and there is no", said)
+        self.assertIn("in.vpc: refers to ./in/left.copc.laz, but ", said)
 
     def test_several_inputs_are_one_cloud(self):
         p, n = field(3, 600)
@@ -179,7 +179,7 @@ class Tiles(TilesTest):
         for name in ("a.ply", "b.ply"):
             write_ply(self.folder / name, p, n)
         said = run("tiles", "plan", self.folder / "a.ply", self.folder / "b.ply", "-o", self.folder / "p.json").stderr
-        self.assertIn(f"b.ply: has the points of {self.folder}/a.ply, which are doubled", said)
+        self.assertIn(f"b.ply: holds the same points as {self.folder}/a.ply: they count twice", said)
         said = run("tiles", "plan", self.folder / "a.ply", "-o", self.folder / "q.json").stderr
         self.assertNotIn("doubled", said)
 

@@ -181,7 +181,7 @@ TEST(Prepare, LeavesOutPointsThatAreNowhere) {
     with.positions.emplace_back(far, 0.0, 0.0);
     const PreparedCloud prepared = prepare(with);
     ASSERT_EQ(prepared.notes.size(), 3U);
-    EXPECT_NE(prepared.notes[0].find("1 point is nowhere near the others"), std::string::npos);
+    EXPECT_NE(prepared.notes[0].find("1 point is far from all others"), std::string::npos);
     EXPECT_EQ(prepared.curve, alone.curve);
     EXPECT_EQ(prepared.normals[7], alone.normals[7]);
     EXPECT_TRUE(prepared.normals.back().isZero(0.0));
@@ -200,7 +200,7 @@ TEST(Prepare, SaysThatNormalsAreNotThoseOfThePoints) {
   }
   const auto notes = prepare(cloud, {.keep_orientation = true}).notes;
   ASSERT_EQ(notes.size(), 1U);
-  EXPECT_NE(notes[0].find("the normals are not those of the points"), std::string::npos);
+  EXPECT_NE(notes[0].find("the normals do not belong to these points"), std::string::npos);
 }
 
 TEST(Prepare, SaysFromHowManyPointsItEstimates) {

@@ -266,7 +266,7 @@ TEST(Pcd, SaysWhereAFileIsBroken) {
       "HEIGHT 18446744073709551615\nDATA ascii\n",
       "is not POINTS");
   unreadable(xyz(2, "ascii") + "1 2 3\n40 50\n", ":13: 2 numbers instead of 3");
-  unreadable(xyz(2, "ascii") + "1 2 3\n4 5 z\n", ":13: z: no such number");
+  unreadable(xyz(2, "ascii") + "1 2 3\n4 5 z\n", ":13: z: not a number of its type");
   unreadable(xyz(2, "ascii") + "1 2 3       \n", ":12: the file ends after 1 of 2");
   for (const char* data : {"ascii", "binary", "binary_compressed"}) {
     unreadable(xyz(99999999999, data) + "1 2 3 4 5 6 7 8 9\n", "");

@@ -153,7 +153,7 @@ class Lines(CliTest):
                       {"classes": []}, {"viewpoint": (0.0, 0.0, float("nan"))}):
             with self.assertRaises(pcednet.UsageError):
                 pcednet.lines(self.positions, self.result, **wrong)
-        with self.assertWarnsRegex(pcednet.PcednetWarning, "7 labels are no classes of edges"):
+        with self.assertWarnsRegex(pcednet.PcednetWarning, "7 labels are not edge classes"):
             labels = self.result.labels.copy()
             labels[:7] = 9
             pcednet.lines(self.positions, labels, self.normals)

@@ -83,7 +83,7 @@ TEST_F(Agreement, NeedsExtraBytesOfOneMeaning) {
     return file;
   };
   const LasTestFile first = with(8, 0.01, 0.0, 0.0, 0.0);
-  const std::string difference = "give Height another scale, offset or number for no data";
+  const std::string difference = "give Height different scales, offsets or no-data values";
   EXPECT_EQ(refused(first, first), "");
   EXPECT_TRUE(refused(first, with(8, 0.1, 0.0, 0.0, 0.0)).starts_with(difference));
   EXPECT_TRUE(refused(first, with(24, 0.01, 5.0, 0.0, 0.0)).starts_with(difference));
@@ -133,8 +133,7 @@ TEST_F(Agreement, NeedsOneBeginningOfTimes) {
     try {
       check_agreement({encoded("a.las", a, its), encoded("b.las", b, others)}, plan_);
     } catch (const Error& error) {
-      EXPECT_NE(std::string(error.what()).find("count GPS time from different beginnings"),
-                std::string::npos);
+      EXPECT_NE(std::string(error.what()).find("use different GPS time bases"), std::string::npos);
       return false;
     }
     return true;

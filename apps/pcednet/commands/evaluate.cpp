@@ -117,8 +117,8 @@ void check_labels(const fs::path& input, const PointCloud& cloud, const ClassTab
   warn(has_own_classes(table)
            ? fmt::format("{}: {} labels are none of the classes {}: left out", input.string(),
                          others, pcednet::names_of(table))
-           : fmt::format("{}: {} labels are no classes of edges: 1 is smooth, 2 sharp, 3 boundary; "
-                         "they count as non-edge",
+           : fmt::format("{}: {} labels are not edge classes (1 smooth, 2 sharp, 3 boundary): "
+                         "counted as non-edge",
                          input.string(), others));
 }
 

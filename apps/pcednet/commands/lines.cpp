@@ -103,8 +103,10 @@ void tell_labels(const std::string& file, const std::vector<std::uint8_t>& class
     return label > kBoundary && label != kUnlabelled;
   });
   if (others > 0) {
-    warn(fmt::format("{}: {} labels are no classes of edges: 1 is smooth, 2 sharp, 3 boundary",
-                     file, others));
+    warn(
+        fmt::format("{}: {} labels are not edge classes (1 smooth, 2 sharp, 3 boundary): "
+                    "counted as non-edge",
+                    file, others));
   }
   std::string edges;
   for (const io::LineClass& entry : io::kLineClasses) {
@@ -113,7 +115,8 @@ void tell_labels(const std::string& file, const std::vector<std::uint8_t>& class
     edges += fmt::format("{}{} {}", edges.empty() ? "" : ", ", points, entry.name);
   }
   if (edges.empty()) {
-    warn(file + ": its labels are used, and none is of an edge; --classify finds edges");
+    warn(file +
+         ": its labels are used, but none is an edge class; --classify labels the cloud anew");
   } else {
     say(fmt::format("{}: its labels are used: {}; --classify finds others", file, edges));
   }

@@ -110,14 +110,15 @@ LeftOut leave_out(const tiles::Plan& plan, std::vector<std::size_t>& ids) {
 
 void report_left_out(const LeftOut& left, const RunArguments& arguments) {
   if (left.ids.empty()) return;
-  throw Error(ErrorKind::kUsage,
-              fmt::format("{}: exists already, and no record tells that it is a tile{}: not "
-                          "replaced; pcednet tiles run {}{} --overwrite does that",
-                          left.example.string(),
-                          left.ids.size() == 1 ? ""
-                                               : fmt::format(" ({} such: {})", left.ids.size(),
-                                                             tiles::list_of(left.ids)),
-                          shell_word(arguments.plan), tile_options(left.ids)));
+  throw Error(
+      ErrorKind::kUsage,
+      fmt::format("{}: exists, but has no record of being a tile{}: not replaced; to replace "
+                  "it: pcednet tiles run {}{} --overwrite",
+                  left.example.string(),
+                  left.ids.size() == 1
+                      ? ""
+                      : fmt::format(" ({} such: {})", left.ids.size(), tiles::list_of(left.ids)),
+                  shell_word(arguments.plan), tile_options(left.ids)));
 }
 
 void run_tiles(const RunArguments& arguments, const Common& common) {

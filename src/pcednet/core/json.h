@@ -6,7 +6,7 @@
 
 /// The reader and the writer of JSON, compiled once for all rooms; in sources alone, so that no
 /// installed header asks for the library. Members are sorted by name in `Json` and keep their order
-/// in `OrderedJson`, which is for writing: of a file with many members it reads slowly.
+/// in `OrderedJson`, and is meant for writing: it looks members up in linear time.
 namespace pcednet {
 
 using Json = nlohmann::json;

@@ -14,7 +14,7 @@ void prefer_large_pages([[maybe_unused]] void* memory, [[maybe_unused]] std::siz
   if (bytes < 2 * kPage) return;
   const std::size_t before = (kPage - reinterpret_cast<std::uintptr_t>(memory) % kPage) % kPage;
   const std::size_t whole = (bytes - before) / kPage * kPage;
-  // A system without them refuses, and all is as it was.
+  // Only advice: a refusal changes nothing.
   madvise(static_cast<char*>(memory) + before, whole, MADV_HUGEPAGE);
 #endif
 }

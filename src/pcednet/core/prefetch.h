@@ -4,11 +4,10 @@
 
 namespace pcednet {
 
-/// A loop over elements that may be anywhere in memory asks for each so many turns before it reads
-/// it.
+/// How many iterations ahead a loop over scattered elements prefetches.
 inline constexpr std::size_t kAskAhead = 16;
 
-/// Asks for an element. Its first and its last byte may lie in two lines of the cache.
+/// Prefetches an element, which may straddle two cache lines.
 template <typename Element>
 void prefetch(const Element& element) {
   const auto* bytes = reinterpret_cast<const std::byte*>(&element);

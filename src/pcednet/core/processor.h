@@ -14,7 +14,7 @@ enum class InstructionSet {
 /// Those that this processor has, the baseline first.
 std::span<const InstructionSet> usable_instruction_sets();
 
-/// The last of these.
+/// The widest instruction set of this processor.
 InstructionSet instruction_set();
 
 }  // namespace pcednet

@@ -4,7 +4,8 @@
 #include "pcednet/core/vec3.h"
 
 /// Random vectors, whose numbers are drawn one after another. In the arguments of a call at most
-/// one number is drawn: their order is left to the compiler, and clouds must be the same from each.
+/// one number is drawn: the compiler may evaluate them in any order, and every compiler must
+/// generate the same clouds.
 namespace pcednet {
 
 /// In the box between the corners: the unit cube if none are given.

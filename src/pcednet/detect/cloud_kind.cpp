@@ -54,8 +54,10 @@ bool are_as_estimated(const PreparedCloud& cloud) {
 
 constexpr std::size_t kFew = 20000;  // above, the same networks decide in either case
 
-/// The networks for few points learnt from parts of even spacing.
-std::size_t points_of(const PreparedCloud& cloud, const gls::ScaleSpaceOptions& descriptor) {
+/// Uneven clouds and pieces count as large: the experts for few points were trained on whole parts
+/// of even spacing.
+std::size_t points_for_experts(const PreparedCloud& cloud,
+                               const gls::ScaleSpaceOptions& descriptor) {
   constexpr std::size_t kPiece = CloudTraits{}.points;
   const bool scales_given = descriptor.range.s_min > 0.0 && descriptor.range.s_max > 0.0;
   if (cloud.part) {
@@ -77,7 +79,7 @@ CloudTraits traits_of(const PreparedCloud& cloud, const gls::ScaleSpaceOptions& 
       .estimated = estimated,
       .exact = cloud.decision.exact,
       .noisy = estimated && cloud.decision.neighbours > normals::NeighbourChoice{}.neighbours};
-  traits.points = points_of(cloud, descriptor);
+  traits.points = points_for_experts(cloud, descriptor);
   if (!traits.estimated && traits.points < kFew) traits.estimated = are_as_estimated(cloud);
   return traits;
 }

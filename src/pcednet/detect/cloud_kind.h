@@ -11,7 +11,7 @@ namespace pcednet::detect {
 
 /// Copies of a point do not count: they carry no information on the surface. A part of a cloud has
 /// the point count of the whole; a cloud for which `descriptor` gives s_min and s_max, or whose
-/// points have several octaves, is taken for a piece of a large one.
+/// points have several octaves, is treated as a piece of a larger one.
 CloudTraits traits_of(const PreparedCloud& cloud, const gls::ScaleSpaceOptions& descriptor);
 
 /// "below=4000,estimated": `given` or `estimated` normals, `exact`, `noisy`, in any order.

@@ -11,8 +11,8 @@ namespace pcednet::detect {
 /// Throws Error(kUsage) if the result is not one of this many points.
 void check_size(const Classification& found, std::size_t points);
 
-/// A result with all of `points` unlabelled, for a model with own classes or with edge classes
-/// only.
+/// A result in which all `points` points are unlabelled, for a model with own classes or with edge
+/// classes only.
 Classification nothing_found(std::size_t points, bool has_own_classes = false);
 
 /// Writes a network's answers for `points`, each listed once, into `found`: an edge where

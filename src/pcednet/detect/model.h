@@ -15,8 +15,8 @@
 
 namespace pcednet::detect {
 
-/// Points with a lower edge probability stay non-edge without the context network: most points,
-/// which saves most of its time.
+/// Points with a lower edge probability skip the context network and stay non-edge. These are most
+/// points, so most of its time is saved.
 inline constexpr float kLeastEdge = 0.01f;
 
 /// Facts about a cloud before its points are classified.

@@ -28,8 +28,8 @@ inline std::uint8_t output_of(std::uint8_t label, const EdgeModel& model) {
   return counts_as_non_edge ? 0 : nn::kIgnoredLabel;
 }
 
-/// The first of `classes`, the classes of a network's outputs, that none of `outputs` stands for,
-/// as users know it: "sharp-edge (2)". Empty if there is none.
+/// The first of `classes`, the classes of a network's outputs, that does not occur in `outputs`, as
+/// shown to users: "sharp-edge (2)". Empty if there is none.
 inline std::string missing_class(std::span<const std::uint8_t> classes, const ClassTable& table,
                                  std::span<const std::uint8_t> outputs) {
   for (std::size_t c = 0; c < classes.size(); ++c) {

@@ -150,14 +150,14 @@ void estimate(PreparedCloud& prepared, const Points& cloud, const std::string& w
   use(std::move(oriented), note, prepared);
 }
 
-/// Takes the position from points that are nowhere near the others.
+/// Takes the position from points that are far from all others.
 void leave_out_far_points(PreparedCloud& prepared) {
   const std::vector<std::uint32_t> far = far_points(prepared.positions);
   if (far.empty()) return;
   const double largest = prepared.positions[far.front()].cwiseAbs().maxCoeff();
   prepared.notes.push_back(fmt::format(
-      "{} point{} nowhere near the others, the first with a coordinate of {:.6g}: taken for points "
-      "without a position",
+      "{} point{} far from all others (the first has a coordinate of {:.6g}): treated as having no "
+      "position",
       far.size(), far.size() == 1 ? " is" : "s are", largest));
   prepared.moved.assign(prepared.positions.begin(), prepared.positions.end());
   for (const std::uint32_t i : far) {
@@ -224,8 +224,8 @@ void note_unusable(PreparedCloud& prepared) {
   const std::size_t unusable = prepared.curve.size() - count_usable(prepared);
   if (unusable == 0) return;
   prepared.notes.push_back(
-      fmt::format("{} of {} points have no usable normal: left out of every neighbourhood, "
-                  "labelled all the same",
+      fmt::format("{} of {} points have no usable normal: excluded from every neighbourhood, "
+                  "but still labelled",
                   unusable, prepared.positions.size()));
 }
 
@@ -234,8 +234,8 @@ void note_misfits(PreparedCloud& prepared) {
   const double share = share_of_misfits(prepared.positions, prepared.normals, prepared.curve);
   if (share < kMisfits) return;
   prepared.notes.push_back(fmt::format(
-      "the normals are not those of the points: they lie across the surface in {:.0f} % "
-      "of its flat places",
+      "the normals do not belong to these points: in {:.0f} % of the flat regions they are not "
+      "perpendicular to the surface",
       100.0 * share));
   prepared.misfits = true;
 }

@@ -33,7 +33,7 @@ struct NormalsDecision {
 /// The comment of a cloud whose normals are all estimated from its positions, by this program.
 inline constexpr std::string_view kEstimatedNormals = "pcednet normals estimated";
 bool has_estimated_normals(const PointCloud& cloud);
-/// Whether the comments say so of points that are elsewhere.
+/// The same for the comments of a cloud whose points are held elsewhere.
 bool tells_of_estimated_normals(const PointCloud& outline);
 /// Gives the cloud the comment, or takes it away.
 void set_estimated_normals(PointCloud& cloud, bool estimated);
@@ -69,7 +69,7 @@ struct PreparedCloud {
 /// oriented: by the scanner positions if the cloud has them. If the positions are rounded to a step
 /// near the spacing, they are spread within it before.
 ///
-/// Points so far out that they stand for "no data" are taken for points without a position. Normals
+/// Points so far out that they can only mean "no data" are treated as having no position. Normals
 /// that are estimates, see has_estimated_normals(), are estimated again and get the signs that they
 /// have unless these are mixed: the result is that of the cloud without them.
 ///

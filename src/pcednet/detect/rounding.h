@@ -11,9 +11,9 @@ namespace pcednet::detect {
 
 /// The rounding of a cloud to steps of more than a tenth of its spacing, which turns surfaces that
 /// are oblique to the axes into stairs, whose treads are level and whose risers look like edges.
-/// The smallest step of the three axes counts, so the raster of a terrain model is none. Neither
-/// are points of a solid of which nearly all faces are parallel to the axes or lattice planes: they
-/// were not moved.
+/// The smallest step of the three axes counts, so the raster of a terrain model does not count as
+/// rounding. Nor does a solid nearly all of whose faces are parallel to the axes or lie on lattice
+/// planes: rounding did not move its points.
 ///
 /// Judged by 2,000 points. `curve` is the spatial::curve_order() of the positions.
 Rounding find_rounding(std::span<const Vec3> positions, std::span<const std::uint32_t> curve);

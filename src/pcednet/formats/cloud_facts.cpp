@@ -89,7 +89,7 @@ std::string note_on_float(const BoundingBox& bounds, double apart) {
   const double step = float_step(bounds);
   if (step <= apart) return {};
   return fmt::format(
-      "coordinates up to {} are rounded to {:.2g}, as they are float, and the points are {:.2g} "
+      "float coordinates up to {} are rounded to steps of {:.2g}, but the points are only {:.2g} "
       "apart: write them as double, or relative to a nearer origin",
       largest_coordinate(bounds), step, apart);
 }
@@ -129,7 +129,7 @@ std::vector<std::string> find_problems(const CloudFacts& facts) {
     problems.emplace_back("no normals: they will be estimated");
   }
   add(defects.normals, "normals are zero or not finite");
-  add(facts.rescaled_normals, "normals are not of unit length: made so");
+  add(facts.rescaled_normals, "normals are not of unit length: normalised");
   if (!facts.bounds.empty() && facts.spacing) {
     const double step = float_step(facts.bounds), apart = distance_of_points(*facts.spacing);
     const bool is_float = facts.position_type == ScalarType::kFloat32;

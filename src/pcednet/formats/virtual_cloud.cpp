@@ -182,7 +182,7 @@ fs::path file_behind(const std::string& reference, const fs::path& cloud) {
       cloud.parent_path() / (is_file ? reference.substr(kFile.size()) : reference);
   std::error_code error;
   if (!fs::exists(path, error)) {
-    throw io::unreadable(cloud, fmt::format("names {}, and there is no {}", reference,
+    throw io::unreadable(cloud, fmt::format("refers to {}, but {} does not exist", reference,
                                             path.lexically_normal().string()));
   }
   return path.lexically_normal();
@@ -225,7 +225,7 @@ VirtualFile virtual_file(const fs::path& path) {
   const io::InputFile file(path);
   if (!format_of(file).is_las()) {
     throw Error(ErrorKind::kInsufficient,
-                path.string() + ": a virtual point cloud is of LAS, LAZ and COPC files");
+                path.string() + ": a virtual point cloud can list only LAS, LAZ and COPC files");
   }
   const io::LasOutline las = io::las_outline(file);
   return {.path = path,

@@ -3,8 +3,8 @@
 #include "pcednet/gls/fit_limits.h"
 #include "pcednet/gls/lane_vector.h"
 
-/// From the sums of a neighbourhood to its sphere, and what that is worth, a target per lane and in
-/// units of the support radius: the equations of sphere_fit.h.
+/// Computes the sphere of a neighbourhood and its reliability from the sums, a target per lane and
+/// in units of the support radius: the equations of sphere_fit.h.
 namespace pcednet::gls {
 namespace {  // each unit has its own copy, see simd.h
 

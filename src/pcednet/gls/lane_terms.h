@@ -3,7 +3,7 @@
 #include "pcednet/gls/fit_limits.h"
 #include "pcednet/gls/lane_vector.h"
 
-/// What one source adds to the sums over a neighbourhood, a target per lane.
+/// The contribution of one source to the sums over a neighbourhood, a target per lane.
 namespace pcednet::gls {
 namespace {  // each unit has its own copy, see simd.h
 

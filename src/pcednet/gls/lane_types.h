@@ -88,7 +88,7 @@ struct LaneCounts {
   float surely[kLanes], maybe[kLanes];
 };
 
-/// What single precision can tell of a fit.
+/// The verdict of single precision on a fit.
 inline constexpr float kSound = 1.0f;
 inline constexpr float kDoubtful = 0.0f;  ///< rounding may have spoilt it
 inline constexpr float kVoid = -1.0f;     ///< its normals cancel beyond doubt: it is undefined

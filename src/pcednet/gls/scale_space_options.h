@@ -56,8 +56,7 @@ int column_count(const ScaleSpaceOptions& options);
 /// The gates to describe with: one, which may be open, or two.
 std::vector<std::optional<double>> gates_of(const ScaleSpaceOptions& options);
 
-/// A sentence for the user if `scales` are those that sparse clouds get,
-/// otherwise empty.
+/// A sentence for the user if the cloud is too sparse for the usual scales; otherwise empty.
 std::string note_on(const ScaleSpaceOptions& options, std::span<const double> scales,
                     std::span<const Vec3> positions);
 

@@ -7,7 +7,7 @@
 
 namespace pcednet::io {
 
-/// What is known of a unit of length.
+/// A unit of length and its codes.
 struct LengthUnitEntry {
   LengthUnit unit;
   int epsg;               ///< its code; 0: none

@@ -46,7 +46,7 @@ std::uint64_t read_ascii(const InputFile& file, const PcdHeader& header, CloudBu
       for (std::size_t c = 0; c < field.count; ++c, ++word, number += size_of(field.type)) {
         if (parse_number(*word, field.type, number)) continue;
         throw unreadable(file.path(),
-                         fmt::format("{}: no such number in that type: {:.40}", field.name, *word),
+                         fmt::format("{}: not a number of its type: {:.40}", field.name, *word),
                          lines.number());
       }
     }

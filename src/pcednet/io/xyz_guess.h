@@ -17,7 +17,7 @@ struct NumberTable {
 /// Whether the vector at `n` has about unit length.
 bool looks_like_normal(const double* n);
 
-/// What the name of a text and its first line say of its columns.
+/// The columns of a text file, guessed from its extension and first line.
 enum class TextKind { kAny, kPts, kCountedPts };
 
 /// Names for the columns of a table without names: x y z; then, from the left, three columns of

@@ -167,14 +167,14 @@ void check_las(const IndexedInput& a, const IndexedInput& b, const io::LasFile& 
   for (const auto& [name, meaning] : meanings) {
     const auto found = others.find(name);
     if (found == others.end() || found->second == meaning) continue;
-    refuse_pair(a, b, fmt::format("give {} another scale, offset or number for no data", name));
+    refuse_pair(a, b, fmt::format("give {} different scales, offsets or no-data values", name));
   }
   check_systems(a, b, first, other);
   const auto is_timed = [](const Attribute& column) { return column.name == "GpsTime"; };
   const bool timed =
       std::any_of(a.outline.attributes.begin(), a.outline.attributes.end(), is_timed);
   if (timed && time_of(first) != time_of(other)) {
-    refuse_pair(a, b, "count GPS time from different beginnings (global encoding)");
+    refuse_pair(a, b, "use different GPS time bases (global encoding)");
   }
   if (has_waveforms(first) || has_waveforms(other)) {
     refuse_pair(a, b, "have waveforms, and the tiles could keep those of one file only");
@@ -241,7 +241,7 @@ void check_agreement(const std::vector<IndexedInput>& inputs, Plan& plan) {
   }
   if (scanners && inputs.size() > 1) {
     plan.notes.emplace_back(
-        "several inputs: the places of their scanners do not orient the normals");
+        "with several inputs, scanner positions are not used to orient normals");
   }
   if (besides) plan.notes.emplace_back("other elements than points, such as faces, are left out");
   note_lost_records(first, std::move(lost), plan);

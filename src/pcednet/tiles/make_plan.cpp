@@ -194,7 +194,7 @@ void note_copies(Plan& plan) {
     for (const Chunk& chunk : input.chunks) digests.push_back(chunk.digest);
     const auto [first, is_new] = seen.emplace(std::move(digests), &input);
     if (is_new) continue;
-    plan.notes.push_back(fmt::format("{}: has the points of {}, which are doubled",
+    plan.notes.push_back(fmt::format("{}: holds the same points as {}: they count twice",
                                      input.path.string(), first->second->path.string()));
   }
 }

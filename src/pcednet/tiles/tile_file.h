@@ -24,7 +24,7 @@ struct TileRecord {
 /// file is gone.
 void write_record(const std::filesystem::path& tile, TileRecord record);
 
-/// Writes the record of a tile that is begun, so that its file is known for one of a tile.
+/// Marks a tile as begun, so that a file at its path is recognised as a tile.
 void write_claim(const std::filesystem::path& tile, TileRecord record);
 /// Removes it if there is no such file.
 void remove_claim(const std::filesystem::path& tile);
@@ -33,8 +33,8 @@ void remove_claim(const std::filesystem::path& tile);
 /// the record of one.
 void check_not_of_plan(const std::filesystem::path& output, const Plan& plan);
 
-/// A file with the name of the tile, or of its record, that may be no tile, for there is no record;
-/// empty if there is none.
+/// A file that occupies the tile's or its record's name without a valid record; empty if there is
+/// none.
 std::filesystem::path strange_file(const std::filesystem::path& tile);
 
 /// A tile in the folder whose record is of another plan than that of this digest; empty if there is
