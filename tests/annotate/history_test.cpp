@@ -13,6 +13,7 @@
 #include "pcednet/core/random_vectors.h"
 #include "pcednet/formats/write_cloud.h"
 #include "support/expect_error.h"
+#include "support/own_folder.h"
 #include "workbench/annotate/json.h"
 #include "workbench/annotate/project.h"
 #include "workbench/annotate/session.h"
@@ -76,10 +77,9 @@ TEST(LabelsOf, AreThoseOfTheRunAndOfNoOther) {
 }
 
 /// A cube whose runs are made, forgotten by ending the session, and asked for again.
-class RunHistory : public testing::Test {
+class RunHistory : public testing::Test, protected test::OwnFolder {
  protected:
   void SetUp() override {
-    fs::create_directory(folder_);
     Random random(1);
     PointCloud cloud;
     for (int i = 0; i < 6000; ++i) {
@@ -94,11 +94,6 @@ class RunHistory : public testing::Test {
     formats::write_cloud(folder_ / "cube.ply", cloud, {});
     open();
     session_->change_settings({.automatic = false});
-  }
-
-  void TearDown() override {
-    session_.reset();
-    fs::remove_all(folder_);
   }
 
   void open() {
@@ -195,9 +190,6 @@ class RunHistory : public testing::Test {
     std::ofstream(path, std::ios::binary) << text.replace(at, what.size(), by);
   }
 
-  const fs::path folder_ =
-      fs::path(testing::TempDir()) /
-      ("pcednet_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
   std::mutex mutex_ = {};
   std::vector<std::string> problems_ = {};
   std::atomic<int> epochs_ = 0;

@@ -10,6 +10,7 @@
 #include "pcednet/core/error.h"
 #include "pcednet/core/random_vectors.h"
 #include "support/expect_error.h"
+#include "support/own_folder.h"
 #include "workbench/annotate/journal.h"
 #include "workbench/annotate/places.h"
 #include "workbench/annotate/select.h"
@@ -127,21 +128,15 @@ TEST(Labels, ProtectedAndHiddenPointsKeepWhatTheyHave) {
             (std::vector<std::uint32_t>{0}));
 }
 
-class JournalTest : public testing::Test {
+class JournalTest : public testing::Test, protected test::OwnFolder {
  protected:
-  void SetUp() override { std::filesystem::remove(path_); }
-  void TearDown() override { std::filesystem::remove(path_); }
-
   static std::vector<std::string> lines(const std::vector<Record>& records) {
     std::vector<std::string> result;
     for (const Record& record : records) result.push_back(to_line(record));
     return result;
   }
 
-  const std::filesystem::path path_ =
-      std::filesystem::path(testing::TempDir()) /
-      ("pcednet_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()) +
-       ".journal");
+  const std::filesystem::path path_ = path("a.journal");
   const Inputs input_ = {{.name = "a.ply", .digest = "d", .points = 100}};
   std::vector<Record> records_ = {
       {.kind = Record::Kind::kStroke, .id = "s\"1", .edge_class = 2, .points = {0, 7, 99}},

@@ -17,6 +17,7 @@
 
 #include "pcednet/core/error.h"
 #include "pcednet/core/exists_already.h"
+#include "support/expect_error.h"
 #include "support/own_folder.h"
 
 namespace pcednet {
@@ -38,19 +39,13 @@ class OutputFileTest : public testing::Test, protected test::OwnFolder {
   }
 };
 
-ErrorKind kind_of(const std::function<void()>& work) {
-  try {
-    work();
-  } catch (const Error& error) {
-    return error.kind();
-  }
-  return ErrorKind(0);
-}
-
 /// The exit status of a process of its own that does `work`.
 int in_process(const std::function<void()>& work) {
   const pid_t child = fork();
-  if (child == 0) _exit(static_cast<int>(kind_of(work)));
+  if (child == 0) {
+    const auto error = test::error_of(work);
+    _exit(error ? static_cast<int>(error->kind()) : 0);
+  }
   int status = -1;
   waitpid(child, &status, 0);
   return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
@@ -95,7 +90,7 @@ TEST_F(OutputFileTest, NeverReplacesAFileThatAppearedWhileItWasWritten) {
   first.write("first");
   second.write("second");
   first.commit();
-  EXPECT_EQ(kind_of([&] { second.commit(); }), ErrorKind::kUsage);
+  EXPECT_ERROR(ErrorKind::kUsage, second.commit());
   EXPECT_EQ(content("a"), "first");
 }
 
@@ -103,7 +98,7 @@ TEST_F(OutputFileTest, LeavesNoPartWhereTheNameWasTakenMeanwhile) {
   {
     OutputFile out(path("a"));
     std::ofstream(path("a")) << "precious";
-    EXPECT_EQ(kind_of([&] { out.commit(); }), ErrorKind::kUsage);
+    EXPECT_ERROR(ErrorKind::kUsage, out.commit());
   }
   EXPECT_EQ(names(), std::set<std::string>{"a"});
   EXPECT_EQ(content("a"), "precious");
@@ -115,7 +110,7 @@ TEST_F(OutputFileTest, NeverReplacesWhereTheFileSystemHasNoSuchRename) {
               OutputFile first(path("a")), second(path("a"));
               first.write("first");
               first.commit();
-              if (kind_of([&] { second.commit(); }) != ErrorKind::kUsage) _exit(99);
+              if (!test::throws_error(ErrorKind::kUsage, [&] { second.commit(); })) _exit(99);
             }),
             0);
   EXPECT_EQ(content("a"), "first");
@@ -135,21 +130,19 @@ TEST_F(OutputFileTest, RefusesBeforeTheWorkWhatCannotBeWrittenAfterIt) {
   std::ofstream(path("file")) << "x";
   fs::create_symlink("nothing", path("link"));
   ASSERT_EQ(mkfifo(path("pipe").c_str(), 0600), 0);
-  const auto kind = [&](const std::string& name, Overwrite overwrite) {
-    return kind_of([&] { check_writable(path(name), overwrite); });
-  };
-  EXPECT_EQ(kind("new", Overwrite::kNo), ErrorKind(0));
-  EXPECT_EQ(kind("file", Overwrite::kYes), ErrorKind(0));
-  EXPECT_EQ(kind("file", Overwrite::kNo), ErrorKind::kUsage);
+  check_writable(path("new"), Overwrite::kNo);
+  check_writable(path("file"), Overwrite::kYes);
+  EXPECT_ERROR(ErrorKind::kUsage, check_writable(path("file"), Overwrite::kNo));
   EXPECT_THROW(check_writable(path("file"), Overwrite::kNo), ExistsAlready);
-  EXPECT_EQ(kind("link", Overwrite::kNo), ErrorKind::kUsage);
-  EXPECT_EQ(kind("pipe", Overwrite::kYes), ErrorKind::kUsage);
-  EXPECT_EQ(kind("", Overwrite::kYes), ErrorKind::kUsage);  // the folder itself
-  EXPECT_EQ(kind("none/new", Overwrite::kNo), ErrorKind::kFailure);
-  EXPECT_EQ(kind("file/new", Overwrite::kYes), ErrorKind::kFailure);
-  EXPECT_EQ(kind(std::string(255, 'n'), Overwrite::kNo), ErrorKind::kFailure);  // and .part
-  EXPECT_EQ(kind_of([] { check_writable("/dev/full", Overwrite::kYes); }), ErrorKind::kUsage);
-  EXPECT_EQ(kind_of([] { OutputFile(""); }), ErrorKind::kUsage);
+  EXPECT_ERROR(ErrorKind::kUsage, check_writable(path("link"), Overwrite::kNo));
+  EXPECT_ERROR(ErrorKind::kUsage, check_writable(path("pipe"), Overwrite::kYes));
+  EXPECT_ERROR(ErrorKind::kUsage, check_writable(path(""), Overwrite::kYes));  // the folder itself
+  EXPECT_ERROR(ErrorKind::kFailure, check_writable(path("none/new"), Overwrite::kNo));
+  EXPECT_ERROR(ErrorKind::kFailure, check_writable(path("file/new"), Overwrite::kYes));
+  EXPECT_ERROR(ErrorKind::kFailure,
+               check_writable(path(std::string(255, 'n')), Overwrite::kNo));  // and .part
+  EXPECT_ERROR(ErrorKind::kUsage, check_writable("/dev/full", Overwrite::kYes));
+  EXPECT_ERROR(ErrorKind::kUsage, OutputFile(""));
 }
 
 TEST_F(OutputFileTest, RefusesAFolderThatOthersOwn) {
@@ -167,8 +160,8 @@ TEST_F(OutputFileTest, MakesFoldersAndRefusesFilesInTheirPlace) {
   make_folder(path("a/b/c/"));
   EXPECT_TRUE(fs::is_directory(path("a/b/c")));
   std::ofstream(path("file")) << "x";
-  EXPECT_EQ(kind_of([&] { make_folder(path("file")); }), ErrorKind::kUsage);
-  EXPECT_EQ(kind_of([&] { make_folder(path("file/b")); }), ErrorKind::kFailure);
+  EXPECT_ERROR(ErrorKind::kUsage, make_folder(path("file")));
+  EXPECT_ERROR(ErrorKind::kFailure, make_folder(path("file/b")));
 }
 
 }  // namespace

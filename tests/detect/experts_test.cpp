@@ -1,7 +1,4 @@
 #include <gtest/gtest.h>
-#include <unistd.h>
-
-#include <filesystem>
 
 #include "labelled_cube.h"
 #include "pcednet/core/error.h"
@@ -9,6 +6,8 @@
 #include "pcednet/detect/describe.h"
 #include "pcednet/detect/part_of_cloud.h"
 #include "pcednet/detect/train.h"
+#include "support/expect_error.h"
+#include "support/own_folder.h"
 
 namespace pcednet::detect {
 namespace {
@@ -90,11 +89,9 @@ TEST_F(ExpertsTest, LeaveAPartOfALargeCloudToTheOthers) {
 }
 
 TEST_F(ExpertsTest, StayInTheFile) {
-  const auto path = std::filesystem::path(testing::TempDir()) /
-                    ("pcednet_experts_" + std::to_string(getpid()) + ".safetensors");
-  save_model(path, *both_, Overwrite::kYes);
-  const EdgeModel read = load_model(path);
-  std::filesystem::remove(path);
+  const test::OwnFolder folder;
+  save_model(folder.path("a"), *both_, Overwrite::kNo);
+  const EdgeModel read = load_model(folder.path("a"));
   ASSERT_EQ(read.experts.size(), 1u);
   EXPECT_EQ(read.experts[0].kind, CloudKind{.below = kFewer});
   const PointCloud cloud = cube(kFewer - 1, 3), larger = cube(kFewer, 3);
@@ -127,11 +124,9 @@ TEST_F(ExpertsTest, OfSeveralKindsStayInTheFile) {
   EdgeModel model = *main_;
   join_expert(model, *few_, {.below = 10, .estimated = false});
   join_expert(model, *few_, {.estimated = true, .exact = true});
-  const auto path = std::filesystem::path(testing::TempDir()) /
-                    ("pcednet_kinds_" + std::to_string(getpid()) + ".safetensors");
-  save_model(path, model, Overwrite::kYes);
-  const EdgeModel read = load_model(path);
-  std::filesystem::remove(path);
+  const test::OwnFolder folder;
+  save_model(folder.path("a"), model, Overwrite::kNo);
+  const EdgeModel read = load_model(folder.path("a"));
   ASSERT_EQ(read.experts.size(), 2u);
   EXPECT_EQ(read.experts[0].kind, model.experts[0].kind);
   EXPECT_EQ(read.experts[1].kind, model.experts[1].kind);
@@ -148,12 +143,8 @@ TEST_F(ExpertsTest, AreLeftWithoutContextNetworkToo) {
 
 TEST_F(ExpertsTest, AreRefusedIfTheyWantAnotherDescription) {
   EdgeModel model = *main_;
-  try {
-    join_expert(model, trained("other", 2, -0.3), {.below = kFewer});
-    FAIL() << "joined";
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), ErrorKind::kModelMismatch);
-  }
+  EXPECT_ERROR(ErrorKind::kModelMismatch,
+               join_expert(model, trained("other", 2, -0.3), {.below = kFewer}));
   EXPECT_TRUE(model.experts.empty());
 }
 

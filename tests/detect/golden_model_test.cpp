@@ -1,5 +1,4 @@
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -9,6 +8,7 @@
 #include "pcednet/detect/model.h"
 #include "pcednet/nn/predict.h"
 #include "pcednet/nn/safetensors.h"
+#include "support/own_folder.h"
 
 // A model file of every format that there has been, which must stay readable. They were made by
 //   pcednet generate default DIR --paper-only
@@ -69,11 +69,9 @@ TEST_P(GoldenModel, GivesItsKnownAnswers) {
 }
 
 TEST_P(GoldenModel, IsWrittenWithTheSameBytes) {
-  const fs::path path =
-      fs::path(testing::TempDir()) / ("pcednet_" + GetParam() + std::to_string(getpid()));
-  save_model(path, load_model(path_), Overwrite::kNo);
-  const std::string written = bytes_of(path);
-  fs::remove(path);
+  const test::OwnFolder folder;
+  save_model(folder.path("a"), load_model(path_), Overwrite::kNo);
+  const std::string written = bytes_of(folder.path("a"));
   nn::Safetensors content = nn::read_safetensors(path_);
   EXPECT_EQ(nn::encode_safetensors(content), bytes_of(path_));
   content.metadata["version"] = kVersion;  // of the program that writes, all else is the model's

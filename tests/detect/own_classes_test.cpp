@@ -1,7 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <filesystem>
-
 #include "labelled_cube.h"
 #include "pcednet/detect/boundary.h"
 #include "pcednet/detect/classify.h"
@@ -9,6 +7,7 @@
 #include "pcednet/detect/train.h"
 #include "pcednet/nn/safetensors.h"
 #include "support/expect_error.h"
+#include "support/own_folder.h"
 
 namespace pcednet::detect {
 namespace {
@@ -38,11 +37,9 @@ EdgeModel own_model(const char* classes = "ground,wall,pipe,a,b,rail=#102030") {
   return train_own(classes).model;
 }
 
-std::filesystem::path scratch(const char* name) {
-  return std::filesystem::path(testing::TempDir()) / name;
-}
+class OwnClasses : public testing::Test, protected test::OwnFolder {};
 
-TEST(OwnClasses, GetAnOutputEachThatPointsHave) {
+TEST_F(OwnClasses, GetAnOutputEachThatPointsHave) {
   const EdgeModel model = own_model();
   EXPECT_EQ(model.classes, (std::vector<std::uint8_t>{0, 2, 5}));
   EXPECT_EQ(model.network.class_names, (std::vector<std::string>{"ground", "pipe", "rail"}));
@@ -56,7 +53,7 @@ TEST(OwnClasses, GetAnOutputEachThatPointsHave) {
   for (const float p : found.p_class) EXPECT_GE(p, 1.0f / 3 - 1e-5f);
 }
 
-TEST(OwnClasses, HaveNoContextForOneReason) {
+TEST_F(OwnClasses, HaveNoContextForOneReason) {
   const TrainedModel trained = train_own("ground,wall,pipe,a,b,rail");
   EXPECT_EQ(trained.no_context, "");  // the first network's doubts do not matter
   EXPECT_EQ(
@@ -64,8 +61,8 @@ TEST(OwnClasses, HaveNoContextForOneReason) {
       (std::vector<std::string>{"no context network was trained: context is of edge classes"}));
 }
 
-TEST(OwnClasses, KeepNamesAndColoursInTheModelFile) {
-  const auto file = scratch("own.safetensors");
+TEST_F(OwnClasses, KeepNamesAndColoursInTheModelFile) {
+  const auto file = path("own.safetensors");
   const EdgeModel model = own_model();
   save_model(file, model, Overwrite::kYes);
   const EdgeModel again = load_model(file);
@@ -76,8 +73,8 @@ TEST(OwnClasses, KeepNamesAndColoursInTheModelFile) {
   EXPECT_EQ(classify(prepare(cloud), again).classes, classify(prepare(cloud), model).classes);
 }
 
-TEST(OwnClasses, OfADamagedModelFileAreRefused) {
-  const auto file = scratch("damaged.safetensors");
+TEST_F(OwnClasses, OfADamagedModelFileAreRefused) {
+  const auto file = path("damaged.safetensors");
   save_model(file, own_model(), Overwrite::kYes);
   const nn::Safetensors sound = nn::read_safetensors(file);
   const std::pair<const char*, const char*> damages[] = {{"classes", "0 2 6"},
@@ -95,7 +92,7 @@ TEST(OwnClasses, OfADamagedModelFileAreRefused) {
   }
 }
 
-TEST(OwnClasses, GoIntoTheCloudInPlaceOfEdges) {
+TEST_F(OwnClasses, GoIntoTheCloudInPlaceOfEdges) {
   PointCloud cloud = labelled();
   const EdgeModel model = own_model();
   const PreparedCloud prepared = prepare(cloud);
@@ -116,7 +113,7 @@ TEST(OwnClasses, GoIntoTheCloudInPlaceOfEdges) {
   EXPECT_EQ(cloud.colours[7], model.table[found.classes[7]].colour);
 }
 
-TEST(OwnClasses, BesideThoseOfEdgesLeaveTheseTheirColumnsAndBoundary) {
+TEST_F(OwnClasses, BesideThoseOfEdgesLeaveTheseTheirColumnsAndBoundary) {
   PointCloud cloud = labelled();
   const EdgeModel model = own_model("edges,pipe,rail");
   EXPECT_EQ(model.classes, (std::vector<std::uint8_t>{0, 2, 5}));

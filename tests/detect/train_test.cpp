@@ -16,6 +16,7 @@
 #include "pcednet/detect/result_cloud.h"
 #include "pcednet/nn/model_file.h"
 #include "support/expect_error.h"
+#include "support/own_folder.h"
 
 namespace pcednet::detect {
 namespace {
@@ -120,13 +121,10 @@ TEST(TrainEdges, LearnsAtTheSpacingItselfIfAsked) {
 TEST(TrainEdges, NamesTheCloudWithoutLabels) {
   PointCloud cloud = cube(100, 1);
   std::fill(cloud.labels.begin(), cloud.labels.end(), kUnlabelled);
-  try {
-    train_on(cloud, quick(3));
-    FAIL();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), ErrorKind::kInsufficient);
-    EXPECT_NE(std::string(error.what()).find("cube"), std::string::npos);
-  }
+  const auto error = test::error_of([&] { train_on(cloud, quick(3)); });
+  ASSERT_TRUE(error);
+  EXPECT_EQ(error->kind(), ErrorKind::kInsufficient);
+  EXPECT_NE(std::string(error->what()).find("cube"), std::string::npos);
 }
 
 TEST(TrainEdges, NamesAMissingClassByItsLabel) {
@@ -137,13 +135,10 @@ TEST(TrainEdges, NamesAMissingClassByItsLabel) {
     PointCloud poor = cloud;
     std::replace(poor.labels.begin(), poor.labels.end(), std::uint8_t{without},
                  std::uint8_t{kUnlabelled});
-    try {
-      train_on(poor, quick(classes));
-      FAIL();
-    } catch (const Error& error) {
-      EXPECT_EQ(error.kind(), ErrorKind::kInsufficient);
-      EXPECT_STREQ(error.what(), said);
-    }
+    const auto error = test::error_of([&] { train_on(poor, quick(classes)); });
+    ASSERT_TRUE(error);
+    EXPECT_EQ(error->kind(), ErrorKind::kInsufficient);
+    EXPECT_STREQ(error->what(), said);
   }
 }
 
@@ -201,14 +196,9 @@ TEST(TrainEdges, GivesTheSameContextNetworkForAnyThreadsAndOrder) {
   set_thread_count(0);
 }
 
-class EdgeModelFile : public testing::Test {
+class EdgeModelFile : public testing::Test, protected test::OwnFolder {
  protected:
-  void SetUp() override { std::filesystem::remove(path_); }
-  void TearDown() override { std::filesystem::remove(path_); }
-  std::filesystem::path path_ =
-      std::filesystem::temp_directory_path() /
-      (std::string("pcednet_") + testing::UnitTest::GetInstance()->current_test_info()->name() +
-       ".safetensors");
+  const std::filesystem::path path_ = path("a.safetensors");
 };
 
 TEST_F(EdgeModelFile, KeepsEverythingThatClassificationNeeds) {
@@ -265,24 +255,18 @@ TEST_F(EdgeModelFile, RefusesAContextNetworkForOtherClasses) {
   options.architecture.classes = 2;
   model.context = train_on(cube(800, 3), options).model.context;
   save_model(path_, model, Overwrite::kNo);
-  try {
-    load_model(path_);
-    FAIL();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), ErrorKind::kModelMismatch);
-    EXPECT_NE(std::string(error.what()).find("context"), std::string::npos);
-  }
+  const auto error = test::error_of([&] { load_model(path_); });
+  ASSERT_TRUE(error);
+  EXPECT_EQ(error->kind(), ErrorKind::kModelMismatch);
+  EXPECT_NE(std::string(error->what()).find("context"), std::string::npos);
 }
 
 TEST_F(EdgeModelFile, RefusesANetworkWithoutItsDescriptor) {
   nn::write_safetensors(path_, nn::to_safetensors(train_on(cube(800, 3), quick(3)).model.network));
-  try {
-    load_model(path_);
-    FAIL();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), ErrorKind::kModelMismatch);
-    EXPECT_NE(std::string(error.what()).find(path_.string()), std::string::npos);
-  }
+  const auto error = test::error_of([&] { load_model(path_); });
+  ASSERT_TRUE(error);
+  EXPECT_EQ(error->kind(), ErrorKind::kModelMismatch);
+  EXPECT_NE(std::string(error->what()).find(path_.string()), std::string::npos);
 }
 
 TEST(ClassifyEdges, LeavesWhatHasNoPlaceUnlabelledAndKeepsOldLabels) {

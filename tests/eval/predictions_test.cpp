@@ -33,12 +33,10 @@ TEST_F(Predicted, AClassPerPointInTheOrderOfTheCloud) {
             (Classes{2, 0, 1, 0}));
   EXPECT_ERROR(ErrorKind::kInsufficient, read_predictions(write("b.u8", "\2"), positions_));
   EXPECT_ERROR(ErrorKind::kInsufficient, read_predictions(write("b.txt", "0\n1\n2\n"), positions_));
-  try {
-    read_predictions(write("c.txt", "0\n1\n700\n2\n"), positions_);
-    FAIL() << "700 is no class";
-  } catch (const Error& error) {
-    EXPECT_NE(std::string(error.what()).find("c.txt:3: expected a label"), std::string::npos);
-  }
+  const auto error =
+      test::error_of([&] { read_predictions(write("c.txt", "0\n1\n700\n2\n"), positions_); });
+  ASSERT_TRUE(error) << "700 is no class";
+  EXPECT_NE(std::string(error->what()).find("c.txt:3: expected a label"), std::string::npos);
   std::string points = "300\n";  // as many follow: no label
   for (int i = 0; i < 300; ++i) points += "0 0 0\n";
   EXPECT_EQ(read_predictions(write("d.txt", points), positions_).classes, (Classes{2, 0, 0, 0}));

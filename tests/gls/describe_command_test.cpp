@@ -9,27 +9,18 @@
 #include <nlohmann/json.hpp>
 
 #include "gls/test_clouds.h"
+#include "support/own_folder.h"
 
 namespace pcednet::gls {
 namespace {
 
 namespace fs = std::filesystem;
 
-class DescribeCommand : public testing::Test {
+class DescribeCommand : public testing::Test, protected pcednet::test::OwnFolder {
  protected:
-  void SetUp() override {
-    folder_ = fs::path(testing::TempDir()) /
-              testing::UnitTest::GetInstance()->current_test_info()->name();
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
-  fs::path file(const std::string& name) const { return folder_ / name; }
-
   /// Writes an ASCII PLY with the shortest numbers that read back as the same doubles.
   void write_ply(const std::string& name, const test::Cloud& cloud, bool with_normals = true) {
-    std::ofstream ply(file(name));
+    std::ofstream ply(path(name));
     ply << "ply\nformat ascii 1.0\nelement vertex " << cloud.positions.size()
         << "\nproperty double x\nproperty double y\nproperty double z\n";
     if (with_normals) ply << "property double nx\nproperty double ny\nproperty double nz\n";
@@ -50,12 +41,9 @@ class DescribeCommand : public testing::Test {
   }
 
   std::string text(const std::string& name) const {
-    std::ifstream stream(file(name), std::ios::binary);
+    std::ifstream stream(path(name), std::ios::binary);
     return {std::istreambuf_iterator<char>(stream), {}};
   }
-
- private:
-  fs::path folder_;
 };
 
 TEST_F(DescribeCommand, WritesTheMatrixOfTheLibrary) {
@@ -108,8 +96,8 @@ TEST_F(DescribeCommand, RefusesWithTheExitCodeOfTheReason) {
   EXPECT_EQ(describe("cube.ply -o out.npy --features 5"), 2);
   EXPECT_EQ(describe("cube.ply -o out.npy --scales 12"), 2);
   EXPECT_EQ(describe("cube.ply -o out.npy --gate 7"), 2);
-  EXPECT_FALSE(fs::exists(file("out.npy")));
-  EXPECT_FALSE(fs::exists(file("out.json")));
+  EXPECT_FALSE(fs::exists(path("out.npy")));
+  EXPECT_FALSE(fs::exists(path("out.json")));
   EXPECT_EQ(describe("cube.ply -o out.npy"), 0);
   EXPECT_EQ(describe("cube.ply -o out.npy"), 2) << "exists";
   EXPECT_EQ(describe("cube.ply -o out.npy --overwrite"), 0);

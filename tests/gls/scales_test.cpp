@@ -23,15 +23,6 @@ ScaleRange range_of(const std::vector<Vec3>& positions, const ScaleRange& given)
   });
 }
 
-ErrorKind kind_of_error(const std::vector<Vec3>& positions, const ScaleRange& given = {}) {
-  try {
-    range_of(positions, given);
-  } catch (const Error& error) {
-    return error.kind();
-  }
-  return ErrorKind::kFailure;
-}
-
 TEST(Scales, SmallestIsTheMeanDistanceToTenNeighbours) {
   const auto cloud = test::cube(3000, 4, 0.01, 0.1);
   double sum = 0.0;
@@ -71,10 +62,10 @@ TEST(Scales, RefuseCountsThatAreNotPowersOfTwo) {
 
 TEST(Scales, RefuseCloudsInOnePlace) {
   const Vec3 p(1, 2, 3);
-  EXPECT_EQ(kind_of_error({}), ErrorKind::kInsufficient);
-  EXPECT_EQ(kind_of_error({p}), ErrorKind::kInsufficient);
-  EXPECT_EQ(kind_of_error(std::vector<Vec3>(50, p)), ErrorKind::kInsufficient);
-  EXPECT_EQ(kind_of_error({p}, {0.1, 0.0}), ErrorKind::kInsufficient);
+  EXPECT_ERROR(ErrorKind::kInsufficient, range_of({}, {}));
+  EXPECT_ERROR(ErrorKind::kInsufficient, range_of({p}, {}));
+  EXPECT_ERROR(ErrorKind::kInsufficient, range_of(std::vector<Vec3>(50, p), {}));
+  EXPECT_ERROR(ErrorKind::kInsufficient, range_of({p}, {0.1, 0.0}));
 }
 
 TEST(Scales, ReachTwiceTheSpacingOfSparseClouds) {
@@ -245,9 +236,9 @@ TEST(Scales, KeepGivenBoundsAndRefuseImpossibleOnes) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (const ScaleRange& bad : {ScaleRange{-1, 0}, ScaleRange{0, -1}, ScaleRange{nan, 0},
                                 ScaleRange{0, 1 / 0.0}, ScaleRange{0.5, 0.5}, ScaleRange{2, 1}}) {
-    EXPECT_EQ(kind_of_error(cloud.positions, bad), ErrorKind::kUsage);
+    EXPECT_ERROR(ErrorKind::kUsage, range_of(cloud.positions, bad));
   }
-  EXPECT_EQ(kind_of_error(cloud.positions, {0, 1e-5}), ErrorKind::kUsage);
+  EXPECT_ERROR(ErrorKind::kUsage, range_of(cloud.positions, {0, 1e-5}));
 }
 
 }  // namespace

@@ -123,7 +123,7 @@ TEST(PlaneEdges, AreTheSameForAnyThreadsAndOrderAndSignsOfNormals) {
   Random random(5);
   std::vector<std::size_t> order(cloud.positions.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  for (std::size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[random.index(i)]);
+  random.shuffle(std::span(order));
   PlainCloud shuffled;
   for (const std::size_t i : order) {
     shuffled.add(cloud.positions[i]);

@@ -74,9 +74,7 @@ TEST(UnevenLines, AreTheSameForAnyOrderOfThePoints) {
   const Faces cloud = floor_and_wall(0.3, 0.9);
   std::vector<std::size_t> order(cloud.positions.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  Random random(12);
-  for (std::size_t i = order.size() - 1; i > 0; --i)
-    std::swap(order[i], order[random.index(i + 1)]);
+  Random(12).shuffle(std::span(order));
   Faces shuffled;
   for (const std::size_t i : order) {
     shuffled.positions.push_back(cloud.positions[i]);

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
-#include <filesystem>
 #include <functional>
 #include <limits>
 #include <string>
@@ -12,6 +11,8 @@
 #include "pcednet/nn/network.h"
 #include "pcednet/nn/standardise.h"
 #include "reference.h"
+#include "support/expect_error.h"
+#include "support/own_folder.h"
 
 namespace pcednet::nn {
 namespace {
@@ -48,56 +49,39 @@ void expect_same(const Model& a, const Model& b) {
   EXPECT_EQ(a.metadata, b.metadata);
 }
 
-ErrorKind kind_of_failure(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    return error.kind();
-  }
-  return static_cast<ErrorKind>(0);
-}
+class ModelFile : public testing::Test, protected test::OwnFolder {};
 
-std::filesystem::path fresh_path(const std::string& name) {
-  const auto path = std::filesystem::path(testing::TempDir()) / ("pcednet_" + name);
-  std::filesystem::remove(path);
-  return path;
-}
-
-TEST(ModelFile, KeepsEverything) {
+TEST_F(ModelFile, KeepsEverything) {
   for (const Architecture& architecture : various_architectures()) {
     const Model model = example_model(architecture);
-    const auto path = fresh_path("keeps.safetensors");
-    write_safetensors(path, to_safetensors(model));
-    expect_same(from_safetensors(read_safetensors(path), "keeps"), model);
-    std::filesystem::remove(path);
+    write_safetensors(path("keeps"), to_safetensors(model), Overwrite::kYes);
+    expect_same(from_safetensors(read_safetensors(path("keeps")), "keeps"), model);
   }
 }
 
-TEST(ModelFile, HasTheSameBytesForTheSameModel) {
+TEST_F(ModelFile, HasTheSameBytesForTheSameModel) {
   const Model model = example_model({});
   const std::string bytes = encode_safetensors(to_safetensors(model));
   EXPECT_EQ(bytes, encode_safetensors(to_safetensors(model)));
   EXPECT_EQ(bytes, encode_safetensors(decode_safetensors(bytes, "again")));
 }
 
-TEST(ModelFile, KeepsItsOwnMetadataApart) {
+TEST_F(ModelFile, KeepsItsOwnMetadataApart) {
   Model model = example_model({});
   model.metadata["nn.kind"] = "mine";
-  EXPECT_EQ(kind_of_failure([&] { to_safetensors(model); }), ErrorKind::kUsage);
+  EXPECT_ERROR(ErrorKind::kUsage, to_safetensors(model));
 }
 
-TEST(ModelFile, RefusesEveryTruncation) {
+TEST_F(ModelFile, RefusesEveryTruncation) {
   const std::string bytes = encode_safetensors(to_safetensors(example_model({.scales = 4})));
   for (std::size_t length = 0; length < bytes.size(); ++length) {
-    EXPECT_EQ(kind_of_failure([&] { decode_safetensors(bytes.substr(0, length), "cut"); }),
-              ErrorKind::kModelMismatch)
+    EXPECT_ERROR(ErrorKind::kModelMismatch, decode_safetensors(bytes.substr(0, length), "cut"))
         << length;
   }
-  EXPECT_EQ(kind_of_failure([&] { decode_safetensors(bytes + '\0', "long"); }),
-            ErrorKind::kModelMismatch);
+  EXPECT_ERROR(ErrorKind::kModelMismatch, decode_safetensors(bytes + '\0', "long"));
 }
 
-TEST(ModelFile, TakesOrRefusesDamagedBytesButNeverFails) {
+TEST_F(ModelFile, TakesOrRefusesDamagedBytesButNeverFails) {
   const std::string bytes = encode_safetensors(to_safetensors(example_model({.scales = 4})));
   Random random(5);
   int refused = 0;
@@ -109,23 +93,20 @@ TEST(ModelFile, TakesOrRefusesDamagedBytesButNeverFails) {
       const std::size_t range = trial % 4 ? 2000 : bytes.size();
       damaged[random.index(std::min(range, bytes.size()))] = static_cast<char>(random.next());
     }
-    const ErrorKind kind =
-        kind_of_failure([&] { from_safetensors(decode_safetensors(damaged, "x"), "x"); });
-    EXPECT_TRUE(kind == ErrorKind{} || kind == ErrorKind::kModelMismatch) << static_cast<int>(kind);
-    refused += kind == ErrorKind::kModelMismatch;
+    const auto error =
+        test::error_of([&] { from_safetensors(decode_safetensors(damaged, "x"), "x"); });
+    if (!error) continue;
+    EXPECT_EQ(error->kind(), ErrorKind::kModelMismatch) << error->what();
+    ++refused;
   }
   EXPECT_GT(refused, 2500);
 }
 
-TEST(ModelFile, NamesTheFileAndThePlace) {
+TEST_F(ModelFile, NamesTheFileAndThePlace) {
   const std::string bytes = encode_safetensors(to_safetensors(example_model({})));
   const auto message = [](const std::string& damaged) -> std::string {
-    try {
-      decode_safetensors(damaged, "some.safetensors");
-    } catch (const Error& error) {
-      return error.what();
-    }
-    return "";
+    const auto error = test::error_of([&] { decode_safetensors(damaged, "some.safetensors"); });
+    return error ? error->what() : "";
   };
   EXPECT_NE(message(bytes.substr(0, 5)).find("some.safetensors: byte 5"), std::string::npos);
   std::string broken = bytes;
@@ -171,22 +152,20 @@ TEST(Safetensors, RefusesWhatTheFormatForbids) {
       R"({"a":[]})",
   };
   for (const std::string& header : bad) {
-    EXPECT_EQ(kind_of_failure(
-                  [&] { decode_safetensors(with_header(header, std::string(12, '\0')), "bad"); }),
-              ErrorKind::kModelMismatch)
+    EXPECT_ERROR(ErrorKind::kModelMismatch,
+                 decode_safetensors(with_header(header, std::string(12, '\0')), "bad"))
         << header;
   }
-  EXPECT_EQ(kind_of_failure(
-                [&] { decode_safetensors(with_header(std::string(1000000, '['), ""), "deep"); }),
-            ErrorKind::kModelMismatch);
+  EXPECT_ERROR(ErrorKind::kModelMismatch,
+               decode_safetensors(with_header(std::string(1000000, '['), ""), "deep"));
 }
 
-TEST(ModelFile, RefusesForeignAndUnfittingContent) {
+TEST_F(ModelFile, RefusesForeignAndUnfittingContent) {
   const Safetensors good = to_safetensors(example_model({}));
   const auto expect_refused = [&](const std::function<void(Safetensors&)>& change) {
     Safetensors content = good;
     change(content);
-    EXPECT_EQ(kind_of_failure([&] { from_safetensors(content, "x"); }), ErrorKind::kModelMismatch);
+    EXPECT_ERROR(ErrorKind::kModelMismatch, from_safetensors(content, "x"));
   };
   from_safetensors(good, "good");
   expect_refused([](Safetensors& c) { c.metadata.clear(); });
@@ -213,19 +192,14 @@ TEST(ModelFile, RefusesForeignAndUnfittingContent) {
   });
 }
 
-TEST(ModelFile, TellsAMissingFileFromADamagedOne) {
-  EXPECT_EQ(kind_of_failure([] { read_safetensors("/no/such.safetensors"); }),
-            ErrorKind::kUnreadable);
-  EXPECT_EQ(kind_of_failure([] { read_safetensors(testing::TempDir()); }), ErrorKind::kUnreadable);
-  try {
-    read_safetensors("/no/such.safetensors");
-  } catch (const Error& error) {
-    EXPECT_STREQ(error.what(), "/no/such.safetensors: No such file or directory");
-  }
-  const auto path = fresh_path("foreign.safetensors");
-  write_text_file(path, "ply\nformat ascii 1.0\nelement vertex 0\nend_header\n");
-  EXPECT_EQ(kind_of_failure([&] { read_safetensors(path); }), ErrorKind::kModelMismatch);
-  std::filesystem::remove(path);
+TEST_F(ModelFile, TellsAMissingFileFromADamagedOne) {
+  EXPECT_ERROR(ErrorKind::kUnreadable, read_safetensors(folder_));
+  const auto error = test::error_of([] { read_safetensors("/no/such.safetensors"); });
+  ASSERT_TRUE(error);
+  EXPECT_EQ(error->kind(), ErrorKind::kUnreadable);
+  EXPECT_STREQ(error->what(), "/no/such.safetensors: No such file or directory");
+  write_text_file(path("foreign"), "ply\nformat ascii 1.0\nelement vertex 0\nend_header\n");
+  EXPECT_ERROR(ErrorKind::kModelMismatch, read_safetensors(path("foreign")));
 }
 
 }  // namespace

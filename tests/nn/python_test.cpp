@@ -1,6 +1,5 @@
 #include <gtest/gtest.h>
 #include <sys/wait.h>
-#include <unistd.h>
 
 #include <cstdlib>
 #include <filesystem>
@@ -13,6 +12,7 @@
 #include "pcednet/nn/predict.h"
 #include "pcednet/nn/standardise.h"
 #include "reference.h"
+#include "support/own_folder.h"
 
 namespace pcednet::nn {
 namespace {
@@ -20,13 +20,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kSkipped = 77;  // what the scripts return without the packages they need
-
-/// A folder that is gone with the test.
-struct Folder {
-  fs::path path = fs::path(testing::TempDir()) / ("pcednet_python_" + std::to_string(getpid()));
-  Folder() { fs::create_directories(path); }
-  ~Folder() { fs::remove_all(path); }
-};
 
 int run_script(const std::string& script, const fs::path& folder) {
   const std::string command = "/usr/bin/python3 -B '" PCEDNET_SOURCE_DIR "/tests/nn/" + script +
@@ -82,18 +75,18 @@ void write_cases(const fs::path& folder) {
   }
 }
 
-TEST(Python, NumpyReadsAndRunsOurModels) {
-  const Folder folder;
-  write_cases(folder.path);
-  const int code = run_script("numpy_model.py", folder.path);
+class Python : public testing::Test, protected test::OwnFolder {};
+
+TEST_F(Python, NumpyReadsAndRunsOurModels) {
+  write_cases(folder_);
+  const int code = run_script("numpy_model.py", folder_);
   if (code == kSkipped) GTEST_SKIP() << "no numpy";
   EXPECT_EQ(code, 0);
 }
 
-TEST(Python, PyTorchComputesTheSameAnswersAndDerivatives) {
-  const Folder folder;
-  write_cases(folder.path);
-  const int code = run_script("torch_parity.py", folder.path);
+TEST_F(Python, PyTorchComputesTheSameAnswersAndDerivatives) {
+  write_cases(folder_);
+  const int code = run_script("torch_parity.py", folder_);
   if (code == kSkipped) GTEST_SKIP() << "no PyTorch";
   EXPECT_EQ(code, 0);
 }

@@ -244,13 +244,10 @@ TEST(Train, NamesAClassWithoutSamples) {
   for (std::uint8_t& label : data.labels) label = label == 2 ? kIgnoredLabel : label;
   TrainOptions options;
   options.class_names = {"non-edge", "smooth edge", "sharp edge"};
-  try {
-    train(kSmall, data.set(), options);
-    FAIL();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), ErrorKind::kInsufficient);
-    EXPECT_NE(std::string(error.what()).find("sharp edge"), std::string::npos);
-  }
+  const auto error = test::error_of([&] { train(kSmall, data.set(), options); });
+  ASSERT_TRUE(error);
+  EXPECT_EQ(error->kind(), ErrorKind::kInsufficient);
+  EXPECT_NE(std::string(error->what()).find("sharp edge"), std::string::npos);
 }
 
 TEST(Train, LeavesIgnoredSamplesOut) {

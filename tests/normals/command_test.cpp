@@ -1,6 +1,5 @@
 #include <gtest/gtest.h>
 #include <sys/wait.h>
-#include <unistd.h>
 
 #include <cstdlib>
 #include <filesystem>
@@ -10,22 +9,15 @@
 #include <string>
 
 #include "normals/shapes.h"
+#include "support/own_folder.h"
 
 namespace pcednet::normals {
 namespace {
 
 namespace fs = std::filesystem;
 
-class NormalsCommand : public testing::Test {
+class NormalsCommand : public testing::Test, protected test::OwnFolder {
  protected:
-  void SetUp() override {
-    folder_ =
-        fs::temp_directory_path() / ("pcednet_normals_" + std::to_string(getpid()) + "_" +
-                                     testing::UnitTest::GetInstance()->current_test_info()->name());
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
   std::string path(const std::string& name) const { return (folder_ / name).string(); }
 
   /// Writes the positions, and the normals times `sign` unless it is 0.
@@ -66,7 +58,6 @@ class NormalsCommand : public testing::Test {
     return WEXITSTATUS(status);
   }
 
-  fs::path folder_;
   std::string said_;
 };
 

@@ -15,6 +15,7 @@
 
 #include "pcednet/core/error.h"
 #include "pcednet/core/parallel.h"
+#include "support/expect_error.h"
 #include "support/own_folder.h"
 
 namespace pcednet::render {
@@ -372,24 +373,20 @@ TEST_F(Preview, DrawsCurvesWithTheSameBytesForAnyThreadsAndPlace) {
   EXPECT_TRUE(bytes_of(shape.cloud, {}, options, curves) == bytes);
 }
 
-ErrorKind kind_of_error(const std::filesystem::path& png, const PointCloud& cloud,
-                        const std::vector<std::uint8_t>& classes,
-                        const PreviewOptions& options = {.width = 16, .height = 16}) {
-  try {
-    write_preview(png, cloud, classes, options);
-  } catch (const Error& error) {
-    EXPECT_NE(std::string(error.what()).find(png.string()), std::string::npos) << error.what();
-    return error.kind();
-  }
-  ADD_FAILURE() << "no error";
-  return ErrorKind::kCancelled;
+void expect_refused(ErrorKind kind, const std::filesystem::path& png, const PointCloud& cloud,
+                    const std::vector<std::uint8_t>& classes,
+                    const PreviewOptions& options = {.width = 16, .height = 16}) {
+  const auto error = test::error_of([&] { write_preview(png, cloud, classes, options); });
+  ASSERT_TRUE(error);
+  EXPECT_EQ(error->kind(), kind);
+  EXPECT_NE(std::string(error->what()).find(png.string()), std::string::npos) << error->what();
 }
 
 TEST_F(Preview, RefusesACloudWithoutFinitePoints) {
   PointCloud cloud;
-  EXPECT_EQ(kind_of_error(path(), cloud, {}), ErrorKind::kInsufficient);
+  expect_refused(ErrorKind::kInsufficient, path(), cloud, {});
   cloud.positions.assign(3, Vec3::Constant(std::numeric_limits<double>::quiet_NaN()));
-  EXPECT_EQ(kind_of_error(path(), cloud, {}), ErrorKind::kInsufficient);
+  expect_refused(ErrorKind::kInsufficient, path(), cloud, {});
   EXPECT_FALSE(std::filesystem::exists(path()));
 }
 
@@ -399,16 +396,16 @@ TEST_F(Preview, RefusesRequestsThatMakeNoSense) {
   for (const PreviewOptions& options : {PreviewOptions{.width = 0}, PreviewOptions{.height = 8193},
                                         PreviewOptions{.view_direction = Vec3::Zero()},
                                         PreviewOptions{.view_direction = Vec3(nan, 0, 1)}}) {
-    EXPECT_EQ(kind_of_error(path(), shape.cloud, {}, options), ErrorKind::kUsage);
+    expect_refused(ErrorKind::kUsage, path(), shape.cloud, {}, options);
   }
-  EXPECT_EQ(kind_of_error(path(), shape.cloud, {kNonEdge}), ErrorKind::kFailure);
-  EXPECT_EQ(kind_of_error(folder_ / "missing" / "a.png", shape.cloud, {}), ErrorKind::kFailure);
+  expect_refused(ErrorKind::kFailure, path(), shape.cloud, {kNonEdge});
+  expect_refused(ErrorKind::kFailure, folder_ / "missing" / "a.png", shape.cloud, {});
 }
 
 TEST_F(Preview, LeavesAnExistingFileAlone) {
   std::ofstream(path()) << "mine";
   const Labelled shape = cube();
-  EXPECT_EQ(kind_of_error(path(), shape.cloud, {}), ErrorKind::kUsage);
+  expect_refused(ErrorKind::kUsage, path(), shape.cloud, {});
   std::string content;
   std::ifstream(path()) >> content;
   EXPECT_EQ(content, "mine");

@@ -52,15 +52,6 @@ class Merge : public testing::Test, protected test::OwnFolder {
     return Json::parse(merge_studies(folder_, options).json);
   }
 
-  ErrorKind kind_of_failure() const {
-    try {
-      merged();
-    } catch (const Error& error) {
-      return error.kind();
-    }
-    return ErrorKind::kFailure;
-  }
-
   Json study_;
 };
 
@@ -139,12 +130,7 @@ TEST_F(Merge, SharesACloudBetweenStudies) {
 TEST_F(Merge, RefusesAFolderWithoutStudies) {
   EXPECT_ERROR(ErrorKind::kUnreadable, merge_studies(folder_ / "nowhere"));
   write("other.json", "{\"schema\":\"something else\"}");
-  try {
-    merge_studies(folder_);
-    FAIL();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), ErrorKind::kInsufficient);
-  }
+  EXPECT_ERROR(ErrorKind::kInsufficient, merge_studies(folder_));
 }
 
 TEST_F(Merge, WarnsOfForeignJson) {
@@ -159,13 +145,10 @@ TEST_F(Merge, RefusesWhatIsNoJsonOrEndsEarly) {
   const std::string whole = study_.dump();
   for (const std::size_t length : {std::size_t{0}, std::size_t{1}, whole.size() / 2}) {
     write("methods.json", whole.substr(0, length));
-    try {
-      merge_studies(folder_);
-      ADD_FAILURE() << length;
-    } catch (const Error& error) {
-      EXPECT_EQ(error.kind(), ErrorKind::kUnreadable);
-      EXPECT_NE(std::string(error.what()).find("methods.json"), std::string::npos);
-    }
+    const auto error = test::error_of([&] { merge_studies(folder_); });
+    ASSERT_TRUE(error) << length;
+    EXPECT_EQ(error->kind(), ErrorKind::kUnreadable);
+    EXPECT_NE(std::string(error->what()).find("methods.json"), std::string::npos);
   }
 }
 
@@ -188,13 +171,13 @@ TEST_F(Merge, RefusesStudiesThatLackWhatThePageNeeds) {
   for (std::size_t i = 0; i < breaches.size(); ++i) {
     study_ = sound;
     breaches[i](study_);
-    EXPECT_EQ(kind_of_failure(), ErrorKind::kUnreadable) << "breach " << i;
+    EXPECT_ERROR(ErrorKind::kUnreadable, merged()) << "breach " << i;
   }
 }
 
 TEST_F(Merge, RefusesPredictionsForAnotherNumberOfPoints) {
   write("predictions/cloud.u8", "four");
-  EXPECT_EQ(kind_of_failure(), ErrorKind::kInsufficient);
+  EXPECT_ERROR(ErrorKind::kInsufficient, merged());
 }
 
 TEST(FillPage, PutsDataWhereItBelongsAndKeepsItsScriptElementWhole) {

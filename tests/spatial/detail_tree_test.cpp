@@ -158,9 +158,7 @@ TEST(DetailTree, IsTheSameForAnyOrderOfThePointsAndAnyNumberOfThreads) {
   for (const int threads : {1, 2, 8}) {
     set_thread_count(threads);
     std::vector<TreePoint> shuffled = points;
-    for (std::size_t i = shuffled.size(); i-- > 1;) {
-      std::swap(shuffled[i], shuffled[random.index(i + 1)]);
-    }
+    random.shuffle(std::span(shuffled));
     const DetailTree tree = make_detail_tree(shuffled, kOptions);
     EXPECT_EQ(tree.places, wanted.places);
     ASSERT_EQ(tree.nodes.size(), wanted.nodes.size());

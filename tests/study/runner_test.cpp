@@ -142,12 +142,7 @@ TEST_F(StudyRun, GoesOnFromWhereItWasCancelled) {
   RunOptions options;
   options.on_job = [&](const std::string&) { ++jobs; };
   const Progress progress{.report = {}, .cancelled = [&] { return jobs >= 2; }};
-  try {
-    run("scales", "cache", options, &progress);
-    FAIL() << "was not cancelled";
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), ErrorKind::kCancelled);
-  }
+  EXPECT_ERROR(ErrorKind::kCancelled, run("scales", "cache", options, &progress));
   const Study study = run("scales", "cache");
   EXPECT_EQ(study.trained, 5u);
   EXPECT_EQ(scores_in(study), whole);

@@ -3,25 +3,36 @@
 #include <gtest/gtest.h>
 
 #include <exception>
+#include <optional>
 
 #include "pcednet/core/error.h"
 
 namespace pcednet::test {
 
+/// The Error that `statement` throws; empty if it throws none.
+template <typename Statement>
+std::optional<Error> error_of(const Statement& statement) {
+  try {
+    statement();
+  } catch (const Error& error) {
+    return error;
+  }
+  return std::nullopt;
+}
+
 /// Success when `statement` throws an Error of the kind `wanted`, and for nothing else.
 template <typename Statement>
 testing::AssertionResult throws_error(ErrorKind wanted, const Statement& statement) {
   try {
-    statement();
-  } catch (const Error& error) {
-    if (error.kind() == wanted) return testing::AssertionSuccess();
+    const std::optional<Error> error = error_of(statement);
+    if (!error) return testing::AssertionFailure() << "no error";
+    if (error->kind() == wanted) return testing::AssertionSuccess();
     return testing::AssertionFailure()
-           << "an error of kind " << static_cast<int>(error.kind()) << " instead of "
-           << static_cast<int>(wanted) << ": " << error.what();
+           << "an error of kind " << static_cast<int>(error->kind()) << " instead of "
+           << static_cast<int>(wanted) << ": " << error->what();
   } catch (const std::exception& error) {
     return testing::AssertionFailure() << "an exception that is no Error: " << error.what();
   }
-  return testing::AssertionFailure() << "no error";
 }
 
 }  // namespace pcednet::test

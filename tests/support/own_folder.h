@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <string>
 
@@ -13,9 +14,10 @@ class OwnFolder {
  public:
   OwnFolder() {
     const auto* info = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = std::filesystem::temp_directory_path() /
-              ("pcednet-" + std::string(info->test_suite_name()) + "-" + info->name() + "-" +
-               std::to_string(getpid()));
+    std::string name = std::string("pcednet-") + info->test_suite_name() + "-" + info->name() +
+                       "-" + std::to_string(getpid());
+    std::replace(name.begin(), name.end(), '/', '-');  // of a test with parameters
+    folder_ = std::filesystem::temp_directory_path() / name;
     std::filesystem::create_directories(folder_);
   }
   ~OwnFolder() { std::filesystem::remove_all(folder_); }
