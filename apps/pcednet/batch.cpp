@@ -104,7 +104,7 @@ Batch::Batch(const Inputs& inputs) : inputs_(inputs.count()) {
 
 void Batch::add(const Failure& failure) {
   if (inputs_ == 1) throw failure.error;
-  say(fmt::format("pcednet: {}", failure.error.what()));
+  say_error(failure.error.what());
   failures_.push_back(failure);
 }
 

@@ -28,9 +28,7 @@ void warn_of_rounding(const std::filesystem::path& file, const PointCloud& cloud
 
 PointCloud read_cloud(const std::filesystem::path& file) {
   auto loaded = formats::read_cloud(file);
-  for (const std::string& warning : loaded.warnings) {
-    warn(fmt::format("{}: {}", file.string(), warning));
-  }
+  warn_all(file, loaded.warnings);
   return std::move(loaded.cloud);
 }
 

@@ -8,6 +8,7 @@
 #include <csignal>
 #include <cstdio>
 #include <memory>
+#include <set>
 #include <sstream>
 #include <string_view>
 
@@ -128,6 +129,14 @@ void check_ascii(bool ascii, const std::vector<std::filesystem::path>& outputs) 
                           outputs.front().string()));
 }
 
+void check_distinct(const std::vector<std::filesystem::path>& outputs) {
+  std::set<std::filesystem::path> seen;
+  for (const std::filesystem::path& output : outputs) {
+    if (output.empty() || seen.insert(output.lexically_normal()).second) continue;
+    throw Error(ErrorKind::kUsage, output.string() + ": named twice");
+  }
+}
+
 std::string explain(const Error& error) {
   const bool exists = dynamic_cast<const ExistsAlready*>(&error) != nullptr;
   return std::string(error.what()) + (exists ? "; give --overwrite to replace it" : "");
@@ -140,8 +149,16 @@ void say(const std::string& line) {
   fmt::print(stderr, "{}\n", line);
 }
 
+void say_error(const std::string& line) {
+  say("pcednet: " + line);
+}
+
 void warn(const std::string& line) {
-  say("pcednet: warning: " + line);
+  say_error("warning: " + line);
+}
+
+void warn_all(const std::filesystem::path& file, const std::vector<std::string>& warnings) {
+  for (const std::string& warning : warnings) warn(file.string() + ": " + warning);
 }
 
 void warn_of_losses(const std::string& output, const std::vector<std::string>& losses) {

@@ -2,8 +2,10 @@
 
 #include <CLI/CLI.hpp>
 
+#include <array>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -56,6 +58,14 @@ CLI::Option* add_choice(CLI::App& command, const std::string& option, Value& val
       ->check(CLI::IsMember(names));
 }
 
+/// The same for a table of names.
+template <typename Value, std::size_t kCount>
+CLI::Option* add_choice(CLI::App& command, const std::string& option, Value& value,
+                        const std::array<std::pair<std::string_view, Value>, kCount>& names,
+                        const std::string& help) {
+  return add_choice(command, option, value, Choices<Value>(names.begin(), names.end()), help);
+}
+
 /// Progress on stderr in the form the user chose; a signal cancels.
 Progress console_progress(const Common& common);
 
@@ -78,14 +88,21 @@ class EndsAtOnce {
 /// others have no --ascii.
 void check_ascii(bool ascii, const std::vector<std::filesystem::path>& outputs);
 
+/// Throws Error(kUsage) if two of the outputs, of which some may be empty, are one file.
+void check_distinct(const std::vector<std::filesystem::path>& outputs);
+
 /// The message of an error, with the option that avoids it.
 std::string explain(const Error& error);
 
 /// One line on stderr, after any progress line.
 void say(const std::string& line);
 
-/// The same, as "pcednet: warning: ...".
+/// The same, as "pcednet: ..." and as "pcednet: warning: ...".
+void say_error(const std::string& line);
 void warn(const std::string& line);
+
+/// Warns of each of a file's warnings.
+void warn_all(const std::filesystem::path& file, const std::vector<std::string>& warnings);
 
 /// Warns of each thing that the format of `output` cannot hold.
 void warn_of_losses(const std::string& output, const std::vector<std::string>& losses);

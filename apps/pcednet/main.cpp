@@ -84,15 +84,14 @@ int main(int argc, char** argv) {
   try {
     return pcednet::app::run(argc, argv);
   } catch (const pcednet::Error& error) {
-    pcednet::app::say("pcednet: " + pcednet::app::explain(error));
+    pcednet::app::say_error(pcednet::app::explain(error));
     return static_cast<int>(error.kind());
   } catch (const std::bad_alloc&) {
-    pcednet::app::say("pcednet: not enough memory");
+    pcednet::app::say_error("not enough memory");
   } catch (const std::filesystem::filesystem_error& error) {
-    pcednet::app::say(
-        fmt::format("pcednet: {}: {}", error.path1().string(), error.code().message()));
+    pcednet::app::say_error(fmt::format("{}: {}", error.path1().string(), error.code().message()));
   } catch (const std::exception& error) {
-    pcednet::app::say(fmt::format("pcednet: {}", error.what()));
+    pcednet::app::say_error(error.what());
   }
   return static_cast<int>(pcednet::ErrorKind::kFailure);
 }

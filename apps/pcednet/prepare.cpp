@@ -1,7 +1,5 @@
 #include "prepare.h"
 
-#include <fmt/format.h>
-
 #include "batch.h"
 #include "common.h"
 
@@ -16,7 +14,7 @@ detect::PreparedCloud prepare(const std::filesystem::path& file, const PointClou
                               const detect::PrepareOptions& options, const Progress& progress) {
   detect::PreparedCloud prepared;
   with_name_in_errors(file, [&] { prepared = detect::prepare(cloud, options, &progress); });
-  for (const std::string& note : prepared.notes) warn(fmt::format("{}: {}", file.string(), note));
+  warn_all(file, prepared.notes);
   if (prepared.reoriented) say("  --keep-orientation uses them as they are");
   if (prepared.misfits) say("  pcednet normals makes new ones");
   return prepared;

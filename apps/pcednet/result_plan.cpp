@@ -52,7 +52,7 @@ void refuse_existing(const std::vector<Job>& jobs) {
   for (const Job& job : jobs) {
     for (const fs::path& file : {job.output, job.preview}) {
       if (!is_there(file)) continue;
-      say(fmt::format("pcednet: {}: exists already", file.string()));
+      say_error(file.string() + ": exists already");
       ++existing;
     }
   }

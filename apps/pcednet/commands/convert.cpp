@@ -72,10 +72,6 @@ void perturb(const ConvertRequest& request, PointCloud& cloud) {
   if (request.fraction < 1.0) cloud = shapes::subsample(cloud, {request.fraction, request.seed});
 }
 
-void warn_of(const std::string& file, const std::vector<std::string>& warnings) {
-  for (const std::string& warning : warnings) warn(file + ": " + warning);
-}
-
 /// The parts of a file in order, beginning with one that has been read.
 io::EachPart each_part_of(const io::PartReader& reader, const PointCloud& first,
                           const Progress& progress) {
@@ -119,8 +115,8 @@ bool convert_in_parts(const ConvertRequest& request, const Common& common) {
     stage.advance(part.size());
   }
   writer->commit();
-  warn_of(request.input, reader->warnings);
-  warn_of(request.input, io::warnings_of(tally));
+  warn_all(request.input, reader->warnings);
+  warn_all(request.input, io::warnings_of(tally));
   warn_of_losses(request.output, writer->losses);
   say(fmt::format("{}: {} points", request.output, tally.points));
   return true;
@@ -128,7 +124,7 @@ bool convert_in_parts(const ConvertRequest& request, const Common& common) {
 
 void convert(const ConvertRequest& request, const Common& common) {
   // Fails before a long read if the output cannot be written.
-  formats::losses(request.output, {});
+  formats::format_for(request.output);
   check_ascii(request.ascii, {request.output});
   if (changes_points(request)) check_not_input(request.output, request.input);
   check_sample_fits(request);
@@ -137,7 +133,7 @@ void convert(const ConvertRequest& request, const Common& common) {
   const Progress progress = console_progress(common);
   io::LoadedCloud loaded = formats::read_cloud(request.input);
   throw_if_cancelled(&progress);
-  warn_of(request.input, loaded.warnings);
+  warn_all(request.input, loaded.warnings);
   if (request.samples > 0) {
     with_name_in_errors(request.input, [&] { sample(request, progress, loaded.cloud); });
   }

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <memory>
-#include <set>
 #include <system_error>
 
 #include "batch.h"
@@ -62,20 +61,16 @@ void warn_of_lines(const std::string& file, const PointCloud& cloud) {
 /// Throws before any work if the output could not be written after it.
 void check_outputs(const LinesArguments& arguments) {
   const fs::path model = model_file(arguments.model);
-  std::set<fs::path> taken;
-  const auto check = [&](const fs::path& output) {
+  std::vector<fs::path> outputs(arguments.outputs.begin(), arguments.outputs.end());
+  for (const fs::path& output : outputs) io::drawing_format_for(output);
+  check_format_options(arguments);
+  if (!arguments.preview.path.empty()) outputs.push_back(arguments.preview.path);
+  for (const fs::path& output : outputs) {
     check_not_input(output, arguments.input);
     check_not_input(output, model);
     check_writable(output, arguments.drawing.overwrite);
-    if (taken.insert(output.lexically_normal()).second) return;
-    throw Error(ErrorKind::kUsage, fmt::format("{}: named twice", output.string()));
-  };
-  for (const std::string& output : arguments.outputs) {
-    io::drawing_format_for(output);
-    check(output);
   }
-  check_format_options(arguments);
-  if (!arguments.preview.path.empty()) check(arguments.preview.path);
+  check_distinct(outputs);
 }
 
 /// The attribute scalar_`name` or `name` of every point; empty if there is none.

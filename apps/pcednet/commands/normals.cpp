@@ -12,6 +12,7 @@
 #include "number_options.h"
 #include "pcednet/core/error.h"
 #include "pcednet/detect/prepare.h"
+#include "pcednet/formats/format.h"
 #include "pcednet/formats/write_cloud.h"
 #include "pcednet/normals/neighbour_count.h"
 #include "pcednet/normals/prepare.h"
@@ -83,7 +84,7 @@ void report(const NormalsRequest& request, const normals::PreparedNormals& prepa
 
 void run(const NormalsRequest& request, const Common& common) {
   // Fails before a long read if the output cannot be written.
-  formats::losses(request.output, {});
+  formats::format_for(request.output);
   check_writable(request.output, common.overwrite());
   PointCloud cloud = read_cloud(request.input);
   if (cloud.empty()) {

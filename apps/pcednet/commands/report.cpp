@@ -35,10 +35,7 @@ void make_report(const ReportArguments& arguments, const Common& common) {
   }
   check_writable(arguments.output, common.overwrite());
   check_writable(arguments.json, common.overwrite());
-  if (fs::path(arguments.output).lexically_normal() ==
-      fs::path(arguments.json).lexically_normal()) {
-    throw Error(ErrorKind::kUsage, fmt::format("{}: named twice", arguments.json));
-  }
+  check_distinct({arguments.output, arguments.json});
   const Progress progress = console_progress(common);
   const auto merged = merge(arguments, progress);
   for (const fs::path& file : merged.files) {

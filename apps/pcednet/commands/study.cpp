@@ -62,7 +62,7 @@ study::CloudSet read_set(const std::string& name, const std::vector<std::string>
   std::set<std::string> names;
   for (const fs::path& file : without_results(expand_inputs(inputs))) {
     auto loaded = truth::read_labelled(file);
-    for (const std::string& warning : loaded.warnings) warn(file.string() + ": " + warning);
+    warn_all(file, loaded.warnings);
     const std::string stem = file.stem().string();
     if (!names.insert(stem).second) {
       throw Error(ErrorKind::kUsage,

@@ -192,9 +192,7 @@ void list_tiles(const tiles::Plan& plan, const std::string& vpc, const Common& c
   tiles::check_all_done(plan);
   std::vector<formats::VirtualFile> files;
   for (const tiles::Tile& tile : plan.tiles) files.push_back(formats::virtual_file(tile.output));
-  for (const std::string& remark : formats::write_virtual_cloud(vpc, files, common.overwrite())) {
-    warn(vpc + ": " + remark);
-  }
+  warn_all(vpc, formats::write_virtual_cloud(vpc, files, common.overwrite()));
   say(fmt::format("{}: {} points of {} tiles", vpc, plan.points(), files.size()));
 }
 
@@ -207,9 +205,7 @@ void join_tiles(const JoinArguments& arguments, const Common& common) {
     check_writable(file, common.overwrite());
   }
   if (!arguments.output.empty()) tiles::check_joins(arguments.output);
-  if (fs::path(arguments.output).lexically_normal() == fs::path(arguments.vpc).lexically_normal()) {
-    throw Error(ErrorKind::kUsage, arguments.vpc + ": named twice");
-  }
+  check_distinct({arguments.output, arguments.vpc});
   const tiles::Plan plan = tiles::read_plan(arguments.plan);
   for (const std::string& file : {arguments.output, arguments.vpc}) {
     tiles::check_not_of_plan(file, plan);

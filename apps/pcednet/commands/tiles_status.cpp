@@ -127,9 +127,7 @@ Status find_status(const tiles::Plan& plan, bool verify, const Progress& progres
 /// Throws for the inputs that have changed since the plan, if any have.
 void report_changed(const std::vector<Error>& changed) {
   if (changed.empty()) return;
-  for (std::size_t i = 1; i < changed.size(); ++i) {
-    say(fmt::format("pcednet: {}", changed[i].what()));
-  }
+  for (std::size_t i = 1; i < changed.size(); ++i) say_error(changed[i].what());
   throw changed.front();
 }
 
