@@ -213,17 +213,11 @@ std::optional<RimPoint> rim_at(const DistinctPoints& points, std::uint32_t point
 /// The results of rim_at() at the points `todo` (ascending), in their order.
 std::vector<RimPoint> rims_at(const DistinctPoints& points, const spatial::NeighbourSearch& search,
                               std::span<const std::uint32_t> todo, Stage& stage) {
-  const std::size_t count = search.available(kNeighbours);
-  std::vector<std::vector<RimPoint>> found((todo.size() + kTogether - 1) / kTogether);
-  parallel_blocks(todo.size(), kTogether, [&](std::size_t begin, std::size_t end) {
-    std::vector<spatial::Neighbour> near((end - begin) * count);
-    search.nearest_others(todo.subspan(begin, end - begin), count, near);
-    for (std::size_t i = begin; i < end; ++i) {
-      const auto rim = rim_at(points, todo[i], std::span(near).subspan((i - begin) * count, count));
-      if (rim) found[begin / kTogether].push_back(*rim);
-    }
-    stage.advance(end - begin);
-  });
+  std::vector<std::vector<RimPoint>> found(todo.size() / search.kAtOnce + 1);
+  const auto visit = [&](std::size_t i, std::span<const spatial::Neighbour> near) {
+    if (const auto rim = rim_at(points, todo[i], near)) found[i / search.kAtOnce].push_back(*rim);
+  };
+  search.for_each_neighbourhood(todo, kNeighbours, visit, &stage);
   std::vector<RimPoint> rims;
   for (const std::vector<RimPoint>& some : found) rims.insert(rims.end(), some.begin(), some.end());
   return rims;

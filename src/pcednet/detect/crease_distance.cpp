@@ -122,12 +122,8 @@ class FacePlaces {
                                             std::size_t count) const {
     const std::size_t others = available(count);
     std::vector<std::uint32_t> rows(places.size() * others);
-    parallel_blocks(places.size(), kPointsAtATime, [&](std::size_t begin, std::size_t end) {
-      std::vector<spatial::Neighbour> near((end - begin) * others);
-      search_.nearest_others(places.subspan(begin, end - begin), others, near);
-      std::transform(near.begin(), near.end(),
-                     rows.begin() + static_cast<std::ptrdiff_t>(begin * others),
-                     [](const spatial::Neighbour& other) { return other.index; });
+    search_.for_each_neighbourhood(places, others, [&](std::size_t k, const auto& near) {
+      for (std::size_t i = 0; i < others; ++i) rows[k * others + i] = near[i].index;
     });
     return rows;
   }
@@ -135,19 +131,17 @@ class FacePlaces {
   /// The normal of the face at each of `places`; zero where none was found, and elsewhere.
   std::vector<Vec3> face_normals(std::span<const std::uint32_t> places) const {
     std::vector<Vec3> normals(size(), Vec3::Zero());
-    const std::size_t others = available(normals::kExactNeighbours);
-    parallel_blocks(places.size(), kPointsAtATime, [&](std::size_t begin, std::size_t end) {
-      const auto some = places.subspan(begin, end - begin);
-      const auto rows = nearest_others(some, others);
-      for (std::size_t k = 0; k < some.size(); ++k) {
-        const auto near = std::span(rows).subspan(k * others, others);
-        for (const double tolerance : kTolerances) {
-          Vec3& normal = normals[some[k]];
-          normal = normals::face_normal(places_.positions, some[k], near, tolerance);
-          if (!normal.isZero(0.0)) break;
-        }
+    const auto find = [&](std::size_t k, std::span<const spatial::Neighbour> others) {
+      std::array<std::uint32_t, normals::kExactNeighbours> near;
+      for (std::size_t i = 0; i < others.size(); ++i) near[i] = others[i].index;
+      for (const double tolerance : kTolerances) {
+        Vec3& normal = normals[places[k]];
+        normal = normals::face_normal(places_.positions, places[k],
+                                      std::span(near).first(others.size()), tolerance);
+        if (!normal.isZero(0.0)) break;
       }
-    });
+    };
+    search_.for_each_neighbourhood(places, normals::kExactNeighbours, find);
     return normals;
   }
 

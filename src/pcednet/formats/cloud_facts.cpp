@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "pcednet/core/median.h"
@@ -16,28 +17,22 @@ namespace pcednet::formats {
 namespace {
 
 std::optional<SampledSpacing> find_spacing(const PointCloud& cloud) {
-  constexpr std::size_t kNeighbours = 10, kSample = 2000;
+  constexpr std::size_t kSample = 2000;
   std::vector<std::size_t> finite;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     if (cloud.positions[i].allFinite()) finite.push_back(i);
   }
-  if (finite.size() <= kNeighbours) return std::nullopt;
   const spatial::KdTree tree(cloud.positions);
   Random random(1);
   const std::size_t sample = std::min(finite.size(), kSample);
-  double sum = 0.0;
-  std::vector<double> nearest, sides;
-  std::vector<spatial::Neighbour> found;
+  SpacingSample spacings;
   for (std::size_t s = 0; s < sample; ++s) {
     const std::size_t i = finite[sample == finite.size() ? s : random.index(finite.size())];
-    // The nearest of all is the point itself.
-    tree.nearest(cloud.positions[i], kNeighbours + 1, found);
-    for (const spatial::Neighbour& neighbour : found) sum += std::sqrt(neighbour.sq_distance);
-    nearest.push_back(std::sqrt(found[1].sq_distance));
-    sides.push_back(spatial::side_of_square(found.back().sq_distance, found.size()));
+    std::array<double, SpacingSample::kNearest> sq_distances;
+    const std::size_t found = tree.nearest(cloud.positions[i], sq_distances);
+    spacings.add(std::span(sq_distances).first(found));
   }
-  return SampledSpacing{sum / static_cast<double>(sample * kNeighbours),
-                        upper_median(std::move(nearest)), upper_median(std::move(sides))};
+  return spacings.spacing();
 }
 
 void add_values(const Attribute& attribute, std::size_t points, AttributeFacts& facts) {
@@ -85,6 +80,19 @@ double distance_of_points(const SampledSpacing& spacing) {
 
 }  // namespace
 
+void SpacingSample::add(std::span<const double> sq_distances) {
+  if (sq_distances.size() < kNearest || std::isinf(sq_distances.back())) return;
+  for (const double sq : sq_distances) sum_ += std::sqrt(sq);
+  nearest_.push_back(std::sqrt(sq_distances[1]));
+  sides_.push_back(spatial::side_of_square(sq_distances.back(), sq_distances.size()));
+}
+
+std::optional<SampledSpacing> SpacingSample::spacing() const {
+  if (nearest_.empty()) return std::nullopt;
+  const auto count = static_cast<double>(nearest_.size() * (kNearest - 1));
+  return SampledSpacing{sum_ / count, upper_median(nearest_), upper_median(sides_)};
+}
+
 std::string note_on_float(const BoundingBox& bounds, double apart) {
   const double step = float_step(bounds);
   if (step <= apart) return {};
@@ -95,9 +103,10 @@ std::string note_on_float(const BoundingBox& bounds, double apart) {
 }
 
 CloudFacts facts_of_header(const io::InputFile& file) {
-  CloudFacts facts{.format = format_of(file).name};
-  if (facts.format == "E57") facts.e57 = io::read_e57_document(io::E57Pages(file));
-  if (facts.format == "LAS") facts.las = io::las_facts(file);
+  const Format& format = format_of(file);
+  CloudFacts facts{.format = format.name};
+  if (format.name == "E57") facts.e57 = io::read_e57_document(io::E57Pages(file));
+  if (format.is_las()) facts.las = io::las_facts(file);
   return facts;
 }
 

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -22,6 +23,22 @@ struct SampledSpacing {
   double mean = 0.0;    ///< to the ten nearest others
   double median = 0.0;  ///< of the distances to the nearest other
   double side = 0.0;    ///< of the square that holds one point, median
+};
+
+/// Measures it from the nearest neighbours of the points of a sample.
+class SpacingSample {
+ public:
+  static constexpr std::size_t kNearest = 11;  ///< of a point, itself among them
+
+  /// The squared distances from a point to its nearest, ascending. It does not count if there are
+  /// fewer than kNearest, or infinite ones.
+  void add(std::span<const double> sq_distances);
+  /// None if no point counts.
+  std::optional<SampledSpacing> spacing() const;
+
+ private:
+  double sum_ = 0.0;
+  std::vector<double> nearest_ = {}, sides_ = {};
 };
 
 struct AttributeFacts {

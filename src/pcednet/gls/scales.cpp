@@ -140,11 +140,9 @@ std::vector<double> spacings_of_places(std::span<const Vec3> positions,
       spatial::in_order(positions, spatial::firsts_of_places(positions, curve));
   const spatial::KdTree tree(places);
   return sampled_spacings(places.size(), [&](std::size_t place) {
-    std::vector<spatial::Neighbour> found;
     std::array<double, kSpacingNeighbours> sq_distances;
-    tree.nearest(places[place], kSpacingNeighbours, found);
-    for (std::size_t i = 0; i < found.size(); ++i) sq_distances[i] = found[i].sq_distance;
-    return mean_distance(std::span(sq_distances).first(found.size()));
+    const std::size_t found = tree.nearest(places[place], sq_distances);
+    return mean_distance(std::span(sq_distances).first(found));
   });
 }
 

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <tuple>
 
-#include "pcednet/core/parallel.h"
 #include "pcednet/core/sort_unique.h"
 #include "pcednet/spatial/curve_order.h"
 #include "pcednet/spatial/side_of_square.h"
@@ -12,7 +11,6 @@
 namespace pcednet::lines {
 namespace {
 
-constexpr std::size_t kPointsAtOnce = 256;
 constexpr std::size_t kSpacingNeighbours = 15;
 
 /// The probability of an edge; 0 without probabilities.
@@ -84,19 +82,6 @@ void OrderedPoints::nearest_others(std::span<const std::uint32_t> points, std::s
                                    std::vector<spatial::Neighbour>& found) const {
   found.resize(points.size() * available(count));
   search_.nearest_others(points, count, found);
-}
-
-void OrderedPoints::for_each_neighbourhood(std::span<const std::uint32_t> points, std::size_t count,
-                                           Stage& stage, const Visit& visit) const {
-  const std::size_t others = available(count);
-  parallel_blocks(points.size(), kPointsAtOnce, [&](std::size_t begin, std::size_t end) {
-    std::vector<spatial::Neighbour> found;
-    nearest_others(points.subspan(begin, end - begin), count, found);
-    for (std::size_t k = begin; k < end; ++k) {
-      visit(k, std::span(found).subspan((k - begin) * others, others));
-    }
-    stage.advance(end - begin);
-  });
 }
 
 double spacing_of(std::span<const spatial::Neighbour> others) {

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <span>
 #include <vector>
 
@@ -52,9 +51,10 @@ class OrderedPoints {
   std::size_t available(std::size_t count) const { return search_.available(count); }
 
   /// Calls visit(k, row of nearest_others()) for each of `points`, on all threads.
-  using Visit = std::function<void(std::size_t k, std::span<const spatial::Neighbour> others)>;
   void for_each_neighbourhood(std::span<const std::uint32_t> points, std::size_t count,
-                              Stage& stage, const Visit& visit) const;
+                              Stage& stage, const spatial::NeighbourSearch::Visit& visit) const {
+    search_.for_each_neighbourhood(points, count, visit, &stage);
+  }
 
  private:
   EdgePoints points_;

@@ -95,6 +95,13 @@ void KdTree::nearest(const Vec3& query, std::size_t count, std::vector<Neighbour
   impl_->finish(found);
 }
 
+std::size_t KdTree::nearest(const Vec3& query, std::span<double> sq_distances) const {
+  thread_local std::vector<Neighbour> found;
+  nearest(query, sq_distances.size(), found);
+  for (std::size_t i = 0; i < found.size(); ++i) sq_distances[i] = found[i].sq_distance;
+  return found.size();
+}
+
 void KdTree::within(const Vec3& query, double radius, std::vector<Neighbour>& found) const {
   impl_->search(query, radius, found);
   impl_->finish(found);

@@ -35,6 +35,10 @@ class KdTree {
   /// if the set is smaller. `query` must be finite. Replaces the content of `found`.
   void nearest(const Vec3& query, std::size_t count, std::vector<Neighbour>& found) const;
 
+  /// Their squared distances, ascending, as many as `sq_distances` has room for; returns how many
+  /// there are.
+  std::size_t nearest(const Vec3& query, std::span<double> sq_distances) const;
+
   /// Every point closer to `query` than `radius`. Replaces the content of `found`.
   void within(const Vec3& query, double radius, std::vector<Neighbour>& found) const;
 

@@ -1,5 +1,6 @@
 #include "pcednet/spatial/neighbour_search.h"
 
+#include "pcednet/core/parallel.h"
 #include "pcednet/spatial/run_search.h"
 
 namespace pcednet::spatial {
@@ -56,6 +57,20 @@ void NeighbourSearch::nearest_others(std::span<const std::uint32_t> points, std:
     }
     begin = end;
   }
+}
+
+void NeighbourSearch::for_each_neighbourhood(std::span<const std::uint32_t> points,
+                                             std::size_t count, const Visit& visit,
+                                             Stage* stage) const {
+  count = available(count);
+  parallel_blocks(points.size(), kAtOnce, [&](std::size_t begin, std::size_t end) {
+    std::vector<Neighbour> found((end - begin) * count);
+    nearest_others(points.subspan(begin, end - begin), count, found);
+    for (std::size_t k = begin; k < end; ++k) {
+      visit(k, std::span(found).subspan((k - begin) * count, count));
+    }
+    if (stage) stage->advance(end - begin);
+  });
 }
 
 void NeighbourSearch::within(const Vec3& at, double radius, std::vector<Neighbour>& found) const {

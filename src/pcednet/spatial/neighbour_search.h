@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
+#include "pcednet/core/progress.h"
 #include "pcednet/core/vec3.h"
 #include "pcednet/spatial/kd_tree.h"
 #include "pcednet/spatial/run_tree.h"
@@ -34,6 +36,14 @@ class NeighbourSearch {
   /// after row. May run in parallel; calls for hundreds of points are the fastest.
   void nearest_others(std::span<const std::uint32_t> points, std::size_t count,
                       std::span<Neighbour> found) const;
+
+  /// Calls visit(k, nearest others of points[k]) for each of `points` (ascending, each once), on
+  /// all threads; blocks of kAtOnce points follow each other on one thread. Advances `stage` by
+  /// them.
+  using Visit = std::function<void(std::size_t k, std::span<const Neighbour> others)>;
+  void for_each_neighbourhood(std::span<const std::uint32_t> points, std::size_t count,
+                              const Visit& visit, Stage* stage = nullptr) const;
+  static constexpr std::size_t kAtOnce = 256;
 
   /// Every point closer to `at` than `radius`, in the order of the points. Replaces the content of
   /// `found`. May run in parallel.

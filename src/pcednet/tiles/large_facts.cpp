@@ -1,14 +1,12 @@
 #include "pcednet/tiles/large_facts.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 
-#include "pcednet/core/median.h"
 #include "pcednet/formats/format.h"
-#include "pcednet/gls/scales.h"
 #include "pcednet/spatial/kd_tree.h"
-#include "pcednet/spatial/side_of_square.h"
 #include "pcednet/tiles/inputs.h"
 #include "pcednet/tiles/layout.h"
 #include "pcednet/tiles/nearest.h"
@@ -19,6 +17,7 @@ namespace {
 
 using formats::CloudFacts;
 using formats::SampledSpacing;
+using formats::SpacingSample;
 
 constexpr std::size_t kParts = 16;           ///< of a sample
 constexpr std::size_t kPlaces = 2000;        ///< where the spacing is measured
@@ -28,41 +27,18 @@ constexpr std::size_t kPositions = 500'000;  ///< to bound the distance of the n
 /// to be that of the cloud.
 constexpr double kMostCover = 2.0;
 
-/// Squared distances from given positions to their nearest points, the first of which is the
-/// position itself.
-class Distances {
- public:
-  void add(std::span<const double> sq_distances) {
-    if (sq_distances.size() < gls::kSpacingNeighbours || std::isinf(sq_distances.back())) return;
-    for (const double sq : sq_distances) sum_ += std::sqrt(sq);
-    nearest_.push_back(std::sqrt(sq_distances[1]));
-    sides_.push_back(spatial::side_of_square(sq_distances.back(), sq_distances.size()));
-  }
-
-  std::optional<SampledSpacing> spacing() const {
-    if (nearest_.empty()) return std::nullopt;
-    const auto count = static_cast<double>(nearest_.size() * (gls::kSpacingNeighbours - 1));
-    return SampledSpacing{sum_ / count, upper_median(nearest_), upper_median(sides_)};
-  }
-
- private:
-  double sum_ = 0.0;
-  std::vector<double> nearest_ = {}, sides_ = {};
-};
+static_assert(SpacingSample::kNearest == gls::kSpacingNeighbours);  // of a NearestInStream
 
 /// The squared distances at `places` places of the points, at equal steps.
 template <typename Use>
 void measure(std::span<const Vec3> points, std::size_t places, const Use& use) {
   const spatial::KdTree tree(points);
-  std::vector<spatial::Neighbour> found;
-  std::vector<double> sq_distances;
+  std::array<double, SpacingSample::kNearest> sq_distances;
   for (std::size_t i = 0; i < std::min(places, points.size()); ++i) {
     const Vec3& place = points[i * points.size() / std::min(places, points.size())];
     if (!place.allFinite()) continue;
-    tree.nearest(place, gls::kSpacingNeighbours, found);
-    sq_distances.clear();
-    for (const auto& neighbour : found) sq_distances.push_back(neighbour.sq_distance);
-    use(place, std::span<const double>(sq_distances));
+    const std::size_t found = tree.nearest(place, sq_distances);
+    use(place, std::span<const double>(sq_distances).first(found));
   }
 }
 
@@ -111,7 +87,7 @@ std::optional<SampledSpacing> spacing_of_all(const io::PartReader& reader, Sampl
   read_parts(
       reader, chosen_parts(reader.parts(), true), "spacing", progress,
       [&](const PointCloud& part) { stream.add(part.positions); }, known);
-  Distances distances;
+  SpacingSample distances;
   for (std::size_t i = 0; i < reach.size(); ++i) distances.add(stream.of(i));
   return distances.spacing();
 }
@@ -126,7 +102,7 @@ void settle(const io::PartTally& tally, CloudFacts& facts) {
 /// From a sample of the parts. `whole`: of all points, empty where the file does not say.
 void add_sample(const io::PartReader& reader, const BoundingBox& whole, CloudFacts& facts,
                 const Progress* progress) {
-  Distances distances;
+  SpacingSample distances;
   std::vector<BoundingBox> boxes;
   io::PartTally tally;
   const auto see = [&](const PointCloud& part) {

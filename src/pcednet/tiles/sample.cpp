@@ -39,10 +39,8 @@ std::vector<double> spacings_from(const SampledPoints& sample, const Plan& plan,
                                   const Progress* progress) {
   const spatial::KdTree tree(sample.positions);
   const auto nearest = [&](std::size_t place) {
-    std::vector<spatial::Neighbour> found;
-    tree.nearest(sample.positions[place], gls::kSpacingNeighbours, found);
-    std::vector<double> sq_distances;
-    for (const auto& neighbour : found) sq_distances.push_back(neighbour.sq_distance);
+    std::vector<double> sq_distances(gls::kSpacingNeighbours);
+    sq_distances.resize(tree.nearest(sample.positions[place], sq_distances));
     return sq_distances;
   };
   const std::size_t points = sample.positions.size();
