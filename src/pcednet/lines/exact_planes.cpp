@@ -202,7 +202,7 @@ class PlaneUnion {
 
  private:
   /// The plane at about this distance that all points of the patch are on.
-  PlanePatch* plane_of(const PlanePatch& patch, double distance);
+  PlanePatch* known_plane(const PlanePatch& patch, double distance);
 
   const OrderedPoints& cloud_;
   Vec3 origin_;
@@ -210,7 +210,7 @@ class PlaneUnion {
   std::multimap<double, std::size_t> by_distance_;
 };
 
-PlanePatch* PlaneUnion::plane_of(const PlanePatch& patch, double distance) {
+PlanePatch* PlaneUnion::known_plane(const PlanePatch& patch, double distance) {
   const auto end = by_distance_.upper_bound(distance + spacing_);
   for (auto entry = by_distance_.lower_bound(distance - spacing_); entry != end; ++entry) {
     PlanePatch& plane = planes[entry->second];
@@ -225,8 +225,8 @@ PlanePatch* PlaneUnion::plane_of(const PlanePatch& patch, double distance) {
 
 void PlaneUnion::add(PlanePatch patch) {
   const double distance = patch.height(origin_);
-  PlanePatch* plane = plane_of(patch, distance);
-  if (!plane) plane = plane_of(patch, -distance);  // its normal may be turned round
+  PlanePatch* plane = known_plane(patch, distance);
+  if (!plane) plane = known_plane(patch, -distance);  // its normal may be turned round
   if (plane) {
     plane->members.insert(plane->members.end(), patch.members.begin(), patch.members.end());
     return;

@@ -68,7 +68,7 @@ Vec3 into(const Plane& plane, const Vec3& along, const Vec3& side) {
 }
 
 /// The points near a segment, each once, in curve order.
-std::vector<Vec3> points_beside(const Piece& piece, const OrderedPoints& cloud) {
+std::vector<Vec3> points_near(const Piece& piece, const OrderedPoints& cloud) {
   std::vector<std::uint32_t> indices;
   std::vector<spatial::Neighbour> near;
   for (const ChainNode& node : piece.nodes) {
@@ -323,7 +323,7 @@ bool is_hardly_bent(const Piece& piece) {
 void place(Piece& piece, const OrderedPoints& cloud, double tolerance) {
   if (piece.fit.kind == CurveKind::kPolyline || piece.nodes.size() < kNodesToRefine) return;
   if (is_hardly_bent(piece)) piece = refitted(piece, fit_segment(piece.nodes));
-  const std::vector<Vec3> points = points_beside(piece, cloud);
+  const std::vector<Vec3> points = points_near(piece, cloud);
   const auto other = in_other_kind(piece);
   if (!other) return move_to(better_fit(piece, points, tolerance), piece);
   const bool is_segment = piece.fit.kind == CurveKind::kSegment;

@@ -9,10 +9,9 @@
 #include <vector>
 
 #include "pcednet/cloud/coordinate_step.h"
-#include "pcednet/core/eigendecomposition.h"
 #include "pcednet/core/median.h"
-#include "pcednet/lines/moments.h"
 #include "pcednet/lines/ordered_points.h"
+#include "pcednet/lines/plane_sums.h"
 
 namespace pcednet::lines {
 namespace {
@@ -95,13 +94,6 @@ void keep_own_sheet(std::vector<Vec3>& offsets, const std::vector<double>& heigh
   offsets.resize(kept);
 }
 
-/// Root mean square of the distances to the plane of least squares.
-double distance_to_plane(const std::vector<Vec3>& offsets) {
-  PointMoments moments;
-  for (const Vec3& offset : offsets) moments.add(offset);
-  return std::sqrt(std::max(eigendecomposition(moments.covariance()).values[0], 0.0));
-}
-
 std::vector<PlaneSample> samples_at(const OrderedPoints& cloud,
                                     const std::vector<std::uint32_t>& points) {
   const std::size_t others = cloud.available(kPlaneNeighbours);
@@ -121,12 +113,14 @@ std::vector<PlaneSample> samples_at(const OrderedPoints& cloud,
       heights.push_back(offsets.back().dot(cloud.normal(points[k])));
     }
     keep_own_sheet(offsets, heights);
+    PlaneSums own_sheet;
+    for (const Vec3& offset : offsets) own_sheet.add(offset);
     const bool enough = offsets.size() >= kLeastNeighbours;
     const auto opposed =
         std::count_if(row.begin(), row.begin() + kOnOwnSide,
                       [&](const auto& near) { return cloud.cosine(points[k], near.index) < 0.0; });
-    samples.push_back(
-        {spacing, enough ? distance_to_plane(offsets) : -1.0, static_cast<std::size_t>(opposed)});
+    samples.push_back({spacing, enough ? fit_plane(own_sheet).residual : -1.0,
+                       static_cast<std::size_t>(opposed)});
   }
   return samples;
 }
