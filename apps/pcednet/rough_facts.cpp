@@ -4,9 +4,6 @@
 #include <string>
 
 #include "pcednet/formats/format.h"
-#include "pcednet/io/las/facts.h"
-#include "pcednet/io/pcd_header.h"
-#include "pcednet/io/ply_header.h"
 #include "pcednet/io/text_scan.h"
 
 namespace pcednet::app {
@@ -19,18 +16,6 @@ std::uint64_t points_by_lines(const io::InputFile& file, const std::string& star
   return start.empty() ? 0 : file.size() / (start.size() / (lines + 1) + 1);
 }
 
-std::uint64_t points_of(const io::InputFile& file, const std::string& start) {
-  const auto format = formats::format_of(file).name;
-  if (format == "PCD") return io::read_pcd_header(file).points;
-  if (format == "LAS") return io::las_outline(file).points;
-  if (format != "PLY") return points_by_lines(file, start);
-  std::uint64_t points = 0;
-  for (const io::PlyElement& element : io::read_ply_header(file).elements) {
-    if (element.name == "vertex") points += element.count;
-  }
-  return points;
-}
-
 }  // namespace
 
 RoughFacts rough_facts(const io::InputFile& file) {
@@ -39,7 +24,9 @@ RoughFacts rough_facts(const io::InputFile& file) {
   const bool has_normals =
       names.find("normal_x") != std::string::npos || names.find(" nx") != std::string::npos ||
       names.find(",nx") != std::string::npos || names.find("\nvn ") != std::string::npos;
-  return {.points = points_of(file, start), .has_normals = has_normals};
+  const formats::Format& format = formats::format_of(file);
+  return {.points = format.points ? format.points(file) : points_by_lines(file, start),
+          .has_normals = has_normals};
 }
 
 }  // namespace pcednet::app

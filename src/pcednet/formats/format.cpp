@@ -4,11 +4,14 @@
 
 #include "pcednet/core/error.h"
 #include "pcednet/io/e57/e57.h"
+#include "pcednet/io/las/facts.h"
 #include "pcednet/io/las/file.h"
 #include "pcednet/io/las/las.h"
 #include "pcednet/io/obj.h"
 #include "pcednet/io/pcd.h"
+#include "pcednet/io/pcd_header.h"
 #include "pcednet/io/ply.h"
+#include "pcednet/io/ply_header.h"
 #include "pcednet/io/text_scan.h"
 #include "pcednet/io/xyz.h"
 
@@ -17,12 +20,21 @@ namespace {
 
 namespace fs = std::filesystem;
 
+std::uint64_t ply_points(const io::InputFile& file) {
+  std::uint64_t points = 0;
+  for (const io::PlyElement& element : io::read_ply_header(file).elements) {
+    if (element.name == "vertex") points += element.count;
+  }
+  return points;
+}
+
 /// The whole table, in the order in which messages list it.
 std::vector<Format> make_formats() {
   return {
       {.name = "PLY",
        .extensions = {".ply"},
        .begins = io::begins_as_ply,
+       .points = ply_points,
        .read = io::read_ply,
        .open_parts = io::open_ply_parts,
        .create_parts = io::create_ply_parts,
@@ -30,11 +42,13 @@ std::vector<Format> make_formats() {
       {.name = "PCD",
        .extensions = {".pcd"},
        .begins = io::begins_as_pcd,
+       .points = [](const auto& file) -> std::uint64_t { return io::read_pcd_header(file).points; },
        .read = io::read_pcd,
        .write = io::write_pcd},
       {.name = "LAS",
        .extensions = {".las", ".laz", ".copc.laz"},
        .begins = io::begins_as_las,
+       .points = [](const auto& file) -> std::uint64_t { return io::las_outline(file).points; },
        .read = io::read_las,
        .open_parts = io::open_las_parts,
        .create_parts = io::create_las_parts,

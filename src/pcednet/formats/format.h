@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <span>
@@ -21,6 +22,8 @@ struct Format {
 
   /// Whether a file with this beginning is of this format, with any extension.
   bool (*begins)(std::string_view start) = nullptr;
+  /// The number of points by the header.
+  std::uint64_t (*points)(const io::InputFile& file) = nullptr;
   io::LoadedCloud (*read)(const io::InputFile& file) = nullptr;
   std::unique_ptr<io::PartReader> (*open_parts)(std::unique_ptr<io::InputFile> file,
                                                 std::size_t most) = nullptr;
