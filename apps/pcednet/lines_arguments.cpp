@@ -40,9 +40,7 @@ void add_line_options(CLI::App& command, lines::LineOptions& options) {
   command.add_flag("--boundaries", options.boundaries,
                    "Also draw where the surface ends, on a layer of its own; --class with boundary "
                    "does the same");
-  using enum lines::LineStage;
-  add_choice(command, "--stage", options.stage,
-             {{"creases", kCreases}, {"chains", kChains}, {"pieces", kPieces}, {"curves", kCurves}},
+  add_choice(command, "--stage", options.stage, lines::kLineStages,
              "Stop after a step and draw what it found: a short segment for each edge point, these "
              "in order, segments and arcs before they meet, or the finished curves");
 }
@@ -83,15 +81,12 @@ void add_drawing_options(CLI::App& command, LinesArguments& arguments) {
       arguments.of_formats.emplace_back(name, extensions);
     });
   };
-  of_formats(add_choice(command, "--dxf-version", arguments.drawing.dxf_version,
-                        {{"2000", io::DxfVersion::k2000}, {"r12", io::DxfVersion::kR12}},
+  of_formats(add_choice(command, "--dxf-version", arguments.drawing.dxf_version, io::kDxfVersions,
                         "DXF: of AutoCAD 2000, which all later ones read, or R12 for old programs"),
              {".dxf"});
-  of_formats(
-      add_choice(command, "--view", arguments.drawing.view,
-                 {{"top", io::View::kTop}, {"front", io::View::kFront}, {"side", io::View::kSide}},
-                 "SVG: seen from above, from the front (x, z) or from the side (y, z)"),
-      {".svg"});
+  of_formats(add_choice(command, "--view", arguments.drawing.view, io::kViews,
+                        "SVG: seen from above, from the front (x, z) or from the side (y, z)"),
+             {".svg"});
   Choices<std::optional<io::LengthUnit>> units;
   for (const auto& entry : io::length_units()) units.emplace_back(entry.name, entry.unit);
   of_formats(

@@ -8,6 +8,7 @@
 #include "bindings.h"
 #include "clouds.h"
 #include "input_cloud.h"
+#include "named.h"
 #include "pcednet/core/error.h"
 #include "pcednet/io/drawing/drawing.h"
 #include "pcednet/io/las/las.h"
@@ -19,18 +20,7 @@ namespace {
 
 using lines::Curve;
 
-/// The value of that name, or an error that lists the names.
-template <typename Value>
-Value named(const std::map<std::string, Value>& values, const std::string& what,
-            const std::string& name) {
-  if (const auto found = values.find(name); found != values.end()) return found->second;
-  std::string names;
-  for (const auto& [known, value] : values) names += (names.empty() ? "" : ", ") + known;
-  throw Error(ErrorKind::kUsage, what + " \"" + name + "\": there are " + names);
-}
-
 lines::LineOptions line_options_of(const py::dict& settings) {
-  using enum lines::LineStage;
   lines::LineOptions options;
   options.min_length = settings["min_length"].cast<double>();
   options.gap = settings["gap"].cast<double>();
@@ -38,9 +28,7 @@ lines::LineOptions line_options_of(const py::dict& settings) {
   options.tolerance = settings["tolerance"].cast<double>();
   options.regularise = settings["regularise"].cast<bool>();
   options.boundaries = settings["boundaries"].cast<bool>();
-  options.stage = named<lines::LineStage>(
-      {{"creases", kCreases}, {"chains", kChains}, {"pieces", kPieces}, {"curves", kCurves}},
-      "stage", settings["stage"].cast<std::string>());
+  options.stage = named(lines::kLineStages, "stage", settings["stage"].cast<std::string>());
   return options;
 }
 
@@ -81,11 +69,8 @@ io::DrawingOptions drawing_of(const py::dict& settings, const Kept* kept) {
   options.tolerance = settings["tolerance"].cast<double>();
   options.fit_tolerance = settings["fit_tolerance"].cast<double>();
   options.dxf_version =
-      named<io::DxfVersion>({{"2000", io::DxfVersion::k2000}, {"r12", io::DxfVersion::kR12}},
-                            "dxf_version", settings["dxf_version"].cast<std::string>());
-  options.view = named<io::View>(
-      {{"top", io::View::kTop}, {"front", io::View::kFront}, {"side", io::View::kSide}}, "view",
-      settings["view"].cast<std::string>());
+      named(io::kDxfVersions, "dxf_version", settings["dxf_version"].cast<std::string>());
+  options.view = named(io::kViews, "view", settings["view"].cast<std::string>());
   if (kept) options.coordinate_system = io::las_coordinate_system(*kept->cloud);
   if (!settings["epsg"].is_none()) {
     options.coordinate_system = {.epsg = settings["epsg"].cast<int>()};

@@ -8,6 +8,7 @@
 #include "clouds.h"
 #include "input_cloud.h"
 #include "models.h"
+#include "named.h"
 #include "pcednet/core/error.h"
 #include "workbench/annotate/adapt.h"
 #include "workbench/annotate/outputs.h"
@@ -57,13 +58,6 @@ void prepare(const std::vector<LabelledArrays>& arrays, bool keep_orientation,
   }
 }
 
-nn::NetworkKind network_named(const std::string& name) {
-  if (name == "pcednet") return nn::NetworkKind::kPcednet;
-  if (name == "fc") return nn::NetworkKind::kFc;
-  if (name == "cnn") return nn::NetworkKind::kCnn;
-  throw Error(ErrorKind::kUsage, "network \"" + name + "\": there are pcednet, fc, cnn");
-}
-
 detect::TrainOptions training_options_of(const py::dict& settings) {
   detect::TrainOptions options;
   const auto recipe = settings["recipe"].cast<std::string>();
@@ -72,7 +66,8 @@ detect::TrainOptions training_options_of(const py::dict& settings) {
   }
   if (recipe == "paper") options.training = nn::paper_recipe();
   options.descriptor = descriptor_of(settings["descriptor"]);
-  options.architecture.kind = network_named(settings["network"].cast<std::string>());
+  options.architecture.kind =
+      named(nn::kNetworkKinds, "network", settings["network"].cast<std::string>());
   options.architecture.classes = settings["classes"].cast<int>();
   options.context = settings["context"].cast<bool>();
   options.teachers = settings["distil"].cast<int>();

@@ -27,7 +27,8 @@ namespace fs = std::filesystem;
 
 struct EvaluateArguments {
   std::vector<std::string> inputs;
-  std::string predictions, json, positive = "sharp", truth, cloud;
+  std::string predictions, json, truth, cloud;
+  eval::Positive positive = eval::Positive::kSharp;
   ModelArguments model;
   MethodArguments method;
   detect::PrepareOptions preparation;
@@ -44,11 +45,6 @@ std::vector<std::uint8_t> read_predictions(const fs::path& file, const PointClou
   auto predictions = eval::read_predictions(file, cloud.positions);
   if (!predictions.note.empty()) warn(file.string() + ": " + predictions.note);
   return std::move(predictions.classes);
-}
-
-eval::Positive positive_named(const std::string& name) {
-  if (name == "boundary") return eval::Positive::kBoundary;
-  return name == "edge" ? eval::Positive::kEdge : eval::Positive::kSharp;
 }
 
 /// The probability of the positive classes, per point.
@@ -86,7 +82,7 @@ detect::Classification find_classes(const fs::path& input, const fs::path& predi
 
 void score(const fs::path& input, const PointCloud& cloud, const detect::Classification& found,
            const Way& way, Results& results) {
-  const eval::Positive positive = positive_named(way.arguments.positive);
+  const eval::Positive positive = way.arguments.positive;
   if (!way.model && results.classes.clouds == 0) {
     results.classes.table = classes_of(cloud.comments);
   }
@@ -129,7 +125,7 @@ PointCloud read_truth(const fs::path& input, const Way& way, const Results& resu
   const bool settled = way.model || results.classes.clouds > 0;
   check_labels(input, loaded.cloud,
                settled ? results.classes.table : classes_of(loaded.cloud.comments));
-  for (const std::string& warning : loaded.warnings) warn(input.string() + ": " + warning);
+  warn_all(input, loaded.warnings);
   return std::move(loaded.cloud);
 }
 
@@ -192,7 +188,7 @@ void evaluate(EvaluateArguments arguments, const Common& common) {
   if (arguments.calibration && arguments.model.name.empty()) {
     throw Error(ErrorKind::kUsage, "evaluate: --calibration needs --model");
   }
-  if (arguments.calibration && arguments.positive == "boundary") {
+  if (arguments.calibration && arguments.positive == eval::Positive::kBoundary) {
     throw Error(ErrorKind::kUsage, "evaluate: boundary has no probabilities to calibrate");
   }
   check_not_inputs(arguments.json, arguments.inputs);
@@ -250,13 +246,9 @@ void add_evaluate(CLI::App& app, Common& common) {
   for (const char* of_labels : {"--model", "--predictions", "--method"}) {
     truth->excludes(command->get_option(of_labels));
   }
-  command
-      ->add_option(
-          "--positive", arguments->positive,
-          "Classes that count as positive: sharp, edge (sharp and smooth), or boundary; own "
-          "classes are scored one by one")
-      ->capture_default_str()
-      ->check(CLI::IsMember({"sharp", "edge", "boundary"}));
+  add_choice(*command, "--positive", arguments->positive, eval::kPositives,
+             "Classes that count as positive: sharp, edge (sharp and smooth), or boundary; own "
+             "classes are scored one by one");
   command->add_option("--json", arguments->json,
                       "Write the scores to this JSON file; - for standard output");
   command->add_flag("--calibration", arguments->calibration,

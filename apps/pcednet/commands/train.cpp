@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 #include <memory>
 #include <optional>
 
@@ -21,9 +22,6 @@
 namespace pcednet::app {
 namespace {
 
-const Choices<nn::NetworkKind> kNetworks = {{"pcednet", nn::NetworkKind::kPcednet},
-                                            {"fc", nn::NetworkKind::kFc},
-                                            {"cnn", nn::NetworkKind::kCnn}};
 const Choices<nn::Symmetry> kSymmetries = {{"average", nn::Symmetry::kAverage},
                                            {"canonical", nn::Symmetry::kCanonical},
                                            {"none", nn::Symmetry::kNone}};
@@ -63,6 +61,12 @@ void print_epoch(const nn::EpochReport& report) {
   say(fmt::format("epoch {:>3}  loss {:.4f}  validation loss {}  accuracy {}", report.epoch,
                   report.training_loss, number(report.validation_loss),
                   number(report.validation_accuracy)));
+}
+
+/// Prints every epoch unless no progress is wanted.
+std::function<void(const nn::EpochReport&)> epoch_reports(const Common& common) {
+  if (common.progress == "none") return {};
+  return print_epoch;
 }
 
 detect::CloudKind take_kind(const std::string& option, const std::string& text) {
@@ -109,7 +113,7 @@ detect::TrainedModel train_project(const TrainArguments& arguments, const Common
   }
   return annotate::learn_project(
       project, inputs, [](const std::string& name) { return detect::load_model(find_model(name)); },
-      common.progress == "none" ? decltype(&print_epoch)(nullptr) : print_epoch, &progress);
+      epoch_reports(common), &progress);
 }
 
 /// Clouds with own classes, as the annotator saves them, give a model with these classes.
@@ -152,7 +156,7 @@ detect::TrainedModel train_clouds(const TrainArguments& arguments, const Common&
       loaded.push_back(truth::read_labelled(input));
       throw_if_cancelled(&progress);
     });
-    for (const auto& warning : loaded.back().warnings) warn(input.string() + ": " + warning);
+    warn_all(input, loaded.back().warnings);
     PointCloud& cloud = loaded.back().cloud;
     if (arguments.no_normals) cloud.normals.clear();
     take_classes(input, cloud, loaded.size() == 1, options);
@@ -170,8 +174,7 @@ detect::TrainedModel train_clouds(const TrainArguments& arguments, const Common&
   }
   check_has_smooth(clouds, options);
   return detect::train(std::filesystem::path(arguments.output).stem().string(), clouds, options,
-                       common.progress == "none" ? decltype(&print_epoch)(nullptr) : print_epoch,
-                       &progress);
+                       epoch_reports(common), &progress);
 }
 
 void train(const TrainArguments& arguments, const Common& common) {
@@ -241,7 +244,7 @@ void add_data_options(CLI::App& command, TrainArguments& arguments) {
 
 void add_network_options(CLI::App& command, detect::TrainOptions& options) {
   nn::Architecture& architecture = options.architecture;
-  add_choice(command, "--network", architecture.kind, kNetworks, "Architecture");
+  add_choice(command, "--network", architecture.kind, nn::kNetworkKinds, "Architecture");
   command
       .add_option("--classes", architecture.classes,
                   "3: non-edge, smooth-edge, sharp-edge; 2: sharp-edge and all other points")

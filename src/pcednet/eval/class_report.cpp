@@ -2,25 +2,20 @@
 
 #include <fmt/format.h>
 
+#include <array>
+
 #include "pcednet/core/json.h"
+#include "pcednet/eval/score_columns.h"
 
 namespace pcednet::eval {
 namespace {
 
+/// Precision, recall, F1 and IoU: the others are of two classes.
+constexpr std::array kClassColumns = {kScoreColumns[0], kScoreColumns[1], kScoreColumns[3],
+                                      kScoreColumns[5]};
+
 std::size_t points_of(const ConfusionCounts& counts) {
   return counts.tp + counts.fn;
-}
-
-OrderedJson class_scores_json(const Scores& scores) {
-  return {{"precision", scores.precision},
-          {"recall", scores.recall},
-          {"f1", scores.f1},
-          {"iou", scores.iou}};
-}
-
-std::string class_row(const std::string& name, const std::string& points, const Scores& s) {
-  return fmt::format("{:<24} {:>10} {:>9.3f} {:>7.3f} {:>7.3f} {:>7.3f}\n", name, points,
-                     s.precision, s.recall, s.f1, s.iou);
 }
 
 double share_of_right(const ClassReport& report) {
@@ -37,8 +32,8 @@ Scores mean_scores(const ClassReport& report) {
   for (const ConfusionCounts& counts : report.counts) {
     if (points_of(counts) == 0) continue;
     const Scores its = scores_of(counts);
-    for (double Scores::*score : {&Scores::precision, &Scores::recall, &Scores::f1, &Scores::iou}) {
-      mean.*score += its.*score / classes;
+    for (const ScoreColumn& column : kClassColumns) {
+      mean.*column.score += its.*column.score / classes;
     }
   }
   return mean;
@@ -68,10 +63,10 @@ std::string to_json(const ClassReport& report) {
   for (std::size_t id = 0; id < report.counts.size(); ++id) {
     OrderedJson row = {
         {"id", id}, {"name", report.table[id].name}, {"points", points_of(report.counts[id])}};
-    row.update(class_scores_json(scores_of(report.counts[id])));
+    put(row, scores_of(report.counts[id]), kClassColumns);
     json["classes"].push_back(row);
   }
-  json["mean"] = class_scores_json(mean_scores(report));
+  put(json["mean"], mean_scores(report), kClassColumns);
   json["accuracy"] = share_of_right(report);
   json["points"] = report.points;
   json["clouds"] = report.clouds;
@@ -79,13 +74,12 @@ std::string to_json(const ClassReport& report) {
 }
 
 std::string to_table(const ClassReport& report) {
-  std::string table = fmt::format("{:<24} {:>10} {:>9} {:>7} {:>7} {:>7}\n", "class", "points",
-                                  "precision", "recall", "F1", "IoU");
+  std::string table = heading_line("class", kClassColumns);
   for (std::size_t id = 0; id < report.counts.size(); ++id) {
-    table += class_row(report.table[id].name, std::to_string(points_of(report.counts[id])),
-                       scores_of(report.counts[id]));
+    table += score_line(report.table[id].name, std::to_string(points_of(report.counts[id])),
+                        scores_of(report.counts[id]), kClassColumns);
   }
-  table += class_row("mean", std::to_string(report.points), mean_scores(report));
+  table += score_line("mean", std::to_string(report.points), mean_scores(report), kClassColumns);
   return table + fmt::format("accuracy {:.3f}, {} cloud{}\n", share_of_right(report), report.clouds,
                              report.clouds == 1 ? "" : "s");
 }

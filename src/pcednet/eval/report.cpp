@@ -4,6 +4,7 @@
 
 #include "pcednet/core/json.h"
 #include "pcednet/core/median.h"
+#include "pcednet/eval/score_columns.h"
 
 namespace pcednet::eval {
 namespace {
@@ -14,20 +15,6 @@ void put(OrderedJson& row, const ConfusionCounts& counts) {
   row["fp"] = counts.fp;
   row["tn"] = counts.tn;
   row["fn"] = counts.fn;
-}
-
-void put(OrderedJson& row, const Scores& scores) {
-  row["precision"] = scores.precision;
-  row["recall"] = scores.recall;
-  row["mcc"] = scores.mcc;
-  row["f1"] = scores.f1;
-  row["accuracy"] = scores.accuracy;
-  row["iou"] = scores.iou;
-}
-
-std::string table_row(const std::string& name, const std::string& points, const Scores& s) {
-  return fmt::format("{:<24} {:>10} {:>9.3f} {:>7.3f} {:>7.3f} {:>7.3f} {:>8.3f} {:>7.3f}\n", name,
-                     points, s.precision, s.recall, s.mcc, s.f1, s.accuracy, s.iou);
 }
 
 struct BinMeans {
@@ -43,14 +30,15 @@ BinMeans means_of(const CalibrationBin& bin) {
 }  // namespace
 
 Scores median_scores(const std::vector<CloudScore>& clouds) {
-  const auto over_clouds = [&](double Scores::*score) {
+  Scores medians;
+  for (const ScoreColumn& column : kScoreColumns) {
     std::vector<double> values;
-    for (const CloudScore& cloud : clouds) values.push_back(scores_of(cloud.counts).*score);
-    return median(std::move(values));
-  };
-  return {over_clouds(&Scores::precision), over_clouds(&Scores::recall),
-          over_clouds(&Scores::mcc),       over_clouds(&Scores::f1),
-          over_clouds(&Scores::accuracy),  over_clouds(&Scores::iou)};
+    for (const CloudScore& cloud : clouds) {
+      values.push_back(scores_of(cloud.counts).*column.score);
+    }
+    medians.*column.score = median(std::move(values));
+  }
+  return medians;
 }
 
 ConfusionCounts pooled_counts(const std::vector<CloudScore>& clouds) {
@@ -87,14 +75,13 @@ std::string to_json(const std::vector<CloudScore>& clouds, const Calibration* ca
 }
 
 std::string to_table(const std::vector<CloudScore>& clouds) {
-  std::string table = fmt::format("{:<24} {:>10} {:>9} {:>7} {:>7} {:>7} {:>8} {:>7}\n", "cloud",
-                                  "points", "precision", "recall", "MCC", "F1", "accuracy", "IoU");
+  std::string table = heading_line("cloud");
   for (const CloudScore& cloud : clouds) {
-    table += table_row(cloud.name, std::to_string(cloud.counts.total()), scores_of(cloud.counts));
+    table += score_line(cloud.name, std::to_string(cloud.counts.total()), scores_of(cloud.counts));
   }
   const ConfusionCounts pooled = pooled_counts(clouds);
-  table += table_row("median", "", median_scores(clouds));
-  table += table_row("pooled", std::to_string(pooled.total()), scores_of(pooled));
+  table += score_line("median", "", median_scores(clouds));
+  table += score_line("pooled", std::to_string(pooled.total()), scores_of(pooled));
   return table;
 }
 

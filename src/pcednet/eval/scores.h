@@ -1,8 +1,11 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string_view>
+#include <utility>
 
 namespace pcednet::eval {
 
@@ -21,6 +24,10 @@ enum class Positive {
   kEdge,      ///< sharp-edge and smooth-edge
   kBoundary,  ///< boundary alone
 };
+
+/// Their names in options.
+inline constexpr std::array<std::pair<std::string_view, Positive>, 3> kPositives = {
+    {{"sharp", Positive::kSharp}, {"edge", Positive::kEdge}, {"boundary", Positive::kBoundary}}};
 
 bool is_positive(std::uint8_t label, Positive positive);
 

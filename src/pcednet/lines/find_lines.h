@@ -1,7 +1,10 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "pcednet/core/progress.h"
@@ -16,6 +19,13 @@ enum class LineStage : std::uint8_t {
   kPieces,   ///< segments, arcs and circles, before they meet in corners
   kCurves,   ///< the result
 };
+
+/// Their names in options.
+inline constexpr std::array<std::pair<std::string_view, LineStage>, 4> kLineStages = {
+    {{"creases", LineStage::kCreases},
+     {"chains", LineStage::kChains},
+     {"pieces", LineStage::kPieces},
+     {"curves", LineStage::kCurves}}};
 
 /// Lengths are in the unit of the cloud; those that are 0 come from the spacing of the points.
 struct LineOptions {

@@ -1,9 +1,12 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <map>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 namespace pcednet::nn {
@@ -13,6 +16,10 @@ enum class NetworkKind {
   kFc,       ///< the same neurons, every layer connected to all of the one before
   kCnn,      ///< two 1D convolutions over the features, with the scales as channels
 };
+
+/// Their names in options.
+inline constexpr std::array<std::pair<std::string_view, NetworkKind>, 3> kNetworkKinds = {
+    {{"pcednet", NetworkKind::kPcednet}, {"fc", NetworkKind::kFc}, {"cnn", NetworkKind::kCnn}}};
 
 /// The shape of a network: everything but its weights.
 ///

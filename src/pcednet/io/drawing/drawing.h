@@ -1,10 +1,12 @@
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "pcednet/core/output_file.h"
@@ -17,6 +19,12 @@ enum class DxfVersion { kR12, k2000 };
 
 /// Where an SVG is seen from: above (x to the right, y up), the front (x, z) or the side (y, z).
 enum class View { kTop, kFront, kSide };
+
+/// Their names in options.
+inline constexpr std::array<std::pair<std::string_view, DxfVersion>, 2> kDxfVersions = {
+    {{"2000", DxfVersion::k2000}, {"r12", DxfVersion::kR12}}};
+inline constexpr std::array<std::pair<std::string_view, View>, 3> kViews = {
+    {{"top", View::kTop}, {"front", View::kFront}, {"side", View::kSide}}};
 
 struct DrawingOptions {
   Overwrite overwrite = Overwrite::kNo;
