@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 
 namespace pcednet {
 
@@ -13,6 +14,14 @@ void prefetch(const Element& element) {
   const auto* bytes = reinterpret_cast<const std::byte*>(&element);
   __builtin_prefetch(bytes);
   __builtin_prefetch(bytes + sizeof(Element) - 1);
+}
+
+/// Prefetches elements that follow each other in memory.
+template <typename Element>
+void prefetch_all(std::span<const Element> elements) {
+  constexpr std::size_t kCacheLine = 64;
+  const auto bytes = std::as_bytes(elements);
+  for (std::size_t i = 0; i < bytes.size(); i += kCacheLine) __builtin_prefetch(&bytes[i]);
 }
 
 }  // namespace pcednet

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-namespace pcednet::gls {
+#include "pcednet/core/prefetch.h"
 
-constexpr std::size_t kAhead = 16;
+namespace pcednet::gls {
 
 void CandidateList::reserve(std::size_t count) {
   const std::size_t room = count + kLanes;
@@ -30,11 +30,9 @@ bool BlockFrame::gather(const VoxelLevel& level, const TargetBox& box, const Vec
   std::size_t count = 0;
   for (std::size_t r = 0; r < runs_.size(); ++r) {
     const std::size_t begin = runs_[r] * spatial::BoxTree::kLeaf;
-    if (r + kAhead < runs_.size()) {
-      const std::size_t later = runs_[r + kAhead] * spatial::BoxTree::kLeaf;
-      for (std::size_t i = 0; i < spatial::BoxTree::kLeaf; ++i) {
-        __builtin_prefetch(level.voxels.data() + later + i);
-      }
+    if (r + kAskAhead < runs_.size()) {
+      const std::size_t later = runs_[r + kAskAhead] * spatial::BoxTree::kLeaf;
+      prefetch_all(std::span(level.voxels.data() + later, spatial::BoxTree::kLeaf));
     }
     const std::size_t end = std::min(begin + spatial::BoxTree::kLeaf, level.voxels.size());
     for (std::size_t i = begin; i < end; ++i) {

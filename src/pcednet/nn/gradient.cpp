@@ -4,6 +4,7 @@
 #include <array>
 
 #include "pcednet/core/parallel.h"
+#include "pcednet/core/prefetch.h"
 #include "pcednet/nn/plan.h"
 #include "pcednet/nn/targets.h"
 
@@ -79,7 +80,7 @@ double GradientMachine::run_chunk(Workspace& w, const TrainingSet& set,
     const std::size_t sample = chosen[std::min(p, chosen.size() - 1)];
     w.rows[p] = set.samples.data() + sample * inputs;
     // The samples are scattered in memory: prefetch all before the first is needed.
-    for (std::size_t u = 0; u < inputs; u += 16) __builtin_prefetch(w.rows[p] + u);
+    prefetch_all(std::span(w.rows[p], inputs));
     w.weights[p] = p < chosen.size() ? weight : 0.0f;
   }
   fill_targets(set, chosen, evaluator_.classes(), w.targets);

@@ -7,6 +7,7 @@
 
 #include "pcednet/core/error.h"
 #include "pcednet/core/parallel.h"
+#include "pcednet/core/prefetch.h"
 #include "pcednet/nn/evaluator.h"
 
 namespace pcednet::nn {
@@ -15,11 +16,6 @@ namespace {
 // A table of this many points stays in the first-level cache.
 constexpr std::size_t kPoints = kLaneStep;
 constexpr std::size_t kTask = 128 * kPoints;
-
-/// Prefetches memory that will be read soon, to overlap with the current work.
-void prefetch(std::span<const float> numbers) {
-  for (std::size_t i = 0; i < numbers.size(); i += 16) __builtin_prefetch(numbers.data() + i);
-}
 
 }  // namespace
 
@@ -54,7 +50,7 @@ void predict_into(const Model& model, std::span<const float> samples,
         rows[p] = samples.data() + (begin + std::min(p, points - 1)) * inputs;
       }
       const std::size_t next = std::min(begin + kPoints, task_end);
-      prefetch(samples.subspan(next * inputs, std::min(kPoints, task_end - next) * inputs));
+      prefetch_all(samples.subspan(next * inputs, std::min(kPoints, task_end - next) * inputs));
       evaluator.run(rows.data(), table);
       float* out = table.row(evaluator.logits_row());
       evaluator.kernels().softmax(out, evaluator.classes(), table.lanes(), evaluator.paired());
