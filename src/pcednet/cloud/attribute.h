@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -94,6 +95,14 @@ decltype(auto) visit_scalar(ScalarType type, Action&& action) {
       break;
   }
   return action(double{});
+}
+
+/// Whether a number, its fraction aside, lies in the range of an integer type.
+template <typename Integer>
+bool is_in_range(double value) {
+  // 2^bits is a double, the largest value of a 64-bit type is not.
+  constexpr double kEnd = 2.0 * static_cast<double>(std::numeric_limits<Integer>::max() / 2 + 1);
+  return value >= static_cast<double>(std::numeric_limits<Integer>::min()) && value < kEnd;
 }
 
 /// One named number (or a few, see `components`) per point, kept in the type it was read in.

@@ -31,4 +31,10 @@ std::vector<std::size_t> counts_before_blocks(std::size_t count, std::size_t blo
   return before;
 }
 
+/// The number of i below `count` for which work(i) is true; calls it once for each, on all threads.
+template <typename Work>
+std::size_t count_where(std::size_t count, const Work& work) {
+  return counts_before_blocks(count, 1 << 14, work).back();
+}
+
 }  // namespace pcednet

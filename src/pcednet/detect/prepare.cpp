@@ -191,10 +191,9 @@ void spread_positions(const Rounding& rounding, PreparedCloud& prepared) {
 
 /// Of the points in order. They are counted as they lie in memory.
 std::size_t count_usable(const PreparedCloud& prepared) {
-  const auto counts = [&](std::size_t i) {
+  return count_where(prepared.normals.size(), [&](std::size_t i) {
     return is_usable(prepared.normals[i]) && prepared.positions[i].allFinite();
-  };
-  return counts_before_blocks(prepared.normals.size(), 1 << 14, counts).back();
+  });
 }
 
 std::string why_estimated(const PreparedCloud& prepared, const Points& cloud) {
@@ -291,13 +290,13 @@ PreparedCloud prepare_points(const Points& cloud, const PrepareOptions& options,
 
 }  // namespace
 
-bool tells_of_estimated_normals(const PointCloud& outline) {
+bool declares_estimated_normals(const PointCloud& outline) {
   return std::find(outline.comments.begin(), outline.comments.end(), kEstimatedNormals) !=
          outline.comments.end();
 }
 
 bool has_estimated_normals(const PointCloud& cloud) {
-  return cloud.has_normals() && tells_of_estimated_normals(cloud);
+  return cloud.has_normals() && declares_estimated_normals(cloud);
 }
 
 void set_estimated_normals(PointCloud& cloud, bool estimated) {

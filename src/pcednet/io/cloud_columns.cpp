@@ -27,11 +27,7 @@ bool is_int64(ScalarType type) {
 template <typename T>
 bool survives(double value) {
   if constexpr (std::numeric_limits<T>::is_integer) {
-    // 2^bits is a double, the largest value of a 64-bit type is not.
-    constexpr T kHalf = std::numeric_limits<T>::max() / 2 + 1;
-    constexpr double kEnd = 2.0 * static_cast<double>(kHalf);
-    if (!(value >= static_cast<double>(std::numeric_limits<T>::min()) && value < kEnd))
-      return false;
+    if (!is_in_range<T>(value)) return false;
     if (value == 0.0 && std::signbit(value)) return false;
   }
   return std::isnan(value) || static_cast<double>(static_cast<T>(value)) == value;

@@ -43,10 +43,7 @@ bool parse_as(std::string_view token, T& value) {
     if constexpr (std::is_same_v<T, float>) {
       if (std::abs(wide) > std::numeric_limits<float>::max()) return false;
     } else {
-      constexpr T kHalf = std::numeric_limits<T>::max() / 2 + 1;
-      constexpr double kEnd = 2.0 * static_cast<double>(kHalf);
-      const double low = static_cast<double>(std::numeric_limits<T>::min());
-      if (!(wide >= low && wide < kEnd) || wide != std::floor(wide)) return false;
+      if (!is_in_range<T>(wide) || wide != std::floor(wide)) return false;
     }
     value = static_cast<T>(wide);
     return true;

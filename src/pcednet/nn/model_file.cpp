@@ -40,12 +40,6 @@ std::vector<float> part(const std::vector<float>& all, std::size_t begin, std::s
           all.begin() + static_cast<std::ptrdiff_t>(end)};
 }
 
-std::size_t count_of(const std::vector<std::size_t>& shape) {
-  std::size_t count = 1;
-  for (const std::size_t n : shape) count *= n;
-  return count;
-}
-
 /// Takes a file's tensors apart, each once.
 class Tensors {
  public:

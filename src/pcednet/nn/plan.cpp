@@ -32,12 +32,6 @@ void check(const Architecture& a) {
   }
 }
 
-std::size_t product(const std::vector<std::size_t>& shape) {
-  std::size_t total = 1;
-  for (const std::size_t n : shape) total *= n;
-  return total;
-}
-
 /// Appends layers, each reading the rows that the one before wrote.
 class Builder {
  public:
@@ -115,8 +109,8 @@ class Builder {
 
   void place(Layer& layer) {
     layer.weight = plan_.parameters;
-    layer.bias = layer.weight + product(layer.weight_shape);
-    plan_.parameters = layer.bias + product(layer.bias_shape);
+    layer.bias = layer.weight + count_of(layer.weight_shape);
+    plan_.parameters = layer.bias + count_of(layer.bias_shape);
   }
 
   void finish(Layer layer) {
@@ -132,6 +126,12 @@ class Builder {
 };
 
 }  // namespace
+
+std::size_t count_of(const std::vector<std::size_t>& shape) {
+  std::size_t count = 1;
+  for (const std::size_t n : shape) count *= n;
+  return count;
+}
 
 Plan make_plan(const Architecture& a) {
   check(a);

@@ -41,6 +41,9 @@ struct Plan {
   std::size_t parameters = 0;
 };
 
+/// The number of values of a tensor of this shape.
+std::size_t count_of(const std::vector<std::size_t>& shape);
+
 /// Throws Error(kUsage) for a shape that cannot be built.
 Plan make_plan(const Architecture& architecture);
 

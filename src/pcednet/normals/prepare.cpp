@@ -1,29 +1,15 @@
 #include "pcednet/normals/prepare.h"
 
 #include <algorithm>
-#include <atomic>
 
 #include "pcednet/cloud/bounding_box.h"
-#include "pcednet/core/parallel.h"
+#include "pcednet/core/parallel_loops.h"
 
 namespace pcednet::normals {
 namespace {
 
 bool is_missing(const Vec3& normal) {
   return normal.isZero(0.0);
-}
-
-/// The number of indices below `count` for which `work` returns true; calls it for each, on all
-/// threads.
-template <typename Work>
-std::size_t count_where(std::size_t count, const Work& work) {
-  std::atomic<std::size_t> sum = 0;
-  parallel_blocks(count, 1 << 14, [&](std::size_t begin, std::size_t end) {
-    std::size_t here = 0;
-    for (std::size_t i = begin; i < end; ++i) here += work(i);
-    sum += here;
-  });
-  return sum;
 }
 
 OrientOptions orientation_on(const NeighbourGraph& graph, const OrientedNormalsOptions& options) {

@@ -3,13 +3,12 @@
 #include <fmt/format.h>
 #include <openssl/evp.h>
 
+#include <algorithm>
 #include <array>
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
 #include <vector>
 
 #include "pcednet/core/error.h"
+#include "pcednet/io/input_file.h"
 
 namespace pcednet::tiles {
 namespace {
@@ -42,19 +41,14 @@ std::string Sha256::hex() {
 }
 
 std::string sha256_of_file(const std::filesystem::path& path) {
-  const auto fail = [&] {
-    return Error(ErrorKind::kUnreadable,
-                 fmt::format("{}: {}", path.string(), std::strerror(errno)));
-  };
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rbe"),
-                                                             &std::fclose);
-  if (!file) throw fail();
+  const io::InputFile file(path);
   Sha256 digest;
   std::vector<std::byte> some(std::size_t{1} << 20);
-  while (const std::size_t read = std::fread(some.data(), 1, some.size(), file.get())) {
-    digest.add(std::span(some).first(read));
+  for (std::uint64_t at = 0; at < file.size(); at += some.size()) {
+    const auto part = std::span(some).first(std::min<std::size_t>(some.size(), file.size() - at));
+    file.read(at, part);
+    digest.add(part);
   }
-  if (std::ferror(file.get()) != 0) throw fail();
   return digest.hex();
 }
 
