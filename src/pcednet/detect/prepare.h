@@ -34,7 +34,7 @@ struct NormalsDecision {
 inline constexpr std::string_view kEstimatedNormals = "pcednet normals estimated";
 bool has_estimated_normals(const PointCloud& cloud);
 /// The same for the comments of a cloud whose points are held elsewhere.
-bool tells_of_estimated_normals(const PointCloud& outline);
+bool declares_estimated_normals(const PointCloud& outline);
 /// Gives the cloud the comment, or takes it away.
 void set_estimated_normals(PointCloud& cloud, bool estimated);
 

@@ -23,7 +23,7 @@ bool may_be_open(const NormalBox& normals, float open_from);
 
 /// The sources that gates may admit, divided.
 struct GatedList {
-  Room<std::uint32_t> open, rest;
+  Scratch<std::uint32_t> open, rest;
 };
 
 /// A part of a block: the sources near it, except those inside the support of all its points, which

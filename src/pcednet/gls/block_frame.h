@@ -18,7 +18,7 @@ inline constexpr float kReach = 1.00001f;
 /// A buffer for values that are written before they are read: it grows without keeping or clearing
 /// them.
 template <typename Value>
-class Room {
+class Scratch {
  public:
   /// At least `count` values.
   Value* make(std::size_t count) {
@@ -50,8 +50,8 @@ class CandidateList {
   Candidates view = {};
 
  private:
-  Room<float> x_, y_, z_;
-  Room<std::uint32_t> index_;
+  Scratch<float> x_, y_, z_;
+  Scratch<std::uint32_t> index_;
 };
 
 /// An axis-aligned box of evaluation points.
@@ -107,8 +107,8 @@ class BlockFrame {
   Vec3 origin_ = Vec3::Zero();
   double inverse_t_ = 1.0, reach_ = 0.0;
   std::vector<std::uint32_t> runs_;
-  Room<Source> sources_;
-  Room<Entry> entries_;
+  Scratch<Source> sources_;
+  Scratch<Entry> entries_;
   CandidateList candidates_;
 };
 

@@ -19,7 +19,7 @@ struct Member {
 };
 
 /// Memory to work in, as large as the members.
-struct Room {
+struct WorkMemory {
   std::span<double> values;
   std::span<Member> members;
 };
@@ -101,8 +101,9 @@ Eigen::Index longest_axis(std::span<const Member> members) {
 
 /// Moves the `half` members that are lowest along an axis to the front, of equally low ones the
 /// first. Both parts keep their order.
-void divide(std::span<Member> members, std::size_t half, Eigen::Index axis, const Room& room) {
-  const auto values = room.values.first(members.size());
+void divide(std::span<Member> members, std::size_t half, Eigen::Index axis,
+            const WorkMemory& memory) {
+  const auto values = memory.values.first(members.size());
   for (std::size_t i = 0; i < members.size(); ++i) values[i] = members[i].position[axis];
   const auto [middle, lower] = of_rank(values, half);
   std::size_t at_middle = half - lower;  // of those, which go to the front
@@ -112,21 +113,21 @@ void divide(std::span<Member> members, std::size_t half, Eigen::Index axis, cons
     const bool is_middle = member.position[axis] == middle && at_middle > 0;
     const bool is_low = member.position[axis] < middle || is_middle;
     at_middle -= is_middle ? 1 : 0;
-    members[front] = room.members[back] = member;
+    members[front] = memory.members[back] = member;
     front += is_low ? 1 : 0;
     back += is_low ? 0 : 1;
   }
-  std::copy_n(room.members.begin(), back, members.begin() + static_cast<std::ptrdiff_t>(front));
+  std::copy_n(memory.members.begin(), back, members.begin() + static_cast<std::ptrdiff_t>(front));
 }
 
 /// Halves the members, given in the order of the curve, until few are left.
-void arrange(std::span<Member> members, const Room& room) {
+void arrange(std::span<Member> members, const WorkMemory& memory) {
   if (members.size() <= kSmallest) return;
   const std::size_t runs = (members.size() + kSmallest - 1) / kSmallest;
   const std::size_t half = (runs + 1) / 2 * kSmallest;
-  divide(members, half, longest_axis(members), room);
-  arrange(members.first(half), room);
-  arrange(members.subspan(half), room);
+  divide(members, half, longest_axis(members), memory);
+  arrange(members.first(half), memory);
+  arrange(members.subspan(half), memory);
 }
 
 }  // namespace

@@ -29,13 +29,13 @@ constexpr std::size_t kVotesAtOnce = 1024;
 }
 
 /// Some points and their normals, side by side.
-struct Lanes {
+struct VoteLanes {
   static constexpr std::size_t kMost = 64;
   alignas(64) double point[3][kMost], normal[3][kMost];
 };
 
 PCEDNET_VECTOR_CLONES
-void vote_in_lanes(const double* p, const double* n, const Lanes& lanes, std::size_t count,
+void vote_in_lanes(const double* p, const double* n, const VoteLanes& lanes, std::size_t count,
                    std::int32_t* __restrict votes) {
   const double at[3] = {p[0], p[1], p[2]}, along[3] = {n[0], n[1], n[2]};
   for (std::size_t k = 0; k < count; ++k) {
@@ -210,13 +210,13 @@ SignVotes::SignVotes(std::span<const Vec3> points, std::span<const Vec3> normals
                      const Adjacency& links)
     : links_(&links), votes_(links.target.size()) {
   parallel_blocks(points.size(), kVotesAtOnce, [&](std::size_t begin, std::size_t end) {
-    Lanes lanes = {};
-    std::array<std::int32_t, Lanes::kMost> votes;
+    VoteLanes lanes = {};
+    std::array<std::int32_t, VoteLanes::kMost> votes;
     for (std::size_t i = begin; i < end; ++i) {
       const auto row = links.of(i);
       std::int32_t* const out = votes_.data() + links.first[i];
-      for (std::size_t first = 0; first < row.size(); first += Lanes::kMost) {
-        const auto some = row.subspan(first, std::min(Lanes::kMost, row.size() - first));
+      for (std::size_t first = 0; first < row.size(); first += VoteLanes::kMost) {
+        const auto some = row.subspan(first, std::min(VoteLanes::kMost, row.size() - first));
         for (std::size_t k = 0; k < some.size(); ++k) {
           const Vec3 &q = points[some[k]], &m = normals[some[k]];
           for (int a = 0; a < 3; ++a) lanes.point[a][k] = q[a], lanes.normal[a][k] = m[a];

@@ -231,8 +231,8 @@ void check_agreement(const std::vector<IndexedInput>& inputs, Plan& plan) {
                                       outline.foreign_elements.end(), io::is_las_element);
     if (&input == &first) continue;
     check_columns(first, input);
-    if (detect::tells_of_estimated_normals(first.outline) !=
-        detect::tells_of_estimated_normals(outline)) {
+    if (detect::declares_estimated_normals(first.outline) !=
+        detect::declares_estimated_normals(outline)) {
       refuse_pair(first, input, "differ in whether pcednet estimated their normals");
     }
     const io::LasFile other = io::attached_las_file(outline);

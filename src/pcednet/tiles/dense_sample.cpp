@@ -114,7 +114,7 @@ PointCloud read_dense_sample(std::span<const Vec3> sample, const Plan& plan,
   const PointCloud outline = outline_of(plan);
   if (plan.inputs.size() == 1) dense.scanners = outline.scanners;
   dense.position_type = outline.position_type;
-  detect::set_estimated_normals(dense, detect::tells_of_estimated_normals(outline));
+  detect::set_estimated_normals(dense, detect::declares_estimated_normals(outline));
   Stage stage(progress, "dense sample", plan.inputs.size());
   for (const PlannedInput& input : plan.inputs) {
     for_each_chunk(input, is_wanted, progress,

@@ -47,7 +47,7 @@ void add_core(const PointCloud& core, PointCloud& all) {
   all.positions.insert(all.positions.begin(), places.begin(), places.end());
   all.normals.insert(all.normals.begin(), core.normals.begin(), core.normals.end());
   all.scanners = core.scanners;
-  detect::set_estimated_normals(all, detect::tells_of_estimated_normals(core));
+  detect::set_estimated_normals(all, detect::declares_estimated_normals(core));
 }
 
 detect::PartOfCloud part_of(const Plan& plan, std::size_t tile, const TileCloud& points) {
