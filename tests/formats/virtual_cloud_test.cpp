@@ -184,7 +184,8 @@ TEST_F(VirtualCloud, IsRefusedWhereItNamesNoFileThatIsThere) {
   for (const char* text : {"", "{", "[]", "{\"features\": 7}", "LASF"}) {
     EXPECT_TRUE(io::contains(refusal(ErrorKind::kUnreadable, text), "not a virtual point cloud"));
   }
-  EXPECT_TRUE(io::contains(refusal(ErrorKind::kUnreadable, naming("./none.laz")), "there is no"));
+  EXPECT_TRUE(
+      io::contains(refusal(ErrorKind::kUnreadable, naming("./none.laz")), "does not exist"));
   EXPECT_TRUE(
       io::contains(refusal(ErrorKind::kUnreadable, naming("https://a.b/c.copc.laz")), "is remote"));
   for (const char* text : {"{\"features\": []}", "{\"features\": [7, {}, {\"assets\": 3}]}"}) {
