@@ -6,17 +6,21 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <optional>
 
 #include "pcednet/core/error.h"
 #include "pcednet/core/random_vectors.h"
 #include "support/expect_error.h"
 #include "support/own_folder.h"
 #include "workbench/annotate/journal.h"
+#include "workbench/annotate/painting.h"
 #include "workbench/annotate/places.h"
 #include "workbench/annotate/select.h"
 
 namespace pcednet::annotate {
 namespace {
+
+namespace fs = std::filesystem;
 
 /// Two parallel sheets that face away from each other, 0.02 apart, about `origin`.
 struct Sheets {
@@ -208,6 +212,75 @@ TEST_F(JournalTest, RefusesWhatIsDamagedOrOfAnotherInput) {
         R"({"stroke":"x","class":1,"points":[5,0]})", R"({"stroke":"x","class":1,"points":[-1]})",
         R"({"stroke":"x","class":1,"points":[18446744073709551615,2]})"}) {
     EXPECT_ERROR(ErrorKind::kUnreadable, parse_record(line, 100)) << line;
+  }
+}
+
+/// Strokes of a project in a folder of its own.
+class PaintingTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    fs::remove_all(folder_);
+    fs::create_directory(folder_);
+    painting_.emplace(folder_ / "a.json", input_);
+    paint("first");
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  void paint(const std::string& id) {
+    painting_->add({.id = id, .edge_class = 2, .points = {strokes_++}});
+  }
+
+  std::size_t kept() {
+    painting_.reset();  // which lets go of the journal
+    return Painting(folder_ / "a.json", input_).records().size();
+  }
+
+  const fs::path folder_ =
+      fs::path(testing::TempDir()) /
+      ("pcednet_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+  const fs::path journal_ = folder_ / "a.json.journal";
+  const Inputs input_ = {{.name = "a.ply", .digest = "d", .points = 100}};
+  std::optional<Painting> painting_ = {};
+  std::uint32_t strokes_ = 0;
+};
+
+TEST_F(PaintingTest, WritesADeletedJournalAgain) {
+  fs::remove(journal_);
+  paint("second");
+  paint("third");
+  EXPECT_EQ(kept(), 3u);
+}
+
+TEST_F(PaintingTest, RefusesStrokesWhileItsFolderIsGone) {
+  fs::remove_all(folder_);
+  EXPECT_ERROR(ErrorKind::kFailure, paint("second"));
+  EXPECT_EQ(painting_->records().size(), 1u);
+  fs::create_directory(folder_);
+  paint("third");
+  EXPECT_EQ(kept(), 2u);
+}
+
+TEST_F(PaintingTest, WritesIntoNoOtherFileInThePlaceOfItsJournal) {
+  fs::rename(journal_, folder_ / "moved");
+  std::ofstream(journal_) << "mine\n";
+  EXPECT_ERROR(ErrorKind::kFailure, paint("second"));
+  EXPECT_EQ(fs::file_size(journal_), 5u);
+  fs::remove(journal_);
+  paint("third");
+  EXPECT_EQ(kept(), 2u);
+}
+
+TEST_F(PaintingTest, SaysWhatIsWrongWithAProjectAndWhatToDo) {
+  painting_.reset();
+  fs::remove(journal_);
+  std::ofstream(folder_ / "a.json") << "{";
+  try {
+    Painting(folder_ / "a.json", input_);
+    FAIL();
+  } catch (const Error& error) {
+    const std::string words = error.what();
+    EXPECT_EQ(words.find("json.exception"), words.npos) << words;
+    EXPECT_NE(words.find("; move it away to start afresh"), words.npos) << words;
   }
 }
 

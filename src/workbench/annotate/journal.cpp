@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -110,6 +111,22 @@ void Journal::read(const Inputs& inputs, std::vector<Record>& records) {
 
 void Journal::append(const Record& record) {
   write_line(to_line(record));
+}
+
+void Journal::restore_if_deleted(const Inputs& inputs, std::span<const Record> records) {
+  struct stat ours = {}, there = {};
+  if (::stat(path_.c_str(), &there) == 0) {
+    const bool is_ours =
+        ::fstat(file_, &ours) == 0 && ours.st_dev == there.st_dev && ours.st_ino == there.st_ino;
+    if (is_ours) return;
+    throw Error(ErrorKind::kFailure,
+                fmt::format("{}: is another file now: move it away to go on", path_.string()));
+  }
+  if (errno != ENOENT) fail("cannot be found");
+  std::string text = to_line(inputs) + "\n";
+  for (const Record& record : records) text += to_line(record) + "\n";
+  rewrite(text);
+  if (::lseek(file_, 0, SEEK_END) < 0) fail("cannot be appended to");
 }
 
 void Journal::write_line(const std::string& line) {

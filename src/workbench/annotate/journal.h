@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <vector>
 
 #include "workbench/annotate/project.h"
@@ -23,6 +24,10 @@ class Journal {
   /// Adds a record and flushes it to disk. Throws Error(kFailure), in which case the record is not
   /// added.
   void append(const Record& record);
+
+  /// Writes the journal again, from all its records, if its file was deleted: lines added to that
+  /// would be lost. Throws Error(kFailure) if that fails or another file is in its place.
+  void restore_if_deleted(const Inputs& inputs, std::span<const Record> records);
 
  private:
   void open();

@@ -12,9 +12,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
+Project read_own_project(const fs::path& path) {
+  try {
+    return read_project(path);
+  } catch (const Error& error) {
+    if (error.kind() != ErrorKind::kUnreadable) throw;
+    throw Error(error.kind(), fmt::format("{}; move it away to start afresh", error.what()));
+  }
+}
+
 std::vector<Record> records_of(const fs::path& path, const Inputs& inputs) {
   if (!fs::exists(path)) return {};
-  Project project = read_project(path);
+  Project project = read_own_project(path);
   if (!begins_with(inputs, project.inputs)) {
     throw Error(ErrorKind::kInsufficient,
                 fmt::format("{}: a project of {}, not of this {}", path.string(),
@@ -32,11 +41,11 @@ fs::path journal_of(fs::path project) {
 Inputs inputs_of_project(const fs::path& project) {
   std::ifstream journal(journal_of(project));
   if (std::string line; std::getline(journal, line)) return parse_inputs(line);
-  return fs::exists(project) ? read_project(project).inputs : Inputs();
+  return fs::exists(project) ? read_own_project(project).inputs : Inputs();
 }
 
 Painting::Painting(const fs::path& project, const Inputs& inputs)
-    : now_{.labels = Labels(points_of(inputs))} {
+    : inputs_(inputs), now_{.labels = Labels(points_of(inputs))} {
   const std::vector<Record> saved = records_of(project, inputs);
   records_ = saved;
   const fs::path path = journal_of(project);
@@ -55,6 +64,7 @@ Painting::Painting(const fs::path& project, const Inputs& inputs)
 }
 
 std::span<const std::uint32_t> Painting::add(Record record) {
+  journal_->restore_if_deleted(inputs_, records_);
   journal_->append(record);
   records_.push_back(std::move(record));
   return replay(records_.back(), now_);

@@ -17,7 +17,7 @@ std::filesystem::path journal_of(std::filesystem::path project);
 Inputs inputs_of_project(const std::filesystem::path& project);
 
 /// The history of a cloud and its result: labels and settings always equal those from replaying the
-/// records, and every record is in the journal.
+/// records, and every record is in the journal, which is written again if its file was deleted.
 class Painting {
  public:
   /// Merges the project at `project` (which need not exist) and its journal; `inputs` may continue
@@ -32,7 +32,7 @@ class Painting {
   const Replayed& now() const { return now_; }
 
   /// Appends the record to the journal, then applies it; returns the points that it concerns, valid
-  /// until the next call. Throws as Journal::append() does, in which case nothing changes.
+  /// until the next call. Throws as the journal does, in which case nothing changes.
   std::span<const std::uint32_t> add(Record record);
 
   /// The number of the next run.
@@ -48,6 +48,7 @@ class Painting {
   bool is_painted_after(std::size_t records) const;
 
  private:
+  Inputs inputs_;
   std::unique_ptr<Journal> journal_;
   std::vector<Record> records_;
   Replayed now_;

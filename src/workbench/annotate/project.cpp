@@ -216,6 +216,13 @@ Json head_of(const Inputs& inputs) {
   return {{"format", kSeveralFormat}, {"inputs", std::move(list)}};
 }
 
+/// What a reader of the file needs: "[json.exception.parse_error.101] " is of the library.
+std::string words_of(const Json::exception& error) {
+  const std::string_view words = error.what();
+  const std::size_t end = words.find("] ");
+  return std::string(words.starts_with('[') && end != words.npos ? words.substr(end + 2) : words);
+}
+
 /// Runs `read` and turns any exception into Error(kUnreadable).
 template <typename Read>
 auto strictly(Read&& read) {
@@ -224,7 +231,7 @@ auto strictly(Read&& read) {
   } catch (const Error& error) {
     refuse_project(error.what());
   } catch (const Json::exception& error) {
-    refuse_project(error.what());
+    refuse_project(words_of(error));
   }
 }
 
@@ -277,7 +284,7 @@ ProjectClasses parse_classes_change(std::string_view text) {
   try {
     return classes_in(parse_json(text).at("classes"));
   } catch (const Json::exception& error) {
-    throw Error(ErrorKind::kUsage, fmt::format("classes: {}", error.what()));
+    throw Error(ErrorKind::kUsage, fmt::format("classes: {}", words_of(error)));
   }
 }
 
@@ -285,7 +292,7 @@ SettingsChange parse_settings_change(std::string_view text) {
   try {
     return settings_change_of(parse_json(text));
   } catch (const Json::exception& error) {
-    throw Error(ErrorKind::kUsage, fmt::format("settings: {}", error.what()));
+    throw Error(ErrorKind::kUsage, fmt::format("settings: {}", words_of(error)));
   }
 }
 
