@@ -83,6 +83,11 @@ detect::EdgeModel with_classes(detect::EdgeModel model, int classes) {
   return model;
 }
 
+bool knows_smooth_edge(const detect::EdgeModel& model) {
+  const auto& ids = model.classes;
+  return !has_edges(model.table) || std::find(ids.begin(), ids.end(), kSmoothEdge) != ids.end();
+}
+
 detect::EdgeModel with_names(detect::EdgeModel model, const ClassTable& table) {
   model.table = table;
   auto& names = model.network.class_names;

@@ -22,6 +22,9 @@ detect::EdgeModel with_outputs(detect::EdgeModel model, const ClassTable& table,
 /// Otherwise, and without edge classes, `model` unchanged.
 detect::EdgeModel with_classes(detect::EdgeModel model, int classes);
 
+/// Whether smooth-edge is an answer of the model, or no class of its table.
+bool knows_smooth_edge(const detect::EdgeModel& model);
+
 /// `model` with the names and colours that `table` has now.
 detect::EdgeModel with_names(detect::EdgeModel model, const ClassTable& table);
 

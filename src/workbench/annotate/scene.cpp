@@ -13,6 +13,12 @@
 #include "workbench/annotate/not_found.h"
 
 namespace pcednet::annotate {
+namespace {
+
+/// With a ratio, a range begins at the mean of the middle half of the spacings.
+constexpr double kAnyRatio = 10.0;
+
+}  // namespace
 
 std::shared_ptr<const Scene> load_scene(const std::filesystem::path& input,
                                         const Progress* progress) {
@@ -32,9 +38,11 @@ std::shared_ptr<const Scene> load_scene(const std::filesystem::path& input,
   stage.advance();
   const auto curve = spatial::curve_order(scene->cloud.positions);
   const std::vector<Vec3> ordered = spatial::in_order(scene->cloud.positions, curve);
-  const auto range = gls::scale_range(
-      ordered, {}, [&] { return gls::spacings_of_places(scene->cloud.positions, curve); });
-  scene->spacing = range.s_min;
+  const std::vector<double> spacings = gls::spacings_of_places(scene->cloud.positions, curve);
+  const auto range = gls::scale_range(ordered, {}, [&] { return spacings; });
+  scene->spacing = gls::scale_range(ordered, {.s_max_ratio = kAnyRatio, .rounded = false}, [&] {
+                     return spacings;
+                   }).s_min;
   const auto scales = gls::sample_scales(range, gls::ScaleSpaceOptions{}.scales);
   if (const auto note = gls::note_on({}, scales, ordered); !note.empty()) {
     scene->warnings.push_back(note);

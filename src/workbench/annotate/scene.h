@@ -23,7 +23,7 @@ struct Scene {
   detect::PreparedCloud prepared = {};
   BoundingBox bounds = {};
   Vec3 origin = Vec3::Zero();  ///< what local coordinates are relative to
-  double spacing = 0.0;        ///< the mean one
+  double spacing = 0.0;        ///< the mean of the middle half: no far point changes it
   std::vector<detect::BoundaryPoint> boundary = {};
   Layout layout = {};
   std::unique_ptr<const Selector> selector = {};

@@ -9,6 +9,7 @@
 #include "pcednet/formats/write_cloud.h"
 #include "workbench/annotate/learn.h"
 #include "workbench/annotate/not_found.h"
+#include "workbench/annotate/outputs.h"
 #include "workbench/annotate/session_state.h"
 
 namespace pcednet::annotate {
@@ -202,7 +203,10 @@ Settings Session::change_settings(const SettingsChange& change) {
   lock.lock();
   Settings wanted = wanted_now();
   // A start that another request has chosen since was checked by that.
-  if (start && wanted.start == name) check_start(*start, name, s.painting->classes().table);
+  if (start && wanted.start == name) {
+    check_start(*start, name, s.painting->classes().table);
+    if (!knows_smooth_edge(*start)) wanted.classes = 2;
+  }
   if (wanted != s.painting->settings()) {
     s.painting->add({.kind = Record::Kind::kSettings, .settings = wanted});
     s.schedule();
@@ -236,6 +240,7 @@ void Session::State::begin_anew() {
   Settings settings = painting->settings();
   settings.start =
       options.model.empty() || !begins_from(options.model) ? kRandomStart : options.model;
+  fit_to_start(settings);
   if (settings != painting->settings()) {
     painting->add({.kind = Record::Kind::kSettings, .settings = settings});
   }

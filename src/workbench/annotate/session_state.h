@@ -117,6 +117,7 @@ struct Session::State {
   void choose_classes();
   void choose_start(bool is_new);
   bool begins_from(const std::string& model) const;
+  void fit_to_start(Settings& settings) const;
   void remember_runs();
   std::vector<std::uint32_t> points_of(const std::vector<std::size_t>& nodes,
                                        std::size_t cloud) const;

@@ -196,21 +196,33 @@ void Session::State::restore_once(int number, std::uint64_t mine) {
   show(std::move(run));
 }
 
-/// Shows the predictions of the start itself: a run without training, number 0.
+/// Shows the predictions of the start itself: a run without training, number 0. They are those of
+/// `classify`: the model's experts decide on clouds of their kinds. With own classes no model has
+/// experts, so there the start's networks decide.
 void Session::State::show_start(const Settings& settings, std::uint64_t mine) {
   Stopwatch watch;
-  const auto from = start_of(settings, scenes.size(), mine);
   Run run{.record = {.number = 0, .records = 0, .settings = settings}};
+  detect::Classification found;
+  if (has_own_classes(table())) {
+    const auto from = start_of(settings, scenes.size(), mine);
+    run.model = from->model;
+    found = from->answer;
+  } else {
+    run.model = with_classes(options.load_model(settings.start), settings.classes);
+    check_start(*run.model, settings.start, table());
+  }
+  run.predictions = predictions_of(*run.model, found, mine);
   run.record.facts = {.painted = 0,
-                      .classes = static_cast<int>(from->model.classes.size()),
+                      .classes = static_cast<int>(run.model->classes.size()),
                       .seconds_train = 0,
                       .seconds_classify = watch.lap(),
                       .time = now_as_text()};
-  run.model = from->model;
-  run.predictions = predictions_of(from->model, from->answer, mine);
-  const Lock lock(mutex);
-  if (orders.generation != mine || orders.stopping) return;
-  show(std::move(run));
+  {
+    const Lock lock(mutex);
+    if (orders.generation != mine || orders.stopping) return;
+    show(std::move(run));
+  }
+  start_of(settings, scenes.size(), mine);  // so that the first training need not wait for it
 }
 
 void Session::State::show(Run run) {

@@ -153,8 +153,15 @@ void Session::State::choose_start(bool is_new) {
     }
     wanted.start = kRandomStart;
   }
+  fit_to_start(wanted);
   if (wanted == painting->settings()) return;
   painting->add({.kind = Record::Kind::kSettings, .settings = wanted});
+}
+
+/// A start without smooth-edge learns two classes, whatever was chosen.
+void Session::State::fit_to_start(Settings& settings) const {
+  if (settings.start == kRandomStart) return;
+  if (!knows_smooth_edge(options.load_model(settings.start))) settings.classes = 2;
 }
 
 /// Whether training may start from that model, or from nothing.

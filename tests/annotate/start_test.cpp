@@ -1,0 +1,113 @@
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <chrono>
+#include <filesystem>
+#include <optional>
+#include <thread>
+
+#include "pcednet/core/random_vectors.h"
+#include "pcednet/detect/decide.h"
+#include "pcednet/formats/read_cloud.h"
+#include "pcednet/formats/write_cloud.h"
+#include "workbench/annotate/scene.h"
+#include "workbench/annotate/session.h"
+
+namespace pcednet::annotate {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Exact points of a cube, without normals.
+PointCloud cube_without_normals(int points) {
+  Random random(9);
+  PointCloud cloud;
+  for (int i = 0; i < points; ++i) {
+    Vec3 p = uniform_vector(random, -Vec3::Ones(), Vec3::Ones());
+    p[i % 3] = random.uniform() < 0.5 ? -1 : 1;
+    cloud.positions.push_back(p);
+  }
+  return cloud;
+}
+
+detect::EdgeModel shipped(const std::string& name) {
+  return detect::load_model(PCEDNET_SOURCE_DIR "/models/" + name + ".safetensors");
+}
+
+/// Two clouds on which different experts of `general` decide.
+class StartOfSession : public testing::Test {
+ protected:
+  void SetUp() override {
+    fs::remove_all(folder_);
+    fs::create_directory(folder_);
+    formats::write_cloud(folder_ / "large.ply", cube_without_normals(6000), {});
+    formats::write_cloud(folder_ / "small.ply", cube_without_normals(1500), {});
+    SessionOptions options{.input = folder_ / "large.ply", .further = {folder_ / "small.ply"}};
+    options.model = "general";
+    options.load_model = shipped;
+    options.emit = [this](const Event& event) {
+      if (std::holds_alternative<Predicted>(event)) ++predicted_;
+    };
+    session_.emplace(options);
+    session_->wait_until_ready();
+    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+    while (predicted_ == 0 && std::chrono::steady_clock::now() < end) std::this_thread::yield();
+    ASSERT_EQ(predicted_, 1);
+  }
+  void TearDown() override {
+    session_.reset();
+    fs::remove_all(folder_);
+  }
+
+  const fs::path folder_ =
+      fs::path(testing::TempDir()) /
+      ("pcednet_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+  std::atomic<int> predicted_ = 0;
+  std::optional<Session> session_ = {};
+};
+
+TEST_F(StartOfSession, ShowsWhatClassifyFindsInEachCloud) {
+  const detect::EdgeModel general = shipped("general");
+  std::vector<std::optional<detect::CloudKind>> kinds;
+  for (const std::size_t k : {0u, 1u}) {
+    const fs::path input = folder_ / (k == 0 ? "large.ply" : "small.ply");
+    const PointCloud cloud = formats::read_cloud(input).cloud;
+    const auto prepared = detect::prepare(cloud);
+    auto found = detect::classify(prepared, general);
+    detect::mark_boundary(detect::find_boundary(prepared), found.classes);
+    kinds.push_back(found.expert);
+    session_->save(Saved::kCloud, folder_ / "saved.ply", Overwrite::kYes, k);
+    EXPECT_EQ(formats::read_cloud(folder_ / "saved.ply").cloud.labels, found.classes) << k;
+  }
+  EXPECT_TRUE(kinds[0] && kinds[0]->exact);  // where the distance to the crease decides
+  EXPECT_TRUE(kinds[1] && kinds[1]->below > 0);
+}
+
+TEST_F(StartOfSession, SavesTheWholeModel) {
+  session_->save(Saved::kModel, folder_ / "saved.safetensors", Overwrite::kYes);
+  const detect::EdgeModel saved = detect::load_model(folder_ / "saved.safetensors");
+  EXPECT_EQ(saved.experts.size(), shipped("general").experts.size());
+  EXPECT_GT(saved.experts.size(), 0u);
+}
+
+TEST_F(StartOfSession, LearnsTwoClassesFromAModelOfTwo) {
+  EXPECT_EQ(session_->change_settings({.start = "cad"}).classes, 2);
+  EXPECT_EQ(session_->change_settings({.classes = 3}).classes, 2);
+  EXPECT_EQ(session_->change_settings({.classes = 3, .start = "general"}).classes, 3);
+}
+
+TEST(SpacingOfAScene, IsNotThatOfAPointFarAway) {
+  const fs::path path = fs::path(testing::TempDir()) / "pcednet_far_point.ply";
+  PointCloud cloud = cube_without_normals(3000);
+  const auto spacing = [&] {
+    formats::write_cloud(path, cloud, {.overwrite = Overwrite::kYes});
+    return load_scene(path)->spacing;
+  };
+  const double without = spacing();
+  cloud.positions.emplace_back(1e4, 0, 0);
+  EXPECT_NEAR(spacing() / without, 1.0, 0.02);
+  fs::remove(path);
+}
+
+}  // namespace
+}  // namespace pcednet::annotate
