@@ -52,6 +52,16 @@ TEST(ProjectClasses, ThenAreAddedToRenamedAndRemovedWhereNothingIsPainted) {
   EXPECT_ERROR(ErrorKind::kUsage, come_back("ground,wall,tree"));
 }
 
+TEST(ProjectClasses, HaveNamesThatDifferByMoreThanCaseAndHyphens) {
+  const auto change = [](const char* table, const std::set<std::uint8_t>& removed = {}) {
+    check_change({}, {.table = parse_classes(table), .removed = removed}, kNothing, {});
+  };
+  EXPECT_ERROR(ErrorKind::kUsage, change("edges,Sharp edge"));
+  EXPECT_ERROR(ErrorKind::kUsage, change("pipe,tall_wall,tall wall"));
+  EXPECT_NO_THROW(change("pipe,Pipe", {0}));
+  EXPECT_NO_THROW(change("ground,pipe,pipe 2"));
+}
+
 TEST(ProjectClasses, AskedForByNameAddToThoseThatAreThere) {
   const ProjectClasses now{.table = parse_classes("ground=#000001,wall"), .removed = {1}};
   const ProjectClasses more = wanted_classes(now, parse_classes("ground,wall,pipe"));

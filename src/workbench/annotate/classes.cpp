@@ -13,6 +13,25 @@ namespace {
   throw Error(ErrorKind::kUsage, "classes: " + why);
 }
 
+/// Names that look alike are equal in it: "Sharp edge" is "sharp-edge".
+std::string alike(std::string name) {
+  for (char& c : name) {
+    if (c == '-' || c == '_') c = ' ';
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
+  return name;
+}
+
+void check_names_differ(const ProjectClasses& classes) {
+  std::set<std::string> names;
+  for (std::size_t id = 0; id < classes.table.size(); ++id) {
+    const std::string& name = classes.table[id].name;
+    if (classes.removed.contains(static_cast<std::uint8_t>(id))) continue;
+    if (names.insert(alike(name)).second) continue;
+    refuse_classes(fmt::format("another one is named nearly as \"{}\"", name));
+  }
+}
+
 }  // namespace
 
 std::vector<std::size_t> counts_of(std::span<const std::size_t> counts,
@@ -24,6 +43,7 @@ std::vector<std::size_t> counts_of(std::span<const std::size_t> counts,
 void check_change(const ProjectClasses& now, const ProjectClasses& wanted,
                   std::span<const std::size_t> counts, const std::set<std::uint8_t>& ever) {
   check_classes(wanted.table);
+  if (wanted.table != now.table) check_names_differ(wanted);
   for (const std::uint8_t id : wanted.removed) {
     if (id >= wanted.table.size()) refuse_classes("there is no such class to remove");
     const std::string& name = wanted.table[id].name;

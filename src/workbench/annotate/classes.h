@@ -33,7 +33,8 @@ std::vector<std::size_t> counts_of(std::span<const std::size_t> counts,
 /// Throws Error(kUsage), with the reason, if a project's classes cannot become `wanted`. `counts`
 /// are the painted points by class, `ever` the classes that any stroke painted: before the first
 /// stroke all changes are possible; later, classes may be added, renamed, recoloured and, where no
-/// point is painted, removed.
+/// point is painted, removed. Names that differ only in case, spaces, hyphens and underscores count
+/// as the same.
 void check_change(const ProjectClasses& now, const ProjectClasses& wanted,
                   std::span<const std::size_t> counts, const std::set<std::uint8_t>& ever);
 
