@@ -134,9 +134,9 @@ test("renames, adds and removes what is not painted", async () => {
   await dialog.waitFor({ state: "hidden" });
   await hasRows(4);
   // The eye of a class hides its points, and the keys say their names.
-  await page.keyboard.press("Shift+3");
+  await page.keyboard.press("Shift+Digit3");
   assert.deepEqual(await page.evaluate(() => [...annotator.store.now.hidden]), [2]);
-  await page.keyboard.press("Shift+3");
+  await page.keyboard.press("Shift+Digit3");
   await page.keyboard.press("?");
   await page.getByText("paint tip").waitFor();
   await page.keyboard.press("Escape");

@@ -219,6 +219,7 @@ test("loses no stroke and goes on by itself when the program is killed and start
   await page.waitForFunction(() => annotator.store.now.undo === 5 && annotator.store.now.connected);
   await page.unrouteAll({ behavior: "wait" });
   assert.ok(asked > 2);
+  assert.equal(await page.locator(".notice span", { hasText: /^pcednet does not answer/ }).count(), 0);
   await settled();
   assert.deepEqual(await eye(), view, "the view is as it was");
   await expectPainted(drawn);

@@ -351,16 +351,39 @@ test("the budget follows the speed of drawing", () => {
   assert.equal(fast.moving, before, "a few points tell nothing");
 });
 
+const spelt = (key, code, mods = {}) =>
+  commands.spellings({
+    ...{ key, code, ctrlKey: false, metaKey: false, shiftKey: false, altKey: false },
+    getModifierState: () => false,
+    ...mods,
+  });
+const [shift, control, alt] = [{ shiftKey: true }, { ctrlKey: true }, { altKey: true }];
+
 test("keys are spelt alike on any keyboard", () => {
-  const key = (key, code, mods = {}) =>
-    commands.spell({ key, code, ctrlKey: false, metaKey: false, shiftKey: false, ...mods });
-  assert.equal(key("z", "KeyZ", { ctrlKey: true }), "Ctrl+Z");
-  assert.equal(key("Z", "KeyZ", { metaKey: true, shiftKey: true }), "Ctrl+Shift+Z");
-  assert.equal(key("!", "Digit1", { shiftKey: true }), "Shift+1");
-  assert.equal(key("?", "Slash", { shiftKey: true }), "?");
-  assert.equal(key("{", "BracketLeft", { shiftKey: true }), "{");
-  assert.equal(key("ArrowUp", "ArrowUp", { shiftKey: true }), "Shift+ArrowUp");
+  const key = (...words) => spelt(...words)[0];
+  assert.equal(key("z", "KeyZ", control), "Ctrl+Z");
+  assert.equal(key("Z", "KeyZ", { metaKey: true, ...shift }), "Ctrl+Shift+Z");
+  assert.equal(key("!", "Digit1", shift), "Shift+1");
+  assert.equal(key("?", "Slash", shift), "?");
+  assert.equal(key("{", "BracketLeft", shift), "{");
+  assert.equal(key("ArrowUp", "ArrowUp", shift), "Shift+ArrowUp");
   assert.equal(key("b", "KeyB"), "B");
+});
+
+test("on keyboards of other languages, too", () => {
+  assert.deepEqual(spelt("&", "Digit1"), ["1", "&"], "French");
+  assert.deepEqual(spelt("1", "Digit1", shift), ["1"]);
+  assert.deepEqual(spelt("-", "Digit6"), ["6", "-"]);
+  assert.deepEqual(spelt("a", "KeyQ"), ["A"]);
+  assert.deepEqual(spelt("=", "Digit0", shift), ["Shift+0", "="], "German");
+  const altGraph = { getModifierState: (name) => name === "AltGraph" };
+  assert.deepEqual(spelt("[", "Digit8", altGraph), ["["]);
+  assert.deepEqual(spelt("{", "Digit8", { ...alt, ...control }), ["{"]);
+  assert.deepEqual(spelt("ArrowLeft", "ArrowLeft", alt), [], "the browser's");
+  assert.deepEqual(spelt("b", "KeyB", alt), []);
+  assert.deepEqual(spelt("\u0434", "KeyL"), ["\u0414", "L"], "Russian");
+  assert.deepEqual(spelt("\u044f", "KeyZ", control), ["Ctrl+\u042f", "Ctrl+Z"]);
+  assert.deepEqual(spelt("\u042f", "KeyZ", { ...control, ...shift }), ["Ctrl+\u042f", "Ctrl+Shift+Z"]);
 });
 
 test("two fingers slide by their middle and zoom by their distance", () => {
@@ -441,6 +464,14 @@ test("the places to frame are the first points of a node, which are spread over 
   assert.ok(places.length > 1000 && places.length < 3 * n);
 });
 
+test("a far point is not framed, all others are", () => {
+  const next = random(4);
+  const cloud = Array.from({ length: 3000 }, (_, k) => (k % 3 === 2 ? 0.01 : 1) * next());
+  assert.deepEqual(chunk.withoutFar(cloud), cloud);
+  assert.deepEqual(chunk.withoutFar([...cloud, 0, 0, 500]), cloud);
+  assert.deepEqual(chunk.withoutFar([0, 0, 0, 1, 0, 0, 0, 9, 0]), [0, 0, 0, 1, 0, 0, 0, 9, 0]);
+});
+
 const row = (id, name, more = {}) => ({ id, name, colour: [id, 0, 255], count: 0, ...more });
 const edges = ["non-edge", "smooth-edge", "sharp-edge"].map((name, id) => row(id, name));
 
@@ -506,7 +537,14 @@ test("a class that cannot be painted is not the chosen one", () => {
 });
 
 test("a name that is there twice is told as it was given", () => {
-  const named = (...names) => classes.repeatedName(names.map((name) => ({ name })));
+  const named = (...names) =>
+    classes.repeatedName(
+      names.map((name) => ({ name })),
+      true,
+    );
   assert.equal(named("a", "b", " a "), "a");
-  assert.equal(named("a", "A", "", ""), null);
+  assert.equal(named("a", "b", "", ""), null);
+  assert.equal(named("tall wall", "Tall-Wall"), "Tall-Wall", "nearly the same");
+  assert.equal(named("sharp edge"), "sharp edge", "that of an edge class");
+  assert.equal(classes.repeatedName([{ name: "sharp edge" }], false), null);
 });

@@ -19,6 +19,8 @@ async function failure(answer: Response): Promise<ApiError> {
   }
 }
 
+export const NO_ANSWER = "pcednet does not answer";
+
 export class Api {
   /** This window's name at the server; what changes anything needs it. */
   window = "";
@@ -33,7 +35,7 @@ export class Api {
     if (options.body) headers["Content-Type"] = "application/json";
     const place = options.method ? path : this.inView(path);
     const answer = await fetch(place, { ...options, headers, cache: "no-store" }).catch(() => {
-      throw new Error("pcednet does not answer");
+      throw new Error(NO_ANSWER);
     });
     if (!answer.ok) throw await failure(answer);
     return answer;

@@ -10,7 +10,7 @@ import { MODES, PREDICTED, type Command } from "./commands";
 import { count, length, stageText } from "./format";
 import { downloadMenu } from "./download_menu";
 import { icon, type IconName } from "./icons";
-import { button } from "./panel";
+import { allow, button, unlessRefused } from "./panel";
 import type { AppStore, Tool } from "./store";
 import { hintWords } from "./words";
 
@@ -39,7 +39,7 @@ function iconButton(name: IconName, label: string, key: string, press: Press): H
       title: `${label} (${key})`,
       "aria-label": label,
       "aria-keyshortcuts": key.replace("Ctrl", "Control"),
-      onclick: () => press(key),
+      onclick: unlessRefused(() => press(key)),
     },
     icon(name),
   );
@@ -55,8 +55,9 @@ export function toolbar(store: AppStore, press: Press): HTMLElement {
   );
   store.watch(["clip"], () => clip.setAttribute("aria-pressed", String(store.now.clip?.on ?? false)));
   store.watch(["undo", "redo", "writer", "connected"], () => {
-    undo.disabled = store.now.undo === 0 || refusalOf(store.now) !== "";
-    redo.disabled = store.now.redo === 0 || refusalOf(store.now) !== "";
+    const may = refusalOf(store.now) === "";
+    allow(undo, may && store.now.undo > 0);
+    allow(redo, may && store.now.redo > 0);
   });
   return h(
     "div",
@@ -90,8 +91,8 @@ export function header(store: AppStore, save: (what: Saved) => void, client: Cli
   });
   store.watch(["saving", "writer", "connected", "progress", "hasPrediction"], () => {
     const { saving, progress, hasPrediction } = store.now;
-    const off = saving || progress !== null || refusalOf(store.now) !== "";
-    saves.forEach((b, i) => (b.disabled = off || (i === 1 && !hasPrediction)));
+    const may = !saving && progress === null && refusalOf(store.now) === "";
+    saves.forEach((b, i) => allow(b, may && (i !== 1 || hasPrediction)));
   });
   return h(
     "header",

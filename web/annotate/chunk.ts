@@ -60,6 +60,19 @@ export function placesOf(chunk: Chunk): number[] {
   return places;
 }
 
+/** The places without those that lie far from nearly all others: one far point would make a speck of the cloud. */
+export function withoutFar(places: number[]): number[] {
+  const n = places.length / 3;
+  const ends = [0, 1, 2].map((axis) => {
+    const sorted = Float64Array.from({ length: n }, (_, i) => places[3 * i + axis]).sort();
+    return [sorted[Math.floor(0.01 * (n - 1))], sorted[Math.ceil(0.99 * (n - 1))]];
+  });
+  const room = Math.max(...ends.map(([low, high]) => high - low));
+  const isNear = (i: number): boolean =>
+    ends.every(([low, high], axis) => places[i + axis] >= low - room && places[i + axis] <= high + room);
+  return places.filter((_, k) => isNear(k - (k % 3)));
+}
+
 export const normalAt = ({ normals }: Chunk, i: number): Vec3 =>
   octahedral(normals[2 * i] / 127, normals[2 * i + 1] / 127);
 

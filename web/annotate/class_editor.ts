@@ -82,9 +82,11 @@ export function editClassesDialog(state: State, save: (table: WantedClass[]) => 
       {
         method: "dialog",
         onsubmit: (event: SubmitEvent) => {
-          if ((event.submitter as HTMLButtonElement | null)?.value !== "yes") return;
           event.preventDefault();
-          const twice = repeatedName(drafts.map((one) => one.draft));
+          const twice = repeatedName(
+            drafts.map((one) => one.draft),
+            edges.checked,
+          );
           if (twice) return void (problem.textContent = `There are two classes "${twice}".`);
           const table = wantedTable(
             state,
@@ -107,8 +109,8 @@ export function editClassesDialog(state: State, save: (table: WantedClass[]) => 
       h(
         "div",
         { class: "buttons" },
-        h("button", { class: "plain", value: "", formnovalidate: true }, "Cancel"),
-        h("button", { class: "plain strong", value: "yes" }, "Use these classes"),
+        button("Cancel", () => dialog.close()),
+        h("button", { class: "plain strong" }, "Use these classes"),
       ),
     ),
   );

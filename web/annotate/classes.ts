@@ -75,10 +75,11 @@ export interface Draft {
   colour: string;
 }
 
-/** A name that two rows have; null if there is none. */
-export function repeatedName(rows: Pick<Draft, "name">[]): string | null {
-  const names = rows.map(({ name }) => name.trim());
-  return names.find((name, k) => name !== "" && names.indexOf(name) < k) ?? null;
+/** A name that two rows, or a row and an edge class, have but for case, hyphens and spaces; null if there is none. */
+export function repeatedName(rows: Pick<Draft, "name">[], withEdges: boolean): string | null {
+  const names = [...(withEdges ? CLASS_EDGES : []), ...rows].map(({ name }) => name.trim());
+  const alike = names.map((name) => name.toLowerCase().replace(/[-_\s]/g, " "));
+  return names.find((name, k) => name !== "" && alike.indexOf(alike[k]) < k) ?? null;
 }
 
 /** The table that rows stand for. Classes keep their numbers once there was a stroke: what is missing is removed. */

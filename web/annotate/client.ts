@@ -1,6 +1,6 @@
 // Keeps the page's state in step with the server's.
 
-import { ApiError, type Api } from "./api";
+import { ApiError, NO_ANSWER, type Api } from "./api";
 import { usableRadius } from "./brush";
 import { paintable, usableClass, type WantedClass } from "./classes";
 import { Files } from "./files";
@@ -27,13 +27,17 @@ import { LONGEST_PAUSE_MS, pause, WorkQueue } from "./work";
 
 export const READ_ONLY = "Another window is painting this cloud. Take over to paint here.";
 
+const NOTHING_PAINTED = `${NO_ANSWER}: nothing can be painted.`;
+
 /** Why this window cannot paint now; empty if it can. */
 export const refusalOf = ({ writer, connected }: Pick<State, "writer" | "connected">): string =>
-  !connected ? "pcednet does not answer: nothing can be painted." : writer ? "" : READ_ONLY;
+  !connected ? NOTHING_PAINTED : writer ? "" : READ_ONLY;
 
 export interface Words {
   say(text: string): void;
   warn(text: string): void;
+  /** Takes back what is no longer so. */
+  unsay(text: string): void;
 }
 
 export class Client {
@@ -123,7 +127,9 @@ export class Client {
   /** The program answers again, or another start of it does. */
   private async returned(): Promise<void> {
     this.missed = true;
-    if (await this.ask()) this.store.set({ connected: true });
+    if (!(await this.ask())) return;
+    this.store.set({ connected: true });
+    for (const text of [NO_ANSWER, NOTHING_PAINTED]) this.words.unsay(text);
   }
 
   /** Asks for the session until it is answered, for no further event would come; false if the program is gone. */
@@ -393,6 +399,9 @@ export class Client {
         .then((settings) => {
           ++this.heard;
           this.store.set({ settings });
+          if (changes.classes && settings.classes !== changes.classes) {
+            this.words.say(`Model ${settings.start} knows no smooth edges: it learns two classes.`);
+          }
         })
         .catch((error: Error) => {
           this.store.set({ settings: before });

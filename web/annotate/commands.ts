@@ -221,6 +221,14 @@ export function commandsOf(hands: Hands): Command[] {
     const { cloud, clouds } = store.now;
     client.look((cloud + by + clouds.length) % clouds.length);
   };
+  const cloudCommand = (key: string, words: string, by: number): Command => ({
+    keys: [key],
+    get name() {
+      return store.now.clouds.length > 1 ? words : "";
+    },
+    group: "File",
+    run: () => stepCloud(by),
+  });
   const command = (keys: string[], name: string, group: Command["group"], run: () => void): Command => ({
     keys,
     name,
@@ -245,27 +253,34 @@ export function commandsOf(hands: Hands): Command[] {
       else if (store.now.training?.active || store.now.lines.searching) client.cancel();
     }),
     ...lineCommands(hands),
-    command(["PageDown"], "next cloud", "File", () => stepCloud(1)),
-    command(["PageUp"], "previous cloud", "File", () => stepCloud(-1)),
+    cloudCommand("PageDown", "next cloud", 1),
+    cloudCommand("PageUp", "previous cloud", -1),
     command(["Ctrl+S"], "save the project", "File", hands.save),
     command(["Shift+S"], "screenshot", "File", hands.screenshot),
     command(["?"], "show these keys", "File", hands.help),
   ];
 }
 
-/** The name of a key event as the commands spell it. */
-export function spell(event: {
-  key: string;
-  code: string;
-  ctrlKey: boolean;
-  metaKey: boolean;
-  shiftKey: boolean;
-}): string {
-  const { key, code, ctrlKey, metaKey, shiftKey } = event;
-  const digit = /^Digit(\d)$/.exec(code); // Shift+1 is `!` on one keyboard, 1 on another
-  const word = shiftKey && digit ? digit[1] : key.length === 1 ? key.toUpperCase() : key;
-  const shifts = shiftKey && (/^[A-Z0-9]$/.test(word) || key.length > 1);
-  return `${ctrlKey || metaKey ? "Ctrl+" : ""}${shifts ? "Shift+" : ""}${word}`;
+type KeyPress = Pick<
+  KeyboardEvent,
+  "key" | "code" | "ctrlKey" | "metaKey" | "shiftKey" | "altKey" | "getModifierState"
+>;
+
+/** The names that a key event may have as the commands spell them, the likeliest first. */
+export function spellings(event: KeyPress): string[] {
+  const { key, code, ctrlKey, metaKey, shiftKey, altKey } = event;
+  const typed = key.length === 1 ? key.toUpperCase() : key;
+  // Alt types the brackets of many keyboards; all else with it belongs to the browser.
+  if (altKey || event.getModifierState("AltGraph")) return /^[!-/:-@[-`{-~]$/.test(typed) ? [typed] : [];
+  const control = ctrlKey || metaKey ? "Ctrl+" : "";
+  const shift = shiftKey ? "Shift+" : "";
+  const byKey = `${control}${/^[A-Z]$/.test(typed) || key.length > 1 ? shift : ""}${typed}`;
+  if (/^[A-Z0-9]$/.test(typed)) return [byKey];
+  const [, digit, letter] = /^(?:Digit(\d)|Key([A-Z]))$/.exec(code) ?? [];
+  // `!` and `&` are the key of 1, shifted here and not there.
+  if (digit) return [`${control}${shift}${digit}`, byKey];
+  // A letter of another alphabet.
+  return letter && key.length === 1 && key > "~" ? [byKey, `${control}${shift}${letter}`] : [byKey];
 }
 
 /** Runs commands by keys, except where keys belong to a control. */
@@ -273,14 +288,13 @@ export function bindKeys(commands: Command[], isBlocked: () => boolean): void {
   const byKey = new Map(commands.flatMap((command) => command.keys.map((key) => [key, command] as const)));
   addEventListener("keydown", (event) => {
     const at = event.target as HTMLElement;
-    const name = spell(event);
-    const command = byKey.get(name);
-    if (!command || isBlocked() || event.altKey) return;
+    const name = spellings(event).find((one) => byKey.get(one)?.name);
+    if (!name || isBlocked()) return;
     if (at.matches("select, input[type=text], input[type=number]") && !name.startsWith("Ctrl+")) return;
     if (at.matches("input") && name.includes("Arrow")) return;
-    if (at.matches("input[type=range]") && name === "Home") return;
+    if (at.matches("input[type=range]") && ["Home", "PageUp", "PageDown"].includes(name)) return;
     if (at.matches("button, summary, a, input") && ["Enter", "Backspace"].includes(name)) return;
     event.preventDefault();
-    command.run();
+    byKey.get(name)!.run();
   });
 }

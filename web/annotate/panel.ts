@@ -48,7 +48,26 @@ export function slider(
 }
 
 export const button = (label: string, onClick: () => void, key = "", kind = "plain"): HTMLButtonElement =>
-  h("button", { type: "button", class: kind, onclick: onClick }, label, key && h("kbd", {}, key));
+  h("button", { type: "button", class: kind, onclick: unlessRefused(onClick) }, label, key && h("kbd", {}, key));
+
+/** Lets a button be used or not. It keeps the focus: a disabled one would lose it to the page. */
+export const allow = (button: HTMLButtonElement, on: boolean): void =>
+  button.setAttribute("aria-disabled", String(!on));
+
+/** What a click on a button does where it may be used. */
+export const unlessRefused =
+  (run: () => void) =>
+  (event: Event): void => {
+    if ((event.currentTarget as Element).getAttribute("aria-disabled") !== "true") run();
+  };
+
+/** Shows one of two buttons, which takes over the focus of the other. */
+export function showOnly(shown: HTMLButtonElement, other: HTMLButtonElement): void {
+  const hasFocus = document.activeElement === other;
+  shown.hidden = false;
+  other.hidden = true;
+  if (hasFocus) shown.focus();
+}
 
 export interface Picker<T> {
   element: HTMLElement;

@@ -5,7 +5,7 @@ import { h } from "../shared/dom";
 import type { Press } from "./chrome";
 import { refusalOf, type Client } from "./client";
 import { count, length, percent } from "./format";
-import { button, checkbox, section } from "./panel";
+import { allow, button, checkbox, section, showOnly } from "./panel";
 import { countDecisions, type Reviewer } from "./reviewer";
 import type { AppStore } from "./store";
 import type { Line } from "./types";
@@ -82,12 +82,13 @@ export function linesPanel(store: AppStore, client: Client, reviewer: Reviewer, 
     const mayDecide = refusalOf(store.now) === "";
     const { open, accepted } = countDecisions(lines.lines);
     words.textContent = summary(store);
-    find.hidden = lines.searching || !edges;
-    find.disabled = !mayDecide || runs.length === 0;
-    cancel.hidden = !lines.searching;
+    if (lines.searching) showOnly(cancel, find);
+    else showOnly(find, cancel);
+    find.hidden ||= !edges;
+    allow(find, mayDecide && runs.length > 0);
     review.hidden = lines.lines.length === 0;
-    rest.disabled = !mayDecide || open === 0;
-    for (const each of downloads) each.disabled = accepted === 0 || !store.now.connected;
+    allow(rest, mayDecide && open > 0);
+    for (const each of downloads) allow(each, accepted > 0 && store.now.connected);
   });
   store.watch(["lines", "line", "writer", "connected", "showLines"], () => {
     const { lines, line } = store.now;
@@ -97,7 +98,7 @@ export function linesPanel(store: AppStore, client: Client, reviewer: Reviewer, 
     list.replaceChildren(
       ...(chosen ? facts(chosen) : []).flatMap(([name, value]) => [h("dt", {}, name), h("dd", {}, value)]),
     );
-    accept.disabled = reject.disabled = refusalOf(store.now) !== "" || !chosen;
+    for (const each of [accept, reject]) allow(each, refusalOf(store.now) === "" && chosen !== undefined);
   });
   return section("Lines", true, words, h("div", { class: "buttons" }, find, cancel), review);
 }

@@ -6,7 +6,7 @@ import type { Press } from "./chrome";
 import { refusalOf, type Client } from "./client";
 import { isOff, paletteOf } from "./classes";
 import { count, percent, seconds } from "./format";
-import { button, buttons, checkbox, list, section } from "./panel";
+import { allow, button, buttons, checkbox, list, section, showOnly } from "./panel";
 import type { AppStore } from "./store";
 import type { Run, Start } from "./types";
 
@@ -81,6 +81,14 @@ export function trainingPanel(store: AppStore, client: Client): HTMLElement {
     { class: "summary" },
     "Shipped models know edges alone: own classes begin with nothing, or with a model of yours.",
   );
+  const follow = (): void => {
+    const off = refusalOf(store.now) !== "";
+    for (const element of [auto.element, classes.element, start]) {
+      for (const each of element.querySelectorAll<HTMLInputElement | HTMLSelectElement>("input, select")) {
+        each.disabled = off;
+      }
+    }
+  };
   const showStarts = (): void => {
     const { session, settings } = store.now;
     const names = [...new Set(["random", ...(session?.starts ?? []), settings.start])];
@@ -88,14 +96,16 @@ export function trainingPanel(store: AppStore, client: Client): HTMLElement {
     const picker = list("Start from", choices, (chosen) => client.setSettings({ start: chosen }));
     picker.set(settings.start);
     start.replaceChildren(picker.element);
+    follow();
   };
   store.watch(["training", "runs", "counts", "settings", "edges", "writer", "connected"], () => {
     const { training } = store.now;
-    train.disabled = refusalOf(store.now) !== "";
+    allow(train, refusalOf(store.now) === "");
     const active = training?.active ?? false;
     words.textContent = summary(store);
-    bar.hidden = cancel.hidden = !active;
-    train.hidden = active;
+    bar.hidden = !active;
+    if (active) showOnly(cancel, train);
+    else showOnly(train, cancel);
     if (training) bar.value = (training.epoch.at(-1) ?? 0) / Math.max(training.epochs, 1);
   });
   store.watch(["settings"], () => {
@@ -105,6 +115,7 @@ export function trainingPanel(store: AppStore, client: Client): HTMLElement {
     start.querySelectorAll("option").forEach((option) => (option.selected = option.text === startName(settings.start)));
   });
   store.watch(["session"], showStarts);
+  store.watch(["writer", "connected"], follow);
   store.watch(["edges"], () => {
     classes.element.hidden = !store.now.edges;
     own.hidden = store.now.edges;
@@ -134,7 +145,7 @@ export function uncertainPanel(store: AppStore, press: Press): HTMLElement {
       : runs.length > 0
         ? "Places of lowest confidence first."
         : "Available once there is a prediction.";
-    right.disabled = !place;
+    allow(right, place !== null);
   });
   const steps = [button("Previous", () => press("Shift+N"), "⇧N"), button("Next", () => press("N"), "N")];
   return section("Uncertain places", true, words, h("div", { class: "buttons" }, ...steps, right));

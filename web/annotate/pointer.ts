@@ -204,9 +204,11 @@ export class Pointer {
     this.stage.camera.approach(Math.exp(Math.min(Math.max(pixels, -300), 300) * 0.0015), this.pivot);
   }
 
-  /** A dab of the brush at the middle of the view. */
+  /** A dab of the brush at the middle of the view; where neither the focus nor the pointer is there, shows the middle. */
   dab(): void {
     if (this.brush.isDown) return; // a stroke is under way
+    const { canvas } = this.stage;
+    if (!this.inside && document.activeElement !== canvas) return canvas.focus();
     if (refusalOf(this.store.now)) return this.on.refused();
     if (!this.byKeys) this.setByKeys(true);
     this.brush.press(this.stage.width / 2, this.stage.height / 2);

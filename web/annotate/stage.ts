@@ -4,7 +4,7 @@ import type { Stroke } from "../shared/line_layer";
 import type { Api } from "./api";
 import { Budget } from "./budget";
 import { Camera, type Pose, type Side } from "./camera";
-import { pick, placesOf, type Chunk, type Picked, type Visibility } from "./chunk";
+import { pick, placesOf, withoutFar, type Chunk, type Picked, type Visibility } from "./chunk";
 import { drawnSpacings, selectNodes, withSpacings, type Take } from "./detail";
 import { boxCorners as corners } from "./geometry";
 import { Loader } from "./loader";
@@ -93,10 +93,10 @@ export class Stage {
     this.redraw();
   }
 
-  /** All of the cloud, as far as its coarsest points show it. */
+  /** All of the cloud but points far from it, as its coarsest points show it. */
   fit(from: Side | "first" | "here"): void {
     const first = this.loader.chunks.get(0);
-    if (first) this.camera.fit(from, placesOf(first));
+    if (first) this.camera.fit(from, withoutFar(placesOf(first)));
     else if (this.bounds) this.camera.fit(from, corners(this.bounds));
   }
 

@@ -17,8 +17,13 @@ export class Notices {
     this.add(text, "notice warning", WARN_MS);
   }
 
+  /** Takes back what is no longer so. */
+  unsay(text: string): void {
+    for (const notice of [...this.element.children]) if (notice.firstChild?.textContent === text) notice.remove();
+  }
+
   private add(text: string, kind: string, milliseconds: number): void {
-    for (const old of [...this.element.children]) if (old.firstChild?.textContent === text) old.remove();
+    this.unsay(text);
     const notice = h(
       "p",
       { class: kind },
@@ -35,11 +40,11 @@ export function ask(question: string, yes: string): Promise<boolean> {
   return new Promise((done) => {
     const dialog = h(
       "dialog",
-      { class: "question", "aria-label": yes },
+      { class: "question", "aria-labelledby": "question-words" },
       h(
         "form",
         { method: "dialog" },
-        h("p", {}, question),
+        h("p", { id: "question-words" }, question),
         h(
           "div",
           { class: "buttons" },
@@ -76,14 +81,14 @@ const MOUSE: [string, string][] = [
   ["two fingers", "pan and zoom"],
 ];
 
-const list = (title: string, rows: [string[], string][]): HTMLElement =>
+const list = (title: string, rows: [string[], string][], kind = "keys"): HTMLElement =>
   h(
     "section",
     {},
     h("h3", {}, title),
     h(
       "dl",
-      {},
+      { class: kind },
       ...rows.flatMap(([keys, name]) => [
         h("dt", {}, ...keys.map((key) => h("kbd", {}, key.replace("Arrow", "")))),
         h("dd", {}, name),
@@ -104,6 +109,7 @@ function lists(commands: Command[]): HTMLElement[] {
     list(
       "Mouse and fingers",
       MOUSE.map(([key, name]) => [[key], name]),
+      "described",
     ),
   ];
 }
