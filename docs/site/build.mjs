@@ -119,13 +119,20 @@ for (const section of menu) {
 fs.rmSync(out, { recursive: true, force: true });
 for (const folder of ["images", "source", "assets"]) fs.mkdirSync(path.join(out, folder), { recursive: true });
 const write = (name, text) => fs.writeFileSync(path.join(out, name), text);
-for (const page of pages.values()) write(page.address, layout({ menu, ...page, base: "" }));
+/** Writes a page. An id that is there twice, as of a heading and of the frame, leads to the wrong place. */
+function writePage(name, html) {
+  const ids = [...html.matchAll(/<[^>]* id="([^"]*)"/g)].map(([, id]) => id);
+  for (const id of new Set(ids.filter((id, i) => ids.indexOf(id) < i)))
+    errors.push(`${name}: the id ${id} is there twice`);
+  write(name, html);
+}
+for (const page of pages.values()) writePage(page.address, layout({ menu, ...page, base: "" }));
 for (const file of sources) {
   const language =
     { ".cpp": "cpp", ".h": "cpp", ".py": "python", ".sh": "sh", ".sbatch": "sh" }[path.extname(file)] ?? "text";
   const fence = "`````";
   const { html } = markdown(`# ${file}\n\n${fence}${language}\n${read(file)}\n${fence}\n`, () => null);
-  write(
+  writePage(
     `source/${file.replaceAll("/", "-")}.html`,
     layout({ menu, html, headings: [], title: file, address: "", base: "../" }),
   );

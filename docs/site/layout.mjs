@@ -36,7 +36,7 @@ export function layout({ menu, html, headings, title, address, base }) {
 <a class="home" href="${base}index.html"><img src="${base}assets/pcednet.svg" alt="" width="26" height="26"> pcednet</a>
 <form role="search"><input id="search" type="search" placeholder="Search ( / )" aria-label="Search" autocomplete="off"></form>
 </header>
-<div id="results" role="region" aria-label="Search results" aria-live="polite" hidden></div>
+<div id="search-results" role="region" aria-label="Search results" aria-live="polite" hidden></div>
 <div class="columns">
 <nav id="nav" aria-label="Pages">
 ${menuOf(menu, address, base)}

@@ -6,7 +6,7 @@
   menu.addEventListener("click", () => menu.setAttribute("aria-expanded", String(nav.classList.toggle("open"))));
 
   const input = document.getElementById("search"),
-    results = document.getElementById("results");
+    results = document.getElementById("search-results");
   const unasked = new Set("a an and at be by for from how i in is it my of on or the to what with".split(" "));
   let index;
   const indexed = () => {

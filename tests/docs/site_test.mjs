@@ -46,6 +46,8 @@ test("every page of the table is there and none loads anything from elsewhere", 
   const all = [...names, ...fs.readdirSync(path.join(site, "source")).map((name) => `source/${name}`)];
   for (const name of all) {
     const html = fs.readFileSync(path.join(site, name), "utf8");
+    const ids = [...html.matchAll(/<[^>]* id="([^"]*)"/g)].map(([, id]) => id);
+    assert.equal(new Set(ids).size, ids.length, `${name}: each id once`);
     for (const [, link] of html.matchAll(/(?:href|src)="([^"]*)"/g)) {
       if (/^(https?|mailto):/.test(link)) {
         assert.ok(!/(?:src|<link[^>]*href)="https?:/.test(html), `${name} loads ${link}`);
@@ -107,11 +109,11 @@ test("the search finds from disk what is asked, and leads there", async () => {
     ["voxell", /engine|voxel/i],
   ]) {
     await tab.fill("#search", words);
-    const first = await tab.locator("#results a").first().innerText({ timeout: 5000 });
+    const first = await tab.locator("#search-results a").first().innerText({ timeout: 5000 });
     assert.match(first, title, words);
   }
   await tab.fill("#search", "zzzzqqq");
-  assert.match(await tab.locator("#results").innerText(), /Nothing about/);
+  assert.match(await tab.locator("#search-results").innerText(), /Nothing about/);
   await tab.fill("#search", "undo a stroke");
   if (process.env.SCREENSHOTS) await tab.screenshot({ path: path.join(process.env.SCREENSHOTS, "search.png") });
   await tab.fill("#search", "pratt");
