@@ -62,7 +62,7 @@ set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS "xdg-utils")
 set(CPACK_DEBIAN_PROGRAM_DESCRIPTION "find edges in 3D point clouds
 pcednet labels every point of a point cloud as non-edge, smooth-edge,
 sharp-edge or boundary, with confidences, and draws the edges as curves for
-CAD and GIS. It reads PLY, PCD, OBJ, LAS, LAZ, COPC, E57 and text.
+CAD and GIS. It reads PLY, PCD, OBJ, STL, LAS, LAZ, COPC, E57 and text.
 
 In the browser you paint your own idea of an edge, and a model learns it.
 The package contains the trained models.")

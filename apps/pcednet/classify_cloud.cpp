@@ -10,6 +10,7 @@
 #include "pcednet/detect/boundary.h"
 #include "pcednet/formats/cloud_facts.h"
 #include "pcednet/formats/read_cloud.h"
+#include "pcednet/io/faces.h"
 #include "prepare.h"
 
 namespace pcednet::app {
@@ -29,6 +30,12 @@ void warn_of_rounding(const std::filesystem::path& file, const PointCloud& cloud
 PointCloud read_cloud(const std::filesystem::path& file) {
   auto loaded = formats::read_cloud(file);
   warn_all(file, loaded.warnings);
+  if (const std::size_t faces = io::face_count(loaded.cloud)) {
+    warn(
+        fmt::format("{}: {} faces are not used, only their vertices: pcednet convert --sample N "
+                    "samples points on faces",
+                    file.string(), faces));
+  }
   return std::move(loaded.cloud);
 }
 

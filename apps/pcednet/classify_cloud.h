@@ -15,7 +15,7 @@ struct ClassifiedCloud {
   detect::Classification found;
 };
 
-/// formats::read_cloud(), with its warnings on stderr.
+/// formats::read_cloud(), with its warnings on stderr, and one of faces, which nothing uses.
 PointCloud read_cloud(const std::filesystem::path& file);
 
 /// How to classify: by `model`, then for boundary by geometry if `boundary`; without a model by the

@@ -351,9 +351,10 @@ class Lines(CliTest):
         self.assertIn("lines takes one cloud", done.stderr)
 
     def test_a_file_of_lines_is_told(self):
-        run("lines", self.labelled_cube(), *self.outputs("ply"), "--stage", "creases")
-        done = run("lines", self.made["ply"], "-o", self.folder / "again.obj")
-        self.assertIn("has lines (element edge): their vertices are taken", done.stderr)
+        run("lines", self.labelled_cube(), *self.outputs("ply", "obj"), "--stage", "creases")
+        for name in ("ply", "obj"):
+            done = run("lines", self.made[name], "-o", self.folder / f"{name}.dxf")
+            self.assertIn(f".{name}: has lines: their vertices are taken", done.stderr)
 
     def test_the_input_is_never_an_output(self):
         path = self.folder / "in.ply"

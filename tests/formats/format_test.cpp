@@ -8,7 +8,8 @@ namespace pcednet::formats {
 namespace {
 
 TEST(Formats, AreListedByTheirExtensions) {
-  EXPECT_EQ(extensions_read(), ".ply .pcd .las .laz .copc.laz .e57 .obj .xyz .txt .asc .pts .csv");
+  EXPECT_EQ(extensions_read(),
+            ".ply .pcd .las .laz .copc.laz .e57 .obj .stl .xyz .txt .asc .pts .csv");
   EXPECT_EQ(extensions_written(" or "),
             ".ply .pcd .las .laz .copc.laz .obj .xyz .txt .asc .pts or .csv");
 }
@@ -17,7 +18,7 @@ TEST(Formats, AreFoundByTheExtensionInAnyCase) {
   ASSERT_NE(find_format("folder.ply/A.LaZ"), nullptr);
   EXPECT_EQ(find_format("folder.ply/A.LaZ")->name, "LAS");
   EXPECT_EQ(find_format("folder.ply/a"), nullptr);
-  EXPECT_EQ(find_format("a.stl"), nullptr);
+  EXPECT_EQ(find_format("a.step"), nullptr);
 }
 
 TEST(Formats, GiveWayToTheNameOfAFile) {

@@ -46,6 +46,19 @@ std::string e57_example() {
                     3}});
 }
 
+std::string stl_example() {
+  std::string bytes = std::string(80, ' ') + packed(2u);
+  for (const float z : {0.0F, 1.0F}) {
+    bytes +=
+        packed(0.0F, 0.0F, 1.0F, 0.0F, 0.0F, 0.0F, 1.0F, 0.0F, z, 0.0F, 1.0F, z, std::uint16_t{0});
+  }
+  return bytes;
+}
+
+const char* const kAsciiStl =
+    "solid a\n facet normal 0 0 1\n  outer loop\n   vertex 0 0 0\n   vertex 1 0 0\n"
+    "   vertex 0 1 0\n  endloop\n endfacet\nendsolid a\n";
+
 /// A small file of every format and encoding.
 std::vector<Example> examples(const Scratch& scratch) {
   const PointCloud cloud = sample_cloud(5);
@@ -75,6 +88,8 @@ std::vector<Example> examples(const Scratch& scratch) {
       {"text.pcd", written("a.pcd", true), false},
       {"packed.pcd", compressed, true},
       {"a.obj", written("a.obj", false) + "f 1//1 2//2 -1//-1\n", false},
+      {"a.stl", stl_example(), true},
+      {"text.stl", kAsciiStl, false},
       {"a.xyz", written("a.xyz", false), false},
       {"a.csv", written("a.csv", false), false},
       {"a.pts", written("a.pts", false), false},
@@ -157,7 +172,7 @@ TEST(Robustness, SurvivesFlippedBytes) {
 TEST(Robustness, SurvivesNoise) {
   const Scratch scratch;
   Random random(43);
-  for (const char* name : {"a.ply", "a.pcd", "a.obj", "a.xyz", "a.csv"}) {
+  for (const char* name : {"a.ply", "a.pcd", "a.obj", "a.stl", "a.xyz", "a.csv"}) {
     for (int i = 0; i < 300; ++i) {
       std::string bytes = i % 2 ? "" : std::string(name) == "a.ply" ? "ply\n" : "# .PCD\n";
       for (std::size_t n = random.index(300); n > 0; --n) {
@@ -187,7 +202,7 @@ TEST(ReadCloud, SaysWhatItWouldAccept) {
   EXPECT_TRUE(contains(message("a.las", "LASF"), "ends within the LAS header"));
   EXPECT_TRUE(contains(message("a.laz", ""), "must begin with LASF"));
   EXPECT_TRUE(contains(message("a.e57", "ASTM-E57"), "ends at byte"));
-  EXPECT_TRUE(contains(message("a.stl", "solid"), "accepted: .ply"));
+  EXPECT_TRUE(contains(message("a.step", "solid"), "accepted: .ply"));
   EXPECT_TRUE(contains(message("a", "solid"), "accepted: .ply"));
   error_of(ErrorKind::kUnreadable, [&] { formats::read_cloud(scratch.path("missing.ply")); });
   error_of(ErrorKind::kUnreadable, [&] { formats::read_cloud(scratch.path("")); });

@@ -29,14 +29,29 @@ TEST(Obj, AveragesTheNormalsOfAVertexOverItsCorners) {
 
 TEST(Obj, KeepsFacesAsPlyHasThem) {
   const Scratch scratch;
-  const auto loaded =
-      scratch.read("a.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\nf -1 -2 -4\nl 1 2\n");
+  const auto loaded = scratch.read(
+      "a.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\nf -1 -2 -4\np 1 2\nl 4\n");
   EXPECT_EQ(triangles_of(loaded.cloud), (std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}, {3, 2, 0}}));
   ASSERT_EQ(loaded.warnings.size(), 1u);
-  EXPECT_TRUE(contains(loaded.warnings[0], "1 lines or points"));
+  EXPECT_TRUE(contains(loaded.warnings[0], "2 points (p) are not kept"));
   formats::write_cloud(scratch.path("a.ply"), loaded.cloud);
   EXPECT_EQ(triangles_of(formats::read_cloud(scratch.path("a.ply")).cloud),
             triangles_of(loaded.cloud));
+}
+
+TEST(Obj, KeepsLinesAsPlyHasThem) {
+  const Scratch scratch;
+  const PointCloud cloud =
+      scratch.read("a.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nl 1 2/1 -1\nl 3 1\nf 1 2 3\n").cloud;
+  ASSERT_EQ(cloud.foreign_elements.size(), 2u);
+  EXPECT_EQ(cloud.foreign_elements[1].header,
+            "element edge 3\nproperty int vertex1\nproperty int vertex2\n");
+  formats::write_cloud(scratch.path("a.ply"), cloud, {.ascii = true});
+  EXPECT_TRUE(bytes_of(scratch.path("a.ply")).ends_with("\n0 1\n1 2\n2 0\n"));
+  EXPECT_EQ(face_count(cloud), 1u);
+  EXPECT_EQ(face_count(formats::read_cloud(scratch.path("a.ply")).cloud), 1u);
+  EXPECT_EQ(formats::losses("a.obj", cloud),
+            (std::vector<std::string>{"element face 1", "element edge 3"}));
 }
 
 TEST(Obj, RefusesFacesOfOtherVertices) {

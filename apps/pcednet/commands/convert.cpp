@@ -54,7 +54,7 @@ void sample(const ConvertRequest& request, const Progress& progress, PointCloud&
   const auto triangles = io::triangles_of(cloud);
   if (triangles.empty()) {
     throw Error(ErrorKind::kInsufficient,
-                "has no faces to sample; .obj and .ply files can have faces");
+                "has no faces to sample; .obj, .ply and .stl files can have faces");
   }
   cloud = shapes::sample_mesh(cloud, triangles,
                               {request.samples, request.vertex_normals, request.seed}, &progress);
@@ -154,7 +154,7 @@ void add_convert(CLI::App& app, Common& common) {
                                   "pcednet convert scan.ply -o scan.pcd\n"
                                   "pcednet convert scan.laz -o scan.copc.laz\n"
                                   "pcednet convert scan.ply -o readable.ply --ascii\n"
-                                  "pcednet convert part.obj -o part.ply --sample 100000\n"
+                                  "pcednet convert part.stl -o part.ply --sample 100000\n"
                                   "pcednet convert scan.ply -o worse.ply --noise 0.004 --seed 7");
   auto request = std::make_shared<ConvertRequest>();
   command->add_option("input", request->input, "Input file")->required();

@@ -55,7 +55,7 @@ void warn_of_lines(const std::string& file, const PointCloud& cloud) {
     return element.header.starts_with("element edge ");
   };
   if (std::none_of(cloud.foreign_elements.begin(), cloud.foreign_elements.end(), is_edge)) return;
-  warn(file + ": has lines (element edge): their vertices are taken for points");
+  warn(file + ": has lines: their vertices are taken for points");
 }
 
 /// Throws before any work if the output could not be written after it.

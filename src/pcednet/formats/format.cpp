@@ -12,6 +12,7 @@
 #include "pcednet/io/pcd_header.h"
 #include "pcednet/io/ply.h"
 #include "pcednet/io/ply_header.h"
+#include "pcednet/io/stl.h"
 #include "pcednet/io/text_scan.h"
 #include "pcednet/io/xyz.h"
 
@@ -64,6 +65,7 @@ std::vector<Format> make_formats() {
        .read = io::read_obj,
        .write = io::write_obj,
        .losses = [](const fs::path&, const PointCloud& cloud) { return io::obj_losses(cloud); }},
+      {.name = "STL", .extensions = {".stl"}, .read = io::read_stl},
       {.name = "text",
        .extensions = {".xyz", ".txt", ".asc", ".pts", ".csv"},
        .read = io::read_xyz,

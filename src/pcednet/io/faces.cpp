@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cstring>
+#include <string_view>
 
 #include "pcednet/core/error.h"
 #include "pcednet/io/ply_header.h"
+#include "pcednet/io/text_scan.h"
 
 namespace pcednet::io {
 namespace {
@@ -47,6 +49,12 @@ void append_fan(const std::vector<double>& corners, std::uint64_t face, std::siz
   }
 }
 
+/// Appends the index in little-endian order.
+void append_index(std::uint32_t index, std::size_t bytes, ForeignElement& element) {
+  const auto* first = reinterpret_cast<const std::byte*>(&index);
+  element.bytes.insert(element.bytes.end(), first, first + bytes);
+}
+
 bool names_corners(const PlyProperty& property) {
   return property.length_type &&
          (property.name == "vertex_indices" || property.name == "vertex_index");
@@ -61,15 +69,30 @@ ForeignElement make_face_element(const std::vector<std::uint32_t>& sizes,
   element.header = fmt::format("element face {}\nproperty list {} int vertex_indices\n",
                                sizes.size(), small ? "uchar" : "uint");
   auto corner = corners.begin();
-  const auto append = [&](std::uint32_t number, std::size_t bytes) {
-    const auto* first = reinterpret_cast<const std::byte*>(&number);  // little-endian
-    element.bytes.insert(element.bytes.end(), first, first + bytes);
-  };
   for (const std::uint32_t size : sizes) {
-    append(size, small ? 1 : 4);
-    for (std::uint32_t c = 0; c < size; ++c) append(*corner++, 4);
+    append_index(size, small ? 1 : 4, element);
+    for (std::uint32_t c = 0; c < size; ++c) append_index(*corner++, 4, element);
   }
   return element;
+}
+
+ForeignElement make_edge_element(const std::vector<std::uint32_t>& ends) {
+  ForeignElement element;
+  element.header =
+      fmt::format("element edge {}\nproperty int vertex1\nproperty int vertex2\n", ends.size() / 2);
+  for (const std::uint32_t end : ends) append_index(end, 4, element);
+  return element;
+}
+
+std::size_t face_count(const PointCloud& cloud) {
+  constexpr std::string_view kStart = "element face ";
+  for (const ForeignElement& foreign : cloud.foreign_elements) {
+    std::string_view header = foreign.header;
+    if (!header.starts_with(kStart)) continue;
+    header = header.substr(kStart.size());
+    return parse_count(trim(header.substr(0, header.find('\n')))).value_or(0);
+  }
+  return 0;
 }
 
 std::vector<Triangle> triangles_of(const PointCloud& cloud) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -14,6 +15,13 @@ using Triangle = std::array<std::uint32_t, 3>;
 /// concatenated corners, as in PLY.
 ForeignElement make_face_element(const std::vector<std::uint32_t>& sizes,
                                  const std::vector<std::uint32_t>& corners);
+
+/// The foreign element `edge` that holds these lines, given by the vertices at their two ends, as
+/// in PLY.
+ForeignElement make_edge_element(const std::vector<std::uint32_t>& ends);
+
+/// The number of faces that the element `face` of the cloud declares; 0 if there is none.
+std::size_t face_count(const PointCloud& cloud);
 
 /// The faces of the mesh whose vertices `cloud` holds, from its foreign element `face`: its list
 /// vertex_indices or vertex_index, polygons cut into triangles from their first corner. Empty if

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "pcednet/io/faces.h"
@@ -43,7 +44,8 @@ struct Statements {
   FarthestIndex farthest_vertex;
   Ignored corners_without_normal;  ///< whose index of a normal is none
   std::vector<std::uint32_t> face_sizes, face_corners;
-  std::size_t others = 0;  ///< lines and points
+  std::vector<std::uint32_t> line_ends;  ///< of their segments, two after two
+  std::size_t others = 0;                ///< points, and lines of one vertex
   std::vector<std::string> comments;
 };
 
@@ -60,7 +62,7 @@ class StatementParser {
       } else if (keyword == "vn") {
         take_normal();
       } else if (keyword == "f" || keyword == "l" || keyword == "p") {
-        take_face(keyword == "f");
+        take_element(keyword);
       }
     }
     result_.comments = std::move(statements_.comments());
@@ -82,14 +84,19 @@ class StatementParser {
                                  statements_.number(3));
   }
 
-  void take_face(bool keep) {
+  void take_element(std::string_view keyword) {
     const auto& words = statements_.words();
+    corners_.clear();
     for (std::size_t w = 1; w < words.size(); ++w) {
-      const std::size_t vertex = take_corner(words[w]);
-      if (keep) result_.face_corners.push_back(static_cast<std::uint32_t>(vertex));
+      corners_.push_back(static_cast<std::uint32_t>(take_corner(words[w])));
     }
-    if (keep) {
-      result_.face_sizes.push_back(static_cast<std::uint32_t>(words.size() - 1));
+    if (keyword == "f") {
+      result_.face_sizes.push_back(static_cast<std::uint32_t>(corners_.size()));
+      std::copy(corners_.begin(), corners_.end(), std::back_inserter(result_.face_corners));
+    } else if (keyword == "l" && corners_.size() > 1) {
+      for (std::size_t c = 1; c < corners_.size(); ++c) {
+        result_.line_ends.insert(result_.line_ends.end(), {corners_[c - 1], corners_[c]});
+      }
     } else {
       ++result_.others;
     }
@@ -119,6 +126,7 @@ class StatementParser {
   }
 
   ObjStatements statements_;
+  std::vector<std::uint32_t> corners_;  ///< of the statement
   Statements result_;
 };
 
@@ -189,8 +197,11 @@ LoadedCloud read_obj(const InputFile& file) {
   if (!statements.face_sizes.empty()) {
     cloud.foreign_elements = {make_face_element(statements.face_sizes, statements.face_corners)};
   }
+  if (!statements.line_ends.empty()) {
+    cloud.foreign_elements.push_back(make_edge_element(statements.line_ends));
+  }
   if (statements.others > 0) {
-    loaded.warnings.push_back(fmt::format("{} lines or points are not kept", statements.others));
+    loaded.warnings.push_back(fmt::format("{} points (p) are not kept", statements.others));
   }
   return loaded;
 }
