@@ -93,8 +93,8 @@ void add_drawing_options(CLI::App& command, LinesArguments& arguments) {
       add_choice(
           command, "--unit", arguments.drawing.unit, units,
           "DXF: the unit of the coordinates (default: that of the coordinate system of a LAS "
-          "file, otherwise none)"),
-      {".dxf"});
+          "file, otherwise none); SVG: gives the drawing its true size (default: none)"),
+      {".dxf", ".svg"});
   of_formats(add_crs_option(command, arguments.crs), {".gpkg", ".geojson", ".dxf"});
 }
 

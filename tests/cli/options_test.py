@@ -102,7 +102,7 @@ class Options(CliTest):
                 ("--seed requires --noise, --subsample or --sample", "convert", self.cloud, "-o", self.out, "--seed", 3),
                 ("--exact excludes --eps", "describe", self.cloud, "-o", self.folder / "x.npy", "--exact", "--eps", 0.2),
                 ("--view is for .svg", *lines, self.folder / "x.dxf", "--view", "front"),
-                ("--unit is for .dxf", *lines, self.folder / "x.svg", "--unit", "mm"),
+                ("--unit is for .dxf .svg files", *lines, self.folder / "x.obj", "--unit", "mm"),
                 ("--dxf-version is for .dxf", *lines, self.folder / "x.obj", "--dxf-version", "r12")):
             self.refused(*arguments, saying=saying)
 

@@ -183,6 +183,24 @@ TEST(Drawing, SvgShowsTheView) {
   }
 }
 
+TEST(Drawing, SvgHasItsTrueSizeInAUnit) {
+  const Scratch scratch;
+  const std::vector<Curve> curves = {
+      make_polyline({Vec3(10, 20, 40), Vec3(110, 70, 40)}, kSharpEdge)};
+  const auto head = [&](std::optional<LengthUnit> unit, CoordinateSystem system = {}) {
+    write_drawing(scratch.path("a.svg"), curves,
+                  {.overwrite = Overwrite::kYes, .unit = unit, .coordinate_system = system});
+    const std::string svg = bytes_of(scratch.path("a.svg"));
+    return svg.substr(0, svg.find('>'));
+  };
+  EXPECT_TRUE(head(LengthUnit::kMillimetre).ends_with(" width=\"104mm\" height=\"54mm\""));
+  EXPECT_TRUE(head(LengthUnit::kInch).ends_with(" width=\"2641.6mm\" height=\"1371.6mm\""));
+  for (const auto& plain :
+       {head({}), head(LengthUnit::kNone), head({}, {.unit = LengthUnit::kMetre})}) {
+    EXPECT_FALSE(contains(plain, "width"));
+  }
+}
+
 /// The formats that this build writes.
 std::vector<std::string> names() {
   std::vector<std::string> names;

@@ -33,7 +33,7 @@ struct DrawingOptions {
   double tolerance = 0.0;
   double fit_tolerance = 0.0;  ///< how far points may be from the curves; 0: unknown
   DxfVersion dxf_version = DxfVersion::k2000;
-  /// DXF: of the coordinates; absent: that of the coordinate system.
+  /// Of the coordinates. DXF: absent, that of the coordinate system; SVG: gives the size on a page.
   std::optional<LengthUnit> unit = std::nullopt;
   View view = View::kTop;
   CoordinateSystem coordinate_system = {};

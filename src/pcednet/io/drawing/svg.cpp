@@ -4,6 +4,7 @@
 
 #include "pcednet/io/drawing/line_classes.h"
 #include "pcednet/io/drawing/writers.h"
+#include "pcednet/io/length_units.h"
 
 namespace pcednet::io {
 namespace {
@@ -40,6 +41,14 @@ Sheet sheet_of(const BoundingBox& box, const ViewAxes& axes) {
           height + 2.0 * margin};
 }
 
+/// The attributes that give the sheet its true size on a page; none without a unit.
+std::string size_on_page(const Sheet& sheet, const DrawingOptions& options) {
+  const double metres = options.unit ? entry_of(*options.unit).metres : 0.0;
+  if (!(metres > 0.0)) return {};
+  return fmt::format(" width=\"{:.9g}mm\" height=\"{:.9g}mm\"", 1000.0 * metres * sheet.width,
+                     1000.0 * metres * sheet.height);
+}
+
 void append_path(std::string& text, const lines::Curve& curve, const Sheet& sheet,
                  const ViewAxes& axes, const DrawingOptions& options) {
   text += "<polyline points=\"";
@@ -58,10 +67,10 @@ void write_svg(const std::filesystem::path& path, Curves curves, const DrawingOp
   const ViewAxes axes = axes_of(options.view);
   const Sheet sheet = sheet_of(drawn_box(curves, options), axes);
   std::string text = fmt::format(
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {} {}\">\n"
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {} {}\"{}>\n"
       "<desc>{} curves; the corner at the left and the top is {} = {}, {} = {}</desc>\n",
-      sheet.width, sheet.height, curves.size(), "xyz"[axes.right], sheet.left, "xyz"[axes.up],
-      sheet.top);
+      sheet.width, sheet.height, size_on_page(sheet, options), curves.size(), "xyz"[axes.right],
+      sheet.left, "xyz"[axes.up], sheet.top);
   for (const LineClass& layer : kLineClasses) {
     text += fmt::format(
         "<g id=\"{}\" fill=\"none\" stroke=\"rgb({},{},{})\" stroke-width=\"{}\" "
