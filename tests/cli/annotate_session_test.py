@@ -176,8 +176,10 @@ class AnnotateSession(AnnotateTest):
         self.assertEqual((runs[1]["start"], runs[1]["classes"]), ("scan", 3))
         for what in ("model", "project", "cloud"):
             server.post("/api/save", {"what": what, "overwrite": True})
-        run("train", "--project", self.folder / "cube_annotation.json", "-o",
-            self.folder / "again.safetensors")
+        said = run("train", "--project", self.folder / "cube_annotation.json", "-o",
+                   self.folder / "again.safetensors").stderr
+        self.assertIn("adapted to the painted points: nothing is held out", said)
+        self.assertNotIn("fewer than 20 points", said)
         model = self.folder / "cube.safetensors"
         self.assertEqual((self.folder / "again.safetensors").read_bytes(), model.read_bytes())
         self.assertIn(b"context.", model.read_bytes())

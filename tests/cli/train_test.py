@@ -90,7 +90,7 @@ class Train(CliTest):
         write_ply(self.folder / "c.ply", p, n)
         self.assertLess(len(p), 5000)
         out = run("classify", self.folder / "c.ply", "--model", model).stderr
-        self.assertIn("decided by the networks for clouds of the kind below=5000", out)
+        self.assertIn("for clouds of this kind: fewer than 5000 distinct points\n", out)
         run("classify", self.folder / "c.ply", "-o", self.folder / "few.ply", "--model", few)
         found, wanted = (read_ply(self.folder / name)[0] for name in ("c_edges.ply", "few.ply"))
         self.assertTrue((found["scalar_p_sharp"] == wanted["scalar_p_sharp"]).all())
@@ -171,6 +171,28 @@ class Train(CliTest):
         self.assertIn("no point is labelled smooth-edge (1); --classes 2", done.stderr)
         run("train", self.folder / "a.ply", "-o", self.folder / "m.safetensors", "--classes", 2,
             "--epochs", 1)
+
+    def test_counts_the_labels_that_are_no_classes(self):
+        p, n, label = cube(1000)
+        label[:30] = 5
+        write_ply(self.folder / "a.ply", p, n, label)
+        said = run("train", self.folder / "a.ply", "-o", self.folder / "m.safetensors", "--epochs", 1).stderr
+        self.assertIn("a.ply: 30 labels are none of the classes", said)
+        self.assertNotIn("labels are none", self.train_said(label=np.where(label == 5, 255, label)))
+
+    def train_said(self, label):
+        p, n, _ = cube(1000)
+        write_ply(self.folder / "b.ply", p, n, label)
+        return run("train", self.folder / "b.ply", "-o", self.folder / "b.safetensors", "--epochs", 1).stderr
+
+    def test_writes_model_files_only(self):
+        broken = self.folder / "broken.ply"
+        broken.write_text("ply\nnonsense\n")
+        for name in ("m.onnx", "m.ply", "m"):
+            said = run("train", broken, "-o", self.folder / name, expect=2).stderr
+            self.assertIn(f"{name}: must end in .safetensors", said)
+        run("train", broken, "-o", self.folder / "m.SafeTensors", expect=3)
+        self.assertEqual(os.listdir(self.folder), ["broken.ply"])
 
     def test_says_where_nothing_is_held_out(self):
         p, n, label = cube(1000)

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -79,6 +80,16 @@ std::string own_counts(const Counts& counts, const ClassTable& table, std::size_
   return text;
 }
 
+/// Such as "fewer than 4000 distinct points, estimated normals".
+std::string in_words(const detect::CloudKind& kind) {
+  std::vector<std::string> words;
+  if (kind.below > 0) words.push_back(fmt::format("fewer than {} distinct points", kind.below));
+  if (kind.estimated) words.emplace_back(*kind.estimated ? "estimated normals" : "given normals");
+  if (kind.exact) words.emplace_back("exact points");
+  if (kind.noisy) words.emplace_back("noisy points");
+  return fmt::format("{}", fmt::join(words, ", "));
+}
+
 void report(const Job& job, const detect::Classification& result, const Counts& counts,
             const detect::EdgeModel& model, const std::string& seconds) {
   const std::size_t points = std::accumulate(counts.begin(), counts.end(), std::size_t{0});
@@ -96,8 +107,8 @@ void report(const Job& job, const detect::Classification& result, const Counts& 
         gls::octave_count(range) > 1 ? ", the larger ones where points are sparser" : ""));
   }
   if (result.expert) {
-    say(fmt::format("  decided by the networks for clouds of the kind {}",
-                    text_of(*result.expert)));
+    say(fmt::format("  decided by the networks for clouds of this kind: {}",
+                    in_words(*result.expert)));
   }
   say("  seconds: " + seconds);
   say(fmt::format("  -> {}", job.output.string()));
@@ -269,7 +280,7 @@ void add_classify(CLI::App& app, Common& common) {
       "pcednet classify folder/ --out-dir results/     every point file in a folder\n"
       "pcednet classify folder/ --out-dir results/ --skip-existing    the rest, after a stop\n"
       "pcednet classify small.ply --s-min 0.02 --s-max 0.2     scales in the unit of the cloud\n"
-      "pcednet classify part.obj --model my.safetensors");
+      "pcednet classify part.ply --model my.safetensors");
   command->add_option("inputs", arguments->inputs, "Point files or folders of point files")
       ->required();
   command->add_option(

@@ -13,6 +13,7 @@
 #include "pcednet/core/error.h"
 #include "pcednet/detect/cloud_kind.h"
 #include "pcednet/detect/train.h"
+#include "pcednet/io/text_scan.h"
 #include "prepare.h"
 #include "result_plan.h"
 #include "stage_clock.h"
@@ -127,6 +128,17 @@ void take_classes(const std::filesystem::path& input, const PointCloud& cloud, b
                           pcednet::names_of(table), pcednet::names_of(options.table)));
 }
 
+/// Labels of other classes are not learnt from.
+void warn_of_labels(const std::filesystem::path& input, const PointCloud& cloud,
+                    const ClassTable& table) {
+  const auto others = std::count_if(
+      cloud.labels.begin(), cloud.labels.end(),
+      [&](std::uint8_t label) { return label >= table.size() && label != kUnlabelled; });
+  if (others == 0) return;
+  warn(fmt::format("{}: {} labels are none of the classes {}: taken as unlabelled", input.string(),
+                   others, pcednet::names_of(table)));
+}
+
 /// Three classes cannot be learnt from labels of two.
 void check_has_smooth(const std::vector<detect::TrainingCloud>& clouds,
                       const detect::TrainOptions& options) {
@@ -160,6 +172,7 @@ detect::TrainedModel train_clouds(const TrainArguments& arguments, const Common&
     PointCloud& cloud = loaded.back().cloud;
     if (arguments.no_normals) cloud.normals.clear();
     take_classes(input, cloud, loaded.size() == 1, options);
+    warn_of_labels(input, cloud, options.table);
     check_scales(input, bounding_box(cloud.positions), options.descriptor);
     auto prepared = prepare(input, cloud, arguments.preparation, progress);
     if (!only || only->has(detect::traits_of(prepared, options.descriptor))) {
@@ -177,10 +190,34 @@ detect::TrainedModel train_clouds(const TrainArguments& arguments, const Common&
                        epoch_reports(common), &progress);
 }
 
+void check_extension(const std::filesystem::path& output) {
+  if (io::extension_of(output) == ".safetensors") return;
+  throw Error(ErrorKind::kUsage,
+              fmt::format("{}: must end in .safetensors; ONNX is written by the Python package, "
+                          "Model.save",
+                          output.string()));
+}
+
+/// What is worth knowing of a training that is over.
+void tell(const detect::TrainedModel& trained) {
+  for (const std::string& note : trained.notes) warn(note);
+  if (!trained.no_context.empty()) {
+    warn(fmt::format("no context network was trained: the first network left no point in doubt: {}",
+                     trained.no_context));
+  }
+  if (trained.adapted) {
+    say("  adapted to the painted points: nothing is held out for validation");
+  } else if (!trained.validated) {
+    say("  nothing was held out for validation, as a class has fewer than 20 points: the last "
+        "epoch was kept");
+  }
+}
+
 void train(const TrainArguments& arguments, const Common& common) {
   check_not_inputs(arguments.output, arguments.inputs);
   check_not_input(arguments.output, arguments.project);
   for (const auto& [file, kind] : arguments.experts) check_not_input(arguments.output, file);
+  check_extension(arguments.output);
   check_writable(arguments.output, common.overwrite());
   if (arguments.inputs.empty() && arguments.project.empty()) {
     throw Error(ErrorKind::kUsage, "train: give labelled point files or --project");
@@ -196,15 +233,7 @@ void train(const TrainArguments& arguments, const Common& common) {
     detect::join_expert(trained.model, experts.models[i], experts.kinds[i]);
   }
   detect::save_model(arguments.output, trained.model, common.overwrite());
-  for (const std::string& note : trained.notes) warn(note);
-  if (!trained.no_context.empty()) {
-    warn(fmt::format("no context network was trained: the first network left no point in doubt: {}",
-                     trained.no_context));
-  }
-  if (!trained.validated) {
-    say("  nothing was held out for validation, as a class has fewer than 20 points: the last "
-        "epoch was kept");
-  }
+  tell(trained);
   const auto& context = trained.model.context;
   say(fmt::format("{} weights{}; seconds: {}\n  -> {}",
                   trained.model.network.network.parameters.size(),
@@ -222,7 +251,8 @@ void add_data_options(CLI::App& command, TrainArguments& arguments) {
   command.add_option("--project", arguments.project,
                      "Repeat a training of the annotator from its project; the input is expected "
                      "beside the project unless given");
-  command.add_option("-o,--output", arguments.output, "Output model file")->required();
+  command.add_option("-o,--output", arguments.output, "Output model file, .safetensors")
+      ->required();
   add_prepare_options(command, arguments.preparation);
   command.add_flag("--no-normals", arguments.no_normals,
                    "Leave out the clouds' normals: they are estimated, as for clouds without");

@@ -51,6 +51,7 @@ struct TrainedModel {
   bool cancelled = false;
   int epochs = 0;          ///< completed; after 0 epochs the model is not worth keeping
   bool validated = false;  ///< the best epoch was kept; otherwise the last, as nothing was held out
+  bool adapted = false;    ///< from another model, which holds nothing out
   std::vector<std::string> notes = {};  ///< for the user, one sentence each
   /// Why the first network left nothing for a context network to learn from, though one was wanted.
   std::string no_context = {};

@@ -181,7 +181,8 @@ detect::TrainedModel learn_project(
   return {.model = std::move(learnt.model),
           .cancelled = learnt.cancelled,
           .epochs = last.epoch,
-          .validated = last.is_validated()};
+          .validated = last.is_validated(),
+          .adapted = start.has_value()};
 }
 
 }  // namespace pcednet::annotate
