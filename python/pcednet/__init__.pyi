@@ -180,7 +180,7 @@ def train(clouds: _Points | Sequence[_Points], labels: _Labels | Sequence[_Label
           network: Literal["pcednet", "fc", "cnn"] = "pcednet", threads: int = 0,
           progress: _Progress = None, keep_orientation: bool = False,
           **descriptor: Any) -> Model: ...
-def evaluate(truth: ArrayLike | Cloud, predicted: ArrayLike | Result | Cloud,
+def evaluate(truth: ArrayLike | Result | Cloud, predicted: ArrayLike | Result | Cloud,
              positive: _Positive = "sharp") -> Scores: ...
 def estimate_normals(xyz: _Points, normals: ArrayLike | None = None, *, neighbours: int = 0,
                      viewpoint: ArrayLike | None = None, threads: int = 0,

@@ -89,6 +89,9 @@ def labels(values, rows, name="labels", names=EDGES, strict=False):
             array[indices(some, rows, f"{name}[{key!r}]")] = class_number(key, names)
         return array
     array = numbers(values, name)
+    if array.dtype == bool:
+        raise UsageError(f"{name}: classes are needed, and a mask does not say which: "
+                         'np.where(mask, 2, 0), or {"sharp-edge": mask} for some points')
     if array.ndim == 2 and 1 in array.shape:
         array = array.reshape(-1)
     if array.shape != (rows,):

@@ -219,7 +219,7 @@ def describe(xyz, normals=None, *, scales=16, features=6, reconstruction="sphere
     Returns
     -------
     matrix : ndarray, (n, scales, features) float32
-        Free of units; 0 where a scale has no fit. Never NaN.
+        Free of units; 0 where a scale has no fit, and for a point whose position is not finite. Never NaN.
     scales : ndarray, (scales,) float64
         The support radii, smallest first, with octaves of the densest points; only if
         `return_scales`.

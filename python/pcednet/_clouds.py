@@ -74,6 +74,7 @@ class Cloud:
 
     @property
     def class_names(self):
+        """list of str: the classes by number, from the comments or else the edge classes."""
         return _core.class_names(self._class_lines())
 
     def _has_estimates(self):
@@ -174,7 +175,7 @@ def existing(path):
 
 
 def read(path):
-    """Read a point file: PLY, PCD, OBJ, LAS, LAZ, COPC, E57 or text.
+    """Read a point file: PLY, PCD, OBJ, STL, LAS, LAZ, COPC, E57 or text.
 
     Parameters
     ----------

@@ -6,7 +6,7 @@ import os
 import numpy as np
 
 from . import _arrays, _clouds, _core
-from ._classify import Result, classify
+from ._classify import Result, classify, worded
 from .errors import UsageError
 
 _SHORT = {1: "smooth", 2: "sharp", 3: "boundary"}
@@ -16,7 +16,7 @@ _KINDS = ("segment", "arc", "circle", "polyline")
 class Lines(list):
     """A list of Curve, in the unit and coordinates of their cloud."""
 
-    kept = None
+    _kept = None  # of the file of the cloud: its coordinate system
     _fit_tolerance = 0.0
 
     @property
@@ -35,7 +35,7 @@ class Lines(list):
             Code of the coordinate system, for GeoPackage and GeoJSON. Unless given, that of the
             LAS file that the cloud was read from.
         unit : {'none', 'mm', 'cm', 'm', 'in', 'ft', 'us-ft'}, optional
-            DXF: of the coordinates.
+            Of the coordinates. SVG: gives the drawing its true size.
         tolerance : float
             How far the polylines that stand for arcs may be from them, in formats without arcs;
             0: a thousandth of the radius, or the tolerance of the fit if that is less.
@@ -58,7 +58,7 @@ class Lines(list):
                     "unit": None if unit is None else _arrays.text(unit, "unit"),
                     "tolerance": float(tolerance), "fit_tolerance": self._fit_tolerance,
                     "dxf_version": str(dxf_version), "view": _arrays.text(view, "view"), "overwrite": bool(overwrite)}
-        _core.write_lines(os.fspath(path), list(self), settings, self.kept)
+        _core.write_lines(os.fspath(path), list(self), settings, self._kept)
 
     def __repr__(self):
         return f"<Lines: {len(self)} curves, length {self.length:.6g}>"
@@ -152,12 +152,12 @@ def lines(xyz, labels=None, normals=None, *, p_sharp=None, p_smooth=None,
     if others and not prepared:
         notes.append(f"{others} labels are not edge classes (1 smooth, 2 sharp, 3 boundary): "
                      "counted as non-edge")
-    _arrays.warn(notes)
+    _arrays.warn(worded(notes))
     found = Lines(curve for curve in curves
                   if _SHORT[curve.label] in classes and curve.kind in kinds
                   and curve.confidence >= min_confidence)
     found._fit_tolerance = fit_tolerance
-    found.kept = xyz._kept if isinstance(xyz, _clouds.Cloud) else None
+    found._kept = xyz._kept if isinstance(xyz, _clouds.Cloud) else None
     return found
 
 

@@ -73,7 +73,7 @@ class Model:
             The file is damaged, or not an edge model.
         """
         shipped = _SHIPPED / f"{os.fspath(name)}.safetensors"
-        if not os.path.exists(name) and shipped.exists():
+        if not os.path.isfile(name) and shipped.exists():
             return cls(_core.EdgeModel(shipped))
         try:
             return cls(_core.EdgeModel(_clouds.existing(name)))
@@ -134,22 +134,28 @@ class Model:
         Parameters
         ----------
         descriptors : array_like, (n, scales, features)
-            As :func:`describe` gives them with this model's ``descriptor``.
+            As :func:`describe` gives them with this model's ``descriptor``. It has zeros for a point without
+            a finite position, which :func:`classify` leaves unlabelled.
 
         Returns
         -------
         ndarray, (n, classes) float32
-            The probability of each of ``classes``; rows sum to 1.
+            The probability of each of ``classes``; rows sum to 1, or are NaN where a number of the
+            description is not finite.
         """
         rows = _arrays.numbers(descriptors, "descriptors")
         shape = (self.descriptor["scales"], len(self.columns))
         if rows.shape[1:] not in (shape, (shape[0] * shape[1],)):
             raise UsageError(f"descriptors: shape (n, {shape[0]}, {shape[1]}) is needed, not "
                              f"{rows.shape}")
-        return self._core.network.predict(np.require(rows, np.float32, ["C", "A"]))
+        rows = np.require(rows, np.float32, ["C", "A"])
+        predicted = self._core.network.predict(rows)
+        predicted[~np.isfinite(rows).all(axis=tuple(range(1, rows.ndim)))] = np.nan
+        return predicted
 
     @property
     def name(self):
+        """str: the name in the file; it may be set."""
         return self._core.name
 
     @name.setter
@@ -158,35 +164,43 @@ class Model:
 
     @property
     def seed(self):
+        """int: the seed of the training."""
         return self._core.seed
 
     @property
     def classes(self):
+        """list of int: the class of each output."""
         return self._core.classes
 
     @property
     def class_names(self):
+        """list of str: the names of classes by number."""
         return _core.class_names(self._core.class_lines)
 
     @property
     def columns(self):
+        """list of str: the names of the numbers per scale."""
         return self._core.columns
 
     @property
     def descriptor(self):
+        """dict: the description of a point, as ``describe(xyz, **model.descriptor)`` takes it."""
         return self._core.descriptor
 
     @property
     def has_context(self):
+        """bool: whether a context network refines the result."""
         return self._core.context is not None
 
     @property
     def weights(self):
+        """int: the parameters of all networks."""
         context = self._core.context
         return self._core.network.weights + (context.weights if context is not None else 0)
 
     @property
     def metadata(self):
+        """dict of str to str: the file's metadata on the first network and its training."""
         return self._core.network.metadata
 
     def __reduce__(self):

@@ -1,7 +1,10 @@
 """Scores of labels."""
 
+import numpy as np
+
 from . import _arrays, _clouds, _core
 from ._classify import Result
+from .errors import InsufficientError
 
 
 class Scores:
@@ -27,8 +30,8 @@ def evaluate(truth, predicted, positive="sharp"):
 
     Parameters
     ----------
-    truth : array_like, (n,), or Cloud
-        Points of the class 255 (or -1) are left out.
+    truth : array_like, (n,), Result, or Cloud
+        Points of the class 255 (or -1) are left out. Of a Cloud: its labels.
     predicted : array_like, (n,), Result, or Cloud
         Of a Cloud: its ``edge_class``, which a classification leaves, or else its labels.
     positive : {'sharp', 'edge', 'boundary'}
@@ -42,18 +45,26 @@ def evaluate(truth, predicted, positive="sharp"):
     ------
     UsageError
         Different numbers of points, numbers that are not classes, or own classes.
+    InsufficientError
+        A Cloud without labels, or no labelled point in `truth`.
     """
     for one in (truth, predicted):
         if isinstance(one, Result):
             _core.check_edges(one.model._core.class_lines, "scores", True)
         elif isinstance(one, _clouds.Cloud):
             _core.check_edges(one._class_lines(), "scores", True)
-    truth = truth.labels if isinstance(truth, _clouds.Cloud) else truth
+    truth = truth.labels if isinstance(truth, (Result, _clouds.Cloud)) else truth
     if isinstance(predicted, Result):
         predicted = predicted.labels
     elif isinstance(predicted, _clouds.Cloud):
         predicted = predicted._classes()
+    for name, labels in (("truth", truth), ("predicted", predicted)):
+        if labels is None:
+            raise InsufficientError(f"{name}: the cloud has no labels")
     rows = len(_arrays.numbers(truth, "truth").reshape(-1))
-    return Scores(_core.evaluate(_arrays.labels(truth, rows, "truth", strict=True),
-                                 _arrays.labels(predicted, rows, "predicted", strict=True),
-                                 _arrays.text(positive, "positive")))
+    truth = _arrays.labels(truth, rows, "truth", strict=True)
+    predicted = _arrays.labels(predicted, rows, "predicted", strict=True)
+    positive = _arrays.text(positive, "positive")
+    if (truth == _arrays.UNLABELLED).all():
+        raise InsufficientError("truth: no point is labelled")
+    return Scores(_core.evaluate(truth, predicted, positive))

@@ -19,6 +19,13 @@ def _descriptor(options):
     return _classify.descriptor_settings(given)
 
 
+def _check_adapts(options):
+    """Options of a new network, which a model that learns more has already."""
+    unused = [name for name, (value, default) in options.items() if value is not default and value != default]
+    if unused:
+        raise UsageError(f"{', '.join(unused)}: not with start, whose network and training are as they are")
+
+
 def train(clouds, labels=None, *, normals=None, start=None, name="model", classes=3, seed=1,
           epochs=None, context=False, balance=1.0, distil=0, recipe="adam", network="pcednet",
           threads=0, progress=None, keep_orientation=False, **descriptor):
@@ -38,7 +45,8 @@ def train(clouds, labels=None, *, normals=None, start=None, name="model", classe
         Clouds with own ``class_names`` give a model of these; arrays have those of `start`.
     normals : array_like (n, 3), or a list of one per cloud, optional
     start : str, path-like or Model, optional
-        The model to start from, such as ``"general"``. Only `name` and `seed` apply as well.
+        The model to start from, such as ``"general"``. Options of a new network, from `classes` to
+        `network` and those of the descriptor, are refused with it.
     name : str
         Goes into the model.
     classes : {3, 2}
@@ -68,7 +76,7 @@ def train(clouds, labels=None, *, normals=None, start=None, name="model", classe
     Raises
     ------
     UsageError
-        Arrays or options that do not fit, or numbers that are no classes.
+        Arrays or options that do not fit or do not apply, or numbers that are no classes.
     InsufficientError
         A cloud without a labelled point, a class without points, or Clouds of different classes.
     KeyboardInterrupt
@@ -80,7 +88,13 @@ def train(clouds, labels=None, *, normals=None, start=None, name="model", classe
     normals = _one_each(normals, clouds, several, "normals")
     if not clouds:
         raise UsageError("train: no clouds")
-    start = None if start is None else _models.model_of(start)
+    if start is not None:
+        given = {"classes": (classes, 3), "epochs": (epochs, None), "context": (bool(context), False),
+                 "balance": (balance, 1.0), "distil": (distil, 0), "recipe": (recipe, "adam"),
+                 "network": (network, "pcednet")}
+        given.update((name, (value, None)) for name, value in descriptor.items() if name in _DESCRIPTOR)
+        _check_adapts(given)
+        start = _models.model_of(start)
     table = _class_lines(clouds, start)
     names = _core.class_names(table)
     arrays = [_labelled(k, *one, names, keep_orientation)

@@ -96,6 +96,14 @@ class Lines(CliTest):
         with self.assertRaises(pcednet.UsageError):
             pcednet.lines(self.positions, self.result.labels[1:])
 
+    def test_notes_on_arrays_speak_of_no_file(self):
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            pcednet.lines(self.positions, self.result.labels)
+        said = [str(warning.message) for warning in caught]
+        self.assertRegex(said[0], "^no normals given: estimated from")
+        self.assertNotIn("in the file", " ".join(said))
+
     def test_labels_of_a_file_are_drawn(self):
         write_ply(self.path("in.ply"), self.positions, self.normals, position_type="double")
         run("classify", self.path("in.ply"), "-o", self.path("labelled.ply"), "--model", "cad")

@@ -1,6 +1,7 @@
 """Models from Python: training, adapting, files, scores."""
 
 import json
+import os
 import pathlib
 import pickle
 import tempfile
@@ -122,6 +123,39 @@ class Training(CliTest):
         np.testing.assert_array_equal(p[:, 1], result.p_smooth)
         with self.assertRaises(pcednet.UsageError):
             self.model.predict(matrix[:, :5])
+        some = matrix[:3].copy()
+        some[1, 2, 3] = np.nan
+        np.testing.assert_array_equal(self.model.predict(some)[::2], p[:3:2])
+        self.assertTrue(np.isnan(self.model.predict(some.reshape(3, -1))[1]).all())
+        self.assertEqual(self.model.predict(matrix[:0]).shape, (0, 3))
+
+    def test_a_folder_does_not_hide_a_shipped_model(self):
+        self.addCleanup(os.chdir, os.getcwd())
+        os.chdir(self.folder)
+        os.mkdir("scan")
+        self.assertEqual(pcednet.Model.load("scan").name, "scan")
+        with self.assertRaises(pcednet.UnreadableError):
+            pcednet.Model.load(self.folder)
+
+    def test_a_mask_is_no_array_of_classes(self):
+        mask = self.labels == 2
+        cloud = pcednet.Cloud(self.positions, self.normals, labels=mask)
+        for refused in (lambda: pcednet.evaluate(mask, self.labels), lambda: pcednet.evaluate(self.labels, mask),
+                        lambda: pcednet.evaluate(cloud, self.labels), lambda: pcednet.lines(self.positions, mask),
+                        lambda: pcednet.train(self.positions, mask), lambda: pcednet.train(cloud),
+                        lambda: pcednet.write(self.path("m.ply"), self.positions, labels=mask)):
+            with self.assertRaisesRegex(pcednet.UsageError, r'mask.*\{"sharp-edge": mask\}'):
+                refused()
+
+    def test_options_of_a_new_network_are_refused_with_a_start(self):
+        for options in ({"epochs": 3}, {"classes": 2}, {"context": True}, {"balance": 0.5}, {"distil": 2},
+                        {"recipe": "paper"}, {"network": "none such"}, {"scales": 4}, {"gate": -7.0}):
+            for train in (lambda **its: pcednet.train(self.positions, self.labels, start="general", **its),
+                          lambda **its: self.model.adapt(self.positions, self.labels, **its)):
+                with self.assertRaisesRegex(pcednet.UsageError, f"^{next(iter(options))}: not with start"):
+                    train(**options)
+        with self.assertRaises(TypeError):
+            self.model.adapt(self.positions, self.labels, epoch=3)
 
     def test_labels_may_be_given_in_several_ways(self):
         by_name = {name: np.flatnonzero(self.labels == number)
@@ -262,6 +296,17 @@ class Scoring(unittest.TestCase):
         self.assertEqual(pcednet.evaluate(cloud, [3, 3], "boundary").tp, 1)
         with self.assertRaises(pcednet.UsageError):
             pcednet.evaluate([0, 1], [0])
+        bare = pcednet.Cloud(np.zeros((2, 3)))
+        for said, *arguments in (("truth: no point is labelled", [], []), ("truth: no point is labelled", [255, -1], [0, 2]),
+                                 ("truth: the cloud has no labels", bare, [0, 2]),
+                                 ("predicted: the cloud has no labels", [0, 2], bare)):
+            with self.assertRaisesRegex(pcednet.InsufficientError, said):
+                pcednet.evaluate(*arguments)
+
+    def test_a_result_may_be_the_truth(self):
+        positions, normals, _ = cube(1000)
+        result = pcednet.classify(positions, normals)
+        self.assertEqual(pcednet.evaluate(result, result).mcc, 1)
         with self.assertRaises(pcednet.UsageError):
             pcednet.evaluate([0, 1], [0, 2], "smooth")
 
