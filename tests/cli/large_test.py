@@ -74,7 +74,7 @@ class Large(CliTest):
         q = field(3)[0]
         for name, cloud, words in (
                 ("sparser", p[kept], "where points are sparser"),
-                ("noisy", q + 0.02 * random.normal(size=q.shape), "of the kind estimated,noisy")):
+                ("noisy", q + 0.02 * random.normal(size=q.shape), "of this kind: estimated normals, noisy points")):
             write_ply(self.folder / f"{name}.ply", cloud)
             self.classified(self.folder / f"{name}.ply", f"_{name}.ply")
             self.assertIn(words, self.how)
