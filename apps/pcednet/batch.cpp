@@ -33,12 +33,19 @@ bool is_prose(const fs::path& file) {
   }
 }
 
+/// Whether the file of a folder is of a format of points: STL holds a mesh, often that of a cloud
+/// beside it.
+bool is_of_points(const fs::path& file) {
+  const formats::Format* format = formats::find_format(file);
+  return format && format->name != "STL";
+}
+
 std::vector<fs::path> files_in(const fs::path& folder, std::vector<fs::path>& passed_over) {
   std::vector<fs::path> files;
   std::error_code error, ignored;
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
        entry.increment(error)) {
-    if (!formats::find_format(entry->path()) || entry->is_directory(ignored)) continue;
+    if (!is_of_points(entry->path()) || entry->is_directory(ignored)) continue;
     (is_prose(entry->path()) ? passed_over : files).push_back(entry->path());
   }
   if (error) {

@@ -48,6 +48,13 @@ class Sample(CliTest):
         self.assertNotIn("faces", run("convert", mesh, "-o", self.folder / "d.ply").stderr)
         self.assertNotIn("faces", run("classify", self.folder / "c.ply").stderr)
 
+    def test_an_stl_beside_a_cloud_is_no_cloud(self):
+        p, n, _ = cube(300)
+        write_ply(self.folder / "a.ply", p, n)
+        (self.folder / "a.stl").write_text(self.STL)
+        run("classify", self.folder, "--out-dir", self.folder / "out")
+        self.assertEqual([path.name for path in (self.folder / "out").iterdir()], ["a_edges.ply"])
+
     def test_a_cloud_without_faces_is_refused(self):
         p, n, _ = cube(100)
         write_ply(self.folder / "a.ply", p, n)
