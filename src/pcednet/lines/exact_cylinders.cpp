@@ -20,6 +20,7 @@ constexpr std::size_t kLeastOnFacets = 12;
 constexpr double kMostOfLean = 0.5;  ///< of the variance of the distances from a circle: the rest
 constexpr std::size_t kNoCylinder = std::numeric_limits<std::size_t>::max();
 constexpr std::size_t kMostRounds = 12;  ///< of the growth of a cylinder
+constexpr double kPartOfFacets = 1.5;    ///< as many points on facets: the cylinder is part of them
 
 /// What a cylinder's points lie on, and how near they are to its circle, each and as a root mean
 /// square, in spacings.
@@ -65,9 +66,8 @@ struct CylinderCircle {
   double radius = 0.0;
   CylinderKind kind = kCylinder;
 
-  bool holds(const Vec3& place) const {
-    return std::abs((place - centre).norm() - radius) < kind.reach;
-  }
+  double off(const Vec3& place) const { return std::abs((place - centre).norm() - radius); }
+  bool holds(const Vec3& place) const { return off(place) < kind.reach; }
 };
 
 /// The circle through the origin and two places; none if they are near each other or on a line.
@@ -113,6 +113,8 @@ class CylinderGrowth {
   double rise() const;
   bool leans() const;
   bool is_cylinder() const;
+  bool grow(std::uint32_t first);
+  void grow_over_facets(std::uint32_t first);
   bool is_on(const CylinderCircle& circle, const std::vector<std::uint32_t>& members) const;
   struct CylinderIndex {
     std::vector<Cylinder> cylinders;
@@ -120,6 +122,7 @@ class CylinderGrowth {
     std::vector<std::size_t> of_places;  ///< the cylinder of each place
   };
   std::size_t cylinder_that_holds(const Cylinder& part, const CylinderIndex& index) const;
+  bool add(const Cylinder& part, Cylinder& whole);
 
   const CylinderPoints& points_;
   spatial::KdTree tree_;
@@ -251,23 +254,38 @@ bool CylinderGrowth::is_cylinder() const {
          (members_.size() < kManyOnCylinder ? kLeastCylinderRiseOfFew : kLeastCylinderRise);
 }
 
-void CylinderGrowth::try_at(std::uint32_t first, std::size_t least_on, const CylinderKind& kind) {
-  if (taken_[first] || !set_first(first, least_on, kind)) return;
-  // The circle through three places is wrong farther on; that of all so far is less so.
+/// Grows a cylinder from the circle that is set. The circle through three places is wrong farther
+/// on; that of all so far is less so.
+bool CylinderGrowth::grow(std::uint32_t first) {
   for (std::size_t before = 0, round = 0; round < kMostRounds; ++round) {
-    if (!spread(first)) return;
+    if (!spread(first)) return false;
     if (round > 0 && members_.size() <= before) break;
     before = members_.size();
   }
-  if (!is_cylinder()) return;
+  return is_cylinder();
+}
+
+/// A cylinder of low facets holds together only within their reach.
+void CylinderGrowth::grow_over_facets(std::uint32_t first) {
+  const Cylinder part{circle_, members_};
+  circle_.kind = kFacets;
+  const double least = kPartOfFacets * static_cast<double>(part.members.size());
+  if (grow(first) && static_cast<double>(members_.size()) >= least) return;
+  circle_ = part.circle;
+  members_ = part.members;
+}
+
+void CylinderGrowth::try_at(std::uint32_t first, std::size_t least_on, const CylinderKind& kind) {
+  if (taken_[first] || !set_first(first, least_on, kind) || !grow(first)) return;
+  if (!kind.has_facets) grow_over_facets(first);
   for (const std::uint32_t i : members_) taken_[i] = 1;
   found.push_back({circle_, members_});
 }
 
 bool CylinderGrowth::is_on(const CylinderCircle& circle,
                            const std::vector<std::uint32_t>& members) const {
-  return std::ranges::all_of(members,
-                             [&](std::uint32_t i) { return circle.holds(points_.places[i]); });
+  return std::ranges::all_of(
+      members, [&](std::uint32_t i) { return circle.off(points_.places[i]) < kFacets.reach; });
 }
 
 /// The number of a cylinder whose circle all members of this one are on; kNoCylinder if there is
@@ -289,6 +307,17 @@ std::size_t CylinderGrowth::cylinder_that_holds(const Cylinder& part,
   return kNoCylinder;
 }
 
+/// Adds the part to a cylinder unless one circle is too far from both.
+bool CylinderGrowth::add(const Cylinder& part, Cylinder& whole) {
+  circle_ = whole.circle;
+  members_ = whole.members;
+  members_.insert(members_.end(), part.members.begin(), part.members.end());
+  if (!fit_to_members() || error_ > kFacets.most_error) return false;
+  if (error_ > kCylinder.most_error) circle_.kind = kFacets;
+  whole = {circle_, members_};
+  return true;
+}
+
 void CylinderGrowth::unite() {
   std::stable_sort(found.begin(), found.end(), [](const Cylinder& a, const Cylinder& b) {
     return a.members.size() > b.members.size();
@@ -298,16 +327,10 @@ void CylinderGrowth::unite() {
                       .of_places = std::vector<std::size_t>(points_.places.size(), kNoCylinder)};
   for (const Cylinder& part : found) {
     std::size_t cylinder = cylinder_that_holds(part, whole);
-    if (cylinder == kNoCylinder) {
+    if (cylinder == kNoCylinder || !add(part, whole.cylinders[cylinder])) {
       cylinder = whole.cylinders.size();
       if (part.circle.radius > kNarrowRadius) whole.wide.push_back(cylinder);
       whole.cylinders.push_back(part);
-    } else {
-      circle_ = whole.cylinders[cylinder].circle;
-      members_ = std::move(whole.cylinders[cylinder].members);
-      members_.insert(members_.end(), part.members.begin(), part.members.end());
-      if (fit_to_members()) whole.cylinders[cylinder].circle = circle_;
-      whole.cylinders[cylinder].members = members_;
     }
     for (const std::uint32_t i : part.members) whole.of_places[i] = cylinder;
   }

@@ -18,6 +18,8 @@ constexpr double kSameDirectionTwice = 0.7;  ///< of an edge and its copy
 constexpr std::size_t kPiecesAtOnce = 64;    ///< between two looks at the progress
 constexpr double kOnExact = 0.1;             ///< spacings from one line to another that is the same
 constexpr double kBesideExact = 0.8;         ///< of copies of an exact one
+constexpr double kOneExact = 0.15;           ///< spacings between exact copies, across
+constexpr double kOneExactStep = 0.8;        ///< and between their nodes
 constexpr double kDuplicate = 1.2;           ///< spacings between copies of one edge
 
 void set_ends(Piece& piece) {
@@ -162,13 +164,39 @@ void close_circles(std::vector<Piece>& pieces, double gap) {
   }
 }
 
+/// Marks the exact pieces most of whose nodes are on longer exact ones: the wall of a mesh
+/// may have been taken for several cylinders.
+std::vector<std::uint8_t> exact_copies(const std::vector<Piece>& pieces, const NodeIndex& index) {
+  std::vector<std::uint8_t> is_copy(pieces.size(), 0), kept(pieces.size(), 0);
+  std::vector<spatial::Neighbour> near;
+  for (const std::size_t i : longest_first(pieces)) {
+    if (!pieces[i].exact) continue;
+    std::size_t covered = 0;
+    for (const ChainNode& node : pieces[i].nodes) {
+      const double reach = kOneExactStep * node.spacing;
+      index.tree.within_unsorted(node.at, reach, near);
+      covered += std::any_of(near.begin(), near.end(), [&](const auto& other) {
+        const ChainNode& of_other = *index.nodes[other.index];
+        const Vec3 offset = node.at - of_other.at;
+        const Vec3 aside = offset - offset.dot(of_other.along) * of_other.along;
+        return kept[index.piece[other.index]] && aside.norm() < kOneExact * node.spacing &&
+               std::abs(of_other.along.dot(node.along)) > kSameDirectionTwice &&
+               same_wedge(of_other, node);
+      });
+    }
+    is_copy[i] = 3 * covered >= 2 * pieces[i].nodes.size();
+    kept[i] = !is_copy[i];
+  }
+  return is_copy;
+}
+
 /// Drops the pieces most of whose nodes are beside nodes of longer ones that are kept, or of exact
 /// ones.
 void drop_beside(std::vector<Piece>& pieces, bool exact_alone) {
   const NodeIndex index(pieces);
-  std::vector<std::uint8_t> dropped(pieces.size(), 0), kept(pieces.size(), 0);
+  std::vector<std::uint8_t> dropped = exact_copies(pieces, index), kept(pieces.size(), 0);
   std::vector<spatial::Neighbour> near;
-  for (std::size_t i = 0; i < pieces.size(); ++i) kept[i] = pieces[i].exact;
+  for (std::size_t i = 0; i < pieces.size(); ++i) kept[i] = pieces[i].exact && !dropped[i];
   for (const std::size_t i : longest_first(pieces)) {
     if (pieces[i].exact) continue;
     std::size_t covered = 0;
