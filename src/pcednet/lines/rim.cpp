@@ -290,16 +290,6 @@ std::optional<bool> plane_is_outside(const Fit& circle, const OrderedPoints& clo
   return is_outside;
 }
 
-/// The largest angle between neighbours of these about an axis; there must be one.
-double widest_gap(std::vector<double>& angles) {
-  std::sort(angles.begin(), angles.end());
-  double widest = kWholeTurn - (angles.back() - angles.front());
-  for (std::size_t i = 1; i < angles.size(); ++i) {
-    widest = std::max(widest, angles[i] - angles[i - 1]);
-  }
-  return widest;
-}
-
 /// Whether there is a wall all along the circle, on one side of the plane alone.
 bool has_wall(const Fit& circle, const OrderedPoints& cloud, std::span<const Beside> points,
               const RimTest& test) {

@@ -60,6 +60,15 @@ std::size_t Sectors::covered() const {
   return static_cast<std::size_t>(std::count(seen_.begin(), seen_.end(), 1));
 }
 
+double widest_gap(std::vector<double>& angles) {
+  std::sort(angles.begin(), angles.end());
+  double widest = kWholeTurn - (angles.back() - angles.front());
+  for (std::size_t i = 1; i < angles.size(); ++i) {
+    widest = std::max(widest, angles[i] - angles[i - 1]);
+  }
+  return widest;
+}
+
 bool belongs_to(const Fit& circle, const Piece& piece) {
   std::size_t beside = 0;
   for (const ChainNode& node : piece.nodes) {

@@ -43,6 +43,9 @@ class Sectors {
   std::size_t points_ = 0;
 };
 
+/// The largest angle between neighbours of these, at least one, about an axis. Sorts them.
+double widest_gap(std::vector<double>& angles);
+
 /// A part of a circle without nodes.
 struct Gap {
   Vec3 from, to;
