@@ -5,7 +5,9 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
+#include <vector>
 
 #include "lines/made_clouds.h"
 #include "lines/made_pieces.h"
@@ -33,6 +35,10 @@ std::vector<Piece> around(const Piece& between) {
   return {straight({-20, 0, 0}, {-5, 0, 0}), between, straight({0, 5, 0}, {0, 20, 0})};
 }
 
+OrderedPoints no_points() {
+  return OrderedPoints(EdgePoints{});
+}
+
 std::size_t arcs_in(const std::vector<Piece>& pieces) {
   return static_cast<std::size_t>(std::count_if(
       pieces.begin(), pieces.end(), [](const Piece& p) { return p.fit.kind == CurveKind::kArc; }));
@@ -40,7 +46,7 @@ std::size_t arcs_in(const std::vector<Piece>& pieces) {
 
 TEST(Rounding, AShortPieceBetweenTwoSegmentsBecomesTheArcThatTouchesBoth) {
   std::vector<Piece> pieces = around(chord_of_rounding());
-  round_corners(pieces, kOffArc);
+  round_corners(pieces, no_points(), kOffArc);
   ASSERT_EQ(pieces[1].fit.kind, CurveKind::kArc);
   EXPECT_NEAR(pieces[1].fit.radius, kRounding, 0.3);
   EXPECT_NEAR((pieces[1].fit.point - Vec3(-kRounding, kRounding, 0)).norm(), 0.0, 0.4);
@@ -49,11 +55,41 @@ TEST(Rounding, AShortPieceBetweenTwoSegmentsBecomesTheArcThatTouchesBoth) {
   EXPECT_NEAR(length_of(pieces[1]), 0.5 * std::numbers::pi * kRounding, 0.5);
 }
 
+/// Below the lines y = 0 and x = 0 and the arc between them.
+std::vector<Vec3> wall_of_rounding() {
+  Random random(3);
+  const double arc = 0.5 * std::numbers::pi * kRounding, around = 30.0 + arc;
+  std::vector<Vec3> wall;
+  for (int i = 0; i < static_cast<int>(6.0 * around); ++i) {
+    const double along = around * random.uniform(), z = -6.0 * random.uniform();
+    const double angle = std::clamp((along - 15.0) / kRounding, 0.0, 0.5 * std::numbers::pi);
+    const Vec3 centre(-kRounding, kRounding, z);
+    const Vec3 on = centre + kRounding * Vec3(std::sin(angle), -std::cos(angle), 0);
+    const double before = std::min(0.0, along - 15.0), after = std::max(0.0, along - 15.0 - arc);
+    wall.push_back(on + Vec3(before, after, 0));
+  }
+  return wall;
+}
+
+TEST(Rounding, TheRadiusIsThatOfTheWallWhereNodesLieInsideOfIt) {
+  std::vector<Piece> pieces = around(chord_of_rounding());
+  for (ChainNode& node : pieces[1].nodes) node.at += Vec3(-0.3, 0.3, 0);
+  std::vector<Piece> without = pieces;
+  round_corners(without, no_points(), 2.0 * kOffArc);
+  ASSERT_EQ(without[1].fit.kind, CurveKind::kArc);
+  EXPECT_GT(without[1].fit.radius, kRounding + 0.3);
+  const std::vector<Vec3> wall = wall_of_rounding(), normals(wall.size(), Vec3::UnitX());
+  const std::vector<std::uint8_t> classes(wall.size(), kNonEdge);
+  round_corners(pieces, OrderedPoints({wall, normals, classes}), 2.0 * kOffArc);
+  ASSERT_EQ(pieces[1].fit.kind, CurveKind::kArc);
+  EXPECT_NEAR(pieces[1].fit.radius, kRounding, 0.06);
+}
+
 TEST(Rounding, TheSenseOfThePiecesDoesNotMatter) {
   std::vector<Piece> pieces = around(chord_of_rounding());
   pieces[0] = straight({-5, 0, 0}, {-20, 0, 0});
   pieces[2] = straight({0, 20, 0}, {0, 5, 0});
-  round_corners(pieces, kOffArc);
+  round_corners(pieces, no_points(), kOffArc);
   ASSERT_EQ(pieces[1].fit.kind, CurveKind::kArc);
   EXPECT_NEAR(pieces[1].fit.radius, kRounding, 0.3);
   EXPECT_EQ(pieces[1].ends[0], pieces[0].ends[0]);
@@ -63,32 +99,32 @@ TEST(Rounding, TheSenseOfThePiecesDoesNotMatter) {
 TEST(Rounding, AChamferStaysWhereThirdEdgesBegin) {
   std::vector<Piece> pieces = around(chord_of_rounding());
   pieces.push_back(straight({-5, 0, 0}, {-5, 0, -10}, Vec3::UnitX(), Vec3::UnitY()));
-  round_corners(pieces, kOffArc);
+  round_corners(pieces, no_points(), kOffArc);
   EXPECT_EQ(arcs_in(pieces), 0u);
 }
 
 TEST(Rounding, AnEdgeAlongsideIsNoThirdEdge) {
   std::vector<Piece> pieces = around(chord_of_rounding());
   pieces.push_back(straight({-4, 0.5, -2}, {-0.5, 4, -2}));
-  round_corners(pieces, kOffArc);
+  round_corners(pieces, no_points(), kOffArc);
   EXPECT_EQ(pieces[1].fit.kind, CurveKind::kArc);
 }
 
 TEST(Rounding, ALongChamferIsNearNoArc) {
   std::vector<Piece> pieces = {straight({-30, 0, 0}, {-12, 0, 0}),
                                straight({-12, 0, 0}, {0, 12, 0}), straight({0, 12, 0}, {0, 30, 0})};
-  round_corners(pieces, kOffArc);
+  round_corners(pieces, no_points(), kOffArc);
   EXPECT_EQ(arcs_in(pieces), 0u);
 }
 
 TEST(Rounding, LinesThatMissEachOtherOrGoOnStraightStay) {
   std::vector<Piece> apart = around(chord_of_rounding());
   apart[2] = straight({0, 5, 1.2}, {0, 20, 1.2});
-  round_corners(apart, kOffArc);
+  round_corners(apart, no_points(), kOffArc);
   EXPECT_EQ(arcs_in(apart), 0u);
   std::vector<Piece> on = {straight({-20, 0, 0}, {-5, 0, 0}), straight({-4, 0, 0}, {0, 0.5, 0}),
                            straight({1, 0.7, 0}, {20, 5, 0})};
-  round_corners(on, kOffArc);
+  round_corners(on, no_points(), kOffArc);
   EXPECT_EQ(arcs_in(on), 0u);
 }
 

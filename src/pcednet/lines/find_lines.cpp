@@ -209,7 +209,7 @@ void place_pieces(std::vector<Piece>& pieces, const OrderedPoints& cloud, const 
                   const Limits& limits, const Progress* progress) {
   join(pieces, cloud, limits, sampling.noise, progress);
   refine(pieces, cloud, sampling, progress);
-  round_corners(pieces, limits.tolerance);
+  round_corners(pieces, cloud, limits.tolerance);
   extend_free_ends(pieces, cloud, sampling.noise);
   if (sampling.noise > kMuchNoise) {
     string_free_ends(pieces, limits.gap, limits.angle, sampling.noise);

@@ -5,7 +5,9 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <span>
 #include <utility>
+#include <vector>
 
 namespace pcednet::lines {
 namespace {
@@ -25,6 +27,12 @@ constexpr double kLeastRounding = 1.5;
 constexpr double kRestOfSegment = 2.0;
 constexpr double kTangentStep = 0.25;
 constexpr double kMostOffArc = 3.0;
+constexpr double kWallFrom = 0.6, kWallTo = 3.5;  ///< of the wall, from the edge's plane
+constexpr double kOnWall = 1.0;                   ///< its points from the edge, seen along the axis
+constexpr double kBesideArc = 5.0;                ///< of the wall beyond the ends of the arc
+constexpr double kRadiusStep = 0.05, kMostMoved = 3.0;  ///< of the tangent
+constexpr double kMostLean = 0.15;                      ///< of the wall from the lines, on average
+constexpr std::size_t kLeastOfWall = 8;                 ///< points beside the arc
 
 /// Where two lines meet, and the arcs that touch both at the distance `tangent` from there.
 struct Apex {
@@ -46,6 +54,13 @@ struct Apex {
     const Vec3 offset = place - centre(tangent);
     const double height = offset.dot(axis);
     return std::hypot((offset - height * axis).norm() - radius(tangent), height);
+  }
+  /// Outwards from the arc or, beside a line, from that, seen along the axis.
+  double outside(const Vec3& place, double tangent) const {
+    const Vec3 flat = place - (place - at).dot(axis) * axis;
+    if (is_on_arc(flat, tangent)) return (flat - centre(tangent)).norm() - radius(tangent);
+    const Vec3& along = (flat - at).dot(in + out) > 0.0 ? out : in;
+    return -(flat - at).dot(axis.cross(along));
   }
   /// To the nearer of the lines.
   double distance_to_lines(const Vec3& place) const {
@@ -148,6 +163,52 @@ std::optional<double> best_tangent(const Apex& apex, const std::vector<ChainNode
   return best;
 }
 
+/// The points of the wall across the edge, on one side of its plane.
+std::vector<Vec3> wall_of(const Apex& apex, double tangent, double side, const OrderedPoints& cloud,
+                          double spacing) {
+  std::vector<spatial::Neighbour> near;
+  const double around = tangent + (kBesideArc + kWallTo) * spacing;
+  cloud.within(apex.at, around, near);
+  std::vector<Vec3> wall;
+  for (const auto& point : near) {
+    const Vec3& place = cloud.position(point.index);
+    const Vec3 offset = place - apex.at;
+    const double height = side * offset.dot(apex.axis) / spacing;
+    if (height < kWallFrom || height > kWallTo) continue;
+    const double most = tangent + kBesideArc * spacing;
+    if (offset.dot(apex.in) < -most || offset.dot(apex.out) > most) continue;
+    if (std::abs(apex.outside(place, tangent)) < kOnWall * spacing) wall.push_back(place);
+  }
+  return wall;
+}
+
+/// The tangent of the arc that is nearest to the wall, by least squares; `tangent` where the wall
+/// is not across the plane of the edge or has few points. Nodes of noisy points lie inside of a
+/// convex arc.
+double tangent_of_wall(const Apex& apex, double tangent, double most, std::span<const Vec3> wall,
+                       double spacing) {
+  double lean = 0.0, beside = 0.0;
+  for (const Vec3& place : wall) {
+    if (apex.is_on_arc(place, tangent)) continue;
+    lean += apex.outside(place, tangent) / spacing;
+    beside += 1.0;
+  }
+  const double on_arc = static_cast<double>(wall.size()) - beside;
+  if (on_arc < kLeastOfWall || beside < kLeastOfWall || std::abs(lean) > kMostLean * beside) {
+    return tangent;
+  }
+  double best = tangent, least = std::numeric_limits<double>::infinity();
+  const int steps = static_cast<int>(kMostMoved / kRadiusStep);
+  for (int step = -steps; step <= steps; ++step) {
+    const double other = tangent + step * kRadiusStep * spacing;
+    if (other > most || apex.radius(other) < kLeastRounding * spacing) continue;
+    double sum = 0.0;
+    for (const Vec3& place : wall) sum += std::pow(apex.outside(place, other), 2);
+    if (sum < least) least = sum, best = other;
+  }
+  return best;
+}
+
 /// The segment up to the arc; nothing if hardly a node is left.
 std::optional<Piece> shortened(const Piece& segment, std::size_t side, const Vec3& end,
                                const Apex& apex, double tangent) {
@@ -177,7 +238,8 @@ std::optional<Piece> arc_at(const Apex& apex, double tangent, const std::vector<
   return arc;
 }
 
-void round_corner(const Between& between, double tolerance, std::vector<Piece>& pieces) {
+void round_corner(const Between& between, const OrderedPoints& cloud, double tolerance,
+                  std::vector<Piece>& pieces) {
   Piece& piece = pieces[between.piece];
   const auto [before, side_before] = between.before;
   const auto [after, side_after] = between.after;
@@ -189,8 +251,12 @@ void round_corner(const Between& between, double tolerance, std::vector<Piece>& 
                                (pieces[after].ends[1 - side_after] - apex->at).dot(apex->out));
   const double most = std::min(room - kRestOfSegment * spacing, kLongestRounding * spacing);
   const std::vector<ChainNode> nodes = nodes_along(between, pieces, *apex, most);
-  const auto tangent = best_tangent(*apex, nodes, spacing, most);
+  auto tangent = best_tangent(*apex, nodes, spacing, most);
   if (!tangent) return;
+  const std::vector<Vec3> above = wall_of(*apex, *tangent, 1.0, cloud, spacing);
+  const std::vector<Vec3> below = wall_of(*apex, *tangent, -1.0, cloud, spacing);
+  const auto& wall = above.size() > below.size() ? above : below;
+  tangent = tangent_of_wall(*apex, *tangent, most, wall, spacing);
   auto arc =
       arc_at(*apex, *tangent, nodes, spacing, std::max(kMisses * tolerance, piece.fit.error));
   auto up_to = shortened(pieces[before], side_before, apex->first(*tangent), *apex, *tangent);
@@ -203,14 +269,14 @@ void round_corner(const Between& between, double tolerance, std::vector<Piece>& 
 
 }  // namespace
 
-void round_corners(std::vector<Piece>& pieces, double tolerance) {
+void round_corners(std::vector<Piece>& pieces, const OrderedPoints& cloud, double tolerance) {
   const EndIndex index(pieces, open_ends(pieces));
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     const Piece& piece = pieces[i];
     if (piece.closed || piece.exact || is_boundary(piece.middle())) continue;
     if (length_of(piece) > kLongestRounding * piece.spacing()) continue;
     if (const auto between = between_segments(i, pieces, index)) {
-      round_corner(*between, tolerance, pieces);
+      round_corner(*between, cloud, tolerance, pieces);
     }
   }
 }

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "pcednet/lines/ordered_points.h"
 #include "pcednet/lines/piece.h"
 
 namespace pcednet::lines {
@@ -9,7 +10,8 @@ namespace pcednet::lines {
 /// Puts an arc that touches two segments in place of the piece between their ends, if it passes
 /// within `tolerance` (in spacings) of the nodes there and no other edge begins at that piece. A
 /// rounded corner of a few spacings has too few nodes for an arc by itself and looks like a
-/// chamfer; but where two edges of a chamfer begin, there is a third.
-void round_corners(std::vector<Piece>& pieces, double tolerance);
+/// chamfer; but where two edges of a chamfer begin, there is a third. Where a wall stands across
+/// the edge, its points determine the radius.
+void round_corners(std::vector<Piece>& pieces, const OrderedPoints& cloud, double tolerance);
 
 }  // namespace pcednet::lines
