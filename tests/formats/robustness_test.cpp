@@ -221,7 +221,7 @@ TEST(WriteCloud, RefusesWhatItCannotDo) {
            [&] { formats::write_cloud(scratch.path("no/such/a.ply"), cloud); });
   cloud.labels.pop_back();
   for (const char* name : {"b.ply", "b.pcd", "b.obj", "b.xyz"}) {
-    error_of(ErrorKind::kFailure, [&] { formats::write_cloud(scratch.path(name), cloud); });
+    error_of(ErrorKind::kUsage, [&] { formats::write_cloud(scratch.path(name), cloud); });
     EXPECT_FALSE(std::filesystem::exists(scratch.path(name)));
   }
 }
