@@ -26,6 +26,7 @@ class MakePlan : public testing::Test, protected test::OwnFolder {
     const std::filesystem::path model = PCEDNET_SOURCE_DIR "/models/general.safetensors";
     return make_plan({.inputs = {folder_ / "in.ply"},
                       .folder = folder_ / "tiles",
+                      .output = {},
                       .model = {.name = "general", .path = model},
                       .tile_length = tile_length},
                      detect::load_model(model));
