@@ -4,9 +4,6 @@
 
 #include <algorithm>
 #include <new>
-#include <optional>
-#include <string_view>
-#include <utility>
 
 #include "common.h"
 #include "pcednet/formats/format.h"
@@ -33,11 +30,10 @@ bool is_prose(const fs::path& file) {
   }
 }
 
-/// Whether the file of a folder is of a format of points: STL holds a mesh, often that of a cloud
-/// beside it.
+/// Whether the file of a folder holds points: a mesh is often that of a cloud beside it.
 bool is_of_points(const fs::path& file) {
   const formats::Format* format = formats::find_format(file);
-  return format && format->name != "STL";
+  return format && !format->is_mesh;
 }
 
 std::vector<fs::path> files_in(const fs::path& folder, std::vector<fs::path>& passed_over) {
@@ -137,21 +133,17 @@ void Batch::finish() const {
 
 void with_name_in_errors(const fs::path& file, const std::function<void()>& work) {
   const std::string name = file.string();
-  std::optional<Error> named;  // by itself
-  pcednet::with_name_in_errors(name, [&] {
-    try {
-      work();
-    } catch (const Error& error) {
-      if (error.kind() == ErrorKind::kCancelled) throw;
-      // Explained here: the rethrown error no longer has the type ExistsAlready.
-      Error explained(error.kind(), explain(error));
-      if (std::string_view(explained.what()).find(name) == std::string_view::npos) throw explained;
-      named = std::move(explained);
-    } catch (const std::bad_alloc&) {
-      throw Error(ErrorKind::kFailure, "not enough memory");
-    }
-  });
-  if (named) throw *named;
+  try {
+    work();
+  } catch (const Error& error) {
+    if (error.kind() == ErrorKind::kCancelled) throw;
+    // Explained here: the rethrown error no longer has the type ExistsAlready.
+    const std::string message = explain(error);
+    const bool is_named = message.find(name) != std::string::npos;
+    throw Error(error.kind(), is_named ? message : name + ": " + message);
+  } catch (const std::bad_alloc&) {
+    throw Error(ErrorKind::kFailure, name + ": not enough memory");
+  }
 }
 
 }  // namespace pcednet::app

@@ -65,7 +65,7 @@ std::vector<Format> make_formats() {
        .read = io::read_obj,
        .write = io::write_obj,
        .losses = [](const fs::path&, const PointCloud& cloud) { return io::obj_losses(cloud); }},
-      {.name = "STL", .extensions = {".stl"}, .read = io::read_stl},
+      {.name = "STL", .extensions = {".stl"}, .is_mesh = true, .read = io::read_stl},
       {.name = "text",
        .extensions = {".xyz", ".txt", ".asc", ".pts", ".csv"},
        .read = io::read_xyz,

@@ -20,6 +20,8 @@ struct Format {
   std::string_view name;
   std::vector<std::string_view> extensions;  ///< in lower case, with the dot
 
+  bool is_mesh = false;  ///< of triangles alone, whose corners are the points
+
   /// Whether a file with this beginning is of this format, with any extension.
   bool (*begins)(std::string_view start) = nullptr;
   /// The number of points by the header.

@@ -254,6 +254,7 @@ std::vector<Curve> lines_of(const OrderedPoints& cloud, bool is_whole, const Lin
   if (sampling.exact) {
     exact = find_exact_edges(cloud, sampling.spacing, progress);
     keep_labelled(exact, cloud);
+    drop_exact_copies(exact.pieces);
     erase_explained(creases, exact);
   }
   const FinishOptions finish_options = {limits.tolerance, sampling.noise};

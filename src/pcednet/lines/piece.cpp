@@ -164,39 +164,13 @@ void close_circles(std::vector<Piece>& pieces, double gap) {
   }
 }
 
-/// Marks the exact pieces most of whose nodes are on longer exact ones: the wall of a mesh
-/// may have been taken for several cylinders.
-std::vector<std::uint8_t> exact_copies(const std::vector<Piece>& pieces, const NodeIndex& index) {
-  std::vector<std::uint8_t> is_copy(pieces.size(), 0), kept(pieces.size(), 0);
-  std::vector<spatial::Neighbour> near;
-  for (const std::size_t i : longest_first(pieces)) {
-    if (!pieces[i].exact) continue;
-    std::size_t covered = 0;
-    for (const ChainNode& node : pieces[i].nodes) {
-      const double reach = kOneExactStep * node.spacing;
-      index.tree.within_unsorted(node.at, reach, near);
-      covered += std::any_of(near.begin(), near.end(), [&](const auto& other) {
-        const ChainNode& of_other = *index.nodes[other.index];
-        const Vec3 offset = node.at - of_other.at;
-        const Vec3 aside = offset - offset.dot(of_other.along) * of_other.along;
-        return kept[index.piece[other.index]] && aside.norm() < kOneExact * node.spacing &&
-               std::abs(of_other.along.dot(node.along)) > kSameDirectionTwice &&
-               same_wedge(of_other, node);
-      });
-    }
-    is_copy[i] = 3 * covered >= 2 * pieces[i].nodes.size();
-    kept[i] = !is_copy[i];
-  }
-  return is_copy;
-}
-
 /// Drops the pieces most of whose nodes are beside nodes of longer ones that are kept, or of exact
 /// ones.
 void drop_beside(std::vector<Piece>& pieces, bool exact_alone) {
   const NodeIndex index(pieces);
-  std::vector<std::uint8_t> dropped = exact_copies(pieces, index), kept(pieces.size(), 0);
+  std::vector<std::uint8_t> dropped(pieces.size(), 0), kept(pieces.size(), 0);
   std::vector<spatial::Neighbour> near;
-  for (std::size_t i = 0; i < pieces.size(); ++i) kept[i] = pieces[i].exact && !dropped[i];
+  for (std::size_t i = 0; i < pieces.size(); ++i) kept[i] = pieces[i].exact;
   for (const std::size_t i : longest_first(pieces)) {
     if (pieces[i].exact) continue;
     std::size_t covered = 0;
@@ -333,6 +307,29 @@ std::optional<Piece> joined_at(const Piece& a, std::size_t side_a, const Piece& 
   const double back = std::min((start - end).dot(out), (start - end).dot(on));
   if (back < -a.spacing()) return std::nullopt;
   return joined(a, side_a, b, side_b, tolerance);
+}
+
+void drop_exact_copies(std::vector<Piece>& pieces) {
+  const NodeIndex index(pieces);
+  std::vector<std::uint8_t> is_copy(pieces.size(), 0), kept(pieces.size(), 0);
+  std::vector<spatial::Neighbour> near;
+  for (const std::size_t i : longest_first(pieces)) {
+    const auto is_on_kept = [&](const ChainNode& node) {
+      index.tree.within_unsorted(node.at, kOneExactStep * node.spacing, near);
+      return std::any_of(near.begin(), near.end(), [&](const auto& other) {
+        const ChainNode& on = *index.nodes[other.index];
+        const double aside = (node.at - on.at).cross(on.along).norm();
+        return kept[index.piece[other.index]] && aside < kOneExact * node.spacing &&
+               std::abs(on.along.dot(node.along)) > kSameDirectionTwice && same_wedge(on, node);
+      });
+    };
+    const auto& nodes = pieces[i].nodes;
+    const auto covered =
+        static_cast<std::size_t>(std::count_if(nodes.begin(), nodes.end(), is_on_kept));
+    is_copy[i] = 3 * covered >= 2 * nodes.size();
+    kept[i] = !is_copy[i];
+  }
+  erase_marked(pieces, is_copy);
 }
 
 void drop_beside_exact(std::vector<Piece>& pieces) {

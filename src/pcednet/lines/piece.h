@@ -112,6 +112,10 @@ double length_of(const Piece& piece);
 std::optional<Piece> joined_at(const Piece& a, std::size_t side_a, const Piece& b,
                                std::size_t side_b, double tolerance);
 
+/// Drops, of exact pieces, those most of whose nodes are on longer ones: the wall of a mesh may
+/// have been taken for several cylinders.
+void drop_exact_copies(std::vector<Piece>& pieces);
+
 /// Drops the pieces beside exact ones.
 void drop_beside_exact(std::vector<Piece>& pieces);
 

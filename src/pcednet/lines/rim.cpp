@@ -295,13 +295,11 @@ bool has_wall(const Fit& circle, const OrderedPoints& cloud, std::span<const Bes
               const RimTest& test) {
   Sectors wall(circle, kRimSectors);
   std::vector<double> angles;
-  const Vec3 x = circle.direction.unitOrthogonal();
   std::size_t beyond = 0, off = 0;
   for (const Beside& point : points) {
     const bool on = std::abs(point.out) < test.reach;
     if (on && has_height_of_wall(point.height)) {
-      wall.add(cloud.position(point.index));
-      angles.push_back(angle_at(circle, x, cloud.position(point.index)));
+      angles.push_back(wall.add(cloud.position(point.index)));
     }
     beyond += on && has_height_of_wall(-point.height);
     off += !on && has_height_of_wall(point.height) && std::abs(point.out) < kOffWall;

@@ -49,11 +49,12 @@ bool same_wedge(const Fit& circle, const ChainNode& a, const ChainNode& b) {
 Sectors::Sectors(const Fit& circle, std::size_t count)
     : circle_(circle), x_(circle.direction.unitOrthogonal()), seen_(count, 0) {}
 
-void Sectors::add(const Vec3& place) {
-  const double turn = angle_at(circle_, x_, place) / kWholeTurn + 0.5;
+double Sectors::add(const Vec3& place) {
+  const double angle = angle_at(circle_, x_, place), turn = angle / kWholeTurn + 0.5;
   const auto sector = static_cast<std::size_t>(turn * static_cast<double>(seen_.size()));
   seen_[std::min(sector, seen_.size() - 1)] = 1;
   ++points_;
+  return angle;
 }
 
 std::size_t Sectors::covered() const {

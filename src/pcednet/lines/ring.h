@@ -32,7 +32,7 @@ class Sectors {
  public:
   Sectors(const Fit& circle, std::size_t count);
 
-  void add(const Vec3& place);
+  double add(const Vec3& place);  ///< returns its angle about the axis
   std::size_t points() const { return points_; }
   std::size_t covered() const;  ///< parts with points
 

@@ -163,23 +163,23 @@ std::optional<double> best_tangent(const Apex& apex, const std::vector<ChainNode
   return best;
 }
 
-/// The points of the wall across the edge, on one side of its plane.
-std::vector<Vec3> wall_of(const Apex& apex, double tangent, double side, const OrderedPoints& cloud,
+/// The points of the wall across the edge, on that side of its plane where more are.
+std::vector<Vec3> wall_of(const Apex& apex, double tangent, const OrderedPoints& cloud,
                           double spacing) {
   std::vector<spatial::Neighbour> near;
-  const double around = tangent + (kBesideArc + kWallTo) * spacing;
-  cloud.within(apex.at, around, near);
-  std::vector<Vec3> wall;
+  cloud.within(apex.at, tangent + (kBesideArc + kWallTo) * spacing, near);
+  const double most = tangent + kBesideArc * spacing;
+  std::vector<Vec3> below, above;
   for (const auto& point : near) {
     const Vec3& place = cloud.position(point.index);
     const Vec3 offset = place - apex.at;
-    const double height = side * offset.dot(apex.axis) / spacing;
-    if (height < kWallFrom || height > kWallTo) continue;
-    const double most = tangent + kBesideArc * spacing;
+    const double height = offset.dot(apex.axis) / spacing;
+    if (std::abs(height) < kWallFrom || std::abs(height) > kWallTo) continue;
     if (offset.dot(apex.in) < -most || offset.dot(apex.out) > most) continue;
-    if (std::abs(apex.outside(place, tangent)) < kOnWall * spacing) wall.push_back(place);
+    if (std::abs(apex.outside(place, tangent)) > kOnWall * spacing) continue;
+    (height > 0.0 ? above : below).push_back(place);
   }
-  return wall;
+  return above.size() > below.size() ? above : below;
 }
 
 /// The tangent of the arc that is nearest to the wall, by least squares; `tangent` where the wall
@@ -253,10 +253,8 @@ void round_corner(const Between& between, const OrderedPoints& cloud, double tol
   const std::vector<ChainNode> nodes = nodes_along(between, pieces, *apex, most);
   auto tangent = best_tangent(*apex, nodes, spacing, most);
   if (!tangent) return;
-  const std::vector<Vec3> above = wall_of(*apex, *tangent, 1.0, cloud, spacing);
-  const std::vector<Vec3> below = wall_of(*apex, *tangent, -1.0, cloud, spacing);
-  const auto& wall = above.size() > below.size() ? above : below;
-  tangent = tangent_of_wall(*apex, *tangent, most, wall, spacing);
+  tangent =
+      tangent_of_wall(*apex, *tangent, most, wall_of(*apex, *tangent, cloud, spacing), spacing);
   auto arc =
       arc_at(*apex, *tangent, nodes, spacing, std::max(kMisses * tolerance, piece.fit.error));
   auto up_to = shortened(pieces[before], side_before, apex->first(*tangent), *apex, *tangent);
