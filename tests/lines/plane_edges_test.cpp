@@ -13,7 +13,9 @@
 
 #include "pcednet/core/parallel.h"
 #include "pcednet/core/random_vectors.h"
+#include "pcednet/lines/faces.h"
 #include "pcednet/lines/find_lines.h"
+#include "pcednet/lines/ordered_points.h"
 #include "pcednet/lines/outline.h"
 #include "pcednet/lines/support_line.h"
 #include "support/expect_error.h"

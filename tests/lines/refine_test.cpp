@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "lines/made_pieces.h"
@@ -23,9 +24,9 @@ struct Points {
     normals.push_back(normal);
     classes.push_back(kSharpEdge);
   }
-  Piece refined(const Piece& piece) const {
+  Piece refined(const Piece& piece, double noise = 0.0) const {
     std::vector<Piece> pieces = {piece};
-    refine(pieces, OrderedPoints({positions, normals, classes}), {1.0, 0.0}, nullptr);
+    refine(pieces, OrderedPoints({positions, normals, classes}), {1.0, noise}, nullptr);
     return pieces.front();
   }
 };
@@ -130,6 +131,68 @@ TEST(Refine, MakesAnArcOfASegmentWhereASurfaceIsRound) {
   const Piece piece = cloud.refined(straightened(slight_arc(cloud.places, kRadius)));
   EXPECT_EQ(piece.fit.kind, CurveKind::kArc);
   EXPECT_NEAR(piece.fit.radius, kRadius, 1e-6);
+}
+
+/// A plane with a hole of radius 12, and the hole's wall, each point off its surface by `noise`.
+Points plane_with_hole(double noise) {
+  Points cloud;
+  Random& random = cloud.random;
+  for (int i = 0; i < 1600; ++i) {
+    const Vec3 place(40.0 * random.uniform() - 20.0, 40.0 * random.uniform() - 20.0, 0.0);
+    if (place.norm() > 12.0)
+      cloud.add(place + noise * random.normal() * Vec3::UnitZ(), Vec3::UnitZ());
+    const double angle = 2.0 * std::numbers::pi * random.uniform();
+    const Vec3 out(std::cos(angle), std::sin(angle), 0.0);
+    if (i % 2 == 0) {
+      const double deep = 10.0 * random.uniform();
+      cloud.add((12.0 + noise * random.normal()) * out - deep * Vec3::UnitZ(), -out);
+    }
+  }
+  return cloud;
+}
+
+/// The hole's edge, tilted by 4 degrees and off by half a spacing.
+Piece tilted_edge() {
+  Piece piece = round_about_z(12.0, 0.0, 0.0, 2.0 * std::numbers::pi);
+  piece.closed = true;
+  piece.fit.direction = Vec3(std::sin(0.07), 0.0, std::cos(0.07));
+  piece.fit.point = Vec3(0.3, -0.4, 0.0);
+  for (ChainNode& node : piece.nodes) {
+    node.side_a = Vec3(node.at.x(), node.at.y(), 0.0).normalized();
+    node.side_b = -Vec3::UnitZ();
+    node.spacing = 1.0;
+  }
+  return piece;
+}
+
+TEST(Refine, PutsATiltedCircleIntoThePlaneThatItEnds) {
+  for (const double noise : {0.0, 0.3}) {
+    const Fit fit = plane_with_hole(noise).refined(tilted_edge(), noise).fit;
+    EXPECT_LT(std::hypot(fit.direction.x(), fit.direction.y()), noise > 0.0 ? 0.01 : 1e-3) << noise;
+    EXPECT_LT(fit.point.norm(), noise > 0.0 ? 0.1 : 1e-3) << noise;
+    EXPECT_NEAR(fit.radius, 12.0, noise > 0.0 ? 0.1 : 1e-3) << noise;
+  }
+}
+
+TEST(Refine, PlacesABluntEdgeAmongItsPoints) {
+  Points cloud;
+  for (int i = 0; i < 1600; ++i) {  // planes that end 2 spacings before they would meet
+    const double x = 40.0 * cloud.random.uniform() - 10.0,
+                 away = 2.0 + 8.0 * cloud.random.uniform();
+    const double between = 2.0 * cloud.random.uniform();
+    cloud.add({x, -away, 0.0}, Vec3::UnitZ());
+    cloud.add({x, 0.0, -away}, Vec3::UnitY());
+    if (i % 3 == 0) cloud.add({x, between - 2.0, -between}, Vec3(0.0, 1.0, 1.0).normalized());
+  }
+  Piece piece = straight_along_x(0.0, 20.0);
+  for (ChainNode& node : piece.nodes) {
+    node.at -= Vec3(0.0, 0.8, 0.8);
+    node.side_a = -Vec3::UnitY(), node.side_b = -Vec3::UnitZ(), node.spacing = 1.0;
+  }
+  piece = straightened(piece);
+  const Vec3 at = cloud.refined(piece).fit.point;
+  EXPECT_NEAR(at.y(), -1.0, 0.25);
+  EXPECT_NEAR(at.z(), -1.0, 0.25);
 }
 
 }  // namespace

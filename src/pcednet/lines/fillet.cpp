@@ -9,13 +9,13 @@
 namespace pcednet::lines {
 namespace {
 
-constexpr std::size_t kMostTried = 24;  ///< points, to lay arcs through
-constexpr double kLeastOnArc = 6.0;     ///< points
-constexpr double kDense = 0.2;          ///< points on the arc, to a square spacing of the fillet
-constexpr double kMostBeside = 0.15;    ///< points in the corner off the arc, to one on it
-constexpr double kFlat = 2.0;           ///< square distance from a line, to that from the arc
-constexpr double kLeastOnLine = 0.2;    ///< points on each line beyond the arc, to a spacing
-constexpr double kPointsToEnd = 4.0;    ///< of an arc: fewer are missing by chance
+constexpr std::size_t kMostLaidThrough = 24;  ///< points, to lay arcs through
+constexpr double kLeastOnArc = 6.0;           ///< points
+constexpr double kDense = 0.2;        ///< points on the arc, to a square spacing of the fillet
+constexpr double kMostBeside = 0.15;  ///< points in the corner off the arc, to one on it
+constexpr double kFlat = 2.0;         ///< square distance from a line, to that from the arc
+constexpr double kLeastOnLine = 0.2;  ///< points on each line beyond the arc, to a spacing
+constexpr double kPointsToEnd = 4.0;  ///< of an arc: fewer are missing by chance
 
 // In spacings.
 constexpr double kOffLines = 0.02;
@@ -67,7 +67,7 @@ std::optional<double> radius_of(const Corner& corner, std::span<const CornerPoin
   for (const CornerPoint& point : points) {
     if (corner.depth_at(point.at) > kOffLines) free.push_back(point.at);
   }
-  const std::size_t step = (free.size() + kMostTried - 1) / kMostTried;
+  const std::size_t step = (free.size() + kMostLaidThrough - 1) / kMostLaidThrough;
   std::optional<double> best;
   auto most = static_cast<std::ptrdiff_t>(kLeastOnArc) - 1;
   for (std::size_t i = 0; i < free.size(); i += step) {
