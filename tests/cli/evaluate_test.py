@@ -140,6 +140,54 @@ class Evaluate(CliTest):
         said = run("evaluate", clouds / "a.ply", clouds / "c.ply", "--method", "ca", expect=4).stderr
         self.assertIn(f"pcednet: {clouds}/a.ply: has no labels\n", said)
 
+    def own(self, name, names=("ground", "wall", "pipe")):
+        """A cube whose labels are own classes."""
+        write_ply(self.folder / name, *cube(2000))
+        table = "".join(f"comment pcednet class {id} #{id}0a0b0 {its}\n" for id, its in enumerate(names))
+        data = (self.folder / name).read_bytes().replace(b"element vertex", table.encode() + b"element vertex", 1)
+        (self.folder / name).write_bytes(data)
+        return self.folder / name
+
+    def test_clouds_of_other_classes_than_the_model_are_refused(self):
+        own, edges = self.own("own.ply"), self.folder / "edges.ply"
+        write_ply(edges, *cube(2000))
+        model = self.folder / "own.safetensors"
+        run("train", own, "-o", model, "--epochs", "2", "--scales", "4")
+        for cloud, way, said in (
+                (own, (), "its classes are ground, wall, pipe, those of the model edges"),
+                (own, ("--method", "ca"), "its classes are ground, wall, pipe, those of --method ca edges"),
+                (edges, ("--model", model), "its classes are edges, those of the model ground, wall, pipe"),
+                (self.own("other.ply", ("ground", "roof", "pipe")), ("--model", model),
+                 "its classes are ground, roof, pipe, those of the model ground, wall, pipe")):
+            for more in ((), (self.folder / "edges.ply",) if cloud is own else (own,)):
+                self.assertIn(f"{cloud}: {said}", run("evaluate", cloud, *more, *way, expect=4).stderr)
+        classes = json.loads(run("evaluate", own, "--model", model, "--json", "-").stdout)["classes"]
+        self.assertEqual([row["name"] for row in classes], ["ground", "wall", "pipe"])
+
+    def test_predictions_are_of_the_classes_of_the_cloud(self):
+        own, edges = self.own("own.ply"), self.folder / "z.ply"
+        label = cube(2000)[2]
+        write_ply(edges, *cube(2000))
+        said = self.folder / "said"
+        said.mkdir()
+        for name in ("own", "z"):
+            (said / f"{name}.u8").write_bytes(label.tobytes())
+        report = json.loads(run("evaluate", own, "--predictions", said, "--json", "-").stdout)
+        self.assertEqual((report["accuracy"], len(report["classes"])), (1.0, 3))
+        self.assertIn(f"{edges}: its classes are edges, those of the first cloud ground, wall, pipe",
+                      run("evaluate", own, edges, "--predictions", said, expect=4).stderr)
+        for cloud, number, most in ((edges, 7, 3), (own, 3, 2)):
+            label[5] = number
+            (said / f"{cloud.stem}.u8").unlink()
+            (said / f"{cloud.stem}.txt").write_text("\n".join(map(str, label)))
+            self.assertIn(f"{cloud.stem}.txt:6: expected a class in 0 ... {most}, or 255 or -1, not {number}",
+                          run("evaluate", cloud, "--predictions", said, expect=3).stderr)
+            (said / f"{cloud.stem}.txt").unlink()
+            for value in (number, np.nan):
+                np.save(said / f"{cloud.stem}.npy", np.where(np.arange(2000) == 5, value, 0.0))
+                self.assertIn(f"{cloud.stem}.npy: row 5 is {value}, no class: there are 0 to {most}",
+                              run("evaluate", cloud, "--predictions", said, expect=4).stderr)
+
     def test_a_cloud_is_no_file_of_lines(self):
         write_ply(self.folder / "a.ply", *cube(300))
         (self.folder / "truth.obj").write_text("v 0 0 0\nv 1 0 0\nl 1 2\n")

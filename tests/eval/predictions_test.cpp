@@ -23,6 +23,7 @@ class Predicted : public testing::Test, protected test::OwnFolder {
     return folder_ / name;
   }
 
+  const ClassTable own_ = {{.name = "ground"}, {.name = "wall"}, {.name = "pipe"}};
   std::vector<Vec3> positions_ = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}};
 };
 
@@ -36,18 +37,19 @@ TEST_F(Predicted, AClassPerPointInTheOrderOfTheCloud) {
   const auto error =
       test::error_of([&] { read_predictions(write("c.txt", "0\n1\n700\n2\n"), positions_); });
   ASSERT_TRUE(error) << "700 is no class";
-  EXPECT_NE(std::string(error->what()).find("c.txt:3: expected a label"), std::string::npos);
+  EXPECT_NE(std::string(error->what()).find("c.txt:3: expected a class"), std::string::npos);
   std::string points = "300\n";  // as many follow: no label
   for (int i = 0; i < 300; ++i) points += "0 0 0\n";
   EXPECT_EQ(read_predictions(write("d.txt", points), positions_).classes, (Classes{2, 0, 0, 0}));
 }
 
 TEST_F(Predicted, ArraysOfClassesOrOfScores) {
-  const auto npy = [&](const std::vector<std::size_t>& shape, const std::vector<float>& values) {
+  const auto npy = [&](const std::vector<std::size_t>& shape, const std::vector<float>& values,
+                       const ClassTable& table = edge_classes()) {
     io::NpyWriter writer(folder_ / "a.npy", shape, ScalarType::kFloat32, Overwrite::kYes);
     writer.append(std::span(values));
     writer.commit();
-    return read_predictions(folder_ / "a.npy", positions_).classes;
+    return read_predictions(folder_ / "a.npy", positions_, table).classes;
   };
   EXPECT_EQ(npy({4}, {0, 2, 1, -1}), (Classes{0, 2, 1, 255}));
   EXPECT_EQ(npy({4, 3}, {.1f, .2f, .7f, 5, 4, 3, 0, 9, 0, 1, 1, 1}), (Classes{2, 0, 1, 0}));
@@ -57,12 +59,47 @@ TEST_F(Predicted, ArraysOfClassesOrOfScores) {
   for (const std::size_t columns : {255u, 256u, 300u}) {
     std::vector<float> scores(4 * columns, 0.0f);
     for (std::size_t row = 0; row < 4; ++row) scores[row * columns + columns - 1 - row] = 1.0f;
+    const ClassTable many(columns, PointClass{});
     if (columns == 255) {
-      EXPECT_EQ(npy({4, columns}, scores), (Classes{254, 253, 252, 251}));
+      EXPECT_EQ(npy({4, columns}, scores, many), (Classes{254, 253, 252, 251}));
     } else {
-      EXPECT_ERROR(ErrorKind::kInsufficient, npy({4, columns}, scores));
+      EXPECT_ERROR(ErrorKind::kInsufficient, npy({4, columns}, scores, many));
     }
   }
+  EXPECT_EQ(npy({4, 2}, {.9f, .1f, .1f, .9f, 0, 1, 1, 0}, own_), (Classes{0, 1, 1, 0}));
+  const auto said = [&](const std::vector<std::size_t>& shape, const std::vector<float>& values) {
+    const auto error = test::error_of([&] { npy(shape, values); });
+    return error ? std::string(error->what()) : std::string();
+  };
+  EXPECT_NE(said({4}, {0, 2, 7, 0}).find("a.npy: row 2 is 7, no class: there are 0 to 3"),
+            std::string::npos);
+  EXPECT_NE(said({4}, {0, NAN, 0, 0}).find("a.npy: row 1 is nan, no class"), std::string::npos);
+  EXPECT_NE(said({4, 2}, {0, 1, 1, 0, 0, 1, 1, NAN}).find("row 3 is nan"), std::string::npos);
+  EXPECT_NE(said({4, 5}, {1, 0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0})
+                .find("row 1 is 4, no class"),
+            std::string::npos);
+}
+
+TEST_F(Predicted, NumbersThatAreNoClassesAreNamedByTheirPlace) {
+  const auto said = [&](const std::string& name, const std::string& text,
+                        const ClassTable& table = edge_classes()) {
+    const auto file = write(name, text);
+    const auto error = test::error_of([&] { read_predictions(file, positions_, table); });
+    return error ? std::string(error->what()) : std::string();
+  };
+  EXPECT_NE(said("a.txt", "0\n1\n7\n2\n").find("a.txt:3: expected a class in 0 ... 3, or 255"),
+            std::string::npos);
+  EXPECT_NE(said("b.txt", "0\nnan\n1\n2\n").find("b.txt:2: expected a class"), std::string::npos);
+  EXPECT_NE(said("a.u8", std::string("\2\0\1\7", 4)).find("byte 3: expected a class"),
+            std::string::npos);
+  const std::string header =
+      "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\n"
+      "property float z\nproperty uchar label\nend_header\n";
+  EXPECT_NE(said("a.ply", header + "0 0 0 2\n1 0 0 9\n").find("point 1 is 9, no class"),
+            std::string::npos);
+  EXPECT_NE(said("c.txt", "0\n1\n3\n2\n", own_).find("c.txt:3: expected a class in 0 ... 2"),
+            std::string::npos);
+  EXPECT_EQ(said("d.txt", "0\n1\n255\n-1\n", own_), "");
 }
 
 TEST_F(Predicted, TrueIsSharp) {

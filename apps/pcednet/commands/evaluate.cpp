@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -39,10 +40,17 @@ struct Results {
   std::vector<eval::CloudScore> scores;
   eval::Calibration calibration;
   eval::ClassReport classes;  ///< instead of both, with own classes
+  std::string classes_from;   ///< what settled the table of the classes; empty: nothing yet
 };
 
-std::vector<std::uint8_t> read_predictions(const fs::path& file, const PointCloud& cloud) {
-  auto predictions = eval::read_predictions(file, cloud.positions);
+/// A cloud whose classes are not those that are scored.
+struct OtherClasses : Error {
+  using Error::Error;
+};
+
+std::vector<std::uint8_t> read_predictions(const fs::path& file, const PointCloud& cloud,
+                                           const ClassTable& table) {
+  auto predictions = eval::read_predictions(file, cloud.positions, table);
   if (!predictions.note.empty()) warn(file.string() + ": " + predictions.note);
   return std::move(predictions.classes);
 }
@@ -65,10 +73,11 @@ struct Way {
 
 /// Those of `input` by the model or the method, or of the file `prediction` if it is named.
 detect::Classification find_classes(const fs::path& input, const fs::path& prediction,
-                                    const PointCloud& cloud, const Way& way) {
+                                    const PointCloud& cloud, const ClassTable& table,
+                                    const Way& way) {
   if (!prediction.empty()) {
     detect::Classification found;
-    found.classes = read_predictions(prediction, cloud);
+    found.classes = read_predictions(prediction, cloud, table);
     return found;
   }
   return classify_cloud(input, cloud,
@@ -83,9 +92,6 @@ detect::Classification find_classes(const fs::path& input, const fs::path& predi
 void score(const fs::path& input, const PointCloud& cloud, const detect::Classification& found,
            const Way& way, Results& results) {
   const eval::Positive positive = way.arguments.positive;
-  if (!way.model && results.classes.clouds == 0) {
-    results.classes.table = classes_of(cloud.comments);
-  }
   if (has_own_classes(results.classes.table)) {
     return eval::add_cloud(cloud.labels, found.classes, results.classes);
   }
@@ -118,13 +124,32 @@ void check_labels(const fs::path& input, const PointCloud& cloud, const ClassTab
                          input.string(), others));
 }
 
-/// A cloud with labels of the results' classes, or of its own if these are not settled.
-PointCloud read_truth(const fs::path& input, const Way& way, const Results& results) {
+/// The first cloud settles the classes unless a model or a method does. The same numbers must name
+/// the same classes; one table may have more of them.
+void settle_classes(const fs::path& input, const PointCloud& cloud, Results& results) {
+  const ClassTable its = classes_of(cloud.comments);
+  ClassTable& table = results.classes.table;
+  if (results.classes_from.empty()) {
+    table = its;
+    results.classes_from = "the first cloud";
+  }
+  const std::size_t common = std::min(its.size(), table.size());
+  if (std::equal(its.begin(), its.begin() + static_cast<std::ptrdiff_t>(common), table.begin(),
+                 [](const auto& a, const auto& b) { return a.name == b.name; })) {
+    return;
+  }
+  throw OtherClasses(
+      ErrorKind::kInsufficient,
+      fmt::format("{}: its classes are {}, those of {} {}", input.string(), pcednet::names_of(its),
+                  results.classes_from, pcednet::names_of(table)));
+}
+
+/// A cloud with labels of the results' classes, which the first one settles.
+PointCloud read_truth(const fs::path& input, const Way& way, Results& results) {
   auto loaded = truth::read_labelled(input);
   throw_if_cancelled(&way.progress);
-  const bool settled = way.model || results.classes.clouds > 0;
-  check_labels(input, loaded.cloud,
-               settled ? results.classes.table : classes_of(loaded.cloud.comments));
+  settle_classes(input, loaded.cloud, results);
+  check_labels(input, loaded.cloud, results.classes.table);
   warn_all(input, loaded.warnings);
   return std::move(loaded.cloud);
 }
@@ -139,6 +164,17 @@ std::optional<fs::path> find_prediction(const fs::path& input, const std::string
   return std::nullopt;
 }
 
+/// Nothing is scored yet. The classes are settled unless those of the predictions are the clouds'.
+Results first_results(const EvaluateArguments& arguments, const detect::EdgeModel* model) {
+  Results results;
+  results.classes.table = model ? model->table : edge_classes();
+  if (model) results.classes_from = "the model";
+  if (!arguments.method.name.empty()) {
+    results.classes_from = "--method " + arguments.method.name;
+  }
+  return results;
+}
+
 /// Scores all inputs. Of several, those without labels are left out, with a warning each.
 Results score_all(const EvaluateArguments& arguments, const Common& common) {
   const Progress progress = console_progress(common);
@@ -146,9 +182,7 @@ Results score_all(const EvaluateArguments& arguments, const Common& common) {
   if (!arguments.model.name.empty()) model = load_model(arguments.model);
 
   const Way way = {arguments, model ? &*model : nullptr, progress};
-
-  Results results;
-  if (model) results.classes.table = model->table;
+  Results results = first_results(arguments, way.model);
   std::optional<Error> unlabelled;  // the first
   const auto inputs = without_results(expand_inputs(arguments.inputs));
   for (const fs::path& input : inputs) {
@@ -157,6 +191,8 @@ Results score_all(const EvaluateArguments& arguments, const Common& common) {
     PointCloud cloud;
     try {
       cloud = read_truth(input, way, results);
+    } catch (const OtherClasses&) {
+      throw;
     } catch (const Error& error) {
       if (error.kind() != ErrorKind::kInsufficient || inputs.size() == 1) throw;
       if (!unlabelled) unlabelled = error;
@@ -164,7 +200,8 @@ Results score_all(const EvaluateArguments& arguments, const Common& common) {
       continue;
     }
     with_name_in_errors(input, [&] {
-      score(input, cloud, find_classes(input, *prediction, cloud, way), way, results);
+      const auto found = find_classes(input, *prediction, cloud, results.classes.table, way);
+      score(input, cloud, found, way, results);
     });
   }
   if (!results.scores.empty() || results.classes.clouds > 0) return results;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "pcednet/cloud/point_cloud.h"
 #include "pcednet/core/error.h"
@@ -20,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMostClasses = kUnlabelled;
+constexpr std::size_t kMostColumns = kUnlabelled;
 
 /// Files with classes only come before point files.
 std::vector<std::string_view> extensions_of_predictions() {
@@ -36,33 +37,51 @@ Error misfit(const fs::path& path, const std::string& what, std::size_t points) 
                fmt::format("{}: {}, but the cloud has {} points", path.string(), what, points));
 }
 
+Error no_class(const fs::path& path, const std::string& place, double value,
+               const ClassTable& table) {
+  return Error(
+      ErrorKind::kInsufficient,
+      fmt::format("{}: {} is {}, no class: there are 0 to {}, and 255 or -1 for unlabelled",
+                  path.string(), place, value, table.size() - 1));
+}
+
+/// The class of a row: its number, or the column of its largest score.
+std::uint8_t class_of_row(const fs::path& path, std::size_t row, std::span<const double> values,
+                          const ClassTable& table) {
+  const auto place = fmt::format("row {}", row);
+  for (const double value : values) {
+    if (std::isnan(value)) throw no_class(path, place, value, table);
+  }
+  const bool scored = values.size() > 1;
+  const auto best = std::max_element(values.begin(), values.end());
+  const double number = scored ? static_cast<double>(best - values.begin()) : values[0];
+  const auto label = io::to_label(number);
+  if (!label || (*label >= table.size() && (scored || *label != kUnlabelled))) {
+    throw no_class(path, place, number, table);
+  }
+  return *label;
+}
+
 std::vector<std::uint8_t> classes_of_array(const fs::path& path, const io::NpyArray& array,
-                                           std::size_t points) {
+                                           std::size_t points, const ClassTable& table) {
   const std::size_t rows = array.shape.empty() ? 0 : array.shape[0];
   const std::size_t columns = array.shape.size() < 2 ? 1 : array.shape[1];
   if (rows != points || array.shape.size() > 2 || columns == 0) {
     throw misfit(path, fmt::format("an array of {} values in {} rows", array.values.size(), rows),
                  points);
   }
-  if (columns > kMostClasses) {
+  if (columns > kMostColumns) {
     throw Error(ErrorKind::kInsufficient,
                 fmt::format("{}: scores of {} classes; at most {} can be told apart", path.string(),
-                            columns, kMostClasses));
+                            columns, kMostColumns));
   }
   std::vector<std::uint8_t> classes(points);
   for (std::size_t i = 0; i < points; ++i) {
-    const auto row = array.values.begin() + static_cast<std::ptrdiff_t>(i * columns);
-    const auto best = std::max_element(row, row + static_cast<std::ptrdiff_t>(columns));
-    const auto label =
-        columns > 1 ? static_cast<std::uint8_t>(best - row) : io::to_label(array.values[i]);
-    if (!label) {
-      throw Error(ErrorKind::kInsufficient,
-                  fmt::format("{}: row {} is {}, no class", path.string(), i, array.values[i]));
-    }
-    classes[i] = *label;
+    classes[i] =
+        class_of_row(path, i, std::span(array.values).subspan(i * columns, columns), table);
   }
   // Two columns are scores of non-edge and edge; of bool, true is an edge.
-  if (columns == 2 || array.is_bool) {
+  if (!has_own_classes(table) && (columns == 2 || array.is_bool)) {
     std::replace(classes.begin(), classes.end(), kSmoothEdge, kSharpEdge);
   }
   return classes;
@@ -112,11 +131,12 @@ fs::path find_predictions(const fs::path& folder, const std::string& stem, const
   return {};
 }
 
-Predictions read_predictions(const fs::path& path, std::span<const Vec3> positions) {
+Predictions read_predictions(const fs::path& path, std::span<const Vec3> positions,
+                             const ClassTable& table) {
   if (io::extension_of(path) == ".npy") {
-    return {classes_of_array(path, io::read_npy(path), positions.size()), {}};
+    return {classes_of_array(path, io::read_npy(path), positions.size(), table), {}};
   }
-  if (auto classes = formats::read_bare_labels(path)) {
+  if (auto classes = formats::read_bare_labels(path, table.size())) {
     if (classes->size() == positions.size()) return {*std::move(classes), {}};
     throw misfit(path, fmt::format("{} classes", classes->size()), positions.size());
   }
@@ -125,6 +145,10 @@ Predictions read_predictions(const fs::path& path, std::span<const Vec3> positio
   if (labels.empty()) {
     return {nearest_to_edge_points(positions, others),
             fmt::format("{} points without labels: read as edge points", others.size())};
+  }
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    if (labels[i] < table.size() || labels[i] == kUnlabelled) continue;
+    throw no_class(path, fmt::format("point {}", i), labels[i], table);
   }
   if (labels.size() == positions.size()) return {std::move(labels), {}};
   return {labels_of_nearest(positions, others, labels),

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "pcednet/cloud/class_table.h"
 #include "pcednet/core/vec3.h"
 
 namespace pcednet::eval {
@@ -30,7 +31,10 @@ struct Predictions {
 ///   position gets the label of its nearest point in the file, as in Himeur et al. 2021;
 /// - a point file without labels, with points on edges only: the position nearest to each is
 ///   sharp-edge.
-/// Throws what the readers throw, and Error(kInsufficient) where numbers do not fit.
-Predictions read_predictions(const std::filesystem::path& path, std::span<const Vec3> positions);
+/// Throws what the readers throw, and Error(kInsufficient) where numbers do not fit, or are neither
+/// a class of `table` nor unlabelled; it names the line, the row or the point, from 0 but for
+/// lines.
+Predictions read_predictions(const std::filesystem::path& path, std::span<const Vec3> positions,
+                             const ClassTable& table = edge_classes());
 
 }  // namespace pcednet::eval

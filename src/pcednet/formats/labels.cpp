@@ -16,15 +16,39 @@
 namespace pcednet::formats {
 namespace {
 
-std::optional<std::uint8_t> parse_label(std::string_view word) {
+using Classes = std::optional<std::size_t>;  ///< how many there are, if that is known
+
+bool is_label(std::uint8_t number, Classes classes) {
+  return !classes || number < *classes || number == kUnlabelled;
+}
+
+std::optional<std::uint8_t> parse_label(std::string_view word, Classes classes) {
   const auto value = io::parse_double(word);
-  if (!value) return std::nullopt;
-  return io::to_label(*value);
+  if (!value || (classes && std::isnan(*value))) return std::nullopt;
+  const auto label = io::to_label(*value);
+  return label && is_label(*label, classes) ? label : std::nullopt;
+}
+
+std::string expected_label(Classes classes) {
+  return classes ? fmt::format("expected a class in 0 ... {}, or 255 or -1", *classes - 1)
+                 : "expected a label in 0 ... 255 or -1";
+}
+
+std::vector<std::uint8_t> read_bytes(const io::InputFile& file, Classes classes) {
+  std::vector<std::uint8_t> labels(file.size());
+  file.read(0, std::as_writable_bytes(std::span(labels)));
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    if (is_label(labels[i], classes)) continue;
+    throw io::unreadable(file.path(),
+                         fmt::format("byte {}: {}, not {}", i, expected_label(classes), labels[i]));
+  }
+  return labels;
 }
 
 /// Labels from a text with one number a line; none if a line holds several, also after a line with
 /// one that is no label, such as the number of points.
-std::optional<std::vector<std::uint8_t>> read_text_labels(const io::InputFile& file) {
+std::optional<std::vector<std::uint8_t>> read_text_labels(const io::InputFile& file,
+                                                          Classes classes) {
   const std::string text = file.text();
   std::vector<std::uint8_t> labels;
   std::vector<std::string_view> words;
@@ -36,11 +60,11 @@ std::optional<std::vector<std::uint8_t>> read_text_labels(const io::InputFile& f
     if (line.empty() || io::is_comment(line)) continue;
     io::split(line, words, io::kNumberSeparators);
     if (words.size() != 1) return std::nullopt;
-    const auto label = parse_label(words[0]);
+    const auto label = parse_label(words[0], classes);
     if (!label && !no_label) {
-      no_label = io::unreadable(
-          file.path(), fmt::format("expected a label in 0 ... 255 or -1, not {:.40}", words[0]),
-          lines.number());
+      no_label = io::unreadable(file.path(),
+                                fmt::format("{}, not {:.40}", expected_label(classes), words[0]),
+                                lines.number());
     }
     labels.push_back(label.value_or(kUnlabelled));
   }
@@ -81,17 +105,13 @@ std::vector<std::uint8_t> labels_of(const PointCloud& cloud, const std::filesyst
   return cloud.labels;
 }
 
-std::optional<std::vector<std::uint8_t>> read_bare_labels(const std::filesystem::path& path) {
+std::optional<std::vector<std::uint8_t>> read_bare_labels(const std::filesystem::path& path,
+                                                          std::optional<std::size_t> classes) {
   const std::string extension = io::extension_of(path);
-  if (extension == ".u8") {
-    const io::InputFile file(path);
-    std::vector<std::uint8_t> labels(file.size());
-    file.read(0, std::as_writable_bytes(std::span(labels)));
-    return labels;
-  }
+  if (extension == ".u8") return read_bytes(io::InputFile(path), classes);
   const bool labels_only = extension == ".lbl" || extension == ".seg";
   if (!labels_only && extension != ".txt" && extension != ".csv") return std::nullopt;
-  auto labels = read_text_labels(io::InputFile(path));
+  auto labels = read_text_labels(io::InputFile(path), classes);
   if (!labels && labels_only) throw io::unreadable(path, "expected one label a line");
   return labels;
 }

@@ -12,8 +12,11 @@ namespace pcednet::formats {
 
 /// Reads a file of nothing but one label per point, an EdgeClass each: .u8 (a byte per point), or a
 /// text with one whole number a line (.txt, .csv, .lbl, .seg; -1 is unlabelled). None if it may
-/// hold points. Throws Error(kUnreadable) like read_cloud, also for a number that is no label.
-std::optional<std::vector<std::uint8_t>> read_bare_labels(const std::filesystem::path& path);
+/// hold points. Throws Error(kUnreadable) like read_cloud, also for a number that is no label. Of
+/// `classes`, where they are given, 255 and -1 are unlabelled and no other number, nor NaN, is a
+/// label.
+std::optional<std::vector<std::uint8_t>> read_bare_labels(
+    const std::filesystem::path& path, std::optional<std::size_t> classes = std::nullopt);
 
 /// The same, or the labels of any point file, see labels_of. Throws Error(kInsufficient) if that
 /// has none.
