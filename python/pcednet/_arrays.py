@@ -81,12 +81,19 @@ def class_number(name, names=EDGES):
 
 def labels(values, rows, name="labels", names=EDGES, strict=False):
     """One class per point as (n,) uint8: from an array of classes (-1 and 255 are unlabelled), or
-    from a dict that gives the indices, or the mask, of the points of each class. `names` has the
+    from a dict that gives the indices, or the mask, of the points of each class, each in one at most. `names` has the
     classes by number; uint8, which files have, may hold other numbers unless `strict`."""
     if isinstance(values, dict):
-        array = np.full(rows, UNLABELLED, np.uint8)
+        array, given = np.full(rows, UNLABELLED, np.uint8), np.zeros(rows, bool)
         for key, some in values.items():
-            array[indices(some, rows, f"{name}[{key!r}]")] = class_number(key, names)
+            points = np.arange(rows)[indices(some, rows, f"{name}[{key!r}]")]
+            number = class_number(key, names)
+            twice = points[given[points] & (array[points] != number)]
+            if twice.size:
+                called = {its: known for known, its in numbers_of(names).items()}
+                raise UsageError(f"{name}: point {twice[0]} is in two classes, "
+                                 f"{called[int(array[twice[0]])]} and {called[number]}")
+            array[points], given[points] = number, True
         return array
     array = numbers(values, name)
     if array.dtype == bool:

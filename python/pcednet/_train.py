@@ -41,7 +41,7 @@ def train(clouds, labels=None, *, normals=None, start=None, name="model", classe
     labels : array_like or dict, or a list of one per cloud
         The class of every point: 0 non-edge, 1 smooth-edge, 2 sharp-edge, 3 boundary (learnt as
         non-edge), 255 or -1 not to learn from. Or a dict from class, by number or name, to indices
-        or a mask: ``{"sharp-edge": painted, "non-edge": others}``. None: those of the Clouds.
+        or a mask: ``{"sharp-edge": painted, "non-edge": others}``, no point in two. None: those of the Clouds.
         Clouds with own ``class_names`` give a model of these; arrays have those of `start`.
     normals : array_like (n, 3), or a list of one per cloud, optional
     start : str, path-like or Model, optional
@@ -169,5 +169,7 @@ def _labelled(number, cloud, normals, labels, names, keep_orientation):
         labels = getattr(cloud, "labels", None)
     if labels is None:
         raise UsageError(f"{name}: has no labels")
-    return name, positions, given, scanners, _arrays.labels(
-        labels, len(positions), names=names, strict=True)
+    labels = _arrays.labels(labels, len(positions), names=names, strict=True)
+    if (labels == _arrays.UNLABELLED).all():
+        raise InsufficientError(f"{name}: no point is labelled")
+    return name, positions, given, scanners, labels

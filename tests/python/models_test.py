@@ -191,6 +191,28 @@ class Training(CliTest):
         with self.assertRaises(pcednet.InsufficientError):
             pcednet.train(self.positions, np.zeros(4000, int), normals=self.normals)
 
+    def test_a_cloud_without_a_labelled_point_teaches_nothing(self):
+        nothing = np.full(4000, 255)
+        for labels in (nothing, nothing.astype(np.uint8), np.full(4000, -1), {"sharp-edge": []},
+                       {"sharp-edge": np.zeros(4000, bool)}, {}, {"unlabelled": [3]}):
+            for start in (None, "general"):
+                with self.assertRaisesRegex(pcednet.InsufficientError, "^cloud 0: no point is labelled$"):
+                    pcednet.train(self.positions, labels, normals=self.normals, start=start)
+        with self.assertRaisesRegex(pcednet.InsufficientError, "^cloud 1: no point is labelled$"):
+            pcednet.train([self.positions] * 2, [self.labels, nothing], start="general")
+
+    def test_a_point_in_two_classes_is_named(self):
+        both = np.zeros(4000, bool)
+        both[7:9] = True
+        for labels, classes in (({"sharp-edge": [5, 7], "non-edge": [7, 8]}, "sharp-edge and non-edge"),
+                                ({0: both, "smooth": [1, 7]}, "non-edge and smooth-edge"),
+                                ({"unlabelled": [7], 2: [7]}, "unlabelled and sharp-edge")):
+            with self.assertRaisesRegex(pcednet.UsageError,
+                                        f"^labels: point 7 is in two classes, {classes}$"):
+                pcednet.train(self.positions, labels, normals=self.normals, start="general")
+        pcednet.write(self.path("a.ply"), self.positions, labels={2: [5, 5], "sharp": [5], 0: []})
+        self.assertEqual(pcednet.read(self.path("a.ply")).labels[5], 2)
+
     def test_numbers_that_are_no_classes_are_named(self):
         for number in (4, 7, 254):
             for kind in (np.uint8, np.int32):
