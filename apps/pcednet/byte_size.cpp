@@ -22,6 +22,11 @@ std::uint64_t byte_size(const std::string& option, const std::string& text) {
                         (after.empty() || (power > 0 && (after == "b" || after == "ib")));
   const double unit = is_known ? std::pow(1024.0, static_cast<double>(power)) : 0.0;
   const double bytes = number * unit;
+  if (error == std::errc() && letters.empty() && bytes < 0x1p20) {
+    throw Error(ErrorKind::kUsage,
+                fmt::format("{} {}: is a number of bytes: write the unit, such as {}G or {}M",
+                            option, text, text, text));
+  }
   if (error == std::errc() && bytes >= 1.0 && bytes < 1e18)
     return static_cast<std::uint64_t>(bytes);
   throw Error(ErrorKind::kUsage, fmt::format("{} {}: not a size such as 500M or 2G", option, text));
