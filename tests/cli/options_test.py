@@ -112,6 +112,33 @@ class Options(CliTest):
         said = run(*classify, "--s-max", "1e6").stderr
         self.assertIn("warning: " + str(self.cloud) + ": --s-max 1e+06 is larger than the cloud", said)
 
+    def test_a_size_of_bytes_needs_its_unit(self):
+        plan = self.folder / "p.json"
+        for arguments in (("classify", self.cloud, "-o", self.out), ("lines", self.cloud, "-o", self.folder / "x.obj"),
+                          ("tiles", "plan", self.cloud, "-o", plan)):
+            for size in ("8", "1048575", "0.5"):
+                self.refused(*arguments, "--max-memory", size, saying=f"--max-memory {size}: is a number of bytes: "
+                                                                      f"write the unit, such as {size}G or {size}M")
+        run("tiles", "plan", self.cloud, "-o", plan, "--max-memory", "1073741824")
+
+    def test_a_system_in_degrees_is_a_warning(self):
+        p, n, label = cube(200)
+        near, far = self.folder / "near.ply", self.folder / "far.ply"
+        write_ply(near, p, n, label)
+        write_ply(far, p + [357000, 5812000, 0], n, label, position_type="double")
+
+        def said(cloud, code):
+            done = subprocess.run([PROGRAM, "lines", cloud, "-o", self.folder / "x.dxf", "--overwrite", "--crs",
+                                   f"EPSG:{code}"], capture_output=True, text=True)
+            return done.stderr if done.returncode == 0 else None
+        knows_codes = said(near, 999999) is None  # with PROJ
+        self.assertNotIn("degrees", said(far, 25833))
+        for code in (4326, 4258) if knows_codes else ():
+            self.assertIn(f"far.ply: coordinates up to 5.812e+06 are no degrees, which --crs EPSG:{code} has",
+                          said(far, code))
+            self.assertIn(f"near.ply: by --crs EPSG:{code} its coordinates are in degrees: lengths across",
+                          said(near, code))
+
     def test_a_command_that_there_is_not(self):
         for said, *words in (("there is no command foo\n", "foo"),
                              ("there is no command clasify; did you mean classify?", "clasify", "a.ply"),

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <system_error>
 
@@ -248,6 +249,21 @@ std::vector<Curve> find_curves(const LinesArguments& arguments, const LabelledCl
   return curves;
 }
 
+/// Lengths in degrees mean nothing; coordinates beyond a turn are none.
+void warn_of_degrees(const LinesArguments& arguments, const PointCloud& cloud) {
+  double most = 0.0;
+  for (const Vec3& p : cloud.positions) {
+    if (p.allFinite()) most = std::max({most, std::abs(p.x()), std::abs(p.y())});
+  }
+  warn(most > 360.0
+           ? fmt::format("{}: coordinates up to {:g} are no degrees, which --crs EPSG:{} has",
+                         arguments.input, most, arguments.crs->epsg)
+           : fmt::format(
+                 "{}: by --crs EPSG:{} its coordinates are in degrees: lengths across and up "
+                 "differ; project the cloud first",
+                 arguments.input, arguments.crs->epsg));
+}
+
 /// That of --crs, otherwise of the file.
 io::CoordinateSystem coordinate_system(const LinesArguments& arguments, const PointCloud& cloud) {
   io::CoordinateSystem own = io::las_coordinate_system(cloud);
@@ -258,6 +274,7 @@ io::CoordinateSystem coordinate_system(const LinesArguments& arguments, const Po
     warn(fmt::format("{}: names another coordinate system{}: that of --crs is used",
                      arguments.input, own.epsg > 0 ? fmt::format(", EPSG:{}", own.epsg) : ""));
   }
+  if (arguments.crs->geographic && !own.geographic) warn_of_degrees(arguments, cloud);
   return *arguments.crs;
 }
 
