@@ -84,5 +84,16 @@ TEST(CoordinateSystem, SurvivesNonsense) {
   }
 }
 
+TEST(CoordinateSystem, IsReadFromTheCommentThatCarriesIt) {
+  const std::string wkt = "PROJCS[\"x\",UNIT[\"metre\",1]]";
+  EXPECT_EQ(wkt_of_comments({"scan 0: a", "coordinate system: " + wkt, "more"}), wkt);
+  EXPECT_EQ(wkt_of_comments({"coordinate system:  GeogCRS [\"x\"] "}), "GeogCRS [\"x\"]");
+  for (const char* other : {"PROJCS", "local", "", "[]", "EPSG:25832", "FOO[\"x\"]"}) {
+    EXPECT_EQ(wkt_of_comments({std::string("coordinate system: ") + other}), "") << other;
+  }
+  EXPECT_EQ(wkt_of_comments({wkt, "a coordinate system: " + wkt}), "");
+  EXPECT_EQ(wkt_of_comments({}), "");
+}
+
 }  // namespace
 }  // namespace pcednet::io

@@ -1,6 +1,7 @@
 #include "pcednet/io/coordinate_system.h"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <optional>
 #include <vector>
@@ -51,6 +52,12 @@ void visit_wkt(std::string_view wkt, Visit&& visit) {
 bool is_one_of(std::string_view word, std::initializer_list<std::string_view> words) {
   return std::find(words.begin(), words.end(), word) != words.end();
 }
+
+/// Of the systems that a definition may describe, in both versions.
+constexpr std::array<std::string_view, 15> kSystemKeywords = {
+    "projcs",        "projcrs",  "projectedcrs", "geogcs",         "geogcrs",
+    "geographiccrs", "geodcrs",  "geodeticcrs",  "geoccs",         "compd_cs",
+    "compoundcrs",   "local_cs", "engcrs",       "engineeringcrs", "boundcrs"};
 
 /// Whether the innermost node is the system itself or the horizontal part of a compound one.
 bool is_horizontal(const std::vector<WktNode>& open) {
@@ -105,6 +112,18 @@ CoordinateSystem coordinate_system_of_wkt(std::string_view wkt) {
   // Degrees are no lengths, though heights above them are.
   if (!system.geographic) system.unit = common.value_or(LengthUnit::kNone);
   return system;
+}
+
+std::string wkt_of_comments(const std::vector<std::string>& comments) {
+  for (const std::string& comment : comments) {
+    if (!comment.starts_with(kSystemComment)) continue;
+    const std::string_view wkt = trim(std::string_view(comment).substr(kSystemComment.size()));
+    const std::string keyword = lower_case(trim(wkt.substr(0, wkt.find_first_of("[("))));
+    const auto* const end = kSystemKeywords.end();
+    const bool is_system = std::find(kSystemKeywords.begin(), end, keyword) != end;
+    if (is_system && keyword.size() < wkt.size()) return std::string(wkt);
+  }
+  return {};
 }
 
 }  // namespace pcednet::io

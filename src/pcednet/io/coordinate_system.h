@@ -2,6 +2,7 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace pcednet::io {
 
@@ -22,5 +23,11 @@ int epsg_code(std::string_view word);
 /// The system that a definition describes: its code is that of the outermost EPSG AUTHORITY or ID;
 /// of a compound system without one, the codes are those of its parts.
 CoordinateSystem coordinate_system_of_wkt(std::string_view wkt);
+
+/// Begins the comment that carries the definition of a cloud which is not of LAS, such as of E57.
+inline constexpr std::string_view kSystemComment = "coordinate system: ";
+
+/// The definition in such a comment; empty if there is none, or another text than a definition.
+std::string wkt_of_comments(const std::vector<std::string>& comments);
 
 }  // namespace pcednet::io

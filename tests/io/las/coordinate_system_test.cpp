@@ -42,6 +42,23 @@ TEST(LasCoordinateSystem, IsThatOfTheWktOrOfTheKeys) {
   EXPECT_EQ(las_coordinate_system(ply).wkt, kWkt);
 }
 
+TEST(LasCoordinateSystem, OfTheCommentsOfE57IsWritten) {
+  const Scratch scratch;
+  PointCloud cloud;
+  cloud.positions = {{1, 2, 3}, {4, 5, 6}};
+  cloud.comments = {std::string("coordinate system: ") + kWkt, "scan 0: a"};
+  EXPECT_EQ(las_coordinate_system(cloud).epsg, 25833);
+  for (const char* name : {"a.las", "a.laz", "a.copc.laz"}) {
+    formats::write_cloud(scratch.path(name), cloud);
+    const PointCloud read = formats::read_cloud(scratch.path(name)).cloud;
+    EXPECT_EQ(las_coordinate_system(read).wkt, kWkt) << name;
+    EXPECT_EQ(read.comments, cloud.comments);
+  }
+  cloud.comments[0] = "coordinate system: local";
+  formats::write_cloud(scratch.path("b.las"), cloud);
+  EXPECT_EQ(las_coordinate_system(formats::read_cloud(scratch.path("b.las")).cloud).wkt, "");
+}
+
 TEST(LasCoordinateSystem, IsReportedWhereAFormatLosesIt) {
   const Scratch scratch;
   using Strings = std::vector<std::string>;

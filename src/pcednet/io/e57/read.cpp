@@ -5,6 +5,7 @@
 #include <set>
 #include <utility>
 
+#include "pcednet/io/coordinate_system.h"
 #include "pcednet/io/e57/e57.h"
 #include "pcednet/io/e57/points.h"
 #include "pcednet/io/e57/scans.h"
@@ -14,7 +15,7 @@ namespace {
 
 void describe_scans(const E57Document& document, PointCloud& cloud) {
   if (!document.coordinate_system.empty()) {
-    cloud.comments.push_back("coordinate system: " + document.coordinate_system);
+    cloud.comments.push_back(std::string(kSystemComment) + document.coordinate_system);
   }
   for (std::size_t s = 0; s < document.scans.size(); ++s) {
     const E57Scan& scan = document.scans[s];

@@ -91,7 +91,11 @@ CoordinateSystem coordinate_system_of(const LasFile& file) {
 }
 
 CoordinateSystem las_coordinate_system(const PointCloud& cloud) {
-  return find_system(attached_las_file(cloud), true);
+  const auto& elements = cloud.foreign_elements;
+  if (std::any_of(elements.begin(), elements.end(), is_las_element)) {
+    return find_system(attached_las_file(cloud), true);
+  }
+  return coordinate_system_of_wkt(wkt_of_comments(cloud.comments));
 }
 
 std::vector<std::string> las_element_losses(const PointCloud& cloud) {

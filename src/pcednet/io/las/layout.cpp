@@ -100,6 +100,13 @@ bool choose_scale(const PartOutline& outline, const BoundingBox& box, LasFile& f
   return !candidates.empty();
 }
 
+/// For the clouds that name their coordinate system in a comment.
+void add_system(const std::vector<std::string>& comments, LasFile& file) {
+  const std::string wkt = wkt_of_comments(comments);
+  if (wkt.empty() || wkt.size() >= UINT16_MAX) return;
+  file.records.push_back(new_record(kWktRecord, "OGC WKT", wkt + '\0'));
+}
+
 LasFile new_file(bool with_colours) {
   LasFile file;
   file.header.assign(las_header::kBytes14, '\0');
@@ -121,7 +128,9 @@ LasFile new_file_for(const PartOutline& outline) {
       !first.colours.empty() ||
       (may_have_channels(first) &&
        las_channels(first, find_las_sources(file, true, outline))[0] != nullptr);
-  return with_colours ? file : new_file(false);
+  if (!with_colours) file = new_file(false);
+  add_system(first.comments, file);
+  return file;
 }
 
 /// Whether the points of each class have one colour, so that the classes say as much as the
