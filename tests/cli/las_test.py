@@ -172,6 +172,19 @@ class Las(CliTest):
                     "--overwrite")
                 self.assertEqual((self.folder / "again.las").read_bytes(), data)
 
+    def test_names_extra_bytes_of_anothers_that_the_result_replaces(self):
+        rows = self.scan(6)
+        wide = np.zeros(len(rows), rows.dtype.descr + [("edge_class", "<f4"), ("p_sharp", "<u2")])
+        for name in rows.dtype.names:
+            wide[name] = rows[name]
+        extra = descriptor("edge_class", 9) + descriptor("p_sharp", 3)
+        source = self.write("own.las", las(6, wide, [vlr(b"LASF_Spec", 4, extra)]))
+        for more in ((), ("--max-memory", "1M")):
+            said = run("classify", source, "--overwrite", *more).stderr
+            self.assertIn("own.las: its own edge_class, p_sharp are replaced by the result's", said)
+        again = run("classify", self.folder / "own_edges.las", "-o", self.folder / "again.las").stderr
+        self.assertNotIn("replaced", again)
+
     def test_does_not_miss_class_colours_where_there_are_none(self):
         for number in (6, 3):
             source = self.write("scan.las", las(number, self.scan(number)))

@@ -115,9 +115,13 @@ void report(const Job& job, const detect::Classification& result, const Counts& 
   if (!job.preview.empty()) say(fmt::format("  -> {}", job.preview.string()));
 }
 
-void say_kept(const detect::KeptInput& kept) {
+void say_kept(const std::filesystem::path& input, const detect::KeptInput& kept) {
   if (kept.labels) say("  the input's labels are kept as scalar_input_label");
   if (kept.colours) say("  the input's colours are kept; --class-colours replaces them");
+  if (kept.replaced.empty()) return;
+  warn(fmt::format("{}: its own {} {} replaced by the result's: rename what is to be kept",
+                   input.string(), fmt::join(kept.replaced, ", "),
+                   kept.replaced.size() == 1 ? "is" : "are"));
 }
 
 /// Adds the result to the cloud, with the user's options.
@@ -153,13 +157,14 @@ void classify_large_file(const Job& job, const ClassifyArguments& arguments,
                           .memory = needed.memory},
                          model, clock.progress());
   const detect::Classification& result = cloud.found();
-  detect::KeptInput kept;
+  std::optional<detect::KeptInput> kept;  // of the first part
   PointCloud drawn;
   Counts counts = {};
   const auto add_result = [&](PointCloud& part, const tiles::TileFindings& findings) {
     detect::Classification found = findings.found;
     found.s_min = result.s_min, found.s_max = result.s_max;
-    kept = add_found(findings.made, found, arguments, model, part);
+    auto kept_now = add_found(findings.made, found, arguments, model, part);
+    if (!kept) kept = std::move(kept_now);
   };
   const auto see = [&](const PointCloud& part, std::size_t before) {
     count(part.labels, counts);
@@ -171,7 +176,7 @@ void classify_large_file(const Job& job, const ClassifyArguments& arguments,
                    .add_result = add_result,
                    .see = see},
                   clock.progress());
-  say_kept(kept);
+  if (kept) say_kept(job.input, *kept);
   warn_of_losses(job.output.string(), losses);
   if (!job.preview.empty()) {
     clock.begin("preview");
@@ -206,7 +211,7 @@ void classify_file(const Job& job, const ClassifyArguments& arguments,
                                                   .boundary = !arguments.model.no_boundary},
                                                  progress);
   clock.begin("write");
-  say_kept(add_found(prepared.made, result, arguments, model, cloud));
+  say_kept(job.input, add_found(prepared.made, result, arguments, model, cloud));
   warn_of_losses(job.output.string(), formats::losses(job.output, cloud));
   formats::write_cloud(job.output, cloud,
                        {.overwrite = common.overwrite(),

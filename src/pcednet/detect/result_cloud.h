@@ -1,5 +1,8 @@
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "pcednet/detect/classify.h"
 
 namespace pcednet::detect {
@@ -14,6 +17,9 @@ struct ResultOptions {
 struct KeptInput {
   bool labels = false;   ///< as scalar_input_label
   bool colours = false;  ///< instead of the class colours
+  /// Attributes that are not kept, without "scalar_": they had the names of the result's, in a
+  /// cloud that names no model.
+  std::vector<std::string> replaced = {};
 };
 
 /// Names own classes in the cloud's comments, which classes_of() reads.
@@ -28,7 +34,7 @@ void add_class_comments(PointCloud& cloud, const ClassTable& table);
 ///
 /// Adds the colours of the paper where the cloud has none, normals that were estimated, and
 /// comments on version and model. Labels that the cloud had move to scalar_input_label. Returns
-/// which of the cloud's own labels and colours were kept.
+/// which of the cloud's own labels and colours were kept, and which attributes were replaced.
 ///
 /// Throws Error(kUsage) for a result of another number of points.
 ///
