@@ -149,7 +149,10 @@ class Study(CliTest):
                       self.study("nonsense", "--test", "a=test", expect=2).stderr)
         self.assertIn("--test", self.study("classes", expect=2).stderr)
         self.assertIn("NAME=VALUE", self.study("classes", "--test", "test", expect=2).stderr)
-        self.study("classes", "--test", "a=test", "--positive", "b=edge", expect=2)
+        for positive, said in (("b=edge", "--positive b=edge: no set of --test is named b"),
+                               ("a=flat", "--positive a=flat: give SET=sharp or SET=edge")):
+            self.assertIn(said, self.study("classes", "--test", "a=test", "--positive", positive,
+                                           expect=2).stderr)
         self.study("classes", "--test", "a=test", "--methods", "nobody", expect=2)
         self.study("classes", "--test", "a=nowhere", expect=3)
         write_ply(self.folder / "bare.ply", *cube(100)[:2])

@@ -94,9 +94,13 @@ study::StudyData read_data(const StudyArguments& arguments) {
   std::map<std::string, eval::Positive> positives;
   for (const std::string& positive : arguments.positives) {
     const auto [name, value] = named(positive, "--positive");
-    if (!inputs.contains(name) || (value != "sharp" && value != "edge")) {
+    if (value != "sharp" && value != "edge") {
       throw Error(ErrorKind::kUsage,
                   fmt::format("--positive {}: give SET=sharp or SET=edge", positive));
+    }
+    if (!inputs.contains(name)) {
+      throw Error(ErrorKind::kUsage,
+                  fmt::format("--positive {}: no set of --test is named {}", positive, name));
     }
     positives[name] = value == "edge" ? eval::Positive::kEdge : eval::Positive::kSharp;
   }
