@@ -1,5 +1,6 @@
 #include "workbench/study/runner.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -246,6 +247,15 @@ TEST_F(StudyRun, TellsWhatPhasesOfWorkCost) {
   const std::string json = to_json(study, {.watts_per_core = 9.0});
   EXPECT_NE(json.find("9 W per core"), std::string::npos);
   EXPECT_EQ(json.find("\"joules\": null"), std::string::npos);
+  const std::string table = to_table(study);
+  EXPECT_NE(table.find("seconds  joules per 1000 points\n"), std::string::npos);
+  EXPECT_EQ(table.find(" -\n"), std::string::npos);
+  for (const Result& result : study.results) {
+    const auto joules =
+        joules_per_thousand(result, study.experiment.variants[result.variant].phase);
+    ASSERT_TRUE(joules);
+    EXPECT_NE(table.find(fmt::format(" {:.4g}\n", *joules)), std::string::npos);
+  }
 }
 
 TEST_F(StudyRun, WritesPredictionsAndRefusesTheFileOfAnotherCommand) {

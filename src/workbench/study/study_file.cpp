@@ -76,18 +76,6 @@ OrderedJson seconds_of(const Result& result, Phase phase) {
   return seconds;
 }
 
-/// Joules per thousand points of the variant's phase.
-OrderedJson joules_of(const Result& result, Phase phase) {
-  const bool training = phase == Phase::kTrain || phase == Phase::kDescribeTraining;
-  const double points = training ? result.training_points : result.points;
-  for (const auto& [own, name, part] : kPhases) {
-    if (phase == own && phase != Phase::kAll && points > 0) {
-      return 1000.0 * (result.costs.*part).joules / points;
-    }
-  }
-  return nullptr;
-}
-
 std::string prediction_folder(const Study& study, const Result& result) {
   return fmt::format("predictions/{}/{}/{}", study.experiment.name,
                      study.experiment.variants[result.variant].id, result.set);
@@ -105,7 +93,8 @@ OrderedJson result_of(const Study& study, const Result& result) {
     row.update(parse_ordered_json(eval::to_json(result.scores)));
   }
   row["seconds"] = seconds_of(result, variant.phase);
-  row["joules"] = joules_of(result, variant.phase);
+  row["joules"] = nullptr;
+  if (const auto joules = joules_per_thousand(result, variant.phase)) row["joules"] = *joules;
   row["predictions"] = nullptr;
   if (!result.classes.empty()) row["predictions"] = prediction_folder(study, result);
   return row;
@@ -174,6 +163,17 @@ bool is_of_command(const fs::path& file, const std::string& command) {
 }
 
 }  // namespace
+
+std::optional<double> joules_per_thousand(const Result& result, Phase phase) {
+  const bool training = phase == Phase::kTrain || phase == Phase::kDescribeTraining;
+  const double points = training ? result.training_points : result.points;
+  for (const auto& [own, name, part] : kPhases) {
+    if (phase == own && phase != Phase::kAll && points > 0) {
+      return 1000.0 * (result.costs.*part).joules / points;
+    }
+  }
+  return std::nullopt;
+}
 
 std::string to_json(const Study& study, const FileOptions& options) {
   const Experiment& experiment = study.experiment;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "pcednet/core/output_file.h"
@@ -27,7 +28,11 @@ void write_study(const std::filesystem::path& folder, const Study& study,
 void check_study_file(const std::filesystem::path& folder, const std::string& name,
                       const std::string& command, Overwrite overwrite);
 
-/// A table for people: a row per variant and set, mean and spread over the seeds.
+/// The energy of a result per thousand points of its phase; none if it is of all phases.
+std::optional<double> joules_per_thousand(const Result& result, Phase phase);
+
+/// A table for people: a row per variant and set, mean and spread over the seeds; of timed
+/// experiments also joules per thousand points.
 std::string to_table(const Study& study);
 
 }  // namespace pcednet::study

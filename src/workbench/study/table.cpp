@@ -63,6 +63,17 @@ std::string mean(const Group& group, Cost Costs::*part) {
   return fmt::format(" {:>9.3f}", sum / static_cast<double>(group.size()));
 }
 
+/// The mean energy of the variant's phase; "-" where a variant is no single phase.
+std::string mean_joules(const Group& group, Phase phase) {
+  double sum = 0;
+  for (const Result* result : group) {
+    const auto joules = joules_per_thousand(*result, phase);
+    if (!joules) return fmt::format(" {:>14}", "-");
+    sum += *joules;
+  }
+  return fmt::format(" {:>14.4g}", sum / static_cast<double>(group.size()));
+}
+
 }  // namespace
 
 std::string to_table(const Study& study) {
@@ -77,13 +88,19 @@ std::string to_table(const Study& study) {
         table += fmt::format(" {:>13} {:>13} {:>13} {:>13} {:>13} {:>13}", "median P", "R", "MCC",
                              "F1", "pooled MCC", "F1");
       }
-      table += fmt::format(" {:>9} {:>9} {:>9}  seconds\n", "describe", "train", "classify");
+      table += fmt::format(" {:>9} {:>9} {:>9}  seconds", "describe", "train", "classify");
+      table += scored ? "\n" : "  joules per 1000 points\n";
     }
     table += fmt::format("{:<24} {:>6}", study.experiment.variants[first.variant].id,
                          first.positive == eval::Positive::kEdge ? "both" : "sharp");
     if (scored) table += score_row(group);
-    table += mean(group, &Costs::describe) + mean(group, &Costs::train) +
-             mean(group, &Costs::classify) + "\n";
+    table +=
+        mean(group, &Costs::describe) + mean(group, &Costs::train) + mean(group, &Costs::classify);
+    if (!scored) {
+      const Phase phase = study.experiment.variants[first.variant].phase;
+      table += "         " + mean_joules(group, phase);
+    }
+    table += "\n";
   }
   return table;
 }
