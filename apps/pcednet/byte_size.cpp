@@ -22,7 +22,7 @@ std::uint64_t byte_size(const std::string& option, const std::string& text) {
                         (after.empty() || (power > 0 && (after == "b" || after == "ib")));
   const double unit = is_known ? std::pow(1024.0, static_cast<double>(power)) : 0.0;
   const double bytes = number * unit;
-  if (error == std::errc() && letters.empty() && bytes < 0x1p20) {
+  if (error == std::errc() && letters.empty() && bytes > 0.0 && bytes < 0x1p20) {
     throw Error(ErrorKind::kUsage,
                 fmt::format("{} {}: is a number of bytes: write the unit, such as {}G or {}M",
                             option, text, text, text));

@@ -119,6 +119,9 @@ class Options(CliTest):
             for size in ("8", "1048575", "0.5"):
                 self.refused(*arguments, "--max-memory", size, saying=f"--max-memory {size}: is a number of bytes: "
                                                                       f"write the unit, such as {size}G or {size}M")
+        for size in ("0", "-8", "8X", "nan"):
+            self.refused("classify", self.cloud, "-o", self.out, f"--max-memory={size}",
+                         saying=f"--max-memory {size}: not a size such as 500M or 2G")
         run("tiles", "plan", self.cloud, "-o", plan, "--max-memory", "1073741824")
 
     def test_a_system_in_degrees_is_a_warning(self):
