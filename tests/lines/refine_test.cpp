@@ -138,7 +138,8 @@ Points plane_with_hole(double noise) {
   Points cloud;
   Random& random = cloud.random;
   for (int i = 0; i < 1600; ++i) {
-    const Vec3 place(40.0 * random.uniform() - 20.0, 40.0 * random.uniform() - 20.0, 0.0);
+    const double x = random.uniform(-20.0, 20.0), y = random.uniform(-20.0, 20.0);
+    const Vec3 place(x, y, 0.0);
     if (place.norm() > 12.0)
       cloud.add(place + noise * random.normal() * Vec3::UnitZ(), Vec3::UnitZ());
     const double angle = 2.0 * std::numbers::pi * random.uniform();
