@@ -13,6 +13,7 @@
 #include "pcednet/core/sort_unique.h"
 #include "pcednet/lines/blunt.h"
 #include "pcednet/lines/moments.h"
+#include "pcednet/lines/placed.h"
 #include "pcednet/lines/plane_line.h"
 #include "pcednet/lines/refine_circle.h"
 #include "pcednet/lines/support_line.h"

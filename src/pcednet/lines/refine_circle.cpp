@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <span>
+#include <utility>
 
 #include "pcednet/core/half_space.h"
 #include "pcednet/lines/blunt.h"
@@ -16,9 +17,9 @@ namespace pcednet::lines {
 namespace {
 
 constexpr int kAxisFits = 3;
-/// The axis and the centre stay where they are unless this many points, at a distance of one
-/// spacing, say otherwise.
-constexpr double kTrustInAxis = 4.0;
+/// Axis, centre and rays stay where they are unless this many points, at a distance of one spacing,
+/// say otherwise.
+constexpr double kTrust = 4.0;
 constexpr double kLeastSine = 0.3;  ///< of the angle between the surfaces
 
 /// A point beside a circle: where it is in the half-plane of the axis, from the circle, and the
@@ -29,7 +30,7 @@ struct RimPoint {
 };
 
 /// The directions of a circle's plane.
-struct Frame {
+struct CircleFrame {
   Vec3 u, v;
 };
 
@@ -52,7 +53,7 @@ bool is_beside(const Piece& piece, const Vec3& place) {
   return angle(place) <= angle(piece.ends[1]);
 }
 
-std::vector<RimPoint> rim_points(const Fit& circle, const Frame& frame,
+std::vector<RimPoint> rim_points(const Fit& circle, const CircleFrame& frame,
                                  std::span<const Vec3> points, double spacing) {
   std::vector<RimPoint> all;
   for (const Vec3& point : points) {
@@ -125,18 +126,41 @@ std::optional<Sides> sides_about_axis(const Piece& piece) {
   return mean_sides(sides, 0.8);
 }
 
+/// The points beside a circle, seen about its axis, and the surfaces there.
+struct Section {
+  CircleFrame frame;
+  std::vector<RimPoint> points;
+  Rays rays;
+  double sine;  ///< of the angle between them, signed
+};
+
+std::optional<Section> section_about(const Fit& circle, const Sides& sides,
+                                     std::span<const Vec3> points, const SideLimits& limits,
+                                     double spacing) {
+  const Vec3 u = circle.direction.unitOrthogonal();
+  const CircleFrame frame{u, circle.direction.cross(u)};
+  std::vector<RimPoint> seen = rim_points(circle, frame, points, spacing);
+  const auto rays = rays_of(sides, seen, limits);
+  if (!rays) return std::nullopt;
+  const Eigen::Vector2d &a = (*rays)[0].direction, &b = (*rays)[1].direction;
+  const double sine = a.x() * b.y() - a.y() * b.x();
+  if (std::abs(sine) < kLeastSine) return std::nullopt;
+  return Section{frame, std::move(seen), *rays, sine};
+}
+
 /// The circle with its axis turned and its centre moved in its plane, so that the points are nearer
 /// to their rays, whose places and directions are free, too.
-Fit straightened(const Fit& circle, const Frame& frame, const std::array<Ray, 2>& rays,
-                 const std::array<std::vector<RimPoint>, 2>& points, double spacing) {
+Fit straightened(const Fit& circle, const Section& section, const SideLimits& limits,
+                 double spacing) {
   using Vector8 = Eigen::Matrix<double, 8, 1>;
   Eigen::Matrix<double, 8, 8> products = Eigen::Matrix<double, 8, 8>::Zero();
   Vector8 sums = Vector8::Zero();
   const double radius = circle.radius / spacing;
   for (const int side : {0, 1}) {
-    const Eigen::Vector2d normal = rays[side].normal();
-    for (const RimPoint& point : points[side]) {
-      const Eigen::Vector2d from_ray = point.at - rays[side].point;
+    const Ray& ray = section.rays[side];
+    const Eigen::Vector2d normal = ray.normal();
+    for (const RimPoint& point : on_ray(ray, section.rays[1 - side], section.points, limits)) {
+      const Eigen::Vector2d from_ray = point.at - ray.point;
       // How the distance changes with the centre, with the rim as the axis turns, and with the ray.
       const double turned =
           normal.y() * (radius + point.at.x()) / radius - normal.x() * point.at.y() / radius;
@@ -144,23 +168,31 @@ Fit straightened(const Fit& circle, const Frame& frame, const std::array<Ray, 2>
       change.segment<2>(0) = -normal.x() * point.outward;
       change.segment<2>(2) = turned * point.outward;
       change[4 + 2 * side] = -1.0;
-      change[5 + 2 * side] = -from_ray.dot(rays[side].direction);
+      change[5 + 2 * side] = -from_ray.dot(ray.direction);
       products += change * change.transpose();
       sums -= from_ray.dot(normal) * change;
     }
   }
-  products.diagonal().array() += kTrustInAxis;
+  products.diagonal().array() += kTrust;
   const Vector8 step = products.ldlt().solve(sums);
   Fit better = circle;
-  better.point += spacing * (step[0] * frame.u + step[1] * frame.v);
+  better.point += spacing * (step[0] * section.frame.u + step[1] * section.frame.v);
   better.direction =
-      (circle.direction + (step[2] * frame.u + step[3] * frame.v) / radius).normalized();
+      (circle.direction + (step[2] * section.frame.u + step[3] * section.frame.v) / radius)
+          .normalized();
   return better;
 }
 
-Frame frame_of(const Fit& circle) {
-  const Vec3 u = circle.direction.unitOrthogonal();
-  return {u, circle.direction.cross(u)};
+/// Where the surfaces meet, or their blunt edge is.
+Eigen::Vector2d edge_of(const Section& section) {
+  const auto& [a, b] = section.rays;
+  const Eigen::Vector2d between = b.point - a.point;
+  const double along =
+      (between.x() * b.direction.y() - between.y() * b.direction.x()) / section.sine;
+  const Eigen::Vector2d corner = a.point + along * a.direction;
+  std::vector<Eigen::Vector2d> places;
+  for (const RimPoint& point : section.points) places.push_back(point.at - corner);
+  return corner + blunted(places, a.direction, b.direction);
 }
 
 }  // namespace
@@ -175,32 +207,20 @@ std::optional<Placed> crease_circle(const Piece& piece, const std::vector<Vec3>&
   }
   const double spacing = piece.spacing();
   Fit fit = piece.fit;
-  for (int round = 0;; ++round) {
-    const Frame frame = frame_of(fit);
-    const std::vector<RimPoint> flat = rim_points(fit, frame, near, spacing);
-    const auto rays = rays_of(*sides, flat, limits);
-    if (!rays) return std::nullopt;
-    const auto& [a, b] = *rays;
-    const double cross = a.direction.x() * b.direction.y() - a.direction.y() * b.direction.x();
-    if (std::abs(cross) < kLeastSine) return std::nullopt;
-    if (round < kAxisFits) {
-      fit = straightened(fit, frame, *rays,
-                         {on_ray(a, b, flat, limits), on_ray(b, a, flat, limits)}, spacing);
-      continue;
-    }
-    const Eigen::Vector2d between = b.point - a.point;
-    const double t = (between.x() * b.direction.y() - between.y() * b.direction.x()) / cross;
-    const Eigen::Vector2d corner = a.point + t * a.direction;
-    std::vector<Eigen::Vector2d> places;
-    for (const RimPoint& point : flat) places.push_back(point.at - corner);
-    const Eigen::Vector2d meet = spacing * (corner + blunted(places, a.direction, b.direction));
-    fit.radius += meet.x();
-    fit.point += meet.y() * fit.direction;
-    if (!(fit.radius > 0.0)) return std::nullopt;
-    const auto in_space = [](const Eigen::Vector2d& v) { return Vec3(v.x(), v.y(), 0.0); };
-    return Placed{fit, dihedral_angle(in_space(a.direction), in_space(b.direction)),
-                  a.support + b.support};
+  auto section = section_about(fit, *sides, near, limits, spacing);
+  for (int round = 0; section && round < kAxisFits; ++round) {
+    fit = straightened(fit, *section, limits, spacing);
+    section = section_about(fit, *sides, near, limits, spacing);
   }
+  if (!section) return std::nullopt;
+  const Eigen::Vector2d edge = spacing * edge_of(*section);
+  fit.radius += edge.x();
+  fit.point += edge.y() * fit.direction;
+  if (!(fit.radius > 0.0)) return std::nullopt;
+  const auto& [a, b] = section->rays;
+  const auto in_space = [](const Eigen::Vector2d& v) { return Vec3(v.x(), v.y(), 0.0); };
+  return Placed{fit, dihedral_angle(in_space(a.direction), in_space(b.direction)),
+                a.support + b.support};
 }
 
 }  // namespace pcednet::lines
