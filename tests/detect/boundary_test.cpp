@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numeric>
 
@@ -83,8 +84,8 @@ TEST(Boundary, IsFoundWithoutNormals) {
   expect_rim(cloud);
 }
 
-TEST(Boundary, IsFoundInLargeCloudsOfWhichNotAllIsTried) {
-  const PointCloud cloud = sheet(200000);
+TEST(Boundary, OfALargeCloudIsFoundBesideAPointFarFromIt) {
+  PointCloud cloud = sheet(200000);
   const auto found = boundary_of(cloud);
   const double spacing = 1.0 / std::sqrt(200000.0);
   const auto hole = std::count_if(found.begin(), found.end(), [&](std::uint32_t i) {
@@ -93,6 +94,14 @@ TEST(Boundary, IsFoundInLargeCloudsOfWhichNotAllIsTried) {
   // Five points in six spacings: of the outermost points few are missing.
   EXPECT_GT(double(hole), 5.0 / 6.0 * 2.0 * 3.1416 * kHole / spacing);
   EXPECT_GT(double(found.size() - static_cast<std::size_t>(hole)), 5.0 / 6.0 * 4.0 / spacing);
+
+  cloud.positions.emplace_back(0.0, 0.0, -100.0);
+  cloud.normals.push_back(Vec3::UnitZ());
+  const auto beside = boundary_of(cloud);
+  std::vector<std::uint32_t> both;
+  std::set_intersection(found.begin(), found.end(), beside.begin(), beside.end(),
+                        std::back_inserter(both));
+  EXPECT_GT(both.size(), 0.99 * double(found.size()));
 }
 
 TEST(Boundary, OfAPartIsThatOfTheLargeCloud) {

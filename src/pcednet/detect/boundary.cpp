@@ -24,9 +24,10 @@ namespace pcednet::detect {
 namespace {
 
 constexpr std::size_t kNeighbours = kBoundaryNeighbours, kLeastNeighbours = 12;
-/// Clouds with more points are first searched in some cells, then around the points found: a rim is
-/// a line of points.
+/// Of clouds with more points some are tried first, then those around the points found: a rim is a
+/// line of points.
 constexpr std::size_t kMostWhole = std::size_t{1} << 17;
+constexpr double kCellsAlong = 0x1p26;
 constexpr std::size_t kTogether = 1024;
 
 constexpr double kOpening = 105.0 * std::numbers::pi / 180.0;
@@ -223,16 +224,15 @@ std::vector<RimPoint> rims_at(const DistinctPoints& points, const spatial::Neigh
   return rims;
 }
 
-/// The cells, some three spacings long on a square sheet, in which the search begins: a quarter of
-/// them, drawn by their places in the whole cloud, so that a part of it begins in the same.
-class FirstCells {
+/// A quarter of all places, by the cells of a fine grid over the whole cloud: a part of it has the
+/// same, and a point far from all others leaves the cells much smaller than the spacing.
+class FirstPlaces {
  public:
-  FirstCells(const DistinctPoints& points, const PartOfCloud* part) {
+  FirstPlaces(const DistinctPoints& points, const PartOfCloud* part) {
     const BoundingBox box = bounding_box(points.positions);
     corner_ = part ? part->pyramids.front().corner : box.min;
-    const double side = part ? part->pyramids.front().side : (box.max - box.min).maxCoeff();
-    const auto count = static_cast<double>(part ? part->points : points.size());
-    per_length_ = std::exp2(std::round(std::log2(std::sqrt(count) / 3.0))) / side;
+    per_length_ =
+        kCellsAlong / (part ? part->pyramids.front().side : (box.max - box.min).maxCoeff());
   }
 
   bool hold(const Vec3& position) const {
@@ -261,7 +261,7 @@ std::vector<RimPoint> find_rims(const DistinctPoints& points, const Progress* pr
   std::vector<std::uint32_t> todo(points.size());
   std::iota(todo.begin(), todo.end(), 0u);
   if (!whole) {
-    const FirstCells first(points, part);
+    const FirstPlaces first(points, part);
     std::erase_if(todo, [&](std::uint32_t i) { return !first.hold(points.positions[i]); });
   }
   std::vector<std::uint8_t> tried(points.size(), 0);
