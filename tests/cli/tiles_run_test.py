@@ -98,6 +98,20 @@ class TilesRun(TilesTest):
         run("tiles", "run", plan)
         self.assertEqual((self.folder / "in/0.ply").read_bytes(), before)
 
+    def test_a_point_far_from_all_others_has_its_own_tile(self):
+        p, n = field(3, 300)
+        write_ply(self.folder / "near.ply", p, n)
+        write_ply(self.folder / "far.ply", np.vstack([p, (1e5, -1e5, 0)]), np.vstack([n, (0, 0, 1)]))
+        tiles = []
+        for name in ("near", "far"):
+            plan = self.folder / f"{name}.json"
+            run("tiles", "plan", self.folder / f"{name}.ply", "-o", plan, "--tile", 1.4)
+            run("tiles", "run", plan)
+            tiles.append([(t["row"], t["column"], t["points"])
+                          for t in json.loads(plan.read_text())["tiles"]])
+        self.assertEqual(len(tiles[1]), len(tiles[0]) + 1)
+        self.assertEqual([t for t in tiles[1] if t[2] > 1], tiles[0])
+
     def test_an_input_counts_once(self):
         p, n = field(3, 300)
         write_ply(self.folder / "a.ply", p, n)
@@ -350,12 +364,9 @@ class TilesRun(TilesTest):
         self.assertIn("smaller", run("tiles", "run", plan, "--max-memory", "1M", expect=2).stderr)
         self.assertIn("convert", run("tiles", "plan", self.text_cloud(), "-o",
                                      self.folder / "q.json", expect=2).stderr)
-        p, n = field(2, 300)
-        p[7] = (1e9, 1e9, 0)
-        write_ply(self.folder / "far.ply", p, n)
-        self.assertIn("points far from all others?",
-                      run("tiles", "plan", self.folder / "far.ply", "-o", self.folder / "q.json",
-                          "--tile", 1, expect=2).stderr)
+        self.assertIn("tiles of length 1e-07: too short",
+                      run("tiles", "plan", self.folder / "small.ply", "-o",
+                          self.folder / "q.json", "--tile", 1e-7, expect=2).stderr)
         (self.folder / "no.json").write_text("{}")
         for command in ("run", "status"):
             run("tiles", command, self.folder / "no.json", expect=3)

@@ -37,7 +37,7 @@ std::uint64_t fullest(const std::vector<Vec3>& positions, const Grid& grid, doub
 
 TEST(Layout, ChoosesTheLargestTilesThatFitTheMemory) {
   const std::vector<Vec3> positions = square_of_points(40000);
-  const double cell = cell_length({{1000, 0, 0}, {1100, 100, 0}}), buffer = 3.0;
+  const double cell = cell_length({{1000, 0, 0}, {1100, 100, 0}}, positions), buffer = 3.0;
   EXPECT_DOUBLE_EQ(cell, 0.2);
   CellCounts counts(cell);
   counts.add(positions);
@@ -57,6 +57,23 @@ TEST(Layout, ChoosesTheLargestTilesThatFitTheMemory) {
   EXPECT_LT(choose_grid(counts, cell, {buffer, memory, made}).length(), grid.length());
   // Cores are never smaller than the buffer is wide.
   EXPECT_GE(choose_grid(counts, cell, {buffer, 1}).length(), buffer);
+}
+
+TEST(Layout, IsThatOfMostPointsWhereFewAreFarFromThem) {
+  std::vector<Vec3> positions = square_of_points(40000);
+  positions.push_back({-6e6, 4e5, 0.0});
+  const double buffer = 3.0;
+  const double cell = cell_length({{-6e6, 0, 0}, {1100, 4e5, 0}}, positions);
+  EXPECT_LE(cell, 2.0);
+  EXPECT_GE(cell, 0.2);
+  CellCounts counts(cell);
+  counts.add(positions);
+  const Grid grid = choose_grid(counts, cell, {buffer, memory_for(10000, {})});
+  const auto tiles = lay_out(counts, grid, "", "{ID}.las");
+  EXPECT_LE(fullest(positions, grid, buffer, tiles), 10000u);
+  EXPECT_GT(fullest(positions, grid, buffer, tiles), 8000u);
+  EXPECT_EQ(most_points(counts, grid, buffer), fullest(positions, grid, buffer, tiles));
+  EXPECT_EQ(cell_length({{0, 0, 0}, {1, 1, 0}}, std::vector<Vec3>(100, Vec3::Zero())), 1e-9);
 }
 
 TEST(Layout, CountsThePointsOfCoresWithTheirBuffers) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <set>
 
+#include "pcednet/cloud/bounding_box.h"
 #include "pcednet/core/error.h"
 #include "pcednet/formats/format.h"
 
@@ -15,6 +16,14 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kCellsAlong = 512;
+// Shorter cells are taken until so many columns or rows hold at least one point in kLeastShare, or
+// there would be too many.
+constexpr std::ptrdiff_t kLeastAlong = 64;
+constexpr std::size_t kLeastShare = 2048, kMostCells = 1 << 20;
+constexpr std::size_t kEnough = 1 << 16;  ///< points are counted for that
+constexpr double kLeastCell = 1e-9;       ///< of the extent and the coordinates
+constexpr std::int64_t kSteps = 1024;
+
 constexpr std::size_t kMostTiles = 1'000'000;
 
 // The program with its model and read buffers, and bytes per point: for measurements see
@@ -22,60 +31,67 @@ constexpr std::size_t kMostTiles = 1'000'000;
 constexpr std::uint64_t kFixedBytes = 100'000'000, kBytesPerPoint = 300;
 constexpr std::uint64_t kNormalBytes = 150, kNeighbourBytes = 10, kMovedBytes = sizeof(Vec3);
 
-/// Sums of counts over rectangles of cells.
+/// Sums of counts over rectangles of cells. Holds only columns and rows that have points: there may
+/// be far gaps between them.
 class SummedCounts {
  public:
   explicit SummedCounts(const CellCounts& counts) {
+    std::set<std::int64_t> columns, rows;
     for (const auto& [cell, count] : counts.cells()) {
-      left_ = std::min(left_, cell.first), bottom_ = std::min(bottom_, cell.second);
-      right_ = std::max(right_, cell.first + 1), top_ = std::max(top_, cell.second + 1);
+      columns.insert(columns.end(), cell.first);
+      rows.insert(cell.second);
     }
-    if (counts.cells().empty()) left_ = bottom_ = right_ = top_ = 0;
-    sums_.assign((columns() + 1) * (rows() + 1), 0);
+    columns_.assign(columns.begin(), columns.end());
+    rows_.assign(rows.begin(), rows.end());
+    sums_.assign((columns_.size() + 1) * (rows_.size() + 1), 0);
     for (const auto& [cell, count] : counts.cells()) {
       sums_[place(cell.first + 1, cell.second + 1)] += count;
     }
-    for (std::int64_t x = left_; x <= right_; ++x) {
-      for (std::int64_t y = bottom_ + 1; y <= top_; ++y)
-        sums_[place(x, y)] += sums_[place(x, y - 1)];
-    }
-    for (std::int64_t x = left_ + 1; x <= right_; ++x) {
-      for (std::int64_t y = bottom_; y <= top_; ++y) sums_[place(x, y)] += sums_[place(x - 1, y)];
-    }
+    const std::size_t row = rows_.size() + 1;  // of the sums
+    for (std::size_t i = row; i < sums_.size(); ++i) sums_[i] += i % row ? sums_[i - 1] : 0;
+    for (std::size_t i = row; i < sums_.size(); ++i) sums_[i] += sums_[i - row];
   }
 
-  std::int64_t left() const { return left_; }
-  std::int64_t right() const { return right_; }
-  std::int64_t bottom() const { return bottom_; }
-  std::int64_t top() const { return top_; }
+  /// Ascending.
+  std::span<const std::int64_t> columns() const { return columns_; }
+  std::span<const std::int64_t> rows() const { return rows_; }
 
   /// Over the cells [x0, x1) x [y0, y1).
   std::uint64_t sum(std::int64_t x0, std::int64_t y0, std::int64_t x1, std::int64_t y1) const {
-    x0 = std::clamp(x0, left_, right_), x1 = std::clamp(x1, left_, right_);
-    y0 = std::clamp(y0, bottom_, top_), y1 = std::clamp(y1, bottom_, top_);
     return sums_[place(x1, y1)] - sums_[place(x0, y1)] - sums_[place(x1, y0)] +
            sums_[place(x0, y0)];
   }
 
  private:
-  std::size_t columns() const { return static_cast<std::size_t>(right_ - left_); }
-  std::size_t rows() const { return static_cast<std::size_t>(top_ - bottom_); }
+  static std::size_t before(std::span<const std::int64_t> lines, std::int64_t index) {
+    return static_cast<std::size_t>(std::lower_bound(lines.begin(), lines.end(), index) -
+                                    lines.begin());
+  }
   std::size_t place(std::int64_t x, std::int64_t y) const {
-    return static_cast<std::size_t>(x - left_) * (rows() + 1) +
-           static_cast<std::size_t>(y - bottom_);
+    return before(columns_, x) * (rows_.size() + 1) + before(rows_, y);
   }
 
-  std::int64_t left_ = INT64_MAX, bottom_ = INT64_MAX, right_ = INT64_MIN, top_ = INT64_MIN;
-  std::vector<std::uint64_t> sums_ = {};
+  std::vector<std::int64_t> columns_, rows_;
+  std::vector<std::uint64_t> sums_;
 };
+
+/// The first cells of the cores that hold some of these columns, or rows.
+std::vector<std::int64_t> core_begins(std::span<const std::int64_t> lines, const Grid& grid) {
+  std::vector<std::int64_t> begins;
+  for (const std::int64_t line : lines) {
+    const std::int64_t begin = grid.core_of_cell(line) * grid.across;
+    if (begins.empty() || begins.back() != begin) begins.push_back(begin);
+  }
+  return begins;
+}
 
 /// Calls `use` with the points of every core, and with those of the core and its buffer.
 template <typename Use>
 void for_each_core(const SummedCounts& sums, const Grid& grid, double buffer, const Use& use) {
   const auto around = static_cast<std::int64_t>(std::ceil(buffer / grid.cell));
-  for (auto c = grid.core_of_cell(sums.left()); c * grid.across < sums.right(); ++c) {
-    for (auto r = grid.core_of_cell(sums.bottom()); r * grid.across < sums.top(); ++r) {
-      const std::int64_t x = c * grid.across, y = r * grid.across;
+  const std::vector<std::int64_t> bottoms = core_begins(sums.rows(), grid);
+  for (const std::int64_t x : core_begins(sums.columns(), grid)) {
+    for (const std::int64_t y : bottoms) {
       use(sums.sum(x, y, x + grid.across, y + grid.across),
           sums.sum(x - around, y - around, x + grid.across + around, y + grid.across + around));
     }
@@ -88,6 +104,44 @@ std::uint64_t most_in(const SummedCounts& sums, const Grid& grid, double buffer)
     most = std::max(most, with_buffer);
   });
   return most;
+}
+
+/// How many of the sampled points the columns, or rows, of its cells hold.
+std::vector<std::size_t> counts_along(std::span<const Vec3> sample, int axis, double cell) {
+  std::vector<double> lines;
+  const std::size_t step = sample.size() / kEnough + 1;
+  for (std::size_t i = 0; i < sample.size(); i += step) {
+    lines.push_back(std::floor(sample[i][axis] / cell));
+  }
+  std::sort(lines.begin(), lines.end());
+  std::vector<std::size_t> counts;
+  for (auto line = lines.begin(); line != lines.end();) {
+    const auto next = std::upper_bound(line, lines.end(), *line);
+    counts.push_back(static_cast<std::size_t>(next - line));
+    line = next;
+  }
+  return counts;
+}
+
+/// Whether cells of this length are so many that the tiles can have the length that the memory
+/// allows: far points make the box much larger than what most points take.
+bool are_fine(std::span<const Vec3> sample, double cell) {
+  const auto columns = counts_along(sample, 0, cell), rows = counts_along(sample, 1, cell);
+  const auto are_many = [&](const std::vector<std::size_t>& counts) {
+    return std::count_if(counts.begin(), counts.end(), [&](std::size_t count) {
+             return count * kLeastShare >= std::min(sample.size(), kEnough);
+           }) >= kLeastAlong;
+  };
+  return are_many(columns) || are_many(rows) || columns.size() * rows.size() > kMostCells;
+}
+
+/// The shortest of 1, 2 or 5 times a power of ten that is not below `least`.
+double preferred_from(double least) {
+  const double power = std::pow(10.0, std::floor(std::log10(least)));
+  for (const double factor : {1.0, 2.0, 5.0}) {
+    if (factor * power >= least) return factor * power;
+  }
+  return 10.0 * power;
 }
 
 /// The names in braces of a template, and their values for a tile.
@@ -162,15 +216,15 @@ void CellCounts::add(std::span<const Vec3> positions) {
   }
 }
 
-double cell_length(const BoundingBox& box) {
+double cell_length(const BoundingBox& box, std::span<const Vec3> sample) {
   if (box.empty()) return 1.0;
-  const double side = std::max(box.max.x() - box.min.x(), box.max.y() - box.min.y());
-  const double least = std::max(side, 1e-3) / kCellsAlong;
-  const double power = std::pow(10.0, std::floor(std::log10(least)));
-  for (const double factor : {1.0, 2.0, 5.0}) {
-    if (factor * power >= least) return factor * power;
+  const double side = std::max({box.max.x() - box.min.x(), box.max.y() - box.min.y(), 1e-3});
+  const double farthest = std::max(box.min.cwiseAbs().maxCoeff(), box.max.cwiseAbs().maxCoeff());
+  double cell = preferred_from(side / kCellsAlong);
+  while (cell > kLeastCell * std::max(side, farthest) && !are_fine(sample, cell)) {
+    cell = preferred_from(0.3 * cell);  // of 10, 5 and 2: 5, 2 and 1
   }
-  return 10.0 * power;
+  return cell;
 }
 
 Vec3 shares_of(const BoundingBox& box, const BoundingBox& whole) {
@@ -202,10 +256,14 @@ std::uint64_t points_with_buffers(const CellCounts& counts, const Grid& grid, do
 
 Grid choose_grid(const CellCounts& counts, double cell, const TileLimits& limits) {
   const SummedCounts sums(counts);
-  const std::int64_t all = std::max(sums.right() - sums.left(), sums.top() - sums.bottom());
+  const auto length = [](std::span<const std::int64_t> lines) {
+    return lines.empty() ? 1 : lines.back() + 1 - lines.front();
+  };
+  const std::int64_t all = std::max(length(sums.columns()), length(sums.rows()));
   const auto least = static_cast<std::int64_t>(std::ceil(limits.buffer / cell));
   // Cores begin at multiples of their length, so that one core may hold all only if it is longer.
-  for (std::int64_t across = 2 * std::max<std::int64_t>(all, 1); across > least; --across) {
+  for (std::int64_t across = 2 * all; across > least;
+       across -= std::max<std::int64_t>(across / kSteps, 1)) {
     const Grid grid{cell, across};
     const std::uint64_t points = most_in(sums, grid, limits.buffer);
     if (memory_for(points, limits.normals) <= limits.memory) return grid;

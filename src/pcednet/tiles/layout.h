@@ -29,9 +29,10 @@ class CellCounts {
   std::map<std::pair<std::int64_t, std::int64_t>, std::uint64_t> cells_ = {};
 };
 
-/// The length of the counting cells, so that there are about 512 along the longer side: 1, 2 or 5
-/// times a power of ten.
-double cell_length(const BoundingBox& box);
+/// The length of the counting cells, 1, 2 or 5 times a power of ten: there are about 512 along the
+/// longer side of the box, or more if most points, of which there is a sample, take a small part of
+/// it.
+double cell_length(const BoundingBox& box, std::span<const Vec3> sample);
 
 /// The share of each side of `whole` that `box` takes; 1 for a side without length, or an empty
 /// box.

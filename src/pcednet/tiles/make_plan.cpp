@@ -101,12 +101,16 @@ bool is_too_often(double times, const Plan& plan) {
                           name.empty() ? "" : fmt::format(": {} makes copies in order", name)));
 }
 
+std::size_t count_tiles(std::span<const Vec3> sample, double length) {
+  CellCounts tiles(length);
+  tiles.add(sample);
+  return tiles.cells().size();
+}
+
 /// The least number of tiles.
 double least_tiles(const PlanRequest& request, const Plan& plan, std::span<const Vec3> sample) {
   if (request.tile_length > 0.0) {
-    CellCounts tiles(request.tile_length);
-    tiles.add(sample);
-    return static_cast<double>(tiles.cells().size());
+    return static_cast<double>(count_tiles(sample, request.tile_length));
   }
   const std::uint64_t fixed = memory_for(0, {}), for_points = memory_for(plan.points(), {}) - fixed;
   return static_cast<double>(for_points) /
@@ -243,27 +247,33 @@ void note_float_rounding(const detect::EdgeModel& model, ScalarType type, Plan& 
   if (!note.empty()) plan.notes.push_back(note);
 }
 
-/// The length of the cells in which points are counted: the tiles are a whole number of them.
-double counting_cell(const PlanRequest& request, const BoundingBox& box) {
-  if (request.tile_length == 0.0) return cell_length(box);
-  constexpr double kMostCells = 1e8;
-  const Vec3 extent = box.max - box.min;
-  if (!((extent.x() / request.tile_length) * (extent.y() / request.tile_length) < kMostCells)) {
-    throw Error(ErrorKind::kUsage,
-                fmt::format("tiles of length {:g} over an extent of {:g} x {:g}: too many; points "
-                            "far from all others?",
-                            request.tile_length, extent.x(), extent.y()));
-  }
-  double cell = request.tile_length;  // halves of it are exact
-  while (cell > cell_length(box)) cell *= 0.5;
+/// Throws for tiles so short that most have a point or two.
+void check_tile_length(double length, const Plan& plan, std::span<const Vec3> sample) {
   constexpr double kMostNumber = 0x1p62;  // of a cell
-  const double farthest = std::max(box.min.cwiseAbs().maxCoeff(), box.max.cwiseAbs().maxCoeff());
-  if (!(farthest / cell < kMostNumber)) {
-    throw Error(ErrorKind::kUsage,
-                fmt::format("tiles of length {:g} at coordinates up to {:g}: too short",
-                            request.tile_length, farthest));
+  constexpr std::size_t kFewTiles = 1000;
+  const double farthest =
+      std::max(plan.box.min.cwiseAbs().maxCoeff(), plan.box.max.cwiseAbs().maxCoeff());
+  if (!(farthest / length < kMostNumber)) {
+    throw Error(ErrorKind::kUsage, fmt::format("tiles of length {:g} at coordinates up to {:g}: "
+                                               "too short",
+                                               length, farthest));
   }
-  return cell;
+  const std::size_t tiles = count_tiles(sample, length);
+  if (tiles > kFewTiles && 2 * tiles > sample.size()) {
+    throw Error(ErrorKind::kUsage, fmt::format("tiles of length {:g}: too short, most would have a "
+                                               "point or two",
+                                               length));
+  }
+}
+
+/// The length of the cells in which points are counted: the tiles are a whole number of them.
+double counting_cell(double tile_length, const Plan& plan, std::span<const Vec3> sample) {
+  const double cell = cell_length(plan.box, sample);
+  if (tile_length == 0.0) return cell;
+  check_tile_length(tile_length, plan, sample);
+  double part = tile_length;  // halves of it are exact
+  while (part > cell) part *= 0.5;
+  return part;
 }
 
 Grid grid_of(const PlanRequest& request, const CellCounts& counts, double cell, const Plan& plan) {
@@ -286,7 +296,7 @@ Plan make_plan(const PlanRequest& request, const detect::EdgeModel& model,
   const bool is_all = some.is_all();
   const std::vector<Vec3> sample = some.take();
   plan.places = is_all ? count_places(sample) : some.seen();
-  const double cell = counting_cell(request, plan.box);
+  const double cell = counting_cell(request.tile_length, plan, sample);
   check_order_early(request, plan, sample);
   CellCounts counts(cell);
 
