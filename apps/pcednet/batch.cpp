@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <new>
+#include <set>
 
 #include "common.h"
 #include "pcednet/formats/format.h"
@@ -76,10 +77,12 @@ void warn_of_passed_over(const Inputs& inputs) {
 
 Inputs find_inputs(const std::vector<std::string>& arguments) {
   Inputs inputs;
+  std::set<fs::path> seen;
   for (const std::string& argument : arguments) {
     try {
-      const auto files = files_of(argument, inputs.passed_over);
-      inputs.files.insert(inputs.files.end(), files.begin(), files.end());
+      for (const fs::path& file : files_of(argument, inputs.passed_over)) {
+        if (seen.insert(fs::absolute(file).lexically_normal()).second) inputs.files.push_back(file);
+      }
     } catch (const Error& error) {
       inputs.failures.push_back({argument, error});
     }

@@ -102,6 +102,12 @@ std::vector<fs::path> without_results(const std::vector<fs::path>& inputs) {
   return rest;
 }
 
+void warn_of_replaced(const std::string& input, const std::vector<std::string>& attributes) {
+  if (attributes.empty()) return;
+  warn(fmt::format("{}: its own {} {} replaced by the result's: rename what is to be kept", input,
+                   fmt::join(attributes, ", "), attributes.size() == 1 ? "is" : "are"));
+}
+
 ResultPlan plan_results(const Inputs& inputs, const ResultArguments& arguments,
                         const Common& common) {
   if (!arguments.output.empty() && (inputs.count() > 1 || !arguments.folder.empty())) {

@@ -61,6 +61,8 @@ class Evaluate(CliTest):
             self.folder / "scores.json")
         report = json.loads((self.folder / "scores.json").read_text())
         self.assertGreater(report["median"]["mcc"], 0.7)
+        twice = run("evaluate", self.folder, self.folder / "a.ply", "--model", "scan", "--json", "-")
+        self.assertEqual(len(json.loads(twice.stdout[twice.stdout.index("{"):])["clouds"]), 1)
 
     def test_scores_lines_against_the_curves_that_generate_writes(self):
         parts = self.folder / "parts"

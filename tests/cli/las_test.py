@@ -182,6 +182,8 @@ class Las(CliTest):
         for more in ((), ("--max-memory", "1M")):
             said = run("classify", source, "--overwrite", *more).stderr
             self.assertIn("own.las: its own edge_class, p_sharp are replaced by the result's", said)
+        said = run("tiles", "plan", source, "-o", self.folder / "own.json").stderr
+        self.assertIn("own.las: its own edge_class, p_sharp are replaced by the result's", said)
         again = run("classify", self.folder / "own_edges.las", "-o", self.folder / "again.las").stderr
         self.assertNotIn("replaced", again)
 

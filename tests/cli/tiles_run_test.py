@@ -116,7 +116,10 @@ class TilesRun(TilesTest):
         p, n = field(3, 300)
         write_ply(self.folder / "a.ply", p, n)
         (self.folder / "b.ply").symlink_to("a.ply")
-        for twice in ("a.ply", "b.ply", "."):
+        once = self.folder / "once.json"
+        run("tiles", "plan", self.folder / "a.ply", self.folder / "./a.ply", "-o", once)
+        self.assertEqual(json.loads(once.read_text())["points"], len(p))
+        for twice in ("b.ply", "."):
             said = run("tiles", "plan", self.folder / "a.ply", self.folder / twice, "-o",
                        self.folder / "p.json", expect=2).stderr
             self.assertIn("the same file as the input", said)

@@ -122,6 +122,21 @@ TEST_F(Predicted, AnotherSamplingGivesTheLabelOfItsNearestPoint) {
   EXPECT_EQ(read_predictions(file, positions_).classes, (Classes{2, 255, 1, 2}));
 }
 
+TEST_F(Predicted, TheSamePointsInAnotherOrderKeepTheirLabels) {
+  const std::string header =
+      "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\n"
+      "property float y\nproperty float z\nproperty uchar label\nend_header\n";
+  const Predictions other_order = read_predictions(
+      write("a.ply", header + "3 0 0 2\n1 0 0 1\n0 0 0.00001 0\n2 0 0 1\n"), positions_);
+  EXPECT_EQ(other_order.classes, (Classes{0, 1, 1, 2}));
+  EXPECT_NE(other_order.note.find("another order"), std::string::npos);
+  // Centred and scaled: nothing tells that the order is another one.
+  const Predictions elsewhere = read_predictions(
+      write("b.ply", header + "-1 0 0 2\n-0.5 0 0 1\n0.5 0 0 0\n1 0 0 1\n"), positions_);
+  EXPECT_EQ(elsewhere.classes, (Classes{2, 1, 0, 1}));
+  EXPECT_TRUE(elsewhere.note.empty());
+}
+
 TEST_F(Predicted, PointsWithoutLabelsAreOnEdges) {
   const Predictions found =
       read_predictions(write("a.xyz", "0.9 0 0\n1.1 0 0\n3.1 0 0\n"), positions_);

@@ -118,10 +118,7 @@ void report(const Job& job, const detect::Classification& result, const Counts& 
 void say_kept(const std::filesystem::path& input, const detect::KeptInput& kept) {
   if (kept.labels) say("  the input's labels are kept as scalar_input_label");
   if (kept.colours) say("  the input's colours are kept; --class-colours replaces them");
-  if (kept.replaced.empty()) return;
-  warn(fmt::format("{}: its own {} {} replaced by the result's: rename what is to be kept",
-                   input.string(), fmt::join(kept.replaced, ", "),
-                   kept.replaced.size() == 1 ? "is" : "are"));
+  warn_of_replaced(input.string(), kept.replaced);
 }
 
 /// Adds the result to the cloud, with the user's options.

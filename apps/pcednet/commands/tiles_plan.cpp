@@ -12,6 +12,8 @@
 #include "models.h"
 #include "number_options.h"
 #include "pcednet/core/error.h"
+#include "pcednet/detect/result_cloud.h"
+#include "pcednet/tiles/inputs.h"
 #include "pcednet/tiles/make_plan.h"
 #include "pcednet/tiles/plan.h"
 #include "pcednet/tiles/tile_file.h"
@@ -96,6 +98,7 @@ void plan_tiles(const PlanArguments& arguments, const Common& common) {
   tiles::write_plan(arguments.plan, plan, common.overwrite());
   for (const std::string& note : plan.notes) warn(note);
   warn_of_old_tiles(arguments);
+  warn_of_replaced(arguments.inputs.front(), detect::replaced_attributes(tiles::outline_of(plan)));
   say(fmt::format("{}: {} points in {} tiles of length {:g}, buffer {:.4g}", arguments.plan,
                   plan.points(), plan.tiles.size(), plan.grid.length(), plan.buffer));
   say(fmt::format("  scales: {:.9g} to {:.9g}", plan.s_min, plan.s_max));

@@ -70,8 +70,9 @@ void set_columns(PointCloud& cloud, const Classification& result, const ClassTab
   set_attribute(cloud, make_attribute("scalar_p_smooth", result.p_smooth));
 }
 
-/// The attributes with names of a result's, unless a classification left them.
-std::vector<std::string> foreign_columns(const PointCloud& cloud) {
+}  // namespace
+
+std::vector<std::string> replaced_attributes(const PointCloud& cloud) {
   const auto& comments = cloud.comments;
   if (std::any_of(comments.begin(), comments.end(),
                   [](const std::string& comment) { return comment.starts_with(kModelComment); })) {
@@ -84,8 +85,6 @@ std::vector<std::string> foreign_columns(const PointCloud& cloud) {
   if (find_attribute(cloud, "quality")) names.emplace_back("quality");
   return names;
 }
-
-}  // namespace
 
 void add_class_comments(PointCloud& cloud, const ClassTable& table) {
   std::erase_if(cloud.comments,
@@ -103,7 +102,7 @@ KeptInput add_result(PointCloud& cloud, const PreparedCloud& prepared, const Cla
 KeptInput add_result(PointCloud& cloud, std::span<const Vec3> made, const Classification& result,
                      const EdgeModel& model, const ResultOptions& options) {
   check_size(result, cloud.size());
-  KeptInput kept{.replaced = foreign_columns(cloud)};
+  KeptInput kept{.replaced = replaced_attributes(cloud)};
   const bool classified_before = find_attribute(cloud, "scalar_edge_class") != nullptr ||
                                  find_attribute(cloud, "scalar_class") != nullptr;
   if (cloud.has_labels() && !classified_before) {

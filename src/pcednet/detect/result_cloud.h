@@ -15,12 +15,14 @@ struct ResultOptions {
 };
 
 struct KeptInput {
-  bool labels = false;   ///< as scalar_input_label
-  bool colours = false;  ///< instead of the class colours
-  /// Attributes that are not kept, without "scalar_": they had the names of the result's, in a
-  /// cloud that names no model.
-  std::vector<std::string> replaced = {};
+  bool labels = false;                     ///< as scalar_input_label
+  bool colours = false;                    ///< instead of the class colours
+  std::vector<std::string> replaced = {};  ///< see replaced_attributes()
 };
+
+/// The cloud's own attributes that a result replaces, without "scalar_": they have names of the
+/// result's, in a cloud that names no model.
+std::vector<std::string> replaced_attributes(const PointCloud& cloud);
 
 /// Names own classes in the cloud's comments, which classes_of() reads.
 void add_class_comments(PointCloud& cloud, const ClassTable& table);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pcednet/cloud/bounding_box.h"
 #include "pcednet/cloud/point_cloud.h"
 #include "pcednet/core/error.h"
 #include "pcednet/core/parallel.h"
@@ -22,6 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kMostColumns = kUnlabelled;
+constexpr double kRounding = 1e-5;  ///< of coordinates, of the diagonal of the cloud
 
 /// Files with classes only come before point files.
 std::vector<std::string_view> extensions_of_predictions() {
@@ -87,6 +89,29 @@ std::vector<std::uint8_t> classes_of_array(const fs::path& path, const io::NpyAr
   return classes;
 }
 
+/// Whether the file has the points of the cloud, but in another order. Coordinates may be rounded;
+/// those of another system tell nothing.
+bool is_reordered(std::span<const Vec3> positions, std::span<const Vec3> others) {
+  const BoundingBox box = bounding_box(positions);
+  if (box.empty()) return false;
+  const double sq_rounding = kRounding * kRounding * (box.max - box.min).squaredNorm();
+  std::size_t moved = 0;
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    moved += (positions[i] - others[i]).squaredNorm() > sq_rounding;
+  }
+  const auto are_few = [&](std::size_t count) { return count * 100 <= positions.size(); };
+  if (are_few(moved)) return false;
+  const spatial::KdTree tree(others);
+  std::vector<spatial::Neighbour> found;
+  std::size_t missing = 0;
+  for (std::size_t i = 0; i < positions.size() && are_few(missing); ++i) {
+    if (!positions[i].allFinite()) continue;
+    tree.nearest(positions[i], 1, found);
+    missing += found.empty() || found[0].sq_distance > sq_rounding;
+  }
+  return are_few(missing);
+}
+
 std::vector<std::uint8_t> labels_of_nearest(std::span<const Vec3> positions,
                                             const PointCloud& others,
                                             const std::vector<std::uint8_t>& labels) {
@@ -150,10 +175,13 @@ Predictions read_predictions(const fs::path& path, std::span<const Vec3> positio
     if (labels[i] < table.size() || labels[i] == kUnlabelled) continue;
     throw no_class(path, fmt::format("point {}", i), labels[i], table);
   }
-  if (labels.size() == positions.size()) return {std::move(labels), {}};
+  std::string why = fmt::format("{} points for {}", others.size(), positions.size());
+  if (labels.size() == positions.size()) {
+    if (!is_reordered(positions, others.positions)) return {std::move(labels), {}};
+    why = "the points are in another order";
+  }
   return {labels_of_nearest(positions, others, labels),
-          fmt::format("{} points for {}: each takes the label of the nearest", others.size(),
-                      positions.size())};
+          why + ": each takes the label of the nearest"};
 }
 
 }  // namespace pcednet::eval
