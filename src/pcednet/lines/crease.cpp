@@ -65,7 +65,7 @@ std::optional<Crease> crease_at(const OrderedPoints& cloud, std::uint32_t i,
   for (const auto& near : others) {
     if (within.skips_other_side) {
       if (near_points.count == within.points) break;
-      if (cloud.cosine(i, near.index) < 0.0) continue;
+      if (cloud.face_away(i, near.index)) continue;
     }
     near_points.add((cloud.position(near.index) - cloud.position(i)) / spacing,
                     cloud.normal(near.index), cloud.probability(near.index));
@@ -130,7 +130,7 @@ std::optional<Crease> lengthwise_crease(const OrderedPoints& cloud, std::uint32_
 /// How many of these do not face away from the point.
 std::size_t facing(const OrderedPoints& cloud, std::uint32_t point,
                    std::span<const spatial::Neighbour> others) {
-  const auto faces = [&](const auto& other) { return !(cloud.cosine(point, other.index) < 0.0); };
+  const auto faces = [&](const auto& other) { return !cloud.face_away(point, other.index); };
   return static_cast<std::size_t>(std::count_if(others.begin(), others.end(), faces));
 }
 

@@ -21,8 +21,12 @@ class OrderedPoints {
   const Vec3& position(std::size_t i) const { return positions_[i]; }
   /// One of a normal and its opposite, the same of both: nothing may depend on signs.
   Vec3 normal(std::size_t i) const { return upward(normals_[i]); }
-  /// The cosine of the angle between the normals of two points, with their signs.
-  double cosine(std::size_t i, std::size_t j) const { return normals_[i].dot(normals_[j]); }
+  /// Whether the surfaces at two points face away from each other, as the two sides of a thin wall
+  /// do. The faces of a cube do not, whatever rounding makes of their right angle.
+  bool face_away(std::size_t i, std::size_t j) const {
+    constexpr double kAway = -0.05;  // a cosine
+    return normals_[i].dot(normals_[j]) < kAway;
+  }
   EdgeClass edge_class(std::size_t i) const {
     return static_cast<EdgeClass>(points_.classes[order_[i]]);
   }

@@ -34,7 +34,7 @@ bool is_seen_from_above(const OrderedPoints& cloud, const Sampling& sampling,
     plan.within_unsorted(in_plan(cloud.position(i)), kBesideInPlan * sampling.spacing, near);
     ++seen;
     above += std::any_of(near.begin(), near.end(), [&](const spatial::Neighbour& other) {
-      const bool opposed = sampling.oriented && cloud.cosine(i, other.index) < 0.0;
+      const bool opposed = sampling.oriented && cloud.face_away(i, other.index);
       return std::abs(cloud.position(other.index).z() - cloud.position(i).z()) >
              (opposed ? kPlate : kAbove) * sampling.spacing;
     });

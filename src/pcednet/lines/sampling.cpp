@@ -118,7 +118,7 @@ std::vector<PlaneSample> samples_at(const OrderedPoints& cloud,
     const bool enough = offsets.size() >= kLeastNeighbours;
     const auto opposed =
         std::count_if(row.begin(), row.begin() + kOnOwnSide,
-                      [&](const auto& near) { return cloud.cosine(points[k], near.index) < 0.0; });
+                      [&](const auto& near) { return cloud.face_away(points[k], near.index); });
     samples.push_back({spacing, enough ? fit_plane(own_sheet).residual : -1.0,
                        static_cast<std::size_t>(opposed)});
   }
