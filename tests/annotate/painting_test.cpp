@@ -215,6 +215,70 @@ TEST_F(JournalTest, RefusesWhatIsDamagedOrOfAnotherInput) {
   }
 }
 
+/// The words of the error that `statement` throws.
+template <typename Statement>
+std::string words_of(const Statement& statement) {
+  const auto error = test::error_of(statement);
+  return error ? error->what() : "no error";
+}
+
+class DamagedJournal : public JournalTest {
+ protected:
+  DamagedJournal() {
+    std::vector<Record> known = records_;
+    const Journal journal(path_, input_, known);
+    std::ifstream file(path_, std::ios::binary);
+    text_.assign(std::istreambuf_iterator<char>(file), {});
+  }
+
+  void write(const std::string& text) { std::ofstream(path_, std::ios::binary) << text; }
+
+  std::vector<Record> read() {
+    std::vector<Record> found;
+    const Journal journal(path_, input_, found);
+    return found;
+  }
+
+  std::string text_ = {};
+};
+
+TEST_F(DamagedJournal, NamesTheFileTheLineAndWhatToDo) {
+  const std::string mend =
+      "; to keep the strokes before it, copy the journal to a safe place, then "
+      "delete from line ";
+  const auto is_told = [&](const std::string& words, std::size_t line, const std::string& why) {
+    const std::string number = std::to_string(line);
+    EXPECT_TRUE(words.starts_with(path_.string() + ": line " + number + ": " + why)) << words;
+    EXPECT_NE(words.find(mend + number + " to the end"), words.npos) << words;
+  };
+  std::string bad = text_;
+  bad.insert(bad.find("{\"redo\""), "xx");
+  write(bad);
+  is_told(words_of([&] { read(); }), 4, "");
+  write(text_ + "\n" + R"({"stroke":"x","class":7,"points":[1]})" + "\n");
+  is_told(words_of([&] { read(); }), records_.size() + 3, "a stroke of class 7");
+  for (const std::string& head : {std::string("xx\n"), text_.substr(10), "\n" + text_}) {
+    write(head);
+    for (const std::string& words :
+         {words_of([&] { read(); }), words_of([&] { inputs_of_journal(path_); })}) {
+      EXPECT_TRUE(words.starts_with(path_.string() + ": line 1: ")) << words;
+      EXPECT_NE(words.find("; move the journal away to start afresh"), words.npos) << words;
+    }
+  }
+}
+
+TEST_F(DamagedJournal, OpensWithBlankLinesAndATornEnd) {
+  const std::string nul(5, '\0');
+  for (const std::string& end : {std::string("\n"), std::string("\r\n \n"), nul, nul + "\n",
+                                 std::string("\n{\"stroke\":\"x\",\"cla")}) {
+    write(text_ + end);
+    EXPECT_EQ(lines(read()), lines(records_));
+  }
+  write(text_.substr(0, 20));  // ended while its first line was written
+  EXPECT_TRUE(inputs_of_journal(path_).empty());
+  EXPECT_TRUE(read().empty());
+}
+
 /// Strokes of a project in a folder of its own.
 class PaintingTest : public testing::Test {
  protected:
@@ -282,6 +346,21 @@ TEST_F(PaintingTest, SaysWhatIsWrongWithAProjectAndWhatToDo) {
     EXPECT_EQ(words.find("json.exception"), words.npos) << words;
     EXPECT_NE(words.find("; move it away to start afresh"), words.npos) << words;
   }
+}
+
+TEST_F(PaintingTest, NamesTheProjectAndTheRecordOfAnUnknownClass) {
+  painting_.reset();
+  fs::remove(journal_);
+  const fs::path project = folder_ / "a.json";
+  const Record sound = {.id = "a", .edge_class = 2, .points = {1}};
+  write_project(project, {.inputs = input_, .records = {sound}}, Overwrite::kNo);
+  std::ifstream file(project);
+  std::string text(std::istreambuf_iterator<char>(file), {});
+  text.replace(text.find("\"class\":2"), 9, "\"class\":7");
+  std::ofstream(project) << text;
+  const std::string words = words_of([&] { Painting(project, input_); });
+  EXPECT_TRUE(words.starts_with(project.string() + ": no project: record 1: a stroke of class 7"))
+      << words;
 }
 
 TEST(Places, AreTheLeastCertainAndApart) {

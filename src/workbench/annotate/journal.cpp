@@ -8,6 +8,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <fstream>
 
 #include "pcednet/core/error.h"
 #include "pcednet/core/output_file.h"
@@ -23,7 +24,38 @@ void lock(int file, int operation, const std::filesystem::path& path) {
   throw Error(ErrorKind::kFailure, fmt::format("{}: another annotator has it open", path.string()));
 }
 
+/// Whether a line holds nothing; a crash of the machine may leave NUL bytes.
+bool is_blank(std::string_view line) {
+  return line.find_first_not_of(std::string_view(" \t\r\0", 4)) == line.npos;
+}
+
+/// Runs `parse` for a line of the journal; its errors name the line and what to do.
+template <typename Parse>
+void parse_line(const std::filesystem::path& path, std::size_t line, Parse&& parse) {
+  try {
+    parse();
+  } catch (const Error& error) {
+    const std::string mend =
+        line == 1 ? "move the journal away to start afresh, or from the saved project"
+                  : fmt::format(
+                        "to keep the strokes before it, copy the journal to a safe place, "
+                        "then delete from line {} to the end",
+                        line);
+    throw Error(ErrorKind::kUnreadable,
+                fmt::format("{}: line {}: {}; {}", path.string(), line, error.what(), mend));
+  }
+}
+
 }  // namespace
+
+Inputs inputs_of_journal(const std::filesystem::path& path) {
+  std::ifstream journal(path);
+  std::string line;
+  if (!std::getline(journal, line) || journal.eof()) return {};
+  Inputs inputs;
+  parse_line(path, 1, [&] { inputs = parse_inputs(line); });
+  return inputs;
+}
 
 void check_not_open(const std::filesystem::path& path) {
   const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
@@ -71,29 +103,31 @@ void Journal::fail(const char* what) const {
               fmt::format("{}: {}: {}", path_.string(), what, std::strerror(errno)));
 }
 
+void Journal::check_inputs(const Inputs& inputs, const Inputs& known) const {
+  if (begins_with(inputs, known)) return;
+  throw Error(ErrorKind::kInsufficient,
+              fmt::format("{}: of another input than {}; move it away to start afresh",
+                          path_.string(), inputs.front().name));
+}
+
 void Journal::read(const Inputs& inputs, std::vector<Record>& records) {
   const std::string text = io::InputFile(path_).text();
   std::vector<Record> found;
   Inputs known;
-  std::size_t lines = 0, head = 0;
+  ProjectClasses classes;
+  std::size_t lines = 0, head = 0, points = 0;
   for (std::size_t end; (end = text.find('\n', size_)) != std::string::npos; size_ = end + 1) {
     const std::string_view line = std::string_view(text).substr(size_, end - size_);
-    try {
-      if (++lines > 1) {
-        found.push_back(parse_record(line, points_of(std::span(inputs).first(known.size()))));
-        continue;
-      }
-      known = parse_inputs(line);
+    if (++lines == 1) {
+      parse_line(path_, lines, [&] { known = parse_inputs(line); });
+      check_inputs(inputs, known);
+      points = points_of(std::span(inputs).first(known.size()));
       head = end + 1;
-      if (!begins_with(inputs, known)) {
-        throw Error(ErrorKind::kInsufficient,
-                    fmt::format("{}: of another input than {}; move it away to start afresh",
-                                path_.string(), inputs.front().name));
-      }
-    } catch (const Error& error) {
-      if (error.kind() == ErrorKind::kInsufficient) throw;
-      throw Error(ErrorKind::kUnreadable,
-                  fmt::format("{}: line {}: {}", path_.string(), lines, error.what()));
+    } else if (!is_blank(line)) {
+      parse_line(path_, lines, [&] {
+        found.push_back(parse_record(line, points));
+        follow_classes(found.back(), classes);
+      });
     }
   }
   if (::ftruncate(file_, static_cast<off_t>(size_)) != 0) fail("cannot be mended");

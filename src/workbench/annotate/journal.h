@@ -9,13 +9,14 @@
 namespace pcednet::annotate {
 
 /// A file that gains a line per record and survives the end of the program at any moment: its first
-/// line names the inputs; an incomplete last line is dropped.
+/// line names the inputs; an incomplete last line is dropped, and blank lines mean nothing.
 class Journal {
  public:
   /// Opens the journal at `path`, or begins one with `records`. `records` becomes the content of
   /// the journal. A journal of the first inputs is extended to all `inputs`. Throws
-  /// Error(kUnreadable) if it cannot be read or, naming the line, if it is damaged before its end,
-  /// Error(kInsufficient) if it is of other inputs, Error(kFailure) if it cannot be written.
+  /// Error(kUnreadable) if it cannot be read or, naming the line and what to do, if it is damaged
+  /// before its end, Error(kInsufficient) if it is of other inputs, Error(kFailure) if it cannot be
+  /// written.
   Journal(std::filesystem::path path, const Inputs& inputs, std::vector<Record>& records);
   ~Journal();
   Journal(const Journal&) = delete;
@@ -32,6 +33,7 @@ class Journal {
  private:
   void open();
   void read(const Inputs& inputs, std::vector<Record>& records);
+  void check_inputs(const Inputs& inputs, const Inputs& known) const;
   void rewrite(const std::string& text);
   void write_line(const std::string& line);
   [[noreturn]] void take_back();
@@ -41,6 +43,10 @@ class Journal {
   int file_ = -1;
   std::size_t size_ = 0;  ///< bytes of whole lines
 };
+
+/// The inputs that the journal at `path` names; none if there is no journal or its first line is
+/// incomplete. Throws Error(kUnreadable), naming the file and what to do.
+Inputs inputs_of_journal(const std::filesystem::path& path);
 
 /// Throws Error(kFailure) if another annotator has the journal at `path` open, as Journal() does.
 void check_not_open(const std::filesystem::path& path);

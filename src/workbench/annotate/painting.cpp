@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
 
 #include "pcednet/core/error.h"
 
@@ -39,8 +38,7 @@ fs::path journal_of(fs::path project) {
 }
 
 Inputs inputs_of_project(const fs::path& project) {
-  std::ifstream journal(journal_of(project));
-  if (std::string line; std::getline(journal, line)) return parse_inputs(line);
+  if (const Inputs known = inputs_of_journal(journal_of(project)); !known.empty()) return known;
   return fs::exists(project) ? read_own_project(project).inputs : Inputs();
 }
 

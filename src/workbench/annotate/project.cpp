@@ -314,8 +314,12 @@ Project read_project(const std::filesystem::path& path) {
       const Json json = parse_json(text);
       Project project{.inputs = inputs_of(json), .records = {}};
       const std::size_t points = points_of(project.inputs);
+      ProjectClasses classes;
       for (const Json& record : json.at("records")) {
-        project.records.push_back(record_of(record, points));
+        with_name_in_errors(fmt::format("record {}", project.records.size() + 1), [&] {
+          project.records.push_back(strictly([&] { return record_of(record, points); }));
+          follow_classes(project.records.back(), classes);
+        });
       }
       return project;
     });
@@ -337,61 +341,6 @@ void write_project(const std::filesystem::path& path, const Project& project, Ov
     text += (i == 0 ? "\n" : ",\n") + to_line(project.records[i]);
   }
   write_text_file(path, text + "]}\n", overwrite);
-}
-
-std::span<const std::uint32_t> replay(const Record& record, Replayed& now) {
-  switch (record.kind) {
-    case Kind::kStroke:
-      if (!now.classes.may_paint(record.edge_class) && record.edge_class != kUnlabelled) {
-        refuse_project(
-            fmt::format("a stroke of class {}, which the project lacks", record.edge_class));
-      }
-      if (record.edge_class != kUnlabelled) now.ever_painted.insert(record.edge_class);
-      return now.labels.paint(record.edge_class, record.points);
-    case Kind::kUndo:
-      return now.labels.undo();
-    case Kind::kRedo:
-      return now.labels.redo();
-    case Kind::kSettings:
-      now.settings = record.settings;
-      return {};
-    case Kind::kClasses:
-      now.classes = record.classes;
-      return {};
-    case Kind::kRun:
-      now.run = now.runs[record.run.number] = record.run;
-      return {};
-    case Kind::kRestore:
-      break;
-  }
-  if (const auto found = now.runs.find(record.run.number); found != now.runs.end()) {
-    now.run = found->second;
-  }
-  return {};
-}
-
-Replayed replay(std::span<const Record> records, std::size_t points) {
-  Replayed now{.labels = Labels(points)};
-  for (const Record& record : records) replay(record, now);
-  return now;
-}
-
-Labels labels_of(const RunRecord& run, std::span<const Record> records, std::size_t points) {
-  const auto own = std::find_if(records.begin(), records.end(), [&](const Record& record) {
-    return record.kind == Kind::kRun && record.run.number == run.number;
-  });
-  const auto before = static_cast<std::size_t>(own - records.begin());
-  if (run.records > before) {
-    refuse_project(fmt::format("run {} was trained on {} records, but only {} are before it",
-                               run.number, run.records, before));
-  }
-  Labels labels = replay(records.first(run.records), points).labels;
-  const std::size_t painted = labels.painted();
-  if (run.facts.painted && *run.facts.painted != painted) {
-    refuse_project(fmt::format("run {} was trained on {} painted points, but its records paint {}",
-                               run.number, *run.facts.painted, painted));
-  }
-  return labels;
 }
 
 }  // namespace pcednet::annotate

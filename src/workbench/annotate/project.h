@@ -111,6 +111,10 @@ SettingsChange parse_settings_change(std::string_view json);
 Project read_project(const std::filesystem::path& path);
 void write_project(const std::filesystem::path& path, const Project& project, Overwrite overwrite);
 
+/// Takes over the classes of a record that has some; throws Error(kUnreadable) for a stroke of a
+/// class that `classes` do not paint.
+void follow_classes(const Record& record, ProjectClasses& classes);
+
 /// The state after replaying records.
 struct Replayed {
   Labels labels;
