@@ -3,6 +3,7 @@
 #include <atomic>
 #include <chrono>
 #include <filesystem>
+#include <fstream>
 #include <optional>
 #include <thread>
 
@@ -10,8 +11,11 @@
 #include "pcednet/detect/decide.h"
 #include "pcednet/formats/read_cloud.h"
 #include "pcednet/formats/write_cloud.h"
+#include "support/expect_error.h"
+#include "support/own_folder.h"
 #include "workbench/annotate/scene.h"
 #include "workbench/annotate/session.h"
+#include "workbench/annotate/start_file.h"
 
 namespace pcednet::annotate {
 namespace {
@@ -30,6 +34,46 @@ PointCloud cube_without_normals(int points) {
   return cloud;
 }
 
+class StartFile : public testing::Test, protected test::OwnFolder {
+ protected:
+  StartFile() {
+    fs::create_directory(folder_ / "m");
+    std::ofstream(file_) << "a model";
+  }
+  const fs::path project_ = folder_ / "a.json", file_ = folder_ / "m" / "mine.safetensors";
+  const ShippedModels shipped_ = {{"general", "/shipped/general.safetensors"}};
+};
+
+TEST_F(StartFile, HasOneNameHoweverItIsGiven) {
+  const fs::path here = fs::proximate(file_);
+  for (const fs::path& given : {file_, folder_ / "m/../m/./mine.safetensors", here, "./" / here}) {
+    EXPECT_EQ(start_name(given, project_, shipped_), "m/mine.safetensors") << given;
+    EXPECT_EQ(start_name(given, fs::proximate(project_), shipped_), "m/mine.safetensors") << given;
+  }
+  const fs::path elsewhere = folder_ / "projects/a.json";
+  const std::string whole = fs::weakly_canonical(file_).string();
+  EXPECT_EQ(start_name(here, elsewhere, shipped_), whole);
+  EXPECT_EQ(start_file(whole, elsewhere, shipped_), whole);
+  EXPECT_EQ(start_file("m/mine.safetensors", project_, shipped_), whole);
+}
+
+TEST_F(StartFile, IsNotTakenForAShippedModel) {
+  const fs::path twin = folder_ / "general";
+  std::ofstream(twin) << "a model";
+  EXPECT_EQ(start_name(twin, project_, shipped_), fs::weakly_canonical(twin).string());
+  EXPECT_EQ(start_place("general", project_, shipped_), shipped_.at("general"));
+}
+
+TEST_F(StartFile, ThatIsMissingIsNamedWithItsProject) {
+  fs::remove(file_);
+  const auto error = test::error_of([&] { start_file("m/mine.safetensors", project_, shipped_); });
+  ASSERT_TRUE(error);
+  EXPECT_EQ(error->kind(), ErrorKind::kUnreadable);
+  const std::string words = error->what();
+  EXPECT_TRUE(words.starts_with(project_.string() + ": its start, the model ")) << words;
+  EXPECT_NE(words.find(file_.string() + ", is missing"), words.npos) << words;
+}
+
 detect::EdgeModel shipped(const std::string& name) {
   return detect::load_model(PCEDNET_SOURCE_DIR "/models/" + name + ".safetensors");
 }
@@ -44,6 +88,7 @@ class StartOfSession : public testing::Test {
     formats::write_cloud(folder_ / "small.ply", cube_without_normals(1500), {});
     SessionOptions options{.input = folder_ / "large.ply", .further = {folder_ / "small.ply"}};
     options.model = "general";
+    options.starts = {"general", "cad"};
     options.load_model = shipped;
     options.emit = [this](const Event& event) {
       if (std::holds_alternative<Predicted>(event)) ++predicted_;

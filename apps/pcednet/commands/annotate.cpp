@@ -19,6 +19,7 @@
 #include "workbench/annotate/journal.h"
 #include "workbench/annotate/painting.h"
 #include "workbench/annotate/saving.h"
+#include "workbench/annotate/start_file.h"
 
 namespace pcednet::app {
 namespace {
@@ -64,13 +65,29 @@ std::unique_ptr<BrowserTab> open_browser(const std::string& url) {
   }
 }
 
-/// A page may ask for a shipped model, and for no other file of the machine.
-fs::path find_shipped(const std::string& name) {
-  const auto models = shipped_models();
-  if (const auto found = models.find(name); found != models.end()) return found->second;
-  throw Error(ErrorKind::kUsage, fmt::format("start: random, the model that --model names, or one "
-                                             "of {}",
-                                             names_of(models)));
+/// The model of --model as a start of the project; empty: none.
+std::string start_of(const AnnotateArguments& arguments, const fs::path& project,
+                     const annotate::ShippedModels& shipped) {
+  if (arguments.model == kNoModel) return {};
+  const fs::path file = find_model(arguments.model);
+  const auto found = shipped.find(arguments.model);
+  if (found != shipped.end() && found->second == file) return arguments.model;
+  return annotate::start_name(file, project, shipped);
+}
+
+/// The models that training may start from.
+void add_starts(annotate::SessionOptions& options, const AnnotateArguments& arguments) {
+  const annotate::ShippedModels shipped = shipped_models();
+  options.model = start_of(arguments, options.project, shipped);
+  options.is_model_wanted = arguments.is_model_given;
+  for (const auto& [name, path] : shipped) options.starts.push_back(name);
+  if (!options.model.empty() && !shipped.contains(options.model)) {
+    options.starts.push_back(options.model);
+  }
+  options.load_model = [project = options.project, shipped](const std::string& name) {
+    return detect::load_model(annotate::start_file(name, project, shipped));
+  };
+  if (!options.model.empty()) options.load_model(options.model);  // fail before any work
 }
 
 fs::path sound_input(const std::string& given) {
@@ -129,28 +146,18 @@ annotate::SessionOptions session_options(const AnnotateArguments& arguments, con
   check_writable(arguments.project, Overwrite::kYes);
   annotate::SessionOptions options;
   options.input = input;
-  if (!arguments.project.empty()) options.project = fs::absolute(arguments.project);
-  options.further = further_inputs(
-      inputs, options.project.empty() ? annotate::default_project(input) : options.project);
+  options.project = arguments.project.empty() ? annotate::default_project(input)
+                                              : fs::absolute(arguments.project);
+  options.further = further_inputs(inputs, options.project);
   options.cache_folder = input.parent_path() / ".pcednet";
-  options.model = arguments.model == kNoModel ? "" : arguments.model;
-  options.is_model_wanted = arguments.is_model_given;
   options.classes = classes_named(arguments.classes);
-  const auto shipped = shipped_models();
-  for (const auto& [name, path] : shipped) options.starts.push_back(name);
-  if (!options.model.empty() && !shipped.contains(options.model)) {
-    options.starts.push_back(options.model);
-  }
   options.overwrite = common.overwrite_files;
-  options.load_model = [given = arguments.model](const std::string& name) {
-    return detect::load_model(name == given ? find_model(given) : find_shipped(name));
-  };
+  add_starts(options, arguments);
   options.emit = [&events](const annotate::Event& event) {
     events.add(event);
     if (std::holds_alternative<annotate::Ready>(event))
       say("ready; Ctrl-C ends the program, and all strokes are kept");
   };
-  if (!options.model.empty()) options.load_model(options.model);  // fail before any work
   return options;
 }
 
@@ -182,10 +189,8 @@ void annotate_cloud(const AnnotateArguments& arguments, const Common& common) {
   }
   annotate::Events events;
   const auto options = session_options(arguments, common, events);
-  const fs::path project =
-      options.project.empty() ? annotate::default_project(options.input) : options.project;
-  annotate::check_not_open(annotate::journal_of(project));  // before an address is printed
-  const KeptAddress kept(project);
+  annotate::check_not_open(annotate::journal_of(options.project));  // before an address is printed
+  const KeptAddress kept(options.project);
   Place place = find_place(arguments.port, kept.read());
   annotate::Session session(options);
   annotate::Api api(session, events, place.token, place.server->port());

@@ -18,6 +18,7 @@
 #include "result_plan.h"
 #include "stage_clock.h"
 #include "workbench/annotate/learn.h"
+#include "workbench/annotate/start_file.h"
 #include "workbench/truth/read_labelled.h"
 
 namespace pcednet::app {
@@ -112,9 +113,10 @@ detect::TrainedModel train_project(const TrainArguments& arguments, const Common
   for (std::size_t k = inputs.size(); k < clouds; ++k) {
     inputs.push_back(inputs.front().parent_path() / project.inputs[k].name);
   }
-  return annotate::learn_project(
-      project, inputs, [](const std::string& name) { return detect::load_model(find_model(name)); },
-      epoch_reports(common), &progress);
+  const auto load_start = [&](const std::string& name) {
+    return detect::load_model(annotate::start_file(name, file, shipped_models()));
+  };
+  return annotate::learn_project(project, inputs, load_start, epoch_reports(common), &progress);
 }
 
 /// Clouds with own classes, as the annotator saves them, give a model with these classes.

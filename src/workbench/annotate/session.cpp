@@ -189,6 +189,15 @@ Painted Session::redo() {
   return s.answer_to(s.painting->add({.kind = Record::Kind::kRedo}));
 }
 
+/// A page may choose a start that is offered, and no other file of the machine.
+void Session::State::check_offered(const std::string& start_named) const {
+  const auto& offered = options.starts;
+  if (start_named == kRandomStart || start_named == painting->settings().start) return;
+  if (std::find(offered.begin(), offered.end(), start_named) != offered.end()) return;
+  throw Error(ErrorKind::kUsage,
+              fmt::format("start: {} or one of {}", kRandomStart, fmt::join(offered, ", ")));
+}
+
 Settings Session::change_settings(const SettingsChange& change) {
   State& s = *state_;
   const auto wanted_now = [&] {
@@ -197,6 +206,7 @@ Settings Session::change_settings(const SettingsChange& change) {
   };
   Lock lock(s.mutex);
   const std::string name = wanted_now().start;
+  s.check_offered(name);
   lock.unlock();  // others need not wait for the file
   std::optional<detect::EdgeModel> start;
   if (name != kRandomStart) start = s.options.load_model(name);

@@ -21,10 +21,11 @@ struct SessionOptions {
   std::string model = {};                           ///< start of a new project; empty: none
   bool is_model_wanted = false;            ///< an existing project starts from it too, from now on
   std::optional<ClassTable> classes = {};  ///< of a new project, or to add to an existing one
-  std::vector<std::string> starts = {};    ///< models that the page may offer as starts
+  std::vector<std::string> starts = {};    ///< models that the page may choose as starts, besides
+                                           ///< the one that the project has
   bool overwrite = false;                  ///< saving replaces files without a request
-  /// Loads the model behind `model` or the name Settings::start, which comes from the page: throws,
-  /// without opening a file, for names that the page may not use.
+  /// Loads the model behind `model`, one of `starts` or a start of the project, but never a name
+  /// that only the page gave.
   std::function<detect::EdgeModel(const std::string& name)> load_model = {};
   /// Called with every event, from any thread; must not call the session.
   std::function<void(const Event& event)> emit = {};

@@ -105,6 +105,7 @@ struct Session::State {
   std::function<void()> next_work();
   void check_ready() const;
   void check_cloud(std::size_t cloud) const;
+  void check_offered(const std::string& start_named) const;
   void show(Run run);
   bool is_out_of_date() const;
   void set_searching(std::size_t cloud, bool on);
@@ -116,6 +117,7 @@ struct Session::State {
   void begin_anew();
   void choose_classes();
   void choose_start(bool is_new);
+  void offer(const std::string& start_named);
   bool begins_from(const std::string& model) const;
   void fit_to_start(Settings& settings) const;
   void remember_runs();

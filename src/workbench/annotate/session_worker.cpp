@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <utility>
 
 #include "pcednet/core/error.h"
@@ -158,6 +159,15 @@ void Session::State::choose_start(bool is_new) {
   painting->add({.kind = Record::Kind::kSettings, .settings = wanted});
 }
 
+/// The start that the project has may be chosen again.
+void Session::State::offer(const std::string& start_named) {
+  auto& offered = options.starts;
+  if (start_named == kRandomStart) return;
+  if (std::find(offered.begin(), offered.end(), start_named) == offered.end()) {
+    offered.push_back(start_named);
+  }
+}
+
 /// A start without smooth-edge learns two classes, whatever was chosen.
 void Session::State::fit_to_start(Settings& settings) const {
   if (settings.start == kRandomStart) return;
@@ -198,6 +208,7 @@ void Session::State::open_project() {
   const bool is_new = painting->records().empty();
   choose_classes();
   choose_start(is_new);
+  offer(painting->settings().start);
   remember_runs();
   loading.is_accepted = true;
 }
