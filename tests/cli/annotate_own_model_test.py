@@ -44,6 +44,35 @@ class AnnotateOwnModel(AnnotateTest):
         run("train", "--project", self.project, "-o", again)
         self.assertEqual(again.read_bytes(), model)
 
+    def test_is_never_overwritten_by_what_is_learnt_from_it(self):
+        start = self.folder / "cube.safetensors"  # as a model of the cube would be named
+        shutil.copy(self.model, start)
+        before = start.read_bytes()
+        server = self.adapted("--model", str(start))
+        told = server.post("/api/save", {"what": "model", "name": start.name, "overwrite": True},
+                           expect=400)["error"]
+        self.assertIn("cube.safetensors itself is never overwritten", told)
+        saved = server.post("/api/save", {"what": "model"})["path"]
+        self.assertEqual(saved, str(self.folder / "cube_2.safetensors"))
+        # Nor by a later training, once another start was chosen.
+        server.post("/api/settings", {"start": "cad", "auto": False})
+        self.assertEqual(server.post("/api/save", {"what": "model", "overwrite": True})["path"], saved)
+        server.post("/api/save", {"what": "project"})
+        server.end()
+        run("train", "--project", self.project, "-o", start, "--overwrite", expect=2)
+        self.assertEqual(start.read_bytes(), before)
+
+    def test_that_changed_is_told_when_a_run_is_repeated(self):
+        server = self.adapted("--model", str(self.model))
+        server.post("/api/save", {"what": "project"})
+        server.end()
+        again = self.folder / "again.safetensors"
+        words = "run 1 cannot be reproduced exactly"
+        self.assertNotIn(words, run("train", "--project", self.project, "-o", again).stderr)
+        shutil.copy(again, self.model)
+        said = run("train", "--project", self.project, "-o", self.folder / "other.safetensors").stderr
+        self.assertIn(words, said)
+
     def test_that_is_missing_is_named_with_its_project(self):
         self.adapted("--model", str(self.model)).post("/api/save", {"what": "project"})
         self.servers[-1].end()

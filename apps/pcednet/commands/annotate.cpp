@@ -87,6 +87,9 @@ void add_starts(annotate::SessionOptions& options, const AnnotateArguments& argu
   options.load_model = [project = options.project, shipped](const std::string& name) {
     return detect::load_model(annotate::start_file(name, project, shipped));
   };
+  options.start_place = [project = options.project, shipped](const std::string& name) {
+    return annotate::start_place(name, project, shipped);
+  };
   if (!options.model.empty()) options.load_model(options.model);  // fail before any work
 }
 

@@ -114,7 +114,9 @@ detect::TrainedModel train_project(const TrainArguments& arguments, const Common
     inputs.push_back(inputs.front().parent_path() / project.inputs[k].name);
   }
   const auto load_start = [&](const std::string& name) {
-    return detect::load_model(annotate::start_file(name, file, shipped_models()));
+    const auto start = annotate::start_file(name, file, shipped_models());
+    check_not_input(arguments.output, start);
+    return detect::load_model(start);
   };
   return annotate::learn_project(project, inputs, load_start, epoch_reports(common), &progress);
 }

@@ -138,6 +138,17 @@ PointCloud read_input(const InputIdentity& its, const std::filesystem::path& inp
 
 }  // namespace
 
+bool is_another(const RunRecord& run, double loss) {
+  return run.facts.loss && *run.facts.loss != loss;
+}
+
+std::string not_reproduced(int run) {
+  return fmt::format(
+      "run {} cannot be reproduced exactly: another version of pcednet or of its "
+      "start model made it",
+      run);
+}
+
 detect::TrainedModel learn_project(
     const Project& project, std::span<const std::filesystem::path> inputs,
     const std::function<detect::EdgeModel(const std::string& name)>& load_start,
@@ -178,11 +189,15 @@ detect::TrainedModel learn_project(
       },
       progress);
   if (start && learnt.cancelled) throw Error(ErrorKind::kCancelled, "stopped by the user");
-  return {.model = std::move(learnt.model),
-          .cancelled = learnt.cancelled,
-          .epochs = last.epoch,
-          .validated = last.is_validated(),
-          .adapted = start.has_value()};
+  detect::TrainedModel trained{.model = std::move(learnt.model),
+                               .cancelled = learnt.cancelled,
+                               .epochs = last.epoch,
+                               .validated = last.is_validated(),
+                               .adapted = start.has_value()};
+  if (end.run && !learnt.cancelled && is_another(*end.run, learnt.loss)) {
+    trained.notes.push_back(not_reproduced(end.run->number));
+  }
+  return trained;
 }
 
 }  // namespace pcednet::annotate

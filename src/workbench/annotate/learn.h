@@ -35,9 +35,17 @@ Adapted learn(const std::string& name, const Subject& subject, std::span<const s
               const std::function<void(const nn::EpochReport&)>& on_epoch = {},
               const Progress* progress = nullptr);
 
+/// Whether a training that should repeat `run` ended with another loss than it had, which records
+/// of the first version do not tell.
+bool is_another(const RunRecord& run, double loss);
+
+/// What the user is told then.
+std::string not_reproduced(int run);
+
 /// The model of a project's chosen run or, if it has none, of its last labels, as the annotator
-/// saves it; `inputs` are the project's. `load_start` returns the model of a name. Throws
-/// Error(kInsufficient) if an input is not the project's, and as labels_of().
+/// saves it; `inputs` are the project's. `load_start` returns the model of a name. The notes tell
+/// if it is not the model that the run had. Throws Error(kInsufficient) if an input is not the
+/// project's, and as labels_of().
 detect::TrainedModel learn_project(
     const Project& project, std::span<const std::filesystem::path> inputs,
     const std::function<detect::EdgeModel(const std::string& name)>& load_start,

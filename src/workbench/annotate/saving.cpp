@@ -50,6 +50,24 @@ bool fits(Saved what, const fs::path& name) {
   return format && format->is_written();
 }
 
+/// Whether both are one file, or will be.
+bool is_same(const fs::path& a, const fs::path& b) {
+  std::error_code error;
+  return fs::equivalent(a, b, error) || fs::weakly_canonical(a) == fs::weakly_canonical(b);
+}
+
+/// `path` or, as a start is never overwritten, the first of `stem_2`, `stem_3` and so on that is
+/// none.
+fs::path beside_starts(const fs::path& path, std::span<const fs::path> starts) {
+  fs::path free = path;
+  const auto is_start = [&](const fs::path& start) { return is_same(free, start); };
+  for (int number = 2; std::any_of(starts.begin(), starts.end(), is_start); ++number) {
+    free.replace_filename(path.stem().string() + fmt::format("_{}", number) +
+                          path.extension().string());
+  }
+  return free;
+}
+
 }  // namespace
 
 fs::path default_project(const fs::path& input) {
@@ -57,7 +75,7 @@ fs::path default_project(const fs::path& input) {
 }
 
 fs::path saving_path(Saved what, const std::string& name, std::span<const fs::path> inputs,
-                     std::size_t cloud, const fs::path& project) {
+                     std::size_t cloud, const fs::path& project, std::span<const fs::path> starts) {
   const bool has_own = what == Saved::kCloud || what == Saved::kLines;
   const fs::path& input = inputs[has_own ? cloud : 0];
   if (!name.empty() && !(is_plain(name) && fits(what, name))) {
@@ -69,13 +87,13 @@ fs::path saving_path(Saved what, const std::string& name, std::span<const fs::pa
   fs::path path = input.parent_path() / name;
   if (name.empty()) {
     if (what == Saved::kProject) return project;
-    path /= formats::stem_of(input) + ending_of(what, input);
+    path = beside_starts(path / (formats::stem_of(input) + ending_of(what, input)), starts);
   }
   std::vector<fs::path> all_kept(inputs.begin(), inputs.end());
   all_kept.insert(all_kept.end(), {journal_of(project), project});
+  all_kept.insert(all_kept.end(), starts.begin(), starts.end());
   for (const fs::path& kept : all_kept) {
-    std::error_code error;
-    if ((what != Saved::kProject || kept != project) && fs::equivalent(path, kept, error)) {
+    if ((what != Saved::kProject || kept != project) && is_same(path, kept)) {
       throw Error(ErrorKind::kUsage,
                   fmt::format("name: {} itself is never overwritten", kept.filename().string()));
     }

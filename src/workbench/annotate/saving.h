@@ -16,11 +16,13 @@ enum class Saved { kCloud, kModel, kProject, kLines };
 std::filesystem::path default_project(const std::filesystem::path& input);
 
 /// The path of `what`: `name`, or the default name, beside the input. Throws Error(kUsage) unless
-/// `name` is empty or a plain file name of `what` that is neither an input, the journal nor
-/// another's project. A cloud goes beside its own input, the rest beside the first.
+/// `name` is empty or a plain file name of `what` that is neither an input, the journal, another's
+/// project nor one of `starts`, the models that the project's runs start from. The default name of
+/// a model is none of these. A cloud goes beside its own input, the rest beside the first.
 std::filesystem::path saving_path(Saved what, const std::string& name,
                                   std::span<const std::filesystem::path> inputs, std::size_t cloud,
-                                  const std::filesystem::path& project);
+                                  const std::filesystem::path& project,
+                                  std::span<const std::filesystem::path> starts = {});
 
 /// Writes curves found in a cloud, with its coordinate system.
 void write_lines(const std::filesystem::path& path, std::span<const lines::Curve> curves,

@@ -283,11 +283,26 @@ void Session::restore(int run) {
   s.orders.restore = run;
 }
 
+/// The files of the models that the project's runs started from, or the next one does.
+std::vector<fs::path> Session::State::starts_in_use() const {
+  std::vector<fs::path> places;
+  if (!options.start_place || !painting) return places;
+  std::set<std::string> names = {painting->settings().start};
+  for (const Record& record : painting->records()) {
+    if (record.kind == Record::Kind::kSettings) names.insert(record.settings.start);
+    if (record.kind == Record::Kind::kRun) names.insert(record.run.settings.start);
+  }
+  names.erase(kRandomStart);
+  for (const std::string& name : names) places.push_back(options.start_place(name));
+  return places;
+}
+
 fs::path Session::target(Saved what, const std::string& name, std::size_t cloud) const {
   std::vector<fs::path> inputs = {state_->options.input};
   inputs.insert(inputs.end(), state_->options.further.begin(), state_->options.further.end());
   if (cloud >= inputs.size()) throw NotFound(fmt::format("there is no cloud {}", cloud));
-  return saving_path(what, name, inputs, cloud, state_->options.project);
+  const Lock lock(state_->mutex);
+  return saving_path(what, name, inputs, cloud, state_->options.project, state_->starts_in_use());
 }
 
 std::uintmax_t Session::save(Saved what, const fs::path& path, Overwrite overwrite,

@@ -27,6 +27,8 @@ struct SessionOptions {
   /// Loads the model behind `model`, one of `starts` or a start of the project, but never a name
   /// that only the page gave.
   std::function<detect::EdgeModel(const std::string& name)> load_model = {};
+  /// The place of that model's file, which is then never overwritten; empty: none is protected.
+  std::function<std::filesystem::path(const std::string& name)> start_place = {};
   /// Called with every event, from any thread; must not call the session.
   std::function<void(const Event& event)> emit = {};
 };
@@ -88,7 +90,7 @@ class Session {
   PointView pick(const Vec3& local_origin, const Vec3& direction, double radius,
                  std::size_t cloud = 0) const;
 
-  /// The path of `what`: see saving_path().
+  /// The path of `what`: see saving_path(); the starts are those that the project ever had.
   std::filesystem::path target(Saved what, const std::string& name, std::size_t cloud = 0) const;
 
   /// Writes `what` to `path` and returns the bytes written; of several clouds, the one of `cloud`.

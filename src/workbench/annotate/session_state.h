@@ -106,6 +106,7 @@ struct Session::State {
   void check_ready() const;
   void check_cloud(std::size_t cloud) const;
   void check_offered(const std::string& start_named) const;
+  std::vector<std::filesystem::path> starts_in_use() const;
   void show(Run run);
   bool is_out_of_date() const;
   void set_searching(std::size_t cloud, bool on);
