@@ -175,6 +175,19 @@ class AnnotateClouds(AnnotateTest):
             server.until("/api/runs", lambda runs: [r["run"] for r in runs if r["current"]] == [run])
             self.assertEqual(server.request("/api/download/model")[2], wanted)
 
+    def test_a_cloud_that_is_missing_is_named_with_its_project(self):
+        server = self.quiet_both()
+        painted = [a["changed"] for a in self.paint_both(server)]
+        server.end()
+        moved = self.folder / "moved.ply"
+        self.other.rename(moved)
+        said = run("annotate", self.cloud, "--no-browser", expect=3).stderr
+        self.assertIn(f"{self.project}: cloud 2 of 2, {self.other}, is missing", said)
+        self.assertIn("name all clouds in their order", said)
+        self.other = moved
+        server = self.both()  # as it says
+        self.assertEqual([c["painted"] for c in server.get("/api/session")["clouds"]], painted)
+
     def test_refuses_inputs_that_cannot_be_told_apart(self):
         twin = self.folder / "cube.pcd"
         run("convert", self.cloud, "-o", twin)
