@@ -228,6 +228,27 @@ TEST_F(RunHistory, GivesARestoredRunItsModelByteForByte) {
   EXPECT_EQ(problems(), "");
 }
 
+TEST_F(RunHistory, TellsHowManyStrokesASavedModelDoesNotKnow) {
+  const auto left_out = [&](Saved what = Saved::kModel) {
+    const char* name = what == Saved::kModel ? "a.safetensors" : "a.json";
+    return session_->save(what, folder_ / name, Overwrite::kYes).strokes_left_out;
+  };
+  train_twice();
+  EXPECT_EQ(left_out(), 1u);
+  EXPECT_EQ(left_out(Saved::kProject), 0u);
+  session_->undo();
+  EXPECT_EQ(left_out(), 0u);  // although steps are newer than the run
+  session_->undo();
+  EXPECT_EQ(left_out(), 1u);
+  session_->redo();
+  session_->redo();
+  EXPECT_EQ(left_out(), 1u);
+  restore(1);
+  EXPECT_EQ(left_out(), 2u);
+  train(3);
+  EXPECT_EQ(left_out(), 0u);
+}
+
 TEST_F(RunHistory, StopsTrainingAgainWhenCancelled) {
   train_twice();
   hold_ = true;

@@ -88,6 +88,7 @@ class AnnotateSession(AnnotateTest):
         server.post("/api/stroke", brush("more", 1, [(0.5, 0.4, 0.4)], radius=0.1))
         for what in ("model", "project", "cloud"):
             saved = server.post("/api/save", {"what": what})
+            self.assertEqual(saved["strokes_left_out"], 0 if what == "project" else 1)
             server.post("/api/save", {"what": what}, expect=409)
             server.post("/api/save", {"what": what, "overwrite": True})
             self.assertEqual(server.request(f"/api/download/{what}")[2],

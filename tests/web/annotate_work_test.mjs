@@ -5,10 +5,11 @@ import { test } from "node:test";
 
 import { load } from "./bundle.mjs";
 
-const { api, brush, commands, line_client, preferences, reviewer, store, views, words, work } = await load(
+const { api, brush, commands, files, line_client, preferences, reviewer, store, views, words, work } = await load(
   "api",
   "brush",
   "commands",
+  "files",
   "line_client",
   "preferences",
   "reviewer",
@@ -344,4 +345,33 @@ test("preferences come back; what is damaged does not", () => {
   preferences.keepPreferences(first, () => {
     throw new Error("no storage here");
   });
+});
+
+test("a saved or downloaded model that does not know all strokes is told", async () => {
+  const page = new store.Store({ ...store.initialState, hasPrediction: true });
+  const warnings = [];
+  const server = { ...byHand(), address: (path) => path };
+  const its = new files.Files(server, page, { say() {}, warn: (text) => warnings.push(text) });
+  const save = async (what, left) => {
+    const path = its.save(what, 0, async () => true);
+    server.asked.pop().answer({ path: `a.${what}`, strokes_left_out: left });
+    assert.equal(await path, `a.${what}`);
+    return warnings.splice(0);
+  };
+  assert.deepEqual(await save("model", 0), []);
+  assert.match((await save("model", 1))[0], /^This model does not know 1 stroke yet/);
+  assert.match((await save("cloud", 3))[0], /^The prediction in this cloud does not know 3 strokes yet/);
+  const replaced = its.save("model", 0, async () => true);
+  server.asked.pop().refuse(new api.ApiError(409, "a.model exists"));
+  await turns();
+  assert.deepEqual(server.asked[0].body, { what: "model", cloud: 0, overwrite: true });
+  server.asked.pop().answer({ path: "a.model", strokes_left_out: 2 });
+  assert.equal(await replaced, "a.model");
+  assert.match(warnings.splice(0)[0], /2 strokes/);
+  assert.equal(its.downloadAddress("model"), "/api/download/model");
+  page.set({ outOfDate: true });
+  its.downloadAddress("project");
+  assert.deepEqual(warnings, []);
+  its.downloadAddress("model");
+  assert.match(warnings[0], /does not know the last strokes yet/);
 });

@@ -109,7 +109,8 @@ Json json_of(const Painted& painted) {
 }
 
 Json json_of(const FileSaved& saved) {
-  return {{"path", saved.path}, {"bytes", saved.bytes}};
+  return {
+      {"path", saved.path}, {"bytes", saved.bytes}, {"strokes_left_out", saved.strokes_left_out}};
 }
 
 Json json_of(const StageProgress& progress) {

@@ -122,6 +122,8 @@ struct WriterChanged {
 struct FileSaved {
   std::string path = {};
   std::uintmax_t bytes = 0;
+  /// Strokes, painted or taken back, that the model or prediction in the file does not know.
+  std::size_t strokes_left_out = 0;
 };
 using Event = std::variant<StageProgress, Ready, Problem, EpochDone, Painted, Predicted, Judged,
                            ClassesChanged, LinesChanged, LinesDecided, WriterChanged, FileSaved>;

@@ -47,6 +47,10 @@ class Painting {
   /// Whether a stroke, undo or redo follows the first `records` records.
   bool is_painted_after(std::size_t records) const;
 
+  /// The number of strokes that are in effect now and were not after the first `records` records,
+  /// or the other way round.
+  std::size_t strokes_since(std::size_t records) const;
+
  private:
   Inputs inputs_;
   std::unique_ptr<Journal> journal_;

@@ -247,9 +247,8 @@ Response save(const Call& call) {
   if (!overwrite && std::filesystem::exists(path, error)) {
     throw Error(ErrorKind::kInsufficient, path.string() + " exists");
   }
-  const auto bytes =
+  const FileSaved saved =
       call.session.save(what, path, overwrite ? Overwrite::kYes : Overwrite::kNo, wanted.cloud);
-  const FileSaved saved{path.string(), bytes};
   call.events.add(saved);
   return json_response(to_json(saved));
 }

@@ -305,8 +305,8 @@ fs::path Session::target(Saved what, const std::string& name, std::size_t cloud)
   return saving_path(what, name, inputs, cloud, state_->options.project, state_->starts_in_use());
 }
 
-std::uintmax_t Session::save(Saved what, const fs::path& path, Overwrite overwrite,
-                             std::size_t cloud) const {
+FileSaved Session::save(Saved what, const fs::path& path, Overwrite overwrite,
+                        std::size_t cloud) const {
   Lock lock(state_->mutex);
   const State& s = *state_;
   s.check_cloud(cloud);
@@ -315,15 +315,17 @@ std::uintmax_t Session::save(Saved what, const fs::path& path, Overwrite overwri
     const Project project{.inputs = s.inputs(), .records = s.painting->records()};
     lock.unlock();  // writing takes its time
     write_project(path, project, overwrite);
-    return fs::file_size(path);
+    return {path.string(), fs::file_size(path)};
   }
   if (what == Saved::kLines) {
     const auto accepted = accepted_curves(s.reviews[cloud]);
     lock.unlock();
     write_lines(path, accepted, scene->cloud, overwrite);
-    return fs::file_size(path);
+    return {path.string(), fs::file_size(path)};
   }
   const auto prediction = s.runs.settled_prediction(cloud);
+  const std::size_t left_out =
+      prediction ? s.painting->strokes_since(s.runs.shown()->record.records) : 0;
   const auto its = s.part(s.painting->labels().classes(), cloud);
   const ProjectClasses classes = s.painting->classes();
   const std::vector<std::uint8_t> labels(its.begin(), its.end());
@@ -337,7 +339,7 @@ std::uintmax_t Session::save(Saved what, const fs::path& path, Overwrite overwri
     formats::write_cloud(path, saved_cloud(*scene, labels, classes.table, prediction.get()),
                          {.overwrite = overwrite});
   }
-  return fs::file_size(path);
+  return {path.string(), fs::file_size(path), left_out};
 }
 
 }  // namespace pcednet::annotate

@@ -93,9 +93,10 @@ class Session {
   /// The path of `what`: see saving_path(); the starts are those that the project ever had.
   std::filesystem::path target(Saved what, const std::string& name, std::size_t cloud = 0) const;
 
-  /// Writes `what` to `path` and returns the bytes written; of several clouds, the one of `cloud`.
-  std::uintmax_t save(Saved what, const std::filesystem::path& path, Overwrite overwrite,
-                      std::size_t cloud = 0) const;
+  /// Writes `what` to `path`; of several clouds, the one of `cloud`. A model is that of the shown
+  /// run, which the answer compares with the strokes.
+  FileSaved save(Saved what, const std::filesystem::path& path, Overwrite overwrite,
+                 std::size_t cloud = 0) const;
 
   const SessionOptions& options() const;
 
