@@ -254,7 +254,7 @@ TEST_F(DamagedJournal, NamesTheFileTheLineAndWhatToDo) {
   std::string bad = text_;
   bad.insert(bad.find("{\"redo\""), "xx");
   write(bad);
-  is_told(words_of([&] { read(); }), 4, "");
+  is_told(words_of([&] { read(); }), 4, "parse error at column ");
   write(text_ + "\n" + R"({"stroke":"x","class":7,"points":[1]})" + "\n");
   is_told(words_of([&] { read(); }), records_.size() + 3, "a stroke of class 7");
   for (const std::string& head : {std::string("xx\n"), text_.substr(10), "\n" + text_}) {

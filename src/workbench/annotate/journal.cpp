@@ -29,6 +29,13 @@ bool is_blank(std::string_view line) {
   return line.find_first_not_of(std::string_view(" \t\r\0", 4)) == line.npos;
 }
 
+/// What is wrong with a line: the reader of JSON, which sees that line alone, numbers it 1.
+std::string without_line(std::string words) {
+  const std::string number = "at line 1, ";
+  const std::size_t at = words.find(number);
+  return at == words.npos ? words : words.replace(at, number.size(), "at ");
+}
+
 /// Runs `parse` for a line of the journal; its errors name the line and what to do.
 template <typename Parse>
 void parse_line(const std::filesystem::path& path, std::size_t line, Parse&& parse) {
@@ -41,8 +48,8 @@ void parse_line(const std::filesystem::path& path, std::size_t line, Parse&& par
                         "to keep the strokes before it, copy the journal to a safe place, "
                         "then delete from line {} to the end",
                         line);
-    throw Error(ErrorKind::kUnreadable,
-                fmt::format("{}: line {}: {}; {}", path.string(), line, error.what(), mend));
+    throw Error(ErrorKind::kUnreadable, fmt::format("{}: line {}: {}; {}", path.string(), line,
+                                                    without_line(error.what()), mend));
   }
 }
 
