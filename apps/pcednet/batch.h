@@ -26,8 +26,9 @@ struct Inputs {
 
 /// Finds every input: a folder contributes every point file in it, in name order, but no .stl and
 /// no .txt, .csv or .asc that does not begin like points; a virtual point cloud (.vpc) the files
-/// that it names. A file that is named twice counts once. A failure is an Error(kUnreadable) for a path that does not exist or a folder
-/// that cannot be read, Error(kInsufficient) for a folder without point files.
+/// that it names. A file that is named twice counts once. A failure is an Error(kUnreadable) for a
+/// path that does not exist or a folder that cannot be read, Error(kInsufficient) for a folder
+/// without point files.
 Inputs find_inputs(const std::vector<std::string>& arguments);
 
 /// The same for work that needs all of them: throws the first failure, and warns of files that are

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -84,6 +86,25 @@ TEST(FindLines, GivesACubeItsTwelveEdgesAndEightCorners) {
   }
   for (const Vec3& corner : corners) {  // three curves share each to the last bit
     EXPECT_EQ(std::count(corners.begin(), corners.end(), corner), 3);
+  }
+}
+
+TEST(FindLines, GivesThemInNoiseAndTurned) {
+  // Of the normals of two faces neither side of the right angle is chosen by rounding.
+  for (const double angle : {0.0, 0.7}) {
+    const Mat3 turn = Eigen::AngleAxisd(angle, Vec3(1.0, 2.0, 3.0).normalized()).toRotationMatrix();
+    Cloud cloud = cube(30000);
+    Random random(5);
+    for (std::size_t i = 0; i < cloud.positions.size(); ++i) {
+      const Vec3 noise = 0.3 * cloud.spacing * normal_vector(random);
+      cloud.positions[i] = turn * (cloud.positions[i] + noise);
+      cloud.normals[i] = turn * cloud.normals[i];
+    }
+    const auto curves = lines_of(cloud);
+    EXPECT_EQ(curves.size(), 12u);
+    double length = 0.0;
+    for (const Curve& curve : curves) length += length_of(curve);
+    EXPECT_NEAR(length, 12.0, 0.1);
   }
 }
 
