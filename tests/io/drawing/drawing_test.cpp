@@ -257,13 +257,14 @@ TEST(Drawing, RefusesExistingFilesAndOtherNames) {
 TEST(Drawing, RefusesCurvesThatAreNone) {
   const Scratch scratch;
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  std::vector<std::vector<Curve>> broken(6, sample_curves());
+  std::vector<std::vector<Curve>> broken(7, sample_curves());
   broken[0][1].points.clear();
   broken[1][0].points.pop_back();
   broken[2][2].points[1].z() = nan;
   broken[3][3].radius = 0.0;
   broken[4][3].axis = Vec3::Zero();
   broken[5][4].centre.x() = std::numeric_limits<double>::infinity();
+  broken[6][0].confidence = nan;
   for (const auto& curves : broken) {
     for (const std::string& name : names()) {
       const std::string said =

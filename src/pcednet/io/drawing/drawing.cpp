@@ -30,6 +30,9 @@ std::string fault_of(const Curve& curve) {
   for (const Vec3& point : curve.points) {
     if (!is_drawable(point)) return "has a point that is not finite or beyond 1e150";
   }
+  if (!std::isfinite(curve.confidence) || !std::isfinite(curve.dihedral_angle)) {
+    return "has a confidence or an angle that is not finite";
+  }
   if (!is_round(curve)) return "";
   const bool has_place = is_drawable(curve.centre) && std::abs(curve.axis.norm() - 1.0) < 1e-6;
   if (!has_place) return "has no centre or no unit axis";
@@ -40,7 +43,7 @@ void check_curves(const std::filesystem::path& path, Curves curves) {
   for (std::size_t i = 0; i < curves.size(); ++i) {
     const std::string fault = fault_of(curves[i]);
     if (fault.empty()) continue;
-    throw Error(ErrorKind::kFailure, fmt::format("{}: curve {}, a {}, {}", path.string(), i,
+    throw Error(ErrorKind::kFailure, fmt::format("{}: curve {} ({}) {}", path.string(), i,
                                                  name_of(curves[i].kind), fault));
   }
 }
