@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <limits>
 #include <span>
 
@@ -26,6 +27,8 @@ struct BoundingBox {
     min = min.cwiseMin(other.min);
     max = max.cwiseMax(other.max);
   }
+  /// The largest coordinate of a point that it holds, without its sign.
+  double farthest() const { return std::max(min.cwiseAbs().maxCoeff(), max.cwiseAbs().maxCoeff()); }
   double diagonal() const { return empty() ? 0.0 : (max - min).norm(); }
 };
 

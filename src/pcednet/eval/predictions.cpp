@@ -89,39 +89,47 @@ std::vector<std::uint8_t> classes_of_array(const fs::path& path, const io::NpyAr
   return classes;
 }
 
-/// Whether the file has the points of the cloud, but in another order. Coordinates may be rounded;
-/// those of another system tell nothing.
-bool is_reordered(std::span<const Vec3> positions, std::span<const Vec3> others) {
-  const BoundingBox box = bounding_box(positions);
-  if (box.empty()) return false;
-  const double sq_rounding = kRounding * kRounding * (box.max - box.min).squaredNorm();
+/// Coordinates may be rounded by this.
+double rounding_of(std::span<const Vec3> positions) {
+  return kRounding * bounding_box(positions).diagonal();
+}
+
+/// Of these points.
+bool are_few(std::size_t count, std::size_t points) {
+  return count * 100 <= points;
+}
+
+bool are_in_order(std::span<const Vec3> positions, std::span<const Vec3> others) {
+  const double rounding = rounding_of(positions);
   std::size_t moved = 0;
   for (std::size_t i = 0; i < positions.size(); ++i) {
-    moved += (positions[i] - others[i]).squaredNorm() > sq_rounding;
+    moved += (positions[i] - others[i]).norm() > rounding;
   }
-  const auto are_few = [&](std::size_t count) { return count * 100 <= positions.size(); };
-  if (are_few(moved)) return false;
-  const spatial::KdTree tree(others);
+  return are_few(moved, positions.size());
+}
+
+/// Whether nearly all positions are among those of the tree. Those of another system are not.
+bool are_among(std::span<const Vec3> positions, const spatial::KdTree& tree) {
+  const double rounding = rounding_of(positions);
   std::vector<spatial::Neighbour> found;
   std::size_t missing = 0;
-  for (std::size_t i = 0; i < positions.size() && are_few(missing); ++i) {
+  for (std::size_t i = 0; i < positions.size() && are_few(missing, positions.size()); ++i) {
     if (!positions[i].allFinite()) continue;
     tree.nearest(positions[i], 1, found);
-    missing += found.empty() || found[0].sq_distance > sq_rounding;
+    missing += found.empty() || std::sqrt(found[0].sq_distance) > rounding;
   }
-  return are_few(missing);
+  return are_few(missing, positions.size());
 }
 
 std::vector<std::uint8_t> labels_of_nearest(std::span<const Vec3> positions,
-                                            const PointCloud& others,
+                                            const spatial::KdTree& others,
                                             const std::vector<std::uint8_t>& labels) {
-  const spatial::KdTree tree(others.positions);
   std::vector<std::uint8_t> classes(positions.size(), kUnlabelled);
   parallel_blocks(positions.size(), 4096, [&](std::size_t begin, std::size_t end) {
     std::vector<spatial::Neighbour> found;
     for (std::size_t i = begin; i < end; ++i) {
       if (!positions[i].allFinite()) continue;
-      tree.nearest(positions[i], 1, found);
+      others.nearest(positions[i], 1, found);
       if (!found.empty()) classes[i] = labels[found[0].index];
     }
   });
@@ -175,12 +183,14 @@ Predictions read_predictions(const fs::path& path, std::span<const Vec3> positio
     if (labels[i] < table.size() || labels[i] == kUnlabelled) continue;
     throw no_class(path, fmt::format("point {}", i), labels[i], table);
   }
-  std::string why = fmt::format("{} points for {}", others.size(), positions.size());
-  if (labels.size() == positions.size()) {
-    if (!is_reordered(positions, others.positions)) return {std::move(labels), {}};
-    why = "the points are in another order";
-  }
-  return {labels_of_nearest(positions, others, labels),
+  const bool is_as_large = labels.size() == positions.size();
+  if (is_as_large && are_in_order(positions, others.positions)) return {std::move(labels), {}};
+  const spatial::KdTree tree(others.positions);
+  if (is_as_large && !are_among(positions, tree)) return {std::move(labels), {}};
+  const std::string why = is_as_large
+                              ? "the points are in another order"
+                              : fmt::format("{} points for {}", others.size(), positions.size());
+  return {labels_of_nearest(positions, tree, labels),
           why + ": each takes the label of the nearest"};
 }
 

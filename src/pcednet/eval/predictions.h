@@ -27,10 +27,10 @@ struct Predictions {
 /// - .npy: classes of shape (points) or (points, 1), of which true is sharp-edge, or scores of
 ///   shape (points, classes) for at most 255 classes, where the largest score wins, the lower class
 ///   on ties;
-/// - a point file with labels and another number of points, as from a method that resamples, or
-/// with
-///   the points of the cloud in another order: every position gets the label of its nearest point
-///   in the file, as in Himeur et al. 2021;
+/// - a point file with labels and other points, as from a method that resamples, or with the points
+///   of the cloud in another order: every position gets the label of its nearest point in the file,
+///   as in Himeur et al. 2021. Of as many points in other coordinates, the order is that of the
+///   cloud;
 /// - a point file without labels, with points on edges only: the position nearest to each is
 ///   sharp-edge.
 /// Throws what the readers throw, and Error(kInsufficient) where numbers do not fit, or are neither

@@ -58,18 +58,14 @@ void add_in_common(const PointCloud& part, CloudFacts& facts) {
   }
 }
 
-double largest_of(const BoundingBox& bounds) {
-  return std::max(bounds.min.cwiseAbs().maxCoeff(), bounds.max.cwiseAbs().maxCoeff());
-}
-
 /// The step between the largest coordinate of the box and the next that float32 holds.
 double float_step(const BoundingBox& bounds) {
-  return std::ldexp(1.0, std::ilogb(std::max(largest_of(bounds), 1e-30)) - 23);
+  return std::ldexp(1.0, std::ilogb(std::max(bounds.farthest(), 1e-30)) - 23);
 }
 
 /// The largest coordinate of the box, as text: 5400000, or 1e+20.
 std::string largest_coordinate(const BoundingBox& bounds) {
-  const double largest = largest_of(bounds);
+  const double largest = bounds.farthest();
   return largest < 1e15 ? fmt::format("{:.0f}", largest) : fmt::format("{:g}", largest);
 }
 

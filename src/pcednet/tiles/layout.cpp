@@ -219,9 +219,8 @@ void CellCounts::add(std::span<const Vec3> positions) {
 double cell_length(const BoundingBox& box, std::span<const Vec3> sample) {
   if (box.empty()) return 1.0;
   const double side = std::max({box.max.x() - box.min.x(), box.max.y() - box.min.y(), 1e-3});
-  const double farthest = std::max(box.min.cwiseAbs().maxCoeff(), box.max.cwiseAbs().maxCoeff());
   double cell = preferred_from(side / kCellsAlong);
-  while (cell > kLeastCell * std::max(side, farthest) && !are_fine(sample, cell)) {
+  while (cell > kLeastCell * std::max(side, box.farthest()) && !are_fine(sample, cell)) {
     cell = preferred_from(0.3 * cell);  // of 10, 5 and 2: 5, 2 and 1
   }
   return cell;

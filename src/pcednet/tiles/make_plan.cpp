@@ -251,8 +251,7 @@ void note_float_rounding(const detect::EdgeModel& model, ScalarType type, Plan& 
 void check_tile_length(double length, const Plan& plan, std::span<const Vec3> sample) {
   constexpr double kMostNumber = 0x1p62;  // of a cell
   constexpr std::size_t kFewTiles = 1000;
-  const double farthest =
-      std::max(plan.box.min.cwiseAbs().maxCoeff(), plan.box.max.cwiseAbs().maxCoeff());
+  const double farthest = plan.box.farthest();
   if (!(farthest / length < kMostNumber)) {
     throw Error(ErrorKind::kUsage, fmt::format("tiles of length {:g} at coordinates up to {:g}: "
                                                "too short",
