@@ -45,6 +45,7 @@ class Cloud:
         self._is_float32 = getattr(xyz, "dtype", None) == np.float32
         self._kept, self._kept_rows = None, 0
         self._estimates = None  # digest of positions and normals, if a file says that they are estimates
+        self._predictions = None  # digest of the labels, if a file says that they are a result
         self.xyz = _arrays.vectors(xyz, "xyz")
         self.normals = normals
         self.colours = colours
@@ -64,6 +65,8 @@ class Cloud:
         cloud._kept, cloud._kept_rows = parts["kept"], len(cloud)
         if _core.ESTIMATED_NORMALS in cloud.comments:
             cloud._estimates = _digest(cloud.xyz, cloud.normals)
+        if cloud.labels is not None and cloud._truth_of_result() is not None:
+            cloud._predictions = _digest(cloud.labels)
         return cloud
 
     def __len__(self):
@@ -105,6 +108,27 @@ class Cloud:
         found = self._scalar("edge_class")
         return self.labels if found is None else found
 
+    def _has_predictions(self):
+        """Whether the labels are those that a file of a result came with."""
+        if self._predictions is None or self.labels is None:
+            return False
+        return self._predictions == _digest(_arrays.labels(self.labels, len(self), names=self.class_names))
+
+    def _truth_of_result(self):
+        columns = {name: _attribute(name, self.attributes[name], len(self))
+                   for name in _core.TRUTH_COLUMNS if name in self.attributes}
+        return _core.truth_of_result([str(line) for line in self.comments], columns)
+
+    def _truth(self, name):
+        """The labels to learn from or to score against. Of a result, as for the program: those that were painted or
+        those of its input, with a warning that begins with `name`, unless the labels were changed since it was read."""
+        found = self._truth_of_result() if self._has_predictions() else None
+        if found is None:
+            return self.labels
+        labels, note = found
+        _arrays.warn([f"{self.name or name}: {note}"])
+        return self.labels if labels is None else labels
+
     def viewpoint(self):
         """The scanner position of each point, (n, 3) float64 with NaN where unknown; None if no
         scanner is known."""
@@ -144,6 +168,8 @@ class Cloud:
             part._kept, part._kept_rows = self._kept.of_part(), len(part)
         if self._has_estimates():
             part._estimates = _digest(part.xyz, part.normals)
+        if self._has_predictions():
+            part._predictions = _digest(part.labels)
         return part
 
 
@@ -206,6 +232,16 @@ def read(path):
     return Cloud._of(parts, os.path.splitext(os.path.basename(path))[0])
 
 
+def _attribute(name, values, rows):
+    """The numbers of an attribute, of a type that files have."""
+    array = _arrays.numbers(values, f"attribute {name}")
+    if array.ndim not in (1, 2) or len(array) != rows:
+        raise UsageError(f"attribute {name}: shape ({rows},) or ({rows}, k) is needed, not {array.shape}")
+    wanted = {"b": np.dtype(np.uint8)}.get(array.dtype.kind, array.dtype.newbyteorder("="))
+    wanted = np.dtype(np.float32) if wanted == np.float16 else wanted
+    return np.require(array, wanted, ["C", "A"])
+
+
 def _parts_of(cloud):
     rows = len(cloud)
     colours = cloud.colours
@@ -215,15 +251,7 @@ def _parts_of(cloud):
             raise UsageError(f"colours: uint8 of shape ({rows}, 3) are needed, not {colours.dtype} "
                              f"of {colours.shape}")
         colours = np.require(colours, requirements=["C", "A"])
-    attributes = {}
-    for name, values in cloud.attributes.items():
-        array = _arrays.numbers(values, f"attribute {name}")
-        if array.ndim not in (1, 2) or len(array) != rows:
-            raise UsageError(f"attribute {name}: shape ({rows},) or ({rows}, k) is needed, not "
-                             f"{array.shape}")
-        wanted = {"b": np.dtype(np.uint8)}.get(array.dtype.kind, array.dtype.newbyteorder("="))
-        wanted = np.dtype(np.float32) if wanted == np.float16 else wanted
-        attributes[str(name)] = np.require(array, wanted, ["C", "A"])
+    attributes = {str(name): _attribute(name, values, rows) for name, values in cloud.attributes.items()}
     comments = [str(line) for line in cloud.comments
                 if line != _core.ESTIMATED_NORMALS or cloud._has_estimates()]
     return {"xyz": _arrays.vectors(cloud.xyz, "xyz"),

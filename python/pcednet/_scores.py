@@ -31,7 +31,8 @@ def evaluate(truth, predicted, positive="sharp"):
     Parameters
     ----------
     truth : array_like, (n,), Result, or Cloud
-        Points of the class 255 (or -1) are left out. Of a Cloud: its labels.
+        Points of the class 255 (or -1) are left out. Of a Cloud: its labels; if it was read from a result of pcednet,
+        the labels that were painted or those of its input, with a warning, unless its labels were changed since.
     predicted : array_like, (n,), Result, or Cloud
         Of a Cloud: its ``edge_class``, which a classification leaves, or else its labels.
     positive : {'sharp', 'edge', 'boundary'}
@@ -47,13 +48,21 @@ def evaluate(truth, predicted, positive="sharp"):
         Different numbers of points, numbers that are not classes, or own classes.
     InsufficientError
         A Cloud without labels, or no labelled point in `truth`.
+
+    Warns
+    -----
+    PcednetWarning
+        `truth` is a Cloud that was read from a result of pcednet.
     """
     for one in (truth, predicted):
         if isinstance(one, Result):
             _core.check_edges(one.model._core.class_lines, "scores", True)
         elif isinstance(one, _clouds.Cloud):
             _core.check_edges(one._class_lines(), "scores", True)
-    truth = truth.labels if isinstance(truth, (Result, _clouds.Cloud)) else truth
+    if isinstance(truth, _clouds.Cloud):
+        truth = truth._truth("truth")
+    elif isinstance(truth, Result):
+        truth = truth.labels
     if isinstance(predicted, Result):
         predicted = predicted.labels
     elif isinstance(predicted, _clouds.Cloud):

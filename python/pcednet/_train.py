@@ -41,7 +41,9 @@ def train(clouds, labels=None, *, normals=None, start=None, name="model", classe
     labels : array_like or dict, or a list of one per cloud
         The class of every point: 0 non-edge, 1 smooth-edge, 2 sharp-edge, 3 boundary (learnt as
         non-edge), 255 or -1 not to learn from. Or a dict from class, by number or name, to indices
-        or a mask: ``{"sharp-edge": painted, "non-edge": others}``, no point in two. None: those of the Clouds.
+        or a mask: ``{"sharp-edge": painted, "non-edge": others}``, no point in two. None: those of the Clouds. Of
+        a Cloud that was read from a result of pcednet, unless its labels were changed since, these are no truth: the
+        labels that were painted count, or else those of its input, with a warning.
         Clouds with own ``class_names`` give a model of these; arrays have those of `start`.
     normals : array_like (n, 3), or a list of one per cloud, optional
     start : str, path-like or Model, optional
@@ -81,6 +83,11 @@ def train(clouds, labels=None, *, normals=None, start=None, name="model", classe
         A cloud without a labelled point, a class without points, or Clouds of different classes.
     KeyboardInterrupt
         Ctrl-C.
+
+    Warns
+    -----
+    PcednetWarning
+        As :func:`classify`, and for Clouds that were read from results of pcednet.
     """
     several = isinstance(clouds, (list, tuple)) and not _is_points(clouds)
     clouds = list(clouds) if several else [clouds]
@@ -165,8 +172,8 @@ def _check_has_smooth(arrays, names):
 def _labelled(number, cloud, normals, labels, names, keep_orientation):
     positions, given, scanners = _clouds.points_of(cloud, normals, estimates=keep_orientation)
     name = _name(number, cloud)
-    if labels is None:
-        labels = getattr(cloud, "labels", None)
+    if labels is None and isinstance(cloud, _clouds.Cloud):
+        labels = cloud._truth(name)
     if labels is None:
         raise UsageError(f"{name}: has no labels")
     labels = _arrays.labels(labels, len(positions), names=names, strict=True)

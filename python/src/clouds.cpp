@@ -15,6 +15,7 @@
 #include "job.h"
 #include "pcednet/core/error.h"
 #include "pcednet/detect/result_cloud.h"
+#include "pcednet/detect/result_truth.h"
 #include "pcednet/formats/read_cloud.h"
 #include "pcednet/formats/write_cloud.h"
 #include "pcednet/io/las/file.h"
@@ -119,6 +120,22 @@ std::vector<std::string> class_names(const std::vector<std::string>& lines) {
   std::vector<std::string> names;
   for (const PointClass& one : table_of_lines(lines)) names.push_back(one.name);
   return names;
+}
+
+/// The labels that detect::truth_of_result() finds, or None, and its note; None for a cloud that is
+/// no result. `columns` are arrays of its kTruthColumns by name.
+py::object truth_of_result(const std::vector<std::string>& comments, const py::dict& columns) {
+  PointCloud cloud;
+  cloud.comments = comments;
+  for (const auto& [name, values] : columns) {
+    cloud.attributes.push_back(
+        attribute_of(name.cast<std::string>(), py::reinterpret_borrow<py::array>(values)));
+  }
+  auto truth = detect::truth_of_result(cloud);
+  if (!truth) return py::none();
+  py::object labels = py::none();
+  if (!truth->labels.empty()) labels = give(std::move(truth->labels));
+  return py::make_tuple(labels, truth->note);
 }
 
 py::tuple state_of(const std::string& text, const std::vector<std::byte>& bytes) {
@@ -258,6 +275,9 @@ void add_clouds(py::module_& module) {
       .def(py::pickle([](const Kept& kept) { return state_of(kept); },
                       [](const py::tuple& state) { return kept_of(state); }));
   module.attr("ESTIMATED_NORMALS") = std::string(detect::kEstimatedNormals);
+  module.attr("TRUTH_COLUMNS") =
+      std::vector<std::string>(detect::kTruthColumns.begin(), detect::kTruthColumns.end());
+  module.def("truth_of_result", truth_of_result);
   module.def("class_lines", [](const std::vector<std::string>& comments) {
     return lines_of(classes_of(comments));
   });

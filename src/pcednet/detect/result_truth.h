@@ -1,0 +1,29 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pcednet/cloud/point_cloud.h"
+
+namespace pcednet::detect {
+
+/// The columns in which a result keeps a truth: the labels that the annotator painted, and those
+/// of the input that was classified. The first that labels a point counts.
+inline constexpr std::array<const char*, 2> kTruthColumns = {"scalar_painted_label",
+                                                             "scalar_input_label"};
+
+/// What a result holds to learn from and to score against.
+struct ResultTruth {
+  std::vector<std::uint8_t> labels = {};  ///< one per point; empty if there are none but its own
+  std::string note = {};                  ///< where they come from, for the user
+};
+
+/// The truth that `cloud` holds if its comments name a model, so that its own labels are
+/// predictions: the labels of the first of kTruthColumns that labels a point, a byte each. None if
+/// the cloud is no result. Reads the comments and these columns alone.
+std::optional<ResultTruth> truth_of_result(const PointCloud& cloud);
+
+}  // namespace pcednet::detect

@@ -1,0 +1,89 @@
+"""Results of pcednet as truth: what was painted or given counts, as for the program, not what was predicted."""
+
+import copy
+import json
+import unittest
+import warnings
+
+import numpy as np
+
+import pcednet
+from support import CliTest, cube, run, write_ply
+
+
+class ResultsAsTruth(CliTest):
+    def setUp(self):
+        super().setUp()
+        positions, normals, self.labels = cube(3000, noise=0.01)
+        write_ply(self.path("cube.ply"), positions, normals, self.labels)
+        run("classify", self.path("cube.ply"), "-o", self.path("result.ply"))
+        self.result = pcednet.read(self.path("result.ply"))
+        self.predicted = self.result.labels.copy()
+        self.assertTrue((self.predicted != self.labels).any())
+
+    def scores(self, cloud, said):
+        with self.assertWarnsRegex(pcednet.PcednetWarning, said):
+            return vars(pcednet.evaluate(cloud, cloud))
+
+    def expected(self, truth):
+        return vars(pcednet.evaluate(truth, self.predicted))
+
+    def test_the_labels_of_the_input_are_scored_as_by_the_program(self):
+        ours = self.scores(self.result, "^result: a result of pcednet: .* scalar_input_label$")
+        self.assertEqual(ours, self.expected(self.labels))
+        self.path("said").mkdir()
+        self.path("said/result.u8").write_bytes(self.predicted.tobytes())
+        theirs = json.loads(run("evaluate", self.path("result.ply"), "--predictions",
+                                self.path("said"), "--json", "-").stdout)["clouds"][0]
+        for name, value in ours.items():
+            self.assertAlmostEqual(value, theirs[name], 6, name)
+
+    def test_painted_labels_come_first(self):
+        painted = np.full(3000, 255, np.uint8)
+        self.result["scalar_painted_label"] = painted
+        self.assertEqual(self.scores(self.result, "scalar_input_label"), self.expected(self.labels))
+        painted[:900] = 2
+        self.assertEqual(self.scores(self.result, "scalar_painted_label"), self.expected(painted))
+        pcednet.write(self.path("painted.ply"), self.result)
+        again = pcednet.read(self.path("painted.ply"))
+        self.assertEqual(self.scores(again, "scalar_painted_label"), self.expected(painted))
+
+    def test_own_labels_alone_are_scored_with_a_warning(self):
+        del self.result.attributes["scalar_input_label"]
+        self.assertEqual(self.scores(self.result, "no truth unless")["mcc"], 1)
+
+    def test_changed_labels_count(self):
+        corrected = np.where(np.arange(3000) < 500, 0, self.predicted)
+        in_place = copy.deepcopy(self.result)
+        in_place.labels[:500] = 0
+        replaced = copy.copy(self.result)
+        replaced.labels = corrected.tolist()
+        foreign = pcednet.Cloud(self.result.xyz, labels=corrected)
+        foreign.comments = list(self.result.comments)
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            for cloud in (in_place, replaced, foreign, replaced.select(np.arange(3000))):
+                self.assertEqual(vars(pcednet.evaluate(cloud, self.predicted)),
+                                 self.expected(corrected))
+
+    def test_copies_parts_and_other_types_of_the_same_labels_do_not(self):
+        of_ints = copy.deepcopy(self.result)
+        of_ints.labels = of_ints.labels.astype(int)
+        for cloud in (copy.deepcopy(self.result), self.result.select(np.arange(3000)), of_ints):
+            self.assertEqual(self.scores(cloud, "scalar_input_label"), self.expected(self.labels))
+
+    def test_a_training_is_that_of_the_program(self):
+        run("train", self.path("result.ply"), "-o", self.path("theirs.safetensors"), "--epochs", 3,
+            "--scales", 4)
+        with self.assertWarnsRegex(pcednet.PcednetWarning, "^result: .* scalar_input_label$"):
+            model = pcednet.train(self.result, epochs=3, scales=4, name="theirs")
+        model.save(self.path("ours.safetensors"))
+        self.assertEqual(self.path("ours.safetensors").read_bytes(),
+                         self.path("theirs.safetensors").read_bytes())
+        given = pcednet.train(self.result, self.labels, epochs=3, scales=4, name="theirs")
+        for name, weights in model.tensors.items():
+            np.testing.assert_array_equal(given.tensors[name], weights)
+
+
+if __name__ == "__main__":
+    unittest.main()
