@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "pcednet/core/error.h"
+#include "pcednet/formats/read_cloud.h"
 #include "pcednet/formats/write_cloud.h"
 #include "support/expect_error.h"
 #include "support/own_folder.h"
@@ -72,6 +73,29 @@ TEST_F(Merge, KeepsStudiesUnchangedAndPacksTheirClouds) {
   ASSERT_EQ(scene["predictions"].size(), 1u) << "the first seed alone";
   EXPECT_EQ(scene["predictions"][0]["variant"], "v");
   EXPECT_EQ(scene["predictions"][0]["seed"], 1);
+}
+
+TEST_F(Merge, ShowsTheTruthThatAStudyScores) {
+  const Json truth = merged()["scenes"][0]["truth"];
+  PointCloud result = formats::read_cloud(folder_ / "cloud.ply").cloud;
+  const auto write_result = [&] {
+    formats::write_cloud(folder_ / "cloud.ply", result, {.overwrite = Overwrite::kYes});
+  };
+  set_attribute(result, make_attribute("scalar_input_label", result.labels));
+  result.comments = {"pcednet model general"};
+  result.labels = {2, 2, 2, 2, 2};
+  write_result();
+  EXPECT_EQ(merged()["scenes"][0]["truth"], truth) << "predictions are no truth";
+  set_attribute(result, make_attribute("scalar_painted_label", std::vector<std::uint8_t>(5, 0)));
+  write_result();
+  EXPECT_EQ(merged()["scenes"][0]["truth"], "AAAA") << "five non-edges";
+}
+
+TEST_F(Merge, RefusesACloudThatLostItsLabels) {
+  PointCloud cloud = formats::read_cloud(folder_ / "cloud.ply").cloud;
+  cloud.labels.clear();
+  formats::write_cloud(folder_ / "cloud.ply", cloud, {.overwrite = Overwrite::kYes});
+  EXPECT_ERROR(ErrorKind::kInsufficient, merged());
 }
 
 TEST_F(Merge, LeavesCloudsOutOnDemand) {

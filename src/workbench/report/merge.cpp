@@ -10,10 +10,10 @@
 #include "pcednet/core/json.h"
 #include "pcednet/detect/prepare.h"
 #include "pcednet/formats/labels.h"
-#include "pcednet/formats/read_cloud.h"
 #include "pcednet/io/input_file.h"
 #include "workbench/report/drawn_lines.h"
 #include "workbench/report/scene.h"
+#include "workbench/truth/read_labelled.h"
 
 namespace pcednet::report {
 namespace {
@@ -247,7 +247,7 @@ std::vector<std::uint8_t> read_classes(const fs::path& predictions, const fs::pa
 /// Advances `stage` by one for the truth and for each prediction.
 OrderedJson scene_of(const Exhibit& exhibit, const MergeOptions& options, const Progress* progress,
                      Stage& stage) {
-  const auto cloud = formats::read_cloud(exhibit.file).cloud;
+  const auto cloud = truth::read_labelled(exhibit.file).cloud;
   const Scene scene = make_scene(cloud, options.points_per_cloud, progress);
   const Progress quiet = without_report(progress);
   detect::PreparedCloud prepared;
@@ -256,8 +256,6 @@ OrderedJson scene_of(const Exhibit& exhibit, const MergeOptions& options, const 
     if (options.lines) json["lines"] = find_drawn_lines(prepared, classes, scene, &quiet);
     stage.advance();
   };
-  const std::vector<std::uint8_t> truth =
-      cloud.has_labels() ? cloud.labels : std::vector<std::uint8_t>(cloud.size(), kUnlabelled);
   OrderedJson json = {{"set", exhibit.set},
                       {"cloud", exhibit.cloud},
                       {"file", exhibit.file.filename().string()},
@@ -268,8 +266,8 @@ OrderedJson scene_of(const Exhibit& exhibit, const MergeOptions& options, const 
                       {"view", scene.view},
                       {"positions", scene.positions},
                       {"normals", scene.normals},
-                      {"truth", pack_classes(truth, scene.shown)}};
-  add_lines(json, truth);
+                      {"truth", pack_classes(cloud.labels, scene.shown)}};
+  add_lines(json, cloud.labels);
   json["predictions"] = OrderedJson::array();
   for (const Exhibit::Source& source : exhibit.sources) {
     const auto classes = read_classes(source.predictions, exhibit.file, cloud.size());

@@ -41,14 +41,14 @@ struct MergedStudies {
 /// {"set","cloud","file","points","shown","min","size","view",
 /// "positions","normals","truth","predictions":[{"study","variant","seed","classes"}]}, where
 /// "shown" counts points and "study" counts from 0: a cloud file with the predictions that any
-/// study keeps for it, the first seed of each variant. See Scene and pack_classes() for their
-/// encoding. With MergeOptions::lines, a scene has the "lines" of its truth and each prediction its
-/// own: see find_drawn_lines().
+/// study keeps for it, the first seed of each variant. The truth is what a study scores: see
+/// truth::read_labelled(). See Scene and pack_classes() for the encoding. With MergeOptions::lines,
+/// a scene has the "lines" of its truth and each prediction its own: see find_drawn_lines().
 ///
 /// A cloud's file is searched from the working folder, then from `folder`; predictions are
 /// <folder>/<predictions>/<cloud>.u8. Throws Error(kUnreadable) for a file that is missing or
-/// differs from the study's record, Error(kInsufficient) if there is no study, or if predictions or
-/// labels differ in number from the points.
+/// differs from the study's record, Error(kInsufficient) if there is no study, if a cloud has no
+/// labels, or if predictions or labels differ in number from the points.
 MergedStudies merge_studies(const std::filesystem::path& folder, const MergeOptions& options = {},
                             const Progress* progress = nullptr);
 
