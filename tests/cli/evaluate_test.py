@@ -5,7 +5,7 @@ import unittest
 
 import numpy as np
 
-from support import CliTest, cube, run, sheet, write_ply
+from support import CliTest, cube, run, sheet, write_own, write_ply
 
 
 class Evaluate(CliTest):
@@ -143,12 +143,7 @@ class Evaluate(CliTest):
         self.assertIn(f"pcednet: {clouds}/a.ply: has no labels\n", said)
 
     def own(self, name, names=("ground", "wall", "pipe")):
-        """A cube whose labels are own classes."""
-        write_ply(self.folder / name, *cube(2000))
-        table = "".join(f"comment pcednet class {id} #{id}0a0b0 {its}\n" for id, its in enumerate(names))
-        data = (self.folder / name).read_bytes().replace(b"element vertex", table.encode() + b"element vertex", 1)
-        (self.folder / name).write_bytes(data)
-        return self.folder / name
+        return write_own(self.folder / name, *cube(2000), names=names)
 
     def test_clouds_of_other_classes_than_the_model_are_refused(self):
         own, edges = self.own("own.ply"), self.folder / "edges.ply"

@@ -5,7 +5,7 @@ import subprocess
 import time
 import unittest
 
-from support import PROGRAM, CliTest, cube, run, write_ply
+from support import PROGRAM, CliTest, cube, run, write_own, write_ply
 
 SCORES = {"precision", "recall", "mcc", "f1", "accuracy", "iou"}
 COUNTS = {"name", "points", "tp", "fp", "tn", "fn"}
@@ -164,6 +164,19 @@ class Study(CliTest):
         (self.folder / "out").mkdir()
         (self.folder / "out" / "classes.json").write_text("{}")
         self.study("classes", "--test", "a=test", expect=2)
+
+    def test_refuses_own_classes(self):
+        own = write_own(self.folder / "own.ply", *cube(900))
+        said = "its classes are ground, wall, pipe; a study is of edge classes"
+        self.assertIn(f"own.ply: {said}", self.study("classes", "--test", "a=test", "--test", "a=own.ply",
+                                                     expect=4).stderr)
+        done = run("study", "classes", "--test", "a=test", "--train", own, "-o", "out", cwd=self.folder,
+                   expect=4)
+        self.assertIn(f"{own}: {said}", done.stderr)
+        run("train", own, "-o", self.folder / "own.safetensors", "--epochs", "2", "--scales", "4")
+        self.assertIn(f"own.safetensors: {said}",
+                      self.study("methods", "--test", "a=test", "--quick", "--models", "own.safetensors",
+                                 "--methods", "own", expect=5).stderr)
 
     def test_lists_the_experiments(self):
         names = [line.split()[0] for line in run("study", "list").stdout.splitlines()]

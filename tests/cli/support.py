@@ -72,6 +72,14 @@ TYPES = {"char": "i1", "uchar": "u1", "short": "i2", "ushort": "u2", "int": "i4"
          "float": "f4", "double": "f8"}
 
 
+def write_own(path, positions, normals, labels, names=("ground", "wall", "pipe")):
+    """A PLY file whose labels are of own classes."""
+    write_ply(path, positions, normals, labels)
+    table = "".join(f"comment pcednet class {id} #{id}0a0b0 {its}\n" for id, its in enumerate(names))
+    path.write_bytes(path.read_bytes().replace(b"element vertex", table.encode() + b"element vertex", 1))
+    return path
+
+
 def read_ply(path):
     """The vertices of a binary little-endian PLY as a numpy record array, and its header lines."""
     data = pathlib.Path(path).read_bytes()

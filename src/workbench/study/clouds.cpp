@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "pcednet/core/digest.h"
-#include "pcednet/core/error.h"
 
 namespace pcednet::study {
 namespace {
@@ -30,13 +29,26 @@ std::string places_of(const std::vector<Vec3>& positions) {
 
 }  // namespace
 
+void check_edge_classes(const ClassTable& table, const std::string& whose, ErrorKind kind) {
+  const ClassTable& edges = edge_classes();
+  if (table.size() <= edges.size() &&
+      std::equal(table.begin(), table.end(), edges.begin(),
+                 [](const auto& a, const auto& b) { return a.name == b.name; })) {
+    return;
+  }
+  throw Error(kind, fmt::format("{}: its classes are {}; a study is of edge classes", whose,
+                                names_of(table)));
+}
+
 StudyCloud make_study_cloud(const std::string& name, const std::string& file, PointCloud cloud) {
   check_consistent(cloud);
+  const std::string& whose = file.empty() ? name : file;
   if (cloud.empty() || !cloud.has_labels()) {
     throw Error(ErrorKind::kInsufficient,
-                fmt::format("{}: has no {}; a study needs labelled clouds",
-                            file.empty() ? name : file, cloud.empty() ? "points" : "labels"));
+                fmt::format("{}: has no {}; a study needs labelled clouds", whose,
+                            cloud.empty() ? "points" : "labels"));
   }
+  check_edge_classes(classes_of(cloud.comments), whose, ErrorKind::kInsufficient);
   Digest digest;
   add_vectors(digest, cloud.positions);
   add_vectors(digest, cloud.normals);

@@ -4,7 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "pcednet/cloud/class_table.h"
 #include "pcednet/cloud/point_cloud.h"
+#include "pcednet/core/error.h"
 #include "pcednet/eval/scores.h"
 
 namespace pcednet::study {
@@ -18,7 +20,12 @@ struct StudyCloud {
   std::string places;  ///< of the positions, in any order
 };
 
-/// Throws Error(kInsufficient), naming it, if `cloud` has no points or no labels.
+/// Throws Error(kind), naming `whose`, if classes are not edge classes or, by number, have other
+/// names; their colours do not matter.
+void check_edge_classes(const ClassTable& table, const std::string& whose, ErrorKind kind);
+
+/// Throws Error(kInsufficient), naming it, if `cloud` has no points or no labels, or names classes
+/// that are not edge classes.
 StudyCloud make_study_cloud(const std::string& name, const std::string& file, PointCloud cloud);
 
 struct CloudSet {

@@ -114,6 +114,7 @@ std::size_t weights_of(const detect::EdgeModel& model) {
 Classifier classifier_from(const ModelMethod& method) {
   auto stored = std::make_shared<StoredModel>();
   stored->model = detect::load_model(method.file);
+  check_edge_classes(stored->model.table, method.file.string(), ErrorKind::kModelMismatch);
   Classifier classifier{.key = Digest().add(io::InputFile(method.file).text()).hex(),
                         .descriptor = stored->model.descriptor};
   classifier.descriptor.engine = method.engine;
