@@ -64,6 +64,13 @@ class Evaluate(CliTest):
         twice = run("evaluate", self.folder, self.folder / "a.ply", "--model", "scan", "--json", "-")
         self.assertEqual(len(json.loads(twice.stdout[twice.stdout.index("{"):])["clouds"]), 1)
 
+    def test_names_that_are_not_utf8_are_written_as_far_as_they_are(self):
+        write_ply(self.folder / "a.ply", *cube(500))
+        os.rename(self.folder / "a.ply", os.fsencode(self.folder) + b"/lat\xfcin.ply")
+        run("evaluate", self.folder, "--method", "ca", "--json", self.folder / "scores.json", errors="replace")
+        scores = json.loads((self.folder / "scores.json").read_text(encoding="utf-8"))
+        self.assertEqual([row["name"] for row in scores["clouds"]], ["lat\ufffdin"])
+
     def test_scores_lines_against_the_curves_that_generate_writes(self):
         parts = self.folder / "parts"
         run("generate", "lines", parts, "--only", "roof_hip")

@@ -220,5 +220,10 @@ TEST(LineReport, LeavesOutWhatHasNoValue) {
       << table;
 }
 
+TEST(LineReport, ReplacesBytesOfNamesThatAreNotUtf8) {
+  const auto json = nlohmann::json::parse(to_json(std::vector<NamedLineScores>{{"lat\xfcin", {}}}));
+  EXPECT_EQ(json["clouds"][0]["name"], "lat\uFFFDin");
+}
+
 }  // namespace
 }  // namespace pcednet::eval

@@ -82,6 +82,11 @@ TEST(EvaluationReport, GivesMedianAndPooledAsJson) {
   }
 }
 
+TEST(EvaluationReport, ReplacesBytesOfNamesThatAreNotUtf8) {
+  const auto json = nlohmann::json::parse(to_json(std::vector<CloudScore>{{"lat\xfcin", {}}}));
+  EXPECT_EQ(json["clouds"][0]["name"], "lat\uFFFDin");
+}
+
 TEST(Calibration, IsTheMeanDifferenceInTheBins) {
   // Two bins: 0.25 said of four points, one of which is positive; 0.9 said of two, one of which is.
   const std::vector<std::uint8_t> truth = {2, 0, 0, 0, 2, 1, 255};

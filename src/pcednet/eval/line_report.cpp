@@ -86,7 +86,7 @@ std::string to_json(const std::vector<NamedLineScores>& clouds) {
   }
   put(report["median"] = OrderedJson::object(), over(clouds, middle));
   put(report["mean"] = OrderedJson::object(), over(clouds, mean));
-  return to_text(report, 2) + "\n";
+  return to_text(report, 2, NotUtf8::kReplace) + "\n";
 }
 
 std::string to_table(const std::vector<NamedLineScores>& clouds) {

@@ -53,7 +53,8 @@ struct NamedLineScores {
 };
 
 /// {"clouds":[{"name","lines","true_curves","cd",...,"corners"}],"median":{...},"mean":{...}},
-/// indented, with a final newline; null for NaN, which medians and means leave out.
+/// indented, with a final newline; null for NaN, which medians and means leave out. Bytes of names
+/// that are not UTF-8 become U+FFFD.
 std::string to_json(const std::vector<NamedLineScores>& clouds);
 
 /// A text table: a row per cloud, then median and mean.

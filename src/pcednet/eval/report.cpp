@@ -71,7 +71,7 @@ std::string to_json(const std::vector<CloudScore>& clouds, const Calibration* ca
           {{"points", bin.points}, {"probability", probability}, {"positive", positive}});
     }
   }
-  return to_text(report, 2) + "\n";
+  return to_text(report, 2, NotUtf8::kReplace) + "\n";
 }
 
 std::string to_table(const std::vector<CloudScore>& clouds) {

@@ -23,7 +23,8 @@ ConfusionCounts pooled_counts(const std::vector<CloudScore>& clouds);
 
 /// {"clouds":[{"name","points","tp",...,"iou"}],"median":{...},"pooled":{...}}, indented, with a
 /// final newline; with `calibration` also {"calibration":{"error","bins":[{"points","probability",
-/// "positive"}]}}, of which the last two are means.
+/// "positive"}]}}, of which the last two are means. Bytes of names that are not UTF-8 become
+/// U+FFFD.
 std::string to_json(const std::vector<CloudScore>& clouds,
                     const Calibration* calibration = nullptr);
 
