@@ -18,7 +18,7 @@ SHORT = {"plain": 0, "smooth": 1, "sharp": 2}
 def numbers(values, name):
     """`values` as an array of real numbers, of any type; masked ones become NaN."""
     if isinstance(values, np.ma.MaskedArray):
-        values = values.astype(np.float64).filled(np.nan)
+        values = (values if values.dtype.kind == "f" else values.astype(np.float64)).filled(np.nan)
     try:
         array = np.asarray(values)
         if array.dtype == object or array.dtype.kind in "US":
@@ -29,6 +29,11 @@ def numbers(values, name):
         complex_too = ". Complex data not supported" if array.dtype.kind == "c" else ""
         raise UsageError(f"{name}: real numbers are needed, not {array.dtype}{complex_too}")
     return array
+
+
+def is_float32(array):
+    """Whether its numbers are of that type, in either byte order."""
+    return array.dtype.newbyteorder("=") == np.float32
 
 
 def vectors(values, name, rows=None):

@@ -149,20 +149,20 @@ def classify(xyz, normals=None, *, model="general", threads=0, progress=None, vi
     -----
     PcednetWarning
         Normals were estimated or oriented, points are not finite, scales are unusual, `s_max` is
-        larger than the cloud.
+        larger than the cloud, float32 positions are rounded to more than the points are apart.
 
     Examples
     --------
     >>> result = pcednet.classify(xyz)
     >>> sharp = xyz[result.labels == 2]
     """
-    positions, given, scanners = _clouds.points_of(xyz, normals, viewpoint, keep_orientation)
+    positions, is_float32, given, scanners = _clouds.points_of(xyz, normals, viewpoint, keep_orientation)
     model = _models.model_of(model)
     core = model._core if context else model._core.without_context()
     if s_min or s_max or exact:
         core = core.with_scales(_arrays.real(s_min, "s_min"), _arrays.real(s_max, "s_max"), bool(exact))
     with _arrays.reporting(progress) as report:
-        parts = _core.classify(core, positions, given, scanners, bool(boundary),
+        parts = _core.classify(core, positions, is_float32, given, scanners, bool(boundary),
                                bool(keep_orientation), report, _arrays.thread_count(threads))
     estimates = given is None and normals is None and getattr(xyz, "normals", None) is not None
     parts["notes"] = worded(parts["notes"], estimates)
@@ -176,7 +176,10 @@ def classify(xyz, normals=None, *, model="general", threads=0, progress=None, vi
 def worded(notes, estimates=False):
     """Notes of arrays, which come from no file, or of a Cloud with normals that are estimates."""
     given = "the normals in the file are estimates" if estimates else "no normals given"
-    return [note.replace("no normals in the file", given) for note in notes]
+    words = {"no normals in the file": given, "write them as double": "keep them as float64"}
+    for said, ours in words.items():
+        notes = [note.replace(said, ours) for note in notes]
+    return notes
 
 
 def describe(xyz, normals=None, *, scales=16, features=6, reconstruction="sphere", gate=None,
@@ -228,15 +231,20 @@ def describe(xyz, normals=None, *, scales=16, features=6, reconstruction="sphere
     ------
     UsageError, InsufficientError, KeyboardInterrupt
         As :func:`classify`.
+
+    Warns
+    -----
+    PcednetWarning
+        As :func:`classify`.
     """
-    positions, given, scanners = _clouds.points_of(xyz, normals, viewpoint, keep_orientation)
+    positions, is_float32, given, scanners = _clouds.points_of(xyz, normals, viewpoint, keep_orientation)
     settings = descriptor_settings({
         "scales": scales, "features": features, "reconstruction": reconstruction, "gate": gate,
         "second_gate": second_gate, "exact": exact, "eps": eps, "s_min": s_min, "s_max": s_max,
         "s_max_ratio": s_max_ratio, "octaves": octaves})
     with _arrays.reporting(progress) as report:
-        matrix, radii, notes = _core.describe(positions, given, scanners, bool(keep_orientation),
-                                              settings, report, _arrays.thread_count(threads))
+        matrix, radii, notes = _core.describe(positions, is_float32, given, scanners,
+                                              bool(keep_orientation), settings, report, _arrays.thread_count(threads))
     _arrays.warn(worded(notes))
     return (matrix, radii) if return_scales else matrix
 
@@ -291,7 +299,7 @@ def estimate_normals(xyz, normals=None, *, neighbours=0, viewpoint=None, threads
     PcednetWarning
         Points without a normal.
     """
-    positions, _, scanners = _clouds.points_of(xyz, None, viewpoint)
+    positions, _, _, scanners = _clouds.points_of(xyz, None, viewpoint)
     given = _arrays.optional_vectors(normals, "normals", len(positions))
     with _arrays.reporting(progress) as report:
         made, _, unusable = _core.make_normals(positions, given, scanners, _arrays.whole(neighbours, "neighbours"),

@@ -42,7 +42,8 @@ class Cloud:
     """
 
     def __init__(self, xyz, normals=None, colours=None, labels=None, attributes=None, name=""):
-        self._is_float32 = getattr(xyz, "dtype", None) == np.float32
+        xyz = _arrays.numbers(xyz, "xyz")
+        self._is_float32 = _arrays.is_float32(xyz)
         self._kept, self._kept_rows = None, 0
         self._estimates = None  # digest of positions and normals, if a file says that they are estimates
         self._predictions = None  # digest of the labels, if a file says that they are a result
@@ -107,6 +108,14 @@ class Cloud:
         """What a classification left, otherwise the labels."""
         found = self._scalar("edge_class")
         return self.labels if found is None else found
+
+    def _has_float32(self):
+        """Whether the positions are those of float32 and were not changed to others."""
+        if not self._is_float32:
+            return False
+        xyz = _arrays.vectors(self.xyz, "xyz")
+        with np.errstate(over="ignore"):
+            return np.array_equal(xyz, xyz.astype(np.float32), equal_nan=True)
 
     def _has_predictions(self):
         """Whether the labels are those that a file of a result came with."""
@@ -181,15 +190,18 @@ def _digest(*arrays):
 
 
 def points_of(xyz, normals=None, viewpoint=None, estimates=True):
-    """Positions, normals and scanners of a call, from arrays or from a Cloud, with or without normals that are
-    estimates."""
+    """Positions, whether they are as in float32, normals and scanners of a call, from arrays or from a Cloud, with or
+    without normals that are estimates."""
     if isinstance(xyz, Cloud):
+        is_float32 = xyz._has_float32()
         if normals is None and (estimates or not xyz._has_estimates()):
             normals = xyz.normals
         viewpoint = xyz.viewpoint() if viewpoint is None else viewpoint
-        xyz = xyz.xyz
-    positions = _arrays.vectors(xyz, "xyz")
-    return (positions, _arrays.optional_vectors(normals, "normals", len(positions)),
+        positions = _arrays.vectors(xyz.xyz, "xyz")
+    else:
+        array = _arrays.numbers(xyz, "xyz")
+        is_float32, positions = _arrays.is_float32(array), _arrays.vectors(array, "xyz")
+    return (positions, is_float32, _arrays.optional_vectors(normals, "normals", len(positions)),
             _arrays.scanners(viewpoint, len(positions)))
 
 

@@ -124,7 +124,7 @@ def lines(xyz, labels=None, normals=None, *, p_sharp=None, p_smooth=None,
             p_smooth = _probability(xyz, "p_smooth") if p_smooth is None else p_smooth
     if labels is None:
         labels = classify(xyz, normals, viewpoint=viewpoint, threads=threads, progress=progress)
-    positions, given, scanners = _clouds.points_of(xyz, normals, viewpoint, estimates=False)
+    positions, _, given, scanners = _clouds.points_of(xyz, normals, viewpoint, estimates=False)
     rows = len(positions)
     prepared = isinstance(labels, Result)
     if prepared:

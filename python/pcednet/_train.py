@@ -170,7 +170,7 @@ def _check_has_smooth(arrays, names):
 
 
 def _labelled(number, cloud, normals, labels, names, keep_orientation):
-    positions, given, scanners = _clouds.points_of(cloud, normals, estimates=keep_orientation)
+    positions, is_float32, given, scanners = _clouds.points_of(cloud, normals, estimates=keep_orientation)
     name = _name(number, cloud)
     if labels is None and isinstance(cloud, _clouds.Cloud):
         labels = cloud._truth(name)
@@ -179,4 +179,4 @@ def _labelled(number, cloud, normals, labels, names, keep_orientation):
     labels = _arrays.labels(labels, len(positions), names=names, strict=True)
     if (labels == _arrays.UNLABELLED).all():
         raise InsufficientError(f"{name}: no point is labelled")
-    return name, positions, given, scanners, labels
+    return name, positions, is_float32, given, scanners, labels

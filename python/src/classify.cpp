@@ -19,21 +19,22 @@ py::array_t<double> normals_of(detect::PreparedCloud& prepared) {
   return give(std::vector<Vec3>(prepared.normals.begin(), prepared.normals.end()));
 }
 
-py::dict classify(const detect::EdgeModel& model, const Array<double>& xyz,
+py::dict classify(const detect::EdgeModel& model, const Array<double>& xyz, bool is_float32,
                   const OptionalArray<double>& normals, const OptionalArray<double>& scanners,
                   bool boundary, bool keep_orientation, const py::object& progress, int threads) {
   detect::PreparedCloud prepared;
   detect::Classification found;
   std::optional<InputCloud> cloud;
-  std::string note;
+  std::string note, rounded;
   run_job({progress, threads}, [&](const Progress* job) {
     cloud.emplace(xyz, normals, scanners);
     prepared = cloud->prepare({.keep_orientation = keep_orientation}, job);
     note = note_on_extent(model.descriptor, prepared.positions);
     found = detect::classify(prepared, model, job);
+    rounded = note_on_float(is_float32, prepared, model.descriptor, found.s_min);
     if (boundary && has_edges(model.table)) detect::mark_boundary(prepared, found, job);
   });
-  for (const std::string& one : {note, found.note}) {
+  for (const std::string& one : {note, rounded, found.note}) {
     if (!one.empty()) prepared.notes.push_back(one);
   }
   py::dict result;
@@ -53,7 +54,7 @@ py::dict classify(const detect::EdgeModel& model, const Array<double>& xyz,
 
 /// Describes every point into its row of `matrix`, which is all zeros; returns the scales, of
 /// octave 0 if there are several.
-std::vector<double> describe_all(const detect::PreparedCloud& cloud,
+std::vector<double> describe_all(const detect::PreparedCloud& cloud, bool is_float32,
                                  const gls::ScaleSpaceOptions& descriptor,
                                  std::vector<std::string>& notes, std::span<float> matrix,
                                  const Progress* progress) {
@@ -66,13 +67,14 @@ std::vector<double> describe_all(const detect::PreparedCloud& cloud,
     }
   };
   const std::vector<double> scales = detect::describe_rows(cloud, descriptor, take, progress);
-  for (const auto& note : {extent, gls::note_on(descriptor, scales, cloud.positions)}) {
+  for (const auto& note : {extent, note_on_float(is_float32, cloud, descriptor, scales.front()),
+                           gls::note_on(descriptor, scales, cloud.positions)}) {
     if (!note.empty()) notes.push_back(note);
   }
   return scales;
 }
 
-py::tuple describe(const Array<double>& xyz, const OptionalArray<double>& normals,
+py::tuple describe(const Array<double>& xyz, bool is_float32, const OptionalArray<double>& normals,
                    const OptionalArray<double>& scanners, bool keep_orientation,
                    const py::dict& settings, const py::object& progress, int threads) {
   const gls::ScaleSpaceOptions descriptor = descriptor_of(settings);
@@ -84,7 +86,7 @@ py::tuple describe(const Array<double>& xyz, const OptionalArray<double>& normal
     const InputCloud cloud(xyz, normals, scanners);
     const auto prepared = cloud.prepare({.keep_orientation = keep_orientation}, job);
     matrix.resize(prepared.positions.size() * detect::row_width(descriptor));
-    scales = describe_all(prepared, descriptor, notes, matrix, job);
+    scales = describe_all(prepared, is_float32, descriptor, notes, matrix, job);
   });
   const auto count = static_cast<py::ssize_t>(scales.size());
   const py::ssize_t columns = gls::column_count(descriptor);

@@ -8,6 +8,7 @@
 #include "pcednet/cloud/bounding_box.h"
 #include "pcednet/core/error.h"
 #include "pcednet/detect/cloud_kind.h"
+#include "pcednet/formats/cloud_facts.h"
 #include "pcednet/gls/scales.h"
 #include "pcednet/nn/model_file.h"
 #include "pcednet/nn/predict.h"
@@ -102,6 +103,12 @@ std::string note_on_extent(const gls::ScaleSpaceOptions& options, std::span<cons
                            const std::string& whose) {
   return gls::note_on_extent(options, bounding_box(positions).diagonal(), whose,
                              {.s_min = "s_min", .s_max = "s_max"});
+}
+
+std::string note_on_float(bool is_float32, const detect::PreparedCloud& cloud,
+                          const gls::ScaleSpaceOptions& options, double s_min) {
+  if (!is_float32 || options.range.s_min != 0.0 || cloud.decision.rounding.step > 0.0) return {};
+  return formats::note_on_float(bounding_box(cloud.positions), s_min);
 }
 
 void add_models(py::module_& module) {

@@ -7,6 +7,7 @@
 
 #include "pcednet/core/vec3.h"
 #include "pcednet/detect/model.h"
+#include "pcednet/detect/prepare.h"
 #include "pcednet/gls/scale_space_options.h"
 
 namespace pcednet::python {
@@ -18,5 +19,10 @@ gls::ScaleSpaceOptions descriptor_of(const pybind11::dict& settings);
 /// gls::note_on_extent() of a cloud at these positions.
 std::string note_on_extent(const gls::ScaleSpaceOptions& options, std::span<const Vec3> positions,
                            const std::string& whose = "");
+
+/// formats::note_on_float() of a cloud that is described at scales from `s_min`; empty unless
+/// `is_float32` and s_min is the spacing, and for positions that prepare() has spread.
+std::string note_on_float(bool is_float32, const detect::PreparedCloud& cloud,
+                          const gls::ScaleSpaceOptions& options, double s_min);
 
 }  // namespace pcednet::python

@@ -10,6 +10,7 @@
 #include "models.h"
 #include "named.h"
 #include "pcednet/core/error.h"
+#include "pcednet/gls/scales.h"
 #include "workbench/annotate/adapt.h"
 #include "workbench/annotate/outputs.h"
 
@@ -20,6 +21,7 @@ namespace {
 struct LabelledArrays {
   std::string name;
   Array<double> xyz;
+  bool is_float32 = false;  ///< xyz was given so
   OptionalArray<double> normals, scanners;
   Array<std::uint8_t> labels;
 };
@@ -29,9 +31,9 @@ std::vector<LabelledArrays> clouds_of(const py::list& list) {
   for (const py::handle entry : list) {
     const auto cloud = entry.cast<py::tuple>();
     clouds.push_back({cloud[0].cast<std::string>(), cloud[1].cast<Array<double>>(),
-                      cloud[2].cast<OptionalArray<double>>(),
-                      cloud[3].cast<OptionalArray<double>>(),
-                      cloud[4].cast<Array<std::uint8_t>>()});
+                      cloud[2].cast<bool>(), cloud[3].cast<OptionalArray<double>>(),
+                      cloud[4].cast<OptionalArray<double>>(),
+                      cloud[5].cast<Array<std::uint8_t>>()});
   }
   return clouds;
 }
@@ -43,6 +45,26 @@ struct TrainingClouds {
   std::vector<std::string> notes;
 };
 
+/// The smallest scale that the cloud is described at.
+double smallest_scale(const detect::PreparedCloud& cloud, const gls::ScaleRange& range) {
+  const auto spacings = [&] { return gls::spacings_of_places(cloud.positions, cloud.curve); };
+  return gls::scale_range(cloud.positions, range, spacings).s_min;
+}
+
+/// Notes for the user on a prepared cloud.
+void add_notes(const LabelledArrays& arrays, const detect::PreparedCloud& cloud,
+               const gls::ScaleSpaceOptions& descriptor, std::vector<std::string>& notes) {
+  for (const std::string& note : cloud.notes) notes.push_back(arrays.name + ": " + note);
+  const auto extent = note_on_extent(descriptor, cloud.positions, arrays.name + ": ");
+  if (!extent.empty()) notes.push_back(extent);
+  if (!arrays.is_float32) return;
+  with_name_in_errors(arrays.name, [&] {
+    const double s_min = smallest_scale(cloud, descriptor.range);
+    const std::string rounded = note_on_float(true, cloud, descriptor, s_min);
+    if (!rounded.empty()) notes.push_back(arrays.name + ": " + rounded);
+  });
+}
+
 void prepare(const std::vector<LabelledArrays>& arrays, bool keep_orientation,
              const gls::ScaleSpaceOptions& descriptor, TrainingClouds& prepared,
              const Progress* progress) {
@@ -51,10 +73,7 @@ void prepare(const std::vector<LabelledArrays>& arrays, bool keep_orientation,
     prepared.clouds.push_back({one.name,
                                input.prepare({.keep_orientation = keep_orientation}, progress),
                                numbers(one.labels)});
-    const detect::PreparedCloud& cloud = prepared.clouds.back().cloud;
-    for (const std::string& note : cloud.notes) prepared.notes.push_back(one.name + ": " + note);
-    const auto note = note_on_extent(descriptor, cloud.positions, one.name + ": ");
-    if (!note.empty()) prepared.notes.push_back(note);
+    add_notes(one, prepared.clouds.back().cloud, descriptor, prepared.notes);
   }
 }
 

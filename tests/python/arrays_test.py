@@ -1,6 +1,7 @@
 """pcednet.classify, describe and estimate_normals of arrays of every kind."""
 
 import pathlib
+import re
 import tempfile
 import unittest
 import warnings
@@ -8,7 +9,7 @@ import warnings
 import numpy as np
 
 import pcednet
-from support import cube, read_ply, run, sheet, write_ply
+from support import CliTest, cube, read_ply, run, sheet, write_ply
 
 UTM = np.array([691_000.0, 5_334_000.0, 520.0])
 
@@ -171,6 +172,53 @@ class Layouts(unittest.TestCase):
             chosen = result.labels == label
             np.testing.assert_array_equal(result.confidence[chosen], values[chosen])
         self.assertEqual(sum(result.counts.values()), len(result))
+
+
+class Rounded(CliTest):
+    """float32 coordinates of a national grid: steps of half a metre in a cube of one metre."""
+
+    SAID = r"float coordinates up to 53340\d\d are rounded to steps of 0.5, but the points are only \S+ apart"
+
+    def setUp(self):
+        super().setUp()
+        positions, self.normals, self.labels = cube(1000)
+        self.exact = positions + UTM
+        self.rounded = self.exact.astype(np.float32)
+        write_ply(self.path("far.ply"), self.exact, self.normals)
+
+    def said(self, function, *arguments, **options):
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            function(*arguments, **options)
+        return "\n".join(str(one.message) for one in caught)
+
+    def train(self, cloud, **options):
+        pcednet.train(cloud, self.labels, epochs=1, scales=4, **options)
+
+    def test_it_is_a_warning_as_of_the_program(self):
+        theirs = run("classify", self.path("far.ply")).stderr
+        apart = re.search(self.SAID, theirs)[0]
+        cloud = pcednet.read(self.path("far.ply"))
+        own = pcednet.Cloud(self.rounded, self.normals)
+        for xyz, normals in ((cloud, None), (own, None), (self.rounded, self.normals),
+                             (self.rounded.astype(">f4"), self.normals),
+                             (np.ma.array(self.rounded), self.normals)):
+            self.assertIn(apart, self.said(pcednet.classify, xyz, normals))
+            self.assertRegex(self.said(pcednet.describe, xyz, normals), self.SAID)
+            self.assertRegex(self.said(self.train, xyz, normals=normals), r"(far|cloud 0): " + self.SAID)
+        self.assertIn("keep them as float64, or relative", self.said(pcednet.classify, cloud))
+        self.assertRegex(self.said(self.train, self.rounded, normals=self.normals, s_max_ratio=8), self.SAID)
+        self.assertRegex(self.said(pcednet.train, cloud, self.labels, start="general"), self.SAID)
+
+    def test_what_is_not_rounded_is_not_told(self):
+        moved = pcednet.read(self.path("far.ply"))
+        moved.xyz = self.exact
+        near = (self.exact - UTM).astype(np.float32)
+        for xyz, normals in ((self.exact, self.normals), (moved, None), (near, self.normals)):
+            for function in (pcednet.classify, pcednet.describe, self.train):
+                self.assertNotIn("rounded", self.said(function, xyz, normals=normals))
+        for function in (pcednet.classify, pcednet.describe, self.train):  # the scales are not the spacing
+            self.assertNotIn("rounded", self.said(function, self.rounded, normals=self.normals, s_min=0.2))
 
 
 class Refusals(unittest.TestCase):
