@@ -23,10 +23,11 @@ for model in ${*:-general scan cad worn}; do
       generate "${set%:*}" "${set#*:}"
       clouds="$clouds $folder/${set%:*}${set#*:}"
     done
-    options="--scales 8 --s-max-ratio 8 --gate 0.4 --second-gate -0.3 --width 40 --distil 2 \
-      --context --keep-orientation --seed 1"
+    piece_options="--scales 8 --s-max-ratio 8 --gate 0.4 --second-gate -0.3 --width 40 --seed 1"
+    options="$piece_options --distil 2 --context --keep-orientation"
     generate sparse 1
     generate drawn 1
+    generate pieces 1
     more_in_noise=''
     for set in worn:6 worn:7 worn:8 worn:9 scan:6 scan:7; do
       generate "${set%:*}" "${set#*:}"
@@ -46,11 +47,15 @@ for model in ${*:-general scan cad worn}; do
     # shellcheck disable=SC2086
     $pcednet train "$folder/lines1" "$folder/lines2" "$folder/lines3" $clouds $more_in_noise \
       -o "$folder/noisy.safetensors" $options --natural --epochs 18 --no-normals --only estimated,noisy
+    # Whether a cloud of few points is a whole thing or a piece of a scan.
+    # shellcheck disable=SC2086
+    $pcednet train "$folder/pieces1" -o "$folder/pieces.safetensors" $piece_options --octaves --even-validation
     # shellcheck disable=SC2086
     $pcednet train $clouds -o models/general.safetensors $options --octaves --unrounded-scales --balance 0.07 --overwrite \
       --expert "$folder/sparse.safetensors" below=4000,estimated \
       --expert "$folder/exact.safetensors" estimated,exact \
-      --expert "$folder/noisy.safetensors" estimated,noisy
+      --expert "$folder/noisy.safetensors" estimated,noisy \
+      --pieces "$folder/pieces.safetensors"
     ;;
   scan)
     generate default 1

@@ -18,7 +18,8 @@ from .errors import UsageError as UsageError
 _Path = str | os.PathLike[str]
 _Points = ArrayLike | "Cloud"
 _Labels = ArrayLike | Mapping[Any, ArrayLike]
-_Set = Literal["default", "cad", "worn", "scan", "varied", "sparse", "drawn", "lines", "sample"]
+_Set = Literal["default", "cad", "worn", "scan", "varied", "sparse", "drawn", "pieces",
+               "lines", "sample"]
 _Positive = Literal["sharp", "edge", "boundary"]
 _Class = Literal["smooth", "sharp", "boundary"]
 _Kind = Literal["segment", "arc", "circle", "polyline"]

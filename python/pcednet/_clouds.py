@@ -335,7 +335,7 @@ def generate(name="default", seed=1, only=""):
 
     Parameters
     ----------
-    name : {'default', 'cad', 'worn', 'scan', 'varied', 'sparse', 'drawn', 'lines', 'sample'}
+    name : {'default', 'cad', 'worn', 'scan', 'varied', 'sparse', 'drawn', 'pieces', 'lines', 'sample'}
         The set, as in ``pcednet generate``; ``'sample'`` is the building of the demo.
     seed : int
     only : str

@@ -10,6 +10,7 @@
 #include "workbench/shapes/cad_set.h"
 #include "workbench/shapes/default_set.h"
 #include "workbench/shapes/line_set.h"
+#include "workbench/shapes/piece_set.h"
 #include "workbench/shapes/relief_set.h"
 #include "workbench/shapes/scan_set.h"
 #include "workbench/shapes/sparse_set.h"
@@ -57,6 +58,8 @@ std::vector<Recipe> recipes_of(const std::string& set, std::uint64_t seed) {
     add(all, shapes::sparse_roof_recipes(seed), seed);
   } else if (set == "drawn") {
     add(all, shapes::drawn_part_recipes(seed), seed);
+  } else if (set == "pieces") {
+    add(all, shapes::piece_recipes(seed), seed);
   } else if (set == "lines") {
     add(all, shapes::line_recipes(), seed);
   } else if (set == "sample") {
@@ -64,7 +67,7 @@ std::vector<Recipe> recipes_of(const std::string& set, std::uint64_t seed) {
   } else {
     throw Error(ErrorKind::kUsage, "generate \"" + set +
                                        "\": there are default, cad, worn, scan, varied, sparse, "
-                                       "drawn, lines, sample");
+                                       "drawn, pieces, lines, sample");
   }
   return all;
 }

@@ -35,6 +35,12 @@ def cube(points=4000, seed=1, noise=0.0):
     return p + noise * random.normal(size=p.shape), n, label
 
 
+def rough_ground(points=3000, seed=1):
+    """A unit square of rough ground: positions."""
+    random = np.random.default_rng(seed)
+    return np.column_stack([random.uniform(0.0, 1.0, (points, 2)), 0.03 * random.normal(size=points)])
+
+
 def sheet(points=3000, seed=1):
     """A unit square, open all around: positions, normals, distances to its rim in spacings."""
     p = np.random.default_rng(seed).uniform(0.0, 1.0, (points, 3)) * (1.0, 1.0, 0.0)

@@ -65,9 +65,9 @@ class TilesTest(CliTest):
             np.testing.assert_array_equal(rows[name], expected[name])
         return rows
 
-    def check_equal_to_untiled(self, cloud, least, *options, jobs=1):
+    def check_equal_to_untiled(self, cloud, least, *options, jobs=1, tile=1.3):
         """Returns what classify says."""
-        plan, content = self.make_plan(cloud, *options)
+        plan, content = self.make_plan(cloud, *options, tile=tile)
         self.assertGreaterEqual(len(content["tiles"]), 9)
         run("tiles", "run", plan, "--jobs", jobs)
         rows = self.check_whole(plan, cloud)

@@ -38,6 +38,13 @@ class Tiles(TilesTest):
         plan = json.loads((self.folder / "p.json").read_text())
         self.assertEqual(len(plan["pyramids"]), 4)
 
+    def test_few_points_of_a_scan_are_a_piece_in_every_tile(self):
+        p, _ = field(2, 400, seed=2)
+        near = np.argsort(np.abs(p[:, :2] - p[0, :2]).max(axis=1))[:2500]
+        write_ply(self.folder / "piece.ply", p[near])
+        said = self.check_equal_to_untiled(self.folder / "piece.ply", 0.999, tile=0.3)
+        self.assertNotIn("fewer than 4000", said)
+
     def test_a_plan_is_the_same_again_and_says_what_decides(self):
         p, n = field(3, 600)
         write_ply(self.folder / "a.ply", p, n)

@@ -8,7 +8,7 @@ import unittest
 
 import numpy as np
 
-from support import PROGRAM, CliTest, cube, read_ply, run, write_ply
+from support import PROGRAM, CliTest, cube, read_ply, rough_ground, run, write_own, write_ply
 
 
 def tensors(path):
@@ -100,6 +100,40 @@ class Train(CliTest):
             run("classify", self.folder / "c.ply", "-o", self.folder / (name + ".ply"), "--model", its)
         found, wanted = (read_ply(self.folder / (name + ".ply"))[0] for name in ("joined", "alone"))
         self.assertTrue((found["scalar_p_sharp"] == wanted["scalar_p_sharp"]).all())
+
+    def pieces_model(self):
+        """A model that tells cubes from squares of rough ground."""
+        clouds = self.folder / "pieces"
+        clouds.mkdir()
+        whole, piece = cube(1200, seed=3)[0], rough_ground(1200, seed=3)
+        for id, points in enumerate((whole, piece)):
+            write_own(clouds / f"{id}.ply", points, None, np.full(len(points), id), ("whole", "piece"))
+        run("train", clouds, "-o", self.folder / "p.safetensors", "--epochs", 8)
+        return self.folder / "p.safetensors"
+
+    def test_leaves_pieces_of_larger_clouds_to_the_networks_of_all(self):
+        few = self.train("few.safetensors", "--epochs", 2, "--seed", 5)
+        joined = ["--epochs", 2, "--expert", few, "below=5000,estimated"]
+        model = self.train("m.safetensors", *joined, "--pieces", self.pieces_model())
+        self.assertEqual(tensors(model)[0]["format"], "pcednet-edge-model-5")
+        alone = self.train("alone.safetensors", "--epochs", 2)
+        for name, points, its in (("cube", cube(1000, seed=9)[0], few),
+                                  ("ground", rough_ground(1000, seed=9), alone)):
+            write_ply(self.folder / f"{name}.ply", points)
+            found = []
+            for number, by in enumerate((model, its)):
+                out = self.folder / f"{name}{number}.ply"
+                run("classify", self.folder / f"{name}.ply", "-o", out, "--model", by)
+                found.append(read_ply(out)[0]["scalar_p_sharp"])
+            self.assertTrue((found[0] == found[1]).all(), name)
+
+    def test_refuses_a_model_that_does_not_tell_pieces(self):
+        few = self.train("few.safetensors", "--epochs", 1)
+        joined = ("-o", self.folder / "m.safetensors", "--expert", few, "below=9")
+        result = run("train", self.folder / "clouds", *joined, "--pieces", few, expect=5)
+        self.assertIn("other classes", result.stderr)
+        run("train", self.folder / "clouds", *joined[:2], "--pieces", few, expect=2)
+        self.assertFalse((self.folder / "m.safetensors").exists())
 
     def test_learns_from_clouds_of_a_kind_alone(self):
         plain = tensors(self.train("p.safetensors", "--epochs", 1))[0]

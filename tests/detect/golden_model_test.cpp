@@ -63,6 +63,8 @@ TEST_P(GoldenModel, GivesItsKnownAnswers) {
   ASSERT_EQ(model.context.has_value(), answers_.tensors.contains("context_samples"));
   if (model.context) expect_answers(*model.context, "context_");
   ASSERT_EQ(model.experts.size(), answers_.tensors.contains("expert_samples") ? 1u : 0u);
+  ASSERT_EQ(model.pieces.has_value(), answers_.tensors.contains("pieces_samples"));
+  if (model.pieces) expect_answers(*model.pieces, "pieces_");
   if (model.experts.empty()) return;
   expect_answers(model.experts[0].network, "expert_");
   expect_answers(*model.experts[0].context, "expert_context_");
@@ -79,7 +81,8 @@ TEST_P(GoldenModel, IsWrittenWithTheSameBytes) {
 }
 
 INSTANTIATE_TEST_SUITE_P(OfFormat, GoldenModel,
-                         testing::Values("model_1", "model_2", "model_4", "model_5", "model_6"),
+                         testing::Values("model_1", "model_2", "model_4", "model_5", "model_6",
+                                         "model_7"),
                          [](const auto& tested) { return tested.param; });
 
 TEST(GoldenModels, SayHowPointsAreDescribed) {

@@ -149,7 +149,7 @@ class Generated(unittest.TestCase):
             self.assertIn(cloud.curves[0].kind, ("segment", "arc", "circle", "polyline"))
 
     def test_every_set_of_the_program_is_there(self):
-        for name in ("sparse", "drawn"):
+        for name in ("sparse", "drawn", "pieces"):
             with tempfile.TemporaryDirectory() as folder:
                 first, ours = next(pcednet.generate(name)), pathlib.Path(folder) / "ours.ply"
                 pcednet.write(ours, first)

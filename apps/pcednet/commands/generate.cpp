@@ -5,6 +5,7 @@
 
 #include "commands.h"
 #include "number_options.h"
+#include "pcednet/cloud/class_table.h"
 #include "pcednet/core/error.h"
 #include "pcednet/formats/write_cloud.h"
 #include "pcednet/io/drawing/drawing.h"
@@ -12,6 +13,7 @@
 #include "workbench/shapes/cad_set.h"
 #include "workbench/shapes/default_set.h"
 #include "workbench/shapes/line_set.h"
+#include "workbench/shapes/piece_set.h"
 #include "workbench/shapes/relief_set.h"
 #include "workbench/shapes/scan_set.h"
 #include "workbench/shapes/sparse_set.h"
@@ -24,6 +26,14 @@ namespace {
 double percent_of(const PointCloud& cloud, EdgeClass label) {
   const auto count = std::count(cloud.labels.begin(), cloud.labels.end(), label);
   return 100.0 * static_cast<double>(count) / static_cast<double>(cloud.size());
+}
+
+/// The shares of the edge classes; none of a cloud with own classes.
+std::string shares_of(const PointCloud& cloud) {
+  if (has_own_classes(classes_of(cloud.comments))) return "";
+  return fmt::format(" {:>6.1f} {:>6.1f} {:>6.1f} {:>6.1f}", percent_of(cloud, kSharpEdge),
+                     percent_of(cloud, kSmoothEdge), percent_of(cloud, kBoundary),
+                     percent_of(cloud, kNonEdge));
 }
 
 std::string details(const shapes::Recipe& recipe) {
@@ -57,6 +67,10 @@ std::string details(const shapes::TerrainRecipe& recipe) {
 
 std::string details(const shapes::LineRecipe&) {
   return "";
+}
+
+std::string details(const shapes::PieceRecipe& recipe) {
+  return recipe.points == 0 ? "  whole" : "  piece";
 }
 
 /// The file of a cloud's true curves: in a separate folder, which folder inputs leave out.
@@ -97,9 +111,8 @@ void run(const std::string& folder, std::uint64_t seed, const Common& common,
     const PointCloud& cloud = made.cloud;
     if (!made.curves.empty()) write_curves(curves_of(folder, recipe.name), made.curves, common);
     formats::write_cloud(path_of(recipe), cloud, {.overwrite = common.overwrite()});
-    say(fmt::format("{:<16} {:>7} {:>6.1f} {:>6.1f} {:>6.1f} {:>6.1f}{}", recipe.name, cloud.size(),
-                    percent_of(cloud, kSharpEdge), percent_of(cloud, kSmoothEdge),
-                    percent_of(cloud, kBoundary), percent_of(cloud, kNonEdge), details(recipe)));
+    say(fmt::format("{:<16} {:>7}{}{}", recipe.name, cloud.size(), shares_of(cloud),
+                    details(recipe)));
     points += cloud.size();
     stage.advance();
   };
@@ -249,6 +262,9 @@ void add_generate(CLI::App& app, Common& common) {
   add_set(*generate, common, "drawn",
           "Labelled clouds for training: CAD parts of 6,000 to 40,000 points drawn by area, clean",
           "pcednet generate drawn parts/", shapes::drawn_part_recipes);
+  add_set(*generate, common, "pieces",
+          "Clouds of 600 to 5,000 points, labelled as whole things or as pieces of scans",
+          "pcednet generate pieces clouds/", shapes::piece_recipes);
   add_line_set(*generate, common);
   add_sample(*generate, common);
 }

@@ -12,6 +12,7 @@
 #include "number_options.h"
 #include "pcednet/core/error.h"
 #include "pcednet/detect/cloud_kind.h"
+#include "pcednet/detect/piece.h"
 #include "pcednet/detect/train.h"
 #include "pcednet/io/text_scan.h"
 #include "prepare.h"
@@ -34,6 +35,7 @@ struct TrainArguments {
   std::vector<std::string> inputs;
   std::string project, output;
   std::vector<std::pair<std::string, std::string>> experts;  ///< model files and kinds of clouds
+  std::string pieces;                                        ///< a model file
   std::string only;                                          ///< the kind of clouds to learn from
   bool no_normals = false;                                   ///< ignore the normals of the clouds
   detect::PrepareOptions preparation;
@@ -82,6 +84,7 @@ detect::CloudKind take_kind(const std::string& option, const std::string& text) 
 struct Experts {
   std::vector<detect::EdgeModel> models = {};
   std::vector<detect::CloudKind> kinds = {};
+  std::optional<detect::EdgeModel> pieces = {};
 };
 
 /// Throws before the work if they do not fit.
@@ -92,6 +95,10 @@ Experts read_experts(const TrainArguments& arguments) {
     experts.kinds.push_back(take_kind("--expert", kind));
     const auto classes = static_cast<std::size_t>(arguments.options.architecture.classes);
     detect::check_fits(experts.models.back(), arguments.options.descriptor, classes);
+  }
+  if (!arguments.pieces.empty()) {
+    experts.pieces = detect::load_model(arguments.pieces);
+    detect::check_pieces(*experts.pieces, arguments.options.descriptor);
   }
   return experts;
 }
@@ -221,6 +228,7 @@ void train(const TrainArguments& arguments, const Common& common) {
   check_not_inputs(arguments.output, arguments.inputs);
   check_not_input(arguments.output, arguments.project);
   for (const auto& [file, kind] : arguments.experts) check_not_input(arguments.output, file);
+  check_not_input(arguments.output, arguments.pieces);
   check_extension(arguments.output);
   check_writable(arguments.output, common.overwrite());
   if (arguments.inputs.empty() && arguments.project.empty()) {
@@ -236,6 +244,7 @@ void train(const TrainArguments& arguments, const Common& common) {
   for (std::size_t i = 0; i < experts.models.size(); ++i) {
     detect::join_expert(trained.model, experts.models[i], experts.kinds[i]);
   }
+  if (experts.pieces) detect::join_pieces(trained.model, *experts.pieces);
   detect::save_model(arguments.output, trained.model, common.overwrite());
   tell(trained);
   const auto& context = trained.model.context;
@@ -274,6 +283,11 @@ void add_data_options(CLI::App& command, TrainArguments& arguments) {
           "for clouds of a kind, written as for --only; where several could, the first does")
       ->type_name("TEXT")
       ->excludes("--project");
+  command
+      .add_option("--pieces", arguments.pieces,
+                  "A model file, trained on the clouds of `generate pieces` with the same options: "
+                  "where it finds a piece of a larger cloud, no expert for few points decides")
+      ->needs("--expert");
 }
 
 void add_network_options(CLI::App& command, detect::TrainOptions& options) {

@@ -7,12 +7,12 @@
 
 #include "pcednet/core/blocks.h"
 #include "pcednet/core/error.h"
-#include "pcednet/detect/cloud_kind.h"
 #include "pcednet/detect/context.h"
 #include "pcednet/detect/crease_kind.h"
 #include "pcednet/detect/decide.h"
 #include "pcednet/detect/describe.h"
 #include "pcednet/detect/octaves.h"
+#include "pcednet/detect/piece.h"
 #include "pcednet/nn/predict.h"
 
 namespace pcednet::detect {
@@ -95,10 +95,9 @@ Classification classify_with(const Decide& decide, const Subject& subject, const
 
 Classification classify(const PreparedCloud& cloud, const EdgeModel& model,
                         const Progress* progress) {
-  const auto traits = model.experts.empty() ? CloudTraits{} : traits_of(cloud, model.descriptor);
   return classify_with(
       [&](const EdgeModel& suited) { return describe_and_decide(cloud, suited, progress); },
-      {cloud.positions, cloud.curve, traits}, model, progress);
+      {cloud.positions, cloud.curve, traits_for(model, cloud)}, model, progress);
 }
 
 Classification classify(const DescribedCloud& cloud, std::span<const Vec3> positions,
@@ -120,7 +119,7 @@ Classification classify(const DescribedCloud& cloud, std::span<const Vec3> posit
     found.s_max = cloud.scales.back();
     return found;
   };
-  return classify_with(decide, {positions, cloud.order, cloud.traits}, model, progress);
+  return classify_with(decide, {positions, cloud.order, traits_for(model, cloud)}, model, progress);
 }
 
 }  // namespace pcednet::detect

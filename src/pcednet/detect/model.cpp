@@ -22,9 +22,10 @@ namespace {
 constexpr const char* kFormat = "pcednet-edge-model-1";
 constexpr const char* kContextFormat = "pcednet-edge-model-2";  // with a context network
 constexpr const char* kExpertFormat = "pcednet-edge-model-4";   // with experts
+constexpr const char* kPiecesFormat = "pcednet-edge-model-5";   // with a network for pieces
 constexpr const char* kOwnFormat = "pcednet-class-model-1";     // with own classes
 constexpr const char* kOwnContextFormat = "pcednet-class-model-2";
-constexpr std::string_view kContext = "context.";
+constexpr std::string_view kContext = "context.", kPieces = "pieces.";
 constexpr const char* kKind = "kind";  // of experts
 const std::array<std::vector<std::uint8_t>, 2> kClassLists = {
     {{kNonEdge, kSmoothEdge, kSharpEdge}, {kNonEdge, kSharpEdge}}};
@@ -51,10 +52,15 @@ gls::Reconstruction take_reconstruction(nn::Metadata& metadata) {
   metadata.refuse_value(key, name);
 }
 
-const char* format_of(bool has_own_classes, bool has_context, bool has_experts) {
-  if (has_own_classes) return has_context ? kOwnContextFormat : kOwnFormat;
-  if (has_experts) return kExpertFormat;
-  return has_context ? kContextFormat : kFormat;
+struct Parts {
+  bool context = false, experts = false, pieces = false;
+};
+
+const char* format_of(bool has_own_classes, const Parts& parts) {
+  if (has_own_classes) return parts.context ? kOwnContextFormat : kOwnFormat;
+  if (parts.pieces) return kPiecesFormat;
+  if (parts.experts) return kExpertFormat;
+  return parts.context ? kContextFormat : kFormat;
 }
 
 std::string expert_prefix(std::size_t number) {
@@ -188,11 +194,14 @@ std::optional<nn::Model> read_context(const std::filesystem::path& path,
   return context;
 }
 
-bool fits(const nn::Model& model, const EdgeModel& its) {
+bool fits(const nn::Model& model, const gls::ScaleSpaceOptions& descriptor, std::size_t classes) {
   const nn::Architecture& network = model.network.architecture;
-  return network.scales == its.descriptor.scales &&
-         network.features == gls::column_count(its.descriptor) &&
-         network.classes == static_cast<int>(its.classes.size());
+  return network.scales == descriptor.scales && network.features == gls::column_count(descriptor) &&
+         network.classes == static_cast<int>(classes);
+}
+
+bool fits(const nn::Model& model, const EdgeModel& its) {
+  return fits(model, its.descriptor, its.classes.size());
 }
 
 Expert read_expert(const std::filesystem::path& path, nn::Safetensors content,
@@ -220,6 +229,20 @@ std::vector<nn::Safetensors> take_experts(nn::Safetensors& content) {
     if (part.tensors.empty()) return experts;
     experts.push_back(std::move(part));
   }
+}
+
+std::optional<nn::Model> read_pieces(const std::filesystem::path& path,
+                                     const nn::Safetensors& content, const EdgeModel& model) {
+  if (content.tensors.empty()) return {};
+  constexpr std::size_t kWholeOrPiece = 2;
+  nn::Model pieces = nn::from_safetensors(content, path.string() + ": network for pieces");
+  if (!fits(pieces, model.descriptor, kWholeOrPiece)) {
+    throw Error(
+        ErrorKind::kModelMismatch,
+        fmt::format("{}: the network for pieces does not fit the descriptor and two classes",
+                    path.string()));
+  }
+  return pieces;
 }
 
 nn::Safetensors to_store(const Expert& expert) {
@@ -257,6 +280,7 @@ EdgeModel suited_to(EdgeModel model, const CloudTraits& traits) {
     model.context = expert->context;
   }
   model.experts.clear();
+  model.pieces.reset();
   return model;
 }
 
@@ -286,11 +310,14 @@ EdgeModel load_model(const std::filesystem::path& path) {
   nn::Safetensors content = nn::read_safetensors(path);
   const std::vector<nn::Safetensors> experts = take_experts(content);
   const nn::Safetensors context = take_part(content, kContext);
+  const nn::Safetensors pieces = take_part(content, kPieces);
   model.network = nn::from_safetensors(content, path.string());
   nn::Metadata metadata(std::move(model.network.metadata), path.string());
   if (metadata.has("class_table")) model.table = take_table(metadata);
-  metadata.take_fixed("format", format_of(has_own_classes(model.table), !context.tensors.empty(),
-                                          !experts.empty()));
+  metadata.take_fixed("format", format_of(has_own_classes(model.table),
+                                          {.context = !context.tensors.empty(),
+                                           .experts = !experts.empty(),
+                                           .pieces = !pieces.tensors.empty() && !experts.empty()}));
   metadata.take_fixed("undefined", "zero");
   metadata.take("version");
   model.name = metadata.take("name");
@@ -308,6 +335,7 @@ EdgeModel load_model(const std::filesystem::path& path) {
   for (const nn::Safetensors& part : experts) {
     model.experts.push_back(read_expert(path, part, model));
   }
+  model.pieces = read_pieces(path, pieces, model);
   return model;
 }
 
@@ -315,7 +343,9 @@ void save_model(const std::filesystem::path& path, const EdgeModel& model, Overw
   nn::Model network = model.network;
   auto& metadata = network.metadata;
   metadata["format"] =
-      format_of(has_own_classes(model.table), model.context.has_value(), !model.experts.empty());
+      format_of(has_own_classes(model.table), {.context = model.context.has_value(),
+                                               .experts = !model.experts.empty(),
+                                               .pieces = model.pieces.has_value()});
   metadata["version"] = kVersion;
   metadata["undefined"] = "zero";
   metadata["name"] = model.name;
@@ -331,6 +361,7 @@ void save_model(const std::filesystem::path& path, const EdgeModel& model, Overw
   for (std::size_t number = 0; number < model.experts.size(); ++number) {
     add_part(to_store(model.experts[number]), expert_prefix(number), content);
   }
+  if (model.pieces) add_part(nn::to_safetensors(*model.pieces), kPieces, content);
   nn::write_safetensors(path, content, overwrite);
 }
 

@@ -63,6 +63,10 @@ struct EdgeModel {
   /// The context network decides on points with at least this edge probability.
   float least_edge = kLeastEdge;
   std::vector<Expert> experts = {};  ///< the first whose kind matches the cloud decides
+  /// Says whether a description is from a whole thing (output 0) or a piece of a larger cloud (1).
+  /// Where experts would decide for few points, a cloud of pieces counts as large. Only with
+  /// experts.
+  std::optional<nn::Model> pieces = {};
 };
 
 /// Those of `classes` that the context network decides on: the edge classes; none if the table has
@@ -95,7 +99,8 @@ EdgeModel load_model(const std::filesystem::path& path);
 
 /// Writes a safetensors file; the same model gives the same bytes. The context network's tensors
 /// and metadata have the network's names with the prefix "context."; those of the experts have the
-/// prefixes "expert1.", "expert2." and so on, and "kind" among their metadata.
+/// prefixes "expert1.", "expert2." and so on, and "kind" among their metadata; those of the network
+/// for pieces have the prefix "pieces.".
 void save_model(const std::filesystem::path& path, const EdgeModel& model, Overwrite overwrite);
 
 }  // namespace pcednet::detect

@@ -10,6 +10,7 @@
 #include "pcednet/core/version.h"
 #include "pcednet/detect/boundary.h"
 #include "pcednet/detect/context.h"
+#include "pcednet/detect/piece.h"
 #include "pcednet/formats/cloud_facts.h"
 #include "pcednet/gls/scales.h"
 #include "pcednet/normals/exact_planes.h"
@@ -239,6 +240,18 @@ std::size_t count_places(std::span<const Vec3> positions) {
   return positions.size() - copies;
 }
 
+/// The points that count for the choice of experts, of which `places` are the whole: those of a
+/// larger cloud where it is a piece of one.
+std::size_t points_for_experts(const PointCloud& whole, std::size_t places, bool keep_orientation,
+                               const detect::EdgeModel& model) {
+  const bool matter =
+      std::any_of(model.experts.begin(), model.experts.end(),
+                  [&](const detect::Expert& expert) { return places < expert.kind.below; });
+  if (!matter) return places;
+  const auto prepared = detect::prepare(whole, {.keep_orientation = keep_orientation});
+  return detect::traits_for(model, prepared).points;
+}
+
 /// Of coordinates of this type, where s_min is the spacing.
 void note_float_rounding(const detect::EdgeModel& model, ScalarType type, Plan& plan) {
   const bool is_spacing = model.descriptor.range.s_min == 0.0 && plan.normals.rounding.step == 0.0;
@@ -304,6 +317,9 @@ Plan make_plan(const PlanRequest& request, const detect::EdgeModel& model,
       decide_normals(dense, {.keep_orientation = request.keep_orientation}, plan, progress);
   const Spacing spacing =
       find_spacing({sample, is_all}, plan, model.descriptor.range, counts, progress);
+  if (is_all) {
+    plan.places = points_for_experts(dense, plan.places, request.keep_orientation, model);
+  }
   plan.s_min = spacing.range.s_min, plan.s_max = spacing.range.s_max;
   note_float_rounding(model, dense.position_type, plan);
   decide_voxels(prepared, model, plan, progress);

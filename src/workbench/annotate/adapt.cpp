@@ -13,6 +13,7 @@
 #include "pcednet/detect/decide.h"
 #include "pcednet/detect/describe.h"
 #include "pcednet/detect/outputs.h"
+#include "pcednet/detect/piece.h"
 #include "pcednet/nn/predict.h"
 #include "workbench/annotate/outputs.h"
 
@@ -251,7 +252,8 @@ Start make_start(detect::EdgeModel model, const Subject& subject) {
       subject.clouds.begin(), subject.clouds.end(), [](const auto& a, const auto& b) {
         return a.described.cloud.traits.points < b.described.cloud.traits.points;
       });
-  Start start{.model = detect::suited_to(std::move(model), largest->described.cloud.traits)};
+  const detect::CloudTraits traits = detect::traits_for(model, largest->described.cloud);
+  Start start{.model = detect::suited_to(std::move(model), traits)};
   std::optional<nn::Model> context = std::exchange(start.model.context, {});
   std::vector<detect::Classification> found = classify_each(subject, start.model);
   if (context) {
