@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "pcednet/detect/result_cloud.h"
 
 namespace pcednet::detect {
@@ -44,10 +46,14 @@ TEST(ResultTruth, IsNoneWhereAResultHasItsOwnLabelsAlone) {
   EXPECT_NE(truth->note.find("no truth"), std::string::npos);
 }
 
-TEST(ResultTruth, TakesColumnsOfOneByteAPoint) {
+TEST(ResultTruth, TakesColumnsOfOneLabelAPoint) {
   PointCloud cloud = classified({});
   set_attribute(cloud, make_attribute("scalar_input_label", std::vector<float>{1, 0, 2}));
-  EXPECT_TRUE(truth_of_result(cloud)->labels.empty());
+  EXPECT_EQ(truth_of_result(cloud)->labels, (Labels{1, 0, 2}));
+  for (const float wrong : {0.5f, -1.0f, 256.0f, std::nanf("")}) {
+    set_attribute(cloud, make_attribute("scalar_input_label", std::vector<float>{1, wrong, 2}));
+    EXPECT_TRUE(truth_of_result(cloud)->labels.empty()) << wrong;
+  }
   set_attribute(cloud, make_attribute("scalar_input_label", Labels{1, 0, 2, 1, 0, 2}));
   cloud.attributes.back().components = 2;
   EXPECT_TRUE(truth_of_result(cloud)->labels.empty());

@@ -81,6 +81,22 @@ TEST(ReadLabelled, TakesNoResultForATruth) {
   EXPECT_TRUE(contains(neither.warnings.back(), "no truth"));
 }
 
+TEST(ReadLabelled, TakesNoResultInTextOrColoursForATruth) {
+  const Scratch scratch;
+  const std::string columns = "# pcednet model general\n//X Y Z label scalar_input_label\n";
+  const LoadedCloud text =
+      read_labelled(scratch.file("a.xyz", columns + "0 0 0 2 1\n1 0 0 2 0\n0 1 0 0 255\n"));
+  EXPECT_EQ(text.cloud.labels, (Labels{1, 0, 255}));
+  const std::string coloured =
+      "v 0 0 0 1 1 1\nv 1 0 0 0.659 0 0\nv 0 1 0 0.659 0 0\nv 0 0 1 1 1 1\n";
+  for (const bool is_result : {false, true}) {
+    const std::string comment = is_result ? "# pcednet model general\n" : "";
+    const LoadedCloud loaded = read_labelled(scratch.file("a.obj", comment + coloured));
+    EXPECT_EQ(loaded.cloud.labels, (Labels{0, 2, 2, 0}));
+    EXPECT_EQ(contains(loaded.warnings.back(), "no truth"), is_result);
+  }
+}
+
 TEST(AbcFeatures, RefuseWhatTheyCannotBe) {
   const Scratch scratch;
   const auto message = [&](const std::string& text) -> std::string {

@@ -3,19 +3,25 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "pcednet/detect/result_cloud.h"
 
 namespace pcednet::detect {
 namespace {
 
-/// The labels in a column of a result; none if no point has one.
+/// The labels in a column of a result, of any type, as text has none; none if no point has one, or
+/// if a number is no label.
 std::vector<std::uint8_t> labels_in(const PointCloud& cloud, const char* column) {
   const Attribute* attribute = find_attribute(cloud, column);
-  if (!attribute || attribute->type != ScalarType::kUint8 || attribute->components != 1) return {};
-  std::vector<std::uint8_t> labels(attribute->bytes.size());
-  std::transform(attribute->bytes.begin(), attribute->bytes.end(), labels.begin(),
-                 [](std::byte byte) { return std::to_integer<std::uint8_t>(byte); });
+  if (!attribute || attribute->components != 1) return {};
+  constexpr double kMost = kUnlabelled;
+  std::vector<std::uint8_t> labels(attribute->bytes.size() / attribute->stride());
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    const double value = attribute->value(i);
+    if (!(value >= 0.0 && value <= kMost) || value != std::floor(value)) return {};
+    labels[i] = static_cast<std::uint8_t>(value);
+  }
   const auto is_label = [](std::uint8_t label) { return label != kUnlabelled; };
   if (std::none_of(labels.begin(), labels.end(), is_label)) labels.clear();
   return labels;

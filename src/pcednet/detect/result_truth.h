@@ -22,8 +22,8 @@ struct ResultTruth {
 };
 
 /// The truth that `cloud` holds if its comments name a model, so that its own labels are
-/// predictions: the labels of the first of kTruthColumns that labels a point, a byte each. None if
-/// the cloud is no result. Reads the comments and these columns alone.
+/// predictions: the labels of the first of kTruthColumns that labels a point, whole numbers up to
+/// 255 of any type. None if the cloud is no result. Reads the comments and these columns alone.
 std::optional<ResultTruth> truth_of_result(const PointCloud& cloud);
 
 }  // namespace pcednet::detect

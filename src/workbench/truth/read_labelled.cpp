@@ -43,6 +43,7 @@ io::LoadedCloud read_labelled(const std::filesystem::path& path) {
     throw Error(ErrorKind::kInsufficient, fmt::format("{}: has no labels", path.string()));
   }
   loaded.warnings.emplace_back("labels from the colours: grey, yellow and red are the classes");
+  take_truth_of_result(loaded);
   return loaded;
 }
 
