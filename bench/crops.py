@@ -8,13 +8,12 @@ square section, without normals, and compares their labels by MODEL with those o
 column is the largest share of edges in a crop.
 """
 
-import argparse
 import pathlib
-import warnings
 
 import numpy as np
 
 import pcednet
+from each_file import each_file
 
 
 def crop(xyz, points, is_ball, random):
@@ -42,17 +41,8 @@ def measure(path, options):
           f"in the whole {edges_of_whole:.2f}")
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("files", nargs="+")
-    parser.add_argument("--points", type=int, nargs="+", default=[1000, 2000, 3000])
-    parser.add_argument("--crops", type=int, default=10)
-    parser.add_argument("--model", default="general")
-    options = parser.parse_args()
-    warnings.simplefilter("ignore")
-    for path in options.files:
-        measure(path, options)
-
-
 if __name__ == "__main__":
-    main()
+    each_file(__doc__, measure, {
+        "--points": {"type": int, "nargs": "+", "default": [1000, 2000, 3000]},
+        "--crops": {"type": int, "default": 10},
+    })

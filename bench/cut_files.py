@@ -7,14 +7,13 @@ of the points inside the cuts with those of the whole: with the scales of the wh
 Normals are estimated before cutting, or with --no-normals by each file.
 """
 
-import argparse
 import itertools
 import pathlib
-import warnings
 
 import numpy as np
 
 import pcednet
+from each_file import each_file
 
 
 def pieces_of(xyz, cuts, halo):
@@ -51,17 +50,8 @@ def measure(path, options):
     print(f"{pathlib.Path(path).name:32s} {options.cuts} x {options.cuts}   {shares}")
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("files", nargs="+")
-    parser.add_argument("--cuts", type=int, default=4)
-    parser.add_argument("--no-normals", action="store_true")
-    parser.add_argument("--model", default="general")
-    options = parser.parse_args()
-    warnings.simplefilter("ignore")
-    for path in options.files:
-        measure(path, options)
-
-
 if __name__ == "__main__":
-    main()
+    each_file(__doc__, measure, {
+        "--cuts": {"type": int, "default": 4},
+        "--no-normals": {"action": "store_true"},
+    })

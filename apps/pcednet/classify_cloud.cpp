@@ -8,6 +8,7 @@
 #include "descriptor_options.h"
 #include "pcednet/cloud/bounding_box.h"
 #include "pcednet/detect/boundary.h"
+#include "pcednet/detect/rounding.h"
 #include "pcednet/formats/cloud_facts.h"
 #include "pcednet/formats/read_cloud.h"
 #include "pcednet/io/faces.h"
@@ -16,11 +17,10 @@
 namespace pcednet::app {
 namespace {
 
-/// Warns of float32 coordinates that are rounded too coarsely, unless prepare() has spread them.
-void warn_of_rounding(const std::filesystem::path& file, const PointCloud& cloud,
-                      const BoundingBox& bounds, const ClassifiedCloud& classified) {
-  if (cloud.position_type != ScalarType::kFloat32) return;
-  if (classified.prepared.decision.rounding.step > 0.0) return;
+/// Warns of coordinates of this type that are rounded too coarsely.
+void warn_of_rounding(const std::filesystem::path& file, ScalarType type, const BoundingBox& bounds,
+                      const gls::ScaleRange& range, const ClassifiedCloud& classified) {
+  if (!detect::may_be_too_coarse(type, classified.prepared.decision, range)) return;
   const std::string note = formats::note_on_float(bounds, classified.found.s_min);
   if (!note.empty()) warn(fmt::format("{}: {}", file.string(), note));
 }
@@ -50,8 +50,7 @@ ClassifiedCloud classify_cloud(const std::filesystem::path& file, const PointClo
     if (classifier.boundary && has_edges(classifier.model->table)) {
       detect::mark_boundary(result.prepared, result.found, &progress);
     }
-    const bool is_spacing = classifier.model->descriptor.range.s_min == 0.0;  // what s_min is then
-    if (is_spacing) warn_of_rounding(file, cloud, bounds, result);
+    warn_of_rounding(file, cloud.position_type, bounds, classifier.model->descriptor.range, result);
   } else {
     result.found = classify_by_method(cloud, classifier.method, &progress);
   }

@@ -8,6 +8,7 @@
 #include "pcednet/cloud/bounding_box.h"
 #include "pcednet/core/error.h"
 #include "pcednet/detect/cloud_kind.h"
+#include "pcednet/detect/rounding.h"
 #include "pcednet/formats/cloud_facts.h"
 #include "pcednet/gls/scales.h"
 #include "pcednet/nn/model_file.h"
@@ -107,7 +108,8 @@ std::string note_on_extent(const gls::ScaleSpaceOptions& options, std::span<cons
 
 std::string note_on_float(bool is_float32, const detect::PreparedCloud& cloud,
                           const gls::ScaleSpaceOptions& options, double s_min) {
-  if (!is_float32 || options.range.s_min != 0.0 || cloud.decision.rounding.step > 0.0) return {};
+  const auto type = is_float32 ? ScalarType::kFloat32 : ScalarType::kFloat64;
+  if (!detect::may_be_too_coarse(type, cloud.decision, options.range)) return {};
   return formats::note_on_float(bounding_box(cloud.positions), s_min);
 }
 

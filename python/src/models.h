@@ -21,7 +21,7 @@ std::string note_on_extent(const gls::ScaleSpaceOptions& options, std::span<cons
                            const std::string& whose = "");
 
 /// formats::note_on_float() of a cloud that is described at scales from `s_min`; empty unless
-/// `is_float32` and s_min is the spacing, and for positions that prepare() has spread.
+/// detect::may_be_too_coarse().
 std::string note_on_float(bool is_float32, const detect::PreparedCloud& cloud,
                           const gls::ScaleSpaceOptions& options, double s_min);
 

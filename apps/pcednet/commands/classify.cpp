@@ -18,6 +18,7 @@
 #include "pcednet/core/error.h"
 #include "pcednet/detect/cloud_kind.h"
 #include "pcednet/detect/result_cloud.h"
+#include "pcednet/detect/result_truth.h"
 #include "pcednet/formats/write_cloud.h"
 #include "pcednet/gls/scales.h"
 #include "prepare.h"
@@ -116,7 +117,7 @@ void report(const Job& job, const detect::Classification& result, const Counts& 
 }
 
 void say_kept(const std::filesystem::path& input, const detect::KeptInput& kept) {
-  if (kept.labels) say("  the input's labels are kept as scalar_input_label");
+  if (kept.labels) say(fmt::format("  the input's labels are kept as {}", detect::kInputLabels));
   if (kept.colours) say("  the input's colours are kept; --class-colours replaces them");
   warn_of_replaced(input.string(), kept.replaced);
 }

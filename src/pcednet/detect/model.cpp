@@ -13,6 +13,7 @@
 #include "pcednet/core/version.h"
 #include "pcednet/detect/cloud_kind.h"
 #include "pcednet/detect/context.h"
+#include "pcednet/detect/outputs.h"
 #include "pcednet/nn/metadata.h"
 #include "pcednet/nn/model_file.h"
 
@@ -234,9 +235,8 @@ std::vector<nn::Safetensors> take_experts(nn::Safetensors& content) {
 std::optional<nn::Model> read_pieces(const std::filesystem::path& path,
                                      const nn::Safetensors& content, const EdgeModel& model) {
   if (content.tensors.empty()) return {};
-  constexpr std::size_t kWholeOrPiece = 2;
   nn::Model pieces = nn::from_safetensors(content, path.string() + ": network for pieces");
-  if (!fits(pieces, model.descriptor, kWholeOrPiece)) {
+  if (!fits(pieces, model.descriptor, kPieceOutputs)) {
     throw Error(
         ErrorKind::kModelMismatch,
         fmt::format("{}: the network for pieces does not fit the descriptor and two classes",

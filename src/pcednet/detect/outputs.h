@@ -11,6 +11,9 @@
 
 namespace pcednet::detect {
 
+/// Of a network that tells pieces from wholes: whole, piece.
+inline constexpr std::size_t kPieceOutputs = 2;
+
 /// Whether networks learn from points with that label.
 inline bool is_learnt_from(std::uint8_t label, const ClassTable& table) {
   return label < table.size();

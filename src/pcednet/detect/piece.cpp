@@ -8,12 +8,11 @@
 #include <vector>
 
 #include "pcednet/core/error.h"
+#include "pcednet/detect/outputs.h"
 #include "pcednet/nn/predict.h"
 
 namespace pcednet::detect {
 namespace {
-
-constexpr std::size_t kPieceOutput = 1, kPieceOutputs = 2;  // of the classes whole, piece
 
 CloudTraits as_piece(CloudTraits traits) {
   traits.points = CloudTraits{}.points;
@@ -26,6 +25,7 @@ bool asks_for_pieces(const EdgeModel& model, const CloudTraits& traits) {
 
 bool is_piece(const nn::Model& pieces, std::span<const float> rows) {
   constexpr double kLeastShare = 1e-4;  // no point decides alone
+  constexpr std::size_t kPieceOutput = 1;
   const std::vector<float> probabilities = nn::predict(pieces, rows);
   double sum = 0.0;
   for (std::size_t i = kPieceOutput; i < probabilities.size(); i += kPieceOutputs) {
@@ -42,7 +42,11 @@ CloudTraits traits_for(const EdgeModel& model, const PreparedCloud& cloud) {
   if (model.experts.empty()) return {};
   const CloudTraits traits = traits_of(cloud, model.descriptor);
   if (cloud.part || !asks_for_pieces(model, traits)) return traits;
-  return traits_for(model, describe(cloud, model.descriptor));
+  std::vector<float> rows;
+  describe_rows(cloud, model.descriptor, [&](const auto&, std::span<const float> some) {
+    rows.insert(rows.end(), some.begin(), some.end());
+  });
+  return is_piece(*model.pieces, rows) ? as_piece(traits) : traits;
 }
 
 CloudTraits traits_for(const EdgeModel& model, const DescribedCloud& cloud) {

@@ -8,6 +8,7 @@
 #include "pcednet/cloud/class_table.h"
 #include "pcednet/core/version.h"
 #include "pcednet/detect/decide.h"
+#include "pcednet/detect/result_truth.h"
 
 namespace pcednet::detect {
 namespace {
@@ -106,7 +107,7 @@ KeptInput add_result(PointCloud& cloud, std::span<const Vec3> made, const Classi
   const bool classified_before = find_attribute(cloud, "scalar_edge_class") != nullptr ||
                                  find_attribute(cloud, "scalar_class") != nullptr;
   if (cloud.has_labels() && !classified_before) {
-    set_attribute(cloud, make_attribute("scalar_input_label", cloud.labels));
+    set_attribute(cloud, make_attribute(kInputLabels, cloud.labels));
     kept.labels = true;
   }
   const bool estimated =

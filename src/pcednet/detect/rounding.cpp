@@ -78,4 +78,9 @@ std::vector<Vec3> spread(std::span<const Vec3> positions, const Rounding& roundi
   return moved;
 }
 
+bool may_be_too_coarse(ScalarType type, const NormalsDecision& decision,
+                       const gls::ScaleRange& range) {
+  return type == ScalarType::kFloat32 && range.s_min == 0.0 && decision.rounding.step == 0.0;
+}
+
 }  // namespace pcednet::detect

@@ -6,6 +6,7 @@
 
 #include "pcednet/core/vec3.h"
 #include "pcednet/detect/prepare.h"
+#include "pcednet/gls/scale_space_options.h"
 
 namespace pcednet::detect {
 
@@ -22,5 +23,10 @@ Rounding find_rounding(std::span<const Vec3> positions, std::span<const std::uin
 /// coordinate: the stairs become noise of 0.29 steps. What is added depends on the rounded position
 /// relative to the origin alone, so copies of a point stay copies.
 std::vector<Vec3> spread(std::span<const Vec3> positions, const Rounding& rounding);
+
+/// Whether coordinates of this type may be rounded to more than the spacing, which s_min is then:
+/// those of float32, unless `range` gives s_min or prepare() has spread the positions.
+bool may_be_too_coarse(ScalarType type, const NormalsDecision& decision,
+                       const gls::ScaleRange& range);
 
 }  // namespace pcednet::detect

@@ -11,6 +11,7 @@
 #include "pcednet/detect/boundary.h"
 #include "pcednet/detect/context.h"
 #include "pcednet/detect/piece.h"
+#include "pcednet/detect/rounding.h"
 #include "pcednet/formats/cloud_facts.h"
 #include "pcednet/gls/scales.h"
 #include "pcednet/normals/exact_planes.h"
@@ -252,10 +253,9 @@ std::size_t points_for_experts(const PointCloud& whole, std::size_t places, bool
   return detect::traits_for(model, prepared).points;
 }
 
-/// Of coordinates of this type, where s_min is the spacing.
+/// Of coordinates of this type.
 void note_float_rounding(const detect::EdgeModel& model, ScalarType type, Plan& plan) {
-  const bool is_spacing = model.descriptor.range.s_min == 0.0 && plan.normals.rounding.step == 0.0;
-  if (!is_spacing || type != ScalarType::kFloat32) return;
+  if (!detect::may_be_too_coarse(type, plan.normals, model.descriptor.range)) return;
   const std::string note = formats::note_on_float(plan.box, plan.s_min);
   if (!note.empty()) plan.notes.push_back(note);
 }

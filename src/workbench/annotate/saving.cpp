@@ -6,6 +6,7 @@
 
 #include "pcednet/core/error.h"
 #include "pcednet/detect/result_cloud.h"
+#include "pcednet/detect/result_truth.h"
 #include "pcednet/formats/format.h"
 #include "pcednet/io/drawing/drawing.h"
 #include "pcednet/io/las/las.h"
@@ -116,12 +117,12 @@ PointCloud saved_cloud(const Scene& scene, const std::vector<std::uint8_t>& labe
                        with_names(prediction->model, table));
   } else {
     if (cloud.has_labels()) {
-      set_attribute(cloud, make_attribute("scalar_input_label", cloud.labels));
+      set_attribute(cloud, make_attribute(detect::kInputLabels, cloud.labels));
     }
     cloud.labels = labels;
   }
   if (has_own_classes(table)) detect::add_class_comments(cloud, table);
-  set_attribute(cloud, make_attribute("scalar_painted_label", labels));
+  set_attribute(cloud, make_attribute(detect::kPaintedLabels, labels));
   return cloud;
 }
 

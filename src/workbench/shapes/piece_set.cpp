@@ -4,18 +4,18 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <numeric>
 #include <utility>
 
 #include "pcednet/cloud/class_table.h"
 #include "pcednet/core/random.h"
+#include "workbench/shapes/part_pieces.h"
 #include "workbench/shapes/sparse_set.h"
 
 namespace pcednet::shapes {
 namespace {
 
-constexpr std::size_t kFewestInPiece = 600, kMostInPiece = 4000;
+constexpr double kFewestInPiece = 600, kMostInPiece = 4000;
 constexpr std::uint8_t kWhole = 0, kPiece = 1;
 
 template <typename Recipes>
@@ -34,14 +34,12 @@ void add_pieces(const Recipes& wholes, int time, std::uint64_t seed,
   constexpr std::array kCuts = {Cut::kBall, Cut::kColumn, Cut::kCube};
   for (const auto& whole : wholes) {
     Random random(seed, 189000 + recipes.size());
-    const double share = random.uniform();
-    recipes.push_back(
-        {.name = fmt::format("piece_{}_{}", whole.name, time),
-         .whole = whole,
-         .whole_seed = random.next(),
-         .points = static_cast<std::size_t>(
-             kFewestInPiece * std::pow(static_cast<double>(kMostInPiece) / kFewestInPiece, share)),
-         .cut = kCuts[recipes.size() % kCuts.size()]});
+    const std::size_t points = points_between(random, kFewestInPiece, kMostInPiece);
+    recipes.push_back({.name = fmt::format("piece_{}_{}", whole.name, time),
+                       .whole = whole,
+                       .whole_seed = random.next(),
+                       .points = points,
+                       .cut = kCuts[recipes.size() % kCuts.size()]});
   }
 }
 
