@@ -13,6 +13,7 @@
 #include "io/scratch.h"
 #include "pcednet/core/parallel.h"
 #include "pcednet/detect/classify.h"
+#include "pcednet/detect/describe.h"
 #include "pcednet/detect/piece.h"
 #include "pcednet/formats/write_cloud.h"
 #include "workbench/shapes/cad_set.h"
@@ -180,6 +181,39 @@ std::vector<PieceRecipe> some_of(bool pieces, std::size_t most) {
 TEST(ShippedModels, GeneralTellsPiecesOfScansFromWholeThings) {
   EXPECT_GT(share_of_pieces(some_of(true, 40)), 0.94);
   EXPECT_LT(share_of_pieces(some_of(false, 120)), 0.06);
+}
+
+TEST(ShippedModels, GeneralFindsTheAcuteEdgesOfATetrahedron) {
+  const std::array<Vec3, 4> corners = {Vec3(1, 1, 1), Vec3(1, -1, -1), Vec3(-1, 1, -1),
+                                       Vec3(-1, -1, 1)};
+  Random random(3);
+  PointCloud cloud;
+  constexpr std::size_t kPoints = 4000;
+  std::vector<double> distances;  // to the edges of its face, in spacings
+  const double spacing = std::sqrt(8.0 * std::sqrt(3.0) / kPoints);
+  while (cloud.size() < kPoints) {
+    const std::size_t face = cloud.size() % 4;
+    const double a = random.uniform(), b = random.uniform();
+    if (a + b > 1.0) continue;
+    const Vec3 &first = corners[(face + 1) % 4], &second = corners[(face + 2) % 4];
+    const Vec3& third = corners[(face + 3) % 4];
+    cloud.positions.push_back(first + a * (second - first) + b * (third - first));
+    cloud.normals.push_back(-corners[face].normalized());
+    distances.push_back(std::min({a, b, 1.0 - a - b}) * std::sqrt(6.0) / spacing);
+  }
+  const auto model = detect::load_model(PCEDNET_SOURCE_DIR "/models/general.safetensors");
+  const detect::PreparedCloud prepared = detect::prepare(cloud);
+  const detect::Classification found = detect::classify(prepared, model);
+  const auto described = detect::describe(prepared, model.descriptor);
+  EXPECT_EQ(detect::classify(described, cloud.positions, model).classes, found.classes);
+  std::size_t near = 0, sharp = 0, far = 0, wrong = 0;
+  for (std::size_t i = 0; i < kPoints; ++i) {
+    const bool edge = found.classes[i] != kNonEdge;
+    near += distances[i] < 0.4, sharp += distances[i] < 0.4 && found.classes[i] == kSharpEdge;
+    far += distances[i] > 2.5, wrong += distances[i] > 2.5 && edge;
+  }
+  EXPECT_GT(static_cast<double>(sharp), 0.9 * static_cast<double>(near));
+  EXPECT_LT(static_cast<double>(wrong), 0.005 * static_cast<double>(far));
 }
 
 /// The share of the points of rough ground and plants that `model` calls sharp-edge.

@@ -5,29 +5,24 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <numbers>
-#include <numeric>
 #include <optional>
 #include <span>
 
-#include "pcednet/cloud/bounding_box.h"
 #include "pcednet/cloud/point_cloud.h"
 #include "pcednet/core/eigendecomposition.h"
 #include "pcednet/core/parallel.h"
 #include "pcednet/detect/decide.h"
-#include "pcednet/detect/part_of_cloud.h"
+#include "pcednet/detect/distinct_points.h"
+#include "pcednet/detect/spread.h"
 #include "pcednet/spatial/neighbour_search.h"
 #include "pcednet/spatial/opening.h"
-#include "pcednet/spatial/places.h"
 
 namespace pcednet::detect {
 namespace {
 
 constexpr std::size_t kNeighbours = kBoundaryNeighbours, kLeastNeighbours = 12;
-/// Of clouds with more points some are tried first, then those around the points found: a rim is a
-/// line of points.
-constexpr std::size_t kMostWhole = std::size_t{1} << 17;
-constexpr double kCellsAlong = 0x1p26;
 constexpr std::size_t kTogether = 1024;
 
 constexpr double kOpening = 105.0 * std::numbers::pi / 180.0;
@@ -53,21 +48,6 @@ constexpr double kLeastAlong = 0.3;
 constexpr double kAcross = 0.7;  ///< and as much per length along the rim
 
 constexpr std::uint32_t kNone = 0xffffffff;
-
-/// The finite positions along the curve, each once, in an order independent of their numbering.
-struct DistinctPoints : spatial::Places {
-  const PreparedCloud& cloud;
-
-  /// The normal of a point; the first by its components if copies differ, zero if none is usable.
-  Vec3 normal(std::size_t point) const {
-    Vec3 found = Vec3::Zero();
-    for (const std::uint32_t copy : points(point)) {
-      const Vec3& normal = cloud.normals[copy];
-      if (is_usable(normal) && (found.isZero(0.0) || is_before(normal, found))) found = normal;
-    }
-    return found;
-  }
-};
 
 /// A point with all its neighbours on one side.
 struct RimPoint {
@@ -224,64 +204,24 @@ std::vector<RimPoint> rims_at(const DistinctPoints& points, const spatial::Neigh
   return rims;
 }
 
-/// A quarter of all places, by the cells of a fine grid over the whole cloud: a part of it has the
-/// same, and a point far from all others leaves the cells much smaller than the spacing.
-class FirstPlaces {
- public:
-  FirstPlaces(const DistinctPoints& points, const PartOfCloud* part) {
-    const BoundingBox box = bounding_box(points.positions);
-    corner_ = part ? part->pyramids.front().corner : box.min;
-    per_length_ =
-        kCellsAlong / (part ? part->pyramids.front().side : (box.max - box.min).maxCoeff());
-  }
-
-  bool hold(const Vec3& position) const {
-    std::uint64_t bits = 0;
-    for (int axis = 0; axis < 3; ++axis) {
-      const double cell = std::floor((position[axis] - corner_[axis]) * per_length_);
-      bits = (bits ^ static_cast<std::uint64_t>(static_cast<std::int64_t>(cell))) *
-             0x9e3779b97f4a7c15;  // 2^64 over the golden ratio
-      bits ^= bits >> 32;
-    }
-    return bits % 4 == 0;
-  }
-
- private:
-  Vec3 corner_;
-  double per_length_;
-};
-
-/// The points of all rims, and of gaps that look like one. Where one is found, all points around it
-/// are tried.
+/// The points of all rims, and of gaps that look like one.
 std::vector<RimPoint> find_rims(const DistinctPoints& points, const Progress* progress) {
   const spatial::NeighbourSearch search(points.positions);
   if (search.available(kNeighbours) < kLeastNeighbours) return {};
-  const PartOfCloud* part = points.cloud.part;
-  const bool whole = (part ? part->points : points.size()) <= kMostWhole;
-  std::vector<std::uint32_t> todo(points.size());
-  std::iota(todo.begin(), todo.end(), 0u);
-  if (!whole) {
-    const FirstPlaces first(points, part);
-    std::erase_if(todo, [&](std::uint32_t i) { return !first.hold(points.positions[i]); });
-  }
-  std::vector<std::uint8_t> tried(points.size(), 0);
-  for (const std::uint32_t i : todo) tried[i] = 1;
   std::vector<RimPoint> rims;
   Stage stage(progress, "boundary", points.size());
-  while (!todo.empty()) {
+  const auto try_places = [&](std::span<const std::uint32_t> todo) {
     const std::vector<RimPoint> found = rims_at(points, search, todo, stage);
     rims.insert(rims.end(), found.begin(), found.end());
-    todo.clear();
+    std::vector<std::uint32_t> around;
     for (const RimPoint& rim : found) {
-      for (const std::uint32_t other : rim.others) {
-        if (other == kNone || tried[other]) continue;
-        tried[other] = 1;
-        todo.push_back(other);
-      }
+      std::copy_if(rim.others.begin(), rim.others.end(), std::back_inserter(around),
+                   [](std::uint32_t other) { return other != kNone; });
     }
-    std::sort(todo.begin(), todo.end());
-  }
-  stage.advance(static_cast<std::size_t>(std::count(tried.begin(), tried.end(), 0)));
+    return around;
+  };
+  const auto first = first_places(points.positions, points.cloud.part);
+  stage.advance(points.size() - spread(points.size(), first, try_places));
   return rims;
 }
 
@@ -327,7 +267,7 @@ void remove_isolated(const DistinctPoints& points, std::vector<RimPoint>& rims) 
 }  // namespace
 
 std::vector<BoundaryPoint> find_boundary(const PreparedCloud& cloud, const Progress* progress) {
-  const DistinctPoints points{spatial::places_of(cloud.positions, cloud.curve), cloud};
+  const DistinctPoints points(cloud);
   std::vector<RimPoint> rims = find_rims(points, progress);
   remove_isolated(points, rims);
   std::vector<BoundaryPoint> boundary;

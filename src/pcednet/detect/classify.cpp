@@ -7,6 +7,7 @@
 
 #include "pcednet/core/blocks.h"
 #include "pcednet/core/error.h"
+#include "pcednet/detect/acute_edge.h"
 #include "pcednet/detect/context.h"
 #include "pcednet/detect/crease_kind.h"
 #include "pcednet/detect/decide.h"
@@ -70,6 +71,7 @@ struct Subject {
   std::span<const Vec3> positions;
   std::span<const std::uint32_t> curve;  ///< spatial::curve_order() of the positions
   CloudTraits traits;                    ///< if the model asks for any
+  std::span<const AcuteEdgePoint> acute_edges;
 };
 
 /// decide(model) returns the classification by the model's networks from each point's description;
@@ -84,6 +86,7 @@ Classification classify_with(const Decide& decide, const Subject& subject, const
   }
   const Expert* expert = expert_for(model, subject.traits);
   if (expert) found.expert = expert->kind;
+  if (has_edges(model.table)) mark_acute_edges(subject.acute_edges, suited, found);
   if (is_by_creases(model, expert)) {
     apply_crease_kind(subject.positions, subject.curve, found.s_min, suited.least_edge, found);
   }
@@ -95,9 +98,10 @@ Classification classify_with(const Decide& decide, const Subject& subject, const
 
 Classification classify(const PreparedCloud& cloud, const EdgeModel& model,
                         const Progress* progress) {
+  const auto acute_edges = find_acute_edges(cloud, model.descriptor, progress);
   return classify_with(
       [&](const EdgeModel& suited) { return describe_and_decide(cloud, suited, progress); },
-      {cloud.positions, cloud.curve, traits_for(model, cloud)}, model, progress);
+      {cloud.positions, cloud.curve, traits_for(model, cloud), acute_edges}, model, progress);
 }
 
 Classification classify(const DescribedCloud& cloud, std::span<const Vec3> positions,
@@ -119,7 +123,9 @@ Classification classify(const DescribedCloud& cloud, std::span<const Vec3> posit
     found.s_max = cloud.scales.back();
     return found;
   };
-  return classify_with(decide, {positions, cloud.order, traits_for(model, cloud)}, model, progress);
+  return classify_with(decide,
+                       {positions, cloud.order, traits_for(model, cloud), cloud.acute_edges}, model,
+                       progress);
 }
 
 }  // namespace pcednet::detect

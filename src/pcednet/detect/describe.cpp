@@ -57,6 +57,7 @@ DescribedCloud describe(const PreparedCloud& cloud, const gls::ScaleSpaceOptions
                   described.values.data() + row_of[points[i]] * width);
     }
   };
+  described.acute_edges = find_acute_edges(cloud, descriptor, progress);
   described.scales = describe_rows(cloud, descriptor, take, progress);
   return described;
 }

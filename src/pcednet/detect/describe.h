@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "pcednet/detect/acute_edge.h"
 #include "pcednet/detect/classify.h"
 #include "pcednet/detect/cloud_kind.h"
 #include "pcednet/detect/prepare.h"
@@ -34,11 +35,12 @@ std::vector<double> describe_rows(const PreparedCloud& cloud,
 
 /// The whole scale-space matrix of a cloud, for classification by several networks.
 struct DescribedCloud {
-  std::size_t points = 0;                 ///< of the cloud
-  std::vector<std::uint32_t> order = {};  ///< the point that each row describes
-  std::vector<float> values = {};         ///< rows x scales x columns
-  std::vector<double> scales = {};        ///< as lengths, of the first octave
-  CloudTraits traits = {};                ///< of the cloud
+  std::size_t points = 0;                        ///< of the cloud
+  std::vector<std::uint32_t> order = {};         ///< the point that each row describes
+  std::vector<float> values = {};                ///< rows x scales x columns
+  std::vector<double> scales = {};               ///< as lengths, of the first octave
+  CloudTraits traits = {};                       ///< of the cloud
+  std::vector<AcuteEdgePoint> acute_edges = {};  ///< find_acute_edges()
 };
 
 /// Describes every point with a finite position. Throws as classify() does.

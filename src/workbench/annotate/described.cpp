@@ -10,6 +10,7 @@
 #include "pcednet/core/error.h"
 #include "pcednet/core/output_file.h"
 #include "pcednet/core/version.h"
+#include "pcednet/detect/acute_edge.h"
 #include "pcednet/detect/cloud_kind.h"
 
 namespace pcednet::annotate {
@@ -103,6 +104,7 @@ std::shared_ptr<const Described> describe_once(const detect::PreparedCloud& clou
   described->from_cache = !folder.empty() && read_cache(file, header, described->cloud);
   if (described->from_cache) {
     described->cloud.traits = detect::traits_of(cloud, descriptor);
+    described->cloud.acute_edges = detect::find_acute_edges(cloud, descriptor, progress);
   } else {
     described->cloud = detect::describe(cloud, descriptor, progress);
     try {
