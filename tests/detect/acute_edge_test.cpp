@@ -89,7 +89,8 @@ TEST(AcuteEdges, AreNoneOfAThinPlateOrRod) {
   PointCloud plate, rod;
   for (int i = 0; i < 6000; ++i) {  // 3,000 to a side: a spacing of .018
     const double side = i % 2 == 0 ? 1.0 : -1.0;
-    plate.positions.emplace_back(random.uniform(), random.uniform(), 0.01 * side);
+    const double x = random.uniform(), y = random.uniform();
+    plate.positions.emplace_back(x, y, 0.01 * side);
     plate.normals.push_back(side * Vec3::UnitZ());
     const double turn = random.uniform(0.0, 2.0 * std::numbers::pi);
     const Vec3 outwards(std::cos(turn), std::sin(turn), 0.0);
