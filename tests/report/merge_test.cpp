@@ -165,6 +165,19 @@ TEST_F(Merge, WarnsOfForeignJson) {
   EXPECT_NE(result.warnings[0].find("other.json"), std::string::npos);
 }
 
+TEST_F(Merge, LeavesOutWhatIsNoJsonAndSaysWhere) {
+  write("broken.json", "{\"schema\": 5");
+  write("empty.json", "");
+  write("methods.json", study_.dump());
+  const auto result = merge_studies(folder_);
+  EXPECT_EQ(result.studies, 1u);
+  ASSERT_EQ(result.warnings.size(), 2u);
+  EXPECT_EQ(result.warnings[0],
+            (folder_ / "broken.json").string() + ": no JSON at byte 13: left out");
+  EXPECT_EQ(result.warnings[1],
+            (folder_ / "empty.json").string() + ": no JSON at byte 1: left out");
+}
+
 TEST_F(Merge, RefusesWhatIsNoJsonOrEndsEarly) {
   const std::string whole = study_.dump();
   for (const std::size_t length : {std::size_t{0}, std::size_t{1}, whole.size() / 2}) {

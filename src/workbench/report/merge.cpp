@@ -38,11 +38,14 @@ std::vector<fs::path> json_files(const fs::path& folder) {
   return files;
 }
 
-OrderedJson read_json(const fs::path& file) {
+/// Nothing, and why in `fault`, for a file that is no JSON.
+std::optional<OrderedJson> read_json(const fs::path& file, std::string& fault) {
+  const std::string text = io::InputFile(file).text();
   try {
-    return parse_ordered_json(io::InputFile(file).text());
+    return parse_ordered_json(text);
   } catch (const OrderedJson::parse_error& error) {
-    throw io::unreadable(file, fmt::format("no JSON at byte {}", error.byte));
+    fault = fmt::format("no JSON at byte {}", error.byte);
+    return std::nullopt;
   }
 }
 
@@ -131,19 +134,21 @@ struct Studies {
 
 Studies read_studies(const fs::path& folder) {
   Studies studies;
+  std::optional<Error> broken;
   for (const fs::path& file : json_files(folder)) {
-    OrderedJson text = read_json(file);
-    const bool is_study = text.is_object() && text.value("schema", OrderedJson()) == kStudySchema;
-    if (!is_study) {
-      studies.warnings.push_back(
-          fmt::format("{}: not of schema {}: left out", file.string(), kStudySchema));
+    std::string fault = fmt::format("not of schema {}", kStudySchema);
+    std::optional<OrderedJson> text = read_json(file, fault);
+    if (!text && !broken) broken = io::unreadable(file, fault);
+    if (!text || !text->is_object() || text->value("schema", OrderedJson()) != kStudySchema) {
+      studies.warnings.push_back(fmt::format("{}: {}: left out", file.string(), fault));
       continue;
     }
-    check_study(text, file);
-    studies.texts.push_back(std::move(text));
+    check_study(*text, file);
+    studies.texts.push_back(std::move(*text));
     studies.files.push_back(file);
   }
   if (studies.texts.empty()) {
+    if (broken) throw *broken;
     throw Error(ErrorKind::kInsufficient,
                 fmt::format("{}: no study in it; `pcednet study NAME -o {}` makes one",
                             folder.string(), folder.string()));

@@ -34,8 +34,8 @@ struct MergedStudies {
 };
 
 /// Reads the studies in `folder`: its *.json files, in name order, whose "schema" is
-/// "pcednet-study-1" (others are left out with a warning), unchanged into "studies". A result whose
-/// "median" and "pooled" are null has times only.
+/// "pcednet-study-1", unchanged into "studies". Others, and files that are no JSON, are left out
+/// with a warning. A result whose "median" and "pooled" are null has times only.
 ///
 /// "scenes" holds the clouds to look at,
 /// {"set","cloud","file","points","shown","min","size","view",
@@ -47,8 +47,9 @@ struct MergedStudies {
 ///
 /// A cloud's file is searched from the working folder, then from `folder`; predictions are
 /// <folder>/<predictions>/<cloud>.u8. Throws Error(kUnreadable) for a file that is missing or
-/// differs from the study's record, Error(kInsufficient) if there is no study, if a cloud has no
-/// labels, or if predictions or labels differ in number from the points.
+/// differs from the study's record, or for the first that is no JSON where there is no study,
+/// Error(kInsufficient) if there is neither, if a cloud has no labels, or if predictions or labels
+/// differ in number from the points.
 MergedStudies merge_studies(const std::filesystem::path& folder, const MergeOptions& options = {},
                             const Progress* progress = nullptr);
 
