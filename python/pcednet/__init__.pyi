@@ -1,6 +1,6 @@
 import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from typing import Any, Literal, Protocol
+from typing import Any, Literal, Protocol, SupportsIndex, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -86,6 +86,11 @@ class Curve:
     def sampled(self, tolerance: float) -> NDArray[np.float64]: ...
 
 class Lines(list[Curve]):
+    @overload
+    def __getitem__(self, index: SupportsIndex, /) -> Curve: ...
+    @overload
+    def __getitem__(self, index: slice, /) -> Lines: ...
+    def copy(self) -> Lines: ...
     @property
     def length(self) -> float: ...
     def write(self, path: _Path, *, epsg: int | None = None,

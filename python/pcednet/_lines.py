@@ -14,10 +14,24 @@ _KINDS = ("segment", "arc", "circle", "polyline")
 
 
 class Lines(list):
-    """A list of Curve, in the unit and coordinates of their cloud."""
+    """A list of Curve, in the unit and coordinates of their cloud. A slice of it is one, too."""
 
     _kept = None  # of the file of the cloud: its coordinate system
     _fit_tolerance = 0.0
+
+    def _with(self, curves):
+        """Lines of these curves, of the same cloud."""
+        some = Lines(curves)
+        some._kept, some._fit_tolerance = self._kept, self._fit_tolerance
+        return some
+
+    def __getitem__(self, index):
+        found = super().__getitem__(index)
+        return self._with(found) if isinstance(index, slice) else found
+
+    def copy(self):
+        """Lines of the same curves."""
+        return self._with(self)
 
     @property
     def length(self):

@@ -139,6 +139,19 @@ class Lines(CliTest):
         pcednet.lines(pcednet.read(self.path("part.las"))).write(self.path("again.gpkg"))
         self.assertIn(b"25832", self.path("again.gpkg").read_bytes())
 
+    def test_a_slice_is_written_as_the_whole_is(self):
+        longest = pcednet.lines(pcednet.Cloud(self.positions), self.result)
+        longest._kept, longest._fit_tolerance = "the file", 0.5
+        longest.sort(key=lambda curve: -curve.length)
+        for some in (longest[:2], longest[::-1][-2:][::-1], longest.copy()[slice(0, 2)]):
+            self.assertIsInstance(some, pcednet.Lines)
+            self.assertEqual(list(some), list(longest)[:2])
+            self.assertEqual((some._kept, some._fit_tolerance), ("the file", 0.5))
+        self.assertIsInstance(longest[-1], pcednet.Curve)
+        self.assertEqual(longest[50:], [])
+        self.lines[:2].write(self.path("two.geojson"))
+        self.assertEqual(self.path("two.geojson").read_text().count("LineString"), 2)
+
     def test_the_coordinate_system_goes_along(self):
         found = pcednet.lines(self.positions, self.result)
         found.write(self.path("a.gpkg"), epsg=25832)
