@@ -16,26 +16,15 @@ int code_of(std::string_view word) {
   return io::epsg_code(word.substr(5));
 }
 
-io::CoordinateSystem system_of_code(int epsg) {
-  io::CoordinateSystem system{.epsg = epsg};
-  if (!io::has_projections()) return system;
-  std::string wkt = io::definition_of(system, io::WktVersion::k1);
-  if (wkt.empty()) wkt = io::definition_of(system, io::WktVersion::k2);
-  if (wkt.empty()) {
-    throw Error(ErrorKind::kUsage,
-                "--crs EPSG:" + std::to_string(epsg) + ": PROJ knows no such system");
-  }
-  system = io::coordinate_system_of_wkt(wkt);
-  system.epsg = epsg;
-  return system;
-}
-
 }  // namespace
 
 CLI::Option* add_crs_option(CLI::App& command, std::optional<io::CoordinateSystem>& system) {
   return command
       .add_option_function<std::string>(
-          "--crs", [&system](const std::string& word) { system = system_of_code(code_of(word)); },
+          "--crs",
+          [&system](const std::string& word) {
+            with_name_in_errors("--crs", [&] { system = io::system_of_code(code_of(word)); });
+          },
           "The coordinate system, such as EPSG:25832, where the file does not name it")
       ->check(CLI::Validator(
           [](const std::string& word) {

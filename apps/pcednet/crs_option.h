@@ -7,8 +7,7 @@
 
 namespace pcednet::app {
 
-/// Adds --crs, which sets `system` to that of a code of EPSG, as far as PROJ knows it. A code that
-/// PROJ does not know is refused.
+/// Adds --crs, which sets `system` to that of a code of EPSG, as io::system_of_code() does.
 CLI::Option* add_crs_option(CLI::App& command, std::optional<io::CoordinateSystem>& system);
 
 }  // namespace pcednet::app

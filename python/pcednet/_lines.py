@@ -46,8 +46,8 @@ class Lines(list):
         ----------
         path : str or path-like
         epsg : int, optional
-            Code of the coordinate system, for GeoPackage and GeoJSON. Unless given, that of the
-            LAS file that the cloud was read from.
+            Code of the coordinate system, for GeoPackage, GeoJSON and the unit of DXF. Unless given,
+            that of the LAS file that the cloud was read from.
         unit : {'none', 'mm', 'cm', 'm', 'in', 'ft', 'us-ft'}, optional
             Of the coordinates. SVG: gives the drawing its true size.
         tolerance : float
@@ -64,11 +64,12 @@ class Lines(list):
         ExistsError
             The file exists and `overwrite` is False.
         UsageError
-            Another extension, or a tolerance or code below 0.
+            Another extension, a tolerance below 0, or a number that is no code of a coordinate
+            system.
         """
         if not 0.0 <= _arrays.real(tolerance, "tolerance") < math.inf:
             raise UsageError(f"tolerance: {tolerance}: a length of 0 or more is needed")
-        settings = {"epsg": None if epsg is None else _arrays.whole(epsg, "epsg", 1),
+        settings = {"epsg": None if epsg is None else _arrays.whole(epsg, "epsg", *_core.EPSG_CODES),
                     "unit": None if unit is None else _arrays.text(unit, "unit"),
                     "tolerance": float(tolerance), "fit_tolerance": self._fit_tolerance,
                     "dxf_version": str(dxf_version), "view": _arrays.text(view, "view"), "overwrite": bool(overwrite)}

@@ -13,6 +13,7 @@
 #include "pcednet/io/drawing/drawing.h"
 #include "pcednet/io/las/las.h"
 #include "pcednet/io/length_units.h"
+#include "pcednet/io/projection.h"
 #include "pcednet/lines/find_lines.h"
 
 namespace pcednet::python {
@@ -73,7 +74,9 @@ io::DrawingOptions drawing_of(const py::dict& settings, const Kept* kept) {
   options.view = named(io::kViews, "view", settings["view"].cast<std::string>());
   if (kept) options.coordinate_system = io::las_coordinate_system(*kept->cloud);
   if (!settings["epsg"].is_none()) {
-    options.coordinate_system = {.epsg = settings["epsg"].cast<int>()};
+    with_name_in_errors("epsg", [&] {
+      options.coordinate_system = io::system_of_code(settings["epsg"].cast<int>());
+    });
   }
   if (!settings["unit"].is_none()) {
     std::map<std::string, io::LengthUnit> units;
@@ -161,6 +164,7 @@ void add_lines(py::module_& module) {
             .format(lines::name_of(curve.kind), static_cast<int>(curve.edge_class),
                     lines::length_of(curve));
       });
+  module.attr("EPSG_CODES") = py::make_tuple(io::kLeastEpsgCode, io::kMostEpsgCode);
   module.def("find_lines", find_lines);
   module.def("write_lines", write_lines);
 }

@@ -217,8 +217,8 @@ class Lines(CliTest):
             srs, = database.execute("SELECT srs_id FROM gpkg_contents")
             database.close()
             self.assertEqual(srs, (25832,))
-        # A build without PROJ takes any code, and does not know its unit.
-        unknown = subprocess.run([PROGRAM, "lines", path, "-o", self.folder / "u.dxf", "--crs", "EPSG:999999"],
+        # A build without PROJ takes any code in the range of codes, and does not know its unit.
+        unknown = subprocess.run([PROGRAM, "lines", path, "-o", self.folder / "u.dxf", "--crs", "EPSG:30001"],
                                  capture_output=True, text=True)
         if unknown.returncode != 0:
             self.assertEqual(unknown.returncode, 2)
@@ -228,6 +228,11 @@ class Lines(CliTest):
         for bad in ("25832", "EPSG:", "EPSG:0", "EPSG:-1", "EPSG:1e4", "EPSG:99999999999", ""):
             done = run("lines", path, "-o", self.folder / "b.dxf", "--crs=" + bad, expect=2)
             self.assertIn("--crs", done.stderr)
+        for code in (1, 1023, 32767, 999999):
+            done = run("lines", path, "-o", self.folder / "c.dxf", "--crs", f"EPSG:{code}", expect=2)
+            self.assertIn(f"--crs: EPSG:{code}: no code of a coordinate system, which are from 1024 to 32766",
+                          done.stderr)
+        self.assertFalse((self.folder / "c.dxf").exists())
 
     def test_labels_are_used_unless_asked_otherwise(self):
         p, n, _ = cube(4000)

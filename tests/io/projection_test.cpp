@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "support/expect_error.h"
+
 namespace pcednet::io {
 namespace {
 
@@ -32,6 +34,16 @@ TEST(Projections, KnowNothingOfNoSystemOrOfNonsense) {
     EXPECT_EQ(definition_of(system, WktVersion::k2), "") << system.wkt;
     EXPECT_FALSE(to_wgs84(system, {{0.0, 0.0}})) << system.wkt;
   }
+}
+
+TEST(Projections, RefuseNumbersThatAreNoCodes) {
+  EXPECT_EQ(system_of_code(25832).epsg, 25832);
+  EXPECT_EQ(system_of_code(25832).unit, has_projections() ? LengthUnit::kMetre : LengthUnit::kNone);
+  EXPECT_TRUE(!has_projections() || system_of_code(4326).geographic);
+  for (const int code : {-5, 0, 1, 1023, 32767, 100000}) {
+    EXPECT_ERROR(ErrorKind::kUsage, system_of_code(code)) << code;
+  }
+  if (has_projections()) EXPECT_ERROR(ErrorKind::kUsage, system_of_code(30001));
 }
 
 // The meridian's arc to 50 degrees north on GRS 80 is 5540847.042 m long; UTM scales it by 0.9996.

@@ -164,9 +164,15 @@ class Lines(CliTest):
                 found.write(self.path("b.dxf"), **wrong)
         with self.assertRaises(pcednet.UsageError):
             found.write(self.path("b.dwg"))
-        for wrong in ({"tolerance": -1.0}, {"tolerance": float("nan")}, {"epsg": -5}):
+        for wrong in ({"tolerance": -1.0}, {"tolerance": float("nan")}, {"epsg": -5}, {"epsg": 1},
+                      {"epsg": 32767}):
             with self.assertRaisesRegex(pcednet.UsageError, "is needed"):
                 found.write(self.path("b.gpkg"), **wrong)
+        with self.assertRaisesRegex(pcednet.UsageError, "^epsg: EPSG:30001: PROJ knows no such system$"):
+            found.write(self.path("b.gpkg"), epsg=30001)
+        self.assertFalse(self.path("b.gpkg").exists())
+        found.write(self.path("metres.dxf"), epsg=25832)
+        self.assertRegex(self.path("metres.dxf").read_text(), r"\$INSUNITS\s+70\s+6\s")
 
     def test_wrong_choices_are_refused(self):
         for wrong in ({"classes": ["crease"]}, {"kinds": "spline"}, {"stage": "end"},

@@ -17,6 +17,9 @@ struct CoordinateSystem {
   bool geographic = false;  ///< x and y are angles: longitude and latitude
 };
 
+/// EPSG has no codes of coordinate systems below and beyond these; 32767 says that there is none.
+inline constexpr int kLeastEpsgCode = 1024, kMostEpsgCode = 32766;
+
 /// The code that a word of digits stands for; 0 if it stands for none.
 int epsg_code(std::string_view word);
 

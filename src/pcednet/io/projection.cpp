@@ -1,7 +1,10 @@
 #include "pcednet/io/projection.h"
 
-#ifdef PCEDNET_WITH_PROJ
 #include <fmt/format.h>
+
+#include "pcednet/core/error.h"
+
+#ifdef PCEDNET_WITH_PROJ
 #include <proj.h>
 
 #include <cmath>
@@ -165,5 +168,23 @@ std::optional<std::vector<std::array<double, 2>>> to_wgs84(const CoordinateSyste
 }
 
 #endif
+
+CoordinateSystem system_of_code(int epsg) {
+  const auto refuse = [epsg](const std::string& why) {
+    throw Error(ErrorKind::kUsage, fmt::format("EPSG:{}: {}", epsg, why));
+  };
+  if (epsg < kLeastEpsgCode || epsg > kMostEpsgCode) {
+    refuse(fmt::format("no code of a coordinate system, which are from {} to {}", kLeastEpsgCode,
+                       kMostEpsgCode));
+  }
+  CoordinateSystem system{.epsg = epsg};
+  if (!has_projections()) return system;
+  std::string wkt = definition_of(system, WktVersion::k1);
+  if (wkt.empty()) wkt = definition_of(system, WktVersion::k2);
+  if (wkt.empty()) refuse("PROJ knows no such system");
+  system = coordinate_system_of_wkt(wkt);
+  system.epsg = epsg;
+  return system;
+}
 
 }  // namespace pcednet::io

@@ -18,6 +18,11 @@ enum class WktVersion { k1, k2 };  ///< OGC 01-009, as in LAS; ISO 19162:2019
 /// does not know it.
 std::string definition_of(const CoordinateSystem& system, WktVersion version);
 
+/// The system of a code that a user gives, with its definition and unit as far as this build has
+/// PROJ. Throws Error(kUsage), which begins with the code, for a number that is no code of a
+/// system: out of kLeastEpsgCode to kMostEpsgCode, or unknown to PROJ.
+CoordinateSystem system_of_code(int epsg);
+
 /// Points (x, y) of a system as (longitude, latitude) of WGS 84, in degrees. None if PROJ does not
 /// know the system, or one of them has no place there.
 std::optional<std::vector<std::array<double, 2>>> to_wgs84(
