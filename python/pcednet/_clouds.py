@@ -46,7 +46,7 @@ class Cloud:
         self._is_float32 = _arrays.is_float32(xyz)
         self._kept, self._kept_rows = None, 0
         self._estimates = None  # digest of positions and normals, if a file says that they are estimates
-        self._predictions = None  # digest of the labels, if a file says that they are a result
+        self._predictions = None  # digest of the labels of a file that says that it is a result, or _CHANGED
         self.xyz = _arrays.vectors(xyz, "xyz")
         self.normals = normals
         self.colours = colours
@@ -66,7 +66,7 @@ class Cloud:
         cloud._kept, cloud._kept_rows = parts["kept"], len(cloud)
         if _core.ESTIMATED_NORMALS in cloud.comments:
             cloud._estimates = _digest(cloud.xyz, cloud.normals)
-        if cloud.labels is not None and cloud._truth_of_result() is not None:
+        if cloud._truth_of_result() is not None:
             cloud._predictions = _digest(cloud.labels)
         return cloud
 
@@ -138,6 +138,14 @@ class Cloud:
         _arrays.warn([f"{self.name or name}: {note}"])
         return self.labels if labels is None else labels
 
+    def _corrected(self):
+        """The labels, if they were changed in a result since it was read: they are true; otherwise None."""
+        if self._predictions is None or self.labels is None or self._truth_of_result() is None:
+            return None
+        if self._has_predictions():
+            return None
+        return _arrays.labels(self.labels, len(self), names=self.class_names)
+
     def viewpoint(self):
         """The scanner position of each point, (n, 3) float64 with NaN where unknown; None if no
         scanner is known."""
@@ -177,9 +185,12 @@ class Cloud:
             part._kept, part._kept_rows = self._kept.of_part(), len(part)
         if self._has_estimates():
             part._estimates = _digest(part.xyz, part.normals)
-        if self._has_predictions():
-            part._predictions = _digest(part.labels)
+        if self._predictions is not None:
+            part._predictions = _digest(part.labels) if self._has_predictions() else _CHANGED
         return part
+
+
+_CHANGED = b""  # no labels have this digest
 
 
 def _digest(*arrays):
@@ -244,6 +255,9 @@ def read(path):
     return Cloud._of(parts, os.path.splitext(os.path.basename(path))[0])
 
 
+_PAINTED = _core.TRUTH_COLUMNS[0]
+
+
 def _attribute(name, values, rows):
     """The numbers of an attribute, of a type that files have."""
     array = _arrays.numbers(values, f"attribute {name}")
@@ -264,6 +278,9 @@ def _parts_of(cloud):
                              f"of {colours.shape}")
         colours = np.require(colours, requirements=["C", "A"])
     attributes = {str(name): _attribute(name, values, rows) for name, values in cloud.attributes.items()}
+    corrected = cloud._corrected()
+    if corrected is not None:  # as labels alone, a reader of the file would take them for predictions
+        attributes[_PAINTED] = corrected
     comments = [str(line) for line in cloud.comments
                 if line != _core.ESTIMATED_NORMALS or cloud._has_estimates()]
     return {"xyz": _arrays.vectors(cloud.xyz, "xyz"),
@@ -288,7 +305,8 @@ def write(path, xyz, result=None, *, normals=None, colours=None, labels=None, at
     path : str or path-like
     xyz : Cloud or array_like, (n, 3)
         The points. A Cloud that was read keeps everything that its file held, coordinates bit for
-        bit. From an array, float32 coordinates are written as float32, others as float64.
+        bit. From an array, float32 coordinates are written as float32, others as float64. Labels that were
+        changed in a result since it was read are true: they are written as ``scalar_painted_label``, too.
     result : Result, optional
         Adds class and probabilities, under the names that ``pcednet classify`` gives them.
     normals, colours, labels, attributes : optional
@@ -312,7 +330,7 @@ def write(path, xyz, result=None, *, normals=None, colours=None, labels=None, at
     Warns
     -----
     PcednetWarning
-        Data that the format cannot hold.
+        Data that the format cannot hold. Changed labels replace some that were painted.
     """
     if isinstance(xyz, Cloud):
         if any(part is not None for part in (normals, colours, labels, attributes)):
@@ -325,9 +343,13 @@ def write(path, xyz, result=None, *, normals=None, colours=None, labels=None, at
         if len(result.labels) != len(cloud):
             raise UsageError(f"result: of {len(result.labels)} points, the cloud has {len(cloud)}")
         parts = result._parts()
-    path = os.fspath(path)
-    losses = _core.write(path, _parts_of(cloud), parts, bool(class_colours), bool(ascii), bool(overwrite))
+    path, written = os.fspath(path), _parts_of(cloud)
+    losses = _core.write(path, written, parts, bool(class_colours), bool(ascii), bool(overwrite))
     _arrays.warn(f"{path} does not keep: {loss}" for loss in losses)
+    painted = np.asarray(cloud.attributes.get(_PAINTED, ()))
+    if (painted == 255).any() and (painted != 255).any() and not np.array_equal(
+            painted, written["attributes"][_PAINTED]):
+        _arrays.warn([f"{path}: the labels, which were changed since the cloud was read, replace its {_PAINTED}"])
 
 
 def generate(name="default", seed=1, only=""):

@@ -66,6 +66,43 @@ class ResultsAsTruth(CliTest):
                 self.assertEqual(vars(pcednet.evaluate(cloud, self.predicted)),
                                  self.expected(corrected))
 
+    def test_changed_labels_are_true_of_their_file_too(self):
+        rows = np.arange(3000)
+        corrected = np.where(rows < 500, 0, self.predicted)
+        self.result.labels = corrected.astype(int)
+        for name, cloud, wanted in (("a.ply", self.result, corrected), ("a.las", self.result, corrected),
+                                    ("part.ply", self.result.select(rows[::2]), corrected[::2]),
+                                    ("copy.ply", copy.deepcopy(self.result), corrected)):
+            with self.subTest(name):
+                with warnings.catch_warnings():
+                    warnings.filterwarnings("error", message=".*painted")
+                    warnings.filterwarnings("ignore", message=".*digits of positions")
+                    pcednet.write(self.path(name), cloud)
+                again = pcednet.read(self.path(name))
+                np.testing.assert_array_equal(again.labels, wanted)
+                with self.assertWarnsRegex(pcednet.PcednetWarning, "scalar_painted_label$"):
+                    scores = pcednet.evaluate(again, again["scalar_edge_class"])
+                self.assertEqual(vars(scores), vars(pcednet.evaluate(wanted, again["scalar_edge_class"])))
+        run("classify", self.path("a.ply"), "-o", self.path("again.ply"), "--model", "cad")
+        run("train", self.path("again.ply"), "-o", self.path("theirs.safetensors"), "--epochs", 1, "--scales", 4)
+        model = pcednet.train(self.result, epochs=1, scales=4, name="theirs")
+        for name, weights in pcednet.Model.load(self.path("theirs.safetensors")).tensors.items():
+            np.testing.assert_array_equal(model.tensors[name], weights)
+
+    def test_changed_labels_that_replace_painted_ones_are_told(self):
+        painted = np.full(3000, 255, np.uint8)
+        painted[:900] = 2
+        self.result["scalar_painted_label"] = painted
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            pcednet.write(self.path("kept.ply"), self.result)
+        self.result.labels[:500] = 0
+        with self.assertWarnsRegex(pcednet.PcednetWarning, "replace its scalar_painted_label$"):
+            pcednet.write(self.path("replaced.ply"), self.result)
+        np.testing.assert_array_equal(pcednet.read(self.path("kept.ply"))["scalar_painted_label"], painted)
+        again = pcednet.read(self.path("replaced.ply"))
+        np.testing.assert_array_equal(again["scalar_painted_label"], self.result.labels)
+
     def test_copies_parts_and_other_types_of_the_same_labels_do_not(self):
         of_ints = copy.deepcopy(self.result)
         of_ints.labels = of_ints.labels.astype(int)

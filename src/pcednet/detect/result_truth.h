@@ -10,8 +10,9 @@
 
 namespace pcednet::detect {
 
-/// The columns in which a result keeps a truth: the labels that the annotator painted, and those
-/// of the input that was classified. The first that labels a point counts.
+/// The columns in which a result keeps a truth: the labels that the annotator painted or that were
+/// changed in Python, and those of the input that was classified. The first that labels a point
+/// counts.
 inline constexpr const char* kPaintedLabels = "scalar_painted_label";
 inline constexpr const char* kInputLabels = "scalar_input_label";
 inline constexpr std::array<const char*, 2> kTruthColumns = {kPaintedLabels, kInputLabels};
