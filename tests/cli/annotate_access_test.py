@@ -8,7 +8,7 @@ import time
 import unittest
 
 import support
-from annotate_support import AnnotateTest, Drip, EDGE, FACE, POINTS, brush
+from annotate_support import AnnotateTest, Drip, EDGE, FACE, POINTS, Server, brush
 from support import read_ply, run, write_ply
 
 
@@ -283,6 +283,26 @@ half.rename({str(given)!r})
         self.assertIn("the folder cannot be written; --project FILE keeps the strokes elsewhere",
                       errors)
         self.folder.chmod(0o755)
+
+    def test_what_cannot_be_saved_can_be_downloaded(self):
+        own = self.folder / "own"
+        own.mkdir()
+        own.chmod(0o777)
+        self.folder.chmod(0o555)
+        somebody = (lambda: os.setuid(65534)) if os.getuid() == 0 else None
+        self.servers.append(Server(self.cloud, "--project", str(own / "p.json"), "--model", "none",
+                                   preexec_fn=somebody))
+        server = self.servers[0]
+        server.open()
+        server.post("/api/stroke", brush("edge", 2, EDGE))
+        refused = server.post("/api/save", {"what": "cloud"}, expect=500)["error"]
+        self.assertIn(f"{self.folder / 'cube_annotated.ply'}: cannot be written: folder {self.folder}: Permission "
+                      "denied; all strokes are kept: download it instead, or mend that and save again", refused)
+        self.assertEqual(server.request("/api/download/cloud")[0], 200)
+        server.post("/api/save", {"what": "project"})  # lies elsewhere
+        self.folder.chmod(0o777)
+        server.post("/api/save", {"what": "cloud"})
+        self.assertTrue((self.folder / "cube_annotated.ply").exists())
 
 
 if __name__ == "__main__":

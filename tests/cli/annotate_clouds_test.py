@@ -187,6 +187,35 @@ class AnnotateClouds(AnnotateTest):
         self.other = moved
         server = self.both()  # as it says
         self.assertEqual([c["painted"] for c in server.get("/api/session")["clouds"]], painted)
+        server.end()
+        server = self.serve()  # which is not asked again
+        server.open()
+        self.assertEqual([(c["file"], c["painted"]) for c in server.get("/api/session")["clouds"]],
+                         [("cube.ply", painted[0]), ("moved.ply", painted[1])])
+
+    def test_a_cloud_that_changed_or_is_missing_is_named_with_what_to_do(self):
+        server = self.quiet_both()
+        self.paint_both(server)
+        server.post("/api/save", {"what": "project"})
+        server.end()
+        kept = [path.read_bytes() for path in sorted(self.folder.glob("cube_annotation.json*"))]
+        repeat = ("train", "--project", self.project, "-o", self.folder / "m.safetensors")
+        sound = self.other.read_bytes()
+        self.other.write_bytes(sound[:-27] + bytes(27))
+        said = run("annotate", self.cloud, "--no-browser", expect=4).stderr
+        self.assertIn(f"{self.project}: cloud 2 of 2, more/hall.ply, is another input now: put back", said)
+        self.assertIn("start afresh with --project FILE", said)
+        self.assertIn(f"{self.other}: not the file that the project is about: put back the one that was "
+                      "painted, or name its place", run(*repeat, expect=4).stderr)
+        self.other.unlink()
+        for command in (repeat, (*repeat, self.cloud)):
+            self.assertIn(f"{self.project}: cloud 2 of 2, {self.other}, is missing: put it back, or name all "
+                          "clouds in their order", run(*command, expect=3).stderr)
+        self.other.write_bytes(sound)
+        self.cloud.rename(self.folder / "elsewhere.ply")
+        self.assertIn(f"cloud 1 of 2, {self.cloud}, is missing", run(*repeat, expect=3).stderr)
+        self.assertEqual([path.read_bytes() for path in sorted(self.folder.glob("cube_annotation.json*"))], kept)
+        run(*repeat, self.folder / "elsewhere.ply", self.other)  # as it says
 
     def test_refuses_inputs_that_cannot_be_told_apart(self):
         twin = self.folder / "cube.pcd"

@@ -19,11 +19,12 @@ from support import CliTest, write_ply
 class Server:
     """A running `pcednet annotate`."""
 
-    def __init__(self, cloud, *options, environment=None):
+    def __init__(self, cloud, *options, environment=None, preexec_fn=None):
         browser = [] if environment else ["--no-browser"]
         self.process = subprocess.Popen(
             [support.PROGRAM, "annotate", str(cloud), *browser, "--progress", "none", *options],
-            stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment)
+            stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment,
+            preexec_fn=preexec_fn)
         line = self.process.stdout.readline()
         found = re.fullmatch(r"http://127\.0\.0\.1:(\d+)/\?token=([0-9a-f]{32})\n", line)
         if not found:

@@ -17,6 +17,7 @@
 #include "web_pages.h"
 #include "workbench/annotate/api.h"
 #include "workbench/annotate/journal.h"
+#include "workbench/annotate/known_inputs.h"
 #include "workbench/annotate/painting.h"
 #include "workbench/annotate/saving.h"
 #include "workbench/annotate/start_file.h"
@@ -104,24 +105,12 @@ fs::path sound_input(const std::string& given) {
   return fs::absolute(given);
 }
 
-/// The further input `number` (from 0) of the project, at its place from the folder of the first.
-fs::path input_of_project(const fs::path& project, const annotate::Inputs& known,
-                          std::size_t number, const fs::path& folder) {
-  const fs::path place = (folder / known[number].name).lexically_normal();
-  std::error_code ignored;
-  if (fs::is_regular_file(place, ignored)) return place;
-  throw Error(ErrorKind::kUnreadable,
-              fmt::format("{}: cloud {} of {}, {}, is missing: put it back, or name all clouds in "
-                          "their order",
-                          project.string(), number + 1, known.size(), place.string()));
-}
-
 /// The inputs after the first: those given, then further ones of the project.
 std::vector<fs::path> further_inputs(const std::vector<fs::path>& given, const fs::path& project) {
   std::vector<fs::path> all = given;
   const annotate::Inputs known = annotate::inputs_of_project(project);
   for (std::size_t k = given.size(); k < known.size(); ++k) {
-    all.push_back(input_of_project(project, known, k, given.front().parent_path()));
+    all.push_back(annotate::place_of_input(project, known, k, given.front().parent_path()));
   }
   for (std::size_t k = 0; k < all.size(); ++k) {
     for (std::size_t i = 0; i < k; ++i) {

@@ -18,6 +18,7 @@
 #include "prepare.h"
 #include "result_plan.h"
 #include "stage_clock.h"
+#include "workbench/annotate/known_inputs.h"
 #include "workbench/annotate/learn.h"
 #include "workbench/annotate/start_file.h"
 #include "workbench/truth/read_labelled.h"
@@ -109,23 +110,24 @@ detect::TrainedModel train_project(const TrainArguments& arguments, const Common
   const std::filesystem::path file = arguments.project;
   const annotate::Project project = annotate::read_project(file);
   const std::size_t clouds = project.inputs.size();
-  std::vector<std::filesystem::path> inputs(arguments.inputs.begin(), arguments.inputs.end());
-  if (inputs.size() > clouds) {
+  const std::vector<std::string>& given = arguments.inputs;
+  if (given.size() > clouds) {
     throw Error(ErrorKind::kUsage, clouds == 1
                                        ? "train: a project has one input"
                                        : fmt::format("train: the project has {} inputs", clouds));
   }
   // Missing ones are beside the project, or at their former place relative to the first.
-  if (inputs.empty()) inputs.push_back(file.parent_path() / project.inputs.front().name);
-  for (std::size_t k = inputs.size(); k < clouds; ++k) {
-    inputs.push_back(inputs.front().parent_path() / project.inputs[k].name);
-  }
+  const std::filesystem::path first = given.empty() ? file : std::filesystem::path(given.front());
+  const auto input_of = [&](std::size_t k) -> std::filesystem::path {
+    if (k < given.size()) return given[k];
+    return annotate::place_of_input(file, project.inputs, k, first.parent_path());
+  };
   const auto load_start = [&](const std::string& name) {
     const auto start = annotate::start_file(name, file, shipped_models());
     check_not_input(arguments.output, start);
     return detect::load_model(start);
   };
-  return annotate::learn_project(project, inputs, load_start, epoch_reports(common), &progress);
+  return annotate::learn_project(project, input_of, load_start, epoch_reports(common), &progress);
 }
 
 /// Clouds with own classes, as the annotator saves them, give a model with these classes.

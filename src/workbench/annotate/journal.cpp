@@ -13,6 +13,7 @@
 #include "pcednet/core/error.h"
 #include "pcednet/core/output_file.h"
 #include "pcednet/io/input_file.h"
+#include "workbench/annotate/known_inputs.h"
 
 namespace pcednet::annotate {
 namespace {
@@ -110,13 +111,6 @@ void Journal::fail(const char* what) const {
               fmt::format("{}: {}: {}", path_.string(), what, std::strerror(errno)));
 }
 
-void Journal::check_inputs(const Inputs& inputs, const Inputs& known) const {
-  if (begins_with(inputs, known)) return;
-  throw Error(ErrorKind::kInsufficient,
-              fmt::format("{}: of another input than {}; move it away to start afresh",
-                          path_.string(), inputs.front().name));
-}
-
 void Journal::read(const Inputs& inputs, std::vector<Record>& records) {
   const std::string text = io::InputFile(path_).text();
   std::vector<Record> found;
@@ -127,7 +121,7 @@ void Journal::read(const Inputs& inputs, std::vector<Record>& records) {
     const std::string_view line = std::string_view(text).substr(size_, end - size_);
     if (++lines == 1) {
       parse_line(path_, lines, [&] { known = parse_inputs(line); });
-      check_inputs(inputs, known);
+      check_known(path_, known, inputs);
       points = points_of(std::span(inputs).first(known.size()));
       head = end + 1;
     } else if (!is_blank(line)) {
@@ -138,7 +132,7 @@ void Journal::read(const Inputs& inputs, std::vector<Record>& records) {
     }
   }
   if (::ftruncate(file_, static_cast<off_t>(size_)) != 0) fail("cannot be mended");
-  if (lines > 0 && known.size() < inputs.size()) {
+  if (lines > 0 && known != inputs) {  // others joined, or some were moved
     rewrite(to_line(inputs) + "\n" + text.substr(head, size_ - head));
   }
   if (::lseek(file_, 0, SEEK_END) < 0) fail("cannot be appended to");

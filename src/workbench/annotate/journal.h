@@ -13,10 +13,10 @@ namespace pcednet::annotate {
 class Journal {
  public:
   /// Opens the journal at `path`, or begins one with `records`. `records` becomes the content of
-  /// the journal. A journal of the first inputs is extended to all `inputs`. Throws
-  /// Error(kUnreadable) if it cannot be read or, naming the line and what to do, if it is damaged
-  /// before its end, Error(kInsufficient) if it is of other inputs, Error(kFailure) if it cannot be
-  /// written.
+  /// the journal, which then names all `inputs`: before, it may lack the last ones or have other
+  /// names of them. Throws Error(kUnreadable) if it cannot be read or, naming the line and what to
+  /// do, if it is damaged before its end, Error(kInsufficient) as check_known(), Error(kFailure) if
+  /// it cannot be written.
   Journal(std::filesystem::path path, const Inputs& inputs, std::vector<Record>& records);
   ~Journal();
   Journal(const Journal&) = delete;
@@ -33,7 +33,6 @@ class Journal {
  private:
   void open();
   void read(const Inputs& inputs, std::vector<Record>& records);
-  void check_inputs(const Inputs& inputs, const Inputs& known) const;
   void rewrite(const std::string& text);
   void write_line(const std::string& line);
   [[noreturn]] void take_back();

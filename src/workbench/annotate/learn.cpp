@@ -125,7 +125,9 @@ struct ProjectCloud {
 PointCloud read_input(const InputIdentity& its, const std::filesystem::path& input) {
   if (digest_of_file(input) != its.digest) {
     throw Error(ErrorKind::kInsufficient,
-                fmt::format("{}: not the file that the project is about", input.string()));
+                fmt::format("{}: not the file that the project is about: put back the one that was "
+                            "painted, or name its place",
+                            input.string()));
   }
   auto loaded = formats::read_cloud(input);
   if (loaded.cloud.size() != its.points) {
@@ -150,7 +152,7 @@ std::string not_reproduced(int run) {
 }
 
 detect::TrainedModel learn_project(
-    const Project& project, std::span<const std::filesystem::path> inputs,
+    const Project& project, const std::function<std::filesystem::path(std::size_t)>& input_of,
     const std::function<detect::EdgeModel(const std::string& name)>& load_start,
     const std::function<void(const nn::EpochReport&)>& on_epoch, const Progress* progress) {
   const std::size_t points = points_of(project.inputs);
@@ -170,7 +172,7 @@ detect::TrainedModel learn_project(
   std::vector<ProjectCloud> all(clouds);
   Subject subject{.clouds = {}, .table = end.classes.table};
   for (std::size_t k = 0; k < clouds; ++k) {
-    all[k].cloud = read_input(project.inputs[k], inputs[k]);
+    all[k].cloud = read_input(project.inputs[k], input_of(k));
     all[k].prepared = detect::prepare(all[k].cloud, {}, progress);
     all[k].described =
         describe_once(all[k].prepared, descriptor_of(model ? &*model : nullptr), {}, progress);
@@ -181,8 +183,8 @@ detect::TrainedModel learn_project(
   nn::EpochReport last;
   const std::size_t seen = points_of(std::span(project.inputs).first(clouds));
   Adapted learnt = learn(
-      inputs.front().stem().string(), subject, std::span(end.labels.classes()).first(seen),
-      settings, start ? &*start : nullptr,
+      input_of(0).stem().string(), subject, std::span(end.labels.classes()).first(seen), settings,
+      start ? &*start : nullptr,
       [&](const nn::EpochReport& report) {
         last = report;
         if (on_epoch) on_epoch(report);

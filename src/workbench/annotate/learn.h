@@ -43,11 +43,11 @@ bool is_another(const RunRecord& run, double loss);
 std::string not_reproduced(int run);
 
 /// The model of a project's chosen run or, if it has none, of its last labels, as the annotator
-/// saves it; `inputs` are the project's. `load_start` returns the model of a name. The notes tell
-/// if it is not the model that the run had. Throws Error(kInsufficient) if an input is not the
-/// project's, and as labels_of().
+/// saves it. `input_of` returns the file of an input by its number from 0, for those that the run
+/// had; `load_start` the model of a name. The notes tell if it is not the model that the run had.
+/// Throws Error(kInsufficient) if an input is not the project's, and as labels_of().
 detect::TrainedModel learn_project(
-    const Project& project, std::span<const std::filesystem::path> inputs,
+    const Project& project, const std::function<std::filesystem::path(std::size_t)>& input_of,
     const std::function<detect::EdgeModel(const std::string& name)>& load_start,
     const std::function<void(const nn::EpochReport&)>& on_epoch = {},
     const Progress* progress = nullptr);

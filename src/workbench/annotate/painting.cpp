@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "pcednet/core/error.h"
+#include "workbench/annotate/known_inputs.h"
 
 namespace pcednet::annotate {
 namespace {
@@ -23,11 +24,7 @@ Project read_own_project(const fs::path& path) {
 std::vector<Record> records_of(const fs::path& path, const Inputs& inputs) {
   if (!fs::exists(path)) return {};
   Project project = read_own_project(path);
-  if (!begins_with(inputs, project.inputs)) {
-    throw Error(ErrorKind::kInsufficient,
-                fmt::format("{}: a project of {}, not of this {}", path.string(),
-                            project.inputs.front().name, inputs.front().name));
-  }
+  check_known(path, project.inputs, inputs);
   return std::move(project.records);
 }
 

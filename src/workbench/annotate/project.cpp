@@ -243,12 +243,6 @@ std::size_t points_of(std::span<const InputIdentity> inputs) {
       [](std::size_t sum, const InputIdentity& input) { return sum + input.points; });
 }
 
-bool begins_with(std::span<const InputIdentity> inputs, std::span<const InputIdentity> known) {
-  return known.size() <= inputs.size() &&
-         std::equal(known.begin(), known.end(), inputs.begin(),
-                    [](const auto& a, const auto& b) { return a.digest == b.digest; });
-}
-
 std::string digest_of_file(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   if (!file) refuse_project(fmt::format("{}: cannot be read", path.string()));

@@ -82,9 +82,6 @@ struct InputIdentity {
 using Inputs = std::vector<InputIdentity>;
 std::size_t points_of(std::span<const InputIdentity> inputs);
 
-/// Whether `inputs` begins with the files of `known`, which others may follow.
-bool begins_with(std::span<const InputIdentity> inputs, std::span<const InputIdentity> known);
-
 /// The digest of a file's bytes. Throws Error(kUnreadable).
 std::string digest_of_file(const std::filesystem::path& path);
 

@@ -247,10 +247,17 @@ Response save(const Call& call) {
   if (!overwrite && std::filesystem::exists(path, error)) {
     throw Error(ErrorKind::kInsufficient, path.string() + " exists");
   }
-  const FileSaved saved =
-      call.session.save(what, path, overwrite ? Overwrite::kYes : Overwrite::kNo, wanted.cloud);
-  call.events.add(saved);
-  return json_response(to_json(saved));
+  try {
+    const FileSaved saved =
+        call.session.save(what, path, overwrite ? Overwrite::kYes : Overwrite::kNo, wanted.cloud);
+    call.events.add(saved);
+    return json_response(to_json(saved));
+  } catch (const Error& fault) {
+    if (fault.kind() != ErrorKind::kFailure) throw;
+    throw Error(fault.kind(), fmt::format("{}; all strokes are kept: download it instead, or mend "
+                                          "that and save again",
+                                          fault.what()));
+  }
 }
 
 struct Route {
