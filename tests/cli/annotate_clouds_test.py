@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Several clouds in one project of `pcednet annotate`."""
 import json
+import os
 import pathlib
 import shutil
 import unittest
@@ -216,6 +217,35 @@ class AnnotateClouds(AnnotateTest):
         self.assertIn(f"cloud 1 of 2, {self.cloud}, is missing", run(*repeat, expect=3).stderr)
         self.assertEqual([path.read_bytes() for path in sorted(self.folder.glob("cube_annotation.json*"))], kept)
         run(*repeat, self.folder / "elsewhere.ply", self.other)  # as it says
+
+    def test_names_that_are_not_utf8(self):
+        def odd(path, name):
+            path.rename(path.with_name(os.fsdecode(name)))
+            return path.with_name(os.fsdecode(name))
+        self.cloud, self.other = odd(self.cloud, b"c\xfcbe.ply"), odd(self.other, b"h\xe4ll.ply")
+        start = self.folder / os.fsdecode(b"m\xfcne.safetensors")
+        shutil.copy(support.SOURCE / "models" / "scan.safetensors", start)
+        server = self.both("--model", str(start))
+        session = server.get("/api/session")
+        self.assertEqual([c["file"] for c in session["clouds"]], ["c\ufffdbe.ply", "h\ufffdll.ply"])
+        self.assertEqual(session["settings"]["start"], "m\ufffdne.safetensors")
+        server.post("/api/settings", {"auto": False, "start": session["settings"]["start"]})
+        painted = [a["changed"] for a in self.paint_both(server)]
+        self.train(server, 2)  # after the labels of the start
+        for what in ("project", "cloud", "model"):
+            server.post("/api/save", {"what": what, "cloud": int(what == "cloud")})
+            self.assertEqual(server.request(f"/api/download/{what}")[0], 200)
+        self.assertEqual(server.end()[0], 0)
+        names = set(os.listdir(os.fsencode(self.folder))) | set(os.listdir(os.fsencode(self.other.parent)))
+        self.assertLessEqual({b"c\xfcbe_annotation.json", b"c\xfcbe.safetensors", b"h\xe4ll_annotated.ply"}, names)
+        server = self.serve()  # names the first alone
+        server.open()
+        session = server.get("/api/session")
+        self.assertEqual([c["painted"] for c in session["clouds"]], painted)
+        model = self.folder / os.fsdecode(b"c\xfcbe.safetensors")
+        again = self.folder / "again.safetensors"
+        run("train", "--project", self.folder / os.fsdecode(b"c\xfcbe_annotation.json"), "-o", again)
+        self.assertEqual(again.read_bytes(), model.read_bytes())
 
     def test_refuses_inputs_that_cannot_be_told_apart(self):
         twin = self.folder / "cube.pcd"

@@ -1,11 +1,13 @@
 """pcednet study: the experiments as files, again from the cache, interrupted, refused."""
 import json
+import os
+import shutil
 import signal
 import subprocess
 import time
 import unittest
 
-from support import PROGRAM, CliTest, cube, run, write_own, write_ply
+from support import PROGRAM, SOURCE, CliTest, cube, run, write_own, write_ply
 
 SCORES = {"precision", "recall", "mcc", "f1", "accuracy", "iou"}
 COUNTS = {"name", "points", "tp", "fp", "tn", "fn"}
@@ -73,6 +75,27 @@ class Study(CliTest):
             expected = json.loads(done.stdout)
             for part in ("clouds", "median", "pooled"):
                 self.assertEqual(result[part], expected[part])
+
+    def test_names_that_are_not_utf8(self):
+        odd = os.fsencode(self.folder) + b"/t\xe4st"
+        os.rename(self.folder / "test", odd)
+        os.rename(odd + b"/cube3.ply", odd + b"/c\xfcbe.ply")
+        shutil.copy(SOURCE / "models" / "scan.safetensors", os.fsencode(self.folder) + b"/m\xfc.safetensors")
+        words = ("methods", "--test", b"a=t\xe4st", "--models", b"m\xfc.safetensors",
+                 "--methods", b"ca,m\xfc")
+        command = [PROGRAM, "study", *words, "--train", "train", "-o", "out"]
+        for _ in range(2):  # the second one is of the same command, and finds all in the cache
+            done = subprocess.run(command, cwd=self.folder, capture_output=True)
+            self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn(b"0 clouds classified", done.stderr)
+        study = self.read("methods")
+        self.assertEqual([v["id"] for v in study["variants"]], ["m\ufffd", "ca"])
+        self.assertEqual([(c["name"], c["file"]) for c in study["sets"][0]["clouds"]],
+                         [("cube4", "t\ufffdst/cube4.ply"), ("c\ufffdbe", "t\ufffdst/c\ufffdbe.ply")])
+        os.rename(odd + b"/cube4.ply", odd + b"/c\xe4be.ply")
+        done = subprocess.run([*command[:-1], "other"], cwd=self.folder, capture_output=True)
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertIn("t\udce4st/c\udcfcbe.ply: the set a has a cloud c\ufffdbe already", os.fsdecode(done.stderr))
 
     def test_does_nothing_twice(self):
         first = self.study("classes", "--test", "a=test", "--quick")

@@ -23,6 +23,8 @@ TEST(Json, RefusesOrReplacesBytesThatAreNotUtf8) {
   const Json name = "caf\xE9.ply";
   EXPECT_THROW(to_text(name), Json::type_error);
   EXPECT_EQ(to_text(name, -1, NotUtf8::kReplace), "\"caf\xEF\xBF\xBD.ply\"");
+  EXPECT_EQ(as_utf8("caf\xE9.ply"), "caf\xEF\xBF\xBD.ply");
+  EXPECT_EQ(as_utf8("caf\xC3\xA9 \"1\".ply"), "caf\xC3\xA9 \"1\".ply");
 }
 
 TEST(Json, WritesNumbersThatAreNotFiniteAsNull) {

@@ -98,6 +98,21 @@ TEST_F(Merge, RefusesACloudThatLostItsLabels) {
   EXPECT_ERROR(ErrorKind::kInsufficient, merged());
 }
 
+TEST_F(Merge, FindsCloudsWhoseNamesAreNotUtf8) {
+  const std::string json = "caf\xEF\xBF\xBD", disk = "caf\xE9";
+  fs::create_directories(folder_ / disk);
+  fs::rename(folder_ / "cloud.ply", folder_ / disk / (disk + ".ply"));
+  fs::rename(folder_ / "predictions/cloud.u8", folder_ / "predictions" / (disk + ".u8"));
+  Json& cloud = study_["sets"][0]["clouds"][0];
+  cloud["name"] = json;
+  cloud["file"] = json + "/" + json + ".ply";
+  for (Json& result : study_["results"]) result["clouds"][0]["name"] = json;
+  const Json scene = merged()["scenes"][0];
+  EXPECT_EQ(scene["cloud"], json);
+  EXPECT_EQ(scene["file"], json + ".ply");
+  EXPECT_EQ(scene["predictions"].size(), 1u);
+}
+
 TEST_F(Merge, LeavesCloudsOutOnDemand) {
   fs::remove(folder_ / "cloud.ply");
   EXPECT_EQ(merged({.clouds_per_set = 0})["scenes"].size(), 0u);

@@ -20,6 +20,7 @@
 #include "models.h"
 #include "number_options.h"
 #include "pcednet/core/error.h"
+#include "pcednet/core/json.h"
 #include "pcednet/io/text_scan.h"
 #include "result_plan.h"
 #include "workbench/shapes/default_set.h"
@@ -64,9 +65,10 @@ study::CloudSet read_set(const std::string& name, const std::vector<std::string>
     auto loaded = truth::read_labelled(file);
     warn_all(file, loaded.warnings);
     const std::string stem = file.stem().string();
-    if (!names.insert(stem).second) {
-      throw Error(ErrorKind::kUsage,
-                  fmt::format("{}: the set {} has a cloud {} already", file.string(), name, stem));
+    const std::string written = as_utf8(stem);  // in the file of the study
+    if (!names.insert(written).second) {
+      throw Error(ErrorKind::kUsage, fmt::format("{}: the set {} has a cloud {} already",
+                                                 file.string(), name, written));
     }
     set.clouds.push_back(study::make_study_cloud(stem, file.string(), std::move(loaded.cloud)));
   }

@@ -28,4 +28,8 @@ std::string to_text(const OrderedJson& json, int indent, NotUtf8 bytes) {
   return text_of(json, indent, bytes);
 }
 
+std::string as_utf8(const std::string& bytes) {
+  return parse_json(to_text(Json(bytes), -1, NotUtf8::kReplace)).get<std::string>();
+}
+
 }  // namespace pcednet

@@ -26,4 +26,7 @@ enum class NotUtf8 {
 std::string to_text(const Json& json, int indent = -1, NotUtf8 bytes = NotUtf8::kRefuse);
 std::string to_text(const OrderedJson& json, int indent = -1, NotUtf8 bytes = NotUtf8::kRefuse);
 
+/// `bytes` as a reader of to_text() gets them, those replaced that are not UTF-8.
+std::string as_utf8(const std::string& bytes);
+
 }  // namespace pcednet

@@ -72,7 +72,8 @@ ProjectClasses parse_classes_change(std::string_view json);
 
 /// The input that records refer to.
 struct InputIdentity {
-  std::string name = {};    ///< without its folder; of a further input as seen from the first's
+  /// Without its folder; of a further input as seen from the first's. UTF-8, see as_utf8().
+  std::string name = {};
   std::string digest = {};  ///< of the file's bytes
   std::size_t points = 0;
   bool operator==(const InputIdentity&) const = default;

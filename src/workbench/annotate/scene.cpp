@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "pcednet/core/error.h"
+#include "pcednet/core/json.h"
 #include "pcednet/detect/decide.h"
 #include "pcednet/formats/read_cloud.h"
 #include "pcednet/gls/scales.h"
@@ -28,7 +29,7 @@ std::shared_ptr<const Scene> load_scene(const std::filesystem::path& input,
   stage.advance();
   scene->cloud = std::move(loaded.cloud);
   scene->warnings = std::move(loaded.warnings);
-  scene->input = {input.filename().string(), digest_of_file(input), scene->cloud.size()};
+  scene->input = {as_utf8(input.filename().string()), digest_of_file(input), scene->cloud.size()};
   scene->prepared = detect::prepare(scene->cloud, {}, progress);
   scene->bounds = bounding_box(scene->cloud.positions);
   scene->origin = scene->bounds.centre();

@@ -2,6 +2,7 @@
 #include <utility>
 
 #include "pcednet/core/error.h"
+#include "pcednet/core/json.h"
 #include "workbench/annotate/outputs.h"
 #include "workbench/annotate/session_state.h"
 
@@ -252,7 +253,10 @@ Inputs Session::State::inputs() const {
   Inputs all;
   for (std::size_t k = 0; k < scenes.size(); ++k) {
     all.push_back(scenes[k]->input);
-    if (k > 0) all[k].name = input_of(k).lexically_proximate(options.input.parent_path()).string();
+    if (k == 0) continue;
+    const std::filesystem::path relative =
+        input_of(k).lexically_proximate(options.input.parent_path());
+    all[k].name = as_utf8(relative.string());
   }
   return all;
 }

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include "pcednet/core/error.h"
+#include "pcednet/core/json.h"
+#include "pcednet/formats/file_name.h"
 
 namespace pcednet::annotate {
 
@@ -26,14 +28,16 @@ std::string start_name(const fs::path& file, const fs::path& project,
   const fs::path whole = fs::weakly_canonical(fs::absolute(file));
   const fs::path within = whole.lexically_relative(folder_of(project));
   const bool is_within = !within.empty() && *within.begin() != "..";
-  return is_within && !shipped.contains(within.string()) ? within.string() : whole.string();
+  return as_utf8((is_within && !shipped.contains(within.string()) ? within : whole).string());
 }
 
 fs::path start_place(const std::string& name, const fs::path& project,
                      const ShippedModels& shipped) {
   if (const auto found = shipped.find(name); found != shipped.end()) return found->second;
-  const fs::path place = folder_of(project) / name;
-  return !is_file(place) && is_file(name) ? fs::absolute(name) : place;
+  const fs::path place = formats::find_written(folder_of(project) / name);
+  if (is_file(place)) return place;
+  const fs::path here = formats::find_written(name);
+  return is_file(here) ? fs::absolute(here) : place;
 }
 
 fs::path start_file(const std::string& name, const fs::path& project,

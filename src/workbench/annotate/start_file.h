@@ -11,7 +11,8 @@ using ShippedModels = std::map<std::string, std::filesystem::path>;
 
 /// The name under which a project keeps the user's model file `file` as a start, the same from
 /// every working folder: its path from the project's folder if it is in there, which may then move,
-/// otherwise its absolute path. Never the name of a shipped model.
+/// otherwise its absolute path, bytes that are not UTF-8 replaced. Never the name of a shipped
+/// model.
 std::string start_name(const std::filesystem::path& file, const std::filesystem::path& project,
                        const ShippedModels& shipped);
 

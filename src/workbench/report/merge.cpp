@@ -9,6 +9,7 @@
 #include "pcednet/core/error.h"
 #include "pcednet/core/json.h"
 #include "pcednet/detect/prepare.h"
+#include "pcednet/formats/file_name.h"
 #include "pcednet/formats/labels.h"
 #include "pcednet/io/input_file.h"
 #include "workbench/report/drawn_lines.h"
@@ -171,7 +172,8 @@ struct Exhibit {
 
 fs::path find_cloud(const std::string& name, const fs::path& folder, const fs::path& study) {
   std::error_code error;
-  for (const fs::path& candidate : {fs::path(name), folder / name}) {
+  for (const fs::path& written : {fs::path(name), folder / name}) {
+    const fs::path candidate = formats::find_written(written);
     if (fs::is_regular_file(candidate, error)) return fs::weakly_canonical(candidate);
   }
   throw MissingCloud(ErrorKind::kUnreadable,
@@ -196,7 +198,7 @@ std::vector<Exhibit::Source> sources_in(const OrderedJson& study, std::size_t nu
     const auto same = [&](const auto& source) { return source.variant == variant; };
     if (std::any_of(sources.begin(), sources.end(), same)) continue;
     sources.push_back({number, variant, result.value("seed", OrderedJson()),
-                       folder / kept->get<std::string>() / (cloud + ".u8")});
+                       formats::find_written(folder / kept->get<std::string>() / (cloud + ".u8"))});
   }
   return sources;
 }

@@ -156,7 +156,7 @@ bool is_of_command(const fs::path& file, const std::string& command) {
   if (!fs::is_regular_file(file, error)) return false;
   try {
     const Json study = parse_json(io::InputFile(file).text());
-    return study.is_object() && study.value("command", "") == command;
+    return study.is_object() && study.value("command", "") == as_utf8(command);
   } catch (const Json::exception&) {
     return false;
   }
