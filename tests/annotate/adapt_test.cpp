@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <iterator>
+#include <set>
 
 #include "pcednet/core/random_vectors.h"
 #include "workbench/annotate/held_out.h"
@@ -159,6 +161,35 @@ TEST(Labels, NameTheStrokeOfEachPoint) {
   EXPECT_EQ(labels.strokes(), (std::vector<std::uint32_t>{0, 1, kNoStroke, kNoStroke}));
   labels.undo();
   EXPECT_EQ(labels.strokes()[2], 0u);
+}
+
+/// The oracle keeps names: of the strokes in effect, and of those that may be redone.
+TEST(Labels, CountTheStrokesSinceAnEarlierState) {
+  Random random(3);
+  Labels labels(10);
+  std::vector<int> done, undone;
+  std::vector<std::pair<Labels, std::set<int>>> states;
+  for (int step = 0; step < 300; ++step) {
+    states.emplace_back(labels, std::set<int>(done.begin(), done.end()));
+    const double choice = random.uniform();
+    if (choice < 0.4) {
+      labels.paint(2, {static_cast<std::uint32_t>(step % 10)});
+      done.push_back(step);
+      undone.clear();
+    } else {
+      auto& from = choice < 0.75 ? done : undone;
+      auto& to = choice < 0.75 ? undone : done;
+      choice < 0.75 ? labels.undo() : labels.redo();
+      if (!from.empty()) to.push_back(from.back()), from.pop_back();
+    }
+    const std::set<int> now(done.begin(), done.end());
+    for (const auto& [then, its] : states) {
+      std::vector<int> apart;
+      std::set_symmetric_difference(its.begin(), its.end(), now.begin(), now.end(),
+                                    std::back_inserter(apart));
+      ASSERT_EQ(labels.steps_since(then), apart.size()) << step;
+    }
+  }
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ std::size_t Labels::painted() const {
 
 std::span<const std::uint32_t> Labels::paint(std::uint8_t edge_class,
                                              std::vector<std::uint32_t> points) {
-  Step step{.points = std::move(points), .before = {}, .after = edge_class};
+  Step step{.number = steps_++, .points = std::move(points), .before = {}, .after = edge_class};
   step.before.reserve(step.points.size());
   for (const std::uint32_t point : step.points) {
     step.before.push_back(classes_[point]);
@@ -56,6 +56,13 @@ std::span<const std::uint32_t> Labels::redo() {
   undone_.pop_back();
   for (const std::uint32_t point : done_.back().points) set(point, done_.back().after);
   return done_.back().points;
+}
+
+std::size_t Labels::steps_since(const Labels& then) const {
+  const auto [last_then, last_now] =
+      std::mismatch(then.done_.begin(), then.done_.end(), done_.begin(), done_.end(),
+                    [](const Step& a, const Step& b) { return a.number == b.number; });
+  return static_cast<std::size_t>((then.done_.end() - last_then) + (done_.end() - last_now));
 }
 
 std::vector<std::uint32_t> points_to_change(std::vector<std::uint32_t> points, const Stroke& stroke,

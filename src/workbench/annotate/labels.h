@@ -36,8 +36,13 @@ class Labels {
   std::span<const std::uint32_t> undo();
   std::span<const std::uint32_t> redo();
 
+  /// The number of steps that are in effect here and were not in `then`, of which this is the
+  /// continuation, or the other way round.
+  std::size_t steps_since(const Labels& then) const;
+
  private:
   struct Step {
+    std::size_t number;  ///< of its paint()
     std::vector<std::uint32_t> points;
     std::vector<std::uint8_t> before;
     std::uint8_t after;
@@ -48,6 +53,7 @@ class Labels {
   std::vector<std::uint8_t> classes_;
   std::array<std::size_t, kMostClasses> counts_ = {};
   std::vector<Step> done_, undone_;
+  std::size_t steps_ = 0;  ///< ever painted
 };
 
 /// Those of `points` that `stroke` changes: not yet of its class, not protected, not hidden.

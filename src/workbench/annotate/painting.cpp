@@ -92,34 +92,9 @@ bool Painting::is_painted_after(std::size_t records) const {
 }
 
 std::size_t Painting::strokes_since(std::size_t records) const {
-  using Strokes = std::vector<std::size_t>;  // by the numbers of their records
-  const auto move_last = [](Strokes& from, Strokes& to) {
-    if (from.empty()) return;
-    to.push_back(from.back());
-    from.pop_back();
-  };
-  Strokes done, undone, then;
-  for (std::size_t i = 0; i < records_.size(); ++i) {
-    if (i == records) then = done;
-    switch (records_[i].kind) {
-      case Record::Kind::kStroke:
-        done.push_back(i);
-        undone.clear();
-        break;
-      case Record::Kind::kUndo:
-        move_last(done, undone);
-        break;
-      case Record::Kind::kRedo:
-        move_last(undone, done);
-        break;
-      default:
-        break;
-    }
-  }
-  if (records >= records_.size()) return 0;
-  const auto [last_then, last_now] =
-      std::mismatch(then.begin(), then.end(), done.begin(), done.end());
-  return static_cast<std::size_t>((then.end() - last_then) + (done.end() - last_now));
+  if (!is_painted_after(records)) return 0;
+  const auto before = std::span(records_).first(std::min(records, records_.size()));
+  return now_.labels.steps_since(replay(before, points_of(inputs_)).labels);
 }
 
 }  // namespace pcednet::annotate
