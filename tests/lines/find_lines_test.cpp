@@ -108,6 +108,26 @@ TEST(FindLines, GivesThemInNoiseAndTurned) {
   }
 }
 
+TEST(FindLines, GivesAcuteEdgesInNoise) {
+  // The faces of a roof of 40 degrees face away from each other, as the sides of a thin wall do.
+  const double half = 20.0 * std::numbers::pi / 180.0;
+  Random random(5);
+  Cloud cloud{.spacing = std::sqrt(2.0 / 20000.0)};
+  for (int i = 0; i < 20000; ++i) {
+    const double side = i % 2 == 0 ? 1.0 : -1.0, x = random.uniform(), away = random.uniform();
+    const Vec3 noise = 0.3 * cloud.spacing * normal_vector(random);
+    cloud.add(Vec3(x, away * std::cos(half), away * side * std::sin(half)) + noise,
+              Vec3(0.0, -std::sin(half), side * std::cos(half)), away < kNear * cloud.spacing);
+  }
+  const auto curves = lines_of(cloud);
+  ASSERT_EQ(curves.size(), 1u);
+  EXPECT_EQ(curves[0].kind, CurveKind::kSegment);
+  EXPECT_NEAR(length_of(curves[0]), 1.0, 2.0 * cloud.spacing);
+  for (const Vec3& end : curves[0].points) {
+    EXPECT_LT(std::hypot(end.y(), end.z()), 0.5 * cloud.spacing);
+  }
+}
+
 TEST(FindLines, RecognisesCirclesToATenthOfASpacing) {
   const Cloud cloud = cylinder(8000);
   const auto curves = lines_of(cloud);

@@ -28,6 +28,8 @@ constexpr double kNoiseOfPlanes = 1.2;  ///< measured noise is too low: planes o
 
 constexpr std::size_t kUnevenSides = 3;  ///< times as many points
 constexpr double kAlmostAll = 0.95;
+constexpr double kFlat = 0.995;                       ///< cosine between normals of a flat face
+constexpr std::size_t kLeastOnFace = 8;               ///< points of either face of an acute edge
 constexpr double kOffSide = 0.5, kReachesLine = 0.5;  ///< spacings
 
 /// Points of no edge class are tried from this probability on; the second is added per spacing of
@@ -134,6 +136,31 @@ std::size_t facing(const OrderedPoints& cloud, std::uint32_t point,
   return static_cast<std::size_t>(std::count_if(others.begin(), others.end(), faces));
 }
 
+/// How many of these are on a flat face with the point.
+std::size_t on_face_of(const OrderedPoints& cloud, std::uint32_t point,
+                       std::span<const spatial::Neighbour> others) {
+  const auto is_on_it = [&](const auto& other) {
+    return std::abs(cloud.normal(point).dot(cloud.normal(other.index))) > kFlat;
+  };
+  return static_cast<std::size_t>(std::count_if(others.begin(), others.end(), is_on_it));
+}
+
+/// In noise, at an edge whose faces meet at an acute angle: the other face faces away, but is no
+/// other side of a thin wall. Estimated normals, which scatter, do not show it.
+std::optional<Crease> acute_crease(const OrderedPoints& cloud, std::uint32_t point,
+                                   std::span<const spatial::Neighbour> others, Tolerances within) {
+  const auto near = others.first(std::min(others.size(), within.points - 1));
+  const auto beside = std::find_if(near.begin(), near.end(), [&](const auto& other) {
+    return cloud.face_acutely(point, other.index);
+  });
+  if (beside == near.end() || on_face_of(cloud, point, near) < kLeastOnFace ||
+      on_face_of(cloud, beside->index, near) < kLeastOnFace) {
+    return std::nullopt;
+  }
+  within.skips_other_side = false;
+  return crease_at(cloud, point, near, within, spacing_of(near));
+}
+
 /// The points of an edge class, those that may be, and the neighbours of both.
 std::vector<std::uint32_t> points_near_edges(const OrderedPoints& cloud, double noise,
                                              const Progress* progress) {
@@ -234,6 +261,9 @@ std::vector<Crease> find_creases(const OrderedPoints& cloud, const Sampling& sam
                  [&](std::uint32_t point, std::span<const spatial::Neighbour> near) {
                    std::optional<Crease> crease;
                    if (noisy) crease = lengthwise_crease(cloud, point, near, within);
+                   if (!crease && within.skips_other_side && cloud.is_edge(point)) {
+                     crease = acute_crease(cloud, point, near, within);
+                   }
                    if (!crease && cloud.is_edge(point)) {
                      crease = uneven_crease(cloud, point, near, within);
                    }

@@ -27,6 +27,11 @@ class OrderedPoints {
     constexpr double kAway = -0.05;  // a cosine
     return normals_[i].dot(normals_[j]) < kAway;
   }
+  /// The same, but not as opposed as the two sides of a thin wall are.
+  bool face_acutely(std::size_t i, std::size_t j) const {
+    constexpr double kOpposed = -0.97;  // 14 degrees
+    return face_away(i, j) && normals_[i].dot(normals_[j]) > kOpposed;
+  }
   EdgeClass edge_class(std::size_t i) const {
     return static_cast<EdgeClass>(points_.classes[order_[i]]);
   }
