@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "normals/shapes.h"
+#include "pcednet/core/parallel.h"
 #include "pcednet/normals/orient.h"
 #include "pcednet/normals/prepare.h"
 
@@ -65,6 +66,17 @@ TEST(SideVotes, DoNotTakeAStepForAWall) {
     shape.normals.emplace_back(0, 0, 1);
   }
   EXPECT_EQ(agreement(shape, estimate_oriented_normals(shape.positions).normals), 1.0);
+}
+
+TEST(SideVotes, AreTheSameForAnyOrderAndNumberOfThreads) {
+  const Shape shape = pointed(5000, 0.6, false);
+  const auto expected = estimate_oriented_normals(shape.positions).normals;
+  set_thread_count(1);
+  EXPECT_EQ(estimate_oriented_normals(shape.positions).normals, expected);
+  set_thread_count(0);
+  const std::vector<Vec3> reversed(shape.positions.rbegin(), shape.positions.rend());
+  EXPECT_EQ(estimate_oriented_normals(reversed).normals,
+            std::vector<Vec3>(expected.rbegin(), expected.rend()));
 }
 
 /// Two faces of a wedge as patches, each with its points' outward normals turned by `sign`.
