@@ -165,6 +165,17 @@ class Scene:
         t = t[seen] + noise * random.normal(size=seen.sum())
         return eyes[seen] + t[:, None] * beams[seen]
 
+    def profiled(self, y, apart, step, noise, random):
+        """From a vehicle along x: a profile every `apart` metres, aslant by 30 degrees, a beam per `step` radians."""
+        x, angle = np.meshgrid(np.arange(-14, 14, apart), np.arange(0, 2 * np.pi, step), indexing="ij")
+        x, angle = x.ravel(), (angle + step * random.random(x.shape[0])[:, None]).ravel()
+        beams = np.c_[np.cos(angle) * np.sin(np.pi / 6), np.cos(angle) * np.cos(np.pi / 6), np.sin(angle)]
+        eyes = np.c_[x, np.full_like(x, y), np.full_like(x, 2.2)]
+        t = self.ranges(eyes, beams)
+        seen = t < 40
+        t = t[seen] + noise * random.normal(size=seen.sum())
+        return eyes[seen] + t[:, None] * beams[seen]
+
     def photographed(self, eye, towards, random):
         """By a depth camera of 640 by 480, whose disparity has noise of a tenth and steps of an eighth."""
         focal, base = 500, .6
@@ -202,6 +213,8 @@ def forms(scene, random):
     places = (9, -9, 2), (-9.5, -8, 2), (-8, 9, 2), (9, 2, 2)
     scans = lambda: [scene.scanned(place, .006, .003, random) for place in places]
 
+    profiles = lambda apart: np.vstack([scene.profiled(y, apart, .003, .003, random) for y in (-9, 9)])
+
     def thinner_with_distance():
         p, _ = scene.drawn(1_200_000, random)
         keep = random.random(len(p)) < .02 + np.exp(-np.linalg.norm(p - [4, 6, 1], axis=1) / 2)
@@ -221,6 +234,8 @@ def forms(scene, random):
         "four scans, centres of voxels": lambda: centres(np.vstack(scans()), .05),
         "four scans, each 2 cm off the last": lambda: np.vstack(
             [scan + np.array([.02, .015, .01]) * i for i, scan in enumerate(scans())]),
+        "profiles of a vehicle, 8 cm apart": lambda: profiles(.08),
+        "profiles of a vehicle, 20 cm apart": lambda: profiles(.2),
         "thinner with distance": thinner_with_distance,
         "depth camera": lambda: scene.photographed((8, -9, 3), (0, 0, 1), random),
     }

@@ -13,7 +13,6 @@
 #include "pcednet/detect/part_of_cloud.h"
 #include "pcednet/gls/scales.h"
 #include "pcednet/normals/estimate.h"
-#include "pcednet/normals/neighbour_count.h"
 #include "pcednet/spatial/curve_order.h"
 
 namespace pcednet::detect {
@@ -75,10 +74,9 @@ std::size_t points_for_experts(const PreparedCloud& cloud,
 
 CloudTraits traits_of(const PreparedCloud& cloud, const gls::ScaleSpaceOptions& descriptor) {
   const bool estimated = cloud.decision.made && !cloud.reoriented;
-  CloudTraits traits{
-      .estimated = estimated,
-      .exact = cloud.decision.exact,
-      .noisy = estimated && cloud.decision.neighbours > normals::NeighbourChoice{}.neighbours};
+  CloudTraits traits{.estimated = estimated,
+                     .exact = cloud.decision.exact,
+                     .noisy = estimated && cloud.decision.noisy};
   traits.points = points_for_experts(cloud, descriptor);
   if (!traits.estimated && traits.points < kFew) traits.estimated = are_as_estimated(cloud);
   return traits;

@@ -66,7 +66,10 @@ Oriented complete_and_orient(const Points& cloud, const PreparedCloud& prepared,
       .choice = normals::given_neighbours(static_cast<int>(prepared.decision.neighbours)),
       .count_turned = cloud.has_normals(),
       .curve = prepared.curve};
-  if (options.choice) options.choice->exact_planes = prepared.decision.exact_planes;
+  if (options.choice) {
+    options.choice->noisy = prepared.decision.noisy;
+    options.choice->exact_planes = prepared.decision.exact_planes;
+  }
   // If every point has a scanner, the costly search for consistent signs is unnecessary.
   if (!scanners.empty() && std::all_of(scanners.begin(), scanners.end(), is_known)) {
     options.viewpoint = scanners.front();
@@ -107,6 +110,7 @@ void use(Oriented&& oriented, const std::string& note, PreparedCloud& prepared) 
   prepared.notes.push_back(note);
   prepared.decision.made = true;
   prepared.decision.neighbours = oriented.found.choice.neighbours;
+  prepared.decision.noisy = oriented.found.choice.noisy;
   prepared.decision.exact_planes = oriented.found.choice.exact_planes;
   prepared.made = std::move(oriented.found.normals);
   for (Vec3& normal : prepared.made) normal += Vec3::Zero();  // no zero keeps a minus sign

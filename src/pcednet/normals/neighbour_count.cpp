@@ -19,20 +19,22 @@ namespace {
 
 constexpr std::array<std::size_t, 3> kCounts = {12, 24, 48};
 
+constexpr double kLines = 0.1;   ///< median width
 constexpr double kClean = 0.01;  ///< median thickness
 constexpr double kBall = 0.4;    ///< median thickness of neighbourhoods that show no surface
 constexpr double kExactShare = 0.17;
 
 /// Measures on a sample of the points.
 struct Measures {
-  std::array<double, kCounts.size()> thickness;  ///< median
-  double exact = 0.0;                            ///< share of the points on plane faces
+  std::array<double, kCounts.size()> thickness, width;  ///< medians
+  double exact = 0.0;                                   ///< share of the points on plane faces
 };
 
 Measures measure(std::span<const Vec3> points, const spatial::NeighbourSearch& search) {
   const std::size_t samples = std::min<std::size_t>(points.size(), 2000);
-  std::array<std::vector<double>, kCounts.size()> thickness;
+  std::array<std::vector<double>, kCounts.size()> thickness, width;
   for (std::vector<double>& of_count : thickness) of_count.resize(samples);
+  for (std::vector<double>& of_count : width) of_count.resize(samples);
   std::vector<std::uint8_t> is_exact(samples);
   parallel_blocks(samples, 100, [&](std::size_t begin, std::size_t end) {
     std::vector<std::uint32_t> chosen;
@@ -50,6 +52,7 @@ Measures measure(std::span<const Vec3> points, const spatial::NeighbourSearch& s
       fit_planes(points, chosen, neighbours, fits);
       for (std::size_t i = 0; i < fits.size(); ++i) {
         thickness[c][begin + i] = fits[i].thickness;
+        width[c][begin + i] = fits[i].width;
         if (kCounts[c] != kCounts.back()) continue;
         const auto row = std::span(neighbours).subspan(i * kCounts[c], kCounts[c]);
         is_exact[begin + i] = is_on_face(points, chosen[i], row);
@@ -57,8 +60,9 @@ Measures measure(std::span<const Vec3> points, const spatial::NeighbourSearch& s
     }
   });
   Measures measures;
-  std::transform(thickness.begin(), thickness.end(), measures.thickness.begin(),
-                 [](const std::vector<double>& of_count) { return upper_median(of_count); });
+  const auto median = [](const std::vector<double>& of_count) { return upper_median(of_count); };
+  std::transform(thickness.begin(), thickness.end(), measures.thickness.begin(), median);
+  std::transform(width.begin(), width.end(), measures.width.begin(), median);
   measures.exact =
       std::accumulate(is_exact.begin(), is_exact.end(), 0.0) / static_cast<double>(samples);
   return measures;
@@ -78,15 +82,19 @@ NeighbourChoice choose_neighbours(std::span<const Vec3> points,
                                   const spatial::NeighbourSearch& search) {
   if (points.size() <= kCounts.back()) return {};
   const Measures measures = measure(points, search);
-  if (measures.thickness[0] <= kClean) return {};
+  std::size_t first = 0;
+  while (first + 1 < kCounts.size() && measures.width[first] < kLines) ++first;
+  if (measures.thickness[first] <= kClean) return {.neighbours = kCounts[first]};
   const bool exact_planes = measures.exact >= kExactShare;
-  if (measures.thickness[0] >= kBall && !exact_planes) return {.neighbours = kCounts.back()};
-  std::size_t chosen = 0;
+  if (measures.thickness[first] >= kBall && !exact_planes) {
+    return {.neighbours = kCounts.back(), .noisy = true};
+  }
+  std::size_t chosen = first;
   while (chosen + 1 < kCounts.size() &&
          measures.thickness[chosen + 1] < measures.thickness[chosen]) {
     ++chosen;
   }
-  return {kCounts[chosen], exact_planes};
+  return {kCounts[chosen], chosen > first, exact_planes};
 }
 
 }  // namespace pcednet::normals

@@ -159,7 +159,8 @@ PlaneFit fit_of(const Matrices& c, const Cubic& cubic, const Eigenvalues& e, con
                                   : Vec3(Vec3(v.x[i], v.y[i], v.z[i]) / std::sqrt(v.sq_length[i]));
   const double least = e.least[i] * cubic.scale[i] + cubic.shift[i];
   const double middle = e.middle[i] * cubic.scale[i] + cubic.shift[i];
-  return {direction.normalized(), std::max(least, 0.0) / std::max(middle, 0.0)};
+  const double largest = e.largest[i] * cubic.scale[i] + cubic.shift[i];
+  return {direction.normalized(), std::max(least, 0.0) / std::max(middle, 0.0), middle / largest};
 }
 
 }  // namespace

@@ -11,6 +11,7 @@ namespace pcednet::normals {
 struct PlaneFit {
   Vec3 normal = Vec3::Zero();  ///< unit length, or zero if there is no plane
   double thickness = 0.0;      ///< smallest eigenvalue over the middle one, from 0 to 1
+  double width = 0.0;          ///< middle eigenvalue over the largest, from 0 to 1
 };
 
 /// Fits a plane to each of the points numbered `some` and its neighbours, see estimate_normals():

@@ -131,6 +131,7 @@ Json json_of(const detect::NormalsDecision& normals) {
   const detect::Rounding& rounding = normals.rounding;
   return {{"made", normals.made},
           {"neighbours", normals.neighbours},
+          {"noisy", normals.noisy},
           {"exact_planes", normals.exact_planes},
           {"exact", normals.exact},
           {"rounded_to", rounding.step},
@@ -141,6 +142,7 @@ Json json_of(const detect::NormalsDecision& normals) {
 detect::NormalsDecision normals_in(const Json& j) {
   return {j.at("made"),
           j.at("neighbours"),
+          j.at("noisy"),
           j.at("exact_planes"),
           j.at("exact"),
           {j.at("rounded_to"), vec3_of(j.at("rounded_from")), j.at("spacing")}};
