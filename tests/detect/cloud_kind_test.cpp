@@ -102,5 +102,20 @@ TEST(CloudKind, IsNoisyWhereMoreNeighboursEstimateTheNormals) {
   EXPECT_FALSE(traits_of(prepare(cloud), {}).noisy);
 }
 
+TEST(CloudKind, IsNotNoisyWhereScanLinesAreFarApart) {
+  Random random(1);
+  PointCloud cloud;  // the nearest 12 to 24 of a point are on its own line
+  for (int line = 0; line < 60; ++line) {
+    for (int i = 0; i < 200; ++i) {
+      const Vec3 noise = normal_vector(random);
+      cloud.positions.push_back(Vec3(8.0 * line, i + random.uniform(-0.3, 0.3), 0.0) + 0.1 * noise);
+    }
+  }
+  const PreparedCloud prepared = prepare(cloud);
+  EXPECT_GT(prepared.decision.neighbours, 12u);
+  EXPECT_FALSE(traits_of(prepared, {}).noisy);
+  for (const Vec3& normal : prepared.normals) EXPECT_GT(std::abs(normal.z()), 0.9);
+}
+
 }  // namespace
 }  // namespace pcednet::detect

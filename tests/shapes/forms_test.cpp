@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <tuple>
 #include <vector>
 
@@ -134,6 +135,33 @@ TEST(CloudForms, EdgesAreFoundWherePointsAreSparser) {
   const Score found = score(form);
   EXPECT_GT(found.found, 0.97);
   EXPECT_LT(found.wrong, 0.002);
+}
+
+/// A ridge of 110 degrees along x, in profiles across it `apart` times as far from each other as
+/// their points.
+Form profiled_ridge(double apart) {
+  Random random(4);
+  Form form;
+  const double spacing = std::sqrt(apart), half = 55.0 * std::numbers::pi / 180.0;  // as an area
+  for (double x = 0.0; x < 300.0; x += apart) {
+    const double first = random.uniform();
+    for (double y = first - 120.0; y < 120.0; y += 1.0) {
+      const double across = y + 0.1 * random.normal();
+      const Vec3 p(x, across * std::sin(half), -std::abs(across) * std::cos(half));
+      form.positions.push_back(p + 0.08 * normal_vector(random));
+      const bool is_inner = std::min(x, 300.0 - x) > 20.0 && std::abs(across) < 100.0;
+      form.away.push_back(is_inner ? std::abs(across) / spacing : 2.0);
+    }
+  }
+  return form;
+}
+
+TEST(CloudForms, EdgesAcrossProfilesAreFound) {
+  for (const double apart : {6.0, 10.0}) {
+    const Score found = score(profiled_ridge(apart));
+    EXPECT_GT(found.found, 0.97) << apart;
+    EXPECT_LT(found.wrong, 0.002) << apart;
+  }
 }
 
 }  // namespace
