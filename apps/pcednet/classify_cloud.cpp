@@ -8,25 +8,11 @@
 #include "descriptor_options.h"
 #include "pcednet/cloud/bounding_box.h"
 #include "pcednet/detect/boundary.h"
-#include "pcednet/detect/rounding.h"
-#include "pcednet/formats/cloud_facts.h"
 #include "pcednet/formats/read_cloud.h"
 #include "pcednet/io/faces.h"
 #include "prepare.h"
 
 namespace pcednet::app {
-namespace {
-
-/// Warns of coordinates of this type that are rounded too coarsely.
-void warn_of_rounding(const std::filesystem::path& file, ScalarType type, const BoundingBox& bounds,
-                      const gls::ScaleRange& range, const ClassifiedCloud& classified) {
-  if (!detect::may_be_too_coarse(type, classified.prepared.decision, range)) return;
-  const std::string note = formats::note_on_float(bounds, classified.found.s_min);
-  if (!note.empty()) warn(fmt::format("{}: {}", file.string(), note));
-}
-
-}  // namespace
-
 PointCloud read_cloud(const std::filesystem::path& file) {
   auto loaded = formats::read_cloud(file);
   warn_all(file, loaded.warnings);
@@ -50,7 +36,8 @@ ClassifiedCloud classify_cloud(const std::filesystem::path& file, const PointClo
     if (classifier.boundary && has_edges(classifier.model->table)) {
       detect::mark_boundary(result.prepared, result.found, &progress);
     }
-    warn_of_rounding(file, cloud.position_type, bounds, classifier.model->descriptor.range, result);
+    warn_of_rounding(file, cloud.position_type, result.prepared, classifier.model->descriptor.range,
+                     [&] { return result.found.s_min; });
   } else {
     result.found = classify_by_method(cloud, classifier.method, &progress);
   }

@@ -139,7 +139,7 @@ def lines(xyz, labels=None, normals=None, *, p_sharp=None, p_smooth=None,
             p_smooth = _probability(xyz, "p_smooth") if p_smooth is None else p_smooth
     if labels is None:
         labels = classify(xyz, normals, viewpoint=viewpoint, threads=threads, progress=progress)
-    positions, _, given, scanners = _clouds.points_of(xyz, normals, viewpoint, estimates=False)
+    positions, is_float32, given, scanners = _clouds.points_of(xyz, normals, viewpoint, estimates=False)
     rows = len(positions)
     prepared = isinstance(labels, Result)
     if prepared:
@@ -159,7 +159,7 @@ def lines(xyz, labels=None, normals=None, *, p_sharp=None, p_smooth=None,
                 "stage": _arrays.text(stage, "stage")}
     with _arrays.reporting(progress) as report:
         curves, notes, fit_tolerance = _core.find_lines(
-            positions, given, scanners, prepared, labels,
+            positions, is_float32, given, scanners, prepared, labels,
             _arrays.probabilities(p_sharp, rows, "p_sharp"),
             _arrays.probabilities(p_smooth, rows, "p_smooth"), settings, report,
             _arrays.thread_count(threads))

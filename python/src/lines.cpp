@@ -8,6 +8,7 @@
 #include "bindings.h"
 #include "clouds.h"
 #include "input_cloud.h"
+#include "models.h"
 #include "named.h"
 #include "pcednet/core/error.h"
 #include "pcednet/io/drawing/drawing.h"
@@ -35,11 +36,11 @@ lines::LineOptions line_options_of(const py::dict& settings) {
 
 /// Curves, notes on the normals, and the tolerance of the fit. `prepared` says that positions and
 /// normals come from a classification.
-py::tuple find_lines(const Array<double>& xyz, const OptionalArray<double>& normals,
-                     const OptionalArray<double>& scanners, bool prepared,
-                     const Array<std::uint8_t>& labels, const OptionalArray<float>& p_sharp,
-                     const OptionalArray<float>& p_smooth, const py::dict& settings,
-                     const py::object& progress, int threads) {
+py::tuple find_lines(const Array<double>& xyz, bool is_float32,
+                     const OptionalArray<double>& normals, const OptionalArray<double>& scanners,
+                     bool prepared, const Array<std::uint8_t>& labels,
+                     const OptionalArray<float>& p_sharp, const OptionalArray<float>& p_smooth,
+                     const py::dict& settings, const py::object& progress, int threads) {
   const lines::LineOptions options = line_options_of(settings);
   std::vector<Curve> curves;
   std::vector<std::string> notes;
@@ -60,6 +61,8 @@ py::tuple find_lines(const Array<double>& xyz, const OptionalArray<double>& norm
       notes = made.notes;
     }
     curves = lines::find_lines(points, options, job, &scale);
+    const std::string rounded = prepared ? "" : note_on_float(is_float32, made, {}, scale.spacing);
+    if (!rounded.empty()) notes.push_back(rounded);
   });
   return py::make_tuple(std::move(curves), notes, scale.tolerance);
 }

@@ -110,7 +110,8 @@ std::string note_on_float(bool is_float32, const detect::PreparedCloud& cloud,
                           const gls::ScaleSpaceOptions& options, double s_min) {
   const auto type = is_float32 ? ScalarType::kFloat32 : ScalarType::kFloat64;
   if (!detect::may_be_too_coarse(type, cloud.decision, options.range)) return {};
-  return formats::note_on_float(bounding_box(cloud.positions), s_min);
+  return formats::note_on_float(bounding_box(cloud.positions), s_min,
+                                detect::share_of_places(cloud.positions, cloud.curve));
 }
 
 void add_models(py::module_& module) {

@@ -10,7 +10,7 @@
 #include "models.h"
 #include "named.h"
 #include "pcednet/core/error.h"
-#include "pcednet/gls/scales.h"
+#include "pcednet/detect/rounding.h"
 #include "workbench/annotate/adapt.h"
 #include "workbench/annotate/outputs.h"
 
@@ -45,12 +45,6 @@ struct TrainingClouds {
   std::vector<std::string> notes;
 };
 
-/// The smallest scale that the cloud is described at.
-double smallest_scale(const detect::PreparedCloud& cloud, const gls::ScaleRange& range) {
-  const auto spacings = [&] { return gls::spacings_of_places(cloud.positions, cloud.curve); };
-  return gls::scale_range(cloud.positions, range, spacings).s_min;
-}
-
 /// Notes for the user on a prepared cloud.
 void add_notes(const LabelledArrays& arrays, const detect::PreparedCloud& cloud,
                const gls::ScaleSpaceOptions& descriptor, std::vector<std::string>& notes) {
@@ -59,7 +53,7 @@ void add_notes(const LabelledArrays& arrays, const detect::PreparedCloud& cloud,
   if (!extent.empty()) notes.push_back(extent);
   if (!arrays.is_float32) return;
   with_name_in_errors(arrays.name, [&] {
-    const double s_min = smallest_scale(cloud, descriptor.range);
+    const double s_min = detect::smallest_scale(cloud, descriptor.range);
     const std::string rounded = note_on_float(true, cloud, descriptor, s_min);
     if (!rounded.empty()) notes.push_back(arrays.name + ": " + rounded);
   });

@@ -303,7 +303,7 @@ class Classify(CliTest):
         self.assertEqual(os.listdir(self.folder), ["big.ply"])
 
     def test_warns_of_what_the_format_does_not_keep_and_of_rounded_coordinates(self):
-        p, n, _ = cube(500)
+        p, n, labels = cube(500)
         write_ply(self.folder / "a.ply", p, n)
         said = run("classify", self.folder / "a.ply", "-o", self.folder / "b.obj").stderr
         self.assertIn("b.obj does not keep: attribute scalar_p_sharp", said)
@@ -313,12 +313,36 @@ class Classify(CliTest):
         self.assertRegex(said, r"far.ply: float coordinates up to 540000\d are rounded to steps of 0.5")
         said = run("tiles", "plan", self.folder / "far.ply", "-o", self.folder / "far.json").stderr
         self.assertRegex(said, r"float coordinates up to 540000\d are rounded to steps of 0.5")
+        for command in (("describe", "-o", self.folder / "matrix.npy"),
+                        ("train", "-o", self.folder / "far.safetensors", "--epochs", "1", "--scales", "4")):
+            write_ply(self.folder / "far.ply", p + [500_000, 5_400_000, 0], n, labels)
+            said = run(command[0], self.folder / "far.ply", *command[1:]).stderr
+            self.assertRegex(said, r"far.ply: float coordinates up to 540000\d are rounded to steps of 0.5")
+            run(command[0], self.folder / "far.ply", *command[1:], "--s-min", "0.2", "--overwrite")
+        said = run("lines", self.folder / "far.ply", "-o", self.folder / "far.obj").stderr
+        self.assertRegex(said, r"far.ply: float coordinates up to 540000\d are rounded to steps of 0.5")
         p[7] = 1e30
         write_ply(self.folder / "no_data.ply", p, n)
         self.assertNotIn("rounded", run("classify", self.folder / "no_data.ply").stderr)
         p[7] = 0
         write_ply(self.folder / "far.ply", p + [500_000, 5_400_000, 0], n, position_type="double")
         self.assertNotIn("rounded", run("classify", self.folder / "far.ply", "--overwrite").stderr)
+
+    def test_warns_of_rounding_along_any_axes(self):
+        """Along all three it leaves a lattice, whose places are further apart than its steps."""
+        p, n, _ = cube(20_000)
+        for axes in ([1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 1, 0], [1, 1, 1]):
+            for normals in (n, None):
+                write_ply(self.folder / "far.ply", p + 786_432 * np.array(axes), normals)
+                for command, output in (("classify", "far_edges.ply"), ("lines", "far.obj")):
+                    said = run(command, self.folder / "far.ply", "-o", self.folder / output,
+                               "--overwrite").stderr
+                    self.assertRegex(said, "far.ply: float coordinates up to 78643[23] are rounded "
+                                     r"to steps of 0.062, but the points are only 0.0[12]\d* apart",
+                                     (axes, normals is None))
+        again = np.concatenate([p] * 20) + [65_536] * 3  # steps of less than half the spacing
+        write_ply(self.folder / "again.ply", again, np.concatenate([n] * 20))
+        self.assertNotIn("rounded", run("classify", self.folder / "again.ply").stderr)
 
 
 if __name__ == "__main__":

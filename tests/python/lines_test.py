@@ -83,6 +83,11 @@ class Lines(CliTest):
             way.write(self.path("ours.obj"), overwrite=True)
             self.assertEqual(self.path("ours.obj").read_bytes(), theirs, name)
 
+    def test_float_coordinates_rounded_too_coarsely_are_told_where_labels_are_given(self):
+        far = (self.positions + [500_000, 5_400_000, 0]).astype(np.float32)
+        with self.assertWarnsRegex(UserWarning, "float coordinates up to .* are rounded to steps of 0.5"):
+            pcednet.lines(far, self.result.labels, self.normals)
+
     def test_a_cloud_all_unlabelled_is_classified(self):
         write_ply(self.path("unlabelled.ply"), self.positions, self.normals,
                   labels=np.full(len(self.positions), 255, np.uint8))

@@ -122,6 +122,8 @@ void describe(const DescribeArguments& arguments, const Common& common) {
   if (const auto note = gls::note_on(options, space.scales(), cloud.positions); !note.empty()) {
     warn(fmt::format("{}: {}", arguments.input, note));
   }
+  warn_of_rounding(arguments.input, cloud.position_type, prepared, options.range,
+                   [&] { return space.scales().front(); });
   const auto width = static_cast<std::size_t>(gls::column_count(options));
   io::NpyWriter matrix(output, {cloud.size(), space.scales().size(), width}, ScalarType::kFloat32,
                        common.overwrite());

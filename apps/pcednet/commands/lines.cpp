@@ -38,6 +38,7 @@ struct LabelledCloud {
   std::vector<std::uint8_t> classes;
   std::vector<float> p_sharp, p_smooth;
   std::vector<std::uint8_t> partial = {};
+  bool given = false;  ///< the labels are those of the file, which was read whole
 };
 
 void check_input(const std::string& input) {
@@ -131,6 +132,7 @@ void add_given_labels(const LinesArguments& arguments, std::vector<std::uint8_t>
   const PointCloud& cloud = labelled.cloud;
   labelled.prepared = prepare(arguments.input, cloud, arguments.preparation, progress);
   labelled.classes = std::move(classes);
+  labelled.given = true;
   labelled.p_sharp = probabilities(arguments.input, cloud, "p_sharp");
   labelled.p_smooth = probabilities(arguments.input, cloud, "p_smooth");
   if (labelled.p_sharp.empty()) labelled.p_smooth.clear();
@@ -295,6 +297,10 @@ void run(LinesArguments arguments, const Common& common) {
   clock.begin("lines");
   lines::LineScale scale;
   std::vector<Curve> curves = find_curves(arguments, labelled, clock.progress(), scale);
+  if (labelled.given) {  // otherwise the classification has warned
+    warn_of_rounding(arguments.input, cloud.position_type, labelled.prepared, {},
+                     [&] { return scale.spacing; });
+  }
   const std::string left_out = filter_lines(arguments, scale, curves);
   clock.begin("write");
   arguments.drawing.tolerance = arguments.lines.tolerance;

@@ -13,6 +13,7 @@
 #include "pcednet/core/error.h"
 #include "pcednet/detect/cloud_kind.h"
 #include "pcednet/detect/piece.h"
+#include "pcednet/detect/rounding.h"
 #include "pcednet/detect/train.h"
 #include "pcednet/io/text_scan.h"
 #include "prepare.h"
@@ -188,7 +189,11 @@ detect::TrainedModel train_clouds(const TrainArguments& arguments, const Common&
     warn_of_labels(input, cloud, options.table);
     check_scales(input, bounding_box(cloud.positions), options.descriptor);
     auto prepared = prepare(input, cloud, arguments.preparation, progress);
-    if (!only || only->has(detect::traits_of(prepared, options.descriptor))) {
+    const bool is_wanted = !only || only->has(detect::traits_of(prepared, options.descriptor));
+    const gls::ScaleRange& range = options.descriptor.range;
+    if (is_wanted) {
+      warn_of_rounding(input, cloud.position_type, prepared, range,
+                       [&] { return detect::smallest_scale(prepared, range); });
       clouds.push_back({input.string(), std::move(prepared), cloud.labels});
     } else {
       loaded.pop_back();

@@ -12,7 +12,9 @@
 #include "pcednet/core/random.h"
 #include "pcednet/detect/exact_points.h"
 #include "pcednet/detect/near_on_curve.h"
+#include "pcednet/gls/scales.h"
 #include "pcednet/normals/plane_fit.h"
+#include "pcednet/spatial/curve_order.h"
 
 namespace pcednet::detect {
 namespace {
@@ -81,6 +83,17 @@ std::vector<Vec3> spread(std::span<const Vec3> positions, const Rounding& roundi
 bool may_be_too_coarse(ScalarType type, const NormalsDecision& decision,
                        const gls::ScaleRange& range) {
   return type == ScalarType::kFloat32 && range.s_min == 0.0 && decision.rounding.step == 0.0;
+}
+
+double share_of_places(std::span<const Vec3> positions, std::span<const std::uint32_t> curve) {
+  if (curve.empty()) return 1.0;
+  return static_cast<double>(spatial::firsts_of_places(positions, curve).size()) /
+         static_cast<double>(curve.size());
+}
+
+double smallest_scale(const PreparedCloud& cloud, const gls::ScaleRange& range) {
+  const auto spacings = [&] { return gls::spacings_of_places(cloud.positions, cloud.curve); };
+  return gls::scale_range(cloud.positions, range, spacings).s_min;
 }
 
 }  // namespace pcednet::detect

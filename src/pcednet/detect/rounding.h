@@ -29,4 +29,12 @@ std::vector<Vec3> spread(std::span<const Vec3> positions, const Rounding& roundi
 bool may_be_too_coarse(ScalarType type, const NormalsDecision& decision,
                        const gls::ScaleRange& range);
 
+/// The share of the points on the curve that are not at the place of an earlier one; 1 if there are
+/// none. Where it is low, rounding may have put many at one place.
+double share_of_places(std::span<const Vec3> positions, std::span<const std::uint32_t> curve);
+
+/// The smallest scale at which the cloud is described with this range. Throws as
+/// gls::scale_range().
+double smallest_scale(const PreparedCloud& cloud, const gls::ScaleRange& range);
+
 }  // namespace pcednet::detect

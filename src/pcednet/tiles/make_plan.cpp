@@ -253,10 +253,12 @@ std::size_t points_for_experts(const PointCloud& whole, std::size_t places, bool
   return detect::traits_for(model, prepared).points;
 }
 
-/// Of coordinates of this type.
-void note_float_rounding(const detect::EdgeModel& model, ScalarType type, Plan& plan) {
+/// Of coordinates of this type; the sample holds all points of the places that it has.
+void note_float_rounding(const detect::EdgeModel& model, ScalarType type,
+                         const PreparedSample& sample, Plan& plan) {
   if (!detect::may_be_too_coarse(type, plan.normals, model.descriptor.range)) return;
-  const std::string note = formats::note_on_float(plan.box, plan.s_min);
+  const std::string note = formats::note_on_float(
+      plan.box, plan.s_min, detect::share_of_places(sample.positions, sample.curve));
   if (!note.empty()) plan.notes.push_back(note);
 }
 
@@ -321,7 +323,7 @@ Plan make_plan(const PlanRequest& request, const detect::EdgeModel& model,
     plan.places = points_for_experts(dense, plan.places, request.keep_orientation, model);
   }
   plan.s_min = spacing.range.s_min, plan.s_max = spacing.range.s_max;
-  note_float_rounding(model, dense.position_type, plan);
+  note_float_rounding(model, dense.position_type, prepared, plan);
   decide_voxels(prepared, model, plan, progress);
 
   set_buffer(model, spacing, plan);
