@@ -36,6 +36,12 @@ Cuts cuts_of(std::size_t count, std::size_t block) {
   return cuts;
 }
 
+TEST_F(ParallelBlocks, AreOfNoNegativeNumberOfThreads) {
+  set_thread_count(1);
+  EXPECT_ERROR(ErrorKind::kUsage, set_thread_count(-5));
+  EXPECT_EQ(thread_count(), 1);
+}
+
 TEST_F(ParallelBlocks, AreCutTheSameWayForAnyNumberOfThreads) {
   for (const int threads : {1, 2, 8}) {
     set_thread_count(threads);

@@ -15,6 +15,7 @@
 #include "pcednet/detect/decide.h"
 #include "pcednet/detect/part_of_cloud.h"
 #include "pcednet/detect/result_cloud.h"
+#include "pcednet/detect/train.h"
 #include "support/expect_error.h"
 
 namespace pcednet::detect {
@@ -282,6 +283,20 @@ TEST(Boundary, IsClearWithoutNoiseOnly) {
   };
   EXPECT_EQ(share_clear(0.0), 1.0);
   EXPECT_LT(share_clear(0.7), 0.2);
+}
+
+TEST(Boundary, OfACloudWithOtherNormalsIsRefused) {
+  const PointCloud cloud = sheet(500, 0.0);
+  for (const std::size_t normals : {0u, 499u}) {
+    PreparedCloud prepared = prepare(cloud);
+    prepared.normals = prepared.normals.first(normals);
+    EXPECT_ERROR(ErrorKind::kUsage, find_boundary(prepared));
+    EXPECT_ERROR(ErrorKind::kUsage, classify(prepared, EdgeModel{}));
+    const std::vector<std::uint8_t> labels(500, kSharpEdge);
+    std::vector<TrainingCloud> clouds;
+    clouds.push_back({"sheet", std::move(prepared), labels});
+    EXPECT_ERROR(ErrorKind::kUsage, make_samples(clouds, {}));
+  }
 }
 
 TEST(Boundary, OfAnotherCloudIsRefused) {

@@ -228,6 +228,9 @@ TEST(Prepare, TakesArraysAsItTakesClouds) {
   EXPECT_ERROR(ErrorKind::kUsage,
                prepare(PointArrays{cloud.positions, std::span(cloud.normals).first(3)}));
 
+  const PrepareOptions as_they_are{.decided = NormalsDecision{}};
+  EXPECT_ERROR(ErrorKind::kUsage, prepare(PointArrays{cloud.positions}, as_they_are));
+
   PointCloud scanned = cloud;
   scanned.scanners = {{5, 5, 5}};
   const std::vector<Vec3> scanners(cloud.size(), scanned.scanners.front());

@@ -59,6 +59,13 @@ TEST(Curve, SamplesStayWithinTheTolerance) {
   }
 }
 
+TEST(Curve, SamplesOfACircleAre4096AtMost) {
+  const auto vertices = sampled(circle(3.0), 1e-12);
+  ASSERT_EQ(vertices.size(), 4097u);
+  const Vec3 middle = 0.5 * (vertices[0] + vertices[1]);
+  EXPECT_LE(3.0 - middle.norm(), 3e-7 * 3.0);
+}
+
 TEST(Curve, SamplesOfAClosedPolylineEndWhereTheyBegin) {
   const Curve triangle{.points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}}, .closed = true};
   const auto vertices = sampled(triangle, 0.1);

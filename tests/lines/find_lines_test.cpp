@@ -339,7 +339,8 @@ TEST(FindLines, RefusesWhatIsNoProbability) {
 TEST(FindLines, RefusesACurveOfOtherPoints) {
   const Cloud cloud = cube(500);
   for (const std::vector<std::uint32_t>& curve :
-       {std::vector<std::uint32_t>{1, 2, 500}, std::vector<std::uint32_t>(501, 3)}) {
+       {std::vector<std::uint32_t>{1, 2, 500}, std::vector<std::uint32_t>(501, 3),
+        std::vector<std::uint32_t>(500, 3), std::vector<std::uint32_t>{0, 1, 2}}) {
     EXPECT_ERROR(ErrorKind::kUsage, find_lines({.positions = cloud.positions,
                                                 .normals = cloud.normals,
                                                 .classes = cloud.classes,
@@ -437,6 +438,7 @@ TEST(FindLines, StayFiniteOnAnyPoints) {
 
 TEST(FindLines, RefuseWhatMakesNoSense) {
   EXPECT_ERROR(ErrorKind::kUsage, find_lines({}, {.gap = -1.0}));
+  EXPECT_ERROR(ErrorKind::kUsage, find_lines({}, {.angle = 0.0}));
   EXPECT_ERROR(ErrorKind::kUsage,
                find_lines({}, {.tolerance = std::numeric_limits<double>::infinity()}));
   const Cloud cloud = cube(10);

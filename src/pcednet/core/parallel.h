@@ -6,7 +6,7 @@
 namespace pcednet {
 
 /// Bounds the threads of all later parallel work; 0 means every core. Not thread-safe: call it
-/// once, before the work.
+/// once, before the work. Throws Error(kUsage) for a negative number.
 void set_thread_count(int threads);
 
 /// The threads that parallel work may use.

@@ -5,9 +5,11 @@
 #include <atomic>
 #include <exception>
 #include <mutex>
+#include <string>
 #include <thread>
 #include <vector>
 
+#include "pcednet/core/error.h"
 #include "pcednet/core/parallel.h"
 #include "pcednet/core/run_with_threads.h"
 
@@ -21,7 +23,11 @@ thread_local int own_threads = 0;  // of run_with_threads()
 }  // namespace
 
 void set_thread_count(int threads) {
-  wanted_threads = std::max(threads, 0);
+  if (threads < 0) {
+    throw Error(ErrorKind::kUsage,
+                std::to_string(threads) + " threads: give 0, for every core, or more");
+  }
+  wanted_threads = threads;
 }
 
 int thread_count() {

@@ -267,6 +267,7 @@ void remove_isolated(const DistinctPoints& points, std::vector<RimPoint>& rims) 
 }  // namespace
 
 std::vector<BoundaryPoint> find_boundary(const PreparedCloud& cloud, const Progress* progress) {
+  check_consistent(cloud);
   const DistinctPoints points(cloud);
   std::vector<RimPoint> rims = find_rims(points, progress);
   remove_isolated(points, rims);

@@ -98,6 +98,7 @@ Classification classify_with(const Decide& decide, const Subject& subject, const
 
 Classification classify(const PreparedCloud& cloud, const EdgeModel& model,
                         const Progress* progress) {
+  check_consistent(cloud);
   const auto acute_edges = find_acute_edges(cloud, model.descriptor, progress);
   return classify_with(
       [&](const EdgeModel& suited) { return describe_and_decide(cloud, suited, progress); },

@@ -283,6 +283,10 @@ PreparedCloud prepare_points(const Points& cloud, const PrepareOptions& options,
     prepared.decision = *options.decided;
     spread_positions(prepared.decision.rounding, prepared);
     if (options.decided->made) estimate(prepared, cloud, "normals as decided", progress);
+    if (prepared.normals.empty()) {
+      throw Error(ErrorKind::kUsage,
+                  "the cloud has no normals, and the decision is to use them as they are");
+    }
     return prepared;
   }
   estimate_missing(prepared, cloud, progress);
@@ -316,6 +320,10 @@ PreparedCloud prepare(const PointCloud& cloud, const PrepareOptions& options,
   if (as_given || !has_estimated_normals(cloud)) return prepare_points(points, options, progress);
   std::swap(points.normals, points.estimates);
   return prepare_points(points, options, progress);
+}
+
+void check_consistent(const PreparedCloud& cloud) {
+  normals::check_size("normals", cloud.normals.size(), cloud.positions.size());
 }
 
 PreparedCloud prepare(const PointArrays& cloud, const PrepareOptions& options,

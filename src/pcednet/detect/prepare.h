@@ -47,7 +47,8 @@ struct PrepareOptions {
 struct PartOfCloud;
 
 /// The input of the descriptors, and the record of its preparation. The spans may be of its own
-/// vectors: it can be moved, not copied.
+/// vectors: it can be moved, not copied. prepare() makes it; what uses it throws Error(kUsage) if
+/// the spans differ in length.
 struct PreparedCloud {
   std::span<const Vec3> positions;    ///< the cloud's own, or `moved`
   std::span<const Vec3> normals;      ///< the cloud's own, or `made`; unit or (0,0,0)
@@ -80,13 +81,17 @@ struct PreparedCloud {
 /// more against the rest of its surface. A cloud whose normals all point inwards is not mixed.
 /// Given decisions are carried out, not made again.
 ///
-/// Throws Error(kUsage) as check_consistent() does, Error(kInsufficient) for a cloud without a
+/// Throws Error(kUsage) as check_consistent() does and for a cloud without normals of which they
+/// are to be used as they are, by the decision given; Error(kInsufficient) for a cloud without a
 /// finite point, with a coordinate above 1e150 and, unless the decision is given, without any
 /// usable or estimable normal, and Error(kCancelled) when `progress` asks to cancel.
 PreparedCloud prepare(const PointCloud& cloud, const PrepareOptions& options = {},
                       const Progress* progress = nullptr);
 PreparedCloud prepare(PointCloud&& cloud, const PrepareOptions& options = {},
                       const Progress* progress = nullptr) = delete;
+
+/// Throws Error(kUsage) unless it has a normal for every position.
+void check_consistent(const PreparedCloud& cloud);
 
 /// The points of a cloud in arrays of the caller: a vector per point, or none.
 struct PointArrays {

@@ -108,6 +108,7 @@ Samples make_samples(std::span<const TrainingCloud> clouds,
   for (const TrainingCloud& cloud : clouds) samples.points += cloud.cloud.positions.size();
   Stage stage(progress, "describe", samples.points);
   for (const TrainingCloud& cloud : clouds) {
+    with_name_in_errors(cloud.name, [&] { check_consistent(cloud.cloud); });
     check_labels(cloud, table);
     const auto positions = cloud.cloud.positions;
     const auto add_octave = [&](const gls::ScaleSpace& space, std::span<const std::uint32_t> all) {

@@ -13,8 +13,10 @@ namespace pcednet::formats {
 /// order), .obj, or text (.xyz, .txt, .asc, .pts, .csv). The file appears under its name only when
 /// it is complete.
 ///
-/// Throws Error(kUsage) for another extension or an existing file, Error(kFailure) when the disk is
-/// full or the cloud's vectors differ in length.
+/// Throws Error(kUsage) for another extension, for an existing file, and as check_consistent()
+/// does; Error(kInsufficient) for a position that LAS cannot hold, as one that is not finite;
+/// Error(kFailure) when the disk is full, the folder is missing, or the format cannot hold another
+/// value.
 void write_cloud(const std::filesystem::path& path, const PointCloud& cloud,
                  const io::WriteOptions& options = {});
 

@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "pcednet/core/error.h"
 #include "pcednet/core/parallel.h"
+#include "pcednet/core/parallel_loops.h"
 #include "pcednet/lines/bores.h"
 #include "pcednet/lines/boundary.h"
 #include "pcednet/lines/bridge.h"
@@ -58,6 +60,20 @@ LineScale scale_of(const Sampling& sampling, const Limits& limits) {
           limits.tolerance * sampling.spacing};
 }
 
+/// Throws unless the curve, if known, has every finite point once.
+void check_curve(const EdgePoints& points) {
+  if (points.curve.empty()) return;
+  const auto finite = [&](std::size_t i) { return points.positions[i].allFinite(); };
+  const std::size_t count = count_where(points.positions.size(), finite);
+  std::vector<char> seen(points.positions.size());
+  const bool is_once = std::all_of(points.curve.begin(), points.curve.end(), [&](std::uint32_t i) {
+    return i < seen.size() && finite(i) && !std::exchange(seen[i], 1);
+  });
+  if (is_once && points.curve.size() == count) return;
+  throw Error(ErrorKind::kUsage,
+              fmt::format("the curve is not of the {} points with a finite position", count));
+}
+
 void check(const EdgePoints& points, const LineOptions& options) {
   for (const double number : {options.min_length, options.gap, options.angle, options.tolerance}) {
     if (!(number >= 0.0) || !std::isfinite(number)) {
@@ -79,11 +95,7 @@ void check(const EdgePoints& points, const LineOptions& options) {
     throw Error(ErrorKind::kUsage,
                 "positions, normals, classes and probabilities differ in number");
   }
-  const bool in_range = std::all_of(points.curve.begin(), points.curve.end(),
-                                    [&](std::uint32_t i) { return i < count; });
-  if (points.curve.size() > count || !in_range) {
-    throw Error(ErrorKind::kUsage, fmt::format("the curve is not of {} points", count));
-  }
+  check_curve(points);
   for (const std::span<const float> probabilities : {points.p_sharp, points.p_smooth}) {
     for (const float p : probabilities) {
       if (p >= 0.0f && p <= 1.0f) continue;

@@ -31,15 +31,15 @@ inline constexpr std::array<std::pair<std::string_view, LineStage>, 4> kLineStag
 struct LineOptions {
   double min_length = 0.0;  ///< shorter curves are left out; 0: 3 spacings
   double gap = 0.0;         ///< curves continue over gaps up to it; 0: 6 spacings
-  double angle = 30.0;      ///< degrees, up to 180: curves are split where they bend by more
+  double angle = 30.0;  ///< degrees, above 0, up to 180: curves are split where they bend by more
   double tolerance = 0.0;   ///< distance of points to a curve; 0: 0.2 spacings, more with noise
   bool regularise = false;  ///< makes nearly parallel and nearly orthogonal segments exactly so
   bool boundaries = false;  ///< also lines where the sampled surface ends
   LineStage stage = LineStage::kCurves;  ///< the step whose curves are returned
 };
 
-/// The points and their attributes, in any order. The spans have equal length; the probabilities
-/// may be empty.
+/// The points and their attributes, in any order. The spans have equal length but for `curve`; the
+/// probabilities may be empty.
 struct EdgePoints {
   std::span<const Vec3> positions;
   /// Unit, or (0,0,0). Signs, in or out, do not matter, but where those of neighbours agree they
@@ -50,7 +50,8 @@ struct EdgePoints {
   std::span<const float> p_smooth = {};
   /// Not 0 where points around it are missing: no boundary is found there. May be empty.
   std::span<const std::uint8_t> partial = {};
-  std::span<const std::uint32_t> curve = {};  ///< as in detect::PreparedCloud, if known
+  /// As in detect::PreparedCloud, of all points with a finite position; empty if not known.
+  std::span<const std::uint32_t> curve = {};
 };
 
 /// What was measured of the cloud, what lengths the options came to, in its unit, and what these
@@ -73,8 +74,9 @@ struct LineScale {
 /// not used there, and every stage but the last returns its pieces.
 ///
 /// Fills in `scale`, if given. The result is the same for any number of threads and any order of
-/// the points. Throws Error(kUsage) if an option is negative or not finite, if the spans differ in
-/// length, or if a probability is not in [0, 1].
+/// the points. Throws Error(kUsage) if an option is negative or not finite, if the angle is 0 or
+/// above 180, if the spans differ in length, if the curve lacks a point or has one twice, or if a
+/// probability is not in [0, 1].
 std::vector<Curve> find_lines(const EdgePoints& points, const LineOptions& options = {},
                               const Progress* progress = nullptr, LineScale* scale = nullptr);
 
