@@ -259,6 +259,14 @@ class Tiles(TilesTest):
                    self.folder / "q.json", expect=2)
         self.assertIn("differ in whether pcednet estimated their normals", said.stderr)
 
+    def test_what_a_sample_shows_is_said_to_be_of_a_sample(self):
+        p = np.random.default_rng(2).uniform(0, 100, (310_000, 3))
+        p[:, 2] = np.sin(p[:, 0] / 9)
+        write_ply(self.folder / "a.ply", p)
+        said = run("tiles", "plan", self.folder / "a.ply", "-o", self.folder / "p.json").stderr
+        self.assertRegex(said, r"in a sample of 15\d{4} points: no normals in the file")
+        self.assertIn("310000 points in 1 tile of length", said)
+
     def test_points_of_no_place_stay_and_change_no_other(self):
         p, n = field(3, 300)
         p[::500] = np.nan

@@ -34,6 +34,19 @@ TEST(Prepare, EstimatesWhatIsMissingOfTheNormals) {
             std::string::npos);
 }
 
+TEST(Prepare, SaysThatCoordinatesAreTooLargeOrSmallForPlanes) {
+  for (const double size : {1e-80, 1e80, 1e100}) {
+    PointCloud cloud = sphere(400, 1);
+    cloud.normals.clear();
+    for (Vec3& p : cloud.positions) p *= size;
+    const auto error = pcednet::test::error_of([&] { prepare(cloud); });
+    ASSERT_TRUE(error) << size;
+    EXPECT_EQ(error->kind(), ErrorKind::kInsufficient);
+    EXPECT_NE(std::string(error->what()).find("are the coordinates right?"), std::string::npos)
+        << error->what();
+  }
+}
+
 TEST(Prepare, DoesNotCountTheNormalsOfPointsThatAreNowhere) {
   PointCloud cloud = sphere(400, 1);
   const PointCloud nowhere = sphere(401, 500);

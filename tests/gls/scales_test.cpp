@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <string>
 
 #include "gls/test_clouds.h"
 #include "pcednet/core/error.h"
@@ -66,6 +67,17 @@ TEST(Scales, RefuseCloudsInOnePlace) {
   EXPECT_ERROR(ErrorKind::kInsufficient, range_of({p}, {}));
   EXPECT_ERROR(ErrorKind::kInsufficient, range_of(std::vector<Vec3>(50, p), {}));
   EXPECT_ERROR(ErrorKind::kInsufficient, range_of({p}, {0.1, 0.0}));
+}
+
+TEST(Scales, OfLengthsThatCannotBeDescribedAreSaidToBe) {
+  for (const double size : {1e-100, 1e-102, 1e101}) {
+    auto cloud = test::cube(1000, 1);
+    for (Vec3& p : cloud.positions) p *= size;
+    const auto error = pcednet::test::error_of([&] { range_of(cloud.positions, {}); });
+    ASSERT_TRUE(error) << size;
+    EXPECT_EQ(error->kind(), ErrorKind::kInsufficient);
+    EXPECT_NE(std::string(error->what()).find("lengths from 1e-100 to 1e100"), std::string::npos);
+  }
 }
 
 TEST(Scales, ReachTwiceTheSpacingOfSparseClouds) {

@@ -67,10 +67,10 @@ TEST(Xyz, RefusesCommasThatReadEitherWay) {
   for (const char* line : {"1,5, 2,5, 3,5", "1,5 2", "1.234,5 1.000,0 2.000,0", "1,5 2.5 3,5"}) {
     refuses(std::string("1 2 3\n") + line + "\n4 5 6\n", ":2: these commas may be decimal");
   }
-  refuses("1,5 2,5 3,5\n1.5 2 3\n", ":2: no decimal commas as in line 1");
-  refuses("1.5 2 3\n\n1,5 2,5 3,5\n", ":1: no decimal commas as in line 3");
-  refuses("1,5 2,5 3,5\n1, 2, 3\n", ":2: no decimal commas as in line 1");
-  refuses("1,5;2,5;3,5\n1,2,3\n", ":2: no decimal commas as in line 1");
+  refuses("1,5 2,5 3,5\n1.5 2 3\n", ":2: decimal points, where line 1 has decimal commas");
+  refuses("1.5 2 3\n\n1,5 2,5 3,5\n", ":1: decimal points, where line 3 has decimal commas");
+  refuses("1,5 2,5 3,5\n1, 2, 3\n", ":2: commas between numbers, where line 1 has decimal commas");
+  refuses("1,5;2,5;3,5\n1,2,3\n", ":2: commas between numbers, where line 1 has decimal commas");
   refuses("1,2,3,4,5,6\n1,5 2,5 3,5\n", ":2: decimal commas, where those of line 1");
   refuses("1,2,3\n1,5;2,5;3,5\n", ":2: decimal commas, where those of line 1");
   refuses("1,5;2,5;3,5,5\n", ":1: expected a number, not 3,5,5");
@@ -351,6 +351,7 @@ TEST(Xyz, NamesTheLineThatDoesNotFit) {
   };
   unreadable("1 2\n", ":1: expected at least three numbers");
   unreadable("1 2 3\n\n4 5\n", ":3: 2 numbers where the lines before have 3");
+  unreadable("1 2 3\n4\n", ":2: 1 number where the lines before have 3");
   unreadable("1 2 3\n4 5 six\n", ":2: expected a number, not six");
   unreadable("1 2 3\n4 5 -1.8e308\n", ":2: -1.8e308 is beyond the largest double");
   unreadable("hello world\n", ":1: expected numbers, or names");

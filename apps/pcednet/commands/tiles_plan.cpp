@@ -99,8 +99,9 @@ void plan_tiles(const PlanArguments& arguments, const Common& common) {
   for (const std::string& note : plan.notes) warn(note);
   warn_of_old_tiles(arguments);
   warn_of_replaced(arguments.inputs.front(), detect::replaced_attributes(tiles::outline_of(plan)));
-  say(fmt::format("{}: {} points in {} tiles of length {:g}, buffer {:.4g}", arguments.plan,
-                  plan.points(), plan.tiles.size(), plan.grid.length(), plan.buffer));
+  say(fmt::format("{}: {} points in {} tile{} of length {:g}, buffer {:.4g}", arguments.plan,
+                  plan.points(), plan.tiles.size(), plan.tiles.size() == 1 ? "" : "s",
+                  plan.grid.length(), plan.buffer));
   say(fmt::format("  scales: {:.9g} to {:.9g}", plan.s_min, plan.s_max));
   say(fmt::format("  the largest tile takes about {} of memory", size_text(plan.memory)));
   if (plan.memory > request.memory) {

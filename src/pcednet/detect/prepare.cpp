@@ -209,10 +209,22 @@ std::string why_estimated(const PreparedCloud& prepared, const Points& cloud) {
                      cloud.size());
 }
 
+/// Throws where planes cannot be fitted: a double does not hold the products of squares.
+void check_planes_fit(const PreparedCloud& prepared) {
+  constexpr double kShortest = 1e-70, kLongest = 1e70;
+  const double extent = bounding_box(prepared.positions).diagonal();
+  if (extent == 0.0 || (kShortest < extent && extent < kLongest)) return;
+  throw Error(ErrorKind::kInsufficient,
+              fmt::format("no normals, and none can be estimated: the points extend over {:.3g}; "
+                          "lengths from 1e-70 to 1e70 are possible; are the coordinates right?",
+                          extent));
+}
+
 /// Estimates normals if so many are missing that it matters.
 void estimate_missing(PreparedCloud& prepared, const Points& cloud, const Progress* progress) {
   const std::size_t finite = prepared.curve.size(), missing = finite - count_usable(prepared);
   if (missing == 0 || missing < finite / kShareToEstimate) return;
+  check_planes_fit(prepared);
   const std::string why = why_estimated(prepared, cloud);
   prepared.decision.rounding = find_rounding(prepared.positions, prepared.curve);
   spread_positions(prepared.decision.rounding, prepared);

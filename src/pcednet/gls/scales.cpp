@@ -20,6 +20,8 @@ namespace {
 
 constexpr std::size_t kSample = 16384;
 constexpr double kEvenQuartiles = 1.6;
+constexpr const char* kSpan =
+    "lengths from 1e-100 to 1e100 can be described; are the coordinates right?";
 constexpr double kShortest = 1e-100, kLongest = 1e100;  // their squares and inverses are finite
 
 void check_given(double bound, const char* name) {
@@ -155,17 +157,19 @@ ScaleRange scale_range(std::span<const Vec3> positions, const ScaleRange& given,
   const bool both_given = given.s_min > 0.0 && given.s_max > 0.0;
   const double diagonal = bounding_box(positions).diagonal();
   if (!both_given && !(diagonal > kShortest && diagonal < kLongest)) {
-    throw Error(
-        ErrorKind::kInsufficient,
-        fmt::format("no scales: the bounding box of the points has a diagonal of {:.6g}; {}",
-                    diagonal,
-                    diagonal > 0.0 ? "lengths from 1e-100 to 1e100 can be described"
-                                   : "finite points at two places or more are needed"));
+    throw Error(ErrorKind::kInsufficient,
+                diagonal > 0.0 ? fmt::format("the points extend over {:.6g}: {}", diagonal, kSpan)
+                               : "no scales: finite points at two places or more are needed");
   }
   const ScaleRange range = both_given                ? given
                            : given.s_max_ratio > 0.0 ? tied_range(given, spacings)
                                                      : range_by_extent(given, diagonal, spacings);
   if (kShortest < range.s_min && range.s_min < range.s_max && range.s_max < kLongest) return range;
+  if (0.0 < range.s_min && range.s_min < range.s_max) {
+    const bool is_given = given.s_min > 0.0 || given.s_max > 0.0;
+    throw Error(is_given ? ErrorKind::kUsage : ErrorKind::kInsufficient,
+                fmt::format("scales from {:.3g} to {:.3g}: {}", range.s_min, range.s_max, kSpan));
+  }
   throw Error(
       ErrorKind::kUsage,
       fmt::format("no scales from {} to {}: the largest, s_max, must be above the smallest, "

@@ -43,8 +43,9 @@ inline constexpr std::size_t kSpacingNeighbours = 11;
 /// is not above s_min (a sparse cloud: fewer than some 330 points on a cube) becomes kSparseRange
 /// times s_min; see note_on().
 ///
-/// Throws Error(kInsufficient) for fewer than two places unless both bounds are given,
-/// Error(kUsage) if a given bound is negative, not finite, or leaves no range.
+/// Throws Error(kInsufficient) for fewer than two places, and for lengths beyond 1e-100 to 1e100,
+/// unless both bounds are given, Error(kUsage) if a given bound is negative, not finite, or leaves
+/// no range.
 ScaleRange scale_range(std::span<const Vec3> positions, const ScaleRange& given,
                        const std::function<std::vector<double>()>& spacings);
 

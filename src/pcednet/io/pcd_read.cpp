@@ -37,7 +37,9 @@ std::uint64_t read_ascii(const InputFile& file, const PcdHeader& header, CloudBu
     }
     split(line, words);
     if (words.size() != numbers) {
-      throw unreadable(file.path(), fmt::format("{} numbers instead of {}", words.size(), numbers),
+      throw unreadable(file.path(),
+                       fmt::format("{} number{} instead of {}", words.size(),
+                                   words.size() == 1 ? "" : "s", numbers),
                        lines.number());
     }
     std::byte* number = feeder.next_row();

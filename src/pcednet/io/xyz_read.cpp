@@ -158,7 +158,10 @@ class TableReader {
     const Commas here = commas_of(line);
     if (commas_ == Commas::kDecimals &&
         (here == Commas::kSeparators || line.find('.') != std::string_view::npos)) {
-      throw error(fmt::format("no decimal commas as in line {}", deciding_line_));
+      throw error(fmt::format(
+          "{}, where line {} has decimal commas",
+          line.find('.') != std::string_view::npos ? "decimal points" : "commas between numbers",
+          deciding_line_));
     }
     if (commas_ == Commas::kSeparators && here == Commas::kDecimals) {
       throw error(
@@ -178,8 +181,8 @@ class TableReader {
     split(line, words_, separators());
     if (promised_ && take_count()) return;
     if (words_.size() != table_.columns) {
-      throw error(
-          fmt::format("{} numbers where the lines before have {}", words_.size(), table_.columns));
+      throw error(fmt::format("{} number{} where the lines before have {}", words_.size(),
+                              words_.size() == 1 ? "" : "s", table_.columns));
     }
     for (const std::string_view word : words_) {
       const auto number = number_of(word);

@@ -1,5 +1,7 @@
 #include "pcednet/tiles/dense_sample.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <limits>
@@ -78,7 +80,10 @@ std::vector<std::vector<std::uint32_t>> batches_of(std::span<const Vec3> positio
 void note(const detect::PreparedCloud& prepared, Plan& plan) {
   plan.normals = prepared.decision;
   plan.normals.rounding.origin = plan.box.min;  // as of the cloud as a whole
-  plan.notes.insert(plan.notes.end(), prepared.notes.begin(), prepared.notes.end());
+  const std::size_t points = prepared.positions.size();
+  const std::string whose =
+      points < plan.points() ? fmt::format("in a sample of {} points: ", points) : "";
+  for (const std::string& its : prepared.notes) plan.notes.push_back(whose + its);
 }
 
 /// Estimates and orients as prepare() does for points without normals of their own; signs are

@@ -94,13 +94,16 @@ bool is_too_often(double times, const Plan& plan) {
   return times > kMostTimes && times * static_cast<double>(plan.points()) > kFewPoints;
 }
 
-[[noreturn]] void refuse_order(const PlanRequest& request, double tiles, double times) {
+/// `about` is "about " where the numbers are estimates.
+[[noreturn]] void refuse_order(const PlanRequest& request, std::string_view about, double tiles,
+                               double times) {
   const std::string& name = request.sort_name;
-  throw Error(ErrorKind::kUsage,
-              fmt::format("the points of the inputs are in no order in space: {:.0f} tiles would "
-                          "read each point {:.0f} times: choose longer tiles, or sort the inputs{}",
-                          tiles, times,
-                          name.empty() ? "" : fmt::format(": {} makes copies in order", name)));
+  throw Error(
+      ErrorKind::kUsage,
+      fmt::format("the points of the inputs are in no order in space: {}{:.0f} tiles would "
+                  "read each point {}{:.0f} times: choose longer tiles, or sort the inputs{}",
+                  about, tiles, about, times,
+                  name.empty() ? "" : fmt::format(": {} makes copies in order", name)));
 }
 
 std::size_t count_tiles(std::span<const Vec3> sample, double length) {
@@ -141,7 +144,8 @@ void check_order_early(const PlanRequest& request, const Plan& plan, std::span<c
                             static_cast<double>(request.memory) / kMegabyte,
                             static_cast<double>(least) / kMegabyte));
   }
-  refuse_order(request, tiles, times);
+  // Points that are not in the sample may be in further tiles, and buffers are not known yet.
+  refuse_order(request, "about ", tiles, times);
 }
 
 /// Throws if a file is there twice.
@@ -185,7 +189,7 @@ void settle_order(const PlanRequest& request, const CellCounts& counts, Plan& pl
   const double times = times_read(plan);
   const bool in_order = !is_too_often(times, plan);
   if (request.sort.folder.empty()) {
-    if (!in_order) refuse_order(request, static_cast<double>(plan.tiles.size()), times);
+    if (!in_order) refuse_order(request, "", static_cast<double>(plan.tiles.size()), times);
     note_reading(request, times, counts, plan);
   } else if (!in_order || !request.sort.if_needed) {
     sort_inputs(request.sort, plan, progress);
