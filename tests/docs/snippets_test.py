@@ -78,6 +78,7 @@ class Snippets(unittest.TestCase):
         self.assertLessEqual({"scan.safetensors", "again.safetensors", "scan_annotated.ply",
                               "scan_annotation.json"}, done["own-definition"][1])
         self.assertIn("city_edges.ply", done["big-clouds"][1])
+        self.assertNotIn("more than --max-memory", done["big-clouds"][0])
 
     def test_the_page_on_scales_quotes_what_the_program_says(self):
         with tempfile.TemporaryDirectory() as name:
