@@ -22,7 +22,8 @@ void add_line_options(CLI::App& command, lines::LineOptions& options) {
       .add_option("--min-length", options.min_length,
                   "Leave out shorter curves (default: from the spacing, as the two below)")
       ->check(length);
-  command.add_option("--gap", options.gap, "Bridge gaps up to this length")->check(length);
+  command.add_option("--gap", options.gap, "Join edge points over gaps up to this length")
+      ->check(length);
   command
       .add_option("--tolerance", options.tolerance,
                   "How far the points may be from their curve; also of the polylines that stand "

@@ -104,7 +104,7 @@ def lines(xyz, labels=None, normals=None, *, p_sharp=None, p_smooth=None,
     boundaries : bool
         Also draw where the surface ends, as on roofs.
     min_length, gap, tolerance : float
-        In the unit of the cloud: leave out shorter curves; bridge gaps up to it; how far points
+        In the unit of the cloud: leave out shorter curves; join edge points over gaps up to it; how far points
         may be from their curve. 0: from the spacing.
     angle : float
         Degrees: curves are split where they bend by more.

@@ -30,7 +30,7 @@ inline constexpr std::array<std::pair<std::string_view, LineStage>, 4> kLineStag
 /// Lengths are in the unit of the cloud; those that are 0 come from the spacing of the points.
 struct LineOptions {
   double min_length = 0.0;  ///< shorter curves are left out; 0: 3 spacings
-  double gap = 0.0;         ///< curves continue over gaps up to it; 0: 6 spacings
+  double gap = 0.0;         ///< edge points are joined over gaps up to it; 0: 6 spacings
   double angle = 30.0;  ///< degrees, above 0, up to 180: curves are split where they bend by more
   double tolerance = 0.0;   ///< distance of points to a curve; 0: 0.2 spacings, more with noise
   bool regularise = false;  ///< makes nearly parallel and nearly orthogonal segments exactly so
