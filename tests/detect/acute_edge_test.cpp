@@ -180,8 +180,10 @@ TEST(AcuteEdges, BecomeEdgesWhereTheNetworkFindsNone) {
   model.classes = {kNonEdge, kSharpEdge};
   found = nothing_found(2);
   found.classes = {kNonEdge, kNonEdge};
+  found.p_sharp[1] = 0.3f;
   mark_acute_edges(std::span(points).first(2), model, found);
   EXPECT_EQ(found.classes, (std::vector<std::uint8_t>{kSharpEdge, kNonEdge}));
+  EXPECT_EQ(found.p_sharp[1], 0.3f);
   EXPECT_EQ(found.p_smooth[1], 0.0f);
 }
 

@@ -232,9 +232,14 @@ void mark_acute_edges(std::span<const AcuteEdgePoint> points, const EdgeModel& m
     if (its_class != kNonEdge) continue;
     float &sharp = found.p_sharp[it.point], &smooth = found.p_smooth[it.point];
     const double distance = static_cast<double>(it.distance);
-    const float edge = std::max(sharp + smooth, kSure * share_within(distance, kEdgeBand));
-    sharp = edge * share_within(distance, kSharpBand);
-    smooth = has_smooth ? edge - sharp : 0.0f;
+    const float near = share_within(distance, kSharpBand);
+    if (has_smooth) {
+      const float edge = std::max(sharp + smooth, kSure * share_within(distance, kEdgeBand));
+      sharp = edge * near;
+      smooth = edge - sharp;
+    } else {
+      sharp = std::max(sharp, kSure * near);
+    }
     if (sharp + smooth > 0.5f) its_class = sharp >= smooth ? kSharpEdge : kSmoothEdge;
     if (!found.p_class.empty()) {
       found.p_class[it.point] =

@@ -20,7 +20,7 @@ namespace pcednet::detect {
 /// A point beside an edge that the gates hide.
 struct AcuteEdgePoint {
   std::uint32_t point;
-  float distance;  ///< along its face to the edge, in spacings
+  float distance;  ///< along its face to the edge, in spacings of the 32 nearest others
 
   friend bool operator==(const AcuteEdgePoint&, const AcuteEdgePoint&) = default;
 };
