@@ -17,6 +17,7 @@
 #include "pcednet/lines/circles.h"
 #include "pcednet/lines/coaxial.h"
 #include "pcednet/lines/crease.h"
+#include "pcednet/lines/exact_apexes.h"
 #include "pcednet/lines/exact_edges.h"
 #include "pcednet/lines/extent.h"
 #include "pcednet/lines/finish.h"
@@ -268,6 +269,7 @@ std::vector<Curve> lines_of(const OrderedPoints& cloud, bool is_whole, const Lin
     keep_labelled(exact, cloud);
     drop_exact_copies(exact.pieces);
     erase_explained(creases, exact);
+    erase_on_cones(creases, cloud, sampling.spacing);
   }
   const FinishOptions finish_options = {limits.tolerance, sampling.noise};
   const std::vector<Chain> chains =
