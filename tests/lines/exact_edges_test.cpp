@@ -6,6 +6,7 @@
 #include <numeric>
 #include <set>
 #include <tuple>
+#include <utility>
 
 #include "exact_parts.h"
 
@@ -64,6 +65,48 @@ TEST(ExactFolds, OfFewPointsReachFromVertexToVertex) {
     }
   }
   EXPECT_GE(whole.size(), 18u);  // of the 64 around the ends; none without vertices
+}
+
+/// How many of the four edges across a plate are folds as long as it is thick.
+std::size_t across_plate(double thickness, std::uint64_t seed) {
+  const Vec3 size(40.0, 30.0, thickness);
+  PlanePart plate;
+  plate.random = Random(seed);
+  plate.add_box(Vec3::Zero(), size);
+  const std::vector<Piece> folds = plate.folds();
+  expect_on_edges(folds, Vec3::Zero(), size, 2e-3);
+  std::set<std::pair<int, int>> corners;
+  for (const Piece& fold : folds) {
+    const Vec3 length = (fold.ends[1] - fold.ends[0]).cwiseAbs();
+    if (std::abs(length.z() - thickness) > 0.01) continue;
+    corners.emplace(fold.ends[0].x() > 20.0, fold.ends[0].y() > 15.0);
+  }
+  return corners.size();
+}
+
+TEST(ExactFolds, AcrossAThinPlateReachFromSideToSide) {
+  for (const double thickness : {1.4, 2.0, 3.0}) {
+    std::size_t found = 0;
+    for (std::uint64_t seed = 300; seed < 310; ++seed) found += across_plate(thickness, seed);
+    EXPECT_GE(found, 30u) << thickness;  // of 40; half of them if near points must be there
+  }
+}
+
+TEST(ExactFolds, AreNoneWhereThePlatesCornerIsCutOff) {
+  PlanePart plate;  // by 1.2 spacings: two points at most are on the cut
+  const double cut = 1.2;
+  const auto wall = [&](double x, double y, double to_x, double to_y) {
+    plate.add_face({x, y, 0.0}, {to_x - x, to_y - y, 0.0}, {0.0, 0.0, 2.0});
+  };
+  for (const double z : {0.0, 2.0})
+    plate.add_face({cut, cut, z}, {30.0, 0.0, 0.0}, {0.0, 30.0, 0.0});
+  wall(cut, 0.0, 30.0, 0.0), wall(0.0, cut, 0.0, 30.0);
+  for (const double height : {0.5, 1.5}) {
+    plate.add({0.5 * cut, 0.5 * cut, height}, Vec3(-1.0, -1.0, 0.0).normalized(), true);
+  }
+  for (const Piece& fold : plate.folds()) {
+    EXPECT_GT(std::max(fold.ends[0].head<2>().norm(), fold.ends[1].head<2>().norm()), 1.0);
+  }
 }
 
 TEST(ExactFolds, NeedPointsThatMayBeOfAnEdge) {

@@ -14,7 +14,7 @@ constexpr double kLeastVolume = 0.1;  ///< of the box of three normals
 
 // In spacings.
 constexpr double kFromContacts = 1.5;  ///< of a vertex, from the box of the pair's points
-constexpr double kAtVertex = 2.0;      ///< of the nearest point of each plane
+constexpr double kAtVertex = 2.5;      ///< of the nearest point of each plane
 
 /// Where three planes meet, seen from a place nearby.
 std::optional<Vec3> vertex_of(const PlanePatch& a, const PlanePatch& b, const PlanePatch& c,

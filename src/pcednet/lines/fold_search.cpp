@@ -16,6 +16,7 @@ constexpr double kKnownShare = 0.2;  ///< of an interval that is a fold already
 constexpr double kMostBetween = 5.0;  ///< longer folds are found without their vertices
 constexpr double kStepAlong = 0.5 * kLongestStripGap;  ///< where a line is followed
 constexpr double kAlongLine = 1.0;                     ///< of points that it has there
+constexpr double kBeforeVertex = 0.05;                 ///< of points of the third plane of a vertex
 
 double shared_length(const Interval& a, const Interval& b) {
   return std::min(a.to, b.to) - std::max(a.from, b.from);
@@ -77,18 +78,22 @@ std::vector<std::uint32_t> FoldSearch::points_beside(const Interval& region) con
   return cloud_.near_any(places, (kStripWidth + 0.5) * spacing_);
 }
 
+/// Those at the line or, as a short fold may have none there, those beside it.
 double FoldSearch::mean_probability(const Interval& interval,
                                     std::span<const std::uint32_t> points) const {
-  double sum = 0.0, count = 0.0;
-  for (const std::uint32_t i : points) {
-    const Vec3& position = cloud_.position(i);
-    const double at = along(position);
-    if (at < interval.from || at > interval.to) continue;
-    if ((position - place(at)).norm() > kAtExactEdge * spacing_) continue;
-    sum += static_cast<double>(cloud_.probability(i));
-    count += 1.0;
+  for (const double reach : {kAtExactEdge, kStripWidth}) {
+    double sum = 0.0, count = 0.0;
+    for (const std::uint32_t i : points) {
+      const Vec3& position = cloud_.position(i);
+      const double at = along(position);
+      if (at < interval.from || at > interval.to) continue;
+      if ((position - place(at)).norm() > reach * spacing_) continue;
+      sum += static_cast<double>(cloud_.probability(i));
+      count += 1.0;
+    }
+    if (count > 0.0) return sum / count;
   }
-  return count > 0.0 ? sum / count : 0.0;
+  return 0.0;
 }
 
 Piece FoldSearch::piece_along(const Interval& interval, const Vec3& side_a,
@@ -188,18 +193,40 @@ bool FoldSearch::is_rounded(const Piece& fold, std::span<const Piece> fillets) c
   });
 }
 
+/// Whether there is nothing but the two surfaces beside the interval, between its vertices.
+bool FoldSearch::has_only_surfaces(const Interval& interval,
+                                   std::span<const std::uint32_t> points) const {
+  return std::ranges::none_of(points, [&](std::uint32_t i) {
+    const Vec3& position = cloud_.position(i);
+    const double at = along(position);
+    return at > interval.from + kBeforeVertex && at < interval.to - kBeforeVertex &&
+           (position - place(at)).norm() < kStripWidth * spacing_ && !a_.is_on(position) &&
+           !b_.is_on(position);
+  });
+}
+
 /// The fold along all of the interval, between two vertices, if both planes have points there on
-/// one side of the line and none on the other.
+/// one side of the line and none on the other. The nearest may be farther away than those of longer
+/// folds, by chance, if nothing else is there.
 std::optional<Piece> FoldSearch::fold_between(const Interval& interval) const {
   const std::vector<std::uint32_t> beside = points_beside(interval);
   if (mean_probability(interval, beside) < kLeastExactProbability) return std::nullopt;
   const std::array<Side, 2> of_a = sides_of(a_, beside), of_b = sides_of(b_, beside);
-  const auto on_one_side = [&](const Side& side) {
-    return has_points_on_one_side(side.strip, interval);
+  const auto near_side = [&](const std::array<Side, 2>& sides) {
+    const auto side = std::ranges::find_if(
+        sides, [&](const Side& one) { return has_points_on_one_side(one.strip, interval); });
+    return side == sides.end() ? nullptr : &*side;
   };
-  const auto a = std::ranges::find_if(of_a, on_one_side),
-             b = std::ranges::find_if(of_b, on_one_side);
-  if (a == of_a.end() || b == of_b.end()) return std::nullopt;
+  const auto only_side = [&](const std::array<Side, 2>& sides) {
+    const bool first = count_in(sides[0].strip.beside, interval) > 0.0,
+               second = count_in(sides[1].strip.beside, interval) > 0.0;
+    return first == second ? nullptr : &sides[first ? 0 : 1];
+  };
+  const Side *a = near_side(of_a), *b = near_side(of_b);
+  if ((!a || !b) && !has_only_surfaces(interval, beside)) return std::nullopt;
+  if (!a) a = only_side(of_a);
+  if (!b) b = only_side(of_b);
+  if (!a || !b) return std::nullopt;
   return piece_along(interval, a->into, b->into);
 }
 

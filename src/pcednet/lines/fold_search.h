@@ -59,6 +59,7 @@ class FoldSearch {
                                std::span<const std::uint32_t> points) const;
   void add_folds(const Interval& region, std::vector<Piece>& found) const;
   void add_fillets(const Interval& region, std::vector<Piece>& found) const;
+  bool has_only_surfaces(const Interval& interval, std::span<const std::uint32_t> points) const;
   std::optional<Piece> fold_between(const Interval& interval) const;
   Interval interval_of(const Piece& piece) const;
   /// That the points beside the interval, among these, are of an edge.

@@ -67,11 +67,13 @@ Strip strip_of(std::span<const PlaceBeside> places) {
       continue;
     }
     strip.all.push_back(along);
+    if (away > kOnLine) strip.beside.push_back(along);
     if (away < kNarrow) strip.right.push_back(along);
     if (away < kNarrow && away > kOnLine) strip.off.push_back(along);
     if (away < kClose) strip.close.push_back(along);
   }
-  for (auto* row : {&strip.all, &strip.right, &strip.off, &strip.close, &strip.wrong}) {
+  for (auto* row :
+       {&strip.all, &strip.right, &strip.off, &strip.beside, &strip.close, &strip.wrong}) {
     std::sort(row->begin(), row->end());
   }
   return strip;

@@ -26,11 +26,12 @@ struct PlaceBeside {
 
 /// The points of a surface beside a line on it, as their places along the line in ascending order.
 struct Strip {
-  std::vector<double> all;    ///< up to 2.5 spacings from the line, on one side or on the line
-  std::vector<double> right;  ///< of those up to one spacing from it
-  std::vector<double> off;    ///< of these, not on the line
-  std::vector<double> close;  ///< of these, up to .35 spacings from it or on it
-  std::vector<double> wrong;  ///< up to one spacing from the line on its other side
+  std::vector<double> all;     ///< up to 2.5 spacings from the line, on one side or on the line
+  std::vector<double> right;   ///< of those up to one spacing from it
+  std::vector<double> off;     ///< of these, not on the line
+  std::vector<double> beside;  ///< of all, not on the line
+  std::vector<double> close;   ///< of `right`, up to .35 spacings from it or on it
+  std::vector<double> wrong;   ///< up to one spacing from the line on its other side
 };
 
 /// How many of the places, which ascend, are in the interval.
@@ -46,7 +47,8 @@ std::vector<Interval> intervals_of(const std::vector<double>& places, double gap
 /// along it and does not go on beyond the line.
 std::vector<Interval> shared_intervals(const Strip& a, const Strip& b);
 
-/// Whether the surface has points beside the interval, and none on the line's other side.
+/// Whether the surface has points beside the interval, up to one spacing from it, and none on the
+/// line's other side.
 bool has_points_on_one_side(const Strip& strip, const Interval& interval);
 
 /// Whether both surfaces end at the line all along the interval.
