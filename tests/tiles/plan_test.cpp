@@ -29,7 +29,7 @@ class PlanFile : public testing::Test, protected test::OwnFolder {
     plan.box = {{0, 1, 2}, {3, 4, 0.1 + 0.2}};
     plan.model = {"general", "/models/general.safetensors", "abc", false, true, false};
     plan.s_min = 0.1, plan.s_max = 1.0 / 3.0;
-    plan.normals = {true, 24, true, true, {0.01, {-1.0, 2.0, 0.5}, 0.04}};
+    plan.normals = {true, 24, true, false, true, {0.01, {-1.0, 2.0, 0.5}, 0.04}};
     plan.pyramids = {
         {{0, 1, 2}, 3.0, {{false, gls::Crowd::kKeep}, {true, gls::Crowd::kMergeByAxis}}},
         {{0, 1, 2}, 3.0, {{true, gls::Crowd::kKeep}, {false, gls::Crowd::kMerge}}}};
