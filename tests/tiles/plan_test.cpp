@@ -29,7 +29,7 @@ class PlanFile : public testing::Test, protected test::OwnFolder {
     plan.box = {{0, 1, 2}, {3, 4, 0.1 + 0.2}};
     plan.model = {"general", "/models/general.safetensors", "abc", false, true, false};
     plan.s_min = 0.1, plan.s_max = 1.0 / 3.0;
-    plan.normals = {true, 24, true, false, true, {0.01, {-1.0, 2.0, 0.5}, 0.04}};
+    plan.normals = {true, 24, true, true, true, {0.01, {-1.0, 2.0, 0.5}, 0.04}};
     plan.pyramids = {
         {{0, 1, 2}, 3.0, {{false, gls::Crowd::kKeep}, {true, gls::Crowd::kMergeByAxis}}},
         {{0, 1, 2}, 3.0, {{true, gls::Crowd::kKeep}, {false, gls::Crowd::kMerge}}}};
@@ -68,6 +68,7 @@ TEST_F(PlanFile, ComesBackAsItWas) {
   EXPECT_EQ(back.normals.rounding.origin, Vec3(-1.0, 2.0, 0.5));
   EXPECT_EQ(back.normals.rounding.spacing, 0.04);
   EXPECT_TRUE(back.normals.made && back.normals.exact_planes && back.normals.exact);
+  EXPECT_TRUE(back.normals.noisy);
   ASSERT_EQ(back.pyramids.size(), 4u);
   EXPECT_EQ(back.pyramids[0].levels, plan.pyramids[0].levels);
   EXPECT_EQ(back.pyramids[1].levels, plan.pyramids[1].levels);
