@@ -140,12 +140,9 @@ Json json_of(const detect::NormalsDecision& normals) {
 }
 
 detect::NormalsDecision normals_in(const Json& j) {
-  return {j.at("made"),
-          j.at("neighbours"),
-          j.at("noisy"),
-          j.at("exact_planes"),
-          j.at("exact"),
-          {j.at("rounded_to"), vec3_of(j.at("rounded_from")), j.at("spacing")}};
+  return {j.at("made"),  j.at("neighbours"),
+          j.at("noisy"), j.at("exact_planes"),
+          j.at("exact"), {j.at("rounded_to"), vec3_of(j.at("rounded_from")), j.at("spacing")}};
 }
 
 Json json_of(const gls::PyramidPlan& pyramid) {
