@@ -78,7 +78,13 @@ class Snippets(unittest.TestCase):
         self.assertLessEqual({"scan.safetensors", "again.safetensors", "scan_annotated.ply",
                               "scan_annotation.json"}, done["own-definition"][1])
         self.assertIn("city_edges.ply", done["big-clouds"][1])
-        self.assertNotIn("more than --max-memory", done["big-clouds"][0])
+
+    def test_the_plan_of_the_page_on_big_clouds_fits_its_memory(self):
+        plan = re.search(r"^pcednet (tiles plan .*)$", (SOURCE / "docs/big-clouds.md").read_text(), re.M)[1]
+        with tempfile.TemporaryDirectory() as name:
+            said = run(f"{PROGRAM} generate sample city.ply; {PROGRAM} {plan}", "sh", pathlib.Path(name)).stderr
+        self.assertRegex(said, r"in \d+ tiles of length")
+        self.assertNotIn("--max-memory", said)
 
     def test_the_page_on_scales_quotes_what_the_program_says(self):
         with tempfile.TemporaryDirectory() as name:
