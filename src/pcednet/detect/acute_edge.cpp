@@ -207,7 +207,7 @@ std::vector<AcuteEdgePoint> find_acute_edges(const PreparedCloud& cloud,
   std::vector<Vec3> normals(points.size());
   for (std::size_t i = 0; i < normals.size(); ++i) normals[i] = points.normal(i);
   std::vector<AcuteEdgePoint> edges;
-  Stage stage(progress, "acute edges", points.size());
+  Stage stage(progress, "acute", points.size());
   const auto try_places = [&](std::span<const std::uint32_t> todo) {
     std::vector<std::uint32_t> around;
     for (const FoundEdge& it : edges_at(points, normals, search, todo, *gate, stage)) {
