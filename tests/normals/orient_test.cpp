@@ -8,7 +8,6 @@
 
 #include "normals/shapes.h"
 #include "pcednet/core/parallel.h"
-#include "pcednet/normals/outward.h"
 #include "pcednet/normals/prepare.h"
 #include "support/expect_error.h"
 
@@ -55,25 +54,6 @@ TEST(Orient, TurnsATorusOutwards) {
 
 TEST(Orient, TurnsAnOpenCylinderOutwards) {
   expect_outwards(open_cylinder(4000, 1.0, 4.0), 1);
-}
-
-TEST(Orient, TurnsAFlatBodyOutwardsByItsVolume) {
-  // A flat double cone: its extremes are its rim, where the normals are wrong here.
-  Random random(12);
-  Shape shape;
-  while (shape.positions.size() < 4000) {
-    const double x = random.uniform(-1, 1), y = random.uniform(-1, 1), r = std::hypot(x, y);
-    if (r > 1.0) continue;
-    const double side = random.index(2) == 0 ? 1.0 : -1.0, outward = r > 0.9 ? -1.0 : 1.0;
-    shape.positions.emplace_back(x, y, side * 0.1 * (1.0 - r));
-    shape.normals.push_back(outward * Vec3(0.1 * x / r, 0.1 * y / r, side).normalized());
-  }
-  auto normals = shape.normals;
-  std::vector<std::uint32_t> members(normals.size());
-  std::iota(members.begin(), members.end(), 0u);
-  EXPECT_GT(outwardness(shape.positions, normals, members), 0.5);
-  for (Vec3& n : normals) n = -n;
-  EXPECT_LT(outwardness(shape.positions, normals, members), -0.5);
 }
 
 TEST(Orient, TurnsEachOfSeveralSurfacesOutwards) {

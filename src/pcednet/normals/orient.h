@@ -36,8 +36,7 @@ struct Orientation {
 /// the reflection of one normal in the bisecting plane (factor 2): the first confuses the two sides
 /// of a thin wall, the second is sensitive to noise. The graph is then contracted: every part joins
 /// the neighbour with the largest sum of votes, and the votes between two parts are summed, until
-/// no links are left. Beside sharp edges the sides on which patches lie of each other count as well
-/// (side_votes.h). Single points that their neighbours outvote are flipped last.
+/// no links are left. Single points that their neighbours outvote are flipped last.
 ///
 /// The normals of a component are then oriented outwards by outwardness(). If that is undecided (an
 /// open sheet), the mean normal points upwards. Every component is oriented separately: the normals

@@ -98,59 +98,11 @@ double mean_at_far_end(std::span<const Vec3> points, std::span<const Vec3> norma
   return sum / static_cast<double>(count);
 }
 
-/// Sums over the points of a surface, positions from its first.
-struct SurfaceSums {
-  Vec3 point = Vec3::Zero(), normal = Vec3::Zero();
-  double flux = 0.0, size = 0.0;  ///< n.(p - c) and its magnitude
-
-  void add(const SurfaceSums& other) {
-    point += other.point;
-    normal += other.normal;
-    flux += other.flux;
-    size += other.size;
-  }
-};
-
-/// Sums of blocks of members, in their order: the same for any number of threads.
-template <typename AddMember>
-SurfaceSums sum_over(std::span<const std::uint32_t> members, const AddMember& add_member) {
-  std::vector<SurfaceSums> blocks((members.size() + kMembersAtOnce - 1) / kMembersAtOnce);
-  parallel_blocks(members.size(), kMembersAtOnce, [&](std::size_t begin, std::size_t end) {
-    SurfaceSums& sums = blocks[begin / kMembersAtOnce];
-    for (const std::uint32_t i : members.subspan(begin, end - begin)) add_member(i, sums);
-  });
-  SurfaceSums all;
-  for (const SurfaceSums& sums : blocks) all.add(sums);
-  return all;
-}
-
-/// Whether the normals of a closed surface point outwards, by its volume; 0 if it is open.
-double outwardness_of_volume(std::span<const Vec3> points, std::span<const Vec3> normals,
-                             std::span<const std::uint32_t> members) {
-  constexpr double kOpen = 0.3;
-  const Vec3& origin = points[members.front()];
-  const auto count = static_cast<double>(members.size());
-  const SurfaceSums sums = sum_over(members, [&](std::uint32_t i, SurfaceSums& all) {
-    all.point += points[i] - origin;
-    all.normal += normals[i];
-  });
-  if (sums.normal.norm() >= kOpen * count) return 0.0;
-  const Vec3 middle = origin + sums.point / count;
-  const SurfaceSums volume = sum_over(members, [&](std::uint32_t i, SurfaceSums& all) {
-    const double flux = normals[i].dot(points[i] - middle);
-    all.flux += flux;
-    all.size += std::abs(flux);
-  });
-  return volume.size > 0.0 ? volume.flux / volume.size : 0.0;
-}
-
 }  // namespace
 
 double outwardness(std::span<const Vec3> points, std::span<const Vec3> normals,
                    std::span<const std::uint32_t> members) {
   if (members.empty()) return 0.0;
-  const double of_volume = outwardness_of_volume(points, normals, members);
-  if (std::abs(of_volume) >= kDecided) return of_volume;
   const auto all = directions();
   const std::vector<Ends> blocks = measure_blocks(all, points, members);
   Heights means;

@@ -11,14 +11,9 @@ namespace pcednet::normals {
 /// Whether the normals of one connected surface point outwards: from -1 (inwards) to 1, near 0 if
 /// undecided, as on an open sheet.
 ///
-/// A surface whose normals cancel, |mean n| < 0.3, is closed, and w = n.(p - c), c the mean of its
-/// points, sums up to three times its volume if they point outwards; the result is sum w / sum |w|
-/// if that is decided. The extremes of a flat pyramid or cone are its rim, where no normal is
-/// known.
-///
-/// Otherwise, for each of 48 directions d, m is the mean of n.d over the points within a fiftieth
-/// of the extent of the surface from the extreme one; the result is sum m / sum |m|. `members` are
-/// the indices of the points of the surface.
+/// For each of 48 directions d, m is the mean of n.d over the points within a fiftieth of the
+/// extent of the surface from the extreme one; the result is sum m / sum |m|. `members` are the
+/// indices of the points of the surface.
 double outwardness(std::span<const Vec3> points, std::span<const Vec3> normals,
                    std::span<const std::uint32_t> members);
 

@@ -11,7 +11,6 @@
 #include "pcednet/core/parallel_loops.h"
 #include "pcednet/core/sort_unique.h"
 #include "pcednet/core/vector_clones.h"
-#include "pcednet/normals/side_votes.h"
 
 namespace pcednet::normals {
 namespace {
@@ -205,21 +204,11 @@ Links links_between_parts(const Rows& rows, const Signs& joined) {
   return links;
 }
 
-/// Adds votes to those of links that are there.
-void add_votes(std::span<const PartVote> added, Links& links) {
-  for (const PartVote& vote : added) {
-    Links::Block& block = links.blocks[vote.part / kVotesAtOnce];
-    std::size_t k = block.first[vote.part % kVotesAtOnce];
-    while (block.target[k] != vote.other) ++k;
-    block.vote[k] += vote.vote;
-  }
-}
-
 }  // namespace
 
 SignVotes::SignVotes(std::span<const Vec3> points, std::span<const Vec3> normals,
                      const Adjacency& links)
-    : points_(points), normals_(normals), links_(&links), votes_(links.target.size()) {
+    : links_(&links), votes_(links.target.size()) {
   parallel_blocks(points.size(), kVotesAtOnce, [&](std::size_t begin, std::size_t end) {
     VoteLanes lanes = {};
     std::array<std::int32_t, VoteLanes::kMost> votes;
@@ -247,16 +236,9 @@ SignVotes::SignVotes(std::span<const Vec3> points, std::span<const Vec3> normals
 Signs contract(const SignVotes& votes) {
   std::vector<Signs> rounds = {follow_joins(strongest_links(PointRows{votes}))};
   Links links = links_between_parts(PointRows{votes}, rounds.back());
-  bool sides_count = true;
   while (!links.empty()) {
     rounds.push_back(follow_joins(strongest_links(PartRows{links})));
     links = links_between_parts(PartRows{links}, rounds.back());
-    // Single points and their nearest are too few to have sides; large parts have several edges.
-    if (std::exchange(sides_count, false)) {
-      join_again(rounds.front(), rounds.back());
-      rounds.pop_back();
-      add_votes(votes_of_sides(votes, rounds.front()), links);
-    }
   }
   for (std::size_t k = rounds.size() - 1; k > 0; --k) join_again(rounds[k - 1], rounds[k]);
   return std::move(rounds.front());

@@ -19,11 +19,9 @@ class SignVotes {
   static constexpr double kUnanimous = 1 << 20;
   static constexpr std::int32_t kNone = std::numeric_limits<std::int32_t>::min();
 
-  /// A unit normal (or zero) for each point; all three must outlive the votes.
+  /// A unit normal (or zero) for each point; `links` must outlive the votes.
   SignVotes(std::span<const Vec3> points, std::span<const Vec3> normals, const Adjacency& links);
 
-  std::span<const Vec3> points() const { return points_; }
-  std::span<const Vec3> normals() const { return normals_; }
   const Adjacency& links() const { return *links_; }
 
   /// The votes with links().of(point): negative for opposite signs, kNone if a normal is zero.
@@ -34,14 +32,12 @@ class SignVotes {
   }
 
  private:
-  std::span<const Vec3> points_, normals_;
   const Adjacency* links_;
   UnsetArray<std::int32_t> votes_;
 };
 
-/// Contracts the graph along the strongest sums of votes (Boruvka's rounds). After two rounds, the
-/// votes of sides (side_votes.h) are added to those between the patches that have come about.
-/// Points with a zero normal form parts of their own.
+/// Contracts the graph along the strongest sums of votes (Boruvka's rounds). Points with a zero
+/// normal form parts of their own.
 Signs contract(const SignVotes& votes);
 
 /// Flips single points as long as their neighbours outvote them.
