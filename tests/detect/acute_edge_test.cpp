@@ -7,10 +7,9 @@
 #include <numeric>
 
 #include "detect/labelled_cube.h"
-#include "pcednet/cloud/bounding_box.h"
+#include "detect/left_part.h"
 #include "pcednet/core/parallel.h"
 #include "pcednet/detect/decide.h"
-#include "pcednet/detect/part_of_cloud.h"
 #include "pcednet/detect/result_cloud.h"
 
 namespace pcednet::detect {
@@ -139,25 +138,16 @@ TEST(AcuteEdges, DoNotDependOnOrderSignsOrThreads) {
 
 TEST(AcuteEdges, OfAPartAreThoseOfTheLargeCloud) {
   const PointCloud cloud = wedge(40.0, 200000);
-  PointCloud half;
-  std::vector<std::uint32_t> numbers;
-  for (std::uint32_t i = 0; i < cloud.size(); ++i) {
-    if (cloud.positions[i].x() > 0.55) continue;
-    half.positions.push_back(cloud.positions[i]);
-    half.normals.push_back(cloud.normals[i]);
-    numbers.push_back(i);
-  }
-  const BoundingBox box = bounding_box(cloud.positions);
-  const PartOfCloud part{.pyramids = {{box.min, (box.max - box.min).maxCoeff(), {}}},
-                         .points = cloud.size()};
-  PreparedCloud prepared = prepare(half);
-  prepared.part = &part;
+  const LeftPart half(cloud, 0.55);
+  PreparedCloud prepared = prepare(half.cloud);
+  prepared.part = &half.part;
   std::vector<AcuteEdgePoint> of_whole, of_part;
   for (const AcuteEdgePoint& it : edges_of(cloud)) {
     if (cloud.positions[it.point].x() < 0.5) of_whole.push_back(it);
   }
   for (const AcuteEdgePoint& it : find_acute_edges(prepared, kTwoGates)) {
-    if (half.positions[it.point].x() < 0.5) of_part.push_back({numbers[it.point], it.distance});
+    if (half.cloud.positions[it.point].x() >= 0.5) continue;
+    of_part.push_back({half.numbers[it.point], it.distance});
   }
   EXPECT_GT(of_whole.size(), 300u);
   EXPECT_EQ(of_part, of_whole);

@@ -10,10 +10,9 @@
 #include <numeric>
 
 #include "detect/labelled_cube.h"
-#include "pcednet/cloud/bounding_box.h"
+#include "detect/left_part.h"
 #include "pcednet/core/parallel.h"
 #include "pcednet/detect/decide.h"
-#include "pcednet/detect/part_of_cloud.h"
 #include "pcednet/detect/result_cloud.h"
 #include "pcednet/detect/train.h"
 #include "support/expect_error.h"
@@ -113,25 +112,15 @@ TEST(Boundary, OfAPartIsThatOfTheLargeCloud) {
   });
   cloud.normals.resize(cloud.size(), Vec3::UnitZ());
   const PreparedCloud whole = prepare(cloud);
-  PointCloud half;
-  std::vector<std::uint32_t> numbers;
-  for (std::uint32_t i = 0; i < cloud.size(); ++i) {
-    if (cloud.positions[i].x() > 0.55) continue;
-    half.positions.push_back(cloud.positions[i]);
-    half.normals.push_back(cloud.normals[i]);
-    numbers.push_back(i);
-  }
-  const BoundingBox box = bounding_box(cloud.positions);
-  const PartOfCloud part{.pyramids = {{box.min, (box.max - box.min).maxCoeff(), {}}},
-                         .points = cloud.size()};
-  PreparedCloud prepared = prepare(half);
-  prepared.part = &part;
+  const LeftPart half(cloud, 0.55);
+  PreparedCloud prepared = prepare(half.cloud);
+  prepared.part = &half.part;
   std::vector<std::uint32_t> of_whole, of_part;
   for (const BoundaryPoint& found : find_boundary(whole)) {
     if (cloud.positions[found.point].x() < 0.5) of_whole.push_back(found.point);
   }
   for (const BoundaryPoint& found : find_boundary(prepared)) {
-    if (half.positions[found.point].x() < 0.5) of_part.push_back(numbers[found.point]);
+    if (half.cloud.positions[found.point].x() < 0.5) of_part.push_back(half.numbers[found.point]);
   }
   EXPECT_GT(of_whole.size(), 500u);
   EXPECT_EQ(of_part, of_whole);

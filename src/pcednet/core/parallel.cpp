@@ -7,9 +7,8 @@
 
 #include <algorithm>
 #include <memory>
-#include <string>
 
-#include "pcednet/core/error.h"
+#include "pcednet/core/check_thread_count.h"
 #include "pcednet/core/run_with_threads.h"
 
 namespace pcednet {
@@ -20,10 +19,7 @@ std::unique_ptr<tbb::global_control> thread_limit;  // NOLINT: set once by set_t
 }  // namespace
 
 void set_thread_count(int threads) {
-  if (threads < 0) {
-    throw Error(ErrorKind::kUsage,
-                std::to_string(threads) + " threads: give 0, for every core, or more");
-  }
+  check_thread_count(threads);
   const int wanted = threads > 0 ? threads : tbb::info::default_concurrency();
   thread_limit.reset();
   thread_limit = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,

@@ -5,11 +5,10 @@
 #include <atomic>
 #include <exception>
 #include <mutex>
-#include <string>
 #include <thread>
 #include <vector>
 
-#include "pcednet/core/error.h"
+#include "pcednet/core/check_thread_count.h"
 #include "pcednet/core/parallel.h"
 #include "pcednet/core/run_with_threads.h"
 
@@ -23,10 +22,7 @@ thread_local int own_threads = 0;  // of run_with_threads()
 }  // namespace
 
 void set_thread_count(int threads) {
-  if (threads < 0) {
-    throw Error(ErrorKind::kUsage,
-                std::to_string(threads) + " threads: give 0, for every core, or more");
-  }
+  check_thread_count(threads);
   wanted_threads = threads;
 }
 

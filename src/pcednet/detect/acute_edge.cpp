@@ -148,37 +148,28 @@ struct FoundEdge {
   std::size_t count = 0;
 };
 
-/// Tries the places `todo`.
-std::vector<FoundEdge> edges_at(const DistinctPoints& points, std::span<const Vec3> normals,
-                                const spatial::NeighbourSearch& search,
-                                std::span<const std::uint32_t> todo, double gate, Stage& stage) {
-  std::vector<std::vector<FoundEdge>> found(todo.size() / search.kAtOnce + 1);
-  const auto visit = [&](std::size_t i, std::span<const spatial::Neighbour> near) {
-    const std::uint32_t place = todo[i];
-    const Vec3& own = normals[place];
-    const bool hides = std::any_of(near.begin(), near.end(), [&](const auto& other) {
-      return normals[other.index].dot(own) <= gate && !normals[other.index].isZero(0.0);
-    });
-    if (!hides || own.isZero(0.0)) return;
-    NearNormals around;
-    around.add(Vec3::Zero(), own);
-    FoundEdge it;
-    it.place = place;
-    for (const spatial::Neighbour& other : near) {
-      it.others[it.count++] = other.index;
-      const Vec3& normal = normals[other.index];
-      if (normal.isZero(0.0)) continue;
-      around.add(points.positions[other.index] - points.positions[place], normal);
-    }
-    const auto distance = distance_to_edge(around, gate, std::sqrt(near.back().sq_distance));
-    if (!distance) return;
-    it.distance = static_cast<float>(*distance);
-    found[i / search.kAtOnce].push_back(it);
-  };
-  search.for_each_neighbourhood(todo, kAcuteNeighbours, visit, &stage);
-  std::vector<FoundEdge> all;
-  for (const std::vector<FoundEdge>& some : found) all.insert(all.end(), some.begin(), some.end());
-  return all;
+std::optional<FoundEdge> edge_at(const DistinctPoints& points, std::span<const Vec3> normals,
+                                 double gate, std::uint32_t place,
+                                 std::span<const spatial::Neighbour> near) {
+  const Vec3& own = normals[place];
+  const bool hides = std::any_of(near.begin(), near.end(), [&](const auto& other) {
+    return normals[other.index].dot(own) <= gate && !normals[other.index].isZero(0.0);
+  });
+  if (!hides || own.isZero(0.0)) return std::nullopt;
+  NearNormals around;
+  around.add(Vec3::Zero(), own);
+  FoundEdge it;
+  it.place = place;
+  for (const spatial::Neighbour& other : near) {
+    it.others[it.count++] = other.index;
+    const Vec3& normal = normals[other.index];
+    if (normal.isZero(0.0)) continue;
+    around.add(points.positions[other.index] - points.positions[place], normal);
+  }
+  const auto distance = distance_to_edge(around, gate, std::sqrt(near.back().sq_distance));
+  if (!distance) return std::nullopt;
+  it.distance = static_cast<float>(*distance);
+  return it;
 }
 
 /// The cosine between normals at which all gates hide one point from the other, if any do.
@@ -210,7 +201,11 @@ std::vector<AcuteEdgePoint> find_acute_edges(const PreparedCloud& cloud,
   Stage stage(progress, "acute", points.size());
   const auto try_places = [&](std::span<const std::uint32_t> todo) {
     std::vector<std::uint32_t> around;
-    for (const FoundEdge& it : edges_at(points, normals, search, todo, *gate, stage)) {
+    const auto found = found_at<FoundEdge>(search, todo, kAcuteNeighbours, stage,
+                                           [&](std::uint32_t place, const auto& near) {
+                                             return edge_at(points, normals, *gate, place, near);
+                                           });
+    for (const FoundEdge& it : found) {
       around.insert(around.end(), it.others.begin(), it.others.begin() + it.count);
       for (const std::uint32_t copy : points.points(it.place)) edges.push_back({copy, it.distance});
     }

@@ -191,19 +191,6 @@ std::optional<RimPoint> rim_at(const DistinctPoints& points, std::uint32_t point
   return rim;
 }
 
-/// The results of rim_at() at the points `todo` (ascending), in their order.
-std::vector<RimPoint> rims_at(const DistinctPoints& points, const spatial::NeighbourSearch& search,
-                              std::span<const std::uint32_t> todo, Stage& stage) {
-  std::vector<std::vector<RimPoint>> found(todo.size() / search.kAtOnce + 1);
-  const auto visit = [&](std::size_t i, std::span<const spatial::Neighbour> near) {
-    if (const auto rim = rim_at(points, todo[i], near)) found[i / search.kAtOnce].push_back(*rim);
-  };
-  search.for_each_neighbourhood(todo, kNeighbours, visit, &stage);
-  std::vector<RimPoint> rims;
-  for (const std::vector<RimPoint>& some : found) rims.insert(rims.end(), some.begin(), some.end());
-  return rims;
-}
-
 /// The points of all rims, and of gaps that look like one.
 std::vector<RimPoint> find_rims(const DistinctPoints& points, const Progress* progress) {
   const spatial::NeighbourSearch search(points.positions);
@@ -211,7 +198,9 @@ std::vector<RimPoint> find_rims(const DistinctPoints& points, const Progress* pr
   std::vector<RimPoint> rims;
   Stage stage(progress, "boundary", points.size());
   const auto try_places = [&](std::span<const std::uint32_t> todo) {
-    const std::vector<RimPoint> found = rims_at(points, search, todo, stage);
+    const auto found = found_at<RimPoint>(
+        search, todo, kNeighbours, stage,
+        [&](std::uint32_t point, const auto& others) { return rim_at(points, point, others); });
     rims.insert(rims.end(), found.begin(), found.end());
     std::vector<std::uint32_t> around;
     for (const RimPoint& rim : found) {

@@ -4,10 +4,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
+#include "pcednet/core/progress.h"
 #include "pcednet/core/vec3.h"
 #include "pcednet/detect/part_of_cloud.h"
+#include "pcednet/spatial/neighbour_search.h"
 
 namespace pcednet::detect {
 
@@ -17,6 +20,24 @@ namespace pcednet::detect {
 /// The places to be tried first, ascending: all of a cloud of at most 131,072 points, otherwise a
 /// quarter, by position alone. `part` is that of the cloud, or null.
 std::vector<std::uint32_t> first_places(std::span<const Vec3> positions, const PartOfCloud* part);
+
+/// The results of try_place(place, others) at the places `todo` (ascending), in their order, where
+/// there is one; `others` are the `neighbours` nearest. Runs on all threads and advances `stage`.
+template <typename Found, typename TryPlace>
+std::vector<Found> found_at(const spatial::NeighbourSearch& search,
+                            std::span<const std::uint32_t> todo, std::size_t neighbours,
+                            Stage& stage, const TryPlace& try_place) {
+  std::vector<std::vector<Found>> of_blocks(todo.size() / search.kAtOnce + 1);
+  const auto visit = [&](std::size_t i, std::span<const spatial::Neighbour> others) {
+    if (auto found = try_place(todo[i], others)) {
+      of_blocks[i / search.kAtOnce].push_back(std::move(*found));
+    }
+  };
+  search.for_each_neighbourhood(todo, neighbours, visit, &stage);
+  std::vector<Found> all;
+  for (const auto& some : of_blocks) all.insert(all.end(), some.begin(), some.end());
+  return all;
+}
 
 /// Calls try_places(todo), which returns the places around those found, in any order, with `todo`
 /// first and then with all that were returned and not tried yet, until there are none. Returns the
