@@ -230,8 +230,9 @@ class AnnotateClouds(AnnotateTest):
         self.assertEqual([c["file"] for c in session["clouds"]], ["c\ufffdbe.ply", "h\ufffdll.ply"])
         self.assertEqual(session["settings"]["start"], "m\ufffdne.safetensors")
         server.post("/api/settings", {"auto": False, "start": session["settings"]["start"]})
+        server.until("/api/runs", lambda r: len(r) == 1)  # the labels of the start
         painted = [a["changed"] for a in self.paint_both(server)]
-        self.train(server, 2)  # after the labels of the start
+        self.train(server, 2)
         for what in ("project", "cloud", "model"):
             server.post("/api/save", {"what": what, "cloud": int(what == "cloud")})
             self.assertEqual(server.request(f"/api/download/{what}")[0], 200)
