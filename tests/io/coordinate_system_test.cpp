@@ -40,6 +40,17 @@ TEST(CoordinateSystem, TakesTheHorizontalPartOfACompoundSystem) {
   EXPECT_EQ(coordinate_system_of_wkt("COMPD_CS[\"both\"," + in_feet + "]").unit, LengthUnit::kNone);
 }
 
+TEST(CoordinateSystem, OfHeightsAloneTellsNothingOfXAndY) {
+  for (const char* wkt :
+       {R"(VERT_CS["DHHN",VERT_DATUM["D",2005],UNIT["metre",1],AUTHORITY["EPSG","7837"]])",
+        R"(VERTCRS["DHHN",VDATUM["D"],CS[vertical,1],LENGTHUNIT["metre",1],ID["EPSG",7837]])"}) {
+    const auto heights = coordinate_system_of_wkt(wkt);
+    EXPECT_EQ(heights.epsg, 0) << wkt;
+    EXPECT_EQ(heights.vertical_epsg, 7837) << wkt;
+    EXPECT_EQ(heights.unit, LengthUnit::kNone) << wkt;
+  }
+}
+
 TEST(CoordinateSystem, KnowsFeetAndTheNewerForm) {
   const auto unit_of = [](const std::string& unit) {
     return coordinate_system_of_wkt(projected(unit, "2263")).unit;

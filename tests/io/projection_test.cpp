@@ -43,7 +43,24 @@ TEST(Projections, RefuseNumbersThatAreNoCodes) {
   for (const int code : {-5, 0, 1, 1023, 32767, 100000}) {
     EXPECT_ERROR(ErrorKind::kUsage, system_of_code(code)) << code;
   }
-  if (has_projections()) EXPECT_ERROR(ErrorKind::kUsage, system_of_code(30001));
+  if (has_projections()) {
+    EXPECT_ERROR(ErrorKind::kUsage, system_of_code(30001));
+  }
+}
+
+TEST(Projections, RefuseCodesOfHeightsAlone) {
+  if (!has_projections()) {
+    EXPECT_EQ(system_of_code(5703).epsg, 5703);
+    return;
+  }
+  for (const int code : {5703, 7837, 6360}) {  // the last of feet
+    const auto error = test::error_of([&] { system_of_code(code); });
+    ASSERT_TRUE(error) << code;
+    EXPECT_EQ(error->kind(), ErrorKind::kUsage);
+    EXPECT_NE(std::string(error->what()).find("a system of heights alone"), std::string::npos);
+  }
+  EXPECT_EQ(system_of_code(7415).epsg, 7415);  // with heights
+  EXPECT_EQ(system_of_code(4978).unit, LengthUnit::kMetre);
 }
 
 // The meridian's arc to 50 degrees north on GRS 80 is 5540847.042 m long; UTM scales it by 0.9996.

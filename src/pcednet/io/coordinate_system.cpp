@@ -59,6 +59,10 @@ constexpr std::array<std::string_view, 15> kSystemKeywords = {
     "geographiccrs", "geodcrs",  "geodeticcrs",  "geoccs",         "compd_cs",
     "compoundcrs",   "local_cs", "engcrs",       "engineeringcrs", "boundcrs"};
 
+bool is_of_heights(std::string_view keyword) {
+  return is_one_of(keyword, {"vert_cs", "vertcrs", "verticalcrs"});
+}
+
 /// Whether the innermost node is the system itself or the horizontal part of a compound one.
 bool is_horizontal(const std::vector<WktNode>& open) {
   return open.size() == 1 ||
@@ -81,6 +85,7 @@ int epsg_code(std::string_view word) {
 CoordinateSystem coordinate_system_of_wkt(std::string_view wkt) {
   CoordinateSystem system{.epsg = 0, .wkt = std::string(trim(wkt))};
   int whole = 0, horizontal = 0, heights = 0;
+  bool heights_alone = false;
   bool cartesian = false;  // as geocentric systems are, which share a keyword with geographic ones
   std::optional<LengthUnit> common;  // of all lengths so far
   visit_wkt(wkt, [&](const std::vector<WktNode>& open) {
@@ -92,8 +97,9 @@ CoordinateSystem coordinate_system_of_wkt(std::string_view wkt) {
       const bool in_compound =
           open.size() == 3 && is_one_of(open[0].keyword, {"compd_cs", "compoundcrs"});
       if (in_compound && of_part) horizontal = code;
-      if (in_compound && is_one_of(parent, {"vert_cs", "vertcrs"})) heights = code;
+      if (in_compound && is_of_heights(parent)) heights = code;
     }
+    if (open.size() == 1 && is_of_heights(node.keyword)) heights_alone = true;
     if (is_horizontal(open) && is_one_of(node.keyword, {"geogcs", "geogcrs", "geodcrs"})) {
       system.geographic = !cartesian;
     }
@@ -107,6 +113,10 @@ CoordinateSystem coordinate_system_of_wkt(std::string_view wkt) {
     const LengthUnit unit = unit_of_metres(parse_double(node.values[1]).value_or(0.0));
     common = common.value_or(unit) == unit ? unit : LengthUnit::kNone;
   });
+  if (heights_alone) {
+    system.vertical_epsg = whole;
+    return system;
+  }
   system.epsg = whole ? whole : horizontal;
   if (!whole) system.vertical_epsg = heights;
   // Degrees are no lengths, though heights above them are.

@@ -24,7 +24,8 @@ inline constexpr int kLeastEpsgCode = 1024, kMostEpsgCode = 32766;
 int epsg_code(std::string_view word);
 
 /// The system that a definition describes: its code is that of the outermost EPSG AUTHORITY or ID;
-/// of a compound system without one, the codes are those of its parts.
+/// of a compound system without one, the codes are those of its parts. That of heights alone has no
+/// unit and no code but that of the heights.
 CoordinateSystem coordinate_system_of_wkt(std::string_view wkt);
 
 /// Begins the comment that carries the definition of a cloud which is not of LAS, such as of E57.

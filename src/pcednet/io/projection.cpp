@@ -183,6 +183,9 @@ CoordinateSystem system_of_code(int epsg) {
   if (wkt.empty()) wkt = definition_of(system, WktVersion::k2);
   if (wkt.empty()) refuse("PROJ knows no such system");
   system = coordinate_system_of_wkt(wkt);
+  if (system.epsg == 0 && system.vertical_epsg > 0) {
+    refuse("a system of heights alone, which has no x and y");
+  }
   system.epsg = epsg;
   return system;
 }

@@ -20,7 +20,8 @@ std::string definition_of(const CoordinateSystem& system, WktVersion version);
 
 /// The system of a code that a user gives, with its definition and unit as far as this build has
 /// PROJ. Throws Error(kUsage), which begins with the code, for a number that is no code of a
-/// system: out of kLeastEpsgCode to kMostEpsgCode, or unknown to PROJ.
+/// system of x and y: out of kLeastEpsgCode to kMostEpsgCode or, with PROJ, unknown to it or a
+/// system of heights alone.
 CoordinateSystem system_of_code(int epsg);
 
 /// Points (x, y) of a system as (longitude, latitude) of WGS 84, in degrees. None if PROJ does not
