@@ -193,6 +193,18 @@ TEST_F(Merge, LeavesOutWhatIsNoJsonAndSaysWhere) {
             (folder_ / "empty.json").string() + ": no JSON at byte 1: left out");
 }
 
+TEST_F(Merge, LeavesOutWhatCannotBeReadAndSaysWhy) {
+  std::filesystem::create_directory(folder_ / "a.json");
+  std::filesystem::create_symlink("nowhere", folder_ / "b.json");
+  EXPECT_ERROR(ErrorKind::kUnreadable, merge_studies(folder_));
+  write("methods.json", study_.dump());
+  const auto result = merge_studies(folder_);
+  EXPECT_EQ(result.studies, 1u);
+  EXPECT_EQ(result.warnings,
+            (std::vector{(folder_ / "a.json").string() + ": is a folder: left out",
+                         (folder_ / "b.json").string() + ": No such file or directory: left out"}));
+}
+
 TEST_F(Merge, RefusesWhatIsNoJsonOrEndsEarly) {
   const std::string whole = study_.dump();
   for (const std::size_t length : {std::size_t{0}, std::size_t{1}, whole.size() / 2}) {

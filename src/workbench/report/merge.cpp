@@ -31,22 +31,19 @@ std::vector<fs::path> json_files(const fs::path& folder) {
   }
   std::vector<fs::path> files;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
-    if (entry.is_regular_file() && entry.path().extension() == ".json") {
-      files.push_back(entry.path());
-    }
+    if (entry.path().extension() == ".json") files.push_back(entry.path());
   }
   std::sort(files.begin(), files.end());
   return files;
 }
 
-/// Nothing, and why in `fault`, for a file that is no JSON.
-std::optional<OrderedJson> read_json(const fs::path& file, std::string& fault) {
+/// Throws Error(kUnreadable), also for a file that is no JSON.
+OrderedJson read_json(const fs::path& file) {
   const std::string text = io::InputFile(file).text();
   try {
     return parse_ordered_json(text);
   } catch (const OrderedJson::parse_error& error) {
-    fault = fmt::format("no JSON at byte {}", error.byte);
-    return std::nullopt;
+    throw io::unreadable(file, fmt::format("no JSON at byte {}", error.byte));
   }
 }
 
@@ -137,15 +134,21 @@ Studies read_studies(const fs::path& folder) {
   Studies studies;
   std::optional<Error> broken;
   for (const fs::path& file : json_files(folder)) {
-    std::string fault = fmt::format("not of schema {}", kStudySchema);
-    std::optional<OrderedJson> text = read_json(file, fault);
-    if (!text && !broken) broken = io::unreadable(file, fault);
-    if (!text || !text->is_object() || text->value("schema", OrderedJson()) != kStudySchema) {
-      studies.warnings.push_back(fmt::format("{}: {}: left out", file.string(), fault));
+    OrderedJson text;
+    try {
+      text = read_json(file);
+    } catch (const Error& error) {
+      studies.warnings.push_back(fmt::format("{}: left out", error.what()));
+      if (!broken) broken = error;
       continue;
     }
-    check_study(*text, file);
-    studies.texts.push_back(std::move(*text));
+    if (!text.is_object() || text.value("schema", OrderedJson()) != kStudySchema) {
+      studies.warnings.push_back(
+          fmt::format("{}: not of schema {}: left out", file.string(), kStudySchema));
+      continue;
+    }
+    check_study(text, file);
+    studies.texts.push_back(std::move(text));
     studies.files.push_back(file);
   }
   if (studies.texts.empty()) {
