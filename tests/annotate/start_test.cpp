@@ -154,5 +154,20 @@ TEST(SpacingOfAScene, IsNotThatOfAPointFarAway) {
   fs::remove(path);
 }
 
+TEST(WarningsOfAScene, TellOfRoundedCoordinates) {
+  const fs::path path = fs::path(testing::TempDir()) / "pcednet_rounded.ply";
+  PointCloud cloud = cube_without_normals(3000);
+  cloud.position_type = ScalarType::kFloat32;
+  formats::write_cloud(path, cloud, {.overwrite = Overwrite::kYes});
+  EXPECT_TRUE(load_scene(path)->warnings.empty());
+  for (Vec3& p : cloud.positions)
+    p = (p + Vec3(500'000, 5'400'000, 0)).cast<float>().cast<double>();
+  formats::write_cloud(path, cloud, {.overwrite = Overwrite::kYes});
+  const auto warnings = load_scene(path)->warnings;
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_NE(warnings[0].find("are rounded to steps of 0.5"), std::string::npos) << warnings[0];
+  fs::remove(path);
+}
+
 }  // namespace
 }  // namespace pcednet::annotate

@@ -160,6 +160,17 @@ class AnnotateSession(AnnotateTest):
         server.until("/api/session", lambda s: s["prediction_version"] == 1)
         self.assertEqual(server.request("/api/download/model")[2], first)
 
+    def test_repeating_a_training_warns_of_its_clouds_as_training_on_files_does(self):
+        write_ply(self.cloud, self.positions + [500_000, 5_400_000, 0])
+        server = self.quiet()
+        self.paint_edge_and_face(server)
+        server.post("/api/save", {"what": "project"})
+        server.end()
+        said = run("train", "--project", self.folder / "cube_annotation.json", "-o",
+                   self.folder / "again.safetensors").stderr
+        self.assertRegex(said, r"cube.ply: float coordinates up to 540000\d are rounded to steps of 0.5")
+        self.assertRegex(said, "cube.ply: .*no normals")
+
     def test_starts_from_the_default_model_and_keeps_its_context_network(self):
         server = self.serve("--model", "scan")
         server.open()

@@ -53,8 +53,14 @@ class Train(CliTest):
         self.assertEqual(own.keys(), given.keys())
         self.assertTrue(any(np.any(arrays[name] != own_arrays[name]) for name in arrays))
         (self.folder / "p.json").write_text("{}")
-        run("train", "--project", self.folder / "p.json", "-o", self.folder / "p.safetensors",
-            "--s-max", 0.5, expect=2)
+
+    def test_refuses_options_that_have_no_effect_on_a_project(self):
+        (self.folder / "p.json").write_text("{}")
+        for option in (["--s-max", 0.5], ["--seed", 2], ["--context"], ["--no-normals"], ["--keep-orientation"],
+                       ["--epochs", 3], ["--only", "exact"]):
+            said = run("train", "--project", self.folder / "p.json", "-o", self.folder / "p.safetensors",
+                       *option, expect=2).stderr
+            self.assertIn(f"{option[0]} has no effect on a --project", said)
 
     def test_says_in_the_file_what_the_model_is(self):
         metadata, arrays = tensors(self.train("m.safetensors", "--epochs", 2, "--classes", 2))

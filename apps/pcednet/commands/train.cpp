@@ -105,6 +105,14 @@ Experts read_experts(const TrainArguments& arguments) {
   return experts;
 }
 
+void warn_of_cloud(const annotate::ProjectCloud& cloud) {
+  warn_all(cloud.file, cloud.loaded.warnings);
+  warn_all(cloud.file, cloud.prepared.notes);
+  const gls::ScaleRange& range = cloud.described->descriptor.range;
+  warn_of_rounding(cloud.file, cloud.loaded.cloud.position_type, cloud.prepared, range,
+                   [&] { return detect::smallest_scale(cloud.prepared, range); });
+}
+
 /// The model that the annotator saves for a project.
 detect::TrainedModel train_project(const TrainArguments& arguments, const Common& common,
                                    const Progress& progress) {
@@ -128,7 +136,8 @@ detect::TrainedModel train_project(const TrainArguments& arguments, const Common
     check_not_input(arguments.output, start);
     return detect::load_model(start);
   };
-  return annotate::learn_project(project, input_of, load_start, epoch_reports(common), &progress);
+  return annotate::learn_project(project, {input_of, load_start, warn_of_cloud},
+                                 epoch_reports(common), &progress);
 }
 
 /// Clouds with own classes, as the annotator saves them, give a model with these classes.
@@ -269,27 +278,25 @@ void train(const TrainArguments& arguments, const Common& common) {
 void add_data_options(CLI::App& command, TrainArguments& arguments) {
   command.add_option("inputs", arguments.inputs, "Labelled point files or folders of them");
   command.add_option("--project", arguments.project,
-                     "Repeat a training of the annotator from its project; the input is expected "
-                     "beside the project unless given");
+                     "Repeat a training of the annotator from its project, with its settings; the "
+                     "input is expected beside the project unless given");
   command.add_option("-o,--output", arguments.output, "Output model file, .safetensors")
       ->required();
   add_prepare_options(command, arguments.preparation);
   command.add_flag("--no-normals", arguments.no_normals,
                    "Leave out the clouds' normals: they are estimated, as for clouds without");
-  command
-      .add_option("--only", arguments.only,
-                  "Learn from clouds of this kind alone: given or estimated (normals), exact "
-                  "(points of a model, without noise) or noisy (both without normals), below=4000 "
-                  "(points), or several with commas "
-                  "between them")
-      ->excludes("--project");
+  command.add_option(
+      "--only", arguments.only,
+      "Learn from clouds of this kind alone: given or estimated (normals), exact "
+      "(points of a model, without noise) or noisy (both without normals), below=4000 "
+      "(points), or several with commas "
+      "between them");
   command
       .add_option(
           "--expert", arguments.experts,
           "FILE KIND: a model file, trained with the same options, whose networks decide "
           "for clouds of a kind, written as for --only; where several could, the first does")
-      ->type_name("TEXT")
-      ->excludes("--project");
+      ->type_name("TEXT");
   command
       .add_option("--pieces", arguments.pieces,
                   "A model file, trained on the clouds of `generate pieces` with the same options: "
@@ -341,6 +348,18 @@ void add_recipe_options(CLI::App& command, TrainArguments& arguments) {
   command.add_option("--seed", arguments.seed, "Random seed")->capture_default_str();
 }
 
+/// A project has its own settings.
+void check_options_of_project(const CLI::App& command) {
+  static constexpr std::string_view kUsable[] = {"inputs",    "--project",  "--output",   "--help",
+                                                 "--threads", "--progress", "--overwrite"};
+  for (const CLI::Option* option : command.get_options()) {
+    const std::string name = option->get_name();
+    if (option->count() == 0 || std::ranges::find(kUsable, name) != std::end(kUsable)) continue;
+    throw Error(ErrorKind::kUsage,
+                fmt::format("train: {} has no effect on a --project, whose settings hold", name));
+  }
+}
+
 }  // namespace
 
 void add_train(CLI::App& app, Common& common) {
@@ -365,10 +384,10 @@ void add_train(CLI::App& app, Common& common) {
       ->needs("--s-max-ratio");
   add_network_options(*command, arguments->options);
   add_recipe_options(*command, *arguments);
-  for (const char* of_clouds : {"--s-min", "--s-max", "--context"}) {
-    command->get_option(of_clouds)->excludes("--project");
-  }
-  command->callback([arguments, &common] { train(*arguments, common); });
+  command->callback([arguments, command, &common] {
+    if (!arguments->project.empty()) check_options_of_project(*command);
+    train(*arguments, common);
+  });
 }
 
 }  // namespace pcednet::app

@@ -115,14 +115,7 @@ Adapted learn(const std::string& name, const Subject& subject, std::span<const s
 
 namespace {
 
-/// The data of a project's cloud that learning needs.
-struct ProjectCloud {
-  PointCloud cloud = {};
-  detect::PreparedCloud prepared = {};
-  std::shared_ptr<const Described> described = {};
-};
-
-PointCloud read_input(const InputIdentity& its, const std::filesystem::path& input) {
+io::LoadedCloud read_input(const InputIdentity& its, const std::filesystem::path& input) {
   if (digest_of_file(input) != its.digest) {
     throw Error(ErrorKind::kInsufficient,
                 fmt::format("{}: not the file that the project is about: put back the one that was "
@@ -135,7 +128,7 @@ PointCloud read_input(const InputIdentity& its, const std::filesystem::path& inp
                 fmt::format("{}: {} points where the project has {}", input.string(),
                             loaded.cloud.size(), its.points));
   }
-  return std::move(loaded.cloud);
+  return loaded;
 }
 
 }  // namespace
@@ -151,10 +144,9 @@ std::string not_reproduced(int run) {
       run);
 }
 
-detect::TrainedModel learn_project(
-    const Project& project, const std::function<std::filesystem::path(std::size_t)>& input_of,
-    const std::function<detect::EdgeModel(const std::string& name)>& load_start,
-    const std::function<void(const nn::EpochReport&)>& on_epoch, const Progress* progress) {
+detect::TrainedModel learn_project(const Project& project, const ProjectFiles& files,
+                                   const std::function<void(const nn::EpochReport&)>& on_epoch,
+                                   const Progress* progress) {
   const std::size_t points = points_of(project.inputs);
   Replayed end = replay(project.records, points);
   Settings settings = end.settings;
@@ -166,25 +158,28 @@ detect::TrainedModel learn_project(
   }
   std::optional<detect::EdgeModel> model;
   if (settings.start != kRandomStart) {
-    model = with_classes(load_start(settings.start), settings.classes);
+    model = with_classes(files.load_start(settings.start), settings.classes);
     check_start(*model, settings.start, end.classes.table);
   }
   std::vector<ProjectCloud> all(clouds);
   Subject subject{.clouds = {}, .table = end.classes.table};
   for (std::size_t k = 0; k < clouds; ++k) {
-    all[k].cloud = read_input(project.inputs[k], input_of(k));
-    all[k].prepared = detect::prepare(all[k].cloud, {}, progress);
-    all[k].described =
-        describe_once(all[k].prepared, descriptor_of(model ? &*model : nullptr), {}, progress);
-    subject.clouds.push_back({*all[k].described, all[k].prepared.positions, all[k].prepared.curve});
+    ProjectCloud& one = all[k];
+    one.file = files.input_of(k);
+    one.loaded = read_input(project.inputs[k], one.file);
+    one.prepared = detect::prepare(one.loaded.cloud, {}, progress);
+    one.described =
+        describe_once(one.prepared, descriptor_of(model ? &*model : nullptr), {}, progress);
+    if (files.on_cloud) files.on_cloud(one);
+    subject.clouds.push_back({*one.described, one.prepared.positions, one.prepared.curve});
   }
   std::optional<Start> start;
   if (model) start = make_start(std::move(*model), subject);
   nn::EpochReport last;
   const std::size_t seen = points_of(std::span(project.inputs).first(clouds));
   Adapted learnt = learn(
-      input_of(0).stem().string(), subject, std::span(end.labels.classes()).first(seen), settings,
-      start ? &*start : nullptr,
+      all.front().file.stem().string(), subject, std::span(end.labels.classes()).first(seen),
+      settings, start ? &*start : nullptr,
       [&](const nn::EpochReport& report) {
         last = report;
         if (on_epoch) on_epoch(report);

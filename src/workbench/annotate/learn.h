@@ -1,9 +1,12 @@
 #pragma once
 
+#include <filesystem>
 #include <functional>
+#include <memory>
 #include <string>
 
 #include "pcednet/detect/train.h"
+#include "pcednet/io/loaded_cloud.h"
 #include "workbench/annotate/adapt.h"
 #include "workbench/annotate/outputs.h"
 #include "workbench/annotate/project.h"
@@ -42,14 +45,27 @@ bool is_another(const RunRecord& run, double loss);
 /// What the user is told then.
 std::string not_reproduced(int run);
 
+/// An input of a project, ready to be learnt from.
+struct ProjectCloud {
+  std::filesystem::path file = {};
+  io::LoadedCloud loaded = {};
+  detect::PreparedCloud prepared = {};
+  std::shared_ptr<const Described> described = {};
+};
+
+/// Where the files of a project are, and who hears of its clouds.
+struct ProjectFiles {
+  /// The file of an input by its number from 0, for those that the run had.
+  std::function<std::filesystem::path(std::size_t)> input_of = {};
+  std::function<detect::EdgeModel(const std::string& name)> load_start = {};
+  std::function<void(const ProjectCloud&)> on_cloud = {};  ///< after each; may be empty
+};
+
 /// The model of a project's chosen run or, if it has none, of its last labels, as the annotator
-/// saves it. `input_of` returns the file of an input by its number from 0, for those that the run
-/// had; `load_start` the model of a name. The notes tell if it is not the model that the run had.
-/// Throws Error(kInsufficient) if an input is not the project's, and as labels_of().
-detect::TrainedModel learn_project(
-    const Project& project, const std::function<std::filesystem::path(std::size_t)>& input_of,
-    const std::function<detect::EdgeModel(const std::string& name)>& load_start,
-    const std::function<void(const nn::EpochReport&)>& on_epoch = {},
-    const Progress* progress = nullptr);
+/// saves it. The notes tell if it is not the model that the run had. Throws Error(kInsufficient) if
+/// an input is not the project's, and as labels_of().
+detect::TrainedModel learn_project(const Project& project, const ProjectFiles& files,
+                                   const std::function<void(const nn::EpochReport&)>& on_epoch = {},
+                                   const Progress* progress = nullptr);
 
 }  // namespace pcednet::annotate

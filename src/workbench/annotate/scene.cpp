@@ -8,6 +8,8 @@
 #include "pcednet/core/error.h"
 #include "pcednet/core/json.h"
 #include "pcednet/detect/decide.h"
+#include "pcednet/detect/rounding.h"
+#include "pcednet/formats/cloud_facts.h"
 #include "pcednet/formats/read_cloud.h"
 #include "pcednet/gls/scales.h"
 #include "pcednet/spatial/curve_order.h"
@@ -18,6 +20,14 @@ namespace {
 
 /// With a ratio, a range begins at the mean of the middle half of the spacings.
 constexpr double kAnyRatio = 10.0;
+
+/// Of coordinates that are rounded to more than the spacing.
+void add_note_on_float(Scene& scene) {
+  if (!detect::may_be_too_coarse(scene.cloud.position_type, scene.prepared.decision, {})) return;
+  const double distinct = detect::share_of_places(scene.prepared.positions, scene.prepared.curve);
+  const auto note = formats::note_on_float(scene.bounds, scene.spacing, distinct);
+  if (!note.empty()) scene.warnings.push_back(note);
+}
 
 }  // namespace
 
@@ -48,6 +58,7 @@ std::shared_ptr<const Scene> load_scene(const std::filesystem::path& input,
   if (const auto note = gls::note_on({}, scales, ordered); !note.empty()) {
     scene->warnings.push_back(note);
   }
+  add_note_on_float(*scene);
   stage.advance();
   scene->layout = make_layout(scene->cloud.positions, scene->spacing);
   scene->selector = std::make_unique<Selector>(scene->cloud.positions, scene->prepared.normals,
