@@ -179,6 +179,7 @@ class AnnotateClouds(AnnotateTest):
     def test_a_cloud_that_is_missing_is_named_with_its_project(self):
         server = self.quiet_both()
         painted = [a["changed"] for a in self.paint_both(server)]
+        server.post("/api/save", {"what": "project"})
         server.end()
         moved = self.folder / "moved.ply"
         self.other.rename(moved)
@@ -193,6 +194,9 @@ class AnnotateClouds(AnnotateTest):
         server.open()
         self.assertEqual([(c["file"], c["painted"]) for c in server.get("/api/session")["clouds"]],
                          [("cube.ply", painted[0]), ("moved.ply", painted[1])])
+        server.end()
+        run("train", "--project", self.project, "-o", self.folder / "m.safetensors")  # nor this
+        self.assertEqual(json.loads(self.project.read_text())["inputs"][1]["name"], "moved.ply")
 
     def test_a_cloud_that_changed_or_is_missing_is_named_with_what_to_do(self):
         server = self.quiet_both()

@@ -21,11 +21,20 @@ Project read_own_project(const fs::path& path) {
   }
 }
 
-std::vector<Record> records_of(const fs::path& path, const Inputs& inputs) {
+Project saved_project(const fs::path& path, const Inputs& inputs) {
   if (!fs::exists(path)) return {};
   Project project = read_own_project(path);
   check_known(path, project.inputs, inputs);
-  return std::move(project.records);
+  return project;
+}
+
+/// Saves where the inputs are now, if some were moved.
+void follow_inputs(const fs::path& path, Project& project, const Inputs& inputs) {
+  const Inputs now(inputs.begin(),
+                   inputs.begin() + static_cast<std::ptrdiff_t>(project.inputs.size()));
+  if (now == project.inputs) return;
+  project.inputs = now;
+  write_project(path, project, Overwrite::kYes);
 }
 
 }  // namespace
@@ -41,7 +50,8 @@ Inputs inputs_of_project(const fs::path& project) {
 
 Painting::Painting(const fs::path& project, const Inputs& inputs)
     : inputs_(inputs), now_{.labels = Labels(points_of(inputs))} {
-  const std::vector<Record> saved = records_of(project, inputs);
+  Project on_disk = saved_project(project, inputs);
+  const std::vector<Record>& saved = on_disk.records;
   records_ = saved;
   const fs::path path = journal_of(project);
   journal_ = std::make_unique<Journal>(path, inputs, records_);
@@ -56,6 +66,7 @@ Painting::Painting(const fs::path& project, const Inputs& inputs)
     records_.push_back(saved[i]);
   }
   for (const Record& record : records_) replay(record, now_);
+  follow_inputs(project, on_disk, inputs);
 }
 
 std::span<const std::uint32_t> Painting::add(Record record) {

@@ -21,8 +21,9 @@ Inputs inputs_of_project(const std::filesystem::path& project);
 class Painting {
  public:
   /// Merges the project at `project` (which need not exist) and its journal; `inputs` may continue
-  /// theirs. Throws Error(kInsufficient) if one of them is of other inputs or contradicts the
-  /// other, and as read_project() and Journal do.
+  /// theirs, and where some were moved, both have the new places then. Throws Error(kInsufficient)
+  /// if one of them is of other inputs or contradicts the other, and as read_project() and Journal
+  /// do.
   Painting(const std::filesystem::path& project, const Inputs& inputs);
 
   const Labels& labels() const { return now_.labels; }
