@@ -125,6 +125,7 @@ OrderedJson json_of(const std::filesystem::path& path, const formats::CloudFacts
   file["defects"] = {{"positions_not_finite", facts.defects.positions},
                      {"normals_unusable", facts.defects.normals},
                      {"duplicate_positions", facts.defects.duplicates}};
+  if (facts.outliers) file["outliers"] = *facts.outliers;
   file["problems"] = facts.problems;
   if (facts.e57) file["e57"] = json_of(*facts.e57);
   if (facts.las) file["las"] = json_of(*facts.las);

@@ -105,9 +105,20 @@ void add(const io::E57Document& document, Lines& lines) {
   }
 }
 
-std::string text_of(const std::map<int, std::size_t>& counts) {
+/// Those that mean the same in all versions of LAS, and high noise, which means nothing else.
+const std::map<int, const char*> kLasClasses = {
+    {0, " never classified"}, {1, " unassigned"},        {2, " ground"},
+    {3, " low vegetation"},   {4, " medium vegetation"}, {5, " high vegetation"},
+    {6, " building"},         {7, " low noise"},         {9, " water"},
+    {18, " high noise"}};
+
+std::string text_of(const std::map<int, std::size_t>& counts,
+                    const std::map<int, const char*>& names) {
   std::vector<std::string> parts;
-  for (const auto& [value, count] : counts) parts.push_back(fmt::format("{}: {}", value, count));
+  for (const auto& [value, count] : counts) {
+    const auto name = names.find(value);
+    parts.push_back(fmt::format("{}{}: {}", value, name == names.end() ? "" : name->second, count));
+  }
   return fmt::format("{}", fmt::join(parts, ", "));
 }
 
@@ -129,8 +140,8 @@ void add(const io::LasFacts& las, Lines& lines) {
     lines.add("record", fmt::format("{} {}, {} bytes, {}", record.user_id, record.record_id,
                                     record.bytes, record.description));
   }
-  add_known("by return", text_of(las.points_by_return));
-  add_known("by class", text_of(las.points_by_class));
+  add_known("by return", text_of(las.points_by_return, {}));
+  add_known("by class", text_of(las.points_by_class, kLasClasses));
 }
 
 }  // namespace

@@ -50,6 +50,21 @@ class Info(CliTest):
         write_ply(self.folder / "twice.ply", np.vstack([p, p]) + [9, 9, 0], np.vstack([n, n]))
         self.assertNotIn("rounded", " ".join(self.info(self.folder / "twice.ply")[0]["problems"]))
 
+    def test_outliers_are_counted(self):
+        """As by brute force: fewer than three others within ten spacings; cells hold many points or few."""
+        p, n, _ = cube(1500)
+        random = np.random.default_rng(7)
+        p = np.concatenate([p, random.uniform(-1.5, 1.5, (40, 3)), [[9, 9, 9]] * 3, [[-9, 1e6, 9]] * 4, [[1e30, 0, 0]]])
+        write_ply(self.folder / "a.ply", p, position_type="double")
+        facts = self.info(self.folder / "a.ply")[0]
+        distances = np.linalg.norm(p[:, None] - p[None], axis=2)
+        third = np.partition(distances, 3, axis=1)[:, 3]  # the nearest is the point itself
+        outliers = (third > 10 * facts["spacing"]).sum()
+        self.assertGreater(outliers, 20)
+        self.assertLess(outliers, 44)
+        self.assertEqual(facts["outliers"], outliers)
+        self.assertIn(f"{outliers} of {len(p)} points are outliers", " ".join(facts["problems"]))
+
     def test_a_good_cloud_has_no_problems(self):
         p, n, _ = cube(500)
         write_ply(self.folder / "a.ply", p, n)

@@ -233,6 +233,14 @@ class Las(CliTest):
         self.assertIn(4, [record["record_id"] for record in facts["records"]])
         self.assertIn("point format 3", run("info", source).stdout)
 
+    def test_info_names_the_classes_and_noise(self):
+        rows = self.scan(6)
+        rows["Classification"] = 2
+        rows["Classification"][:7], rows["Classification"][7:10], rows["Classification"][10] = 7, 18, 64
+        said = run("info", self.write("scan.las", las(6, rows))).stdout
+        self.assertIn(f"2 ground: {len(rows) - 11}, 7 low noise: 7, 18 high noise: 3, 64: 1\n", said)
+        self.assertIn(f"10 of {len(rows)} points are of the classes 7 and 18, noise", said)
+
     def test_labels_in_utm_are_those_of_the_shifted_copy(self):
         rows = self.scan()
         data = bytearray(las(3, rows))

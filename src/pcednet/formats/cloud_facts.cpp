@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
+#include <unordered_map>
 
 #include "pcednet/core/median.h"
 #include "pcednet/core/random.h"
@@ -16,13 +18,12 @@
 namespace pcednet::formats {
 namespace {
 
-std::optional<SampledSpacing> find_spacing(const PointCloud& cloud) {
+std::optional<SampledSpacing> find_spacing(const PointCloud& cloud, const spatial::KdTree& tree) {
   constexpr std::size_t kSample = 2000;
   std::vector<std::size_t> finite;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     if (cloud.positions[i].allFinite()) finite.push_back(i);
   }
-  const spatial::KdTree tree(cloud.positions);
   Random random(1);
   const std::size_t sample = std::min(finite.size(), kSample);
   SpacingSample spacings;
@@ -33,6 +34,37 @@ std::optional<SampledSpacing> find_spacing(const PointCloud& cloud) {
     spacings.add(std::span(sq_distances).first(found));
   }
   return spacings.spacing();
+}
+
+using Cell = std::array<double, 3>;  ///< whole numbers, of any size
+
+struct CellHash {
+  std::size_t operator()(const Cell& cell) const {
+    std::size_t hash = 0;
+    for (const double number : cell)
+      hash = 0x9e3779b97f4a7c15 * (hash + std::hash<double>()(number));
+    return hash ^ hash >> 32;
+  }
+};
+
+/// The finite points with fewer than three others within `reach`.
+std::size_t count_outliers(std::span<const Vec3> positions, const spatial::KdTree& tree,
+                           double reach) {
+  constexpr std::size_t kCompany = 4;          ///< itself among them
+  const double side = reach / std::sqrt(3.0);  // points of a cell are within reach of each other
+  const auto cell_of = [=](const Vec3& p) {
+    return Cell{std::floor(p.x() / side), std::floor(p.y() / side), std::floor(p.z() / side)};
+  };
+  std::unordered_map<Cell, std::size_t, CellHash> counts;
+  for (const Vec3& p : positions) {
+    if (p.allFinite()) ++counts[cell_of(p)];
+  }
+  return static_cast<std::size_t>(std::ranges::count_if(positions, [&](const Vec3& p) {
+    if (!p.allFinite() || counts[cell_of(p)] >= kCompany) return false;
+    std::array<double, kCompany> sq_distances;
+    const std::size_t found = tree.nearest(p, sq_distances);
+    return found < kCompany || sq_distances.back() > reach * reach;
+  }));
 }
 
 void add_values(const Attribute& attribute, std::size_t points, AttributeFacts& facts) {
@@ -57,6 +89,9 @@ void add_in_common(const PointCloud& part, CloudFacts& facts) {
     facts.elements.push_back(element.header.substr(0, element.header.find('\n')));
   }
 }
+
+/// The third quartile over the first, from which gls::is_uneven() is true.
+constexpr double kEvenQuartiles = 1.6;
 
 /// In steps: the places of a lattice, all of them taken, are not further apart, as the mean of the
 /// ten nearest in a plane (1.4) or in its diagonal section (1.9).
@@ -90,7 +125,13 @@ void SpacingSample::add(std::span<const double> sq_distances) {
 std::optional<SampledSpacing> SpacingSample::spacing() const {
   if (nearest_.empty()) return std::nullopt;
   const auto count = static_cast<double>(nearest_.size() * (kNearest - 1));
-  return SampledSpacing{sum_ / count, upper_median(nearest_), upper_median(sides_)};
+  std::vector<double> sides = sides_;
+  const double first = value_at_rank(sides, sides.size() / 4),
+               third = value_at_rank(sides, 3 * sides.size() / 4);
+  return SampledSpacing{.mean = sum_ / count,
+                        .median = upper_median(nearest_),
+                        .side = upper_median(sides_),
+                        .uneven = third > kEvenQuartiles * first};
 }
 
 std::string note_on_float(const BoundingBox& bounds, double apart, double distinct) {
@@ -135,6 +176,21 @@ std::vector<std::string> find_problems(const CloudFacts& facts) {
   if (facts.points == 0) problems.emplace_back("no points");
   add(defects.positions, "points have no finite position: kept, not labelled");
   add(defects.duplicates, "points lie exactly on another one");
+  if (facts.outliers.value_or(0) > 0) {
+    add(*facts.outliers,
+        fmt::format("points are outliers, with fewer than three others within {:.2g}: farther than "
+                    "the scales of `classify` reach",
+                    facts.spacing->reach())
+            .c_str());
+  }
+  if (facts.las) {
+    const auto noise = [&](int code) {
+      const auto found = facts.las->points_by_class.find(code);
+      return found == facts.las->points_by_class.end() ? 0 : found->second;
+    };
+    add(noise(7) + noise(18),
+        "points are of the classes 7 and 18, noise: labelled like all others");
+  }
   if (facts.points > 0 && !facts.has_normals) {
     problems.emplace_back("no normals: they will be estimated");
   }
@@ -158,7 +214,11 @@ CloudFacts cloud_facts(const std::filesystem::path& path) {
   CloudFacts facts = facts_of_header(io::InputFile(path));
   facts.points = loaded.cloud.size();
   add_part(loaded.cloud, facts);
-  facts.spacing = find_spacing(loaded.cloud);
+  const spatial::KdTree tree(loaded.cloud.positions);
+  facts.spacing = find_spacing(loaded.cloud, tree);
+  if (facts.spacing && facts.spacing->side > 0.0) {
+    facts.outliers = count_outliers(loaded.cloud.positions, tree, facts.spacing->reach());
+  }
   facts.rescaled_normals = loaded.rescaled_normals;
   facts.warnings = loaded.warnings;
   facts.problems = find_problems(facts);

@@ -23,6 +23,10 @@ struct SampledSpacing {
   double mean = 0.0;    ///< to the ten nearest others
   double median = 0.0;  ///< of the distances to the nearest other
   double side = 0.0;    ///< of the square that holds one point, median
+  bool uneven = false;  ///< as of clouds that are described at larger scales, too
+
+  /// About the largest scale of the default model, beyond which points are outliers.
+  double reach() const { return (uneven ? 80.0 : 10.0) * side; }
 };
 
 /// Measures it from the nearest neighbours of the points of a sample.
@@ -67,6 +71,8 @@ struct CloudFacts {
   std::vector<std::string> comments = {};
   std::vector<std::string> elements = {};  ///< foreign ones, by the first lines of their headers
   Defects defects = {};
+  /// Points with fewer than three others within SampledSpacing::reach(); none if read in parts.
+  std::optional<std::size_t> outliers = {};
   std::size_t rescaled_normals = 0;
   std::vector<std::string> problems = {};  ///< possible surprises, one sentence each
   std::optional<io::E57Document> e57 = {};
