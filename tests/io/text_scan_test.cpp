@@ -10,6 +10,28 @@
 namespace pcednet::io {
 namespace {
 
+TEST(TextScan, DecodesUtf16) {
+  const std::u16string units = u"a\u00F6\u20AC\U0001F30D\n";
+  const std::string utf8 = "a\xC3\xB6\xE2\x82\xAC\xF0\x9F\x8C\x8D\n";
+  const auto bytes_of = [](std::u16string_view text, bool little) {
+    std::string bytes = little ? "\xFF\xFE" : "\xFE\xFF";
+    for (const char16_t unit : text) {
+      const char low = static_cast<char>(unit & 0xFF), high = static_cast<char>(unit >> 8);
+      bytes += {little ? low : high, little ? high : low};
+    }
+    return bytes;
+  };
+  for (const bool little : {true, false}) {
+    EXPECT_EQ(in_utf8(bytes_of(units, little)), utf8);
+    EXPECT_EQ(in_utf8(bytes_of(units, little) + "x"), utf8) << "half a unit is left out";
+    const std::u16string halves = {0xD83C, u'a', 0xDF0D, 0xD83C};
+    EXPECT_EQ(in_utf8(bytes_of(halves, little)),
+              "\xEF\xBF\xBD"
+              "a\xEF\xBF\xBD\xEF\xBF\xBD");
+  }
+  EXPECT_EQ(in_utf8(utf8), utf8);
+}
+
 TEST(TextScan, ParsesNumbersAsTheStandardLibraryDoes) {
   Random random(3);
   for (int i = 0; i < 20000; ++i) {

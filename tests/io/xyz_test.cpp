@@ -69,6 +69,7 @@ TEST(Xyz, RefusesCommasThatReadEitherWay) {
   }
   refuses("1,5 2,5 3,5\n1.5 2 3\n", ":2: decimal points, where line 1 has decimal commas");
   refuses("1.5 2 3\n\n1,5 2,5 3,5\n", ":1: decimal points, where line 3 has decimal commas");
+  refuses("1.234,5;2,5;3\n", ":1: points and decimal commas: write no points between thousands");
   refuses("1,5 2,5 3,5\n1, 2, 3\n", ":2: commas between numbers, where line 1 has decimal commas");
   refuses("1,5;2,5;3,5\n1,2,3\n", ":2: commas between numbers, where line 1 has decimal commas");
   refuses("1,2,3,4,5,6\n1,5 2,5 3,5\n", ":2: decimal commas, where those of line 1");
@@ -315,6 +316,28 @@ TEST(Xyz, WritesPlainColumnsPlainly) {
   EXPECT_EQ(bytes_of(scratch.path("a.xyz")), "0.1 -2 512049.781 0 0 1\n");
   formats::write_cloud(scratch.path("b.txt"), cloud);
   EXPECT_EQ(bytes_of(scratch.path("b.txt")), "# lost\n# x y z nx ny nz\n0.1 -2 512049.781 0 0 1\n");
+}
+
+TEST(Xyz, ReadsUtf16) {
+  const Scratch scratch;
+  std::string text = "\xFF\xFE";
+  for (const char c : std::string("x;y;z\r\n1,5;2;3\r\n")) text += {c, '\0'};
+  const InputFile file(scratch.file("a.csv", text));
+  EXPECT_TRUE(begins_as_points(file));
+  EXPECT_EQ(read_xyz(file).cloud.positions, std::vector{Vec3(1.5, 2, 3)});
+}
+
+TEST(Xyz, WarnsOfNumbersOfPointsThatAreReadAsX) {
+  const Scratch scratch;
+  const auto warnings = [&](const std::string& text) {
+    return read_xyz(InputFile(scratch.file("a.txt", text))).warnings;
+  };
+  EXPECT_EQ(warnings("7 1 2 3\n8 1 2 3\n9 1 2 3\n10 1 2 3\n"),
+            std::vector<std::string>{"no column names: read as x y z scalar_4, although the first "
+                                     "column numbers the points; give names, such as: id x y z"});
+  EXPECT_EQ(warnings("7 1 2 3\n8 1 2 3\n9 1 2 3\n11 1 2 3\n"),
+            std::vector<std::string>{"no column names: read as x y z scalar_4"});
+  EXPECT_TRUE(warnings("id x y z\n1 1 2 3\n2 1 2 3\n3 1 2 3\n4 1 2 3\n").empty());
 }
 
 TEST(Xyz, TellsPointsFromProse) {

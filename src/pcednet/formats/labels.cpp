@@ -49,7 +49,7 @@ std::vector<std::uint8_t> read_bytes(const io::InputFile& file, Classes classes)
 /// one that is no label, such as the number of points.
 std::optional<std::vector<std::uint8_t>> read_text_labels(const io::InputFile& file,
                                                           Classes classes) {
-  const std::string text = file.text();
+  const std::string text = io::in_utf8(file.text());
   std::vector<std::uint8_t> labels;
   std::vector<std::string_view> words;
   io::Lines lines(io::without_mark(text));

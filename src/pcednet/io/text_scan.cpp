@@ -50,6 +50,20 @@ bool parse_as(std::string_view token, T& value) {
   }
 }
 
+void append_utf8(char32_t code, std::string& text) {
+  const auto add = [&](char32_t bits) { text += static_cast<char>(bits); };
+  const auto add_tail = [&](int shift) { add(0x80 | (code >> shift & 0x3F)); };
+  if (code < 0x80) {
+    add(code);
+  } else if (code < 0x800) {
+    add(0xC0 | code >> 6), add_tail(0);
+  } else if (code < 0x10000) {
+    add(0xE0 | code >> 12), add_tail(6), add_tail(0);
+  } else {
+    add(0xF0 | code >> 18), add_tail(12), add_tail(6), add_tail(0);
+  }
+}
+
 }  // namespace
 
 Lines::Lines(std::string_view text, std::size_t lines_before)
@@ -98,6 +112,30 @@ bool is_comment(std::string_view line) {
 
 std::string_view without_mark(std::string_view text) {
   return text.starts_with("\xEF\xBB\xBF") ? text.substr(3) : text;
+}
+
+std::string in_utf8(std::string text) {
+  const bool little = text.starts_with("\xFF\xFE");
+  if (!little && !text.starts_with("\xFE\xFF")) return text;
+  const auto unit_at = [&](std::size_t at) -> char32_t {
+    if (at + 1 >= text.size()) return 0;
+    const auto first = static_cast<unsigned char>(text[at]),
+               second = static_cast<unsigned char>(text[at + 1]);
+    return static_cast<char32_t>(little ? first | second << 8 : first << 8 | second);
+  };
+  std::string utf8;
+  utf8.reserve(text.size() / 2);
+  for (std::size_t at = 2; at + 1 < text.size(); at += 2) {
+    char32_t code = unit_at(at);
+    if (code >= 0xD800 && code < 0xE000) {
+      const char32_t next = unit_at(at + 2);
+      const bool is_pair = code < 0xDC00 && next >= 0xDC00 && next < 0xE000;
+      code = is_pair ? 0x10000 + ((code - 0xD800) << 10) + (next - 0xDC00) : 0xFFFD;
+      if (is_pair) at += 2;
+    }
+    append_utf8(code, utf8);
+  }
+  return utf8;
 }
 
 std::string_view trim(std::string_view text) {

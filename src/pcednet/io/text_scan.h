@@ -64,6 +64,10 @@ bool is_comment(std::string_view line);
 /// `text` behind its byte-order mark, if it has that of UTF-8.
 std::string_view without_mark(std::string_view text);
 
+/// A text in UTF-8: `text` itself, unless it has a byte-order mark of UTF-16. Halves of characters
+/// become U+FFFD.
+std::string in_utf8(std::string text);
+
 /// Replaces `fields` by the parts of `line` between runs of separators.
 void split(std::string_view line, std::vector<std::string_view>& fields,
            const Separators& separators = kBlankSeparators);

@@ -47,6 +47,11 @@ bool looks_like_normal(const double* n) {
   return length > 0.9 && length < 1.1;
 }
 
+bool counts_rows(const NumberTable& table) {
+  double next = table.rows() > 3 ? std::floor(table.numbers[0]) : NAN;
+  return in_all_rows(table, [&](const double* row) { return row[0] == next++; });
+}
+
 std::vector<std::string> guess_column_names(const NumberTable& table, TextKind kind) {
   std::vector<std::string> names = {"x", "y", "z"};
   bool has_normals = false, has_colours = false;

@@ -17,6 +17,9 @@ struct NumberTable {
 /// Whether the vector at `n` has about unit length.
 bool looks_like_normal(const double* n);
 
+/// Whether the first column is n, n + 1, n + 2, ... in four rows or more.
+bool counts_rows(const NumberTable& table);
+
 /// The columns of a text file, guessed from its extension and first line.
 enum class TextKind { kAny, kPts, kCountedPts };
 

@@ -48,7 +48,7 @@ bool begin_with_numbers(const std::vector<std::string_view>& words) {
 
 class TableReader {
  public:
-  explicit TableReader(const InputFile& file) : path_(file.path()), text_(file.text()) {}
+  explicit TableReader(const InputFile& file) : path_(file.path()), text_(in_utf8(file.text())) {}
 
   LoadedCloud read() {
     Lines lines(without_mark(text_));
@@ -158,10 +158,13 @@ class TableReader {
     const Commas here = commas_of(line);
     if (commas_ == Commas::kDecimals &&
         (here == Commas::kSeparators || line.find('.') != std::string_view::npos)) {
-      throw error(fmt::format(
-          "{}, where line {} has decimal commas",
-          line.find('.') != std::string_view::npos ? "decimal points" : "commas between numbers",
-          deciding_line_));
+      const bool has_points = line.find('.') != std::string_view::npos;
+      if (has_points && deciding_line_ == number_) {
+        throw error("points and decimal commas: write no points between thousands");
+      }
+      throw error(fmt::format("{}, where line {} has decimal commas",
+                              has_points ? "decimal points" : "commas between numbers",
+                              deciding_line_));
     }
     if (commas_ == Commas::kSeparators && here == Commas::kDecimals) {
       throw error(
@@ -203,7 +206,11 @@ class TableReader {
     LoadedCloud loaded = builder.finish();
     loaded.cloud.comments = std::move(comments_);
     if (guessed && table_.columns > 3) {
-      loaded.warnings.push_back(fmt::format("no column names: read as {}", fmt::join(names_, " ")));
+      loaded.warnings.push_back(fmt::format("no column names: read as {}{}", fmt::join(names_, " "),
+                                            counts_rows(table_)
+                                                ? ", although the first column numbers the points; "
+                                                  "give names, such as: id x y z"
+                                                : ""));
     }
     return loaded;
   }
@@ -236,7 +243,7 @@ LoadedCloud read_xyz(const InputFile& file) {
 
 bool begins_as_points(const InputFile& file) {
   constexpr std::uint64_t kSeen = 1 << 16;
-  const std::string text = file.text(0, kSeen);
+  const std::string text = in_utf8(file.text(0, kSeen));
   const bool is_whole = file.size() <= kSeen;
   std::string_view seen = without_mark(text);
   if (!is_whole) seen = seen.substr(0, seen.find_last_of("\r\n") + 1);
