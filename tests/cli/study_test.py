@@ -118,6 +118,15 @@ class Study(CliTest):
         self.assertEqual(counts["isotropic-0"], counts["normal-0"])
         self.assertEqual(len(clean), 3)
 
+    def test_stops_while_it_generates_the_training_set(self):
+        command = ["study", "features", "--test", "a=test", "-o", "out", "--progress", "plain"]
+        program = subprocess.Popen([PROGRAM, *command], cwd=self.folder, stderr=subprocess.PIPE, text=True)
+        self.assertIn("generate", program.stderr.readline())
+        program.send_signal(signal.SIGINT)
+        _, words = program.communicate(timeout=120)
+        self.assertEqual(program.returncode, 130, words)
+        self.assertNotIn("train", words)
+
     def test_goes_on_after_an_interrupt(self):
         command = ["study", "features", "--test", "a=test", "--train", "train", "-o", "out",
                    "--seeds", "1,2,3", "--epochs", "12", "--progress", "plain"]

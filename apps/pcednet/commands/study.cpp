@@ -58,10 +58,12 @@ std::pair<std::string, std::string> named(const std::string& argument, const cha
   return {name, argument.substr(equals + 1)};
 }
 
-study::CloudSet read_set(const std::string& name, const std::vector<std::string>& inputs) {
+study::CloudSet read_set(const std::string& name, const std::vector<std::string>& inputs,
+                         const Progress& progress) {
   study::CloudSet set{.name = name};
   std::set<std::string> names;
   for (const fs::path& file : without_results(expand_inputs(inputs))) {
+    throw_if_cancelled(&progress);
     auto loaded = truth::read_labelled(file);
     warn_all(file, loaded.warnings);
     const std::string stem = file.stem().string();
@@ -76,15 +78,20 @@ study::CloudSet read_set(const std::string& name, const std::vector<std::string>
   return set;
 }
 
-study::CloudSet generated_set() {
+study::CloudSet generated_set(const Progress& progress) {
+  constexpr std::uint64_t kSeed = 1;
   study::CloudSet set{.name = "default"};
-  for (shapes::GeneratedCloud& cloud : shapes::generate_default(1)) {
-    set.clouds.push_back(study::make_study_cloud(cloud.name, "", std::move(cloud.cloud)));
+  const std::vector<shapes::Recipe> recipes = shapes::default_recipes(kSeed);
+  Stage stage(&progress, "generate", recipes.size());
+  for (const shapes::Recipe& recipe : recipes) {
+    set.clouds.push_back(
+        study::make_study_cloud(recipe.name, "", shapes::generate(recipe, kSeed).cloud));
+    stage.advance();
   }
   return set;
 }
 
-study::StudyData read_data(const StudyArguments& arguments) {
+study::StudyData read_data(const StudyArguments& arguments, const Progress& progress) {
   study::StudyData data;
   std::vector<std::string> order;
   std::map<std::string, std::vector<std::string>> inputs;
@@ -107,12 +114,13 @@ study::StudyData read_data(const StudyArguments& arguments) {
     positives[name] = value == "edge" ? eval::Positive::kEdge : eval::Positive::kSharp;
   }
   for (const std::string& name : order) {
-    auto set = read_set(name, inputs[name]);
+    auto set = read_set(name, inputs[name], progress);
     if (positives.contains(name)) set.positive = positives[name];
     data.tests.push_back(std::make_shared<const study::CloudSet>(std::move(set)));
   }
   data.training = std::make_shared<const study::CloudSet>(
-      arguments.training.empty() ? generated_set() : read_set("training", arguments.training));
+      arguments.training.empty() ? generated_set(progress)
+                                 : read_set("training", arguments.training, progress));
   return data;
 }
 
@@ -255,14 +263,14 @@ void run_studies(const StudyArguments& arguments, const Common& common) {
   if (tests_needed && arguments.tests.empty()) {
     throw Error(ErrorKind::kUsage, "study: give labelled clouds to test on: --test NAME=IN");
   }
-  const auto data = read_data(arguments);
+  const Progress progress = console_progress(common);
+  const auto data = read_data(arguments, progress);
   const study::Cache cache(fs::path(arguments.folder) / "cache");
   study::RunOptions run{.watts_per_core = arguments.core_watts};
   run.seeds = !arguments.seeds.empty() ? arguments.seeds
               : arguments.quick        ? std::vector<std::uint64_t>{1}
                                        : std::vector<std::uint64_t>{1, 2, 3};
   if (common.progress != "none") run.on_job = [](const std::string& job) { say(job); };
-  const Progress progress = console_progress(common);
   for (const study::Experiment& experiment : experiments) {
     const auto result = study::run(experiment, data, cache, run, &progress);
     for (const std::string& note : result.notes) warn(note);
