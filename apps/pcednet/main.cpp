@@ -28,6 +28,15 @@ void check_printed() {
   throw Error(ErrorKind::kFailure, fmt::format("standard output: {}", std::strerror(errno)));
 }
 
+/// In better words than the error's, if there are any.
+std::string why_refused(const CLI::ParseError& error, const CLI::App& app) {
+  const bool lacks = error.get_exit_code() == static_cast<int>(CLI::ExitCodes::RequiredError);
+  const bool has_more = error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError);
+  std::string why = lacks ? missing_command(app) : "";
+  if (why.empty() && (lacks || has_more)) why = unknown_option(app);
+  return why;
+}
+
 int run(int argc, char** argv) {
   CLI::App app{
       "pcednet finds edges in 3D point clouds.\n\nExamples:\n"
@@ -63,14 +72,14 @@ int run(int argc, char** argv) {
       if (*argv[i] == '\0') throw CLI::ValidationError("an argument is empty");
     }
     app.parse(argc, argv);
-  } catch (const CLI::RequiredError& error) {
-    const std::string why = missing_command(app);
-    app.exit(why.empty() ? error : CLI::RequiredError(why, CLI::ExitCodes::RequiredError),
-             std::cout, std::cerr);
-    return static_cast<int>(ErrorKind::kUsage);
   } catch (const CLI::ParseError& error) {
     const bool asked_for_help = error.get_exit_code() == 0;
-    app.exit(error, asked_for_help ? std::cout : std::cerr, std::cerr);
+    const std::string why = asked_for_help ? "" : why_refused(error, app);
+    if (!why.empty()) {
+      fmt::print(stderr, "{}\nRun with --help for more information.\n", why);
+    } else {
+      app.exit(error, asked_for_help ? std::cout : std::cerr, std::cerr);
+    }
     if (!asked_for_help) return static_cast<int>(ErrorKind::kUsage);
   }
   check_printed();

@@ -27,33 +27,61 @@ std::size_t changes_between(std::string_view a, std::string_view b) {
   return row.back();
 }
 
-/// The command of `parent` that differs from `word` in one letter, or in one of three.
-std::string nearest_command(const CLI::App& parent, const std::string& word) {
+/// Asks whether the first of the names was meant that differs least from `word`, in one letter or
+/// in one of three; empty if none does.
+std::string question(const std::string& word, const std::vector<std::string>& names,
+                     const std::string& before = "") {
   std::string nearest;
   std::size_t fewest = std::max<std::size_t>(word.size() / 3, 1) + 1;
-  for (const CLI::App* command : parent.get_subcommands(std::function<bool(const CLI::App*)>())) {
-    const std::size_t changes = changes_between(word, command->get_name());
+  for (const std::string& name : names) {
+    const std::size_t changes = changes_between(word, name);
     if (changes >= fewest) continue;
     fewest = changes;
-    nearest = command->get_name();
+    nearest = name;
   }
-  return nearest;
+  return nearest.empty() ? "" : fmt::format("; did you mean {}{}?", before, nearest);
+}
+
+std::vector<std::string> commands_of(const CLI::App& parent) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : parent.get_subcommands(std::function<bool(const CLI::App*)>())) {
+    names.push_back(command->get_name());
+  }
+  return names;
+}
+
+/// The command that was given last.
+const CLI::App* last_command(const CLI::App& app) {
+  const CLI::App* last = &app;
+  while (!last->get_subcommands().empty()) last = last->get_subcommands().front();
+  return last;
 }
 
 }  // namespace
 
+std::string unknown_option(const CLI::App& app) {
+  const CLI::App* last = last_command(app);
+  const std::vector<std::string> words = last->remaining();
+  if (words.empty() || !words.front().starts_with('-')) return "";
+  const std::string option = words.front().substr(0, words.front().find('='));
+  std::vector<std::string> names;
+  for (const CLI::Option* one : last->get_options()) {
+    if (!one->get_lnames().empty()) names.push_back("--" + one->get_lnames().front());
+  }
+  return fmt::format("there is no option {} of {}{}", option, last->get_name(),
+                     question(option, names));
+}
+
 std::string missing_command(const CLI::App& app) {
-  const CLI::App* last = &app;
-  while (!last->get_subcommands().empty()) last = last->get_subcommands().front();
+  const CLI::App* last = last_command(app);
   if (last->get_require_subcommand_min() == 0) return "";
   const std::string after = last == &app ? "" : last->get_name() + " ";
   const std::vector<std::string> words = last->remaining();
   if (words.empty()) return fmt::format("pcednet {}needs a command", after);
   const std::string& word = words.front();
   if (word.starts_with('-')) return fmt::format("a command is missing before the option {}", word);
-  const std::string nearest = nearest_command(*last, word);
   return fmt::format("there is no command {}{}{}", after, word,
-                     nearest.empty() ? "" : fmt::format("; did you mean {}{}?", after, nearest));
+                     question(word, commands_of(*last), after));
 }
 
 }  // namespace pcednet::app

@@ -10,4 +10,8 @@ namespace pcednet::app {
 /// meant for; empty if no command is missing.
 std::string missing_command(const CLI::App& app);
 
+/// After a parsing that failed: the option that there is not, with the one that it may be meant
+/// for; empty if the first word that was not expected is no option.
+std::string unknown_option(const CLI::App& app);
+
 }  // namespace pcednet::app

@@ -151,6 +151,16 @@ class Options(CliTest):
                              ("pcednet needs a command",), ("pcednet generate needs a command", "generate")):
             self.assertIn(said, run(*words, expect=2).stderr)
 
+    def test_an_option_that_there_is_not(self):
+        for said, *words in (("there is no option --modle of classify; did you mean --model?\n", "--modle", "x"),
+                             ("there is no option --modell of classify; did you mean --model?\n", "--modell=x"),
+                             ("there is no option --colour of classify\n", "--colour", "x"),
+                             ("there is no option -m of classify\n", "-m", "x")):
+            self.assertIn(said, run("classify", self.cloud, *words, expect=2).stderr)
+        self.assertIn("there is no option --outputt of lines; did you mean --output?",
+                      run("lines", self.cloud, "--outputt", "a.dxf", expect=2).stderr)
+        self.assertIn("not expected: b.ply", run("lines", self.cloud, "b.ply", "-o", "a.dxf", expect=2).stderr)
+
     def test_a_preview_is_a_png(self):
         self.refused("classify", self.cloud, "--preview", self.folder / "x.jpg",
                      saying="x.jpg does not end in .png")
