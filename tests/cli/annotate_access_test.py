@@ -255,7 +255,8 @@ half.rename({str(given)!r})
         server = self.serve()
         server.open()
         write_ply(self.folder / "none.ply", self.positions[:0])
-        run("annotate", self.folder / "none.ply", expect=4, env=environment)
+        said = run("annotate", self.folder / "none.ply", expect=4, env=environment).stderr
+        self.assertIn(f"{self.folder / 'none.ply'}: the cloud has no points", said)
         done = run("annotate", self.cloud, expect=1, env=environment)
         self.assertEqual(done.stdout, "")  # no address
         self.assertIn("another annotator has it open", done.stderr)

@@ -124,7 +124,7 @@ Rgb usual_colour(std::size_t id) {
 
 void check_classes(const ClassTable& table) {
   if (table.size() < 2 || table.size() > kMostClasses) {
-    refuse(fmt::format("{} are given, two to {} are possible", table.size(), kMostClasses));
+    refuse(fmt::format("{} given, 2 to {} are allowed", table.size(), kMostClasses));
   }
   for (auto one = table.begin(); one != table.end(); ++one) {
     const std::string& name = one->name;

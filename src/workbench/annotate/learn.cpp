@@ -167,7 +167,8 @@ detect::TrainedModel learn_project(const Project& project, const ProjectFiles& f
     ProjectCloud& one = all[k];
     one.file = files.input_of(k);
     one.loaded = read_input(project.inputs[k], one.file);
-    one.prepared = detect::prepare(one.loaded.cloud, {}, progress);
+    with_name_in_errors(one.file.string(),
+                        [&] { one.prepared = detect::prepare(one.loaded.cloud, {}, progress); });
     one.described =
         describe_once(one.prepared, descriptor_of(model ? &*model : nullptr), {}, progress);
     if (files.on_cloud) files.on_cloud(one);

@@ -40,7 +40,8 @@ std::shared_ptr<const Scene> load_scene(const std::filesystem::path& input,
   scene->cloud = std::move(loaded.cloud);
   scene->warnings = std::move(loaded.warnings);
   scene->input = {as_utf8(input.filename().string()), digest_of_file(input), scene->cloud.size()};
-  scene->prepared = detect::prepare(scene->cloud, {}, progress);
+  with_name_in_errors(input.string(),
+                      [&] { scene->prepared = detect::prepare(scene->cloud, {}, progress); });
   scene->bounds = bounding_box(scene->cloud.positions);
   scene->origin = scene->bounds.centre();
   stage.advance();
