@@ -178,8 +178,8 @@ std::vector<std::string> find_problems(const CloudFacts& facts) {
   add(defects.duplicates, "points lie exactly on another one");
   if (facts.outliers.value_or(0) > 0) {
     add(*facts.outliers,
-        fmt::format("points are outliers, with fewer than three others within {:.2g}: farther than "
-                    "the scales of `classify` reach",
+        fmt::format("points are outliers: fewer than three others are within {:.2g}, about the "
+                    "largest scale",
                     facts.spacing->reach())
             .c_str());
   }
