@@ -175,6 +175,8 @@ class Lines(CliTest):
                 found.write(self.path("b.gpkg"), **wrong)
         with self.assertRaisesRegex(pcednet.UsageError, "^epsg: EPSG:30001: PROJ knows no such system$"):
             found.write(self.path("b.gpkg"), epsg=30001)
+        with self.assertRaisesRegex(pcednet.UsageError, "^epsg: EPSG:5703: a system of heights alone"):
+            found.write(self.path("b.gpkg"), epsg=5703)
         self.assertFalse(self.path("b.gpkg").exists())
         found.write(self.path("metres.dxf"), epsg=25832)
         self.assertRegex(self.path("metres.dxf").read_text(), r"\$INSUNITS\s+70\s+6\s")
