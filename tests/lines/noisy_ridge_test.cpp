@@ -103,5 +103,37 @@ TEST(NoisyWall, HasTwoEdgesWhateverTheSignsOfItsNormals) {
   EXPECT_GT(mixed, 0.9 * 8.0 * kRidgeLength);
 }
 
+/// A roof's ridge along y, noisy, with a hole of five spacings across it; the points near it are
+/// edges with a probability of .85.
+std::vector<Curve> lines_of_ridge_with_hole(std::uint64_t seed, double gap) {
+  Random random(seed);
+  std::vector<Vec3> positions, normals;
+  std::vector<std::uint8_t> classes;
+  std::vector<float> probable;
+  for (int i = 0; i < static_cast<int>(60.0 * kRidgeLength); ++i) {
+    const double across = 60.0 * (random.uniform() - 0.5), y = kRidgeLength * random.uniform();
+    const Vec3 noise = normal_vector(random);
+    if (std::abs(y - 0.5 * kRidgeLength) < 2.5) continue;
+    const Vec3 place(across, y, -std::abs(across));
+    positions.push_back(Vec3(std::sqrt(0.5), 1.0, std::sqrt(0.5)).cwiseProduct(place) +
+                        kRidgeNoise * noise);
+    normals.push_back(Vec3(std::copysign(1.0, across), 0.0, 1.0).normalized());
+    classes.push_back(std::abs(across) < 1.5 ? kSharpEdge : kNonEdge);
+    probable.push_back(std::abs(across) < 1.5 ? 0.85f : 0.01f);
+  }
+  return find_lines({positions, normals, classes, probable}, {.gap = gap});
+}
+
+TEST(NoisyRidge, IsDrawnWithAnyGapAcrossAHole) {
+  for (const std::uint64_t seed : {1u, 2u, 3u}) {
+    for (const double gap : {2.0, 3.0, 3.5, 4.0, 4.5, 5.0, 5.5, 6.0, 7.0}) {
+      double length = 0.0;
+      for (const Curve& curve : lines_of_ridge_with_hole(seed, gap)) length += length_of(curve);
+      EXPECT_GT(length, 0.85 * kRidgeLength) << seed << " " << gap;
+      EXPECT_LT(length, 1.05 * kRidgeLength) << seed << " " << gap;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace pcednet::lines

@@ -240,7 +240,7 @@ TEST(Strings, AreDividedWhereSegmentsAndArcsExplainThem) {
   ASSERT_EQ(tangent.size(), 1u);
   ASSERT_EQ(tangent[0].fit.kind, CurveKind::kPolyline);
   const std::size_t nodes = tangent[0].nodes.size();
-  divide_strings(tangent, kWithin);
+  divide_strings(tangent, kWithin, 9);
   ASSERT_EQ(tangent.size(), 2u);
   EXPECT_EQ(tangent[0].fit.kind, CurveKind::kSegment);
   EXPECT_EQ(tangent[1].fit.kind, CurveKind::kArc);
@@ -251,7 +251,7 @@ TEST(Strings, AreDividedWhereSegmentsAndArcsExplainThem) {
   for (ChainNode& node : wave.nodes) node.at.y() = 2.0 * std::sin(node.at.x());
   wave.fit = {};
   std::vector<Piece> waves = {wave};
-  divide_strings(waves, kWithin);
+  divide_strings(waves, kWithin, 9);
   ASSERT_EQ(waves.size(), 1u);
   EXPECT_EQ(waves[0].fit.kind, CurveKind::kPolyline);
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -37,6 +38,7 @@ namespace pcednet::lines {
 namespace {
 
 constexpr std::size_t kLeastNodes = 2;
+constexpr std::size_t kManyParts = std::numeric_limits<std::size_t>::max();
 constexpr double kRoundWithin = 6.5;  ///< tolerances from the curves round a circle to it
 
 /// The options, and what they are where the spacing decides.
@@ -152,7 +154,7 @@ void join(std::vector<Piece>& pieces, const OrderedPoints& cloud, const Limits& 
   bridge_gaps(pieces, cloud, limits.tolerance, noise);
   stage.advance();
   string_together(pieces, limits.gap, limits.angle);
-  if (noise <= kMuchNoise) divide_strings(pieces, limits.tolerance, progress);
+  divide_strings(pieces, limits.tolerance, noise > kMuchNoise ? 1 : kManyParts, progress);
   stage.advance();
   complete_coaxial(pieces, cloud, limits.tolerance);
   stage.advance();
@@ -226,6 +228,7 @@ void place_pieces(std::vector<Piece>& pieces, const OrderedPoints& cloud, const 
   extend_free_ends(pieces, cloud, sampling.noise);
   if (sampling.noise > kMuchNoise) {
     string_free_ends(pieces, limits.gap, limits.angle, sampling.noise);
+    divide_strings(pieces, limits.tolerance, 1, progress);
   }
   find_bores(pieces, cloud, sampling, progress);
 }

@@ -122,17 +122,20 @@ void string_along(const std::vector<Link>& links, std::vector<Piece>& pieces) {
   pieces = std::move(result);
 }
 
-/// The segments and arcs that explain all nodes of a polyline; none if they do not.
-std::vector<Piece> parts_of(const Piece& piece, double tolerance, const Progress* progress) {
+/// The segments and arcs, at most `most`, that explain all nodes of a polyline; none if they do
+/// not.
+std::vector<Piece> parts_of(const Piece& piece, double tolerance, std::size_t most,
+                            const Progress* progress) {
   if (piece.fit.kind != CurveKind::kPolyline || is_boundary(piece.middle()) ||
       piece.nodes.size() < kLeastNodesDivided) {
     return {};
   }
   const Chain chain = {.nodes = piece.nodes, .closed = piece.closed};
   const std::vector<Run> runs = split(chain, tolerance, progress);
-  const bool explained = std::all_of(runs.begin(), runs.end(), [](const Run& run) {
+  const auto is_part = [](const Run& run) {
     return run.fit.kind != CurveKind::kPolyline && run.last - run.first >= kLeastNodesOfPart;
-  });
+  };
+  const bool explained = runs.size() <= most && std::all_of(runs.begin(), runs.end(), is_part);
   return explained ? pieces_of(chain, runs, kLeastNodesOfPart) : std::vector<Piece>();
 }
 
@@ -169,10 +172,11 @@ void string_together(std::vector<Piece>& pieces, double gap, double angle) {
   string_along(links_between(open_ends(pieces), pieces, {gap, std::cos(angle)}), pieces);
 }
 
-void divide_strings(std::vector<Piece>& pieces, double tolerance, const Progress* progress) {
+void divide_strings(std::vector<Piece>& pieces, double tolerance, std::size_t most,
+                    const Progress* progress) {
   std::vector<Piece> result;
   for (Piece& piece : pieces) {
-    std::vector<Piece> parts = parts_of(piece, tolerance, progress);
+    std::vector<Piece> parts = parts_of(piece, tolerance, most, progress);
     if (parts.empty()) parts.push_back(std::move(piece));
     std::move(parts.begin(), parts.end(), std::back_inserter(result));
   }

@@ -26,9 +26,9 @@ std::vector<EndString> follow_partners(std::span<const std::size_t> partner);
 /// and an arc, or two segments, stay separate if both are long: their kind is certain.
 void string_together(std::vector<Piece>& pieces, double gap, double angle);
 
-/// Polylines all nodes of which are within `tolerance` (in spacings) of a few segments and arcs
-/// become these. Throws Error(kCancelled) once the caller cancels.
-void divide_strings(std::vector<Piece>& pieces, double tolerance,
+/// Polylines all nodes of which are within `tolerance` (in spacings) of a few segments and arcs, at
+/// most `most`, become these. Throws Error(kCancelled) once the caller cancels.
+void divide_strings(std::vector<Piece>& pieces, double tolerance, std::size_t most,
                     const Progress* progress = nullptr);
 
 /// The same as string_together() for pieces of noisy points with their final extents: two that lie
