@@ -107,5 +107,35 @@ TEST(UnevenLines, MeasureNoiseInTheSpacingOfEdges) {
   EXPECT_LT(measure_sampling(OrderedPoints(cloud.points())).noise, 0.1);
 }
 
+/// A wall in the plane y = 0 in upright scan lines .2 apart, one point each .01 along them. Normals
+/// estimated from the nearest points are `inside` but at the ends of the lines.
+std::vector<Curve> boundaries_of_scanned_wall(const Vec3& inside) {
+  Random random(3);
+  std::vector<Vec3> positions, normals;
+  for (int line = 0; line <= 20; ++line) {
+    for (double z = 0.01 * random.uniform(); z < 4.0; z += 0.01) {
+      positions.emplace_back(0.2 * line, 0.002 * random.normal(), z);
+      normals.push_back(std::abs(z - 2.0) < 1.8 ? inside : Vec3::UnitY());
+    }
+  }
+  const std::vector<std::uint8_t> classes(positions.size(), kNonEdge);
+  return find_lines({positions, normals, classes}, {.boundaries = true});
+}
+
+TEST(Uneven, ScanLinesFarApartAreNoEndsOfTheSurface) {
+  for (const Vec3& inside : {Vec3(Vec3::UnitY()), Vec3(Vec3::UnitX())}) {
+    double length = 0.0;
+    for (const Curve& curve : boundaries_of_scanned_wall(inside)) {
+      length += length_of(curve);
+      for (const Vec3& p : curve.points) {
+        const double to_end = std::min(
+            {std::abs(p.x()), std::abs(p.x() - 4.0), std::abs(p.z()), std::abs(p.z() - 4.0)});
+        EXPECT_LT(to_end, 0.15) << p.transpose();
+      }
+    }
+    EXPECT_NEAR(length, 16.0, 1.0);
+  }
+}
+
 }  // namespace
 }  // namespace pcednet::lines

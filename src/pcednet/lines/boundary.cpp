@@ -5,13 +5,18 @@
 #include <cmath>
 #include <numbers>
 
+#include "pcednet/core/eigendecomposition.h"
+#include "pcednet/lines/moments.h"
 #include "pcednet/lines/ordered_points.h"
 #include "pcednet/spatial/opening.h"
 
 namespace pcednet::lines {
 namespace {
 
-constexpr std::size_t kNeighbours = 25;
+/// Where scan lines are much farther from each other than their points, the nearest are of one
+/// line, which leaves both of its sides open: more have to tell.
+constexpr std::size_t kNeighbours = 25, kMoreNeighbours = 100;
+constexpr double kLine = 0.06;  ///< less across than along, as variances, is a line
 constexpr double kOpenAngle = 125.0 * std::numbers::pi / 180.0;
 
 // In spacings.
@@ -19,9 +24,21 @@ constexpr double kOffPlane = 0.8;
 constexpr double kStrip = 1.0;       ///< half the width of the strip that ends at the boundary
 constexpr double kBeyondLast = 0.4;  ///< from the last of its points to the boundary, on average
 
-std::optional<Crease> boundary_at(const OrderedPoints& cloud, std::size_t i,
+/// The principal axes of neighbours, that of the least variance first.
+Eigendecomposition axes_of(const OrderedPoints& cloud, std::span<const spatial::Neighbour> points) {
+  PointMoments moments;
+  for (const auto& near : points) {
+    moments.add(cloud.position(near.index) - cloud.position(points.front().index));
+  }
+  return eigendecomposition(moments.covariance());
+}
+
+bool are_in_line(const Eigendecomposition& axes) {
+  return axes.values[1] < kLine * axes.values[2];
+}
+
+std::optional<Crease> boundary_at(const OrderedPoints& cloud, std::size_t i, const Vec3& normal,
                                   std::span<const spatial::Neighbour> nearest) {
-  const Vec3 normal = cloud.normal(i);
   if (normal.isZero(0.0)) return std::nullopt;
   const double spacing = spacing_of(nearest);
   if (!(spacing > 0.0) || nearest.size() < kNeighbours / 2) return std::nullopt;
@@ -61,9 +78,23 @@ std::vector<Crease> find_boundaries(const OrderedPoints& cloud, const Progress* 
   }
   Stage stage(progress, "boundaries", points.size());
   std::vector<Crease> boundaries;
+  std::vector<std::uint8_t> in_line(cloud.size(), 0);
   append_found(creases_at(cloud, points, kNeighbours, stage,
                           [&](std::uint32_t point, std::span<const spatial::Neighbour> others) {
-                            return boundary_at(cloud, point, others);
+                            auto boundary = boundary_at(cloud, point, cloud.normal(point), others);
+                            in_line[point] = boundary && are_in_line(axes_of(cloud, others));
+                            return in_line[point] ? std::nullopt : boundary;
+                          }),
+               boundaries);
+  std::erase_if(points, [&](std::uint32_t point) { return !in_line[point]; });
+  if (points.empty()) return boundaries;
+  Stage again(progress, "boundaries of scan lines", points.size());
+  append_found(creases_at(cloud, points, kMoreNeighbours, again,
+                          [&](std::uint32_t point, std::span<const spatial::Neighbour> others) {
+                            // The point's normal is of the nearest, which do not determine it.
+                            const Eigendecomposition axes = axes_of(cloud, others);
+                            if (are_in_line(axes)) return std::optional<Crease>();
+                            return boundary_at(cloud, point, axes.vectors.col(0), others);
                           }),
                boundaries);
   return boundaries;
