@@ -77,6 +77,16 @@ TEST(SmoothJoints, SegmentsOfOneLineBecomeASegment) {
   EXPECT_NEAR(length_of(curves[0]), 30.0, 1e-12);
 }
 
+TEST(SmoothJoints, AStraightPolylineContinuesASegment) {
+  Curve next = straight_curve(Vec3::Zero(), {30, 0, 0});
+  next.kind = CurveKind::kPolyline;
+  next.points = {Vec3::Zero(), {10, 0.1, 0}, {20, -0.1, 0}, {30, 0, 0}};
+  const auto curves = smoothly_joined({kToOrigin, next});
+  ASSERT_EQ(curves.size(), 1u);
+  EXPECT_EQ(curves[0].kind, CurveKind::kSegment);
+  EXPECT_NEAR(length_of(curves[0]), 50.0, 1e-12);
+}
+
 TEST(SmoothJoints, SegmentsThatHardlyTurnBecomeASegment) {
   const double bend = 0.15 / (20.0 * 10.0 / 30.0) / kOneDegree;  // 0.15 from the chord
   Curve first = kToOrigin, next = turned_curve(Vec3::Zero(), bend);

@@ -190,6 +190,7 @@ void close_round_loops(std::vector<Curve>& curves, double spacing, double within
 
 void join_smooth_corners(std::vector<Curve>& curves, double angle, double tolerance,
                          double spacing) {
+  for (Curve& curve : curves) straighten(curve, tolerance, spacing);
   const double cosine = std::cos(angle), within = 0.5 * tolerance * spacing;
   const std::vector<std::size_t> partner = partners_of(
       curves, [&](std::size_t a, std::size_t b) { return are_one(curves, a, b, cosine); });
