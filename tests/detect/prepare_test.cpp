@@ -223,7 +223,7 @@ TEST(Prepare, SaysFromHowManyPointsItEstimates) {
             std::string::npos);
   Random random(8);
   for (Vec3& p : cloud.positions) p *= 1.0 + 0.015 * random.normal();
-  EXPECT_NE(prepare(cloud).notes.at(0).find("estimated from the 48 nearest points"),
+  EXPECT_NE(prepare(cloud).notes.at(0).find("estimated from the 12 to 48 nearest points"),
             std::string::npos);
 }
 

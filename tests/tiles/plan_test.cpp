@@ -29,7 +29,7 @@ class PlanFile : public testing::Test, protected test::OwnFolder {
     plan.box = {{0, 1, 2}, {3, 4, 0.1 + 0.2}};
     plan.model = {"general", "/models/general.safetensors", "abc", false, true, false};
     plan.s_min = 0.1, plan.s_max = 1.0 / 3.0;
-    plan.normals = {true, 24, true, true, true, {0.01, {-1.0, 2.0, 0.5}, 0.04}};
+    plan.normals = {true, 48, 12, true, true, true, {0.01, {-1.0, 2.0, 0.5}, 0.04}};
     plan.pyramids = {
         {{0, 1, 2}, 3.0, {{false, gls::Crowd::kKeep}, {true, gls::Crowd::kMergeByAxis}}},
         {{0, 1, 2}, 3.0, {{true, gls::Crowd::kKeep}, {false, gls::Crowd::kMerge}}}};
@@ -63,7 +63,8 @@ TEST_F(PlanFile, ComesBackAsItWas) {
   EXPECT_FALSE(back.model.context || back.model.exact);
   EXPECT_TRUE(back.model.boundary);
   EXPECT_EQ(back.s_max, 1.0 / 3.0);
-  EXPECT_EQ(back.normals.neighbours, 24u);
+  EXPECT_EQ(back.normals.neighbours, 48u);
+  EXPECT_EQ(back.normals.fewest, 12u);
   EXPECT_EQ(back.normals.rounding.step, 0.01);
   EXPECT_EQ(back.normals.rounding.origin, Vec3(-1.0, 2.0, 0.5));
   EXPECT_EQ(back.normals.rounding.spacing, 0.04);

@@ -64,7 +64,7 @@ void report(const NormalsRequest& request, const normals::PreparedNormals& prepa
       fmt::format("{}: {} normals", request.output, prepared.normals.size() - prepared.unusable);
   if (prepared.estimated > 0) {
     line += fmt::format(", {} estimated from {} neighbours each", prepared.estimated,
-                        prepared.choice.neighbours);
+                        normals::number_of(prepared.choice));
   }
   if (orientation.components > 0) {
     line += fmt::format("; {} connected part{}", orientation.components,

@@ -67,6 +67,7 @@ Oriented complete_and_orient(const Points& cloud, const PreparedCloud& prepared,
       .count_turned = cloud.has_normals(),
       .curve = prepared.curve};
   if (options.choice) {
+    options.choice->fewest = prepared.decision.fewest;
     options.choice->noisy = prepared.decision.noisy;
     options.choice->exact_planes = prepared.decision.exact_planes;
   }
@@ -110,6 +111,7 @@ void use(Oriented&& oriented, const std::string& note, PreparedCloud& prepared) 
   prepared.notes.push_back(note);
   prepared.decision.made = true;
   prepared.decision.neighbours = oriented.found.choice.neighbours;
+  prepared.decision.fewest = oriented.found.choice.fewest;
   prepared.decision.noisy = oriented.found.choice.noisy;
   prepared.decision.exact_planes = oriented.found.choice.exact_planes;
   prepared.made = std::move(oriented.found.normals);
@@ -149,7 +151,7 @@ void estimate(PreparedCloud& prepared, const Points& cloud, const std::string& w
     oriented = complete_and_orient(cloud, prepared, Signs::kConsistent, progress);
   }
   const std::string note = fmt::format(
-      "{}: estimated from the {} nearest points{}", why, oriented.found.choice.neighbours,
+      "{}: estimated from the {} nearest points{}", why, normals::number_of(oriented.found.choice),
       signs ? ", with the signs that they have" : " and " + how_oriented(oriented));
   use(std::move(oriented), note, prepared);
 }

@@ -12,6 +12,7 @@
 #include "pcednet/core/median.h"
 #include "pcednet/core/parallel.h"
 #include "pcednet/normals/exact_planes.h"
+#include "pcednet/normals/local_counts.h"
 #include "pcednet/normals/plane_fit.h"
 
 namespace pcednet::normals {
@@ -21,8 +22,8 @@ constexpr std::array<std::size_t, 3> kCounts = {12, 24, 48};
 
 constexpr double kLines = 0.1;   ///< median width
 constexpr double kClean = 0.01;  ///< median thickness
-constexpr double kBall = 0.4;    ///< median thickness of neighbourhoods that show no surface
 constexpr double kExactShare = 0.17;
+constexpr std::size_t kFew = 4000;  ///< fewer say too little about their surroundings
 
 /// Measures on a sample of the points.
 struct Measures {
@@ -70,6 +71,12 @@ Measures measure(std::span<const Vec3> points, const spatial::NeighbourSearch& s
 
 }  // namespace
 
+std::string number_of(const NeighbourChoice& choice) {
+  return choice.fewest == 0 || choice.fewest >= choice.neighbours
+             ? fmt::to_string(choice.neighbours)
+             : fmt::format("{} to {}", choice.fewest, choice.neighbours);
+}
+
 std::optional<NeighbourChoice> given_neighbours(int neighbours) {
   if (neighbours == 0) return std::nullopt;
   if (neighbours >= 2) return NeighbourChoice{static_cast<std::size_t>(neighbours)};
@@ -79,22 +86,22 @@ std::optional<NeighbourChoice> given_neighbours(int neighbours) {
 }
 
 NeighbourChoice choose_neighbours(std::span<const Vec3> points,
-                                  const spatial::NeighbourSearch& search) {
+                                  const spatial::NeighbourSearch& search, Counts counts) {
   if (points.size() <= kCounts.back()) return {};
-  const Measures measures = measure(points, search);
+  const auto [thickness, width, exact] = measure(points, search);
   std::size_t first = 0;
-  while (first + 1 < kCounts.size() && measures.width[first] < kLines) ++first;
-  if (measures.thickness[first] <= kClean) return {.neighbours = kCounts[first]};
-  const bool exact_planes = measures.exact >= kExactShare;
-  if (measures.thickness[first] >= kBall && !exact_planes) {
-    return {.neighbours = kCounts.back(), .noisy = true};
+  while (first + 1 < kCounts.size() && width[first] < kLines) ++first;
+  if (thickness[first] <= kClean) return {.neighbours = kCounts[first]};
+  const bool exact_planes = exact >= kExactShare;
+  const bool balls = thickness[first] >= kBall && !exact_planes;
+  std::size_t best = balls ? kCounts.size() - 1 : first;
+  while (best + 1 < kCounts.size() && thickness[best + 1] < thickness[best]) ++best;
+  NeighbourChoice choice = {kCounts[best], 0, balls || best > first, exact_planes};
+  if (choice.noisy && counts == Counts::kLocal && points.size() >= kFew) {
+    choice.neighbours = kCounts.back();
+    choice.fewest = kCounts[first];
   }
-  std::size_t chosen = first;
-  while (chosen + 1 < kCounts.size() &&
-         measures.thickness[chosen + 1] < measures.thickness[chosen]) {
-    ++chosen;
-  }
-  return {kCounts[chosen], chosen > first, exact_planes};
+  return choice;
 }
 
 }  // namespace pcednet::normals

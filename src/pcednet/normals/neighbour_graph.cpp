@@ -67,7 +67,7 @@ NeighbourGraph make_neighbour_graph(std::span<const Vec3> positions,
   if (points == 0) return graph;
   Stage stage(progress, "neighbours", points);
   const spatial::NeighbourSearch search(graph.points);
-  graph.choice = choice ? *choice : choose_neighbours(graph.points, search);
+  graph.choice = choice ? *choice : choose_neighbours(graph.points, search, Counts::kLocal);
   const std::size_t wanted = graph.choice.neighbours;
   graph.choice.neighbours = search.available(wanted);
   graph.degree =
@@ -83,6 +83,14 @@ NeighbourGraph make_neighbour_graph(std::span<const Vec3> positions,
     stage.advance(end - begin);
   });
   return graph;
+}
+
+NeighbourChoice choose_one_count(std::span<const Vec3> positions) {
+  NeighbourGraph graph;
+  graph.order = spatial::curve_order(positions);
+  collect_distinct_points(positions, graph);
+  if (graph.points.empty()) return {};
+  return choose_neighbours(graph.points, spatial::NeighbourSearch(graph.points), Counts::kOne);
 }
 
 Adjacency make_adjacency(const NeighbourGraph& graph, std::size_t count) {

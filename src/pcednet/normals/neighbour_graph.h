@@ -40,6 +40,9 @@ NeighbourGraph make_neighbour_graph(std::span<const Vec3> positions,
                                     const Progress* progress = nullptr,
                                     std::span<const std::uint32_t> curve = {});
 
+/// The choice of one number of neighbours for all points of a cloud, as other programs make it.
+NeighbourChoice choose_one_count(std::span<const Vec3> positions);
+
 /// The undirected graph: for every point its neighbours and the points that have it as a neighbour,
 /// each once.
 struct Adjacency {

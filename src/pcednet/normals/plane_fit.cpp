@@ -196,4 +196,17 @@ void fit_planes(std::span<const Vec3> points, std::span<const std::uint32_t> som
   }
 }
 
+std::vector<PlaneFit> fit_planes(const NeighbourGraph& graph, std::span<const std::uint32_t> some,
+                                 std::size_t count) {
+  std::vector<std::uint32_t> rows;
+  rows.reserve(some.size() * count);
+  for (const std::uint32_t i : some) {
+    const auto row = graph.of(i).first(count);
+    rows.insert(rows.end(), row.begin(), row.end());
+  }
+  std::vector<PlaneFit> fits(some.size());
+  fit_planes(graph.points, some, rows, fits);
+  return fits;
+}
+
 }  // namespace pcednet::normals

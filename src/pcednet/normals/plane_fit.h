@@ -2,8 +2,10 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "pcednet/core/vec3.h"
+#include "pcednet/normals/neighbour_graph.h"
 
 namespace pcednet::normals {
 
@@ -18,5 +20,9 @@ struct PlaneFit {
 /// `neighbours` holds a row for each of them, all distinct, nearest first.
 void fit_planes(std::span<const Vec3> points, std::span<const std::uint32_t> some,
                 std::span<const std::uint32_t> neighbours, std::span<PlaneFit> fits);
+
+/// The same for the nearest `count` neighbours in a graph.
+std::vector<PlaneFit> fit_planes(const NeighbourGraph& graph, std::span<const std::uint32_t> some,
+                                 std::size_t count);
 
 }  // namespace pcednet::normals

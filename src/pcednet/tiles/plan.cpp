@@ -131,6 +131,7 @@ Json json_of(const detect::NormalsDecision& normals) {
   const detect::Rounding& rounding = normals.rounding;
   return {{"made", normals.made},
           {"neighbours", normals.neighbours},
+          {"fewest_neighbours", normals.fewest},
           {"noisy", normals.noisy},
           {"exact_planes", normals.exact_planes},
           {"exact", normals.exact},
@@ -140,9 +141,13 @@ Json json_of(const detect::NormalsDecision& normals) {
 }
 
 detect::NormalsDecision normals_in(const Json& j) {
-  return {j.at("made"),  j.at("neighbours"),
-          j.at("noisy"), j.at("exact_planes"),
-          j.at("exact"), {j.at("rounded_to"), vec3_of(j.at("rounded_from")), j.at("spacing")}};
+  return {j.at("made"),
+          j.at("neighbours"),
+          j.at("fewest_neighbours"),
+          j.at("noisy"),
+          j.at("exact_planes"),
+          j.at("exact"),
+          {j.at("rounded_to"), vec3_of(j.at("rounded_from")), j.at("spacing")}};
 }
 
 Json json_of(const gls::PyramidPlan& pyramid) {

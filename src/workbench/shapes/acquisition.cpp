@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "pcednet/core/parallel.h"
+#include "pcednet/normals/prepare.h"
 #include "pcednet/spatial/kd_tree.h"
 
 namespace pcednet::shapes {
@@ -49,6 +50,12 @@ std::vector<Vec3> plane_normals(std::span<const Vec3> positions, std::size_t nei
     }
   });
   return normals;
+}
+
+std::vector<Vec3> oriented_normals(std::span<const Vec3> positions) {
+  return normals::estimate_oriented_normals(positions,
+                                            {.choice = normals::choose_one_count(positions)})
+      .normals;
 }
 
 }  // namespace pcednet::shapes

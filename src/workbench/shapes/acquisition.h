@@ -26,4 +26,8 @@ std::vector<std::size_t> displace_every_tenth(std::span<Vec3> positions, double 
 /// evaluation clouds; normals::estimate_normals is the better estimate.
 std::vector<Vec3> plane_normals(std::span<const Vec3> positions, std::size_t neighbours = 10);
 
+/// Estimated normals as programs write them to files: of planes through one number of neighbours,
+/// that which suits most points, and of consistent sign.
+std::vector<Vec3> oriented_normals(std::span<const Vec3> positions);
+
 }  // namespace pcednet::shapes

@@ -66,7 +66,8 @@ std::vector<Vec3> make_normals(const Recipe& recipe, const SurfaceSamples& sampl
   if (recipe.normals == NormalSource::kPlane10) {
     normals = plane_normals(samples.positions);
   } else {
-    normals = normals::estimate_normals(samples.positions);
+    normals =
+        normals::estimate_normals(samples.positions, normals::choose_one_count(samples.positions));
   }
   for (std::size_t i = 0; i < normals.size(); ++i) {
     if (normals[i].dot(samples.normals[i]) < 0.0) normals[i] = -normals[i];

@@ -20,7 +20,7 @@ struct GeneratedCloud {
 enum class NormalSource {
   kSurface,   ///< the true ones
   kPlane10,   ///< of the plane through the 10 nearest points, as in the paper's clouds
-  kEstimated  ///< by normals::estimate_normals
+  kEstimated  ///< by normals::estimate_normals with one number of neighbours
 };
 
 /// How a labelled cloud is made from a shape. Lengths are in spacings: sqrt(area / points).

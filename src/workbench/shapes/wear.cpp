@@ -6,8 +6,8 @@
 
 #include "pcednet/core/parallel.h"
 #include "pcednet/core/random_vectors.h"
-#include "pcednet/normals/prepare.h"
 #include "pcednet/spatial/kd_tree.h"
+#include "workbench/shapes/acquisition.h"
 #include "workbench/shapes/part_pieces.h"
 
 namespace pcednet::shapes {
@@ -75,7 +75,7 @@ PointCloud finish(MeshVertices vertices, const Finish& finish, const Mat3& rotat
     cloud.normals.push_back(rotation * vertices.normals[i]);
   }
   if (finish.estimated) {
-    cloud.normals = normals::estimate_oriented_normals(cloud.positions).normals;
+    cloud.normals = oriented_normals(cloud.positions);
   }
   if (finish.inward) {
     for (Vec3& normal : cloud.normals) normal = -normal;
