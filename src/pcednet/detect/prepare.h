@@ -25,7 +25,7 @@ struct NormalsDecision {
   bool made =
       false;  ///< missing normals are estimated and all are oriented; otherwise used as they are
   std::size_t neighbours = 0;  ///< of each point, where normals are estimated
-  std::size_t fewest = 0;      ///< see normals::NeighbourChoice
+  std::size_t fewest = 0;      ///< unless 0, those of points without noise around them
   bool noisy = false;          ///< noise required more of them
   bool exact_planes = false;   ///< points on plane faces get the normal of the face
   bool exact = false;          ///< normals were missing, and the points are without noise
