@@ -88,7 +88,7 @@ std::vector<Crease> find_boundaries(const OrderedPoints& cloud, const Progress* 
                boundaries);
   std::erase_if(points, [&](std::uint32_t point) { return !in_line[point]; });
   if (points.empty()) return boundaries;
-  Stage again(progress, "boundaries of scan lines", points.size());
+  Stage again(progress, "scanlines", points.size());
   append_found(creases_at(cloud, points, kMoreNeighbours, again,
                           [&](std::uint32_t point, std::span<const spatial::Neighbour> others) {
                             // The point's normal is of the nearest, which do not determine it.
