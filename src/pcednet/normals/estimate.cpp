@@ -11,7 +11,7 @@ namespace pcednet::normals {
 
 std::vector<Vec3> estimate_normals(const NeighbourGraph& graph, const Progress* progress) {
   std::vector<Vec3> normals(graph.points.size());
-  const std::vector<std::uint32_t> counts = local_counts(graph);
+  const std::vector<std::uint32_t> counts = local_counts(graph, progress);
   Stage stage(progress, "normals", normals.size());
   parallel_blocks(normals.size(), 1024, [&](std::size_t begin, std::size_t end) {
     std::map<std::size_t, std::vector<std::uint32_t>> by_count;

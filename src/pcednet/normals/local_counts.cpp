@@ -32,8 +32,10 @@ Ballot ballot_of(std::span<const double> thickness) {
 }
 
 /// Of every point; `counts` are those that it chooses from.
-std::vector<Ballot> ballots(const NeighbourGraph& graph, std::span<const std::size_t> counts) {
+std::vector<Ballot> ballots(const NeighbourGraph& graph, std::span<const std::size_t> counts,
+                            const Progress* progress) {
   std::vector<Ballot> ballots(graph.points.size());
+  Stage stage(progress, "surroundings", ballots.size());
   parallel_blocks(ballots.size(), 1024, [&](std::size_t begin, std::size_t end) {
     std::vector<std::uint32_t> some(end - begin);
     std::iota(some.begin(), some.end(), static_cast<std::uint32_t>(begin));
@@ -48,6 +50,7 @@ std::vector<Ballot> ballots(const NeighbourGraph& graph, std::span<const std::si
       ballots[begin + k] =
           ballot_of(std::span(thickness).subspan(k * counts.size(), counts.size()));
     }
+    stage.advance(some.size());
   });
   return ballots;
 }
@@ -70,7 +73,7 @@ std::vector<Ballot> added_up(const NeighbourGraph& graph, const std::vector<Ball
 
 }  // namespace
 
-std::vector<std::uint32_t> local_counts(const NeighbourGraph& graph) {
+std::vector<std::uint32_t> local_counts(const NeighbourGraph& graph, const Progress* progress) {
   const NeighbourChoice& choice = graph.choice;
   std::vector<std::uint32_t> chosen(graph.points.size(),
                                     static_cast<std::uint32_t>(choice.neighbours));
@@ -79,7 +82,7 @@ std::vector<std::uint32_t> local_counts(const NeighbourGraph& graph) {
   while (counts.size() <= kMostDoublings && 2 * counts.back() <= choice.neighbours) {
     counts.push_back(2 * counts.back());
   }
-  std::vector<Ballot> sums = ballots(graph, counts);
+  std::vector<Ballot> sums = ballots(graph, counts, progress);
   for (int round = 0; round < kRounds; ++round) sums = added_up(graph, sums);
   std::transform(sums.begin(), sums.end(), chosen.begin(), [&](const Ballot& sum) {
     std::size_t c = 0;

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "pcednet/core/progress.h"
 #include "pcednet/normals/neighbour_graph.h"
 
 namespace pcednet::normals {
@@ -18,6 +19,7 @@ inline constexpr double kBall = 0.4;
 /// balls of noise before. Points around are those up to twice as far as the most neighbours. They
 /// weigh as the inverse squares of their thickness, so that flat places decide for the edges beside
 /// them. What is farther does not count: a part of a cloud has the counts of the whole.
-std::vector<std::uint32_t> local_counts(const NeighbourGraph& graph);
+std::vector<std::uint32_t> local_counts(const NeighbourGraph& graph,
+                                        const Progress* progress = nullptr);
 
 }  // namespace pcednet::normals
