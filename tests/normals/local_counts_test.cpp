@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "pcednet/core/random.h"
+#include "pcednet/normals/estimate.h"
 
 namespace pcednet::normals {
 namespace {
@@ -56,6 +57,20 @@ TEST(LocalCounts, OfAPartAreThoseOfTheWhole) {
     EXPECT_EQ(counts[graph.point_of[i]], expected[i]);
   }
   EXPECT_GT(inner, 2000u);
+}
+
+TEST(LocalCounts, AreManyWhereTheNearestLieAlongALine) {
+  std::vector<Vec3> positions = ground_and_ripples();
+  for (int line = 0; line < 3; ++line) {
+    for (int i = 0; i < 200; ++i) positions.emplace_back(200 + 0.25 * i, 4.0 * line, 0.0);
+  }
+  const NeighbourGraph graph = make_neighbour_graph(positions);
+  ASSERT_EQ(graph.choice.fewest, 12u);
+  const std::vector<std::uint32_t> counts = local_counts(graph);
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    EXPECT_TRUE(graph.points[i].x() < 199 || counts[i] == 48) << i;
+  }
+  for (const Vec3& normal : estimate_normals(graph)) EXPECT_FALSE(normal.isZero(0.0));
 }
 
 TEST(LocalCounts, AreTheChoiceUnlessItIsNoisy) {

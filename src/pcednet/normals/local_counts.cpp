@@ -21,6 +21,11 @@ struct Ballot {
   float all = 0.0f;
 };
 
+/// Points along a line have no plane: they count as a ball, so that more are taken.
+double thickness_of(const PlaneFit& plane) {
+  return plane.normal.isZero(0.0) ? 1.0 : plane.thickness;
+}
+
 Ballot ballot_of(std::span<const double> thickness) {
   const float last = static_cast<float>(thickness.back()) + kFlat;
   Ballot ballot{.all = 1.0f / (last * last)};
@@ -43,7 +48,7 @@ std::vector<Ballot> ballots(const NeighbourGraph& graph, std::span<const std::si
     for (std::size_t c = 0; c < counts.size(); ++c) {
       const std::vector<PlaneFit> planes = fit_planes(graph, some, counts[c]);
       for (std::size_t k = 0; k < some.size(); ++k) {
-        thickness[k * counts.size() + c] = planes[k].thickness;
+        thickness[k * counts.size() + c] = thickness_of(planes[k]);
       }
     }
     for (std::size_t k = 0; k < some.size(); ++k) {
