@@ -30,7 +30,7 @@ class Shell:
 
     def wait(self, wanted):
         """What the terminal shows until it matches."""
-        shown, end = "", time.monotonic() + 20
+        shown, end = "", time.monotonic() + 120
         while not re.search(wanted, shown):
             ready, _, _ = select.select([self.master], [], [], max(0, end - time.monotonic()))
             if not ready:
