@@ -74,6 +74,7 @@ test("the reference lists every option, and the C++ page every public header", (
 for (const width of [390, 1280]) {
   test(`no page is wider than a screen of ${width}`, async () => {
     const tab = await browser.newPage({ viewport: { width, height: 844 } });
+    tab.setDefaultTimeout(120_000); // for busy machines
     for (const name of pages()) {
       await tab.goto(address(name));
       const widest = await tab.evaluate(() => document.documentElement.scrollWidth);
