@@ -8,6 +8,7 @@
 #include "pcednet/cloud/class_table.h"
 #include "pcednet/core/random_vectors.h"
 #include "pcednet/core/vec3.h"
+#include "pcednet/lines/find_lines.h"
 
 namespace pcednet::lines {
 
@@ -44,6 +45,10 @@ inline Cloud cube(std::size_t points) {
     cloud.add(p, normal, nearest < kNear * cloud.spacing);
   }
   return cloud;
+}
+
+inline std::vector<Curve> lines_of(const Cloud& cloud, const LineOptions& options = {}) {
+  return find_lines({cloud.positions, cloud.normals, cloud.classes}, options);
 }
 
 }  // namespace pcednet::lines

@@ -14,6 +14,7 @@
 #include "pcednet/gls/scales.h"
 #include "pcednet/normals/estimate.h"
 #include "pcednet/spatial/curve_order.h"
+#include "pcednet/spatial/middle_half.h"
 
 namespace pcednet::detect {
 namespace {
@@ -65,9 +66,9 @@ std::size_t points_for_experts(const PreparedCloud& cloud,
   }
   if (scales_given) return kPiece;
   const std::size_t points = spatial::firsts_of_places(cloud.positions, cloud.curve).size();
-  const bool is_piece = points < kFew && descriptor.range.octaves &&
-                        gls::is_uneven(gls::spacings_of_places(cloud.positions, cloud.curve));
-  return is_piece ? kPiece : points;
+  if (points >= kFew || !descriptor.range.octaves) return points;
+  std::vector<double> spacings = gls::spacings_of_places(cloud.positions, cloud.curve);
+  return spatial::is_uneven(spatial::middle_half(spacings)) ? kPiece : points;
 }
 
 }  // namespace

@@ -5,25 +5,29 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
-#include <unordered_map>
+#include <cstdint>
+#include <numeric>
 
 #include "pcednet/core/median.h"
 #include "pcednet/core/random.h"
 #include "pcednet/formats/format.h"
 #include "pcednet/formats/read_cloud.h"
+#include "pcednet/spatial/curve_order.h"
 #include "pcednet/spatial/kd_tree.h"
+#include "pcednet/spatial/middle_half.h"
+#include "pcednet/spatial/neighbour_search.h"
 #include "pcednet/spatial/side_of_square.h"
 
 namespace pcednet::formats {
 namespace {
 
-std::optional<SampledSpacing> find_spacing(const PointCloud& cloud, const spatial::KdTree& tree) {
+std::optional<SampledSpacing> find_spacing(const PointCloud& cloud) {
   constexpr std::size_t kSample = 2000;
   std::vector<std::size_t> finite;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     if (cloud.positions[i].allFinite()) finite.push_back(i);
   }
+  const spatial::KdTree tree(cloud.positions);
   Random random(1);
   const std::size_t sample = std::min(finite.size(), kSample);
   SpacingSample spacings;
@@ -36,35 +40,20 @@ std::optional<SampledSpacing> find_spacing(const PointCloud& cloud, const spatia
   return spacings.spacing();
 }
 
-using Cell = std::array<double, 3>;  ///< whole numbers, of any size
-
-struct CellHash {
-  std::size_t operator()(const Cell& cell) const {
-    std::size_t hash = 0;
-    for (const double number : cell)
-      hash = 0x9e3779b97f4a7c15 * (hash + std::hash<double>()(number));
-    return hash ^ hash >> 32;
-  }
-};
-
 /// The finite points with fewer than three others within `reach`.
-std::size_t count_outliers(std::span<const Vec3> positions, const spatial::KdTree& tree,
-                           double reach) {
-  constexpr std::size_t kCompany = 4;          ///< itself among them
-  const double side = reach / std::sqrt(3.0);  // points of a cell are within reach of each other
-  const auto cell_of = [=](const Vec3& p) {
-    return Cell{std::floor(p.x() / side), std::floor(p.y() / side), std::floor(p.z() / side)};
+std::size_t count_outliers(std::span<const Vec3> positions, double reach) {
+  constexpr std::size_t kCompany = 3;
+  const std::vector<Vec3> finite = spatial::in_order(positions, spatial::curve_order(positions));
+  const spatial::NeighbourSearch search(finite);
+  if (search.available(kCompany) < kCompany) return finite.size();
+  std::vector<std::uint32_t> all(finite.size());
+  std::iota(all.begin(), all.end(), 0u);
+  std::vector<std::uint8_t> is_alone(finite.size());
+  const auto visit = [&](std::size_t i, std::span<const spatial::Neighbour> others) {
+    is_alone[i] = others.back().sq_distance > reach * reach;
   };
-  std::unordered_map<Cell, std::size_t, CellHash> counts;
-  for (const Vec3& p : positions) {
-    if (p.allFinite()) ++counts[cell_of(p)];
-  }
-  return static_cast<std::size_t>(std::ranges::count_if(positions, [&](const Vec3& p) {
-    if (!p.allFinite() || counts[cell_of(p)] >= kCompany) return false;
-    std::array<double, kCompany> sq_distances;
-    const std::size_t found = tree.nearest(p, sq_distances);
-    return found < kCompany || sq_distances.back() > reach * reach;
-  }));
+  search.for_each_neighbourhood(all, kCompany, visit);
+  return std::accumulate(is_alone.begin(), is_alone.end(), std::size_t{0});
 }
 
 void add_values(const Attribute& attribute, std::size_t points, AttributeFacts& facts) {
@@ -89,9 +78,6 @@ void add_in_common(const PointCloud& part, CloudFacts& facts) {
     facts.elements.push_back(element.header.substr(0, element.header.find('\n')));
   }
 }
-
-/// The third quartile over the first, from which gls::is_uneven() is true.
-constexpr double kEvenQuartiles = 1.6;
 
 /// In steps: the places of a lattice, all of them taken, are not further apart, as the mean of the
 /// ten nearest in a plane (1.4) or in its diagonal section (1.9).
@@ -126,12 +112,10 @@ std::optional<SampledSpacing> SpacingSample::spacing() const {
   if (nearest_.empty()) return std::nullopt;
   const auto count = static_cast<double>(nearest_.size() * (kNearest - 1));
   std::vector<double> sides = sides_;
-  const double first = value_at_rank(sides, sides.size() / 4),
-               third = value_at_rank(sides, 3 * sides.size() / 4);
   return SampledSpacing{.mean = sum_ / count,
                         .median = upper_median(nearest_),
                         .side = upper_median(sides_),
-                        .uneven = third > kEvenQuartiles * first};
+                        .uneven = spatial::is_uneven(spatial::middle_half(sides))};
 }
 
 std::string note_on_float(const BoundingBox& bounds, double apart, double distinct) {
@@ -214,10 +198,9 @@ CloudFacts cloud_facts(const std::filesystem::path& path) {
   CloudFacts facts = facts_of_header(io::InputFile(path));
   facts.points = loaded.cloud.size();
   add_part(loaded.cloud, facts);
-  const spatial::KdTree tree(loaded.cloud.positions);
-  facts.spacing = find_spacing(loaded.cloud, tree);
+  facts.spacing = find_spacing(loaded.cloud);
   if (facts.spacing && facts.spacing->side > 0.0) {
-    facts.outliers = count_outliers(loaded.cloud.positions, tree, facts.spacing->reach());
+    facts.outliers = count_outliers(loaded.cloud.positions, facts.spacing->reach());
   }
   facts.rescaled_normals = loaded.rescaled_normals;
   facts.warnings = loaded.warnings;

@@ -14,12 +14,12 @@
 #include "pcednet/core/parallel.h"
 #include "pcednet/spatial/curve_order.h"
 #include "pcednet/spatial/kd_tree.h"
+#include "pcednet/spatial/middle_half.h"
 
 namespace pcednet::gls {
 namespace {
 
 constexpr std::size_t kSample = 16384;
-constexpr double kEvenQuartiles = 1.6;
 constexpr const char* kSpan =
     "lengths from 1e-100 to 1e100 can be described; are the coordinates right?";
 constexpr double kShortest = 1e-100, kLongest = 1e100;  // their squares and inverses are finite
@@ -42,18 +42,6 @@ double mean_of(std::span<const double> values) {
   return values.empty() ? 0.0 : sum / static_cast<double>(values.size());
 }
 
-/// Sorts the numbers and returns the middle half: a few outlying points change neither its mean nor
-/// its ends.
-std::span<const double> middle_half(std::vector<double>& values) {
-  std::sort(values.begin(), values.end());
-  const std::size_t quarter = values.size() / 4;
-  return std::span(values).subspan(quarter, values.size() - 2 * quarter);
-}
-
-bool ends_differ(std::span<const double> half) {
-  return !half.empty() && half.back() > kEvenQuartiles * half.front();
-}
-
 double factor_of(std::size_t octave) {
   return static_cast<double>(std::size_t{1} << octave);
 }
@@ -73,13 +61,13 @@ double preferred_number(double value) {
 ScaleRange tied_range(const ScaleRange& given,
                       const std::function<std::vector<double>()>& spacings) {
   std::vector<double> all = spacings();
-  const std::span<const double> half = middle_half(all);
+  const std::span<const double> half = spatial::middle_half(all);
   ScaleRange range = given;
   if (range.s_min == 0.0) {
     range.s_min = range.rounded ? preferred_number(mean_of(half)) : mean_of(half);
   }
   if (range.s_max == 0.0) {
-    const bool has_octaves = given.octaves && ends_differ(half);
+    const bool has_octaves = given.octaves && spatial::is_uneven(half);
     range.s_max = range.s_max_ratio * range.s_min * (has_octaves ? factor_of(kOctaves - 1) : 1.0);
   }
   return range;
@@ -97,10 +85,6 @@ ScaleRange range_by_extent(const ScaleRange& given, double diagonal,
 }
 
 }  // namespace
-
-bool is_uneven(std::vector<double> spacings) {
-  return ends_differ(middle_half(spacings));
-}
 
 std::size_t octave_count(const ScaleRange& range) {
   constexpr double kRounding = 1e-6;

@@ -36,7 +36,8 @@ inline constexpr std::size_t kSpacingNeighbours = 11;
 /// With an s_max_ratio: s_min is the mean of the middle half of `spacings()`, if `rounded` the
 /// nearest preferred number (R 20 of ISO 3: 1, 1.12, 1.25, ... 9, 10), so that most pieces of a
 /// cloud have the same, and s_max = s_max_ratio s_min, or with octaves that of the last octave if
-/// the cloud is_uneven(). Neither the extent nor a few far points change the range.
+/// the third quartile of the spacings is more than 1.6 times the first. Neither the extent nor a
+/// few far points change the range.
 ///
 /// Without one, the paper's range: s_min = the mean of `spacings()`, s_max = s_max_fraction (10 %)
 /// of the diagonal of the bounding box. Where this gives no range, an s_max that was not given and
@@ -53,10 +54,6 @@ ScaleRange scale_range(std::span<const Vec3> positions, const ScaleRange& given,
 /// do not make the others denser.
 std::vector<double> spacings_of_places(std::span<const Vec3> positions,
                                        std::span<const std::uint32_t> curve);
-
-/// Whether the third quartile of these spacings is more than 1.6 times the first, as in scans from
-/// one place.
-bool is_uneven(std::vector<double> spacings);
 
 /// How many octaves a range has: 1 to kOctaves, as many as end at s_max or below.
 std::size_t octave_count(const ScaleRange& range);
