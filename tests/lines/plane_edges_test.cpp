@@ -178,6 +178,22 @@ TEST(PlaneEdges, AreNotForThinPlates) {
   }
 }
 
+TEST(PlaneEdges, AreNotOfADomeOnLevelGround) {
+  Random random(6);
+  PlainCloud cloud;
+  constexpr double kRadius = 18.0;
+  for (int i = 0; i < 130; ++i) {
+    for (int j = 0; j < 130; ++j) {
+      const double x = i - 65.0, y = j - 60.0;
+      const double sq_height = kRadius * kRadius - x * x - y * y;
+      cloud.add({x, y, (sq_height > 0.0 ? std::sqrt(sq_height) : 0.0) + 0.15 * random.normal()});
+    }
+  }
+  for (const Curve& curve : roof_lines(cloud)) {
+    for (const Vec3& place : curve.points) EXPECT_LT(place.z(), 0.7 * kRadius);
+  }
+}
+
 TEST(PlaneEdges, OfAStepAreTheUpperOnes) {
   Random random(3);
   PlainCloud cloud;

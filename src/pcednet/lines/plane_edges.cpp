@@ -10,6 +10,7 @@ namespace pcednet::lines {
 namespace {
 
 constexpr double kPlanePart = 0.9;
+constexpr double kMostCurved = 300.0;  ///< points: of more the general procedure sees the surface
 constexpr std::size_t kMostPoints = 1 << 17;
 constexpr std::size_t kFaceSamples = 4000;
 constexpr double kAboveOthers = 0.03;  ///< largest share of points above or below others
@@ -52,7 +53,8 @@ std::optional<std::vector<Piece>> find_plane_edges(const OrderedPoints& cloud,
   const spatial::KdTree plan = plan_of(cloud);
   if (!is_seen_from_above(cloud, sampling, plan)) return std::nullopt;
   const Faces faces = find_faces(cloud, sampling, progress);
-  if (faces.share < kPlanePart) return std::nullopt;
+  const double curved = (1.0 - faces.share) * static_cast<double>(cloud.size());
+  if (faces.share < kPlanePart || curved > kMostCurved) return std::nullopt;
   std::vector<Fold> folds = find_roof_folds(cloud, faces, spacing);
   std::vector<Piece> pieces = find_eaves(cloud, faces, sampling, folds, plan);
   for (Fold& fold : folds) pieces.push_back(std::move(fold.piece));
