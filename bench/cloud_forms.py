@@ -208,7 +208,8 @@ def centres(p, edge):
 
 def forms(scene, random):
     """Name and maker of every form."""
-    drawn = lambda noise: (lambda p, s: p + noise * s * random.normal(size=p.shape))(*scene.drawn(150_000, random))
+    drawn = lambda noise, points=150_000: (
+        lambda p, s: p + noise * s * random.normal(size=p.shape))(*scene.drawn(points, random))
     rounded = lambda p, step: np.round(p / step) * step
     places = (9, -9, 2), (-9.5, -8, 2), (-8, 9, 2), (9, 2, 2)
     scans = lambda: [scene.scanned(place, .006, .003, random) for place in places]
@@ -224,6 +225,9 @@ def forms(scene, random):
         "drawn, clean": lambda: drawn(0),
         "drawn, noise of .15 spacings": lambda: drawn(.15),
         "drawn, noise of .6 spacings": lambda: drawn(.6),
+        "drawn, noise of 1 spacing": lambda: drawn(1),
+        "drawn, noise of 2 spacings": lambda: drawn(2, 600_000),
+        "drawn, noise of 3 spacings": lambda: drawn(3, 1_200_000),
         "rounded to .3 spacings, noise of .15": lambda: rounded(drawn(.15), .02),
         "rounded to .7 spacings, noise of .15": lambda: rounded(drawn(.15), .05),
         "rounded to .7 spacings, clean": lambda: rounded(drawn(0), .05),

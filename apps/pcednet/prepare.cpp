@@ -15,6 +15,15 @@ void add_prepare_options(CLI::App& command, detect::PrepareOptions& options) {
                    "Use the normals of the file even if their signs are mixed");
 }
 
+detect::PreparedCloud prepare(const std::filesystem::path& file, std::span<const Vec3> positions,
+                              const Progress& progress) {
+  detect::PreparedCloud prepared;
+  const detect::PointArrays points = {.positions = positions};
+  with_name_in_errors(file, [&] { prepared = detect::prepare(points, {}, &progress); });
+  warn_all(file, prepared.notes);
+  return prepared;
+}
+
 detect::PreparedCloud prepare(const std::filesystem::path& file, const PointCloud& cloud,
                               const detect::PrepareOptions& options, const Progress& progress) {
   detect::PreparedCloud prepared;

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <span>
 
 #include "pcednet/detect/prepare.h"
 #include "pcednet/gls/scale_space_options.h"
@@ -18,6 +19,10 @@ void add_prepare_options(CLI::App& command, detect::PrepareOptions& options);
 /// detect::prepare(), with its notes as warnings and `file` in its errors.
 detect::PreparedCloud prepare(const std::filesystem::path& file, const PointCloud& cloud,
                               const detect::PrepareOptions& options, const Progress& progress);
+
+/// The same for points without normals, which must outlive the result.
+detect::PreparedCloud prepare(const std::filesystem::path& file, std::span<const Vec3> positions,
+                              const Progress& progress);
 
 /// Warns of coordinates of this type that are rounded to more than the spacing, which is
 /// `apart()`, found where it matters.

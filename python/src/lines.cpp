@@ -11,6 +11,7 @@
 #include "models.h"
 #include "named.h"
 #include "pcednet/core/error.h"
+#include "pcednet/detect/thinned_cloud.h"
 #include "pcednet/io/drawing/drawing.h"
 #include "pcednet/io/las/las.h"
 #include "pcednet/io/length_units.h"
@@ -34,11 +35,19 @@ lines::LineOptions line_options_of(const py::dict& settings) {
   return options;
 }
 
+detect::Classification copy_of(const lines::EdgePoints& points) {
+  detect::Classification found;
+  found.classes.assign(points.classes.begin(), points.classes.end());
+  found.p_sharp.assign(points.p_sharp.begin(), points.p_sharp.end());
+  found.p_smooth.assign(points.p_smooth.begin(), points.p_smooth.end());
+  return found;
+}
+
 /// Curves, notes on the normals, and the tolerance of the fit. `prepared` says that positions and
-/// normals come from a classification.
+/// normals come from a classification, `estimated` that the normals do not come from the caller.
 py::tuple find_lines(const Array<double>& xyz, bool is_float32,
                      const OptionalArray<double>& normals, const OptionalArray<double>& scanners,
-                     bool prepared, const Array<std::uint8_t>& labels,
+                     bool prepared, bool estimated, const Array<std::uint8_t>& labels,
                      const OptionalArray<float>& p_sharp, const OptionalArray<float>& p_smooth,
                      const py::dict& settings, const py::object& progress, int threads) {
   const lines::LineOptions options = line_options_of(settings);
@@ -53,13 +62,24 @@ py::tuple find_lines(const Array<double>& xyz, bool is_float32,
                              .p_sharp = numbers(p_sharp),
                              .p_smooth = numbers(p_smooth)};
     detect::PreparedCloud made;
-    if (!prepared) {
-      made = cloud.prepare({}, job);
+    std::optional<detect::ThinnedCloud> thinned;
+    detect::Classification fewer;
+    if (estimated) thinned = detect::thin_noise(cloud.positions(), job);
+    if (thinned) {
+      fewer = detect::found_for_thinned(copy_of(points), *thinned);
+      points.classes = fewer.classes;
+      points.p_sharp = fewer.p_sharp;
+      points.p_smooth = fewer.p_smooth;
+    }
+    if (!prepared || thinned) {
+      made = thinned ? detect::prepare(detect::PointArrays{thinned->positions}, {}, job)
+                     : cloud.prepare({}, job);
       points.positions = made.positions;
       points.normals = made.normals;
       points.curve = made.curve;
       notes = made.notes;
     }
+    if (thinned) notes.insert(notes.begin(), note_on(*thinned));
     curves = lines::find_lines(points, options, job, &scale);
     const std::string rounded = prepared ? "" : note_on_float(is_float32, made, {}, scale.spacing);
     if (!rounded.empty()) notes.push_back(rounded);

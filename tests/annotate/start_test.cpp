@@ -169,5 +169,17 @@ TEST(WarningsOfAScene, TellOfRoundedCoordinates) {
   fs::remove(path);
 }
 
+TEST(WarningsOfAScene, TellOfNoiseThickerThanTheSpacing) {
+  const fs::path path = fs::path(testing::TempDir()) / "pcednet_thick.ply";
+  PointCloud cloud = cube_without_normals(100'000);
+  Random random(9);
+  for (Vec3& p : cloud.positions) p += 0.031 * normal_vector(random);  // two spacings
+  formats::write_cloud(path, cloud, {.overwrite = Overwrite::kYes});
+  const auto warnings = load_scene(path)->warnings;
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_NE(warnings[0].find("noise is 2"), std::string::npos) << warnings[0];
+  fs::remove(path);
+}
+
 }  // namespace
 }  // namespace pcednet::annotate

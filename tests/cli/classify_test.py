@@ -88,6 +88,28 @@ class Classify(CliTest):
         self.assertIn("nx", rows.dtype.names)
         self.assertGreater(np.mean((rows["label"] > 0) == (label > 0)), 0.9)
 
+    def test_averages_noise_that_is_thicker_than_the_spacing(self):
+        positions, _, _ = cube(150_000, noise=0.013)  # the spacing is .0063
+        file, result, again = self.path("thick.ply"), self.path("result.ply"), self.path("again.ply")
+        write_ply(file, positions, position_type="double")
+        told = run("classify", file, "-o", result)
+        self.assertRegex(told.stderr, r"thick\.ply: noise is (1\.9|2|2\.1) times the spacing: 150000 points are averaged to")
+        points, _ = read_ply(result)
+        np.testing.assert_array_equal(points["x"], positions[:, 0])
+        to_edge = np.sort(0.5 - np.abs(positions), axis=1)[:, 1]
+        edge = points["scalar_edge_class"] > 0
+        self.assertGreater(edge[np.abs(to_edge) < 0.01].mean(), 0.95)
+        self.assertLess(edge[to_edge > 0.1].mean(), 0.001)
+        self.assertLess(np.abs(np.linalg.norm([points[a] for a in ("nx", "ny", "nz")], axis=0) - 1).max(), 1e-5)
+        run("classify", result, "-o", again)
+        np.testing.assert_array_equal(read_ply(again)[0]["scalar_edge_class"], points["scalar_edge_class"])
+        for cloud in file, result:
+            told = run("lines", cloud, "-o", self.path("edges.obj"), "--overwrite")
+            self.assertIn("noise is", told.stderr)
+            self.assertRegex(told.stderr, r"12 curves, total length (11\.[89]|12\.[01])")
+        told = run("classify", file, "-o", result, "--overwrite", "--s-min", 0.02)
+        self.assertNotIn("averaged", told.stderr)
+
     def test_gives_its_own_results_the_same_labels(self):
         bare, once, twice = (self.folder / name for name in ("bare.ply", "once.ply", "twice.ply"))
         write_ply(bare, cube(4000)[0])

@@ -259,6 +259,13 @@ class Tiles(TilesTest):
                    self.folder / "q.json", expect=2)
         self.assertIn("differ in whether pcednet estimated their normals", said.stderr)
 
+    def test_noise_thicker_than_the_spacing_is_told(self):
+        p = np.random.default_rng(3).uniform(0, 10, (100_000, 3)) * (1, 1, 0)
+        p += 0.06 * np.random.default_rng(4).normal(size=p.shape)  # the spacing is .032
+        write_ply(self.folder / "a.ply", p)
+        said = run("tiles", "plan", self.folder / "a.ply", "-o", self.folder / "p.json").stderr
+        self.assertRegex(said, r"noise is (1\.[89]|2) times the spacing .*voxels of 0\.1[45] before")
+
     def test_what_a_sample_shows_is_said_to_be_of_a_sample(self):
         p = np.random.default_rng(2).uniform(0, 100, (310_000, 3))
         p[:, 2] = np.sin(p[:, 0] / 9)

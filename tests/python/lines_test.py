@@ -39,6 +39,19 @@ class Lines(CliTest):
             with self.assertRaises(pcednet.UsageError):
                 curve.sampled(0)
 
+    def test_thick_noise_is_averaged_for_labels_and_lines(self):
+        positions, _, _ = cube(150_000, noise=0.013)  # two spacings
+        with warnings.catch_warnings(record=True) as told:
+            warnings.simplefilter("always")
+            result = pcednet.classify(positions)
+        self.assertIn("times the spacing: 150000 points are averaged to", str(told[0].message))
+        self.assertEqual(result.labels.shape, (150_000,))
+        self.assertEqual(result.normals.shape, (150_000, 3))
+        for found in (pcednet.lines(positions, result), pcednet.lines(positions),
+                      pcednet.lines(positions, np.asarray(result.labels))):
+            self.assertEqual(len(found), 12)
+            self.assertAlmostEqual(found.length, 12, delta=0.15)
+
     def test_files_are_those_of_the_program(self):
         write_ply(self.path("in.ply"), self.positions, self.normals, position_type="double")
         cloud = pcednet.read(self.path("in.ply"))

@@ -202,19 +202,19 @@ void classify_file(const Job& job, const ClassifyArguments& arguments,
   throw_if_cancelled(&progress);
   const bool by_method = !arguments.method.name.empty();
   clock.begin(by_method ? arguments.method.name : "normals");
-  const auto [prepared, result] = classify_cloud(job.input, cloud,
-                                                 {.model = by_method ? nullptr : &model,
-                                                  .method = arguments.method,
-                                                  .preparation = arguments.preparation,
-                                                  .boundary = !arguments.model.no_boundary},
-                                                 progress);
+  const auto [made, result] = all_points(classify_cloud(job.input, cloud,
+                                                        {.model = by_method ? nullptr : &model,
+                                                         .method = arguments.method,
+                                                         .preparation = arguments.preparation,
+                                                         .boundary = !arguments.model.no_boundary},
+                                                        progress));
   clock.begin("write");
-  say_kept(job.input, add_found(prepared.made, result, arguments, model, cloud));
+  say_kept(job.input, add_found(made, result, arguments, model, cloud));
   warn_of_losses(job.output.string(), formats::losses(job.output, cloud));
   formats::write_cloud(job.output, cloud,
                        {.overwrite = common.overwrite(),
                         .ascii = arguments.ascii,
-                        .new_normals = prepared.made.empty(),
+                        .new_normals = made.empty(),
                         .progress = &progress});
   if (!job.preview.empty()) {
     clock.begin("preview");

@@ -80,12 +80,12 @@ detect::Classification find_classes(const fs::path& input, const fs::path& predi
     found.classes = read_predictions(prediction, cloud, table);
     return found;
   }
-  return classify_cloud(input, cloud,
-                        {.model = way.model,
-                         .method = way.arguments.method,
-                         .preparation = way.arguments.preparation,
-                         .boundary = !way.arguments.model.no_boundary},
-                        way.progress)
+  return all_points(classify_cloud(input, cloud,
+                                   {.model = way.model,
+                                    .method = way.arguments.method,
+                                    .preparation = way.arguments.preparation,
+                                    .boundary = !way.arguments.model.no_boundary},
+                                   way.progress))
       .found;
 }
 

@@ -34,6 +34,7 @@ using lines::Curve;
 /// The arguments of find_lines(), and the data behind them.
 struct LabelledCloud {
   PointCloud cloud;
+  std::optional<detect::ThinnedCloud> thinned = {};  ///< then the rest is of its points
   detect::PreparedCloud prepared;
   std::vector<std::uint8_t> classes;
   std::vector<float> p_sharp, p_smooth;
@@ -126,17 +127,29 @@ void check_edges(const std::string& whose, const ClassTable& table) {
                                              whose, pcednet::names_of(table)));
 }
 
+void take(detect::Classification&& found, LabelledCloud& labelled) {
+  labelled.classes = std::move(found.classes);
+  labelled.p_sharp = std::move(found.p_sharp);
+  labelled.p_smooth = std::move(found.p_smooth);
+}
+
 void add_given_labels(const LinesArguments& arguments, std::vector<std::uint8_t> classes,
                       LabelledCloud& labelled, const Progress& progress) {
   tell_labels(arguments.input, classes);
   const PointCloud& cloud = labelled.cloud;
-  labelled.prepared = prepare(arguments.input, cloud, arguments.preparation, progress);
-  labelled.classes = std::move(classes);
+  detect::Classification found;
+  found.classes = std::move(classes);
+  found.p_sharp = probabilities(arguments.input, cloud, "p_sharp");
+  found.p_smooth = probabilities(arguments.input, cloud, "p_smooth");
+  if (found.p_sharp.empty()) found.p_smooth.clear();
+  if (!found.p_sharp.empty()) found.p_smooth.resize(cloud.size());
+  labelled.thinned = thin_noise(arguments.input, cloud, arguments.preparation, progress);
+  labelled.prepared = labelled.thinned
+                          ? prepare(arguments.input, labelled.thinned->positions, progress)
+                          : prepare(arguments.input, cloud, arguments.preparation, progress);
   labelled.given = true;
-  labelled.p_sharp = probabilities(arguments.input, cloud, "p_sharp");
-  labelled.p_smooth = probabilities(arguments.input, cloud, "p_smooth");
-  if (labelled.p_sharp.empty()) labelled.p_smooth.clear();
-  if (!labelled.p_sharp.empty()) labelled.p_smooth.resize(cloud.size());
+  take(labelled.thinned ? detect::found_for_thinned(found, *labelled.thinned) : std::move(found),
+       labelled);
 }
 
 /// Reads the whole cloud, and classifies it if needed.
@@ -166,10 +179,9 @@ void read_labelled(const LinesArguments& arguments, StageClock& clock, LabelledC
   with_name_in_errors(arguments.input, [&] {
     classified = classify_cloud(arguments.input, cloud, classifier, clock.progress());
   });
+  labelled.thinned = std::move(classified.thinned);
   labelled.prepared = std::move(classified.prepared);
-  labelled.classes = std::move(classified.found.classes);
-  labelled.p_sharp = std::move(classified.found.p_sharp);
-  labelled.p_smooth = std::move(classified.found.p_smooth);
+  take(std::move(classified.found), labelled);
 }
 
 /// The labels that a part of the cloud carries.
@@ -251,6 +263,14 @@ std::vector<Curve> find_curves(const LinesArguments& arguments, const LabelledCl
   return curves;
 }
 
+/// Through thick noise no curve could be seen.
+PointCloud points_of(const detect::PreparedCloud& prepared) {
+  PointCloud points;
+  points.positions.assign(prepared.positions.begin(), prepared.positions.end());
+  points.normals.assign(prepared.normals.begin(), prepared.normals.end());
+  return points;
+}
+
 /// Lengths in degrees mean nothing; coordinates beyond a turn are none.
 void warn_of_degrees(const LinesArguments& arguments, const PointCloud& cloud) {
   double most = 0.0;
@@ -312,8 +332,9 @@ void run(LinesArguments arguments, const Common& common) {
   }
   if (!arguments.preview.path.empty()) {
     clock.begin("preview");
+    const PointCloud fewer = labelled.thinned ? points_of(labelled.prepared) : PointCloud{};
     render::write_preview(
-        arguments.preview.path, cloud, {},
+        arguments.preview.path, labelled.thinned ? fewer : cloud, {},
         {.view_direction = arguments.preview.direction, .overwrite = common.overwrite()}, curves);
   }
   report_lines(arguments, scale, curves, left_out);

@@ -11,6 +11,7 @@
 #include "pcednet/core/median.h"
 #include "pcednet/core/parallel_loops.h"
 #include "pcednet/detect/rounding.h"
+#include "pcednet/detect/thick_noise.h"
 #include "pcednet/gls/fast_scale_space.h"
 #include "pcednet/gls/scales.h"
 #include "pcednet/spatial/curve_order.h"
@@ -86,6 +87,17 @@ void note(const detect::PreparedCloud& prepared, Plan& plan) {
   for (const std::string& its : prepared.notes) plan.notes.push_back(whose + its);
 }
 
+/// Tiles describe the points as they are.
+void note_noise(std::span<const Vec3> positions, std::span<const std::uint32_t> curve, Plan& plan) {
+  if (!plan.normals.noisy) return;
+  const auto noise = detect::find_thick_noise(positions, curve);
+  if (!noise) return;
+  plan.notes.push_back(fmt::format(
+      "noise is {:.2g} times the spacing and hides most edges: tiles describe the points "
+      "as they are; thin the cloud to the means of voxels of {:.2g} before",
+      noise->deviation / noise->spacing, 2.4 * noise->deviation));
+}
+
 /// Estimates and orients as prepare() does for points without normals of their own; signs are
 /// independent between batches.
 std::vector<Vec3> estimate_in_batches(const PointCloud& dense, detect::PrepareOptions options,
@@ -142,6 +154,7 @@ PreparedSample decide_normals(const PointCloud& dense, const detect::PrepareOpti
       sample.positions = sample.moved;
     }
     sample.curve = spatial::curve_order(sample.positions);
+    note_noise(sample.positions, sample.curve, plan);
     return sample;
   }
   detect::PreparedCloud prepared = detect::prepare(dense, options, progress);
@@ -149,6 +162,7 @@ PreparedSample decide_normals(const PointCloud& dense, const detect::PrepareOpti
   sample.positions = prepared.positions, sample.normals = prepared.normals;
   sample.curve = std::move(prepared.curve);
   sample.moved = std::move(prepared.moved), sample.made = std::move(prepared.made);
+  note_noise(sample.positions, sample.curve, plan);
   return sample;
 }
 

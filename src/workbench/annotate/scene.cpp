@@ -9,6 +9,7 @@
 #include "pcednet/core/json.h"
 #include "pcednet/detect/decide.h"
 #include "pcednet/detect/rounding.h"
+#include "pcednet/detect/thick_noise.h"
 #include "pcednet/formats/cloud_facts.h"
 #include "pcednet/formats/read_cloud.h"
 #include "pcednet/gls/scales.h"
@@ -27,6 +28,17 @@ void add_note_on_float(Scene& scene) {
   const double distinct = detect::share_of_places(scene.prepared.positions, scene.prepared.curve);
   const auto note = formats::note_on_float(scene.bounds, scene.spacing, distinct);
   if (!note.empty()) scene.warnings.push_back(note);
+}
+
+/// The page describes the points that it shows.
+void add_note_on_noise(Scene& scene) {
+  if (!scene.prepared.decision.noisy) return;
+  const auto noise = detect::find_thick_noise(scene.prepared.positions, scene.prepared.curve);
+  if (!noise) return;
+  scene.warnings.push_back(
+      fmt::format("noise is {:.2g} times the spacing, so few edges are seen here: pcednet classify "
+                  "averages the points",
+                  noise->deviation / noise->spacing));
 }
 
 }  // namespace
@@ -60,6 +72,7 @@ std::shared_ptr<const Scene> load_scene(const std::filesystem::path& input,
     scene->warnings.push_back(note);
   }
   add_note_on_float(*scene);
+  add_note_on_noise(*scene);
   stage.advance();
   scene->layout = make_layout(scene->cloud.positions, scene->spacing);
   scene->selector = std::make_unique<Selector>(scene->cloud.positions, scene->prepared.normals,
