@@ -165,6 +165,7 @@ class Train(CliTest):
         few = self.train("few.safetensors", *tied)
         joined = tensors(self.train("m.safetensors", *tied, "--octaves", "--expert", few, "below=9"))[0]
         self.assertEqual(joined["descriptor_octaves"], "1")
+        self.train("n.safetensors", *tied, "--octaves", "--unrounded-scales", "--expert", few, "below=9")
 
     def test_trains_with_two_gates_and_teachers(self):
         options = ["--gate", 0.4, "--second-gate", -0.3, "--distil", 2, "--epochs", 2]

@@ -92,15 +92,17 @@ struct Experts {
 /// Throws before the work if they do not fit.
 Experts read_experts(const TrainArguments& arguments) {
   Experts experts;
+  gls::ScaleSpaceOptions descriptor = arguments.options.descriptor;
+  descriptor.range.rounded = true;  // as that of a model always is
   for (const auto& [file, kind] : arguments.experts) {
     experts.models.push_back(detect::load_model(file));
     experts.kinds.push_back(take_kind("--expert", kind));
     const auto classes = static_cast<std::size_t>(arguments.options.architecture.classes);
-    detect::check_fits(experts.models.back(), arguments.options.descriptor, classes);
+    detect::check_fits(experts.models.back(), descriptor, classes);
   }
   if (!arguments.pieces.empty()) {
     experts.pieces = detect::load_model(arguments.pieces);
-    detect::check_pieces(*experts.pieces, arguments.options.descriptor);
+    detect::check_pieces(*experts.pieces, descriptor);
   }
   return experts;
 }

@@ -16,7 +16,7 @@
 namespace pcednet::detect {
 namespace {
 
-constexpr double kVoxel = 2.4, kAveraged = 3.0;  ///< in deviations of the noise
+constexpr double kVoxel = 2.4, kAveraged = 2.5;  ///< in deviations of the noise
 constexpr double kLeastLeft = 4000.0;            ///< points: of fewer, too little is known
 
 /// A point's voxel; in order, the points of a voxel follow each other.
@@ -72,21 +72,23 @@ void take_means(std::span<const Vec3> positions, std::span<const std::uint32_t> 
   }
 }
 
-/// Moves each to the mean of the points around it.
+/// Moves each to the mean of the points around it, twice.
 void average(std::span<const Vec3> positions, std::span<const std::uint32_t> curve,
              ThinnedCloud& thinned, const Progress* progress) {
   const std::vector<Vec3> ordered = spatial::in_order(positions, curve);
   const spatial::KdTree tree(ordered);
+  const auto move = [&](Vec3& place, std::vector<spatial::Neighbour>& near) {
+    tree.within_unsorted(place, kAveraged * thinned.noise.deviation, near);
+    if (near.empty()) return;
+    Vec3 sum = Vec3::Zero();
+    for (const spatial::Neighbour& other : near) sum += ordered[other.index] - place;
+    place += sum / static_cast<double>(near.size());
+  };
   Stage stage(progress, "noise", thinned.positions.size());
   parallel_blocks(thinned.positions.size(), 256, [&](std::size_t begin, std::size_t end) {
     std::vector<spatial::Neighbour> near;
     for (std::size_t i = begin; i < end; ++i) {
-      Vec3& place = thinned.positions[i];
-      tree.within_unsorted(place, kAveraged * thinned.noise.deviation, near);
-      if (near.empty()) continue;
-      Vec3 sum = Vec3::Zero();
-      for (const spatial::Neighbour& other : near) sum += ordered[other.index] - place;
-      place += sum / static_cast<double>(near.size());
+      for (int time = 0; time < 2; ++time) move(thinned.positions[i], near);
     }
     stage.advance(end - begin);
   });

@@ -29,9 +29,9 @@ bool thins_noise(const EdgeModel& model);
 
 /// Thins a cloud with thick noise, see find_thick_noise(); nothing if it has none, or if fewer than
 /// 4,000 points would be left. Points are grouped by voxels of 2.4 deviations, and a group becomes
-/// the mean of the points within 3 deviations of its own. The voxels lie about the median of the
-/// points: the result follows the cloud to another origin and does not depend on the points' order.
-/// Throws Error(kCancelled) when `progress` asks to cancel.
+/// the mean of the points within 2.5 deviations of its own mean, and then of those around that. The
+/// voxels lie about the median of the points: the result follows the cloud to another origin and
+/// does not depend on the points' order. Throws Error(kCancelled) when `progress` asks to cancel.
 std::optional<ThinnedCloud> thin_noise(std::span<const Vec3> positions,
                                        const Progress* progress = nullptr);
 
