@@ -28,13 +28,13 @@ void check_printed() {
   throw Error(ErrorKind::kFailure, fmt::format("standard output: {}", std::strerror(errno)));
 }
 
-/// In better words than the error's, if there are any.
+/// The message of an error of usage, in better words than the parser's where there are any.
 std::string why_refused(const CLI::ParseError& error, const CLI::App& app) {
   const bool lacks = error.get_exit_code() == static_cast<int>(CLI::ExitCodes::RequiredError);
   const bool has_more = error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError);
   std::string why = lacks ? missing_command(app) : "";
   if (why.empty() && (lacks || has_more)) why = unknown_option(app);
-  return why;
+  return why.empty() ? error.what() : why;
 }
 
 int run(int argc, char** argv) {
@@ -73,14 +73,12 @@ int run(int argc, char** argv) {
     }
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    const bool asked_for_help = error.get_exit_code() == 0;
-    const std::string why = asked_for_help ? "" : why_refused(error, app);
-    if (!why.empty()) {
-      fmt::print(stderr, "{}\nRun with --help for more information.\n", why);
-    } else {
-      app.exit(error, asked_for_help ? std::cout : std::cerr, std::cerr);
+    if (error.get_exit_code() != 0) {
+      say_error(why_refused(error, app));
+      say("Run with --help for more information.");
+      return static_cast<int>(ErrorKind::kUsage);
     }
-    if (!asked_for_help) return static_cast<int>(ErrorKind::kUsage);
+    app.exit(error, std::cout);  // help and version
   }
   check_printed();
   return 0;

@@ -77,7 +77,10 @@ std::string missing_command(const CLI::App& app) {
   if (last->get_require_subcommand_min() == 0) return "";
   const std::string after = last == &app ? "" : last->get_name() + " ";
   const std::vector<std::string> words = last->remaining();
-  if (words.empty()) return fmt::format("pcednet {}needs a command", after);
+  if (words.empty()) {
+    return last == &app ? "a command is missing"
+                        : fmt::format("{} needs a command", last->get_name());
+  }
   const std::string& word = words.front();
   if (word.starts_with('-')) return fmt::format("a command is missing before the option {}", word);
   return fmt::format("there is no command {}{}{}", after, word,

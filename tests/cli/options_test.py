@@ -17,6 +17,7 @@ class Options(CliTest):
     def refused(self, *arguments, saying):
         said = run(*arguments, expect=2).stderr
         self.assertIn(saying, said)
+        self.assertEqual(said[:9], "pcednet: ", said)
         self.assertLess(max(map(len, said.splitlines())), 250, said)
         self.assertEqual(os.listdir(self.folder), ["a.ply"])
 
@@ -148,18 +149,20 @@ class Options(CliTest):
                              ("there is no command generate foo\n", "generate", "foo", "x"),
                              ("there is no command tiles plane; did you mean tiles plan?", "tiles", "plane"),
                              ("a command is missing before the option --threads", "--threads", "2", "foo"),
-                             ("pcednet needs a command",), ("pcednet generate needs a command", "generate")):
-            self.assertIn(said, run(*words, expect=2).stderr)
+                             ("a command is missing\n",), ("generate needs a command\n", "generate")):
+            self.assertIn("pcednet: " + said, run(*words, expect=2).stderr)
 
     def test_an_option_that_there_is_not(self):
         for said, *words in (("there is no option --modle of classify; did you mean --model?\n", "--modle", "x"),
                              ("there is no option --modell of classify; did you mean --model?\n", "--modell=x"),
                              ("there is no option --colour of classify\n", "--colour", "x"),
                              ("there is no option -m of classify\n", "-m", "x")):
-            self.assertIn(said, run("classify", self.cloud, *words, expect=2).stderr)
+            self.assertIn("pcednet: " + said, run("classify", self.cloud, *words, expect=2).stderr)
         self.assertIn("there is no option --outputt of lines; did you mean --output?",
                       run("lines", self.cloud, "--outputt", "a.dxf", expect=2).stderr)
         self.assertIn("not expected: b.ply", run("lines", self.cloud, "b.ply", "-o", "a.dxf", expect=2).stderr)
+        self.assertEqual("pcednet: inputs is required\nRun with --help for more information.\n",
+                         run("classify", expect=2).stderr)
 
     def test_a_preview_is_a_png(self):
         self.refused("classify", self.cloud, "--preview", self.folder / "x.jpg",
