@@ -116,7 +116,10 @@ py::tuple train(const py::list& clouds, const std::vector<std::string>& classes,
   TrainingClouds prepared;
   detect::TrainedModel trained;
   History history;
+  std::vector<detect::NamedLabels> labels;
+  for (const LabelledArrays& one : arrays) labels.push_back({one.name, numbers(one.labels)});
   run_job({progress, threads}, [&](const Progress* job) {
+    detect::check_labels(labels, options);
     prepare(arrays, keep_orientation, options.descriptor, prepared, job);
     trained = detect::train(
         name, prepared.clouds, options,

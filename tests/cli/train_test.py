@@ -213,6 +213,21 @@ class Train(CliTest):
         run("train", self.folder / "a.ply", "-o", self.folder / "m.safetensors", "--classes", 2,
             "--epochs", 1)
 
+    def test_tells_what_labels_lack_before_the_work(self):
+        p, n, label = cube(1000)
+        a, b = self.folder / "a.ply", self.folder / "b.ply"
+        write_ply(a, p, labels=label)
+        for its, classes, said in ((np.full(1000, 255), 3, f"{b}: no labelled point (0 non-edge, "),
+                                   (np.where(label == 2, 255, label), 2, "no point is labelled sharp-edge (2)"),
+                                   (np.where(label == 0, 255, label), 3, "no point is labelled non-edge (0)"),
+                                   (np.where(label == 1, 0, label), 3, "no point is labelled smooth-edge (1); --c")):
+            write_ply(b, p, labels=its)
+            inputs = (a, b) if said.startswith(str(b)) else (b,)
+            done = run("train", *inputs, "-o", self.folder / "m.safetensors", "--classes", classes,
+                       "--progress", "plain", expect=4)
+            self.assertIn(said, done.stderr)
+            self.assertNotIn(" %", done.stderr)
+
     def test_counts_the_labels_that_are_no_classes(self):
         p, n, label = cube(1000)
         label[:30] = 5

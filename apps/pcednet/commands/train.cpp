@@ -5,9 +5,9 @@
 #include <memory>
 #include <optional>
 
-#include "batch.h"
 #include "commands.h"
 #include "descriptor_options.h"
+#include "labelled_files.h"
 #include "models.h"
 #include "number_options.h"
 #include "pcednet/core/error.h"
@@ -17,12 +17,10 @@
 #include "pcednet/detect/train.h"
 #include "pcednet/io/text_scan.h"
 #include "prepare.h"
-#include "result_plan.h"
 #include "stage_clock.h"
 #include "workbench/annotate/known_inputs.h"
 #include "workbench/annotate/learn.h"
 #include "workbench/annotate/start_file.h"
-#include "workbench/truth/read_labelled.h"
 
 namespace pcednet::app {
 namespace {
@@ -142,79 +140,48 @@ detect::TrainedModel train_project(const TrainArguments& arguments, const Common
                                  epoch_reports(common), &progress);
 }
 
-/// Clouds with own classes, as the annotator saves them, give a model with these classes.
-void take_classes(const std::filesystem::path& input, const PointCloud& cloud, bool is_first,
-                  detect::TrainOptions& options) {
-  const ClassTable table = classes_of(cloud.comments);
-  if (is_first) options.table = table;
-  if (table == options.table) return;
-  throw Error(ErrorKind::kInsufficient,
-              fmt::format("{}: its classes are {}, those of the first cloud {}", input.string(),
-                          pcednet::names_of(table), pcednet::names_of(options.table)));
+std::vector<detect::NamedLabels> labels_of(std::span<const LabelledFile> files) {
+  std::vector<detect::NamedLabels> labels;
+  for (const auto& [path, cloud] : files) labels.push_back({path.string(), cloud.labels});
+  return labels;
 }
 
-/// Labels of other classes are not learnt from.
-void warn_of_labels(const std::filesystem::path& input, const PointCloud& cloud,
-                    const ClassTable& table) {
-  const auto others = std::count_if(
-      cloud.labels.begin(), cloud.labels.end(),
-      [&](std::uint8_t label) { return label >= table.size() && label != kUnlabelled; });
-  if (others == 0) return;
-  warn(fmt::format("{}: {} labels are none of the classes {}: taken as unlabelled", input.string(),
-                   others, pcednet::names_of(table)));
+std::vector<detect::NamedLabels> labels_of(std::span<const detect::TrainingCloud> clouds) {
+  std::vector<detect::NamedLabels> labels;
+  for (const detect::TrainingCloud& cloud : clouds) labels.push_back({cloud.name, cloud.labels});
+  return labels;
 }
 
-/// Three classes cannot be learnt from labels of two.
-void check_has_smooth(const std::vector<detect::TrainingCloud>& clouds,
-                      const detect::TrainOptions& options) {
-  if (has_own_classes(options.table) || options.architecture.classes != 3) return;
-  const auto has = [&](EdgeClass wanted) {
-    return std::any_of(clouds.begin(), clouds.end(), [&](const auto& cloud) {
-      return std::find(cloud.labels.begin(), cloud.labels.end(), wanted) != cloud.labels.end();
-    });
-  };
-  if (has(kSmoothEdge) || !has(kSharpEdge)) return;
-  throw Error(
-      ErrorKind::kInsufficient,
-      "train: no point is labelled smooth-edge (1); --classes 2 learns sharp-edge (2) alone");
+void warn_of_steps(const LabelledFile& file, const detect::PreparedCloud& prepared,
+                   const gls::ScaleRange& range) {
+  warn_of_rounding(file.path, file.cloud.position_type, prepared, range,
+                   [&] { return detect::smallest_scale(prepared, range); });
 }
 
 detect::TrainedModel train_clouds(const TrainArguments& arguments, const Common& common,
                                   const Progress& progress) {
   auto options = options_of(arguments);
-  const auto inputs = without_results(expand_inputs(arguments.inputs));
   std::optional<detect::CloudKind> only;
   if (!arguments.only.empty()) only = take_kind("--only", arguments.only);
-  std::vector<io::LoadedCloud> loaded;
-  loaded.reserve(inputs.size());  // the training clouds refer to them
+  // The training clouds refer to the files.
+  std::vector<LabelledFile> files =
+      read_labelled_files(arguments.inputs, arguments.no_normals, options, progress);
+  if (!only) check_can_learn(labels_of(files), options);
   std::vector<detect::TrainingCloud> clouds;
-  for (const auto& input : inputs) {
-    with_name_in_errors(input, [&] {
-      loaded.push_back(truth::read_labelled(input));
-      throw_if_cancelled(&progress);
-    });
-    warn_all(input, loaded.back().warnings);
-    PointCloud& cloud = loaded.back().cloud;
-    if (arguments.no_normals) cloud.normals.clear();
-    take_classes(input, cloud, loaded.size() == 1, options);
-    warn_of_labels(input, cloud, options.table);
-    check_scales(input, bounding_box(cloud.positions), options.descriptor);
-    auto prepared = prepare(input, cloud, arguments.preparation, progress);
-    const bool is_wanted = !only || only->has(detect::traits_of(prepared, options.descriptor));
-    const gls::ScaleRange& range = options.descriptor.range;
-    if (is_wanted) {
-      warn_of_rounding(input, cloud.position_type, prepared, range,
-                       [&] { return detect::smallest_scale(prepared, range); });
-      clouds.push_back({input.string(), std::move(prepared), cloud.labels});
-    } else {
-      loaded.pop_back();
+  for (LabelledFile& file : files) {
+    auto prepared = prepare(file.path, file.cloud, arguments.preparation, progress);
+    if (only && !only->has(detect::traits_of(prepared, options.descriptor))) {
+      file.cloud = {};
+      continue;
     }
+    warn_of_steps(file, prepared, options.descriptor.range);
+    clouds.push_back({file.path.string(), std::move(prepared), file.cloud.labels});
   }
   if (clouds.empty()) {
     throw Error(ErrorKind::kInsufficient,
                 fmt::format("train: no cloud is of the kind --only {}", arguments.only));
   }
-  check_has_smooth(clouds, options);
+  if (only) check_can_learn(labels_of(clouds), options);
   return detect::train(std::filesystem::path(arguments.output).stem().string(), clouds, options,
                        epoch_reports(common), &progress);
 }

@@ -16,12 +16,14 @@
 namespace pcednet::detect {
 namespace {
 
-void check_labels(const TrainingCloud& cloud, const ClassTable& table) {
-  if (cloud.labels.size() != cloud.cloud.positions.size()) {
-    throw Error(ErrorKind::kInsufficient,
-                fmt::format("{}: {} labels for {} points", cloud.name, cloud.labels.size(),
-                            cloud.cloud.positions.size()));
-  }
+void check_label_count(const TrainingCloud& cloud) {
+  if (cloud.labels.size() == cloud.cloud.positions.size()) return;
+  throw Error(ErrorKind::kInsufficient,
+              fmt::format("{}: {} labels for {} points", cloud.name, cloud.labels.size(),
+                          cloud.cloud.positions.size()));
+}
+
+void check_is_labelled(const NamedLabels& cloud, const ClassTable& table) {
   if (std::any_of(cloud.labels.begin(), cloud.labels.end(),
                   [&](std::uint8_t label) { return is_learnt_from(label, table); })) {
     return;
@@ -56,6 +58,27 @@ std::vector<std::uint8_t> classes_of(const nn::Architecture& architecture, const
   if (architecture.classes == 3) return {kNonEdge, kSmoothEdge, kSharpEdge};
   throw Error(ErrorKind::kUsage,
               fmt::format("{} classes: 2 or 3 are possible", architecture.classes));
+}
+
+/// The classes of the outputs of a network that learns from points with these labels. Throws
+/// Error(kInsufficient) if a class has none.
+std::vector<std::uint8_t> classes_to_learn(std::span<const std::uint8_t> labels,
+                                           const TrainOptions& options) {
+  EdgeModel model;
+  model.table = options.table;
+  model.classes = classes_of(options.architecture, options.table, labels);
+  if (model.classes.size() == 1) {
+    const std::uint8_t only = model.classes.front();
+    throw Error(ErrorKind::kInsufficient,
+                fmt::format("all labelled points are {} ({}): two classes are needed",
+                            model.table[only].name, only));
+  }
+  std::vector<std::uint8_t> outputs;
+  for (const std::uint8_t label : labels) outputs.push_back(output_of(label, model));
+  if (const auto missing = missing_class(model.classes, model.table, outputs); !missing.empty()) {
+    throw Error(ErrorKind::kInsufficient, fmt::format("no point is labelled {}", missing));
+  }
+  return model.classes;
 }
 
 std::vector<std::string> class_names(const EdgeModel& model) {
@@ -99,6 +122,17 @@ std::map<std::string, std::string> summary_of(const nn::TrainResult& result,
 
 }  // namespace
 
+void check_labels(std::span<const NamedLabels> clouds, const TrainOptions& options) {
+  std::set<std::uint8_t> present;
+  for (const NamedLabels& cloud : clouds) {
+    check_is_labelled(cloud, options.table);
+    for (const std::uint8_t label : cloud.labels) {
+      if (is_learnt_from(label, options.table)) present.insert(label);
+    }
+  }
+  classes_to_learn(std::vector<std::uint8_t>(present.begin(), present.end()), options);
+}
+
 Samples make_samples(std::span<const TrainingCloud> clouds,
                      const gls::ScaleSpaceOptions& descriptor, const Progress* progress,
                      const ClassTable& table) {
@@ -109,7 +143,8 @@ Samples make_samples(std::span<const TrainingCloud> clouds,
   Stage stage(progress, "describe", samples.points);
   for (const TrainingCloud& cloud : clouds) {
     with_name_in_errors(cloud.name, [&] { check_consistent(cloud.cloud); });
-    check_labels(cloud, table);
+    check_label_count(cloud);
+    check_is_labelled({cloud.name, cloud.labels}, table);
     const auto positions = cloud.cloud.positions;
     const auto add_octave = [&](const gls::ScaleSpace& space, std::span<const std::uint32_t> all) {
       if (const auto note = gls::note_on(descriptor, space.scales(), positions); !note.empty()) {
@@ -132,6 +167,9 @@ TrainedModel train(const std::string& name, std::span<const TrainingCloud> cloud
                    const TrainOptions& options,
                    const std::function<void(const nn::EpochReport&)>& on_epoch,
                    const Progress* progress) {
+  std::vector<NamedLabels> labels;
+  for (const TrainingCloud& cloud : clouds) labels.push_back({cloud.name, cloud.labels});
+  check_labels(labels, options);
   const Samples samples = make_samples(clouds, options.descriptor, progress, options.table);
   TrainedModel trained = train(name, samples, options, on_epoch, progress);
   trained.notes = samples.notes;
@@ -151,13 +189,7 @@ TrainedModel train(const std::string& name, const Samples& samples, const TrainO
   model.seed = options.training.seed;
   model.descriptor = samples.descriptor;
   model.table = options.table;
-  model.classes = classes_of(options.architecture, options.table, samples.labels);
-  if (model.classes.size() == 1) {
-    const std::uint8_t only = model.classes.front();
-    throw Error(ErrorKind::kInsufficient,
-                fmt::format("all labelled points are {} ({}): two classes are needed",
-                            model.table[only].name, only));
-  }
+  model.classes = classes_to_learn(samples.labels, options);
 
   nn::Architecture architecture = options.architecture;
   architecture.classes = static_cast<int>(model.classes.size());
@@ -174,9 +206,6 @@ TrainedModel train(const std::string& name, const Samples& samples, const TrainO
   std::vector<std::uint8_t> outputs;
   for (const std::uint8_t label : samples.labels) {
     outputs.push_back(output_of(label, model));
-  }
-  if (const auto missing = missing_class(model.classes, model.table, outputs); !missing.empty()) {
-    throw Error(ErrorKind::kInsufficient, fmt::format("no point is labelled {}", missing));
   }
   nn::TrainResult result = nn::distil(architecture, {samples.values, outputs}, training,
                                       options.teachers, on_epoch, progress);

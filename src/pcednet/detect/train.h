@@ -18,6 +18,12 @@ struct TrainingCloud {
                                          ///< out, kBoundary counts as kNonEdge
 };
 
+/// The labels of a cloud, as in TrainingCloud.
+struct NamedLabels {
+  std::string name;
+  std::span<const std::uint8_t> labels;
+};
+
 struct TrainOptions {
   gls::ScaleSpaceOptions descriptor;  ///< if not `rounded`, that of training alone: models round
   nn::Architecture architecture;      ///< scales and features are set from `descriptor`
@@ -29,6 +35,10 @@ struct TrainOptions {
   int teachers = 0;                                ///< networks to train first and distil from
   bool context = false;  ///< train a context network too, where clouds are given
 };
+
+/// Throws Error(kInsufficient) if no network can learn from the labels: naming the cloud if it has
+/// no labelled point, otherwise the class if no point of any cloud has it.
+void check_labels(std::span<const NamedLabels> clouds, const TrainOptions& options);
 
 /// A scale-space matrix row and a label per labelled point of the clouds, cloud by cloud, each in
 /// an order independent of the numbering of its points.

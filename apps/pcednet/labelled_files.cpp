@@ -1,0 +1,82 @@
+#include "labelled_files.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "batch.h"
+#include "common.h"
+#include "descriptor_options.h"
+#include "pcednet/core/error.h"
+#include "result_plan.h"
+#include "workbench/truth/read_labelled.h"
+
+namespace pcednet::app {
+namespace {
+
+/// Clouds with own classes, as the annotator saves them, give a model with these classes.
+void take_classes(const std::filesystem::path& input, const PointCloud& cloud, bool is_first,
+                  detect::TrainOptions& options) {
+  const ClassTable table = classes_of(cloud.comments);
+  if (is_first) options.table = table;
+  if (table == options.table) return;
+  throw Error(ErrorKind::kInsufficient,
+              fmt::format("{}: its classes are {}, those of the first cloud {}", input.string(),
+                          pcednet::names_of(table), pcednet::names_of(options.table)));
+}
+
+/// Labels of other classes are not learnt from.
+void warn_of_labels(const std::filesystem::path& input, const PointCloud& cloud,
+                    const ClassTable& table) {
+  const auto others = std::count_if(
+      cloud.labels.begin(), cloud.labels.end(),
+      [&](std::uint8_t label) { return label >= table.size() && label != kUnlabelled; });
+  if (others == 0) return;
+  warn(fmt::format("{}: {} labels are none of the classes {}: taken as unlabelled", input.string(),
+                   others, pcednet::names_of(table)));
+}
+
+/// Three classes cannot be learnt from labels of two.
+void check_has_smooth(std::span<const detect::NamedLabels> clouds,
+                      const detect::TrainOptions& options) {
+  if (has_own_classes(options.table) || options.architecture.classes != 3) return;
+  const auto has = [&](EdgeClass wanted) {
+    return std::any_of(clouds.begin(), clouds.end(), [&](const auto& cloud) {
+      return std::find(cloud.labels.begin(), cloud.labels.end(), wanted) != cloud.labels.end();
+    });
+  };
+  if (has(kSmoothEdge) || !has(kSharpEdge)) return;
+  throw Error(
+      ErrorKind::kInsufficient,
+      "train: no point is labelled smooth-edge (1); --classes 2 learns sharp-edge (2) alone");
+}
+
+}  // namespace
+
+std::vector<LabelledFile> read_labelled_files(const std::vector<std::string>& inputs,
+                                              bool no_normals, detect::TrainOptions& options,
+                                              const Progress& progress) {
+  std::vector<LabelledFile> files;
+  for (const auto& input : without_results(expand_inputs(inputs))) {
+    with_name_in_errors(input, [&] {
+      io::LoadedCloud loaded = truth::read_labelled(input);
+      warn_all(input, loaded.warnings);
+      files.push_back({input, std::move(loaded.cloud)});
+    });
+    throw_if_cancelled(&progress);
+    PointCloud& cloud = files.back().cloud;
+    if (no_normals) cloud.normals.clear();
+    take_classes(input, cloud, files.size() == 1, options);
+    warn_of_labels(input, cloud, options.table);
+    check_scales(input, bounding_box(cloud.positions), options.descriptor);
+  }
+  return files;
+}
+
+void check_can_learn(std::span<const detect::NamedLabels> labels,
+                     const detect::TrainOptions& options) {
+  check_has_smooth(labels, options);
+  detect::check_labels(labels, options);
+}
+
+}  // namespace pcednet::app

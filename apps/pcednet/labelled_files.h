@@ -1,0 +1,31 @@
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "pcednet/cloud/point_cloud.h"
+#include "pcednet/core/progress.h"
+#include "pcednet/detect/train.h"
+
+namespace pcednet::app {
+
+/// A file of a training.
+struct LabelledFile {
+  std::filesystem::path path;
+  PointCloud cloud;
+};
+
+/// Reads files and folders, without results of classify, and sets the table of `options` to their
+/// classes. Warns of what is strange in them. Throws as read_labelled, and Error(kInsufficient)
+/// naming the file whose classes are not those of the first.
+std::vector<LabelledFile> read_labelled_files(const std::vector<std::string>& inputs,
+                                              bool no_normals, detect::TrainOptions& options,
+                                              const Progress& progress);
+
+/// Throws Error(kInsufficient) if the labels do not allow the training.
+void check_can_learn(std::span<const detect::NamedLabels> labels,
+                     const detect::TrainOptions& options);
+
+}  // namespace pcednet::app
