@@ -176,6 +176,12 @@ class Study(CliTest):
             self.assertEqual(result["median"]["mcc"], 1.0)
             self.assertEqual([c["name"] for c in result["clouds"]], ["cube3"])
 
+    def test_generates_training_clouds_only_for_networks(self):
+        command = ("study", "methods", "--test", "a=test", "--progress", "plain", "-o", "out")
+        said = run(*command, "--methods", "ca", cwd=self.folder).stderr
+        self.assertNotIn("generate ", said)
+        self.check_schema(self.read("methods"), "methods")
+
     def test_refuses_what_makes_no_sense(self):
         self.assertIn("no experiment nonsense",
                       self.study("nonsense", "--test", "a=test", expect=2).stderr)

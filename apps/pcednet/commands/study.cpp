@@ -10,6 +10,7 @@
 #include <memory>
 #include <optional>
 #include <set>
+#include <variant>
 
 #include "batch.h"
 #include "commands.h"
@@ -78,9 +79,11 @@ study::CloudSet read_set(const std::string& name, const std::vector<std::string>
   return set;
 }
 
-study::CloudSet generated_set(const Progress& progress) {
+/// Without clouds if they are not needed.
+study::CloudSet generated_set(bool is_needed, const Progress& progress) {
   constexpr std::uint64_t kSeed = 1;
   study::CloudSet set{.name = "default"};
+  if (!is_needed) return set;
   const std::vector<shapes::Recipe> recipes = shapes::default_recipes(kSeed);
   Stage stage(&progress, "generate", recipes.size());
   for (const shapes::Recipe& recipe : recipes) {
@@ -91,7 +94,7 @@ study::CloudSet generated_set(const Progress& progress) {
   return set;
 }
 
-study::StudyData read_data(const StudyArguments& arguments, const Progress& progress) {
+study::StudyData read_data(const StudyArguments& arguments, bool trains, const Progress& progress) {
   study::StudyData data;
   std::vector<std::string> order;
   std::map<std::string, std::vector<std::string>> inputs;
@@ -119,7 +122,7 @@ study::StudyData read_data(const StudyArguments& arguments, const Progress& prog
     data.tests.push_back(std::make_shared<const study::CloudSet>(std::move(set)));
   }
   data.training = std::make_shared<const study::CloudSet>(
-      arguments.training.empty() ? generated_set(progress)
+      arguments.training.empty() ? generated_set(trains, progress)
                                  : read_set("training", arguments.training, progress));
   return data;
 }
@@ -256,15 +259,20 @@ void run_studies(const StudyArguments& arguments, const Common& common) {
     choose_methods(experiments.back(), arguments.methods);
     study::check_study_file(arguments.folder, name, file.command, common.overwrite());
   }
-  const auto needs_data = [](const study::Variant& variant) { return !variant.test; };
-  const bool tests_needed = std::any_of(experiments.begin(), experiments.end(), [&](const auto& e) {
-    return std::any_of(e.variants.begin(), e.variants.end(), needs_data);
+  const auto any_variant = [&](bool (*is_so)(const study::Variant&)) {
+    return std::any_of(experiments.begin(), experiments.end(), [&](const auto& e) {
+      return std::any_of(e.variants.begin(), e.variants.end(), is_so);
+    });
+  };
+  const bool tests = any_variant([](const study::Variant& variant) { return !variant.test; });
+  const bool trains = any_variant([](const study::Variant& variant) {
+    return !variant.training && std::holds_alternative<study::NetworkMethod>(variant.method);
   });
-  if (tests_needed && arguments.tests.empty()) {
+  if (tests && arguments.tests.empty()) {
     throw Error(ErrorKind::kUsage, "study: give labelled clouds to test on: --test NAME=IN");
   }
   const Progress progress = console_progress(common);
-  const auto data = read_data(arguments, progress);
+  const auto data = read_data(arguments, trains, progress);
   const study::Cache cache(fs::path(arguments.folder) / "cache");
   study::RunOptions run{.watts_per_core = arguments.core_watts};
   run.seeds = !arguments.seeds.empty() ? arguments.seeds
