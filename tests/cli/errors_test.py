@@ -20,9 +20,10 @@ class Errors(CliTest):
     def classify_fails(self, code, name, content):
         path = self.folder / name
         path.write_bytes(content)
-        self.fails(code, "classify", path, naming=path)
+        said = self.fails(code, "classify", path, naming=path)
         self.assertEqual(os.listdir(self.folder), [name])
         path.unlink()
+        return said
 
     def test_usage(self):
         run("--help")
@@ -37,7 +38,8 @@ class Errors(CliTest):
 
     def test_unreadable_input(self):
         self.fails(3, "classify", self.folder / "none.ply", naming="none.ply")
-        self.classify_fails(3, "empty.ply", b"")
+        for name in ("empty.ply", "empty.laz", "empty.csv"):
+            self.assertIn("the file is empty", self.classify_fails(3, name, b""))
         self.classify_fails(3, "text.ply", b"this is no PLY\n")
         self.classify_fails(3, "unknown.xyzzy", b"1 2 3\n")
         self.classify_fails(3, "bad.xyz", b"1 2 3\n4 five 6\n")

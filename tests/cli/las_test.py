@@ -290,7 +290,7 @@ class Las(CliTest):
         """One process reads all files of a folder, the first of them damaged: the names of those that it refuses
         because of a byte or a record, and what it says."""
         said = run("classify", folder, "--out-dir", self.folder / "out", expect=3).stderr
-        reasons = r"byte \d+: |record |not a LAS file: "
+        reasons = r"byte \d+: |record |not a LAS file: |the file is empty"
         return set(re.findall(rf"^pcednet: {re.escape(str(folder))}/(\S+): (?:{reasons})", said, re.M)), said
 
     def test_refuses_every_truncation_but_those_behind_the_points(self):

@@ -200,7 +200,11 @@ TEST(ReadCloud, SaysWhatItWouldAccept) {
     return error_of(ErrorKind::kUnreadable, [&] { scratch.read(name, bytes); });
   };
   EXPECT_TRUE(contains(message("a.las", "LASF"), "ends within the LAS header"));
-  EXPECT_TRUE(contains(message("a.laz", ""), "must begin with LASF"));
+  EXPECT_TRUE(contains(message("a.laz", "LA"), "must begin with LASF"));
+  for (const char* name :
+       {"a.ply", "a.pcd", "a.las", "a.e57", "a.obj", "a.stl", "a.xyz", "a.csv"}) {
+    EXPECT_TRUE(contains(message(name, ""), std::string(name) + ": the file is empty")) << name;
+  }
   EXPECT_TRUE(contains(message("a.e57", "ASTM-E57"), "ends at byte"));
   EXPECT_TRUE(contains(message("a.step", "solid"), "accepted: .ply"));
   EXPECT_TRUE(contains(message("a", "solid"), "accepted: .ply"));

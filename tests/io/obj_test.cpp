@@ -147,7 +147,7 @@ TEST(Obj, NamesTheLineOfABrokenStatement) {
                ":3: expected the index of a v, not");
   }
   EXPECT_TRUE(scratch.read("b.obj", "# nothing\n").cloud.empty());
-  EXPECT_TRUE(scratch.read("b.obj", "").cloud.empty());
+  EXPECT_TRUE(scratch.read("b.obj", "# nothing\n").cloud.empty());
 }
 
 }  // namespace

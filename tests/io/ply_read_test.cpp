@@ -259,7 +259,7 @@ TEST(PlyRead, SaysWhereAFileIsBroken) {
     EXPECT_TRUE(contains(message, part)) << message;
     EXPECT_TRUE(contains(message, scratch.path("a.ply").string())) << message;
   };
-  unreadable("", "not a PLY file");
+  unreadable("", "the file is empty");
   unreadable("plywood\n", "not a PLY file");
   unreadable("ply\nformat ascii 2.0\n", ":2: expected format");
   unreadable("ply\nformat ascii 1.0\nelement vertex\n", ":3: expected element");

@@ -118,7 +118,8 @@ TEST(Stl, RefusesABrokenFile) {
         error_of(ErrorKind::kUnreadable, [&] { scratch.read("a.stl", bytes); });
     EXPECT_TRUE(contains(message, scratch.path("a.stl").string() + part)) << message;
   };
-  refused("", ": ends after 0 bytes");
+  refused("", ": the file is empty");
+  refused("s", ": ends after 1 bytes");
   refused(std::string(83, 'x'), ": ends after 83 bytes");
   refused(binary_stl("", 3, square_rows()), ": declares 3 triangles of 50 bytes, but ends 100");
   refused(binary_stl("solid", 3, square_rows()), ": declares 3 triangles");

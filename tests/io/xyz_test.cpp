@@ -382,7 +382,7 @@ TEST(Xyz, NamesTheLineThatDoesNotFit) {
   unreadable("3\n1 2 3\n4 5 6\n", ": declares 3 points but holds 2");
   unreadable("7\n", ": declares 7 points but holds 0");
   unreadable("7\n8\n", ":2: expected at least three numbers");
-  for (const char* nothing : {"", "\n\n", "# only\n####\n//\n", "x y z\n", "0\n"}) {
+  for (const char* nothing : {"\n", "\n\n", "# only\n####\n//\n", "x y z\n", "0\n"}) {
     EXPECT_TRUE(scratch.read("b.xyz", nothing).cloud.empty()) << nothing;
   }
 }

@@ -91,7 +91,7 @@ TEST_F(NormalsCommand, TurnsAsAsked) {
 
 TEST_F(NormalsCommand, RefusesWithTheCodeOfTheCause) {
   write("in.xyz", sphere(50, 1.0), 0.0);
-  write("empty.xyz", {}, 0.0);
+  std::ofstream(path("empty.xyz")) << "# x y z\n";
   const std::string in = path("in.xyz"), out = " -o " + path("out.xyz");
   EXPECT_EQ(run(in), 2);
   EXPECT_EQ(run(in + " --neighbours 1" + out), 2);

@@ -114,6 +114,7 @@ std::string stem_of(const fs::path& path) {
 }
 
 const Format& format_of(const io::InputFile& file) {
+  if (file.size() == 0) throw io::unreadable(file.path(), "the file is empty");
   const std::string start = file.text(0, 16);
   for (const Format& format : all_formats()) {
     if (format.begins && format.begins(start)) return format;

@@ -52,7 +52,7 @@ struct Format {
 std::span<const Format> all_formats();
 
 /// The format to read a file as: by its beginning, otherwise by its extension. Throws
-/// Error(kUnreadable) if there is none.
+/// Error(kUnreadable) if there is none, or the file has no bytes.
 const Format& format_of(const io::InputFile& file);
 
 /// The format to write under that name. Throws Error(kUsage) if there is none.
