@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "decimal_bounds.h"
 #include "facts.h"
 
 namespace pcednet::app {
@@ -108,7 +109,8 @@ OrderedJson json_of(const std::filesystem::path& path, const formats::CloudFacts
                       {"position_type", name_of(facts.position_type)}};
   if (facts.read < facts.points) file["points_read"] = facts.read;
   if (!facts.bounds.empty()) {
-    file["bounds"] = {{"min", json_of(facts.bounds.min)}, {"max", json_of(facts.bounds.max)}};
+    const BoundingBox bounds = decimal_bounds(facts);
+    file["bounds"] = {{"min", json_of(bounds.min)}, {"max", json_of(bounds.max)}};
   }
   if (facts.spacing) {
     file["mean_spacing"] = facts.spacing->mean;

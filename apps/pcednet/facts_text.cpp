@@ -3,6 +3,7 @@
 
 #include <array>
 
+#include "decimal_bounds.h"
 #include "facts.h"
 #include "pcednet/cloud/class_table.h"
 
@@ -157,8 +158,9 @@ std::string text_of(const std::filesystem::path& path, const formats::CloudFacts
   }
   lines.add("position type", name_of(facts.position_type));
   if (!facts.bounds.empty()) {
-    lines.add("least x y z", plain(facts.bounds.min));
-    lines.add("largest x y z", plain(facts.bounds.max));
+    const BoundingBox bounds = decimal_bounds(facts);
+    lines.add("least x y z", plain(bounds.min));
+    lines.add("largest x y z", plain(bounds.max));
   }
   if (facts.spacing) {
     lines.add("mean spacing", fmt::format("{:.6g}", facts.spacing->mean));
@@ -182,6 +184,11 @@ std::string text_of(const std::filesystem::path& path, const formats::CloudFacts
   lines.add_all("also", facts.elements);
   lines.add_all("comment", facts.comments);
   lines.add("defects", text_of(facts.defects, facts.parts > 0));
+  if (facts.parts > 0) {
+    lines.add("outliers",
+              "not counted: the file is read in parts, as it has more than two million "
+              "points");
+  }
   lines.add_all("problem", facts.problems);
   if (facts.e57) add(*facts.e57, lines);
   if (facts.las) add(*facts.las, lines);

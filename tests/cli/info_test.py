@@ -65,6 +65,16 @@ class Info(CliTest):
         self.assertEqual(facts["outliers"], outliers)
         self.assertIn(f"{outliers} of {len(p)} points are outliers", " ".join(facts["problems"]))
 
+    def test_bounds_of_las_have_the_decimals_of_its_scale(self):
+        p = np.round(np.random.default_rng(1).random((100, 3)) * 1000 + [432100, 5812000.5, 0], 3)
+        (self.folder / "a.xyz").write_text("".join("%.3f %.3f %.3f\n" % tuple(q) for q in p))
+        run("convert", self.folder / "a.xyz", "-o", self.folder / "a.las")
+        ends = {"min": p.min(axis=0).tolist(), "max": p.max(axis=0).tolist()}
+        self.assertEqual(self.info(self.folder / "a.las")[0]["bounds"], ends)
+        said = run("info", self.folder / "a.las").stdout
+        for name, end in (("least", "min"), ("largest", "max")):
+            self.assertIn(f"{name} x y z".ljust(15) + " ".join(map(repr, ends[end])) + "\n", said)
+
     def test_a_good_cloud_has_no_problems(self):
         p, n, _ = cube(500)
         write_ply(self.folder / "a.ply", p, n)
@@ -96,6 +106,7 @@ class Info(CliTest):
                 self.assertNotIn("median_spacing", part)
             said = run("info", self.folder / "a.ply").stdout
             self.assertRegex(said, r"read +800000, a sample: .* --all reads every point")
+            self.assertRegex(said, r"outliers +not counted: the file is read in parts")
         whole, = self.info(self.folder / "a.ply", "--all")
         self.assertNotIn("points_read", whole)
         self.assertEqual(whole["median_spacing"], 0.25)
