@@ -1,10 +1,14 @@
 #include "pcednet/normals/orient.h"
 #include "pcednet/core/random_vectors.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cstring>
+#include <map>
+#include <mutex>
 #include <numeric>
+#include <string>
 
 #include "normals/shapes.h"
 #include "pcednet/core/parallel.h"
@@ -232,6 +236,29 @@ TEST(Orient, CountsTurnedNormalsButNotThoseThatPointAnywhere) {
     }
     const Orientation found = orient_normals(shape.positions, normals, {.count_turned = true});
     EXPECT_EQ(found.turned, flipped ? 200u : 0u);
+  }
+}
+
+TEST(Orient, AsksOftenWhetherToStop) {
+  constexpr std::size_t kAtOnce = 1024;  // points between two questions
+  const Shape shape = sphere(20000, 1.0);
+  auto normals = with_random_signs(shape);
+  std::mutex mutex;
+  std::string at;
+  std::map<std::string, std::size_t> questions;
+  Progress progress;
+  progress.report = [&](const std::string& stage, double fraction) {
+    const std::lock_guard lock(mutex);
+    at = fmt::format("{} {}", stage, fraction);
+  };
+  progress.cancelled = [&] {
+    const std::lock_guard lock(mutex);
+    ++questions[at];
+    return false;
+  };
+  orient_normals(shape.positions, normals, {}, &progress);
+  for (const char* step : {"orientation 0", "orientation 0.25"}) {
+    EXPECT_GT(questions[step], shape.positions.size() / kAtOnce) << step;
   }
 }
 

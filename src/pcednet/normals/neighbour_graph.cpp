@@ -93,7 +93,7 @@ NeighbourChoice choose_one_count(std::span<const Vec3> positions) {
   return choose_neighbours(graph.points, spatial::NeighbourSearch(graph.points), Counts::kOne);
 }
 
-Adjacency make_adjacency(const NeighbourGraph& graph, std::size_t count) {
+Adjacency make_adjacency(const NeighbourGraph& graph, std::size_t count, const Progress* progress) {
   const std::size_t points = graph.points.size();
   count = std::min(count, graph.degree);
   Adjacency adjacency;
@@ -102,6 +102,7 @@ Adjacency make_adjacency(const NeighbourGraph& graph, std::size_t count) {
   if (count == 0) return adjacency;
   const auto by_block = [&](const auto& work) {
     parallel_blocks(points, kQueriesAtOnce, [&](std::size_t begin, std::size_t end) {
+      throw_if_cancelled(progress);
       for (std::size_t i = begin; i < end; ++i) work(i, graph.of(i).first(count));
     });
   };

@@ -55,7 +55,9 @@ struct Adjacency {
   }
 };
 
-/// Uses at most the nearest `count` neighbours of each point.
-Adjacency make_adjacency(const NeighbourGraph& graph, std::size_t count);
+/// Uses at most the nearest `count` neighbours of each point. Throws Error(kCancelled) when
+/// `progress` asks to cancel.
+Adjacency make_adjacency(const NeighbourGraph& graph, std::size_t count,
+                         const Progress* progress = nullptr);
 
 }  // namespace pcednet::normals

@@ -146,12 +146,13 @@ Orientation orient_points(NeighbourGraph& graph, std::span<Vec3> normals,
     return {};
   }
   Stage stage(progress, "orientation", 4);
-  const Adjacency links = make_adjacency(graph, static_cast<std::size_t>(options.neighbours));
+  const Adjacency links =
+      make_adjacency(graph, static_cast<std::size_t>(options.neighbours), progress);
   graph.neighbours = {};
   graph.degree = graph.choice.neighbours = 0;
   stage.advance();
-  const SignVotes votes(graph.points, normals, links);
-  Signs signs = contract(votes);
+  const SignVotes votes(graph.points, normals, links, progress);
+  Signs signs = contract(votes, progress);
   stage.advance();
   turn_outvoted_points(votes, signs.sign);
   parallel_for_each(normals.size(), [&](std::size_t i) {

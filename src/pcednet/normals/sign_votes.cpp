@@ -98,9 +98,10 @@ struct PartRows {
 
 /// Every row's link to the target of its strongest vote (the smallest of equals).
 template <typename Rows>
-std::vector<Join> strongest_links(const Rows& rows) {
+std::vector<Join> strongest_links(const Rows& rows, const Progress* progress) {
   std::vector<Join> strongest(rows.size());
   parallel_blocks(rows.size(), kVotesAtOnce, [&](std::size_t begin, std::size_t end) {
+    throw_if_cancelled(progress);
     for (std::size_t i = begin; i < end; ++i) {
       std::int64_t best = 0, size = -1;
       auto to = static_cast<std::uint32_t>(i);
@@ -179,11 +180,12 @@ class RowSums {
 
 /// The sums of votes between the parts.
 template <typename Rows>
-Links links_between_parts(const Rows& rows, const Signs& joined) {
+Links links_between_parts(const Rows& rows, const Signs& joined, const Progress* progress) {
   const Members members = members_of_parts(joined);
   Links links = {.rows = joined.parts};
   links.blocks.resize((joined.parts + kVotesAtOnce - 1) / kVotesAtOnce);
   parallel_blocks(joined.parts, kVotesAtOnce, [&](std::size_t begin, std::size_t end) {
+    throw_if_cancelled(progress);
     RowSums sums(links.blocks[begin / kVotesAtOnce]);
     for (std::size_t part = begin; part < end; ++part) {
       const auto of_part =
@@ -207,9 +209,10 @@ Links links_between_parts(const Rows& rows, const Signs& joined) {
 }  // namespace
 
 SignVotes::SignVotes(std::span<const Vec3> points, std::span<const Vec3> normals,
-                     const Adjacency& links)
+                     const Adjacency& links, const Progress* progress)
     : links_(&links), votes_(links.target.size()) {
   parallel_blocks(points.size(), kVotesAtOnce, [&](std::size_t begin, std::size_t end) {
+    throw_if_cancelled(progress);
     VoteLanes lanes = {};
     std::array<std::int32_t, VoteLanes::kMost> votes;
     for (std::size_t i = begin; i < end; ++i) {
@@ -233,12 +236,12 @@ SignVotes::SignVotes(std::span<const Vec3> points, std::span<const Vec3> normals
   });
 }
 
-Signs contract(const SignVotes& votes) {
-  std::vector<Signs> rounds = {follow_joins(strongest_links(PointRows{votes}))};
-  Links links = links_between_parts(PointRows{votes}, rounds.back());
+Signs contract(const SignVotes& votes, const Progress* progress) {
+  std::vector<Signs> rounds = {follow_joins(strongest_links(PointRows{votes}, progress))};
+  Links links = links_between_parts(PointRows{votes}, rounds.back(), progress);
   while (!links.empty()) {
-    rounds.push_back(follow_joins(strongest_links(PartRows{links})));
-    links = links_between_parts(PartRows{links}, rounds.back());
+    rounds.push_back(follow_joins(strongest_links(PartRows{links}, progress)));
+    links = links_between_parts(PartRows{links}, rounds.back(), progress);
   }
   for (std::size_t k = rounds.size() - 1; k > 0; --k) join_again(rounds[k - 1], rounds[k]);
   return std::move(rounds.front());
