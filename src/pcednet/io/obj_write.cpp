@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "pcednet/io/cloud_columns.h"
 #include "pcednet/io/obj.h"
@@ -51,9 +52,11 @@ void write_obj(const std::filesystem::path& path, const PointCloud& cloud,
 }
 
 std::vector<std::string> obj_losses(const PointCloud& cloud) {
-  std::vector<std::string> losses;
-  for (const Attribute& attribute : cloud.attributes) {
-    losses.push_back(fmt::format("attribute {}", attribute.name));
+  std::vector<std::string> losses, names;
+  for (const Attribute& attribute : cloud.attributes) names.push_back(attribute.name);
+  if (!names.empty()) {
+    losses.push_back(
+        fmt::format("attribute{} {}", names.size() == 1 ? "" : "s", fmt::join(names, ", ")));
   }
   if (cloud.has_labels()) losses.emplace_back("labels");
   return losses;
