@@ -40,6 +40,25 @@ class Inputs(CliTest):
         rows, _ = read_ply(self.folder / "out.ply")
         self.assertTrue(np.all(rows["Classification"][rows["scalar_edge_class"] == 2] == 31))
 
+    def test_positions_that_las_cannot_hold_are_refused_before_the_work(self):
+        p, _, _ = cube(500)
+        for bad, said in ((np.nan, "out.laz: point 7: LAS cannot hold positions that are not finite; PLY, PCD and text can"),
+                          (1e30, "out.laz: LAS cannot hold coordinates from -0.5 to 1e+30, not even in steps of 1; does")):
+            p[7] = bad
+            write_ply(self.folder / "a.ply", p, position_type="double")
+            for command, work in (("classify", "describe"), ("normals", "neighbours")):
+                done = run(command, self.folder / "a.ply", "-o", self.folder / "out.laz", "--progress", "plain", expect=4)
+                self.assertIn(said, done.stderr)
+                self.assertNotIn(work, done.stderr)
+            run("classify", self.folder / "a.ply", "-o", self.folder / "out.ply", "--overwrite")
+
+    def test_results_beside_the_inputs_are_no_inputs_of_another_folder(self):
+        self.cloud("in/s.ply")
+        run("classify", self.folder / "in")
+        said = run("classify", self.folder / "in", "--out-dir", self.folder / "out").stderr
+        self.assertIn("1 file left out: it is the result of another input", said)
+        self.assertEqual(self.names("out"), ["s_edges.ply"])
+
     def test_two_results_of_one_name_are_refused_and_both_inputs_named(self):
         inputs = [self.cloud("a/s.ply"), self.cloud("b/s.ply")]
         out = self.folder / "out" / "deep"

@@ -199,6 +199,7 @@ void classify_file(const Job& job, const ClassifyArguments& arguments,
   clock.begin("read");
   PointCloud cloud = read_cloud(job.input);
   check_codes_fit(arguments.codes, job, cloud);
+  formats::check_positions(job.output, cloud);
   throw_if_cancelled(&progress);
   const bool by_method = !arguments.method.name.empty();
   clock.begin(by_method ? arguments.method.name : "normals");

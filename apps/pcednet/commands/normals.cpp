@@ -90,6 +90,7 @@ void run(const NormalsRequest& request, const Common& common) {
   if (cloud.empty()) {
     throw Error(ErrorKind::kInsufficient, request.input + ": has no points");
   }
+  formats::check_positions(request.output, cloud);
   normals::PreparedNormals prepared = make_normals(request, cloud, console_progress(common));
   if (const auto scanners = scanner_of_points(cloud);
       !request.keep && !request.eye() && !scanners.empty()) {

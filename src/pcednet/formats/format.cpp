@@ -53,6 +53,7 @@ std::vector<Format> make_formats() {
        .read = io::read_las,
        .open_parts = io::open_las_parts,
        .create_parts = io::create_las_parts,
+       .check_positions = io::check_las_positions,
        .losses = io::las_losses,
        .keeps = io::is_las_element},
       {.name = "E57",

@@ -36,6 +36,8 @@ struct Format {
   std::unique_ptr<io::PartWriter> (*create_parts)(const std::filesystem::path& path,
                                                   const io::PartOutline& outline,
                                                   const io::WriteOptions& options) = nullptr;
+  /// Throws if it cannot hold the positions; null if it holds all.
+  void (*check_positions)(const std::filesystem::path& path, const PointCloud& cloud) = nullptr;
   /// The data of a cloud, foreign elements aside, that it cannot hold; null if it holds everything.
   std::vector<std::string> (*losses)(const std::filesystem::path& path,
                                      const PointCloud& cloud) = nullptr;

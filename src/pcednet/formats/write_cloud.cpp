@@ -13,6 +13,11 @@ void write_cloud(const std::filesystem::path& path, const PointCloud& cloud,
   writer->commit();
 }
 
+void check_positions(const std::filesystem::path& path, const PointCloud& cloud) {
+  const Format& format = format_for(path);
+  if (format.check_positions) format.check_positions(path, cloud);
+}
+
 std::vector<std::string> losses(const std::filesystem::path& path, const PointCloud& cloud) {
   const Format& format = format_for(path);
   std::vector<std::string> lost;

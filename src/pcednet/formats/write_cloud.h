@@ -20,6 +20,10 @@ namespace pcednet::formats {
 void write_cloud(const std::filesystem::path& path, const PointCloud& cloud,
                  const io::WriteOptions& options = {});
 
+/// Throws the errors of write_cloud for positions and the extension: before work on the cloud whose
+/// result is to be written.
+void check_positions(const std::filesystem::path& path, const PointCloud& cloud);
+
 /// The parts of `cloud` that the format of the extension cannot hold, as phrases; empty if it holds
 /// everything. Throws Error(kUsage) like write_cloud.
 std::vector<std::string> losses(const std::filesystem::path& path, const PointCloud& cloud);

@@ -204,6 +204,21 @@ TEST(LasSteps, BecomeFinerWithTheDigitsAndAreReportedWhereTheyEnd) {
   EXPECT_EQ(scale_of("517346.67890123", 1), 1e-5);  // 32 bits reach 4,295 m in steps of a micron
 }
 
+TEST(LasSteps, AreNotAboveOne) {
+  const Scratch scratch;
+  const auto write = [&](double far) {
+    PointCloud cloud;
+    cloud.positions = {Vec3(0.25, 0, 0), Vec3(far, 1, 2)};
+    formats::write_cloud(scratch.path("out.las"), cloud, {.overwrite = Overwrite::kYes});
+  };
+  write(4e9);
+  EXPECT_EQ(get_number<double>(bytes_of(scratch.path("out.las")), 131), 1.0);
+  for (const double far : {5e9, 1e30, -1e300}) {
+    const std::string said = error_of(ErrorKind::kInsufficient, [&] { write(far); });
+    EXPECT_TRUE(contains(said, "out.las: LAS cannot hold coordinates from ")) << said;
+  }
+}
+
 TEST(LasColours, ThatOnlyShowTheClassesAreNotMissed) {
   const Scratch scratch;
   PointCloud cloud = scratch.read("in.las", las_bytes({6, 4, las_test_rows(6, 3)})).cloud;

@@ -36,12 +36,16 @@ std::unique_ptr<PartReader> open_las_parts(std::unique_ptr<InputFile> file, std:
 /// LAS 1.4 of point format 6, 7 or 8, with its points reordered. Attributes of any type with the
 /// name of a field, in any capitals, go into it if it holds all their values. Others become extra
 /// bytes: scalar_edge_class, scalar_p_sharp and scalar_p_smooth as edge_class, p_sharp and
-/// p_smooth, names of more than 32 bytes cut. append() throws Error(kInsufficient) for positions
+/// p_smooth, names of more than 32 bytes cut. Throws Error(kInsufficient) for coordinates so far
+/// apart that steps would be above 1. append() throws Error(kInsufficient) for positions
 /// that are not finite, Error(kFailure) for a number that its field cannot hold; both name the
 /// point.
 std::unique_ptr<PartWriter> create_las_parts(const std::filesystem::path& path,
                                              const PartOutline& outline,
                                              const WriteOptions& options);
+
+/// Throws the error of append() for the first position that cannot be written.
+void check_las_positions(const std::filesystem::path& path, const PointCloud& cloud);
 
 /// The coordinate system of a cloud that was read from LAS, or from a PLY file made from one: that
 /// of its WKT, otherwise of its GeoTIFF keys. Where these state no unit, it is the one that PROJ

@@ -63,17 +63,28 @@ BoundingBox box_of(const PartOutline& outline) {
 }
 
 LasFile with_digits(LasFile file, int digits) {
-  const double scale = digits < 0 ? std::pow(10.0, -digits) : 1.0 / std::pow(10.0, digits);
+  const double scale = 1.0 / std::pow(10.0, digits);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     put_number(file.header, las_header::kScales + 8 * axis, scale);
   }
   return file;
 }
 
+/// Without this, one point far away, such as (1e30, 0, 0) for no data, takes all others the digits.
+[[noreturn]] void refuse_extent(const std::filesystem::path& path, const BoundingBox& box) {
+  int axis = 0;
+  (box.max - box.min).maxCoeff(&axis);
+  throw Error(ErrorKind::kInsufficient,
+              fmt::format("{}: LAS cannot hold coordinates from {} to {}, not even in steps of 1; "
+                          "does one of them stand for no data?",
+                          path.string(), box.min[axis], box.max[axis]));
+}
+
 /// Offsets at whole numbers, and the coarsest step of at most 0.1 mm that keeps every coordinate
 /// exactly; if none does, the finest whose range 32 bits can hold. Coarser only if necessary for
-/// the range.
-bool choose_scale(const PartOutline& outline, const BoundingBox& box, LasFile& file) {
+/// the range, and never above 1.
+bool choose_scale(const std::filesystem::path& path, const PartOutline& outline,
+                  const BoundingBox& box, LasFile& file) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const int a = static_cast<int>(axis);
     const double middle = box.empty() ? 0.0 : std::round(box.min[a] / 2 + box.max[a] / 2);
@@ -87,7 +98,8 @@ bool choose_scale(const PartOutline& outline, const BoundingBox& box, LasFile& f
   }
   if (candidates.empty()) {
     int digits = kLeastDigits - 1;
-    while (digits > -300 && !fits(box, with_digits({.header = file.header}, digits))) --digits;
+    while (digits >= 0 && !fits(box, with_digits({.header = file.header}, digits))) --digits;
+    if (digits < 0) refuse_extent(path, box);
     file = with_digits(std::move(file), digits);
     return all_exact(outline, file);
   }
@@ -161,7 +173,7 @@ bool labels_are_classes(const PartOutline& outline) {
   return same;
 }
 
-LasChoices choices_of(const PartOutline& outline) {
+LasChoices choices_of(const std::filesystem::path& path, const PartOutline& outline) {
   LasChoices choices{.file = attached_las_file(*outline.first),
                      .label_is_class = labels_are_classes(outline)};
   const bool is_new = choices.is_new = choices.file.header.empty();
@@ -169,7 +181,7 @@ LasChoices choices_of(const PartOutline& outline) {
   if (is_new) choices.file = new_file_for(outline);
   const BoundingBox box = box_of(outline);
   if (is_new || !fits(box, choices.file)) {
-    choices.exact = choose_scale(outline, box, choices.file);
+    choices.exact = choose_scale(path, outline, box, choices.file);
   } else {
     choices.exact = all_exact(outline, choices.file);
   }
@@ -184,7 +196,7 @@ double las_step(const LasFile& file, std::size_t axis, double coordinate) {
 }
 
 LasChoices las_choices(const std::filesystem::path& path, const PartOutline& outline) {
-  LasChoices choices = choices_of(outline);
+  LasChoices choices = choices_of(path, outline);
   if (is_copc_name(path)) choose_copc(choices, *outline.first);
   if (outline.is_las) return choices;
   choices.sources = find_las_sources(choices.file, choices.is_new, outline);

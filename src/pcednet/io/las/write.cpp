@@ -23,6 +23,18 @@ namespace {
   throw Error(kind, fmt::format("{}: point {}: {}", path.string(), point, what));
 }
 
+/// The integer of a coordinate. Throws if LAS has none for it.
+double checked_step(const std::filesystem::path& path, const LasFile& file, std::size_t axis,
+                    double coordinate, std::size_t point) {
+  const double step = las_step(file, axis, coordinate);
+  if (std::isfinite(step)) return step;
+  refuse(
+      path, ErrorKind::kInsufficient, point,
+      std::isfinite(coordinate)
+          ? fmt::format("{} does not fit into 32 bits in steps of {}", coordinate, file.scale(axis))
+          : "LAS cannot hold positions that are not finite; PLY, PCD and text can");
+}
+
 /// Puts the points [begin, end) of a part behind `out` as records. `before`: points of earlier
 /// parts.
 void encode(const std::filesystem::path& path, const PointCloud& cloud, const LasLayout& layout,
@@ -32,14 +44,7 @@ void encode(const std::filesystem::path& path, const PointCloud& cloud, const La
   for (std::size_t i = begin; i < end; ++i) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const double coordinate = cloud.positions[i][static_cast<int>(axis)];
-      const double step = las_step(layout.file, axis, coordinate);
-      if (!std::isfinite(step)) {
-        refuse(path, ErrorKind::kInsufficient, before + i,
-               std::isfinite(coordinate)
-                   ? fmt::format("{} does not fit into 32 bits in steps of {}", coordinate,
-                                 layout.file.scale(axis))
-                   : "LAS cannot hold positions that are not finite");
-      }
+      const double step = checked_step(path, layout.file, axis, coordinate, before + i);
       const auto whole = static_cast<std::int32_t>(step);
       std::memcpy(&out[start + (i - begin) * stride + 4 * axis], &whole, 4);
     }
@@ -230,6 +235,15 @@ class LasPartWriter : public PartWriter {
 };
 
 }  // namespace
+
+void check_las_positions(const std::filesystem::path& path, const PointCloud& cloud) {
+  const LasFile file = las_choices(path, outline_of(cloud)).file;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      checked_step(path, file, axis, cloud.positions[i][static_cast<int>(axis)], i);
+    }
+  }
+}
 
 std::unique_ptr<PartWriter> create_las_parts(const std::filesystem::path& path,
                                              const PartOutline& outline,
