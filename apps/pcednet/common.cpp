@@ -37,15 +37,19 @@ void on_signal(int signal) {
   if (ends_at_once) end_at_once();
 }
 
+/// Whether anybody reads it does not matter: no work is lost with a terminal, or behind `| head`.
+void put_on_stderr(const std::string& text) {
+  static_cast<void>(std::fputs(text.c_str(), stderr));
+}
+
 bool progress_line_open = false;
 
 void report_on_terminal(const std::string& stage, double fraction) {
   constexpr int kWidth = 30;
   const int filled = static_cast<int>(fraction * kWidth);
-  fmt::print(stderr, "\r{:<14} [{:-<{}}] {:3.0f} %", stage, std::string(filled, '#'), kWidth,
-             100 * fraction);
   progress_line_open = fraction < 1.0;
-  if (!progress_line_open) fmt::print(stderr, "\n");
+  put_on_stderr(fmt::format("\r{:<14} [{:-<{}}] {:3.0f} %{}", stage, std::string(filled, '#'),
+                            kWidth, 100 * fraction, progress_line_open ? "" : "\n"));
   std::fflush(stderr);
 }
 
@@ -102,7 +106,7 @@ Progress console_progress(const Common& common) {
   progress.cancelled = [] { return interrupted != 0; };
   if (common.progress == "json") {
     progress.report = [](const std::string& stage, double fraction) {
-      fmt::print(stderr, "{{\"stage\":\"{}\",\"fraction\":{:.3f}}}\n", stage, fraction);
+      put_on_stderr(fmt::format("{{\"stage\":\"{}\",\"fraction\":{:.3f}}}\n", stage, fraction));
     };
   } else if (common.progress == "plain") {
     auto last = std::make_shared<std::pair<std::string, int>>("", -1);
@@ -110,7 +114,7 @@ Progress console_progress(const Common& common) {
       const int tenths = static_cast<int>(fraction * 10);
       if (last->first == stage && last->second == tenths) return;
       *last = {stage, tenths};
-      fmt::print(stderr, "{} {:.0f} %\n", stage, 100 * fraction);
+      put_on_stderr(fmt::format("{} {:.0f} %\n", stage, 100 * fraction));
     };
   } else if (common.progress == "auto" && isatty(STDERR_FILENO) == 1) {
     progress.report = report_on_terminal;
@@ -144,9 +148,8 @@ std::string explain(const Error& error) {
 
 void say(const std::string& line) {
   std::fflush(stdout);  // both may go to one file
-  if (progress_line_open) fmt::print(stderr, "\n");
+  put_on_stderr((progress_line_open ? "\n" : "") + line + "\n");
   progress_line_open = false;
-  fmt::print(stderr, "{}\n", line);
 }
 
 void say_error(const std::string& line) {

@@ -90,6 +90,18 @@ class Errors(CliTest):
             self.assertEqual(done.returncode, 1, arguments)
             self.assertIn("standard output: No space left on device", done.stderr)
 
+    def test_work_goes_on_when_nobody_reads_the_messages(self):
+        write_ply(self.folder / "a.ply", *cube(500))
+        for close, arguments, expect in ((True, ("info", "a.ply", "none.ply"), 3), (True, ("classify", "a.ply"), 0),
+                                         (False, ("classify", "a.ply", "--overwrite", "--progress", "plain"), 0)):
+            unread, messages = os.pipe()
+            os.close(unread)
+            done = subprocess.run([PROGRAM, *arguments], stdout=subprocess.DEVNULL, stderr=messages, cwd=self.folder,
+                                  preexec_fn=(lambda: os.close(2)) if close else None)
+            os.close(messages)
+            self.assertEqual(done.returncode, expect, arguments)
+        self.assertTrue((self.folder / "a_edges.ply").exists())
+
     def test_a_full_disk_leaves_nothing_half_written(self):
         write_ply(self.folder / "a.ply", *cube(20000)[:2])
         limit = lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (100_000, 100_000))
