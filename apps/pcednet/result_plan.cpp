@@ -81,10 +81,14 @@ void check_outputs(const std::vector<Job>& jobs, const Common& common) {
   }
 }
 
-/// Leaves out inputs that are the results of others: those of an earlier run on the same folder.
+/// Leaves out inputs that are the results of others: those of an earlier run on the same folder,
+/// whose results were to be where they are to be now, or beside the inputs.
 void drop_results(std::vector<Job>& jobs) {
   std::set<fs::path> results;
-  for (const Job& job : jobs) results.insert(job.output.lexically_normal());
+  for (const Job& job : jobs) {
+    results.insert(job.output.lexically_normal());
+    results.insert((job.input.parent_path() / output_name(job.input)).lexically_normal());
+  }
   const std::size_t dropped = std::erase_if(jobs, [&](const Job& job) {
     return jobs.size() > 1 && results.contains(job.input.lexically_normal());
   });
