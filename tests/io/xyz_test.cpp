@@ -70,6 +70,7 @@ TEST(Xyz, RefusesCommasThatReadEitherWay) {
   refuses("1,5 2,5 3,5\n1.5 2 3\n", ":2: decimal points, where line 1 has decimal commas");
   refuses("1.5 2 3\n\n1,5 2,5 3,5\n", ":1: decimal points, where line 3 has decimal commas");
   refuses("1.234,5;2,5;3\n", ":1: points and decimal commas: write no points between thousands");
+  refuses("1,234.5;2.5;3\n", ":1: commas and decimal points: write no commas between thousands");
   refuses("1,5 2,5 3,5\n1, 2, 3\n", ":2: commas between numbers, where line 1 has decimal commas");
   refuses("1,5;2,5;3,5\n1,2,3\n", ":2: commas between numbers, where line 1 has decimal commas");
   refuses("1,2,3,4,5,6\n1,5 2,5 3,5\n", ":2: decimal commas, where those of line 1");

@@ -2,12 +2,14 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <limits>
 #include <optional>
 
 #include "pcednet/io/cloud_builder.h"
 #include "pcednet/io/text_scan.h"
 #include "pcednet/io/xyz.h"
 #include "pcednet/io/xyz_commas.h"
+#include "pcednet/io/xyz_fields.h"
 #include "pcednet/io/xyz_guess.h"
 #include "pcednet/io/xyz_names.h"
 
@@ -16,7 +18,7 @@ namespace {
 
 constexpr std::size_t kMostColumns = 16384;
 
-constexpr Separators kBesideDecimalCommas{" \t\r\v\f;"};
+constexpr Separators kCommasAndSemicolons{",;"}, kSemicolons{";"};
 /// A table of quoted numbers is one of points, too, though read_xyz() refuses it without quoted
 /// names.
 constexpr Separators kAroundNumbers{" \t\r\v\f,;\""};
@@ -100,8 +102,8 @@ class TableReader {
           "among them");
     }
     decide_on_commas(line, after);
-    split(line, words_, separators());
-    if (words_.size() < 3) throw error("expected at least three numbers");
+    split_row(line);
+    if (words_.size() - empty_words() < 3) throw error("expected at least three numbers");
     if (words_.size() > kMostColumns) {
       throw error(fmt::format("{} numbers: at most {} are read", words_.size(), kMostColumns));
     }
@@ -109,6 +111,10 @@ class TableReader {
       comments_.push_back(naming_comment_);  // prose that happens to hold x, y and z
       names_.clear();
     }
+    // A separator at the end of a line begins no column, unless that has a name.
+    const bool has_end = words_.back().empty() || names_.size() == words_.size() + 1;
+    if (has_end && !names_.empty() && names_.back().empty()) names_.pop_back();
+    if (words_.back().empty() && names_.size() < words_.size()) words_.pop_back();
     if (!names_.empty() && names_.size() != words_.size()) {
       throw error(fmt::format("{} numbers under {} names", words_.size(), names_.size()));
     }
@@ -146,8 +152,12 @@ class TableReader {
         "or write decimal points");
   }
 
-  const Separators& separators() const {
-    return commas_ == Commas::kDecimals ? kBesideDecimalCommas : kNumberSeparators;
+  void split_row(std::string_view line) {
+    split_fields(line, commas_ == Commas::kDecimals ? kSemicolons : kCommasAndSemicolons, words_);
+  }
+
+  std::size_t empty_words() const {
+    return static_cast<std::size_t>(std::count(words_.begin(), words_.end(), std::string_view()));
   }
 
   void check_commas(std::string_view line) const {
@@ -160,7 +170,9 @@ class TableReader {
         (here == Commas::kSeparators || line.find('.') != std::string_view::npos)) {
       const bool has_points = line.find('.') != std::string_view::npos;
       if (has_points && deciding_line_ == number_) {
-        throw error("points and decimal commas: write no points between thousands");
+        const bool is_english = line.find(',') < line.find('.');
+        throw error(is_english ? "commas and decimal points: write no commas between thousands"
+                               : "points and decimal commas: write no points between thousands");
       }
       throw error(fmt::format("{}, where line {} has decimal commas",
                               has_points ? "decimal points" : "commas between numbers",
@@ -173,6 +185,7 @@ class TableReader {
   }
 
   std::optional<double> number_of(std::string_view word) const {
+    if (word.empty()) return std::numeric_limits<double>::quiet_NaN();
     if (commas_ != Commas::kDecimals) return parse_double(word);
     std::string with_point(word);
     std::replace(with_point.begin(), with_point.end(), ',', '.');
@@ -181,12 +194,16 @@ class TableReader {
 
   void take_row(std::string_view line) {
     check_commas(line);
-    split(line, words_, separators());
+    split_row(line);
     if (promised_ && take_count()) return;
+    if (words_.size() == table_.columns + 1 && words_.back().empty()) words_.pop_back();
     if (words_.size() != table_.columns) {
       throw error(fmt::format("{} number{} where the lines before have {}", words_.size(),
                               words_.size() == 1 ? "" : "s", table_.columns));
     }
+    const std::size_t empty = empty_words();
+    if (empty == words_.size()) return;  // as spreadsheets end a table
+    empty_ += empty;
     for (const std::string_view word : words_) {
       const auto number = number_of(word);
       if (!number) throw error(number_fault(word));
@@ -205,6 +222,10 @@ class TableReader {
     builder.fill_rows(reinterpret_cast<const std::byte*>(table_.numbers.data()), 0, table_.rows());
     LoadedCloud loaded = builder.finish();
     loaded.cloud.comments = std::move(comments_);
+    if (empty_ > 0) {
+      loaded.warnings.push_back(
+          fmt::format("{} numbers are missing between separators: read as nan", empty_));
+    }
     if (guessed && table_.columns > 3) {
       loaded.warnings.push_back(fmt::format("no column names: read as {}{}", fmt::join(names_, " "),
                                             counts_rows(table_)
@@ -232,6 +253,7 @@ class TableReader {
   std::optional<std::uint64_t> promised_;
   Commas commas_ = Commas::kNone;  ///< those of all lines
   std::size_t deciding_line_ = 0;
+  std::size_t empty_ = 0;  ///< numbers that are missing
   NumberTable table_;
 };
 

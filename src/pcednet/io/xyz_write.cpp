@@ -80,7 +80,10 @@ std::string header_of(const std::string& extension, const PointCloud& cloud,
 std::vector<std::string> losses_of(const std::string& extension, const PointCloud& cloud,
                                    bool plain) {
   std::vector<std::string> losses;
-  if (!cloud.attributes.empty()) losses.emplace_back("number types of attributes");
+  const bool are_read_as_written =
+      std::all_of(cloud.attributes.begin(), cloud.attributes.end(),
+                  [](const Attribute& one) { return one.type == ScalarType::kFloat64; });
+  if (!are_read_as_written) losses.emplace_back("number types of attributes");
   if (!cloud.comments.empty() && (extension == ".csv" || plain)) losses.emplace_back("comments");
   return losses;
 }

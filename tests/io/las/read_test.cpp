@@ -269,7 +269,7 @@ TEST(LasRead, NamesTheByteThatCannotBeTrusted) {
   const std::string old = las_bytes({3, 2, las_test_rows(3, 20)});
   expect(with(old, 107, UINT32_MAX), "byte " + std::to_string(old.size()));
   for (const std::uint32_t offset : {0U, 100U, 374U, UINT32_MAX}) {
-    expect(with(good, 96, offset), "byte 96: points from byte " + std::to_string(offset));
+    expect(with(good, 96, offset), "byte 96: the points begin at byte " + std::to_string(offset));
   }
   expect(with(good, 94, std::uint16_t{65535}), "byte 96");
   expect(with(good, 24, std::uint8_t{2}), "byte 24: LAS 2.4");

@@ -187,8 +187,10 @@ LasFile read_las_file(const InputFile& file, std::vector<std::string>& warnings)
   }
   const std::uint64_t end = las.points_offset();
   if (end < las.header.size() || end > file.size()) {
-    throw unreadable(file.path(), fmt::format("byte {}: points from byte {} on, of {}",
-                                              las_header::kPointsOffset, end, file.size()));
+    throw unreadable(file.path(),
+                     fmt::format("byte {}: the points begin at byte {}, but the header ends at "
+                                 "byte {} and the file at byte {}",
+                                 las_header::kPointsOffset, end, las.header.size(), file.size()));
   }
   std::uint64_t at = las.header.size();
   las.records =
