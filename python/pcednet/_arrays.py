@@ -17,6 +17,9 @@ SHORT = {"plain": 0, "smooth": 1, "sharp": 2}
 
 def numbers(values, name):
     """`values` as an array of real numbers, of any type; masked ones become NaN."""
+    if isinstance(values, (str, os.PathLike)):
+        raise UsageError(f"{name}: an array is needed, not a name; a file is read by "
+                         f"pcednet.read({os.fspath(values)!r})")
     if isinstance(values, np.ma.MaskedArray):
         values = (values if values.dtype.kind == "f" else values.astype(np.float64)).filled(np.nan)
     try:
@@ -36,13 +39,19 @@ def is_float32(array):
     return array.dtype.newbyteorder("=") == np.float32
 
 
+def _remedy(shape, name):
+    if len(shape) == 2 and shape[0] == 3:
+        return f"; its transpose is {name}.T"
+    return f"; the first three columns are {name}[:, :3]" if len(shape) == 2 and shape[1] > 3 else ""
+
+
 def vectors(values, name, rows=None):
     """`values` as (n, 3) float64, without a copy where they are so already."""
     array = numbers(values, name)
     if array.size == 0 and array.ndim <= 2:
         array = array.reshape(0, 3)
     if array.ndim != 2 or array.shape[1] != 3:
-        raise UsageError(f"{name}: shape (n, 3) is needed, not {array.shape}")
+        raise UsageError(f"{name}: shape (n, 3) is needed, not {array.shape}{_remedy(array.shape, name)}")
     if rows is not None and len(array) != rows:
         raise UsageError(f"{name}: {len(array)} rows for {rows} points")
     return np.require(array, np.float64, ["C", "A"])

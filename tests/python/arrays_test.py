@@ -237,6 +237,15 @@ class Refusals(unittest.TestCase):
         with self.assertRaisesRegex(pcednet.UsageError, "threads"):
             pcednet.classify(good, threads=-1)
 
+    def test_what_is_no_array_of_points_is_told_what_to_do(self):
+        for xyz, said in (("scan.ply", r"xyz: an array is needed, .* by pcednet.read\('scan.ply'\)$"),
+                          (pathlib.Path("a/scan.las"), r"by pcednet.read\('a/scan.las'\)$"),
+                          (np.ones((3, 100)), r"xyz: shape \(n, 3\) is needed, not \(3, 100\); its transpose is xyz.T$"),
+                          (np.ones((100, 6)), r"not \(100, 6\); the first three columns are xyz\[:, :3\]$"),
+                          (np.ones((100, 2)), r"not \(100, 2\)$"), (np.ones(100), r"not \(100,\)$")):
+            with self.assertRaisesRegex(pcednet.UsageError, said):
+                pcednet.classify(xyz)
+
     def test_too_few_points_are_insufficient(self):
         for xyz in ([], np.zeros((0, 3)), [[1.0, 2.0, 3.0]], np.full((9, 3), np.nan),
                     np.zeros((50, 3)), np.outer(np.arange(50.0), [1, 2, 3])):
