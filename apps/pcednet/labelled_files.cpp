@@ -36,19 +36,22 @@ void warn_of_labels(const std::filesystem::path& input, const PointCloud& cloud,
                    others, pcednet::names_of(table)));
 }
 
-/// Three classes cannot be learnt from labels of two.
-void check_has_smooth(std::span<const detect::NamedLabels> clouds,
-                      const detect::TrainOptions& options) {
-  if (has_own_classes(options.table) || options.architecture.classes != 3) return;
+/// Three classes cannot be learnt from labels of two, and an edge that has but one kind is sharp.
+void check_kinds_of_edges(std::span<const detect::NamedLabels> clouds,
+                          const detect::TrainOptions& options) {
+  if (has_own_classes(options.table)) return;
   const auto has = [&](EdgeClass wanted) {
     return std::any_of(clouds.begin(), clouds.end(), [&](const auto& cloud) {
       return std::find(cloud.labels.begin(), cloud.labels.end(), wanted) != cloud.labels.end();
     });
   };
-  if (has(kSmoothEdge) || !has(kSharpEdge)) return;
-  throw Error(
-      ErrorKind::kInsufficient,
-      "train: no point is labelled smooth-edge (1); --classes 2 learns sharp-edge (2) alone");
+  const bool smooth = has(kSmoothEdge), sharp = has(kSharpEdge);
+  if (smooth == sharp || (sharp && options.architecture.classes != 3)) return;
+  throw Error(ErrorKind::kInsufficient,
+              sharp ? "train: no point is labelled smooth-edge (1); --classes 2 learns sharp-edge "
+                      "(2) alone"
+                    : "train: no point is labelled sharp-edge (2), but points are smooth-edge (1): "
+                      "if 1 stands for any edge, write 2 in its place and give --classes 2");
 }
 
 }  // namespace
@@ -75,7 +78,7 @@ std::vector<LabelledFile> read_labelled_files(const std::vector<std::string>& in
 
 void check_can_learn(std::span<const detect::NamedLabels> labels,
                      const detect::TrainOptions& options) {
-  check_has_smooth(labels, options);
+  check_kinds_of_edges(labels, options);
   detect::check_labels(labels, options);
 }
 

@@ -143,11 +143,11 @@ class Evaluate(CliTest):
             write_ply(clouds / (name + ".ply"), p, n, labels)
         done = run("evaluate", clouds, "--method", "ca", "--json", "-")
         self.assertEqual([row["name"] for row in json.loads(done.stdout)["clouds"]], ["b", "d"])
-        self.assertIn(f"warning: {clouds}/a.ply: has no labels: left out", done.stderr)
+        self.assertIn(f"warning: {clouds}/a.ply: has no labels, as no column is named label: left out", done.stderr)
         self.assertIn(f"warning: {clouds}/c.ply: no point is labelled with a class of edges", done.stderr)
         self.assertEqual(done.stderr.count(": left out"), 2)
         said = run("evaluate", clouds / "a.ply", clouds / "c.ply", "--method", "ca", expect=4).stderr
-        self.assertIn(f"pcednet: {clouds}/a.ply: has no labels\n", said)
+        self.assertIn(f"pcednet: {clouds}/a.ply: has no labels, as no column is named label\n", said)
 
     def own(self, name, names=("ground", "wall", "pipe")):
         return write_own(self.folder / name, *cube(2000), names=names)

@@ -218,7 +218,9 @@ class Train(CliTest):
         a, b = self.folder / "a.ply", self.folder / "b.ply"
         write_ply(a, p, labels=label)
         for its, classes, said in ((np.full(1000, 255), 3, f"{b}: no labelled point (0 non-edge, "),
-                                   (np.where(label == 2, 255, label), 2, "no point is labelled sharp-edge (2)"),
+                                   (np.where(label == 2, 255, label), 2,
+                                    "no point is labelled sharp-edge (2), but points are smooth-edge (1): if"),
+                                   (np.where(label == 0, 0, 255), 2, "no point is labelled sharp-edge (2)\n"),
                                    (np.where(label == 0, 255, label), 3, "no point is labelled non-edge (0)"),
                                    (np.where(label == 1, 0, label), 3, "no point is labelled smooth-edge (1); --c")):
             write_ply(b, p, labels=its)
@@ -227,6 +229,16 @@ class Train(CliTest):
                        "--progress", "plain", expect=4)
             self.assertIn(said, done.stderr)
             self.assertNotIn(" %", done.stderr)
+
+    def test_says_why_there_are_no_labels(self):
+        p, n, label = cube(300)
+        a = self.folder / "a.ply"
+        for said, columns in (("no column is named label\n", {}), ("no column is named label\n", {"scalar_edge_class": label}),
+                              ("no column is named label; Klass_edges may have to be renamed\n", {"Klass_edges": label}),
+                              ("its column label holds 0.5, which is none\n", {"label": label / 2})):
+            write_ply(a, p, n, **columns)
+            done = run("train", a, "-o", self.folder / "m.safetensors", expect=4)
+            self.assertIn(f"{a}: has no labels, as {said}", done.stderr)
 
     def test_counts_the_labels_that_are_no_classes(self):
         p, n, label = cube(1000)

@@ -2,11 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <optional>
+#include <string>
 #include <utility>
 
 #include "pcednet/core/error.h"
 #include "pcednet/detect/result_truth.h"
 #include "pcednet/formats/read_cloud.h"
+#include "pcednet/io/promote.h"
 #include "pcednet/io/text_scan.h"
 #include "workbench/truth/abc_features.h"
 #include "workbench/truth/colour_labels.h"
@@ -21,6 +25,36 @@ void take_truth_of_result(io::LoadedCloud& loaded) {
   if (!truth) return;
   if (!truth->labels.empty()) loaded.cloud.labels = std::move(truth->labels);
   loaded.warnings.push_back(std::move(truth->note));
+}
+
+/// The first value that is no label; none if all are.
+std::optional<double> find_no_label(const Attribute& attribute, std::size_t points) {
+  for (std::size_t i = 0; i < points; ++i) {
+    if (!io::to_label(attribute.value(i))) return attribute.value(i);
+  }
+  return std::nullopt;
+}
+
+/// Names of columns in which others keep labels. Classification is of the codes of LAS, and a
+/// result of pcednet is no truth.
+bool sounds_like_labels(const std::string& name) {
+  const auto has = [&](const char* part) { return name.find(part) != std::string::npos; };
+  return (has("label") || has("class") || has("edge")) && !has("classification") &&
+         !has("edge_class") && !has("edgeofflight");
+}
+
+std::string why_unlabelled(const PointCloud& cloud) {
+  std::string maybe;
+  for (const Attribute& attribute : cloud.attributes) {
+    const std::string name = io::lower_case(attribute.name);
+    if (attribute.components != 1 || !sounds_like_labels(name)) continue;
+    const auto other = find_no_label(attribute, cloud.size());
+    if (other && std::ranges::count(io::label_names(), name) > 0) {
+      return fmt::format("its column {} holds {}, which is none", attribute.name, *other);
+    }
+    if (!other && maybe.empty()) maybe = fmt::format("; {} may have to be renamed", attribute.name);
+  }
+  return "no column is named label" + maybe;
 }
 
 }  // namespace
@@ -40,7 +74,8 @@ io::LoadedCloud read_labelled(const std::filesystem::path& path) {
   }
   cloud.labels = labels_of_colours(cloud);
   if (cloud.labels.empty()) {
-    throw Error(ErrorKind::kInsufficient, fmt::format("{}: has no labels", path.string()));
+    throw Error(ErrorKind::kInsufficient,
+                fmt::format("{}: has no labels, as {}", path.string(), why_unlabelled(cloud)));
   }
   loaded.warnings.emplace_back("labels from the colours: grey, yellow and red are the classes");
   take_truth_of_result(loaded);
