@@ -8,6 +8,7 @@
 
 #include "pcednet/core/error.h"
 #include "pcednet/formats/format.h"
+#include "pcednet/io/text_scan.h"
 
 namespace pcednet::app {
 namespace {
@@ -22,11 +23,11 @@ fs::path preview_path(const ResultArguments& arguments, const fs::path& input, b
                                              formats::stem_of(input), pattern.extension().string());
 }
 
-/// The default file for a result: LAS for LAS, PLY for everything else.
+/// The default file for a result: LAS for LAS, LAZ for LAZ, PLY for everything else.
 std::string output_name(const fs::path& input) {
-  const formats::Format* format = formats::find_format(input);
-  const bool is_las = format && format->is_las();
-  return formats::stem_of(input) + (is_las ? "_edges.las" : "_edges.ply");
+  const std::string extension = io::extension_of(input);
+  const bool is_las = extension == ".las" || extension == ".laz";
+  return formats::stem_of(input) + "_edges" + (is_las ? extension : ".ply");
 }
 
 std::vector<Job> jobs_for(const std::vector<fs::path>& inputs, const ResultArguments& arguments) {
@@ -87,7 +88,10 @@ void drop_results(std::vector<Job>& jobs) {
   std::set<fs::path> results;
   for (const Job& job : jobs) {
     results.insert(job.output.lexically_normal());
-    results.insert((job.input.parent_path() / output_name(job.input)).lexically_normal());
+    const fs::path beside = job.input.parent_path() / output_name(job.input);
+    results.insert(beside.lexically_normal());
+    // Earlier versions wrote LAS for LAZ.
+    results.insert(fs::path(beside).replace_extension(".las").lexically_normal());
   }
   const std::size_t dropped = std::erase_if(jobs, [&](const Job& job) {
     return jobs.size() > 1 && results.contains(job.input.lexically_normal());

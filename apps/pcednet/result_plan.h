@@ -37,7 +37,8 @@ std::vector<std::filesystem::path> without_results(
 /// Warns of attributes of an input that its result replaces.
 void warn_of_replaced(const std::string& input, const std::vector<std::string>& attributes);
 
-/// Plans the results of `inputs`, before any work: LAS for LAS and LAZ, PLY for everything else.
+/// Plans the results of `inputs`, before any work: LAS for LAS, LAZ for LAZ and COPC, PLY for
+/// everything else.
 /// Inputs that are results of others, those of an earlier run on the same folder, are left out.
 /// The folder must exist. Throws Error(kUsage) if results exist that may not be replaced, if two
 /// would be the same file or if one cannot be written.

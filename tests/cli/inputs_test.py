@@ -59,6 +59,19 @@ class Inputs(CliTest):
         self.assertIn("1 file left out: it is the result of another input", said)
         self.assertEqual(self.names("out"), ["s_edges.ply"])
 
+    def test_the_result_of_a_laz_file_is_one(self):
+        for name in ("a.LAZ", "b.copc.laz", "c.las"):
+            run("convert", self.cloud("s.ply"), "-o", self.folder / name)
+        (self.folder / "s.ply").unlink()
+        run("classify", self.folder, "--out-dir", self.folder / "out")
+        self.assertEqual(self.names("out"), ["a_edges.laz", "b_edges.laz", "c_edges.las"])
+        sizes = [(self.folder / "out" / name).stat().st_size for name in self.names("out")]
+        self.assertLess(max(sizes[:2]), sizes[2])
+        # Those of earlier versions are known as results, too.
+        os.rename(self.folder / "out/a_edges.laz", self.folder / "a_edges.las")
+        said = run("classify", self.folder, "--out-dir", self.folder / "out", "--overwrite").stderr
+        self.assertIn("1 file left out: it is the result of another input", said)
+
     def test_two_results_of_one_name_are_refused_and_both_inputs_named(self):
         inputs = [self.cloud("a/s.ply"), self.cloud("b/s.ply")]
         out = self.folder / "out" / "deep"

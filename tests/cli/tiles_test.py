@@ -139,7 +139,7 @@ class Tiles(TilesTest):
         # Each file of the list is a point file to other commands, under the name without .copc.
         run("classify", self.folder / "in.vpc", "--out-dir", self.folder / "out")
         self.assertEqual(sorted(f.name for f in (self.folder / "out").iterdir()),
-                         ["left_edges.las", "right_edges.las"])
+                         ["left_edges.laz", "right_edges.laz"])
         (self.folder / "in/left.copc.laz").unlink()
         said = run("tiles", "plan", self.folder / "in.vpc", "-o", self.folder / "q.json", expect=3).stderr
         self.assertIn("in.vpc: refers to ./in/left.copc.laz, but ", said)

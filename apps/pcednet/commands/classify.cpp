@@ -289,7 +289,7 @@ void add_classify(CLI::App& app, Common& common) {
       ->required();
   command->add_option(
       "-o,--output", arguments->results.output,
-      "Output file (default: <stem>_edges.ply beside the input, .las for LAS and LAZ)");
+      "Output file (default: <stem>_edges.ply beside the input, .las for LAS, .laz for LAZ)");
   command->add_option("--las-classification", arguments->las_classification,
                       "Set the LAS field Classification of some classes, as class=code,...: 2=31 "
                       "sets sharp edges to 31. Codes above 31 are for point formats 6 to 10");
