@@ -113,6 +113,14 @@ class Options(CliTest):
         said = run(*classify, "--s-max", "1e6").stderr
         self.assertIn("warning: " + str(self.cloud) + ": --s-max 1e+06 is larger than the cloud", said)
 
+    def test_scales_below_the_spacing(self):
+        write_ply(self.cloud, *cube(4000))
+        classify = ("classify", self.cloud, "-o", self.out, "--overwrite")
+        for scales in (("--s-max", "0.001", "--s-min", "0.0005"), ("--s-min", "1e-6")):
+            self.assertIn(f"warning: {self.cloud}: the largest scale, ", run(*classify, *scales).stderr)
+        for scales in ((), ("--s-min", "0.05"), ("--s-max", "0.1"), ("--s-min", "0.02", "--s-max", "0.08")):
+            self.assertNotIn("the largest scale, ", run(*classify, *scales).stderr)
+
     def test_a_size_of_bytes_needs_its_unit(self):
         plan = self.folder / "p.json"
         for arguments in (("classify", self.cloud, "-o", self.out), ("lines", self.cloud, "-o", self.folder / "x.obj"),

@@ -3,10 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
+#include "pcednet/cloud/bounding_box.h"
 #include "pcednet/core/blocks.h"
 #include "pcednet/core/error.h"
+#include "pcednet/core/median.h"
 #include "pcednet/detect/acute_edge.h"
 #include "pcednet/detect/context.h"
 #include "pcednet/detect/crease_kind.h"
@@ -14,6 +17,7 @@
 #include "pcednet/detect/describe.h"
 #include "pcednet/detect/octaves.h"
 #include "pcednet/detect/piece.h"
+#include "pcednet/gls/scales.h"
 #include "pcednet/nn/predict.h"
 
 namespace pcednet::detect {
@@ -35,6 +39,21 @@ void decide_rows(std::span<const std::uint32_t> order, std::size_t at_a_time, co
   });
 }
 
+/// That hardly a point has neighbours at given scales, as where their unit is another; empty if
+/// they have.
+std::string note_on_given(const PreparedCloud& cloud, const gls::ScaleRange& given, double s_max) {
+  const double diagonal = bounding_box(cloud.positions).diagonal();
+  const bool is_given = given.s_min > 0.0 || given.s_max > 0.0;
+  // Points of a surface are not further apart.
+  if (!is_given || s_max * std::sqrt(static_cast<double>(cloud.curve.size())) > diagonal) return {};
+  const double spacing = median(gls::spacings_of_places(cloud.positions, cloud.curve));
+  if (s_max > spacing) return {};
+  return fmt::format(
+      "the largest scale, {:.4g}, reaches hardly a point, as the ten nearest are {:.4g} away: "
+      "nearly all become non-edge; is it in the unit of the cloud?",
+      s_max, spacing);
+}
+
 /// Holds a scale space only while needed.
 Classification describe_and_decide(const PreparedCloud& cloud, const EdgeModel& model,
                                    const Progress* progress) {
@@ -48,6 +67,9 @@ Classification describe_and_decide(const PreparedCloud& cloud, const EdgeModel& 
       stage.emplace(progress, "describe", cloud.curve.size());
       found.s_min = space.scales().front();
       found.note = gls::note_on(model.descriptor, space.scales(), cloud.positions);
+      if (found.note.empty()) {
+        found.note = note_on_given(cloud, model.descriptor.range, space.scales().back());
+      }
     }
     found.s_max = space.scales().back();
     const auto rows_of = [&](std::size_t begin, std::size_t end) {
