@@ -135,6 +135,13 @@ class Evaluate(CliTest):
         said = run("evaluate", self.folder / "some.ply", "--method", "ca").stderr
         self.assertIn("some.ply: 5 labels are not edge classes", said)
 
+    def test_predictions_are_in_a_folder(self):
+        cloud = self.folder / "a.ply"
+        write_ply(cloud, *cube(300))
+        for name in (cloud, self.folder / "none"):
+            said = run("evaluate", cloud, "--predictions", name, expect=3).stderr
+            self.assertIn(f"--predictions {name}: no such folder; there is to be a file in it", said)
+
     def test_unlabelled_clouds_among_others_are_left_out(self):
         p, n, label = cube(300)
         clouds = self.folder / "in"

@@ -175,9 +175,19 @@ Results first_results(const EvaluateArguments& arguments, const detect::EdgeMode
   return results;
 }
 
+void check_is_folder(const std::string& predictions) {
+  std::error_code ignored;
+  if (predictions.empty() || fs::is_directory(predictions, ignored)) return;
+  throw Error(ErrorKind::kUnreadable,
+              fmt::format("--predictions {}: no such folder; there is to be a file in it for each "
+                          "cloud, of the same name",
+                          predictions));
+}
+
 /// Scores all inputs. Of several, those without labels are left out, with a warning each.
 Results score_all(const EvaluateArguments& arguments, const Common& common) {
   const Progress progress = console_progress(common);
+  check_is_folder(arguments.predictions);
   std::optional<detect::EdgeModel> model;
   if (!arguments.model.name.empty()) model = load_model(arguments.model);
 
