@@ -14,7 +14,7 @@
 
 namespace pcednet::app {
 PointCloud read_cloud(const std::filesystem::path& file) {
-  auto loaded = formats::read_cloud(file);
+  auto loaded = read_whole(file);
   warn_all(file, loaded.warnings);
   if (const std::size_t faces = io::face_count(loaded.cloud)) {
     warn(

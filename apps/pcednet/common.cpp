@@ -14,6 +14,7 @@
 
 #include "number_options.h"
 #include "pcednet/core/exists_already.h"
+#include "pcednet/formats/read_cloud.h"
 #include "pcednet/io/text_scan.h"
 
 namespace pcednet::app {
@@ -75,6 +76,11 @@ EndsAtOnce::EndsAtOnce() {
 
 EndsAtOnce::~EndsAtOnce() {
   ends_at_once = 0;
+}
+
+io::LoadedCloud read_whole(const std::filesystem::path& file) {
+  const EndsAtOnce reading;
+  return formats::read_cloud(file);
 }
 
 std::string HelpFormatter::make_subcommand(const CLI::App* command) const {

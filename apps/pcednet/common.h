@@ -12,6 +12,7 @@
 #include "pcednet/core/error.h"
 #include "pcednet/core/output_file.h"
 #include "pcednet/core/progress.h"
+#include "pcednet/io/loaded_cloud.h"
 
 namespace pcednet::app {
 
@@ -83,6 +84,9 @@ class EndsAtOnce {
   EndsAtOnce& operator=(const EndsAtOnce&) = delete;
   ~EndsAtOnce();
 };
+
+/// formats::read_cloud() that a signal ends at once, for commands that have written nothing yet.
+io::LoadedCloud read_whole(const std::filesystem::path& file);
 
 /// Throws Error(kUsage) if none of the outputs, of which there are some, is .ply or .pcd: the
 /// others have no --ascii.

@@ -1,6 +1,8 @@
 """Bad input of every kind: the right exit code, a message that names the file, nothing lost."""
 import os
+import pathlib
 import resource
+import signal
 import subprocess
 import unittest
 
@@ -80,6 +82,20 @@ class Errors(CliTest):
                    naming="m.safetensors")
         self.fails(2, "classify", self.folder / "a.ply", "--model", "no-such-model",
                    naming="no-such-model")
+
+    def test_reading_stops_at_once(self):
+        text = self.folder / "a.xyz"
+        text.write_bytes(b"0.123456 1.234567 2.345678\n" * 5_000_000)
+        for arguments in (("classify", text), ("convert", text, "-o", self.folder / "a.ply")):
+            running = subprocess.Popen([PROGRAM, *map(str, arguments), "--threads", "1"], stderr=subprocess.PIPE, text=True,
+                                       preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (1, 1)))
+            files = pathlib.Path(f"/proc/{running.pid}/fd")
+            while not any(os.path.realpath(file) == str(text) for file in files.iterdir()):
+                self.assertIsNone(running.poll())
+            running.send_signal(signal.SIGINT)  # to read all would take more than a second
+            self.assertIn("stopped by the user", running.communicate(timeout=60)[1])
+            self.assertEqual(running.returncode, 130)
+        self.assertEqual(os.listdir(self.folder), ["a.xyz"])
 
     def test_what_is_printed_and_lost_is_an_error(self):
         write_ply(self.folder / "a.ply", *cube(500))

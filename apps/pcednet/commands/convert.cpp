@@ -131,7 +131,7 @@ void convert(const ConvertRequest& request, const Common& common) {
   check_writable(request.output, common.overwrite());
   if (convert_in_parts(request, common)) return;
   const Progress progress = console_progress(common);
-  io::LoadedCloud loaded = formats::read_cloud(request.input);
+  io::LoadedCloud loaded = read_whole(request.input);
   throw_if_cancelled(&progress);
   warn_all(request.input, loaded.warnings);
   if (request.samples > 0) {
