@@ -109,7 +109,8 @@ TEST(Xyz, ReadsPositionsUnderTheNamesOfSurveyors) {
        {"Easting,Northing,Elevation", "EASTING NORTHING HEIGHT", "easting;northing;altitude",
         "# Easting Northing Z", "Rechtswert;Hochwert;H\xC3\xB6he",
         "RECHTSWERT,HOCHWERT,H\xC3\x96HE", "Rechtswert;Hochwert;H\xF6he",
-        "rechtswert\thochwert\thoehe", "E,N,H", "e n h", "\"Easting\",\"Northing\",\"Height\""}) {
+        "rechtswert\thochwert\thoehe", "E,N,H", "e n h", "\"Easting\",\"Northing\",\"Height\"",
+        "Easting (m),Northing (m),Height (m)", "X [m];Y [ m ];Z[FT]"}) {
     const auto loaded = scratch.read("a.csv", header + "\n1 2 3\n");
     EXPECT_EQ(loaded.cloud.positions, std::vector<Vec3>{Vec3(1, 2, 3)}) << header;
     EXPECT_TRUE(loaded.cloud.attributes.empty() && loaded.warnings.empty()) << header;
@@ -138,7 +139,7 @@ TEST(Xyz, LeavesTheNamesOfSurveyorsBesideXAndY) {
   for (const char* header :
        {"x,y,height", "x,y,easting,northing,z1", "x,northing,easting,z", "easting,northing",
         "longitude,latitude,height", "lon,lat,z", "e,n,z", "e,n,h,z", "e,n,h,height", "e,n",
-        "easting,n,h", "east,north,up", "Easting (m),Northing (m),Height (m)"}) {
+        "easting,n,h", "east,north,up", "Easting (deg),Northing (deg),Height (m)"}) {
     const std::string message =
         error_of(ErrorKind::kUnreadable, [&] { scratch.read("a.csv", header); });
     EXPECT_TRUE(contains(message, ":1: expected numbers, or names of columns")) << header;

@@ -17,10 +17,25 @@ constexpr std::string_view kHeights[] = {"z",       "elevation",   "altitude",
                                          "height",  "h\xC3\xB6he", "h\xC3\x96he",
                                          "h\xF6he", "h\xD6he",     "hoehe"};
 
+constexpr std::string_view kUnits[] = {"m",  "metre", "metres", "meter", "meters",
+                                       "mm", "cm",    "km",     "ft",    "feet"};
+
+/// The name in small letters, without a unit of length in brackets: x of "X [m]".
+std::string plain_name(const std::string& name) {
+  std::string plain = lower_case(name);
+  const std::size_t open = plain.find_first_of("[(");
+  if (open == std::string::npos || plain.find_first_of("])", open) + 1 != plain.size())
+    return plain;
+  const std::string_view unit =
+      trim(std::string_view(plain).substr(open + 1, plain.size() - open - 2));
+  if (std::ranges::count(kUnits, unit) == 0) return plain;
+  return std::string(trim(std::string_view(plain).substr(0, open)));
+}
+
 /// Where the word is a name, in any case; names.size() if it is none.
 std::size_t find_name(const std::vector<std::string>& names, std::string_view word) {
   const auto found = std::find_if(names.begin(), names.end(), [&](const std::string& name) {
-    return lower_case(name) == word;
+    return plain_name(name) == word;
   });
   return static_cast<std::size_t>(found - names.begin());
 }
@@ -58,10 +73,11 @@ std::vector<std::string> split_names(std::string_view line) {
 
 bool name_positions(std::vector<std::string>& names) {
   const std::size_t none = names.size();
-  const bool has_x = find_name(names, "x") < none, has_y = find_name(names, "y") < none;
-  if (has_x || has_y) return has_x && has_y && find_name(names, "z") < none;
-  std::array found = {find_first(names, kEastings), find_first(names, kNorthings),
-                      find_first(names, kHeights)};
+  std::array found = {find_name(names, "x"), find_name(names, "y"), find_name(names, "z")};
+  if (found[0] == none && found[1] == none) {
+    found = {find_first(names, kEastings), find_first(names, kNorthings),
+             find_first(names, kHeights)};
+  }
   if (found == std::array{none, none, none}) {
     found = {find_name(names, "e"), find_name(names, "n"), find_name(names, "h")};
   }

@@ -14,7 +14,8 @@ std::vector<std::string> split_names(std::string_view line);
 ///
 /// Those are easting or rechtswert; northing or hochwert; and z, elevation, altitude, height, höhe
 /// or hoehe, in this order where there are several. E, n and h count if none of the others is
-/// there. Beside an x or a y they are columns like any other.
+/// there. Beside an x or a y they are columns like any other. A unit of length in brackets may
+/// follow: x [m].
 bool name_positions(std::vector<std::string>& names);
 
 }  // namespace pcednet::io
