@@ -51,6 +51,14 @@ class Errors(CliTest):
         self.classify_fails(3, "truncated.ply", whole[:-10])
         self.classify_fails(3, "absurd.ply", whole.replace(b"vertex 100", b"vertex 99999999999"))
 
+    def test_a_pipe_is_no_input(self):
+        os.mkfifo(self.folder / "a.ply")
+        said = self.fails(3, "classify", self.folder / "a.ply", naming="a.ply")
+        self.assertIn("a.ply: is a pipe, and is read at several places: save it as a file", said)
+        with subprocess.Popen(["cat"], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE) as cat:
+            self.assertIn("/dev/stdin: is a pipe", run("classify", "/dev/stdin", "-o", self.folder / "b.ply",
+                                                       stdin=cat.stdout, expect=3).stderr)
+
     def test_clouds_that_lack_something(self):
         nothing = b"ply\nformat ascii 1.0\nelement vertex %d\nproperty float x\n" \
                   b"property float y\nproperty float z\nend_header\n"

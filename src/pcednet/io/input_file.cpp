@@ -11,6 +11,16 @@
 #include <utility>
 
 namespace pcednet::io {
+namespace {
+
+/// Of what is not a regular file.
+const char* why_unreadable(mode_t mode) {
+  if (S_ISDIR(mode)) return "is a folder";
+  if (S_ISFIFO(mode)) return "is a pipe, and is read at several places: save it as a file";
+  return "is not a regular file";
+}
+
+}  // namespace
 
 Error unreadable(const std::filesystem::path& path, const std::string& what, std::size_t line) {
   const std::string place = line == 0 ? "" : fmt::format(":{}", line);
@@ -25,7 +35,7 @@ InputFile::InputFile(std::filesystem::path path) : path_(std::move(path)) {
   const bool regular = ::fstat(descriptor_, &status) == 0 && S_ISREG(status.st_mode);
   if (!regular) {
     ::close(descriptor_);
-    throw unreadable(path_, S_ISDIR(status.st_mode) ? "is a folder" : "is not a regular file");
+    throw unreadable(path_, why_unreadable(status.st_mode));
   }
   size_ = static_cast<std::uint64_t>(status.st_size);
 }
