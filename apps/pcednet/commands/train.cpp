@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 
+#include "batch.h"
 #include "commands.h"
 #include "descriptor_options.h"
 #include "labelled_files.h"
