@@ -69,8 +69,18 @@ std::string filter_lines(const LinesArguments& arguments, const lines::LineScale
   return left_out.empty() ? "" : fmt::format("; left out: {}", fmt::join(left_out, ", "));
 }
 
+void warn_of_tolerance(const LinesArguments& arguments, const lines::LineScale& scale) {
+  const double given = arguments.lines.tolerance, noise = scale.noise * scale.spacing;
+  if (given <= 0.0 || given >= noise) return;
+  warn(fmt::format(
+      "--tolerance {} is below the noise of the points, {:.3g}: where no segment or arc "
+      "is as near to them, edges are polylines that follow the noise",
+      given, noise));
+}
+
 void report_lines(const LinesArguments& arguments, const lines::LineScale& scale,
-                  const std::vector<Curve>& curves, const std::string& left_out) {
+                  const std::vector<Curve>& curves, const std::string& left_out,
+                  std::span<const std::uint8_t> classes) {
   double length = 0.0;
   for (const Curve& curve : curves) length += length_of(curve);
   say(fmt::format("{}: {} curve{}, total length {:.6g}{}", arguments.input, curves.size(),
@@ -91,8 +101,13 @@ void report_lines(const LinesArguments& arguments, const lines::LineScale& scale
     if (!kinds.empty()) say(fmt::format("  {}: {}length {:.6g}", entry.name, kinds, class_length));
   }
   if (curves.empty()) {
-    say(fmt::format("  {}: what was written holds no lines",
-                    left_out.empty() ? "no edges" : "all curves were left out"));
+    const auto boundary = std::count(classes.begin(), classes.end(), kBoundary);
+    const bool undrawn = boundary > 0 && !arguments.lines.boundaries;
+    say(fmt::format(
+        "  {}: what was written holds no lines{}",
+        left_out.empty() ? "no edges" : "all curves were left out",
+        undrawn ? fmt::format("; --boundaries draws where the surface ends ({} points)", boundary)
+                : ""));
   }
   if (!(scale.spacing > 0.0)) return;
   say(

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -14,8 +16,13 @@ namespace pcednet::app {
 std::string filter_lines(const LinesArguments& arguments, const lines::LineScale& scale,
                          std::vector<lines::Curve>& curves);
 
-/// Says what was found and what was left out, by which lengths.
+/// Warns of a tolerance that no segment keeps in the noise of the points.
+void warn_of_tolerance(const LinesArguments& arguments, const lines::LineScale& scale);
+
+/// Says what was found and what was left out, by which lengths, and if nothing was found whether
+/// points of these classes are of boundaries.
 void report_lines(const LinesArguments& arguments, const lines::LineScale& scale,
-                  const std::vector<lines::Curve>& curves, const std::string& left_out);
+                  const std::vector<lines::Curve>& curves, const std::string& left_out,
+                  std::span<const std::uint8_t> classes);
 
 }  // namespace pcednet::app

@@ -305,6 +305,38 @@ class Lines(CliTest):
             "--kind", "circle")
         self.assertNotEqual(picture.read_bytes(), drawn)  # the cube has no circles
 
+    def test_looks_at_a_floor_from_above_whatever_the_signs_of_its_normals(self):
+        random = np.random.default_rng(3)
+        p = np.column_stack([random.uniform(0, 6, 6000), random.uniform(0, 4, 6000), np.zeros(6000)])
+        pictures = []
+        for name, normals in (("bare", None), ("up", np.tile([0, 0, 1.0], (6000, 1)))):
+            path, picture = self.folder / f"{name}.ply", self.folder / f"{name}.png"
+            write_ply(path, p, normals, np.where(p[:, 1] < 0.05, 3, 0).astype(np.uint8))
+            run("lines", path, *self.outputs("obj"), "--preview", picture, "--overwrite")
+            pictures.append(picture.read_bytes())
+        self.assertEqual(*pictures)
+
+    def test_boundary_labels_alone_are_not_called_no_edges_without_a_word(self):
+        random = np.random.default_rng(3)
+        p = np.column_stack([random.uniform(0, 4, (6000, 2)), np.zeros(6000)])
+        label = np.where(np.minimum(p, 4 - p)[:, :2].min(1) < 0.05, 3, 0).astype(np.uint8)
+        write_ply(self.folder / "floor.ply", p, np.tile([0, 0, 1.0], (6000, 1)), label)
+        done = run("lines", self.folder / "floor.ply", *self.outputs("obj"))
+        count = np.count_nonzero(label)
+        self.assertIn(f"no edges: what was written holds no lines; --boundaries draws where the surface ends "
+                      f"({count} points)", done.stderr)
+        done = run("lines", self.folder / "floor.ply", *self.outputs("obj"), "--boundaries", "--overwrite")
+        self.assertGreater(self.stated_count(done), 3)
+
+    def test_a_tolerance_below_the_noise_is_told(self):
+        p, n, label = cube(8000, noise=0.01)
+        write_ply(self.folder / "noisy.ply", p, n, label)
+        done = run("lines", self.folder / "noisy.ply", *self.outputs("obj"))
+        self.assertNotIn("below the noise", done.stderr)
+        done = run("lines", self.folder / "noisy.ply", *self.outputs("obj"), "--tolerance", "1e-5", "--overwrite")
+        self.assertIn("--tolerance 1e-05 is below the noise of the points, 0.0", done.stderr)
+        self.assertGreater(self.stated_count(done), 0)
+
     def test_odd_clouds(self):
         p, n, label = cube(3000)
         write_ply(self.folder / "one.ply", p[:1], n[:1], np.full(1, 2, np.uint8))

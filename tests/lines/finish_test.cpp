@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "lines/made_pieces.h"
 
@@ -49,6 +50,14 @@ TEST(Finish, KeepsLongRowsOfEdgePointsInNoise) {
   EXPECT_TRUE(stays(piece, 1.0, 0.7, 0.5));
   EXPECT_FALSE(stays(piece, 0.7, 0.7, 0.5)) << "too few edge points";
   EXPECT_FALSE(stays(piece, 1.0, 0.6, 0.5)) << "too doubtful ones";
+}
+
+TEST(Finish, KeepsLongRowsThatANarrowToleranceMadePolylines) {
+  Piece piece = straight({0, 0, 0}, {30, 0, 0});
+  piece.fit.kind = CurveKind::kPolyline;
+  EXPECT_TRUE(stays(piece, 1.2, 0.7, 0.5));
+  for (ChainNode& node : piece.nodes) node.at.y() = 4.0 * std::sin(node.at.x());
+  EXPECT_FALSE(stays(piece, 1.2, 0.7, 0.5)) << "a zigzag";
 }
 
 /// A short piece whose ends lie on two longer ones.

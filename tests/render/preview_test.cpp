@@ -357,6 +357,25 @@ TEST_F(Preview, DrawsCurvesWhereThePointsAreAndHidesThoseBehindThem) {
   EXPECT_EQ(ink(behind), 0.0);
 }
 
+TEST_F(Preview, DrawsALineThatRunsIntoTheDepthAsIfItWereManyShortOnes) {
+  PointCloud sheet;
+  for (int i = 0; i < 20000; ++i) sheet.positions.emplace_back(i / 100 * 0.01, i % 100 * 0.01, 0.0);
+  const PreviewOptions options{
+      .width = 640, .height = 480, .view_direction = direction_from(20.0, 12.0)};
+  const auto red = [&](int parts) {
+    std::vector<lines::Curve> curves;
+    for (int i = 0; i < parts; ++i) {
+      const auto at = [&](int part) { return Vec3(2.0 * part / parts, 0.5, 0.0); };
+      curves.push_back({.kind = lines::CurveKind::kSegment,
+                        .edge_class = kSharpEdge,
+                        .points = {at(i), at(i + 1)}});
+    }
+    const auto is_reddish = [](const Rgb& c) { return c[0] > c[1] + 60; };
+    return picture_of(sheet, {}, options, curves).share(is_reddish);
+  };
+  EXPECT_GT(red(1), 0.8 * red(20));
+}
+
 TEST_F(Preview, DrawsCurvesWithTheSameBytesForAnyThreadsAndPlace) {
   Labelled shape = cube();
   std::vector<lines::Curve> curves = edges_of_the_cube(kSharpEdge);

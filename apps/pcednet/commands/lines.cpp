@@ -263,12 +263,16 @@ std::vector<Curve> find_curves(const LinesArguments& arguments, const LabelledCl
   return curves;
 }
 
-/// Through thick noise no curve could be seen.
-PointCloud points_of(const detect::PreparedCloud& prepared) {
-  PointCloud points;
-  points.positions.assign(prepared.positions.begin(), prepared.positions.end());
-  points.normals.assign(prepared.normals.begin(), prepared.normals.end());
-  return points;
+/// Leaves in the cloud what a preview needs: through thick noise no curve could be seen.
+void show_described(LabelledCloud& labelled) {
+  PointCloud& cloud = labelled.cloud;
+  if (labelled.thinned) {
+    cloud = {};
+    cloud.positions = labelled.thinned->positions;
+  }
+  if (cloud.has_normals()) return;
+  const auto& normals = labelled.prepared.normals;
+  cloud.normals.assign(normals.begin(), normals.end());
 }
 
 /// Lengths in degrees mean nothing; coordinates beyond a turn are none.
@@ -321,6 +325,7 @@ void run(LinesArguments arguments, const Common& common) {
     warn_of_rounding(arguments.input, cloud.position_type, labelled.prepared, {},
                      [&] { return scale.spacing; });
   }
+  warn_of_tolerance(arguments, scale);
   const std::string left_out = filter_lines(arguments, scale, curves);
   clock.begin("write");
   arguments.drawing.tolerance = arguments.lines.tolerance;
@@ -332,12 +337,12 @@ void run(LinesArguments arguments, const Common& common) {
   }
   if (!arguments.preview.path.empty()) {
     clock.begin("preview");
-    const PointCloud fewer = labelled.thinned ? points_of(labelled.prepared) : PointCloud{};
+    show_described(labelled);
     render::write_preview(
-        arguments.preview.path, labelled.thinned ? fewer : cloud, {},
+        arguments.preview.path, cloud, {},
         {.view_direction = arguments.preview.direction, .overwrite = common.overwrite()}, curves);
   }
-  report_lines(arguments, scale, curves, left_out);
+  report_lines(arguments, scale, curves, left_out, labelled.classes);
   say("  seconds: " + clock.seconds());
   for (const std::string& output : arguments.outputs) say("  -> " + output);
   if (!arguments.preview.path.empty()) say("  -> " + arguments.preview.path);

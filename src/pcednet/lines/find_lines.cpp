@@ -53,7 +53,7 @@ Limits limits_of(const LineOptions& options, const Sampling& sampling) {
   return {.gap = given(options.gap, 6.0 * sampling.spacing),
           .min_exact = given(options.min_length, sampling.spacing),
           .min_length = given(options.min_length, 3.0 * sampling.spacing),
-          .tolerance = given(options.tolerance / sampling.spacing, 0.2 + 0.4 * sampling.noise),
+          .tolerance = given(options.tolerance / sampling.spacing, usual_tolerance(sampling.noise)),
           .smooth_within = 1.5 + 2.0 * sampling.noise,
           .angle = options.angle * std::numbers::pi / 180.0};
 }

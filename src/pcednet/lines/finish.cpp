@@ -145,18 +145,28 @@ bool has_few_edge_points(const Piece& piece, const Evidence& evidence, double no
   return !held && found < kFewEdgePoints && length_of(piece) < kLongAnyway * piece.spacing();
 }
 
+/// The kind of the piece; of a polyline that a tolerance below the noise left, what the noise lets
+/// it be.
+CurveKind kind_in_noise(const Piece& piece, double noise) {
+  if (piece.fit.kind != CurveKind::kPolyline) return piece.fit.kind;
+  const double within = usual_tolerance(noise);
+  if (fit_segment(piece.nodes).error <= within) return CurveKind::kSegment;
+  const Fit arc = fit_arc(piece.nodes);
+  return arc.error <= within ? arc.kind : CurveKind::kPolyline;
+}
+
 /// Whether the piece is straight, or an arc that a corner holds, and has a row of edge points too
 /// long for chance.
-bool is_long_row(const Piece& piece, const Evidence& evidence, std::ptrdiff_t held) {
-  const bool straight = piece.fit.kind == CurveKind::kSegment;
-  return (straight || (piece.fit.kind == CurveKind::kArc && held > 0)) &&
+bool is_long_row(const Piece& piece, const Evidence& evidence, double noise, std::ptrdiff_t held) {
+  const CurveKind kind = kind_in_noise(piece, noise);
+  return (kind == CurveKind::kSegment || (kind == CurveKind::kArc && held > 0)) &&
          length_of(piece) >= kLongRow * piece.spacing() && evidence.per_spacing >= kDenseRow;
 }
 
 /// Whether the piece ends free, in noise, and hangs on points that are edges only perhaps.
 bool is_doubtful(const Piece& piece, const Evidence& evidence, double noise, std::ptrdiff_t held) {
   if (!(noise > kMuchNoise) || held == 2) return false;
-  const bool row = is_long_row(piece, evidence, held);
+  const bool row = is_long_row(piece, evidence, noise, held);
   return evidence.probability < (row ? kProbableRow : kLeastProbable[held]);
 }
 

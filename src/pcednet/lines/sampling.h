@@ -19,6 +19,11 @@ constexpr double kMuchNoise = 0.2;
 /// Exact points have less noise, in spacings.
 constexpr double kExactNoise = 0.005;
 
+/// How far points may be from the segment or arc of their edge by default, in spacings.
+constexpr double usual_tolerance(double noise) {
+  return 0.2 + 0.4 * noise;
+}
+
 Sampling measure_sampling(const OrderedPoints& cloud);
 
 }  // namespace pcednet::lines

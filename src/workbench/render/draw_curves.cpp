@@ -71,7 +71,9 @@ class Ink {
             sq_length > 0.0f ? std::clamp((x * dx + y * dy) / sq_length, 0.0f, 1.0f) : 0.0f;
         const float cover = radius + 0.5f - std::hypot(x - t * dx, y - t * dy);
         if (cover <= 0.0f) continue;
-        const Spot on{a.x + t * dx, a.y + t * dy, a.depth + t * (b.depth - a.depth)};
+        // On the screen the inverse of the depth is linear.
+        const Spot on{a.x + t * dx, a.y + t * dy,
+                      a.depth * b.depth / (b.depth + t * (a.depth - b.depth))};
         drop(row, column, std::min(cover, 1.0f) * seen(on), on.depth, colour);
       }
     }
