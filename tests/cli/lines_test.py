@@ -253,6 +253,18 @@ class Lines(CliTest):
         done = run("lines", self.labelled_cube(), *self.outputs("obj"), "--classify", "--overwrite")
         self.assertIn("its labels are not used: classified by model general", done.stderr)
 
+    def test_a_column_of_another_program_is_named(self):
+        p, _, label = cube(8000)
+        for column, said in (("is_edge", "labels from its column is_edge"),
+                             ("class", "its column class is not taken for edge classes")):
+            path = self.folder / f"{column}.csv"
+            np.savetxt(path, np.column_stack([p, label == 2]), fmt="%.9g", delimiter=",",
+                       header="x,y,z," + column, comments="")
+            done = run("lines", path, *self.outputs("obj"), "--overwrite")
+            self.assertIn(f"{path}: {said}", done.stderr)
+            self.assertEqual("its labels are used" in done.stderr, column == "is_edge")
+            self.assertEqual(self.stated_count(done), 12)
+
     def test_a_classified_file_has_the_lines_of_the_cloud_itself(self):
         """Its normals are estimates of what it was written with, its coordinates are rounded."""
         p, _, _ = cube(8000)

@@ -43,6 +43,13 @@ TEST_F(Predicted, AClassPerPointInTheOrderOfTheCloud) {
   EXPECT_EQ(read_predictions(write("d.txt", points), positions_).classes, (Classes{2, 0, 0, 0}));
 }
 
+TEST_F(Predicted, AColumnThatSaysWhetherAPointIsAnEdge) {
+  const auto file = write("a.csv", "x,y,z,is_edge\n0,0,0,0\n1,0,0,1\n2,0,0,1\n3,0,0,0\n");
+  const Predictions found = read_predictions(file, positions_);
+  EXPECT_EQ(found.classes, (Classes{0, 2, 2, 0}));
+  EXPECT_EQ(found.note, "labels from its column is_edge");
+}
+
 TEST_F(Predicted, ArraysOfClassesOrOfScores) {
   const auto npy = [&](const std::vector<std::size_t>& shape, const std::vector<float>& values,
                        const ClassTable& table = edge_classes()) {

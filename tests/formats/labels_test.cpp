@@ -37,6 +37,29 @@ TEST(Labels, ReadsEveryKindOfFile) {
   EXPECT_EQ(formats::read_labels(scratch.file("none.u8", "")), Labels{});
 }
 
+TEST(Labels, AreFoundInTheColumnsOfOtherPrograms) {
+  PointCloud cloud;
+  cloud.positions.resize(4, Vec3::Zero());
+  const auto column = [&](const char* name, const std::vector<float>& values) {
+    cloud.attributes = {make_attribute("intensity", values), make_attribute(name, values)};
+    return formats::edge_column_of(cloud);
+  };
+  for (const char* name : {"is_edge", "Edge", "edge_label", "scalar_is_edge", "scalar_Edge"}) {
+    const auto two = column(name, {0, 1, 1, -1});
+    ASSERT_TRUE(two) << name;
+    EXPECT_EQ(two->classes, (Labels{0, 2, 2, 255})) << name;
+    EXPECT_EQ(two->column, name);
+    EXPECT_EQ(column(name, {0, 1, 2, 3})->classes, (Labels{0, 1, 2, 3})) << name;
+    EXPECT_FALSE(column(name, {0, 1, 0.5F, 0})) << "a probability";
+    EXPECT_FALSE(column(name, {0, 1, 2, 4})) << "a number of an edge";
+  }
+  EXPECT_FALSE(column("EdgeOfFlightLine", {0, 1, 0, 1}));
+  EXPECT_FALSE(column("classification", {0, 1, 2, 3}));
+  EXPECT_EQ(formats::doubtful_column_of(cloud), "classification");
+  EXPECT_FALSE(column("Class", {0, 1, 2, 7}));
+  EXPECT_EQ(formats::doubtful_column_of(cloud), "");
+}
+
 TEST(Labels, RefusesWhatHoldsNone) {
   const Scratch scratch;
   const std::string message = error_of(

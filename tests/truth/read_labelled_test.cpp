@@ -56,6 +56,15 @@ TEST(AbcFeatures, AreFoundWhereTheDataSetHasThem) {
   }
 }
 
+TEST(ReadLabelled, TakesAColumnThatSaysWhetherAPointIsAnEdge) {
+  const Scratch scratch;
+  const auto file =
+      scratch.file("a.csv", "x,y,z,red,green,blue,edge\n0,0,0,9,9,9,0\n1,0,0,9,9,9,1\n");
+  const LoadedCloud loaded = read_labelled(file);
+  EXPECT_EQ(loaded.cloud.labels, (Labels{0, 2}));
+  EXPECT_EQ(loaded.warnings.back(), "labels from its column edge");
+}
+
 /// Three points with a label and other columns, as a result of a classification.
 std::string result(const std::string& columns, const std::string& rows) {
   return "ply\nformat ascii 1.0\ncomment pcednet model general\nelement vertex 3\nproperty float "

@@ -152,6 +152,25 @@ void add_given_labels(const LinesArguments& arguments, std::vector<std::uint8_t>
        labelled);
 }
 
+/// The labels of the file: its own, otherwise those in a column of edges, which it says.
+std::vector<std::uint8_t> labels_in(const std::string& file, const PointCloud& cloud) {
+  std::vector<std::uint8_t> labels = formats::labels_of(cloud, file);
+  if (!labels.empty()) return labels;
+  if (auto column = formats::edge_column_of(cloud)) {
+    say(fmt::format("{}: labels from its column {}", file, column->column));
+    return std::move(column->classes);
+  }
+  const std::string doubtful = formats::doubtful_column_of(cloud);
+  const std::string extension = io::extension_of(file);
+  if (!doubtful.empty() && extension != ".las" && extension != ".laz") {
+    say(fmt::format(
+        "{}: its column {} is not taken for edge classes: in other programs 2 is ground; "
+        "call it label if they are",
+        file, doubtful));
+  }
+  return {};
+}
+
 /// Reads the whole cloud, and classifies it if needed.
 void read_labelled(const LinesArguments& arguments, StageClock& clock, LabelledCloud& labelled) {
   clock.begin("read");
@@ -159,7 +178,7 @@ void read_labelled(const LinesArguments& arguments, StageClock& clock, LabelledC
   cloud = read_cloud(arguments.input);
   warn_of_lines(arguments.input, cloud);
   throw_if_cancelled(&clock.progress());
-  std::vector<std::uint8_t> given = formats::labels_of(cloud, arguments.input);
+  std::vector<std::uint8_t> given = labels_in(arguments.input, cloud);
   if (!arguments.classify) check_edges(arguments.input, classes_of(cloud.comments));
   clock.begin("normals");
   const bool labelled_before = formats::have_labels(given);

@@ -175,6 +175,13 @@ Predictions read_predictions(const fs::path& path, std::span<const Vec3> positio
   }
   const PointCloud others = formats::read_cloud(path).cloud;
   auto labels = formats::labels_of(others, path);
+  std::string from;
+  if (labels.empty() && has_edges(table)) {
+    if (auto column = formats::edge_column_of(others)) {
+      labels = std::move(column->classes);
+      from = fmt::format("labels from its column {}", column->column);
+    }
+  }
   if (labels.empty()) {
     return {nearest_to_edge_points(positions, others),
             fmt::format("{} points without labels: read as edge points", others.size())};
@@ -184,14 +191,15 @@ Predictions read_predictions(const fs::path& path, std::span<const Vec3> positio
     throw no_class(path, fmt::format("point {}", i), labels[i], table);
   }
   const bool is_as_large = labels.size() == positions.size();
-  if (is_as_large && are_in_order(positions, others.positions)) return {std::move(labels), {}};
+  if (is_as_large && are_in_order(positions, others.positions)) return {std::move(labels), from};
   const spatial::KdTree tree(others.positions);
-  if (is_as_large && !are_among(positions, tree)) return {std::move(labels), {}};
+  if (is_as_large && !are_among(positions, tree)) return {std::move(labels), from};
   const std::string why = is_as_large
                               ? "the points are in another order"
                               : fmt::format("{} points for {}", others.size(), positions.size());
   return {labels_of_nearest(positions, tree, labels),
-          why + ": each takes the label of the nearest"};
+          fmt::format("{}{}{}: each takes the label of the nearest", from, from.empty() ? "" : "; ",
+                      why)};
 }
 
 }  // namespace pcednet::eval

@@ -23,7 +23,8 @@ struct Predictions {
 };
 
 /// The classes of a cloud at `positions` from another program's file:
-/// - a class per point in the cloud's order: what formats::read_labels() reads;
+/// - a class per point in the cloud's order: what formats::read_labels() reads, or, for edge
+///   classes, formats::edge_column_of();
 /// - .npy: classes of shape (points) or (points, 1), of which true is sharp-edge, or scores of
 ///   shape (points, classes) for at most 255 classes, where the largest score wins, the lower class
 ///   on ties;

@@ -83,7 +83,51 @@ std::vector<std::uint8_t> read_cloud_labels(const std::filesystem::path& path) {
   return labels;
 }
 
+/// The attribute `name` or scalar_`name`, in any case, if its numbers are all of EdgeClass or
+/// unlabelled.
+const Attribute* column_of_classes(const PointCloud& cloud, const std::string& name) {
+  for (const Attribute& attribute : cloud.attributes) {
+    const std::string its = io::lower_case(attribute.name);
+    if (attribute.components != 1 || (its != name && its != "scalar_" + name)) continue;
+    bool fits = true;
+    for (std::size_t i = 0; i < cloud.size() && fits; ++i) {
+      const auto label = io::to_label(attribute.value(i));
+      fits = label && is_label(*label, kBoundary + 1);
+    }
+    if (fits) return &attribute;
+  }
+  return nullptr;
+}
+
 }  // namespace
+
+std::optional<ColumnLabels> edge_column_of(const PointCloud& cloud) {
+  for (const char* name : {"is_edge", "edge", "edge_label"}) {
+    const Attribute* attribute = column_of_classes(cloud, name);
+    if (!attribute) continue;
+    ColumnLabels found = {.classes = {}, .column = attribute->name};
+    found.classes.reserve(cloud.size());
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+      found.classes.push_back(*io::to_label(attribute->value(i)));
+    }
+    const bool yes_or_no =
+        std::all_of(found.classes.begin(), found.classes.end(),
+                    [](std::uint8_t label) { return label <= 1 || label == kUnlabelled; });
+    if (yes_or_no) {
+      std::replace(found.classes.begin(), found.classes.end(), std::uint8_t{1},
+                   static_cast<std::uint8_t>(kSharpEdge));
+    }
+    return found;
+  }
+  return std::nullopt;
+}
+
+std::string doubtful_column_of(const PointCloud& cloud) {
+  for (const char* name : {"class", "classification"}) {
+    if (const Attribute* attribute = column_of_classes(cloud, name)) return attribute->name;
+  }
+  return "";
+}
 
 std::vector<std::uint8_t> labels_of(const PointCloud& cloud, const std::filesystem::path& path) {
   for (const char* name : {"scalar_edge_class", "edge_class"}) {

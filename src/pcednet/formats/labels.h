@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "pcednet/cloud/point_cloud.h"
@@ -26,6 +27,21 @@ std::vector<std::uint8_t> read_labels(const std::filesystem::path& path);
 /// classification leaves, otherwise its labels; empty if it has neither. Throws
 /// Error(kInsufficient), naming `path`, if that attribute holds numbers outside 0 ... 255.
 std::vector<std::uint8_t> labels_of(const PointCloud& cloud, const std::filesystem::path& path);
+
+/// Classes in a column that has one of the names that other programs give to edges.
+struct ColumnLabels {
+  std::vector<std::uint8_t> classes;
+  std::string column;
+};
+
+/// The first of is_edge, edge and edge_label in `cloud`, in any case, also after `scalar_`: 1 is
+/// kSharpEdge if there are 0 and 1 alone, otherwise numbers are EdgeClass. -1, 255 and NaN are
+/// unlabelled. None with other numbers, such as probabilities.
+std::optional<ColumnLabels> edge_column_of(const PointCloud& cloud);
+
+/// The name of a column whose numbers could be EdgeClass but need not: class or classification, in
+/// any case, where other programs hold the classes of LAS. Empty if there is none.
+std::string doubtful_column_of(const PointCloud& cloud);
 
 /// Whether a point has one: not all are kUnlabelled.
 bool have_labels(std::span<const std::uint8_t> labels);

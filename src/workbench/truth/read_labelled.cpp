@@ -9,6 +9,7 @@
 
 #include "pcednet/core/error.h"
 #include "pcednet/detect/result_truth.h"
+#include "pcednet/formats/labels.h"
 #include "pcednet/formats/read_cloud.h"
 #include "pcednet/io/promote.h"
 #include "pcednet/io/text_scan.h"
@@ -64,6 +65,11 @@ io::LoadedCloud read_labelled(const std::filesystem::path& path) {
   PointCloud& cloud = loaded.cloud;
   if (cloud.has_labels()) take_truth_of_result(loaded);
   if (cloud.empty() || cloud.has_labels()) return loaded;
+  if (auto column = formats::edge_column_of(cloud)) {
+    cloud.labels = std::move(column->classes);
+    loaded.warnings.push_back(fmt::format("labels from its column {}", column->column));
+    return loaded;
+  }
   if (io::extension_of(path) == ".obj") {
     const std::filesystem::path features = find_abc_features(path);
     if (!features.empty()) {
