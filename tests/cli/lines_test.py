@@ -202,6 +202,14 @@ class Lines(CliTest):
         done = run("lines", path, *self.outputs("geojson"), "--crs", "EPSG:25833", "--overwrite")
         self.assertIn("names another coordinate system, EPSG:25832: that of --crs", done.stderr)
         self.assertIn("EPSG::25833", self.made["geojson"].read_text())
+        heights = b'VERT_CS["DHHN",VERT_DATUM["D",2005],UNIT["metre",1],AUTHORITY["EPSG","7837"]]'
+        path.write_bytes(las(6, rows, [vlr(b"LASF_Projection", 2112, heights + b"\0")]))
+        run("lines", path, *self.outputs("gpkg"), "--overwrite")
+        database = sqlite3.connect(self.made["gpkg"])
+        self.assertEqual(database.execute("SELECT srs_id FROM gpkg_contents").fetchall(), [(-1,)])
+        database.close()
+        done = run("lines", path, *self.outputs("gpkg"), "--crs", "EPSG:25833", "--overwrite")
+        self.assertNotIn("another coordinate system", done.stderr)
 
     def test_crs_names_the_coordinate_system_of_a_file_that_does_not(self):
         path = self.labelled_cube()

@@ -20,6 +20,7 @@
 #include "pcednet/io/drawing/drawing.h"
 #include "pcednet/io/drawing/line_classes.h"
 #include "pcednet/io/las/las.h"
+#include "pcednet/io/projection.h"
 #include "pcednet/tiles/inputs.h"
 #include "prepare.h"
 #include "stage_clock.h"
@@ -313,8 +314,9 @@ void warn_of_degrees(const LinesArguments& arguments, const PointCloud& cloud) {
 io::CoordinateSystem coordinate_system(const LinesArguments& arguments, const PointCloud& cloud) {
   io::CoordinateSystem own = io::las_coordinate_system(cloud);
   if (!arguments.crs) return own;
+  const bool is_named = !own.wkt.empty() && !io::is_of_heights_alone(own);
   const bool has_other =
-      own.epsg > 0 ? own.epsg != arguments.crs->epsg : !own.wkt.empty() || own.geographic;
+      own.epsg > 0 ? own.epsg != arguments.crs->epsg : is_named || own.geographic;
   if (has_other) {
     warn(fmt::format("{}: names another coordinate system{}: that of --crs is used",
                      arguments.input, own.epsg > 0 ? fmt::format(", EPSG:{}", own.epsg) : ""));

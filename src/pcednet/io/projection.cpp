@@ -117,6 +117,11 @@ Projected look_up(const CoordinateSystem& system) {
 
 }  // namespace
 
+bool is_of_heights_alone(const CoordinateSystem& system) {
+  if (system.wkt.empty()) return system.epsg == 0 && system.vertical_epsg > 0;
+  return lower_case(system.wkt).starts_with("vert");
+}
+
 bool has_projections() {
   return proj() != nullptr;
 }
@@ -183,7 +188,7 @@ CoordinateSystem system_of_code(int epsg) {
   if (wkt.empty()) wkt = definition_of(system, WktVersion::k2);
   if (wkt.empty()) refuse("PROJ knows no such system");
   system = coordinate_system_of_wkt(wkt);
-  if (system.epsg == 0 && system.vertical_epsg > 0) {
+  if (is_of_heights_alone(system)) {
     refuse("a system of heights alone, which has no x and y");
   }
   system.epsg = epsg;

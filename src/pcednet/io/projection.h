@@ -12,6 +12,9 @@ namespace pcednet::io {
 /// Whether this build has PROJ; without it the functions below know no system.
 bool has_projections();
 
+/// Whether the system is of heights alone, by its WKT, otherwise by its codes: x and y have none.
+bool is_of_heights_alone(const CoordinateSystem& system);
+
 enum class WktVersion { k1, k2 };  ///< OGC 01-009, as in LAS; ISO 19162:2019
 
 /// The definition of a system on one line: from its WKT, otherwise from its codes. Empty if PROJ

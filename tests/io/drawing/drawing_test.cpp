@@ -143,6 +143,21 @@ TEST(Drawing, GeoPackageDefinesASystemThatHasACodeOnly) {
             has_geopackage() && has_projections());
 }
 
+TEST(Drawing, GeoPackageHasNoSystemWhereHeightsAloneHaveOne) {
+  if (!has_geopackage()) return;
+  const Scratch scratch;
+  const std::string vertical =
+      R"(VERT_CS["DHHN2016",VERT_DATUM["D",2005],UNIT["metre",1],AXIS["Up",UP]])";
+  const auto bytes_with = [&](const std::string& name, const CoordinateSystem& system) {
+    write_drawing(scratch.path(name), sample_curves(), {.coordinate_system = system});
+    return bytes_of(scratch.path(name));
+  };
+  const std::string none = bytes_with("none.gpkg", {});
+  EXPECT_EQ(bytes_with("wkt.gpkg", coordinate_system_of_wkt(vertical)), none);
+  EXPECT_EQ(bytes_with("code.gpkg", {.vertical_epsg = 7837}), none);
+  EXPECT_TRUE(contains(bytes_with("own.gpkg", {.wkt = "LOCAL_CS[\"site\"]"}), "LOCAL_CS"));
+}
+
 TEST(Drawing, SvgShowsTheView) {
   const Scratch scratch;
   const std::vector<Curve> curves = {

@@ -168,6 +168,7 @@ bool is_wkt2(std::string_view wkt) {
 /// Adds the coordinate system and returns its number in the file.
 int add_system(Database& database, CoordinateSystem system) {
   constexpr int kWgs84 = 4326, kOwn = 100000;
+  if (is_of_heights_alone(system)) return kUndefined;
   if (system.epsg == 0 && system.wkt.empty()) return kUndefined;
   if (system.epsg == kWgs84) return kWgs84;
   const int srs = system.epsg > 0 ? system.epsg : kOwn;
