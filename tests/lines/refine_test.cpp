@@ -80,6 +80,17 @@ TEST(Refine, MakesASegmentOfAnArcBetweenPlanes) {
   EXPECT_NEAR(piece.ends[0].y(), 0.0, 1e-9);
 }
 
+TEST(Refine, MakesASegmentOfAnArcThoughNoiseTurnedASideOfANode) {
+  const BetweenPlanes cloud(11);
+  std::vector<Vec3> places;
+  for (int i = 0; i < 11; ++i) places.emplace_back(i, 0.2 - 0.02 * std::pow(i - 5, 2), 0.0);
+  Piece arc = slight_arc(places, 25.0);
+  arc.nodes[3].side_b = Vec3(0.0, 0.6, -0.8);
+  const Piece piece = cloud.refined(arc);
+  EXPECT_EQ(piece.fit.kind, CurveKind::kSegment);
+  EXPECT_NEAR(piece.ends[0].y(), 0.0, 1e-9);
+}
+
 TEST(Refine, LeavesASegmentBetweenPlanesThoughItsNodesBend) {
   const BetweenPlanes cloud(9);
   const Piece piece = cloud.refined(straightened(slight_arc(cloud.places, 12.5)));

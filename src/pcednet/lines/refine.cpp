@@ -22,7 +22,8 @@ namespace pcednet::lines {
 namespace {
 
 constexpr std::size_t kNodesToRefine = 4;
-constexpr double kPlaneSide = 0.94;  ///< least cosine of a node's side and the mean
+constexpr double kPlaneSide = 0.94;         ///< least cosine of a node's side and the mean
+constexpr std::size_t kTurnedByNoise = 10;  ///< a node in so many may be
 constexpr double kSlightTurn = 45.0 * std::numbers::pi / 180.0;  ///< arcs up to it may be straight
 /// They are if planes hold this share of the points that the arc's surfaces do, about as near.
 constexpr double kAsMany = 0.95, kAsNear = 1.1;
@@ -62,14 +63,16 @@ std::vector<Vec3> points_near(const Piece& piece, const OrderedPoints& cloud) {
   return points;
 }
 
-/// The mean of a side over the nodes, orthogonal to `along`; nothing if it turns.
-std::optional<Vec3> mean_side(const Piece& piece, const Vec3& along, Vec3 ChainNode::*side) {
+/// The mean of a side over the nodes, orthogonal to `along`; nothing if it turns at more of
+/// them than `most_turned`.
+std::optional<Vec3> mean_side(const Piece& piece, const Vec3& along, Vec3 ChainNode::*side,
+                              std::size_t most_turned = 0) {
   Vec3 mean = Vec3::Zero();
   for (const ChainNode& node : piece.nodes) mean += node.*side;
   mean = (mean - mean.dot(along) * along).stableNormalized();
-  for (const ChainNode& node : piece.nodes) {
-    if ((node.*side).dot(mean) < kPlaneSide) return std::nullopt;
-  }
+  std::size_t turned = 0;
+  for (const ChainNode& node : piece.nodes) turned += (node.*side).dot(mean) < kPlaneSide ? 1 : 0;
+  if (turned > most_turned) return std::nullopt;
   return mean;
 }
 
@@ -134,10 +137,10 @@ std::vector<Vec3> beside(const Piece& segment, const std::vector<Vec3>& points) 
 
 /// The line of a crease in place of the piece's, if it is near it.
 std::optional<Placed> crease_line(const Piece& piece, const std::vector<Vec3>& near,
-                                  const SideLimits& limits) {
+                                  const SideLimits& limits, std::size_t most_turned = 0) {
   const Vec3& along = piece.fit.direction;
-  const auto side_a = mean_side(piece, along, &ChainNode::side_a);
-  const auto side_b = mean_side(piece, along, &ChainNode::side_b);
+  const auto side_a = mean_side(piece, along, &ChainNode::side_a, most_turned);
+  const auto side_b = mean_side(piece, along, &ChainNode::side_b, most_turned);
   if (!side_a || !side_b) return std::nullopt;
   const std::vector<Vec3> points = beside(piece, near);
   const auto sides = planes_of(piece, points, {*side_a, *side_b}, limits);
@@ -266,7 +269,8 @@ void place(Piece& piece, const OrderedPoints& cloud, const SideLimits& limits) {
   if (!other) return move_to(better_fit(piece, points, limits), limits.shift, piece);
   const bool is_segment = piece.fit.kind == CurveKind::kSegment;
   const Piece &straight = is_segment ? piece : *other, &round = is_segment ? *other : piece;
-  const auto line = crease_line(straight, points, limits);
+  const std::size_t by_noise = is_segment ? 0 : piece.nodes.size() / kTurnedByNoise;
+  const auto line = crease_line(straight, points, limits, by_noise);
   const auto circle = crease_circle(round, points, limits);
   const bool as_segment = line ? is_straight(*line, circle) : is_segment;
   if (as_segment != is_segment) piece = *other;
