@@ -110,6 +110,17 @@ TEST(Refine, MakesASegmentOfABoundaryThatNoiseMayHaveBent) {
   EXPECT_EQ(boundary(1.2), CurveKind::kArc);
 }
 
+TEST(Refine, MakesASegmentOfAnArcThatMuchNoiseMayHaveBent) {
+  const auto kind_of = [](double rise, double noise) {  // 21 long
+    std::vector<Vec3> places;
+    for (int i = 0; i <= 20; ++i) places.emplace_back(i, rise * i * (20 - i) / 100.0, 0.0);
+    return Points().refined(slight_arc(places, 50.0 / rise), noise).fit.kind;
+  };
+  EXPECT_EQ(kind_of(0.6, 0.5), CurveKind::kSegment);
+  EXPECT_EQ(kind_of(1.2, 0.5), CurveKind::kArc);
+  EXPECT_EQ(kind_of(0.6, 0.1), CurveKind::kArc);
+}
+
 constexpr double kRadius = 16.0;
 
 /// The top and the wall of a cylinder, and nodes along its rim.

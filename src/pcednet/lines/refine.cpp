@@ -22,8 +22,8 @@ namespace pcednet::lines {
 namespace {
 
 constexpr std::size_t kNodesToRefine = 4;
-constexpr double kPlaneSide = 0.94;         ///< least cosine of a node's side and the mean
-constexpr std::size_t kTurnedByNoise = 10;  ///< a node in so many may be
+constexpr double kPlaneSide = 0.94;        ///< least cosine of a node's side and the mean
+constexpr std::size_t kTurnedByNoise = 4;  ///< a node in so many may be
 constexpr double kSlightTurn = 45.0 * std::numbers::pi / 180.0;  ///< arcs up to it may be straight
 /// They are if planes hold this share of the points that the arc's surfaces do, about as near.
 constexpr double kAsMany = 0.95, kAsNear = 1.1;
@@ -253,17 +253,18 @@ void move_to(const std::optional<Placed>& better, double shift, Piece& piece) {
   piece.dihedral = better->dihedral;
 }
 
-/// Whether a boundary rises so little from a chord that noise may have bent it.
-bool is_hardly_bent(const Piece& piece) {
-  if (!is_boundary(piece.middle()) || piece.fit.kind != CurveKind::kArc || piece.closed)
-    return false;
+/// Whether a boundary, or any edge in much noise, rises so little from a chord that noise may have
+/// bent it.
+bool is_hardly_bent(const Piece& piece, double noise) {
+  if (!is_boundary(piece.middle()) && !(noise > kMuchNoise)) return false;
+  if (piece.fit.kind != CurveKind::kArc || piece.closed) return false;
   const double rise = std::pow(length_of(piece), 2) / (8.0 * piece.fit.radius);
   return is_slight(piece) && rise < kStraightRise * piece.spacing();
 }
 
-void place(Piece& piece, const OrderedPoints& cloud, const SideLimits& limits) {
+void place(Piece& piece, const OrderedPoints& cloud, const SideLimits& limits, double noise) {
   if (piece.fit.kind == CurveKind::kPolyline || piece.nodes.size() < kNodesToRefine) return;
-  if (is_hardly_bent(piece)) piece = refitted(piece, fit_segment(piece.nodes));
+  if (is_hardly_bent(piece, noise)) piece = refitted(piece, fit_segment(piece.nodes));
   const std::vector<Vec3> points = points_near(piece, cloud);
   const auto other = in_other_kind(piece);
   if (!other) return move_to(better_fit(piece, points, limits), limits.shift, piece);
@@ -285,7 +286,7 @@ void refine(std::vector<Piece>& pieces, const OrderedPoints& cloud, const Sampli
   const SideLimits limits = SideLimits::in(sampling.noise);
   parallel_blocks(pieces.size(), 16, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      if (!pieces[i].exact) place(pieces[i], cloud, limits);
+      if (!pieces[i].exact) place(pieces[i], cloud, limits, sampling.noise);
     }
     stage.advance(end - begin);
   });
