@@ -34,6 +34,30 @@ std::vector<std::string> drawn_classes(const LinesArguments& arguments) {
 
 }  // namespace
 
+void tell_labels(const std::string& file, std::span<const std::uint8_t> classes) {
+  const auto others = std::count_if(classes.begin(), classes.end(), [](std::uint8_t label) {
+    return label > kBoundary && label != kUnlabelled;
+  });
+  if (others > 0) {
+    warn(
+        fmt::format("{}: {} labels are not edge classes (1 smooth, 2 sharp, 3 boundary): "
+                    "counted as non-edge",
+                    file, others));
+  }
+  std::string edges;
+  for (const io::LineClass& entry : io::kLineClasses) {
+    const auto points = std::count(classes.begin(), classes.end(), entry.edge_class);
+    if (points == 0) continue;
+    edges += fmt::format("{}{} {}", edges.empty() ? "" : ", ", points, entry.name);
+  }
+  if (edges.empty()) {
+    warn(file +
+         ": its labels are used, but none is an edge class; --classify labels the cloud anew");
+  } else {
+    say(fmt::format("{}: its labels are used: {}; --classify finds others", file, edges));
+  }
+}
+
 std::string filter_lines(const LinesArguments& arguments, const lines::LineScale& scale,
                          std::vector<Curve>& curves) {
   struct Option {

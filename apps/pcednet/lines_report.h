@@ -11,6 +11,9 @@
 
 namespace pcednet::app {
 
+/// Says which labels of the file the lines come from.
+void tell_labels(const std::string& file, std::span<const std::uint8_t> classes);
+
 /// Keeps the curves that the user asked for, of those that find_lines() kept; says how many each
 /// option leaves out, the first of several that do.
 std::string filter_lines(const LinesArguments& arguments, const lines::LineScale& scale,

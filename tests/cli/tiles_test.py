@@ -24,7 +24,7 @@ class Tiles(TilesTest):
         c, s = np.cos(0.5), np.sin(0.5)
         oblique = p @ np.array([[c, s, 0], [-s, c, 0], [0, 0, 1]]) @ np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]])
         write_ply(self.folder / "rounded.ply", np.round(oblique / 0.02).astype(np.float32) * 0.02)
-        self.check_equal_to_untiled(self.folder / "rounded.ply", 0.999)
+        self.check_equal_to_untiled(self.folder / "rounded.ply", 0.9999)
         plan = json.loads((self.folder / "p.json").read_text())
         self.assertAlmostEqual(plan["normals"]["rounded_to"], 0.02, 6)
         self.assertIn("rounded to 0.02", plan["notes"][0])

@@ -8,6 +8,7 @@
 #include <numeric>
 #include <optional>
 
+#include "pcednet/cloud/bounding_box.h"
 #include "pcednet/core/median.h"
 #include "pcednet/core/parallel_loops.h"
 #include "pcednet/detect/rounding.h"
@@ -171,11 +172,14 @@ void decide_voxels(const PreparedSample& sample, const detect::EdgeModel& model,
   gls::ScaleSpaceOptions descriptor = model.descriptor;
   descriptor.range.s_min = plan.s_min, descriptor.range.s_max = plan.s_max;
   const std::size_t octaves = gls::octave_count(descriptor.range);
+  // Rounded positions are spread: where the sample has all, their box is known.
+  const BoundingBox box =
+      sample.positions.size() == plan.points() ? bounding_box(sample.positions) : plan.box;
   std::optional<gls::FastScaleSpace> space;
   for (std::size_t octave = 0; octave < octaves; ++octave) {
     gls::PyramidPlan& pyramid = plan.pyramids.emplace_back();
-    pyramid.corner = plan.box.min;
-    pyramid.side = (plan.box.max - plan.box.min).maxCoeff();
+    pyramid.corner = box.min;
+    pyramid.side = (box.max - box.min).maxCoeff();
     if (plan.model.exact || !gls::fits_spheres(descriptor.reconstruction)) continue;
     if (octave == 0) {
       space.emplace(gls::OrientedPoints{sample.positions, sample.normals, sample.curve}, descriptor,

@@ -236,11 +236,13 @@ Plan plan_of(const Json& j, const Paths& paths, std::string& member) {
 bool are_sound(const std::vector<gls::PyramidPlan>& pyramids, const Plan& plan) {
   if (pyramids.empty() || pyramids.size() > gls::kOctaves) return false;
   const double side = (plan.box.max - plan.box.min).maxCoeff();
+  const double spread = plan.normals.rounding.step;  // of rounded positions
   const std::size_t levels = pyramids.front().levels.size();
   return (levels == 0 || !plan.model.exact) &&
          std::all_of(pyramids.begin(), pyramids.end(), [&](const gls::PyramidPlan& pyramid) {
-           return pyramid.levels.size() == levels && pyramid.corner == plan.box.min &&
-                  pyramid.side == side;
+           return pyramid.levels.size() == levels &&
+                  (pyramid.corner - plan.box.min).cwiseAbs().maxCoeff() <= spread &&
+                  std::abs(pyramid.side - side) <= spread;
          });
 }
 
