@@ -17,7 +17,7 @@ namespace pcednet::detect {
 namespace {
 
 constexpr double kVoxel = 2.4, kAveraged = 2.5;  ///< in deviations of the noise
-constexpr double kLeastLeft = 4000.0;            ///< points: of fewer, too little is known
+constexpr std::size_t kLeastLeft = 4000;         ///< points: of fewer, too little is known
 
 /// A point's voxel; in order, the points of a voxel follow each other.
 struct InVoxel {
