@@ -51,8 +51,7 @@ ClassifiedCloud classify_cloud(const std::filesystem::path& file, const PointClo
     if (detect::thins_noise(*classifier.model)) {
       result.thinned = thin_noise(file, cloud, classifier.preparation, progress);
     }
-    result.prepared = result.thinned ? prepare(file, result.thinned->positions, progress)
-                                     : prepare(file, cloud, classifier.preparation, progress);
+    result.prepared = prepare(file, cloud, classifier.preparation, progress, result.thinned);
     const BoundingBox bounds = bounding_box(result.prepared.positions);
     check_scales(file, bounds, classifier.model->descriptor);
     result.found = detect::classify(result.prepared, *classifier.model, &progress);

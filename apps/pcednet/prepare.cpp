@@ -15,19 +15,14 @@ void add_prepare_options(CLI::App& command, detect::PrepareOptions& options) {
                    "Use the normals of the file even if their signs are mixed");
 }
 
-detect::PreparedCloud prepare(const std::filesystem::path& file, std::span<const Vec3> positions,
-                              const Progress& progress) {
-  detect::PreparedCloud prepared;
-  const detect::PointArrays points = {.positions = positions};
-  with_name_in_errors(file, [&] { prepared = detect::prepare(points, {}, &progress); });
-  warn_all(file, prepared.notes);
-  return prepared;
-}
-
 detect::PreparedCloud prepare(const std::filesystem::path& file, const PointCloud& cloud,
-                              const detect::PrepareOptions& options, const Progress& progress) {
+                              const detect::PrepareOptions& options, const Progress& progress,
+                              const std::optional<detect::ThinnedCloud>& thinned) {
   detect::PreparedCloud prepared;
-  with_name_in_errors(file, [&] { prepared = detect::prepare(cloud, options, &progress); });
+  with_name_in_errors(file, [&] {
+    prepared = thinned ? detect::prepare(detect::PointArrays{thinned->positions}, {}, &progress)
+                       : detect::prepare(cloud, options, &progress);
+  });
   warn_all(file, prepared.notes);
   if (prepared.reoriented) say("  --keep-orientation uses them as they are");
   if (prepared.misfits) say("  pcednet normals makes new ones");

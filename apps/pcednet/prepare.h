@@ -2,9 +2,10 @@
 
 #include <filesystem>
 #include <functional>
-#include <span>
+#include <optional>
 
 #include "pcednet/detect/prepare.h"
+#include "pcednet/detect/thinned_cloud.h"
 #include "pcednet/gls/scale_space_options.h"
 
 namespace CLI {
@@ -16,13 +17,11 @@ namespace pcednet::app {
 /// Adds --keep-orientation.
 void add_prepare_options(CLI::App& command, detect::PrepareOptions& options);
 
-/// detect::prepare(), with its notes as warnings and `file` in its errors.
+/// detect::prepare() of the cloud, or of what thinning left of it, with its notes as warnings and
+/// `file` in its errors.
 detect::PreparedCloud prepare(const std::filesystem::path& file, const PointCloud& cloud,
-                              const detect::PrepareOptions& options, const Progress& progress);
-
-/// The same for points without normals, which must outlive the result.
-detect::PreparedCloud prepare(const std::filesystem::path& file, std::span<const Vec3> positions,
-                              const Progress& progress);
+                              const detect::PrepareOptions& options, const Progress& progress,
+                              const std::optional<detect::ThinnedCloud>& thinned = {});
 
 /// Warns of coordinates of this type that are rounded to more than the spacing, which is
 /// `apart()`, found where it matters.

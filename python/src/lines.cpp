@@ -35,14 +35,6 @@ lines::LineOptions line_options_of(const py::dict& settings) {
   return options;
 }
 
-detect::Classification copy_of(const lines::EdgePoints& points) {
-  detect::Classification found;
-  found.classes.assign(points.classes.begin(), points.classes.end());
-  found.p_sharp.assign(points.p_sharp.begin(), points.p_sharp.end());
-  found.p_smooth.assign(points.p_smooth.begin(), points.p_smooth.end());
-  return found;
-}
-
 /// Curves, notes on the normals, and the tolerance of the fit. `prepared` says that positions and
 /// normals come from a classification, `estimated` that the normals do not come from the caller.
 py::tuple find_lines(const Array<double>& xyz, bool is_float32,
@@ -66,7 +58,8 @@ py::tuple find_lines(const Array<double>& xyz, bool is_float32,
     detect::Classification fewer;
     if (estimated) thinned = detect::thin_noise(cloud.positions(), job);
     if (thinned) {
-      fewer = detect::found_for_thinned(copy_of(points), *thinned);
+      fewer =
+          detect::found_for_thinned({points.classes, points.p_sharp, points.p_smooth}, *thinned);
       points.classes = fewer.classes;
       points.p_sharp = fewer.p_sharp;
       points.p_smooth = fewer.p_smooth;

@@ -125,7 +125,7 @@ TEST(ThinnedClouds, AreTheSameInAnyOrderAndForAnyThreads) {
   std::vector<std::uint32_t> order(positions.size());
   std::iota(order.begin(), order.end(), 0u);
   Random random(8);
-  for (std::size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[random.index(i)]);
+  random.shuffle(std::span(order));
   std::vector<Vec3> shuffled;
   for (const std::uint32_t i : order) shuffled.push_back(positions[i]);
   for (const int threads : {1, 2, 8}) {
@@ -187,7 +187,7 @@ TEST(ThinnedClouds, TakeTheLabelsOfMostOfTheirPoints) {
   Classification found;
   found.classes = {kSharpEdge, kSharpEdge, kNonEdge, kUnlabelled, 9, kUnlabelled, kSharpEdge};
   found.p_sharp = {0.9f, 0.6f, 0.3f, 0.0f, 0.0f, 0.0f, 1.0f};
-  const Classification fewer = found_for_thinned(found, thinned);
+  const Classification fewer = found_for_thinned({found.classes, found.p_sharp}, thinned);
   EXPECT_EQ(fewer.classes, (std::vector<std::uint8_t>{kSharpEdge, kNonEdge, kUnlabelled}));
   ASSERT_EQ(fewer.p_sharp.size(), 3u);
   EXPECT_NEAR(fewer.p_sharp[0], 0.6f, 1e-6);

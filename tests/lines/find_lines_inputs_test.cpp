@@ -43,30 +43,28 @@ TEST(FindLines, FindsNoBoundaryWherePointsAreMissing) {
 
 TEST(FindLines, RefusesWhatIsNoProbability) {
   const Cloud cloud = cube(500);
+  EdgePoints points = points_of(cloud);
   for (const float bad : {-0.1f, 1.5f, std::numeric_limits<float>::quiet_NaN()}) {
     const std::vector<float> p(cloud.positions.size(), bad);
-    EXPECT_ERROR(ErrorKind::kUsage, find_lines({.positions = cloud.positions,
-                                                .normals = cloud.normals,
-                                                .classes = cloud.classes,
-                                                .p_sharp = p}));
+    points.p_sharp = p;
+    EXPECT_ERROR(ErrorKind::kUsage, find_lines(points));
   }
 }
 
 TEST(FindLines, RefusesACurveOfOtherPoints) {
   const Cloud cloud = cube(500);
+  EdgePoints points = points_of(cloud);
   for (const std::vector<std::uint32_t>& curve :
        {std::vector<std::uint32_t>{1, 2, 500}, std::vector<std::uint32_t>(501, 3),
         std::vector<std::uint32_t>(500, 3), std::vector<std::uint32_t>{0, 1, 2}}) {
-    EXPECT_ERROR(ErrorKind::kUsage, find_lines({.positions = cloud.positions,
-                                                .normals = cloud.normals,
-                                                .classes = cloud.classes,
-                                                .curve = curve}));
+    points.curve = curve;
+    EXPECT_ERROR(ErrorKind::kUsage, find_lines(points));
   }
 }
 
 TEST(FindLines, StopAtAnyStepWhenTold) {
   const Cloud cloud = cube(20000);
-  const EdgePoints points = {cloud.positions, cloud.normals, cloud.classes};
+  const EdgePoints points = points_of(cloud);
   std::set<std::string> steps;
   const Progress watch = {.report = [&](const std::string& step, double) { steps.insert(step); },
                           .cancelled = {}};

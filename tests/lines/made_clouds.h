@@ -47,8 +47,12 @@ inline Cloud cube(std::size_t points) {
   return cloud;
 }
 
+inline EdgePoints points_of(const Cloud& cloud) {
+  return {cloud.positions, cloud.normals, cloud.classes};
+}
+
 inline std::vector<Curve> lines_of(const Cloud& cloud, const LineOptions& options = {}) {
-  return find_lines({cloud.positions, cloud.normals, cloud.classes}, options);
+  return find_lines(points_of(cloud), options);
 }
 
 }  // namespace pcednet::lines

@@ -15,6 +15,7 @@
 #include "lines_tiles.h"
 #include "models.h"
 #include "pcednet/core/error.h"
+#include "pcednet/formats/format.h"
 #include "pcednet/formats/labels.h"
 #include "pcednet/formats/virtual_cloud.h"
 #include "pcednet/io/drawing/drawing.h"
@@ -120,12 +121,14 @@ void add_given_labels(const LinesArguments& arguments, std::vector<std::uint8_t>
   if (found.p_sharp.empty()) found.p_smooth.clear();
   if (!found.p_sharp.empty()) found.p_smooth.resize(cloud.size());
   labelled.thinned = thin_noise(arguments.input, cloud, arguments.preparation, progress);
-  labelled.prepared = labelled.thinned
-                          ? prepare(arguments.input, labelled.thinned->positions, progress)
-                          : prepare(arguments.input, cloud, arguments.preparation, progress);
+  labelled.prepared =
+      prepare(arguments.input, cloud, arguments.preparation, progress, labelled.thinned);
   labelled.given = true;
-  take(labelled.thinned ? detect::found_for_thinned(found, *labelled.thinned) : std::move(found),
-       labelled);
+  if (labelled.thinned) {
+    found = detect::found_for_thinned({found.classes, found.p_sharp, found.p_smooth},
+                                      *labelled.thinned);
+  }
+  take(std::move(found), labelled);
 }
 
 /// The labels of the file: its own, otherwise those in a column of edges, which it says.
@@ -137,8 +140,8 @@ std::vector<std::uint8_t> labels_in(const std::string& file, const PointCloud& c
     return std::move(column->classes);
   }
   const std::string doubtful = formats::doubtful_column_of(cloud);
-  const std::string extension = io::extension_of(file);
-  if (!doubtful.empty() && extension != ".las" && extension != ".laz") {
+  const formats::Format* format = formats::find_format(file);
+  if (!doubtful.empty() && !(format && format->is_las())) {
     say(fmt::format(
         "{}: its column {} is not taken for edge classes: in other programs 2 is ground; "
         "call it label if they are",

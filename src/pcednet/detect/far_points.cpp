@@ -15,17 +15,6 @@ bool is_suspect(const Vec3& position) {
   return position.allFinite() && position.cwiseAbs().maxCoeff() > kSuspectCoordinate;
 }
 
-/// The middle values of the coordinates.
-Vec3 middle_of(std::span<const Vec3> positions) {
-  Vec3 middle = Vec3::Zero();
-  for (Eigen::Index axis = 0; axis < 3; ++axis) {
-    std::vector<double> values;
-    for (const Vec3& position : positions) values.push_back(position[axis]);
-    middle[axis] = value_at_rank(values, values.size() / 2);
-  }
-  return middle;
-}
-
 /// The middle of positions, and the distances from it of those that are elsewhere.
 struct Spread {
   Vec3 middle = Vec3::Zero();
@@ -45,6 +34,16 @@ Spread spread_of(std::span<const Vec3> positions, const Condition& is_used) {
 }
 
 }  // namespace
+
+Vec3 middle_of(std::span<const Vec3> positions) {
+  Vec3 middle = Vec3::Zero();
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    std::vector<double> values;
+    for (const Vec3& position : positions) values.push_back(position[axis]);
+    middle[axis] = value_at_rank(values, values.size() / 2);
+  }
+  return middle;
+}
 
 std::vector<std::uint32_t> far_points(std::span<const Vec3> positions) {
   if (std::none_of(positions.begin(), positions.end(), is_suspect)) return {};

@@ -22,6 +22,13 @@ struct NearOnCurve {
   }
 };
 
+/// The `count` nearest to the point at `place`, nearest first, of as many as `around` on either
+/// side of it in `places`, points along a curve; fewer if there are not enough.
+std::vector<std::uint32_t> nearest_on_curve(std::span<const Vec3> positions,
+                                            std::span<const std::uint32_t> places,
+                                            std::size_t place, std::size_t around,
+                                            std::size_t count);
+
 /// The kNear nearest among the 64 around a point on the curve, without copies. Points with fewer
 /// are left out. `curve` is the spatial::curve_order() of the positions.
 NearOnCurve near_on_curve(std::span<const Vec3> positions, std::span<const std::uint32_t> curve);

@@ -1,5 +1,7 @@
 #include "pcednet/detect/thick_noise.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -8,6 +10,7 @@
 #include "pcednet/core/eigendecomposition.h"
 #include "pcednet/core/median.h"
 #include "pcednet/core/parallel.h"
+#include "pcednet/detect/near_on_curve.h"
 #include "pcednet/spatial/curve_order.h"
 
 namespace pcednet::detect {
@@ -57,31 +60,15 @@ Layer layer_of(std::span<const Vec3> positions, std::span<const std::uint32_t> p
           .kurtosis = second > 0.0 ? fourth * count / (second * second) : 0.0};
 }
 
-/// The `count` nearest to the place, itself among them, of those around it on the curve.
-std::vector<std::uint32_t> nearest_around(std::span<const Vec3> positions,
-                                          std::span<const std::uint32_t> places, std::size_t place,
-                                          std::size_t count) {
-  const std::size_t around = kAroundEach * count / 2;
-  const std::size_t begin = place - std::min(place, around);
-  const std::size_t end = std::min(place + around, places.size());
-  std::vector<std::uint32_t> near(places.begin() + static_cast<std::ptrdiff_t>(begin),
-                                  places.begin() + static_cast<std::ptrdiff_t>(end));
-  const Vec3& centre = positions[places[place]];
-  const auto last = near.begin() + static_cast<std::ptrdiff_t>(std::min(count, near.size()));
-  std::nth_element(near.begin(), last - 1, near.end(), [&](std::uint32_t a, std::uint32_t b) {
-    return (positions[a] - centre).squaredNorm() < (positions[b] - centre).squaredNorm();
-  });
-  near.erase(last, near.end());
-  return near;
-}
-
 std::vector<Layer> layers_of(std::span<const Vec3> positions, std::span<const std::uint32_t> places,
                              std::size_t count) {
   std::vector<Layer> layers(std::min(kSamples, places.size()));
   parallel_blocks(layers.size(), 10, [&](std::size_t begin, std::size_t end) {
     for (std::size_t s = begin; s < end; ++s) {
       const std::size_t place = s * places.size() / layers.size();
-      layers[s] = layer_of(positions, nearest_around(positions, places, place, count));
+      auto points = nearest_on_curve(positions, places, place, kAroundEach * count / 2, count - 1);
+      points.push_back(places[place]);
+      layers[s] = layer_of(positions, points);
     }
   });
   return layers;
@@ -105,6 +92,10 @@ std::optional<ThickNoise> noise_of(const std::vector<Layer>& layers) {
 }
 
 }  // namespace
+
+std::string text_of(const ThickNoise& noise) {
+  return fmt::format("noise is {:.2g} times the spacing", noise.deviation / noise.spacing);
+}
 
 std::optional<ThickNoise> find_thick_noise(std::span<const Vec3> positions,
                                            std::span<const std::uint32_t> curve) {

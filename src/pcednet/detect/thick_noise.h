@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 
 #include "pcednet/core/vec3.h"
 
@@ -12,7 +13,13 @@ namespace pcednet::detect {
 struct ThickNoise {
   double deviation;  ///< standard deviation across the surface
   double spacing;    ///< of the points, projected on it
+
+  /// The edge of voxels whose means have so little of it that edges show.
+  double voxel() const { return 2.4 * deviation; }
 };
+
+/// "noise is 2.1 times the spacing"
+std::string text_of(const ThickNoise& noise);
 
 /// The noise of a cloud of which the neighbourhoods of a few points are balls, and those of more
 /// (3,072 at most) become flat, as one layer of points does whose heights are normally distributed:

@@ -4,68 +4,54 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <tuple>
 
-#include "pcednet/core/median.h"
 #include "pcednet/core/parallel.h"
 #include "pcednet/detect/decide.h"
+#include "pcednet/detect/far_points.h"
 #include "pcednet/spatial/curve_order.h"
 #include "pcednet/spatial/kd_tree.h"
 
 namespace pcednet::detect {
 namespace {
 
-constexpr double kVoxel = 2.4, kAveraged = 2.5;  ///< in deviations of the noise
-constexpr std::size_t kLeastLeft = 4000;         ///< points: of fewer, too little is known
+constexpr double kAveraged = 2.5;         ///< radius in deviations of the noise
+constexpr std::size_t kLeastLeft = 4000;  ///< points: of fewer, too little is known
 
 /// A point's voxel; in order, the points of a voxel follow each other.
 struct InVoxel {
   std::array<double, 3> voxel;
-  std::uint32_t place;  ///< of the point on the curve
+  std::uint32_t point;
 
   bool operator<(const InVoxel& other) const {
-    return std::tie(voxel, place) < std::tie(other.voxel, other.place);
+    return std::tie(voxel, point) < std::tie(other.voxel, other.point);
   }
 };
 
-Vec3 median_of(std::span<const Vec3> positions, std::span<const std::uint32_t> curve) {
-  Vec3 middle;
-  std::vector<double> values(curve.size());
-  for (int axis = 0; axis < 3; ++axis) {
-    std::transform(curve.begin(), curve.end(), values.begin(),
-                   [&](std::uint32_t i) { return positions[i][axis]; });
-    middle[axis] = value_at_rank(values, values.size() / 2);
-  }
-  return middle;
-}
-
-std::vector<InVoxel> by_voxels(std::span<const Vec3> positions,
-                               std::span<const std::uint32_t> curve, double edge) {
-  const Vec3 middle = median_of(positions, curve);
+std::vector<InVoxel> by_voxels(std::span<const Vec3> points, double edge) {
+  const Vec3 middle = middle_of(points);
   std::vector<InVoxel> sorted;
-  sorted.reserve(curve.size());
-  for (std::uint32_t place = 0; place < curve.size(); ++place) {
-    const Vec3 voxel = ((positions[curve[place]] - middle) / edge).array().floor();
-    sorted.push_back({{voxel.x(), voxel.y(), voxel.z()}, place});
+  sorted.reserve(points.size());
+  for (std::uint32_t i = 0; i < points.size(); ++i) {
+    const Vec3 voxel = ((points[i] - middle) / edge).array().floor();
+    sorted.push_back({{voxel.x(), voxel.y(), voxel.z()}, i});
   }
   std::sort(sorted.begin(), sorted.end());
   return sorted;
 }
 
-/// The mean of the points of each voxel; numbers the voxels in `thinned`.
-void take_means(std::span<const Vec3> positions, std::span<const std::uint32_t> curve,
+/// The mean of the points of each voxel; `points` are those on the curve, in its order.
+void take_means(std::span<const Vec3> points, std::span<const std::uint32_t> curve,
                 ThinnedCloud& thinned) {
-  const auto sorted = by_voxels(positions, curve, kVoxel * thinned.noise.deviation);
-  thinned.of_points.assign(positions.size(), ThinnedCloud::kNone);
+  const auto sorted = by_voxels(points, thinned.noise.voxel());
   for (auto begin = sorted.begin(); begin != sorted.end();) {
     const auto end = std::find_if(begin, sorted.end(),
                                   [&](const InVoxel& one) { return one.voxel != begin->voxel; });
-    const Vec3& first = positions[curve[begin->place]];
+    const Vec3& first = points[begin->point];
     Vec3 sum = Vec3::Zero();
     for (auto one = begin; one != end; ++one) {
-      sum += positions[curve[one->place]] - first;
-      thinned.of_points[curve[one->place]] = static_cast<std::uint32_t>(thinned.positions.size());
+      sum += points[one->point] - first;
+      thinned.of_points[curve[one->point]] = static_cast<std::uint32_t>(thinned.positions.size());
     }
     thinned.positions.push_back(first + sum / static_cast<double>(end - begin));
     begin = end;
@@ -73,15 +59,13 @@ void take_means(std::span<const Vec3> positions, std::span<const std::uint32_t> 
 }
 
 /// Moves each to the mean of the points around it, twice.
-void average(std::span<const Vec3> positions, std::span<const std::uint32_t> curve,
-             ThinnedCloud& thinned, const Progress* progress) {
-  const std::vector<Vec3> ordered = spatial::in_order(positions, curve);
-  const spatial::KdTree tree(ordered);
+void average(std::span<const Vec3> points, ThinnedCloud& thinned, const Progress* progress) {
+  const spatial::KdTree tree(points);
   const auto move = [&](Vec3& place, std::vector<spatial::Neighbour>& near) {
     tree.within_unsorted(place, kAveraged * thinned.noise.deviation, near);
     if (near.empty()) return;
     Vec3 sum = Vec3::Zero();
-    for (const spatial::Neighbour& other : near) sum += ordered[other.index] - place;
+    for (const spatial::Neighbour& other : near) sum += points[other.index] - place;
     place += sum / static_cast<double>(near.size());
   };
   Stage stage(progress, "noise", thinned.positions.size());
@@ -130,17 +114,17 @@ std::optional<ThinnedCloud> thin_noise(std::span<const Vec3> positions, const Pr
   const std::vector<std::uint32_t> curve = spatial::curve_order(positions);
   const auto noise = find_thick_noise(positions, curve);
   if (!noise) return std::nullopt;
-  ThinnedCloud thinned{*noise, {}, {}};
-  take_means(positions, curve, thinned);
+  ThinnedCloud thinned{*noise, {}, std::vector(positions.size(), ThinnedCloud::kNone)};
+  const std::vector<Vec3> points = spatial::in_order(positions, curve);
+  take_means(points, curve, thinned);
   if (thinned.positions.size() < kLeastLeft) return std::nullopt;
-  average(positions, curve, thinned, progress);
+  average(points, thinned, progress);
   return thinned;
 }
 
 std::string note_on(const ThinnedCloud& thinned) {
-  return fmt::format("noise is {:.2g} times the spacing: {} points are averaged to {}",
-                     thinned.noise.deviation / thinned.noise.spacing, thinned.of_points.size(),
-                     thinned.positions.size());
+  return fmt::format("{}: {} points are averaged to {}", text_of(thinned.noise),
+                     thinned.of_points.size(), thinned.positions.size());
 }
 
 Classification found_for_all(const Classification& found, const ThinnedCloud& thinned) {
@@ -157,12 +141,12 @@ std::vector<Vec3> normals_for_all(std::span<const Vec3> normals, const ThinnedCl
   return for_all<Vec3>(normals, thinned, Vec3::Zero());
 }
 
-Classification found_for_thinned(const Classification& found, const ThinnedCloud& thinned) {
+Classification found_for_thinned(const GivenLabels& labels, const ThinnedCloud& thinned) {
   std::vector<std::array<std::uint32_t, kBoundary + 1>> votes(thinned.positions.size());
-  for (std::size_t i = 0; i < found.classes.size(); ++i) {
-    if (thinned.of_points[i] == ThinnedCloud::kNone || found.classes[i] == kUnlabelled) continue;
-    const bool is_edge_class = found.classes[i] <= kBoundary;
-    ++votes[thinned.of_points[i]][is_edge_class ? found.classes[i] : 0];
+  for (std::size_t i = 0; i < labels.classes.size(); ++i) {
+    const std::uint8_t its_class = labels.classes[i];
+    if (thinned.of_points[i] == ThinnedCloud::kNone || its_class == kUnlabelled) continue;
+    ++votes[thinned.of_points[i]][its_class <= kBoundary ? its_class : 0];
   }
   Classification fewer;
   for (const auto& of_point : votes) {
@@ -170,8 +154,8 @@ Classification found_for_thinned(const Classification& found, const ThinnedCloud
     fewer.classes.push_back(static_cast<std::uint8_t>(most - of_point.begin()));
     if (*most == 0) fewer.classes.back() = kUnlabelled;
   }
-  fewer.p_sharp = means_of(found.p_sharp, thinned);
-  fewer.p_smooth = means_of(found.p_smooth, thinned);
+  fewer.p_sharp = means_of(labels.p_sharp, thinned);
+  fewer.p_smooth = means_of(labels.p_smooth, thinned);
   fewer.counts = count_classes(fewer.classes);
   return fewer;
 }

@@ -44,8 +44,14 @@ Classification found_for_all(const Classification& found, const ThinnedCloud& th
 /// Normals of all points; (0,0,0) for those that are not finite.
 std::vector<Vec3> normals_for_all(std::span<const Vec3> normals, const ThinnedCloud& thinned);
 
+/// Edge classes of all points, and their probabilities or none.
+struct GivenLabels {
+  std::span<const std::uint8_t> classes;
+  std::span<const float> p_sharp = {}, p_smooth = {};
+};
+
 /// The other way, from the edge classes of all points: each thinned one has that of most of its
 /// points (others than these four are non-edge) and their mean probabilities, if there are any.
-Classification found_for_thinned(const Classification& found, const ThinnedCloud& thinned);
+Classification found_for_thinned(const GivenLabels& labels, const ThinnedCloud& thinned);
 
 }  // namespace pcednet::detect

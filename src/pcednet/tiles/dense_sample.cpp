@@ -88,17 +88,6 @@ void note(const detect::PreparedCloud& prepared, Plan& plan) {
   for (const std::string& its : prepared.notes) plan.notes.push_back(whose + its);
 }
 
-/// Tiles describe the points as they are.
-void note_noise(std::span<const Vec3> positions, std::span<const std::uint32_t> curve, Plan& plan) {
-  if (!plan.normals.noisy) return;
-  const auto noise = detect::find_thick_noise(positions, curve);
-  if (!noise) return;
-  plan.notes.push_back(fmt::format(
-      "noise is {:.2g} times the spacing and hides most edges: tiles describe the points "
-      "as they are; thin the cloud to the means of voxels of {:.2g} before",
-      noise->deviation / noise->spacing, 2.4 * noise->deviation));
-}
-
 /// Estimates and orients as prepare() does for points without normals of their own; signs are
 /// independent between batches.
 std::vector<Vec3> estimate_in_batches(const PointCloud& dense, detect::PrepareOptions options,
@@ -115,6 +104,40 @@ std::vector<Vec3> estimate_in_batches(const PointCloud& dense, detect::PrepareOp
     for (std::size_t i = 0; i < batch.size(); ++i) normals[batch[i]] = prepared.normals[i];
   }
   return normals;
+}
+
+/// Tiles describe the points as they are.
+void note_noise(const PreparedSample& sample, Plan& plan) {
+  if (!plan.normals.noisy) return;
+  const auto noise = detect::find_thick_noise(sample.positions, sample.curve);
+  if (!noise) return;
+  plan.notes.push_back(
+      fmt::format("{} and hides most edges: tiles describe the points as they are; thin the cloud "
+                  "to the means of voxels of {:.2g} before",
+                  text_of(*noise), noise->voxel()));
+}
+
+PreparedSample prepare_sample(const PointCloud& dense, const detect::PrepareOptions& options,
+                              Plan& plan, const Progress* progress) {
+  PreparedSample sample;
+  const bool as_given = options.keep_orientation || !detect::has_estimated_normals(dense);
+  if (!(dense.has_normals() && as_given) && dense.size() > kBatchPoints) {
+    sample.positions = dense.positions;
+    sample.made = estimate_in_batches(dense, options, plan, progress);
+    sample.normals = sample.made;
+    if (plan.normals.rounding.step > 0.0) {
+      sample.moved = detect::spread(dense.positions, plan.normals.rounding);
+      sample.positions = sample.moved;
+    }
+    sample.curve = spatial::curve_order(sample.positions);
+    return sample;
+  }
+  detect::PreparedCloud prepared = detect::prepare(dense, options, progress);
+  note(prepared, plan);
+  sample.positions = prepared.positions, sample.normals = prepared.normals;
+  sample.curve = std::move(prepared.curve);
+  sample.moved = std::move(prepared.moved), sample.made = std::move(prepared.made);
+  return sample;
 }
 
 }  // namespace
@@ -144,26 +167,8 @@ PointCloud read_dense_sample(std::span<const Vec3> sample, const Plan& plan,
 
 PreparedSample decide_normals(const PointCloud& dense, const detect::PrepareOptions& options,
                               Plan& plan, const Progress* progress) {
-  PreparedSample sample;
-  const bool as_given = options.keep_orientation || !detect::has_estimated_normals(dense);
-  if (!(dense.has_normals() && as_given) && dense.size() > kBatchPoints) {
-    sample.positions = dense.positions;
-    sample.made = estimate_in_batches(dense, options, plan, progress);
-    sample.normals = sample.made;
-    if (plan.normals.rounding.step > 0.0) {
-      sample.moved = detect::spread(dense.positions, plan.normals.rounding);
-      sample.positions = sample.moved;
-    }
-    sample.curve = spatial::curve_order(sample.positions);
-    note_noise(sample.positions, sample.curve, plan);
-    return sample;
-  }
-  detect::PreparedCloud prepared = detect::prepare(dense, options, progress);
-  note(prepared, plan);
-  sample.positions = prepared.positions, sample.normals = prepared.normals;
-  sample.curve = std::move(prepared.curve);
-  sample.moved = std::move(prepared.moved), sample.made = std::move(prepared.made);
-  note_noise(sample.positions, sample.curve, plan);
+  PreparedSample sample = prepare_sample(dense, options, plan, progress);
+  note_noise(sample, plan);
   return sample;
 }
 

@@ -35,10 +35,8 @@ void add_note_on_noise(Scene& scene) {
   if (!scene.prepared.decision.noisy) return;
   const auto noise = detect::find_thick_noise(scene.prepared.positions, scene.prepared.curve);
   if (!noise) return;
-  scene.warnings.push_back(
-      fmt::format("noise is {:.2g} times the spacing, so few edges are seen here: pcednet classify "
-                  "averages the points",
-                  noise->deviation / noise->spacing));
+  scene.warnings.push_back(text_of(*noise) +
+                           ", so few edges are seen here: pcednet classify averages the points");
 }
 
 }  // namespace
