@@ -216,6 +216,20 @@ TEST(Prepare, SaysThatNormalsAreNotThoseOfThePoints) {
   EXPECT_NE(notes[0].find("the normals do not belong to these points"), std::string::npos);
 }
 
+TEST(Prepare, JudgesNoNormalsByPointsAlongLines) {
+  // The nearest to each point are those of its scan line, on the plane that the beam swept.
+  Random random(5);
+  PointCloud cloud;
+  for (int line = 0; line < 30; ++line) {
+    for (int i = 0; i < 300; ++i) {
+      const double x = i + random.uniform(-0.3, 0.3), y = 10.0 * line + 0.05 * random.normal();
+      cloud.positions.emplace_back(x, y, random.normal());
+    }
+  }
+  cloud.normals.assign(cloud.positions.size(), Vec3::UnitZ());
+  EXPECT_EQ(prepare(cloud).notes, std::vector<std::string>());
+}
+
 TEST(Prepare, SaysFromHowManyPointsItEstimates) {
   PointCloud cloud = sphere(4000, 1);
   cloud.normals.clear();

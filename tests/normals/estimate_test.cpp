@@ -130,6 +130,32 @@ TEST(Estimate, TakesFewNeighboursWhereTheSurfaceBends) {
   EXPECT_EQ(make_neighbour_graph(coarse.positions).degree, 12u);
 }
 
+/// Lines ten times as far from each other as their points, over ground that is rough in height.
+std::vector<Vec3> rough_scan_lines(double aside) {
+  Random random(3);
+  std::vector<Vec3> positions;
+  for (int line = 0; line < 30; ++line) {
+    for (int i = 0; i < 300; ++i) {
+      const double x = i + random.uniform(-0.3, 0.3), y = 10.0 * line + aside * random.normal();
+      positions.emplace_back(x, y, 1.2 * random.normal());
+    }
+  }
+  return positions;
+}
+
+TEST(Estimate, DoesNotTakeThePlaneOfAScanLineForTheSurface) {
+  for (const double aside : {0.0, 0.2, 0.5}) {
+    const std::vector<Vec3> positions = rough_scan_lines(aside);
+    for (const auto& choice : {std::optional<NeighbourChoice>(), {choose_one_count(positions)}}) {
+      const std::vector<Vec3> normals = estimate_normals(positions, choice);
+      const auto up = std::count_if(normals.begin(), normals.end(), [](const Vec3& n) {
+        return angle_between_lines(n, Vec3::UnitZ()) < 0.5;
+      });
+      EXPECT_GT(static_cast<double>(up) / static_cast<double>(normals.size()), 0.95) << aside;
+    }
+  }
+}
+
 TEST(Estimate, GivesTheSameBytesForAnyOrderAndNumberOfThreads) {
   Shape shape = box(Vec3(1, 2, 3), 15, 0.4);
   append(shape, box(Vec3::Ones(), 9), Vec3(4, 0, 0));  // with a grid's many ties

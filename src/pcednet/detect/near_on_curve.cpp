@@ -25,17 +25,19 @@ std::vector<std::uint32_t> nearest_on_curve(std::span<const Vec3> positions,
   return near;
 }
 
-NearOnCurve near_on_curve(std::span<const Vec3> positions, std::span<const std::uint32_t> curve) {
-  constexpr std::size_t kAround = 32;
+NearOnCurve near_on_curve(std::span<const Vec3> positions, std::span<const std::uint32_t> curve,
+                          std::size_t near) {
+  const std::size_t around = 8 * near / 3;
   NearOnCurve found;
+  found.near = near;
   const std::vector<std::uint32_t> places = spatial::firsts_of_places(positions, curve);
   const std::size_t samples = std::min(NearOnCurve::kSamples, places.size());
   for (std::size_t s = 0; s < samples; ++s) {
     const std::size_t i = s * places.size() / samples;
-    const auto near = nearest_on_curve(positions, places, i, kAround, NearOnCurve::kNear);
-    if (near.size() < NearOnCurve::kNear) continue;
+    const auto nearest = nearest_on_curve(positions, places, i, around, near);
+    if (nearest.size() < near) continue;
     found.points.push_back(places[i]);
-    found.neighbours.insert(found.neighbours.end(), near.begin(), near.end());
+    found.neighbours.insert(found.neighbours.end(), nearest.begin(), nearest.end());
   }
   return found;
 }

@@ -14,11 +14,12 @@ struct NearOnCurve {
   static constexpr std::size_t kNear = 12;
   static constexpr std::size_t kSamples = 2000;
 
+  std::size_t near = kNear;
   std::vector<std::uint32_t> points;      ///< at most kSamples
-  std::vector<std::uint32_t> neighbours;  ///< points x kNear, nearest first
+  std::vector<std::uint32_t> neighbours;  ///< points x near, nearest first
 
   std::span<const std::uint32_t> of(std::size_t point) const {
-    return std::span(neighbours).subspan(kNear * point, kNear);
+    return std::span(neighbours).subspan(near * point, near);
   }
 };
 
@@ -29,8 +30,9 @@ std::vector<std::uint32_t> nearest_on_curve(std::span<const Vec3> positions,
                                             std::size_t place, std::size_t around,
                                             std::size_t count);
 
-/// The kNear nearest among the 64 around a point on the curve, without copies. Points with fewer
-/// are left out. `curve` is the spatial::curve_order() of the positions.
-NearOnCurve near_on_curve(std::span<const Vec3> positions, std::span<const std::uint32_t> curve);
+/// The `near` nearest among some five times as many around a point on the curve, without copies.
+/// Points with fewer are left out. `curve` is the spatial::curve_order() of the positions.
+NearOnCurve near_on_curve(std::span<const Vec3> positions, std::span<const std::uint32_t> curve,
+                          std::size_t near = NearOnCurve::kNear);
 
 }  // namespace pcednet::detect

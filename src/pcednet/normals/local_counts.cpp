@@ -30,7 +30,8 @@ Ballot ballot_of(std::span<const double> thickness) {
   const float last = static_cast<float>(thickness.back()) + kFlat;
   Ballot ballot{.all = 1.0f / (last * last)};
   for (std::size_t d = 0; d + 1 < thickness.size(); ++d) {
-    const bool more = thickness[d + 1] < thickness[d] || thickness[d] >= kBall;
+    const double later = *std::min_element(thickness.begin() + d + 1, thickness.end());
+    const bool more = later < thickness[d] || thickness[d] >= kBall;
     if (more) ballot.in_favour[d] = ballot.all;
   }
   return ballot;

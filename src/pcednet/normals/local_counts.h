@@ -14,8 +14,8 @@ inline constexpr double kBall = 0.4;
 /// How many neighbours each point's plane is fitted to: choice.neighbours, or that or a half or a
 /// quarter of it, but no fewer than choice.fewest.
 ///
-/// Twice the neighbours make the planes thinner where there is noise, and thicker where the surface
-/// bends. The fewest are doubled as long as most points around have thinner planes then, or
+/// More neighbours make the planes thinner where there is noise, and thicker where the surface
+/// bends. The fewest are doubled as long as most points around have thinner planes with more, or
 /// balls of noise before. Points around are those up to twice as far as the most neighbours. They
 /// weigh as the inverse squares of their thickness, so that flat places decide for the edges beside
 /// them. What is farther does not count: a part of a cloud has the counts of the whole.

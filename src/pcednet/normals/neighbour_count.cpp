@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <numeric>
 #include <vector>
@@ -20,22 +21,30 @@ namespace {
 
 constexpr std::array<std::size_t, 3> kCounts = {12, 24, 48};
 
-constexpr double kLines = 0.1;   ///< median width
+constexpr double kNarrow = 0.1;  ///< median width of neighbourhoods along lines
+/// The distance of the last neighbour to that of a quarter of them: 2 on a surface, 4 on a line.
+constexpr double kLinear = 2.5;
 constexpr double kClean = 0.01;  ///< median thickness
 constexpr double kExactShare = 0.17;
 constexpr std::size_t kFew = 4000;  ///< fewer say too little about their surroundings
 
 /// Measures on a sample of the points.
 struct Measures {
-  std::array<double, kCounts.size()> thickness, width;  ///< medians
-  double exact = 0.0;                                   ///< share of the points on plane faces
+  std::array<double, kCounts.size()> thickness, width, reach;  ///< medians
+  double exact = 0.0;  ///< share of the points on plane faces
+
+  bool along_lines(std::size_t count) const {
+    return width[count] < kNarrow || reach[count] > kLinear;
+  }
 };
 
 Measures measure(std::span<const Vec3> points, const spatial::NeighbourSearch& search) {
   const std::size_t samples = std::min<std::size_t>(points.size(), 2000);
-  std::array<std::vector<double>, kCounts.size()> thickness, width;
-  for (std::vector<double>& of_count : thickness) of_count.resize(samples);
-  for (std::vector<double>& of_count : width) of_count.resize(samples);
+  using OfSamples = std::array<std::vector<double>, kCounts.size()>;
+  OfSamples thickness, width, reach;
+  for (OfSamples* measure : {&thickness, &width, &reach}) {
+    measure->fill(std::vector<double>(samples));
+  }
   std::vector<std::uint8_t> is_exact(samples);
   parallel_blocks(samples, 100, [&](std::size_t begin, std::size_t end) {
     std::vector<std::uint32_t> chosen;
@@ -54,6 +63,9 @@ Measures measure(std::span<const Vec3> points, const spatial::NeighbourSearch& s
       for (std::size_t i = 0; i < fits.size(); ++i) {
         thickness[c][begin + i] = fits[i].thickness;
         width[c][begin + i] = fits[i].width;
+        const auto near = std::span(found).subspan(i * kCounts.back(), kCounts[c]);
+        const double quarter = near[kCounts[c] / 4 - 1].sq_distance;  // 0 if it is below 1e-154
+        reach[c][begin + i] = quarter > 0.0 ? std::sqrt(near.back().sq_distance / quarter) : 0.0;
         if (kCounts[c] != kCounts.back()) continue;
         const auto row = std::span(neighbours).subspan(i * kCounts[c], kCounts[c]);
         is_exact[begin + i] = is_on_face(points, chosen[i], row);
@@ -64,6 +76,7 @@ Measures measure(std::span<const Vec3> points, const spatial::NeighbourSearch& s
   const auto median = [](const std::vector<double>& of_count) { return upper_median(of_count); };
   std::transform(thickness.begin(), thickness.end(), measures.thickness.begin(), median);
   std::transform(width.begin(), width.end(), measures.width.begin(), median);
+  std::transform(reach.begin(), reach.end(), measures.reach.begin(), median);
   measures.exact =
       std::accumulate(is_exact.begin(), is_exact.end(), 0.0) / static_cast<double>(samples);
   return measures;
@@ -88,14 +101,16 @@ std::optional<NeighbourChoice> given_neighbours(int neighbours) {
 NeighbourChoice choose_neighbours(std::span<const Vec3> points,
                                   const spatial::NeighbourSearch& search, Counts counts) {
   if (points.size() <= kCounts.back()) return {};
-  const auto [thickness, width, exact] = measure(points, search);
+  const Measures measures = measure(points, search);
+  const std::array<double, kCounts.size()>& thickness = measures.thickness;
   std::size_t first = 0;
-  while (first + 1 < kCounts.size() && width[first] < kLines) ++first;
+  while (first + 1 < kCounts.size() && measures.along_lines(first)) ++first;
   if (thickness[first] <= kClean) return {.neighbours = kCounts[first]};
-  const bool exact_planes = exact >= kExactShare;
+  const bool exact_planes = first == 0 && measures.exact >= kExactShare;
   const bool balls = thickness[first] >= kBall && !exact_planes;
-  std::size_t best = balls ? kCounts.size() - 1 : first;
-  while (best + 1 < kCounts.size() && thickness[best + 1] < thickness[best]) ++best;
+  const auto least = std::min_element(thickness.begin() + first, thickness.end());
+  const auto best = balls ? kCounts.size() - 1
+                          : static_cast<std::size_t>(std::distance(thickness.begin(), least));
   NeighbourChoice choice = {kCounts[best], 0, balls || best > first, exact_planes};
   if (choice.noisy && counts == Counts::kLocal && points.size() >= kFew) {
     choice.neighbours = kCounts.back();
