@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -75,6 +76,53 @@ TEST(Openings, KeepAChamfer) {
   expect_corners(
       roof_edges(flat_roof(20.0, opening)),
       {{0, 0}, {30, 0}, {30, 20}, {0, 20}, {11.2, 6}, {20, 6}, {20, 14}, {10, 14}, {10, 7.2}}, 0.3);
+}
+
+/// Those that do not follow the border of the roof.
+std::vector<Curve> of_openings(std::vector<Curve> curves) {
+  std::erase_if(curves, [](const Curve& curve) {
+    const auto is_outer = [](const Vec3& p) {
+      return std::min({p.x(), p.y(), 30.0 - p.x(), 20.0 - p.y()}) < 1.0;
+    };
+    return is_outer(curve.points.front()) || is_outer(curve.points.back());
+  });
+  return curves;
+}
+
+TEST(Openings, AreRectanglesInAnyDirection) {
+  const double spacing = std::sqrt(1.0 / 20.0);
+  int right = 0;
+  for (int i = 0; i < 20; ++i) {
+    // 13 by 9 spacings or 27 by 22, turned by up to 54 degrees.
+    const Eigen::Rotation2Dd turn(i < 5 ? 0.0 : 0.05 * i);
+    const Eigen::Vector2d middle(9.0 + 0.6 * i, 8.0 + 0.2 * i);
+    const Eigen::Vector2d half = i % 2 == 0 ? Eigen::Vector2d(1.5, 1.0) : Eigen::Vector2d(3.0, 2.5);
+    const Inside opening = [&](double x, double y) {
+      const Eigen::Vector2d at = turn.inverse() * (Eigen::Vector2d(x, y) - middle);
+      return (at.cwiseAbs().array() < half.array()).all();
+    };
+    const auto sides = of_openings(roof_edges(flat_roof(20.0, opening)));
+    const bool at_corners = std::all_of(sides.begin(), sides.end(), [&](const Curve& side) {
+      return std::all_of(side.points.begin(), side.points.end(), [&](const Vec3& end) {
+        const Eigen::Vector2d at = turn.inverse() * (end.head<2>() - middle);
+        return (at.cwiseAbs() - half).norm() < spacing;
+      });
+    });
+    right += sides.size() == 4 && at_corners ? 1 : 0;
+  }
+  EXPECT_GE(right, 18);
+}
+
+TEST(Openings, OfOtherFormsAreNotRectangles) {
+  const Inside hexagon = [](double x, double y) {
+    const double a = 0.866 * (x - 14.0), b = 0.5 * (y - 9.0);
+    return std::max({std::abs(y - 9.0), std::abs(a + b), std::abs(a - b)}) < 3.0;
+  };
+  EXPECT_EQ(of_openings(roof_edges(flat_roof(20.0, hexagon))).size(), 6u);
+  const Inside arch = [](double x, double y) {
+    return (std::abs(x - 14.0) < 1.5 && y > 6.0 && y < 9.0) || std::hypot(x - 14.0, y - 9.0) < 1.5;
+  };
+  EXPECT_GT(of_openings(roof_edges(flat_roof(20.0, arch))).size(), 4u);
 }
 
 std::vector<Curve> circles_of(std::vector<Curve> curves) {

@@ -10,6 +10,7 @@
 #include "pcednet/lines/chart.h"
 #include "pcednet/lines/outline.h"
 #include "pcednet/lines/outline_parts.h"
+#include "pcednet/lines/rectangle.h"
 #include "pcednet/lines/support_line.h"
 
 namespace pcednet::lines {
@@ -19,8 +20,9 @@ namespace {
 constexpr double kDisc = 2.5;    ///< radius that rolls around a face
 constexpr double kByFold = 1.3;  ///< of outline points from a fold: it ends the face there
 constexpr double kLeastLength = 2.0;
-constexpr double kHalfMet = 0.5;   ///< of a point of no face from the plane beside it
-constexpr double kLongFold = 5.0;  ///< that gives its direction to outlines
+constexpr double kHalfMet = 0.5;    ///< of a point of no face from the plane beside it
+constexpr double kLongFold = 5.0;   ///< that gives its direction to outlines
+constexpr double kLongEave = 16.0;  ///< that gives its direction to openings
 constexpr double kCoverAhead = 1.2, kCoverReach = 1.0, kCoverHeight = 0.7;
 
 constexpr double kWall = 0.2;         ///< sine of the angle of a normal to the ground
@@ -43,6 +45,7 @@ struct Eave {
   std::uint32_t face;
   std::vector<Vec2> points;
   SupportLine line;
+  bool settled;  ///< its direction is known
 
   double length() const {
     return line.to_corner[0] + (points.back() - points.front()).norm() + line.to_corner[1];
@@ -117,6 +120,14 @@ Piece edge_of(const SupportArc& arc, const Face& face, double spacing) {
   return piece;
 }
 
+/// As straight_parts() counts it.
+double cost_of(const std::vector<SupportLine>& lines, const std::vector<SupportArc>& arcs) {
+  double cost = 0.0;
+  for (const SupportLine& line : lines) cost += kLinePrice + line.empty;
+  for (const SupportArc& arc : arcs) cost += kArcPrice + arc.empty;
+  return cost;
+}
+
 class Outlines {
  public:
   Outlines(const OrderedPoints& cloud, const Faces& faces, const Sampling& sampling,
@@ -132,7 +143,8 @@ class Outlines {
   bool is_foot(std::uint32_t face, const Vec3& place, const Vec3& outward) const;
   void add_chain(std::uint32_t face, const std::vector<Vec2>& chain,
                  const std::vector<bool>& taken);
-  void add_run(std::uint32_t face, const std::vector<Vec2>& run);
+  void add_run(std::uint32_t face, std::vector<Vec2> run);
+  std::vector<Vec2> long_directions(std::uint32_t face) const;
 
   const OrderedPoints& cloud_;
   const Faces& faces_;
@@ -208,10 +220,30 @@ void Outlines::add_chain(std::uint32_t face, const std::vector<Vec2>& chain,
   }
 }
 
-void Outlines::add_run(std::uint32_t face, const std::vector<Vec2>& run) {
+std::vector<Vec2> Outlines::long_directions(std::uint32_t face) const {
+  std::vector<Vec2> directions;
+  for (const Eave& eave : found) {
+    if (eave.face == face && eave.length() > kLongEave * spacing_) {
+      directions.push_back(eave.line.along());
+    }
+  }
+  return directions;
+}
+
+void Outlines::add_run(std::uint32_t face, std::vector<Vec2> run) {
   std::vector<SupportLine> lines = straight_parts(run, spacing_, noise_);
   drop_cut_corners(lines, run, charted[face], kDisc * spacing_, spacing_);
-  for (const SupportArc& arc : take_round_parts(lines, run, spacing_)) {
+  std::vector<SupportArc> round_parts = take_round_parts(lines, run, spacing_);
+  bool settled = false;
+  if (run.front() == run.back()) {
+    const double cost = cost_of(lines, round_parts);
+    if (auto sides = rectangular_opening(run, cost, long_directions(face), spacing_)) {
+      lines = *std::move(sides);
+      round_parts.clear();
+      settled = true;
+    }
+  }
+  for (const SupportArc& arc : round_parts) {
     arcs.push_back(edge_of(arc, faces_.faces[face], spacing_));
   }
   for (const SupportLine& line : lines) {
@@ -219,7 +251,8 @@ void Outlines::add_run(std::uint32_t face, const std::vector<Vec2>& run) {
     Eave eave{face,
               {begin + static_cast<std::ptrdiff_t>(line.first),
                begin + static_cast<std::ptrdiff_t>(line.last) + 1},
-              line};
+              line,
+              settled};
     eave.line.last -= eave.line.first;
     eave.line.first = 0;
     if (eave.length() > kLeastLength * spacing_) found.push_back(std::move(eave));
@@ -232,7 +265,11 @@ void Outlines::add(std::uint32_t face, const std::vector<std::uint32_t>& points)
   for (const std::uint32_t point : points) {
     flat.push_back(chart.flat(dropped(faces_.faces[face], cloud_.position(point))));
   }
-  for (const auto& outline : outlines(flat, kDisc * spacing_)) {
+  std::vector<std::vector<OutlinePoint>> loops = outlines(flat, kDisc * spacing_);
+  // The longest first: its directions are those of openings.
+  std::stable_sort(loops.begin(), loops.end(),
+                   [](const auto& a, const auto& b) { return a.size() > b.size(); });
+  for (const auto& outline : loops) {
     std::vector<Vec2> chain;
     std::vector<bool> taken;
     for (const OutlinePoint& point : outline) {
@@ -278,7 +315,7 @@ void align(std::vector<Eave>& eaves, const Faces& faces, double spacing,
                    [](const Eave& a, const Eave& b) { return a.length() > b.length(); });
   for (Eave& eave : eaves) {
     const Face& face = faces.faces[eave.face];
-    eave.line = aligned(eave, face, directions, spacing);
+    if (!eave.settled) eave.line = aligned(eave, face, directions, spacing);
     directions.push_back(chart_of(face).direction(eave.line.along()));
   }
 }

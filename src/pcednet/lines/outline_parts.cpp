@@ -14,7 +14,6 @@ using Vec2 = Eigen::Vector2d;
 using Vec2s = std::span<const Vec2>;
 
 constexpr std::size_t kLeastOfArc = 4, kMostOfArcs = 200;
-constexpr double kArcInLines = 1.5;    ///< price of an arc, in that of a line
 constexpr double kArcSpread = 2.0;     ///< of its depths, squared, in that of its lines
 constexpr double kArcExcess = 0.45;    ///< points more in its empty area, for each spacing of it
 constexpr double kLongBeside = 2.0;    ///< a straight part that goes on in an arc, in its lines
@@ -162,8 +161,9 @@ std::optional<Rounding> rounding_at(const Row& row, std::size_t first, double sp
     if (count < kLeastOfArc || !ends_there(row, first, count, hollow)) continue;
     auto arc = arc_through(row.points(first, count), hollow, spacing);
     if (!arc || spread_of(*arc) > kArcSpread * spread) continue;
-    const double excess = empty_area(*arc) / (spacing * spacing) - empty;
-    const double saving = kLinePrice * (static_cast<double>(count) - kArcInLines) - excess;
+    arc->empty = empty_area(*arc) / (spacing * spacing);
+    const double excess = arc->empty - empty;
+    const double saving = kLinePrice * static_cast<double>(count) - kArcPrice - excess;
     if (excess > kArcExcess * arc->length() / spacing) continue;
     if (saving <= (best ? best->saving : 0.0)) continue;
     arc->closed = count == row.size() && turns_alike(row, last, hollow);

@@ -14,11 +14,14 @@ struct SupportArc {
   std::vector<Eigen::Vector2d> points;  ///< of the outline, in its order
   Eigen::Vector2d centre;
   double radius;
-  bool hollow;  ///< the interior is outside the circle
-  bool closed;  ///< a whole outline
+  bool hollow;         ///< the interior is outside the circle
+  bool closed;         ///< a whole outline
+  double empty = 0.0;  ///< area between arc and outline, in squared spacings
 
   double length() const;
 };
+
+inline constexpr double kArcPrice = 1.5 * kLinePrice;
 
 /// Moves straight parts out of `lines` into arcs: four or more in a row, of one turning sense, that
 /// a circle explains about as well as they do, which are more. Parts that end where the first one
