@@ -24,7 +24,7 @@ for model in ${*:-general scan cad worn}; do
       clouds="$clouds $folder/${set%:*}${set#*:}"
     done
     piece_options="--scales 8 --s-max-ratio 8 --gate 0.4 --second-gate -0.3 --width 40 --seed 1"
-    options="$piece_options --distil 2 --context --keep-orientation"
+    options="$piece_options --context --keep-orientation"
     generate sparse 1
     generate drawn 1
     generate pieces 1
@@ -38,20 +38,20 @@ for model in ${*:-general scan cad worn}; do
       $pcednet generate lines "$folder/lines$seed" --seed "$seed" --only _scanned
     done
     # shellcheck disable=SC2086  # several options, one argument for each folder
-    $pcednet train "$folder/sparse1" -o "$folder/sparse.safetensors" $options --octaves --natural --even-validation
+    $pcednet train "$folder/sparse1" -o "$folder/sparse.safetensors" $options --distil 4 --octaves --natural --even-validation
     # shellcheck disable=SC2086
     $pcednet train "$folder/drawn1" "$folder/default1" "$folder/default2" "$folder/cad1" "$folder/cad2" \
-      -o "$folder/exact.safetensors" $options --octaves --natural --even-validation --epochs 18 --no-normals \
+      -o "$folder/exact.safetensors" $options --distil 2 --octaves --natural --even-validation --epochs 18 --no-normals \
       --only estimated,exact
     # Without octaves in training it finds more of scans from several places.
     # shellcheck disable=SC2086
     $pcednet train "$folder/lines1" "$folder/lines2" "$folder/lines3" $clouds $more_in_noise \
-      -o "$folder/noisy.safetensors" $options --natural --epochs 18 --no-normals --only estimated,noisy
+      -o "$folder/noisy.safetensors" $options --distil 2 --natural --epochs 18 --no-normals --only estimated,noisy
     # Whether a cloud of few points is a whole thing or a piece of a scan.
     # shellcheck disable=SC2086
     $pcednet train "$folder/pieces1" -o "$folder/pieces.safetensors" $piece_options --octaves --even-validation
     # shellcheck disable=SC2086
-    $pcednet train $clouds -o models/general.safetensors $options --octaves --unrounded-scales --balance 0.07 --overwrite \
+    $pcednet train $clouds -o models/general.safetensors $options --distil 4 --octaves --unrounded-scales --balance 0.07 --overwrite \
       --expert "$folder/sparse.safetensors" below=4000,estimated \
       --expert "$folder/exact.safetensors" estimated,exact \
       --expert "$folder/noisy.safetensors" estimated,noisy \

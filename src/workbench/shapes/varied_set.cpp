@@ -54,14 +54,14 @@ std::vector<CadRecipe> drawn_part_recipes(std::uint64_t seed) {
 }
 
 std::vector<Recipe> thinned_recipes(std::uint64_t seed) {
-  constexpr std::size_t kBlocks = 72;
+  constexpr std::size_t kBlocks = 144;
   std::vector<Recipe> recipes;
   for (std::size_t i = 0; i < kBlocks; ++i) {
     Random random(seed, 49000 + i);
     recipes.push_back({.name = fmt::format("thinned_blocks_{}", i),
                        .shape = random_blocks(random),
                        .points = points_between(random, 5000, 30000),
-                       .displacement = i % 3 == 1 ? random.uniform(2.0, 8.0) : 0.0,
+                       .displacement = i / 3 % 3 == 1 ? random.uniform(2.0, 8.0) : 0.0,
                        .inward = i % 2 == 1,
                        .thinned = std::size_t{4} << (i % 3)});
   }
