@@ -5,6 +5,7 @@
 #include "pcednet/spatial/curve_order.h"
 
 namespace pcednet::detect {
+
 std::vector<std::uint32_t> nearest_on_curve(std::span<const Vec3> positions,
                                             std::span<const std::uint32_t> places,
                                             std::size_t place, std::size_t around,

@@ -1,6 +1,5 @@
 #include "pcednet/detect/normal_fit.h"
 
-#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -15,8 +14,11 @@ constexpr std::size_t kLeastFlat = 50;
 constexpr double kThin = 0.05;        ///< thickness of a flat place
 constexpr double kLeastCosine = 0.6;  ///< the mean of a place; 0.5 for random normals
 
-double share_among(const NearOnCurve& near, std::span<const Vec3> positions,
-                   std::span<const Vec3> normals) {
+}  // namespace
+
+double share_of_misfits(std::span<const Vec3> positions, std::span<const Vec3> normals,
+                        std::span<const std::uint32_t> curve, std::size_t count) {
+  const NearOnCurve near = near_on_curve(positions, curve, count);
   std::vector<normals::PlaneFit> fits(near.points.size());
   normals::fit_planes(positions, near.points, near.neighbours, fits);
   std::size_t flat = 0, misfits = 0;
@@ -34,16 +36,6 @@ double share_among(const NearOnCurve& near, std::span<const Vec3> positions,
   }
   if (flat < kLeastFlat) return 0.0;
   return static_cast<double>(misfits) / static_cast<double>(flat);
-}
-
-}  // namespace
-
-double share_of_misfits(std::span<const Vec3> positions, std::span<const Vec3> normals,
-                        std::span<const std::uint32_t> curve) {
-  const double of_few = share_among(near_on_curve(positions, curve), positions, normals);
-  if (of_few == 0.0) return 0.0;
-  return std::min(of_few, share_among(near_on_curve(positions, curve, 4 * NearOnCurve::kNear),
-                                      positions, normals));
 }
 
 }  // namespace pcednet::detect

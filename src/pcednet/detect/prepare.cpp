@@ -13,6 +13,7 @@
 #include "pcednet/core/parallel_loops.h"
 #include "pcednet/detect/exact_points.h"
 #include "pcednet/detect/far_points.h"
+#include "pcednet/detect/near_on_curve.h"
 #include "pcednet/detect/normal_fit.h"
 #include "pcednet/detect/rounding.h"
 #include "pcednet/normals/flat_pairs.h"
@@ -246,10 +247,15 @@ void note_unusable(PreparedCloud& prepared) {
                   unusable, prepared.positions.size()));
 }
 
-/// Says so if the normals of the cloud are not those of its surface.
+/// Says so if the normals of the cloud are not those of its surface. The 12 nearest may all be of
+/// one scan line, on the plane that the beam swept: planes of 48 must show it, too.
 void note_misfits(PreparedCloud& prepared) {
-  const double share = share_of_misfits(prepared.positions, prepared.normals, prepared.curve);
-  if (share < kMisfits) return;
+  double share = 1.0;
+  for (const std::size_t count : {NearOnCurve::kNear, 4 * NearOnCurve::kNear}) {
+    share = std::min(share,
+                     share_of_misfits(prepared.positions, prepared.normals, prepared.curve, count));
+    if (share < kMisfits) return;
+  }
   prepared.notes.push_back(fmt::format(
       "the normals do not belong to these points: in {:.0f} % of the flat regions they are not "
       "perpendicular to the surface",

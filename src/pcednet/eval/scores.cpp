@@ -68,8 +68,8 @@ ConfusionCounts count_confusion(std::span<const std::uint8_t> truth,
 Scores scores_of(const ConfusionCounts& counts) {
   const auto tp = static_cast<double>(counts.tp), fp = static_cast<double>(counts.fp);
   const auto tn = static_cast<double>(counts.tn), fn = static_cast<double>(counts.fn);
-  const double norm =
-      std::sqrt(tp + fp) * std::sqrt(tp + fn) * std::sqrt(tn + fp) * std::sqrt(tn + fn);
+  // In two roots: where all is right, they are exactly tp and tn.
+  const double norm = std::sqrt((tp + fp) * (tp + fn)) * std::sqrt((tn + fp) * (tn + fn));
   return {
       .precision = ratio(tp, tp + fp),
       .recall = ratio(tp, tp + fn),

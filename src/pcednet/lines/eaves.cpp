@@ -29,7 +29,8 @@ constexpr double kWall = 0.2;         ///< sine of the angle of a normal to the 
 constexpr double kAlongPlane = 0.05;  ///< sine of a direction to a plane that it is taken to be in
 constexpr double kTowards = 0.6;      ///< cosine between the ways out of a face and to a fold
 constexpr double kSameLine = 0.8;     ///< cosine of directions that are tried
-constexpr double kEmptyArea = 0.8;    ///< beyond the last points along a line, in squared spacings
+constexpr double kSameDirection = 1e-3;  ///< sine times cosine between those that are noted once
+constexpr double kEmptyArea = 0.8;  ///< beyond the last points along a line, in squared spacings
 
 constexpr double kRowDepth = 2.0;    ///< behind an eave, spacings, where rows are looked for
 constexpr double kBeyondRow = 0.25;  ///< of an eave from its last row, in gaps between rows
@@ -144,7 +145,7 @@ class Outlines {
   void add_chain(std::uint32_t face, const std::vector<Vec2>& chain,
                  const std::vector<bool>& taken);
   void add_run(std::uint32_t face, std::vector<Vec2> run);
-  std::vector<Vec2> long_directions(std::uint32_t face) const;
+  void note_direction(const Eave& eave);
 
   const OrderedPoints& cloud_;
   const Faces& faces_;
@@ -154,6 +155,8 @@ class Outlines {
     Vec3 inward;  ///< into the face
   };
   std::vector<std::vector<FoldSide>> folds_of_;  ///< of each face
+  std::vector<Vec2>
+      directions_;  ///< of the long eaves of a face, less those along and across others
   const spatial::KdTree& plan_;
 };
 
@@ -220,14 +223,14 @@ void Outlines::add_chain(std::uint32_t face, const std::vector<Vec2>& chain,
   }
 }
 
-std::vector<Vec2> Outlines::long_directions(std::uint32_t face) const {
-  std::vector<Vec2> directions;
-  for (const Eave& eave : found) {
-    if (eave.face == face && eave.length() > kLongEave * spacing_) {
-      directions.push_back(eave.line.along());
-    }
-  }
-  return directions;
+void Outlines::note_direction(const Eave& eave) {
+  if (eave.length() <= kLongEave * spacing_) return;
+  const Vec2 along = eave.line.along();
+  const bool is_known = std::any_of(directions_.begin(), directions_.end(), [&](const Vec2& known) {
+    const double cosine = known.dot(along), sine = known.x() * along.y() - known.y() * along.x();
+    return std::abs(cosine * sine) < kSameDirection;
+  });
+  if (!is_known) directions_.push_back(along);
 }
 
 void Outlines::add_run(std::uint32_t face, std::vector<Vec2> run) {
@@ -237,7 +240,7 @@ void Outlines::add_run(std::uint32_t face, std::vector<Vec2> run) {
   bool settled = false;
   if (run.front() == run.back()) {
     const double cost = cost_of(lines, round_parts);
-    if (auto sides = rectangular_opening(run, cost, long_directions(face), spacing_)) {
+    if (auto sides = rectangular_opening(run, cost, directions_, spacing_)) {
       lines = *std::move(sides);
       round_parts.clear();
       settled = true;
@@ -255,13 +258,16 @@ void Outlines::add_run(std::uint32_t face, std::vector<Vec2> run) {
               settled};
     eave.line.last -= eave.line.first;
     eave.line.first = 0;
-    if (eave.length() > kLeastLength * spacing_) found.push_back(std::move(eave));
+    if (eave.length() <= kLeastLength * spacing_) continue;
+    note_direction(eave);
+    found.push_back(std::move(eave));
   }
 }
 
 void Outlines::add(std::uint32_t face, const std::vector<std::uint32_t>& points) {
   const Chart chart = chart_of(faces_.faces[face]);
   std::vector<Vec2>& flat = charted[face];
+  directions_.clear();
   for (const std::uint32_t point : points) {
     flat.push_back(chart.flat(dropped(faces_.faces[face], cloud_.position(point))));
   }

@@ -72,14 +72,14 @@ Measures measure(std::span<const Vec3> points, const spatial::NeighbourSearch& s
       }
     }
   });
-  Measures measures;
-  const auto median = [](const std::vector<double>& of_count) { return upper_median(of_count); };
-  std::transform(thickness.begin(), thickness.end(), measures.thickness.begin(), median);
-  std::transform(width.begin(), width.end(), measures.width.begin(), median);
-  std::transform(reach.begin(), reach.end(), measures.reach.begin(), median);
-  measures.exact =
-      std::accumulate(is_exact.begin(), is_exact.end(), 0.0) / static_cast<double>(samples);
-  return measures;
+  const auto medians = [](const OfSamples& measure) {
+    std::array<double, kCounts.size()> found;
+    std::transform(measure.begin(), measure.end(), found.begin(),
+                   [](const std::vector<double>& of_count) { return upper_median(of_count); });
+    return found;
+  };
+  const double exact = std::accumulate(is_exact.begin(), is_exact.end(), 0.0);
+  return {medians(thickness), medians(width), medians(reach), exact / static_cast<double>(samples)};
 }
 
 }  // namespace
