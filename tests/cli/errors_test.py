@@ -1,4 +1,5 @@
 """Bad input of every kind: the right exit code, a message that names the file, nothing lost."""
+import contextlib
 import os
 import pathlib
 import resource
@@ -9,6 +10,15 @@ import unittest
 import numpy as np
 
 from support import PROGRAM, CliTest, cube, run, write_ply
+
+
+def has_open(process, path):
+    """Whether the process has the file open. It may close others meanwhile."""
+    for file in pathlib.Path(f"/proc/{process.pid}/fd").iterdir():
+        with contextlib.suppress(FileNotFoundError):
+            if os.readlink(file) == str(path):
+                return True
+    return False
 
 
 class Errors(CliTest):
@@ -97,8 +107,7 @@ class Errors(CliTest):
         for arguments in (("classify", text), ("convert", text, "-o", self.folder / "a.ply")):
             running = subprocess.Popen([PROGRAM, *map(str, arguments), "--threads", "1"], stderr=subprocess.PIPE, text=True,
                                        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (1, 1)))
-            files = pathlib.Path(f"/proc/{running.pid}/fd")
-            while not any(os.path.realpath(file) == str(text) for file in files.iterdir()):
+            while not has_open(running, text):
                 self.assertIsNone(running.poll())
             running.send_signal(signal.SIGINT)  # to read all would take more than a second
             self.assertIn("stopped by the user", running.communicate(timeout=60)[1])
