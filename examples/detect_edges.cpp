@@ -30,7 +30,7 @@ pcednet::PointCloud cube() {
 
 void from_arrays(const pcednet::detect::EdgeModel& model) {
   const pcednet::PointCloud cloud = cube();
-  const auto prepared = pcednet::detect::prepare(cloud);
+  const auto prepared = pcednet::detect::prepare(cloud, {.average_noise = true});
   for (const std::string& note : prepared.notes) std::printf("note: %s\n", note.c_str());
   const auto found = pcednet::detect::classify(prepared, model);
   std::printf("%zu points: %zu sharp, %zu smooth\n", cloud.size(), found.counts.sharp,
@@ -43,7 +43,7 @@ void from_arrays(const pcednet::detect::EdgeModel& model) {
 
 void from_file_to_file(const pcednet::detect::EdgeModel& model, const char* in, const char* out) {
   pcednet::PointCloud cloud = pcednet::formats::read_cloud(in).cloud;
-  const auto prepared = pcednet::detect::prepare(cloud);
+  const auto prepared = pcednet::detect::prepare(cloud, {.average_noise = true});
   auto found = pcednet::detect::classify(prepared, model);
   pcednet::detect::mark_boundary(prepared, found);
   pcednet::detect::add_result(cloud, prepared, found, model);

@@ -7,6 +7,7 @@
 #include "common.h"
 #include "descriptor_options.h"
 #include "pcednet/cloud/bounding_box.h"
+#include "pcednet/detect/averages.h"
 #include "pcednet/detect/boundary.h"
 #include "pcednet/formats/read_cloud.h"
 #include "pcednet/io/faces.h"
@@ -25,33 +26,19 @@ PointCloud read_cloud(const std::filesystem::path& file) {
   return std::move(loaded.cloud);
 }
 
-std::optional<detect::ThinnedCloud> thin_noise(const std::filesystem::path& file,
-                                               const PointCloud& cloud,
-                                               const detect::PrepareOptions& options,
-                                               const Progress& progress) {
-  const bool estimated = !options.keep_orientation && detect::has_estimated_normals(cloud);
-  if (cloud.has_normals() && !estimated) return std::nullopt;
-  auto thinned = detect::thin_noise(cloud.positions, &progress);
-  if (thinned) warn(fmt::format("{}: {}", file.string(), note_on(*thinned)));
-  return thinned;
-}
-
 ClassifiedPoints all_points(ClassifiedCloud&& classified) {
-  if (!classified.thinned) {
-    return {std::move(classified.prepared.made), std::move(classified.found)};
-  }
-  return {detect::normals_for_all(classified.prepared.made, *classified.thinned),
-          detect::found_for_all(classified.found, *classified.thinned)};
+  detect::PreparedCloud& prepared = classified.prepared;
+  return {of_all_points(prepared, std::move(prepared.made)),
+          of_all_points(prepared, std::move(classified.found))};
 }
 
 ClassifiedCloud classify_cloud(const std::filesystem::path& file, const PointCloud& cloud,
                                const Classifier& classifier, const Progress& progress) {
   ClassifiedCloud result;
   if (classifier.model) {
-    if (detect::thins_noise(*classifier.model)) {
-      result.thinned = thin_noise(file, cloud, classifier.preparation, progress);
-    }
-    result.prepared = prepare(file, cloud, classifier.preparation, progress, result.thinned);
+    detect::PrepareOptions preparation = classifier.preparation;
+    preparation.average_noise = averages_noise(*classifier.model);
+    result.prepared = prepare(file, cloud, preparation, progress);
     const BoundingBox bounds = bounding_box(result.prepared.positions);
     check_scales(file, bounds, classifier.model->descriptor);
     result.found = detect::classify(result.prepared, *classifier.model, &progress);

@@ -1,21 +1,18 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
 #include <vector>
 
 #include "methods.h"
 #include "pcednet/detect/classify.h"
 #include "pcednet/detect/model.h"
 #include "pcednet/detect/prepare.h"
-#include "pcednet/detect/thinned_cloud.h"
 
 namespace pcednet::app {
 
-/// A classification, and the prepared cloud that it comes from: both of the points that are left,
-/// where thick noise was averaged.
+/// A classification, and the prepared cloud that it comes from: both of the averages, where thick
+/// noise was averaged.
 struct ClassifiedCloud {
-  std::optional<detect::ThinnedCloud> thinned;
   detect::PreparedCloud prepared;  ///< empty where a method classified
   detect::Classification found;
 };
@@ -29,12 +26,6 @@ ClassifiedPoints all_points(ClassifiedCloud&& classified);
 
 /// formats::read_cloud(), with its warnings on stderr, and one of faces, which nothing uses.
 PointCloud read_cloud(const std::filesystem::path& file);
-
-/// detect::thin_noise() of a cloud whose normals are estimated, with a warning.
-std::optional<detect::ThinnedCloud> thin_noise(const std::filesystem::path& file,
-                                               const PointCloud& cloud,
-                                               const detect::PrepareOptions& options,
-                                               const Progress& progress);
 
 /// How to classify: by `model`, then for boundary by geometry if `boundary`; without a model by the
 /// method.

@@ -16,13 +16,9 @@ void add_prepare_options(CLI::App& command, detect::PrepareOptions& options) {
 }
 
 detect::PreparedCloud prepare(const std::filesystem::path& file, const PointCloud& cloud,
-                              const detect::PrepareOptions& options, const Progress& progress,
-                              const std::optional<detect::ThinnedCloud>& thinned) {
+                              const detect::PrepareOptions& options, const Progress& progress) {
   detect::PreparedCloud prepared;
-  with_name_in_errors(file, [&] {
-    prepared = thinned ? detect::prepare(detect::PointArrays{thinned->positions}, {}, &progress)
-                       : detect::prepare(cloud, options, &progress);
-  });
+  with_name_in_errors(file, [&] { prepared = detect::prepare(cloud, options, &progress); });
   warn_all(file, prepared.notes);
   if (prepared.reoriented) say("  --keep-orientation uses them as they are");
   if (prepared.misfits) say("  pcednet normals makes new ones");

@@ -2,10 +2,8 @@
 
 #include <filesystem>
 #include <functional>
-#include <optional>
 
 #include "pcednet/detect/prepare.h"
-#include "pcednet/detect/thinned_cloud.h"
 #include "pcednet/gls/scale_space_options.h"
 
 namespace CLI {
@@ -17,11 +15,9 @@ namespace pcednet::app {
 /// Adds --keep-orientation.
 void add_prepare_options(CLI::App& command, detect::PrepareOptions& options);
 
-/// detect::prepare() of the cloud, or of what thinning left of it, with its notes as warnings and
-/// `file` in its errors.
+/// detect::prepare() with its notes as warnings and `file` in its errors.
 detect::PreparedCloud prepare(const std::filesystem::path& file, const PointCloud& cloud,
-                              const detect::PrepareOptions& options, const Progress& progress,
-                              const std::optional<detect::ThinnedCloud>& thinned = {});
+                              const detect::PrepareOptions& options, const Progress& progress);
 
 /// Warns of coordinates of this type that are rounded to more than the spacing, which is
 /// `apart()`, found where it matters.

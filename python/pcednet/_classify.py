@@ -41,6 +41,7 @@ class Result:
         self.p_class = parts["p_class"]
         self.class_names = model.class_names
         self.normals = parts["normals"]
+        self._averaged = parts["averaged"]
         self._moved = parts["moved"]  # positions as they were described, if not those of the cloud
         self.made_normals = parts["made_normals"]
         self.scales = parts["scales"]

@@ -142,11 +142,11 @@ def lines(xyz, labels=None, normals=None, *, p_sharp=None, p_smooth=None,
     positions, is_float32, given, scanners = _clouds.points_of(xyz, normals, viewpoint, estimates=False)
     rows = len(positions)
     prepared = isinstance(labels, Result)
-    estimated = labels.made_normals if prepared else given is None
     if prepared:
         _core.check_edges(labels.model._core.class_lines, "lines", False)
         positions = positions if labels._moved is None else _arrays.vectors(labels._moved, "positions", rows)
-        given = _arrays.vectors(labels.normals, "normals", rows)
+        # Averages of thick noise are made again, with normals of their own.
+        given = None if labels._averaged else _arrays.vectors(labels.normals, "normals", rows)
         p_sharp, p_smooth, own = labels.p_sharp, labels.p_smooth, labels.class_names
         labels = _arrays.labels(labels.labels, rows, names=own)
     if p_sharp is None:
@@ -160,7 +160,7 @@ def lines(xyz, labels=None, normals=None, *, p_sharp=None, p_smooth=None,
                 "stage": _arrays.text(stage, "stage")}
     with _arrays.reporting(progress) as report:
         curves, notes, fit_tolerance = _core.find_lines(
-            positions, is_float32, given, scanners, prepared, estimated, labels,
+            positions, is_float32, given, scanners, given is not None and prepared, labels,
             _arrays.probabilities(p_sharp, rows, "p_sharp"),
             _arrays.probabilities(p_smooth, rows, "p_smooth"), settings, report,
             _arrays.thread_count(threads))

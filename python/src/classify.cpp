@@ -7,18 +7,16 @@
 #include "bindings.h"
 #include "input_cloud.h"
 #include "models.h"
+#include "pcednet/detect/averages.h"
 #include "pcednet/detect/boundary.h"
 #include "pcednet/detect/describe.h"
-#include "pcednet/detect/thinned_cloud.h"
 
 namespace pcednet::python {
 namespace {
 
 /// The normals of a prepared cloud as an array; those of the cloud itself are copied.
-py::array_t<double> normals_of(detect::PreparedCloud& prepared,
-                               const std::optional<detect::ThinnedCloud>& thinned) {
-  if (thinned) return give(detect::normals_for_all(prepared.made, *thinned));
-  if (!prepared.made.empty()) return give(std::move(prepared.made));
+py::array_t<double> normals_of(detect::PreparedCloud& prepared) {
+  if (!prepared.made.empty()) return give(of_all_points(prepared, std::move(prepared.made)));
   return give(std::vector<Vec3>(prepared.normals.begin(), prepared.normals.end()));
 }
 
@@ -28,30 +26,28 @@ py::dict classify(const detect::EdgeModel& model, const Array<double>& xyz, bool
   detect::PreparedCloud prepared;
   detect::Classification found;
   std::optional<InputCloud> cloud;
-  std::optional<detect::ThinnedCloud> thinned;
   std::string note, rounded;
   run_job({progress, threads}, [&](const Progress* job) {
     cloud.emplace(xyz, normals, scanners);
-    if (cloud->normals().empty() && detect::thins_noise(model)) {
-      thinned = detect::thin_noise(cloud->positions(), job);
-    }
-    prepared = thinned ? detect::prepare(detect::PointArrays{thinned->positions}, {}, job)
-                       : cloud->prepare({.keep_orientation = keep_orientation}, job);
+    prepared = cloud->prepare(
+        {.keep_orientation = keep_orientation, .average_noise = averages_noise(model)}, job);
     note = note_on_extent(model.descriptor, prepared.positions);
     found = detect::classify(prepared, model, job);
     rounded = note_on_float(is_float32, prepared, model.descriptor, found.s_min);
     if (boundary && has_edges(model.table)) detect::mark_boundary(prepared, found, job);
-    if (thinned) found = detect::found_for_all(found, *thinned);
+    found = of_all_points(prepared, std::move(found));
   });
-  if (thinned) prepared.notes.insert(prepared.notes.begin(), note_on(*thinned));
   for (const std::string& one : {note, rounded, found.note}) {
     if (!one.empty()) prepared.notes.push_back(one);
   }
   py::dict result;
   result["made_normals"] = !prepared.made.empty();
-  result["normals"] = normals_of(prepared, thinned);
+  result["normals"] = normals_of(prepared);
   result["moved"] = py::none();
-  if (!thinned && !prepared.moved.empty()) result["moved"] = give(std::move(prepared.moved));
+  result["averaged"] = prepared.is_averaged();
+  if (!prepared.is_averaged() && !prepared.moved.empty()) {
+    result["moved"] = give(std::move(prepared.moved));
+  }
   result["notes"] = prepared.notes;
   result["scales"] = py::make_tuple(found.s_min, found.s_max);
   result["labels"] = give(std::move(found.classes));

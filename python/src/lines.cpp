@@ -11,7 +11,6 @@
 #include "models.h"
 #include "named.h"
 #include "pcednet/core/error.h"
-#include "pcednet/detect/thinned_cloud.h"
 #include "pcednet/io/drawing/drawing.h"
 #include "pcednet/io/las/las.h"
 #include "pcednet/io/length_units.h"
@@ -36,10 +35,10 @@ lines::LineOptions line_options_of(const py::dict& settings) {
 }
 
 /// Curves, notes on the normals, and the tolerance of the fit. `prepared` says that positions and
-/// normals come from a classification, `estimated` that the normals do not come from the caller.
+/// normals come from a classification.
 py::tuple find_lines(const Array<double>& xyz, bool is_float32,
                      const OptionalArray<double>& normals, const OptionalArray<double>& scanners,
-                     bool prepared, bool estimated, const Array<std::uint8_t>& labels,
+                     bool prepared, const Array<std::uint8_t>& labels,
                      const OptionalArray<float>& p_sharp, const OptionalArray<float>& p_smooth,
                      const py::dict& settings, const py::object& progress, int threads) {
   const lines::LineOptions options = line_options_of(settings);
@@ -54,25 +53,20 @@ py::tuple find_lines(const Array<double>& xyz, bool is_float32,
                              .p_sharp = numbers(p_sharp),
                              .p_smooth = numbers(p_smooth)};
     detect::PreparedCloud made;
-    std::optional<detect::ThinnedCloud> thinned;
-    detect::Classification fewer;
-    if (estimated) thinned = detect::thin_noise(cloud.positions(), job);
-    if (thinned) {
-      fewer =
-          detect::found_for_thinned({points.classes, points.p_sharp, points.p_smooth}, *thinned);
-      points.classes = fewer.classes;
-      points.p_sharp = fewer.p_sharp;
-      points.p_smooth = fewer.p_smooth;
-    }
-    if (!prepared || thinned) {
-      made = thinned ? detect::prepare(detect::PointArrays{thinned->positions}, {}, job)
-                     : cloud.prepare({}, job);
+    detect::Classification of_averages;
+    if (!prepared) {
+      made = cloud.prepare({.average_noise = true}, job);
       points.positions = made.positions;
       points.normals = made.normals;
       points.curve = made.curve;
       notes = made.notes;
     }
-    if (thinned) notes.insert(notes.begin(), note_on(*thinned));
+    if (made.is_averaged()) {
+      of_averages = found_of_averages(made, {points.classes, points.p_sharp, points.p_smooth});
+      points.classes = of_averages.classes;
+      points.p_sharp = of_averages.p_sharp;
+      points.p_smooth = of_averages.p_smooth;
+    }
     curves = lines::find_lines(points, options, job, &scale);
     const std::string rounded = prepared ? "" : note_on_float(is_float32, made, {}, scale.spacing);
     if (!rounded.empty()) notes.push_back(rounded);

@@ -11,6 +11,8 @@
 #include "pcednet/core/parallel.h"
 #include "pcednet/core/random.h"
 #include "pcednet/core/random_vectors.h"
+#include "pcednet/detect/averages.h"
+#include "pcednet/detect/result_cloud.h"
 #include "pcednet/spatial/curve_order.h"
 
 namespace pcednet::detect {
@@ -39,6 +41,10 @@ struct Roof {
 
 std::optional<ThickNoise> noise_of(const std::vector<Vec3>& positions) {
   return find_thick_noise(positions, spatial::curve_order(positions));
+}
+
+std::optional<ThinnedCloud> thinned_of(const std::vector<Vec3>& positions) {
+  return thin_noise(positions, spatial::curve_order(positions));
 }
 
 /// The median distance from the surface, of points farther than 8 spacings from edges.
@@ -94,16 +100,16 @@ TEST(ThickNoise, IsNoneOfFewPoints) {
 
 TEST(ThinnedClouds, HaveTheSurfaceWithoutMostOfTheNoise) {
   const std::vector<Vec3> positions = Roof(2.0).positions;
-  const auto thinned = thin_noise(positions);
+  const auto thinned = thinned_of(positions);
   ASSERT_TRUE(thinned);
   EXPECT_LT(thinned->positions.size(), positions.size() / 4);
   EXPECT_GT(thinned->positions.size(), 4000u);
   EXPECT_NEAR(roughness(positions), 0.67 * 2.0 * kSpacing, 0.1 * kSpacing);
-  ASSERT_EQ(thinned->of_points.size(), positions.size());
+  ASSERT_EQ(thinned->average_of.size(), positions.size());
   double farthest = 0.0;
   std::vector<Vec3> own;
   for (std::size_t i = 0; i < positions.size(); ++i) {
-    own.push_back(thinned->positions.at(thinned->of_points[i]));
+    own.push_back(thinned->positions.at(thinned->average_of[i]));
     farthest = std::max(farthest, (own.back() - positions[i]).norm());
   }
   EXPECT_LT(roughness(own), 0.4 * kSpacing);
@@ -111,16 +117,16 @@ TEST(ThinnedClouds, HaveTheSurfaceWithoutMostOfTheNoise) {
 }
 
 TEST(ThinnedClouds, AreNotOfThinNoiseNorOfSoFewThatHardlyAnyAreLeft) {
-  EXPECT_FALSE(thin_noise(Roof(0.7).positions));
+  EXPECT_FALSE(thinned_of(Roof(0.7).positions));
   std::vector<Vec3> few = Roof(2.0).positions;
   std::erase_if(few, [](const Vec3& p) { return std::abs(p.x()) > 3.0 || std::abs(p.y()) > 3.0; });
   EXPECT_TRUE(noise_of(few));
-  EXPECT_FALSE(thin_noise(few));
+  EXPECT_FALSE(thinned_of(few));
 }
 
 TEST(ThinnedClouds, AreTheSameInAnyOrderAndForAnyThreads) {
   std::vector<Vec3> positions = Roof(2.0).positions;
-  const auto first = thin_noise(positions);
+  const auto first = thinned_of(positions);
   ASSERT_TRUE(first);
   std::vector<std::uint32_t> order(positions.size());
   std::iota(order.begin(), order.end(), 0u);
@@ -130,11 +136,11 @@ TEST(ThinnedClouds, AreTheSameInAnyOrderAndForAnyThreads) {
   for (const std::uint32_t i : order) shuffled.push_back(positions[i]);
   for (const int threads : {1, 2, 8}) {
     set_thread_count(threads);
-    const auto other = thin_noise(shuffled);
+    const auto other = thinned_of(shuffled);
     ASSERT_TRUE(other);
     ASSERT_EQ(other->positions, first->positions) << threads;
     for (std::size_t i = 0; i < order.size(); ++i) {
-      ASSERT_EQ(other->of_points[i], first->of_points[order[i]]);
+      ASSERT_EQ(other->average_of[i], first->average_of[order[i]]);
     }
   }
   set_thread_count(0);
@@ -142,52 +148,72 @@ TEST(ThinnedClouds, AreTheSameInAnyOrderAndForAnyThreads) {
 
 TEST(ThinnedClouds, FollowTheCloudToANationalGrid) {
   std::vector<Vec3> positions = Roof(2.0).positions;
-  const auto here = thin_noise(positions);
+  const auto here = thinned_of(positions);
   const Vec3 origin(431000.0, 5412000.0, 90.0);
   for (Vec3& p : positions) p += origin;
-  const auto there = thin_noise(positions);
+  const auto there = thinned_of(positions);
   ASSERT_TRUE(here && there);
   EXPECT_NEAR(there->noise.deviation, here->noise.deviation, 1e-3 * kSpacing);
   std::size_t same = 0;
   for (std::size_t i = 0; i < positions.size(); ++i) {
-    const Vec3& own = there->positions[there->of_points[i]];
-    same += (own - origin - here->positions[here->of_points[i]]).norm() < 0.01 * kSpacing;
+    const Vec3& own = there->positions[there->average_of[i]];
+    same += (own - origin - here->positions[here->average_of[i]]).norm() < 0.01 * kSpacing;
   }
   EXPECT_GT(static_cast<double>(same), 0.99 * static_cast<double>(positions.size()));
 }
 
-TEST(ThinnedClouds, LeaveOutPointsWithoutAPosition) {
-  std::vector<Vec3> positions = Roof(2.0).positions;
-  positions[7].y() = std::numeric_limits<double>::quiet_NaN();
-  positions[8].x() = 1e30;
-  const auto thinned = thin_noise(positions);
-  ASSERT_TRUE(thinned);
-  EXPECT_EQ(thinned->of_points[7], ThinnedCloud::kNone);
-  EXPECT_NE(thinned->of_points[6], ThinnedCloud::kNone);
+TEST(Averages, AreClassifiedInPlaceOfTheirPoints) {
+  PointCloud cloud;
+  cloud.positions = Roof(2.0).positions;
+  cloud.positions[7].y() = std::numeric_limits<double>::quiet_NaN();
+  const PreparedCloud plain = prepare(cloud);
+  EXPECT_FALSE(plain.is_averaged());
+  EXPECT_EQ(plain.positions.size(), cloud.size());
+  const PreparedCloud prepared = prepare(cloud, {.average_noise = true});
+  ASSERT_TRUE(prepared.is_averaged());
+  EXPECT_LT(prepared.positions.size(), cloud.size() / 4);
+  EXPECT_EQ(prepared.normals.size(), prepared.positions.size());
+  ASSERT_EQ(prepared.average_of.size(), cloud.size());
+  EXPECT_EQ(prepared.average_of[7], kNoAverage);
+  EXPECT_LT(prepared.average_of[6], prepared.positions.size());
   Classification found;
-  found.classes.assign(thinned->positions.size(), kSharpEdge);
-  found.p_sharp.assign(thinned->positions.size(), 0.75f);
-  const Classification all = found_for_all(found, *thinned);
-  ASSERT_EQ(all.classes.size(), positions.size());
+  found.classes.assign(prepared.positions.size(), kSharpEdge);
+  found.p_sharp.assign(prepared.positions.size(), 0.75f);
+  const Classification all = of_all_points(prepared, found);
+  ASSERT_EQ(all.classes.size(), cloud.size());
   EXPECT_EQ(all.classes[7], kUnlabelled);
   EXPECT_EQ(all.p_sharp[7], 0.0f);
   EXPECT_EQ(all.p_sharp[6], 0.75f);
   EXPECT_TRUE(all.p_smooth.empty());
-  EXPECT_EQ(all.counts.sharp, positions.size() - 1);
+  EXPECT_EQ(all.counts.sharp, cloud.size() - 1);
   EXPECT_EQ(all.counts.unlabelled, 1u);
-  const std::vector<Vec3> normals(thinned->positions.size(), Vec3::UnitZ());
-  EXPECT_EQ(normals_for_all(normals, *thinned)[6], Vec3::UnitZ());
-  EXPECT_EQ(normals_for_all(normals, *thinned)[7], Vec3::Zero());
+  const std::vector<Vec3> normals = of_all_points(prepared, prepared.made);
+  EXPECT_EQ(normals[6], prepared.made[prepared.average_of[6]]);
+  EXPECT_EQ(normals[7], Vec3::Zero());
+  found.p_smooth.assign(found.classes.size(), 0.0f);
+  add_result(cloud, prepared, found, EdgeModel{});
+  EXPECT_EQ(cloud.labels, all.classes);
+  EXPECT_EQ(cloud.normals, normals);
 }
 
-TEST(ThinnedClouds, TakeTheLabelsOfMostOfTheirPoints) {
-  ThinnedCloud thinned;
-  thinned.positions.resize(3);
-  thinned.of_points = {0, 0, 0, 1, 1, 2, ThinnedCloud::kNone};
+TEST(Averages, AreNotOfPointsWithNormals) {
+  PointCloud cloud;
+  cloud.positions = Roof(2.0).positions;
+  cloud.normals.assign(cloud.size(), Vec3::UnitZ());
+  EXPECT_FALSE(prepare(cloud, {.average_noise = true}).is_averaged());
+  set_estimated_normals(cloud, true);
+  EXPECT_TRUE(prepare(cloud, {.average_noise = true}).is_averaged());
+}
+
+TEST(Averages, TakeTheLabelsOfMostOfTheirPoints) {
+  PreparedCloud prepared;
+  prepared.moved.resize(3);
+  prepared.positions = prepared.moved;
+  prepared.average_of = {0, 0, 0, 1, 1, 2, kNoAverage};
   Classification found;
   found.classes = {kSharpEdge, kSharpEdge, kNonEdge, kUnlabelled, 9, kUnlabelled, kSharpEdge};
   found.p_sharp = {0.9f, 0.6f, 0.3f, 0.0f, 0.0f, 0.0f, 1.0f};
-  const Classification fewer = found_for_thinned({found.classes, found.p_sharp}, thinned);
+  const Classification fewer = found_of_averages(prepared, {found.classes, found.p_sharp});
   EXPECT_EQ(fewer.classes, (std::vector<std::uint8_t>{kSharpEdge, kNonEdge, kUnlabelled}));
   ASSERT_EQ(fewer.p_sharp.size(), 3u);
   EXPECT_NEAR(fewer.p_sharp[0], 0.6f, 1e-6);

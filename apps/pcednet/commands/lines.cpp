@@ -15,6 +15,7 @@
 #include "lines_tiles.h"
 #include "models.h"
 #include "pcednet/core/error.h"
+#include "pcednet/detect/averages.h"
 #include "pcednet/formats/format.h"
 #include "pcednet/formats/labels.h"
 #include "pcednet/formats/virtual_cloud.h"
@@ -36,7 +37,6 @@ using lines::Curve;
 /// The arguments of find_lines(), and the data behind them.
 struct LabelledCloud {
   PointCloud cloud;
-  std::optional<detect::ThinnedCloud> thinned = {};  ///< then the rest is of its points
   detect::PreparedCloud prepared;
   std::vector<std::uint8_t> classes;
   std::vector<float> p_sharp, p_smooth;
@@ -120,13 +120,12 @@ void add_given_labels(const LinesArguments& arguments, std::vector<std::uint8_t>
   found.p_smooth = probabilities(arguments.input, cloud, "p_smooth");
   if (found.p_sharp.empty()) found.p_smooth.clear();
   if (!found.p_sharp.empty()) found.p_smooth.resize(cloud.size());
-  labelled.thinned = thin_noise(arguments.input, cloud, arguments.preparation, progress);
-  labelled.prepared =
-      prepare(arguments.input, cloud, arguments.preparation, progress, labelled.thinned);
+  detect::PrepareOptions preparation = arguments.preparation;
+  preparation.average_noise = true;
+  labelled.prepared = prepare(arguments.input, cloud, preparation, progress);
   labelled.given = true;
-  if (labelled.thinned) {
-    found = detect::found_for_thinned({found.classes, found.p_sharp, found.p_smooth},
-                                      *labelled.thinned);
+  if (labelled.prepared.is_averaged()) {
+    found = found_of_averages(labelled.prepared, {found.classes, found.p_sharp, found.p_smooth});
   }
   take(std::move(found), labelled);
 }
@@ -177,7 +176,6 @@ void read_labelled(const LinesArguments& arguments, StageClock& clock, LabelledC
   with_name_in_errors(arguments.input, [&] {
     classified = classify_cloud(arguments.input, cloud, classifier, clock.progress());
   });
-  labelled.thinned = std::move(classified.thinned);
   labelled.prepared = std::move(classified.prepared);
   take(std::move(classified.found), labelled);
 }
@@ -264,9 +262,9 @@ std::vector<Curve> find_curves(const LinesArguments& arguments, const LabelledCl
 /// Leaves in the cloud what a preview needs: through thick noise no curve could be seen.
 void show_described(LabelledCloud& labelled) {
   PointCloud& cloud = labelled.cloud;
-  if (labelled.thinned) {
+  if (labelled.prepared.is_averaged()) {
     cloud = {};
-    cloud.positions = labelled.thinned->positions;
+    cloud.positions.assign(labelled.prepared.positions.begin(), labelled.prepared.positions.end());
   }
   if (cloud.has_normals()) return;
   const auto& normals = labelled.prepared.normals;

@@ -16,6 +16,7 @@
 #include "pcednet/detect/near_on_curve.h"
 #include "pcednet/detect/normal_fit.h"
 #include "pcednet/detect/rounding.h"
+#include "pcednet/detect/thinned_cloud.h"
 #include "pcednet/normals/flat_pairs.h"
 #include "pcednet/normals/neighbour_count.h"
 #include "pcednet/normals/prepare.h"
@@ -184,6 +185,18 @@ void order_finite_points(PreparedCloud& prepared) {
                                        points - finite, points));
 }
 
+/// Puts averages in place of points in thick noise, see averages.h; false if there is none.
+bool average_noise(PreparedCloud& prepared, const Progress* progress) {
+  auto thinned = thin_noise(prepared.positions, prepared.curve, progress);
+  if (!thinned) return false;
+  prepared.notes.push_back(note_on(*thinned));
+  prepared.moved = std::move(thinned->positions);
+  prepared.average_of = std::move(thinned->average_of);
+  prepared.positions = prepared.moved;
+  prepared.curve = spatial::curve_order(prepared.positions);
+  return true;
+}
+
 /// Spreads rounded positions.
 void spread_positions(const Rounding& rounding, PreparedCloud& prepared) {
   if (rounding.step == 0.0) return;
@@ -309,7 +322,12 @@ PreparedCloud prepare_points(const Points& cloud, const PrepareOptions& options,
     }
     return prepared;
   }
-  estimate_missing(prepared, cloud, progress);
+  if (options.average_noise && !cloud.has_normals() && average_noise(prepared, progress)) {
+    const Points averages = {prepared.positions, {}, [] { return std::vector<Vec3>(); }};
+    estimate_missing(prepared, averages, progress);
+  } else {
+    estimate_missing(prepared, cloud, progress);
+  }
   if (prepared.made.empty()) note_misfits(prepared);
   if (prepared.made.empty() && !options.keep_orientation) orient_mixed(prepared, cloud, progress);
   note_unusable(prepared);

@@ -7,6 +7,7 @@
 
 #include "pcednet/cloud/class_table.h"
 #include "pcednet/core/version.h"
+#include "pcednet/detect/averages.h"
 #include "pcednet/detect/decide.h"
 #include "pcednet/detect/result_truth.h"
 
@@ -97,7 +98,11 @@ void add_class_comments(PointCloud& cloud, const ClassTable& table) {
 
 KeptInput add_result(PointCloud& cloud, const PreparedCloud& prepared, const Classification& result,
                      const EdgeModel& model, const ResultOptions& options) {
-  return add_result(cloud, prepared.made, result, model, options);
+  if (!prepared.is_averaged()) {
+    return add_result(cloud, prepared.made, result, model, options);
+  }
+  return add_result(cloud, of_all_points(prepared, prepared.made), of_all_points(prepared, result),
+                    model, options);
 }
 
 KeptInput add_result(PointCloud& cloud, std::span<const Vec3> made, const Classification& result,

@@ -38,7 +38,8 @@ void add_class_comments(PointCloud& cloud, const ClassTable& table);
 /// comments on version and model. Labels that the cloud had move to scalar_input_label. Returns
 /// which of the cloud's own labels and colours were kept, and which attributes were replaced.
 ///
-/// Throws Error(kUsage) for a result of another number of points.
+/// A result of averages (averages.h) is that of their points. Throws Error(kUsage) for one of
+/// another number of points.
 ///
 /// With own classes, quality and scalar_p_class are the probability of the class; if no class is an
 /// edge class, scalar_class replaces scalar_edge_class, scalar_p_sharp and scalar_p_smooth.

@@ -7,7 +7,7 @@
 #include <tuple>
 
 #include "pcednet/core/parallel.h"
-#include "pcednet/detect/decide.h"
+#include "pcednet/detect/averages.h"
 #include "pcednet/detect/far_points.h"
 #include "pcednet/spatial/curve_order.h"
 #include "pcednet/spatial/kd_tree.h"
@@ -51,7 +51,7 @@ void take_means(std::span<const Vec3> points, std::span<const std::uint32_t> cur
     Vec3 sum = Vec3::Zero();
     for (auto one = begin; one != end; ++one) {
       sum += points[one->point] - first;
-      thinned.of_points[curve[one->point]] = static_cast<std::uint32_t>(thinned.positions.size());
+      thinned.average_of[curve[one->point]] = static_cast<std::uint32_t>(thinned.positions.size());
     }
     thinned.positions.push_back(first + sum / static_cast<double>(end - begin));
     begin = end;
@@ -78,43 +78,14 @@ void average(std::span<const Vec3> points, ThinnedCloud& thinned, const Progress
   });
 }
 
-template <typename T>
-std::vector<T> for_all(std::span<const T> values, const ThinnedCloud& thinned, const T& missing) {
-  if (values.empty()) return {};
-  std::vector<T> all(thinned.of_points.size(), missing);
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    if (thinned.of_points[i] != ThinnedCloud::kNone) all[i] = values[thinned.of_points[i]];
-  }
-  return all;
-}
-
-std::vector<float> means_of(std::span<const float> values, const ThinnedCloud& thinned) {
-  if (values.empty()) return {};
-  std::vector<double> sums(thinned.positions.size(), 0.0), counts(sums.size(), 0.0);
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    const std::uint32_t own = thinned.of_points[i];
-    if (own == ThinnedCloud::kNone) continue;
-    sums[own] += static_cast<double>(values[i]);
-    counts[own] += 1.0;
-  }
-  std::vector<float> means(sums.size());
-  for (std::size_t i = 0; i < means.size(); ++i) {
-    means[i] = static_cast<float>(sums[i] / counts[i]);
-  }
-  return means;
-}
-
 }  // namespace
 
-bool thins_noise(const EdgeModel& model) {
-  return !model.experts.empty() && model.descriptor.range.s_min == 0.0;
-}
-
-std::optional<ThinnedCloud> thin_noise(std::span<const Vec3> positions, const Progress* progress) {
-  const std::vector<std::uint32_t> curve = spatial::curve_order(positions);
+std::optional<ThinnedCloud> thin_noise(std::span<const Vec3> positions,
+                                       std::span<const std::uint32_t> curve,
+                                       const Progress* progress) {
   const auto noise = find_thick_noise(positions, curve);
   if (!noise) return std::nullopt;
-  ThinnedCloud thinned{*noise, {}, std::vector(positions.size(), ThinnedCloud::kNone)};
+  ThinnedCloud thinned{*noise, {}, std::vector(positions.size(), kNoAverage)};
   const std::vector<Vec3> points = spatial::in_order(positions, curve);
   take_means(points, curve, thinned);
   if (thinned.positions.size() < kLeastLeft) return std::nullopt;
@@ -124,40 +95,7 @@ std::optional<ThinnedCloud> thin_noise(std::span<const Vec3> positions, const Pr
 
 std::string note_on(const ThinnedCloud& thinned) {
   return fmt::format("{}: {} points are averaged to {}", text_of(thinned.noise),
-                     thinned.of_points.size(), thinned.positions.size());
-}
-
-Classification found_for_all(const Classification& found, const ThinnedCloud& thinned) {
-  Classification all = found;
-  all.classes = for_all<std::uint8_t>(found.classes, thinned, kUnlabelled);
-  all.p_sharp = for_all<float>(found.p_sharp, thinned, 0.0f);
-  all.p_smooth = for_all<float>(found.p_smooth, thinned, 0.0f);
-  all.p_class = for_all<float>(found.p_class, thinned, 0.0f);
-  all.counts = count_classes(all.classes);
-  return all;
-}
-
-std::vector<Vec3> normals_for_all(std::span<const Vec3> normals, const ThinnedCloud& thinned) {
-  return for_all<Vec3>(normals, thinned, Vec3::Zero());
-}
-
-Classification found_for_thinned(const GivenLabels& labels, const ThinnedCloud& thinned) {
-  std::vector<std::array<std::uint32_t, kBoundary + 1>> votes(thinned.positions.size());
-  for (std::size_t i = 0; i < labels.classes.size(); ++i) {
-    const std::uint8_t its_class = labels.classes[i];
-    if (thinned.of_points[i] == ThinnedCloud::kNone || its_class == kUnlabelled) continue;
-    ++votes[thinned.of_points[i]][its_class <= kBoundary ? its_class : 0];
-  }
-  Classification fewer;
-  for (const auto& of_point : votes) {
-    const auto most = std::max_element(of_point.begin(), of_point.end());
-    fewer.classes.push_back(static_cast<std::uint8_t>(most - of_point.begin()));
-    if (*most == 0) fewer.classes.back() = kUnlabelled;
-  }
-  fewer.p_sharp = means_of(labels.p_sharp, thinned);
-  fewer.p_smooth = means_of(labels.p_smooth, thinned);
-  fewer.counts = count_classes(fewer.classes);
-  return fewer;
+                     thinned.average_of.size(), thinned.positions.size());
 }
 
 }  // namespace pcednet::detect

@@ -261,7 +261,7 @@ OrderedJson scene_of(const Exhibit& exhibit, const MergeOptions& options, const 
   const Scene scene = make_scene(cloud, options.points_per_cloud, progress);
   const Progress quiet = without_report(progress);
   detect::PreparedCloud prepared;
-  if (options.lines) prepared = detect::prepare(cloud, {}, &quiet);
+  if (options.lines) prepared = detect::prepare(cloud, {.average_noise = true}, &quiet);
   const auto add_lines = [&](OrderedJson& json, const std::vector<std::uint8_t>& classes) {
     if (options.lines) json["lines"] = find_drawn_lines(prepared, classes, scene, &quiet);
     stage.advance();
