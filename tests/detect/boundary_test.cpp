@@ -16,6 +16,7 @@
 #include "pcednet/detect/result_cloud.h"
 #include "pcednet/detect/train.h"
 #include "support/expect_error.h"
+#include "support/scanned_ground.h"
 
 namespace pcednet::detect {
 namespace {
@@ -153,6 +154,20 @@ TEST(Boundary, OfScanLinesIsNoneBetweenThem) {
   for (const std::uint32_t i : found) {
     const double z = cloud.positions[i].z();
     EXPECT_LT(std::min(z, 59 * 0.105 - z), 0.15);
+  }
+}
+
+TEST(Boundary, OfGroundAroundAScannerIsNotBetweenItsRows) {
+  PointCloud cloud;
+  cloud.positions = scanned_ground();
+  const std::vector<std::uint32_t> found = boundary_of(cloud);
+  EXPECT_GT(found.size(), 500u);  // of the 1,000 of the first and the last row
+  for (const std::uint32_t i : found) {
+    const Vec3& p = cloud.positions[i];
+    const double away = std::hypot(p.x(), p.y()), turn = std::atan2(p.y(), p.x());
+    const double to_side = away * std::min(turn, 2.0 - turn);
+    const double to_end = std::min(away - kNearestGround, kFarthestGround - away);
+    EXPECT_LT(std::min(to_side, to_end), 2.0) << p.transpose();
   }
 }
 

@@ -8,6 +8,7 @@
 #include "pcednet/lines/find_lines.h"
 #include "pcednet/lines/ordered_points.h"
 #include "pcednet/lines/sampling.h"
+#include "support/scanned_ground.h"
 
 namespace pcednet::lines {
 namespace {
@@ -135,6 +136,20 @@ TEST(Uneven, ScanLinesFarApartAreNoEndsOfTheSurface) {
     }
     EXPECT_NEAR(length, 16.0, 1.0);
   }
+}
+
+TEST(UnevenLines, EndTheGroundAroundAScannerAtItsOutlineAlone) {
+  Faces ground;
+  ground.positions = scanned_ground();
+  ground.normals.assign(ground.positions.size(), Vec3::UnitZ());
+  ground.classes.assign(ground.positions.size(), kNonEdge);
+  double length = 0.0;
+  for (const Curve& curve : find_lines(ground.points(), {.boundaries = true})) {
+    length += length_of(curve);
+  }
+  const double outline =
+      2.0 * (kFarthestGround - kNearestGround) + 2.0 * (kFarthestGround + kNearestGround);
+  EXPECT_NEAR(length, outline, 0.1 * outline);
 }
 
 }  // namespace

@@ -151,8 +151,8 @@ bool may_open(const DistinctPoints& points, std::uint32_t point,
   });
 }
 
-std::optional<RimPoint> rim_at(const DistinctPoints& points, std::uint32_t point,
-                               std::span<const spatial::Neighbour> others) {
+std::optional<RimPoint> rim_at(const DistinctPoints& points, const spatial::NeighbourSearch& search,
+                               std::uint32_t point, std::span<const spatial::Neighbour> others) {
   if (!may_open(points, point, others)) return std::nullopt;
   Around all;
   for (const spatial::Neighbour& other : others) {
@@ -179,6 +179,11 @@ std::optional<RimPoint> rim_at(const DistinctPoints& points, std::uint32_t point
   const Vec3 outward = std::cos(opening.middle) * plane.x + std::sin(opening.middle) * plane.y;
   const double inside = -around.sum().dot(outward) / static_cast<double>(around.count);
   if (inside < kOffCentre * radius) return std::nullopt;
+  if (spatial::goes_on_beyond(
+          search, points.positions[point], outward, plane.normal, others,
+          [&](std::uint32_t i) -> const Vec3& { return points.positions[i]; })) {
+    return std::nullopt;
+  }
 
   RimPoint rim{.point = point,
                .outward = outward,
@@ -198,9 +203,10 @@ std::vector<RimPoint> find_rims(const DistinctPoints& points, const Progress* pr
   std::vector<RimPoint> rims;
   Stage stage(progress, "boundary", points.size());
   const auto try_places = [&](std::span<const std::uint32_t> todo) {
-    const auto found = found_at<RimPoint>(
-        search, todo, kNeighbours, stage,
-        [&](std::uint32_t point, const auto& others) { return rim_at(points, point, others); });
+    const auto found = found_at<RimPoint>(search, todo, kNeighbours, stage,
+                                          [&](std::uint32_t point, const auto& others) {
+                                            return rim_at(points, search, point, others);
+                                          });
     rims.insert(rims.end(), found.begin(), found.end());
     std::vector<std::uint32_t> around;
     for (const RimPoint& rim : found) {

@@ -53,6 +53,10 @@ std::optional<Crease> boundary_at(const OrderedPoints& cloud, std::size_t i, con
   const spatial::Opening opening = spatial::widest_opening(angles);
   if (opening.width < kOpenAngle) return std::nullopt;
   const Vec3 outward = std::cos(opening.middle) * x + std::sin(opening.middle) * y;
+  if (spatial::goes_on_beyond(cloud, cloud.position(i), outward, normal, nearest,
+                              [&](std::uint32_t j) -> const Vec3& { return cloud.position(j); })) {
+    return std::nullopt;
+  }
   const Vec3 along = normal.cross(outward);
   double last = 0.0;
   for (const auto& near : nearest) {

@@ -58,7 +58,7 @@ void set_buffer(const detect::EdgeModel& model, const Spacing& spacing, Plan& pl
       plan.normals.made ? reach_of(fitted, spacing.wide) + kSignReach * spacing.median : 0.0;
   const double boundary =
       plan.model.boundary
-          ? reach_of(detect::kBoundaryNeighbours, spacing.wide) +
+          ? 2.0 * reach_of(detect::kBoundaryNeighbours, spacing.wide) +
                 detect::kBoundaryRounds * reach_of(detect::kBoundaryNeighbours, spacing.median)
           : 0.0;
   plan.reach = plan.model.context && model.context
