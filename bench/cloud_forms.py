@@ -206,13 +206,16 @@ def centres(p, edge):
     return (np.unique(np.floor(p / edge).astype(int), axis=0) + .5) * edge
 
 
+PLACES = (9, -9, 2), (-9.5, -8, 2), (-8, 9, 2), (9, 2, 2)  # of tripods
+
+
 def forms(scene, random):
-    """Name and maker of every form."""
+    """Name and maker of every form: positions, and the number of the scanner's place where it is told."""
     drawn = lambda noise, points=150_000: (
         lambda p, s: p + noise * s * random.normal(size=p.shape))(*scene.drawn(points, random))
     rounded = lambda p, step: np.round(p / step) * step
-    places = (9, -9, 2), (-9.5, -8, 2), (-8, 9, 2), (9, 2, 2)
-    scans = lambda: [scene.scanned(place, .006, .003, random) for place in places]
+    scans = lambda: [scene.scanned(place, .006, .003, random) for place in PLACES]
+    told = lambda clouds: np.vstack([np.c_[p, np.full(len(p), i)] for i, p in enumerate(clouds)])
 
     profiles = lambda apart: np.vstack([scene.profiled(y, apart, .003, .003, random) for y in (-9, 9)])
 
@@ -232,8 +235,10 @@ def forms(scene, random):
         "rounded to .7 spacings, noise of .15": lambda: rounded(drawn(.15), .05),
         "rounded to .7 spacings, clean": lambda: rounded(drawn(0), .05),
         "centres of voxels": lambda: centres(scene.drawn(600_000, random)[0], .083),
-        "one scan from a tripod": lambda: scene.scanned(places[0], .004, .003, random),
+        "one scan from a tripod": lambda: scene.scanned(PLACES[0], .004, .003, random),
+        "one scan from a tripod, whose place is told": lambda: told([scene.scanned(PLACES[0], .004, .003, random)]),
         "four scans from tripods": lambda: np.vstack(scans()),
+        "four scans from tripods, whose places are told": lambda: told(scans()),
         "four scans, rounded to 1 cm": lambda: rounded(np.vstack(scans()), .01),
         "four scans, centres of voxels": lambda: centres(np.vstack(scans()), .05),
         "four scans, each 2 cm off the last": lambda: np.vstack(
@@ -246,8 +251,12 @@ def forms(scene, random):
 
 
 def write_ply(path, p):
-    head = "ply\nformat binary_little_endian 1.0\nelement vertex %d\n" % len(p)
-    head += "".join(f"property double {axis}\n" for axis in "xyz") + "end_header\n"
+    head = "ply\nformat binary_little_endian 1.0\n"
+    names = ["x", "y", "z", "scan"][:p.shape[1]]
+    if "scan" in names:
+        head += "".join(f"comment scanner {i}: {x} {y} {z}\n" for i, (x, y, z) in enumerate(PLACES))
+    head += "element vertex %d\n" % len(p)
+    head += "".join(f"property double {name}\n" for name in names) + "end_header\n"
     path.write_bytes(head.encode() + p.astype("<f8").tobytes())
 
 
@@ -299,7 +308,7 @@ def main():
     parser.add_argument("forms", nargs="*")
     arguments = parser.parse_args()
     scene = Scene()
-    print(f"{'form':36s}   points  found   true  false % |  lines: found   true curves | with boundaries")
+    print(f"{'form':46s}   points  found   true  false % |  lines: found   true curves | with boundaries")
     with tempfile.TemporaryDirectory() as folder:
         cloud, labelled, drawn = (pathlib.Path(folder) / name for name in ("cloud.ply", "labelled.ply", "lines.obj"))
         run = lambda *command: subprocess.run([arguments.pcednet, *command, "--overwrite"], check=True,
@@ -309,12 +318,13 @@ def main():
                 continue
             p = forms(scene, np.random.default_rng(5))[name]()
             write_ply(cloud, p)
+            p = p[:, :3]
             run("classify", cloud, "-o", labelled, "--model", arguments.model)
             classes, spacing = classes_of(labelled), spacing_at(p)
             away, rim = distance(p, scene.edges), distance(p, scene.rims)
             edge = (classes == 1) | (classes == 2)
             near, far = away < .7 * spacing, np.minimum(away, rim) > 4 * spacing
-            print(f"{name:36s} {len(p):8d}   {(classes[near] > 0).mean():.3f}"
+            print(f"{name:46s} {len(p):8d}   {(classes[near] > 0).mean():.3f}"
                   f"  {(away[edge] < 2 * spacing[edge]).mean():.3f}  {100 * edge[far].mean():7.3f}", end="")
             for boundaries in ([], ["--boundaries"]):
                 run("lines", labelled, "-o", drawn, *boundaries)

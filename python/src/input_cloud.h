@@ -16,6 +16,7 @@ class InputCloud {
 
   std::span<const Vec3> positions() const { return positions_; }
   std::span<const Vec3> normals() const { return made_.empty() ? normals_ : made_; }
+  std::span<const Vec3> scanners() const { return scanners_; }
 
   /// detect::prepare() of the cloud, which must outlive the result.
   detect::PreparedCloud prepare(const detect::PrepareOptions& options,

@@ -51,7 +51,8 @@ py::tuple find_lines(const Array<double>& xyz, bool is_float32,
                              .normals = cloud.normals(),
                              .classes = numbers(labels),
                              .p_sharp = numbers(p_sharp),
-                             .p_smooth = numbers(p_smooth)};
+                             .p_smooth = numbers(p_smooth),
+                             .scanners = cloud.scanners()};
     detect::PreparedCloud made;
     detect::Classification of_averages;
     if (!prepared) {
@@ -62,6 +63,7 @@ py::tuple find_lines(const Array<double>& xyz, bool is_float32,
       notes = made.notes;
     }
     if (made.is_averaged()) {
+      points.scanners = {};
       of_averages = found_of_averages(made, {points.classes, points.p_sharp, points.p_smooth});
       points.classes = of_averages.classes;
       points.p_sharp = of_averages.p_sharp;

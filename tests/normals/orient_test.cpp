@@ -148,6 +148,39 @@ TEST(Orient, TurnsNormalsToTheViewpoint) {
   EXPECT_EQ(agreement(shape, prepared.normals), 0.0);
 }
 
+TEST(Viewpoints, AreFacedByBothFacesOfACornerUpToItsEdge) {
+  Random random(31);
+  std::vector<Vec3> positions, viewpoints;
+  for (int i = 0; i < 4000; ++i) {
+    const double along = 3.0 * random.uniform(), z = 3.0 * random.uniform();
+    positions.emplace_back(-along, 0.0, z);
+    viewpoints.emplace_back(-6.0, -1.5, 1.0);  // sees its face at a slant
+    positions.emplace_back(0.0, along, z);
+    viewpoints.emplace_back(6.0, 3.0, 1.0);
+  }
+  std::vector<Vec3> normals = estimate_oriented_normals(positions).normals;
+  const std::size_t faced = face_viewpoints(positions, normals, viewpoints);
+  EXPECT_EQ(faced, positions.size());
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    EXPECT_GT(normals[i].dot(Vec3(1.0, -1.0, 0.0)), 0.0) << positions[i].transpose();
+  }
+}
+
+TEST(Viewpoints, KeepTheSidesOfAThinWallApart) {
+  Random random(32);
+  std::vector<Vec3> positions, viewpoints, normals;
+  for (int i = 0; i < 8000; ++i) {
+    const double side = i % 2 == 0 ? 1.0 : -1.0, x = 8.0 * random.uniform();
+    positions.emplace_back(x, 0.01 * side, 3.0 * random.uniform());  // .3 spacings thick
+    viewpoints.emplace_back(-6.0, 5.0 * side, 1.0);
+    normals.emplace_back(0.0, random.index(2) == 0 ? 1.0 : -1.0, 0.0);
+  }
+  face_viewpoints(positions, normals, viewpoints);
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    EXPECT_GT(normals[i].y() * positions[i].y(), 0.0);
+  }
+}
+
 TEST(Orient, LeavesZeroNormalsAndCountsThem) {
   Shape shape = sphere(1000, 1.0);
   shape.positions[7].x() = std::nan("");

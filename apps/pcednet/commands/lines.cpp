@@ -246,6 +246,8 @@ void read_labelled_in_tiles(const LinesArguments& arguments, const TilesNeeded& 
 std::vector<Curve> find_curves(const LinesArguments& arguments, const LabelledCloud& labelled,
                                const Progress& progress, lines::LineScale& scale) {
   std::vector<Curve> curves;
+  std::vector<Vec3> scanners;
+  if (!labelled.prepared.is_averaged()) scanners = scanner_of_points(labelled.cloud);
   with_name_in_errors(arguments.input, [&] {
     curves = lines::find_lines({.positions = labelled.prepared.positions,
                                 .normals = labelled.prepared.normals,
@@ -253,6 +255,7 @@ std::vector<Curve> find_curves(const LinesArguments& arguments, const LabelledCl
                                 .p_sharp = labelled.p_sharp,
                                 .p_smooth = labelled.p_smooth,
                                 .partial = labelled.partial,
+                                .scanners = scanners,
                                 .curve = labelled.prepared.curve},
                                arguments.lines, &progress, &scale);
   });

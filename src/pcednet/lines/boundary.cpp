@@ -8,6 +8,7 @@
 #include "pcednet/core/eigendecomposition.h"
 #include "pcednet/lines/moments.h"
 #include "pcednet/lines/ordered_points.h"
+#include "pcednet/lines/shadows.h"
 #include "pcednet/spatial/opening.h"
 
 namespace pcednet::lines {
@@ -37,8 +38,8 @@ bool are_in_line(const Eigendecomposition& axes) {
   return axes.values[1] < kLine * axes.values[2];
 }
 
-std::optional<Crease> boundary_at(const OrderedPoints& cloud, std::size_t i, const Vec3& normal,
-                                  std::span<const spatial::Neighbour> nearest) {
+std::optional<Crease> boundary_at(const OrderedPoints& cloud, const Shadows& shadows, std::size_t i,
+                                  const Vec3& normal, std::span<const spatial::Neighbour> nearest) {
   if (normal.isZero(0.0)) return std::nullopt;
   const double spacing = spacing_of(nearest);
   if (!(spacing > 0.0) || nearest.size() < kNeighbours / 2) return std::nullopt;
@@ -57,6 +58,7 @@ std::optional<Crease> boundary_at(const OrderedPoints& cloud, std::size_t i, con
                               [&](std::uint32_t j) -> const Vec3& { return cloud.position(j); })) {
     return std::nullopt;
   }
+  if (shadows.hide_what_is_beyond(i, outward, spacing)) return std::nullopt;
   const Vec3 along = normal.cross(outward);
   double last = 0.0;
   for (const auto& near : nearest) {
@@ -80,12 +82,14 @@ std::vector<Crease> find_boundaries(const OrderedPoints& cloud, const Progress* 
   for (std::uint32_t i = 0; i < cloud.size(); ++i) {
     if (!cloud.is_partial(i)) points.push_back(i);
   }
+  const Shadows shadows(cloud);
   Stage stage(progress, "boundaries", points.size());
   std::vector<Crease> boundaries;
   std::vector<std::uint8_t> in_line(cloud.size(), 0);
   append_found(creases_at(cloud, points, kNeighbours, stage,
                           [&](std::uint32_t point, std::span<const spatial::Neighbour> others) {
-                            auto boundary = boundary_at(cloud, point, cloud.normal(point), others);
+                            auto boundary =
+                                boundary_at(cloud, shadows, point, cloud.normal(point), others);
                             in_line[point] = boundary && are_in_line(axes_of(cloud, others));
                             return in_line[point] ? std::nullopt : boundary;
                           }),
@@ -98,7 +102,7 @@ std::vector<Crease> find_boundaries(const OrderedPoints& cloud, const Progress* 
                             // The point's normal is of the nearest, which do not determine it.
                             const Eigendecomposition axes = axes_of(cloud, others);
                             if (are_in_line(axes)) return std::optional<Crease>();
-                            return boundary_at(cloud, point, axes.vectors.col(0), others);
+                            return boundary_at(cloud, shadows, point, axes.vectors.col(0), others);
                           }),
                boundaries);
   return boundaries;

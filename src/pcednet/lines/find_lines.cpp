@@ -93,7 +93,8 @@ void check(const EdgePoints& points, const LineOptions& options) {
   const bool sound = fits(points.normals.size()) && fits(points.classes.size()) &&
                      (points.p_sharp.empty() || fits(points.p_sharp.size())) &&
                      (points.p_smooth.empty() || fits(points.p_smooth.size())) &&
-                     (points.partial.empty() || fits(points.partial.size()));
+                     (points.partial.empty() || fits(points.partial.size())) &&
+                     (points.scanners.empty() || fits(points.scanners.size()));
   if (!sound) {
     throw Error(ErrorKind::kUsage,
                 "positions, normals, classes and probabilities differ in number");

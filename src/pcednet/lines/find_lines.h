@@ -50,6 +50,9 @@ struct EdgePoints {
   std::span<const float> p_smooth = {};
   /// Not 0 where points around it are missing: no boundary is found there. May be empty.
   std::span<const std::uint8_t> partial = {};
+  /// Where the scanner that saw the point stood, NaN where unknown: the ends of what other things
+  /// hide from it are no boundaries. May be empty.
+  std::span<const Vec3> scanners = {};
   /// As in detect::PreparedCloud, of all points with a finite position; empty if not known.
   std::span<const std::uint32_t> curve = {};
 };

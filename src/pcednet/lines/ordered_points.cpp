@@ -28,7 +28,11 @@ bool stands_for(const EdgePoints& points, std::uint32_t a, std::uint32_t b) {
   };
   if (rank(a) != rank(b)) return rank(a) > rank(b);
   const Vec3 na = upward(points.normals[a]), nb = upward(points.normals[b]);
-  return std::tie(na.x(), na.y(), na.z()) > std::tie(nb.x(), nb.y(), nb.z());
+  const auto is_larger = [](const Vec3& v, const Vec3& w) {
+    return std::tie(v.x(), v.y(), v.z()) > std::tie(w.x(), w.y(), w.z());
+  };
+  if (na != nb || points.scanners.empty()) return is_larger(na, nb);
+  return is_larger(points.scanners[a], points.scanners[b]);
 }
 
 /// Points at one place follow each other along the curve; one stands for all.
@@ -56,6 +60,7 @@ std::vector<Vec3> seen_from(const Vec3& origin, std::vector<Vec3> positions) {
 
 OrderedPoints::OrderedPoints(const EdgePoints& points, const Vec3& origin)
     : points_(points),
+      origin_(origin),
       order_(distinct_points(points)),
       positions_(seen_from(origin, spatial::in_order(points.positions, order_))),
       normals_(spatial::in_order(points.normals, order_)),

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -42,6 +43,11 @@ class OrderedPoints {
   bool is_partial(std::size_t i) const {
     return !points_.partial.empty() && points_.partial[order_[i]] != 0;
   }
+  /// Where the scanner stood that saw a point; NaN if that is unknown.
+  Vec3 scanner(std::size_t i) const {
+    return points_.scanners.empty() ? Vec3(Vec3::Constant(std::numeric_limits<double>::quiet_NaN()))
+                                    : Vec3(points_.scanners[order_[i]] - origin_);
+  }
   bool has_probabilities() const { return !points_.p_sharp.empty(); }
   /// The probability of an edge; from the class alone if there are no probabilities.
   float probability(std::size_t i) const;
@@ -67,6 +73,7 @@ class OrderedPoints {
 
  private:
   EdgePoints points_;
+  Vec3 origin_;
   std::vector<std::uint32_t> order_;
   std::vector<Vec3> positions_, normals_;
   spatial::NeighbourSearch search_;

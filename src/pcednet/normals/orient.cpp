@@ -12,6 +12,7 @@
 #include "pcednet/normals/neighbour_count.h"
 #include "pcednet/normals/outward.h"
 #include "pcednet/normals/sign_votes.h"
+#include "pcednet/spatial/kd_tree.h"
 
 namespace pcednet::normals {
 namespace {
@@ -134,6 +135,50 @@ std::size_t face_viewpoints(std::span<const Vec3> positions, std::span<Vec3> nor
     ++faced;
   }
   return faced;
+}
+
+void settle_slanted(std::span<const Vec3> positions, std::span<Vec3> normals,
+                    std::span<const Vec3> viewpoints) {
+  check_size("normals", normals.size(), positions.size());
+  check_size("viewpoints", viewpoints.size(), positions.size());
+  constexpr double kSlanted = 0.7;  // cosine to the beam
+  constexpr double kBack = -0.95;   // of a normal on the other side of a wall
+  constexpr std::size_t kNeighbours = 12;
+  constexpr double kOpposed = 0.1;  // mean cosine
+  constexpr int kRounds = 4;
+  std::vector<float> seen(positions.size(), 0.0f);
+  std::vector<std::uint32_t> doubtful;
+  for (std::uint32_t i = 0; i < positions.size(); ++i) {
+    const Vec3 beam = viewpoints[i] - positions[i];
+    if (!beam.allFinite() || beam.isZero(0.0)) continue;
+    seen[i] = static_cast<float>(std::abs(normals[i].dot(beam.normalized())));
+    if (seen[i] < kSlanted) doubtful.push_back(i);
+  }
+  if (doubtful.empty()) return;
+  const spatial::KdTree tree(positions);
+  for (int round = 0; round < kRounds && !doubtful.empty(); ++round) {
+    std::vector<std::uint8_t> opposed(doubtful.size(), 0), turns(doubtful.size(), 0);
+    parallel_for_each(doubtful.size(), [&](std::size_t k) {
+      std::vector<spatial::Neighbour> near;
+      tree.nearest(positions[doubtful[k]], kNeighbours + 1, near);
+      double sum = 0.0, weights = 0.0;
+      for (const spatial::Neighbour& other : near) {
+        const double cosine = normals[doubtful[k]].dot(normals[other.index]);
+        if (other.index == doubtful[k] || cosine < kBack) continue;
+        const double weight = static_cast<double>(seen[other.index]);
+        opposed[k] |= cosine < 0.0;
+        sum += weight * cosine;
+        weights += weight;
+      }
+      turns[k] = sum < -kOpposed * weights;
+    });
+    std::size_t left = 0;
+    for (std::size_t k = 0; k < doubtful.size(); ++k) {
+      if (turns[k]) turn(normals[doubtful[k]], true);
+      if (opposed[k]) doubtful[left++] = doubtful[k];
+    }
+    doubtful.resize(left);
+  }
 }
 
 Orientation orient_points(NeighbourGraph& graph, std::span<Vec3> normals,

@@ -61,8 +61,9 @@ Orientation orient_normals(NeighbourGraph& graph, std::span<const Vec3> position
 Orientation orient_points(NeighbourGraph& graph, std::span<Vec3> normals,
                           const OrientOptions& options, const Progress* progress = nullptr);
 
-/// Turns every normal to face the viewpoint of its position, as in OrientOptions; those whose
-/// viewpoint is not finite stay. Returns how many points have one. One viewpoint per position.
+/// Turns every normal to face the viewpoint of its position, as in OrientOptions, but those that
+/// are seen at a slant (a cosine below .7) to the side of their neighbours. Those whose viewpoint
+/// is not finite stay. Returns how many points have one. One viewpoint per position.
 std::size_t face_viewpoints(std::span<const Vec3> positions, std::span<Vec3> normals,
                             std::span<const Vec3> viewpoints);
 

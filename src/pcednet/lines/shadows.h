@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "pcednet/lines/ordered_points.h"
+#include "pcednet/spatial/kd_tree.h"
+
+namespace pcednet::lines {
+
+/// The points of each scanner that is known, by the direction in which it saw them.
+class Shadows {
+ public:
+  explicit Shadows(const OrderedPoints& cloud);
+
+  /// Whether the surface at `point` ends in the direction `outward` only because something nearer
+  /// to the scanner hides the rest: three or more of the 28 beams around that of the point end
+  /// there, six spacings or more before it.
+  bool hide_what_is_beyond(std::size_t point, const Vec3& outward, double spacing) const;
+
+ private:
+  struct View {
+    Vec3 scanner;
+    std::vector<std::uint32_t> points;  ///< ascending
+    spatial::KdTree beams;              ///< unit, of the points
+  };
+
+  const OrderedPoints& cloud_;
+  std::vector<View> views_;
+};
+
+}  // namespace pcednet::lines

@@ -1,0 +1,76 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "pcednet/core/random.h"
+#include "pcednet/lines/find_lines.h"
+
+namespace pcednet::lines {
+namespace {
+
+/// A panel .8 high that stands on level ground, 8 before a scanner at a height of 1.7: its shadow
+/// goes from 8 to 15.1.
+struct PanelScan {
+  const Vec3 scanner = {100.0, 50.0, 1.7};
+  std::vector<Vec3> positions = {}, normals = {};
+  std::vector<std::uint8_t> classes = {};
+
+  PanelScan() {
+    constexpr double kStep = 0.006;
+    Random random(21);
+    for (double down = 0.08; down < 0.5; down += kStep) {
+      for (double turn = -0.5; turn < 0.5; turn += kStep) {
+        const Vec3 beam(std::cos(down) * std::cos(turn), std::cos(down) * std::sin(turn),
+                        -std::sin(down));
+        const Vec3 on_panel = 8.0 / beam.x() * beam;
+        const bool is_panel =
+            std::abs(on_panel.y()) < 1.5 && on_panel.z() > -1.7 && on_panel.z() < 0.8 - 1.7;
+        const double range = is_panel ? on_panel.norm() : 1.7 / std::sin(down);
+        positions.push_back(scanner + (range + 0.002 * random.normal()) * beam);
+        normals.push_back(is_panel ? Vec3(-Vec3::UnitX()) : Vec3(Vec3::UnitZ()));
+        classes.push_back(kNonEdge);
+      }
+    }
+  }
+
+  struct Lengths {
+    double shadow = 0.0, panel = 0.0, outline = 0.0;
+  };
+  Lengths lengths(std::span<const Vec3> scanners) const {
+    Lengths found;
+    const EdgePoints points = {
+        .positions = positions, .normals = normals, .classes = classes, .scanners = scanners};
+    for (const Curve& curve : find_lines(points, {.boundaries = true})) {
+      const Vec3 middle = 0.5 * (curve.points.front() + curve.points.back()) - scanner;
+      const double away = std::hypot(middle.x(), middle.y());
+      double& its = middle.z() > -1.6                                               ? found.panel
+                    : middle.x() > 8.3 && away < 16.5 && std::abs(middle.y()) < 3.5 ? found.shadow
+                                                                                    : found.outline;
+      its += length_of(curve);
+    }
+    return found;
+  }
+};
+
+TEST(Shadows, AreNoBoundariesWhereTheScannerIsKnown) {
+  const PanelScan scan;
+  const auto unknown = scan.lengths({});
+  EXPECT_GT(unknown.shadow, 15.0);  // two sides and the end
+  EXPECT_GT(unknown.panel, 4.0);    // two sides and the top
+  const std::vector<Vec3> scanners(scan.positions.size(), scan.scanner);
+  const auto known = scan.lengths(scanners);
+  EXPECT_LT(known.shadow, 1.0);
+  EXPECT_NEAR(known.panel, unknown.panel, 0.1);
+  EXPECT_NEAR(known.outline, unknown.outline, 0.1 * unknown.outline);
+}
+
+TEST(Shadows, OfAScannerThatIsNotKnownAreBoundaries) {
+  const PanelScan scan;
+  const std::vector<Vec3> unknown(scan.positions.size(), Vec3::Constant(NAN));
+  EXPECT_EQ(scan.lengths(unknown).shadow, scan.lengths({}).shadow);
+}
+
+}  // namespace
+}  // namespace pcednet::lines
