@@ -49,7 +49,7 @@ void check_kinds_of_edges(std::span<const detect::NamedLabels> clouds,
   if (smooth == sharp || (sharp && options.architecture.classes != 3)) return;
   throw Error(ErrorKind::kInsufficient,
               sharp ? "train: no point is labelled smooth-edge (1); --classes 2 learns sharp-edge "
-                      "(2) alone"
+                      "(2) alone, --start general needs no point of it"
                     : "train: no point is labelled sharp-edge (2), but points are smooth-edge (1): "
                       "if 1 stands for any edge, write 2 in its place and give --classes 2");
 }

@@ -11,8 +11,7 @@
 #include "named.h"
 #include "pcednet/core/error.h"
 #include "pcednet/detect/rounding.h"
-#include "workbench/annotate/adapt.h"
-#include "workbench/annotate/outputs.h"
+#include "workbench/annotate/adapt_clouds.h"
 
 namespace pcednet::python {
 namespace {
@@ -134,32 +133,21 @@ py::tuple train(const py::list& clouds, const std::vector<std::string>& classes,
   return py::make_tuple(std::move(trained.model), list_of(history), notes);
 }
 
-/// Fine-tunes on painted points, as the annotator does: see annotate::adapt().
+/// Fine-tunes on painted points, as the annotator does: see annotate::adapt_clouds().
 py::tuple adapt(const detect::EdgeModel& model, const py::list& clouds,
                 const std::vector<std::string>& classes, const std::string& name,
                 bool keep_orientation, std::uint64_t seed, const py::object& progress,
                 int threads) {
   const auto arrays = clouds_of(clouds);
   const ClassTable table = table_of_lines(classes);
-  if (!annotate::can_start(model, table)) {
-    throw Error(ErrorKind::kUsage, "start: the model knows the classes " + names_of(model.table) +
-                                       ", the labels are " + names_of(table));
-  }
+  annotate::check_classes_of_start(model, table);
   TrainingClouds prepared;
-  annotate::Adapted adapted;
+  detect::TrainedModel adapted;
   History history;
   run_job({progress, threads}, [&](const Progress* job) {
     prepare(arrays, keep_orientation, model.descriptor, prepared, job);
-    annotate::Subject subject{.clouds = {}, .table = table};
-    std::vector<std::shared_ptr<const annotate::Described>> described;
-    std::vector<std::uint8_t> labels;
-    for (const detect::TrainingCloud& one : prepared.clouds) {
-      described.push_back(annotate::describe_once(one.cloud, model.descriptor, {}, job));
-      subject.clouds.push_back({*described.back(), one.cloud.positions, one.cloud.curve});
-      labels.insert(labels.end(), one.labels.begin(), one.labels.end());
-    }
-    adapted = annotate::adapt(
-        name, annotate::make_start(model, subject), subject, labels, seed,
+    adapted = annotate::adapt_clouds(
+        name, model, prepared.clouds, table, seed,
         [&](const nn::EpochReport& report) { history.push_back(report); }, job);
   });
   return py::make_tuple(std::move(adapted.model), list_of(history), prepared.notes);

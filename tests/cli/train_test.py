@@ -210,6 +210,7 @@ class Train(CliTest):
         write_ply(self.folder / "a.ply", p, n, label)
         done = run("train", self.folder / "a.ply", "-o", self.folder / "m.safetensors", expect=4)
         self.assertIn("no point is labelled smooth-edge (1); --classes 2", done.stderr)
+        self.assertIn("--start general needs no point of it", done.stderr)
         run("train", self.folder / "a.ply", "-o", self.folder / "m.safetensors", "--classes", 2,
             "--epochs", 1)
 
@@ -253,6 +254,43 @@ class Train(CliTest):
         write_ply(self.folder / "b.ply", p, n, label)
         return run("train", self.folder / "b.ply", "-o", self.folder / "b.safetensors", "--epochs", 1).stderr
 
+    def test_a_model_learns_a_few_points_without_unlearning_the_rest(self):
+        p, n, label = cube(8000, seed=3)
+        few = np.full(8000, 255, np.uint8)
+        few[np.flatnonzero((label == 2) & (p[:, 2] > 0.3))[::3]] = 0
+        cloud, model = self.folder / "a.ply", self.folder / "m.safetensors"
+        write_ply(cloud, p, n, few)
+        said = run("train", cloud, "--start", "general", "-o", model).stderr
+        self.assertIn("nothing is held out", said)
+        self.assertEqual(tensors(model)[0]["name"], "m")
+        found = []
+        for name, its in (("before", "general"), ("after", model)):
+            run("classify", cloud, "--model", its, "--no-boundary", "-o", self.folder / f"{name}.ply")
+            found.append(read_ply(self.folder / f"{name}.ply")[0]["label"])
+        before, after = found
+        self.assertGreater(np.mean((before == after)[label == 0]), 0.95)
+        painted = few == 0
+        self.assertLess(np.mean(after[painted] == 2), np.mean(before[painted] == 2) / 2)
+        self.assertEqual(run("train", cloud, "--start", model, "-o", self.folder / "n.safetensors", "--seed", 2,
+                             "--no-normals", "--keep-orientation", "--progress", "none").returncode, 0)
+
+    def test_refuses_what_does_not_go_with_a_start(self):
+        p, n, label = cube(1000)
+        a, b, own = (self.folder / f"{name}.ply" for name in ("a", "b", "own"))
+        write_ply(a, p, n, label)
+        write_ply(b, p, n, np.full(1000, 255))
+        write_own(own, p, n, np.where(label == 2, 1, 0))
+        model = self.folder / "m.safetensors"
+        for extra in (["--classes", 2], ["--context"], ["--epochs", 3], ["--s-max", 1], ["--only", "given"], ["--natural"]):
+            said = run("train", a, "--start", "general", "-o", model, *extra, expect=2).stderr
+            self.assertIn(f"{extra[0]} has no effect beside --start", said)
+        self.assertIn(f"{b}: no point is labelled", run("train", a, b, "--start", "general", "-o", model, expect=4).stderr)
+        said = run("train", own, "--start", "general", "-o", model, expect=2).stderr
+        self.assertIn("start: the model knows the classes edges, the labels are ground, wall, pipe", said)
+        self.assertIn("neither a file nor a shipped model", run("train", a, "--start", "none", "-o", model, expect=2).stderr)
+        run("train", a, "-o", model, "--epochs", 1)
+        run("train", a, "--start", model, "-o", model, "--overwrite", expect=2)
+
     def test_writes_model_files_only(self):
         broken = self.folder / "broken.ply"
         broken.write_text("ply\nnonsense\n")
@@ -272,6 +310,7 @@ class Train(CliTest):
         said = run("train", self.folder / "a.ply", "-o", model, "--epochs", 1).stderr
         self.assertIn("validation loss -  accuracy -\n", said)
         self.assertIn("nothing was held out for validation", said)
+        self.assertIn("--start general learns more from few points", said)
         self.assertNotIn("validation_loss", tensors(model)[0])
         said = tensors(self.train("all.safetensors", "--epochs", 1))[0]
         self.assertIn("validation_loss", said)

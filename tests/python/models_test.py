@@ -38,6 +38,14 @@ class Training(CliTest):
         self.assertGreater(self.model.history[0]["loss"], self.model.history[-1]["loss"])
         self.assertIn("validation_accuracy", self.model.history[0])
 
+    def test_a_model_that_learns_more_is_the_file_of_the_program(self):
+        few = np.where(np.arange(4000) % 40 == 0, self.labels, 255)
+        write_ply(self.path("in.ply"), self.positions, self.normals, few, position_type="double")
+        run("train", self.path("in.ply"), "--start", "general", "-o", self.path("few.safetensors"), "--seed", 4)
+        model = pcednet.train(self.positions, few, normals=self.normals, start="general", seed=4, name="few")
+        model.save(self.path("ours.safetensors"))
+        self.assertEqual(self.path("ours.safetensors").read_bytes(), self.path("few.safetensors").read_bytes())
+
     def test_models_survive_files_and_pickles(self):
         self.model.save(self.path("a.safetensors"))
         with self.assertRaises(FileExistsError):

@@ -19,6 +19,7 @@
 #include "pcednet/io/text_scan.h"
 #include "prepare.h"
 #include "stage_clock.h"
+#include "workbench/annotate/adapt_clouds.h"
 #include "workbench/annotate/known_inputs.h"
 #include "workbench/annotate/learn.h"
 #include "workbench/annotate/start_file.h"
@@ -35,6 +36,7 @@ enum class Recipe { kAdam, kPaper };
 struct TrainArguments {
   std::vector<std::string> inputs;
   std::string project, output;
+  std::string start;  ///< a model file, or the name of a shipped model
   std::vector<std::pair<std::string, std::string>> experts;  ///< model files and kinds of clouds
   std::string pieces;                                        ///< a model file
   std::string only;                                          ///< the kind of clouds to learn from
@@ -162,12 +164,22 @@ void warn_of_steps(const LabelledFile& file, const detect::PreparedCloud& prepar
 detect::TrainedModel train_clouds(const TrainArguments& arguments, const Common& common,
                                   const Progress& progress) {
   auto options = options_of(arguments);
+  std::optional<detect::EdgeModel> start;
+  if (!arguments.start.empty()) {
+    start = detect::load_model(find_model(arguments.start));
+    options.descriptor = start->descriptor;
+  }
   std::optional<detect::CloudKind> only;
   if (!arguments.only.empty()) only = take_kind("--only", arguments.only);
   // The training clouds refer to the files.
   std::vector<LabelledFile> files =
       read_labelled_files(arguments.inputs, arguments.no_normals, options, progress);
-  if (!only) check_can_learn(labels_of(files), options);
+  if (start) {
+    annotate::check_classes_of_start(*start, options.table);
+    annotate::check_each_is_labelled(labels_of(files), options.table);
+  } else if (!only) {
+    check_can_learn(labels_of(files), options);
+  }
   std::vector<detect::TrainingCloud> clouds;
   for (LabelledFile& file : files) {
     auto prepared = prepare(file.path, file.cloud, arguments.preparation, progress);
@@ -183,8 +195,13 @@ detect::TrainedModel train_clouds(const TrainArguments& arguments, const Common&
                 fmt::format("train: no cloud is of the kind --only {}", arguments.only));
   }
   if (only) check_can_learn(labels_of(clouds), options);
-  return detect::train(std::filesystem::path(arguments.output).stem().string(), clouds, options,
-                       epoch_reports(common), &progress);
+  const std::string name = std::filesystem::path(arguments.output).stem().string();
+  const auto on_epoch = epoch_reports(common);
+  if (start) {
+    return annotate::adapt_clouds(name, *start, clouds, options.table, arguments.seed, on_epoch,
+                                  &progress);
+  }
+  return detect::train(name, clouds, options, on_epoch, &progress);
 }
 
 void check_extension(const std::filesystem::path& output) {
@@ -206,7 +223,7 @@ void tell(const detect::TrainedModel& trained) {
     say("  adapted to the painted points: nothing is held out for validation");
   } else if (!trained.validated) {
     say("  nothing was held out for validation, as a class has fewer than 20 points: the last "
-        "epoch was kept");
+        "epoch was kept. --start general learns more from few points");
   }
 }
 
@@ -215,6 +232,7 @@ void train(const TrainArguments& arguments, const Common& common) {
   check_not_input(arguments.output, arguments.project);
   for (const auto& [file, kind] : arguments.experts) check_not_input(arguments.output, file);
   check_not_input(arguments.output, arguments.pieces);
+  if (!arguments.start.empty()) check_not_input(arguments.output, find_model(arguments.start));
   check_extension(arguments.output);
   check_writable(arguments.output, common.overwrite());
   if (arguments.inputs.empty() && arguments.project.empty()) {
@@ -250,6 +268,9 @@ void add_data_options(CLI::App& command, TrainArguments& arguments) {
   command.add_option("--project", arguments.project,
                      "Repeat a training of the annotator from its project, with its settings; the "
                      "input is expected beside the project unless given");
+  command.add_option("--start", arguments.start,
+                     "Model that learns the labelled points without unlearning the rest, as in the "
+                     "annotator: general, another shipped one or a file. A few strokes suffice");
   command.add_option("-o,--output", arguments.output, "Output model file, .safetensors")
       ->required();
   add_prepare_options(command, arguments.preparation);
@@ -318,15 +339,17 @@ void add_recipe_options(CLI::App& command, TrainArguments& arguments) {
   command.add_option("--seed", arguments.seed, "Random seed")->capture_default_str();
 }
 
-/// A project has its own settings.
-void check_options_of_project(const CLI::App& command) {
-  static constexpr std::string_view kUsable[] = {"inputs",    "--project",  "--output",   "--help",
-                                                 "--threads", "--progress", "--overwrite"};
+/// Refuses other options than `usable` and those of every training; `why` ends the message.
+void check_options(const CLI::App& command, std::vector<std::string_view> usable,
+                   std::string_view why) {
+  for (const auto* name :
+       {"inputs", "--output", "--help", "--threads", "--progress", "--overwrite"}) {
+    usable.push_back(name);
+  }
   for (const CLI::Option* option : command.get_options()) {
     const std::string name = option->get_name();
-    if (option->count() == 0 || std::ranges::find(kUsable, name) != std::end(kUsable)) continue;
-    throw Error(ErrorKind::kUsage,
-                fmt::format("train: {} has no effect on a --project, whose settings hold", name));
+    if (option->count() == 0 || std::ranges::count(usable, name) > 0) continue;
+    throw Error(ErrorKind::kUsage, fmt::format("train: {} has no effect {}", name, why));
   }
 }
 
@@ -337,6 +360,7 @@ void add_train(CLI::App& app, Common& common) {
   CLI::App* command = add_command(
       app, common, "train", "Train a network on labelled clouds",
       "pcednet train painted.ply -o my.safetensors      labels 0, 1, 2; 255 unlabelled\n"
+      "pcednet train painted.ply -o my.safetensors --start general    a few strokes suffice\n"
       "pcednet train clouds/ -o my.safetensors --classes 2 --seed 7\n"
       "pcednet train clouds/ -o paper.safetensors --recipe paper\n"
       "pcednet train --project scan_annotation.json -o my.safetensors    a training of annotate");
@@ -355,7 +379,13 @@ void add_train(CLI::App& app, Common& common) {
   add_network_options(*command, arguments->options);
   add_recipe_options(*command, *arguments);
   command->callback([arguments, command, &common] {
-    if (!arguments->project.empty()) check_options_of_project(*command);
+    if (!arguments->project.empty()) {
+      check_options(*command, {"--project"}, "on a --project, whose settings hold");
+    }
+    if (!arguments->start.empty()) {
+      check_options(*command, {"--start", "--seed", "--keep-orientation", "--no-normals"},
+                    "beside --start, whose network and training are as they are");
+    }
     train(*arguments, common);
   });
 }
