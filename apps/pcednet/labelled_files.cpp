@@ -57,12 +57,13 @@ void check_kinds_of_edges(std::span<const detect::NamedLabels> clouds,
 }  // namespace
 
 std::vector<LabelledFile> read_labelled_files(const std::vector<std::string>& inputs,
-                                              bool no_normals, detect::TrainOptions& options,
+                                              const LasCodes& codes, bool no_normals,
+                                              detect::TrainOptions& options,
                                               const Progress& progress) {
   std::vector<LabelledFile> files;
   for (const auto& input : without_results(expand_inputs(inputs))) {
     with_name_in_errors(input, [&] {
-      io::LoadedCloud loaded = truth::read_labelled(input);
+      io::LoadedCloud loaded = truth::read_labelled(input, codes);
       warn_all(input, loaded.warnings);
       files.push_back({input, std::move(loaded.cloud)});
     });

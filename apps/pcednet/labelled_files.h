@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "las_codes.h"
 #include "pcednet/cloud/point_cloud.h"
 #include "pcednet/core/progress.h"
 #include "pcednet/detect/train.h"
@@ -17,11 +18,13 @@ struct LabelledFile {
   PointCloud cloud;
 };
 
-/// Reads files and folders, without results of classify, and sets the table of `options` to their
+/// Reads files and folders, without results of classify, with their labels, in the field
+/// Classification if there are codes, and sets the table of `options` to their
 /// classes. Warns of what is strange in them. Throws as read_labelled, and Error(kInsufficient)
 /// naming the file whose classes are not those of the first.
 std::vector<LabelledFile> read_labelled_files(const std::vector<std::string>& inputs,
-                                              bool no_normals, detect::TrainOptions& options,
+                                              const LasCodes& codes, bool no_normals,
+                                              detect::TrainOptions& options,
                                               const Progress& progress);
 
 /// Throws Error(kInsufficient) if the labels do not allow the training.

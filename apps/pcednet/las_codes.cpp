@@ -73,6 +73,26 @@ LasCodes las_codes(const std::string& pairs, std::size_t classes) {
   return codes;
 }
 
+void add_label_codes_option(CLI::App& command, std::string& pairs) {
+  command.add_option("--las-classification", pairs,
+                     "Take the labels from the LAS field Classification: class=code,..., such as "
+                     "0=2,0=6,2=64; points of other codes are unlabelled");
+}
+
+LasCodes label_codes(const std::string& pairs) {
+  const LasCodes codes = las_codes(pairs, edge_classes().size());
+  for (auto pair = codes.begin(); pair != codes.end(); ++pair) {
+    const auto same = std::find_if(codes.begin(), pair, [&](const auto& before) {
+      return before.second == pair->second && before.first != pair->first;
+    });
+    if (same == pair) continue;
+    throw Error(ErrorKind::kUsage,
+                fmt::format("--las-classification: code {} stands for the classes {} and {}",
+                            pair->second, same->first, pair->first));
+  }
+  return codes;
+}
+
 void check_codes_fit(const LasCodes& codes, const std::vector<Job>& jobs) {
   if (codes.empty()) return;
   for (const Job& job : jobs) {

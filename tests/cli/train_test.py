@@ -241,6 +241,33 @@ class Train(CliTest):
             done = run("train", a, "-o", self.folder / "m.safetensors", expect=4)
             self.assertIn(f"{a}: has no labels, as {said}", done.stderr)
 
+    def test_learns_from_the_codes_of_las(self):
+        p, n, label = cube(1500, seed=4)
+        a, coded, las = (self.folder / name for name in ("a.csv", "b.csv", "b.las"))
+        codes = np.choose(label, [2, 6, 64])
+        codes[:100], label[:100] = 1, 255
+        codes[100:200], label[100:200] = 7, 0
+        for path, name, its in ((a, "label", label), (coded, "Classification", codes)):
+            rows = np.column_stack([np.round(p, 4), n, its])
+            np.savetxt(path, rows, fmt=["%.4f"] * 6 + ["%d"], delimiter=",", header="x,y,z,nx,ny,nz," + name, comments="")
+        self.assertIn("--las-classification", run("train", coded, "-o", self.folder / "m.safetensors", expect=4).stderr)
+        run("convert", coded, "-o", las)
+        by = ["--las-classification", "0=2,0=7,1=6,2=64"]
+        for options in (["--epochs", 2], ["--start", "general"]):
+            models = []
+            for cloud, how in ((a, []), (coded, by), (las, by)):
+                said = run("train", cloud, *how, "-o", self.folder / "m.safetensors", "--overwrite", *options).stderr
+                self.assertEqual("labels from its field Classification" in said, bool(how))
+                models.append((self.folder / "m.safetensors").read_bytes())
+            self.assertEqual(models[0], models[1])
+            self.assertEqual(models[0], models[2])
+        scores = [json.loads(run("evaluate", cloud, "--json", "-", *how).stdout)["clouds"][0]["mcc"]
+                  for cloud, how in ((a, []), (las, by))]
+        self.assertEqual(*scores)
+        for bad in ("2=64,0=64", "4=64", "2=256", "x"):
+            said = run("train", las, "--las-classification", bad, "-o", self.folder / "n.safetensors", expect=2).stderr
+            self.assertIn("--las-classification", said)
+
     def test_counts_the_labels_that_are_no_classes(self):
         p, n, label = cube(1000)
         label[:30] = 5

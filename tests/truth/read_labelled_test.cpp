@@ -148,8 +148,33 @@ TEST(ColourLabels, LeavePhotographsAlone) {
   EXPECT_TRUE(labels_of_colours({}).empty());
 }
 
+TEST(ReadLabelled, TakesTheCodesOfLas) {
+  const Scratch scratch;
+  const auto file = scratch.file(
+      "a.csv", "x,y,z,label,Classification\n0,0,0,1,2\n1,0,0,1,64\n0,1,0,1,6\n0,0,1,1,1\n");
+  const LoadedCloud loaded = read_labelled(file, {{0, 2}, {0, 6}, {2, 64}});
+  EXPECT_EQ(loaded.cloud.labels, (Labels{0, 2, 0, kUnlabelled}));
+  EXPECT_EQ(loaded.warnings.back(), "labels from its field Classification");
+  EXPECT_EQ(read_labelled(file, {}).cloud.labels, (Labels{1, 1, 1, 1}));
+  EXPECT_TRUE(error_of(ErrorKind::kInsufficient,
+                       [&] {
+                         read_labelled(file, {{2, 65}});
+                       })
+                  .ends_with("a.csv: no point has one of the codes given; its field Classification "
+                             "holds 1, 2, 6, 64"));
+  const auto without = scratch.file("b.csv", "x,y,z,label\n0,0,0,1\n");
+  EXPECT_TRUE(error_of(ErrorKind::kInsufficient, [&] {
+                read_labelled(without, {{2, 64}});
+              }).ends_with("has no field Classification"));
+}
+
 TEST(ReadLabelled, TellsWhereThereAreNone) {
   const Scratch scratch;
+  const auto said = [&](const char* codes) {
+    return error_of(ErrorKind::kInsufficient, [&] { read_labelled(scratch.file("a.csv", codes)); });
+  };
+  EXPECT_TRUE(contains(said("x,y,z,Classification\n0,0,0,2\n1,0,0,64\n"), "--las-classification"));
+  EXPECT_FALSE(contains(said("x,y,z,Classification\n0,0,0,2\n1,0,0,2\n"), "--las-classification"));
   EXPECT_ERROR(ErrorKind::kInsufficient, read_labelled(scratch.file("a.obj", kMesh)));
   EXPECT_ERROR(ErrorKind::kInsufficient, read_labelled(scratch.file("a.xyz", "0 0 0\n1 1 1\n")));
 }

@@ -9,6 +9,7 @@
 #include "classify_cloud.h"
 #include "commands.h"
 #include "evaluate_lines.h"
+#include "las_codes.h"
 #include "methods.h"
 #include "models.h"
 #include "pcednet/core/error.h"
@@ -28,7 +29,8 @@ namespace fs = std::filesystem;
 
 struct EvaluateArguments {
   std::vector<std::string> inputs;
-  std::string predictions, json, truth, cloud;
+  std::string predictions, json, truth, cloud, las_classification;
+  LasCodes codes = {};
   eval::Positive positive = eval::Positive::kSharp;
   ModelArguments model;
   MethodArguments method;
@@ -146,7 +148,7 @@ void settle_classes(const fs::path& input, const PointCloud& cloud, Results& res
 
 /// A cloud with labels of the results' classes, which the first one settles.
 PointCloud read_truth(const fs::path& input, const Way& way, Results& results) {
-  auto loaded = truth::read_labelled(input);
+  auto loaded = truth::read_labelled(input, way.arguments.codes);
   throw_if_cancelled(&way.progress);
   settle_classes(input, loaded.cloud, results);
   check_labels(input, loaded.cloud, results.classes.table);
@@ -232,6 +234,7 @@ void evaluate(EvaluateArguments arguments, const Common& common) {
                 "evaluate: give one of --model, --predictions, --method or --truth");
   }
   if (ways == 0) arguments.model.name = kDefaultModel;
+  arguments.codes = label_codes(arguments.las_classification);
   if (arguments.calibration && arguments.model.name.empty()) {
     throw Error(ErrorKind::kUsage, "evaluate: --calibration needs --model");
   }
@@ -276,6 +279,7 @@ void add_evaluate(CLI::App& app, Common& common) {
                    "Labelled point files or folders of them; with --truth files of lines")
       ->required();
   add_model_options(*command, arguments->model);
+  add_label_codes_option(*command, arguments->las_classification);
   command->add_option(
       "--predictions", arguments->predictions,
       "Folder with the labels of another program, one file per cloud with the same stem: .u8 (one "
@@ -290,7 +294,7 @@ void add_evaluate(CLI::App& app, Common& common) {
                    "The cloud of the lines, or a folder of clouds with the same stems: lengths are "
                    "relative to it; without it to the box of the true curves")
       ->needs(truth);
-  for (const char* of_labels : {"--model", "--predictions", "--method"}) {
+  for (const char* of_labels : {"--model", "--predictions", "--method", "--las-classification"}) {
     truth->excludes(command->get_option(of_labels));
   }
   add_choice(*command, "--positive", arguments->positive, eval::kPositives,

@@ -35,7 +35,7 @@ enum class Recipe { kAdam, kPaper };
 
 struct TrainArguments {
   std::vector<std::string> inputs;
-  std::string project, output;
+  std::string project, output, las_classification;
   std::string start;  ///< a model file, or the name of a shipped model
   std::vector<std::pair<std::string, std::string>> experts;  ///< model files and kinds of clouds
   std::string pieces;                                        ///< a model file
@@ -173,7 +173,8 @@ detect::TrainedModel train_clouds(const TrainArguments& arguments, const Common&
   if (!arguments.only.empty()) only = take_kind("--only", arguments.only);
   // The training clouds refer to the files.
   std::vector<LabelledFile> files =
-      read_labelled_files(arguments.inputs, arguments.no_normals, options, progress);
+      read_labelled_files(arguments.inputs, label_codes(arguments.las_classification),
+                          arguments.no_normals, options, progress);
   if (start) {
     annotate::check_classes_of_start(*start, options.table);
     annotate::check_each_is_labelled(labels_of(files), options.table);
@@ -273,6 +274,7 @@ void add_data_options(CLI::App& command, TrainArguments& arguments) {
                      "annotator: general, another shipped one or a file. A few strokes suffice");
   command.add_option("-o,--output", arguments.output, "Output model file, .safetensors")
       ->required();
+  add_label_codes_option(command, arguments.las_classification);
   add_prepare_options(command, arguments.preparation);
   command.add_flag("--no-normals", arguments.no_normals,
                    "Leave out the clouds' normals: they are estimated, as for clouds without");
@@ -383,8 +385,10 @@ void add_train(CLI::App& app, Common& common) {
       check_options(*command, {"--project"}, "on a --project, whose settings hold");
     }
     if (!arguments->start.empty()) {
-      check_options(*command, {"--start", "--seed", "--keep-orientation", "--no-normals"},
-                    "beside --start, whose network and training are as they are");
+      check_options(
+          *command,
+          {"--start", "--seed", "--las-classification", "--keep-orientation", "--no-normals"},
+          "beside --start, whose network and training are as they are");
     }
     train(*arguments, common);
   });

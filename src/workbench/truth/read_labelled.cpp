@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -44,6 +45,28 @@ bool sounds_like_labels(const std::string& name) {
          !has("edge_class") && !has("edgeofflight");
 }
 
+const Attribute* find_classification(const PointCloud& cloud) {
+  const auto found = std::ranges::find_if(cloud.attributes, [](const Attribute& attribute) {
+    return attribute.components == 1 && io::lower_case(attribute.name) == "classification";
+  });
+  return found == cloud.attributes.end() ? nullptr : &*found;
+}
+
+bool is_varied(const Attribute& attribute, std::size_t points) {
+  for (std::size_t i = 1; i < points; ++i) {
+    if (attribute.value(i) != attribute.value(0)) return true;
+  }
+  return false;
+}
+
+/// Labels may be among the codes of LAS.
+std::string where_coded(const PointCloud& cloud) {
+  const Attribute* field = find_classification(cloud);
+  if (!field || !is_varied(*field, cloud.size())) return "";
+  return fmt::format("; --las-classification of train and evaluate takes them from its field {}",
+                     field->name);
+}
+
 std::string why_unlabelled(const PointCloud& cloud) {
   std::string maybe;
   for (const Attribute& attribute : cloud.attributes) {
@@ -55,7 +78,17 @@ std::string why_unlabelled(const PointCloud& cloud) {
     }
     if (!other && maybe.empty()) maybe = fmt::format("; {} may have to be renamed", attribute.name);
   }
-  return "no column is named label" + maybe;
+  return "no column is named label" + maybe + where_coded(cloud);
+}
+
+/// The values of a field, smallest first; of many the first.
+std::string some_values(const Attribute& attribute, std::size_t points) {
+  constexpr std::size_t kMost = 12;
+  std::set<double> values;
+  for (std::size_t i = 0; i < points; ++i) values.insert(attribute.value(i));
+  const bool more = values.size() > kMost;
+  if (more) values.erase(std::next(values.begin(), kMost), values.end());
+  return fmt::format("{}{}", fmt::join(values, ", "), more ? ", ..." : "");
 }
 
 }  // namespace
@@ -85,6 +118,30 @@ io::LoadedCloud read_labelled(const std::filesystem::path& path) {
   }
   loaded.warnings.emplace_back("labels from the colours: grey, yellow and red are the classes");
   take_truth_of_result(loaded);
+  return loaded;
+}
+
+io::LoadedCloud read_labelled(const std::filesystem::path& path, const LabelCodes& codes) {
+  if (codes.empty()) return read_labelled(path);
+  io::LoadedCloud loaded = formats::read_cloud(path);
+  PointCloud& cloud = loaded.cloud;
+  if (cloud.empty()) return loaded;
+  const Attribute* field = find_classification(cloud);
+  if (!field) {
+    throw Error(ErrorKind::kInsufficient,
+                fmt::format("{}: has no field Classification", path.string()));
+  }
+  cloud.labels.assign(cloud.size(), kUnlabelled);
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const auto found = std::ranges::find(codes, field->value(i), &LabelCodes::value_type::second);
+    if (found != codes.end()) cloud.labels[i] = found->first;
+  }
+  if (std::ranges::count(cloud.labels, kUnlabelled) == std::ssize(cloud.labels)) {
+    throw Error(ErrorKind::kInsufficient,
+                fmt::format("{}: no point has one of the codes given; its field {} holds {}",
+                            path.string(), field->name, some_values(*field, cloud.size())));
+  }
+  loaded.warnings.push_back(fmt::format("labels from its field {}", field->name));
   return loaded;
 }
 

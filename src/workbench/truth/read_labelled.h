@@ -1,6 +1,9 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <utility>
+#include <vector>
 
 #include "pcednet/io/loaded_cloud.h"
 
@@ -12,5 +15,13 @@ namespace pcednet::truth {
 /// Error(kInsufficient), naming the file, if there are none, and as the readers do. An empty file
 /// gives an empty cloud.
 io::LoadedCloud read_labelled(const std::filesystem::path& path);
+
+/// Pairs of a class and a code of the LAS field Classification that stands for it.
+using LabelCodes = std::vector<std::pair<std::uint8_t, std::uint8_t>>;
+
+/// A point file whose labels are in its field Classification, of any format; points of other codes
+/// are unlabelled. Without codes, read_labelled(). Throws Error(kInsufficient), naming the file, if
+/// it has no such field, or no point of these codes, and as the readers do.
+io::LoadedCloud read_labelled(const std::filesystem::path& path, const LabelCodes& codes);
 
 }  // namespace pcednet::truth
