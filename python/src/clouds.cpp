@@ -19,6 +19,7 @@
 #include "pcednet/formats/read_cloud.h"
 #include "pcednet/formats/write_cloud.h"
 #include "pcednet/io/las/file.h"
+#include "text.h"
 
 namespace pcednet::python {
 namespace {
@@ -90,9 +91,9 @@ PointCloud put_together(const py::dict& parts) {
   }
   for (const auto& [name, values] : parts["attributes"].cast<py::dict>()) {
     cloud.attributes.push_back(
-        attribute_of(name.cast<std::string>(), py::reinterpret_borrow<py::array>(values)));
+        attribute_of(bytes_of_text(name), py::reinterpret_borrow<py::array>(values)));
   }
-  cloud.comments = parts["comments"].cast<std::vector<std::string>>();
+  cloud.comments = bytes_of_texts(parts["comments"]);
   cloud.scanners = copied(parts["scanners"]);
   return cloud;
 }
@@ -124,22 +125,23 @@ std::vector<std::string> class_names(const std::vector<std::string>& lines) {
 
 /// The labels that detect::truth_of_result() finds, or None, and its note; None for a cloud that is
 /// no result. `columns` are arrays of its kTruthColumns by name.
-py::object truth_of_result(const std::vector<std::string>& comments, const py::dict& columns) {
+py::object truth_of_result(const py::list& comments, const py::dict& columns) {
   PointCloud cloud;
-  cloud.comments = comments;
+  cloud.comments = bytes_of_texts(comments);
   for (const auto& [name, values] : columns) {
     cloud.attributes.push_back(
-        attribute_of(name.cast<std::string>(), py::reinterpret_borrow<py::array>(values)));
+        attribute_of(bytes_of_text(name), py::reinterpret_borrow<py::array>(values)));
   }
   auto truth = detect::truth_of_result(cloud);
   if (!truth) return py::none();
   py::object labels = py::none();
   if (!truth->labels.empty()) labels = give(std::move(truth->labels));
-  return py::make_tuple(labels, truth->note);
+  return py::make_tuple(labels, text_of(truth->note));
 }
 
 py::tuple state_of(const std::string& text, const std::vector<std::byte>& bytes) {
-  return py::make_tuple(text, py::bytes(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+  return py::make_tuple(text_of(text),
+                        py::bytes(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
 }
 
 std::vector<std::byte> bytes_of(const py::handle& object) {
@@ -166,12 +168,12 @@ Kept kept_of(const py::tuple& state) {
   cloud.position_type = static_cast<ScalarType>(state[0].cast<int>());
   for (const py::handle one : state[1]) {
     const auto [type, components, rest] = one.cast<std::tuple<int, std::size_t, py::tuple>>();
-    cloud.stored_normals.push_back({rest[0].cast<std::string>(), static_cast<ScalarType>(type),
-                                    components, bytes_of(rest[1])});
+    cloud.stored_normals.push_back(
+        {bytes_of_text(rest[0]), static_cast<ScalarType>(type), components, bytes_of(rest[1])});
   }
   for (const py::handle one : state[2]) {
     const auto element = one.cast<py::tuple>();
-    cloud.foreign_elements.push_back({element[0].cast<std::string>(), bytes_of(element[1])});
+    cloud.foreign_elements.push_back({bytes_of_text(element[0]), bytes_of(element[1])});
   }
   return {std::make_shared<const PointCloud>(std::move(cloud))};
 }
@@ -179,7 +181,7 @@ Kept kept_of(const py::tuple& state) {
 py::tuple read(const std::filesystem::path& path) {
   io::LoadedCloud loaded;
   run_job({py::none()}, [&](const Progress*) { loaded = formats::read_cloud(path); });
-  return py::make_tuple(take_apart(std::move(loaded.cloud)), loaded.warnings);
+  return py::make_tuple(take_apart(std::move(loaded.cloud)), texts_of(loaded.warnings));
 }
 
 /// A result, added to the cloud as the command line does.
@@ -207,9 +209,9 @@ ResultParts result_of(const py::dict& parts) {
 }
 
 /// Returns the data that the format cannot hold.
-std::vector<std::string> write(const std::filesystem::path& path, const py::dict& parts,
-                               const std::optional<py::dict>& result, bool class_colours,
-                               bool ascii, bool overwrite) {
+py::list write(const std::filesystem::path& path, const py::dict& parts,
+               const std::optional<py::dict>& result, bool class_colours, bool ascii,
+               bool overwrite) {
   PointCloud cloud = put_together(parts);
   io::WriteOptions options{.overwrite = overwrite ? Overwrite::kYes : Overwrite::kNo,
                            .ascii = ascii};
@@ -226,7 +228,7 @@ std::vector<std::string> write(const std::filesystem::path& path, const py::dict
     losses = formats::losses(path, cloud);
     formats::write_cloud(path, cloud, options);
   });
-  return losses;
+  return texts_of(losses);
 }
 
 }  // namespace
@@ -250,11 +252,11 @@ py::dict take_apart(PointCloud&& cloud) {
   parts["labels"] =
       optional(cloud.has_labels(), [&]() -> py::object { return give(std::move(cloud.labels)); });
   for (Attribute& attribute : cloud.attributes) {
-    const py::str name(attribute.name);
+    const py::str name = text_of(attribute.name);
     attributes[name] = array_of(std::move(attribute), points);
   }
   parts["attributes"] = attributes;
-  parts["comments"] = cloud.comments;
+  parts["comments"] = texts_of(cloud.comments);
   parts["scanners"] = give(std::move(cloud.scanners));
   parts["is_float32"] = cloud.position_type == ScalarType::kFloat32;
   parts["xyz"] = give(std::move(cloud.positions));
@@ -278,8 +280,8 @@ void add_clouds(py::module_& module) {
   module.attr("TRUTH_COLUMNS") =
       std::vector<std::string>(detect::kTruthColumns.begin(), detect::kTruthColumns.end());
   module.def("truth_of_result", truth_of_result);
-  module.def("class_lines", [](const std::vector<std::string>& comments) {
-    return lines_of(classes_of(comments));
+  module.def("class_lines", [](const py::list& comments) {
+    return lines_of(classes_of(bytes_of_texts(comments)));
   });
   module.def("class_names", class_names);
   module.def("check_edges", check_edges);

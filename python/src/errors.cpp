@@ -3,6 +3,7 @@
 #include "bindings.h"
 #include "pcednet/core/error.h"
 #include "pcednet/core/exists_already.h"
+#include "text.h"
 
 namespace pcednet::python {
 namespace {
@@ -36,7 +37,7 @@ void add_errors(py::module_&) {
       if (thrown) std::rethrow_exception(thrown);
     } catch (const Error& error) {
       const py::object type = py::module_::import("pcednet.errors").attr(class_of(error));
-      PyErr_SetString(type.ptr(), error.what());
+      PyErr_SetObject(type.ptr(), text_of(error.what()).ptr());
     }
   });
 }

@@ -11,6 +11,7 @@
 #include "named.h"
 #include "pcednet/core/error.h"
 #include "pcednet/detect/rounding.h"
+#include "text.h"
 #include "workbench/annotate/adapt_clouds.h"
 
 namespace pcednet::python {
@@ -29,7 +30,7 @@ std::vector<LabelledArrays> clouds_of(const py::list& list) {
   std::vector<LabelledArrays> clouds;
   for (const py::handle entry : list) {
     const auto cloud = entry.cast<py::tuple>();
-    clouds.push_back({cloud[0].cast<std::string>(), cloud[1].cast<Array<double>>(),
+    clouds.push_back({bytes_of_text(cloud[0]), cloud[1].cast<Array<double>>(),
                       cloud[2].cast<bool>(), cloud[3].cast<OptionalArray<double>>(),
                       cloud[4].cast<OptionalArray<double>>(),
                       cloud[5].cast<Array<std::uint8_t>>()});
@@ -130,7 +131,7 @@ py::tuple train(const py::list& clouds, const std::vector<std::string>& classes,
     notes.push_back("no context network was trained: the first network left no point in doubt: " +
                     trained.no_context);
   }
-  return py::make_tuple(std::move(trained.model), list_of(history), notes);
+  return py::make_tuple(std::move(trained.model), list_of(history), texts_of(notes));
 }
 
 /// Fine-tunes on painted points, as the annotator does: see annotate::adapt_clouds().
@@ -150,7 +151,7 @@ py::tuple adapt(const detect::EdgeModel& model, const py::list& clouds,
         name, model, prepared.clouds, table, seed,
         [&](const nn::EpochReport& report) { history.push_back(report); }, job);
   });
-  return py::make_tuple(std::move(adapted.model), list_of(history), prepared.notes);
+  return py::make_tuple(std::move(adapted.model), list_of(history), texts_of(prepared.notes));
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 """Point files in and out, as the command line reads and writes them; generated clouds."""
 
 import pathlib
+import pickle
 import subprocess
 import tempfile
 import unittest
@@ -44,6 +45,32 @@ class Files(CliTest):
         self.assertEqual(cloud.labels.dtype, np.uint8)
         self.assertIsNone(cloud.normals)
         np.testing.assert_array_equal(np.asarray(cloud), cloud.xyz)
+
+    def test_text_of_other_encodings_is_kept(self):
+        """Names, comments and file names in Latin-1."""
+        positions, normals, labels = cube(1000)
+        write_ply(self.path("given.ply"), positions, normals, labels)
+        given = self.path("given.ply").read_bytes()
+        self.assertIn(b"property uchar label\n", given)
+        latin = given.replace(b"element vertex", b"comment Gr\xfc\xdfe\nelement vertex").replace(
+            b"property uchar label\n", b"property uchar H\xf6he\n")
+        source = self.path("Geb\udce4ude.ply")
+        source.write_bytes(latin)
+        cloud = pcednet.read(source)
+        self.assertEqual(cloud.comments[-1].encode(errors="surrogateescape"), b"Gr\xfc\xdfe")
+        np.testing.assert_array_equal(cloud["H\udcf6he"], labels)
+        for name in ("copy.ply", "copy.las"):
+            pcednet.write(self.path(f"our_{name}"), pickle.loads(pickle.dumps(cloud)))
+            run("convert", source, "-o", self.path(f"their_{name}"), errors="surrogateescape")
+            self.assert_same_bytes(self.path(f"our_{name}"), self.path(f"their_{name}"))
+        run("classify", source, "-o", self.path("theirs.ply"), errors="surrogateescape")
+        pcednet.write(self.path("ours.ply"), cloud, pcednet.classify(cloud))
+        self.assert_same_bytes(self.path("ours.ply"), self.path("theirs.ply"))
+        cloud.labels = labels
+        self.assertEqual(len(pcednet.train(cloud, epochs=1).history), 1)
+        source.write_bytes(latin[:-9])
+        with self.assertRaisesRegex(pcednet.UnreadableError, "Geb\udce4ude.ply: declares 1000 rows"):
+            pcednet.read(source)
 
     def test_arrays_come_back_as_they_went(self):
         positions, normals, labels = cube(500)
