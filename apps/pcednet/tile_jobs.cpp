@@ -81,26 +81,27 @@ class Running {
 
 }  // namespace
 
-std::size_t run_tile_jobs(const TileJobs& jobs, const Progress& progress) {
+std::size_t run_tile_jobs(const TileJobs& jobs, TileQueue& queue, const Progress& progress) {
+  const std::size_t all = queue.left();
   Running running;
   std::vector<std::size_t> failed;
   std::size_t started = 0;
   int code = 0;
-  Stage stage(&progress, "tiles", jobs.tiles.size());
-  for (std::size_t next = 0; next < jobs.tiles.size() || running.size() > 0;) {
+  Stage stage(&progress, "tiles", all);
+  while (queue.left() > 0 || running.size() > 0) {
     throw_if_cancelled(&progress);
-    if (next < jobs.tiles.size() && running.size() < static_cast<std::size_t>(jobs.jobs)) {
-      const std::size_t tile = jobs.tiles[next++];
-      if (jobs.is_done(tile)) {
-        stage.advance();
-        continue;
-      }
-      running.add(start(jobs, tile), tile);
+    if (queue.left() > 0 && running.size() < static_cast<std::size_t>(jobs.jobs)) {
+      const std::size_t before = queue.left();
+      const auto tile = queue.next();
+      stage.advance(before - queue.left() - (tile ? 1 : 0));
+      if (!tile) continue;
+      running.add(start(jobs, *tile), *tile);
       ++started;
       continue;
     }
     for (const auto& [tile, its_code] : running.wait()) {
       stage.advance();
+      queue.finish(tile);
       if (its_code == 0) continue;
       failed.push_back(tile);
       if (code == 0) code = its_code;
@@ -109,8 +110,8 @@ std::size_t run_tile_jobs(const TileJobs& jobs, const Progress& progress) {
   if (failed.empty()) return started;
   std::sort(failed.begin(), failed.end());
   throw Error(static_cast<ErrorKind>(code),
-              fmt::format("{} of {} tiles failed, for the reasons above: {}", failed.size(),
-                          jobs.tiles.size(), tiles::list_of(failed)));
+              fmt::format("{} of {} tiles failed, for the reasons above: {}", failed.size(), all,
+                          tiles::list_of(failed)));
 }
 
 }  // namespace pcednet::app

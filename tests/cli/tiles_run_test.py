@@ -220,6 +220,34 @@ class TilesRun(TilesTest):
         self.check_whole(plan, self.folder / "small.ply")
         self.assertEqual([p.name for p in (self.folder / "p_tiles").iterdir() if "part" in p.name], [])
 
+    def test_runs_side_by_side_share_the_tiles(self):
+        plan, content = self.small(tile=1.0)
+        tiles = len(content["tiles"])
+        self.assertGreater(tiles, 6)
+        for jobs in ("1", "2"):
+            shutil.rmtree(self.folder / "p_tiles", ignore_errors=True)
+            runs = [subprocess.Popen([PROGRAM, "tiles", "run", str(plan), "--jobs", jobs], stderr=subprocess.PIPE,
+                                     text=True) for _ in range(2)]
+            said = [process.communicate(timeout=60)[1] for process in runs]
+            ran = [len(re.findall(r"^tile \d+: ", text, re.M)) for text in said]
+            self.assertEqual([process.returncode for process in runs], [0, 0], said)
+            # At the end each may also run what the other is at.
+            self.assertLessEqual(sum(ran), tiles + int(jobs), said)
+            self.check_whole(plan, self.folder / "small.ply")
+
+    def test_a_mark_that_a_killed_run_left_delays_its_tile_alone(self):
+        plan, content = self.small(tile=1.0)
+        last = len(content["tiles"]) - 1
+        for jobs in (1, 2):
+            shutil.rmtree(self.folder / "p_tiles", ignore_errors=True)
+            (self.folder / "p_tiles").mkdir()
+            (self.folder / (content["tiles"][0]["output"] + ".part-run")).touch()
+            said = run("tiles", "run", plan, "--jobs", jobs).stderr
+            if jobs == 1:
+                self.assertEqual(re.findall(r"^tile (\d+): ", said, re.M), [*map(str, range(1, last + 1)), "0"])
+            self.check_whole(plan, self.folder / "small.ply")
+            self.assertEqual([p.name for p in (self.folder / "p_tiles").iterdir() if "part" in p.name], [])
+
     def test_tiles_of_another_run_are_counted_as_its_own(self):
         plan, content = self.small(tile=1.0)
         tiles = len(content["tiles"])

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <functional>
 #include <memory>
 
 #include "byte_size.h"
@@ -19,6 +18,7 @@
 #include "shell_word.h"
 #include "tile_jobs.h"
 #include "tile_numbers.h"
+#include "tile_queue.h"
 
 namespace pcednet::app {
 namespace {
@@ -48,30 +48,28 @@ int jobs_within(const RunArguments& arguments, const tiles::Plan& plan) {
   return static_cast<int>(fit);
 }
 
-using IsDone = std::function<bool(std::size_t tile)>;
-
-/// Runs the tiles that are not done when their turn comes; returns how many.
-std::size_t run_here(const tiles::Plan& plan, const std::vector<std::size_t>& ids,
-                     const IsDone& is_done, const Common& common) {
+/// Runs the tiles of the queue; returns how many.
+std::size_t run_here(const tiles::Plan& plan, TileQueue& queue, const Common& common) {
   const detect::EdgeModel model = tiles::load_planned_model(plan);
   const Progress progress = console_progress(common);
   std::size_t ran = 0;
-  for (const std::size_t id : ids) {
+  while (const auto id = queue.next()) {
     throw_if_cancelled(&progress);
-    if (is_done(id)) continue;
     Stopwatch watch;
-    tiles::run_tile(plan, id, model, &progress);
-    say(fmt::format("tile {}: {} points, {:.1f} s -> {}", id, plan.tiles[id].points, watch.lap(),
-                    plan.tiles[id].output.string()));
+    tiles::run_tile(plan, *id, model, &progress);
+    queue.finish(*id);
+    say(fmt::format("tile {}: {} points, {:.1f} s -> {}", *id, plan.tiles[*id].points, watch.lap(),
+                    plan.tiles[*id].output.string()));
     ++ran;
   }
   return ran;
 }
 
-std::size_t run_processes(const tiles::Plan& plan, const TileJobs& jobs, const Common& common) {
+std::size_t run_processes(const tiles::Plan& plan, const TileJobs& jobs, TileQueue& queue,
+                          const Common& common) {
   tiles::load_planned_model(plan);  // throws before any process starts, as do the next lines
   for (const tiles::PlannedInput& input : plan.inputs) tiles::check_size(input);
-  return run_tile_jobs(jobs, console_progress(common));
+  return run_tile_jobs(jobs, queue, console_progress(common));
 }
 
 /// Of `all` tiles, of which `begun` were not done at the beginning.
@@ -126,7 +124,7 @@ void run_tiles(const RunArguments& arguments, const Common& common) {
   find_planned_model(plan.model);
   std::vector<std::size_t> ids = tile_numbers(arguments.tiles, plan.tiles.size());
   std::size_t all = ids.size();
-  const IsDone is_done = [&](std::size_t id) {
+  const auto is_done = [&](std::size_t id) {
     return !common.overwrite_files && tiles::state_of(plan, id) == tiles::TileState::kDone;
   };
   std::erase_if(ids, is_done);
@@ -139,16 +137,12 @@ void run_tiles(const RunArguments& arguments, const Common& common) {
     all -= left.ids.size();
   }
   std::size_t ran = 0;
+  TileQueue queue(plan, ids, is_done);
   if (jobs > 1 && ids.size() > 1) {
-    ran = run_processes(plan,
-                        {.plan = arguments.plan,
-                         .tiles = ids,
-                         .jobs = jobs,
-                         .threads = common.threads,
-                         .is_done = is_done},
-                        common);
+    ran = run_processes(plan, {.plan = arguments.plan, .jobs = jobs, .threads = common.threads},
+                        queue, common);
   } else if (!ids.empty()) {
-    ran = run_here(plan, ids, is_done, common);
+    ran = run_here(plan, queue, common);
   }
   // A single tile has reported, or is left out.
   if (all > 1 || (all == 1 && ran == 0)) say_run(all, ids.size(), ran);
